@@ -1,0 +1,20 @@
+# Every package is found here, once. What is absent is named by `selvedge info`.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(HDF5 REQUIRED COMPONENTS C)
+find_package(yaml-cpp REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(fmt REQUIRED)
+
+if(SELVEDGE_OPENMP)
+  find_package(OpenMP REQUIRED COMPONENTS CXX)
+endif()
+
+if(SELVEDGE_SUITESPARSE)
+  # CHOLMOD ships no CMake package.
+  find_path(CHOLMOD_INCLUDE cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
+  find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+  add_library(selvedge_cholmod INTERFACE)
+  target_include_directories(selvedge_cholmod SYSTEM INTERFACE ${CHOLMOD_INCLUDE})
+  target_link_libraries(selvedge_cholmod INTERFACE ${CHOLMOD_LIBRARY})
+endif()

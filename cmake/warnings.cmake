@@ -1,0 +1,2 @@
+add_library(selvedge_warnings INTERFACE)
+target_compile_options(selvedge_warnings INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor $<$<BOOL:${SELVEDGE_WERROR}>:-Werror>)

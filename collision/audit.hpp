@@ -1,0 +1,34 @@
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "collision/surface.hpp"
+
+namespace selvedge {
+
+// Independent proof that a state is clean. Shares no code with proximity, CCD or response: its own broad phase (sort
+// and sweep over a uniform grid), exact triangle tests, exact ray parity for inside tests.
+struct Audit {
+  std::vector<std::pair<int, int>> self_pairs;      // intersecting cloth triangles that share no vertex
+  std::vector<std::pair<int, int>> vertex_pairs;    // cloth triangles that share one vertex and cross along a segment
+  std::vector<std::pair<int, int>> obstacle_pairs;  // (cloth triangle, obstacle triangle), obstacles numbered on end
+  int inside_vertices = 0;                          // cloth vertices inside a closed obstacle
+  int nonfinite = 0;                                // vertices with a NaN or infinite coordinate (left out of the rest)
+  int intersecting_pairs() const { return static_cast<int>(self_pairs.size() + obstacle_pairs.size()); }
+};
+
+struct AuditBody {
+  const Surface* surface = nullptr;
+  const Points* points = nullptr;
+};
+
+// self = false leaves the cloth-cloth test out.
+Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, bool self = true);
+
+// Smallest distance between two triangles that share no vertex, within the cloth and from cloth to obstacles [m];
+// zero where any intersect; infinity where there is no such pair within `horizon`.
+double min_gap(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, double horizon);
+
+}  // namespace selvedge

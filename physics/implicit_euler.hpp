@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "physics/contact_energy.hpp"
+#include "physics/scene.hpp"
+
+namespace selvedge {
+
+enum class LinearSolver { automatic, cholmod, pcg };
+
+struct ImplicitEulerOptions {
+  double velocity_tolerance =
+      2e-3;  // Newton ends when its largest displacement is below this times the time step [m/s]
+  int max_newton = 12;
+  LinearSolver linear_solver = LinearSolver::automatic;
+  double linear_tolerance = 0.05;  // relative residual of PCG in a Newton iteration
+  int max_linear = 2000;
+  double slip_speed = 1e-3;  // below it lagged friction is viscous [m/s]
+};
+
+struct NewtonReport {
+  bool converged = false;
+  bool finite = true;
+  int iterations = 0, linear_iterations = 0;
+  double residual = 0;  // largest force imbalance of a free vertex [N]
+};
+
+// One step's data. Everything is over the cloth's joint numbering.
+struct StepProblem {
+  double h = 0;                // [s]
+  const Points* x0 = nullptr;  // positions and velocities at the step's start
+  const Points* v0 = nullptr;
+  const Points* pins = nullptr;  // targets, one row a Scene::pins entry
+  Vec3 acceleration = Vec3::Zero();
+  Vec3 wind = Vec3::Zero();
+  std::span<const ContactTerm> contacts;
+};
+
+// Minimises the incremental potential
+//   E(x) = sum_i m_i |x_i - y_i|^2 / (2 h^2) + membrane + bending + damping + contact + friction,
+//   y = x0 + h v0 + h^2 (acceleration + wind force / m),
+// with pins held exactly, by projected Newton with line search. Holds caches only (patterns, factors, scratch).
+class ImplicitEuler {
+ public:
+  ImplicitEuler(const Scene&, const ImplicitEulerOptions&);  // keeps a reference to the scene
+  ~ImplicitEuler();
+  // x: first guess in, minimiser out.
+  NewtonReport solve(const StepProblem&, Points& x);
+  double potential(const StepProblem&, const Points& x);
+  Points gradient(const StepProblem&, const Points& x);  // zero rows at pins
+  LinearSolver chosen_solver() const;
+  const Eigen::VectorXd& masses() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace selvedge

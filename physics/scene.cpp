@@ -1,0 +1,31 @@
+#include "physics/scene.hpp"
+
+#include <cmath>
+
+namespace selvedge {
+
+RestTriangle flatten(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a;
+  const double length = ab.norm();
+  const double along = length > 0 ? ac.dot(ab) / length : 0;
+  const double height = length > 0 ? ab.cross(ac).norm() / length : ac.norm();
+  RestTriangle rest;
+  rest << 0, length, along, 0, 0, height;
+  return rest;
+}
+
+double area(const RestTriangle& rest) {
+  const Vec2 u = rest.col(1) - rest.col(0), v = rest.col(2) - rest.col(0);
+  return 0.5 * (u.x() * v.y() - u.y() * v.x());
+}
+
+Eigen::VectorXd lumped_masses(const Scene& scene) {
+  Eigen::VectorXd masses = Eigen::VectorXd::Zero(scene.surface.vertex_count);
+  for (const Cloth& cloth : scene.cloths)
+    for (int t = cloth.first_triangle; t < cloth.first_triangle + cloth.triangle_count; ++t)
+      for (int k = 0; k < 3; ++k)
+        masses[scene.surface.triangles(t, k)] += cloth.material.density * std::abs(area(scene.rest_triangle[t])) / 3;
+  return masses;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "collision/points.hpp"
+
+namespace selvedge {
+
+// All that the next step depends on: a copy is a checkpoint.
+struct State {
+  double time = 0;  // [s]
+  int frame = 0;
+  Points x, v;                    // cloth, all cloths on end
+  std::vector<Points> obstacles;  // where they are; may lag behind Drive::obstacles
+};
+
+// What the world imposes on a step, given at the step's END.
+struct Drive {
+  Points pins;                       // one row a Scene::pins entry
+  std::vector<Points> obstacles;     // wanted positions
+  Vec3 wind = Vec3::Zero();          // [m/s]
+  Vec3 acceleration = Vec3::Zero();  // gravity [m/s2]
+};
+
+enum class StepStatus { not_run, accepted, rejected };
+enum class Reason { none, not_converged, not_finite, penetrating, energy_gain, overstretched };
+
+struct PhaseTimes {  // [s]
+  double solve = 0, broad_phase = 0, ccd = 0, response = 0, audit = 0;
+  double total() const { return solve + broad_phase + ccd + response + audit; }
+};
+
+struct CollisionReport {
+  int contacts = 0;   // proximity pairs in the implicit solve, last substep
+  int impulses = 0;   // impacts met with an impulse, all substeps
+  int zones = 0;      // impact zones projected, all substeps
+  int shortened = 0;  // zones whose motion was shortened toward the last clean state
+  double min_gap = std::numeric_limits<double>::infinity();  // of the contacts [m]
+  double obstacle_lag = 0;                // largest distance of an obstacle vertex from where it was wanted [m]
+  int pairs_before = 0, pairs_after = 0;  // intersecting triangle pairs by the audit; -1: not audited
+};
+
+struct StepReport {  // starts as failure
+  StepStatus status = StepStatus::not_run;
+  Reason reason = Reason::none;
+  std::string by;  // who made the state
+  bool fell_back = false;
+  int substeps = 0;
+  int iterations = 0;  // Newton, all substeps
+  int linear_iterations = 0;
+  double residual = 0;  // largest force imbalance at the last substep's end [N]
+  PhaseTimes seconds;
+  CollisionReport collision;
+};
+
+struct StepperTraits {
+  std::string name;
+};
+
+class Stepper {
+ public:
+  virtual ~Stepper() = default;
+  virtual const StepperTraits& traits() const = 0;
+  // Writes from.time + dt into `to`. If rejected, `to` is junk and `from` is untouched: going back is doing nothing.
+  // Never throws for numerical trouble.
+  virtual StepReport step(const State& from, const Drive&, double dt, State& to) = 0;
+};
+
+}  // namespace selvedge

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "physics/conventional_stepper.hpp"
+#include "physics/scene.hpp"
+#include "physics/stepper.hpp"
+
+namespace selvedge {
+
+// What a scene file says beside the Scene itself.
+struct RunOptions {
+  int frames = 60;
+  double fps = 30;
+  std::string stepper = "conventional";
+  ConventionalOptions conventional;
+};
+
+// A scene file, read: everything a run needs.
+struct Setup {
+  std::filesystem::path file;
+  std::string config;  // the full configuration as YAML, overrides applied
+  Scene scene;
+  State initial;
+  RunOptions run;
+  std::function<Drive(double time)> drive_at;  // the world at a time [s]
+  std::vector<std::string> warnings;  // named and counted: degenerate triangles left out, isolated vertices, ...
+};
+
+// Reads a scene file. `overrides` are key=value with dotted keys (run.frames=10). Throws Error with file, line, key,
+// what is allowed and the nearest known key.
+Setup read_setup(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+}  // namespace selvedge

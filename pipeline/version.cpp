@@ -1,0 +1,7 @@
+#include "pipeline/version.hpp"
+
+namespace selvedge {
+
+const char* program_version() { return SELVEDGE_VERSION; }
+
+}  // namespace selvedge

@@ -1,0 +1,7 @@
+#pragma once
+
+namespace selvedge {
+
+const char* program_version();
+
+}  // namespace selvedge
