@@ -50,8 +50,8 @@ struct Frame {
 TrajectoryInfo trajectory_info(const Scene&, const std::string& config, const std::string& stepper, double fps);
 
 // HDF5 in SWMR mode: all datasets are made before the first frame, one flush a frame, so that a file whose writer was
-// killed opens and is complete up to its last full frame. Throws Error when the disk is full or the path cannot be
-// written.
+// killed opens and is complete up to its last full frame. Still obstacles are taken from the first frame alone. Throws
+// Error when the disk is full or the path cannot be written. Without close() the file is not marked closed.
 class TrajectoryWriter {
  public:
   TrajectoryWriter(const std::filesystem::path&, const TrajectoryInfo&);
@@ -64,12 +64,14 @@ class TrajectoryWriter {
   std::unique_ptr<Impl> impl_;
 };
 
+// Reads also a file that is being written, or whose writer was killed. Throws Error for what is no trajectory.
 class TrajectoryReader {
  public:
   explicit TrajectoryReader(const std::filesystem::path&);
   ~TrajectoryReader();
   const TrajectoryInfo& info() const;
   int frame_count() const;  // full frames
+  bool closed() const;      // false: still being written, or its writer was killed
   Frame frame(int index) const;
 
  private:

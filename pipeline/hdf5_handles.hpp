@@ -1,0 +1,90 @@
+#pragma once
+
+#include <hdf5.h>
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace selvedge::h5 {
+
+// Owns one HDF5 identifier. Closing never throws: what must not be lost is flushed before.
+class Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+  Handle() = default;
+  Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(close_, other.close_);
+    return *this;
+  }
+  ~Handle() { reset(); }
+  void reset() {
+    if (id_ >= 0) close_(std::exchange(id_, -1));
+  }
+  hid_t id() const { return id_; }
+
+ private:
+  hid_t id_ = -1;
+  Close close_ = nullptr;
+};
+
+// Throws Error built from HDF5's own error stack when `result` is negative; returns it otherwise.
+hid_t checked(hid_t result, const std::filesystem::path& file, const std::string& doing);
+
+// Turns off HDF5's own printing of errors for the calling thread.
+void silence();
+
+// Access properties of every trajectory: latest format (SWMR needs it), no file locks (network folders often have
+// none; one writer a file is a rule of ours).
+Handle file_access();
+
+Handle text_type(std::size_t length);  // fixed length, padded with zeros; `length` > 0
+
+// A file and the calls on it that may fail, each turned into an Error that names the file.
+class File {
+ public:
+  static File create(const std::filesystem::path&);
+  static File open(const std::filesystem::path&);  // SWMR read: also what a killed writer has left
+
+  hid_t id() const { return handle_.id(); }
+  const std::filesystem::path& path() const { return path_; }
+  void move_to(const std::filesystem::path& path);  // renames the open file
+  hid_t check(hid_t result, const std::string& doing) const { return checked(result, path_, doing); }
+  void flush() const;
+  void start_swmr() const;
+  void close();  // throws if what is still held cannot be written
+  // After a failed write: closes without touching the disk again, so that the file stays as a killed writer would
+  // leave it. A plain close would mark it whole and name an end that it does not have.
+  void abandon();
+
+  Handle make_group(const std::string& name) const;
+  // A dataset of fixed size, written at once. Values lie contiguously in `data`.
+  void write_constant(const std::string& name, hid_t type, const std::vector<hsize_t>& shape, const void* data) const;
+  void write_text(const std::string& name, const std::string& text) const;
+  void write_texts(const std::string& name, const std::vector<std::string>& texts) const;
+  // A dataset that grows along its first dimension, in chunks of `chunk_rows`.
+  Handle make_growing(const std::string& name, hid_t type, const std::vector<hsize_t>& row_shape, hsize_t chunk_rows,
+                      hsize_t first_rows = 0) const;
+  Handle open_dataset(const std::string& name) const;
+  bool has(const std::string& name) const;
+  std::vector<hsize_t> shape(hid_t dataset) const;
+  std::string read_text(const std::string& name) const;
+  std::vector<std::string> read_texts(const std::string& name) const;
+  void read_all(const std::string& name, hid_t type, void* data) const;
+
+  // Rows [first, first + count) of a dataset; writing grows it to that length.
+  void write_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t count, const void* data) const;
+  void read_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t count, void* data) const;
+
+ private:
+  File(std::filesystem::path path, Handle handle) : path_(std::move(path)), handle_(std::move(handle)) {}
+  std::vector<std::string> read_text_rows(hid_t dataset) const;
+  std::filesystem::path path_;
+  Handle handle_;
+};
+
+}  // namespace selvedge::h5

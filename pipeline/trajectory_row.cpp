@@ -1,0 +1,150 @@
+#include "pipeline/trajectory_row.hpp"
+
+#include <cstddef>
+
+namespace selvedge {
+namespace {
+
+struct Column {
+  const char* name;
+  std::size_t offset;
+  hid_t type;
+};
+
+// HDF5's native types are known only once the library runs, so the list is made on demand.
+std::vector<Column> columns() {
+  using Row = TrajectoryRow;
+  const hid_t real = H5T_NATIVE_DOUBLE, whole = H5T_NATIVE_INT32;
+  return {{"time", offsetof(Row, time), real},
+          {"seconds", offsetof(Row, seconds), real},
+          {"by", offsetof(Row, by), whole},
+          {"reason", offsetof(Row, reason), whole},
+          {"status", offsetof(Row, status), whole},
+          {"fell_back", offsetof(Row, fell_back), whole},
+          {"substeps", offsetof(Row, substeps), whole},
+          {"iterations", offsetof(Row, iterations), whole},
+          {"linear_iterations", offsetof(Row, linear_iterations), whole},
+          {"residual", offsetof(Row, residual), real},
+          {"solve_seconds", offsetof(Row, solve_seconds), real},
+          {"broad_phase_seconds", offsetof(Row, broad_phase_seconds), real},
+          {"ccd_seconds", offsetof(Row, ccd_seconds), real},
+          {"response_seconds", offsetof(Row, response_seconds), real},
+          {"audit_seconds", offsetof(Row, audit_seconds), real},
+          {"contacts", offsetof(Row, contacts), whole},
+          {"impulses", offsetof(Row, impulses), whole},
+          {"zones", offsetof(Row, zones), whole},
+          {"shortened", offsetof(Row, shortened), whole},
+          {"contact_gap", offsetof(Row, contact_gap), real},
+          {"obstacle_lag", offsetof(Row, obstacle_lag), real},
+          {"pairs_before", offsetof(Row, pairs_before), whole},
+          {"pairs_after", offsetof(Row, pairs_after), whole},
+          {"self_pairs", offsetof(Row, self_pairs), whole},
+          {"vertex_pairs", offsetof(Row, vertex_pairs), whole},
+          {"obstacle_pairs", offsetof(Row, obstacle_pairs), whole},
+          {"inside_vertices", offsetof(Row, inside_vertices), whole},
+          {"nonfinite", offsetof(Row, nonfinite), whole},
+          {"max_stretch", offsetof(Row, max_stretch), real},
+          {"min_stretch", offsetof(Row, min_stretch), real},
+          {"kinetic_energy", offsetof(Row, kinetic_energy), real},
+          {"gravity_energy", offsetof(Row, gravity_energy), real},
+          {"membrane_energy", offsetof(Row, membrane_energy), real},
+          {"bending_energy", offsetof(Row, bending_energy), real},
+          {"bad_begin", offsetof(Row, bad_begin), H5T_NATIVE_INT64},
+          {"bad_count", offsetof(Row, bad_count), whole}};
+}
+
+}  // namespace
+
+h5::Handle row_memory_type() {
+  h5::Handle type(H5Tcreate(H5T_COMPOUND, sizeof(TrajectoryRow)), H5Tclose);
+  for (const Column& column : columns()) H5Tinsert(type.id(), column.name, column.offset, column.type);
+  return type;
+}
+
+h5::Handle row_file_type() {
+  h5::Handle type = row_memory_type();
+  H5Tpack(type.id());
+  return type;
+}
+
+TrajectoryRow row_of(const Frame& frame, int by, std::int64_t bad_begin) {
+  const StepReport& report = frame.report;
+  const CollisionReport& collision = report.collision;
+  TrajectoryRow row{};
+  row.time = frame.time;
+  row.seconds = frame.seconds;
+  row.by = by;
+  row.reason = static_cast<int>(report.reason);
+  row.status = static_cast<int>(report.status);
+  row.fell_back = report.fell_back;
+  row.substeps = report.substeps;
+  row.iterations = report.iterations;
+  row.linear_iterations = report.linear_iterations;
+  row.residual = report.residual;
+  row.solve_seconds = report.seconds.solve;
+  row.broad_phase_seconds = report.seconds.broad_phase;
+  row.ccd_seconds = report.seconds.ccd;
+  row.response_seconds = report.seconds.response;
+  row.audit_seconds = report.seconds.audit;
+  row.contacts = collision.contacts;
+  row.impulses = collision.impulses;
+  row.zones = collision.zones;
+  row.shortened = collision.shortened;
+  row.contact_gap = collision.min_gap;
+  row.obstacle_lag = collision.obstacle_lag;
+  row.pairs_before = collision.pairs_before;
+  row.pairs_after = collision.pairs_after;
+  row.self_pairs = frame.self_pairs;
+  row.vertex_pairs = frame.vertex_pairs;
+  row.obstacle_pairs = frame.obstacle_pairs;
+  row.inside_vertices = frame.inside_vertices;
+  row.nonfinite = frame.nonfinite;
+  row.max_stretch = frame.max_stretch;
+  row.min_stretch = frame.min_stretch;
+  row.kinetic_energy = frame.energy.kinetic;
+  row.gravity_energy = frame.energy.gravity;
+  row.membrane_energy = frame.energy.membrane;
+  row.bending_energy = frame.energy.bending;
+  row.bad_begin = bad_begin;
+  row.bad_count = static_cast<int>(frame.bad_triangles.size());
+  return row;
+}
+
+void fill_from_row(const TrajectoryRow& row, const std::vector<std::string>& names_of_by, Frame& frame) {
+  frame.time = row.time;
+  frame.seconds = row.seconds;
+  StepReport& report = frame.report;
+  report.by = row.by >= 0 && row.by < static_cast<int>(names_of_by.size()) ? names_of_by[row.by] : "unknown";
+  report.reason = static_cast<Reason>(row.reason);
+  report.status = static_cast<StepStatus>(row.status);
+  report.fell_back = row.fell_back != 0;
+  report.substeps = row.substeps;
+  report.iterations = row.iterations;
+  report.linear_iterations = row.linear_iterations;
+  report.residual = row.residual;
+  report.seconds = {row.solve_seconds, row.broad_phase_seconds, row.ccd_seconds, row.response_seconds,
+                    row.audit_seconds};
+  report.collision = {row.contacts,    row.impulses,     row.zones,        row.shortened,
+                      row.contact_gap, row.obstacle_lag, row.pairs_before, row.pairs_after};
+  frame.self_pairs = row.self_pairs;
+  frame.vertex_pairs = row.vertex_pairs;
+  frame.obstacle_pairs = row.obstacle_pairs;
+  frame.inside_vertices = row.inside_vertices;
+  frame.nonfinite = row.nonfinite;
+  frame.max_stretch = row.max_stretch;
+  frame.min_stretch = row.min_stretch;
+  frame.energy = {row.kinetic_energy, row.gravity_energy, row.membrane_energy, row.bending_energy};
+}
+
+const std::vector<std::string>& reason_names() {
+  static const std::vector<std::string> names{"none",        "not_converged", "not_finite",
+                                              "penetrating", "energy_gain",   "overstretched"};
+  return names;
+}
+
+const std::vector<std::string>& status_names() {
+  static const std::vector<std::string> names{"not_run", "accepted", "rejected"};
+  return names;
+}
+
+}  // namespace selvedge
