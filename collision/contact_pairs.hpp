@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "collision/bvh.hpp"
+#include "collision/ccd.hpp"
+
+namespace selvedge {
+
+// Cloth and obstacles under one numbering of nodes: cloth vertices first, then each obstacle's. Constant topology.
+struct ContactWorld {
+  const Surface* cloth = nullptr;
+  std::vector<const Surface*> obstacles;
+  std::vector<int> first_node;  // of each obstacle
+  bool self = true;             // cloth against itself
+  int node_count = 0;
+
+  bool is_cloth(int node) const { return node < cloth->vertex_count; }
+  int obstacle_of(int node) const;  // -1: cloth
+};
+
+ContactWorld make_contact_world(const Surface& cloth, std::vector<const Surface*> obstacles, bool self);
+
+// Positions of all nodes in that numbering.
+Points gather_nodes(const Points& cloth, const std::vector<Points>& obstacles);
+
+// Two primitives that share no vertex.
+struct NodePair {
+  PairKind kind;
+  std::array<int, 4> nodes;  // v, f0, f1, f2 | a0, a1, b0, b1
+  auto operator<=>(const NodePair&) const = default;
+};
+
+std::array<Vec3, 4> corners(const NodePair&, const Points& x);
+
+// Finds vertex-face and edge-edge pairs that may come within `radius` of each other while all nodes move straight from
+// x0 to x1; misses none. Every vertex and edge belongs to one triangle, so that each pair is found once (representative
+// triangles, Curtis, Tamstorf and Manocha 2008). Holds trees, which are caches.
+class PairSearch {
+ public:
+  explicit PairSearch(const ContactWorld&);  // keeps a reference
+  // Call at a step's start: what follows depends on the positions given from here on and not on earlier steps.
+  void restart();
+  void find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs);
+
+ private:
+  struct Part {  // a surface with its tree
+    const Surface* surface = nullptr;
+    int first_node = 0;
+    Bvh bvh;
+    double built_cost = 0;
+    bool stale = true, refitted = false;
+    Points from, to;  // what the boxes hold: a body that stands still is not refitted
+    double radius = -1;
+    std::vector<Box> triangle_boxes, vertex_boxes, edge_boxes;
+  };
+  static void make_boxes(Part&);
+  static void update(Part&, const Points& x0, const Points& x1, double radius);
+
+  const ContactWorld& world_;
+  Part cloth_;
+  std::vector<Part> obstacles_;
+  std::vector<std::pair<int, int>> triangle_pairs_;
+};
+
+}  // namespace selvedge

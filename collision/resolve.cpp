@@ -1,0 +1,210 @@
+#include "collision/resolve.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <map>
+
+namespace selvedge {
+namespace {
+
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+// The work of one resolve call: what is known of the motion and of its impacts.
+struct Resolution {
+  PairSearch& search;
+  const ContactWorld& world;
+  const Eigen::VectorXd& inverse_mass;
+  const ResolveOptions& options;
+  const Points& x0;
+  Points& x1;
+  std::vector<NodePair>& candidates;
+  ResolveReport report;
+  Stopwatch watch;
+  Points searched;             // x1 at the last pair search
+  std::vector<char> moved;     // nodes whose path changed since their pairs were tested
+  std::deque<Impact> impacts;  // all that zones hold
+  ZoneSets zones;
+
+  bool is_free(int node) const { return inverse_mass[node] > 0; }
+};
+
+// Boxes reach half the thickness beyond what the next proximity query needs; ends may wander that far before a new
+// search.
+void search_pairs(Resolution& r) {
+  r.watch.lap();
+  r.searched = r.x1;
+  r.search.find(r.x0, r.x1, 2 * r.options.thickness, r.candidates);
+  std::fill(r.moved.begin(), r.moved.end(), 1);
+  r.report.broad_phase += r.watch.lap();
+}
+
+bool wandered(const Resolution& r) {
+  return (r.x1 - r.searched).rowwise().squaredNorm().maxCoeff() > 0.25 * r.options.thickness * r.options.thickness;
+}
+
+// Impacts of all pairs with a node that moved, in the order of the candidates.
+std::vector<Impact> new_impacts(Resolution& r) {
+  if (wandered(r)) search_pairs(r);
+  r.watch.lap();
+  constexpr int chunk = 4096;
+  const int chunks = (static_cast<int>(r.candidates.size()) + chunk - 1) / chunk;
+  std::vector<std::vector<Impact>> found(chunks);
+#pragma omp parallel for schedule(dynamic)
+  for (int c = 0; c < chunks; ++c) {
+    const int end = std::min<int>((c + 1) * chunk, static_cast<int>(r.candidates.size()));
+    for (int i = c * chunk; i < end; ++i) {
+      const NodePair& pair = r.candidates[i];
+      const auto any = [&pair](auto&& test) { return std::any_of(pair.nodes.begin(), pair.nodes.end(), test); };
+      if (!any([&](int n) { return r.moved[n] != 0; }) || !any([&](int n) { return r.is_free(n); })) continue;
+      if (const auto impact = find_impact(pair, r.x0, r.x1, r.options.separation)) found[c].push_back(*impact);
+    }
+  }
+  std::vector<Impact> all;
+  for (const auto& list : found) all.insert(all.end(), list.begin(), list.end());
+  std::fill(r.moved.begin(), r.moved.end(), 0);
+  r.report.ccd += r.watch.lap();
+  return all;
+}
+
+double friction_of(const Resolution& r, const NodePair& pair) {
+  const bool obstacle = std::any_of(pair.nodes.begin(), pair.nodes.end(), [&](int n) { return !r.world.is_cloth(n); });
+  return obstacle ? r.options.friction : r.options.self_friction;
+}
+
+void mark_free(Resolution& r, const Impact& impact) {
+  for (const int node : impact.pair.nodes)
+    if (r.is_free(node)) r.moved[node] = 1;
+}
+
+void impulse_round(Resolution& r, std::vector<Impact> impacts) {
+  std::stable_sort(impacts.begin(), impacts.end(), [](const Impact& a, const Impact& b) { return a.time < b.time; });
+  for (Impact& impact : impacts) {
+    apply_impulse(impact, r.inverse_mass, friction_of(r, impact.pair), r.x0, r.x1);
+    mark_free(r, impact);
+  }
+  r.report.impulses += static_cast<int>(impacts.size());
+  r.report.response += r.watch.lap();
+}
+
+// Adds the impacts to the zones, joining those that share a free node, and projects every zone that got a new one.
+void zone_round(Resolution& r, const std::vector<Impact>& fresh) {
+  for (const Impact& impact : fresh) {
+    int first = -1;
+    for (const int node : impact.pair.nodes)
+      if (r.is_free(node)) r.zones.join(first < 0 ? first = node : first, node);
+    r.impacts.push_back(impact);
+  }
+  const auto zone_of = [&r](const Impact& impact) {
+    return r.zones.root(
+        *std::find_if(impact.pair.nodes.begin(), impact.pair.nodes.end(), [&](int n) { return r.is_free(n); }));
+  };
+  std::map<int, std::vector<Impact*>> touched;
+  for (const Impact& impact : fresh) touched[zone_of(impact)];
+  for (Impact& impact : r.impacts)
+    if (const auto zone = touched.find(zone_of(impact)); zone != touched.end()) zone->second.push_back(&impact);
+  for (auto& [root, impacts] : touched) {
+    project_zone(impacts, r.inverse_mass, r.x1, r.options.zone_sweeps, 0.1 * r.options.separation);
+    for (const Impact* impact : impacts) mark_free(r, *impact);
+  }
+  r.report.zones += static_cast<int>(touched.size());
+  r.report.response += r.watch.lap();
+}
+
+// What is shortened together: every node is a set of its own, an obstacle is one set.
+int mover_of(const Resolution& r, int node) {
+  const int obstacle = r.world.obstacle_of(node);
+  return obstacle < 0 ? node : r.world.first_node[obstacle];
+}
+
+// Halves the motion of every set with an impact, and holds it still after some rounds. Each round holds more, so it
+// ends: when nothing moves any more there is nothing left to meet.
+bool shorten_rounds(Resolution& r, std::vector<Impact> impacts) {
+  ZoneSets sets(r.world.node_count);
+  for (const Impact& impact : r.impacts) impacts.push_back(impact);
+  constexpr int halvings = 4;
+  std::vector<int> halved(r.world.node_count, 0);
+  bool clean = true;
+  const auto moves = [&r](int node) { return r.x0.row(node) != r.x1.row(node); };
+  while (!impacts.empty()) {
+    std::vector<char> hit(r.world.node_count, 0);
+    for (const Impact& impact : impacts) {
+      int first = -1;
+      for (const int node : impact.pair.nodes)
+        if (r.is_free(node) || moves(node)) {
+          const int mover = mover_of(r, node);
+          sets.join(first < 0 ? first = mover : first, mover);
+        }
+    }
+    for (const Impact& impact : impacts)
+      for (const int node : impact.pair.nodes)
+        if (r.is_free(node) || moves(node)) hit[sets.root(mover_of(r, node))] = 1;
+    std::vector<int> count(r.world.node_count, 0);  // most halvings of any member: a set that grows goes on from there
+    for (int node = 0; node < r.world.node_count; ++node) {
+      int& most = count[sets.root(mover_of(r, node))];
+      most = std::max(most, halved[node]);
+    }
+    for (int node = 0; node < r.world.node_count; ++node) {
+      const int root = sets.root(mover_of(r, node));
+      if (!hit[root]) continue;
+      halved[node] = count[root] + 1;
+      if (halved[node] > halvings)
+        r.x1.row(node) = r.x0.row(node);
+      else
+        r.x1.row(node) = 0.5 * (r.x0.row(node) + r.x1.row(node)).eval();
+      r.moved[node] = 1;
+      if (node == root) ++r.report.shortened;
+    }
+    r.report.response += r.watch.lap();
+    impacts = new_impacts(r);
+    const auto count_before = impacts.size();
+    std::erase_if(impacts, [&](const Impact& impact) {
+      return std::none_of(impact.pair.nodes.begin(), impact.pair.nodes.end(), moves);
+    });
+    clean = clean && impacts.size() == count_before;
+  }
+  return clean;
+}
+
+}  // namespace
+
+ResolveReport resolve(PairSearch& search, const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
+                      const ResolveOptions& options, const Points& x0, Points& x1, std::vector<NodePair>& candidates) {
+  Resolution r{search,
+               world,
+               inverse_mass,
+               options,
+               x0,
+               x1,
+               candidates,
+               {},
+               {},
+               {},
+               std::vector<char>(world.node_count),
+               {},
+               ZoneSets(world.node_count)};
+  search_pairs(r);
+  std::vector<Impact> impacts = new_impacts(r);
+  for (int round = 0; !impacts.empty() && round < options.impulse_rounds + options.zone_rounds; ++round) {
+    if (round < options.impulse_rounds)
+      impulse_round(r, std::move(impacts));
+    else
+      zone_round(r, impacts);
+    impacts = new_impacts(r);
+  }
+  r.report.clean = impacts.empty() || shorten_rounds(r, std::move(impacts));
+  return r.report;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "collision/response.hpp"
+
+namespace selvedge {
+
+struct ResolveOptions {
+  double thickness = 2e-3;   // distance that resting layers keep [m]
+  double separation = 2e-4;  // no pair that started farther apart comes closer [m]
+  double friction = 0.3, self_friction = 0.3;
+  int impulse_rounds = 4;  // rounds of single impulses before zones
+  int zone_rounds = 30;    // rounds of impact zones before motion is shortened
+  int zone_sweeps = 200;
+};
+
+struct ResolveReport {
+  bool clean = false;  // the last test of all pairs found no impact
+  int impulses = 0, zones = 0, shortened = 0;
+  double broad_phase = 0, ccd = 0, response = 0;  // [s]
+};
+
+// Bridson, Fedkiw and Anderson 2002 on one screen: impulses, then inelastic impact zones, then, where a zone does not
+// converge, its motion shortened toward the start of the step, which is clean; an obstacle in such a zone is held back
+// with it. On return the straight motion x0 -> x1 is free of contact as tested by CCD (report.clean), and that path is
+// the path taken. `candidates` holds every pair that is within `thickness` at the new x1.
+ResolveReport resolve(PairSearch&, const ContactWorld&, const Eigen::VectorXd& inverse_mass, const ResolveOptions&,
+                      const Points& x0, Points& x1, std::vector<NodePair>& candidates);
+
+}  // namespace selvedge

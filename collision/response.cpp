@@ -1,0 +1,109 @@
+#include "collision/response.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "collision/distance.hpp"
+
+namespace selvedge {
+namespace {
+
+Closest closest(PairKind kind, const std::array<Vec3, 4>& p) {
+  return kind == PairKind::vertex_face ? point_triangle(p[0], p[1], p[2], p[3]) : edge_edge(p[0], p[1], p[2], p[3]);
+}
+
+Vec3 weighted(const Eigen::Vector4d& w, const std::array<Vec3, 4>& p) {
+  return w[0] * p[0] + w[1] * p[1] + w[2] * p[2] + w[3] * p[3];
+}
+
+// Inverse of the mass that the pair feels along any direction.
+double compliance(const Impact& impact, const Eigen::VectorXd& inverse_mass) {
+  double sum = 0;
+  for (int i = 0; i < 4; ++i) sum += impact.weights[i] * impact.weights[i] * inverse_mass[impact.pair.nodes[i]];
+  return sum;
+}
+
+void push(const Impact& impact, const Eigen::VectorXd& inverse_mass, const Vec3& impulse, Points& x1) {
+  for (int i = 0; i < 4; ++i) {
+    const int node = impact.pair.nodes[i];
+    x1.row(node) += impact.weights[i] * inverse_mass[node] * impulse.transpose();
+  }
+}
+
+}  // namespace
+
+double impact_gap(const Impact& impact, const Points& x) {
+  return impact.normal.dot(weighted(impact.weights, corners(impact.pair, x)));
+}
+
+std::optional<Impact> find_impact(const NodePair& pair, const Points& x0, const Points& x1, double separation) {
+  const auto from = corners(pair, x0), to = corners(pair, x1);
+  const std::optional<double> time = time_of_contact(pair.kind, from, to, separation);
+  if (!time) return std::nullopt;
+  std::array<Vec3, 4> then;
+  for (int i = 0; i < 4; ++i) then[i] = from[i] + *time * (to[i] - from[i]);
+  const Closest start = closest(pair.kind, from);
+  Closest meeting = closest(pair.kind, then);
+  Vec3 between = weighted(meeting.weights, then);
+  if (between.squaredNorm() < 1e-24 * separation * separation) {
+    meeting = start;
+    between = weighted(start.weights, from);
+  }
+  Impact impact{pair, meeting.weights, between.normalized(), *time};
+  // Twice the separation leaves room below the target; a pair that starts closer need not be thrown apart.
+  impact.target = std::min(2 * separation, std::sqrt(start.squared_distance));
+  // A path that comes too near and parts again ends above that target: ask for a little more than it has.
+  const double end = impact_gap(impact, x1);
+  if (end >= impact.target) impact.target = end + 0.25 * separation;
+  return impact;
+}
+
+void apply_impulse(Impact& impact, const Eigen::VectorXd& inverse_mass, double friction, const Points& x0, Points& x1) {
+  const double give = compliance(impact, inverse_mass);
+  const double lack = impact.target - impact_gap(impact, x1);
+  if (give <= 0 || lack <= 0) return;
+  const double normal_impulse = lack / give;
+  impact.multiplier += normal_impulse;
+  push(impact, inverse_mass, normal_impulse * impact.normal, x1);
+  const Vec3 motion =
+      weighted(impact.weights, corners(impact.pair, x1)) - weighted(impact.weights, corners(impact.pair, x0));
+  const Vec3 slip = motion - motion.dot(impact.normal) * impact.normal;
+  const double length = slip.norm();
+  if (length > 0) push(impact, inverse_mass, -std::min(friction * normal_impulse / length, 1 / give) * slip, x1);
+}
+
+double project_zone(std::span<Impact*> impacts, const Eigen::VectorXd& inverse_mass, Points& x1, int max_sweeps,
+                    double tolerance) {
+  double violation = 0;
+  for (int sweep = 0; sweep < max_sweeps; ++sweep) {
+    violation = 0;
+    for (Impact* impact : impacts) {
+      const double give = compliance(*impact, inverse_mass);
+      if (give <= 0) continue;
+      const double lack = impact->target - impact_gap(*impact, x1);
+      const double change = std::max(lack / give, -impact->multiplier);
+      if (change == 0) continue;
+      impact->multiplier += change;
+      push(*impact, inverse_mass, change * impact->normal, x1);
+      violation = std::max(violation, lack);
+    }
+    if (violation < tolerance) break;
+  }
+  return violation;
+}
+
+ZoneSets::ZoneSets(int node_count) : parent_(node_count) { std::iota(parent_.begin(), parent_.end(), 0); }
+
+int ZoneSets::root(int node) {
+  while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
+  return node;
+}
+
+void ZoneSets::join(int a, int b) {
+  a = root(a);
+  b = root(b);
+  parent_[std::max(a, b)] = std::min(a, b);
+}
+
+}  // namespace selvedge

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "collision/contact_pairs.hpp"
+
+namespace selvedge {
+
+// A pair that meets during a step, linearised where it meets: it must end with normal . sum w_i x_i >= target.
+struct Impact {
+  NodePair pair;
+  Eigen::Vector4d weights;
+  Vec3 normal;            // from the second primitive toward the first, at the time of impact
+  double time = 0;        // in [0, 1] of the step
+  double target = 0;      // [m]
+  double multiplier = 0;  // accumulated normal impulse times the time step [kg m]
+};
+
+// The impact of a pair on the straight paths x0 -> x1, if it comes within `separation` [m].
+std::optional<Impact> find_impact(const NodePair&, const Points& x0, const Points& x1, double separation);
+
+double impact_gap(const Impact&, const Points& x);
+
+// Inelastic impulse of Bridson, Fedkiw and Anderson 2002 (section 7.3) in positions: moves the ends x1 of the four
+// nodes, by their inverse masses [1/kg] (0: prescribed), so that the gap reaches its target, and takes from the pair's
+// slip over the step what Coulomb friction allows (all of it where it sticks).
+void apply_impulse(Impact&, const Eigen::VectorXd& inverse_mass, double friction, const Points& x0, Points& x1);
+
+// Inelastic impact zone (Harmon et al. 2008, with inequalities): the smallest mass-weighted change of x1 that brings
+// every impact to its target, sliding kept, by projected Gauss-Seidel on the multipliers, which start from their last
+// values. Returns the largest remaining violation [m].
+double project_zone(std::span<Impact*> impacts, const Eigen::VectorXd& inverse_mass, Points& x1, int max_sweeps,
+                    double tolerance);
+
+// Disjoint sets of nodes.
+class ZoneSets {
+ public:
+  explicit ZoneSets(int node_count);
+  int root(int node);
+  void join(int a, int b);
+
+ private:
+  std::vector<int> parent_;
+};
+
+}  // namespace selvedge
