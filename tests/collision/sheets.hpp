@@ -1,0 +1,34 @@
+#pragma once
+
+#include "collision/surface.hpp"
+
+namespace selvedge::testing {
+
+// A square sheet of n x n quads in the plane y = height, centred on the origin, one diagonal a quad.
+struct Sheet {
+  Points x;
+  Triangles triangles;
+};
+
+inline Sheet sheet(int n, double size, double height) {
+  Sheet s{Points((n + 1) * (n + 1), 3), Triangles(2 * n * n, 3)};
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i)
+      s.x.row(j * (n + 1) + i) << size * (double(i) / n - 0.5), height, size * (double(j) / n - 0.5);
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const int a = j * (n + 1) + i, b = a + 1, c = a + n + 1, d = c + 1;
+      s.triangles.row(2 * (j * n + i)) << a, c, b;
+      s.triangles.row(2 * (j * n + i) + 1) << b, c, d;
+    }
+  return s;
+}
+
+inline Sheet join(const Sheet& a, const Sheet& b) {
+  Sheet s{Points(a.x.rows() + b.x.rows(), 3), Triangles(a.triangles.rows() + b.triangles.rows(), 3)};
+  s.x << a.x, b.x;
+  s.triangles << a.triangles, (b.triangles.array() + static_cast<int>(a.x.rows())).matrix();
+  return s;
+}
+
+}  // namespace selvedge::testing

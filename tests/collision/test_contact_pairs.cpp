@@ -1,0 +1,101 @@
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include "collision/contact_pairs.hpp"
+#include "collision/distance.hpp"
+#include "tests/collision/sheets.hpp"
+
+using namespace selvedge;
+using testing::join;
+using testing::sheet;
+
+namespace {
+
+double distance(const NodePair& pair, const Points& x) {
+  const auto p = corners(pair, x);
+  const Closest c =
+      pair.kind == PairKind::vertex_face ? point_triangle(p[0], p[1], p[2], p[3]) : edge_edge(p[0], p[1], p[2], p[3]);
+  return std::sqrt(c.squared_distance);
+}
+
+std::vector<NodePair> every_pair(const Surface& s) {
+  std::vector<NodePair> all;
+  for (int v = 0; v < s.vertex_count; ++v)
+    for (int t = 0; t < s.triangles.rows(); ++t) {
+      const auto f = s.triangles.row(t);
+      if (v != f(0) && v != f(1) && v != f(2)) all.push_back({PairKind::vertex_face, {v, f(0), f(1), f(2)}});
+    }
+  for (int a = 0; a < s.edges.rows(); ++a)
+    for (int b = 0; b < a; ++b) {
+      const int a0 = s.edges(a, 0), a1 = s.edges(a, 1), b0 = s.edges(b, 0), b1 = s.edges(b, 1);
+      if (a0 != b0 && a0 != b1 && a1 != b0 && a1 != b1) all.push_back({PairKind::edge_edge, {a0, a1, b0, b1}});
+    }
+  return all;
+}
+
+NodePair canonical(NodePair p) {
+  auto& n = p.nodes;
+  if (p.kind == PairKind::edge_edge && std::pair(n[2], n[3]) < std::pair(n[0], n[1])) {
+    std::swap(n[0], n[2]);
+    std::swap(n[1], n[3]);
+  }
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("contact pairs: none that comes near on its way is missed, none is listed twice", "[contact_pairs]") {
+  auto cloth = join(sheet(5, 1, 0), sheet(4, 1, 0.1));
+  const Surface surface = make_surface(static_cast<int>(cloth.x.rows()), cloth.triangles);
+  const ContactWorld world = make_contact_world(surface, {}, true);
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal(0, 0.15);
+  PairSearch search(world);
+  std::vector<NodePair> found;
+  const double radius = 0.05;
+  for (int trial = 0; trial < 5; ++trial) {
+    Points x0 = cloth.x, x1 = cloth.x;
+    for (Eigen::Index i = 0; i < x0.size(); ++i) {
+      x0.data()[i] += 0.3 * normal(random);
+      x1.data()[i] += normal(random);
+    }
+    if (trial % 2 == 0) search.restart();
+    search.find(x0, x1, radius, found);
+    std::set<NodePair> listed;
+    for (const NodePair& pair : found) CHECK(listed.insert(canonical(pair)).second);
+    int near = 0;
+    for (const NodePair& pair : every_pair(surface))
+      for (int k = 0; k <= 8; ++k)
+        if (distance(pair, x0 + k / 8.0 * (x1 - x0)) < radius) {
+          ++near;
+          CHECK(listed.count(canonical(pair)) == 1);
+          break;
+        }
+    CHECK(near > 50);
+  }
+}
+
+TEST_CASE("contact pairs: the same list after a restart, whatever came before", "[contact_pairs]") {
+  const auto cloth = sheet(6, 1, 0.02);
+  const auto ground = sheet(3, 2, 0);
+  const Surface cloth_surface = make_surface(static_cast<int>(cloth.x.rows()), cloth.triangles);
+  const Surface ground_surface = make_surface(static_cast<int>(ground.x.rows()), ground.triangles);
+  const ContactWorld world = make_contact_world(cloth_surface, {&ground_surface}, true);
+  CHECK(world.obstacle_of(0) == -1);
+  CHECK(world.obstacle_of(cloth_surface.vertex_count) == 0);
+  const Points nodes = gather_nodes(cloth.x, {ground.x});
+  Points moved = nodes;
+  moved.topRows(20).array() += 0.3;
+  std::vector<NodePair> fresh, used;
+  PairSearch first(world), second(world);
+  first.find(nodes, nodes, 0.04, fresh);
+  second.find(moved, nodes, 0.04, used);
+  second.find(moved, moved, 0.04, used);
+  second.restart();
+  second.find(nodes, nodes, 0.04, used);
+  CHECK(fresh == used);
+  CHECK(std::any_of(fresh.begin(), fresh.end(), [&](const NodePair& p) { return !world.is_cloth(p.nodes[3]); }));
+}
