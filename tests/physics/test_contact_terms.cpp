@@ -1,0 +1,81 @@
+#include <catch2/catch.hpp>
+
+#include "physics/contact_terms.hpp"
+
+using namespace selvedge;
+
+namespace {
+
+// One vertex over a prescribed triangle in y = 0.
+struct VertexOnFloor {
+  Scene scene;
+  Surface cloth = make_surface(1, Triangles(0, 3));
+  Surface floor;
+  ContactWorld world;
+  Eigen::VectorXd inverse_mass = Eigen::VectorXd::Zero(4);
+  VertexOnFloor() {
+    Triangles t(1, 3);
+    t << 0, 1, 2;
+    floor = make_surface(3, t);
+    world = make_contact_world(cloth, {&floor}, false);
+    inverse_mass[0] = 1e4;
+  }
+  Points nodes(double height) const {
+    Points x(4, 3);
+    x << 0, height, 0, -1, 0, -1, 0, 0, 2, 1, 0, -1;
+    return x;
+  }
+  std::vector<ContactTerm> terms(double gap, double rest_gap, double h) const {
+    const Proximity p{{PairKind::vertex_face, {0, 1, 2, 3}}, {1, -0.375, -0.25, -0.375}, Vec3::UnitY(), gap, rest_gap};
+    return contact_terms(scene, world, std::vector{p}, inverse_mass, nodes(gap), nodes(gap), h);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("contact terms: gap and target of a vertex over an obstacle", "[contact_terms]") {
+  const VertexOnFloor c;
+  const auto terms = c.terms(1e-3, 2e-3, 0.01);
+  REQUIRE(terms.size() == 1);
+  CHECK(contact_gap(terms[0], c.nodes(1.5e-3)) == Approx(1.5e-3));
+  CHECK(terms[0].target == Approx(1.1e-3));  // a tenth of the overlap a step
+  CHECK(contact_force(terms[0], 1.2e-3).energy == 0);
+  CHECK(contact_force(terms[0], 0.9e-3).first < 0);
+}
+
+TEST_CASE("contact terms: a moving obstacle carries the gap and the slip with it", "[contact_terms]") {
+  const VertexOnFloor c;
+  const Proximity p{{PairKind::vertex_face, {0, 1, 2, 3}}, {1, -0.375, -0.25, -0.375}, Vec3::UnitY(), 1e-3, 2e-3};
+  Points end = c.nodes(1e-3);
+  end.bottomRows(3).rowwise() += Eigen::RowVector3d(0.02, 5e-4, 0);
+  const auto terms = contact_terms(c.scene, c.world, std::vector{p}, c.inverse_mass, c.nodes(1e-3), end, 0.01);
+  CHECK(contact_gap(terms[0], c.nodes(1e-3)) == Approx(5e-4));
+  const Vec3 slip = contact_slip(terms[0], c.nodes(1e-3), c.nodes(1e-3));
+  CHECK(slip.x() == Approx(-0.02));
+  CHECK(slip.y() == Approx(0).margin(1e-15));
+}
+
+TEST_CASE("contact terms: a pair that cannot move is left out", "[contact_terms]") {
+  VertexOnFloor c;
+  c.inverse_mass.setZero();
+  CHECK(c.terms(1e-3, 2e-3, 0.01).empty());
+}
+
+TEST_CASE("contact terms: what friction allows beyond the solve stops the slip, and no more", "[contact_terms]") {
+  const VertexOnFloor c;
+  const double h = 0.01, slip_width = 1e-5;
+  for (const double slip : {0.5e-5, 1e-2}) {
+    auto terms = c.terms(1e-3, 2e-3, h);
+    const Points x0 = c.nodes(1e-3);
+    Points x = c.nodes(1e-3);
+    x(0, 0) += slip;
+    terms[0].normal_force = 0.01;
+    const double mass = 1e-4, allowed = terms[0].friction * 0.01 * h * h / mass;
+    stick(terms, c.inverse_mass, x0, h, slip_width, x);
+    if (slip < slip_width)
+      CHECK(x(0, 0) == Approx(0).margin(1e-12));
+    else
+      CHECK(x(0, 0) == Approx(slip).epsilon(1e-6));  // sliding: the solve has used the whole bound
+    CHECK(allowed > 0.5e-5);
+  }
+}
