@@ -31,9 +31,9 @@ struct ContactForce {
 ContactForce contact_force(const ContactTerm&, double gap);
 double contact_gap(const ContactTerm&, const Points& x);
 
-// Lagged Coulomb friction as a potential of the tangential slip u of the step: mu f |u|, made quadratic below
-// |u| < slip_width [m] (C1, convex; the IPC form). Value, and the factor c >= 0 so that gradient = c u and c (I - n
-// n^T) is a PSD Hessian.
+// Lagged Coulomb friction as a potential of the tangential slip u of the step, b = mu f (the IPC form, Li et al. 2020):
+// b |u| for |u| >= w = slip_width [m], b w (r^2 - r^3 / 3 + 1 / 3) with r = |u| / w below. Convex, twice continuously
+// differentiable. Value, and the factor c >= 0 so that gradient = c u and c (I - n n^T) is a PSD Hessian.
 struct FrictionForce {
   double energy = 0, factor = 0;
 };

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <random>
+#include <vector>
+
+#include "physics/scene.hpp"
+
+// Small cloths for the tests of physics.
+namespace selvedge::meshes {
+
+struct Mesh {
+  Points points;
+  Triangles triangles;
+  std::vector<Vec2> flat;  // rest coordinates u, v of each vertex; empty: triangles are flattened one by one
+};
+
+enum class Pattern { one_diagonal, alternating, jittered };  // jittered: one_diagonal with inner vertices moved
+
+// columns x rows cells over width (u) x height (v), lying in the plane y = 0 with its normal up: (u, v) is at
+// (u, 0, -v). Vertex (i, j) is j * (columns + 1) + i.
+inline Mesh grid(int columns, int rows, double width, double height, Pattern pattern = Pattern::one_diagonal,
+                 double jitter = 0.25) {
+  Mesh mesh;
+  std::mt19937 random(7);
+  const auto noise = [&random, jitter] { return jitter * (2.0 * static_cast<double>(random()) / 4294967295.0 - 1); };
+  for (int j = 0; j <= rows; ++j)
+    for (int i = 0; i <= columns; ++i) {
+      Vec2 uv(width * i / columns, height * j / rows);
+      const bool inner = i > 0 && j > 0 && i < columns && j < rows;
+      if (pattern == Pattern::jittered && inner) {
+        uv.x() += noise() * width / columns;
+        uv.y() += noise() * height / rows;
+      }
+      mesh.flat.push_back(uv);
+    }
+  mesh.points.resize(static_cast<Eigen::Index>(mesh.flat.size()), 3);
+  for (std::size_t v = 0; v < mesh.flat.size(); ++v)
+    mesh.points.row(static_cast<Eigen::Index>(v)) << mesh.flat[v].x(), 0, -mesh.flat[v].y();
+  mesh.triangles.resize(2 * columns * rows, 3);
+  for (int j = 0, t = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i, t += 2) {
+      const int a = j * (columns + 1) + i, b = a + 1, c = b + columns + 1, d = c - 1;
+      if (pattern == Pattern::alternating && (i + j) % 2 == 1) {
+        mesh.triangles.row(t) << a, b, d;
+        mesh.triangles.row(t + 1) << b, c, d;
+      } else {
+        mesh.triangles.row(t) << a, b, c;
+        mesh.triangles.row(t + 1) << a, c, d;
+      }
+    }
+  return mesh;
+}
+
+// Appends a mesh as the scene's next cloth. The rest metric is mesh.flat, or else the triangles of mesh.points.
+inline void add_cloth(Scene& scene, const Mesh& mesh, const Material& material) {
+  Cloth cloth{material.name,
+              material,
+              scene.surface.vertex_count,
+              static_cast<int>(mesh.points.rows()),
+              static_cast<int>(scene.surface.triangles.rows()),
+              static_cast<int>(mesh.triangles.rows())};
+  Points rest(scene.rest.rows() + mesh.points.rows(), 3);
+  rest << scene.rest, mesh.points;
+  Triangles triangles(cloth.first_triangle + cloth.triangle_count, 3);
+  triangles << scene.surface.triangles, (mesh.triangles.array() + cloth.first_vertex).matrix();
+  for (int t = 0; t < cloth.triangle_count; ++t) {
+    const auto corner = mesh.triangles.row(t);
+    RestTriangle flat = flatten(row(mesh.points, corner(0)), row(mesh.points, corner(1)), row(mesh.points, corner(2)));
+    for (int k = 0; k < 3 && !mesh.flat.empty(); ++k) flat.col(k) = mesh.flat[static_cast<std::size_t>(corner(k))];
+    scene.rest_triangle.push_back(flat);
+  }
+  scene.rest = rest;
+  scene.surface = make_surface(static_cast<int>(rest.rows()), triangles);
+  scene.cloths.push_back(cloth);
+}
+
+inline Scene make_scene(const Mesh& mesh, const Material& material = {}) {
+  Scene scene;
+  scene.rest_is_flat = !mesh.flat.empty();
+  add_cloth(scene, mesh, material);
+  return scene;
+}
+
+inline Scene make_scene(const Points& points, const Triangles& triangles, const Material& material = {}) {
+  return make_scene(Mesh{points, triangles, {}}, material);
+}
+
+}  // namespace selvedge::meshes
