@@ -1,0 +1,206 @@
+#include "physics/implicit_euler.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include <Eigen/LU>
+
+#include "physics/linear_solver.hpp"
+#include "physics/step_potential.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double rounding = std::numeric_limits<double>::epsilon();
+constexpr double sufficient_decrease = 1e-4;  // Armijo
+constexpr int max_halvings = 40;
+
+struct EnergyChange {
+  double change = 0;  // [J]
+  double noise = 0;   // below which a change means nothing
+};
+
+EnergyChange energy_change(const std::vector<double>& from, const std::vector<double>& to) {
+  EnergyChange result;
+  double size = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    result.change += to[i] - from[i];
+    size += std::abs(from[i]) + std::abs(to[i]);
+  }
+  result.noise = 8 * rounding * size;
+  return result;
+}
+
+double largest_row(const Points& points) {
+  return points.rows() > 0 ? std::sqrt(points.rowwise().squaredNorm().maxCoeff()) : 0.0;
+}
+
+// Positions are known to a rounding error, so forces are known to that error times the stiffness.
+bool below_rounding(const Points& gradient, std::span<const Mat3> diagonal, const Points& x) {
+  const double error = 2 * rounding * x.cwiseAbs().maxCoeff();
+  for (int i = 0; i < gradient.rows(); ++i)
+    if (!(gradient.row(i).cwiseAbs().maxCoeff() <= error * diagonal[i].trace())) return false;
+  return true;
+}
+
+// Connected components that nothing holds or touches.
+std::vector<char> drifting_components(const Scene& scene, const StepPotential& step) {
+  std::vector<char> drifting(scene.surface.component_count, true);
+  for (int pin : scene.pins) drifting[scene.surface.component[pin]] = false;
+  for (const ContactBlock& contact : step.contacts)
+    for (int node : contact.nodes)
+      if (node >= 0) drifting[scene.surface.component[node]] = false;
+  return drifting;
+}
+
+// Elastic forces do not see a translation, so the best one of a drifting component is known exactly, whatever the
+// linear solver left of it. Keeps linear momentum to rounding and never raises the quadratic model.
+void correct_translations(const Scene& scene, const StepPotential& step, const std::vector<char>& drifting,
+                          const Points& gradient, Points& motion) {
+  const std::vector<int>& component = scene.surface.component;
+  std::vector<double> weight(drifting.size(), 0.0);
+  std::vector<Vec3> missing(drifting.size(), Vec3::Zero());
+  for (int i = 0; i < motion.rows(); ++i) {
+    if (!step.free[i] || !drifting[component[i]]) continue;
+    weight[component[i]] += step.diagonal[i];
+    missing[component[i]] -= row(gradient, i) + step.diagonal[i] * row(motion, i);
+  }
+  for (int i = 0; i < motion.rows(); ++i)
+    if (step.free[i] && drifting[component[i]])
+      motion.row(i) += (missing[component[i]] / weight[component[i]]).transpose();
+}
+
+}  // namespace
+
+struct ImplicitEuler::Impl {
+  const Scene& scene;
+  ImplicitEulerOptions options;
+  Eigen::VectorXd masses;
+  Elastic elastic;
+  StepPotential step;
+  StepScratch scratch;
+  LinearSystemSolver linear;
+  PairBlocks hessian;
+  std::vector<Mat3> diagonal;
+  Points gradient, motion, trial;
+  std::vector<double> energy, trial_energy;
+  std::vector<char> drifting;
+
+  Impl(const Scene& s, const ImplicitEulerOptions& o, const Eigen::VectorXd& m)
+      : scene(s),
+        options(o),
+        masses(m),
+        elastic(make_elastic(s)),
+        linear(o.linear_solver, static_cast<int>(std::ranges::count(free_vertices(s, m), 1))) {}
+
+  void start(const StepProblem& problem) {
+    prepare(scene, elastic, masses, problem, options.slip_speed, scratch, step);
+    drifting = drifting_components(scene, step);
+  }
+  bool choose_first_guess(Points& x);
+  bool find_direction(NewtonReport&);
+  bool line_search(Points& x);
+};
+
+ImplicitEuler::ImplicitEuler(const Scene& scene, const ImplicitEulerOptions& options)
+    : impl_(std::make_unique<Impl>(scene, options, lumped_masses(scene))) {}
+ImplicitEuler::~ImplicitEuler() = default;
+LinearSolver ImplicitEuler::chosen_solver() const { return impl_->linear.chosen(); }
+const Eigen::VectorXd& ImplicitEuler::masses() const { return impl_->masses; }
+
+double ImplicitEuler::potential(const StepProblem& problem, const Points& x) {
+  impl_->start(problem);
+  energies(impl_->step, x, impl_->scratch, impl_->energy);
+  return std::accumulate(impl_->energy.begin(), impl_->energy.end(), 0.0);
+}
+
+Points ImplicitEuler::gradient(const StepProblem& problem, const Points& x) {
+  impl_->start(problem);
+  derivatives(impl_->step, x, impl_->scratch, impl_->gradient, nullptr);
+  return impl_->gradient;
+}
+
+// The caller's guess or the ballistic positions, whichever has the lower potential (free fall is then exact). Pins are
+// put where they belong. False if neither potential is finite.
+bool ImplicitEuler::Impl::choose_first_guess(Points& x) {
+  trial = x;
+  for (int i = 0; i < x.rows(); ++i)
+    if (step.free[i]) trial.row(i) = step.ballistic.row(i);
+  for (std::size_t p = 0; p < scene.pins.size(); ++p)
+    x.row(scene.pins[p]) = trial.row(scene.pins[p]) = step.problem->pins->row(p);
+  energies(step, x, scratch, energy);
+  energies(step, trial, scratch, trial_energy);
+  const double guess = std::accumulate(energy.begin(), energy.end(), 0.0);
+  const double ballistic = std::accumulate(trial_energy.begin(), trial_energy.end(), 0.0);
+  if (ballistic < guess || (std::isfinite(ballistic) && !std::isfinite(guess))) {
+    x = trial;
+    energy = trial_energy;
+  }
+  return std::isfinite(std::min(guess, ballistic)) && x.allFinite();
+}
+
+// Solves for the Newton step, `motion`; true if it is as accurate as asked for. It always leads downhill.
+bool ImplicitEuler::Impl::find_direction(NewtonReport& report) {
+  const LinearSystem system{elastic.pattern, hessian,       step.diagonal, elastic.flat,
+                            step.flat_scale, step.contacts, step.lists,    step.free};
+  const LinearReport solved =
+      linear.solve(system, diagonal, -gradient, options.linear_tolerance, options.max_linear, motion);
+  report.linear_iterations += solved.iterations;
+  correct_translations(scene, step, drifting, gradient, motion);
+  const bool downhill = motion.allFinite() && gradient.cwiseProduct(motion).sum() < 0;
+  if (!downhill)
+    for (int i = 0; i < motion.rows(); ++i)
+      motion.row(i) = step.free[i] ? Eigen::RowVector3d(-(diagonal[i].inverse() * row(gradient, i)).transpose())
+                                   : Eigen::RowVector3d::Zero();
+  return solved.converged && downhill;
+}
+
+// Moves x along `motion` until the potential has sunk enough; false if no step did.
+bool ImplicitEuler::Impl::line_search(Points& x) {
+  const double slope = gradient.cwiseProduct(motion).sum();
+  double length = 1;
+  for (int halving = 0; halving < max_halvings; ++halving, length *= 0.5) {
+    trial = x + length * motion;
+    energies(step, trial, scratch, trial_energy);
+    const EnergyChange e = energy_change(energy, trial_energy);
+    if (!std::isfinite(e.change) || e.change > sufficient_decrease * length * slope + e.noise) continue;
+    std::swap(x, trial);
+    std::swap(energy, trial_energy);
+    return true;
+  }
+  return false;
+}
+
+NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
+  Impl& impl = *impl_;
+  assert(x.rows() == impl.masses.size());
+  assert(impl.scene.pins.empty() || problem.pins->rows() == static_cast<Eigen::Index>(impl.scene.pins.size()));
+  NewtonReport report;
+  impl.start(problem);
+  report.finite = impl.choose_first_guess(x);
+  if (!report.finite) return report;
+  const double goal = impl.options.velocity_tolerance * problem.h;
+  while (true) {
+    const bool go_on = !report.converged && report.iterations < impl.options.max_newton;
+    derivatives(impl.step, x, impl.scratch, impl.gradient, go_on ? &impl.hessian : nullptr);
+    if (!go_on) break;
+    diagonal_blocks({impl.elastic.pattern, impl.hessian, impl.step.diagonal, impl.elastic.flat, impl.step.flat_scale,
+                     impl.step.contacts, impl.step.lists, impl.step.free},
+                    impl.diagonal);
+    if (below_rounding(impl.gradient, impl.diagonal, x)) {
+      report.converged = true;
+      break;
+    }
+    const bool accurate = impl.find_direction(report);
+    if (!impl.line_search(x)) break;
+    ++report.iterations;
+    report.converged = accurate && largest_row(impl.motion) < goal;
+  }
+  report.residual = largest_row(impl.gradient);
+  return report;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,152 @@
+#include "physics/linear_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/error.hpp"
+#include "physics/cholesky.hpp"
+#include "physics/lower_triangle.hpp"
+#include "physics/pcg.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr int direct_limit = 1500;             // free vertices up to which CHOLMOD is the faster one
+constexpr double float_tolerance = 1e-3;       // what one pass in float surely reaches
+constexpr double refinement_tolerance = 1e-4;  // of each pass where several are needed
+constexpr int max_passes = 12;
+
+LinearSolver choose(LinearSolver wanted, int free_vertices) {
+  if (wanted == LinearSolver::cholmod && !Cholesky::available())
+    throw Error("this build has no CHOLMOD", "linear solver",
+                "choose pcg or automatic, or build with SuiteSparse (libsuitesparse-dev)");
+  if (wanted != LinearSolver::automatic) return wanted;
+  return Cholesky::available() && free_vertices <= direct_limit ? LinearSolver::cholmod : LinearSolver::pcg;
+}
+
+// Everything of a PCG solve in one precision.
+template <class Real>
+struct Iterative {
+  PcgMatrix<Real> matrix;
+  BlockJacobi<Real> jacobi;
+  PcgVectors<Real> vectors;
+  Preconditioner<Real> preconditioner = [this](const Quads<Real>& r, Quads<Real>& z) { jacobi.apply(r, z); };
+
+  void fill(const LinearSystem& system, std::span<const Mat3> diagonal) {
+    matrix.fill(system);
+    jacobi.fill(diagonal, system.free);
+  }
+
+  // x += A^-1 right, with `right` scaled into the range of Real.
+  PcgReport add_solution(const Points& right, std::span<const char> free, double tolerance, int iterations, Points& x) {
+    const int rows = static_cast<int>(right.rows());
+    const double scale = right.cwiseAbs().maxCoeff();
+    if (!(scale > 0)) return {PcgEnd::converged, 0};
+    vectors.r.resize(rows);
+    for (int i = 0; i < rows; ++i)
+      for (int k = 0; k < 4; ++k)
+        vectors.r[i].lanes[k] = free[i] && k < 3 ? static_cast<Real>(right(i, k) / scale) : Real(0);
+    const PcgReport report = pcg(matrix, preconditioner, tolerance, iterations, vectors);
+    if (report.end == PcgEnd::not_finite) return report;
+    for (int i = 0; i < rows; ++i)
+      if (free[i])
+        for (int k = 0; k < 3; ++k) x(i, k) += scale * static_cast<double>(vectors.x[i].lanes[k]);
+    return report;
+  }
+};
+
+double preconditioner_norm(const Points& r, std::span<const Mat3> diagonal, std::span<const char> free) {
+  double sum = 0;
+  for (int i = 0; i < r.rows(); ++i)
+    if (free[i]) sum += row(r, i).dot(diagonal[i].inverse() * row(r, i));
+  return std::sqrt(std::max(sum, 0.0));
+}
+
+}  // namespace
+
+struct LinearSystemSolver::Impl {
+  LinearSolver chosen;
+  Cholesky cholesky;
+  LowerTriangle lower;
+  std::vector<double> packed_right, packed_solution;
+  Iterative<float> single;
+  std::unique_ptr<Iterative<double>> full;  // made when float first fails
+
+  bool solve_direct(const LinearSystem&, std::span<const Mat3> diagonal, const Points& right, Points& x);
+  template <class Real>
+  LinearReport solve_iterative(Iterative<Real>&, const LinearSystem&, std::span<const Mat3> diagonal,
+                               const Points& right, double tolerance, int max_iterations, Points& x);
+};
+
+bool LinearSystemSolver::Impl::solve_direct(const LinearSystem& system, std::span<const Mat3> diagonal,
+                                            const Points& right, Points& x) {
+  if (update_pattern(system, lower) && !cholesky.analyse(lower.size(), lower.column_begin, lower.row)) {
+    lower = {};
+    return false;
+  }
+  fill_values(system, diagonal, lower);
+  packed_right.resize(lower.size());
+  packed_solution.resize(lower.size());
+  for (std::size_t b = 0; b < lower.vertex.size(); ++b)
+    for (int k = 0; k < 3; ++k) packed_right[3 * b + k] = right(lower.vertex[b], k);
+  if (!cholesky.factor(lower.value) || !cholesky.solve(packed_right, packed_solution)) return false;
+  x.setZero(right.rows(), 3);
+  for (std::size_t b = 0; b < lower.vertex.size(); ++b)
+    for (int k = 0; k < 3; ++k) x(lower.vertex[b], k) = packed_solution[3 * b + k];
+  return x.allFinite();
+}
+
+template <class Real>
+LinearReport LinearSystemSolver::Impl::solve_iterative(Iterative<Real>& method, const LinearSystem& system,
+                                                       std::span<const Mat3> diagonal, const Points& right,
+                                                       double tolerance, int max_iterations, Points& x) {
+  LinearReport report;
+  method.fill(system, diagonal);
+  x.setZero(right.rows(), 3);
+  if (tolerance >= float_tolerance) {
+    const PcgReport pass = method.add_solution(right, system.free, tolerance, max_iterations, x);
+    return {pass.end == PcgEnd::converged, pass.iterations};
+  }
+  // Iterative refinement: residuals in double, corrections in the method's precision.
+  Points residual = right, product;
+  const double first = preconditioner_norm(right, diagonal, system.free);
+  double norm = first;
+  for (int pass = 0; pass < max_passes && norm > tolerance * first; ++pass) {
+    const double wanted = std::max(refinement_tolerance, 0.5 * tolerance * first / norm);
+    Points next = x;
+    const PcgReport end = method.add_solution(residual, system.free, wanted, max_iterations - report.iterations, next);
+    report.iterations += end.iterations;
+    multiply(system, next, product);
+    residual = right - product;
+    const double next_norm = preconditioner_norm(residual, diagonal, system.free);
+    if (!(next_norm < 0.5 * norm)) break;
+    x = next;
+    norm = next_norm;
+  }
+  report.converged = norm <= tolerance * first;
+  return report;
+}
+
+LinearSystemSolver::LinearSystemSolver(LinearSolver wanted, int free_vertices) : impl_(std::make_unique<Impl>()) {
+  impl_->chosen = choose(wanted, free_vertices);
+}
+LinearSystemSolver::~LinearSystemSolver() = default;
+LinearSolver LinearSystemSolver::chosen() const { return impl_->chosen; }
+
+LinearReport LinearSystemSolver::solve(const LinearSystem& system, std::span<const Mat3> diagonal, const Points& right,
+                                       double tolerance, int max_iterations, Points& x) {
+  Impl& impl = *impl_;
+  LinearReport report;
+  if (impl.chosen == LinearSolver::cholmod) {
+    if (impl.solve_direct(system, diagonal, right, x)) return {true, 1};
+  } else {
+    report = impl.solve_iterative(impl.single, system, diagonal, right, tolerance, max_iterations, x);
+    if (report.converged) return report;
+    if (impl.solve_direct(system, diagonal, right, x)) return {true, report.iterations + 1};
+  }
+  if (!impl.full) impl.full = std::make_unique<Iterative<double>>();
+  const LinearReport last = impl.solve_iterative(*impl.full, system, diagonal, right, tolerance, max_iterations, x);
+  return {last.converged, report.iterations + last.iterations};
+}
+
+}  // namespace selvedge

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+
+#include "physics/implicit_euler.hpp"
+#include "physics/linear_system.hpp"
+
+namespace selvedge {
+
+struct LinearReport {
+  bool converged = false;
+  int iterations = 0;  // of PCG; a direct solve counts as one
+};
+
+// CHOLMOD and PCG behind one call. Holds caches only: patterns, factors, vectors.
+class LinearSystemSolver {
+ public:
+  // `automatic` takes CHOLMOD, where the build has it, for scenes of few free vertices, and PCG for larger ones. Asking
+  // for CHOLMOD in a build without it is an Error.
+  LinearSystemSolver(LinearSolver wanted, int free_vertices);
+  ~LinearSystemSolver();
+  LinearSolver chosen() const;
+
+  // Solves A x = right; `diagonal` are the blocks of diagonal_blocks(). x is zero on rows that are not free. PCG stops
+  // when the residual's preconditioner norm has fallen by `tolerance`; it works in float, refined in double where the
+  // tolerance asks for that, and hands over to CHOLMOD (or to double PCG) where it does not get there. Where nothing
+  // gets there, x is the best direction found: finite, and zero if there was none.
+  LinearReport solve(const LinearSystem&, std::span<const Mat3> diagonal, const Points& right, double tolerance,
+                     int max_iterations, Points& x);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace selvedge

@@ -1,0 +1,137 @@
+#include "physics/pcg_kernels.hpp"
+
+namespace selvedge {
+namespace {
+
+template <class Real>
+[[gnu::always_inline]] inline double sum_of(const Quad<Real>& a) {
+  return static_cast<double>(a.lanes[0]) + static_cast<double>(a.lanes[1]) + static_cast<double>(a.lanes[2]);
+}
+
+template <class Real>
+[[gnu::always_inline]] inline void add_product(const BlockColumns<Real>& block, const Quad<Real>& u, Quad<Real>& y) {
+  y.lanes += block.column[0].lanes * u.lanes[0];
+  y.lanes += block.column[1].lanes * u.lanes[1];
+  y.lanes += block.column[2].lanes * u.lanes[2];
+}
+
+// Off-diagonal blocks act on differences, which keeps translations exact in any precision.
+template <class Real>
+[[gnu::always_inline]] inline double multiply_rows_inline(const RowView<Real>& a, const Quad<Real>* u, Quad<Real>* y,
+                                                          int begin, int end) {
+  Quad<Real> product{};
+  for (int i = begin; i < end; ++i) {
+    const Quad<Real> own = u[i];
+    Quad<Real> even{own.lanes * a.diagonal[i]}, odd{};
+    int k = a.begin[i];
+    for (; k + 1 < a.begin[i + 1]; k += 2) {
+      add_product(a.block[k], {u[a.column[k]].lanes - own.lanes}, even);
+      add_product(a.block[k + 1], {u[a.column[k + 1]].lanes - own.lanes}, odd);
+    }
+    if (k < a.begin[i + 1]) add_product(a.block[k], {u[a.column[k]].lanes - own.lanes}, even);
+    if (a.flat_begin) {
+      for (k = a.flat_begin[i]; k + 1 < a.flat_begin[i + 1]; k += 2) {
+        even.lanes += (u[a.flat_column[k]].lanes - own.lanes) * a.flat_value[k];
+        odd.lanes += (u[a.flat_column[k + 1]].lanes - own.lanes) * a.flat_value[k + 1];
+      }
+      if (k < a.flat_begin[i + 1]) even.lanes += (u[a.flat_column[k]].lanes - own.lanes) * a.flat_value[k];
+    }
+    if (a.contact_begin)
+      for (k = a.contact_begin[i]; k < a.contact_begin[i + 1]; ++k)
+        even.lanes += a.contact_response[a.contact[k]].lanes * a.contact_weight[k];
+    y[i].lanes = even.lanes + odd.lanes;
+    product.lanes += y[i].lanes * own.lanes;
+  }
+  return sum_of(product);
+}
+
+template <class Real>
+[[gnu::always_inline]] inline void contact_responses_inline(const ContactView<Real>& a, const Quad<Real>* u,
+                                                            Quad<Real>* response, int begin, int end) {
+  for (int c = begin; c < end; ++c) {
+    Quad<Real> slip{};
+    for (int k = 4 * c; k < 4 * c + 4; ++k) slip.lanes += u[a.node[k]].lanes * a.weight[k];
+    const Quad<Real> product{slip.lanes * a.normal[c].lanes};
+    const Real along = product.lanes[0] + product.lanes[1] + product.lanes[2];
+    response[c].lanes = slip.lanes * a.tangent_stiffness[c] + a.normal[c].lanes * (a.difference[c] * along);
+  }
+}
+
+template <class Real>
+[[gnu::always_inline]] inline void multiply_diagonal_inline(const BlockColumns<Real>* b, const Quad<Real>* u,
+                                                            Quad<Real>* y, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    Quad<Real> sum{};
+    add_product(b[i], u[i], sum);
+    y[i] = sum;
+  }
+}
+
+template <class Real>
+[[gnu::always_inline]] inline void advance_inline(Real step, const Quad<Real>* p, const Quad<Real>* q, Quad<Real>* x,
+                                                  Quad<Real>* r, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    x[i].lanes += p[i].lanes * step;
+    r[i].lanes -= q[i].lanes * step;
+  }
+}
+
+template <class Real>
+[[gnu::always_inline]] inline double dot_inline(const Quad<Real>* a, const Quad<Real>* b, int begin, int end) {
+  Quad<Real> sum{};
+  for (int i = begin; i < end; ++i) sum.lanes += a[i].lanes * b[i].lanes;
+  return sum_of(sum);
+}
+
+}  // namespace
+
+// SELVEDGE_CLONES (CMake) has the compiler make one clone an instruction set, from which the loader picks for the
+// machine at hand. It is empty where that does not work: other compilers, and sanitizers, which start too late for the
+// loader.
+
+SELVEDGE_CLONES double multiply_rows(const RowView<float>& a, const Quad<float>* u, Quad<float>* y, int begin,
+                                     int end) {
+  return multiply_rows_inline(a, u, y, begin, end);
+}
+SELVEDGE_CLONES double multiply_rows(const RowView<double>& a, const Quad<double>* u, Quad<double>* y, int begin,
+                                     int end) {
+  return multiply_rows_inline(a, u, y, begin, end);
+}
+SELVEDGE_CLONES void contact_responses(const ContactView<float>& a, const Quad<float>* u, Quad<float>* response,
+                                       int begin, int end) {
+  contact_responses_inline(a, u, response, begin, end);
+}
+SELVEDGE_CLONES void contact_responses(const ContactView<double>& a, const Quad<double>* u, Quad<double>* response,
+                                       int begin, int end) {
+  contact_responses_inline(a, u, response, begin, end);
+}
+SELVEDGE_CLONES void multiply_diagonal(const BlockColumns<float>* b, const Quad<float>* u, Quad<float>* y, int begin,
+                                       int end) {
+  multiply_diagonal_inline(b, u, y, begin, end);
+}
+SELVEDGE_CLONES void multiply_diagonal(const BlockColumns<double>* b, const Quad<double>* u, Quad<double>* y, int begin,
+                                       int end) {
+  multiply_diagonal_inline(b, u, y, begin, end);
+}
+SELVEDGE_CLONES void advance(float step, const Quad<float>* p, const Quad<float>* q, Quad<float>* x, Quad<float>* r,
+                             int begin, int end) {
+  advance_inline(step, p, q, x, r, begin, end);
+}
+SELVEDGE_CLONES void advance(double step, const Quad<double>* p, const Quad<double>* q, Quad<double>* x,
+                             Quad<double>* r, int begin, int end) {
+  advance_inline(step, p, q, x, r, begin, end);
+}
+SELVEDGE_CLONES void turn(float keep, const Quad<float>* z, Quad<float>* p, int begin, int end) {
+  for (int i = begin; i < end; ++i) p[i].lanes = z[i].lanes + p[i].lanes * keep;
+}
+SELVEDGE_CLONES void turn(double keep, const Quad<double>* z, Quad<double>* p, int begin, int end) {
+  for (int i = begin; i < end; ++i) p[i].lanes = z[i].lanes + p[i].lanes * keep;
+}
+SELVEDGE_CLONES double dot(const Quad<float>* a, const Quad<float>* b, int begin, int end) {
+  return dot_inline(a, b, begin, end);
+}
+SELVEDGE_CLONES double dot(const Quad<double>* a, const Quad<double>* b, int begin, int end) {
+  return dot_inline(a, b, begin, end);
+}
+
+}  // namespace selvedge

@@ -1,0 +1,76 @@
+#pragma once
+
+// The inner loops of PCG over ranges of rows, compiled for several instruction sets. Vertices are four lanes wide (x,
+// y, z, 0), so that a block times a vertex is three multiplications of a column by a lane.
+
+namespace selvedge {
+
+template <class Real>
+struct Quad;
+template <>
+struct Quad<float> {
+  using Lanes = float __attribute__((vector_size(16)));
+  Lanes lanes;
+};
+template <>
+struct Quad<double> {
+  using Lanes = double __attribute__((vector_size(32)));
+  Lanes lanes;
+};
+
+template <class Real>
+struct BlockColumns {
+  Quad<Real> column[3];
+};
+
+// A matrix by rows, as LinearSystem means it. Null pointers: no such term.
+template <class Real>
+struct RowView {
+  const int* begin;
+  const int* column;
+  const BlockColumns<Real>* block;
+  const Real* diagonal;
+  const int* flat_begin;
+  const int* flat_column;
+  const Real* flat_value;
+  const int* contact_begin;
+  const int* contact;
+  const Real* contact_weight;
+  const Quad<Real>* contact_response;
+};
+
+template <class Real>
+struct ContactView {
+  const int* node;  // four a contact, 0 where unused
+  const Real* weight;
+  const Quad<Real>* normal;
+  const Real* tangent_stiffness;
+  const Real* difference;  // normal - tangent stiffness
+};
+
+// y = A u over rows [begin, end); returns u . y of these rows.
+double multiply_rows(const RowView<float>&, const Quad<float>* u, Quad<float>* y, int begin, int end);
+double multiply_rows(const RowView<double>&, const Quad<double>* u, Quad<double>* y, int begin, int end);
+
+// The force of contacts [begin, end) on a weight of one.
+void contact_responses(const ContactView<float>&, const Quad<float>* u, Quad<float>* response, int begin, int end);
+void contact_responses(const ContactView<double>&, const Quad<double>* u, Quad<double>* response, int begin, int end);
+
+// y = B u with one block a row.
+void multiply_diagonal(const BlockColumns<float>*, const Quad<float>* u, Quad<float>* y, int begin, int end);
+void multiply_diagonal(const BlockColumns<double>*, const Quad<double>* u, Quad<double>* y, int begin, int end);
+
+// x += step p, r -= step q.
+void advance(float step, const Quad<float>* p, const Quad<float>* q, Quad<float>* x, Quad<float>* r, int begin,
+             int end);
+void advance(double step, const Quad<double>* p, const Quad<double>* q, Quad<double>* x, Quad<double>* r, int begin,
+             int end);
+
+// p = z + keep p.
+void turn(float keep, const Quad<float>* z, Quad<float>* p, int begin, int end);
+void turn(double keep, const Quad<double>* z, Quad<double>* p, int begin, int end);
+
+double dot(const Quad<float>* a, const Quad<float>* b, int begin, int end);
+double dot(const Quad<double>* a, const Quad<double>* b, int begin, int end);
+
+}  // namespace selvedge
