@@ -1,0 +1,65 @@
+# Thin commands over CMake's presets. Each installs the Debian packages that it needs and lacks, builds what is out of
+# date, and asks nothing.
+SHELL := /bin/bash
+JOBS ?= $(shell nproc)
+FILTER ?= .
+# A server that sets CI gets warnings as errors in every build.
+CONFIGURE := $(if $(CI),-DSELVEDGE_WERROR=ON)
+SOURCES = git ls-files '*.cpp' '*.hpp'
+PROGRAM := build/release/selvedge
+
+PACKAGES_release := build suitesparse viewer test
+PACKAGES_dev := $(PACKAGES_release)
+PACKAGES_asan := $(PACKAGES_release)
+PACKAGES_tsan := $(PACKAGES_release) tsan
+PACKAGES_minimal := build viewer test
+
+.PHONY: help program demo test bench dev asan tsan minimal format check-format tidy clean
+.DEFAULT_GOAL := help
+
+help:  ## This list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
+
+program:
+	@cmake/install-packages.sh build suitesparse viewer
+	@$(MAKE) --no-print-directory build/release/configured
+	@cmake --build --preset release --parallel $(JOBS) --target selvedge
+
+demo: program  ## Build the program, simulate configs/demo.yaml, say where the page to look at is
+	@$(PROGRAM) simulate configs/demo.yaml --out out/demo
+
+bench: program  ## Run the benchmark family: a table, and out/bench/*.json
+	@$(PROGRAM) bench --out out/bench
+
+test: test-release  ## Build and run every test (FILTER=regular expression on test files)
+dev: test-dev  ## The same with assertions on and warnings as errors
+asan: test-asan  ## The same under the address and undefined-behaviour sanitizers
+tsan: test-tsan  ## The same under the thread sanitizer, with clang
+minimal: test-minimal  ## The same without SuiteSparse and OpenMP
+
+test-%:
+	@cmake/install-packages.sh $(PACKAGES_$*)
+	@$(MAKE) --no-print-directory build/$*/configured
+	@cmake --build --preset $* --parallel $(JOBS)
+	@cmake/run-tests.sh $* $(JOBS) --tests-regex '$(FILTER)'
+
+# CMake looks after its own files by itself; the presets it reads only here.
+build/%/configured: CMakePresets.json
+	cmake --preset $* $(CONFIGURE)
+	@touch $@
+
+format:  ## Format every source file
+	@cmake/install-packages.sh format
+	@$(SOURCES) | xargs clang-format -i
+
+check-format:  ## Fail if a source file is not formatted
+	@cmake/install-packages.sh format
+	@$(SOURCES) | xargs clang-format --dry-run -Werror
+
+tidy:  ## clang-tidy over the sources of the release build
+	@cmake/install-packages.sh build suitesparse viewer test tidy
+	@$(MAKE) --no-print-directory build/release/configured
+	@git ls-files '*.cpp' ':!tests' | xargs -P $(JOBS) -n 1 clang-tidy -p build/release --quiet --warnings-as-errors='*'
+
+clean:  ## Remove what was built; results in out/ stay
+	rm -rf build

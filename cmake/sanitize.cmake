@@ -1,0 +1,6 @@
+# SELVEDGE_SANITIZE is a list for -fsanitize, such as address;undefined. A finding ends the program. The flags go where
+# compile checks see them too.
+if(SELVEDGE_SANITIZE)
+  list(JOIN SELVEDGE_SANITIZE "," sanitizers)
+  string(APPEND CMAKE_CXX_FLAGS " -fsanitize=${sanitizers} -fno-omit-frame-pointer -fno-sanitize-recover=all")
+endif()

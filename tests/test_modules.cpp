@@ -1,0 +1,216 @@
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+// The repository keeps to its own rules: who may include whom, where heavy packages may appear, how long a file may be.
+// Each rule is a function from a text to complaints "file:line: what", so that it is also tried on texts that break it.
+
+namespace {
+
+namespace fs = std::filesystem;
+using Complaints = std::vector<std::string>;
+
+const std::vector<std::string> chain = {"collision", "physics", "learned", "pipeline"};
+constexpr int longest_file = 450;
+
+// A heavy package: how its headers are spelt, and the files that may include them.
+struct Heavy {
+  std::string package, header, files;
+};
+const std::vector<Heavy> heavy_packages = {
+    {"HDF5", "(hdf5|H5.*)\\.h(pp)?", "(learned|pipeline)/.*hdf5.*"},
+    {"CHOLMOD", "(.*/)?cholmod\\.h", ".*_cholmod\\.cpp"},
+    {"libtorch", "(torch|ATen|c10)/.*", "learned/.*_torch\\.(cpp|hpp)"},
+    {"FCL", "fcl/.*", ".*_fcl\\.cpp"},
+    {"yaml-cpp", "yaml-cpp/.*", "pipeline/.*yaml.*"},
+    {"CLI11", "CLI/.*", "pipeline/.*\\.cpp"},
+    {"nlohmann-json", "nlohmann/.*", "pipeline/.*\\.cpp"},
+    {"fmt", "fmt/.*", "pipeline/.*\\.cpp"},
+    {"Catch2", "catch2/.*", "tests/.*"},
+};
+
+struct Include {
+  int line;
+  bool quoted;
+  std::string header;
+};
+
+std::vector<Include> includes(const std::string& text) {
+  static const std::regex directive(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"].*$)");
+  std::vector<Include> found;
+  std::istringstream lines(text);
+  std::string line;
+  std::smatch match;
+  for (int number = 1; std::getline(lines, line); ++number)
+    if (std::regex_match(line, match, directive)) found.push_back({number, match[1] == "\"", match[2]});
+  return found;
+}
+
+std::string at(const std::string& file, int line) { return file + ":" + std::to_string(line) + ": "; }
+
+// `file` is the path from the repository's root. A module includes itself and the modules to its left in the chain,
+// by path from the root; tests include every module, and beside them what the tests of their own folder share.
+Complaints wrong_directions(const std::string& file, const std::string& text) {
+  const auto position = [](const std::string& folder) { return std::find(chain.begin(), chain.end(), folder); };
+  const auto folder = [](const std::string& path) { return path.substr(0, path.find('/')); };
+  const std::string own = folder(file);
+  Complaints complaints;
+  for (const Include& include : includes(text)) {
+    const std::string theirs = folder(include.header);
+    const bool is_module = position(theirs) != chain.end();
+    if (is_module && own != "tests" && position(theirs) > position(own))
+      complaints.push_back(at(file, include.line) + own + " must not include " + include.header);
+    if (is_module != include.quoted && theirs != "tests")
+      complaints.push_back(at(file, include.line) +
+                           "\"...\" is for our own headers, by path from the root: " + include.header);
+    if (theirs == "tests" && own != "tests")
+      complaints.push_back(at(file, include.line) + own + " must not include " + include.header);
+  }
+  return complaints;
+}
+
+Complaints misplaced_packages(const std::string& file, const std::string& text) {
+  Complaints complaints;
+  for (const Include& include : includes(text))
+    for (const Heavy& heavy : heavy_packages)
+      if (std::regex_match(include.header, std::regex(heavy.header)) && !file.starts_with("tests/") &&
+          !std::regex_match(file, std::regex(heavy.files)))
+        complaints.push_back(at(file, include.line) + heavy.package + " is for files like " + heavy.files);
+  return complaints;
+}
+
+Complaints bad_shape(const std::string& file, const std::string& text) {
+  Complaints complaints;
+  const auto lines = static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+  if (lines > longest_file) complaints.push_back(at(file, lines) + "longer than " + std::to_string(longest_file));
+  if (std::regex_search(file, std::regex("(^|[/_])(utils?|helpers?|misc)([/_.]|$)")))
+    complaints.push_back(at(file, 1) + "the name does not say what is in it");
+  if (file.ends_with(".hpp") && !text.starts_with("#pragma once\n"))
+    complaints.push_back(at(file, 1) + "a header begins with #pragma once");
+  return complaints;
+}
+
+// Links [text](path) of a Markdown page, and `folder/file` names in it, must lead to something.
+Complaints dead_references(const fs::path& root, const std::string& file, const std::string& text) {
+  static const std::regex reference(
+      R"(\]\(([^)#:\s]+)(#[^)]*)?\)|`((collision|physics|pipeline|tests|configs|cmake|docs)/[\w/.-]+\.\w+)`)");
+  Complaints complaints;
+  std::istringstream lines(text);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number)
+    for (std::sregex_iterator match(line.begin(), line.end(), reference), end; match != end; ++match) {
+      const bool is_link = (*match)[1].matched;
+      const std::string target = is_link ? (*match)[1] : (*match)[3];
+      if (!fs::exists(is_link ? (root / file).parent_path() / target : root / target))
+        complaints.push_back(at(file, number) + "leads nowhere: " + target);
+    }
+  return complaints;
+}
+
+std::string read(const fs::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+const fs::path root = SELVEDGE_SOURCE_DIR;
+
+// Path from the root and text of each file below `folder` with one of the extensions.
+std::map<std::string, std::string> texts(const std::string& folder, const std::vector<std::string>& extensions) {
+  std::map<std::string, std::string> found;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder))
+    if (std::find(extensions.begin(), extensions.end(), entry.path().extension()) != extensions.end())
+      found[entry.path().lexically_relative(root).generic_string()] = read(entry.path());
+  return found;
+}
+
+std::map<std::string, std::string> sources() {
+  std::map<std::string, std::string> found;
+  for (const std::string folder : {"collision", "physics", "learned", "pipeline", "tests"})
+    found.merge(texts(folder, {".cpp", ".hpp"}));
+  return found;
+}
+
+std::string listed(const Complaints& complaints) {
+  std::string text;
+  for (const std::string& complaint : complaints) text += '\n' + complaint;
+  return text;
+}
+
+template <class Rule>
+Complaints over_all_sources(const Rule& rule) {
+  Complaints all;
+  for (const auto& [file, text] : sources())
+    for (const std::string& complaint : rule(file, text)) all.push_back(complaint);
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("modules: includes go left along the chain", "[modules]") {
+  CHECK(listed(over_all_sources(wrong_directions)) == "");
+
+  CHECK(wrong_directions("physics/a.cpp", "#include \"physics/a.hpp\"\n#include <vector>\n").empty());
+  CHECK(wrong_directions("pipeline/a.cpp", "#include \"collision/a.hpp\"\n").empty());
+  CHECK(listed(wrong_directions("collision/a.cpp", "\n#include \"physics/scene.hpp\"\n")) ==
+        "\ncollision/a.cpp:2: collision must not include physics/scene.hpp");
+  CHECK(wrong_directions("collision/a.cpp", "#include <physics/scene.hpp>\n").size() == 2);
+  CHECK(wrong_directions("physics/a.cpp", "#include \"scene.hpp\"\n").size() == 1);
+  CHECK(wrong_directions("physics/a.cpp", "#include \"../collision/bvh.hpp\"\n").size() == 1);
+  CHECK(wrong_directions("physics/a.cpp", "  #  include \"tests/grid.hpp\"\n").size() == 1);
+}
+
+TEST_CASE("modules: heavy packages stay in the files named for them", "[modules]") {
+  CHECK(listed(over_all_sources(misplaced_packages)) == "");
+
+  CHECK(misplaced_packages("pipeline/trajectory_hdf5.cpp", "#include <hdf5.h>\n").empty());
+  CHECK(misplaced_packages("pipeline/check.cpp", "#include <hdf5.h>\n").size() == 1);
+  CHECK(misplaced_packages("collision/sdf_hdf5.cpp", "#include <hdf5.h>\n").size() == 1);
+  CHECK(misplaced_packages("physics/solver.cpp", "#include <cholmod.h>\n").size() == 1);
+  CHECK(misplaced_packages("physics/solver.cpp", "#include <suitesparse/cholmod.h>\n").size() == 1);
+  CHECK(misplaced_packages("learned/engine.cpp", "#include <torch/torch.h>\n").size() == 1);
+  CHECK(misplaced_packages("physics/scene.cpp", "#include <yaml-cpp/yaml.h>\n").size() == 1);
+  CHECK(misplaced_packages("pipeline/setup.hpp", "#include <nlohmann/json.hpp>\n").size() == 1);
+}
+
+TEST_CASE("modules: files are short and say in their names what they hold", "[modules]") {
+  CHECK(sources().size() > 20);
+  CHECK(listed(over_all_sources(bad_shape)) == "");
+
+  CHECK(bad_shape("physics/scene.cpp", std::string(longest_file, '\n')).empty());
+  CHECK(bad_shape("physics/scene.cpp", std::string(longest_file + 1, '\n')).size() == 1);
+  CHECK(bad_shape("physics/mesh_utils.cpp", "").size() == 1);
+  CHECK(bad_shape("pipeline/util/a.cpp", "").size() == 1);
+  CHECK(bad_shape("pipeline/utility_of_wool.cpp", "").empty());
+  CHECK(bad_shape("physics/scene.hpp", "int a;\n").size() == 1);
+}
+
+TEST_CASE("modules: test files have names of their own", "[modules]") {
+  std::map<std::string, int> count;  // ctest picks the cases of a file by its name without the folder
+  for (const auto& [file, text] : texts("tests", {".cpp"})) ++count[fs::path(file).stem().string()];
+  for (const auto& [name, times] : count) {
+    INFO(name);
+    CHECK(times == 1);
+  }
+}
+
+TEST_CASE("modules: what the documents name exists", "[modules]") {
+  auto pages = texts("docs", {".md"});
+  for (const std::string page : {"README.md", "CHANGELOG.md", "learned/README.md"}) pages[page] = read(root / page);
+  Complaints all;
+  for (const auto& [file, text] : pages)
+    for (const std::string& complaint : dead_references(root, file, text)) all.push_back(complaint);
+  CHECK(listed(all) == "");
+
+  CHECK(
+      dead_references(root, "docs/a.md", "[it](../README.md#top) and `tests/main.cpp`, https://a.b (c.md)\n").empty());
+  CHECK(dead_references(root, "docs/a.md", "\n[it](README.md)\n") ==
+        Complaints{"docs/a.md:2: leads nowhere: README.md"});
+  CHECK(dead_references(root, "README.md", "see `physics/nothing.cpp`\n").size() == 1);
+}
