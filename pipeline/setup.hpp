@@ -18,6 +18,7 @@ struct RunOptions {
   int frames = 60;
   double fps = 30;
   std::string stepper = "conventional";
+  std::string output;  // folder for the results; empty: chosen by the command
   ConventionalOptions conventional;
 };
 

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "pipeline/config.hpp"
+
+namespace selvedge {
+
+// The table of a scene file.
+const Section& scene_section();
+// The table of a material file: what a scene may say of a material by value.
+const Section& material_file_section();
+// Every section of a scene file in the order of docs/scene.md, the scene itself first.
+std::vector<const Section*> scene_sections();
+
+}  // namespace selvedge

@@ -1,0 +1,119 @@
+#include "pipeline/materials.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "pipeline/config_scene.hpp"
+#include "pipeline/setup_paths.hpp"
+
+namespace selvedge {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Field {
+  const char* name;
+  double Material::*value;
+};
+
+constexpr std::array fields = {
+    Field{"density", &Material::density},
+    Field{"lame_mu", &Material::lame_mu},
+    Field{"lame_lambda", &Material::lame_lambda},
+    Field{"warp", &Material::warp},
+    Field{"weft", &Material::weft},
+    Field{"shear", &Material::shear},
+    Field{"bending", &Material::bending},
+    Field{"stiffness_damping", &Material::stiffness_damping},
+    Field{"mass_damping", &Material::mass_damping},
+};
+
+constexpr std::array membrane_models = {MembraneModel::stvk, MembraneModel::stable_neo_hookean,
+                                        MembraneModel::baraff_witkin};
+constexpr std::array bending_models = {BendingModel::curvature, BendingModel::hinge};
+
+// The value whose word is the entry's, in the order of the table's choices.
+template <class Values>
+auto chosen(const Config& entry, const Values& values) {
+  const auto& choices = entry.key->choices;
+  return values[static_cast<std::size_t>(std::find(choices.begin(), choices.end(), entry.text()) - choices.begin())];
+}
+
+template <class Values, class Value>
+std::string word_of(const Config& entry, const Values& values, Value value) {
+  return entry.key->choices[static_cast<std::size_t>(std::find(values.begin(), values.end(), value) - values.begin())];
+}
+
+void apply(const Config& section, Material& material) {
+  for (const Field& field : fields)
+    if (section[field.name].given) material.*field.value = section[field.name].number();
+  if (section["membrane"].given) material.membrane = chosen(section["membrane"], membrane_models);
+  if (section["bending_model"].given) material.bending_model = chosen(section["bending_model"], bending_models);
+  const Config &young = section["youngs_modulus"], &poisson = section["poisson"];
+  if (young.given != poisson.given)
+    (young.given ? young : poisson).fail("stands alone", "give both youngs_modulus and poisson");
+  if (!young.given) return;
+  for (const char* lame : {"lame_mu", "lame_lambda"})
+    if (section[lame].given)
+      section[lame].fail("is given beside youngs_modulus and poisson", "give one pair or the other");
+  const double e = young.number(), nu = poisson.number();
+  material.lame_mu = e / (2 * (1 + nu));
+  material.lame_lambda = e * nu / (1 - nu * nu);
+}
+
+std::vector<fs::path> material_folders(const fs::path& folder) {
+  return {folder / "materials", folder / ".." / "materials", config_folder() / "materials"};
+}
+
+std::vector<std::string> material_names(const fs::path& folder) {
+  std::vector<std::string> names{Material{}.name};
+  for (const fs::path& place : material_folders(folder)) {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(place, ignored))
+      if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+void read_named(const Config& name, const fs::path& folder, Material& material) {
+  material.name = name.text();
+  for (const fs::path& place : material_folders(folder)) {
+    const fs::path file = place / (name.text() + ".yaml");
+    if (fs::exists(file)) return apply(read_config(file, material_file_section()), material);
+  }
+  if (name.text() == Material{}.name) return;
+  const std::vector<std::string> known = material_names(folder);
+  name.fail("names the unknown material `" + name.text() + "`",
+            "known: " + joined(known) + suggestion(name.text(), known));
+}
+
+void write_back(const Material& material, Config& section) {
+  for (const Field& field : fields) section[field.name].numbers = {material.*field.value};
+  section["membrane"].words = {word_of(section["membrane"], membrane_models, material.membrane)};
+  section["bending_model"].words = {word_of(section["bending_model"], bending_models, material.bending_model)};
+  for (const char* replaced : {"youngs_modulus", "poisson"}) {
+    section[replaced].numbers.clear();
+    section[replaced].given = false;
+  }
+}
+
+}  // namespace
+
+Material read_material(Config& section, const fs::path& folder) {
+  const Config &name = section["name"], &file = section["file"];
+  if (name.given && file.given) file.fail("is given beside a name", "give one of them");
+  Material material;
+  if (name.given) read_named(name, folder, material);
+  if (file.given) {
+    const fs::path place = existing_path(file, folder);
+    apply(read_config(place, material_file_section()), material);
+    material.name = place.stem().string();
+  }
+  apply(section, material);
+  write_back(material, section);
+  return material;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,114 @@
+#include "pipeline/mesh_io.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "collision/error.hpp"
+#include "collision/surface.hpp"
+#include "pipeline/mesh_obj.hpp"
+#include "pipeline/mesh_ply.hpp"
+
+namespace selvedge {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+std::string whole_file(const fs::path& path) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) throw Error("is a folder", path.string(), "name the mesh file in it");
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw Error("cannot be opened", path.string(), "check the path");
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+void keep_rows(Triangles& triangles, const std::vector<int>& kept) {
+  if (triangles.rows() == 0) return;
+  Triangles result(static_cast<Eigen::Index>(kept.size()), 3);
+  for (std::size_t t = 0; t < kept.size(); ++t) result.row(static_cast<Eigen::Index>(t)) = triangles.row(kept[t]);
+  triangles = std::move(result);
+}
+
+// Leaves out triangles that name a vertex twice and triangles that come again, in whatever order of corners.
+void remove_repeated(Mesh& mesh, const std::string& name) {
+  std::vector<std::pair<std::array<int, 3>, int>> sorted;
+  int degenerate = 0;
+  for (int t = 0; t < mesh.triangles.rows(); ++t) {
+    std::array<int, 3> corners{mesh.triangles(t, 0), mesh.triangles(t, 1), mesh.triangles(t, 2)};
+    std::sort(corners.begin(), corners.end());
+    if (corners[0] == corners[1] || corners[1] == corners[2])
+      ++degenerate;
+    else
+      sorted.emplace_back(corners, t);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<int> kept;
+  for (std::size_t i = 0; i < sorted.size(); ++i)
+    if (i == 0 || sorted[i].first != sorted[i - 1].first) kept.push_back(sorted[i].second);
+  const std::size_t duplicate = sorted.size() - kept.size();
+  std::sort(kept.begin(), kept.end());
+  keep_rows(mesh.uv_triangles, kept);
+  keep_rows(mesh.triangles, kept);
+  if (degenerate > 0) mesh.warnings.push_back(fmt::format("{}: {} degenerate triangles left out", name, degenerate));
+  if (duplicate > 0) mesh.warnings.push_back(fmt::format("{}: {} duplicate triangles left out", name, duplicate));
+}
+
+void note_topology(Mesh& mesh, const std::string& name) {
+  const Surface surface = make_surface(static_cast<int>(mesh.x.rows()), mesh.triangles);
+  if (surface.nonmanifold_edges > 0)
+    mesh.warnings.push_back(
+        fmt::format("{}: {} non-manifold edges (more than two triangles)", name, surface.nonmanifold_edges));
+  if (surface.isolated_vertices > 0)
+    mesh.warnings.push_back(fmt::format("{}: {} isolated vertices (in no triangle)", name, surface.isolated_vertices));
+}
+
+void write_beside_and_rename(const fs::path& path, const std::string& content) {
+  const fs::path beside = path.string() + fmt::format(".{}.part", ::getpid());
+  std::ofstream out(beside, std::ios::binary | std::ios::trunc);
+  out.write(content.data(), static_cast<std::streamsize>(content.size()));
+  out.close();
+  std::error_code problem;
+  if (out) fs::rename(beside, path, problem);
+  if (out && !problem) return;
+  std::error_code ignored;
+  fs::remove(beside, ignored);
+  throw Error("cannot be written", path.string(), "check the folder, its permissions and the free space");
+}
+
+}  // namespace
+
+Mesh read_mesh(const fs::path& path) {
+  const std::string extension = lower_extension(path), name = path.string();
+  if (extension != ".obj" && extension != ".ply")
+    throw Error("has an extension that no mesh reader knows", name, "known: .obj, .ply");
+  const std::string text = whole_file(path);
+  if (text.empty()) throw Error("is empty", name, "name a mesh file with vertices and faces");
+  Mesh mesh = extension == ".obj" ? parse_obj(text, name) : parse_ply(text, name);
+  if (mesh.x.rows() == 0) throw Error("has no vertices", name, "name a mesh file with vertices and faces");
+  remove_repeated(mesh, name);
+  if (mesh.triangles.rows() == 0) throw Error("has no faces", name, "name a mesh file with vertices and faces");
+  note_topology(mesh, name);
+  return mesh;
+}
+
+void write_obj(const fs::path& path, const Points& x, const Triangles& triangles) {
+  write_beside_and_rename(path, obj_text(x, triangles));
+}
+
+void write_ply(const fs::path& path, const Points& x, const Triangles& triangles) {
+  write_beside_and_rename(path, ply_text(x, triangles));
+}
+
+}  // namespace selvedge

@@ -1,0 +1,84 @@
+#include "pipeline/motion.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace selvedge {
+namespace {
+
+double between(const std::vector<double>& times, const std::vector<Vec3>& values, std::size_t k, int axis) {
+  return (values[k + 1][axis] - values[k][axis]) / (times[k + 1] - times[k]);
+}
+
+// Slope at key k that keeps every piece monotone: the weighted harmonic mean of the neighbouring secants where they
+// agree in sign, else zero.
+double slope(const std::vector<double>& times, const std::vector<Vec3>& values, std::size_t k, int axis) {
+  if (k == 0 || k + 1 == times.size()) return 0;
+  const double before = between(times, values, k - 1, axis), after = between(times, values, k, axis);
+  if (before * after <= 0) return 0;
+  const double left = times[k] - times[k - 1], right = times[k + 1] - times[k];
+  return 3 * (left + right) / ((2 * right + left) / before + (right + 2 * left) / after);
+}
+
+Vec3 cubic(const std::vector<double>& times, const std::vector<Vec3>& values, std::size_t k, double s) {
+  const double h = times[k + 1] - times[k];
+  Vec3 result;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double a = values[k][axis], b = values[k + 1][axis];
+    const double from = h * slope(times, values, k, axis), to = h * slope(times, values, k + 1, axis);
+    result[axis] = a + s * (from + s * ((3 * (b - a) - 2 * from - to) + s * (from + to - 2 * (b - a))));
+  }
+  return result;
+}
+
+}  // namespace
+
+Vec3 keyed_vector(const std::vector<double>& times, const std::vector<Vec3>& values, Interpolation interpolation,
+                  double time) {
+  assert(!times.empty() && times.size() == values.size());
+  if (time <= times.front()) return values.front();
+  if (time >= times.back()) return values.back();
+  const auto after = std::upper_bound(times.begin(), times.end(), time);
+  const auto k = static_cast<std::size_t>(after - times.begin()) - 1;
+  const double s = (time - times[k]) / (times[k + 1] - times[k]);
+  if (interpolation == Interpolation::smooth) return cubic(times, values, k, s);
+  return values[k] + s * (values[k + 1] - values[k]);
+}
+
+Pose pose_at(const Motion& motion, double time) {
+  if (motion.keys.empty()) return {};
+  std::vector<double> times;
+  std::vector<Vec3> translations, rotations;
+  for (const Keyframe& key : motion.keys) {
+    times.push_back(key.time);
+    translations.push_back(key.translation);
+    rotations.push_back(key.rotation);
+  }
+  return {keyed_vector(times, translations, motion.interpolation, time),
+          keyed_vector(times, rotations, motion.interpolation, time)};
+}
+
+Mat3 rotation_matrix(const Vec3& rotation_vector) {
+  const double angle = rotation_vector.norm();
+  if (angle == 0) return Mat3::Identity();
+  return Eigen::AngleAxisd(angle, rotation_vector / angle).toRotationMatrix();
+}
+
+Points moved(const Motion& motion, const Points& x, double time) {
+  const Pose pose = pose_at(motion, time);
+  Points result = x;
+  if (!pose.rotation.isZero(0)) {
+    const Mat3 turn = rotation_matrix(pose.rotation);
+    result = ((x.rowwise() - motion.center.transpose()) * turn.transpose()).rowwise() + motion.center.transpose();
+  }
+  if (!pose.translation.isZero(0)) result.rowwise() += pose.translation.transpose();
+  return result;
+}
+
+bool is_still(const Motion& motion) {
+  return std::all_of(motion.keys.begin(), motion.keys.end(), [&](const Keyframe& key) {
+    return key.translation == motion.keys.front().translation && key.rotation == motion.keys.front().rotation;
+  });
+}
+
+}  // namespace selvedge

@@ -1,0 +1,245 @@
+#include "pipeline/setup.hpp"
+
+#include <algorithm>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "pipeline/config_scene.hpp"
+#include "pipeline/setup_cloth.hpp"
+#include "pipeline/setup_motion.hpp"
+#include "pipeline/setup_obstacle.hpp"
+
+namespace selvedge {
+namespace {
+
+struct PinnedVertex {
+  int vertex;  // of the scene
+  const PinPart* by = nullptr;
+};
+
+// The world over time, kept by Setup::drive_at.
+struct World {
+  struct PinGroup {  // pins that move together
+    std::vector<int> rows;
+    Points start;
+    Motion motion;
+  };
+  int pin_count = 0;
+  std::vector<PinGroup> pins;
+  std::vector<std::function<Points(double)>> obstacles;
+  Vec3 gravity = Vec3::Zero();
+  std::vector<double> wind_times;
+  std::vector<Vec3> wind;
+  Interpolation wind_interpolation = Interpolation::linear;
+};
+
+Drive drive(const World& world, double time) {
+  Drive d;
+  d.pins.resize(world.pin_count, 3);
+  for (const World::PinGroup& group : world.pins)
+    d.pins(group.rows, Eigen::all) = moved(group.motion, group.start, time);
+  for (const auto& at : world.obstacles) d.obstacles.push_back(at(time));
+  if (!world.wind.empty()) d.wind = keyed_vector(world.wind_times, world.wind, world.wind_interpolation, time);
+  d.acceleration = world.gravity;
+  return d;
+}
+
+void join(const std::vector<ClothPart>& parts, Scene& scene, State& initial) {
+  Eigen::Index vertices = 0, triangles = 0;
+  for (const ClothPart& part : parts) {
+    vertices += part.mesh.x.rows();
+    triangles += part.mesh.triangles.rows();
+  }
+  initial.x.resize(vertices, 3);
+  initial.v.resize(vertices, 3);
+  scene.rest.resize(vertices, 3);
+  Triangles all(triangles, 3);
+  Eigen::Index v = 0, t = 0;
+  for (const ClothPart& part : parts) {
+    const Eigen::Index nv = part.mesh.x.rows(), nt = part.mesh.triangles.rows();
+    scene.cloths.push_back({part.name, part.material, static_cast<int>(v), static_cast<int>(nv), static_cast<int>(t),
+                            static_cast<int>(nt)});
+    initial.x.middleRows(v, nv) = part.mesh.x;
+    initial.v.middleRows(v, nv).rowwise() = part.velocity.transpose();
+    scene.rest.middleRows(v, nv) = part.rest;
+    all.middleRows(t, nt) = part.mesh.triangles.array() + static_cast<int>(v);
+    scene.rest_triangle.insert(scene.rest_triangle.end(), part.rest_triangle.begin(), part.rest_triangle.end());
+    scene.rest_is_flat = part.rest_is_flat;
+    v += nv;
+    t += nt;
+  }
+  scene.surface = make_surface(static_cast<int>(vertices), all);
+}
+
+// Vertices without mass cannot move freely: they stay where they are.
+PinPart massless(const Scene& scene, std::vector<std::string>& warnings) {
+  const Eigen::VectorXd masses = lumped_masses(scene);
+  PinPart held;
+  for (int v = 0; v < masses.size(); ++v)
+    if (!(masses[v] > 0)) held.vertices.push_back(v);
+  if (!held.vertices.empty())
+    warnings.push_back(fmt::format("{} vertices without mass are held in place", held.vertices.size()));
+  return held;
+}
+
+void add_pins(const std::vector<ClothPart>& parts, const PinPart& held, Scene& scene, const Points& x, World& world) {
+  std::vector<PinnedVertex> all;
+  for (std::size_t c = 0; c < parts.size(); ++c)
+    for (const PinPart& pin : parts[c].pins)
+      for (const int v : pin.vertices) all.push_back({v + scene.cloths[c].first_vertex, &pin});
+  for (const int v : held.vertices) all.push_back({v, &held});
+  // The first pin that names a vertex keeps it.
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.vertex < b.vertex; });
+  all.erase(std::unique(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.vertex == b.vertex; }),
+            all.end());
+  for (const PinnedVertex& pin : all) scene.pins.push_back(pin.vertex);
+  world.pin_count = static_cast<int>(all.size());
+  std::vector<const PinPart*> owners;
+  for (std::size_t r = 0; r < all.size(); ++r) {
+    const auto owner = std::find(owners.begin(), owners.end(), all[r].by);
+    if (owner == owners.end()) world.pins.emplace_back().motion = all[r].by->motion;
+    World::PinGroup& group = world.pins[static_cast<std::size_t>(owner - owners.begin())];
+    if (owner == owners.end()) owners.push_back(all[r].by);
+    group.rows.push_back(static_cast<int>(r));
+  }
+  for (World::PinGroup& group : world.pins) {
+    group.start.resize(static_cast<Eigen::Index>(group.rows.size()), 3);
+    for (std::size_t r = 0; r < group.rows.size(); ++r)
+      group.start.row(static_cast<Eigen::Index>(r)) = x.row(scene.pins[static_cast<std::size_t>(group.rows[r])]);
+  }
+}
+
+void read_wind(const Config& section, Wind& wind, World& world) {
+  if (!section.given) return;
+  wind.drag = section["drag"].number();
+  wind.lift = section["lift"].number();
+  wind.air_density = section["air_density"].number();
+  wind.on = wind.air_density > 0 && (wind.drag > 0 || wind.lift > 0);
+  world.wind_interpolation = read_interpolation(section["interpolation"]);
+  const Config& keyframes = section["keyframes"];
+  if (!keyframes.items.empty() && section["velocity"].given)
+    section["velocity"].fail("is given beside keyframes", "give one of them");
+  check_ascending_times(keyframes);
+  for (const Config& key : keyframes.items) {
+    world.wind_times.push_back(key["time"].number());
+    world.wind.push_back(key["velocity"].vector());
+  }
+  if (keyframes.items.empty()) {
+    world.wind_times = {0};
+    world.wind = {section["velocity"].vector()};
+  }
+}
+
+ContactSettings read_contact(const Config& section) {
+  return {section["thickness"].number(), section["friction"].number(), section["self_friction"].number(),
+          section["self"].flag()};
+}
+
+ImplicitEulerOptions read_solver(const Config& section) {
+  ImplicitEulerOptions o;
+  o.velocity_tolerance = section["velocity_tolerance"].number();
+  o.max_newton = section["max_newton"].integer();
+  const std::string& solver = section["linear_solver"].text();
+  o.linear_solver = solver == "cholmod" ? LinearSolver::cholmod
+                    : solver == "pcg"   ? LinearSolver::pcg
+                                        : LinearSolver::automatic;
+  o.linear_tolerance = section["linear_tolerance"].number();
+  o.max_linear = section["max_linear"].integer();
+  o.slip_speed = section["slip_speed"].number();
+  return o;
+}
+
+RunOptions read_run(const Config& scene) {
+  const Config& section = scene["run"];
+  RunOptions run;
+  run.frames = section["frames"].integer();
+  run.fps = section["fps"].number();
+  run.stepper = section["stepper"].text();
+  if (scene["output"]["folder"].given) run.output = scene["output"]["folder"].text();
+  if (!section["substeps"].numbers.empty()) run.conventional.substeps = section["substeps"].integer();
+  run.conventional.max_substeps = section["max_substeps"].integer();
+  run.conventional.implicit_euler = read_solver(scene["solver"]);
+  return run;
+}
+
+void check_names(const Config& list, const std::vector<std::string>& names) {
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
+        names.begin() + static_cast<std::ptrdiff_t>(i))
+      list.items[i].fail("has the name `" + names[i] + "` of another", "give every one its own name");
+}
+
+std::vector<ClothPart> read_cloths(Config& list, const std::filesystem::path& folder,
+                                   std::vector<std::string>& warnings) {
+  if (list.items.empty()) list.fail("is empty", "give at least one cloth");
+  std::vector<ClothPart> parts;
+  std::vector<std::string> names;
+  for (std::size_t c = 0; c < list.items.size(); ++c) {
+    parts.push_back(read_cloth(list.items[c], fmt::format("cloth{}", c), folder, warnings));
+    names.push_back(parts.back().name);
+    if (parts.back().rest_is_flat != parts.front().rest_is_flat)
+      list.items[c]["rest"]["flat"].fail("differs from the first cloth's", "all cloths of a scene rest alike");
+  }
+  check_names(list, names);
+  return parts;
+}
+
+void read_obstacles(const Config& list, const std::filesystem::path& folder, Setup& setup, World& world) {
+  std::vector<std::string> names;
+  for (std::size_t o = 0; o < list.items.size(); ++o) {
+    ObstaclePart part = read_obstacle(list.items[o], fmt::format("obstacle{}", o), folder, setup.warnings);
+    names.push_back(part.obstacle.name);
+    setup.scene.obstacles.push_back(std::move(part.obstacle));
+    world.obstacles.push_back(std::move(part.at));
+  }
+  check_names(list, names);
+}
+
+// Neighbours of a triangle lie within its smallest altitude: a thicker cloth pushes them apart at rest.
+void warn_of_thickness(const Scene& scene, std::vector<std::string>& warnings) {
+  int thin = 0, flat = 0;
+  for (const RestTriangle& triangle : scene.rest_triangle) {
+    double longest = 0;
+    for (int k = 0; k < 3; ++k) longest = std::max(longest, (triangle.col(k) - triangle.col((k + 1) % 3)).norm());
+    const double altitude = longest > 0 ? 2 * area(triangle) / longest : 0;
+    if (altitude <= 1e-9 * longest)
+      ++flat;
+    else if (altitude < scene.contact.thickness)
+      ++thin;
+  }
+  if (flat > 0) warnings.push_back(fmt::format("{} triangles of zero rest area, which resist no stretch", flat));
+  if (thin > 0 && scene.contact.self)
+    warnings.push_back(fmt::format("contact.thickness {} m is larger than the smallest altitude of {} triangles",
+                                   scene.contact.thickness, thin));
+}
+
+}  // namespace
+
+Setup read_setup(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  Config config = read_config(file, scene_section(), overrides);
+  const std::filesystem::path folder = file.parent_path();
+  Setup setup;
+  const auto world = std::make_shared<World>();
+  const std::vector<ClothPart> cloths = read_cloths(config["cloths"], folder, setup.warnings);
+  setup.file = file;
+  setup.scene.contact = read_contact(config["contact"]);
+  setup.run = read_run(config);
+  world->gravity = config["gravity"].vector();
+  join(cloths, setup.scene, setup.initial);
+  add_pins(cloths, massless(setup.scene, setup.warnings), setup.scene, setup.initial.x, *world);
+  read_obstacles(config["obstacles"], folder, setup, *world);
+  read_wind(config["wind"], setup.scene.wind, *world);
+  warn_of_thickness(setup.scene, setup.warnings);
+  setup.drive_at = [world](double time) { return drive(*world, time); };
+  const Drive start = setup.drive_at(0);
+  setup.initial.obstacles = start.obstacles;
+  for (std::size_t p = 0; p < setup.scene.pins.size(); ++p) {
+    setup.initial.x.row(setup.scene.pins[p]) = start.pins.row(static_cast<Eigen::Index>(p));
+    setup.initial.v.row(setup.scene.pins[p]).setZero();
+  }
+  setup.config = to_yaml(config);
+  return setup;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,203 @@
+#include "pipeline/setup_cloth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "pipeline/config.hpp"
+#include "pipeline/generate.hpp"
+#include "pipeline/materials.hpp"
+#include "pipeline/setup_motion.hpp"
+#include "pipeline/setup_paths.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double most_vertices = 2e7;
+
+SheetOptions sheet_options(const Config& shape) {
+  const std::string& word = shape["triangulation"].text();
+  const Triangulation triangulation = word == "unstructured"  ? Triangulation::unstructured
+                                      : word == "alternating" ? Triangulation::alternating
+                                                              : Triangulation::one_diagonal;
+  return {triangulation, static_cast<std::uint64_t>(shape["seed"].number())};
+}
+
+void check_count(const Config& shape, double vertices) {
+  if (vertices > most_vertices)
+    shape.fail(fmt::format("would have {:.3g} vertices", vertices), "choose a lower resolution or a longer edge");
+}
+
+// Vertices along both sides, from `resolution` or the edge length.
+std::array<int, 2> counts(const Config& shape, double width, double height, int least_first) {
+  const Config& resolution = shape["resolution"];
+  std::array<double, 2> n{};
+  if (resolution.given) {
+    n = {resolution.numbers[0], resolution.numbers.back()};
+  } else {
+    const double edge = shape["edge"].number();
+    n = {std::max<double>(least_first, std::ceil(width / edge - 1e-9) + (least_first == 2)),
+         std::max(2.0, std::ceil(height / edge - 1e-9) + 1)};
+  }
+  if (n[0] < least_first) resolution.fail(fmt::format("is {}", n[0]), fmt::format("allowed: at least {}", least_first));
+  check_count(shape, n[0] * n[1]);
+  return {static_cast<int>(n[0]), static_cast<int>(n[1])};
+}
+
+Mesh read_sheet(const Config& section, const std::filesystem::path& folder) {
+  if (const Config& shape = section["rectangle"]; shape.given) {
+    const Vec2 size(shape["size"].numbers[0], shape["size"].numbers[1]);
+    const auto [columns, rows] = counts(shape, size.x(), size.y(), 2);
+    return make_rectangle(size, columns, rows, sheet_options(shape));
+  }
+  if (const Config& shape = section["disc"]; shape.given) {
+    const double radius = shape["radius"].number();
+    const double rings = shape["resolution"].given ? shape["resolution"].number()
+                                                   : std::max(1.0, std::ceil(radius / shape["edge"].number() - 1e-9));
+    check_count(shape, 3 * rings * rings);
+    return make_disc(radius, static_cast<int>(rings), sheet_options(shape));
+  }
+  if (const Config& shape = section["tube"]; shape.given) {
+    const double radius = shape["radius"].number(), height = shape["height"].number();
+    const auto [around, rows] = counts(shape, 2 * std::numbers::pi * radius, height, 6);
+    return make_tube(radius, height, around, rows, sheet_options(shape));
+  }
+  Mesh mesh = read_mesh(existing_path(section["mesh"]["file"], folder));
+  mesh.x *= read_unit(section["mesh"]["unit"]);
+  return mesh;
+}
+
+// The flat pattern in the texture coordinates. Mirrored triangles are mirrored back, which keeps warp and weft.
+std::vector<RestTriangle> pattern(const Config& at, const Mesh& mesh, double unit) {
+  const bool whole = mesh.uv_triangles.rows() == mesh.triangles.rows() && mesh.uv_triangles.size() > 0;
+  if (!whole || mesh.uv_triangles.minCoeff() < 0)
+    at.fail("asks for texture coordinates, which " + std::string(whole ? "some faces" : "the cloth") + " lack",
+            "give `vt` for every corner of a face, or rest: initial");
+  std::vector<RestTriangle> rest(static_cast<std::size_t>(mesh.triangles.rows()));
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    RestTriangle& triangle = rest[static_cast<std::size_t>(t)];
+    for (int k = 0; k < 3; ++k) triangle.col(k) = unit * mesh.uv.row(mesh.uv_triangles(t, k)).transpose();
+    if (area(triangle) < 0) triangle.row(0) *= -1;
+  }
+  return rest;
+}
+
+// Weft of a shape without texture coordinates: up, or away from the viewer where the shape lies flat.
+Vec3 weft_axis(const Points& x) {
+  const Vec3 extent = (x.colwise().maxCoeff() - x.colwise().minCoeff()).transpose();
+  return extent.y() > 1e-3 * extent.maxCoeff() ? Vec3(0, 1, 0) : Vec3(0, 0, -1);
+}
+
+void read_rest(const Config& section, const Mesh& made, bool generated, double scale,
+               const std::filesystem::path& folder, ClothPart& part) {
+  const Config& from = section["from"];
+  part.rest_is_flat = section["flat"].flag();
+  part.rest = scale * made.x;
+  if (from.text() == "uv") {
+    part.rest_triangle = pattern(from, made, section["uv_unit"].number());
+    return;
+  }
+  if (from.text() == "mesh") {
+    if (!section["file"].given) from.fail("needs a `file`", "name the mesh of the rest shape");
+    const Mesh rest = read_mesh(existing_path(section["file"], folder));
+    if (rest.x.rows() != made.x.rows() || rest.triangles != made.triangles)
+      section["file"].fail("has other vertices or faces than the cloth",
+                           "the rest shape needs the same numbering as the cloth");
+    part.rest = scale * read_unit(section["unit"]) * rest.x;
+  } else if (section["file"].given) {
+    section["file"].fail("is not used, since `from` is " + from.text(), "write from: mesh, or leave the file out");
+  }
+  part.rest_triangle = from.text() == "initial" && generated && made.uv.rows() > 0
+                           ? pattern(from, made, scale)
+                           : flattened(part.rest, made.triangles, weft_axis(part.rest));
+}
+
+std::vector<int> in_box(const Config& box, const Points& x) {
+  const Vec3 low = box["min"].vector(), high = box["max"].vector();
+  if ((low.array() > high.array()).any()) box.fail("has a `min` above its `max`", "swap them");
+  std::vector<int> found;
+  for (int v = 0; v < x.rows(); ++v)
+    if ((row(x, v).array() >= low.array()).all() && (row(x, v).array() <= high.array()).all()) found.push_back(v);
+  if (found.empty()) {
+    const Vec3 least = x.colwise().minCoeff(), most = x.colwise().maxCoeff();
+    box.fail("holds no vertex of the cloth",
+             fmt::format("the cloth spans [{:.4g}, {:.4g}, {:.4g}] to [{:.4g}, {:.4g}, {:.4g}] m", least.x(), least.y(),
+                         least.z(), most.x(), most.y(), most.z()));
+  }
+  return found;
+}
+
+std::vector<int> in_groups(const Config& group, const Mesh& mesh) {
+  std::vector<std::string> known;
+  for (const auto& [name, vertices] : mesh.groups) known.push_back(name);
+  std::vector<int> found;
+  for (const std::string& word : group.words) {
+    const auto match = std::find(known.begin(), known.end(), word);
+    if (match == known.end())
+      group.fail("names the unknown group `" + word + "`",
+                 known.empty() ? "the cloth has no groups" : "groups: " + joined(known) + suggestion(word, known));
+    const std::vector<int>& vertices = mesh.groups[static_cast<std::size_t>(match - known.begin())].second;
+    found.insert(found.end(), vertices.begin(), vertices.end());
+  }
+  return found;
+}
+
+std::vector<int> listed(const Config& list, Eigen::Index count) {
+  std::vector<int> found;
+  for (const double v : list.numbers) {
+    if (v >= static_cast<double>(count))
+      list.fail(fmt::format("names vertex {}, which does not exist", v), fmt::format("allowed: 0 to {}", count - 1));
+    found.push_back(static_cast<int>(v));
+  }
+  return found;
+}
+
+PinPart read_pin(const Config& section, const Mesh& mesh) {
+  PinPart pin;
+  pin.vertices = section["vertices"].given ? listed(section["vertices"], mesh.x.rows())
+                 : section["box"].given    ? in_box(section["box"], mesh.x)
+                                           : in_groups(section["group"], mesh);
+  std::sort(pin.vertices.begin(), pin.vertices.end());
+  pin.vertices.erase(std::unique(pin.vertices.begin(), pin.vertices.end()), pin.vertices.end());
+  pin.motion = read_motion(section["motion"], mesh.x(pin.vertices, Eigen::all));
+  return pin;
+}
+
+}  // namespace
+
+std::vector<RestTriangle> flattened(const Points& x, const Triangles& triangles, const Vec3& weft) {
+  std::vector<RestTriangle> rest(static_cast<std::size_t>(triangles.rows()));
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    const Vec3 a = row(x, triangles(t, 0)), b = row(x, triangles(t, 1)), c = row(x, triangles(t, 2));
+    RestTriangle& triangle = rest[static_cast<std::size_t>(t)];
+    triangle = flatten(a, b, c);
+    const Vec3 normal = (b - a).cross(c - a).normalized();
+    const Vec3 v_axis = weft - weft.dot(normal) * normal;
+    // A triangle square to the weft direction keeps u along its first edge.
+    if (!(v_axis.norm() > 1e-6) || (b - a).norm() == 0) continue;
+    const Vec3 first = (b - a).normalized(), v = v_axis.normalized();
+    const double cosine = v.dot(normal.cross(first)), sine = v.dot(first);
+    // Turns the triangle in its plane until v is the second axis; `first` was the u axis.
+    triangle = (Eigen::Matrix2d() << cosine, -sine, sine, cosine).finished() * triangle;
+  }
+  return rest;
+}
+
+ClothPart read_cloth(Config& section, const std::string& default_name, const std::filesystem::path& folder,
+                     std::vector<std::string>& warnings) {
+  ClothPart part;
+  part.name = section["name"].given ? section["name"].text() : default_name;
+  part.material = read_material(section["material"], folder);
+  part.mesh = read_sheet(section, folder);
+  warnings.insert(warnings.end(), part.mesh.warnings.begin(), part.mesh.warnings.end());
+  read_rest(section["rest"], part.mesh, !section["mesh"].given, section["scale"].number(), folder, part);
+  part.mesh.x = placed(section, part.mesh.x);
+  part.velocity = section["velocity"].vector();
+  for (const Config& pin : section["pins"].items) part.pins.push_back(read_pin(pin, part.mesh));
+  return part;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "pipeline/mesh_io.hpp"
+#include "pipeline/motion.hpp"
+#include "pipeline/setup.hpp"
+
+namespace selvedge {
+
+struct Config;
+
+struct PinPart {
+  std::vector<int> vertices;  // of the cloth, ascending
+  Motion motion;
+};
+
+// One cloth of a scene file, numbered by itself.
+struct ClothPart {
+  std::string name;
+  Material material;
+  Mesh mesh;  // x: as placed
+  Points rest;
+  std::vector<RestTriangle> rest_triangle;
+  bool rest_is_flat = true;
+  Vec3 velocity = Vec3::Zero();
+  std::vector<PinPart> pins;
+};
+
+// `folder` is the scene file's; warnings are added. The material's values are written back into the section.
+ClothPart read_cloth(Config& section, const std::string& default_name, const std::filesystem::path& folder,
+                     std::vector<std::string>& warnings);
+
+// The flat metric of every triangle, v along the part of `weft` in the triangle's plane.
+std::vector<RestTriangle> flattened(const Points& x, const Triangles&, const Vec3& weft);
+
+}  // namespace selvedge

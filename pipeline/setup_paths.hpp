@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+
+#include "pipeline/config.hpp"
+
+namespace selvedge {
+
+// The folder `configs` of the program: share/selvedge/configs beside an installed program, else the source's.
+std::filesystem::path config_folder();
+
+// `text` with ${NAME} replaced by the environment's value (SELVEDGE_DATA has the default ../shared/data beside the
+// source), relative to `folder`. Throws Error at `at` for an unknown variable.
+std::filesystem::path expanded_path(const Config& at, const std::string& text, const std::filesystem::path& folder);
+
+// The path that a value names; throws Error at the value where no such file exists.
+std::filesystem::path existing_path(const Config& value, const std::filesystem::path& folder);
+std::filesystem::path existing_path(const Config& at, const std::string& text, const std::filesystem::path& folder);
+
+}  // namespace selvedge
