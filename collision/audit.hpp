@@ -8,13 +8,13 @@
 
 namespace selvedge {
 
-// Independent proof that a state is clean. Shares no code with proximity, CCD or response: its own broad phase (sort
-// and sweep over a uniform grid), exact triangle tests, exact ray parity for inside tests.
+// Independent proof that a state is clean. Shares no code with proximity, CCD or response: its own broad phase
+// (bisection of space), exact triangle tests, exact ray parity for inside tests.
 struct Audit {
   std::vector<std::pair<int, int>> self_pairs;      // intersecting cloth triangles that share no vertex
   std::vector<std::pair<int, int>> vertex_pairs;    // cloth triangles that share one vertex and cross along a segment
   std::vector<std::pair<int, int>> obstacle_pairs;  // (cloth triangle, obstacle triangle), obstacles numbered on end
-  int inside_vertices = 0;                          // cloth vertices inside a closed obstacle
+  int inside_vertices = 0;                          // cloth vertices strictly inside a closed obstacle
   int nonfinite = 0;                                // vertices with a NaN or infinite coordinate (left out of the rest)
   int intersecting_pairs() const { return static_cast<int>(self_pairs.size() + obstacle_pairs.size()); }
 };
@@ -24,6 +24,7 @@ struct AuditBody {
   const Points* points = nullptr;
 };
 
+// Pairs come sorted. Isolated vertices are not tested for inside; neither is an obstacle that is open or not finite.
 // self = false leaves the cloth-cloth test out.
 Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, bool self = true);
 

@@ -15,11 +15,14 @@ struct Split {
   int exponent;
 };
 
+// value must not be 0.
 Split split(double value) {
-  int exponent = 0;
-  const auto mantissa = static_cast<std::uint64_t>(std::ldexp(std::frexp(std::abs(value), &exponent), 53));
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  const int biased = static_cast<int>(bits >> 52 & 0x7ff);
+  const std::uint64_t fraction = bits & 0xfffffffffffff;
+  const std::uint64_t mantissa = biased == 0 ? fraction : fraction | std::uint64_t{1} << 52;
   const int zeros = std::countr_zero(mantissa);
-  return {mantissa >> zeros, exponent - 53 + zeros};
+  return {mantissa >> zeros, std::max(biased, 1) - 1075 + zeros};
 }
 
 }  // namespace

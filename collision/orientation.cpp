@@ -66,9 +66,12 @@ int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 }
 
 int orient2d(const Vec2& a, const Vec2& b, const Vec2& c) {
-  const double left = (b.x() - a.x()) * (c.y() - a.y()), right = (c.x() - a.x()) * (b.y() - a.y());
+  const Vec2 ab = b - a, ac = c - a;
+  const double left = ab.x() * ac.y(), right = ac.x() * ab.y();
   const double det = left - right;
   if (std::abs(det) > error_2d * (std::abs(left) + std::abs(right)) + underflow) return sign(det);
+  // A difference is zero only if its terms are equal: the common case of points on a line of the axes.
+  if ((ab.x() == 0 || ac.y() == 0) && (ac.x() == 0 || ab.y() == 0)) return 0;
   return exact_orient2d(a, b, c);
 }
 

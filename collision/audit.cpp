@@ -1,0 +1,206 @@
+#include "collision/audit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "collision/bisection.hpp"
+#include "collision/distance.hpp"
+#include "collision/inside.hpp"
+#include "collision/intersect.hpp"
+
+namespace selvedge {
+namespace {
+
+using Pairs = std::vector<std::pair<int, int>>;
+
+// Triangles with their corners beside them, for what is left after the vertices with undefined coordinates are out.
+struct Soup {
+  std::vector<std::array<Vec3, 3>> corners;
+  std::vector<std::array<int, 3>> vertices;
+  std::vector<int> number;  // of the triangle in the mesh; of obstacles, numbered on end
+  std::vector<ExactBox> boxes;
+};
+
+void add_triangles(const Surface& surface, const Points& x, int first_number, double margin, Soup& soup) {
+  for (int t = 0; t < surface.triangles.rows(); ++t) {
+    const std::array<int, 3> v{surface.triangles(t, 0), surface.triangles(t, 1), surface.triangles(t, 2)};
+    const std::array<Vec3, 3> p{row(x, v[0]), row(x, v[1]), row(x, v[2])};
+    if (!(p[0].allFinite() && p[1].allFinite() && p[2].allFinite())) continue;
+    ExactBox box;
+    for (int k = 0; k < 3; ++k) {
+      const auto [lo, hi] = std::minmax({p[0][k], p[1][k], p[2][k]});
+      box.lo[k] = lo - margin;
+      box.hi[k] = hi + margin;
+    }
+    soup.corners.push_back(p);
+    soup.vertices.push_back(v);
+    soup.number.push_back(first_number + t);
+    soup.boxes.push_back(box);
+  }
+}
+
+Soup soup_of(const Surface& surface, const Points& x, double margin) {
+  Soup soup;
+  add_triangles(surface, x, 0, margin, soup);
+  return soup;
+}
+
+Soup soup_of(std::span<const AuditBody> bodies, double margin) {
+  Soup soup;
+  int first_number = 0;
+  for (const AuditBody& body : bodies) {
+    add_triangles(*body.surface, *body.points, first_number, margin, soup);
+    first_number += static_cast<int>(body.surface->triangles.rows());
+  }
+  return soup;
+}
+
+int shared_vertices(const std::array<int, 3>& a, const std::array<int, 3>& b) {
+  int shared = 0;
+  for (int v : a) shared += v == b[0] || v == b[1] || v == b[2];
+  return shared;
+}
+
+bool intersect(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  return triangles_intersect(a[0], a[1], a[2], b[0], b[1], b[2]);
+}
+
+// a and b share one vertex.
+bool cross_at_vertex(const Soup& cloth, int a, int b) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (cloth.vertices[a][i] == cloth.vertices[b][j]) {
+        const auto &p = cloth.corners[a], &q = cloth.corners[b];
+        return triangles_cross_at_vertex(p[i], p[(i + 1) % 3], p[(i + 2) % 3], q[(j + 1) % 3], q[(j + 2) % 3]);
+      }
+  return false;
+}
+
+// Calls self(a, b) and other(a, c) for all pairs of boxes that overlap in the region.
+template <typename Self, typename Other>
+void visit_pairs(const Region& region, const Soup& cloth, const Soup& bodies, bool with_self, Self&& self,
+                 Other&& other) {
+  for (std::size_t i = 0; i < region.first.size(); ++i) {
+    const int a = region.first[i];
+    const ExactBox& box = cloth.boxes[a];
+    if (with_self)
+      for (std::size_t j = i + 1; j < region.first.size(); ++j)
+        if (meet_in(region, box, cloth.boxes[region.first[j]])) self(a, region.first[j]);
+    for (int c : region.second)
+      if (meet_in(region, box, bodies.boxes[c])) other(a, c);
+  }
+}
+
+void audit_region(const Region& region, const Soup& cloth, const Soup& bodies, bool with_self, Audit& found) {
+  const auto numbers = [&cloth](int a, int b) {
+    return std::pair(std::min(cloth.number[a], cloth.number[b]), std::max(cloth.number[a], cloth.number[b]));
+  };
+  visit_pairs(
+      region, cloth, bodies, with_self,
+      [&](int a, int b) {
+        const int shared = shared_vertices(cloth.vertices[a], cloth.vertices[b]);
+        if (shared == 0 && intersect(cloth.corners[a], cloth.corners[b])) found.self_pairs.push_back(numbers(a, b));
+        if (shared == 1 && cross_at_vertex(cloth, a, b)) found.vertex_pairs.push_back(numbers(a, b));
+      },
+      [&](int a, int c) {
+        if (intersect(cloth.corners[a], bodies.corners[c]))
+          found.obstacle_pairs.emplace_back(cloth.number[a], bodies.number[c]);
+      });
+}
+
+void append(Pairs& all, const Pairs& part) { all.insert(all.end(), part.begin(), part.end()); }
+
+int count_nonfinite(const Points& x) {
+  int count = 0;
+  for (int v = 0; v < x.rows(); ++v) count += !x.row(v).allFinite();
+  return count;
+}
+
+int count_inside(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles) {
+  std::vector<char> is_inside(cloth.vertex_count, 0);
+  for (const AuditBody& body : obstacles) {
+    if (!is_closed(*body.surface) || count_nonfinite(*body.points) > 0) continue;
+    const std::vector<char> here = inside(*body.surface, *body.points, x);
+    for (int v = 0; v < cloth.vertex_count; ++v) is_inside[v] |= here[v] && cloth.vertex_owner[v] >= 0;
+  }
+  return static_cast<int>(std::count(is_inside.begin(), is_inside.end(), 1));
+}
+
+// Squared distance of triangles that do not intersect: between a vertex and a face or between two edges.
+double squared_gap(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    least = std::min(least, point_triangle(a[i], b[0], b[1], b[2]).squared_distance);
+    least = std::min(least, point_triangle(b[i], a[0], a[1], a[2]).squared_distance);
+    for (int j = 0; j < 3; ++j)
+      least = std::min(least, edge_edge(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]).squared_distance);
+  }
+  return least;
+}
+
+double squared_box_gap(const ExactBox& a, const ExactBox& b, double margin) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double apart = std::max(a.lo[k] - b.hi[k], b.lo[k] - a.hi[k]) + 2 * margin;
+    if (apart > 0) sum += apart * apart;
+  }
+  return sum;
+}
+
+// Least squared gap of the pairs in a region, or `bound` if none is nearer.
+double gap_in_region(const Region& region, const Soup& cloth, const Soup& bodies, double margin, double bound) {
+  double least = bound;
+  const auto take = [&](const Soup& second, int a, int b) {
+    // A little slack for the rounding of the margins: passing over a pair must never change the result.
+    if (squared_box_gap(cloth.boxes[a], second.boxes[b], margin) > least * (1 + 1e-9) + 1e-300) return;
+    const auto &p = cloth.corners[a], &q = second.corners[b];
+    least = std::min(least, intersect(p, q) ? 0.0 : squared_gap(p, q));
+  };
+  visit_pairs(
+      region, cloth, bodies, true,
+      [&](int a, int b) {
+        if (shared_vertices(cloth.vertices[a], cloth.vertices[b]) == 0) take(cloth, a, b);
+      },
+      [&](int a, int c) { take(bodies, a, c); });
+  return least;
+}
+
+}  // namespace
+
+Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, bool self) {
+  const Soup mine = soup_of(cloth, x, 0), others = soup_of(obstacles, 0);
+  const std::vector<Region> regions = bisect(mine.boxes, others.boxes, self);
+  const int count = static_cast<int>(regions.size());
+  std::vector<Audit> found(regions.size());
+#pragma omp parallel for schedule(dynamic, 4)
+  for (int r = 0; r < count; ++r) audit_region(regions[r], mine, others, self, found[r]);
+
+  Audit result;
+  for (const Audit& part : found) {
+    append(result.self_pairs, part.self_pairs);
+    append(result.vertex_pairs, part.vertex_pairs);
+    append(result.obstacle_pairs, part.obstacle_pairs);
+  }
+  for (Pairs* pairs : {&result.self_pairs, &result.vertex_pairs, &result.obstacle_pairs})
+    std::sort(pairs->begin(), pairs->end());
+  result.inside_vertices = count_inside(cloth, x, obstacles);
+  result.nonfinite = count_nonfinite(x);
+  for (const AuditBody& body : obstacles) result.nonfinite += count_nonfinite(*body.points);
+  return result;
+}
+
+double min_gap(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, double horizon) {
+  // A box grows by half the horizon on each side, and a little more for rounding.
+  const double margin = 0.5 * horizon * (1 + 1e-9);
+  const Soup mine = soup_of(cloth, x, margin), others = soup_of(obstacles, margin);
+  const std::vector<Region> regions = bisect(mine.boxes, others.boxes, true);
+  const int count = static_cast<int>(regions.size());
+  std::vector<double> least(regions.size());
+#pragma omp parallel for schedule(dynamic, 4)
+  for (int r = 0; r < count; ++r) least[r] = gap_in_region(regions[r], mine, others, margin, horizon * horizon);
+  const double nearest = least.empty() ? horizon * horizon : *std::min_element(least.begin(), least.end());
+  return nearest < horizon * horizon ? std::sqrt(nearest) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace selvedge

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/surface.hpp"
+
+namespace selvedge {
+
+// Which of the `points` lie strictly inside the closed surface: exact parity of the triangles that a ray meets, with
+// the ray moved aside by an infinitesimal amount so that shared edges and vertices count once. A point on the surface
+// is not inside, and neither is a point with an undefined coordinate. The surface must be closed and finite.
+std::vector<char> inside(const Surface& surface, const Points& x, const Points& points);
+
+}  // namespace selvedge
