@@ -50,6 +50,7 @@ struct Recorder {
 
   bool operator()(const FrameEvent& event) {
     add(record_frame(setup.scene, event));
+    if (request.observe) request.observe(event);
     if (request.progress) request.progress->frame(event.state.frame);
     const bool stop = request.stop && request.stop();
     if (stop || seconds_since(last_checkpoint) > request.checkpoint_seconds) checkpoint(event.state);

@@ -14,7 +14,8 @@ struct RunRequest {
   bool resume = false;             // go on from the checkpoint that an interrupted run left in `out`
   double checkpoint_seconds = 30;  // between checkpoints
   Progress* progress = nullptr;
-  std::function<bool()> stop;  // asked after every frame; true ends the run cleanly
+  std::function<bool()> stop;      // asked after every frame; true ends the run cleanly
+  std::function<void(const FrameEvent&)> observe;  // shown every frame, outside the measured time
 };
 
 // Simulates a scene into a folder: run.h5 (trajectory), run.xdmf, summary.json, config.yaml, and checkpoint.h5 until
