@@ -7,8 +7,8 @@
 namespace selvedge {
 
 struct AlgebraicError {
-  double error = 0;         // RMS distance of the step's result to the minimiser over the RMS motion in the step
-  double motion = 0;        // RMS motion in the step [m]
+  double error = 0;   // RMS distance of the step's result to the minimiser over the RMS motion in the step
+  double motion = 0;  // RMS motion in the step [m]
   bool reference_converged = false;
 };
 

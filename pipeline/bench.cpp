@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "pipeline/make_stepper.hpp"
-#include "pipeline/run_scene.hpp"
 #include "pipeline/peak_memory.hpp"
+#include "pipeline/run_scene.hpp"
 #include "pipeline/write_file.hpp"
 
 namespace selvedge {

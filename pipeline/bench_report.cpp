@@ -70,7 +70,7 @@ std::string bench_csv(const std::vector<BenchMember>& members) {
   text += "\n";
   for (const BenchMember& member : members) {
     text += fmt::format("{},{}", member.scene, member.size);
-    for (const Column& column : columns()) text += "," + number(column.value(member), column.digits + 3);
+    for (const Column& column : columns()) text += fmt::format(",{}", number(column.value(member), column.digits + 3));
     text += "\n";
   }
   return text;
@@ -82,8 +82,7 @@ std::string bench_table(const std::vector<BenchMember>& members) {
   text += "\n";
   for (const BenchMember& member : members) {
     text += fmt::format("{:<6} {:>4}", member.scene, member.size);
-    for (const Column& column : columns())
-      text += fmt::format(" {:>10}", number(column.value(member), column.digits));
+    for (const Column& column : columns()) text += fmt::format(" {:>10}", number(column.value(member), column.digits));
     text += "\n";
   }
   return text;

@@ -27,7 +27,8 @@ void add_command(CLI::App& app, Chosen& chosen, const char* name, const char* ab
 
 void scene_options(CLI::App& command, SceneArguments& arguments) {
   command.add_option("scene", arguments.scene, "scene file (YAML)")->required();
-  command.add_option("--set", arguments.overrides, "key=value instead of the scene's, dotted keys")->allow_extra_args(false);
+  command.add_option("--set", arguments.overrides, "key=value instead of the scene's, dotted keys")
+      ->allow_extra_args(false);
   command.add_option("--stepper", arguments.stepper, "conventional");
 }
 
