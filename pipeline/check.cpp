@@ -31,7 +31,8 @@ void add_body_files(const CheckRequest& request, Bodies& bodies, CheckReport& re
   for (const std::filesystem::path& file : request.bodies) {
     Mesh mesh = read_mesh(file);
     for (const std::string& warning : mesh.warnings) report.warnings.push_back(file.string() + ": " + warning);
-    bodies.add(static_cast<int>(mesh.x.rows()), mesh.triangles, std::move(mesh.x));
+    const int vertex_count = static_cast<int>(mesh.x.rows());
+    bodies.add(vertex_count, mesh.triangles, std::move(mesh.x));
   }
 }
 
