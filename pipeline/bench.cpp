@@ -1,0 +1,77 @@
+#include "pipeline/bench.hpp"
+
+#include <fmt/format.h>
+
+#include "pipeline/make_stepper.hpp"
+#include "pipeline/peak_memory.hpp"
+#include "pipeline/run_scene.hpp"
+#include "pipeline/write_file.hpp"
+
+namespace selvedge {
+namespace {
+
+// Keeps the states before a few steps that met no contact, early and late in the run.
+struct StateSampler {
+  int every = 1;
+  State before;
+  std::vector<std::pair<State, double>> samples;  // state and the substep that the stepper took from it [s]
+  double dt = 0;
+
+  void operator()(const FrameEvent& event) {
+    const CollisionReport& collision = event.report.collision;
+    const bool free = collision.contacts + collision.impulses + collision.zones == 0;
+    if (free && event.state.frame % every == 0 && event.report.substeps > 0)
+      samples.emplace_back(before, dt / event.report.substeps);
+    before = event.state;
+  }
+};
+
+std::optional<AlgebraicError> worst_error(const Setup& setup, const StateSampler& sampler) {
+  std::optional<AlgebraicError> worst;
+  for (const auto& [state, dt] : sampler.samples)
+    if (const auto found = algebraic_error(setup, state, dt); found && (!worst || found->error > worst->error))
+      worst = found;
+  return worst;
+}
+
+BenchMember run_member(const BenchRequest& request, const std::string& scene, int size) {
+  std::vector<std::string> overrides{fmt::format("cloths.0.{}.resolution={}", scene == "tube" ? "tube" : "rectangle", size)};
+  if (request.frames) overrides.push_back(fmt::format("run.frames={}", *request.frames));
+  const Setup setup = read_setup(request.configs / (scene + ".yaml"), overrides);
+  const std::unique_ptr<Stepper> stepper = make_stepper(setup);
+
+  StateSampler sampler;
+  sampler.before = setup.initial;
+  sampler.dt = 1 / setup.run.fps;
+  sampler.every = std::max(1, setup.run.frames / 4);
+  RunRequest run;
+  run.out = request.out / fmt::format("{}_{}", scene, size);
+  run.checkpoint_seconds = 1e9;
+  if (scene == "hang") run.observe = std::ref(sampler);
+  reset_peak_memory();
+  BenchMember member{scene, size, run_scene(setup, *stepper, run), {}};
+  member.algebraic = worst_error(setup, sampler);
+  return member;
+}
+
+}  // namespace
+
+std::vector<BenchMember> bench(const BenchRequest& request) {
+  make_folder(request.out);
+  std::vector<BenchMember> members;
+  for (const std::string& scene : request.scenes)
+    for (const int size : request.sizes) {
+      members.push_back(run_member(request, scene, size));
+      const RunSummary& summary = members.back().summary;
+      if (request.log)
+        *request.log << fmt::format("{} {}: {:.1f} ms a frame, {} pairs in the worst frame\n", scene, size,
+                                    mean_milliseconds(summary), summary.worst_pairs)
+                     << std::flush;
+      write_file(request.out / "bench.json", bench_json(members));
+      write_file(request.out / "bench.csv", bench_csv(members));
+      write_file(request.out / "bench.txt", bench_table(members));
+    }
+  return members;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,64 @@
+#include "pipeline/checkpoint.hpp"
+
+#include "collision/error.hpp"
+#include "pipeline/hdf5_handles.hpp"
+
+namespace selvedge {
+namespace {
+
+void write_points(const h5::File& file, const std::string& name, const Points& points) {
+  file.write_constant(name, H5T_NATIVE_DOUBLE, {static_cast<hsize_t>(points.rows()), 3}, points.data());
+}
+
+Points read_points(const h5::File& file, const std::string& name) {
+  const std::vector<hsize_t> shape = file.shape(file.open_dataset(name).id());
+  if (shape.size() != 2 || shape[1] != 3)
+    throw Error(name + " has an unexpected shape", file.path().string(), "run without --resume");
+  Points points(static_cast<Eigen::Index>(shape[0]), 3);
+  if (points.size() > 0) file.read_all(name, H5T_NATIVE_DOUBLE, points.data());
+  return points;
+}
+
+}  // namespace
+
+void write_checkpoint(const std::filesystem::path& path, const State& state, const std::string& config) {
+  std::filesystem::path beside = path;
+  beside += ".part";
+  h5::File file = h5::File::create(beside);
+  try {
+    file.write_text("config", config);
+    file.write_constant("time", H5T_NATIVE_DOUBLE, {1}, &state.time);
+    file.write_constant("frame", H5T_NATIVE_INT, {1}, &state.frame);
+    write_points(file, "x", state.x);
+    write_points(file, "v", state.v);
+    for (std::size_t k = 0; k < state.obstacles.size(); ++k)
+      write_points(file, "obstacle_" + std::to_string(k), state.obstacles[k]);
+    file.close();
+  } catch (const Error&) {
+    file.abandon();
+    std::error_code ignored;
+    std::filesystem::remove(beside, ignored);
+    throw;
+  }
+  std::filesystem::rename(beside, path);
+}
+
+State read_checkpoint(const std::filesystem::path& path, const std::string& config) {
+  if (!std::filesystem::exists(path))
+    throw Error("there is nothing to resume: no checkpoint", path.string(),
+                "run without --resume; a run that ended has none, one that was stopped early may not yet have one");
+  const h5::File file = h5::File::open(path);
+  if (file.read_text("config") != config)
+    throw Error("the checkpoint was made under another configuration", path.string(),
+                "resume with the same scene file and --set, or run without --resume");
+  State state;
+  file.read_all("time", H5T_NATIVE_DOUBLE, &state.time);
+  file.read_all("frame", H5T_NATIVE_INT, &state.frame);
+  state.x = read_points(file, "x");
+  state.v = read_points(file, "v");
+  for (int k = 0; file.has("obstacle_" + std::to_string(k)); ++k)
+    state.obstacles.push_back(read_points(file, "obstacle_" + std::to_string(k)));
+  return state;
+}
+
+}  // namespace selvedge

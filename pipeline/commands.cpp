@@ -1,0 +1,105 @@
+#include "pipeline/commands.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "collision/error.hpp"
+#include "pipeline/info.hpp"
+#include "pipeline/interrupt.hpp"
+#include "pipeline/make_stepper.hpp"
+#include "pipeline/plan.hpp"
+#include "pipeline/run_scene.hpp"
+#include "pipeline/view.hpp"
+
+namespace selvedge {
+namespace {
+
+std::ostream& people(bool json) { return json ? std::cerr : std::cout; }
+
+Setup read_scene(const SceneArguments& arguments) {
+  std::vector<std::string> overrides = arguments.overrides;
+  if (arguments.stepper) overrides.push_back("run.stepper=" + *arguments.stepper);
+  return read_setup(arguments.scene, overrides);
+}
+
+// The page is an extra: a run is not lost because it cannot be made.
+std::string write_page(const std::filesystem::path& out) {
+  try {
+    write_view({out / "run.h5"}, out / "view.html");
+    return (out / "view.html").string();
+  } catch (const Error& error) {
+    return std::string("not made: ") + error.what();
+  }
+}
+
+}  // namespace
+
+int simulate_command(const SimulateArguments& arguments, bool json) {
+  const Setup setup = read_scene(arguments.scene);
+  for (const std::string& warning : setup.warnings) std::cerr << "warning: " << warning << "\n";
+  const std::unique_ptr<Stepper> stepper = make_stepper(setup);
+  Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
+  const InterruptWatch watch;
+  RunRequest request;
+  request.out = arguments.out.value_or(std::filesystem::path("out") / arguments.scene.scene.stem());
+  request.resume = arguments.resume;
+  request.progress = &progress;
+  request.stop = InterruptWatch::interrupted;
+  const RunSummary summary = run_scene(setup, *stepper, request);
+  people(json) << summary_text(summary) << fmt::format("{:<20}{}\n", "trajectory", (request.out / "run.h5").string());
+  if (arguments.view) people(json) << fmt::format("{:<20}{}\n", "page to look at", write_page(request.out));
+  if (summary.end == RunEnd::interrupted) people(json) << "go on with --resume and the same arguments\n";
+  if (json) std::cout << summary_json(summary);
+  return is_clean(summary) ? 0 : 1;
+}
+
+int plan_command(const SceneArguments& arguments, bool json) {
+  const Setup setup = read_scene(arguments);
+  std::cout << (json ? plan_json(setup) : plan_text(setup));
+  return 0;
+}
+
+int check_command(const CheckRequest& request, bool json) {
+  const CheckReport report = check(request);
+  people(json) << check_text(report);
+  if (json) std::cout << check_json(report);
+  return is_clean(report) ? 0 : 1;
+}
+
+int export_command(const ExportRequest& request, bool json) {
+  const std::vector<std::filesystem::path> written = export_trajectory(request);
+  people(json) << fmt::format("{} files, the last is {}\n", written.size(),
+                              written.empty() ? "none" : written.back().string());
+  if (!json) return 0;
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const std::filesystem::path& file : written) list.push_back(file.string());
+  std::cout << nlohmann::ordered_json{{"files", list}}.dump(2) << "\n";
+  return 0;
+}
+
+int view_command(const ViewArguments& arguments, bool json) {
+  write_view(arguments.runs, arguments.out);
+  people(json) << "page to look at: " << arguments.out.string() << "\n";
+  if (json) std::cout << nlohmann::ordered_json{{"page", arguments.out.string()}}.dump(2) << "\n";
+  return 0;
+}
+
+int bench_command(const BenchRequest& request, bool json) {
+  BenchRequest logged = request;
+  logged.log = &std::cerr;
+  const std::vector<BenchMember> members = bench(logged);
+  people(json) << bench_table(members);
+  if (json) std::cout << bench_json(members);
+  return std::all_of(members.begin(), members.end(), [](const BenchMember& m) { return is_clean(m.summary); }) ? 0 : 1;
+}
+
+int info_command(bool json) {
+  std::cout << (json ? info_json() : info_text());
+  return 0;
+}
+
+}  // namespace selvedge

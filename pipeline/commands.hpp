@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/bench.hpp"
+#include "pipeline/check.hpp"
+#include "pipeline/export.hpp"
+
+namespace selvedge {
+
+// The commands of the program, one function each. They print; what they return is the exit status: 0 well, 1 the
+// result is not clean. Bad input throws Error, which main turns into 2. With `json` one object goes to standard output
+// and people's text to standard error.
+
+struct SceneArguments {
+  std::filesystem::path scene;
+  std::vector<std::string> overrides;  // key=value
+  std::optional<std::string> stepper;
+};
+
+struct SimulateArguments {
+  SceneArguments scene;
+  std::optional<std::filesystem::path> out;  // otherwise out/NAME-OF-SCENE
+  bool resume = false;
+  bool view = true;
+};
+
+struct ViewArguments {
+  std::vector<std::filesystem::path> runs;
+  std::filesystem::path out = "view.html";
+};
+
+int simulate_command(const SimulateArguments&, bool json);
+int plan_command(const SceneArguments&, bool json);
+int check_command(const CheckRequest&, bool json);
+int export_command(const ExportRequest&, bool json);
+int view_command(const ViewArguments&, bool json);
+int bench_command(const BenchRequest&, bool json);
+int info_command(bool json);
+
+}  // namespace selvedge

@@ -1,0 +1,105 @@
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <iostream>
+#include <memory>
+
+#include "collision/error.hpp"
+#include "pipeline/commands.hpp"
+#include "pipeline/version.hpp"
+
+using namespace selvedge;
+
+namespace {
+
+// What the command line asked for; empty until a command has been parsed.
+using Chosen = std::function<int()>;
+
+// Adds a command with its own copy of `Arguments`, which `options` binds and `run` gets with the --json flag.
+template <class Arguments, class Options, class Run>
+void add_command(CLI::App& app, Chosen& chosen, const char* name, const char* about, Options options, Run run) {
+  CLI::App* command = app.add_subcommand(name, about);
+  const auto arguments = std::make_shared<Arguments>();
+  const auto json = std::make_shared<bool>(false);
+  options(*command, *arguments);
+  command->add_flag("--json", *json, "one JSON object on standard output, people's text on standard error");
+  command->callback([&chosen, arguments, json, run] { chosen = [=] { return run(*arguments, *json); }; });
+}
+
+void scene_options(CLI::App& command, SceneArguments& arguments) {
+  command.add_option("scene", arguments.scene, "scene file (YAML)")->required();
+  command.add_option("--set", arguments.overrides, "key=value instead of the scene's, dotted keys")
+      ->allow_extra_args(false);
+  command.add_option("--stepper", arguments.stepper, "conventional");
+}
+
+void simulate_options(CLI::App& command, SimulateArguments& arguments) {
+  scene_options(command, arguments.scene);
+  command.add_option("--out", arguments.out, "folder for the results (out/NAME-OF-SCENE)");
+  command.add_flag("--resume", arguments.resume, "go on from the checkpoint of an interrupted run");
+  command.add_flag("!--no-view", arguments.view, "do not make the page");
+}
+
+void check_options(CLI::App& command, CheckRequest& request) {
+  command.add_option("file", request.file, "mesh (.obj, .ply) or trajectory (.h5)")->required();
+  command.add_option("--rest", request.rest, "mesh of the same faces at rest, for the stretches");
+  command.add_option("--body", request.bodies, "mesh that must not be touched; may be given again")
+      ->allow_extra_args(false);
+  command.add_option("--horizon", request.horizon, "largest gap looked for [m]")->check(CLI::PositiveNumber);
+}
+
+void export_options(CLI::App& command, ExportRequest& request) {
+  command.add_option("trajectory", request.trajectory, "run.h5")->required();
+  command.add_option("--format", request.format, "obj, ply, pc2 or xdmf");
+  command.add_option("--out", request.out, "folder")->default_val("export");
+  command.add_flag("--obstacles", request.obstacles, "also the obstacles");
+}
+
+void view_options(CLI::App& command, ViewArguments& arguments) {
+  command.add_option("runs", arguments.runs, "trajectories, shown side by side")->required();
+  command.add_option("--out", arguments.out, "HTML file");
+}
+
+void bench_options(CLI::App& command, BenchRequest& request) {
+  command.add_option("--sizes", request.sizes, "vertices along a side")->delimiter(',');
+  command.add_option("--scenes", request.scenes, "hang, drop, tube")->delimiter(',');
+  command.add_option("--frames", request.frames, "instead of the scenes' own");
+  command.add_option("--configs", request.configs, "folder of the scenes");
+  command.add_option("--out", request.out, "folder for the results");
+}
+
+void add_commands(CLI::App& app, Chosen& chosen) {
+  struct Nothing {};
+  add_command<SimulateArguments>(app, chosen, "simulate", "a scene in, an audited trajectory out", simulate_options,
+                                 simulate_command);
+  add_command<SceneArguments>(app, chosen, "plan", "what a scene needs, what is left out, and why", scene_options,
+                              plan_command);
+  add_command<CheckRequest>(app, chosen, "check", "audit a mesh or a trajectory", check_options, check_command);
+  add_command<ExportRequest>(app, chosen, "export", "a trajectory as meshes or point caches", export_options,
+                             export_command);
+  add_command<ViewArguments>(app, chosen, "view", "one page that plays trajectories in a browser", view_options,
+                             view_command);
+  add_command<BenchRequest>(app, chosen, "bench", "the benchmark family", bench_options, bench_command);
+  add_command<Nothing>(
+      app, chosen, "info", "versions, packages, threads", [](CLI::App&, Nothing&) {},
+      [](const Nothing&, bool json) { return info_command(json); });
+}
+
+}  // namespace
+
+// Exit status: 0 well, 1 the result is not clean, 2 bad input or a missing package.
+int main(int argc, char** argv) {
+  CLI::App app{"selvedge: cloth that does not unravel", "selvedge"};
+  app.set_version_flag("--version", std::string(program_version()));
+  app.require_subcommand(1);
+  Chosen chosen;
+  add_commands(app, chosen);
+  try {
+    app.parse(argc, argv);
+    return chosen();
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const std::exception& error) {
+    std::cerr << "selvedge: " << error.what() << "\n";
+    return 2;
+  }
+}

@@ -1,0 +1,42 @@
+#include "pipeline/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "physics/features.hpp"
+
+namespace selvedge {
+
+std::string plan_json(const Setup& setup) {
+  nlohmann::ordered_json lines = nlohmann::ordered_json::array();
+  for (const PlanLine& line : plan_lines(setup.scene))
+    lines.push_back({{"feature", line.feature}, {"in", line.in}, {"why", line.why}});
+  const nlohmann::ordered_json json = {{"scene", setup.file.string()},
+                                       {"stepper", setup.run.stepper},
+                                       {"frames", setup.run.frames},
+                                       {"fps", setup.run.fps},
+                                       {"vertices", setup.scene.surface.vertex_count},
+                                       {"triangles", setup.scene.surface.triangles.rows()},
+                                       {"self", setup.scene.contact.self ? "audited" : "not audited"},
+                                       {"plan", lines},
+                                       {"warnings", setup.warnings}};
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string plan_text(const Setup& setup) {
+  const std::vector<PlanLine> lines = plan_lines(setup.scene);
+  std::size_t width = 0;
+  for (const PlanLine& line : lines) width = std::max(width, line.feature.size());
+  std::string text =
+      fmt::format("{}: {} vertices, {} triangles, {} frames at {} a second, stepper {}\n", setup.file.string(),
+                  setup.scene.surface.vertex_count, setup.scene.surface.triangles.rows(), setup.run.frames,
+                  setup.run.fps, setup.run.stepper);
+  for (const PlanLine& line : lines)
+    text += fmt::format("  {:<3}  {:<{}}  {}\n", line.in ? "in" : "out", line.feature, width, line.why);
+  for (const std::string& warning : setup.warnings) text += "  warning: " + warning + "\n";
+  return text;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,58 @@
+#include "pipeline/record_frame.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace selvedge {
+namespace {
+
+void audit_frame(const Scene& scene, const Points& x, const std::vector<Points>& obstacles, Frame& frame) {
+  std::vector<AuditBody> bodies;
+  for (std::size_t k = 0; k < obstacles.size(); ++k) bodies.push_back({&scene.obstacles[k].surface, &obstacles[k]});
+  const Audit result = audit(scene.surface, x, bodies, scene.contact.self);
+  frame.self_pairs = static_cast<int>(result.self_pairs.size());
+  frame.vertex_pairs = static_cast<int>(result.vertex_pairs.size());
+  frame.obstacle_pairs = static_cast<int>(result.obstacle_pairs.size());
+  frame.inside_vertices = result.inside_vertices;
+  frame.nonfinite = result.nonfinite;
+  std::set<int> bad;
+  for (const auto* pairs : {&result.self_pairs, &result.vertex_pairs})
+    for (const auto& [a, b] : *pairs) bad.insert({a, b});
+  for (const auto& [triangle, other] : result.obstacle_pairs) bad.insert(triangle);
+  frame.bad_triangles.assign(bad.begin(), bad.end());
+}
+
+}  // namespace
+
+Frame record_frame(const Scene& scene, const FrameEvent& event) {
+  Frame frame;
+  frame.time = event.state.time;
+  frame.x = event.state.x.cast<float>();
+  const Points x = frame.x.cast<double>();
+  std::vector<Points> obstacles;
+  for (const Points& obstacle : event.state.obstacles) {
+    frame.obstacles.push_back(obstacle.cast<float>());
+    obstacles.push_back(frame.obstacles.back().cast<double>());
+  }
+  frame.report = event.report;
+  const Clock::time_point before_audit = Clock::now();
+  audit_frame(scene, x, obstacles, frame);
+  frame.report.seconds.audit += seconds_since(before_audit);
+  const auto stretches = principal_stretches(scene, x);
+  if (stretches.rows() > 0) {
+    frame.min_stretch = stretches.col(0).minCoeff();
+    frame.max_stretch = stretches.col(1).maxCoeff();
+  }
+  frame.energy = energies(scene, x, event.state.v, event.drive.acceleration);
+  frame.seconds = seconds_since(event.started);
+  return frame;
+}
+
+Frame record_initial(const Scene& scene, const State& state, const Drive& drive) {
+  StepReport report;
+  report.status = StepStatus::accepted;
+  report.by = "initial";
+  return record_frame(scene, {state, drive, report, Clock::now()});
+}
+
+}  // namespace selvedge

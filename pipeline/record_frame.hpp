@@ -1,0 +1,15 @@
+#pragma once
+
+#include "pipeline/simulate.hpp"
+#include "pipeline/trajectory_hdf5.hpp"
+
+namespace selvedge {
+
+// What a trajectory keeps of a frame. Positions are rounded to float first; the audit, the stretches and the energies
+// are those of the rounded positions, because these are what a reader gets.
+Frame record_frame(const Scene&, const FrameEvent&);
+
+// Frame 0: the state before any step.
+Frame record_initial(const Scene&, const State&, const Drive&);
+
+}  // namespace selvedge
