@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "pipeline/trajectory_row.hpp"
 #include "pipeline/version.hpp"
 
 namespace selvedge {
@@ -43,24 +44,6 @@ struct Track {
   }
 };
 
-const char* reason_name(Reason reason) {
-  switch (reason) {
-    case Reason::none:
-      return "";
-    case Reason::not_converged:
-      return "not converged";
-    case Reason::not_finite:
-      return "not finite";
-    case Reason::penetrating:
-      return "penetrating";
-    case Reason::energy_gain:
-      return "energy gain";
-    case Reason::overstretched:
-      return "overstretched";
-  }
-  return "";
-}
-
 // Everything that is plotted or written beside the picture; every frame, exact.
 struct Series {
   json numbers = json::object();
@@ -83,7 +66,7 @@ struct Series {
     add("contacts", f.report.collision.contacts);
     add("iterations", f.report.iterations);
     add("by", f.report.by);
-    add("reason", reason_name(f.report.reason));
+    add("reason", reason_names()[static_cast<std::size_t>(f.report.reason)]);
     add("fellBack", f.report.fell_back);
   }
 };
@@ -97,17 +80,16 @@ std::size_t bytes_a_frame(const TrajectoryInfo& info) {
 
 json describe(const ViewRun& run) {
   const TrajectoryInfo& info = run.info;
-  json j = {{"name", run.name},
-            {"stepper", info.stepper},
-            {"program", info.program_version},
-            {"fps", info.fps},
-            {"selfAudited", info.self_audited},
-            {"vertices", info.rest.rows()},
-            {"triangles", info.triangles.rows()},
-            {"pins", info.pins},
-            {"clothNames", info.cloth_names},
-            {"clothFirstTriangle", info.cloth_first_triangle}};
-  return j;
+  return {{"name", run.name},
+          {"stepper", info.stepper},
+          {"program", info.program_version},
+          {"fps", info.fps},
+          {"selfAudited", info.self_audited},
+          {"vertices", info.rest.rows()},
+          {"triangles", info.triangles.rows()},
+          {"pins", info.pins},
+          {"clothNames", info.cloth_names},
+          {"clothFirstTriangle", info.cloth_first_triangle}};
 }
 
 json append_run(std::string& html, const ViewRun& run, const std::string& id, std::size_t limit) {

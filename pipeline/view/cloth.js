@@ -59,20 +59,31 @@ function colourByStretch(geometry, metric, top, table) {
   geometry.attributes.color.needsUpdate = true;
 }
 
+// Fabric scatters light at grazing angles: a soft rim added to the standard material.
+function addSheen(material) {
+  material.onBeforeCompile = (shader) => {
+    shader.fragmentShader = shader.fragmentShader.replace("gl_FragColor = vec4( outgoingLight, diffuseColor.a );",
+      `float grazing = 1.0 - abs(dot(normalize(normal), normalize(vViewPosition)));
+      outgoingLight += 0.22 * pow(grazing, 3.0) * mix(diffuseColor.rgb, vec3(1.0), 0.35);
+      gl_FragColor = vec4( outgoingLight, diffuseColor.a );`);
+  };
+  return material;
+}
+
 function clothMaterials(run, side) {
   const names = side === THREE.FrontSide ? "front" : "back";
   const firsts = run.clothFirstTriangle.slice(0, -1);
-  return firsts.map((_, i) => new THREE.MeshStandardMaterial({
+  return firsts.map((_, i) => addSheen(new THREE.MeshStandardMaterial({
     color: linear(clothColours[i % clothColours.length][names]), roughness: 0.78, metalness: 0, side,
     polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
-  }));
+  })));
 }
 
 // Red triangles on the surface, and through it where something hides them.
-function markMeshes(geometry) {
+function markMeshes(geometry, most) {
   const marks = new THREE.BufferGeometry();
   marks.setAttribute("position", geometry.attributes.position);
-  marks.setIndex(new THREE.BufferAttribute(new Uint32Array(geometry.index.array.length), 1));
+  marks.setIndex(new THREE.BufferAttribute(new Uint32Array(3 * most), 1));
   marks.setDrawRange(0, 0);
   const red = { color: linear("#ff1e1e"), side: THREE.DoubleSide };
   const seen = new THREE.Mesh(marks, new THREE.MeshBasicMaterial({ ...red, polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -2 }));
@@ -93,7 +104,7 @@ function makeFigure(run) {
   sides[0].castShadow = true;
   sides[0].material.forEach((material) => { material.shadowSide = THREE.DoubleSide; });
   const wire = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ color: 0x0c1118, wireframe: true, transparent: true, opacity: 0.34 }));
-  const marks = markMeshes(geometry);
+  const marks = markMeshes(geometry, Math.max(1, ...run.marked.map((list) => list.length)));
   group.add(...sides, wire, ...marks);
 
   const pins = new THREE.BufferGeometry();

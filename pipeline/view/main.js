@@ -20,24 +20,26 @@ function makePanel(run, scaleText) {
   panel.querySelector(".scale").textContent = scaleText;
   const drawnEvery = run.drawn.length < run.frames ? `, drawn every ${run.drawn[1] - run.drawn[0]} frames` : "";
   panel.querySelector(".detail").textContent =
-    `${run.stepper} \u00b7 ${run.vertices.toLocaleString("en")} vertices, ${run.triangles.length / 3 >= 1 ? (run.triangles.length / 3).toLocaleString("en") : 0} triangles${drawnEvery}`;
+    `${run.stepper} \u00b7 ${run.vertices.toLocaleString("en")} vertices, ${(run.triangles.length / 3).toLocaleString("en")} triangles${drawnEvery}`;
   return { panel, view: panel.querySelector(".view"), chips: panel.querySelector(".chips"), charts: panel.querySelector(".charts") };
 }
 
 // What is worth saying about a frame, most important first: [text, class].
 function chipsOf(run, frame, marked) {
-  const at = (name) => run.series[name][frame], plural = (n, word) => `${n} ${word}${n === 1 ? "" : "s"}`;
+  const at = (name) => run.series[name][frame], reason = at("reason") === "none" ? "" : at("reason").replace(/_/g, " ");
+  const range = ["minStretch", "maxStretch"].map((name) => (at(name) === null ? "\u2013" : at(name).toFixed(3)));
+  const plural = (n, word) => `${n} ${n === 1 ? word : word.replace(/ex$/, "ice")}${n === 1 ? "" : "s"}`;
   const chips = [], pairs = run.pairs[frame];
-  if (at("nonfinite")) chips.push([`${plural(at("nonfinite"), "vertex").replace("vertexs", "vertices")} not finite`, "bad"]);
+  if (at("nonfinite")) chips.push([`${plural(at("nonfinite"), "vertex")} not finite`, "bad"]);
   if (pairs) chips.push([`${plural(pairs, "intersecting pair")}, ${plural(marked, "triangle")} marked`, "bad"]);
   else chips.push([run.selfAudited ? "0 intersecting pairs" : "0 pairs with obstacles", "good"]);
   if (!run.selfAudited) chips.push(["self: not audited", "warn"]);
   if (at("vertexPairs")) chips.push([`${plural(at("vertexPairs"), "pair")} crossing at a shared vertex`, "warn"]);
-  if (at("inside")) chips.push([`${at("inside")} vertices inside`, "bad"]);
-  if (at("fellBack")) chips.push([`fell back${at("reason") ? `: ${at("reason")}` : ""}`, "warn"]);
-  else if (at("reason")) chips.push([at("reason"), "warn"]);
+  if (at("inside")) chips.push([`${plural(at("inside"), "vertex")} inside an obstacle`, "bad"]);
+  if (at("fellBack")) chips.push([`fell back${reason ? `: ${reason}` : ""}`, "warn"]);
+  else if (reason) chips.push([reason, "warn"]);
   if (at("by") && at("by") !== run.stepper) chips.push([`by ${at("by")}`, ""]);
-  chips.push([`stretch ${at("minStretch") === null ? "\u2013" : at("minStretch").toFixed(3)} to ${at("maxStretch") === null ? "\u2013" : at("maxStretch").toFixed(3)}`, ""]);
+  chips.push([`stretch ${range[0]} to ${range[1]}`, ""]);
   if (at("contacts")) chips.push([plural(at("contacts"), "contact"), ""]);
   if (frame === run.frames - 1 && run.ended) chips.push(["ended", ""]);
   return chips;
@@ -87,7 +89,7 @@ function start() {
 
   let frame = 0, playing = options.flag("play", false), clock = range.begin, before = 0, stale = true;
   const redraw = () => { stale = true; };
-  const plots = runs.map((run, i) => makePlots(panels[i].charts, run, tops, range,
+  const plots = runs.map((run, i) => makePlots(panels[i].charts, run, { tops, range, terse: runs.length > 2 },
     (time) => { pause(); setFrame(lastNotAbove(timeline, time + 0.5 / longest.fps)); }, redraw));
 
   const slider = element("frame");
@@ -174,6 +176,7 @@ function start() {
     look.strainTop = Math.max(1.0001, Number(event.target.value) || 1.1);
     redraw();
   });
+  panels[0].view.append(element("legend"));
   drawStrainScale(element("legend-scale"));
   bindKeys({
     " ": () => setPlaying(!playing), ArrowLeft: (e) => step(e.shiftKey ? -10 : -1), ArrowRight: (e) => step(e.shiftKey ? 10 : 1),

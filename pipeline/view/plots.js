@@ -98,10 +98,10 @@ function energyCurves(run) {
 }
 
 // Charts of a run in `parent`; the tops are shared by all runs so that they can be compared by eye.
-function makePlots(parent, run, tops, range, seek, redraw) {
+function makePlots(parent, run, { tops, range, terse }, seek, redraw) {
   const energy = chartElement(parent, "Energy [J]", true);
-  const pairs = chartElement(parent, "Intersecting pairs", false);
-  const cost = chartElement(parent, "Time a frame", false);
+  const pairs = chartElement(parent, terse ? "Pairs" : "Intersecting pairs", false);
+  const cost = chartElement(parent, terse ? "Time" : "Time a frame", false);
   const curves = energyCurves(run);
   const values = curves.map((curve) => {
     const key = document.createElement("span");
@@ -114,7 +114,7 @@ function makePlots(parent, run, tops, range, seek, redraw) {
   const costCurve = [{ values: run.series.seconds, colour: "--accent", filled: true }];
   const total = run.series.seconds.reduce((sum, value) => sum + (value || 0), 0);
   const middle = [...run.series.seconds].sort((a, b) => a - b)[run.frames >> 1];
-  pairs.keys.textContent = `most in a frame ${largest(run.pairs)}`;
+  pairs.keys.textContent = `${run.selfAudited ? "" : "obstacles only, "}most in a frame ${largest(run.pairs)}`;
   cost.keys.textContent = `median ${seconds(middle)}, all ${seconds(total)}`;
   let log = false;
   energy.button.addEventListener("click", () => {
@@ -137,7 +137,7 @@ function makePlots(parent, run, tops, range, seek, redraw) {
     drawCurves(pairs.canvas, pairCurve, run, { ...view, top: most, topText: tops.pairs > 0 ? short(most) : "" });
     drawCurves(cost.canvas, costCurve, run, { ...view, top: slowest, topText: seconds(slowest) });
     curves.forEach((curve, i) => { values[i].textContent = short(curve.values[frame]); });
-    pairs.value.textContent = run.selfAudited ? `${run.pairs[frame]}` : `${run.pairs[frame]} (obstacles only)`;
+    pairs.value.textContent = `${run.pairs[frame]}`;
     cost.value.textContent = seconds(run.series.seconds[frame]);
   };
 }

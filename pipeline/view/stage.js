@@ -7,7 +7,7 @@ function framing(runs) {
   const all = solid.isEmpty() ? cloth.clone() : cloth.clone().union(solid.clone().intersect(near));
   const sphere = all.getBoundingSphere(new THREE.Sphere());
   const lowest = Math.min(cloth.min.y, solid.isEmpty() ? Infinity : solid.min.y);
-  return { centre: sphere.center, radius: Math.max(sphere.radius, 1e-3), floor: lowest - 0.004 * sphere.radius };
+  return { centre: sphere.center, radius: Math.max(sphere.radius, 1e-3), floor: lowest - 0.004 * sphere.radius, box: all };
 }
 
 // Spacing 1, 2 or 5 times a power of ten near a quarter of the radius.
@@ -20,7 +20,7 @@ function makeGrid(frame, spacing) {
   const material = new THREE.ShaderMaterial({
     uniforms: {
       centre: { value: frame.centre }, reach: { value: 5 * frame.radius }, spacing: { value: spacing },
-      ink: { value: new THREE.Color(0, 0, 0) }, strength: { value: 0.2 },
+      ink: { value: new THREE.Color(0, 0, 0) }, strength: { value: 0.15 },
     },
     vertexShader: `varying vec3 place;
       void main() { place = position; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
@@ -56,7 +56,7 @@ function makeLights(frame) {
   key.position.copy(place(0.55, 1.25, 0.7));
   key.target.position.copy(frame.centre);
   key.castShadow = true;
-  key.shadow.mapSize.set(2048, 2048);
+  key.shadow.mapSize.set(1536, 1536);
   key.shadow.radius = 3.5;
   key.shadow.bias = -0.0012;
   const r = 1.25 * frame.radius;
@@ -76,7 +76,7 @@ function makeStage(canvas, runs) {
   renderer.autoClear = false;
   renderer.setClearColor(0x000000, 0);
   renderer.shadowMap.enabled = true;
-  renderer.shadowMap.type = THREE.PCFSoftShadowMap;
+  renderer.shadowMap.type = THREE.PCFShadowMap;
 
   const frame = framing(runs), spacing = gridSpacing(frame.radius);
   const figures = runs.map(makeFigure);
@@ -92,13 +92,22 @@ function makeStage(canvas, runs) {
   const controls = new THREE.OrbitControls(camera, canvas);
   Object.assign(controls, { enableDamping: true, dampingFactor: 0.12, enableKeys: false, screenSpacePanning: true,
     minDistance: 0.05 * frame.radius, maxDistance: 20 * frame.radius });
-  // Camera at an azimuth and elevation in degrees and a distance in units of the one that shows everything.
+  // Camera at an azimuth and elevation in degrees and a distance in units of the one that shows every frame's box.
   function look(azimuth, elevation, distance) {
     const a = THREE.Math.degToRad(azimuth), e = THREE.Math.degToRad(elevation);
-    const narrow = Math.min(1, camera.aspect), half = Math.atan(narrow * Math.tan(THREE.Math.degToRad(camera.fov / 2)));
-    const away = (distance * 1.02 * frame.radius) / Math.sin(half);
+    const toward = new THREE.Vector3(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e));
     controls.target.copy(frame.centre);
-    camera.position.set(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e)).multiplyScalar(away).add(frame.centre);
+    camera.position.copy(toward).add(frame.centre);
+    camera.lookAt(frame.centre);
+    const right = new THREE.Vector3(1, 0, 0).applyQuaternion(camera.quaternion);
+    const up = new THREE.Vector3(0, 1, 0).applyQuaternion(camera.quaternion);
+    const tall = Math.tan(THREE.Math.degToRad(camera.fov / 2)), wide = tall * camera.aspect;
+    let away = 0;
+    for (let corner = 0; corner < 8; ++corner) {
+      const c = new THREE.Vector3(...["x", "y", "z"].map((k, i) => frame.box[corner & (1 << i) ? "max" : "min"][k])).sub(frame.centre);
+      away = Math.max(away, c.dot(toward) + Math.max(Math.abs(c.dot(up)) / tall, Math.abs(c.dot(right)) / wide));
+    }
+    camera.position.copy(toward).multiplyScalar(1.03 * distance * away).add(frame.centre);
     controls.update();
   }
 
@@ -125,7 +134,7 @@ function makeStage(canvas, runs) {
   function setDark(dark) {
     grids.forEach((uniforms) => {
       uniforms.ink.value.setScalar(dark ? 1 : 0);
-      uniforms.strength.value = dark ? 0.16 : 0.2;
+      uniforms.strength.value = dark ? 0.13 : 0.15;
     });
   }
   return { renderer, camera, controls, figures, spacing, look, resize, draw, setDark };

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <memory>
 
-namespace selvedge::testing {
+namespace selvedge::fake {
 namespace {
 
 constexpr double radius = 0.3;
@@ -121,4 +121,4 @@ ViewRun draping_run(const std::string& name, int n, int frames) {
   return run;
 }
 
-}  // namespace selvedge::testing
+}  // namespace selvedge::fake
