@@ -9,11 +9,13 @@ namespace selvedge {
 namespace {
 
 std::string run_name(const std::filesystem::path& file) {
+  const std::string stem = file.stem().string();
   const std::filesystem::path folder = std::filesystem::absolute(file).parent_path().filename();
-  return file.stem() == "trajectory" && !folder.empty() ? folder.string() : file.stem().string();
+  return stem == "run" && !folder.empty() ? folder.string() : stem;
 }
 
-ViewRun open_run(const std::filesystem::path& file) {
+ViewRun open_run(const std::filesystem::path& path) {
+  const std::filesystem::path file = std::filesystem::is_directory(path) ? path / "run.h5" : path;
   const auto reader = std::make_shared<TrajectoryReader>(file);
   return {run_name(file), reader->info(), reader->frame_count(), [reader](int index) { return reader->frame(index); }};
 }

@@ -31,8 +31,8 @@ struct ViewRun {
 // everything else exact. Throws Error when there is no run or no frame, or when three.js is absent.
 std::string view_page(const std::vector<ViewRun>& runs, const ViewOptions& options = {});
 
-// Reads trajectories and writes the page beside and renamed. A run is a trajectory file; it is named after the file,
-// or after the folder of a file called trajectory.h5.
+// Reads trajectories and writes the page beside and renamed. A run is a trajectory file or the folder of a run.h5; it
+// is named after the file, a run.h5 after its folder.
 void write_view(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& html,
                 const ViewOptions& options);
 void write_view(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& html);

@@ -19,11 +19,17 @@ function updateNormals(geometry) {
     const vx = x[c] - x[a], vy = x[c + 1] - x[a + 1], vz = x[c + 2] - x[a + 2];
     const nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
     if (!(nx * nx + ny * ny + nz * nz > 0)) continue;
-    for (const v of [a, b, c]) { n[v] += nx; n[v + 1] += ny; n[v + 2] += nz; }
+    for (const v of [a, b, c]) {
+      n[v] += nx;
+      n[v + 1] += ny;
+      n[v + 2] += nz;
+    }
   }
   for (let i = 0; i < n.length; i += 3) {
     const length = Math.hypot(n[i], n[i + 1], n[i + 2]) || 1;
-    n[i] /= length; n[i + 1] /= length; n[i + 2] /= length;
+    n[i] /= length;
+    n[i + 1] /= length;
+    n[i + 2] /= length;
   }
   geometry.attributes.position.needsUpdate = geometry.attributes.normal.needsUpdate = true;
 }
@@ -43,12 +49,16 @@ function stretchOf(x, triangles, metric, t) {
 // Vertex colours: mean of the triangles round a vertex, on the table between 1 and `top`.
 function colourByStretch(geometry, metric, top, table) {
   const x = geometry.attributes.position.array, t = geometry.index.array, vertices = x.length / 3;
-  if (!geometry.attributes.color) geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(x.length), 3));
+  if (!geometry.attributes.color)
+    geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(x.length), 3));
   const sum = new Float32Array(vertices), count = new Uint16Array(vertices);
   for (let i = 0; 3 * i < t.length; ++i) {
     const stretch = stretchOf(x, t, metric, i);
     if (!isFinite(stretch)) continue;
-    for (let k = 0; k < 3; ++k) { sum[t[3 * i + k]] += stretch; ++count[t[3 * i + k]]; }
+    for (let k = 0; k < 3; ++k) {
+      sum[t[3 * i + k]] += stretch;
+      ++count[t[3 * i + k]];
+    }
   }
   const colours = geometry.attributes.color.array;
   for (let v = 0; v < vertices; ++v) {
@@ -62,8 +72,9 @@ function colourByStretch(geometry, metric, top, table) {
 // Fabric scatters light at grazing angles: a soft rim added to the standard material.
 function addSheen(material) {
   material.onBeforeCompile = (shader) => {
-    shader.fragmentShader = shader.fragmentShader.replace("gl_FragColor = vec4( outgoingLight, diffuseColor.a );",
-      `float grazing = 1.0 - abs(dot(normalize(normal), normalize(vViewPosition)));
+    shader.fragmentShader = shader.fragmentShader.replace(
+        "gl_FragColor = vec4( outgoingLight, diffuseColor.a );",
+        `float grazing = 1.0 - abs(dot(normalize(normal), normalize(vViewPosition)));
       outgoingLight += 0.22 * pow(grazing, 3.0) * mix(diffuseColor.rgb, vec3(1.0), 0.35);
       gl_FragColor = vec4( outgoingLight, diffuseColor.a );`);
   };
@@ -74,9 +85,14 @@ function clothMaterials(run, side) {
   const names = side === THREE.FrontSide ? "front" : "back";
   const firsts = run.clothFirstTriangle.slice(0, -1);
   return firsts.map((_, i) => addSheen(new THREE.MeshStandardMaterial({
-    color: linear(clothColours[i % clothColours.length][names]), roughness: 0.78, metalness: 0, side,
-    polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
-  })));
+                      color: linear(clothColours[i % clothColours.length][names]),
+                      roughness: 0.78,
+                      metalness: 0,
+                      side,
+                      polygonOffset: true,
+                      polygonOffsetFactor: 1,
+                      polygonOffsetUnits: 1,
+                    })));
 }
 
 // Red triangles on the surface, and through it where something hides them.
@@ -85,9 +101,13 @@ function markMeshes(geometry, most) {
   marks.setAttribute("position", geometry.attributes.position);
   marks.setIndex(new THREE.BufferAttribute(new Uint32Array(3 * most), 1));
   marks.setDrawRange(0, 0);
-  const red = { color: linear("#ff1e1e"), side: THREE.DoubleSide };
-  const seen = new THREE.Mesh(marks, new THREE.MeshBasicMaterial({ ...red, polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -2 }));
-  const hidden = new THREE.Mesh(marks, new THREE.MeshBasicMaterial({ ...red, transparent: true, opacity: 0.3, depthTest: false, depthWrite: false }));
+  const red = {color: linear("#ff1e1e"), side: THREE.DoubleSide};
+  const seen = new THREE.Mesh(
+      marks,
+      new THREE.MeshBasicMaterial({...red, polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -2}));
+  const hidden = new THREE.Mesh(
+      marks,
+      new THREE.MeshBasicMaterial({...red, transparent: true, opacity: 0.45, depthTest: false, depthWrite: false}));
   hidden.renderOrder = 2;
   return [seen, hidden];
 }
@@ -100,28 +120,42 @@ function makeFigure(run) {
   for (let c = 0; c + 1 < firsts.length; ++c) geometry.addGroup(3 * firsts[c], 3 * (firsts[c + 1] - firsts[c]), c);
   const sides = [THREE.FrontSide, THREE.BackSide].map((side) => new THREE.Mesh(geometry, clothMaterials(run, side)));
   const base = sides.map((mesh) => mesh.material.map((material) => material.color.clone()));
-  sides.forEach((mesh) => { mesh.receiveShadow = true; });
+  sides.forEach((mesh) => {
+    mesh.receiveShadow = true;
+  });
   sides[0].castShadow = true;
-  sides[0].material.forEach((material) => { material.shadowSide = THREE.DoubleSide; });
-  const wire = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ color: 0x0c1118, wireframe: true, transparent: true, opacity: 0.34 }));
+  sides[0].material.forEach((material) => {
+    material.shadowSide = THREE.DoubleSide;
+  });
+  const wire = new THREE.Mesh(
+      geometry, new THREE.MeshBasicMaterial({color: 0x0c1118, wireframe: true, transparent: true, opacity: 0.34}));
   const marks = markMeshes(geometry, Math.max(1, ...run.marked.map((list) => list.length)));
   group.add(...sides, wire, ...marks);
 
   const pins = new THREE.BufferGeometry();
   pins.setAttribute("position", geometry.attributes.position);
   pins.setIndex(run.pins);
-  group.add(new THREE.Points(pins, new THREE.PointsMaterial({ color: linear("#f2f4f7"), size: 5, sizeAttenuation: false })));
+  group.add(
+      new THREE.Points(pins, new THREE.PointsMaterial({color: linear("#f2f4f7"), size: 5, sizeAttenuation: false})));
 
   const bodies = run.obstacles.map((body) => {
-    const mesh = new THREE.Mesh(surfaceGeometry(body.vertices, body.triangles),
-      new THREE.MeshStandardMaterial({ color: linear("#b9bdc2"), roughness: 0.9, metalness: 0, side: THREE.DoubleSide,
-        polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2 }));
+    const mesh = new THREE.Mesh(surfaceGeometry(body.vertices, body.triangles), new THREE.MeshStandardMaterial({
+      color: linear("#b9bdc2"),
+      roughness: 0.9,
+      metalness: 0,
+      side: THREE.DoubleSide,
+      polygonOffset: true,
+      polygonOffsetFactor: 2,
+      polygonOffsetUnits: 2
+    }));
     mesh.castShadow = mesh.receiveShadow = true;
     group.add(mesh);
     return mesh;
   });
   // Bounds change with every frame and the whole figure is nearly always in view.
-  group.traverse((object) => { object.frustumCulled = false; });
+  group.traverse((object) => {
+    object.frustumCulled = false;
+  });
 
   let drawn = -1;
   function moveTo(next) {
@@ -145,12 +179,17 @@ function makeFigure(run) {
     if (look.strain) colourByStretch(geometry, run.metric, look.strainTop, table);
     sides.forEach((mesh, s) => mesh.material.forEach((material, c) => {
       const mode = look.strain ? THREE.VertexColors : THREE.NoColors;
-      if (material.vertexColors !== mode) { material.vertexColors = mode; material.needsUpdate = true; }
+      if (material.vertexColors !== mode) {
+        material.vertexColors = mode;
+        material.needsUpdate = true;
+      }
       material.color.copy(base[s][c]);
       if (look.strain) material.color.setScalar(1);
     }));
     wire.visible = look.wire;
-    marks.forEach((mesh) => { mesh.visible = look.marks; });
+    marks.forEach((mesh) => {
+      mesh.visible = look.marks;
+    });
   }
-  return { group, show };
+  return {group, show};
 }

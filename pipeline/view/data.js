@@ -40,7 +40,8 @@ function lastNotAbove(list, value) {
   let low = 0, high = list.length - 1;
   while (low < high) {
     const middle = (low + high + 1) >> 1;
-    if (list[middle] <= value) low = middle; else high = middle - 1;
+    if (list[middle] <= value) low = middle;
+    else high = middle - 1;
   }
   return low;
 }
@@ -64,10 +65,15 @@ function short(value) {
   const size = Math.abs(value);
   if (size === 0) return "0";
   if (size >= 1e5 || size < 1e-3) return value.toExponential(1).replace("e-", "e\u2212").replace("e+", "e");
-  return size >= 100 ? value.toFixed(0) : size >= 10 ? value.toFixed(1) : size >= 1 ? value.toFixed(2) : value.toPrecision(2);
+  return size >= 100 ? value.toFixed(0) :
+      size >= 10     ? value.toFixed(1) :
+      size >= 1      ? value.toFixed(2) :
+                       value.toPrecision(2);
 }
 
 function seconds(value) {
   if (value === null || !isFinite(value)) return "\u2013";
   return value < 1 ? `${short(1000 * value)} ms` : `${short(value)} s`;
 }
+
+function lengthText(metres) { return metres >= 1 ? `${short(metres)} m` : `${Math.round(metres * 1e3) / 10} cm`; }

@@ -9,50 +9,11 @@ function note(message) {
 window.addEventListener("error", (event) => note(event.message));
 window.addEventListener("unhandledrejection", (event) => note(event.reason));
 const printError = console.error;
-console.error = (...parts) => { note(parts.join(" ")); printError.apply(console, parts); };
+console.error = (...parts) => {
+  note(parts.join(" "));
+  printError.apply(console, parts);
+};
 document.documentElement.dataset.errors = "[]";
-
-function makePanel(run, scaleText) {
-  const panel = document.createElement("section");
-  panel.className = "panel";
-  panel.innerHTML = `<div class="view"><div class="name"></div><div class="detail"></div><div class="chips"></div><div class="scale"></div></div><div class="charts"></div>`;
-  panel.querySelector(".name").textContent = run.name;
-  panel.querySelector(".scale").textContent = scaleText;
-  const drawnEvery = run.drawn.length < run.frames ? `, drawn every ${run.drawn[1] - run.drawn[0]} frames` : "";
-  panel.querySelector(".detail").textContent =
-    `${run.stepper} \u00b7 ${run.vertices.toLocaleString("en")} vertices, ${(run.triangles.length / 3).toLocaleString("en")} triangles${drawnEvery}`;
-  return { panel, view: panel.querySelector(".view"), chips: panel.querySelector(".chips"), charts: panel.querySelector(".charts") };
-}
-
-// What is worth saying about a frame, most important first: [text, class].
-function chipsOf(run, frame, marked) {
-  const at = (name) => run.series[name][frame], reason = at("reason") === "none" ? "" : at("reason").replace(/_/g, " ");
-  const range = ["minStretch", "maxStretch"].map((name) => (at(name) === null ? "\u2013" : at(name).toFixed(3)));
-  const plural = (n, word) => `${n} ${n === 1 ? word : word.replace(/ex$/, "ice")}${n === 1 ? "" : "s"}`;
-  const chips = [], pairs = run.pairs[frame];
-  if (at("nonfinite")) chips.push([`${plural(at("nonfinite"), "vertex")} not finite`, "bad"]);
-  if (pairs) chips.push([`${plural(pairs, "intersecting pair")}, ${plural(marked, "triangle")} marked`, "bad"]);
-  else chips.push([run.selfAudited ? "0 intersecting pairs" : "0 pairs with obstacles", "good"]);
-  if (!run.selfAudited) chips.push(["self: not audited", "warn"]);
-  if (at("vertexPairs")) chips.push([`${plural(at("vertexPairs"), "pair")} crossing at a shared vertex`, "warn"]);
-  if (at("inside")) chips.push([`${plural(at("inside"), "vertex")} inside an obstacle`, "bad"]);
-  if (at("fellBack")) chips.push([`fell back${reason ? `: ${reason}` : ""}`, "warn"]);
-  else if (reason) chips.push([reason, "warn"]);
-  if (at("by") && at("by") !== run.stepper) chips.push([`by ${at("by")}`, ""]);
-  chips.push([`stretch ${range[0]} to ${range[1]}`, ""]);
-  if (at("contacts")) chips.push([plural(at("contacts"), "contact"), ""]);
-  if (frame === run.frames - 1 && run.ended) chips.push(["ended", ""]);
-  return chips;
-}
-
-function showChips(parent, chips) {
-  parent.replaceChildren(...chips.map(([text, kind]) => {
-    const chip = document.createElement("span");
-    chip.className = `chip ${kind}`;
-    chip.textContent = text;
-    return chip;
-  }));
-}
 
 // A round top for the colours that nearly all frames stay under.
 function strainTop(runs) {
@@ -61,139 +22,174 @@ function strainTop(runs) {
   return Math.min(3, 1 + Math.max(0.01, niceTop(high - 1)));
 }
 
-function start() {
-  const data = loadRuns(), runs = data.runs, options = readOptions();
-  const longest = runs.reduce((best, run) => (run.end > best.end || (run.end === best.end && run.frames > best.frames) ? run : best));
-  const timeline = longest.series.time, last = timeline.length - 1;
-  runs.forEach((run) => { run.ended = run.end < longest.end - 1e-9; });
-  const root = document.documentElement, look = {
-    strain: options.flag("strain", false), wire: options.flag("wire", false), marks: options.flag("marks", true),
-    plots: options.flag("plots", true), strainTop: Math.max(1.0001, options.number("top", strainTop(runs))),
-  };
-  const systemDark = window.matchMedia && window.matchMedia("(prefers-color-scheme: dark)").matches;
-  root.dataset.theme = ["dark", "light"].includes(options.text("theme")) ? options.text("theme") : systemDark ? "dark" : "light";
-  document.title = `${runs.map((run) => run.name).join(", ")} \u00b7 selvedge`;
-  element("summary").textContent = `${runs.length} run${runs.length === 1 ? "" : "s"} \u00b7 version ${data.program}`;
+// The slider counts the frames of the run that ends last; with equal ends, of the one with most frames.
+function makeTimeline(runs) {
+  const longest = runs.reduce((best, run) => {
+    return run.end > best.end || (run.end === best.end && run.frames > best.frames) ? run : best;
+  });
+  const times = longest.series.time, last = times.length - 1;
+  runs.forEach((run) => {
+    run.ended = run.end < longest.end - 1e-9;
+  });
+  return {times, last, begin: times[0], end: times[last], spacing: 1 / longest.fps};
+}
 
-  const stage = makeStage(element("canvas"), runs);
-  const spacing = stage.spacing, scaleText = `grid ${spacing >= 1 ? `${short(spacing)} m` : `${Math.round(spacing * 1e3) / 10} cm`}`;
-  const columns = runs.length === 4 ? 2 : Math.min(3, runs.length);
-  const panels = runs.map((run) => makePanel(run, scaleText));
-  element("panels").append(...panels.map(({ panel }) => panel));
-  const tops = {
+// The current frame and whether it advances by itself. `changed` is called after every change.
+function makePlayer(timeline, changed) {
+  const {times, last} = timeline;
+  const player = {frame: 0, playing: false};
+  let clock = timeline.begin;
+  player.go = (next) => {
+    player.frame = Math.min(last, Math.max(0, Math.round(next) || 0));
+    clock = times[player.frame];
+    changed();
+  };
+  player.seek = (time) => {
+    player.pause();
+    player.go(lastNotAbove(times, time + timeline.spacing / 2));
+  };
+  player.step = (by) => {
+    player.pause();
+    player.go(player.frame + by);
+  };
+  player.play = (on) => {
+    player.playing = on;
+    if (on && player.frame === last) player.go(0);
+    changed();
+  };
+  player.pause = () => player.play(false);
+  // The last frame stays for its own duration, then the run begins again.
+  player.advance = (duration) => {
+    clock += duration;
+    const next = lastNotAbove(times, clock);
+    if (clock > timeline.end + timeline.spacing) player.go(0);
+    else if (next !== player.frame) {
+      player.frame = next;
+      changed();
+    }
+  };
+  return player;
+}
+
+function initialLook(runs, options) {
+  return {
+    strain: options.flag("strain", false),
+    wire: options.flag("wire", false),
+    marks: options.flag("marks", true),
+    plots: options.flag("plots", runs.length === 1 || window.innerWidth > 700),
+    strainTop: Math.max(1.0001, options.number("top", strainTop(runs))),
+  };
+}
+
+// Tops of the charts' axes, over all runs.
+function chartTops(runs) {
+  return {
     energy: Math.max(...runs.flatMap((run) => energyCurves(run).map((curve) => largest(curve.values)))),
     pairs: Math.max(...runs.map((run) => largest(run.pairs))),
     seconds: Math.max(...runs.map((run) => largest(run.series.seconds))),
   };
-  const range = { begin: timeline[0], end: timeline[last] };
+}
 
-  let frame = 0, playing = options.flag("play", false), clock = range.begin, before = 0, stale = true;
-  const redraw = () => { stale = true; };
-  const plots = runs.map((run, i) => makePlots(panels[i].charts, run, { tops, range, terse: runs.length > 2 },
-    (time) => { pause(); setFrame(lastNotAbove(timeline, time + 0.5 / longest.fps)); }, redraw));
+// The page: everything on it, and how it is brought up to date. `stale` is set when something must be drawn again.
+function makePage(data, options) {
+  const runs = data.runs, timeline = makeTimeline(runs), look = initialLook(runs, options);
+  const page = {
+    runs,
+    timeline,
+    look,
+    stale: true,
+    redraw: () => {
+      page.stale = true;
+    }
+  };
+  const player = page.player = makePlayer(timeline, page.redraw);
+  const stage = page.stage = makeStage(element("canvas"), runs);
+  const panels = runs.map((run) => makePanel(run, `grid ${lengthText(stage.spacing)}`));
+  element("panels").append(...panels.map(({panel}) => panel));
+  panels[0].view.append(element("legend"));
+  const shared = {tops: chartTops(runs), range: timeline, terse: runs.length > 2};
+  const plots = runs.map((run, i) => makePlots(panels[i].charts, run, shared, player.seek, page.redraw));
+  const columns = runs.length === 4 ? 2 : Math.min(3, runs.length);
 
-  const slider = element("frame");
-  slider.max = last;
-  element("frame-last").textContent = ` / ${last}`;
-  function setFrame(next) {
-    frame = Math.min(last, Math.max(0, Math.round(next)));
-    clock = timeline[frame];
-    redraw();
-  }
-  function setPlaying(on) {
-    playing = on;
-    if (on && frame === last) setFrame(0);
-    element("play").classList.toggle("playing", on);
-    element("play").setAttribute("aria-label", on ? "Pause" : "Play");
-  }
-  const pause = () => setPlaying(false);
-  const step = (by) => { pause(); setFrame(frame + by); };
-
-  function arrange() {
+  page.rectangles = () => {
+    const origin = element("stage").getBoundingClientRect();
+    return panels.map(({view}) => {
+      const box = view.getBoundingClientRect();
+      return {left: box.left - origin.left, top: box.top - origin.top, width: box.width, height: box.height};
+    });
+  };
+  page.arrange = () => {
     const wanted = element("stage").clientWidth < 700 ? 1 : columns;
-    const sized = `repeat(${wanted}, minmax(0, 1fr))`;
-    element("panels").style.gridTemplateColumns = sized;
-    element("panels").style.gridAutoRows = "minmax(0, 1fr)";
+    element("panels").style.gridTemplateColumns = `repeat(${wanted}, minmax(0, 1fr))`;
     document.body.classList.toggle("no-plots", !look.plots);
     stage.resize();
-    drawTicks(element("ticks"), runs, timeline);
-    redraw();
-  }
-  function rectangles() {
-    const origin = element("stage").getBoundingClientRect();
-    return panels.map(({ view }) => {
-      const box = view.getBoundingClientRect();
-      return { left: box.left - origin.left, top: box.top - origin.top, width: box.width, height: box.height };
-    });
-  }
-  function drawNow() {
-    stale = false;
-    const time = timeline[frame];
+    drawTicks(element("ticks"), runs, timeline.times);
+    page.redraw();
+  };
+  page.home = () => {
+    const [azimuth, elevation, distance] = (options.text("camera") || "30,20,1").split(",").map(Number);
+    const {width, height} = page.rectangles()[0];
+    stage.camera.aspect = width / Math.max(1, height);
+    stage.look(azimuth || 0, elevation || 0, distance || 1);
+    page.redraw();
+  };
+  page.setTheme = (theme) => {
+    document.documentElement.dataset.theme = theme;
+    stage.setDark(theme === "dark");
+    page.arrange();
+  };
+  page.draw = () => {
+    page.stale = false;
     runs.forEach((run, i) => {
-      const own = frameAt(run, time), drawn = drawnAt(run, own);
+      const own = frameAt(run, timeline.times[player.frame]), drawn = drawnAt(run, own);
       stage.figures[i].show(drawn, look);
       showChips(panels[i].chips, chipsOf(run, own, run.marked[drawn].length));
       if (look.plots) plots[i](own);
     });
-    stage.draw(rectangles());
-    slider.value = frame;
-    slider.style.setProperty("--played", `${last ? (100 * frame) / last : 0}%`);
-    element("frame-text").textContent = frame;
-    element("time-text").textContent = `${time.toFixed(3)} s`;
+    stage.draw(page.rectangles());
+    showTransport(player, timeline);
     element("legend").hidden = !look.strain;
-    root.dataset.frame = frame;
-  }
-  function tick(now) {
-    if (playing) {
-      clock += (Math.min(0.1, (now - before) / 1000)) * Number(element("speed").value);
-      const next = lastNotAbove(timeline, clock);
-      if (clock > range.end + 1 / longest.fps) setFrame(0);
-      else if (next !== frame) { frame = next; redraw(); }
-    }
-    before = now;
-    if (stage.controls.update()) redraw();
-    if (stale) drawNow();
-    requestAnimationFrame(tick);
-  }
-  const home = () => {
-    const [azimuth, elevation, distance] = (options.text("camera") || "30,20,1").split(",").map(Number);
-    const { width, height } = rectangles()[0];
-    stage.camera.aspect = width / Math.max(1, height);
-    stage.look(azimuth || 0, elevation || 0, distance || 1);
-    redraw();
+    document.documentElement.dataset.frame = player.frame;
   };
-  const setTheme = (theme) => { root.dataset.theme = theme; stage.setDark(theme === "dark"); arrange(); };
-  const flipTheme = () => setTheme(root.dataset.theme === "dark" ? "light" : "dark");
+  return page;
+}
 
-  slider.addEventListener("input", () => { pause(); setFrame(Number(slider.value)); });
-  element("play").addEventListener("click", () => setPlaying(!playing));
-  element("back").addEventListener("click", () => step(-1));
-  element("forward").addEventListener("click", () => step(1));
-  element("reset").addEventListener("click", home);
-  element("theme").addEventListener("click", flipTheme);
-  element("strain-top").value = look.strainTop.toFixed(3).replace(/0$/, "");
-  element("strain-top").addEventListener("input", (event) => {
-    look.strainTop = Math.max(1.0001, Number(event.target.value) || 1.1);
-    redraw();
-  });
-  panels[0].view.append(element("legend"));
+function start() {
+  const data = loadRuns(), options = readOptions(), page = makePage(data, options), {player, stage} = page;
+  const runs = data.runs.length, names = data.runs.map((run) => run.name).join(", ");
+  document.title = `${names} \u00b7 selvedge`;
+  element("summary").textContent = `${runs} run${runs === 1 ? "" : "s"} \u00b7 version ${data.program}`;
   drawStrainScale(element("legend-scale"));
-  bindKeys({
-    " ": () => setPlaying(!playing), ArrowLeft: (e) => step(e.shiftKey ? -10 : -1), ArrowRight: (e) => step(e.shiftKey ? 10 : 1),
-    Home: () => step(-last), End: () => step(last), r: home, t: flipTheme,
-    ...bindToggle("strain", "s", look, redraw), ...bindToggle("wire", "w", look, redraw),
-    ...bindToggle("marks", "x", look, redraw), ...bindToggle("plots", "p", look, arrange),
-  });
-  window.addEventListener("resize", arrange);
+  bindControls(page);
+  window.addEventListener("resize", page.arrange);
 
-  setTheme(root.dataset.theme);
-  home();
-  setFrame(options.number("frame", 0));
-  setPlaying(playing);
-  window.selvedge = { get frame() { return frame; }, setFrame: (next) => { pause(); setFrame(next); drawNow(); }, ready: true };
-  drawNow();
-  if (options.text("probe")) probe(options.text("probe").split(",").map(Number), slider, drawNow, stage.renderer);
-  root.dataset.ready = "1";
+  page.setTheme(firstTheme(options));
+  page.home();
+  player.go(options.number("frame", 0));
+  player.play(options.flag("play", false));
+  window.selvedge = {
+    get frame() { return player.frame; },
+    setFrame(next) {
+      player.pause();
+      player.go(next);
+      page.draw();
+    },
+    ready: true,
+  };
+  page.draw();
+  if (options.text("probe"))
+    probe(options.text("probe").split(",").map(Number), element("frame"), page.draw, stage.renderer);
+  document.documentElement.dataset.ready = "1";
+
+  let before = performance.now();
+  const tick = (now) => {
+    const passed = Math.min(0.1, Math.max(0, now - before) / 1000);
+    before = now;
+    if (player.playing) player.advance(passed * Number(element("speed").value));
+    if (stage.controls.update()) page.redraw();
+    if (page.stale) page.draw();
+    requestAnimationFrame(tick);
+  };
   requestAnimationFrame(tick);
 }
 

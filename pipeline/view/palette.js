@@ -1,17 +1,20 @@
 // Colours. Cloths take front and back in turn; red is kept for intersections.
 
 const clothColours = [
-  { front: "#4a7fb5", back: "#d9b26a" },
-  { front: "#c98a5a", back: "#6f93a8" },
-  { front: "#5d9c84", back: "#cdb9a2" },
-  { front: "#8d76b3", back: "#c9c28a" },
+  {front: "#4a7fb5", back: "#d9b26a"},
+  {front: "#c98a5a", back: "#6f93a8"},
+  {front: "#5d9c84", back: "#cdb9a2"},
+  {front: "#8d76b3", back: "#c9c28a"},
 ];
-const energyColours = { kinetic: "#3f8ae0", gravity: "#8a939d", membrane: "#e0922f", bending: "#2fa58a" };
+const energyColours = {
+  kinetic: "#3f8ae0",
+  gravity: "#8a939d",
+  membrane: "#e0922f",
+  bending: "#2fa58a"
+};
 const strainStops = ["#2b2f6b", "#2c5f9e", "#2f93a6", "#63bd8c", "#c5d968", "#fff3a3"];
 
-function linear(colour) {
-  return new THREE.Color(colour).convertSRGBToLinear();
-}
+function linear(colour) { return new THREE.Color(colour).convertSRGBToLinear(); }
 
 // 256 colours between the stops, three numbers in [0, 1] each; as light if `linearised`, as written if not.
 function strainTable(linearised) {

@@ -21,8 +21,13 @@ function chartElement(parent, title, logarithmic) {
     chart.querySelector(".chart-head span").replaceWith(button);
   }
   parent.append(chart);
-  return { chart, canvas: chart.querySelector("canvas"), value: chart.querySelector(".chart-head span"),
-    keys: chart.querySelector(".keys"), button: chart.querySelector("button") };
+  return {
+    chart,
+    canvas: chart.querySelector("canvas"),
+    value: chart.querySelector(".chart-head span"),
+    keys: chart.querySelector(".keys"),
+    button: chart.querySelector("button")
+  };
 }
 
 // Curves on the common time axis. `log` shows five decades below the top.
@@ -36,7 +41,8 @@ function drawCurves(canvas, curves, run, view) {
   context.scale(ratio, ratio);
   const left = 1, right = width - 2, top = 4, bottom = height - 4;
   const x = (time) => left + ((right - left) * (time - view.begin)) / (view.end - view.begin || 1);
-  const share = (value) => view.log ? Math.max(0, 1 + Math.log10(Math.max(value, 1e-30) / view.top) / 5) : value / view.top;
+  const share = (value) =>
+      view.log ? Math.max(0, 1 + Math.log10(Math.max(value, 1e-30) / view.top) / 5) : value / view.top;
   const y = (value) => bottom - (bottom - top) * Math.min(1, Math.max(0, share(value)));
 
   context.strokeStyle = colour("--line");
@@ -51,7 +57,9 @@ function drawCurves(canvas, curves, run, view) {
   const time = run.series.time;
   for (const curve of curves) {
     context.beginPath();
-    curve.values.forEach((value, f) => { if (value !== null) context.lineTo(x(time[f]), y(value)); });
+    curve.values.forEach((value, f) => {
+      if (value !== null) context.lineTo(x(time[f]), y(value));
+    });
     context.lineWidth = 1.6;
     context.lineJoin = "round";
     context.strokeStyle = curve.colour.startsWith("--") ? colour(curve.colour) : curve.colour;
@@ -91,14 +99,18 @@ function drawCurves(canvas, curves, run, view) {
 // Gravity is counted from its lowest frame, so that all four share one axis that begins at zero.
 function energyCurves(run) {
   const lowest = run.series.gravity.reduce((low, value) => (value !== null && value < low ? value : low), Infinity);
-  return Object.keys(energyColours).map((name) => ({
-    name, colour: energyColours[name],
-    values: name === "gravity" ? run.series.gravity.map((value) => (value === null ? null : value - lowest)) : run.series[name],
-  }));
+  return Object.keys(energyColours)
+      .map((name) => ({
+             name,
+             colour: energyColours[name],
+             values: name === "gravity" ? run.series.gravity.map((value) => (value === null ? null : value - lowest)) :
+                                          run.series[name],
+           }));
 }
 
 // Charts of a run in `parent`; the tops are shared by all runs so that they can be compared by eye.
-function makePlots(parent, run, { tops, range, terse }, seek, redraw) {
+function makePlots(parent, run, {tops, range, terse}, seek, redraw) {
+  parent.classList.toggle("terse", terse);
   const energy = chartElement(parent, "Energy [J]", true);
   const pairs = chartElement(parent, terse ? "Pairs" : "Intersecting pairs", false);
   const cost = chartElement(parent, terse ? "Time" : "Time a frame", false);
@@ -110,33 +122,41 @@ function makePlots(parent, run, { tops, range, terse }, seek, redraw) {
     energy.keys.append(key);
     return key.querySelector("b");
   });
-  const pairCurve = [{ values: run.pairs, colour: "--bad", filled: true }];
-  const costCurve = [{ values: run.series.seconds, colour: "--accent", filled: true }];
+  const pairCurve = [{values: run.pairs, colour: "--bad", filled: true}];
+  const costCurve = [{values: run.series.seconds, colour: "--accent", filled: true}];
   const total = run.series.seconds.reduce((sum, value) => sum + (value || 0), 0);
   const middle = [...run.series.seconds].sort((a, b) => a - b)[run.frames >> 1];
-  pairs.keys.textContent = `${run.selfAudited ? "" : "obstacles only, "}most in a frame ${largest(run.pairs)}`;
-  cost.keys.textContent = `median ${seconds(middle)}, all ${seconds(total)}`;
+  const most = largest(run.pairs), scope = run.selfAudited ? "" : "obstacles only, ";
+  pairs.keys.textContent = terse ? `${scope}most ${most}` : `${scope}most in a frame ${most}`;
+  cost.keys.textContent = terse ? `all ${seconds(total)}` : `median ${seconds(middle)}, all ${seconds(total)}`;
   let log = false;
   energy.button.addEventListener("click", () => {
     log = !log;
     energy.button.setAttribute("aria-pressed", log);
     redraw();
   });
-  for (const { canvas } of [energy, pairs, cost]) {
+  for (const {canvas} of [energy, pairs, cost]) {
     const go = (event) => {
       const share = (event.offsetX - 1) / (canvas.clientWidth - 3);
       seek(range.begin + Math.min(1, Math.max(0, share)) * (range.end - range.begin));
     };
-    canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); go(event); });
-    canvas.addEventListener("pointermove", (event) => { if (event.buttons) go(event); });
+    canvas.addEventListener("pointerdown", (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      go(event);
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      if (event.buttons) go(event);
+    });
   }
   return function show(frame) {
-    const view = { ...range, frame };
-    const joule = niceTop(tops.energy), most = niceTop(tops.pairs), slowest = niceTop(tops.seconds);
-    drawCurves(energy.canvas, curves, run, { ...view, top: joule, topText: `${short(joule)} J`, log });
-    drawCurves(pairs.canvas, pairCurve, run, { ...view, top: most, topText: tops.pairs > 0 ? short(most) : "" });
-    drawCurves(cost.canvas, costCurve, run, { ...view, top: slowest, topText: seconds(slowest) });
-    curves.forEach((curve, i) => { values[i].textContent = short(curve.values[frame]); });
+    const view = {...range, frame};
+    const joule = niceTop(tops.energy), crowd = niceTop(tops.pairs), slowest = niceTop(tops.seconds);
+    drawCurves(energy.canvas, curves, run, {...view, top: joule, topText: `${short(joule)} J`, log});
+    drawCurves(pairs.canvas, pairCurve, run, {...view, top: crowd, topText: tops.pairs > 0 ? String(crowd) : ""});
+    drawCurves(cost.canvas, costCurve, run, {...view, top: slowest, topText: seconds(slowest)});
+    curves.forEach((curve, i) => {
+      values[i].textContent = short(curve.values[frame]);
+    });
     pairs.value.textContent = `${run.pairs[frame]}`;
     cost.value.textContent = seconds(run.series.seconds[frame]);
   };

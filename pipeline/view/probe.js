@@ -15,7 +15,15 @@ function measure(renderer) {
     for (let k = 0; k < 4; ++k) hash = Math.imul(hash ^ pixels[i + k], 16777619);
   }
   const count = width * height, mean = sum / count;
-  return { width, height, covered: covered / count, red, mean, spread: Math.sqrt(Math.max(0, squares / count - mean * mean)), hash: hash >>> 0 };
+  return {
+    width,
+    height,
+    covered: covered / count,
+    red,
+    mean,
+    spread: Math.sqrt(Math.max(0, squares / count - mean * mean)),
+    hash: hash >>> 0
+  };
 }
 
 function probe(frames, slider, drawNow, renderer) {
@@ -23,7 +31,7 @@ function probe(frames, slider, drawNow, renderer) {
     slider.value = frame;
     slider.dispatchEvent(new Event("input"));
     drawNow();
-    return { asked: frame, shown: window.selvedge.frame, ...measure(renderer) };
+    return {asked: frame, shown: window.selvedge.frame, ...measure(renderer)};
   });
   const output = document.createElement("script");
   output.type = "application/json";

@@ -7,7 +7,12 @@ function framing(runs) {
   const all = solid.isEmpty() ? cloth.clone() : cloth.clone().union(solid.clone().intersect(near));
   const sphere = all.getBoundingSphere(new THREE.Sphere());
   const lowest = Math.min(cloth.min.y, solid.isEmpty() ? Infinity : solid.min.y);
-  return { centre: sphere.center, radius: Math.max(sphere.radius, 1e-3), floor: lowest - 0.004 * sphere.radius, box: all };
+  return {
+    centre: sphere.center,
+    radius: Math.max(sphere.radius, 1e-3),
+    floor: lowest - 0.004 * sphere.radius,
+    box: all
+  };
 }
 
 // Spacing 1, 2 or 5 times a power of ten near a quarter of the radius.
@@ -19,8 +24,11 @@ function gridSpacing(radius) {
 function makeGrid(frame, spacing) {
   const material = new THREE.ShaderMaterial({
     uniforms: {
-      centre: { value: frame.centre }, reach: { value: 5 * frame.radius }, spacing: { value: spacing },
-      ink: { value: new THREE.Color(0, 0, 0) }, strength: { value: 0.15 },
+      centre: {value: frame.centre},
+      reach: {value: 5 * frame.radius},
+      spacing: {value: spacing},
+      ink: {value: new THREE.Color(0, 0, 0)},
+      strength: {value: 0.15},
     },
     vertexShader: `varying vec3 place;
       void main() { place = position; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
@@ -34,7 +42,9 @@ function makeGrid(frame, spacing) {
         float line = max(0.55 * lines(place.xz / spacing, 1.0), lines(place.xz / (5.0 * spacing), 1.25));
         gl_FragColor = vec4(ink, line * fade * fade * strength);
       }`,
-    extensions: { derivatives: true }, transparent: true, depthWrite: false,
+    extensions: {derivatives: true},
+    transparent: true,
+    depthWrite: false,
   });
   const r = 5 * frame.radius, geometry = new THREE.BufferGeometry();
   const corner = (x, z) => [frame.centre.x + x * r, frame.floor, frame.centre.z + z * r];
@@ -43,10 +53,10 @@ function makeGrid(frame, spacing) {
   geometry.setAttribute("normal", new THREE.BufferAttribute(new Float32Array([0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0]), 3));
   geometry.setIndex([0, 1, 2, 0, 2, 3]);
   const grid = new THREE.Mesh(geometry, material);
-  const shadow = new THREE.Mesh(geometry, new THREE.ShadowMaterial({ opacity: 0.26, depthWrite: false }));
+  const shadow = new THREE.Mesh(geometry, new THREE.ShadowMaterial({opacity: 0.26, depthWrite: false}));
   shadow.receiveShadow = true;
   shadow.renderOrder = -1;
-  return { grid, shadow };
+  return {grid, shadow};
 }
 
 function makeLights(frame) {
@@ -60,7 +70,7 @@ function makeLights(frame) {
   key.shadow.radius = 3.5;
   key.shadow.bias = -0.0012;
   const r = 1.25 * frame.radius;
-  Object.assign(key.shadow.camera, { left: -r, right: r, top: r, bottom: -r, near: frame.radius, far: 6 * frame.radius });
+  Object.assign(key.shadow.camera, {left: -r, right: r, top: r, bottom: -r, near: frame.radius, far: 6 * frame.radius});
   const fill = new THREE.DirectionalLight(0xdfe9ff, 0.22);
   fill.position.copy(place(-0.9, 0.35, 0.5));
   fill.target.position.copy(frame.centre);
@@ -71,7 +81,7 @@ function makeLights(frame) {
 }
 
 function makeStage(canvas, runs) {
-  const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
+  const renderer = new THREE.WebGLRenderer({canvas, antialias: true, alpha: true});
   renderer.gammaOutput = true;
   renderer.autoClear = false;
   renderer.setClearColor(0x000000, 0);
@@ -90,8 +100,14 @@ function makeStage(canvas, runs) {
 
   const camera = new THREE.PerspectiveCamera(32, 1, 0.02 * frame.radius, 60 * frame.radius);
   const controls = new THREE.OrbitControls(camera, canvas);
-  Object.assign(controls, { enableDamping: true, dampingFactor: 0.12, enableKeys: false, screenSpacePanning: true,
-    minDistance: 0.05 * frame.radius, maxDistance: 20 * frame.radius });
+  Object.assign(controls, {
+    enableDamping: true,
+    dampingFactor: 0.12,
+    enableKeys: false,
+    screenSpacePanning: true,
+    minDistance: 0.05 * frame.radius,
+    maxDistance: 20 * frame.radius
+  });
   // Camera at an azimuth and elevation in degrees and a distance in units of the one that shows every frame's box.
   function look(azimuth, elevation, distance) {
     const a = THREE.Math.degToRad(azimuth), e = THREE.Math.degToRad(elevation);
@@ -104,7 +120,8 @@ function makeStage(canvas, runs) {
     const tall = Math.tan(THREE.Math.degToRad(camera.fov / 2)), wide = tall * camera.aspect;
     let away = 0;
     for (let corner = 0; corner < 8; ++corner) {
-      const c = new THREE.Vector3(...["x", "y", "z"].map((k, i) => frame.box[corner & (1 << i) ? "max" : "min"][k])).sub(frame.centre);
+      const c = new THREE.Vector3(...["x", "y", "z"].map((k, i) => frame.box[corner & (1 << i) ? "max" : "min"][k]))
+                    .sub(frame.centre);
       away = Math.max(away, c.dot(toward) + Math.max(Math.abs(c.dot(up)) / tall, Math.abs(c.dot(right)) / wide));
     }
     camera.position.copy(toward).multiplyScalar(1.03 * distance * away).add(frame.centre);
@@ -121,7 +138,7 @@ function makeStage(canvas, runs) {
     renderer.clear();
     renderer.setScissorTest(true);
     scenes.forEach((scene, i) => {
-      const { left, top, width, height } = rectangles[i];
+      const {left, top, width, height} = rectangles[i];
       if (width < 1 || height < 1) return;
       const bottom = canvas.clientHeight - top - height;
       renderer.setViewport(left, bottom, width, height);
@@ -137,5 +154,5 @@ function makeStage(canvas, runs) {
       uniforms.strength.value = dark ? 0.13 : 0.15;
     });
   }
-  return { renderer, camera, controls, figures, spacing, look, resize, draw, setDark };
+  return {renderer, camera, controls, figures, spacing, look, resize, draw, setDark};
 }

@@ -120,11 +120,11 @@ TEST_CASE("view: a trajectory file becomes a page named after its folder", "[vie
   const ViewOptions options = with_three_in(folder.path / "three");
   const Scene scene = fake::scene();
   std::filesystem::create_directories(folder.path / "silk-dress");
-  const std::filesystem::path file = folder.path / "silk-dress/trajectory.h5";
+  const std::filesystem::path file = folder.path / "silk-dress/run.h5";
   TrajectoryWriter writer(file, trajectory_info(scene, "", "hybrid-of-two", 30));
   for (int index = 0; index < 3; ++index) writer.append(fake::frame(scene, index));
   writer.close();
-  write_view({file}, folder.path / "page.html", options);
+  write_view({file.parent_path()}, folder.path / "page.html", options);
   const std::string page = read(folder.path / "page.html");
   for (const char* part : {"\"name\":\"silk-dress\"", "\"stepper\":\"hybrid-of-two\"", "\"self\":[0,1,2]",
                            "\"marked\":[[],[1],[0,1]]", "\"selfAudited\":true"})
