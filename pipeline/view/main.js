@@ -1,0 +1,202 @@
+// Puts the page together and plays it.
+
+// Errors are kept in the document too, where a headless browser can read them.
+const errors = [];
+function note(message) {
+  errors.push(String(message));
+  document.documentElement.dataset.errors = JSON.stringify(errors);
+}
+window.addEventListener("error", (event) => note(event.message));
+window.addEventListener("unhandledrejection", (event) => note(event.reason));
+const printError = console.error;
+console.error = (...parts) => {
+  note(parts.join(" "));
+  printError.apply(console, parts);
+};
+document.documentElement.dataset.errors = "[]";
+
+// A round top for the colours that nearly all frames stay under.
+function strainTop(runs) {
+  const tops = runs.flatMap((run) => run.series.maxStretch).filter((value) => value !== null).sort((a, b) => a - b);
+  const high = tops.length ? tops[Math.floor(0.9 * (tops.length - 1))] : 1.1;
+  return Math.min(3, 1 + Math.max(0.01, niceTop(high - 1)));
+}
+
+// The slider counts the frames of the run that ends last; with equal ends, of the one with most frames.
+function makeTimeline(runs) {
+  const longest = runs.reduce((best, run) => {
+    return run.end > best.end || (run.end === best.end && run.frames > best.frames) ? run : best;
+  });
+  const times = longest.series.time, last = times.length - 1;
+  runs.forEach((run) => {
+    run.ended = run.end < longest.end - 1e-9;
+  });
+  return {times, last, begin: times[0], end: times[last], spacing: 1 / longest.fps};
+}
+
+// The current frame and whether it advances by itself. `changed` is called after every change.
+function makePlayer(timeline, changed) {
+  const {times, last} = timeline;
+  const player = {frame: 0, playing: false};
+  let clock = timeline.begin;
+  player.go = (next) => {
+    player.frame = Math.min(last, Math.max(0, Math.round(next) || 0));
+    clock = times[player.frame];
+    changed();
+  };
+  player.seek = (time) => {
+    player.pause();
+    player.go(lastNotAbove(times, time + timeline.spacing / 2));
+  };
+  player.step = (by) => {
+    player.pause();
+    player.go(player.frame + by);
+  };
+  player.play = (on) => {
+    player.playing = on;
+    if (on && player.frame === last) player.go(0);
+    changed();
+  };
+  player.pause = () => player.play(false);
+  // The last frame stays for its own duration, then the run begins again.
+  player.advance = (duration) => {
+    clock += duration;
+    const next = lastNotAbove(times, clock);
+    if (clock > timeline.end + timeline.spacing) player.go(0);
+    else if (next !== player.frame) {
+      player.frame = next;
+      changed();
+    }
+  };
+  return player;
+}
+
+function initialLook(runs, options) {
+  return {
+    strain: options.flag("strain", false),
+    wire: options.flag("wire", false),
+    marks: options.flag("marks", true),
+    plots: options.flag("plots", runs.length === 1 || window.innerWidth > 700),
+    strainTop: Math.max(1.0001, options.number("top", strainTop(runs))),
+  };
+}
+
+// Tops of the charts' axes, over all runs.
+function chartTops(runs) {
+  return {
+    energy: Math.max(...runs.flatMap((run) => energyCurves(run).map((curve) => largest(curve.values)))),
+    pairs: Math.max(...runs.map((run) => largest(run.pairs))),
+    seconds: Math.max(...runs.map((run) => largest(run.series.seconds))),
+  };
+}
+
+// The page: everything on it, and how it is brought up to date. `stale` is set when something must be drawn again.
+function makePage(data, options) {
+  const runs = data.runs, timeline = makeTimeline(runs), look = initialLook(runs, options);
+  const page = {
+    runs,
+    timeline,
+    look,
+    stale: true,
+    redraw: () => {
+      page.stale = true;
+    }
+  };
+  const player = page.player = makePlayer(timeline, page.redraw);
+  const stage = page.stage = makeStage(element("canvas"), runs);
+  const panels = runs.map((run) => makePanel(run, `grid ${lengthText(stage.spacing)}`));
+  element("panels").append(...panels.map(({panel}) => panel));
+  panels[0].view.append(element("legend"));
+  const shared = {tops: chartTops(runs), range: timeline, terse: runs.length > 2};
+  const plots = runs.map((run, i) => makePlots(panels[i].charts, run, shared, player.seek, page.redraw));
+  const columns = runs.length === 4 ? 2 : Math.min(3, runs.length);
+
+  page.rectangles = () => {
+    const origin = element("stage").getBoundingClientRect();
+    return panels.map(({view}) => {
+      const box = view.getBoundingClientRect();
+      return {left: box.left - origin.left, top: box.top - origin.top, width: box.width, height: box.height};
+    });
+  };
+  page.arrange = () => {
+    const wanted = element("stage").clientWidth < 700 ? 1 : columns;
+    element("panels").style.gridTemplateColumns = `repeat(${wanted}, minmax(0, 1fr))`;
+    document.body.classList.toggle("no-plots", !look.plots);
+    stage.resize();
+    drawTicks(element("ticks"), runs, timeline.times);
+    page.redraw();
+  };
+  page.home = () => {
+    const [azimuth, elevation, distance] = (options.text("camera") || "30,20,1").split(",").map(Number);
+    const {width, height} = page.rectangles()[0];
+    stage.camera.aspect = width / Math.max(1, height);
+    stage.look(azimuth || 0, elevation || 0, distance || 1);
+    page.redraw();
+  };
+  page.setTheme = (theme) => {
+    document.documentElement.dataset.theme = theme;
+    stage.setDark(theme === "dark");
+    page.arrange();
+  };
+  page.draw = () => {
+    page.stale = false;
+    runs.forEach((run, i) => {
+      const own = frameAt(run, timeline.times[player.frame]), drawn = drawnAt(run, own);
+      stage.figures[i].show(drawn, look);
+      showChips(panels[i].chips, chipsOf(run, own, run.marked[drawn].length));
+      if (look.plots) plots[i](own);
+    });
+    stage.draw(page.rectangles());
+    showTransport(player, timeline);
+    element("legend").hidden = !look.strain;
+    document.documentElement.dataset.frame = player.frame;
+  };
+  return page;
+}
+
+function start() {
+  const data = loadRuns(), options = readOptions(), page = makePage(data, options), {player, stage} = page;
+  const runs = data.runs.length, names = data.runs.map((run) => run.name).join(", ");
+  document.title = `${names} \u00b7 selvedge`;
+  element("summary").textContent = `${runs} run${runs === 1 ? "" : "s"} \u00b7 version ${data.program}`;
+  drawStrainScale(element("legend-scale"));
+  bindControls(page);
+  window.addEventListener("resize", page.arrange);
+
+  page.setTheme(firstTheme(options));
+  page.home();
+  player.go(options.number("frame", 0));
+  player.play(options.flag("play", false));
+  window.selvedge = {
+    get frame() { return player.frame; },
+    setFrame(next) {
+      player.pause();
+      player.go(next);
+      page.draw();
+    },
+    ready: true,
+  };
+  page.draw();
+  if (options.text("probe"))
+    probe(options.text("probe").split(",").map(Number), element("frame"), page.draw, stage.renderer);
+  document.documentElement.dataset.ready = "1";
+
+  let before = performance.now();
+  const tick = (now) => {
+    const passed = Math.min(0.1, Math.max(0, now - before) / 1000);
+    before = now;
+    if (player.playing) player.advance(passed * Number(element("speed").value));
+    if (stage.controls.update()) page.redraw();
+    if (page.stale) page.draw();
+    requestAnimationFrame(tick);
+  };
+  requestAnimationFrame(tick);
+}
+
+try {
+  start();
+} catch (error) {
+  element("trouble").hidden = false;
+  element("trouble").textContent = `The page cannot be drawn: ${error.message}. It needs a browser with WebGL.`;
+  console.error(error);
+}

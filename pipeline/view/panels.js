@@ -1,0 +1,53 @@
+// A run's panel: its name and labels over the drawing, its plots below.
+
+function makePanel(run, scaleText) {
+  const panel = document.createElement("section");
+  panel.className = "panel";
+  panel.innerHTML = `
+    <div class="view">
+      <div class="name"></div><div class="detail"></div><div class="chips"></div><div class="scale"></div>
+    </div>
+    <div class="charts"></div>`;
+  panel.querySelector(".name").textContent = run.name;
+  panel.querySelector(".scale").textContent = scaleText;
+  const drawnEvery = run.drawn.length < run.frames ? `, drawn every ${run.drawn[1] - run.drawn[0]} frames` : "";
+  const count = (n, what) => `${n.toLocaleString("en")} ${what}`;
+  panel.querySelector(".detail").textContent = `${run.stepper} \u00b7 ${count(run.vertices, "vertices")}, ` +
+      `${count(run.triangles.length / 3, "triangles")}${drawnEvery}`;
+  return {
+    panel,
+    view: panel.querySelector(".view"),
+    chips: panel.querySelector(".chips"),
+    charts: panel.querySelector(".charts")
+  };
+}
+
+// What is worth saying about a frame, most important first: [text, class].
+function chipsOf(run, frame, marked) {
+  const at = (name) => run.series[name][frame], reason = at("reason") === "none" ? "" : at("reason").replace(/_/g, " ");
+  const range = ["minStretch", "maxStretch"].map((name) => (at(name) === null ? "\u2013" : at(name).toFixed(3)));
+  const plural = (n, word) => `${n} ${n === 1 ? word : word.replace(/ex$/, "ice")}${n === 1 ? "" : "s"}`;
+  const chips = [], pairs = run.pairs[frame];
+  if (at("nonfinite")) chips.push([`${plural(at("nonfinite"), "vertex")} not finite`, "bad"]);
+  if (pairs) chips.push([`${plural(pairs, "intersecting pair")}, ${plural(marked, "triangle")} marked`, "bad"]);
+  else chips.push([run.selfAudited ? "0 intersecting pairs" : "0 pairs with obstacles", "good"]);
+  if (!run.selfAudited) chips.push(["self: not audited", "warn"]);
+  if (at("vertexPairs")) chips.push([`${plural(at("vertexPairs"), "pair")} crossing at a shared vertex`, "warn"]);
+  if (at("inside")) chips.push([`${plural(at("inside"), "vertex")} inside an obstacle`, "bad"]);
+  if (at("fellBack")) chips.push([`fell back${reason ? `: ${reason}` : ""}`, "warn"]);
+  else if (reason) chips.push([reason, "warn"]);
+  if (at("by") && at("by") !== run.stepper) chips.push([`by ${at("by")}`, ""]);
+  chips.push([`stretch ${range[0]} to ${range[1]}`, ""]);
+  if (at("contacts")) chips.push([plural(at("contacts"), "contact"), ""]);
+  if (frame === run.frames - 1 && run.ended) chips.push(["ended", ""]);
+  return chips;
+}
+
+function showChips(parent, chips) {
+  parent.replaceChildren(...chips.map(([text, kind]) => {
+    const chip = document.createElement("span");
+    chip.className = `chip ${kind}`;
+    chip.textContent = text;
+    return chip;
+  }));
+}

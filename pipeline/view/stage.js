@@ -1,0 +1,158 @@
+// One renderer and one camera for all runs; each run is a scene drawn into its panel's rectangle.
+
+function framing(runs) {
+  const cloth = boundsOf(runs.flatMap((run) => run.boxes));
+  const solid = boundsOf(runs.flatMap((run) => run.obstacles.flatMap((body) => body.boxes)));
+  const near = cloth.clone().expandByScalar(0.35 * cloth.getSize(new THREE.Vector3()).length());
+  const all = solid.isEmpty() ? cloth.clone() : cloth.clone().union(solid.clone().intersect(near));
+  const sphere = all.getBoundingSphere(new THREE.Sphere());
+  const lowest = Math.min(cloth.min.y, solid.isEmpty() ? Infinity : solid.min.y);
+  return {
+    centre: sphere.center,
+    radius: Math.max(sphere.radius, 1e-3),
+    floor: lowest - 0.004 * sphere.radius,
+    box: all
+  };
+}
+
+// Spacing 1, 2 or 5 times a power of ten near a quarter of the radius.
+function gridSpacing(radius) {
+  const power = Math.pow(10, Math.floor(Math.log10(radius / 4)));
+  return power * [1, 2, 5, 10].find((factor) => factor * power >= radius / 4.2);
+}
+
+function makeGrid(frame, spacing) {
+  const material = new THREE.ShaderMaterial({
+    uniforms: {
+      centre: {value: frame.centre},
+      reach: {value: 5 * frame.radius},
+      spacing: {value: spacing},
+      ink: {value: new THREE.Color(0, 0, 0)},
+      strength: {value: 0.15},
+    },
+    vertexShader: `varying vec3 place;
+      void main() { place = position; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
+    fragmentShader: `varying vec3 place; uniform vec3 centre, ink; uniform float reach, spacing, strength;
+      float lines(vec2 at, float width) {
+        vec2 near = abs(fract(at - 0.5) - 0.5) / (fwidth(at) * width);
+        return 1.0 - min(min(near.x, near.y), 1.0);
+      }
+      void main() {
+        float fade = 1.0 - smoothstep(0.1, 1.0, length(place.xz - centre.xz) / reach);
+        float line = max(0.55 * lines(place.xz / spacing, 1.0), lines(place.xz / (5.0 * spacing), 1.25));
+        gl_FragColor = vec4(ink, line * fade * fade * strength);
+      }`,
+    extensions: {derivatives: true},
+    transparent: true,
+    depthWrite: false,
+  });
+  const r = 5 * frame.radius, geometry = new THREE.BufferGeometry();
+  const corner = (x, z) => [frame.centre.x + x * r, frame.floor, frame.centre.z + z * r];
+  const corners = [...corner(-1, -1), ...corner(-1, 1), ...corner(1, 1), ...corner(1, -1)];
+  geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(corners), 3));
+  geometry.setAttribute("normal", new THREE.BufferAttribute(new Float32Array([0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0]), 3));
+  geometry.setIndex([0, 1, 2, 0, 2, 3]);
+  const grid = new THREE.Mesh(geometry, material);
+  const shadow = new THREE.Mesh(geometry, new THREE.ShadowMaterial({opacity: 0.26, depthWrite: false}));
+  shadow.receiveShadow = true;
+  shadow.renderOrder = -1;
+  return {grid, shadow};
+}
+
+function makeLights(frame) {
+  const sky = new THREE.HemisphereLight(0xffffff, 0x8d8a86, 0.62);
+  const place = (x, y, z) => new THREE.Vector3(x, y, z).normalize().multiplyScalar(3 * frame.radius).add(frame.centre);
+  const key = new THREE.DirectionalLight(0xfff6ea, 0.62);
+  key.position.copy(place(0.55, 1.25, 0.7));
+  key.target.position.copy(frame.centre);
+  key.castShadow = true;
+  key.shadow.mapSize.set(1536, 1536);
+  key.shadow.radius = 3.5;
+  key.shadow.bias = -0.0012;
+  const r = 1.25 * frame.radius;
+  Object.assign(key.shadow.camera, {left: -r, right: r, top: r, bottom: -r, near: frame.radius, far: 6 * frame.radius});
+  const fill = new THREE.DirectionalLight(0xdfe9ff, 0.22);
+  fill.position.copy(place(-0.9, 0.35, 0.5));
+  fill.target.position.copy(frame.centre);
+  const rim = new THREE.DirectionalLight(0xffffff, 0.2);
+  rim.position.copy(place(-0.2, 0.6, -1));
+  rim.target.position.copy(frame.centre);
+  return [sky, key, key.target, fill, fill.target, rim, rim.target];
+}
+
+function makeStage(canvas, runs) {
+  const renderer = new THREE.WebGLRenderer({canvas, antialias: true, alpha: true});
+  renderer.gammaOutput = true;
+  renderer.autoClear = false;
+  renderer.setClearColor(0x000000, 0);
+  renderer.shadowMap.enabled = true;
+  renderer.shadowMap.type = THREE.PCFShadowMap;
+
+  const frame = framing(runs), spacing = gridSpacing(frame.radius);
+  const figures = runs.map(makeFigure);
+  const grids = [];
+  const scenes = figures.map((figure) => {
+    const scene = new THREE.Scene(), ground = makeGrid(frame, spacing);
+    scene.add(figure.group, ground.shadow, ground.grid, ...makeLights(frame));
+    grids.push(ground.grid.material.uniforms);
+    return scene;
+  });
+
+  const camera = new THREE.PerspectiveCamera(32, 1, 0.02 * frame.radius, 60 * frame.radius);
+  const controls = new THREE.OrbitControls(camera, canvas);
+  Object.assign(controls, {
+    enableDamping: true,
+    dampingFactor: 0.12,
+    enableKeys: false,
+    screenSpacePanning: true,
+    minDistance: 0.05 * frame.radius,
+    maxDistance: 20 * frame.radius
+  });
+  // Camera at an azimuth and elevation in degrees and a distance in units of the one that shows every frame's box.
+  function look(azimuth, elevation, distance) {
+    const a = THREE.Math.degToRad(azimuth), e = THREE.Math.degToRad(elevation);
+    const toward = new THREE.Vector3(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e));
+    controls.target.copy(frame.centre);
+    camera.position.copy(toward).add(frame.centre);
+    camera.lookAt(frame.centre);
+    const right = new THREE.Vector3(1, 0, 0).applyQuaternion(camera.quaternion);
+    const up = new THREE.Vector3(0, 1, 0).applyQuaternion(camera.quaternion);
+    const tall = Math.tan(THREE.Math.degToRad(camera.fov / 2)), wide = tall * camera.aspect;
+    let away = 0;
+    for (let corner = 0; corner < 8; ++corner) {
+      const c = new THREE.Vector3(...["x", "y", "z"].map((k, i) => frame.box[corner & (1 << i) ? "max" : "min"][k]))
+                    .sub(frame.centre);
+      away = Math.max(away, c.dot(toward) + Math.max(Math.abs(c.dot(up)) / tall, Math.abs(c.dot(right)) / wide));
+    }
+    camera.position.copy(toward).multiplyScalar(1.03 * distance * away).add(frame.centre);
+    controls.update();
+  }
+
+  function resize() {
+    renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+    renderer.setSize(canvas.clientWidth, canvas.clientHeight, false);
+  }
+  // Draws every scene into its rectangle, given in CSS pixels of the canvas.
+  function draw(rectangles) {
+    renderer.setScissorTest(false);
+    renderer.clear();
+    renderer.setScissorTest(true);
+    scenes.forEach((scene, i) => {
+      const {left, top, width, height} = rectangles[i];
+      if (width < 1 || height < 1) return;
+      const bottom = canvas.clientHeight - top - height;
+      renderer.setViewport(left, bottom, width, height);
+      renderer.setScissor(left, bottom, width, height);
+      camera.aspect = width / height;
+      camera.updateProjectionMatrix();
+      renderer.render(scene, camera);
+    });
+  }
+  function setDark(dark) {
+    grids.forEach((uniforms) => {
+      uniforms.ink.value.setScalar(dark ? 1 : 0);
+      uniforms.strength.value = dark ? 0.13 : 0.15;
+    });
+  }
+  return {renderer, camera, controls, figures, spacing, look, resize, draw, setDark};
+}
