@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <Eigen/SparseCore>
@@ -12,18 +13,19 @@ using Vec12 = Eigen::Matrix<double, 12, 1>;
 using Mat12 = Eigen::Matrix<double, 12, 12>;
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 
-// --- curvature form: physical stiffness B [N m], independent of the mesh's diagonals
-// ----------------------------------- Mean curvature normal at interior vertices by the cotangent Laplacian of the rest
-// metric; lumped areas, boundary area added to the nearest interior vertices. Flat rest shape: E = 1/2 sum_i B_i |(L
-// x)_i|^2 / A_i, constant Hessian (scalar) Q (x) I3. Curved rest shape: see CurvedVertex.
-struct CurvedVertex {             // E = 1/2 B / A ((L x) . n - rest)^2 with n the unit vertex normal
-  std::vector<int> nodes;         // the vertex first, then its ring in order
-  std::vector<double> laplacian;  // weights of (L x) over nodes
-  double stiffness = 0;           // B / A
-  double rest = 0;                // (L x_rest) . n_rest
+// Curvature form: physical stiffness B [N m], independent of the mesh's diagonals. Mean curvature normal at interior
+// vertices by the cotangent Laplacian L of the rest metric, (L x)_i / A_i with A_i the vertex's Voronoi cell. It counts
+// on the area W_i the vertex stands for: its own cell and those of the boundary vertices it is the nearest to.
+// Flat rest shape: E = 1/2 sum_i B_i W_i |(L x)_i / A_i|^2, constant Hessian Q (x) I3 (after Bergou et al. 2006).
+// Curved rest shape: see CurvedVertex. A component without interior vertices has no bending.
+struct CurvedVertex {      // E = 1/2 stiffness ((L x) . n - rest)^2 with n the area-weighted unit normal of the ring
+  std::vector<int> nodes;  // the vertex first, then its ring in order
+  std::vector<double> laplacian;  // weights of (L x) over nodes [1]
+  double stiffness = 0;           // B W / A^2 [N/m]
+  double rest = 0;                // (L x_rest) . n_rest [m]
 };
 struct CurvatureBending {
-  SparseMatrix flat;  // Q [N/m], n x n, symmetric positive semidefinite; empty where nothing is flat
+  SparseMatrix flat;  // Q [N/m], n x n, symmetric positive semidefinite; no entries where nothing is flat
   std::vector<CurvedVertex> curved;
 };
 CurvatureBending curvature_bending(const Scene&);  // cloths with BendingModel::curvature and bending > 0
@@ -32,8 +34,7 @@ double curved_energy(const CurvedVertex&, const Points& x);
 // gradient: 3k, hessian: 3k x 3k (Gauss-Newton, PSD), k = nodes.size(). Returns the energy.
 double curved_derivatives(const CurvedVertex&, const Points& x, Eigen::VectorXd& gradient, Eigen::MatrixXd* hessian);
 
-// --- hinge form: dihedral angle, the papers' weight k l^2 / (4 (A0 + A1)) * (theta - rest)^2 / 2
-// ------------------------
+// Hinge form: dihedral angle, the papers' weight k l^2 / (4 (A0 + A1)) * (theta - rest)^2 / 2.
 struct Hinge {
   std::array<int, 4> nodes;  // the edge's two ends, then the vertices opposite in its two triangles
   double weight = 0;         // k l^2 / (4 (A0 + A1)) with rest lengths and areas [N m]
@@ -41,8 +42,12 @@ struct Hinge {
 };
 std::vector<Hinge> hinges(const Scene&);  // cloths with BendingModel::hinge and bending > 0
 
+// In (-pi, pi]; zero where flat, positive where the surface is convex seen from the side of its normals (the edge runs
+// e0 -> e1 in the triangle with a). Zero where a triangle is degenerate.
 double dihedral_angle(const Vec3& e0, const Vec3& e1, const Vec3& a, const Vec3& b);
 double hinge_energy(const Hinge&, const Points& x);
+// Exact gradient; exact Hessian with psd = false. With psd = true a closed-form PSD bound of it: Gauss-Newton part plus
+// the clamped second derivative of the angle, triangle by triangle. Zero where a triangle is degenerate.
 double hinge_derivatives(const Hinge&, const Points& x, Vec12& gradient, Mat12* hessian, bool psd = true);
 
 }  // namespace selvedge

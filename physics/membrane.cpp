@@ -19,7 +19,7 @@ std::vector<MembraneElement> membrane_elements(const Scene& scene) {
       const double rest_area = std::abs(area(rest));
       if (!(rest_area > 1e-12 * edges.squaredNorm())) continue;
       const auto corners = scene.surface.triangles.row(t);
-      elements.push_back({{corners(0), corners(1), corners(2)}, edges.inverse(), rest_area, static_cast<int>(c)});
+      elements.push_back({{corners(0), corners(1), corners(2)}, edges.inverse(), rest_area, static_cast<int>(c), t});
     }
   }
   return elements;

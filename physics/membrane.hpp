@@ -16,6 +16,7 @@ struct MembraneElement {
   Eigen::Matrix2d inverse;  // of the rest edge matrix [1/m]
   double area = 0;          // rest area [m2]
   int material = 0;         // index of the cloth
+  int triangle = 0;         // index in the scene's surface
 };
 
 // Triangles of zero rest area carry no membrane energy and are left out.

@@ -16,10 +16,11 @@ struct Mesh {
 
 enum class Pattern { one_diagonal, alternating, jittered };  // jittered: one_diagonal with inner vertices moved
 
+// Jitter 0.25 of a cell is where the first triangle can lose its area.
 // columns x rows cells over width (u) x height (v), lying in the plane y = 0 with its normal up: (u, v) is at
 // (u, 0, -v). Vertex (i, j) is j * (columns + 1) + i.
 inline Mesh grid(int columns, int rows, double width, double height, Pattern pattern = Pattern::one_diagonal,
-                 double jitter = 0.25) {
+                 double jitter = 0.2) {
   Mesh mesh;
   std::mt19937 random(7);
   const auto noise = [&random, jitter] { return jitter * (2.0 * static_cast<double>(random()) / 4294967295.0 - 1); };
