@@ -60,7 +60,7 @@ class ConventionalStepper final : public Stepper {
  private:
   bool has_contact() const { return features_.self_contact || features_.obstacles; }
   int substeps_for(const State& from, const Drive& drive, double dt) const;
-  NewtonReport solve(const StepProblem& problem, std::vector<ContactTerm>& terms, Points& x);
+  NewtonReport solve(StepProblem problem, std::vector<ContactTerm>& terms, Points& x);
   bool substep(const Points& nodes0, const Points& v0, const Points& pins, const Drive& drive, double h, Points& nodes1,
                StepReport& report);
   void audit_state(const State& state, StepReport& report) const;
@@ -90,10 +90,13 @@ int ConventionalStepper::substeps_for(const State& from, const Drive& drive, dou
 }
 
 // Friction needs normal forces, and these the solution: a first solve gives them, a second one uses them.
-NewtonReport ConventionalStepper::solve(const StepProblem& problem, std::vector<ContactTerm>& terms, Points& x) {
-  NewtonReport first = solver_.solve(problem, x);
-  if (!features_.friction || terms.empty() || !first.finite) return first;
+NewtonReport ConventionalStepper::solve(StepProblem problem, std::vector<ContactTerm>& terms, Points& x) {
+  const bool twice = features_.friction && !terms.empty();
+  if (twice) problem.roughness = 8;
+  const NewtonReport first = solver_.solve(problem, x);
+  if (!twice || !first.finite) return first;
   lag_normal_forces(terms, x);
+  problem.roughness = 1;
   NewtonReport second = solver_.solve(problem, x);
   second.iterations += first.iterations;
   second.linear_iterations += first.linear_iterations;

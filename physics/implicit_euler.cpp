@@ -34,6 +34,10 @@ EnergyChange energy_change(const std::vector<double>& from, const std::vector<do
   return result;
 }
 
+double root_mean_square(const Points& points) {
+  return points.rows() > 0 ? std::sqrt(points.squaredNorm() / static_cast<double>(points.rows())) : 0.0;
+}
+
 double largest_row(const Points& points) {
   return points.rows() > 0 ? std::sqrt(points.rowwise().squaredNorm().maxCoeff()) : 0.0;
 }
@@ -182,7 +186,7 @@ NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
   impl.start(problem);
   report.finite = impl.choose_first_guess(x);
   if (!report.finite) return report;
-  const double goal = impl.options.velocity_tolerance * problem.h;
+  const double goal = impl.options.velocity_tolerance * problem.h * problem.roughness;
   while (true) {
     const bool go_on = !report.converged && report.iterations < impl.options.max_newton;
     derivatives(impl.step, x, impl.scratch, impl.gradient, go_on ? &impl.hessian : nullptr);
@@ -197,7 +201,7 @@ NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
     const bool accurate = impl.find_direction(report);
     if (!impl.line_search(x)) break;
     ++report.iterations;
-    report.converged = accurate && largest_row(impl.motion) < goal;
+    report.converged = accurate && root_mean_square(impl.motion) < goal;
   }
   report.residual = largest_row(impl.gradient);
   return report;

@@ -14,9 +14,9 @@ enum class LinearSolver { automatic, cholmod, pcg };
 struct ImplicitEulerOptions {
   double velocity_tolerance =
       2e-3;  // Newton ends when its largest displacement is below this times the time step [m/s]
-  int max_newton = 12;
+  int max_newton = 8;
   LinearSolver linear_solver = LinearSolver::automatic;
-  double linear_tolerance = 0.05;  // relative residual of PCG in a Newton iteration
+  double linear_tolerance = 0.1;  // relative residual of PCG in a Newton iteration
   int max_linear = 2000;
   double slip_speed = 1e-3;  // below it lagged friction is viscous [m/s]
 };
@@ -37,6 +37,7 @@ struct StepProblem {
   Vec3 acceleration = Vec3::Zero();
   Vec3 wind = Vec3::Zero();
   std::span<const ContactTerm> contacts;
+  double roughness = 1;  // times the tolerance: for a solve that only feeds another one
 };
 
 // Minimises the incremental potential
