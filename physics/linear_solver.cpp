@@ -134,14 +134,15 @@ LinearSystemSolver::~LinearSystemSolver() = default;
 LinearSolver LinearSystemSolver::chosen() const { return impl_->chosen; }
 
 LinearReport LinearSystemSolver::solve(const LinearSystem& system, std::span<const Mat3> diagonal, const Points& right,
-                                       double tolerance, int max_iterations, Points& x) {
+                                       double tolerance, int max_iterations, Points& x, Definite definite) {
   Impl& impl = *impl_;
   LinearReport report;
   if (impl.chosen == LinearSolver::cholmod) {
     if (impl.solve_direct(system, diagonal, right, x)) return {true, 1};
+    if (definite == Definite::perhaps) return {false, 1};
   } else {
     report = impl.solve_iterative(impl.single, system, diagonal, right, tolerance, max_iterations, x);
-    if (report.converged) return report;
+    if (report.converged || definite == Definite::perhaps) return report;
     if (impl.solve_direct(system, diagonal, right, x)) return {true, report.iterations + 1};
   }
   if (!impl.full) impl.full = std::make_unique<Iterative<double>>();
