@@ -26,7 +26,6 @@ struct Cholesky::Impl {
   Impl() {
     cholmod_start(&common);
     common.print = 0;
-    common.supernodal = CHOLMOD_SUPERNODAL;
     common.error_handler = nullptr;
   }
   ~Impl() {

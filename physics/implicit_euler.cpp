@@ -17,6 +17,8 @@ namespace {
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 constexpr double sufficient_decrease = 1e-4;  // Armijo
 constexpr int max_halvings = 40;
+constexpr double almost_linear = 0.7;  // change over slope; 0.5 where the quadratic model is exact
+constexpr double max_length = 16;
 constexpr int first_exact = 3;  // Newton iterations with filtered Hessians before the exact one is tried
 
 struct EnergyChange {
@@ -111,7 +113,7 @@ struct ImplicitEuler::Impl {
   bool solve_linear(Definite, NewtonReport&);
   enum class Direction { none, rough, accurate };  // none: x is the minimiser to rounding
   Direction find_direction(const Points& x, NewtonReport&);
-  bool line_search(Points& x);
+  double line_search(Points& x);
 };
 
 ImplicitEuler::ImplicitEuler(const Scene& scene, const ImplicitEulerOptions& options)
@@ -185,20 +187,33 @@ ImplicitEuler::Impl::Direction ImplicitEuler::Impl::find_direction(const Points&
   return Direction::rough;
 }
 
-// Moves x along `motion` until the potential has sunk enough; false if no step did.
-bool ImplicitEuler::Impl::line_search(Points& x) {
+// Moves x along `motion` until the potential has sunk enough; the step length, or 0 if no step did. Filtered Hessians
+// overrate the stiffness of buckling cloth: where the potential sinks almost linearly, longer steps are tried.
+double ImplicitEuler::Impl::line_search(Points& x) {
   const double slope = gradient.cwiseProduct(motion).sum();
-  double length = 1;
-  for (int halving = 0; halving < max_halvings; ++halving, length *= 0.5) {
+  const auto try_length = [&](double length) {
     trial = x + length * motion;
     energies(step, trial, scratch, trial_energy);
-    const EnergyChange e = energy_change(energy, trial_energy);
-    if (!std::isfinite(e.change) || e.change > sufficient_decrease * length * slope + e.noise) continue;
-    std::swap(x, trial);
-    std::swap(energy, trial_energy);
-    return true;
+    return energy_change(energy, trial_energy);
+  };
+  double length = 1;
+  EnergyChange best = try_length(length);
+  const auto enough = [&] {
+    return std::isfinite(best.change) && best.change <= sufficient_decrease * length * slope + best.noise;
+  };
+  for (int halving = 0; halving < max_halvings && !enough(); ++halving) best = try_length(length *= 0.5);
+  if (!enough()) return 0;
+  std::vector<double> best_energy = trial_energy;
+  while (length >= 1 && length < max_length && best.change < almost_linear * length * slope - best.noise) {
+    const EnergyChange longer = try_length(2 * length);
+    if (!(longer.change < best.change)) break;
+    best = longer;
+    length *= 2;
+    best_energy.swap(trial_energy);
   }
-  return false;
+  x += length * motion;
+  energy.swap(best_energy);
+  return length;
 }
 
 NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
@@ -216,9 +231,11 @@ NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
       report.converged = true;
       break;
     }
-    if (!impl.line_search(x)) break;
+    const double length = impl.line_search(x);
+    if (length == 0) break;
     ++report.iterations;
-    report.converged = direction == Impl::Direction::accurate && largest_row(impl.motion) < goal;
+    report.converged =
+        direction == Impl::Direction::accurate && std::max(length, 1.0) * largest_row(impl.motion) < goal;
   }
   derivatives(impl.step, x, impl.scratch, impl.gradient, nullptr);
   report.residual = largest_row(impl.gradient);
