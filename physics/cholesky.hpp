@@ -5,7 +5,7 @@
 
 namespace selvedge {
 
-// Sparse Cholesky factorisation: CHOLMOD, supernodal where that pays, its BLAS held to one thread. In a build without SuiteSparse
+// Sparse Cholesky factorisation: CHOLMOD, supernodal, its BLAS held to one thread. In a build without SuiteSparse
 // available() is false and every call returns false.
 class Cholesky {
  public:
