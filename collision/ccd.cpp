@@ -39,12 +39,19 @@ double rounding(const Motion& m, const std::array<Vec3, 4>& x0, const std::array
   return 4 * (std::nextafter(world, std::numeric_limits<double>::infinity()) - world) + 32 * epsilon * local;
 }
 
-// Vector from the second primitive's closest point to the first's.
-Vec3 separation(PairKind kind, const Motion& m, double time) {
+// Directions in which the primitives may be told apart.
+struct Separation {
+  Vec3 closest;  // from the second primitive's closest point to the first's
+  Vec3 normal;   // of the face or of both edges, to the same side
+};
+
+Separation separation(PairKind kind, const Motion& m, double time) {
   const std::array<Vec3, 4> x{m.at(0, time), m.at(1, time), m.at(2, time), m.at(3, time)};
-  const Closest closest =
-      kind == PairKind::vertex_face ? point_triangle(x[0], x[1], x[2], x[3]) : edge_edge(x[0], x[1], x[2], x[3]);
-  return closest.weights[0] * x[0] + closest.weights[1] * x[1] + closest.weights[2] * x[2] + closest.weights[3] * x[3];
+  const bool face = kind == PairKind::vertex_face;
+  const Closest c = face ? point_triangle(x[0], x[1], x[2], x[3]) : edge_edge(x[0], x[1], x[2], x[3]);
+  const Vec3 closest = c.weights[0] * x[0] + c.weights[1] * x[1] + c.weights[2] * x[2] + c.weights[3] * x[3];
+  const Vec3 normal = face ? (x[2] - x[1]).cross(x[3] - x[1]) : (x[1] - x[0]).cross(x[3] - x[2]);
+  return {closest, normal.dot(closest) < 0 ? Vec3(-normal) : normal};
 }
 
 // The time from which on the slab of thickness `limit` across `direction` may no longer keep the primitives apart;
@@ -70,11 +77,13 @@ std::optional<double> time_of_contact(PairKind kind, const std::array<Vec3, 4>& 
   double limit = min_separation + slack;
   double time = 0;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
-    const Vec3 apart = separation(kind, motion, time);
-    const double distance = apart.norm();
+    const Separation apart = separation(kind, motion, time);
+    const double distance = apart.closest.norm();
     if (iteration == 0 && distance <= limit + slack) limit = 0.5 * distance + slack;
     if (!(distance > limit)) return time;
-    const double until = separated_until(motion, apart / distance, time, limit);
+    double until = separated_until(motion, apart.closest / distance, time, limit);
+    // A short vector between closest points has lost its direction in rounding long before a normal does.
+    if (!(until > time)) until = separated_until(motion, apart.normal.normalized(), time, limit);
     if (until > 1) return std::nullopt;
     if (!(until > time)) return time;
     time = until;

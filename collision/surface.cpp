@@ -98,20 +98,29 @@ bool is_closed(const Surface& s) {
 }
 
 std::vector<std::vector<int>> boundary_loops(const Surface& s) {
-  std::vector<int> next(s.vertex_count, -1);
-  for (int t = 0; t < s.triangles.rows(); ++t)
+  std::vector<std::vector<int>> out(s.vertex_count);  // ends of the boundary edges that leave a vertex, last one first
+  for (int t = static_cast<int>(s.triangles.rows()) - 1; t >= 0; --t)
     for (int k = 0; k < 3; ++k)
-      if (s.edge_triangles[s.triangle_edges(t, k)][1] < 0) next[s.triangles(t, k)] = s.triangles(t, (k + 1) % 3);
+      if (s.edge_triangles[s.triangle_edges(t, k)][1] < 0)
+        out[s.triangles(t, k)].push_back(s.triangles(t, (k + 1) % 3));
   std::vector<std::vector<int>> loops;
+  std::vector<int> place(s.vertex_count, -1);  // in the walk
   for (int v = 0; v < s.vertex_count; ++v) {
-    std::vector<int> loop;
-    for (int w = v; next[w] >= 0;) {
-      loop.push_back(w);
-      const int following = next[w];
-      next[w] = -1;
-      w = following;
+    std::vector<int> walk;
+    for (int w = v;;) {
+      if (place[w] >= 0) {  // closes a loop, which a vertex of two loops does before the walk is back at its start
+        const auto first = walk.begin() + place[w];
+        loops.emplace_back(first, walk.end());
+        for (int left : loops.back()) place[left] = -1;
+        walk.erase(first, walk.end());
+      }
+      if (out[w].empty()) break;
+      place[w] = static_cast<int>(walk.size());
+      walk.push_back(w);
+      w = out[w].back();
+      out[walk.back()].pop_back();
     }
-    if (!loop.empty()) loops.push_back(std::move(loop));
+    for (int left : walk) place[left] = -1;
   }
   return loops;
 }

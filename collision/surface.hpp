@@ -36,7 +36,8 @@ Surface make_surface(int vertex_count, const Triangles& triangles);
 
 bool is_closed(const Surface&);  // every edge has exactly two triangles
 
-// Closed loops of boundary vertices, each in the direction of its triangles' edges.
+// Closed loops of boundary vertices, each in the direction of its triangles' edges and each vertex at most once in a
+// loop. Edges that do not close, which only triangles of clashing orientation have, are left out.
 std::vector<std::vector<int>> boundary_loops(const Surface&);
 
 // Area-weighted unit vertex normals, n x 3; zero at isolated vertices.

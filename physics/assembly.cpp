@@ -57,9 +57,10 @@ void store(const Elastic& elastic, int e, const Gradient& gradient, const Hessia
 }
 
 void derivatives_of_chunk(const Elastic& elastic, const Points& x, int begin, int end, bool forces, bool pairs,
-                          HessianWeight weighting, AssemblyScratch& scratch) {
+                          HessianForm form, AssemblyScratch& scratch) {
   const int hinges_begin = static_cast<int>(elastic.membrane.size());
   const int curved_begin = hinges_begin + static_cast<int>(elastic.hinges.size());
+  const bool psd = form != HessianForm::exact;
   Vec9 gradient9;
   Mat9 hessian9;
   Vec12 gradient12;
@@ -67,13 +68,14 @@ void derivatives_of_chunk(const Elastic& elastic, const Points& x, int begin, in
   Eigen::VectorXd gradient;
   Eigen::MatrixXd hessian;
   for (int e = begin; e < end; ++e) {
-    const double weight = weighting == HessianWeight::damping ? elastic.element_damping[e] : 1;
+    const double weight = form == HessianForm::damping ? elastic.element_damping[e] : 1;
     if (e < hinges_begin) {
       const MembraneElement& element = elastic.membrane[e];
-      membrane_derivatives(elastic.materials[element.material], element, x, gradient9, pairs ? &hessian9 : nullptr);
+      membrane_derivatives(elastic.materials[element.material], element, x, gradient9, pairs ? &hessian9 : nullptr,
+                           psd);
       store(elastic, e, gradient9, hessian9, weight, forces, pairs, scratch);
     } else if (e < curved_begin) {
-      hinge_derivatives(elastic.hinges[e - hinges_begin], x, gradient12, pairs ? &hessian12 : nullptr);
+      hinge_derivatives(elastic.hinges[e - hinges_begin], x, gradient12, pairs ? &hessian12 : nullptr, psd);
       store(elastic, e, gradient12, hessian12, weight, forces, pairs, scratch);
     } else {
       curved_derivatives(elastic.curved[e - curved_begin], x, gradient, pairs ? &hessian : nullptr);
@@ -147,7 +149,7 @@ void append_elastic_energies(const Elastic& elastic, const Points& x, std::vecto
 }
 
 void elastic_derivatives(const Elastic& elastic, const Points& x, AssemblyScratch& scratch, Points* gradient,
-                         PairBlocks* hessian, HessianWeight weighting) {
+                         PairBlocks* hessian, HessianForm form) {
   const int count = element_count(elastic), tasks = chunks_of(count), vertices = static_cast<int>(x.rows());
   const int pairs = static_cast<int>(elastic.pattern.pairs.size());
   if (gradient) {
@@ -162,8 +164,7 @@ void elastic_derivatives(const Elastic& elastic, const Points& x, AssemblyScratc
   {
 #pragma omp for schedule(static)
     for (int c = 0; c < tasks; ++c)
-      derivatives_of_chunk(elastic, x, c * chunk, std::min(count, (c + 1) * chunk), gradient, hessian, weighting,
-                           scratch);
+      derivatives_of_chunk(elastic, x, c * chunk, std::min(count, (c + 1) * chunk), gradient, hessian, form, scratch);
     if (gradient) {
 #pragma omp for schedule(static) nowait
       for (int i = 0; i < vertices; ++i) {

@@ -33,14 +33,16 @@ struct AssemblyScratch {
   PairBlocks pairs;
 };
 
-enum class HessianWeight { one, damping };  // damping: each element times its cloth's stiffness damping
+// filtered: each element made PSD; exact: as it is (curved vertices stay Gauss-Newton); damping: filtered, each element
+// times its cloth's stiffness damping.
+enum class HessianForm { filtered, exact, damping };
 
 // Appends one sum a chunk of elements [J]: their total is the elastic energy, and the total of their differences is a
 // change of energy with little rounding.
 void append_elastic_energies(const Elastic&, const Points& x, std::vector<double>& energies);
 
-// Gradient (n x 3, written, Q included) and PSD Hessian of the elements (written, Q not included); either may be null.
+// Gradient (n x 3, written, Q included) and Hessian of the elements (written, Q not included); either may be null.
 void elastic_derivatives(const Elastic&, const Points& x, AssemblyScratch&, Points* gradient, PairBlocks* hessian,
-                         HessianWeight = HessianWeight::one);
+                         HessianForm = HessianForm::filtered);
 
 }  // namespace selvedge

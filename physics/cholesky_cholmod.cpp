@@ -26,7 +26,7 @@ struct Cholesky::Impl {
   Impl() {
     cholmod_start(&common);
     common.print = 0;
-    common.supernodal = CHOLMOD_SUPERNODAL;
+    common.supernodal = CHOLMOD_SUPERNODAL;  // the other kind takes indefinite matrices without a word
     common.error_handler = nullptr;
   }
   ~Impl() {

@@ -17,6 +17,9 @@ namespace {
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 constexpr double sufficient_decrease = 1e-4;  // Armijo
 constexpr int max_halvings = 40;
+constexpr double almost_linear = 0.7;  // change over slope; 0.5 where the quadratic model is exact
+constexpr double max_length = 16;
+constexpr int first_exact = 3;  // Newton iterations with filtered Hessians before the exact one is tried
 
 struct EnergyChange {
   double change = 0;  // [J]
@@ -92,6 +95,7 @@ struct ImplicitEuler::Impl {
   Points gradient, motion, trial;
   std::vector<double> energy, trial_energy;
   std::vector<char> drifting;
+  int exact_from = 0, exact_wait = 0;  // Newton iterations until the exact Hessian is tried
 
   Impl(const Scene& s, const ImplicitEulerOptions& o, const Eigen::VectorXd& m)
       : scene(s),
@@ -103,10 +107,17 @@ struct ImplicitEuler::Impl {
   void start(const StepProblem& problem) {
     prepare(scene, elastic, masses, problem, options.slip_speed, scratch, step);
     drifting = drifting_components(scene, step);
+    exact_from = exact_wait = first_exact;
+  }
+  LinearSystem system() const {
+    return {elastic.pattern, hessian,       step.diagonal, elastic.flat,
+            step.flat_scale, step.contacts, step.lists,    step.free};
   }
   bool choose_first_guess(Points& x);
-  bool find_direction(NewtonReport&);
-  bool line_search(Points& x);
+  bool solve_linear(Definite, NewtonReport&);
+  enum class Direction { none, rough, accurate };  // none: x is the minimiser to rounding
+  Direction find_direction(const Points& x, NewtonReport&);
+  double line_search(Points& x);
 };
 
 ImplicitEuler::ImplicitEuler(const Scene& scene, const ImplicitEulerOptions& options)
@@ -146,36 +157,67 @@ bool ImplicitEuler::Impl::choose_first_guess(Points& x) {
   return std::isfinite(std::min(guess, ballistic)) && x.allFinite();
 }
 
-// Solves for the Newton step, `motion`; true if it is as accurate as asked for. It always leads downhill.
-bool ImplicitEuler::Impl::find_direction(NewtonReport& report) {
-  const LinearSystem system{elastic.pattern, hessian,       step.diagonal, elastic.flat,
-                            step.flat_scale, step.contacts, step.lists,    step.free};
+// One linear solve for the Newton step; true if it is as accurate as asked for.
+bool ImplicitEuler::Impl::solve_linear(Definite definite, NewtonReport& report) {
   const LinearReport solved =
-      linear.solve(system, diagonal, -gradient, options.linear_tolerance, options.max_linear, motion);
+      linear.solve(system(), diagonal, -gradient, options.linear_tolerance, options.max_linear, motion, definite);
   report.linear_iterations += solved.iterations;
-  correct_translations(scene, step, drifting, gradient, motion);
-  const bool downhill = motion.allFinite() && gradient.cwiseProduct(motion).sum() < 0;
-  if (!downhill)
-    for (int i = 0; i < motion.rows(); ++i)
-      motion.row(i) = step.free[i] ? Eigen::RowVector3d(-(diagonal[i].inverse() * row(gradient, i)).transpose())
-                                   : Eigen::RowVector3d::Zero();
-  return solved.converged && downhill;
+  return solved.converged;
 }
 
-// Moves x along `motion` until the potential has sunk enough; false if no step did.
-bool ImplicitEuler::Impl::line_search(Points& x) {
+// Assembles at x and solves for the Newton step. Filtered Hessians always lead downhill but converge slowly where cloth
+// is compressed; the exact one converges quadratically where it is positive definite, so it is tried once Newton had
+// time to come near (projection on demand, after Longva et al. 2023), and ever less often where it fails.
+ImplicitEuler::Impl::Direction ImplicitEuler::Impl::find_direction(const Points& x, NewtonReport& report) {
+  for (const HessianForm form : {HessianForm::exact, HessianForm::filtered}) {
+    const bool exact = form == HessianForm::exact;
+    if (exact && report.iterations < exact_from) continue;
+    derivatives(step, x, scratch, gradient, &hessian, form);
+    diagonal_blocks(system(), diagonal);
+    if (below_rounding(gradient, diagonal, x)) return Direction::none;
+    const bool accurate = solve_linear(exact ? Definite::perhaps : Definite::yes, report);
+    correct_translations(scene, step, drifting, gradient, motion);
+    const bool downhill = motion.allFinite() && gradient.cwiseProduct(motion).sum() < 0;
+    if (accurate && downhill) return Direction::accurate;
+    if (exact) {
+      exact_from = report.iterations + exact_wait;
+      exact_wait *= 2;
+    } else if (!downhill) {
+      for (int i = 0; i < motion.rows(); ++i)
+        motion.row(i) = step.free[i] ? Eigen::RowVector3d(-(diagonal[i].inverse() * row(gradient, i)).transpose())
+                                     : Eigen::RowVector3d::Zero();
+    }
+  }
+  return Direction::rough;
+}
+
+// Moves x along `motion` until the potential has sunk enough; the step length, or 0 if no step did. Filtered Hessians
+// overrate the stiffness of buckling cloth: where the potential sinks almost linearly, longer steps are tried.
+double ImplicitEuler::Impl::line_search(Points& x) {
   const double slope = gradient.cwiseProduct(motion).sum();
-  double length = 1;
-  for (int halving = 0; halving < max_halvings; ++halving, length *= 0.5) {
+  const auto try_length = [&](double length) {
     trial = x + length * motion;
     energies(step, trial, scratch, trial_energy);
-    const EnergyChange e = energy_change(energy, trial_energy);
-    if (!std::isfinite(e.change) || e.change > sufficient_decrease * length * slope + e.noise) continue;
-    std::swap(x, trial);
-    std::swap(energy, trial_energy);
-    return true;
+    return energy_change(energy, trial_energy);
+  };
+  double length = 1;
+  EnergyChange best = try_length(length);
+  const auto enough = [&] {
+    return std::isfinite(best.change) && best.change <= sufficient_decrease * length * slope + best.noise;
+  };
+  for (int halving = 0; halving < max_halvings && !enough(); ++halving) best = try_length(length *= 0.5);
+  if (!enough()) return 0;
+  std::vector<double> best_energy = trial_energy;
+  while (length >= 1 && length < max_length && best.change < almost_linear * length * slope - best.noise) {
+    const EnergyChange longer = try_length(2 * length);
+    if (!(longer.change < best.change)) break;
+    best = longer;
+    length *= 2;
+    best_energy.swap(trial_energy);
   }
-  return false;
+  x += length * motion;
+  energy.swap(best_energy);
+  return length;
 }
 
 NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
@@ -187,22 +229,19 @@ NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
   report.finite = impl.choose_first_guess(x);
   if (!report.finite) return report;
   const double goal = impl.options.velocity_tolerance * problem.h * problem.roughness;
-  while (true) {
-    const bool go_on = !report.converged && report.iterations < impl.options.max_newton;
-    derivatives(impl.step, x, impl.scratch, impl.gradient, go_on ? &impl.hessian : nullptr);
-    if (!go_on) break;
-    diagonal_blocks({impl.elastic.pattern, impl.hessian, impl.step.diagonal, impl.elastic.flat, impl.step.flat_scale,
-                     impl.step.contacts, impl.step.lists, impl.step.free},
-                    impl.diagonal);
-    if (below_rounding(impl.gradient, impl.diagonal, x)) {
+  while (!report.converged && report.iterations < impl.options.max_newton) {
+    const auto direction = impl.find_direction(x, report);
+    if (direction == Impl::Direction::none) {
       report.converged = true;
       break;
     }
-    const bool accurate = impl.find_direction(report);
-    if (!impl.line_search(x)) break;
+    const double length = impl.line_search(x);
+    if (length == 0) break;
     ++report.iterations;
-    report.converged = accurate && root_mean_square(impl.motion) < goal;
+    report.converged =
+        direction == Impl::Direction::accurate && std::max(length, 1.0) * root_mean_square(impl.motion) < goal;
   }
+  derivatives(impl.step, x, impl.scratch, impl.gradient, nullptr);
   report.residual = largest_row(impl.gradient);
   return report;
 }

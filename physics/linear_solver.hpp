@@ -7,6 +7,8 @@
 
 namespace selvedge {
 
+enum class Definite { yes, perhaps };
+
 struct LinearReport {
   bool converged = false;
   int iterations = 0;  // of PCG; a direct solve counts as one
@@ -24,9 +26,10 @@ class LinearSystemSolver {
   // Solves A x = right; `diagonal` are the blocks of diagonal_blocks(). x is zero on rows that are not free. PCG stops
   // when the residual's preconditioner norm has fallen by `tolerance`; it works in float, refined in double where the
   // tolerance asks for that, and hands over to CHOLMOD (or to double PCG) where it does not get there. Where nothing
-  // gets there, x is the best direction found: finite, and zero if there was none.
+  // gets there, x is the best direction found: finite, and zero if there was none. A matrix that is only perhaps
+  // positive definite gets one attempt.
   LinearReport solve(const LinearSystem&, std::span<const Mat3> diagonal, const Points& right, double tolerance,
-                     int max_iterations, Points& x);
+                     int max_iterations, Points& x, Definite = Definite::yes);
 
  private:
   struct Impl;

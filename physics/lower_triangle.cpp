@@ -45,6 +45,8 @@ bool update_pattern(const LinearSystem& system, LowerTriangle& lower) {
       next.free_index[i] = static_cast<int>(next.vertex.size());
       next.vertex.push_back(i);
     }
+  for (const ContactBlock& contact : system.contacts) next.contact_nodes.push_back(contact.nodes);
+  if (next.free_index == lower.free_index && next.contact_nodes == lower.contact_nodes) return false;
   const int blocks = static_cast<int>(next.vertex.size());
   std::vector<std::vector<int>> below(blocks);
   for_each_coupling(system, [&](int i, int j) {
@@ -64,8 +66,6 @@ bool update_pattern(const LinearSystem& system, LowerTriangle& lower) {
       next.column_begin.push_back(static_cast<int>(next.row.size()));
     }
   }
-  if (next.vertex == lower.vertex && next.block_begin == lower.block_begin && next.block_row == lower.block_row)
-    return false;
   lower = std::move(next);
   return true;
 }

@@ -47,7 +47,7 @@ void prepare_damping(const Scene& scene, StepScratch& scratch, StepPotential& st
   step.flat_scale.assign(vertices, 1.0);
   const auto positive = [](double damping) { return damping > 0; };
   if (std::none_of(elastic.vertex_damping.begin(), elastic.vertex_damping.end(), positive)) return;
-  elastic_derivatives(elastic, *step.problem->x0, scratch.assembly, nullptr, &step.damping, HessianWeight::damping);
+  elastic_derivatives(elastic, *step.problem->x0, scratch.assembly, nullptr, &step.damping, HessianForm::damping);
   for (Mat3& block : step.damping) block /= h;
   if (elastic.flat.rows() == 0) return;
   step.flat_damping.resize(vertices);
@@ -144,9 +144,10 @@ void energies(const StepPotential& step, const Points& x, StepScratch& scratch, 
   }
 }
 
-void derivatives(StepPotential& step, const Points& x, StepScratch& scratch, Points& gradient, PairBlocks* hessian) {
+void derivatives(StepPotential& step, const Points& x, StepScratch& scratch, Points& gradient, PairBlocks* hessian,
+                 HessianForm form) {
   const Points& x0 = *step.problem->x0;
-  elastic_derivatives(*step.elastic, x, scratch.assembly, &gradient, hessian);
+  elastic_derivatives(*step.elastic, x, scratch.assembly, &gradient, hessian, form);
   if (!step.damping.empty()) scratch.motion = x - x0;
   const int vertices = static_cast<int>(x.rows()), contacts = static_cast<int>(step.contacts.size());
   scratch.contact_forces.resize(contacts);

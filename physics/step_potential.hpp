@@ -45,6 +45,7 @@ void prepare(const Scene&, const Elastic&, const Eigen::VectorXd& masses, const 
 void energies(const StepPotential&, const Points& x, StepScratch&, std::vector<double>& energies);
 
 // Gradient [N], zero where not free; with hessian its pair blocks, and the contacts' stiffness in potential.contacts.
-void derivatives(StepPotential&, const Points& x, StepScratch&, Points& gradient, PairBlocks* hessian);
+void derivatives(StepPotential&, const Points& x, StepScratch&, Points& gradient, PairBlocks* hessian,
+                 HessianForm = HessianForm::filtered);
 
 }  // namespace selvedge

@@ -88,12 +88,14 @@ TEST_CASE("ccd: no false negative on queries with exact truth", "[ccd][data]") {
     return;
   }
   int queries = 0, hits = 0, missed = 0, spurious = 0;
+  double farthest = 0;  // distance where a contact was reported
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
     if (entry.path().extension() != ".csv") continue;
     const bool edges = entry.path().parent_path().filename() == "edge-edge";
     for (const Query& query : read_queries(entry.path())) {
-      const bool found =
-          time_of_contact(edges ? PairKind::edge_edge : PairKind::vertex_face, query.x0, query.x1, 0).has_value();
+      const PairKind kind = edges ? PairKind::edge_edge : PairKind::vertex_face;
+      const auto found = time_of_contact(kind, query.x0, query.x1, 0);
+      if (found) farthest = std::max(farthest, distance(kind, between(query.x0, query.x1, *found)));
       ++queries;
       hits += query.hit;
       missed += query.hit && !found;
@@ -104,7 +106,9 @@ TEST_CASE("ccd: no false negative on queries with exact truth", "[ccd][data]") {
   CHECK(queries > 1000);
   CHECK(hits > 0);
   CHECK(missed == 0);
+  // These sets graze on purpose: what is reported without truth comes within rounding of contact.
   CHECK(spurious < queries / 10);
+  CHECK(farthest < 2e-8);
 }
 
 TEST_CASE("ccd: never late and rarely early on random motions, from 1e-3 to 1e3", "[ccd]") {

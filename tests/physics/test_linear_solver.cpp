@@ -225,7 +225,7 @@ TEST_CASE("One and two threads solve with the same bits", "[linear_solver][threa
 
 TEST_CASE("CHOLMOD asked for where it is absent is an error", "[linear_solver]") {
   if (Cholesky::available())
-    CHECK(LinearSystemSolver(LinearSolver::automatic, 100).chosen() == LinearSolver::cholmod);
+    CHECK(LinearSystemSolver(LinearSolver::automatic, 50).chosen() == LinearSolver::cholmod);
   else
     CHECK_THROWS_AS(LinearSystemSolver(LinearSolver::cholmod, 100), Error);
   CHECK(LinearSystemSolver(LinearSolver::automatic, 100000).chosen() == LinearSolver::pcg);
