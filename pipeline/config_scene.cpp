@@ -123,4 +123,15 @@ std::vector<const Section*> scene_sections() {
   return found;
 }
 
+std::string scene_reference() {
+  std::string page;
+  for (const Section* section : scene_sections()) {
+    page += "### " + section->name + "\n\n";
+    if (!section->about.empty()) page += section->about + "\n\n";
+    if (!section->shorthand.empty()) page += "A plain value stands for `" + section->shorthand + "`.\n\n";
+    page += section_markdown(*section) + "\n";
+  }
+  return page;
+}
+
 }  // namespace selvedge
