@@ -47,7 +47,8 @@ std::vector<Hinge> hinges(const Scene&);  // cloths with BendingModel::hinge and
 double dihedral_angle(const Vec3& e0, const Vec3& e1, const Vec3& a, const Vec3& b);
 double hinge_energy(const Hinge&, const Points& x);
 // Exact gradient; exact Hessian with psd = false. With psd = true a closed-form PSD bound of it: Gauss-Newton part plus
-// the clamped second derivative of the angle, triangle by triangle. Zero where a triangle is degenerate.
+// the clamped second derivative of the angle, triangle by triangle. Zero where a triangle is degenerate; bounded for
+// slivers (height below 1e-4 of the edge), where it is no longer exact.
 double hinge_derivatives(const Hinge&, const Points& x, Vec12& gradient, Mat12* hessian, bool psd = true);
 
 }  // namespace selvedge

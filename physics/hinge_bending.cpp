@@ -15,8 +15,6 @@
 namespace selvedge {
 namespace {
 
-using Mat34 = Eigen::Matrix<double, 3, 4>;
-
 // Heights below this fraction of the edge count as this fraction: a sliver's force stays bounded.
 constexpr double smallest_height = 1e-4;
 

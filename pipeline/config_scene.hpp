@@ -10,5 +10,7 @@ const Section& scene_section();
 const Section& material_file_section();
 // Every section of a scene file in the order of docs/scene.md, the scene itself first.
 std::vector<const Section*> scene_sections();
+// All of them as Markdown: the second half of docs/scene.md.
+std::string scene_reference();
 
 }  // namespace selvedge

@@ -37,8 +37,8 @@ Triangles to_triangles(const std::vector<std::array<int, 3>>&);
 
 using Points2 = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
-// Moves every free vertex by up to `amount` [m] without turning a triangle over, then flips edges until the mesh is
-// Delaunay (Lawson 1977). With period > 0 the first coordinate wraps round.
+// Moves every free vertex by up to `amount` [m] without turning a triangle over, smooths a little, and flips edges
+// until the mesh is Delaunay (Lawson 1977). With period > 0 the first coordinate wraps round.
 void make_unstructured(Points2& uv, Triangles&, const std::vector<bool>& fixed, double amount, std::uint64_t seed,
                        double period = 0);
 

@@ -25,26 +25,43 @@ double twice_area(const Points2& uv, const Triangles& triangles, int t, double p
 // Numbers in [0, 1) that are the same on every machine, which standard distributions are not.
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
+// Moves a vertex, by less if a triangle round it would lose more than 60 % of its area.
+void move_safely(Points2& uv, const Triangles& triangles, const Surface& surface, int v, Eigen::RowVector2d move,
+                 double period) {
+  const Eigen::RowVector2d start = uv.row(v);
+  std::vector<double> least;
+  for (const int t : surface.triangles_of(v)) least.push_back(0.4 * twice_area(uv, triangles, t, period));
+  for (int attempt = 0; attempt < 4; ++attempt, move *= 0.5) {
+    uv.row(v) = start + move;
+    bool upright = true;
+    std::size_t k = 0;
+    for (const int t : surface.triangles_of(v)) upright = upright && twice_area(uv, triangles, t, period) > least[k++];
+    if (upright) return;
+  }
+  uv.row(v) = start;
+}
+
 void shake(Points2& uv, const Triangles& triangles, const std::vector<bool>& fixed, double amount, std::uint64_t seed,
            double period) {
   const Surface surface = make_surface(static_cast<int>(uv.rows()), triangles);
-  std::vector<double> least(static_cast<std::size_t>(triangles.rows()));
-  for (int t = 0; t < triangles.rows(); ++t)
-    least[static_cast<std::size_t>(t)] = 0.4 * twice_area(uv, triangles, t, period);
   std::mt19937_64 random(seed);
   for (int v = 0; v < uv.rows(); ++v) {
     const double angle = 2 * std::numbers::pi * uniform(random), length = amount * std::sqrt(uniform(random));
+    if (!fixed[static_cast<std::size_t>(v)])
+      move_safely(uv, triangles, surface, v, {length * std::cos(angle), length * std::sin(angle)}, period);
+  }
+}
+
+// Moves every free vertex part of the way to the mean of its neighbours: opens the smallest angles.
+void smooth(Points2& uv, const Triangles& triangles, const std::vector<bool>& fixed, double part, double period) {
+  const Surface surface = make_surface(static_cast<int>(uv.rows()), triangles);
+  for (int v = 0; v < uv.rows(); ++v) {
     if (fixed[static_cast<std::size_t>(v)]) continue;
-    const Eigen::RowVector2d start = uv.row(v);
-    Eigen::RowVector2d move(length * std::cos(angle), length * std::sin(angle));
-    for (int attempt = 0; attempt < 4; ++attempt, move *= 0.5) {
-      uv.row(v) = start + move;
-      bool upright = true;
-      for (const int t : surface.triangles_of(v))
-        upright = upright && twice_area(uv, triangles, t, period) > least[static_cast<std::size_t>(t)];
-      if (upright) break;
-      uv.row(v) = start;
-    }
+    Eigen::RowVector2d sum = Eigen::RowVector2d::Zero();  // each neighbour comes twice round an inner vertex
+    for (const int t : surface.triangles_of(v))
+      for (int k = 0; k < 3; ++k) sum += across(uv, v, triangles(t, k), period).transpose();
+    const double count = 2 * static_cast<double>(surface.triangles_of(v).size());
+    move_safely(uv, triangles, surface, v, part / count * sum, period);
   }
 }
 
@@ -84,9 +101,14 @@ int flip_sweep(const Points2& uv, Triangles& triangles, double period) {
 
 void make_unstructured(Points2& uv, Triangles& triangles, const std::vector<bool>& fixed, double amount,
                        std::uint64_t seed, double period) {
+  const auto make_delaunay = [&] {
+    while (flip_sweep(uv, triangles, period) > 0) {
+    }
+  };
   shake(uv, triangles, fixed, amount, seed, period);
-  while (flip_sweep(uv, triangles, period) > 0) {
-  }
+  make_delaunay();
+  smooth(uv, triangles, fixed, 0.4, period);
+  make_delaunay();
 }
 
 }  // namespace selvedge

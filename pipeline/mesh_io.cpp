@@ -4,14 +4,13 @@
 #include <fstream>
 #include <sstream>
 
-#include <unistd.h>
-
 #include <fmt/format.h>
 
 #include "collision/error.hpp"
 #include "collision/surface.hpp"
 #include "pipeline/mesh_obj.hpp"
 #include "pipeline/mesh_ply.hpp"
+#include "pipeline/write_file.hpp"
 
 namespace selvedge {
 namespace {
@@ -74,19 +73,6 @@ void note_topology(Mesh& mesh, const std::string& name) {
     mesh.warnings.push_back(fmt::format("{}: {} isolated vertices (in no triangle)", name, surface.isolated_vertices));
 }
 
-void write_beside_and_rename(const fs::path& path, const std::string& content) {
-  const fs::path beside = path.string() + fmt::format(".{}.part", ::getpid());
-  std::ofstream out(beside, std::ios::binary | std::ios::trunc);
-  out.write(content.data(), static_cast<std::streamsize>(content.size()));
-  out.close();
-  std::error_code problem;
-  if (out) fs::rename(beside, path, problem);
-  if (out && !problem) return;
-  std::error_code ignored;
-  fs::remove(beside, ignored);
-  throw Error("cannot be written", path.string(), "check the folder, its permissions and the free space");
-}
-
 }  // namespace
 
 Mesh read_mesh(const fs::path& path) {
@@ -104,11 +90,11 @@ Mesh read_mesh(const fs::path& path) {
 }
 
 void write_obj(const fs::path& path, const Points& x, const Triangles& triangles) {
-  write_beside_and_rename(path, obj_text(x, triangles));
+  write_file(path, obj_text(x, triangles));
 }
 
 void write_ply(const fs::path& path, const Points& x, const Triangles& triangles) {
-  write_beside_and_rename(path, ply_text(x, triangles));
+  write_file(path, ply_text(x, triangles));
 }
 
 }  // namespace selvedge

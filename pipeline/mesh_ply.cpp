@@ -250,6 +250,7 @@ Mesh parse_ply(std::string_view text, const std::string& name) {
   r.name = name;
   r.text = text;
   const std::vector<Element> elements = read_header(r);
+  ++r.line;  // values of a text file are read from here on
   Mesh mesh;
   std::vector<std::array<int, 3>> triangles;
   std::vector<double> largest;

@@ -47,6 +47,7 @@ Sequence one_frame(Points x, Triangles triangles) { return {{std::move(x)}, std:
 // A body at rest is a sequence of one frame.
 Sequence read_body(const Config& section, const std::filesystem::path& folder, std::vector<std::string>& warnings) {
   if (section["sequence"].given) return read_sequence(section["sequence"], folder, warnings);
+  if (section["trajectory"].given) return read_recorded(section["trajectory"], folder);
   if (const Config& file = section["mesh"]; file.given) {
     const Mesh mesh = read_mesh(existing_path(file["file"], folder));
     warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());

@@ -28,4 +28,7 @@ Points sequence_at(const Sequence&, double time);  // linear between frames, hel
 // A `sequence` section; throws Error naming the file whose faces differ from the first one's.
 Sequence read_sequence(const Config& section, const std::filesystem::path& folder, std::vector<std::string>& warnings);
 
+// A `trajectory` section: a cloth or an obstacle of an earlier run.
+Sequence read_recorded(const Config& section, const std::filesystem::path& folder);
+
 }  // namespace selvedge

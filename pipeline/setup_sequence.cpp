@@ -8,6 +8,7 @@
 #include "pipeline/setup_motion.hpp"
 #include "pipeline/setup_obstacle.hpp"
 #include "pipeline/setup_paths.hpp"
+#include "pipeline/trajectory_hdf5.hpp"
 
 namespace selvedge {
 namespace {
@@ -70,6 +71,52 @@ Sequence read_sequence(const Config& section, const std::filesystem::path& folde
           file.string(), "an obstacle keeps its faces while it moves; used by " + section.where);
     }
     sequence.frames.push_back(unit * mesh.x);
+  }
+  return sequence;
+}
+
+namespace {
+
+// A cloth or an obstacle of a run: the obstacle's number, or the cloth's range of vertices and triangles.
+struct RecordedPart {
+  int obstacle = -1;
+  int first_vertex = 0, vertex_count = 0;
+  Triangles triangles;
+};
+
+RecordedPart recorded_part(const Config& section, const TrajectoryInfo& info) {
+  std::vector<std::string> names;
+  for (const TrajectoryInfo::Body& body : info.obstacles) names.push_back(body.name);
+  names.insert(names.end(), info.cloth_names.begin(), info.cloth_names.end());
+  const Config& part = section["part"];
+  const bool alone = info.obstacles.size() == 1 || names.size() == 1;
+  if (!part.given && !alone) section.fail("does not say which part of the run it is", "add part: " + joined(names));
+  const std::string name = part.given ? part.text() : names.front();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end())
+    part.fail("names the unknown part `" + name + "`", "parts: " + joined(names) + suggestion(name, names));
+  const auto index = static_cast<std::size_t>(found - names.begin());
+  if (index < info.obstacles.size())
+    return {static_cast<int>(index), 0, info.obstacles[index].vertex_count, info.obstacles[index].triangles};
+  const std::size_t c = index - info.obstacles.size();
+  const int v = info.cloth_first_vertex[c], t = info.cloth_first_triangle[c];
+  return {-1, v, info.cloth_first_vertex[c + 1] - v,
+          info.triangles.middleRows(t, info.cloth_first_triangle[c + 1] - t).array() - v};
+}
+
+}  // namespace
+
+Sequence read_recorded(const Config& section, const std::filesystem::path& folder) {
+  const std::filesystem::path file = existing_path(section["file"], folder);
+  const TrajectoryReader reader(file);
+  const RecordedPart part = recorded_part(section, reader.info());
+  if (reader.frame_count() == 0) throw Error("has no frames", file.string(), "used by " + section.where);
+  const double unit = read_unit(section["unit"]);
+  Sequence sequence{{}, part.triangles, reader.info().fps};
+  for (int f = 0; f < reader.frame_count(); ++f) {
+    const Frame frame = reader.frame(f);
+    const PointsF& x = part.obstacle >= 0 ? frame.obstacles[static_cast<std::size_t>(part.obstacle)] : frame.x;
+    sequence.frames.push_back(unit * x.middleRows(part.first_vertex, part.vertex_count).cast<double>());
   }
   return sequence;
 }

@@ -46,7 +46,7 @@ function bindToggle(id, key, look, change) {
 function bindKeys(actions) {
   window.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (event.target.matches("input[type=number], select")) return;
+    if (event.target instanceof Element && event.target.matches("input[type=number], select")) return;
     const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (!action) return;
     event.preventDefault();

@@ -64,6 +64,25 @@ void check_quiet(const Shot& shot) {
   CHECK(shot.log.find("THREE.") == std::string::npos);
 }
 
+// A user's hands: every button and key, each followed by the frame that is then current.
+constexpr const char* hands = R"(<script>
+const seen = [];
+const note = () => seen.push(window.selvedge.frame);
+const key = (name, shiftKey) => { document.body.dispatchEvent(
+    new KeyboardEvent("keydown", {key: name, shiftKey, bubbles: true})); note(); };
+const click = (id) => { document.getElementById(id).click(); note(); };
+["forward", "forward", "back", "strain", "wire", "marks", "plots", "theme", "reset"].forEach(click);
+key("ArrowRight"); key("ArrowRight", true); key("ArrowLeft"); key("End"); key("Home"); key(" "); key(" ");
+document.querySelector(".chart button").click();
+window.selvedge.setFrame(24); note();
+document.documentElement.dataset.hands = seen.join(" ");
+</script></body>)";
+
+std::string with_hands(std::string page) {
+  const std::string end = "</body>";
+  return page.replace(page.rfind(end), end.size(), hands);
+}
+
 }  // namespace
 
 TEST_CASE("view: the page draws in a browser, and the slider changes the drawing", "[view][browser]") {
@@ -73,7 +92,7 @@ TEST_CASE("view: the page draws in a browser, and the slider changes the drawing
     return;
   }
   const fake::Folder folder("view_browser");
-  const std::filesystem::path page = folder.path / "page.html";
+  const std::filesystem::path page = folder.path / "page.html", handled = folder.path / "handled.html";
   ViewRun marked = fake::draping_run("marked", 16, 30);
   marked.info.self_audited = false;
   marked.frame = [frame = marked.frame](int index) {
@@ -84,7 +103,9 @@ TEST_CASE("view: the page draws in a browser, and the slider changes the drawing
     return f;
   };
   try {
-    std::ofstream(page) << view_page({fake::draping_run("first", 20, 30), marked});
+    const std::string text = view_page({fake::draping_run("first", 20, 30), marked});
+    std::ofstream(page) << text;
+    std::ofstream(handled) << with_hands(text);
   } catch (const Error& absent) {
     WARN("skipped: " << absent.what());
     return;
@@ -104,8 +125,10 @@ TEST_CASE("view: the page draws in a browser, and the slider changes the drawing
   CHECK(drawn[2]["red"] == 0);
   CHECK(drawn[3]["red"] > 0);
 
-  const Shot late = open(chromium, page, "theme=light&frame=24&strain=1&wire=1");
+  const Shot late = open(chromium, handled, "theme=light&frame=0");
   check_quiet(late);
+  CHECK(late.dom.find("data-hands=\"1 2 1 1 1 1 1 1 1 2 12 11 29 0 0 0 24\"") != std::string::npos);
+  CHECK(late.dom.find("data-theme=\"dark\"") != std::string::npos);
   CHECK(late.dom.find("data-frame=\"24\"") != std::string::npos);
   CHECK(late.dom.find(">self: not audited<") != std::string::npos);
   CHECK(late.dom.find(">6 intersecting pairs, 6 triangles marked<") != std::string::npos);

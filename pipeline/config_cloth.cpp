@@ -1,0 +1,150 @@
+#include "pipeline/config_tables.hpp"
+
+#include "physics/scene.hpp"
+
+// Defaults of materials are read from the struct that holds them; a default that is written here has its only place
+// here.
+namespace selvedge::table {
+
+std::vector<Key> material_values() {
+  const Material m;
+  return {
+      number("density", Unit::areal_density, positive, show(m.density), "mass per area"),
+      word("membrane", {"stvk", "stable_neo_hookean", "baraff_witkin"}, "stvk", "in-plane model"),
+      number("youngs_modulus", Unit::stiffness, not_negative, "",
+             "Young's modulus times thickness; with `poisson` in place of the Lame coefficients"),
+      number("poisson", Unit::none, {.low = 0, .high = 1, .high_in = false}, "", "Poisson's ratio, plane stress"),
+      number("lame_mu", Unit::stiffness, not_negative, show(m.lame_mu), "membrane shear modulus, thickness included"),
+      number("lame_lambda", Unit::stiffness, not_negative, show(m.lame_lambda),
+             "first Lame coefficient of the membrane, thickness included"),
+      number("warp", Unit::stiffness, not_negative, show(m.warp), "baraff_witkin: stretch stiffness along u"),
+      number("weft", Unit::stiffness, not_negative, show(m.weft), "baraff_witkin: stretch stiffness along v"),
+      number("shear", Unit::stiffness, not_negative, show(m.shear), "baraff_witkin: shear stiffness"),
+      word("bending_model", {"curvature", "hinge"}, "curvature",
+           "`curvature`: physical and independent of the mesh; `hinge`: dihedral angles, as in the papers"),
+      number("bending", Unit::bending, not_negative, show(m.bending), "bending stiffness per width"),
+      number("stiffness_damping", Unit::time, not_negative, show(m.stiffness_damping),
+             "Rayleigh: damping force is this times the stiffness times the velocity"),
+      number("mass_damping", Unit::rate, not_negative, show(m.mass_damping),
+             "Rayleigh: damping force is this times the mass times the velocity"),
+  };
+}
+
+namespace {
+
+const Section& material_section() {
+  static const Section table{
+      "material",
+      "By name, by value, or by name with values that replace the named material's.",
+      "name",
+      {},
+      std::vector<Key>{text("name",
+                            "a material file without its extension, looked for in `materials/` beside the "
+                            "scene file, beside its folder, and in the program's own"),
+                       path("file", "a material file")} +
+          material_values()};
+  return table;
+}
+
+std::vector<Key> triangulation_keys() {
+  return {word("triangulation", {"one_diagonal", "alternating", "unstructured"}, "alternating", "how it is cut"),
+          integer("seed", not_negative, "1", "of the unstructured triangulation")};
+}
+
+const Section& rectangle_section() {
+  static const Section table{
+      "rectangle",
+      "Horizontal, normal up, centred at the origin. Groups: left, right, top (-z), bottom, boundary, center, "
+      "top_left, top_right, bottom_left, bottom_right.",
+      "",
+      {},
+      std::vector<Key>{pair("size", Unit::length, "[1, 1]", "along x and z"),
+                       integers("resolution", {.low = 2}, 2, "vertices along x and z; in place of `edge`"),
+                       edge_key("0.02")} +
+          triangulation_keys()};
+  return table;
+}
+
+const Section& disc_section() {
+  static const Section table{
+      "disc",
+      "Horizontal, normal up, centred at the origin. Groups: boundary, center.",
+      "",
+      {},
+      std::vector<Key>{number("radius", Unit::length, positive, "0.5", ""),
+                       integers("resolution", {.low = 1}, 1, "rings of vertices round the centre; in place of `edge`"),
+                       edge_key("0.02")} +
+          triangulation_keys()};
+  return table;
+}
+
+const Section& tube_section() {
+  static const Section table{
+      "tube",
+      "Round the y axis, centred at the origin, normals outward. Groups: top, bottom, boundary.",
+      "",
+      {},
+      std::vector<Key>{
+          number("radius", Unit::length, positive, "0.2", ""), number("height", Unit::length, positive, "1", "along y"),
+          integers("resolution", {.low = 2}, 2, "vertices round (at least 6) and along; in place of `edge`"),
+          edge_key("0.02")} +
+          triangulation_keys()};
+  return table;
+}
+
+const Section& rest_section() {
+  static const Section table{
+      "rest",
+      "The shape in which a cloth has no stress.",
+      "from",
+      {},
+      {word("from", {"initial", "uv", "mesh"}, "initial",
+            "`initial`: as made or read; `uv`: the texture coordinates are the flat pattern; `mesh`: another file"),
+       number("uv_unit", Unit::length, positive, "1", "length of one unit of the texture coordinates"),
+       path("file", "for `mesh`: same vertices and faces as the cloth"), unit_key(),
+       flag("flat", true,
+            "bending rests flat; false keeps the angles of the rest shape (all cloths of a scene alike)")}};
+  return table;
+}
+
+const Section& box_region_section() {
+  static const Section table{"box_region",
+                             "",
+                             "",
+                             {},
+                             {needed(vector("min", Unit::length, "", "lowest corner")),
+                              needed(vector("max", Unit::length, "", "highest corner"))}};
+  return table;
+}
+
+const Section& pin_section() {
+  static const Section table{
+      "pin",
+      "Vertices that are held, or moved as prescribed. A vertex that two pins name obeys the first.",
+      "",
+      {"vertices", "box", "group"},
+      {integers("vertices", not_negative, 1 << 30, "indices in the cloth, from 0"),
+       renamed(section(box_region_section(), "", "all vertices in a box of space, as placed"), "box"),
+       texts("group", "named groups of the cloth"), section(motion_section(), "", "left out: at rest")}};
+  return table;
+}
+
+}  // namespace
+
+const Section& cloth_section() {
+  static const Section table{
+      "cloth",
+      "Exactly one of rectangle, disc, tube and mesh says where it comes from.",
+      "",
+      {"rectangle", "disc", "tube", "mesh"},
+      std::vector<Key>{text("name", "left out: cloth0, cloth1, ..."), section(rectangle_section(), "", "a sheet"),
+                       section(disc_section(), "", "a round sheet"), section(tube_section(), "", "a sleeve"),
+                       section(mesh_section(), "", "a file")} +
+          placement_keys() +
+          std::vector<Key>{vector("velocity", Unit::speed, "[0, 0, 0]", "at the start"),
+                           section(material_section(), "{}", ""), section(rest_section(), "{}", ""),
+                           sections("pins", pin_section(), "[]", "")}};
+  return table;
+}
+
+}  // namespace selvedge::table

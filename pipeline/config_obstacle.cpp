@@ -1,0 +1,81 @@
+#include "pipeline/config_tables.hpp"
+
+namespace selvedge::table {
+namespace {
+
+const Section& plane_section() {
+  static const Section table{"plane",
+                             "A horizontal sheet, normal up.",
+                             "",
+                             {},
+                             {pair("size", Unit::length, "[4, 4]", "along x and z"), edge_key("0.25")}};
+  return table;
+}
+
+const Section& sphere_section() {
+  static const Section table{
+      "sphere", "", "", {}, {number("radius", Unit::length, positive, "0.3", ""), edge_key("0.03")}};
+  return table;
+}
+
+const Section& capsule_section() {
+  static const Section table{
+      "capsule",
+      "A cylinder along y with round ends.",
+      "",
+      {},
+      {number("radius", Unit::length, positive, "0.1", ""),
+       number("length", Unit::length, not_negative, "0.5", "without the ends"), edge_key("0.03")}};
+  return table;
+}
+
+const Section& box_section() {
+  static const Section table{
+      "box", "", "", {}, {vector("size", Unit::length, "[1, 1, 1]", "along x, y and z"), edge_key("0.1")}};
+  return table;
+}
+
+const Section& sequence_section() {
+  static const Section table{
+      "sequence",
+      "One mesh a frame, all with the same faces; positions between frames are linear in time, the last is held.",
+      "",
+      {"pattern", "files"},
+      {path("pattern", "path with one %d or %0Nd for the number"),
+       integer("first", not_negative, "0", "first number of the pattern"),
+       integer("count", at_least_one, "", "how many; left out: as many as there are"), texts("files", "the paths"),
+       number("fps", Unit::rate, positive, "30", "frames a second of the sequence"), unit_key()}};
+  return table;
+}
+
+const Section& trajectory_section() {
+  static const Section table{
+      "trajectory",
+      "A cloth or an obstacle of an earlier run.",
+      "file",
+      {},
+      {needed(path("file", "the HDF5 file")),
+       text("part", "its name in that run; left out: the only obstacle or, without obstacles, the only cloth"),
+       unit_key()}};
+  return table;
+}
+
+}  // namespace
+
+const Section& obstacle_section() {
+  static const Section table{
+      "obstacle",
+      "Exactly one of plane, sphere, capsule, box, mesh, sequence and trajectory says what it is; shapes are centred "
+      "at the origin before they are placed.",
+      "",
+      {"plane", "sphere", "capsule", "box", "mesh", "sequence", "trajectory"},
+      std::vector<Key>{text("name", "left out: obstacle0, obstacle1, ..."), section(plane_section(), "", ""),
+                       section(sphere_section(), "", ""), section(capsule_section(), "", ""),
+                       section(box_section(), "", ""), section(mesh_section(), "", "a file"),
+                       section(sequence_section(), "", "moving meshes"),
+                       section(trajectory_section(), "", "an earlier run")} +
+          placement_keys() + std::vector<Key>{section(motion_section(), "", "left out: at rest")}};
+  return table;
+}
+
+}  // namespace selvedge::table

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "tests/pipeline/fake_run.hpp"
+
+namespace selvedge::fake {
+
+inline std::filesystem::path write(const Folder& folder, const std::string& name, const std::string& content) {
+  std::ofstream(folder.path / name, std::ios::binary) << content;
+  return folder.path / name;
+}
+
+inline std::string whole(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+// Where the open data lie; they may be absent.
+inline std::filesystem::path open_data() {
+  const char* set = std::getenv("SELVEDGE_DATA");
+  return set && *set ? std::filesystem::path(set)
+                     : std::filesystem::path(SELVEDGE_SOURCE_DIR) / ".." / "shared" / "data";
+}
+
+}  // namespace selvedge::fake
