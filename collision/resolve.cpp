@@ -1,25 +1,13 @@
 #include "collision/resolve.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <deque>
 #include <map>
 
+#include "collision/stopwatch.hpp"
+
 namespace selvedge {
 namespace {
-
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 // The work of one resolve call: what is known of the motion and of its impacts.
 struct Resolution {
@@ -29,10 +17,9 @@ struct Resolution {
   const ResolveOptions& options;
   const Points& x0;
   Points& x1;
-  std::vector<NodePair>& candidates;
+  PathPairs& path;
   ResolveReport report;
   Stopwatch watch;
-  Points searched;             // x1 at the last pair search
   std::vector<char> moved;     // nodes whose path changed since their pairs were tested
   std::deque<Impact> impacts;  // all that zones hold
   ZoneSets zones;
@@ -42,40 +29,44 @@ struct Resolution {
 
 // Boxes reach half the thickness beyond what the next proximity query needs; ends may wander that far before a new
 // search.
-void search_pairs(Resolution& r) {
-  r.watch.lap();
-  r.searched = r.x1;
-  r.search.find(r.x0, r.x1, 2 * r.options.thickness, r.candidates);
-  std::fill(r.moved.begin(), r.moved.end(), 1);
-  r.report.broad_phase += r.watch.lap();
+bool update_pairs(PairSearch& search, const ResolveOptions& options, const Points& x0, const Points& x1,
+                  PathPairs& path) {
+  const double slack = 0.5 * options.thickness;
+  if (path.end.rows() == x1.rows() && (x1 - path.end).rowwise().squaredNorm().maxCoeff() <= slack * slack) return false;
+  path.end = x1;
+  search.find(x0, x1, 2 * options.thickness, path.pairs);
+  return true;
 }
 
-bool wandered(const Resolution& r) {
-  return (r.x1 - r.searched).rowwise().squaredNorm().maxCoeff() > 0.25 * r.options.thickness * r.options.thickness;
-}
-
-// Impacts of all pairs with a node that moved, in the order of the candidates.
-std::vector<Impact> new_impacts(Resolution& r) {
-  if (wandered(r)) search_pairs(r);
-  r.watch.lap();
+// Impacts of the pairs that have a free node and a node in `moved` (empty: every node), in the order of the pairs.
+std::vector<Impact> impacts_of(const std::vector<NodePair>& pairs, const Eigen::VectorXd& inverse_mass,
+                               const std::vector<char>& moved, double separation, const Points& x0, const Points& x1) {
   constexpr int chunk = 4096;
-  const int chunks = (static_cast<int>(r.candidates.size()) + chunk - 1) / chunk;
+  const int chunks = (static_cast<int>(pairs.size()) + chunk - 1) / chunk;
   std::vector<std::vector<Impact>> found(chunks);
 #pragma omp parallel for schedule(dynamic)
   for (int c = 0; c < chunks; ++c) {
-    const int end = std::min<int>((c + 1) * chunk, static_cast<int>(r.candidates.size()));
+    const int end = std::min<int>((c + 1) * chunk, static_cast<int>(pairs.size()));
     for (int i = c * chunk; i < end; ++i) {
-      const NodePair& pair = r.candidates[i];
-      const auto any = [&pair](auto&& test) { return std::any_of(pair.nodes.begin(), pair.nodes.end(), test); };
-      if (!any([&](int n) { return r.moved[n] != 0; }) || !any([&](int n) { return r.is_free(n); })) continue;
-      if (const auto impact = find_impact(pair, r.x0, r.x1, r.options.separation)) found[c].push_back(*impact);
+      const auto any = [&](auto&& test) { return std::any_of(pairs[i].nodes.begin(), pairs[i].nodes.end(), test); };
+      if (!moved.empty() && !any([&](int n) { return moved[n] != 0; })) continue;
+      if (!any([&](int n) { return inverse_mass[n] > 0; })) continue;
+      if (const auto impact = find_impact(pairs[i], x0, x1, separation)) found[c].push_back(*impact);
     }
   }
   std::vector<Impact> all;
   for (const auto& list : found) all.insert(all.end(), list.begin(), list.end());
+  return all;
+}
+
+std::vector<Impact> new_impacts(Resolution& r) {
+  r.watch.lap();
+  if (update_pairs(r.search, r.options, r.x0, r.x1, r.path)) std::fill(r.moved.begin(), r.moved.end(), 1);
+  r.report.broad_phase += r.watch.lap();
+  auto impacts = impacts_of(r.path.pairs, r.inverse_mass, r.moved, r.options.separation, r.x0, r.x1);
   std::fill(r.moved.begin(), r.moved.end(), 0);
   r.report.ccd += r.watch.lap();
-  return all;
+  return impacts;
 }
 
 double friction_of(const Resolution& r, const NodePair& pair) {
@@ -179,22 +170,24 @@ bool shorten_rounds(Resolution& r, std::vector<Impact> impacts) {
 
 }  // namespace
 
+std::vector<Impact> find_impacts(PairSearch& search, const Eigen::VectorXd& inverse_mass, const ResolveOptions& options,
+                                 const Points& x0, const Points& x1, PathPairs& path, ResolveReport& times) {
+  Stopwatch watch;
+  update_pairs(search, options, x0, x1, path);
+  times.broad_phase += watch.lap();
+  auto impacts = impacts_of(path.pairs, inverse_mass, {}, options.separation, x0, x1);
+  times.ccd += watch.lap();
+  return impacts;
+}
+
 ResolveReport resolve(PairSearch& search, const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
-                      const ResolveOptions& options, const Points& x0, Points& x1, std::vector<NodePair>& candidates) {
-  Resolution r{search,
-               world,
-               inverse_mass,
-               options,
-               x0,
-               x1,
-               candidates,
-               {},
-               {},
-               {},
-               std::vector<char>(world.node_count),
-               {},
-               ZoneSets(world.node_count)};
-  search_pairs(r);
+                      const ResolveOptions& options, const Points& x0, Points& x1, PathPairs& path) {
+  Resolution r{search,       world,
+               inverse_mass, options,
+               x0,           x1,
+               path,         {},
+               {},           std::vector<char>(world.node_count, 1),
+               {},           ZoneSets(world.node_count)};
   std::vector<Impact> impacts = new_impacts(r);
   for (int round = 0; !impacts.empty() && round < options.impulse_rounds + options.zone_rounds; ++round) {
     if (round < options.impulse_rounds)

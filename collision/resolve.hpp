@@ -19,11 +19,22 @@ struct ResolveReport {
   double broad_phase = 0, ccd = 0, response = 0;  // [s]
 };
 
+// The pairs near a motion, and the end of that motion; they stay good for ends within half a thickness of it.
+struct PathPairs {
+  Points end;
+  std::vector<NodePair> pairs;
+};
+
+// Every impact of the straight motion x0 -> x1 in which something can move, in the order of the pairs.
+std::vector<Impact> find_impacts(PairSearch&, const Eigen::VectorXd& inverse_mass, const ResolveOptions&,
+                                 const Points& x0, const Points& x1, PathPairs&, ResolveReport& times);
+
 // Bridson, Fedkiw and Anderson 2002 on one screen: impulses, then inelastic impact zones, then, where a zone does not
 // converge, its motion shortened toward the start of the step, which is clean; an obstacle in such a zone is held back
 // with it. On return the straight motion x0 -> x1 is free of contact as tested by CCD (report.clean), and that path is
-// the path taken. `candidates` holds every pair that is within `thickness` at the new x1.
+// the path taken. `path` may come from find_impacts with the same x0; it leaves with every pair that is within the
+// thickness at the new x1.
 ResolveReport resolve(PairSearch&, const ContactWorld&, const Eigen::VectorXd& inverse_mass, const ResolveOptions&,
-                      const Points& x0, Points& x1, std::vector<NodePair>& candidates);
+                      const Points& x0, Points& x1, PathPairs& path);
 
 }  // namespace selvedge

@@ -16,6 +16,30 @@ double compliance(const ContactTerm& term, const Eigen::VectorXd& inverse_mass) 
   return sum;
 }
 
+// What proximities and impacts have in common: the linearised gap and the slip, with what belongs to obstacles folded
+// in. False if nothing in the pair can move.
+bool linearise(const Scene& scene, const ContactWorld& world, const NodePair& pair, const Eigen::Vector4d& weights,
+               const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1, double h,
+               ContactTerm& term) {
+  bool obstacle = false;
+  for (int i = 0; i < 4; ++i) {
+    const int node = pair.nodes[i];
+    if (world.is_cloth(node)) {
+      term.nodes[i] = node;
+      term.weights[i] = weights[i];
+      continue;
+    }
+    obstacle = true;
+    term.offset += weights[i] * term.normal.dot(row(nodes1, node));
+    term.drift += weights[i] * (row(nodes1, node) - row(nodes0, node));
+  }
+  const double give = compliance(term, inverse_mass);
+  if (give <= 0) return false;
+  term.stiffness = contact_stiffness / (give * h * h);
+  term.friction = obstacle ? scene.contact.friction : scene.contact.self_friction;
+  return true;
+}
+
 }  // namespace
 
 std::vector<ContactTerm> contact_terms(const Scene& scene, const ContactWorld& world,
@@ -26,27 +50,28 @@ std::vector<ContactTerm> contact_terms(const Scene& scene, const ContactWorld& w
   for (const Proximity& p : proximities) {
     ContactTerm term;
     term.normal = p.normal;
-    bool obstacle = false;
-    for (int i = 0; i < 4; ++i) {
-      const int node = p.pair.nodes[i];
-      if (world.is_cloth(node)) {
-        term.nodes[i] = node;
-        term.weights[i] = p.weights[i];
-        continue;
-      }
-      obstacle = true;
-      term.offset += p.weights[i] * p.normal.dot(row(nodes1, node));
-      term.drift += p.weights[i] * (row(nodes1, node) - row(nodes0, node));
-    }
-    const double give = compliance(term, inverse_mass);
-    if (give <= 0) continue;  // pinned against an obstacle: nothing can move
     term.target = p.gap + overlap_removed * (p.rest_gap - p.gap);
     term.softness = onset * p.rest_gap;
-    term.stiffness = contact_stiffness / (give * h * h);
-    term.friction = obstacle ? scene.contact.friction : scene.contact.self_friction;
-    terms.push_back(term);
+    if (linearise(scene, world, p.pair, p.weights, inverse_mass, nodes0, nodes1, h, term)) terms.push_back(term);
   }
   return terms;
+}
+
+void add_impact_terms(const Scene& scene, const ContactWorld& world, std::span<const Impact> impacts,
+                      std::span<const Proximity> owned, const Eigen::VectorXd& inverse_mass, const Points& nodes0,
+                      const Points& nodes1, double h, std::vector<ContactTerm>& terms) {
+  std::vector<NodePair> pairs;
+  for (const Proximity& p : owned) pairs.push_back(p.pair);
+  std::sort(pairs.begin(), pairs.end());
+  for (const Impact& impact : impacts) {
+    if (std::binary_search(pairs.begin(), pairs.end(), impact.pair)) continue;
+    ContactTerm term;
+    term.normal = impact.normal;
+    term.target = std::clamp(impact_gap(impact, nodes0), 0.0, 0.5 * scene.contact.thickness);
+    term.softness = onset * scene.contact.thickness;
+    if (linearise(scene, world, impact.pair, impact.weights, inverse_mass, nodes0, nodes1, h, term))
+      terms.push_back(term);
+  }
 }
 
 void lag_normal_forces(std::vector<ContactTerm>& terms, const Points& x) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "collision/proximity.hpp"
+#include "collision/response.hpp"
 #include "physics/contact_energy.hpp"
 
 namespace selvedge {
@@ -16,6 +17,13 @@ namespace selvedge {
 std::vector<ContactTerm> contact_terms(const Scene&, const ContactWorld&, std::span<const Proximity>,
                                        const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1,
                                        double h);
+
+// Impacts that a first solve would run into, as terms of a second one, so that the whole cloth gives way and not the
+// four vertices alone. They stop half the thickness away, or where they are if that is nearer. Pairs that `terms` holds
+// already keep their one owner.
+void add_impact_terms(const Scene&, const ContactWorld&, std::span<const Impact>, std::span<const Proximity> owned,
+                      const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1, double h,
+                      std::vector<ContactTerm>& terms);
 
 // Sets the normal forces that bound friction from the gaps at x [N].
 void lag_normal_forces(std::vector<ContactTerm>&, const Points& x);

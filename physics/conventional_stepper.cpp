@@ -1,20 +1,18 @@
 #include "physics/conventional_stepper.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "collision/audit.hpp"
 #include "collision/resolve.hpp"
+#include "collision/stopwatch.hpp"
 #include "physics/contact_terms.hpp"
 #include "physics/features.hpp"
 
 namespace selvedge {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+constexpr double first_roughness = 8;  // of the solve that only finds impacts and normal forces
 
 std::vector<const Surface*> surfaces(const std::vector<Obstacle>& obstacles) {
   std::vector<const Surface*> all;
@@ -30,6 +28,15 @@ Eigen::VectorXd inverse_masses(const Scene& scene, int node_count) {
     if (masses[v] > 0) inverse[v] = 1 / masses[v];
   for (const int pin : scene.pins) inverse[pin] = 0;
   return inverse;
+}
+
+ResolveOptions resolve_options(const ContactSettings& contact) {
+  ResolveOptions options;
+  options.thickness = contact.thickness;
+  options.separation = 0.1 * contact.thickness;
+  options.friction = contact.friction;
+  options.self_friction = contact.self_friction;
+  return options;
 }
 
 double mean_edge_length(const Scene& scene) {
@@ -50,6 +57,7 @@ class ConventionalStepper final : public Stepper {
         features_(features_of(scene)),
         world_(make_contact_world(scene.surface, surfaces(scene.obstacles), features_.self_contact)),
         search_(world_),
+        contact_(resolve_options(scene.contact)),
         inverse_mass_(inverse_masses(scene, world_.node_count)),
         solver_(scene, options.implicit_euler),
         edge_length_(mean_edge_length(scene)) {}
@@ -60,7 +68,7 @@ class ConventionalStepper final : public Stepper {
  private:
   bool has_contact() const { return features_.self_contact || features_.obstacles; }
   int substeps_for(const State& from, const Drive& drive, double dt) const;
-  NewtonReport solve(StepProblem problem, std::vector<ContactTerm>& terms, Points& x);
+  bool solve(const StepProblem& problem, Points& x, StepReport& report);
   bool substep(const Points& nodes0, const Points& v0, const Points& pins, const Drive& drive, double h, Points& nodes1,
                StepReport& report);
   void audit_state(const State& state, StepReport& report) const;
@@ -70,11 +78,12 @@ class ConventionalStepper final : public Stepper {
   Features features_;
   ContactWorld world_;
   PairSearch search_;
+  ResolveOptions contact_;
   Eigen::VectorXd inverse_mass_;
   ImplicitEuler solver_;
   double edge_length_;
   StepperTraits traits_{"conventional"};
-  std::vector<NodePair> candidates_;  // pairs within the thickness at the current positions
+  PathPairs path_;  // pairs near the current positions
 };
 
 // As many as keep every vertex's motion in a substep near one mesh edge, and at least two: implicit Euler at 1/30 s
@@ -89,77 +98,77 @@ int ConventionalStepper::substeps_for(const State& from, const Drive& drive, dou
   return static_cast<int>(std::clamp<double>(wanted, 2, options_.max_substeps));
 }
 
-// Friction needs normal forces, and these the solution: a first solve gives them, a second one uses them.
-NewtonReport ConventionalStepper::solve(StepProblem problem, std::vector<ContactTerm>& terms, Points& x) {
-  const bool twice = features_.friction && !terms.empty();
-  if (twice) problem.roughness = 8;
-  const NewtonReport first = solver_.solve(problem, x);
-  if (!twice || !first.finite) return first;
-  lag_normal_forces(terms, x);
-  problem.roughness = 1;
-  NewtonReport second = solver_.solve(problem, x);
-  second.iterations += first.iterations;
-  second.linear_iterations += first.linear_iterations;
-  if (second.finite) {
-    lag_normal_forces(terms, x);
-    stick(terms, inverse_mass_, *problem.x0, problem.h, options_.implicit_euler.slip_speed * problem.h, x);
-  }
-  return second;
+void add(const ResolveReport& resolved, StepReport& report) {
+  report.collision.impulses += resolved.impulses;
+  report.collision.zones += resolved.zones;
+  report.collision.shortened += resolved.shortened;
+  report.seconds.broad_phase += resolved.broad_phase;
+  report.seconds.ccd += resolved.ccd;
+  report.seconds.response += resolved.response;
 }
 
 // nodes1 comes with obstacles where they are to end and the cloth at its first guess. False: not finite.
 bool ConventionalStepper::substep(const Points& nodes0, const Points& v0, const Points& pins, const Drive& drive,
                                   double h, Points& nodes1, StepReport& report) {
-  const auto start = Clock::now();
   const int n = scene_.surface.vertex_count;
-  std::vector<ContactTerm> terms;
-  if (has_contact()) {
-    const auto proximities = find_proximities(world_, candidates_, nodes0, scene_.rest, scene_.contact.thickness);
-    terms = contact_terms(scene_, world_, proximities, inverse_mass_, nodes0, nodes1, h);
-    report.collision.contacts = static_cast<int>(terms.size());
-    for (const Proximity& p : proximities) report.collision.min_gap = std::min(report.collision.min_gap, p.gap);
-  }
-  report.seconds.response += seconds_since(start);
-
-  const auto solve_start = Clock::now();
   const Points x0 = nodes0.topRows(n);
   Points x = nodes1.topRows(n);
-  const StepProblem problem{h, &x0, &v0, &pins, drive.acceleration, drive.wind, terms};
-  const NewtonReport newton = solve(problem, terms, x);
-  report.iterations += newton.iterations;
-  report.linear_iterations += newton.linear_iterations;
-  report.residual = newton.residual;
-  if (!newton.converged) report.reason = Reason::not_converged;
-  report.seconds.solve += seconds_since(solve_start);
-  if (!newton.finite) return false;
-  nodes1.topRows(n) = x;
+  StepProblem problem{h, &x0, &v0, &pins, drive.acceleration, drive.wind, {}, 1};
+  if (!has_contact()) return solve(problem, x, report) && (nodes1.topRows(n) = x).allFinite();
 
-  if (has_contact()) {
-    ResolveOptions options;
-    options.thickness = scene_.contact.thickness;
-    options.separation = 0.1 * scene_.contact.thickness;
-    options.friction = scene_.contact.friction;
-    options.self_friction = scene_.contact.self_friction;
-    const ResolveReport resolved = resolve(search_, world_, inverse_mass_, options, nodes0, nodes1, candidates_);
-    report.collision.impulses += resolved.impulses;
-    report.collision.zones += resolved.zones;
-    report.collision.shortened += resolved.shortened;
-    report.seconds.broad_phase += resolved.broad_phase;
-    report.seconds.ccd += resolved.ccd;
-    report.seconds.response += resolved.response;
-  }
+  Stopwatch watch;
+  const auto proximities = find_proximities(world_, path_.pairs, nodes0, scene_.rest, scene_.contact.thickness);
+  std::vector<ContactTerm> terms = contact_terms(scene_, world_, proximities, inverse_mass_, nodes0, nodes1, h);
+  for (const Proximity& p : proximities) report.collision.min_gap = std::min(report.collision.min_gap, p.gap);
+  report.seconds.response += watch.lap();
+
+  // Impacts and the normal forces that bound friction are known after a first, rough solve.
+  problem.contacts = terms;
+  problem.roughness = first_roughness;
+  if (!solve(problem, x, report)) return false;
+  nodes1.topRows(n) = x;
+  path_.end.resize(0, 3);
+  ResolveReport times;
+  const auto impacts = find_impacts(search_, inverse_mass_, contact_, nodes0, nodes1, path_, times);
+  add(times, report);
+  watch.lap();
+  add_impact_terms(scene_, world_, impacts, proximities, inverse_mass_, nodes0, nodes1, h, terms);
+  report.collision.contacts = static_cast<int>(terms.size());
+  report.seconds.response += watch.lap();
+
+  lag_normal_forces(terms, x);
+  problem.contacts = terms;
+  problem.roughness = 1;
+  if (!solve(problem, x, report)) return false;
+  watch.lap();
+  lag_normal_forces(terms, x);
+  stick(terms, inverse_mass_, x0, h, options_.implicit_euler.slip_speed * h, x);
+  report.seconds.response += watch.lap();
+  nodes1.topRows(n) = x;
+  add(resolve(search_, world_, inverse_mass_, contact_, nodes0, nodes1, path_), report);
   return nodes1.allFinite();
 }
 
+bool ConventionalStepper::solve(const StepProblem& problem, Points& x, StepReport& report) {
+  Stopwatch watch;
+  const NewtonReport newton = solver_.solve(problem, x);
+  report.iterations += newton.iterations;
+  report.linear_iterations += newton.linear_iterations;
+  report.residual = newton.residual;
+  if (!newton.converged && problem.roughness == 1) report.reason = Reason::not_converged;
+  report.seconds.solve += watch.lap();
+  return newton.finite;
+}
+
 void ConventionalStepper::audit_state(const State& state, StepReport& report) const {
-  const auto start = Clock::now();
+  Stopwatch watch;
   std::vector<Points> positions;
   for (const Points& obstacle : state.obstacles) positions.push_back(rounded_to_float(obstacle));
   std::vector<AuditBody> bodies;
   for (std::size_t k = 0; k < positions.size(); ++k) bodies.push_back({&scene_.obstacles[k].surface, &positions[k]});
   report.collision.pairs_after =
       audit(scene_.surface, rounded_to_float(state.x), bodies, features_.self_contact).intersecting_pairs();
-  report.seconds.audit += seconds_since(start);
+  report.seconds.audit += watch.lap();
 }
 
 StepReport ConventionalStepper::step(const State& from, const Drive& drive, double dt, State& to) {
@@ -171,10 +180,10 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
   Points nodes = gather_nodes(from.x, from.obstacles), v = from.v;
   const Points wanted = gather_nodes(from.x, drive.obstacles);
   if (has_contact()) {
-    const auto start = Clock::now();
+    Stopwatch watch;
     search_.restart();
-    search_.find(nodes, nodes, 2 * scene_.contact.thickness, candidates_);
-    report.seconds.broad_phase += seconds_since(start);
+    search_.find(nodes, nodes, 2 * scene_.contact.thickness, path_.pairs);
+    report.seconds.broad_phase += watch.lap();
   }
   report.status = StepStatus::accepted;
   for (int s = 0; s < report.substeps; ++s) {

@@ -20,7 +20,7 @@ struct Case {
   Eigen::VectorXd inverse_mass;
 };
 
-ResolveReport run(const Case& c, Points& x1, std::vector<NodePair>& candidates) {
+ResolveReport run(const Case& c, Points& x1, PathPairs& candidates) {
   std::vector<const Surface*> obstacles;
   for (const Surface& s : c.obstacles) obstacles.push_back(&s);
   const ContactWorld world = make_contact_world(c.cloth, obstacles, true);
@@ -68,7 +68,7 @@ TEST_CASE("resolve: sheets flung through each other end clean, the whole way", "
     const Case c = crossing(speed);
     REQUIRE(pairs_on_the_way(c, c.x1) > 0);
     Points x1 = c.x1;
-    std::vector<NodePair> candidates;
+    PathPairs candidates;
     const ResolveReport report = run(c, x1, candidates);
     CHECK(report.clean);
     CHECK(report.impulses > 0);
@@ -83,7 +83,7 @@ TEST_CASE("resolve: nothing near, nothing changed", "[resolve]") {
   c.x1 = c.x0;
   c.x1.array() += 0.5;
   Points x1 = c.x1;
-  std::vector<NodePair> candidates;
+  PathPairs candidates;
   const ResolveReport report = run(c, x1, candidates);
   CHECK(report.clean);
   CHECK(report.impulses == 0);
@@ -107,7 +107,7 @@ TEST_CASE("resolve: cloth pinched between two plates that close yields, and so d
   c.inverse_mass = Eigen::VectorXd::Zero(c.x0.rows());
   c.inverse_mass.head(25).setConstant(1e4);
   Points x1 = c.x1;
-  std::vector<NodePair> candidates;
+  PathPairs candidates;
   const ResolveReport report = run(c, x1, candidates);
   CHECK(report.clean);
   CHECK(report.shortened > 0);
@@ -118,12 +118,13 @@ TEST_CASE("resolve: cloth pinched between two plates that close yields, and so d
 TEST_CASE("resolve: candidates hold every pair within the thickness at the end", "[resolve]") {
   const Case c = crossing(0.05);
   Points x1 = c.x1;
-  std::vector<NodePair> kept, fresh;
+  PathPairs kept;
+  std::vector<NodePair> fresh;
   run(c, x1, kept);
   const ContactWorld world = make_contact_world(c.cloth, {}, true);
   PairSearch search(world);
   search.find(x1, x1, ResolveOptions{}.thickness, fresh);
-  const auto a = find_proximities(world, kept, x1, c.x0, ResolveOptions{}.thickness);
+  const auto a = find_proximities(world, kept.pairs, x1, c.x0, ResolveOptions{}.thickness);
   const auto b = find_proximities(world, fresh, x1, c.x0, ResolveOptions{}.thickness);
   CHECK(a.size() > 0);
   CHECK(a.size() == b.size());
