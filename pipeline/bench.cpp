@@ -35,7 +35,8 @@ std::optional<AlgebraicError> worst_error(const Setup& setup, const StateSampler
 }
 
 BenchMember run_member(const BenchRequest& request, const std::string& scene, int size) {
-  std::vector<std::string> overrides{fmt::format("cloths.0.{}.resolution={}", scene == "tube" ? "tube" : "rectangle", size)};
+  std::vector<std::string> overrides{
+      fmt::format("cloths.0.{}.resolution={}", scene == "tube" ? "tube" : "rectangle", size)};
   if (request.frames) overrides.push_back(fmt::format("run.frames={}", *request.frames));
   const Setup setup = read_setup(request.configs / (scene + ".yaml"), overrides);
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);

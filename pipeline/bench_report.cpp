@@ -12,7 +12,7 @@ namespace {
 struct Column {
   const char* name;   // in the CSV file
   const char* title;  // in the table
-  int digits;
+  int digits;         // 0: whole numbers
   double (*value)(const BenchMember&);
 };
 
@@ -32,7 +32,7 @@ const std::vector<Column>& columns() {
       {"ms_ccd", "ccd", 1, [](M m) { return per_frame(m, m.summary.seconds.ccd); }},
       {"ms_response", "response", 1, [](M m) { return per_frame(m, m.summary.seconds.response); }},
       {"ms_audit", "audit", 1, [](M m) { return per_frame(m, m.summary.seconds.audit); }},
-      {"peak_mb", "peak MB", 0, [](M m) { return double(m.summary.peak_memory) / 1e6; }},
+      {"peak_mb", "peak MB", 1, [](M m) { return double(m.summary.peak_memory) / 1e6; }},
       {"max_contacts", "contacts", 0, [](M m) { return double(m.summary.max_contacts); }},
       {"impulses", "impulses", 0, [](M m) { return double(m.summary.impulses); }},
       {"intersecting_pairs", "pairs", 0, [](M m) { return double(m.summary.worst_pairs); }},
@@ -54,7 +54,12 @@ std::string bench_json(const std::vector<BenchMember>& members) {
     nlohmann::ordered_json entry = {{"scene", member.scene}, {"size", member.size}};
     for (const Column& column : columns()) {
       const double value = column.value(member);
-      entry[column.name] = std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+      if (std::isnan(value))
+        entry[column.name] = nullptr;
+      else if (column.digits == 0)
+        entry[column.name] = std::llround(value);
+      else
+        entry[column.name] = value;
     }
     if (member.algebraic) entry["algebraic_reference_converged"] = member.algebraic->reference_converged;
     entry["run"] = nlohmann::ordered_json::parse(summary_json(member.summary));
@@ -70,7 +75,8 @@ std::string bench_csv(const std::vector<BenchMember>& members) {
   text += "\n";
   for (const BenchMember& member : members) {
     text += fmt::format("{},{}", member.scene, member.size);
-    for (const Column& column : columns()) text += fmt::format(",{}", number(column.value(member), column.digits + 3));
+    for (const Column& column : columns())
+      text += fmt::format(",{}", number(column.value(member), column.digits > 0 ? column.digits + 3 : 0));
     text += "\n";
   }
   return text;

@@ -105,6 +105,10 @@ Scene rest_scene(int vertex_count, const Triangles& triangles, std::vector<RestT
   Scene scene;
   scene.surface = make_surface(vertex_count, triangles);
   scene.rest_triangle = std::move(rest);
+  Cloth cloth;
+  cloth.vertex_count = vertex_count;
+  cloth.triangle_count = static_cast<int>(triangles.rows());
+  scene.cloths.push_back(cloth);
   return scene;
 }
 

@@ -26,6 +26,12 @@ Setup read_scene(const SceneArguments& arguments) {
   return read_setup(arguments.scene, overrides);
 }
 
+std::filesystem::path folder_for(const SimulateArguments& arguments, const Setup& setup) {
+  if (arguments.out) return *arguments.out;
+  if (!setup.run.output.empty()) return setup.run.output;
+  return std::filesystem::path("out") / arguments.scene.scene.stem();
+}
+
 // The page is an extra: a run is not lost because it cannot be made.
 std::string write_page(const std::filesystem::path& out) {
   try {
@@ -45,7 +51,7 @@ int simulate_command(const SimulateArguments& arguments, bool json) {
   Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
   const InterruptWatch watch;
   RunRequest request;
-  request.out = arguments.out.value_or(std::filesystem::path("out") / arguments.scene.scene.stem());
+  request.out = folder_for(arguments, setup);
   request.resume = arguments.resume;
   request.progress = &progress;
   request.stop = InterruptWatch::interrupted;

@@ -34,7 +34,8 @@ void scene_options(CLI::App& command, SceneArguments& arguments) {
 
 void simulate_options(CLI::App& command, SimulateArguments& arguments) {
   scene_options(command, arguments.scene);
-  command.add_option("--out", arguments.out, "folder for the results (out/NAME-OF-SCENE)");
+  command.add_option("--out", arguments.out,
+                     "folder for the results (the scene's output.folder, or out/NAME-OF-SCENE)");
   command.add_flag("--resume", arguments.resume, "go on from the checkpoint of an interrupted run");
   command.add_flag("!--no-view", arguments.view, "do not make the page");
 }

@@ -158,6 +158,14 @@ TEST_CASE("audit: two crossing sheets, as one cloth and as cloth and obstacle", 
   CHECK(min_gap(flat, {&upright}, 0.1) == 0);
 }
 
+TEST_CASE("audit: sheets that touch edge to edge intersect, also where space is cut along the touching edges",
+          "[audit]") {
+  const Mesh left = grid(8, {-8, 0, 0}, ex, ez), right = grid(8, Vec3::Zero(), ex, ez);
+  const Audit found = audit(together(left, right));
+  CHECK(found.self_pairs == brute_self(together(left, right)));
+  CHECK(found.self_pairs.size() >= 16);
+}
+
 TEST_CASE("audit: obstacle triangles are numbered on end", "[audit]") {
   const Mesh cloth = grid(1, Vec3::Zero(), ex, ez), beside = grid(2, {5, 0, 5}, ex, ez);
   const Mesh through = grid(1, {0.25, -0.5, 0.25}, ey, 0.1 * ez);
@@ -250,7 +258,10 @@ TEST_CASE("audit: undefined coordinates are counted and left out", "[audit]") {
   const Audit found = audit(both, {&body});
   CHECK(found.nonfinite == 3);
   CHECK(found.self_pairs.size() == clean);  // the two corners lie far from the crossing
-  CHECK(found.inside_vertices == 0);
+  Mesh around = ball(4, 50);
+  CHECK(audit(flat, {&around}).inside_vertices == flat.x.rows());
+  around.x(3, 0) = std::numeric_limits<double>::quiet_NaN();
+  CHECK(audit(flat, {&around}).inside_vertices == 0);
 }
 
 TEST_CASE("audit: smallest gap", "[audit]") {

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "collision/exact_integer.hpp"
 #include "collision/intersect.hpp"
 
 using namespace selvedge;
@@ -147,6 +148,31 @@ TEST_CASE("intersect: no underflow, no overflow", "[intersect]") {
     CHECK(triangles_intersect({-scale, 0, 0}, {scale, 0, 0}, {0, scale, 0}, {0, 0, -scale}, {0, 0, scale},
                               {scale, 0, scale}));
   }
+}
+
+TEST_CASE("intersect: products that underflow do not mislead the filter", "[intersect]") {
+  // In units of the smallest double the three minors are 1.49, -0.51 and -0.51; rounded they are 1, -1 and -1.
+  const double s = 0x1p-537;
+  CHECK(orient3d(Vec3::Zero(), {s, 0, 1}, {0, 1.49 * s, 1}, {0.342 * s, 0.51 * s, 1}) == 1);
+}
+
+TEST_CASE("intersect: whole numbers of many digits add, subtract and multiply exactly", "[intersect]") {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> mantissa(-1, 1);
+  std::uniform_int_distribution<int> exponent(-300, 300);
+  constexpr int lowest = -300 - 53;
+  const auto number = [&] { return std::ldexp(std::round(std::ldexp(mantissa(random), 53)), exponent(random) - 53); };
+  int wrong = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double x = number(), y = number(), z = number();
+    const ExactInteger a(x, lowest), b(y, lowest), c(z, lowest);
+    wrong += ((a + b) - b - a).sign() != 0;
+    wrong += ((a + b) * c - a * c - b * c).sign() != 0;
+    wrong += (a * b * c - c * a * b).sign() != 0;
+    wrong += (a - b).sign() != (x > y) - (x < y);
+    wrong += (a * b).sign() != ((x > 0) - (x < 0)) * ((y > 0) - (y < 0));
+  }
+  CHECK(wrong == 0);
 }
 
 TEST_CASE("intersect: triangle pairs on small whole numbers agree with exact linear programming", "[intersect]") {

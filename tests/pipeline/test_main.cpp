@@ -1,0 +1,160 @@
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/pipeline/fake_run.hpp"
+
+using namespace selvedge;
+
+namespace {
+
+struct Outcome {
+  int status = -1;
+  std::string out, err;
+};
+
+std::string read_text(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+Outcome selvedge_program(const fake::Folder& folder, const std::string& arguments) {
+  const std::filesystem::path out = folder.path / "stdout", err = folder.path / "stderr";
+  const std::string command =
+      std::string(SELVEDGE_PROGRAM) + " " + arguments + " >" + out.string() + " 2>" + err.string();
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
+}
+
+void write_scene(const fake::Folder& folder) {
+  std::ofstream(folder.path / "scene.yaml") << R"(
+cloths:
+  - name: sheet
+    rectangle: {size: [0.2, 0.2], resolution: 6}
+    pins: [{group: [top_left, top_right]}]
+run: {frames: 3, fps: 30}
+)";
+}
+
+}  // namespace
+
+TEST_CASE("a scene goes in and an audited trajectory comes out") {
+  const fake::Folder folder("main_simulate");
+  write_scene(folder);
+  const std::string scene = (folder.path / "scene.yaml").string(), out = (folder.path / "out").string();
+  const Outcome run = selvedge_program(folder, "simulate " + scene + " --json --set run.frames=4 --out " + out);
+  INFO(run.err);
+  REQUIRE(run.status == 0);
+  const auto summary = nlohmann::json::parse(run.out);
+  REQUIRE(summary["frames"] == 4);
+  REQUIRE(summary["clean"] == true);
+  REQUIRE(run.err.find("intersecting pairs") != std::string::npos);
+  for (const char* name : {"run.h5", "run.xdmf", "summary.json", "config.yaml", "view.html"})
+    REQUIRE(std::filesystem::file_size(folder.path / "out" / name) > 0);
+
+  const Outcome check = selvedge_program(folder, "check " + out + "/run.h5 --json");
+  REQUIRE(check.status == 0);
+  const auto report = nlohmann::json::parse(check.out);
+  REQUIRE(report["frames"] == 5);
+  REQUIRE(report["intersecting_pairs"] == 0);
+  REQUIRE(report["max_stretch"] > 1.0);
+
+  const Outcome exported =
+      selvedge_program(folder, "export " + out + "/run.h5 --format pc2 --json --out " + out + "/pc2");
+  REQUIRE(exported.status == 0);
+  REQUIRE(nlohmann::json::parse(exported.out)["files"].size() == 2);
+
+  // The configuration that a run keeps gives the same run again.
+  const Outcome again = selvedge_program(folder, "simulate " + out + "/config.yaml --no-view --out " + out + "2");
+  INFO(again.err);
+  REQUIRE(again.status == 0);
+  const TrajectoryReader a(out + "/run.h5"), b(out + "2/run.h5");
+  REQUIRE(b.frame_count() == 5);
+  REQUIRE(a.frame(4).x == b.frame(4).x);
+}
+
+TEST_CASE("plan and info print one JSON object") {
+  const fake::Folder folder("main_plan");
+  write_scene(folder);
+  const Outcome plan = selvedge_program(folder, "plan --json " + (folder.path / "scene.yaml").string());
+  INFO(plan.err);
+  REQUIRE(plan.status == 0);
+  const auto lines = nlohmann::json::parse(plan.out)["plan"];
+  REQUIRE(lines.size() > 3);
+  bool wind_is_out = false;
+  for (const auto& line : lines) wind_is_out |= line["feature"] == "wind" && line["in"] == false;
+  REQUIRE(wind_is_out);
+  const Outcome info = selvedge_program(folder, "info --json");
+  REQUIRE(info.status == 0);
+  REQUIRE(nlohmann::json::parse(info.out)["threads"] >= 1);
+}
+
+TEST_CASE("bad input ends with status 2 and says what, where and the cure") {
+  const fake::Folder folder("main_bad");
+  write_scene(folder);
+  const std::string scene = (folder.path / "scene.yaml").string();
+  for (const std::string arguments :
+       {"simulate absent.yaml", "check absent.obj", "check absent.h5", "export absent.h5", "view absent.h5"}) {
+    const Outcome outcome = selvedge_program(folder, arguments);
+    INFO(arguments << "\n" << outcome.err);
+    REQUIRE(outcome.status == 2);
+    REQUIRE(outcome.out.empty());
+    REQUIRE(outcome.err.find("absent") != std::string::npos);
+    REQUIRE(outcome.err.find("cure:") != std::string::npos);
+  }
+  REQUIRE(selvedge_program(folder, "simulate " + scene + " --stepper magic").status == 2);
+  REQUIRE(selvedge_program(folder, "simulate " + scene + " --set run.framez=3").err.find("frames") !=
+          std::string::npos);
+  REQUIRE(selvedge_program(folder, "no_such_command").status == 2);
+  REQUIRE(selvedge_program(folder, "").status == 2);
+  REQUIRE(selvedge_program(folder, "--help").status == 0);
+  REQUIRE(selvedge_program(folder, "simulate " + scene + " --resume --out " + (folder.path / "new").string()).status ==
+          2);
+}
+
+TEST_CASE("a dirty mesh ends with status 1") {
+  const fake::Folder folder("main_dirty");
+  std::ofstream(folder.path / "crossing.obj")
+      << "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 0.2 -1 0.2\nv 0.2 1 0.2\nv 0.2 0 0.9\nf 1 2 3\nf 4 5 6\n";
+  const Outcome outcome = selvedge_program(folder, "check --json " + (folder.path / "crossing.obj").string());
+  REQUIRE(outcome.status == 1);
+  REQUIRE(nlohmann::json::parse(outcome.out)["intersecting_pairs"] == 1);
+}
+
+TEST_CASE("a run that is interrupted ends with whole files and is resumed to the same bits") {
+  const fake::Folder folder("main_interrupt");
+  write_scene(folder);
+  const std::string scene = (folder.path / "scene.yaml").string(), out = (folder.path / "out").string();
+  const std::string arguments = "simulate " + scene + " --no-view --set run.frames=400 --out ";
+  const pid_t child = fork();
+  if (child == 0) {
+    std::freopen("/dev/null", "w", stdout);
+    std::freopen("/dev/null", "w", stderr);
+    execl(SELVEDGE_PROGRAM, "selvedge", "simulate", scene.c_str(), "--no-view", "--set", "run.frames=400", "--out",
+          out.c_str(), nullptr);
+    _exit(127);
+  }
+  const auto frames = [&] {
+    return std::filesystem::exists(out + "/run.h5") ? TrajectoryReader(out + "/run.h5").frame_count() : 0;
+  };
+  while (frames() < 3) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  kill(child, SIGINT);
+  int status = 0;
+  waitpid(child, &status, 0);
+  REQUIRE(WIFEXITED(status));
+  REQUIRE(WEXITSTATUS(status) == 1);
+  REQUIRE(TrajectoryReader(out + "/run.h5").closed());
+  REQUIRE(frames() < 401);
+  REQUIRE(nlohmann::json::parse(read_text(out + "/summary.json"))["end"] == "interrupted");
+
+  REQUIRE(selvedge_program(folder, arguments + out + " --resume").status == 0);
+  REQUIRE(selvedge_program(folder, arguments + out + "2").status == 0);
+  const TrajectoryReader resumed(out + "/run.h5"), whole(out + "2/run.h5");
+  REQUIRE(resumed.frame_count() == 401);
+  for (const int i : {10, 200, 400}) REQUIRE(resumed.frame(i).x == whole.frame(i).x);
+}
