@@ -81,9 +81,10 @@ void lag_normal_forces(std::vector<ContactTerm>& terms, const Points& x) {
 void stick(std::span<const ContactTerm> terms, const Eigen::VectorXd& inverse_mass, const Points& x0, double h,
            double slip_width, Points& x) {
   constexpr int sweeps = 4;
-  std::vector<double> budget(terms.size());  // tangential impulse times h still allowed [kg m]
+  std::vector<double> budget(terms.size(), 0.0);  // tangential impulse times h still allowed [kg m]
   for (std::size_t k = 0; k < terms.size(); ++k) {
     const Vec3 slip = contact_slip(terms[k], x0, x);
+    if (slip.norm() > slip_width) continue;  // slides: the solve has used the whole bound
     const double used = friction_force(terms[k], slip, slip_width).factor * slip.norm();
     budget[k] = std::max(0.0, terms[k].friction * terms[k].normal_force - used) * h * h;
   }

@@ -12,7 +12,8 @@
 namespace selvedge {
 namespace {
 
-constexpr double first_roughness = 8;  // of the solve that only finds impacts and normal forces
+constexpr double first_roughness = 8;       // of the solve that only finds impacts and normal forces
+constexpr double friction_roughness = 0.2;  // of a solve with friction: sticking shows in small velocities
 
 std::vector<const Surface*> surfaces(const std::vector<Obstacle>& obstacles) {
   std::vector<const Surface*> all;
@@ -138,7 +139,7 @@ bool ConventionalStepper::substep(const Points& nodes0, const Points& v0, const 
 
   lag_normal_forces(terms, x);
   problem.contacts = terms;
-  problem.roughness = 1;
+  problem.roughness = features_.friction && !terms.empty() ? friction_roughness : 1;
   if (!solve(problem, x, report)) return false;
   watch.lap();
   lag_normal_forces(terms, x);
@@ -155,7 +156,7 @@ bool ConventionalStepper::solve(const StepProblem& problem, Points& x, StepRepor
   report.iterations += newton.iterations;
   report.linear_iterations += newton.linear_iterations;
   report.residual = newton.residual;
-  if (!newton.converged && problem.roughness == 1) report.reason = Reason::not_converged;
+  if (!newton.converged && problem.roughness <= 1) report.reason = Reason::not_converged;
   report.seconds.solve += watch.lap();
   return newton.finite;
 }

@@ -18,7 +18,7 @@ struct ImplicitEulerOptions {
   LinearSolver linear_solver = LinearSolver::automatic;
   double linear_tolerance = 0.1;  // relative residual of PCG in a Newton iteration
   int max_linear = 2000;
-  double slip_speed = 1e-3;  // below it lagged friction is viscous [m/s]
+  double slip_speed = 2e-3;  // below it lagged friction is viscous [m/s]
 };
 
 struct NewtonReport {
