@@ -12,7 +12,7 @@ export SELVEDGE_TALLY="$PWD/build/$preset/tally.txt"
 ctest --preset "$preset" --parallel "$jobs" "$@"
 status=$?
 
-sed -n 's/^skipped\t/skipped: /p' "$SELVEDGE_TALLY" | sort
+sed -n 's/^skipped\t//p' "$SELVEDGE_TALLY" | sort
 awk -F '\t' -v status=$status '
   { ++count[$1] }
   END {

@@ -32,7 +32,7 @@ const std::vector<Heavy> heavy_packages = {
     {"yaml-cpp", "yaml-cpp/.*", "pipeline/.*yaml.*"},
     {"CLI11", "CLI/.*", "pipeline/.*\\.cpp"},
     {"nlohmann-json", "nlohmann/.*", "pipeline/.*\\.cpp"},
-    {"fmt", "fmt/.*", "pipeline/.*\\.cpp"},
+    {"fmt", "fmt/.*", "pipeline/.*"},
     {"Catch2", "catch2/.*", "tests/.*"},
 };
 

@@ -145,10 +145,11 @@ function makeFigure(run) {
       metalness: 0,
       side: THREE.DoubleSide,
       polygonOffset: true,
-      polygonOffsetFactor: 2,
+      polygonOffsetFactor: 1,
       polygonOffsetUnits: 2
     }));
-    mesh.castShadow = mesh.receiveShadow = true;
+    mesh.receiveShadow = true;
+    mesh.castShadow = !body.backdrop;
     group.add(mesh);
     return mesh;
   });

@@ -39,7 +39,7 @@ function drawCurves(canvas, curves, run, view) {
   const context = canvas.getContext("2d"), style = getComputedStyle(document.documentElement);
   const colour = (name) => style.getPropertyValue(name).trim();
   context.scale(ratio, ratio);
-  const left = 1, right = width - 2, top = 4, bottom = height - 4;
+  const left = 1, right = width - 4, top = 4, bottom = height - 4;
   const x = (time) => left + ((right - left) * (time - view.begin)) / (view.end - view.begin || 1);
   const share = (value) =>
       view.log ? Math.max(0, 1 + Math.log10(Math.max(value, 1e-30) / view.top) / 5) : value / view.top;
@@ -137,7 +137,7 @@ function makePlots(parent, run, {tops, range, terse}, seek, redraw) {
   });
   for (const {canvas} of [energy, pairs, cost]) {
     const go = (event) => {
-      const share = (event.offsetX - 1) / (canvas.clientWidth - 3);
+      const share = (event.offsetX - 1) / (canvas.clientWidth - 5);
       seek(range.begin + Math.min(1, Math.max(0, share)) * (range.end - range.begin));
     };
     canvas.addEventListener("pointerdown", (event) => {

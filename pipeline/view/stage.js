@@ -1,18 +1,25 @@
 // One renderer and one camera for all runs; each run is a scene drawn into its panel's rectangle.
 
+const sizeOf = (box) => box.getSize(new THREE.Vector3()).length();
+
+// A floor or a wall: far larger than the cloth; not framed, and casting no shadow.
+function isBackdrop(body, cloth) {
+  return sizeOf(boundsOf(body.boxes)) > 2.2 * sizeOf(cloth);
+}
+
+// What the camera must show: every frame of the cloths, and the obstacles near them.
 function framing(runs) {
-  const cloth = boundsOf(runs.flatMap((run) => run.boxes));
-  const solid = boundsOf(runs.flatMap((run) => run.obstacles.flatMap((body) => body.boxes)));
-  const near = cloth.clone().expandByScalar(0.35 * cloth.getSize(new THREE.Vector3()).length());
-  const all = solid.isEmpty() ? cloth.clone() : cloth.clone().union(solid.clone().intersect(near));
-  const sphere = all.getBoundingSphere(new THREE.Sphere());
+  const cloth = boundsOf(runs.flatMap((run) => run.boxes)), bodies = runs.flatMap((run) => run.obstacles);
+  const solid = boundsOf(bodies.flatMap((body) => body.boxes));
+  const near = cloth.clone().expandByScalar(0.35 * sizeOf(cloth)), all = cloth.clone();
+  for (const body of bodies) {
+    body.backdrop = isBackdrop(body, cloth);
+    const part = boundsOf(body.boxes).intersect(near);
+    if (!body.backdrop && !part.isEmpty()) all.union(part);
+  }
+  const sphere = all.getBoundingSphere(new THREE.Sphere()), radius = Math.max(sphere.radius, 1e-3);
   const lowest = Math.min(cloth.min.y, solid.isEmpty() ? Infinity : solid.min.y);
-  return {
-    centre: sphere.center,
-    radius: Math.max(sphere.radius, 1e-3),
-    floor: lowest - 0.004 * sphere.radius,
-    box: all
-  };
+  return {centre: sphere.center, radius, floor: lowest - (bodies.some((b) => b.backdrop) ? 0.05 : 0.004) * radius, box: all};
 }
 
 // Spacing 1, 2 or 5 times a power of ten near a quarter of the radius.

@@ -1,5 +1,7 @@
 #include <catch2/catch.hpp>
 
+#include <fmt/format.h>
+
 #include "collision/error.hpp"
 #include "pipeline/config_scene.hpp"
 #include "pipeline/setup.hpp"
@@ -137,7 +139,7 @@ TEST_CASE("Wrong cloths are refused where they stand", "[config]") {
 TEST_CASE("Absurd resolutions are refused before memory runs out", "[config]") {
   for (const char* shape : {"rectangle: {resolution: 1000000}", "rectangle: {edge: 1e-12}", "disc: {edge: 1e-9}",
                             "disc: {resolution: 2000000000}", "tube: {resolution: [2000000000, 2000000000]}"})
-    CHECK_THAT(refusal("cloths: [{" + std::string(shape) + "}]"), Contains("vertices"));
+    CHECK_THAT(refusal(fmt::format("cloths: [{{{}}}]", shape)), Contains("vertices"));
   CHECK_THAT(refusal("cloths: [{rectangle: {resolution: 1}}]"), Contains("at least 2"));
   CHECK_THAT(refusal("cloths: [{tube: {resolution: 5}}]"), Contains("at least 6"));
 }
@@ -184,7 +186,7 @@ TEST_CASE("Overrides reach every key and are named when wrong", "[config]") {
   CHECK(material.bending == 8.6e-5);
   for (const char* bad : {"run.frames", "=3", "run.frame=3", "run.frames=0", "cloths.1.scale=2", "cloths.b.scale=2",
                           "cloths.0.rectangle.resolution.x=1", "run=5", "gravity=[", "", "cloths.=1", ".=1"})
-    CHECK_THROWS_WITH(read(bad), Contains("--set " + std::string(bad)));
+    CHECK_THROWS_WITH(read(bad), Contains(fmt::format("--set {}", bad)));
   CHECK_THROWS_WITH(read("run.frame=3"), Contains("did you mean `frames`"));
 }
 
@@ -223,7 +225,7 @@ TEST_CASE("docs/scene.md has the tables as the program has them", "[config]") {
   const std::string text = whole(page);
   const std::size_t at = text.find(marker);
   REQUIRE(at != std::string::npos);
-  CHECK(text.substr(at + marker.size()) == "\n" + scene_reference());
+  CHECK(text.substr(at + marker.size()) == fmt::format("\n{}", scene_reference()));
 }
 
 TEST_CASE("The scenes in docs/scene.md can be read", "[config]") {
