@@ -12,6 +12,7 @@
 namespace selvedge {
 namespace {
 
+constexpr double edges_a_substep = 2.5;     // how far a vertex may move, in mean edge lengths
 constexpr double first_roughness = 8;       // of the solve that only finds impacts and normal forces
 constexpr double friction_roughness = 0.2;  // of a solve with friction: sticking shows in small velocities
 
@@ -87,15 +88,15 @@ class ConventionalStepper final : public Stepper {
   PathPairs path_;  // pairs near the current positions
 };
 
-// As many as keep every vertex's motion in a substep near one mesh edge, and at least two: implicit Euler at 1/30 s
-// damps visibly.
+// As many as keep every vertex's motion in a substep within a few mesh edges, and at least two: implicit Euler at 1/30
+// s damps visibly.
 int ConventionalStepper::substeps_for(const State& from, const Drive& drive, double dt) const {
   if (options_.substeps) return *options_.substeps;
   double speed = drive.acceleration.norm() * dt;
   if (from.v.rows() > 0) speed += from.v.rowwise().norm().maxCoeff();
   for (std::size_t k = 0; k < from.obstacles.size(); ++k)
     speed = std::max(speed, (drive.obstacles[k] - from.obstacles[k]).rowwise().norm().maxCoeff() / dt);
-  const double wanted = edge_length_ > 0 ? std::ceil(speed * dt / edge_length_) : 1;
+  const double wanted = edge_length_ > 0 ? std::ceil(speed * dt / (edges_a_substep * edge_length_)) : 1;
   return static_cast<int>(std::clamp<double>(wanted, 2, options_.max_substeps));
 }
 

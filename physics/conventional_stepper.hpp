@@ -10,7 +10,7 @@ namespace selvedge {
 
 struct ConventionalOptions {
   std::optional<int> substeps;  // nothing: chosen each frame from the speed
-  int max_substeps = 16;
+  int max_substeps = 12;
   ImplicitEulerOptions implicit_euler;
 };
 
