@@ -27,12 +27,16 @@ struct Resolution {
   bool is_free(int node) const { return inverse_mass[node] > 0; }
 };
 
-// Boxes reach half the thickness beyond what the next proximity query needs; ends may wander that far before a new
-// search.
+// Boxes reach a thickness beyond the motion: half of it for ends that wander, half for the next proximity query. True
+// if the pairs had to be searched for.
 bool update_pairs(PairSearch& search, const ResolveOptions& options, const Points& x0, const Points& x1,
                   PathPairs& path) {
   const double slack = 0.5 * options.thickness;
-  if (path.end.rows() == x1.rows() && (x1 - path.end).rowwise().squaredNorm().maxCoeff() <= slack * slack) return false;
+  const auto near_end = [&](const Points& x) {
+    return (x - path.end).rowwise().squaredNorm().maxCoeff() <= slack * slack;
+  };
+  if (path.end.rows() == x1.rows() && near_end(x1) && (near_end(x0) || path.start == x0)) return false;
+  path.start = x0;
   path.end = x1;
   search.find(x0, x1, 2 * options.thickness, path.pairs);
   return true;

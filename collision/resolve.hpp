@@ -19,9 +19,11 @@ struct ResolveReport {
   double broad_phase = 0, ccd = 0, response = 0;  // [s]
 };
 
-// The pairs near a motion, and the end of that motion; they stay good for ends within half a thickness of it.
+// The pairs near a motion from `start` to `end`. They stay good, for the same start or for one near the end, as long as
+// nothing is farther than half a thickness from the end: a displacement budget that saves the search where little
+// moves.
 struct PathPairs {
-  Points end;
+  Points start, end;
   std::vector<NodePair> pairs;
 };
 

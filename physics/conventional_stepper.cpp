@@ -129,7 +129,6 @@ bool ConventionalStepper::substep(const Points& nodes0, const Points& v0, const 
   problem.roughness = first_roughness;
   if (!solve(problem, x, report)) return false;
   nodes1.topRows(n) = x;
-  path_.end.resize(0, 3);
   ResolveReport times;
   const auto impacts = find_impacts(search_, inverse_mass_, contact_, nodes0, nodes1, path_, times);
   add(times, report);
@@ -184,6 +183,7 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
   if (has_contact()) {
     Stopwatch watch;
     search_.restart();
+    path_.start = path_.end = nodes;
     search_.find(nodes, nodes, 2 * scene_.contact.thickness, path_.pairs);
     report.seconds.broad_phase += watch.lap();
   }

@@ -130,6 +130,29 @@ TEST_CASE("resolve: candidates hold every pair within the thickness at the end",
   CHECK(a.size() == b.size());
 }
 
+TEST_CASE("resolve: a list of pairs is kept while nothing leaves its budget, and misses nothing then", "[resolve]") {
+  const Case c = crossing(0.05);
+  const ContactWorld world = make_contact_world(c.cloth, {}, true);
+  const ResolveOptions options;
+  PairSearch search(world);
+  PathPairs path;
+  ResolveReport times;
+  find_impacts(search, c.inverse_mass, options, c.x0, c.x0, path, times);
+  const std::vector<NodePair> first = path.pairs;
+  Points near = c.x0, far = c.x0;
+  near.topRows(81).col(1).array() += 0.4 * options.thickness;
+  far.topRows(81).col(1).array() += 0.6 * options.thickness;
+  find_impacts(search, c.inverse_mass, options, c.x0, near, path, times);
+  CHECK(path.end == c.x0);
+  CHECK(path.pairs == first);
+  find_impacts(search, c.inverse_mass, options, near, c.x1, path, times);
+  CHECK(path.end == c.x1);
+  // From a start near the end of a known motion, along a path that leaves it: the pairs of the new path.
+  const auto impacts = find_impacts(search, c.inverse_mass, options, near, far, path, times);
+  PathPairs fresh;
+  CHECK(impacts.size() == find_impacts(search, c.inverse_mass, options, near, far, fresh, times).size());
+}
+
 TEST_CASE("proximity: a sheet between two others meets one partner on each side", "[proximity]") {
   const double gap = 1e-3;
   const auto all = join(join(sheet(4, 0.4, 0), sheet(4, 0.4, gap)), sheet(4, 0.4, 2.5 * gap));
