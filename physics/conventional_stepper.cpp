@@ -139,8 +139,13 @@ bool ConventionalStepper::substep(const Points& nodes0, const Points& v0, const 
 
   lag_normal_forces(terms, x);
   problem.contacts = terms;
-  problem.roughness = features_.friction && !terms.empty() ? friction_roughness : 1;
+  problem.roughness = 1;
   if (!solve(problem, x, report)) return false;
+  if (features_.friction && !terms.empty()) {
+    lag_normal_forces(terms, x);
+    problem.roughness = friction_roughness;
+    if (!solve(problem, x, report)) return false;
+  }
   watch.lap();
   lag_normal_forces(terms, x);
   stick(terms, inverse_mass_, x0, h, options_.implicit_euler.slip_speed * h, x);
