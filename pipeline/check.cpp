@@ -95,7 +95,7 @@ std::vector<RestTriangle> flatten_all(const Points& rest, const Triangles& trian
 
 std::vector<RestTriangle> read_rest(const std::filesystem::path& file, const Triangles& triangles) {
   const Mesh mesh = read_mesh(file);
-  if (mesh.triangles.rows() != triangles.rows() || mesh.triangles != triangles)
+  if (!same_triangles(mesh.triangles, triangles))
     throw Error("the rest mesh has other triangles than what is checked", file.string(),
                 "give the mesh that the cloth was made from, with the same faces in the same order");
   return flatten_all(mesh.x, triangles);

@@ -103,7 +103,7 @@ void read_rest(const Config& section, const Mesh& made, bool generated, double s
   if (from.text() == "mesh") {
     if (!section["file"].given) from.fail("needs a `file`", "name the mesh of the rest shape");
     const Mesh rest = read_mesh(existing_path(section["file"], folder));
-    if (rest.x.rows() != made.x.rows() || rest.triangles != made.triangles)
+    if (rest.x.rows() != made.x.rows() || !same_triangles(rest.triangles, made.triangles))
       section["file"].fail("has other vertices or faces than the cloth",
                            "the rest shape needs the same numbering as the cloth");
     part.rest = scale * read_unit(section["unit"]) * rest.x;

@@ -63,7 +63,7 @@ Sequence read_sequence(const Config& section, const std::filesystem::path& folde
     if (sequence.frames.empty()) {
       sequence.triangles = mesh.triangles;
       warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
-    } else if (mesh.x.rows() != sequence.frames[0].rows() || mesh.triangles != sequence.triangles) {
+    } else if (mesh.x.rows() != sequence.frames[0].rows() || !same_triangles(mesh.triangles, sequence.triangles)) {
       throw Error(
           fmt::format("has other faces than the first mesh of the sequence ({} vertices and {} triangles, the "
                       "first has {} and {})",
