@@ -81,8 +81,6 @@ void make_components(Surface& s) {
 
 }  // namespace
 
-bool same_triangles(const Triangles& a, const Triangles& b) { return a.rows() == b.rows() && a == b; }
-
 Surface make_surface(int vertex_count, const Triangles& triangles) {
   assert(triangles.size() == 0 || (triangles.minCoeff() >= 0 && triangles.maxCoeff() < vertex_count));
   Surface s;

@@ -31,9 +31,6 @@ struct Surface {
   }
 };
 
-// The same triangles in the same order; the numbers of triangles may differ.
-bool same_triangles(const Triangles& a, const Triangles& b);
-
 // Indices must lie in [0, vertex_count) and differ within a triangle (assert; readers check and throw).
 Surface make_surface(int vertex_count, const Triangles& triangles);
 

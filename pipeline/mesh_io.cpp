@@ -75,6 +75,8 @@ void note_topology(Mesh& mesh, const std::string& name) {
 
 }  // namespace
 
+bool same_triangles(const Triangles& a, const Triangles& b) { return a.rows() == b.rows() && a == b; }
+
 Mesh read_mesh(const fs::path& path) {
   const std::string extension = lower_extension(path), name = path.string();
   if (extension != ".obj" && extension != ".ply")

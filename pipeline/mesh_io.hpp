@@ -22,6 +22,9 @@ struct Mesh {
 // Throws Error with file and line for what cannot be read: empty, NaN, index out of range, no faces.
 Mesh read_mesh(const std::filesystem::path&);
 
+// The same triangles in the same order; the numbers of triangles may differ.
+bool same_triangles(const Triangles& a, const Triangles& b);
+
 // Written beside and renamed: a reader never sees half a file.
 void write_obj(const std::filesystem::path&, const Points& x, const Triangles&);
 void write_ply(const std::filesystem::path&, const Points& x, const Triangles&);

@@ -10,6 +10,7 @@
 #include "pipeline/config.hpp"
 #include "pipeline/generate.hpp"
 #include "pipeline/materials.hpp"
+#include "pipeline/mesh_io.hpp"
 #include "pipeline/setup_motion.hpp"
 #include "pipeline/setup_paths.hpp"
 
