@@ -8,6 +8,7 @@
 #endif
 
 #include <Eigen/Core>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -40,6 +41,13 @@ int threads() {
 #endif
 }
 
+// How threads wait for work; see process_threads.cpp.
+std::string waiting() {
+  for (const char* name : {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT"})
+    if (const char* value = std::getenv(name)) return fmt::format("{}={}", name, value);
+  return "as the OpenMP library does by itself";
+}
+
 bool has_openmp() {
 #ifdef _OPENMP
   return true;
@@ -59,6 +67,7 @@ std::vector<std::pair<std::string, std::string>> facts() {
           {"blas", blas()},
           {"openmp", has_openmp() ? "in" : "left out (SELVEDGE_OPENMP=OFF)"},
           {"threads", std::to_string(threads())},
+          {"waiting", waiting()},
           {"steppers", "conventional"}};
 }
 

@@ -5,6 +5,7 @@
 
 #include "collision/error.hpp"
 #include "pipeline/commands.hpp"
+#include "pipeline/process_threads.hpp"
 #include "pipeline/version.hpp"
 
 using namespace selvedge;
@@ -89,6 +90,7 @@ void add_commands(CLI::App& app, Chosen& chosen) {
 
 // Exit status: 0 well, 1 the result is not clean, 2 bad input or a missing package.
 int main(int argc, char** argv) {
+  set_up_threads(argv);
   CLI::App app{"selvedge: cloth that does not unravel", "selvedge"};
   app.set_version_flag("--version", std::string(program_version()));
   app.require_subcommand(1);

@@ -23,10 +23,10 @@ std::string read_text(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-Outcome selvedge_program(const fake::Folder& folder, const std::string& arguments) {
+Outcome selvedge_program(const fake::Folder& folder, const std::string& arguments, const std::string& before = "") {
   const std::filesystem::path out = folder.path / "stdout", err = folder.path / "stderr";
   const std::string command =
-      std::string(SELVEDGE_PROGRAM) + " " + arguments + " >" + out.string() + " 2>" + err.string();
+      before + std::string(SELVEDGE_PROGRAM) + " " + arguments + " >" + out.string() + " 2>" + err.string();
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
 }
@@ -92,6 +92,21 @@ TEST_CASE("plan and info print one JSON object") {
   const Outcome info = selvedge_program(folder, "info --json");
   REQUIRE(info.status == 0);
   REQUIRE(nlohmann::json::parse(info.out)["threads"] >= 1);
+}
+
+TEST_CASE("waiting threads spin briefly unless the user says otherwise") {
+  const fake::Folder folder("main_threads");
+  const Outcome info =
+      selvedge_program(folder, "info --json", "env -u OMP_WAIT_POLICY -u GOMP_SPINCOUNT OMP_DISPLAY_ENV=VERBOSE ");
+  REQUIRE(info.status == 0);
+  if (info.err.find("GOMP_SPINCOUNT") == std::string::npos) {
+    WARN("skipped: this OpenMP library does not tell how its threads wait");
+    return;
+  }
+  CHECK(info.err.find("GOMP_SPINCOUNT = '10000'") != std::string::npos);
+  CHECK(nlohmann::json::parse(info.out)["waiting"] == "GOMP_SPINCOUNT=10000");
+  const Outcome passive = selvedge_program(folder, "info --json", "env OMP_WAIT_POLICY=passive ");
+  CHECK(nlohmann::json::parse(passive.out)["waiting"] == "OMP_WAIT_POLICY=passive");
 }
 
 TEST_CASE("bad input ends with status 2 and says what, where and the cure") {
