@@ -1,31 +1,12 @@
 #include "collision/resolve.hpp"
 
 #include <algorithm>
-#include <deque>
 #include <map>
 
-#include "collision/stopwatch.hpp"
+#include "collision/resolution.hpp"
 
 namespace selvedge {
 namespace {
-
-// The work of one resolve call: what is known of the motion and of its impacts.
-struct Resolution {
-  PairSearch& search;
-  const ContactWorld& world;
-  const Eigen::VectorXd& inverse_mass;
-  const ResolveOptions& options;
-  const Points& x0;
-  Points& x1;
-  PathPairs& path;
-  ResolveReport report;
-  Stopwatch watch;
-  std::vector<char> moved;     // nodes whose path changed since their pairs were tested
-  std::deque<Impact> impacts;  // all that zones hold
-  ZoneSets zones;
-
-  bool is_free(int node) const { return inverse_mass[node] > 0; }
-};
 
 // Boxes reach a thickness beyond the motion: half of it for ends that wander, half for the next proximity query. True
 // if the pairs had to be searched for.
@@ -63,16 +44,6 @@ std::vector<Impact> impacts_of(const std::vector<NodePair>& pairs, const Eigen::
   return all;
 }
 
-std::vector<Impact> new_impacts(Resolution& r) {
-  r.watch.lap();
-  if (update_pairs(r.search, r.options, r.x0, r.x1, r.path)) std::fill(r.moved.begin(), r.moved.end(), 1);
-  r.report.broad_phase += r.watch.lap();
-  auto impacts = impacts_of(r.path.pairs, r.inverse_mass, r.moved, r.options.separation, r.x0, r.x1);
-  std::fill(r.moved.begin(), r.moved.end(), 0);
-  r.report.ccd += r.watch.lap();
-  return impacts;
-}
-
 double friction_of(const Resolution& r, const NodePair& pair) {
   const bool obstacle = std::any_of(pair.nodes.begin(), pair.nodes.end(), [&](int n) { return !r.world.is_cloth(n); });
   return obstacle ? r.options.friction : r.options.self_friction;
@@ -86,14 +57,42 @@ void mark_free(Resolution& r, const Impact& impact) {
 void impulse_round(Resolution& r, std::vector<Impact> impacts) {
   std::stable_sort(impacts.begin(), impacts.end(), [](const Impact& a, const Impact& b) { return a.time < b.time; });
   for (Impact& impact : impacts) {
-    apply_impulse(impact, r.inverse_mass, friction_of(r, impact.pair), r.x0, r.x1);
+    apply_impulse(impact, r.inverse_mass, r.x0, r.x1);
     mark_free(r, impact);
   }
   r.report.impulses += static_cast<int>(impacts.size());
   r.report.response += r.watch.lap();
 }
 
-// Adds the impacts to the zones, joining those that share a free node, and projects every zone that got a new one.
+int zone_of(Resolution& r, const Impact& impact) {
+  const auto& nodes = impact.pair.nodes;
+  return r.zones.root(*std::find_if(nodes.begin(), nodes.end(), [&](int n) { return r.is_free(n); }));
+}
+
+// A zone whose nodes are all free may go on as one rigid body; one that leans on something prescribed may not.
+bool rigidify(Resolution& r, std::span<Impact* const> impacts) {
+  std::vector<int> nodes;
+  for (const Impact* impact : impacts) nodes.insert(nodes.end(), impact->pair.nodes.begin(), impact->pair.nodes.end());
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  if (!std::all_of(nodes.begin(), nodes.end(), [&r](int node) { return r.is_free(node); })) return false;
+  rigidify_zone(nodes, r.inverse_mass, r.x0, r.x1);
+  return true;
+}
+
+}  // namespace
+
+std::vector<Impact> new_impacts(Resolution& r) {
+  r.watch.lap();
+  if (update_pairs(r.search, r.options, r.x0, r.x1, r.path)) std::fill(r.moved.begin(), r.moved.end(), 1);
+  r.report.broad_phase += r.watch.lap();
+  auto impacts = impacts_of(r.path.pairs, r.inverse_mass, r.moved, r.options.separation, r.x0, r.x1);
+  for (Impact& impact : impacts) impact.friction = friction_of(r, impact.pair);
+  std::fill(r.moved.begin(), r.moved.end(), 0);
+  r.report.ccd += r.watch.lap();
+  return impacts;
+}
+
 void zone_round(Resolution& r, const std::vector<Impact>& fresh) {
   for (const Impact& impact : fresh) {
     int first = -1;
@@ -101,78 +100,18 @@ void zone_round(Resolution& r, const std::vector<Impact>& fresh) {
       if (r.is_free(node)) r.zones.join(first < 0 ? first = node : first, node);
     r.impacts.push_back(impact);
   }
-  const auto zone_of = [&r](const Impact& impact) {
-    return r.zones.root(
-        *std::find_if(impact.pair.nodes.begin(), impact.pair.nodes.end(), [&](int n) { return r.is_free(n); }));
-  };
   std::map<int, std::vector<Impact*>> touched;
-  for (const Impact& impact : fresh) touched[zone_of(impact)];
+  for (const Impact& impact : fresh) touched[zone_of(r, impact)];
   for (Impact& impact : r.impacts)
-    if (const auto zone = touched.find(zone_of(impact)); zone != touched.end()) zone->second.push_back(&impact);
+    if (const auto zone = touched.find(zone_of(r, impact)); zone != touched.end()) zone->second.push_back(&impact);
   for (auto& [root, impacts] : touched) {
-    project_zone(impacts, r.inverse_mass, r.x1, r.options.zone_sweeps, 0.1 * r.options.separation);
+    if (!r.options.rigid_zones || !rigidify(r, impacts))
+      project_zone(impacts, r.inverse_mass, r.x0, r.x1, r.options.zone_sweeps, 0.1 * r.options.separation);
     for (const Impact* impact : impacts) mark_free(r, *impact);
   }
   r.report.zones += static_cast<int>(touched.size());
   r.report.response += r.watch.lap();
 }
-
-// What is shortened together: every node is a set of its own, an obstacle is one set.
-int mover_of(const Resolution& r, int node) {
-  const int obstacle = r.world.obstacle_of(node);
-  return obstacle < 0 ? node : r.world.first_node[obstacle];
-}
-
-// Halves the motion of every set with an impact, and holds it still after some rounds. Each round holds more, so it
-// ends: when nothing moves any more there is nothing left to meet.
-bool shorten_rounds(Resolution& r, std::vector<Impact> impacts) {
-  ZoneSets sets(r.world.node_count);
-  for (const Impact& impact : r.impacts) impacts.push_back(impact);
-  constexpr int halvings = 4;
-  std::vector<int> halved(r.world.node_count, 0);
-  bool clean = true;
-  const auto moves = [&r](int node) { return r.x0.row(node) != r.x1.row(node); };
-  while (!impacts.empty()) {
-    std::vector<char> hit(r.world.node_count, 0);
-    for (const Impact& impact : impacts) {
-      int first = -1;
-      for (const int node : impact.pair.nodes)
-        if (r.is_free(node) || moves(node)) {
-          const int mover = mover_of(r, node);
-          sets.join(first < 0 ? first = mover : first, mover);
-        }
-    }
-    for (const Impact& impact : impacts)
-      for (const int node : impact.pair.nodes)
-        if (r.is_free(node) || moves(node)) hit[sets.root(mover_of(r, node))] = 1;
-    std::vector<int> count(r.world.node_count, 0);  // most halvings of any member: a set that grows goes on from there
-    for (int node = 0; node < r.world.node_count; ++node) {
-      int& most = count[sets.root(mover_of(r, node))];
-      most = std::max(most, halved[node]);
-    }
-    for (int node = 0; node < r.world.node_count; ++node) {
-      const int root = sets.root(mover_of(r, node));
-      if (!hit[root]) continue;
-      halved[node] = count[root] + 1;
-      if (halved[node] > halvings)
-        r.x1.row(node) = r.x0.row(node);
-      else
-        r.x1.row(node) = 0.5 * (r.x0.row(node) + r.x1.row(node)).eval();
-      r.moved[node] = 1;
-      if (node == root) ++r.report.shortened;
-    }
-    r.report.response += r.watch.lap();
-    impacts = new_impacts(r);
-    const auto count_before = impacts.size();
-    std::erase_if(impacts, [&](const Impact& impact) {
-      return std::none_of(impact.pair.nodes.begin(), impact.pair.nodes.end(), moves);
-    });
-    clean = clean && impacts.size() == count_before;
-  }
-  return clean;
-}
-
-}  // namespace
 
 std::vector<Impact> find_impacts(PairSearch& search, const Eigen::VectorXd& inverse_mass, const ResolveOptions& options,
                                  const Points& x0, const Points& x1, PathPairs& path, ResolveReport& times) {
@@ -200,7 +139,11 @@ ResolveReport resolve(PairSearch& search, const ContactWorld& world, const Eigen
       zone_round(r, impacts);
     impacts = new_impacts(r);
   }
-  r.report.clean = impacts.empty() || shorten_rounds(r, std::move(impacts));
+  if (!impacts.empty() && options.last_resort) {
+    impacts = yield_rounds(r, std::move(impacts));
+    if (!impacts.empty() && shorten_rounds(r, std::move(impacts))) impacts.clear();
+  }
+  r.report.clean = impacts.empty();
   return r.report;
 }
 

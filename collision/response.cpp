@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include <Eigen/QR>
+
 #include "collision/distance.hpp"
 
 namespace selvedge {
@@ -29,6 +31,22 @@ void push(const Impact& impact, const Eigen::VectorXd& inverse_mass, const Vec3&
     const int node = impact.pair.nodes[i];
     x1.row(node) += impact.weights[i] * inverse_mass[node] * impulse.transpose();
   }
+}
+
+// Relative motion of the pair over the step, across its normal.
+Vec3 slip_of(const Impact& impact, const Points& x0, const Points& x1) {
+  const Vec3 motion =
+      weighted(impact.weights, corners(impact.pair, x1)) - weighted(impact.weights, corners(impact.pair, x0));
+  return motion - motion.dot(impact.normal) * impact.normal;
+}
+
+// Brings the friction impulse to what would stop the slip, or as near as Coulomb's cone lets it.
+void rub(Impact& impact, double give, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1) {
+  Vec3 wanted = impact.tangential - slip_of(impact, x0, x1) / give;
+  const double bound = impact.friction * impact.multiplier, size = wanted.norm();
+  if (size > bound) wanted *= bound / size;
+  push(impact, inverse_mass, wanted - impact.tangential, x1);
+  impact.tangential = wanted;
 }
 
 }  // namespace
@@ -59,22 +77,20 @@ std::optional<Impact> find_impact(const NodePair& pair, const Points& x0, const 
   return impact;
 }
 
-void apply_impulse(Impact& impact, const Eigen::VectorXd& inverse_mass, double friction, const Points& x0, Points& x1) {
+void apply_impulse(Impact& impact, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1) {
   const double give = compliance(impact, inverse_mass);
   const double lack = impact.target - impact_gap(impact, x1);
   if (give <= 0 || lack <= 0) return;
   const double normal_impulse = lack / give;
   impact.multiplier += normal_impulse;
   push(impact, inverse_mass, normal_impulse * impact.normal, x1);
-  const Vec3 motion =
-      weighted(impact.weights, corners(impact.pair, x1)) - weighted(impact.weights, corners(impact.pair, x0));
-  const Vec3 slip = motion - motion.dot(impact.normal) * impact.normal;
+  const Vec3 slip = slip_of(impact, x0, x1);
   const double length = slip.norm();
-  if (length > 0) push(impact, inverse_mass, -std::min(friction * normal_impulse / length, 1 / give) * slip, x1);
+  if (length > 0) push(impact, inverse_mass, -std::min(impact.friction * normal_impulse / length, 1 / give) * slip, x1);
 }
 
-double project_zone(std::span<Impact*> impacts, const Eigen::VectorXd& inverse_mass, Points& x1, int max_sweeps,
-                    double tolerance) {
+double project_zone(std::span<Impact*> impacts, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1,
+                    int max_sweeps, double tolerance) {
   double violation = 0;
   for (int sweep = 0; sweep < max_sweeps; ++sweep) {
     violation = 0;
@@ -83,14 +99,41 @@ double project_zone(std::span<Impact*> impacts, const Eigen::VectorXd& inverse_m
       if (give <= 0) continue;
       const double lack = impact->target - impact_gap(*impact, x1);
       const double change = std::max(lack / give, -impact->multiplier);
-      if (change == 0) continue;
-      impact->multiplier += change;
-      push(*impact, inverse_mass, change * impact->normal, x1);
-      violation = std::max(violation, lack);
+      if (change != 0) {
+        impact->multiplier += change;
+        push(*impact, inverse_mass, change * impact->normal, x1);
+        violation = std::max(violation, lack);
+      }
+      if (impact->friction > 0 && (impact->multiplier > 0 || impact->tangential != Vec3::Zero()))
+        rub(*impact, give, inverse_mass, x0, x1);
     }
     if (violation < tolerance) break;
   }
   return violation;
+}
+
+void rigidify_zone(std::span<const int> nodes, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1) {
+  double mass = 0;
+  Vec3 centre = Vec3::Zero(), moved = Vec3::Zero();
+  for (const int node : nodes) {
+    mass += 1 / inverse_mass[node];
+    centre += row(x0, node) / inverse_mass[node];
+    moved += (row(x1, node) - row(x0, node)) / inverse_mass[node];
+  }
+  centre /= mass;
+  moved /= mass;
+  Vec3 momentum = Vec3::Zero();
+  Mat3 inertia = Mat3::Zero();
+  for (const int node : nodes) {
+    const Vec3 arm = row(x0, node) - centre;
+    momentum += arm.cross(row(x1, node) - row(x0, node) - moved) / inverse_mass[node];
+    inertia += (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose()) / inverse_mass[node];
+  }
+  // Nodes on a line have no inertia about it, and no momentum either.
+  const Vec3 turn = inertia.completeOrthogonalDecomposition().solve(momentum);
+  const double angle = turn.norm();
+  const Mat3 rotation = angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Mat3(Mat3::Identity());
+  for (const int node : nodes) x1.row(node) = (centre + moved + rotation * (row(x0, node) - centre)).transpose();
 }
 
 ZoneSets::ZoneSets(int node_count) : parent_(node_count) { std::iota(parent_.begin(), parent_.end(), 0); }

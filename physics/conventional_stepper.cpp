@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "collision/audit.hpp"
+#include "collision/penetration_depth.hpp"
 #include "collision/resolve.hpp"
 #include "collision/stopwatch.hpp"
 #include "physics/contact_terms.hpp"
@@ -15,6 +16,9 @@ namespace {
 constexpr double edges_a_substep = 2.5;     // how far a vertex may move, in mean edge lengths
 constexpr double first_roughness = 8;       // of the solve that only finds impacts and normal forces
 constexpr double friction_roughness = 0.2;  // of a solve with friction: sticking shows in small velocities
+constexpr int halvings = 2;                 // of a substep whose zones do not settle, before the last resort
+constexpr double rounding = 1e-14;          // of positions that are added up over substeps
+constexpr int hopeful_rounds = 12;          // of zones in a substep that may still be halved
 
 std::vector<const Surface*> surfaces(const std::vector<Obstacle>& obstacles) {
   std::vector<const Surface*> all;
@@ -48,8 +52,12 @@ double mean_edge_length(const Scene& scene) {
   return scene.rest_triangle.empty() ? 0 : sum / (3 * static_cast<double>(scene.rest_triangle.size()));
 }
 
-// As a file stores them: the audit is of what a reader will see.
 Points rounded_to_float(const Points& x) { return x.cast<float>().cast<double>(); }
+
+// Where a step has come to: all nodes, and the cloth's velocity.
+struct Leg {
+  Points nodes, v;
+};
 
 class ConventionalStepper final : public Stepper {
  public:
@@ -71,9 +79,14 @@ class ConventionalStepper final : public Stepper {
   bool has_contact() const { return features_.self_contact || features_.obstacles; }
   int substeps_for(const State& from, const Drive& drive, double dt) const;
   bool solve(const StepProblem& problem, Points& x, StepReport& report);
-  bool substep(const Points& nodes0, const Points& v0, const Points& pins, const Drive& drive, double h, Points& nodes1,
+  enum class Outcome { clean, unsettled, not_finite };
+  Outcome substep(const Leg& leg, const Points& pins, const Drive& drive, double h, bool last_resort, Points& nodes1,
+                  StepReport& report);
+  bool advance(Leg& leg, const Points& nodes, const Points& pins, const Drive& drive, double h, int halvings_left,
                StepReport& report);
-  void audit_state(const State& state, StepReport& report) const;
+  Points pinned(const Points& nodes) const;
+  int count_pairs(const Points& x, const std::vector<Points>& obstacles) const;
+  void audit_state(const State& state, const Drive& drive, StepReport& report) const;
 
   const Scene& scene_;
   ConventionalOptions options_;
@@ -104,19 +117,26 @@ void add(const ResolveReport& resolved, StepReport& report) {
   report.collision.impulses += resolved.impulses;
   report.collision.zones += resolved.zones;
   report.collision.shortened += resolved.shortened;
+  report.collision.held_vertices += resolved.held;
   report.seconds.broad_phase += resolved.broad_phase;
   report.seconds.ccd += resolved.ccd;
   report.seconds.response += resolved.response;
 }
 
-// nodes1 comes with obstacles where they are to end and the cloth at its first guess. False: not finite.
-bool ConventionalStepper::substep(const Points& nodes0, const Points& v0, const Points& pins, const Drive& drive,
-                                  double h, Points& nodes1, StepReport& report) {
+// nodes1 comes with obstacles where they are to end and the cloth at its first guess.
+ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const Points& pins, const Drive& drive,
+                                                          double h, bool last_resort, Points& nodes1,
+                                                          StepReport& report) {
+  const Points& nodes0 = leg.nodes;
   const int n = scene_.surface.vertex_count;
   const Points x0 = nodes0.topRows(n);
   Points x = nodes1.topRows(n);
-  StepProblem problem{h, &x0, &v0, &pins, drive.acceleration, drive.wind, {}, 1};
-  if (!has_contact()) return solve(problem, x, report) && (nodes1.topRows(n) = x).allFinite();
+  StepProblem problem{h, &x0, &leg.v, &pins, drive.acceleration, drive.wind, {}, 1};
+  if (!has_contact()) {
+    if (!solve(problem, x, report) || !x.allFinite()) return Outcome::not_finite;
+    nodes1.topRows(n) = x;
+    return Outcome::clean;
+  }
 
   Stopwatch watch;
   const auto proximities = find_proximities(world_, path_.pairs, nodes0, scene_.rest, scene_.contact.thickness);
@@ -127,7 +147,7 @@ bool ConventionalStepper::substep(const Points& nodes0, const Points& v0, const 
   // Impacts and the normal forces that bound friction are known after a first, rough solve.
   problem.contacts = terms;
   problem.roughness = first_roughness;
-  if (!solve(problem, x, report)) return false;
+  if (!solve(problem, x, report)) return Outcome::not_finite;
   nodes1.topRows(n) = x;
   ResolveReport times;
   const auto impacts = find_impacts(search_, inverse_mass_, contact_, nodes0, nodes1, path_, times);
@@ -140,19 +160,53 @@ bool ConventionalStepper::substep(const Points& nodes0, const Points& v0, const 
   lag_normal_forces(terms, x);
   problem.contacts = terms;
   problem.roughness = 1;
-  if (!solve(problem, x, report)) return false;
+  if (!solve(problem, x, report)) return Outcome::not_finite;
   if (features_.friction && !terms.empty()) {
     lag_normal_forces(terms, x);
     problem.roughness = friction_roughness;
-    if (!solve(problem, x, report)) return false;
+    if (!solve(problem, x, report)) return Outcome::not_finite;
   }
   watch.lap();
   lag_normal_forces(terms, x);
   stick(terms, inverse_mass_, x0, h, options_.implicit_euler.slip_speed * h, x);
   report.seconds.response += watch.lap();
   nodes1.topRows(n) = x;
-  add(resolve(search_, world_, inverse_mass_, contact_, nodes0, nodes1, path_), report);
-  return nodes1.allFinite();
+  ResolveOptions options = contact_;
+  options.last_resort = last_resort;
+  if (!last_resort) options.zone_rounds = hopeful_rounds;
+  const ResolveReport resolved = resolve(search_, world_, inverse_mass_, options, nodes0, nodes1, path_);
+  add(resolved, report);
+  if (!nodes1.allFinite()) return Outcome::not_finite;
+  return resolved.clean || last_resort ? Outcome::clean : Outcome::unsettled;
+}
+
+// Takes the leg over h to where `nodes` has the obstacles and to `pins`. Where zones do not settle the time is halved,
+// and only the last halves take the last resort. False: not finite.
+bool ConventionalStepper::advance(Leg& leg, const Points& nodes, const Points& pins, const Drive& drive, double h,
+                                  int halvings_left, StepReport& report) {
+  const int n = scene_.surface.vertex_count;
+  Points next = nodes;
+  next.topRows(n) = leg.nodes.topRows(n) + h * leg.v;
+  const Outcome outcome = substep(leg, pins, drive, h, halvings_left == 0, next, report);
+  if (outcome == Outcome::not_finite) return false;
+  if (outcome == Outcome::unsettled) {
+    ++report.collision.halved_substeps;
+    const Points middle = 0.5 * (leg.nodes + nodes);
+    const Points middle_pins = 0.5 * (pinned(leg.nodes) + pins);
+    return advance(leg, middle, middle_pins, drive, 0.5 * h, halvings_left - 1, report) &&
+           advance(leg, nodes, pins, drive, 0.5 * h, halvings_left - 1, report);
+  }
+  ++report.substeps;
+  leg.v = (next.topRows(n) - leg.nodes.topRows(n)) / h;
+  leg.nodes = std::move(next);
+  return true;
+}
+
+Points ConventionalStepper::pinned(const Points& nodes) const {
+  Points pins(scene_.pins.size(), 3);
+  for (std::size_t k = 0; k < scene_.pins.size(); ++k)
+    pins.row(static_cast<Eigen::Index>(k)) = nodes.row(scene_.pins[k]);
+  return pins;
 }
 
 bool ConventionalStepper::solve(const StepProblem& problem, Points& x, StepReport& report) {
@@ -166,61 +220,66 @@ bool ConventionalStepper::solve(const StepProblem& problem, Points& x, StepRepor
   return newton.finite;
 }
 
-void ConventionalStepper::audit_state(const State& state, StepReport& report) const {
-  Stopwatch watch;
+// As a file stores them: the audit is of what a reader will see.
+int ConventionalStepper::count_pairs(const Points& x, const std::vector<Points>& obstacles) const {
   std::vector<Points> positions;
-  for (const Points& obstacle : state.obstacles) positions.push_back(rounded_to_float(obstacle));
+  for (const Points& obstacle : obstacles) positions.push_back(rounded_to_float(obstacle));
   std::vector<AuditBody> bodies;
   for (std::size_t k = 0; k < positions.size(); ++k) bodies.push_back({&scene_.obstacles[k].surface, &positions[k]});
-  report.collision.pairs_after =
-      audit(scene_.surface, rounded_to_float(state.x), bodies, features_.self_contact).intersecting_pairs();
+  return audit(scene_.surface, rounded_to_float(x), bodies, features_.self_contact).intersecting_pairs();
+}
+
+void ConventionalStepper::audit_state(const State& state, const Drive& drive, StepReport& report) const {
+  Stopwatch watch;
+  CollisionReport& collision = report.collision;
+  collision.pairs_after = collision.pairs_wanted = count_pairs(state.x, state.obstacles);
+  if (state.pinched) {
+    collision.pairs_wanted = count_pairs(state.x, drive.obstacles);
+    for (std::size_t k = 0; k < drive.obstacles.size(); ++k)
+      collision.depth_wanted =
+          std::max(collision.depth_wanted, penetration_depth(scene_.obstacles[k].surface, drive.obstacles[k], state.x));
+  }
+  if (collision.pairs_after > 0) report.reason = Reason::penetrating;
   report.seconds.audit += watch.lap();
 }
 
 StepReport ConventionalStepper::step(const State& from, const Drive& drive, double dt, State& to) {
   StepReport report;
   report.by = traits_.name;
-  report.substeps = substeps_for(from, drive, dt);
-  const double h = dt / report.substeps;
-  const int n = scene_.surface.vertex_count;
-  Points nodes = gather_nodes(from.x, from.obstacles), v = from.v;
+  const int n = scene_.surface.vertex_count, planned = substeps_for(from, drive, dt);
+  Leg leg{gather_nodes(from.x, from.obstacles), from.v};
   const Points wanted = gather_nodes(from.x, drive.obstacles);
   if (has_contact()) {
     Stopwatch watch;
     search_.restart();
-    path_.start = path_.end = nodes;
-    search_.find(nodes, nodes, 2 * scene_.contact.thickness, path_.pairs);
+    path_.start = path_.end = leg.nodes;
+    search_.find(leg.nodes, leg.nodes, 2 * scene_.contact.thickness, path_.pairs);
     report.seconds.broad_phase += watch.lap();
   }
-  report.status = StepStatus::accepted;
-  for (int s = 0; s < report.substeps; ++s) {
-    const double part = 1.0 / (report.substeps - s);  // of what is left of the frame
-    Points next = nodes + part * (wanted - nodes);
-    next.topRows(n) = nodes.topRows(n) + h * v;
-    Points pins(scene_.pins.size(), 3);
-    for (std::size_t k = 0; k < scene_.pins.size(); ++k) {
-      const auto i = static_cast<Eigen::Index>(k);
-      pins.row(i) = nodes.row(scene_.pins[k]) + part * (drive.pins.row(i) - nodes.row(scene_.pins[k]));
-    }
-    if (!substep(nodes, v, pins, drive, h, next, report)) {
+  for (int s = 0; s < planned; ++s) {
+    const double part = 1.0 / (planned - s);  // of what is left of the frame
+    const Points nodes = leg.nodes + part * (wanted - leg.nodes);
+    const Points pins = pinned(leg.nodes) + part * (drive.pins - pinned(leg.nodes));
+    // Cloth that left an obstacle no room will hardly do so now.
+    if (!advance(leg, nodes, pins, drive, dt / planned, from.pinched ? 0 : halvings, report)) {
       report.status = StepStatus::rejected;
       report.reason = Reason::not_finite;
       return report;
     }
-    v = (next.topRows(n) - nodes.topRows(n)) / h;
-    nodes = std::move(next);
   }
+  report.status = StepStatus::accepted;
   to.time = from.time + dt;
   to.frame = from.frame + 1;
-  to.x = nodes.topRows(n);
-  to.v = v;
+  to.x = leg.nodes.topRows(n);
+  to.v = leg.v;
   to.obstacles.resize(from.obstacles.size());
   for (std::size_t k = 0; k < from.obstacles.size(); ++k)
-    to.obstacles[k] = nodes.middleRows(world_.first_node[k], from.obstacles[k].rows());
-  if (nodes.rows() > n)
-    report.collision.obstacle_lag = (nodes - wanted).bottomRows(nodes.rows() - n).rowwise().norm().maxCoeff();
-  audit_state(to, report);
-  if (report.collision.pairs_after > 0) report.reason = Reason::penetrating;
+    to.obstacles[k] = leg.nodes.middleRows(world_.first_node[k], from.obstacles[k].rows());
+  if (leg.nodes.rows() > n)
+    report.collision.obstacle_lag = (leg.nodes - wanted).bottomRows(leg.nodes.rows() - n).rowwise().norm().maxCoeff();
+  to.pinched = report.collision.obstacle_lag > rounding * wanted.cwiseAbs().maxCoeff();
+  if (!to.pinched) report.collision.obstacle_lag = 0;
+  audit_state(to, drive, report);
   return report;
 }
 

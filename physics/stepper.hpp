@@ -14,6 +14,7 @@ struct State {
   int frame = 0;
   Points x, v;                    // cloth, all cloths on end
   std::vector<Points> obstacles;  // where they are; may lag behind Drive::obstacles
+  bool pinched = false;           // they do: cloth left them no room in the step that ended here
 };
 
 // What the world imposes on a step, given at the step's END.
@@ -33,13 +34,18 @@ struct PhaseTimes {  // [s]
 };
 
 struct CollisionReport {
-  int contacts = 0;   // proximity pairs in the implicit solve, last substep
-  int impulses = 0;   // impacts met with an impulse, all substeps
-  int zones = 0;      // impact zones projected, all substeps
-  int shortened = 0;  // zones whose motion was shortened toward the last clean state
+  int contacts = 0;         // proximity pairs in the implicit solve, last substep
+  int impulses = 0;         // impacts met with an impulse, all substeps
+  int zones = 0;            // impact zones projected, all substeps
+  int halved_substeps = 0;  // substeps done again in two halves because zones did not settle
+  int shortened = 0;        // zones whose motion was shortened toward the last clean state, once a halving
+  int held_vertices = 0;    // cloth vertices in them, all substeps
+  int passed_through = 0;   // pairs that met on their way by the audit of the motion; -1: not audited
   double min_gap = std::numeric_limits<double>::infinity();  // of the contacts [m]
   double obstacle_lag = 0;                // largest distance of an obstacle vertex from where it was wanted [m]
   int pairs_before = 0, pairs_after = 0;  // intersecting triangle pairs by the audit; -1: not audited
+  int pairs_wanted = 0;                   // the same with obstacles where they were wanted
+  double depth_wanted = 0;                // how deep a cloth vertex lies in a wanted closed obstacle [m]
 };
 
 struct StepReport {  // starts as failure

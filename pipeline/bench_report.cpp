@@ -36,6 +36,8 @@ const std::vector<Column>& columns() {
       {"max_contacts", "contacts", 0, [](M m) { return double(m.summary.max_contacts); }},
       {"impulses", "impulses", 0, [](M m) { return double(m.summary.impulses); }},
       {"intersecting_pairs", "pairs", 0, [](M m) { return double(m.summary.worst_pairs); }},
+      {"pairs_wanted", "wanted", 0, [](M m) { return double(m.summary.worst_pairs_wanted); }},
+      {"depth_wanted", "depth", 4, [](M m) { return m.summary.max_depth_wanted; }},
       {"inside_vertices", "inside", 0, [](M m) { return double(m.summary.worst_inside); }},
       {"nonfinite", "nonfinite", 0, [](M m) { return double(m.summary.nonfinite); }},
       {"max_stretch", "stretch", 3, [](M m) { return m.summary.max_stretch; }},

@@ -73,10 +73,20 @@ void add_frame(RunSummary& summary, int index, const Frame& frame) {
   summary.max_contacts = std::max(summary.max_contacts, collision.contacts);
   summary.impulses += collision.impulses;
   summary.zones += collision.zones;
+  summary.halved_substeps += collision.halved_substeps;
   summary.shortened += collision.shortened;
+  summary.held_vertices += collision.held_vertices;
+  summary.passed_through += std::max(0, collision.passed_through);
+  summary.worst_pairs_wanted = std::max(summary.worst_pairs_wanted, collision.pairs_wanted);
+  summary.max_depth_wanted = std::max(summary.max_depth_wanted, collision.depth_wanted);
   summary.max_obstacle_lag = std::max(summary.max_obstacle_lag, collision.obstacle_lag);
   summary.max_residual = std::max(summary.max_residual, report.residual);
   summary.min_contact_gap = std::min(summary.min_contact_gap, collision.min_gap);
+}
+
+double held_fraction(const RunSummary& summary) {
+  const double vertex_steps = static_cast<double>(summary.vertices) * summary.substeps;
+  return vertex_steps > 0 ? static_cast<double>(summary.held_vertices) / vertex_steps : 0;
 }
 
 double mean_milliseconds(const RunSummary& summary) {
@@ -93,7 +103,8 @@ double median_milliseconds(const RunSummary& summary) {
 }
 
 bool is_clean(const RunSummary& summary) {
-  return summary.end == RunEnd::finished && summary.pairs == 0 && summary.worst_inside == 0 && summary.nonfinite == 0;
+  return summary.end == RunEnd::finished && summary.pairs == 0 && summary.worst_inside == 0 && summary.nonfinite == 0 &&
+         summary.passed_through == 0;
 }
 
 std::string summary_json(const RunSummary& s) {
@@ -130,9 +141,14 @@ std::string summary_json(const RunSummary& s) {
       {"max_contacts", s.max_contacts},
       {"impulses", s.impulses},
       {"zones", s.zones},
+      {"halved_substeps", s.halved_substeps},
       {"shortened_zones", s.shortened},
+      {"held_fraction", held_fraction(s)},
+      {"passed_through", s.passed_through},
       {"min_contact_gap", finite_or_null(s.min_contact_gap)},
       {"max_obstacle_lag", s.max_obstacle_lag},
+      {"intersecting_pairs_wanted", s.worst_pairs_wanted},
+      {"max_depth_wanted", s.max_depth_wanted},
       {"left_out", left_out},
       {"warnings", s.warnings}};
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
@@ -162,9 +178,14 @@ std::string summary_text(const RunSummary& s) {
   if (s.vertex_pairs > 0) add("crossing at a vertex", fmt::format("{} pairs over all frames", s.vertex_pairs));
   if (s.worst_inside > 0) add("inside obstacles", fmt::format("{} vertices in the worst frame", s.worst_inside));
   if (s.nonfinite > 0) add("not finite", fmt::format("{} vertices over all frames", s.nonfinite));
-  add("contacts",
-      fmt::format("{} at most; {} impulses, {} zones, {} shortened", s.max_contacts, s.impulses, s.zones, s.shortened));
-  if (s.max_obstacle_lag > 0) add("obstacles lag", fmt::format("{:.2g} m at most", s.max_obstacle_lag));
+  add("contacts", fmt::format("{} at most; {} impulses, {} zones", s.max_contacts, s.impulses, s.zones));
+  if (s.halved_substeps > 0) add("substeps halved", std::to_string(s.halved_substeps));
+  if (s.held_vertices > 0)
+    add("held back", fmt::format("{:.2g} % of all vertices and substeps", 100 * held_fraction(s)));
+  if (s.passed_through > 0) add("passed through", fmt::format("{} pairs over all frames", s.passed_through));
+  if (s.max_obstacle_lag > 0)
+    add("obstacles lag", fmt::format("{:.2g} m at most; where they were wanted {} pairs and {:.2g} m deep at worst",
+                                     s.max_obstacle_lag, s.worst_pairs_wanted, s.max_depth_wanted));
   add("left out", out.empty() ? "nothing" : out);
   for (const std::string& warning : s.warnings) add("warning", warning);
   return text;

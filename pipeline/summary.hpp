@@ -30,8 +30,9 @@ struct RunSummary {
   int worst_pairs = 0, worst_frame = 0, worst_inside = 0;
   long nonfinite = 0;
   int max_contacts = 0;
-  long impulses = 0, zones = 0, shortened = 0;
-  double max_obstacle_lag = 0, max_residual = 0;
+  long impulses = 0, zones = 0, halved_substeps = 0, shortened = 0, held_vertices = 0, passed_through = 0;
+  double max_obstacle_lag = 0, max_depth_wanted = 0, max_residual = 0;
+  int worst_pairs_wanted = 0;  // against obstacles where they were wanted
   double min_contact_gap = std::numeric_limits<double>::infinity();
   std::vector<PlanLine> left_out;
   std::vector<std::string> warnings;
@@ -39,10 +40,14 @@ struct RunSummary {
 
 void add_frame(RunSummary&, int index, const Frame&);
 
+// Vertices times substeps that motion shortened held back, over all: frozen cloth is not clean cloth.
+double held_fraction(const RunSummary&);
+
 double mean_milliseconds(const RunSummary&);
 double median_milliseconds(const RunSummary&);
 
-// Ran to its end, and every frame finite, without intersecting pairs, without vertices inside obstacles.
+// Ran to its end, and every frame finite, without intersecting pairs, without vertices inside obstacles, reached by a
+// motion in which nothing passed through.
 bool is_clean(const RunSummary&);
 
 std::string summary_json(const RunSummary&);

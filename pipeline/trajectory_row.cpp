@@ -25,19 +25,24 @@ std::vector<Column> columns() {
           {"iterations", offsetof(Row, iterations), whole},
           {"linear_iterations", offsetof(Row, linear_iterations), whole},
           {"residual", offsetof(Row, residual), real},
-          {"solve_seconds", offsetof(Row, solve_seconds), real},
-          {"broad_phase_seconds", offsetof(Row, broad_phase_seconds), real},
-          {"ccd_seconds", offsetof(Row, ccd_seconds), real},
-          {"response_seconds", offsetof(Row, response_seconds), real},
-          {"audit_seconds", offsetof(Row, audit_seconds), real},
-          {"contacts", offsetof(Row, contacts), whole},
-          {"impulses", offsetof(Row, impulses), whole},
-          {"zones", offsetof(Row, zones), whole},
-          {"shortened", offsetof(Row, shortened), whole},
-          {"contact_gap", offsetof(Row, contact_gap), real},
-          {"obstacle_lag", offsetof(Row, obstacle_lag), real},
-          {"pairs_before", offsetof(Row, pairs_before), whole},
-          {"pairs_after", offsetof(Row, pairs_after), whole},
+          {"solve_seconds", offsetof(Row, phase.solve), real},
+          {"broad_phase_seconds", offsetof(Row, phase.broad_phase), real},
+          {"ccd_seconds", offsetof(Row, phase.ccd), real},
+          {"response_seconds", offsetof(Row, phase.response), real},
+          {"audit_seconds", offsetof(Row, phase.audit), real},
+          {"contacts", offsetof(Row, collision.contacts), whole},
+          {"impulses", offsetof(Row, collision.impulses), whole},
+          {"zones", offsetof(Row, collision.zones), whole},
+          {"halved_substeps", offsetof(Row, collision.halved_substeps), whole},
+          {"shortened", offsetof(Row, collision.shortened), whole},
+          {"held_vertices", offsetof(Row, collision.held_vertices), whole},
+          {"passed_through", offsetof(Row, collision.passed_through), whole},
+          {"contact_gap", offsetof(Row, collision.min_gap), real},
+          {"obstacle_lag", offsetof(Row, collision.obstacle_lag), real},
+          {"pairs_before", offsetof(Row, collision.pairs_before), whole},
+          {"pairs_after", offsetof(Row, collision.pairs_after), whole},
+          {"pairs_wanted", offsetof(Row, collision.pairs_wanted), whole},
+          {"depth_wanted", offsetof(Row, collision.depth_wanted), real},
           {"self_pairs", offsetof(Row, self_pairs), whole},
           {"vertex_pairs", offsetof(Row, vertex_pairs), whole},
           {"obstacle_pairs", offsetof(Row, obstacle_pairs), whole},
@@ -69,7 +74,6 @@ h5::Handle row_file_type() {
 
 TrajectoryRow row_of(const Frame& frame, int by, std::int64_t bad_begin) {
   const StepReport& report = frame.report;
-  const CollisionReport& collision = report.collision;
   TrajectoryRow row{};
   row.time = frame.time;
   row.seconds = frame.seconds;
@@ -81,19 +85,8 @@ TrajectoryRow row_of(const Frame& frame, int by, std::int64_t bad_begin) {
   row.iterations = report.iterations;
   row.linear_iterations = report.linear_iterations;
   row.residual = report.residual;
-  row.solve_seconds = report.seconds.solve;
-  row.broad_phase_seconds = report.seconds.broad_phase;
-  row.ccd_seconds = report.seconds.ccd;
-  row.response_seconds = report.seconds.response;
-  row.audit_seconds = report.seconds.audit;
-  row.contacts = collision.contacts;
-  row.impulses = collision.impulses;
-  row.zones = collision.zones;
-  row.shortened = collision.shortened;
-  row.contact_gap = collision.min_gap;
-  row.obstacle_lag = collision.obstacle_lag;
-  row.pairs_before = collision.pairs_before;
-  row.pairs_after = collision.pairs_after;
+  row.phase = report.seconds;
+  row.collision = report.collision;
   row.self_pairs = frame.self_pairs;
   row.vertex_pairs = frame.vertex_pairs;
   row.obstacle_pairs = frame.obstacle_pairs;
@@ -122,10 +115,8 @@ void fill_from_row(const TrajectoryRow& row, const std::vector<std::string>& nam
   report.iterations = row.iterations;
   report.linear_iterations = row.linear_iterations;
   report.residual = row.residual;
-  report.seconds = {row.solve_seconds, row.broad_phase_seconds, row.ccd_seconds, row.response_seconds,
-                    row.audit_seconds};
-  report.collision = {row.contacts,    row.impulses,     row.zones,        row.shortened,
-                      row.contact_gap, row.obstacle_lag, row.pairs_before, row.pairs_after};
+  report.seconds = row.phase;
+  report.collision = row.collision;
   frame.self_pairs = row.self_pairs;
   frame.vertex_pairs = row.vertex_pairs;
   frame.obstacle_pairs = row.obstacle_pairs;

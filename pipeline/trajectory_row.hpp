@@ -16,10 +16,8 @@ struct TrajectoryRow {
   std::int32_t by, reason, status;  // rows of codes/by, codes/reason, codes/status
   std::int32_t fell_back, substeps, iterations, linear_iterations;
   double residual;
-  double solve_seconds, broad_phase_seconds, ccd_seconds, response_seconds, audit_seconds;
-  std::int32_t contacts, impulses, zones, shortened;
-  double contact_gap, obstacle_lag;
-  std::int32_t pairs_before, pairs_after;
+  PhaseTimes phase;
+  CollisionReport collision;
   std::int32_t self_pairs, vertex_pairs, obstacle_pairs, inside_vertices, nonfinite;
   double max_stretch, min_stretch;
   double kinetic_energy, gravity_energy, membrane_energy, bending_energy;
