@@ -1,88 +1,95 @@
 #include "collision/contact_pairs.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace selvedge {
 namespace {
 
-Box unite(const Box& a, const Box& b) {
-  Box both;
-  for (int k = 0; k < 3; ++k) {
-    both.lo[k] = std::min(a.lo[k], b.lo[k]);
-    both.hi[k] = std::max(a.hi[k], b.hi[k]);
-  }
-  return both;
-}
-
-Box moving_point_box(const Vec3& x0, const Vec3& x1, double radius) {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
-  Box box;
-  for (int k = 0; k < 3; ++k) {
-    box.lo[k] = std::nextafter(static_cast<float>(std::min(x0[k], x1[k]) - radius), -infinity);
-    box.hi[k] = std::nextafter(static_cast<float>(std::max(x0[k], x1[k]) + radius), infinity);
-  }
-  return box;
-}
-
-// One side of a pair of triangles: its surface, offset in the joint numbering, and boxes.
+// A surface that takes part in a search: its tree and, by leaf of the tree, the vertices and edges that the leaf's
+// triangles own, in groups like leaves.
 struct Side {
   const Surface& surface;
   int first_node;
-  const std::vector<Box>& triangles;
-  const std::vector<Box>& vertices;
-  const std::vector<Box>& edges;
+  const Bvh& bvh;
+  const PrimitiveGroups &vertices, &edges;
 };
 
-void vertex_face_pairs(const Side& p, int tp, const Side& f, int tf, bool same, std::vector<NodePair>& pairs) {
-  const auto face = f.surface.triangles.row(tf);
-  for (int k = 0; k < 3; ++k) {
-    const int v = p.surface.triangles(tp, k);
-    if (p.surface.vertex_owner[v] != tp) continue;
-    if (same && (v == face(0) || v == face(1) || v == face(2))) continue;
-    if (!overlap(p.vertices[v], f.triangles[tf])) continue;
-    pairs.push_back({PairKind::vertex_face,
-                     {v + p.first_node, face(0) + f.first_node, face(1) + f.first_node, face(2) + f.first_node}});
-  }
-}
+struct LeafPairs {
+  const Side &a, &b;
+  bool same;  // one surface: primitives that share a vertex are no pair
 
-void edge_edge_pairs(const Side& a, int ta, const Side& b, int tb, bool same, std::vector<NodePair>& pairs) {
-  for (int i = 0; i < 3; ++i) {
-    const int ea = a.surface.triangle_edges(ta, i);
-    if (a.surface.edge_owner[ea] != ta) continue;
-    const int a0 = a.surface.edges(ea, 0), a1 = a.surface.edges(ea, 1);
-    for (int j = 0; j < 3; ++j) {
-      const int eb = b.surface.triangle_edges(tb, j);
-      if (b.surface.edge_owner[eb] != tb) continue;
-      const int b0 = b.surface.edges(eb, 0), b1 = b.surface.edges(eb, 1);
-      if (same && (a0 == b0 || a0 == b1 || a1 == b0 || a1 == b1)) continue;
-      if (!overlap(a.edges[ea], b.edges[eb])) continue;
-      pairs.push_back(
-          {PairKind::edge_edge, {a0 + a.first_node, a1 + a.first_node, b0 + b.first_node, b1 + b.first_node}});
+  void vertex_face(const Side& p, int v, const Side& f, int face, std::vector<NodePair>& pairs) const {
+    const int* n = f.surface.triangles.data() + 3 * face;
+    if (same && (v == n[0] || v == n[1] || v == n[2])) return;
+    pairs.push_back(
+        {PairKind::vertex_face, {v + p.first_node, n[0] + f.first_node, n[1] + f.first_node, n[2] + f.first_node}});
+  }
+  void edge_edge(int ea, int eb, std::vector<NodePair>& pairs) const {
+    const int *m = a.surface.edges.data() + 2 * ea, *n = b.surface.edges.data() + 2 * eb;
+    if (same && (m[0] == n[0] || m[0] == n[1] || m[1] == n[0] || m[1] == n[1])) return;
+    pairs.push_back(
+        {PairKind::edge_edge, {m[0] + a.first_node, m[1] + a.first_node, n[0] + b.first_node, n[1] + b.first_node}});
+  }
+  void vertices_with_faces(const Side& p, int leaf_p, const Side& f, int leaf_f, const Box& box_f,
+                           std::vector<NodePair>& pairs) const {
+    const Bvh::Leaf& faces = f.bvh.leaves[leaf_f];
+    for (const Bvh::Leaf& group : p.vertices.of(leaf_p))
+      for_each_overlap(group, faces, box_f,
+                       [&](int i, int j) { vertex_face(p, group.item[i], f, faces.item[j], pairs); });
+  }
+  void edges_with_edges(int leaf_a, int leaf_b, const Box& box_b, std::vector<NodePair>& pairs) const {
+    for (const Bvh::Leaf& first : a.edges.of(leaf_a))
+      for (const Bvh::Leaf& second : b.edges.of(leaf_b))
+        for_each_overlap(first, second, box_b, [&](int i, int j) { edge_edge(first.item[i], second.item[j], pairs); });
+  }
+  void edges_within(int leaf, const Box& box, std::vector<NodePair>& pairs) const {
+    const auto groups = a.edges.of(leaf);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const Bvh::Leaf& own = groups[g];
+      for_each_overlap(own, [&](int i, int j) { edge_edge(own.item[i], own.item[j], pairs); });
+      for (const Bvh::Leaf& later : groups.subspan(g + 1))
+        for_each_overlap(own, later, box, [&](int i, int j) { edge_edge(own.item[i], later.item[j], pairs); });
     }
   }
-}
-
-// Chunks of fixed size, joined in order: the same list for any number of threads.
-void primitive_pairs(const Side& a, const Side& b, bool same, const std::vector<std::pair<int, int>>& triangles,
-                     std::vector<NodePair>& pairs) {
-  constexpr int chunk = 8192;
-  const int chunks = (static_cast<int>(triangles.size()) + chunk - 1) / chunk;
-  std::vector<std::vector<NodePair>> found(chunks);
-#pragma omp parallel for schedule(dynamic)
-  for (int c = 0; c < chunks; ++c) {
-    const int end = std::min<int>((c + 1) * chunk, static_cast<int>(triangles.size()));
-    for (int i = c * chunk; i < end; ++i) {
-      const auto [ta, tb] = triangles[i];
-      vertex_face_pairs(a, ta, b, tb, same, found[c]);
-      vertex_face_pairs(b, tb, a, ta, same, found[c]);
-      edge_edge_pairs(a, ta, b, tb, same, found[c]);
+  void operator()(NodeWork w, std::vector<NodePair>& pairs) const {
+    const Bvh::Node &node_a = a.bvh.nodes[w.a], &node_b = b.bvh.nodes[w.b];
+    vertices_with_faces(a, ~node_a.child, b, ~node_b.child, node_b.box, pairs);
+    if (same && w.a == w.b) {
+      edges_within(~node_a.child, node_a.box, pairs);
+    } else {
+      vertices_with_faces(b, ~node_b.child, a, ~node_a.child, node_a.box, pairs);
+      edges_with_edges(~node_a.child, ~node_b.child, node_b.box, pairs);
     }
   }
-  for (const auto& list : found) pairs.insert(pairs.end(), list.begin(), list.end());
-}
+};
 
 }  // namespace
+
+// Fills groups with what the triangles of each leaf own: corner k of triangle t has the primitive primitives(t, k).
+void PrimitiveGroups::share_out(const Bvh& bvh, const Triangles& primitives, const std::vector<int>& owner) {
+  groups.clear();
+  begin.assign(1, 0);
+  for (const Bvh::Leaf& leaf : bvh.leaves) {
+    int used = Bvh::leaf_size;
+    for (const int t : leaf.item)
+      for (int k = 0; t >= 0 && k < 3; ++k) {
+        const int item = primitives(t, k);
+        if (owner[item] != t) continue;
+        if (used == Bvh::leaf_size) {
+          used = 0;
+          std::ranges::fill(groups.emplace_back().item, -1);
+        }
+        groups.back().item[used++] = item;
+      }
+    begin.push_back(static_cast<int>(groups.size()));
+  }
+}
+
+void PrimitiveGroups::set_boxes(std::span<const Box> boxes) {
+  const int count = static_cast<int>(groups.size());
+#pragma omp parallel for schedule(static)
+  for (int g = 0; g < count; ++g) set_leaf_boxes(groups[g], boxes);
+}
 
 int ContactWorld::obstacle_of(int node) const {
   if (is_cloth(node)) return -1;
@@ -130,22 +137,6 @@ void PairSearch::restart() {
   for (Part& obstacle : obstacles_) obstacle.stale = true;
 }
 
-void PairSearch::make_boxes(Part& part) {
-  const Surface& s = *part.surface;
-  part.vertex_boxes.resize(s.vertex_count);
-  part.edge_boxes.resize(s.edges.rows());
-  part.triangle_boxes.resize(s.triangles.rows());
-#pragma omp parallel for schedule(static)
-  for (int v = 0; v < s.vertex_count; ++v)
-    part.vertex_boxes[v] = moving_point_box(row(part.from, v), row(part.to, v), part.radius / 2);
-#pragma omp parallel for schedule(static)
-  for (int e = 0; e < static_cast<int>(s.edges.rows()); ++e)
-    part.edge_boxes[e] = unite(part.vertex_boxes[s.edges(e, 0)], part.vertex_boxes[s.edges(e, 1)]);
-#pragma omp parallel for schedule(static)
-  for (int t = 0; t < static_cast<int>(s.triangles.rows()); ++t)
-    part.triangle_boxes[t] = unite(part.edge_boxes[s.triangle_edges(t, 0)], part.vertex_boxes[s.triangles(t, 2)]);
-}
-
 void PairSearch::update(Part& part, const Points& x0, const Points& x1, double radius) {
   const auto from = x0.middleRows(part.first_node, part.surface->vertex_count);
   const auto to = x1.middleRows(part.first_node, part.surface->vertex_count);
@@ -157,32 +148,30 @@ void PairSearch::update(Part& part, const Points& x0, const Points& x1, double r
   part.radius = radius;
   part.from = from;
   part.to = to;
-  make_boxes(part);
-  if (!part.stale) refit(part.bvh, part.triangle_boxes);
-  part.refitted = !part.stale;
-  // A tree that has lost a quarter of its quality to refitting is built anew.
-  if (part.stale || bvh_cost(part.bvh) > 1.25 * part.built_cost) {
-    part.bvh = build_bvh(part.triangle_boxes);
-    part.built_cost = bvh_cost(part.bvh);
-    part.refitted = false;
+  vertex_boxes(part.from, part.to, radius / 2, part.vertex_boxes);
+  edge_boxes(*part.surface, part.vertex_boxes, part.edge_boxes);
+  triangle_boxes(*part.surface, part.vertex_boxes, part.triangle_boxes);
+  if (part.stale) part.tree.built = false;
+  part.refitted = !selvedge::update(part.tree, part.triangle_boxes);
+  if (!part.refitted) {
+    part.vertices.share_out(part.tree.bvh, part.surface->triangles, part.surface->vertex_owner);
+    part.edges.share_out(part.tree.bvh, part.surface->triangle_edges, part.surface->edge_owner);
   }
+  part.vertices.set_boxes(part.vertex_boxes);
+  part.edges.set_boxes(part.edge_boxes);
   part.stale = false;
 }
 
 void PairSearch::find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs) {
   pairs.clear();
   update(cloth_, x0, x1, radius);
-  const auto side = [](const Part& p) {
-    return Side{*p.surface, p.first_node, p.triangle_boxes, p.vertex_boxes, p.edge_boxes};
-  };
-  if (world_.self) {
-    self_pairs(cloth_.bvh, triangle_pairs_);
-    primitive_pairs(side(cloth_), side(cloth_), true, triangle_pairs_, pairs);
-  }
+  const auto side = [](const Part& p) { return Side{*p.surface, p.first_node, p.tree.bvh, p.vertices, p.edges}; };
+  const Side cloth = side(cloth_);
+  if (world_.self) gather(BvhTraversal{cloth.bvh, cloth.bvh, true}, scratch_, pairs, LeafPairs{cloth, cloth, true});
   for (Part& obstacle : obstacles_) {
     update(obstacle, x0, x1, radius);
-    cross_pairs(cloth_.bvh, obstacle.bvh, triangle_pairs_);
-    primitive_pairs(side(cloth_), side(obstacle), false, triangle_pairs_, pairs);
+    const Side body = side(obstacle);
+    gather(BvhTraversal{cloth.bvh, body.bvh, false}, scratch_, pairs, LeafPairs{cloth, body, false});
   }
 }
 

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <utility>
 #include <vector>
 
-#include "collision/bvh.hpp"
+#include "collision/bvh_traversal.hpp"
 #include "collision/ccd.hpp"
 
 namespace selvedge {
@@ -35,6 +36,18 @@ struct NodePair {
 
 std::array<Vec3, 4> corners(const NodePair&, const Points& x);
 
+// Vertices or edges by the leaf of a tree of triangles that owns them, eight together.
+struct PrimitiveGroups {
+  std::vector<Bvh::Leaf> groups;
+  std::vector<int> begin;  // those of leaf l are groups[begin[l] .. begin[l + 1])
+
+  std::span<const Bvh::Leaf> of(int leaf) const {
+    return {groups.data() + begin[leaf], static_cast<std::size_t>(begin[leaf + 1] - begin[leaf])};
+  }
+  void share_out(const Bvh&, const Triangles& primitives, const std::vector<int>& owner);
+  void set_boxes(std::span<const Box>);
+};
+
 // Finds vertex-face and edge-edge pairs that may come within `radius` of each other while all nodes move straight from
 // x0 to x1; misses none. Every vertex and edge belongs to one triangle, so that each pair is found once (representative
 // triangles, Curtis, Tamstorf and Manocha 2008). Holds trees, which are caches.
@@ -49,20 +62,19 @@ class PairSearch {
   struct Part {  // a surface with its tree
     const Surface* surface = nullptr;
     int first_node = 0;
-    Bvh bvh;
-    double built_cost = 0;
+    KeptBvh tree;
+    PrimitiveGroups vertices, edges;
     bool stale = true, refitted = false;
     Points from, to;  // what the boxes hold: a body that stands still is not refitted
     double radius = -1;
     std::vector<Box> triangle_boxes, vertex_boxes, edge_boxes;
   };
-  static void make_boxes(Part&);
   static void update(Part&, const Points& x0, const Points& x1, double radius);
 
   const ContactWorld& world_;
   Part cloth_;
   std::vector<Part> obstacles_;
-  std::vector<std::pair<int, int>> triangle_pairs_;
+  PartLists<NodePair> scratch_;
 };
 
 }  // namespace selvedge

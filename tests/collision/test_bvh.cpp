@@ -81,22 +81,30 @@ void check_against_brute(const Bvh& a, const std::vector<Box>& boxes_a, const Bv
   CHECK(sorted(pairs) == brute_cross(boxes_a, boxes_b));
 }
 
-void check_order_and_boxes(const Bvh& tree) {
+bool holds(const Box& outer, const Box& inner) {
+  bool all = true;
+  for (int axis = 0; axis < 3; ++axis) all &= outer.lo[axis] <= inner.lo[axis] && outer.hi[axis] >= inner.hi[axis];
+  return all;
+}
+
+void check_order_and_boxes(const Bvh& tree, const std::vector<Box>& boxes) {
   std::vector<int> seen(tree.item_count, 0);
+  int wrong = 0;
   for (int k = 0; k < static_cast<int>(tree.nodes.size()); ++k) {
     const Bvh::Node& node = tree.nodes[k];
-    if (node.left < 0) {
-      ++seen[~node.left];
+    if (node.child < 0) {
+      CHECK(~node.child == node.first);
+      for (const int item : tree.leaves[~node.child].item) {
+        if (item < 0) continue;
+        ++seen[item];
+        wrong += !holds(node.box, boxes[item]);
+      }
       continue;
     }
-    CHECK(node.left > k);
-    CHECK(node.right > k);
-    for (int child : {node.left, node.right})
-      for (int axis = 0; axis < 3; ++axis) {
-        CHECK(node.box.lo[axis] <= tree.nodes[child].box.lo[axis]);
-        CHECK(node.box.hi[axis] >= tree.nodes[child].box.hi[axis]);
-      }
+    wrong += node.child <= k || tree.nodes[node.child].first != node.first;
+    for (int child : {node.child, node.child + 1}) wrong += !holds(node.box, tree.nodes[child].box);
   }
+  CHECK(wrong == 0);
   CHECK(std::all_of(seen.begin(), seen.end(), [](int times) { return times == 1; }));
 }
 
@@ -104,14 +112,15 @@ void check_order_and_boxes(const Bvh& tree) {
 
 TEST_CASE("bvh: the tree finds the pairs that brute force finds, also after a refit", "[bvh]") {
   std::mt19937 random(3);
-  for (Mesh mesh : {soup(400, random), folded_grid(20), soup(1, random), soup(2, random)}) {
+  for (Mesh mesh : {soup(400, random), folded_grid(20), soup(1, random), soup(2, random), soup(8, random),
+                    soup(9, random), soup(33, random), soup(67, random), soup(1031, random)}) {
     const Mesh other = soup(300, random);
     std::vector<Box> boxes, other_boxes;
     triangle_boxes(mesh.surface, mesh.x, mesh.x, 0.003, boxes);
     triangle_boxes(other.surface, other.x, other.x, 0.003, other_boxes);
     Bvh tree = build_bvh(boxes);
     const Bvh other_tree = build_bvh(other_boxes);
-    check_order_and_boxes(tree);
+    check_order_and_boxes(tree, boxes);
     check_against_brute(tree, boxes, other_tree, other_boxes);
 
     const double cost = bvh_cost(tree);
@@ -120,7 +129,7 @@ TEST_CASE("bvh: the tree finds the pairs that brute force finds, also after a re
     for (double& coordinate : moved.reshaped()) coordinate += push(random);
     triangle_boxes(mesh.surface, mesh.x, moved, 0.003, boxes);
     refit(tree, boxes);
-    check_order_and_boxes(tree);
+    check_order_and_boxes(tree, boxes);
     check_against_brute(tree, boxes, other_tree, other_boxes);
     if (mesh.surface.triangles.rows() == 800) CHECK(bvh_cost(tree) > cost);
   }

@@ -1,0 +1,170 @@
+#include "collision/audit_motion.hpp"
+
+#include <algorithm>
+
+#include "collision/bisection.hpp"
+#include "collision/moving_pair.hpp"
+
+namespace selvedge {
+namespace {
+
+// Triangles of one side, each with its place among the surfaces; only those whose corners are all finite.
+struct Side {
+  struct Face {
+    const Surface* surface;
+    const Points *x0, *x1;
+    int triangle, first_node;
+  };
+  std::vector<Face> faces;
+  std::vector<ExactBox> boxes;
+};
+
+bool finite(const Points& x0, const Points& x1, int v) { return x0.row(v).allFinite() && x1.row(v).allFinite(); }
+
+ExactBox swept_box(const Side::Face& face) {
+  const int* v = face.surface->triangles.data() + 3 * face.triangle;
+  ExactBox box;
+  for (int k = 0; k < 3; ++k) {
+    const auto [lo, hi] = std::minmax({(*face.x0)(v[0], k), (*face.x0)(v[1], k), (*face.x0)(v[2], k),
+                                       (*face.x1)(v[0], k), (*face.x1)(v[1], k), (*face.x1)(v[2], k)});
+    box.lo[k] = lo;
+    box.hi[k] = hi;
+  }
+  return box;
+}
+
+// Returns the number of vertices that are not finite.
+int add(const MovingBody& body, int first_node, Side& side) {
+  const Surface& s = *body.surface;
+  std::vector<char> good(s.vertex_count);
+  for (int v = 0; v < s.vertex_count; ++v) good[v] = finite(*body.x0, *body.x1, v);
+  for (int t = 0; t < s.triangles.rows(); ++t) {
+    if (!good[s.triangles(t, 0)] || !good[s.triangles(t, 1)] || !good[s.triangles(t, 2)]) continue;
+    side.faces.push_back({&s, body.x0, body.x1, t, first_node});
+    side.boxes.push_back(swept_box(side.faces.back()));
+  }
+  return static_cast<int>(std::count(good.begin(), good.end(), 0));
+}
+
+// A node of either face, and where it is relative to the first corner of the first.
+struct Node {
+  const Side::Face* face;
+  int vertex;
+
+  int number() const { return face->first_node + vertex; }
+  Vec3 start() const { return row(*face->x0, vertex); }
+  Vec3 end() const { return row(*face->x1, vertex); }
+};
+
+Node corner(const Side::Face& face, int k) { return {&face, face.surface->triangles(face.triangle, k % 3)}; }
+
+template <std::size_t Count>
+MovingPoints<Count> relative_to(const Node& origin, const std::array<Node, Count>& nodes) {
+  MovingPoints<Count> points;
+  const Vec3 start = origin.start(), end = origin.end();
+  for (std::size_t i = 0; i < Count; ++i) {
+    points.start[i] = nodes[i].start() - start;
+    points.end[i] = nodes[i].end() - end;
+  }
+  return points;
+}
+
+struct PairAudit {
+  const Side::Face &a, &b;
+  int max_halvings;
+  std::vector<PassedPair>& passed;
+
+  bool same(int i, int j) const { return corner(a, i).number() == corner(b, j).number(); }
+
+  void take(bool edges, const std::array<Node, 4>& n) const {
+    const MovingPoints<4> points = relative_to(n[0], n);
+    if (edges ? edges_stay_apart(points, max_halvings) : vertex_and_face_stay_apart(points, max_halvings)) return;
+    passed.push_back({edges, {n[0].number(), n[1].number(), n[2].number(), n[3].number()}});
+  }
+
+  // Of the vertices that the face p owns, with the face f.
+  void vertices(const Side::Face& p, const Side::Face& f) const {
+    for (int k = 0; k < 3; ++k) {
+      const Node v = corner(p, k);
+      if (p.surface->vertex_owner[v.vertex] != p.triangle) continue;
+      const std::array<Node, 4> nodes{v, corner(f, 0), corner(f, 1), corner(f, 2)};
+      if (std::none_of(nodes.begin() + 1, nodes.end(), [&](const Node& n) { return n.number() == v.number(); }))
+        take(false, nodes);
+    }
+  }
+
+  void edges() const {
+    for (int i = 0; i < 3; ++i) {
+      if (a.surface->edge_owner[a.surface->triangle_edges(a.triangle, i)] != a.triangle) continue;
+      for (int j = 0; j < 3; ++j) {
+        if (b.surface->edge_owner[b.surface->triangle_edges(b.triangle, j)] != b.triangle) continue;
+        if (same(i, j) || same(i, (j + 1) % 3) || same((i + 1) % 3, j) || same((i + 1) % 3, (j + 1) % 3)) continue;
+        take(true, {corner(a, i), corner(a, i + 1), corner(b, j), corner(b, j + 1)});
+      }
+    }
+  }
+
+  bool triangles_stay_apart() const {
+    int shared = 0, at_a = 0, at_b = 0;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        if (same(i, j)) {
+          ++shared;
+          at_a = i;
+          at_b = j;
+        }
+    if (shared > 1) return false;
+    const Node origin = corner(a, at_a);
+    if (shared == 1)
+      return stay_apart_beside(relative_to<2>(origin, {corner(a, at_a + 1), corner(a, at_a + 2)}),
+                               relative_to<2>(origin, {corner(b, at_b + 1), corner(b, at_b + 2)}));
+    return stay_apart(relative_to<3>(origin, {corner(a, 0), corner(a, 1), corner(a, 2)}),
+                      relative_to<3>(origin, {corner(b, 0), corner(b, 1), corner(b, 2)}));
+  }
+
+  // Every vertex and edge is looked at with one of its faces, so that each pair is met once.
+  void operator()() const {
+    if (triangles_stay_apart()) return;
+    vertices(a, b);
+    vertices(b, a);
+    edges();
+  }
+};
+
+void audit_region(const Region& region, const Side& cloth, const Side& bodies, bool self, int max_halvings,
+                  std::vector<PassedPair>& passed) {
+  for (std::size_t i = 0; i < region.first.size(); ++i) {
+    const int a = region.first[i];
+    if (self)
+      for (std::size_t j = i + 1; j < region.first.size(); ++j)
+        if (const int b = region.first[j]; meet_in(region, cloth.boxes[a], cloth.boxes[b]))
+          PairAudit{cloth.faces[a], cloth.faces[b], max_halvings, passed}();
+    for (const int c : region.second)
+      if (meet_in(region, cloth.boxes[a], bodies.boxes[c]))
+        PairAudit{cloth.faces[a], bodies.faces[c], max_halvings, passed}();
+  }
+}
+
+}  // namespace
+
+MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x1, std::span<const MovingBody> bodies,
+                         bool self, int max_halvings) {
+  MotionAudit result;
+  Side mine, others;
+  result.nonfinite = add({&cloth, &x0, &x1}, 0, mine);
+  int first_node = cloth.vertex_count;
+  for (const MovingBody& body : bodies) {
+    result.nonfinite += add(body, first_node, others);
+    first_node += body.surface->vertex_count;
+  }
+  const std::vector<Region> regions = bisect(mine.boxes, others.boxes, self);
+  const int count = static_cast<int>(regions.size());
+  std::vector<std::vector<PassedPair>> found(regions.size());
+#pragma omp parallel for schedule(dynamic, 4)
+  for (int r = 0; r < count; ++r) audit_region(regions[r], mine, others, self, max_halvings, found[r]);
+  for (const auto& part : found) result.passed.insert(result.passed.end(), part.begin(), part.end());
+  std::sort(result.passed.begin(), result.passed.end());
+  return result;
+}
+
+}  // namespace selvedge

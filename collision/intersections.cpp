@@ -1,0 +1,108 @@
+#include "collision/intersections.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/intersect.hpp"
+
+namespace selvedge {
+namespace {
+
+using Pairs = std::vector<std::pair<int, int>>;
+using Corners = std::array<Vec3, 3>;
+
+Corners corners_of(const Surface& surface, const Points& x, int triangle) {
+  const int* v = surface.triangles.data() + 3 * triangle;
+  return {row(x, v[0]), row(x, v[1]), row(x, v[2])};
+}
+
+bool share_vertex(const Triangles& triangles, int s, int t) {
+  const int *a = triangles.data() + 3 * s, *b = triangles.data() + 3 * t;
+  bool share = false;
+  for (int i = 0; i < 3; ++i) share |= (a[i] == b[0]) | (a[i] == b[1]) | (a[i] == b[2]);
+  return share;
+}
+
+bool all_finite(const Corners& c) { return c[0].allFinite() && c[1].allFinite() && c[2].allFinite(); }
+
+bool intersect(const Corners& a, const Corners& b) {
+  return !surely_apart(a, b) && all_finite(a) && all_finite(b) &&
+         triangles_intersect(a[0], a[1], a[2], b[0], b[1], b[2]);
+}
+
+// Does a plane across the direction m lie between them? Points are relative to one of them, each coordinate wrong by at
+// most u = 2^-53 of itself, and at most `reach` in the sum of their coordinates. With the rounding of three products
+// and two sums m . p is wrong by less than 5 u max |m_k| reach, on both sides together by 10 u; 2e-15 is 18 u. What
+// underflows is less than 1e-300.
+bool apart_along(const Vec3& m, const Corners& a, const Corners& b, double reach) {
+  const double slack = 2e-15 * m.cwiseAbs().maxCoeff() * reach + 1e-300;
+  const auto [a_lo, a_hi] = std::minmax({m.dot(a[0]), m.dot(a[1]), m.dot(a[2])});
+  const auto [b_lo, b_hi] = std::minmax({m.dot(b[0]), m.dot(b[1]), m.dot(b[2])});
+  return b_lo - a_hi > slack || a_lo - b_hi > slack;
+}
+
+bool apart_beside(const Vec3& normal, const Corners& face, const Corners& other, double reach) {
+  for (int k = 0; k < 3; ++k)
+    if (apart_along((face[(k + 1) % 3] - face[k]).cross(normal), face, other, reach)) return true;
+  return false;
+}
+
+void refresh(const Surface& surface, const Points& x, IntersectionCache& cache) {
+  triangle_boxes(surface, x, x, 0, cache.boxes);
+  update(cache.tree, cache.boxes);
+}
+
+}  // namespace
+
+bool surely_apart(const Corners& first, const Corners& second) {
+  Corners a, b;
+  double reach = 0;
+  for (int k = 0; k < 3; ++k) {
+    a[k] = first[k] - first[0];
+    b[k] = second[k] - first[0];
+    reach = std::max({reach, a[k].cwiseAbs().sum(), b[k].cwiseAbs().sum()});
+  }
+  const Vec3 normal_a = a[1].cross(a[2]);
+  if (apart_along(normal_a, a, b, reach)) return true;
+  const Vec3 normal_b = (b[1] - b[0]).cross(b[2] - b[0]);
+  if (apart_along(normal_b, a, b, reach)) return true;
+  return apart_beside(normal_a, a, b, reach) || apart_beside(normal_b, b, a, reach);
+}
+
+Pairs intersecting_pairs(const Surface& surface, const Points& x, IntersectionCache& cache) {
+  refresh(surface, x, cache);
+  const Bvh& tree = cache.tree.bvh;
+  const BvhTraversal traversal{tree, tree, true};
+  Pairs pairs;
+  gather(traversal, cache.parts, pairs, [&](NodeWork w, Pairs& found) {
+    const Bvh::Leaf &a = traversal.leaf_a(w), &b = traversal.leaf_b(w);
+    const auto test = [&](int i, int j) {
+      const int s = a.item[i], t = b.item[j];
+      if (!share_vertex(surface.triangles, s, t) && intersect(corners_of(surface, x, s), corners_of(surface, x, t)))
+        found.emplace_back(std::min(s, t), std::max(s, t));
+    };
+    w.a == w.b ? for_each_overlap(a, test) : for_each_overlap(a, b, tree.nodes[w.b].box, test);
+  });
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+Pairs intersecting_pairs(const Surface& first, const Points& x_first, IntersectionCache& cache_first,
+                         const Surface& second, const Points& x_second, IntersectionCache& cache_second) {
+  refresh(first, x_first, cache_first);
+  refresh(second, x_second, cache_second);
+  const Bvh& other = cache_second.tree.bvh;
+  const BvhTraversal traversal{cache_first.tree.bvh, other, false};
+  Pairs pairs;
+  gather(traversal, cache_first.parts, pairs, [&](NodeWork w, Pairs& found) {
+    const Bvh::Leaf &a = traversal.leaf_a(w), &b = traversal.leaf_b(w);
+    for_each_overlap(a, b, other.nodes[w.b].box, [&](int i, int j) {
+      if (intersect(corners_of(first, x_first, a.item[i]), corners_of(second, x_second, b.item[j])))
+        found.emplace_back(a.item[i], b.item[j]);
+    });
+  });
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,152 @@
+#include <catch2/catch.hpp>
+
+#include <limits>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#include "collision/intersect.hpp"
+#include "collision/intersections.hpp"
+#include "tests/collision/tangles.hpp"
+
+using namespace selvedge;
+using testing::Tangle;
+using testing::tangles;
+using Pairs = std::vector<std::pair<int, int>>;
+
+namespace {
+
+std::array<Vec3, 3> corners(const Tangle& m, int t) {
+  return {row(m.x, m.surface.triangles(t, 0)), row(m.x, m.surface.triangles(t, 1)),
+          row(m.x, m.surface.triangles(t, 2))};
+}
+
+bool meet(const Tangle& a, int i, const Tangle& b, int j) {
+  const auto p = corners(a, i), q = corners(b, j);
+  return triangles_intersect(p[0], p[1], p[2], q[0], q[1], q[2]);
+}
+
+Pairs brute_self(const Tangle& m) {
+  Pairs pairs;
+  const Triangles& t = m.surface.triangles;
+  for (int i = 0; i < t.rows(); ++i)
+    for (int j = i + 1; j < t.rows(); ++j) {
+      bool share = false;
+      for (int k = 0; k < 9; ++k) share |= t(i, k / 3) == t(j, k % 3);
+      if (!share && meet(m, i, m, j)) pairs.emplace_back(i, j);
+    }
+  return pairs;
+}
+
+Pairs brute_cross(const Tangle& a, const Tangle& b) {
+  Pairs pairs;
+  for (int i = 0; i < a.surface.triangles.rows(); ++i)
+    for (int j = 0; j < b.surface.triangles.rows(); ++j)
+      if (meet(a, i, b, j)) pairs.emplace_back(i, j);
+  return pairs;
+}
+
+Pairs tree_self(const Tangle& m) {
+  IntersectionCache cache;
+  return intersecting_pairs(m.surface, m.x, cache);
+}
+
+}  // namespace
+
+TEST_CASE("intersections: the tree finds the pairs that brute force finds", "[intersections]") {
+  int clean = 0, tangled = 0;
+  for (const Tangle& m : tangles(12)) {
+    INFO(m.name);
+    const Pairs expected = brute_self(m);
+    (expected.empty() ? clean : tangled) += 1;
+    CHECK(tree_self(m) == expected);
+  }
+  CHECK(clean >= 6);
+  CHECK(tangled >= 8);
+}
+
+TEST_CASE("intersections: a kept tree finds the same after any motion", "[intersections]") {
+  for (Tangle m : tangles(8)) {
+    INFO(m.name);
+    IntersectionCache cache;
+    const Points start = m.x;
+    for (unsigned k = 0; k < 4; ++k) {
+      m.x = start;
+      testing::shake(m.x, k * k * 0.05, k);
+      CHECK(intersecting_pairs(m.surface, m.x, cache) == brute_self(m));
+    }
+  }
+}
+
+TEST_CASE("intersections: of two surfaces", "[intersections]") {
+  const std::vector<Tangle> all = tangles(7);
+  int meeting = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Tangle &a = all[i], &b = all[(i + 5) % all.size()];
+    INFO(a.name << ", " << b.name);
+    const Pairs expected = brute_cross(a, b);
+    IntersectionCache cache_a, cache_b;
+    meeting += !expected.empty();
+    CHECK(intersecting_pairs(a.surface, a.x, cache_a, b.surface, b.x, cache_b) == expected);
+  }
+  CHECK(meeting > 6);
+}
+
+TEST_CASE("intersections: nothing, and undefined coordinates", "[intersections]") {
+  IntersectionCache cache;
+  CHECK(intersecting_pairs(make_surface(0, Triangles(0, 3)), Points(0, 3), cache).empty());
+  Tangle m = tangles(8)[4];
+  const double infinity = std::numeric_limits<double>::infinity();
+  m.x(5, 1) = std::numeric_limits<double>::quiet_NaN();
+  m.x(50, 0) = infinity;
+  m.x(60, 2) = -infinity;
+  Pairs expected;
+  for (const auto& [i, j] : brute_self(tangles(8)[4])) {
+    bool touched = false;
+    for (const int v : {5, 50, 60})
+      for (int k = 0; k < 3; ++k) touched |= m.surface.triangles(i, k) == v || m.surface.triangles(j, k) == v;
+    if (!touched) expected.emplace_back(i, j);
+  }
+  CHECK(tree_self(m) == expected);
+}
+
+TEST_CASE("intersections: the quick test never parts triangles that meet", "[intersections]") {
+  std::mt19937 random(8);
+  std::uniform_int_distribution<int> at(-2, 2);
+  std::uniform_real_distribution<double> scale(-30, 30), place(-1, 1);
+  int apart = 0, wrong = 0;
+  for (int i = 0; i < 40000; ++i) {
+    // Touching and coplanar pairs on a lattice, on another scale, far from the origin and turned a little.
+    std::array<Vec3, 6> p;
+    for (Vec3& q : p) q = Vec3(at(random), at(random), i % 3 ? at(random) : 0);
+    if (i % 2) {
+      Mat3 turn;
+      for (double& entry : turn.reshaped()) entry = place(random);
+      const double size = std::exp2(scale(random));
+      const Vec3 shift = 1e3 * Vec3(place(random), place(random), place(random));
+      for (Vec3& q : p) q = size * (turn * q + shift);
+    }
+    const bool quick = surely_apart({p[0], p[1], p[2]}, {p[3], p[4], p[5]});
+    apart += quick;
+    wrong += quick && triangles_intersect(p[0], p[1], p[2], p[3], p[4], p[5]);
+  }
+  CHECK(wrong == 0);
+  CHECK(apart > 10000);
+}
+
+#ifdef _OPENMP
+TEST_CASE("intersections: the same for any number of threads", "[intersections][threads]") {
+  const Tangle m = tangles(30)[3];
+  const int threads = omp_get_max_threads();
+  std::vector<Pairs> found;
+  for (int n : {1, 2, 3}) {
+    omp_set_num_threads(n);
+    found.push_back(tree_self(m));
+  }
+  omp_set_num_threads(threads);
+  CHECK(!found[0].empty());
+  CHECK(found[1] == found[0]);
+  CHECK(found[2] == found[0]);
+}
+#endif
