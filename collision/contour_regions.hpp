@@ -1,0 +1,39 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "collision/contour.hpp"
+
+namespace selvedge {
+
+// Edges of a surface that curves cross: crossing one an odd number of times changes the colour.
+class EdgeParity {
+ public:
+  explicit EdgeParity(const Surface& surface) : surface_(surface), odd_(surface.edges.rows(), 0) {}
+  void add(const Contour&, int side);  // with a detour round loop vertices at its ends
+  // Colours of the vertices of a component, 0 for the more frequent one; false if there is no colouring.
+  bool colour(int component, std::vector<char>& colours) const;
+
+ private:
+  void add_detour(int vertex, int from_triangle, int to_triangle);
+  const Surface& surface_;
+  std::vector<char> odd_;
+};
+
+// Does the curve end nowhere inside its sheet? A side that ends at loop vertices does so together with the other side.
+bool ends_outside(const Contour&, int side);
+
+// Vertices of a component that lie on the wrong side of a partner component (which may be the same).
+struct Region {
+  int sheet = 0, component = 0, partner_sheet = 0, partner_component = 0;
+  std::vector<int> contours;  // between the two
+  std::vector<int> vertices;  // sorted
+  bool cut = true;            // false: some of the contours do not part the component, even together
+};
+
+// Regions from all contours of a sheet with a partner together: their parity, the smaller part being inside. Contours
+// that spoil the colouring are left out of it, and `cut` says so. Regions without vertices are listed too.
+std::vector<Region> enclosed_regions(std::span<const SheetView> sheets, std::span<const Contour> contours);
+
+}  // namespace selvedge
