@@ -80,8 +80,10 @@ void fill_sides(std::span<const SheetView> sheets, const Segments& found, Contou
   }
   for (std::size_t i = 0; i < contour.points.size(); ++i) {
     const int point = contour.points[i];
+    contour.point_side.push_back(0);
     if (point < 0) continue;
     const int side = edge_side(contour, std::min(i, contour.segments.size() - 1), found, point);
+    contour.point_side.back() = static_cast<char>(side);
     contour.sides[side].edges.push_back(found.crossings[point].edge);
     if (contour.closed) continue;
     if (i == 0) contour.end_side[0] = side;

@@ -30,6 +30,7 @@ struct Contour {
   std::vector<int> segments;            // in order
   std::vector<char> swapped;            // of each segment: its second triangle lies on side 0
   std::vector<int> points;              // ends of the segments in order (as Segment::end); closed: as many as segments
+  std::vector<char> point_side;         // of each crossing among the points: the side that its edge lies on
   std::array<ContourEnd, 2> ends{};     // of the first and the last point
   std::array<int, 2> end_side{-1, -1};  // the side that has the boundary edge
   bool closed = false;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "collision/inside.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -183,8 +185,13 @@ std::vector<Region> enclosed_regions(std::span<const SheetView> sheets, std::spa
     for (int c : group) add_traces(contours[c], key, traces);
     const Surface& surface = *sheets[key.sheet].surface;
     const std::vector<char> colours = colour_together(surface, key.component, traces, region.cut);
+    const bool closed_partner =
+        key.sheet == 0 && key.partner_sheet > 0 && is_closed(*sheets[key.partner_sheet].surface);
+    const std::vector<char> in =
+        closed_partner ? inside(*sheets[key.partner_sheet].surface, *sheets[key.partner_sheet].x, *sheets[0].x)
+                       : std::vector<char>();
     for (int v = 0; v < surface.vertex_count; ++v)
-      if (colours[v] == 1) region.vertices.push_back(v);
+      if (closed_partner ? colours[v] >= 0 && in[v] : colours[v] == 1) region.vertices.push_back(v);
     regions.push_back(std::move(region));
   }
   return regions;

@@ -33,7 +33,8 @@ struct Region {
 };
 
 // Regions from all contours of a sheet with a partner together: their parity, the smaller part being inside. Contours
-// that spoil the colouring are left out of it, and `cut` says so. Regions without vertices are listed too.
+// that spoil the colouring are left out of it, and `cut` says so. Against a closed obstacle the vertices of sheets[0]
+// are those inside it, whatever the contours. Regions without vertices are listed too.
 std::vector<Region> enclosed_regions(std::span<const SheetView> sheets, std::span<const Contour> contours);
 
 }  // namespace selvedge

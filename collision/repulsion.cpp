@@ -1,0 +1,82 @@
+#include "collision/repulsion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/distance.hpp"
+
+namespace selvedge {
+namespace {
+
+std::vector<const Surface*> surfaces_of(std::span<const SheetView> obstacles) {
+  std::vector<const Surface*> surfaces;
+  for (const SheetView& obstacle : obstacles) surfaces.push_back(obstacle.surface);
+  return surfaces;
+}
+
+Closest closest(const NodePair& pair, const std::array<Vec3, 4>& x) {
+  return pair.kind == PairKind::vertex_face ? point_triangle(x[0], x[1], x[2], x[3])
+                                            : edge_edge(x[0], x[1], x[2], x[3]);
+}
+
+}  // namespace
+
+Repulsion::Repulsion(const Surface& cloth, std::span<const SheetView> obstacles, const KeptShape& shape)
+    : shape_(shape), world_(make_contact_world(cloth, surfaces_of(obstacles), true)), search_(world_) {
+  for (const SheetView& obstacle : obstacles) obstacle_points_.push_back(*obstacle.x);
+}
+
+// Is a vertex of the one primitive joined by an edge to one of the other?
+bool Repulsion::neighbours(const NodePair& pair) const {
+  const int first = pair.kind == PairKind::vertex_face ? 1 : 2;
+  for (int i = 0; i < first; ++i) {
+    const int v = pair.nodes[i];
+    if (!world_.is_cloth(v)) return false;
+    for (int j = first; j < 4; ++j)
+      for (int k = shape_.neighbour_begin[v]; k < shape_.neighbour_begin[v + 1]; ++k)
+        if (shape_.neighbour[k] == pair.nodes[j]) return true;
+  }
+  return false;
+}
+
+std::vector<Separation> Repulsion::find(const Points& x, const std::vector<char>& tangled,
+                                        const std::vector<double>& reach, double gap, double horizon) {
+  const Points nodes = gather_nodes(x, obstacle_points_);
+  search_.find(nodes, nodes, horizon, pairs_);
+  std::vector<Separation> separations;
+  for (const NodePair& pair : pairs_) {
+    bool movable = false, excluded = false;
+    for (int node : pair.nodes) {
+      if (!world_.is_cloth(node)) continue;
+      movable = movable || reach[node] > 0;
+      excluded = excluded || tangled[node];
+    }
+    if (!movable || excluded) continue;
+    const Closest now = closest(pair, corners(pair, nodes));
+    const double distance = std::sqrt(now.squared_distance);
+    if (distance >= horizon || distance == 0) continue;
+    double least = gap;
+    if (neighbours(pair)) {
+      const Closest input = closest(pair, corners(pair, gather_nodes(shape_.x0, obstacle_points_)));
+      least = std::min(gap, 0.7 * std::sqrt(input.squared_distance));
+    }
+    Separation separation;
+    separation.least = least;
+    separation.direction = Vec3::Zero();
+    for (int i = 0; i < 4; ++i) separation.direction += now.weights[i] * row(nodes, pair.nodes[i]);
+    separation.direction /= distance;
+    for (int i = 0; i < 4; ++i) {
+      const int node = pair.nodes[i];
+      if (world_.is_cloth(node)) {
+        separation.vertex[separation.count] = node;
+        separation.weight[separation.count++] = now.weights[i];
+      } else {
+        separation.least -= now.weights[i] * separation.direction.dot(row(nodes, node));
+      }
+    }
+    separations.push_back(separation);
+  }
+  return separations;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,254 @@
+#include "collision/untangle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+
+#include "collision/kept_shape.hpp"
+#include "collision/repulsion.hpp"
+#include "collision/separation.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr int sweeps = 12, remembered = 8, patience = 60;
+
+struct Tangle {
+  Segments found;
+  std::vector<Contour> contours;
+  std::vector<Region> regions;
+  int pairs = 0, vertex_pairs = 0;
+  double length = 0;
+
+  bool clean() const { return pairs == 0 && vertex_pairs == 0; }
+  bool better_than(const Tangle& other) const {
+    const int all = pairs + vertex_pairs, others = other.pairs + other.vertex_pairs;
+    return all != others ? all < others : length < other.length;
+  }
+};
+
+std::vector<SheetView> with_cloth(const Surface& cloth, const Points& x, std::span<const SheetView> obstacles) {
+  std::vector<SheetView> sheets{{&cloth, &x}};
+  sheets.insert(sheets.end(), obstacles.begin(), obstacles.end());
+  return sheets;
+}
+
+Tangle find_tangle(std::span<const SheetView> sheets) {
+  Tangle tangle;
+  tangle.found = find_segments(sheets);
+  tangle.contours = find_contours(sheets, tangle.found);
+  tangle.regions = enclosed_regions(sheets, tangle.contours);
+  tangle.pairs = intersecting_pairs(tangle.found);
+  for (const Segment& segment : tangle.found.segments) tangle.vertex_pairs += segment.at_vertex();
+  for (const Contour& contour : tangle.contours) tangle.length += contour.length;
+  return tangle;
+}
+
+// Vertices of the cloth on contours, in touching triangles, or enclosed.
+std::vector<char> tangled_vertices(std::span<const SheetView> sheets, const Tangle& tangle) {
+  std::vector<char> marked = enclosed_vertices(sheets, tangle.regions);
+  const auto mark = [&](int t) {
+    for (int v : sheets[0].surface->triangles.row(t)) marked[v] = 1;
+  };
+  for (const Contour& contour : tangle.contours)
+    for (const ContourSide& side : contour.sides)
+      if (side.sheet == 0)
+        for (int t : side.triangles) mark(t);
+  for (const auto& [a, sheet, b] : tangle.found.touching) {
+    mark(a);
+    if (sheet == 0) mark(b);
+  }
+  return marked;
+}
+
+void satisfy(std::span<const Separation> separations, const std::vector<double>& reach, Points& x) {
+  for (const Separation& s : separations) {
+    double value = 0, square = 0;
+    for (int i = 0; i < s.count; ++i) {
+      value += s.weight[i] * s.direction.dot(row(x, s.vertex[i]));
+      if (reach[s.vertex[i]] > 0) square += s.weight[i] * s.weight[i];
+    }
+    if (value >= s.least || square == 0) continue;
+    // A small weight alone cannot hold the whole of it.
+    const double size = (s.least - value) / std::max(square, 0.1);
+    for (int i = 0; i < s.count; ++i)
+      if (reach[s.vertex[i]] > 0) x.row(s.vertex[i]) += size * s.weight[i] * s.direction.transpose();
+  }
+}
+
+// What may move, and how far from the input.
+struct Freedom {
+  std::vector<double> reach;
+  std::vector<int> vertices, triangles;
+};
+
+Freedom make_freedom(const KeptShape& shape, const std::vector<char>& tangled, const UntangleOptions& options) {
+  const std::vector<char> near = within_rings(shape, tangled, options.rings);
+  const std::vector<char> around = within_rings(shape, near, 2 * options.rings);
+  Freedom freedom;
+  freedom.reach.assign(shape.surface->vertex_count, 0);
+  for (int v = 0; v < shape.surface->vertex_count; ++v) {
+    if (!around[v]) continue;
+    freedom.reach[v] = near[v] ? std::numeric_limits<double>::infinity() : options.far_limit * shape.edge_length[v];
+    freedom.vertices.push_back(v);
+  }
+  for (int t = 0; t < shape.surface->triangles.rows(); ++t)
+    for (int v : shape.surface->triangles.row(t))
+      if (around[v]) {
+        freedom.triangles.push_back(t);
+        break;
+      }
+  return freedom;
+}
+
+// The vertices round contours that came up later than the first may move a little, too.
+void widen(const KeptShape& shape, const std::vector<char>& tangled, const UntangleOptions& options, Freedom& freedom) {
+  const Freedom more = make_freedom(shape, tangled, options);
+  bool wider = false;
+  for (int v : more.vertices)
+    if (freedom.reach[v] == 0) {
+      freedom.reach[v] = options.far_limit * shape.edge_length[v];
+      freedom.vertices.push_back(v);
+      wider = true;
+    }
+  if (!wider) return;
+  std::sort(freedom.vertices.begin(), freedom.vertices.end());
+  freedom.triangles.clear();
+  for (int t = 0; t < shape.surface->triangles.rows(); ++t)
+    for (int v : shape.surface->triangles.row(t))
+      if (freedom.reach[v] > 0) {
+        freedom.triangles.push_back(t);
+        break;
+      }
+}
+
+struct Step {
+  double smoothing = 0.3;
+};
+
+Points propose(const KeptShape& shape, const Freedom& freedom, std::span<const Separation> separations,
+               std::span<const Separation> repulsions, const UntangleOptions& options, const Points& from) {
+  const Stretch range{options.least_stretch, options.largest_stretch};
+  Points x = from;
+  for (int i = 0; i < sweeps; ++i) {
+    smooth_displacement(shape, freedom.vertices, 0.3, x);
+    limit_stretch(shape, freedom.triangles, freedom.reach, range, x);
+    satisfy(repulsions, freedom.reach, x);
+    satisfy(separations, freedom.reach, x);
+    limit_displacement(shape, freedom.vertices, freedom.reach, x);
+  }
+  for (int i = 0; i < 10; ++i) {
+    limit_stretch(shape, freedom.triangles, freedom.reach, range, x);
+    limit_displacement(shape, freedom.vertices, freedom.reach, x);
+  }
+  return x;
+}
+
+void keep_range(const KeptShape& shape, const Freedom& freedom, const UntangleOptions& options, const Points& before,
+                Points& x) {
+  const Stretch range{options.least_stretch, options.largest_stretch};
+  const Stretch outer{0.95 * range.least, 1.05 * range.largest};
+  hold_back(shape, freedom.triangles, outer, before, x);
+}
+
+// Takes vertices back to `before` until no pair meets that was away from the contours there, and the triangles are in
+// range. Returns the tangle of x.
+Tangle keep_clean(const KeptShape& shape, const Freedom& freedom, std::span<const SheetView> obstacles,
+                  const std::vector<char>& tangled, const UntangleOptions& options, const Points& before, Points& x) {
+  const std::vector<char> allowed = within_rings(shape, tangled, 1);
+  const Surface& cloth = *shape.surface;
+  for (;;) {
+    keep_range(shape, freedom, options, before, x);
+    const std::vector<SheetView> sheets = with_cloth(cloth, x, obstacles);
+    const Segments found = find_segments(sheets);
+    bool clean = true;
+    const auto judge = [&](int a, int sheet, int b) {
+      std::vector<int> vertices;
+      for (int v : cloth.triangles.row(a)) vertices.push_back(v);
+      if (sheet == 0)
+        for (int v : cloth.triangles.row(b)) vertices.push_back(v);
+      if (std::any_of(vertices.begin(), vertices.end(), [&](int v) { return allowed[v] != 0; })) return;
+      for (int v : vertices) {
+        clean = clean && x.row(v) == before.row(v);
+        x.row(v) = before.row(v);
+      }
+    };
+    for (const Segment& s : found.segments) judge(s.triangle[0], s.sheet[1], s.triangle[1]);
+    for (const auto& [a, sheet, b] : found.touching) judge(a, sheet, b);
+    if (clean) return find_tangle(sheets);
+  }
+}
+
+void measure(const KeptShape& shape, const std::vector<char>& near, UntangleResult& result) {
+  double sum = 0;
+  for (int v = 0; v < shape.surface->vertex_count; ++v) {
+    const double moved = (result.x.row(v) - shape.x0.row(v)).norm();
+    if (!near[v] && shape.edge_length[v] > 0) result.far_move = std::max(result.far_move, moved / shape.edge_length[v]);
+    if (moved <= 1e-6 * shape.mean_edge) continue;
+    ++result.moved;
+    sum += moved / shape.mean_edge;
+    result.max_move = std::max(result.max_move, moved / shape.mean_edge);
+  }
+  if (result.moved > 0) result.mean_move = sum / result.moved;
+  const Stretch stretch = extreme_stretch(shape, result.x);
+  result.least_stretch = stretch.least;
+  result.largest_stretch = stretch.largest;
+}
+
+}  // namespace
+
+UntangleResult untangle(const Surface& cloth, const Points& x0, std::span<const SheetView> obstacles,
+                        const UntangleOptions& options) {
+  const KeptShape shape = keep_shape(cloth, x0);
+  Points x = x0;
+  Tangle tangle = find_tangle(with_cloth(cloth, x, obstacles));
+  UntangleResult result;
+  result.x = x;
+  result.pairs_before = tangle.pairs;
+  result.vertex_pairs_before = tangle.vertex_pairs;
+  result.length_before = tangle.length;
+  Freedom freedom = make_freedom(shape, tangled_vertices(with_cloth(cloth, x, obstacles), tangle), options);
+  const std::vector<char> near =
+      within_rings(shape, tangled_vertices(with_cloth(cloth, x, obstacles), tangle), options.rings);
+  Repulsion repulsion(cloth, obstacles, shape);
+  Tangle best = tangle;
+  std::deque<double> lengths{tangle.length};
+  int since_best = 0;
+  for (; result.iterations < options.iterations && !tangle.clean() && since_best < patience; ++result.iterations) {
+    if (options.progress) options.progress({result.iterations, tangle.pairs, tangle.length});
+    const std::vector<SheetView> sheets = with_cloth(cloth, x, obstacles);
+    const std::vector<char> tangled = tangled_vertices(sheets, tangle);
+    widen(shape, tangled, options, freedom);
+    const std::vector<Separation> repulsions =
+        repulsion.find(x, tangled, freedom.reach, options.gap * shape.mean_edge, 0.2 * shape.mean_edge);
+    double step = options.step * shape.mean_edge;
+    Points next;
+    Tangle after;
+    const double bound = *std::max_element(lengths.begin(), lengths.end());
+    for (int attempt = 0; attempt < 3; ++attempt, step *= 0.4) {
+      const std::vector<Separation> separations =
+          part_contours(sheets, tangle.found, tangle.contours, tangle.regions, {options.gap * shape.mean_edge, step});
+      next = propose(shape, freedom, separations, repulsions, options, x);
+      after = keep_clean(shape, freedom, obstacles, tangled, options, x, next);
+      if (after.length <= bound) break;
+    }
+    x = next;
+    tangle = std::move(after);
+    lengths.push_back(tangle.length);
+    if (lengths.size() > remembered) lengths.pop_front();
+    ++since_best;
+    if (tangle.better_than(best)) {
+      best = tangle;
+      result.x = x;
+      since_best = 0;
+    }
+  }
+  result.pairs_after = best.pairs;
+  result.vertex_pairs_after = best.vertex_pairs;
+  result.length_after = best.length;
+  measure(shape, near, result);
+  return result;
+}
+
+}  // namespace selvedge
