@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "collision/exemption.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -173,6 +175,8 @@ void PairSearch::find(const Points& x0, const Points& x1, double radius, std::ve
     const Side body = side(obstacle);
     gather(BvhTraversal{cloth.bvh, body.bvh, false}, scratch_, pairs, LeafPairs{cloth, body, false});
   }
+  if (left_out_)
+    std::erase_if(pairs, [this](const NodePair& pair) { return left_out_->leaves_alone(world_, pair.nodes); });
 }
 
 }  // namespace selvedge

@@ -10,6 +10,8 @@
 
 namespace selvedge {
 
+struct Exemption;
+
 // Cloth and obstacles under one numbering of nodes: cloth vertices first, then each obstacle's. Constant topology.
 struct ContactWorld {
   const Surface* cloth = nullptr;
@@ -57,6 +59,8 @@ class PairSearch {
   // Call at a step's start: what follows depends on the positions given from here on and not on earlier steps.
   void restart();
   void find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs);
+  // Pairs that are not to be found from here on; nothing ends it. Keeps the pointer.
+  void leave_out(const Exemption* exemption) { left_out_ = exemption; }
 
  private:
   struct Part {  // a surface with its tree
@@ -72,6 +76,7 @@ class PairSearch {
   static void update(Part&, const Points& x0, const Points& x1, double radius);
 
   const ContactWorld& world_;
+  const Exemption* left_out_ = nullptr;
   Part cloth_;
   std::vector<Part> obstacles_;
   PartLists<NodePair> scratch_;

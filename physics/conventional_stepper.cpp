@@ -4,11 +4,13 @@
 #include <cmath>
 
 #include "collision/audit.hpp"
+#include "collision/audit_motion.hpp"
 #include "collision/penetration_depth.hpp"
 #include "collision/resolve.hpp"
 #include "collision/stopwatch.hpp"
 #include "physics/contact_terms.hpp"
 #include "physics/features.hpp"
+#include "physics/recovery.hpp"
 
 namespace selvedge {
 namespace {
@@ -17,6 +19,7 @@ constexpr double edges_a_substep = 2.5;     // how far a vertex may move, in mea
 constexpr double first_roughness = 8;       // of the solve that only finds impacts and normal forces
 constexpr double friction_roughness = 0.2;  // of a solve with friction: sticking shows in small velocities
 constexpr int halvings = 2;                 // of a substep whose zones do not settle, before the last resort
+constexpr double recovery_speed = 1;        // at most, of a vertex that starts tangled [m/s]
 constexpr double rounding = 1e-14;          // of positions that are added up over substeps
 constexpr int hopeful_rounds = 12;          // of zones in a substep that may still be halved
 
@@ -70,7 +73,8 @@ class ConventionalStepper final : public Stepper {
         contact_(resolve_options(scene.contact)),
         inverse_mass_(inverse_masses(scene, world_.node_count)),
         solver_(scene, options.implicit_euler),
-        edge_length_(mean_edge_length(scene)) {}
+        edge_length_(mean_edge_length(scene)),
+        self_crossings_(world_) {}
 
   const StepperTraits& traits() const override { return traits_; }
   StepReport step(const State& from, const Drive& drive, double dt, State& to) override;
@@ -85,8 +89,10 @@ class ConventionalStepper final : public Stepper {
   bool advance(Leg& leg, const Points& nodes, const Points& pins, const Drive& drive, double h, int halvings_left,
                StepReport& report);
   Points pinned(const Points& nodes) const;
-  int count_pairs(const Points& x, const std::vector<Points>& obstacles) const;
-  void audit_state(const State& state, const Drive& drive, StepReport& report) const;
+  Audit audit_positions(const Points& x, const std::vector<Points>& obstacles) const;
+  void prepare_contact(const State& from, double dt, const Points& wanted, Points& nodes, StepReport& report);
+  int passed_through(const Points& nodes0, const Points& nodes1) const;
+  void audit_state(const Drive& drive, State& state, StepReport& report) const;
 
   const Scene& scene_;
   ConventionalOptions options_;
@@ -99,6 +105,8 @@ class ConventionalStepper final : public Stepper {
   double edge_length_;
   StepperTraits traits_{"conventional"};
   PathPairs path_;  // pairs near the current positions
+  SelfCrossings self_crossings_;
+  Exemption exemption_;  // of this step
 };
 
 // As many as keep every vertex's motion in a substep within a few mesh edges, and at least two: implicit Euler at 1/30
@@ -197,6 +205,11 @@ bool ConventionalStepper::advance(Leg& leg, const Points& nodes, const Points& p
            advance(leg, nodes, pins, drive, 0.5 * h, halvings_left - 1, report);
   }
   ++report.substeps;
+  if (has_contact()) {
+    Stopwatch watch;
+    report.collision.passed_through += passed_through(leg.nodes, next);
+    report.seconds.audit += watch.lap();
+  }
   leg.v = (next.topRows(n) - leg.nodes.topRows(n)) / h;
   leg.nodes = std::move(next);
   return true;
@@ -221,20 +234,22 @@ bool ConventionalStepper::solve(const StepProblem& problem, Points& x, StepRepor
 }
 
 // As a file stores them: the audit is of what a reader will see.
-int ConventionalStepper::count_pairs(const Points& x, const std::vector<Points>& obstacles) const {
+Audit ConventionalStepper::audit_positions(const Points& x, const std::vector<Points>& obstacles) const {
   std::vector<Points> positions;
   for (const Points& obstacle : obstacles) positions.push_back(rounded_to_float(obstacle));
   std::vector<AuditBody> bodies;
   for (std::size_t k = 0; k < positions.size(); ++k) bodies.push_back({&scene_.obstacles[k].surface, &positions[k]});
-  return audit(scene_.surface, rounded_to_float(x), bodies, features_.self_contact).intersecting_pairs();
+  return audit(scene_.surface, rounded_to_float(x), bodies, features_.self_contact);
 }
 
-void ConventionalStepper::audit_state(const State& state, const Drive& drive, StepReport& report) const {
+void ConventionalStepper::audit_state(const Drive& drive, State& state, StepReport& report) const {
   Stopwatch watch;
   CollisionReport& collision = report.collision;
-  collision.pairs_after = collision.pairs_wanted = count_pairs(state.x, state.obstacles);
+  const Audit now = audit_positions(state.x, state.obstacles);
+  collision.pairs_after = collision.pairs_wanted = now.intersecting_pairs();
+  state.clean = collision.pairs_after == 0 && now.inside_vertices == 0;
   if (state.pinched) {
-    collision.pairs_wanted = count_pairs(state.x, drive.obstacles);
+    collision.pairs_wanted = audit_positions(state.x, drive.obstacles).intersecting_pairs();
     for (std::size_t k = 0; k < drive.obstacles.size(); ++k)
       collision.depth_wanted =
           std::max(collision.depth_wanted, penetration_depth(scene_.obstacles[k].surface, drive.obstacles[k], state.x));
@@ -243,19 +258,46 @@ void ConventionalStepper::audit_state(const State& state, const Drive& drive, St
   report.seconds.audit += watch.lap();
 }
 
+int ConventionalStepper::passed_through(const Points& nodes0, const Points& nodes1) const {
+  const int n = scene_.surface.vertex_count;
+  std::vector<Points> x0, x1;
+  for (std::size_t k = 0; k < world_.obstacles.size(); ++k) {
+    x0.push_back(nodes0.middleRows(world_.first_node[k], world_.obstacles[k]->vertex_count));
+    x1.push_back(nodes1.middleRows(world_.first_node[k], world_.obstacles[k]->vertex_count));
+  }
+  std::vector<MovingBody> bodies;
+  for (std::size_t k = 0; k < x0.size(); ++k) bodies.push_back({world_.obstacles[k], &x0[k], &x1[k]});
+  const MotionAudit motion =
+      audit_motion(scene_.surface, nodes0.topRows(n), nodes1.topRows(n), bodies, features_.self_contact);
+  return static_cast<int>(std::ranges::count_if(
+      motion.passed, [this](const PassedPair& pair) { return !exemption_.leaves_alone(world_, pair.nodes); }));
+}
+
+// Recovery where the start is tangled, what contact is to leave alone, and the pairs near the start.
+void ConventionalStepper::prepare_contact(const State& from, double dt, const Points& wanted, Points& nodes,
+                                          StepReport& report) {
+  Stopwatch watch;
+  exemption_ = {};
+  if (!from.clean && nodes.allFinite()) exemption_ = recover(world_, inverse_mass_, recovery_speed * dt, nodes);
+  for (int v = 0; v < scene_.surface.vertex_count; ++v)
+    report.collision.left_alone +=
+        (!exemption_.self.empty() && exemption_.self[v]) || (!exemption_.body.empty() && exemption_.body[v]);
+  self_crossings_.switch_off(nodes, wanted, exemption_);
+  search_.leave_out(exemption_.any() ? &exemption_ : nullptr);
+  report.seconds.response += watch.lap();
+  search_.restart();
+  path_.start = path_.end = nodes;
+  search_.find(nodes, nodes, 2 * scene_.contact.thickness, path_.pairs);
+  report.seconds.broad_phase += watch.lap();
+}
+
 StepReport ConventionalStepper::step(const State& from, const Drive& drive, double dt, State& to) {
   StepReport report;
   report.by = traits_.name;
   const int n = scene_.surface.vertex_count, planned = substeps_for(from, drive, dt);
   Leg leg{gather_nodes(from.x, from.obstacles), from.v};
   const Points wanted = gather_nodes(from.x, drive.obstacles);
-  if (has_contact()) {
-    Stopwatch watch;
-    search_.restart();
-    path_.start = path_.end = leg.nodes;
-    search_.find(leg.nodes, leg.nodes, 2 * scene_.contact.thickness, path_.pairs);
-    report.seconds.broad_phase += watch.lap();
-  }
+  if (has_contact()) prepare_contact(from, dt, wanted, leg.nodes, report);
   for (int s = 0; s < planned; ++s) {
     const double part = 1.0 / (planned - s);  // of what is left of the frame
     const Points nodes = leg.nodes + part * (wanted - leg.nodes);
@@ -279,7 +321,7 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
     report.collision.obstacle_lag = (leg.nodes - wanted).bottomRows(leg.nodes.rows() - n).rowwise().norm().maxCoeff();
   to.pinched = report.collision.obstacle_lag > rounding * wanted.cwiseAbs().maxCoeff();
   if (!to.pinched) report.collision.obstacle_lag = 0;
-  audit_state(to, drive, report);
+  audit_state(drive, to, report);
   return report;
 }
 

@@ -15,6 +15,7 @@ struct State {
   Points x, v;                    // cloth, all cloths on end
   std::vector<Points> obstacles;  // where they are; may lag behind Drive::obstacles
   bool pinched = false;           // they do: cloth left them no room in the step that ended here
+  bool clean = false;             // known to be free of intersections, by the audit of the step that ended here
 };
 
 // What the world imposes on a step, given at the step's END.
@@ -40,7 +41,8 @@ struct CollisionReport {
   int halved_substeps = 0;  // substeps done again in two halves because zones did not settle
   int shortened = 0;        // zones whose motion was shortened toward the last clean state, once a halving
   int held_vertices = 0;    // cloth vertices in them, all substeps
-  int passed_through = 0;   // pairs that met on their way by the audit of the motion; -1: not audited
+  int passed_through = 0;   // pairs that met on their way by the audit of the motion, those left alone not counted
+  int left_alone = 0;       // cloth vertices on or inside a contour at the start, after recovery
   double min_gap = std::numeric_limits<double>::infinity();  // of the contacts [m]
   double obstacle_lag = 0;                // largest distance of an obstacle vertex from where it was wanted [m]
   int pairs_before = 0, pairs_after = 0;  // intersecting triangle pairs by the audit; -1: not audited

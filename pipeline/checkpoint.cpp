@@ -29,8 +29,9 @@ void write_checkpoint(const std::filesystem::path& path, const State& state, con
     file.write_text("config", config);
     file.write_constant("time", H5T_NATIVE_DOUBLE, {1}, &state.time);
     file.write_constant("frame", H5T_NATIVE_INT, {1}, &state.frame);
-    const int pinched = state.pinched;
+    const int pinched = state.pinched, clean = state.clean;
     file.write_constant("pinched", H5T_NATIVE_INT, {1}, &pinched);
+    file.write_constant("clean", H5T_NATIVE_INT, {1}, &clean);
     write_points(file, "x", state.x);
     write_points(file, "v", state.v);
     for (std::size_t k = 0; k < state.obstacles.size(); ++k)
@@ -56,9 +57,11 @@ State read_checkpoint(const std::filesystem::path& path, const std::string& conf
   State state;
   file.read_all("time", H5T_NATIVE_DOUBLE, &state.time);
   file.read_all("frame", H5T_NATIVE_INT, &state.frame);
-  int pinched = 0;
+  int pinched = 0, clean = 0;
   file.read_all("pinched", H5T_NATIVE_INT, &pinched);
+  file.read_all("clean", H5T_NATIVE_INT, &clean);
   state.pinched = pinched != 0;
+  state.clean = clean != 0;
   state.x = read_points(file, "x");
   state.v = read_points(file, "v");
   for (int k = 0; file.has("obstacle_" + std::to_string(k)); ++k)

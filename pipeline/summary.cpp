@@ -76,7 +76,7 @@ void add_frame(RunSummary& summary, int index, const Frame& frame) {
   summary.halved_substeps += collision.halved_substeps;
   summary.shortened += collision.shortened;
   summary.held_vertices += collision.held_vertices;
-  summary.passed_through += std::max(0, collision.passed_through);
+  summary.passed_through += collision.passed_through;
   summary.worst_pairs_wanted = std::max(summary.worst_pairs_wanted, collision.pairs_wanted);
   summary.max_depth_wanted = std::max(summary.max_depth_wanted, collision.depth_wanted);
   summary.max_obstacle_lag = std::max(summary.max_obstacle_lag, collision.obstacle_lag);

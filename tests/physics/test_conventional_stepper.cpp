@@ -5,47 +5,17 @@
 #include <omp.h>
 #endif
 
-#include "collision/audit.hpp"
-#include "physics/conventional_stepper.hpp"
 #include "physics/measures.hpp"
-#include "tests/collision/sheets.hpp"
+#include "tests/physics/worlds.hpp"
 
 using namespace selvedge;
+using testing::add_obstacle;
+using testing::make_world;
+using testing::Run;
+using testing::run;
+using testing::World;
 
 namespace {
-
-struct World {
-  Scene scene;
-  State state;
-  Drive drive;
-};
-
-World make_world(const testing::Sheet& cloth) {
-  World w;
-  w.scene.surface = make_surface(static_cast<int>(cloth.x.rows()), cloth.triangles);
-  w.scene.rest = cloth.x;
-  for (int t = 0; t < cloth.triangles.rows(); ++t)
-    w.scene.rest_triangle.push_back(flatten(row(cloth.x, cloth.triangles(t, 0)), row(cloth.x, cloth.triangles(t, 1)),
-                                            row(cloth.x, cloth.triangles(t, 2))));
-  w.scene.cloths.push_back({"sheet", {}, 0, w.scene.surface.vertex_count, 0, static_cast<int>(cloth.triangles.rows())});
-  w.state.x = cloth.x;
-  w.state.v = Points::Zero(cloth.x.rows(), 3);
-  w.drive.pins = Points(0, 3);
-  w.drive.acceleration = {0, -9.81, 0};
-  return w;
-}
-
-void add_obstacle(World& w, const testing::Sheet& body) {
-  w.scene.obstacles.push_back({"body", make_surface(static_cast<int>(body.x.rows()), body.triangles), false});
-  w.state.obstacles.push_back(body.x);
-  w.drive.obstacles.push_back(body.x);
-}
-
-testing::Sheet tilted(testing::Sheet s, double angle) {
-  const Mat3 turn = Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix();
-  s.x = (s.x * turn.transpose()).eval();
-  return s;
-}
 
 // A small sheet that falls on a peaked block and folds over it.
 World folding_world(int n) {
@@ -58,29 +28,6 @@ World folding_world(int n) {
   add_obstacle(w, peak);
   add_obstacle(w, testing::sheet(2, 3, -0.05));
   return w;
-}
-
-struct Run {
-  State state;
-  int contacts = 0, pairs = 0;
-  double lag = 0;
-};
-
-// Drops the stepper, and with it all caches, every `renew` frames.
-Run run(const World& w, int frames, int renew = 1 << 30) {
-  Run r{w.state};
-  auto stepper = make_conventional_stepper(w.scene, {});
-  for (int f = 0; f < frames; ++f) {
-    if (f % renew == renew - 1) stepper = make_conventional_stepper(w.scene, {});
-    State to;
-    const StepReport report = stepper->step(r.state, w.drive, 1.0 / 30, to);
-    REQUIRE(report.status == StepStatus::accepted);
-    r.contacts += report.collision.contacts;
-    r.pairs += report.collision.pairs_after;
-    r.lag = std::max(r.lag, report.collision.obstacle_lag);
-    r.state = to;
-  }
-  return r;
 }
 
 void same_bits(const State& a, const State& b) {
@@ -118,9 +65,35 @@ TEST_CASE("conventional stepper: a sheet folds over a peak and stays clean", "[c
   const Run r = run(w, 45);
   CHECK(r.contacts > 0);
   CHECK(r.pairs == 0);
+  CHECK(r.passed_through == 0);
   CHECK(r.lag == 0);
   CHECK(r.state.x.col(1).minCoeff() > -0.05);
   CHECK(principal_stretches(w.scene, r.state.x).maxCoeff() < 1.2);
+}
+
+// Two plates that close on a sheet to nothing, stay, and open again.
+TEST_CASE("conventional stepper: plates that close on cloth lag, leave it clean, and are where they belong again soon",
+          "[conventional_stepper]") {
+  World w = make_world(testing::sheet(8, 0.2, 0));
+  for (const double side : {-1.0, 1.0}) add_obstacle(w, testing::sheet(2, 0.5, side * 0.02));
+  State state = w.state;
+  auto stepper = make_conventional_stepper(w.scene, {});
+  double worst_lag = 0;
+  for (int f = 1; f <= 30; ++f) {
+    const double half = f < 10 ? 0.02 * (1 - f / 10.0) : f < 15 ? 0 : std::min(0.02, 0.02 * (f - 15) / 5.0);
+    for (int k = 0; k < 2; ++k) w.drive.obstacles[k].col(1).setConstant((k == 0 ? -1 : 1) * half);
+    State to;
+    const StepReport report = stepper->step(state, w.drive, 1.0 / 30, to);
+    REQUIRE(report.status == StepStatus::accepted);
+    CHECK(report.collision.pairs_after == 0);
+    CHECK(report.collision.passed_through == 0);
+    worst_lag = std::max(worst_lag, report.collision.obstacle_lag);
+    if (f < 8 || f > 25) CHECK(report.collision.obstacle_lag == 0);
+    if (f > 25) CHECK(report.collision.pairs_wanted == 0);
+    state = to;
+  }
+  CHECK(worst_lag > 0);
+  CHECK(worst_lag < 0.01);
 }
 
 TEST_CASE("conventional stepper: caches carry no state", "[conventional_stepper]") {
@@ -146,8 +119,8 @@ TEST_CASE("conventional stepper: one and two threads give the same bits in 100 f
 TEST_CASE("conventional stepper: friction holds a sheet on a slope below its angle and lets it slide above",
           "[conventional_stepper]") {
   const double angle = 0.3;  // tan = 0.309
-  World w = make_world(tilted(testing::sheet(5, 0.1, 2e-3), angle));
-  add_obstacle(w, tilted(testing::sheet(4, 4, 0), angle));
+  World w = make_world(testing::tilted(testing::sheet(5, 0.1, 2e-3), angle));
+  add_obstacle(w, testing::tilted(testing::sheet(4, 4, 0), angle));
   w.scene.contact.self = false;
   const Vec3 down(-std::cos(angle), -std::sin(angle), 0);
   w.scene.contact.friction = 0.4;

@@ -1,0 +1,103 @@
+#include "collision/exemption.hpp"
+
+#include <algorithm>
+
+#include "collision/contour_regions.hpp"
+#include "collision/inside.hpp"
+
+namespace selvedge {
+namespace {
+
+void mark(std::vector<char>& marks, int size, int node) {
+  if (marks.empty()) marks.assign(size, 0);
+  marks[node] = 1;
+}
+
+void mark_triangle(std::vector<char>& marks, int size, const Surface& surface, int triangle, int first = 0) {
+  for (int k = 0; k < 3; ++k) mark(marks, size, first + surface.triangles(triangle, k));
+}
+
+struct Sheets {
+  std::vector<Points> positions;
+  std::vector<SheetView> views;  // cloth, then obstacles
+};
+
+Sheets sheets_of(const ContactWorld& world, const Points& nodes) {
+  Sheets sheets;
+  sheets.positions.push_back(nodes.topRows(world.cloth->vertex_count));
+  for (std::size_t k = 0; k < world.obstacles.size(); ++k)
+    sheets.positions.push_back(nodes.middleRows(world.first_node[k], world.obstacles[k]->vertex_count));
+  sheets.views.push_back({world.cloth, &sheets.positions[0]});
+  for (std::size_t k = 0; k < world.obstacles.size(); ++k)
+    sheets.views.push_back({world.obstacles[k], &sheets.positions[k + 1]});
+  return sheets;
+}
+
+}  // namespace
+
+bool Exemption::leaves_alone(const ContactWorld& world, const std::array<int, 4>& nodes) const {
+  bool self_alone = false, body_alone = false, all_cloth = true, all_off = !off.empty();
+  for (const int node : nodes) {
+    if (!world.is_cloth(node)) {
+      all_cloth = false;
+      all_off = all_off && off[node];
+      continue;
+    }
+    self_alone = self_alone || (!self.empty() && self[node]);
+    body_alone = body_alone || (!body.empty() && body[node]);
+  }
+  return all_cloth ? self_alone : body_alone || all_off;
+}
+
+Exemption find_exemption(const ContactWorld& world, const Points& nodes) {
+  const Sheets sheets = sheets_of(world, nodes);
+  const int n = world.cloth->vertex_count;
+  Exemption exemption;
+  const auto marks_for = [&](int partner_sheet) -> std::vector<char>& {
+    return partner_sheet == 0 ? exemption.self : exemption.body;
+  };
+  const Segments found = find_segments(sheets.views);
+  for (const Segment& segment : found.segments) {
+    if (segment.sheet[1] == 0 && !world.self) continue;
+    for (int side = 0; side < 2; ++side)
+      if (segment.sheet[side] == 0) mark_triangle(marks_for(segment.sheet[1]), n, *world.cloth, segment.triangle[side]);
+  }
+  for (const auto& [triangle, sheet, other] : found.touching) {
+    if (sheet == 0 && !world.self) continue;
+    mark_triangle(marks_for(sheet), n, *world.cloth, triangle);
+    if (sheet == 0) mark_triangle(exemption.self, n, *world.cloth, other);
+  }
+  if (exemption.cloth())
+    for (const Region& region : enclosed_regions(sheets.views, find_contours(sheets.views, found)))
+      if (region.sheet == 0 && (region.partner_sheet != 0 || world.self))
+        for (const int v : region.vertices) mark(marks_for(region.partner_sheet), n, v);
+  for (std::size_t k = 0; k < world.obstacles.size(); ++k) {
+    if (!is_closed(*world.obstacles[k])) continue;
+    const std::vector<char> is_inside = inside(*world.obstacles[k], sheets.positions[k + 1], sheets.positions[0]);
+    for (int v = 0; v < n; ++v)
+      if (is_inside[v]) mark(exemption.body, n, v);
+  }
+  return exemption;
+}
+
+void switch_off(const ContactWorld& world, int obstacle, const Points& nodes, Exemption& exemption) {
+  const Surface& body = *world.obstacles[obstacle];
+  const int first = world.first_node[obstacle];
+  const Points x = nodes.middleRows(first, body.vertex_count);
+  const std::vector<SheetView> view{{&body, &x}};
+  const Segments found = find_segments(view);
+  if (found.segments.empty()) return;
+  std::vector<char> crossed(body.vertex_count, 0);
+  for (const Segment& segment : found.segments)
+    for (const int triangle : segment.triangle) mark_triangle(crossed, body.vertex_count, body, triangle);
+  for (const Region& region : enclosed_regions(view, find_contours(view, found)))
+    for (const int v : region.vertices) crossed[v] = 1;
+  // The margin: every triangle at a crossed vertex.
+  for (int t = 0; t < body.triangles.rows(); ++t) {
+    const auto corners = body.triangles.row(t);
+    if (crossed[corners(0)] || crossed[corners(1)] || crossed[corners(2)])
+      mark_triangle(exemption.off, world.node_count, body, t, first);
+  }
+}
+
+}  // namespace selvedge

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "collision/contact_pairs.hpp"
+
+namespace selvedge {
+
+// What contact leaves alone: the mechanisms that keep a clean state clean would keep a tangled one tangled. All 1 where
+// it applies; empty where nothing does.
+struct Exemption {
+  std::vector<char> self;  // of the cloth's vertices: on or inside a contour of the cloth with itself
+  std::vector<char> body;  // of the cloth's vertices: on a contour with an obstacle, or inside a closed one
+  std::vector<char>
+      off;  // of all nodes: an obstacle's, on or inside a contour of the obstacle with itself, or next to it
+
+  bool cloth() const { return !self.empty() || !body.empty(); }
+  bool any() const { return cloth() || !off.empty(); }
+  bool leaves_alone(const ContactWorld&, const std::array<int, 4>& nodes) const;
+};
+
+// Contours of the cloth with itself (where world.self) and with the obstacles, and its vertices inside closed
+// obstacles. Positions must be finite.
+Exemption find_exemption(const ContactWorld&, const Points& nodes);
+
+// Adds to `off` what an obstacle's crossing of itself switches off at these positions.
+void switch_off(const ContactWorld&, int obstacle, const Points& nodes, Exemption&);
+
+}  // namespace selvedge

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "collision/exemption.hpp"
+#include "collision/intersections.hpp"
+
+namespace selvedge {
+
+// What a step that starts tangled does first: `untangle` says where the cloth should be, and every vertex that may move
+// goes there by at most `reach` [m]. Returns what is still tangled then, for contact to leave alone.
+Exemption recover(const ContactWorld&, const Eigen::VectorXd& inverse_mass, double reach, Points& nodes);
+
+// Which obstacles cross themselves, in the positions of a step's start or end. Remembers what it was asked last.
+class SelfCrossings {
+ public:
+  explicit SelfCrossings(const ContactWorld& world);  // keeps a reference
+  void switch_off(const Points& from, const Points& to, Exemption&);
+
+ private:
+  struct Known {
+    Points x;
+    bool crosses = false;
+    IntersectionCache cache;
+  };
+  bool crosses(int obstacle, const Points& nodes, Known&);
+
+  const ContactWorld& world_;
+  std::vector<std::array<Known, 2>> known_;
+};
+
+}  // namespace selvedge
