@@ -8,7 +8,7 @@ CONFIGURE := $(if $(CI),-DSELVEDGE_WERROR=ON)
 SOURCES = git ls-files '*.cpp' '*.hpp'
 PROGRAM := build/release/selvedge
 
-PACKAGES_release := build suitesparse viewer test
+PACKAGES_release := build suitesparse fcl viewer test
 PACKAGES_dev := $(PACKAGES_release)
 PACKAGES_asan := $(PACKAGES_release)
 PACKAGES_tsan := $(PACKAGES_release) tsan
@@ -21,7 +21,7 @@ help:  ## This list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
 
 program:
-	@cmake/install-packages.sh build suitesparse viewer
+	@cmake/install-packages.sh build suitesparse fcl viewer
 	@$(MAKE) --no-print-directory build/release/configured
 	@cmake --build --preset release --parallel $(JOBS) --target selvedge
 
@@ -35,7 +35,7 @@ test: test-release  ## Build and run every test (FILTER=regular expression on te
 dev: test-dev  ## The same with assertions on and warnings as errors
 asan: test-asan  ## The same under the address and undefined-behaviour sanitizers
 tsan: test-tsan  ## The same under the thread sanitizer, with clang
-minimal: test-minimal  ## The same without SuiteSparse and OpenMP
+minimal: test-minimal  ## The same without SuiteSparse, FCL and OpenMP
 
 test-%:
 	@cmake/install-packages.sh $(PACKAGES_$*)
@@ -57,7 +57,7 @@ check-format:  ## Fail if a source file is not formatted
 	@$(SOURCES) | xargs clang-format --dry-run -Werror
 
 tidy:  ## clang-tidy over the sources of the release build
-	@cmake/install-packages.sh build suitesparse viewer test tidy
+	@cmake/install-packages.sh build suitesparse fcl viewer test tidy
 	@$(MAKE) --no-print-directory build/release/configured
 	@git ls-files '*.cpp' ':!tests' | xargs -P $(JOBS) -n 1 clang-tidy -p build/release --quiet --warnings-as-errors='*'
 

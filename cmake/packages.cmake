@@ -10,6 +10,12 @@ if(SELVEDGE_OPENMP)
   find_package(OpenMP REQUIRED COMPONENTS CXX)
 endif()
 
+if(SELVEDGE_FCL)
+  find_package(fcl 0.7 REQUIRED)
+  add_library(selvedge_fcl INTERFACE)
+  target_link_libraries(selvedge_fcl INTERFACE fcl)
+endif()
+
 if(SELVEDGE_SUITESPARSE)
   # CHOLMOD ships no CMake package.
   find_path(CHOLMOD_INCLUDE cholmod.h PATH_SUFFIXES suitesparse REQUIRED)

@@ -77,27 +77,12 @@ bool cross_at_vertex(const Soup& cloth, int a, int b) {
   return false;
 }
 
-// Calls self(a, b) and other(a, c) for all pairs of boxes that overlap in the region.
-template <typename Self, typename Other>
-void visit_pairs(const Region& region, const Soup& cloth, const Soup& bodies, bool with_self, Self&& self,
-                 Other&& other) {
-  for (std::size_t i = 0; i < region.first.size(); ++i) {
-    const int a = region.first[i];
-    const ExactBox& box = cloth.boxes[a];
-    if (with_self)
-      for (std::size_t j = i + 1; j < region.first.size(); ++j)
-        if (meet_in(region, box, cloth.boxes[region.first[j]])) self(a, region.first[j]);
-    for (int c : region.second)
-      if (meet_in(region, box, bodies.boxes[c])) other(a, c);
-  }
-}
-
 void audit_region(const Region& region, const Soup& cloth, const Soup& bodies, bool with_self, Audit& found) {
   const auto numbers = [&cloth](int a, int b) {
     return std::pair(std::min(cloth.number[a], cloth.number[b]), std::max(cloth.number[a], cloth.number[b]));
   };
   visit_pairs(
-      region, cloth, bodies, with_self,
+      region, cloth.boxes, bodies.boxes, with_self,
       [&](int a, int b) {
         const int shared = shared_vertices(cloth.vertices[a], cloth.vertices[b]);
         if (shared == 0 && intersect(cloth.corners[a], cloth.corners[b])) found.self_pairs.push_back(numbers(a, b));
@@ -158,7 +143,7 @@ double gap_in_region(const Region& region, const Soup& cloth, const Soup& bodies
     least = std::min(least, intersect(p, q) ? 0.0 : squared_gap(p, q));
   };
   visit_pairs(
-      region, cloth, bodies, true,
+      region, cloth.boxes, bodies.boxes, true,
       [&](int a, int b) {
         if (shared_vertices(cloth.vertices[a], cloth.vertices[b]) == 0) take(cloth, a, b);
       },

@@ -133,16 +133,14 @@ struct PairAudit {
 
 void audit_region(const Region& region, const Side& cloth, const Side& bodies, bool self, int max_halvings,
                   std::vector<PassedPair>& passed) {
-  for (std::size_t i = 0; i < region.first.size(); ++i) {
-    const int a = region.first[i];
-    if (self)
-      for (std::size_t j = i + 1; j < region.first.size(); ++j)
-        if (const int b = region.first[j]; meet_in(region, cloth.boxes[a], cloth.boxes[b]))
-          PairAudit{cloth.faces[a], cloth.faces[b], max_halvings, passed}();
-    for (const int c : region.second)
-      if (meet_in(region, cloth.boxes[a], bodies.boxes[c]))
+  visit_pairs(
+      region, cloth.boxes, bodies.boxes, self,
+      [&](int a, int b) {
+        PairAudit{cloth.faces[a], cloth.faces[b], max_halvings, passed}();
+      },
+      [&](int a, int c) {
         PairAudit{cloth.faces[a], bodies.faces[c], max_halvings, passed}();
-  }
+      });
 }
 
 }  // namespace

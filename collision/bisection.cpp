@@ -1,6 +1,7 @@
 #include "collision/bisection.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -76,25 +77,71 @@ std::vector<int> count_up(std::size_t count) {
   return all;
 }
 
+// Cuts the region until it is not worth it any more, or until there are `enough` parts. Parts without a possible pair
+// are dropped.
+std::vector<Region> cut(const Boxes& boxes, Region whole, std::size_t enough) {
+  std::vector<Region> open{std::move(whole)}, next, finished;
+  while (!open.empty() && open.size() < enough) {
+    next.clear();
+    for (Region& region : open) {
+      if (!boxes.has_pair(region)) continue;
+      Region lower, upper;
+      if (halve(boxes, region, lower, upper)) {
+        next.push_back(std::move(lower));
+        next.push_back(std::move(upper));
+      } else {
+        finished.push_back(std::move(region));
+      }
+    }
+    open.swap(next);
+  }
+  finished.insert(finished.end(), std::make_move_iterator(open.begin()), std::make_move_iterator(open.end()));
+  return finished;
+}
+
 }  // namespace
+
+Sweep::Sweep(std::span<const ExactBox> boxes, std::span<const int> items, int along) : axis(along) {
+  entries.reserve(items.size());
+  for (const int item : items) entries.push_back({boxes[item], item});
+  std::sort(entries.begin(), entries.end(), [along](const Entry& a, const Entry& b) {
+    return a.box.lo[along] < b.box.lo[along] || (a.box.lo[along] == b.box.lo[along] && a.item < b.item);
+  });
+}
+
+int sweep_axis(const Region& region, std::span<const ExactBox> first) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  int best = 0;
+  double widest = -1;
+  for (int k = 0; k < 3; ++k) {
+    double lo = infinity, hi = -infinity, extent = 0;
+    for (const int i : region.first) {
+      lo = std::min(lo, first[i].lo[k]);
+      hi = std::max(hi, first[i].hi[k]);
+      extent += first[i].hi[k] - first[i].lo[k];
+    }
+    const double spread = extent > 0 ? (hi - lo) / extent : hi > lo ? infinity : 0;
+    if (spread > widest) {
+      widest = spread;
+      best = k;
+    }
+  }
+  return best;
+}
 
 std::vector<Region> bisect(std::span<const ExactBox> first, std::span<const ExactBox> second, bool within_first) {
   const Boxes boxes{first, second, within_first};
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const ExactBox space{{-infinity, -infinity, -infinity}, {infinity, infinity, infinity}};
-  std::vector<Region> stack{{space, count_up(first.size()), count_up(second.size())}}, finished;
-  while (!stack.empty()) {
-    const Region region = std::move(stack.back());
-    stack.pop_back();
-    if (!boxes.has_pair(region)) continue;
-    Region lower, upper;
-    if (halve(boxes, region, lower, upper)) {
-      stack.push_back(std::move(upper));
-      stack.push_back(std::move(lower));
-    } else {
-      finished.push_back(region);
-    }
-  }
+  // First a few parts, then each of them on a thread of its own: the same regions whatever the number of threads.
+  std::vector<Region> parts = cut(boxes, {space, count_up(first.size()), count_up(second.size())}, 32);
+  const int count = static_cast<int>(parts.size());
+  std::vector<std::vector<Region>> cut_up(parts.size());
+#pragma omp parallel for schedule(dynamic)
+  for (int p = 0; p < count; ++p) cut_up[p] = cut(boxes, std::move(parts[p]), std::numeric_limits<std::size_t>::max());
+  std::vector<Region> finished;
+  for (std::vector<Region>& some : cut_up)
+    finished.insert(finished.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
   return finished;
 }
 

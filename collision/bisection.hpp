@@ -22,13 +22,55 @@ struct Region {
 // two of `first` (where within_first) or of one of `first` and one of `second`, are left out.
 std::vector<Region> bisect(std::span<const ExactBox> first, std::span<const ExactBox> second, bool within_first);
 
-// Do boxes a and b overlap, and is this the region to which the pair belongs?
-inline bool meet_in(const Region& region, const ExactBox& a, const ExactBox& b) {
-  for (int k = 0; k < 3; ++k) {
-    const double lo = a.lo[k] > b.lo[k] ? a.lo[k] : b.lo[k];
-    if (lo > a.hi[k] || lo > b.hi[k] || lo < region.bounds.lo[k] || !(lo < region.bounds.hi[k])) return false;
+// Calls self(a, b) for the pairs of two of `first` (where within_first) and other(a, c) for those of one of `first` and
+// one of `second` that belong to the region. Boxes are those given to bisect.
+template <typename Self, typename Other>
+void visit_pairs(const Region& region, std::span<const ExactBox> first, std::span<const ExactBox> second,
+                 bool within_first, Self&& self, Other&& other);
+
+// Boxes of a region side by side, in the order of their lower ends along an axis.
+struct Sweep {
+  struct Entry {
+    ExactBox box;
+    int item;
+  };
+  std::vector<Entry> entries;
+  int axis;
+
+  Sweep(std::span<const ExactBox> boxes, std::span<const int> items, int axis);
+
+  // Calls visit(item) for the entries from place `from` on that overlap the box and belong to the region with it.
+  template <typename Visit>
+  void overlapping(std::size_t from, const ExactBox& box, const ExactBox& bounds, Visit&& visit) const {
+    for (std::size_t i = from; i < entries.size() && entries[i].box.lo[axis] <= box.hi[axis]; ++i)
+      if (meet_in(bounds, box, entries[i].box)) visit(entries[i].item);
   }
-  return true;
+
+ private:
+  // Do boxes a and b overlap, and does the pair belong within the bounds? Without branches.
+  static bool meet_in(const ExactBox& bounds, const ExactBox& a, const ExactBox& b) {
+    bool meet = true;
+    for (int k = 0; k < 3; ++k) {
+      const double lo = a.lo[k] > b.lo[k] ? a.lo[k] : b.lo[k];
+      meet &= (lo <= a.hi[k]) & (lo <= b.hi[k]) & (lo >= bounds.lo[k]) & (lo < bounds.hi[k]);
+    }
+    return meet;
+  }
+};
+
+// The axis along which the boxes of a region are spread the widest, in units of their own extent.
+int sweep_axis(const Region&, std::span<const ExactBox> first);
+
+template <typename Self, typename Other>
+void visit_pairs(const Region& region, std::span<const ExactBox> first, std::span<const ExactBox> second,
+                 bool within_first, Self&& self, Other&& other) {
+  const int axis = sweep_axis(region, first);
+  const Sweep mine(first, region.first, axis), theirs(second, region.second, axis);
+  for (std::size_t i = 0; i < mine.entries.size(); ++i) {
+    const auto& [box, a] = mine.entries[i];
+    if (within_first) mine.overlapping(i + 1, box, region.bounds, [&](int b) { self(a, b); });
+    theirs.overlapping(0, box, region.bounds, [&](int c) { other(a, c); });
+  }
 }
 
 }  // namespace selvedge

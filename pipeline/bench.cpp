@@ -57,9 +57,12 @@ BenchMember run_member(const BenchRequest& request, const std::string& scene, in
 
 }  // namespace
 
-std::vector<BenchMember> bench(const BenchRequest& request) {
+BenchResult bench(const BenchRequest& request) {
   make_folder(request.out);
-  std::vector<BenchMember> members;
+  BenchResult result;
+  result.detection = time_detection();
+  if (request.log) *request.log << detection_table(result.detection) << std::flush;
+  std::vector<BenchMember>& members = result.members;
   for (const std::string& scene : request.scenes)
     for (const int size : request.sizes) {
       members.push_back(run_member(request, scene, size));
@@ -68,11 +71,11 @@ std::vector<BenchMember> bench(const BenchRequest& request) {
         *request.log << fmt::format("{} {}: {:.1f} ms a frame, {} pairs in the worst frame\n", scene, size,
                                     mean_milliseconds(summary), summary.worst_pairs)
                      << std::flush;
-      write_file(request.out / "bench.json", bench_json(members));
+      write_file(request.out / "bench.json", bench_json(result));
       write_file(request.out / "bench.csv", bench_csv(members));
-      write_file(request.out / "bench.txt", bench_table(members));
+      write_file(request.out / "bench.txt", bench_table(result));
     }
-  return members;
+  return result;
 }
 
 }  // namespace selvedge

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pipeline/algebraic_error.hpp"
+#include "pipeline/bench_detection.hpp"
 #include "pipeline/summary.hpp"
 
 namespace selvedge {
@@ -27,12 +28,17 @@ struct BenchMember {
   std::optional<AlgebraicError> algebraic;  // worst of the contact-free states that were looked at; hang only
 };
 
-// Runs every scene at every size through run_scene, each into its own folder below `out`, and leaves bench.json,
-// bench.csv and bench.txt there.
-std::vector<BenchMember> bench(const BenchRequest&);
+struct BenchResult {
+  std::vector<DetectionTiming> detection;
+  std::vector<BenchMember> members;
+};
 
-std::string bench_json(const std::vector<BenchMember>&);
+// Times self-detection, then runs every scene at every size through run_scene, each into its own folder below `out`,
+// and leaves bench.json, bench.csv and bench.txt there.
+BenchResult bench(const BenchRequest&);
+
+std::string bench_json(const BenchResult&);
 std::string bench_csv(const std::vector<BenchMember>&);
-std::string bench_table(const std::vector<BenchMember>&);
+std::string bench_table(const BenchResult&);
 
 }  // namespace selvedge

@@ -48,11 +48,23 @@ const std::vector<Column>& columns() {
 
 std::string number(double value, int digits) { return std::isnan(value) ? "" : fmt::format("{:.{}f}", value, digits); }
 
+nlohmann::ordered_json detection_json(const std::vector<DetectionTiming>& timings) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const DetectionTiming& t : timings) {
+    nlohmann::ordered_json entry = {
+        {"shape", t.shape}, {"triangles", t.triangles}, {"pairs", t.pairs}, {"ms", 1e3 * t.ours}};
+    entry["fcl_ms"] = t.fcl ? nlohmann::ordered_json(1e3 * *t.fcl) : nlohmann::ordered_json(nullptr);
+    if (t.fcl) entry["pairs_found_by_one_alone"] = t.other_pairs;
+    list.push_back(entry);
+  }
+  return list;
+}
+
 }  // namespace
 
-std::string bench_json(const std::vector<BenchMember>& members) {
+std::string bench_json(const BenchResult& result) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const BenchMember& member : members) {
+  for (const BenchMember& member : result.members) {
     nlohmann::ordered_json entry = {{"scene", member.scene}, {"size", member.size}};
     for (const Column& column : columns()) {
       const double value = column.value(member);
@@ -67,7 +79,8 @@ std::string bench_json(const std::vector<BenchMember>& members) {
     entry["run"] = nlohmann::ordered_json::parse(summary_json(member.summary));
     list.push_back(entry);
   }
-  const nlohmann::ordered_json json = {{"program_version", program_version()}, {"members", list}};
+  const nlohmann::ordered_json json = {
+      {"program_version", program_version()}, {"detection", detection_json(result.detection)}, {"members", list}};
   return json.dump(2) + "\n";
 }
 
@@ -84,16 +97,16 @@ std::string bench_csv(const std::vector<BenchMember>& members) {
   return text;
 }
 
-std::string bench_table(const std::vector<BenchMember>& members) {
+std::string bench_table(const BenchResult& result) {
   std::string text = fmt::format("{:<6} {:>4}", "scene", "N");
   for (const Column& column : columns()) text += fmt::format(" {:>10}", column.title);
   text += "\n";
-  for (const BenchMember& member : members) {
+  for (const BenchMember& member : result.members) {
     text += fmt::format("{:<6} {:>4}", member.scene, member.size);
     for (const Column& column : columns()) text += fmt::format(" {:>10}", number(column.value(member), column.digits));
     text += "\n";
   }
-  return text;
+  return text + "\n" + detection_table(result.detection);
 }
 
 }  // namespace selvedge

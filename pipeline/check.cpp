@@ -5,6 +5,7 @@
 
 #include "collision/audit.hpp"
 #include "collision/error.hpp"
+#include "collision/obstacle.hpp"
 #include "physics/measures.hpp"
 #include "pipeline/mesh_io.hpp"
 #include "pipeline/trajectory_hdf5.hpp"
@@ -76,7 +77,11 @@ void check_frame(const Scene& rest, const Points& x, const Bodies& bodies, doubl
   report.nonfinite += found.nonfinite;
   report.inside_vertices = std::max(report.inside_vertices, found.inside_vertices);
   report.degenerate_triangles = std::max(report.degenerate_triangles, count_degenerate(rest.surface, x));
-  if (found.nonfinite > 0) return;
+  if (found.nonfinite > 0) {  // FCL and distances need all of it
+    if (report.fcl) report.fcl->pairs_by_frame.push_back(0);
+    return;
+  }
+  if (report.fcl) add_opinion(rest.surface, x, audited, found, frame, *report.fcl);
   const double reach = std::min(horizon, report.min_gap);
   if (reach > 0)
     report.min_gap = std::min(report.min_gap, pairs > 0 ? 0.0 : smallest_gap(rest.surface, x, audited, reach));
@@ -156,6 +161,11 @@ bool is_hdf5(const std::filesystem::path& file) {
 
 CheckReport check(const CheckRequest& request) {
   CheckReport report;
+  if (request.audit == "fcl") {
+    if (!obstacle_available())
+      throw Error("this build has no FCL", "--audit fcl", "install libfcl-dev and configure with -DSELVEDGE_FCL=ON");
+    report.fcl.emplace();
+  }
   if (is_hdf5(request.file))
     check_trajectory(request, report);
   else
@@ -164,7 +174,8 @@ CheckReport check(const CheckRequest& request) {
 }
 
 bool is_clean(const CheckReport& report) {
-  return report.worst_pairs == 0 && report.nonfinite == 0 && report.inside_vertices == 0;
+  return report.worst_pairs == 0 && report.nonfinite == 0 && report.inside_vertices == 0 &&
+         (!report.fcl || report.fcl->beyond_rounding == 0);
 }
 
 }  // namespace selvedge

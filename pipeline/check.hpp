@@ -6,12 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/check_opinion.hpp"
+
 namespace selvedge {
 
 struct CheckRequest {
   std::filesystem::path file;                 // mesh (OBJ, PLY) or trajectory (HDF5)
   std::optional<std::filesystem::path> rest;  // mesh of the same triangles at rest; a trajectory holds its own
   std::vector<std::filesystem::path> bodies;  // meshes that the cloth must not touch, beside a trajectory's obstacles
+  std::string audit = "own";                  // or "fcl": its opinion beside the audit's
   double horizon = 0.02;                      // gaps above it are not looked for [m]
 };
 
@@ -29,12 +32,14 @@ struct CheckReport {
   int inside_vertices = 0;                                   // worst frame's
   bool closed = true;  // false: the trajectory's writer did not end, or is still at work
   std::vector<std::string> warnings;
+  std::optional<Opinion> fcl;
   int frames() const { return static_cast<int>(pairs_by_frame.size()); }
 };
 
 CheckReport check(const CheckRequest&);
 
-// All finite, no intersecting pairs, nothing inside a body.
+// All finite, no intersecting pairs, nothing inside a body, and no other opinion of FCL where rounding cannot excuse
+// it.
 bool is_clean(const CheckReport&);
 
 std::string check_json(const CheckReport&);

@@ -97,10 +97,13 @@ int view_command(const ViewArguments& arguments, bool json) {
 int bench_command(const BenchRequest& request, bool json) {
   BenchRequest logged = request;
   logged.log = &std::cerr;
-  const std::vector<BenchMember> members = bench(logged);
-  people(json) << bench_table(members);
-  if (json) std::cout << bench_json(members);
-  return std::all_of(members.begin(), members.end(), [](const BenchMember& m) { return is_clean(m.summary); }) ? 0 : 1;
+  const BenchResult result = bench(logged);
+  people(json) << bench_table(result);
+  if (json) std::cout << bench_json(result);
+  return std::all_of(result.members.begin(), result.members.end(),
+                     [](const BenchMember& m) { return is_clean(m.summary); })
+             ? 0
+             : 1;
 }
 
 int info_command(bool json) {

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "collision/obstacle.hpp"
 #include "physics/cholesky.hpp"
 #include "pipeline/version.hpp"
 
@@ -65,6 +66,7 @@ std::vector<std::pair<std::string, std::string>> facts() {
                                NLOHMANN_JSON_VERSION_PATCH)},
           {"cholmod", Cholesky::available() ? "in" : "left out (SELVEDGE_SUITESPARSE=OFF)"},
           {"blas", blas()},
+          {"fcl", obstacle_available() ? "in" : "left out (SELVEDGE_FCL=OFF)"},
           {"openmp", has_openmp() ? "in" : "left out (SELVEDGE_OPENMP=OFF)"},
           {"threads", std::to_string(threads())},
           {"waiting", waiting()},

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "collision/error.hpp"
+#include "collision/obstacle.hpp"
 #include "pipeline/check.hpp"
 #include "tests/pipeline/fake_run.hpp"
 
@@ -114,4 +115,66 @@ TEST_CASE("a rest mesh of other faces is refused") {
   write_text(folder.path / "a.obj", apart);
   write_text(folder.path / "b.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n");
   REQUIRE_THROWS_AS(check({folder.path / "a.obj", folder.path / "b.obj", {}}), Error);
+}
+
+TEST_CASE("FCL's opinion stands beside the audit's") {
+  const fake::Folder folder("check_fcl");
+  write_text(folder.path / "crossing.obj", crossing);
+  write_text(folder.path / "apart.obj", apart);
+  write_text(folder.path / "body.obj",
+             "v 0 0.2 0\nv 0.1 0.2 0\nv 0 0.2 0.1\nv 0 0.3 0\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n");
+  CheckRequest request{folder.path / "crossing.obj", {}, {}, "fcl"};
+  if (!obstacle_available()) {
+    WARN("skipped: this build has no FCL");
+    REQUIRE_THROWS_AS(check(request), Error);
+    return;
+  }
+  const CheckReport dirty = check(request);
+  REQUIRE(dirty.fcl);
+  CHECK(dirty.fcl->pairs_by_frame == std::vector<int>{1});
+  CHECK(dirty.fcl->disagreements.empty());
+  CHECK(check_text(dirty).find("FCL") != std::string::npos);
+  CHECK(nlohmann::json::parse(check_json(dirty))["fcl"]["intersecting_pairs_by_frame"][0] == 1);
+
+  request.file = folder.path / "apart.obj";
+  request.bodies = {folder.path / "body.obj"};
+  const CheckReport touched = check(request);
+  CHECK(touched.worst_pairs > 0);
+  CHECK(touched.fcl->pairs_by_frame[0] == touched.worst_pairs);
+  CHECK(touched.fcl->frames_against_body == 1);
+  CHECK(touched.fcl->beyond_rounding == 0);
+  request.bodies.clear();
+  CHECK(check(request).fcl->frames_against_body == 0);
+  CHECK(is_clean(check(request)));
+  request.audit = "own";
+  CHECK_FALSE(check(request).fcl);
+}
+
+TEST_CASE("a pair on which FCL and exact signs differ is named, with how near it is") {
+  // A wrong audit stands in for the disagreement: the sheets cross by a lot, and lie a lot apart.
+  if (!obstacle_available()) {
+    WARN("skipped: this build has no FCL");
+    return;
+  }
+  Triangles triangles(2, 3);
+  triangles << 0, 1, 2, 3, 4, 5;
+  Points x(6, 3);
+  x << 0, 0, 0, 1, 0, 0, 0, 0, 1, 0.2, -1, 0.2, 0.2, 1, 0.2, 0.2, 0, 0.9;
+  const Surface surface = make_surface(6, triangles);
+  Opinion opinion;
+  add_opinion(surface, x, {}, Audit{}, 3, opinion);
+  REQUIRE(opinion.disagreements.size() == 1);
+  const Disagreement& d = opinion.disagreements[0];
+  CHECK((d.frame == 3 && d.first == 0 && d.second == 1 && !d.ours && d.beyond));
+  CHECK(d.margin == Approx(0.2).margin(0.2));
+  CHECK(opinion.beyond_rounding == 1);
+  CheckReport report;
+  report.fcl = opinion;
+  CHECK_FALSE(is_clean(report));
+  CHECK(opinion_text(opinion).find("triangle 0 and triangle 1") != std::string::npos);
+
+  CHECK(separation({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {Vec3(0, 0, 2), Vec3(1, 0, 2), Vec3(0, 1, 3)}) ==
+        Approx(2));
+  CHECK(separation({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {Vec3(3, 0, 0), Vec3(4, 0, 0), Vec3(3, 1, 0)}) ==
+        Approx(2));
 }
