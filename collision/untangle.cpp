@@ -148,7 +148,7 @@ Points propose(const KeptShape& shape, const Freedom& freedom, std::span<const S
 void keep_range(const KeptShape& shape, const Freedom& freedom, const UntangleOptions& options, const Points& before,
                 Points& x) {
   const Stretch range{options.least_stretch, options.largest_stretch};
-  const Stretch outer{0.95 * range.least, 1.05 * range.largest};
+  const Stretch outer{0.97 * range.least, 1.03 * range.largest};
   hold_back(shape, freedom.triangles, outer, before, x);
 }
 
@@ -158,7 +158,8 @@ Tangle keep_clean(const KeptShape& shape, const Freedom& freedom, std::span<cons
                   const std::vector<char>& tangled, const UntangleOptions& options, const Points& before, Points& x) {
   const std::vector<char> allowed = within_rings(shape, tangled, 1);
   const Surface& cloth = *shape.surface;
-  for (;;) {
+  std::vector<char> offends(cloth.vertex_count, 0);
+  for (int round = 0;; ++round) {
     keep_range(shape, freedom, options, before, x);
     const std::vector<SheetView> sheets = with_cloth(cloth, x, obstacles);
     const Segments found = find_segments(sheets);
@@ -171,12 +172,13 @@ Tangle keep_clean(const KeptShape& shape, const Freedom& freedom, std::span<cons
       if (std::any_of(vertices.begin(), vertices.end(), [&](int v) { return allowed[v] != 0; })) return;
       for (int v : vertices) {
         clean = clean && x.row(v) == before.row(v);
-        x.row(v) = before.row(v);
+        offends[v] = 1;
       }
     };
     for (const Segment& s : found.segments) judge(s.triangle[0], s.sheet[1], s.triangle[1]);
     for (const auto& [a, sheet, b] : found.touching) judge(a, sheet, b);
     if (clean) return find_tangle(sheets);
+    take_back(offends, round, before, x);
   }
 }
 

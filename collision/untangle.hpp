@@ -20,7 +20,7 @@ struct UntangleOptions {
   double far_limit = 0.08;  // how far any other vertex may move, in lengths of its edges
   double gap = 0.02;        // between what has been parted, in mean edge lengths
   double step = 0.25;       // largest motion asked for in one iteration, in mean edge lengths
-  double least_stretch = 0.55, largest_stretch = 1.8;  // of every triangle against the input
+  double least_stretch = 0.52, largest_stretch = 1.92;  // of every triangle against the input
   // Hint: a place for each component of the cloth, the innermost lowest; of two layers the higher one belongs on the
   // side that the other's normals point to. Empty: the smaller side of a contour is the wrong one.
   std::vector<int> layers;
