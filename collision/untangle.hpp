@@ -2,10 +2,9 @@
 
 #include <functional>
 #include <span>
-#include <string>
 #include <vector>
 
-#include "collision/contour.hpp"
+#include "collision/remainder.hpp"
 
 namespace selvedge {
 
@@ -27,13 +26,6 @@ struct UntangleOptions {
   std::function<void(const UntangleProgress&)> progress;
 };
 
-// A contour that is left, and why.
-struct Remainder {
-  int pairs = 0;
-  double length = 0;  // [m]
-  std::string reason;
-};
-
 struct UntangleResult {
   Points x;
   int pairs_before = 0, pairs_after = 0;                // triangles that share no vertex, touching included
@@ -41,6 +33,7 @@ struct UntangleResult {
   double length_before = 0, length_after = 0;           // of all contours [m]
   int iterations = 0;
   int moved = 0;                       // vertices moved by more than a millionth of an edge
+  double mean_edge = 0;                // of the input [m]
   double mean_move = 0, max_move = 0;  // of these, in mean edge lengths
   double far_move = 0;  // largest among vertices that are not free to move, in lengths of their own edges
   double least_stretch = 1, largest_stretch = 1;  // singular values against the input

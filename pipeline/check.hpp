@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "collision/surface.hpp"
+
 namespace selvedge {
 
 struct CheckRequest {
@@ -33,6 +35,9 @@ struct CheckReport {
 };
 
 CheckReport check(const CheckRequest&);
+
+// Triangles whose height is lost in the rounding of their coordinates.
+int count_degenerate(const Surface&, const Points& x);
 
 // All finite, no intersecting pairs, nothing inside a body.
 bool is_clean(const CheckReport&);
