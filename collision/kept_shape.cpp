@@ -171,16 +171,32 @@ void limit_displacement(const KeptShape& shape, std::span<const int> vertices, c
 
 void hold_back(const KeptShape& shape, std::span<const int> triangles, const Stretch& range, const Points& before,
                Points& x) {
-  for (bool clean = false; !clean;) {
-    clean = true;
+  std::vector<char> offends(shape.surface->vertex_count, 0);
+  for (int round = 0;; ++round) {
+    bool clean = true;
     for (int t : triangles) {
       const Stretch stretch = stretch_of(shape, x, t);
       if (stretch.least >= range.least && stretch.largest <= range.largest) continue;
       for (int v : shape.surface->triangles.row(t)) {
         clean = clean && x.row(v) == before.row(v);
-        x.row(v) = before.row(v);
+        offends[v] = 1;
       }
     }
+    if (clean) return;
+    take_back(offends, round, before, x);
+  }
+}
+
+void take_back(std::vector<char>& offends, int round, const Points& before, Points& x) {
+  const double share = round < 6 ? 0.6 : 0;
+  for (std::size_t v = 0; v < offends.size(); ++v) {
+    if (!offends[v]) continue;
+    const auto at = static_cast<Eigen::Index>(v);
+    if (share > 0)
+      x.row(at) = before.row(at) + share * (x.row(at) - before.row(at));
+    else
+      x.row(at) = before.row(at);
+    offends[v] = 0;
   }
 }
 

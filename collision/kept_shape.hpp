@@ -42,7 +42,10 @@ void limit_stretch(const KeptShape&, std::span<const int> triangles, const std::
 // Brings each vertex back to within its reach of x0.
 void limit_displacement(const KeptShape&, std::span<const int> vertices, const std::vector<double>& reach, Points& x);
 
-// Takes vertices back to `before`, where every triangle was in the range, until every triangle is in it again.
+// Takes the vertices that offend part of the way back to `before`, in late rounds all of it, and forgets the offence.
+void take_back(std::vector<char>& offends, int round, const Points& before, Points& x);
+
+// Takes vertices back toward `before`, where every triangle was in the range, until every triangle is in it again.
 void hold_back(const KeptShape&, std::span<const int> triangles, const Stretch& range, const Points& before, Points& x);
 
 }  // namespace selvedge

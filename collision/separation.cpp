@@ -297,6 +297,34 @@ Setting make_setting(std::span<const SheetView> sheets, const Segments& found, s
 
 }  // namespace
 
+void order_layers(std::span<const SheetView> sheets, const Segments& found, std::span<const Contour> contours,
+                  const std::vector<int>& layers, std::vector<Region>& regions) {
+  const Setting setting = make_setting(sheets, found, contours, regions, {});
+  const Surface& cloth = *sheets[0].surface;
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    Region& region = regions[r];
+    if (region.sheet != 0 || region.partner_sheet != 0 || !region.cut) continue;
+    const int order = layers[region.component] - layers[region.partner_component];
+    if (order == 0) continue;
+    int votes = 0;
+    for (int number : region.contours)
+      for (std::size_t i = 0; i < contours[number].points.size(); ++i) {
+        const int point = contours[number].points[i], side = contours[number].point_side[i];
+        if (point < 0 || setting.region_of(contours[number], side) != static_cast<int>(r)) continue;
+        const Crossing& c = found.crossings[point];
+        const int p = cloth.edges(c.edge, 0), q = cloth.edges(c.edge, 1);
+        if (setting.wrong[r][p] == setting.wrong[r][q]) continue;
+        const Vec3 from_face =
+            row(*sheets[0].x, setting.wrong[r][p] ? q : p) - setting.at(c.face_sheet, c.face, c.weight);
+        votes += normal_at(setting, c).dot(from_face) > 0 ? 1 : -1;
+      }
+    if (votes * order >= 0) continue;
+    region.vertices.clear();
+    for (int v = 0; v < cloth.vertex_count; ++v)
+      if (cloth.component[v] == region.component && !setting.wrong[r][v]) region.vertices.push_back(v);
+  }
+}
+
 std::vector<Separation> part_contours(std::span<const SheetView> sheets, const Segments& found,
                                       std::span<const Contour> contours, std::span<const Region> regions,
                                       const SeparationLengths& lengths) {

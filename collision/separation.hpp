@@ -20,9 +20,13 @@ struct SeparationLengths {
   double gap = 0, step = 0;  // [m]
 };
 
+// Turns regions over that an order of layers contradicts: of two components of the cloth the one with the higher number
+// belongs on the side that the other's normals point to. Regions of open contours and of equal layers stay.
+void order_layers(std::span<const SheetView> sheets, const Segments&, std::span<const Contour>,
+                  const std::vector<int>& layers, std::vector<Region>& regions);
+
 // What the cloth (sheets[0]) would have to do to lose its contours: vertices on the wrong side go toward the right one
 // by at most a step, the two sides of contours without such vertices apart along the averaged translational gradient.
-// layers: as in UntangleOptions.
 std::vector<Separation> part_contours(std::span<const SheetView> sheets, const Segments&, std::span<const Contour>,
                                       std::span<const Region>, const SeparationLengths&);
 

@@ -12,7 +12,8 @@
 namespace selvedge {
 namespace {
 
-constexpr int sweeps = 12, remembered = 8, patience = 60;
+constexpr int sweeps = 12, remembered = 8, patience = 60, relaxations = 8;
+constexpr double horizon = 0.2;  // of repulsion, in mean edge lengths: about how far vertices go in one iteration
 
 struct Tangle {
   Segments found;
@@ -34,11 +35,12 @@ std::vector<SheetView> with_cloth(const Surface& cloth, const Points& x, std::sp
   return sheets;
 }
 
-Tangle find_tangle(std::span<const SheetView> sheets) {
+Tangle find_tangle(std::span<const SheetView> sheets, const std::vector<int>& layers) {
   Tangle tangle;
   tangle.found = find_segments(sheets);
   tangle.contours = find_contours(sheets, tangle.found);
   tangle.regions = enclosed_regions(sheets, tangle.contours);
+  if (!layers.empty()) order_layers(sheets, tangle.found, tangle.contours, layers, tangle.regions);
   tangle.pairs = intersecting_pairs(tangle.found);
   for (const Segment& segment : tangle.found.segments) tangle.vertex_pairs += segment.at_vertex();
   for (const Contour& contour : tangle.contours) tangle.length += contour.length;
@@ -123,10 +125,6 @@ void widen(const KeptShape& shape, const std::vector<char>& tangled, const Untan
       }
 }
 
-struct Step {
-  double smoothing = 0.3;
-};
-
 Points propose(const KeptShape& shape, const Freedom& freedom, std::span<const Separation> separations,
                std::span<const Separation> repulsions, const UntangleOptions& options, const Points& from) {
   const Stretch range{options.least_stretch, options.largest_stretch};
@@ -148,7 +146,7 @@ Points propose(const KeptShape& shape, const Freedom& freedom, std::span<const S
 void keep_range(const KeptShape& shape, const Freedom& freedom, const UntangleOptions& options, const Points& before,
                 Points& x) {
   const Stretch range{options.least_stretch, options.largest_stretch};
-  const Stretch outer{0.95 * range.least, 1.05 * range.largest};
+  const Stretch outer{0.97 * range.least, 1.03 * range.largest};
   hold_back(shape, freedom.triangles, outer, before, x);
 }
 
@@ -158,7 +156,8 @@ Tangle keep_clean(const KeptShape& shape, const Freedom& freedom, std::span<cons
                   const std::vector<char>& tangled, const UntangleOptions& options, const Points& before, Points& x) {
   const std::vector<char> allowed = within_rings(shape, tangled, 1);
   const Surface& cloth = *shape.surface;
-  for (;;) {
+  std::vector<char> offends(cloth.vertex_count, 0);
+  for (int round = 0;; ++round) {
     keep_range(shape, freedom, options, before, x);
     const std::vector<SheetView> sheets = with_cloth(cloth, x, obstacles);
     const Segments found = find_segments(sheets);
@@ -171,12 +170,31 @@ Tangle keep_clean(const KeptShape& shape, const Freedom& freedom, std::span<cons
       if (std::any_of(vertices.begin(), vertices.end(), [&](int v) { return allowed[v] != 0; })) return;
       for (int v : vertices) {
         clean = clean && x.row(v) == before.row(v);
-        x.row(v) = before.row(v);
+        offends[v] = 1;
       }
     };
     for (const Segment& s : found.segments) judge(s.triangle[0], s.sheet[1], s.triangle[1]);
     for (const auto& [a, sheet, b] : found.touching) judge(a, sheet, b);
-    if (clean) return find_tangle(sheets);
+    if (clean) return find_tangle(sheets, options.layers);
+    take_back(offends, round, before, x);
+  }
+}
+
+// Gives triangles of a clean cloth back what shape they can have without new contours.
+void relax(const KeptShape& shape, const Freedom& freedom, std::span<const SheetView> obstacles, Repulsion& repulsion,
+           const UntangleOptions& options, Points& x) {
+  const std::vector<char> none(shape.surface->vertex_count, 0);
+  UntangleOptions tighter = options;
+  tighter.least_stretch = std::max(options.least_stretch, 0.75);
+  tighter.largest_stretch = std::min(options.largest_stretch, 1.35);
+  for (int i = 0; i < relaxations; ++i) {
+    const Stretch now = extreme_stretch(shape, x);
+    if (now.least >= tighter.least_stretch && now.largest <= tighter.largest_stretch) return;
+    const std::vector<Separation> repulsions =
+        repulsion.find(x, none, freedom.reach, options.gap * shape.mean_edge, horizon * shape.mean_edge);
+    Points next = propose(shape, freedom, {}, repulsions, tighter, x);
+    if (!keep_clean(shape, freedom, obstacles, none, options, x, next).clean()) return;
+    x = next;
   }
 }
 
@@ -190,6 +208,7 @@ void measure(const KeptShape& shape, const std::vector<char>& near, UntangleResu
     sum += moved / shape.mean_edge;
     result.max_move = std::max(result.max_move, moved / shape.mean_edge);
   }
+  result.mean_edge = shape.mean_edge;
   if (result.moved > 0) result.mean_move = sum / result.moved;
   const Stretch stretch = extreme_stretch(shape, result.x);
   result.least_stretch = stretch.least;
@@ -202,7 +221,7 @@ UntangleResult untangle(const Surface& cloth, const Points& x0, std::span<const 
                         const UntangleOptions& options) {
   const KeptShape shape = keep_shape(cloth, x0);
   Points x = x0;
-  Tangle tangle = find_tangle(with_cloth(cloth, x, obstacles));
+  Tangle tangle = find_tangle(with_cloth(cloth, x, obstacles), options.layers);
   UntangleResult result;
   result.x = x;
   result.pairs_before = tangle.pairs;
@@ -221,7 +240,7 @@ UntangleResult untangle(const Surface& cloth, const Points& x0, std::span<const 
     const std::vector<char> tangled = tangled_vertices(sheets, tangle);
     widen(shape, tangled, options, freedom);
     const std::vector<Separation> repulsions =
-        repulsion.find(x, tangled, freedom.reach, options.gap * shape.mean_edge, 0.2 * shape.mean_edge);
+        repulsion.find(x, tangled, freedom.reach, options.gap * shape.mean_edge, horizon * shape.mean_edge);
     double step = options.step * shape.mean_edge;
     Points next;
     Tangle after;
@@ -247,6 +266,11 @@ UntangleResult untangle(const Surface& cloth, const Points& x0, std::span<const 
   result.pairs_after = best.pairs;
   result.vertex_pairs_after = best.vertex_pairs;
   result.length_after = best.length;
+  if (best.clean())
+    relax(shape, freedom, obstacles, repulsion, options, result.x);
+  else
+    result.left = explain_remainders(with_cloth(cloth, result.x, obstacles), best.found, best.contours, shape,
+                                     freedom.reach, {options.least_stretch, options.largest_stretch});
   measure(shape, near, result);
   return result;
 }

@@ -2,10 +2,9 @@
 
 #include <functional>
 #include <span>
-#include <string>
 #include <vector>
 
-#include "collision/contour.hpp"
+#include "collision/remainder.hpp"
 
 namespace selvedge {
 
@@ -20,18 +19,11 @@ struct UntangleOptions {
   double far_limit = 0.08;  // how far any other vertex may move, in lengths of its edges
   double gap = 0.02;        // between what has been parted, in mean edge lengths
   double step = 0.25;       // largest motion asked for in one iteration, in mean edge lengths
-  double least_stretch = 0.55, largest_stretch = 1.8;  // of every triangle against the input
+  double least_stretch = 0.52, largest_stretch = 1.92;  // of every triangle against the input
   // Hint: a place for each component of the cloth, the innermost lowest; of two layers the higher one belongs on the
   // side that the other's normals point to. Empty: the smaller side of a contour is the wrong one.
   std::vector<int> layers;
   std::function<void(const UntangleProgress&)> progress;
-};
-
-// A contour that is left, and why.
-struct Remainder {
-  int pairs = 0;
-  double length = 0;  // [m]
-  std::string reason;
 };
 
 struct UntangleResult {
@@ -41,6 +33,7 @@ struct UntangleResult {
   double length_before = 0, length_after = 0;           // of all contours [m]
   int iterations = 0;
   int moved = 0;                       // vertices moved by more than a millionth of an edge
+  double mean_edge = 0;                // of the input [m]
   double mean_move = 0, max_move = 0;  // of these, in mean edge lengths
   double far_move = 0;  // largest among vertices that are not free to move, in lengths of their own edges
   double least_stretch = 1, largest_stretch = 1;  // singular values against the input

@@ -43,16 +43,6 @@ bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
   return !((b - a).cross(c - a).norm() > 1e-10 * longest);
 }
 
-int count_degenerate(const Surface& surface, const Points& x) {
-  int count = 0;
-  for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) {
-    const auto corner = [&](int k) { return row(x, surface.triangles(t, k)); };
-    count += corner(0).allFinite() && corner(1).allFinite() && corner(2).allFinite() &&
-             is_degenerate(corner(0), corner(1), corner(2));
-  }
-  return count;
-}
-
 // The search widens until it finds something, since its cost grows with the square of the distance.
 double smallest_gap(const Surface& surface, const Points& x, const std::vector<AuditBody>& bodies, double horizon) {
   for (double distance = horizon / 64;; distance = std::min(4 * distance, horizon)) {
@@ -158,6 +148,16 @@ bool is_hdf5(const std::filesystem::path& file) {
 }
 
 }  // namespace
+
+int count_degenerate(const Surface& surface, const Points& x) {
+  int count = 0;
+  for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) {
+    const auto corner = [&](int k) { return row(x, surface.triangles(t, k)); };
+    count += corner(0).allFinite() && corner(1).allFinite() && corner(2).allFinite() &&
+             is_degenerate(corner(0), corner(1), corner(2));
+  }
+  return count;
+}
 
 CheckReport check(const CheckRequest& request) {
   CheckReport report;

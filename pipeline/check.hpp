@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "collision/surface.hpp"
 #include "pipeline/check_opinion.hpp"
 
 namespace selvedge {
@@ -37,6 +38,9 @@ struct CheckReport {
 };
 
 CheckReport check(const CheckRequest&);
+
+// Triangles whose height is lost in the rounding of their coordinates.
+int count_degenerate(const Surface&, const Points& x);
 
 // All finite, no intersecting pairs, nothing inside a body, and no other opinion of FCL where rounding cannot excuse
 // it.

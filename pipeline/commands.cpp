@@ -76,6 +76,24 @@ int check_command(const CheckRequest& request, bool json) {
   return is_clean(report) ? 0 : 1;
 }
 
+int untangle_command(const UntangleRequest& request, bool json) {
+  UntangleRequest shown = request;
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  Clock::time_point last = Clock::now();
+  shown.progress = [&](const UntangleProgress& now) {
+    if (seconds_since(last) < (terminal ? 0.1 : 5)) return;
+    last = Clock::now();
+    const std::string line =
+        fmt::format("iteration {} of {}, {} pairs left", now.iteration, request.iterations, now.pairs);
+    std::cerr << (terminal ? "\r" + line + "\033[K" : line + "\n") << std::flush;
+  };
+  const UntangleReport report = untangle_mesh(shown);
+  if (terminal) std::cerr << "\r\033[K" << std::flush;
+  people(json) << untangle_text(report);
+  if (json) std::cout << untangle_json(report);
+  return is_clean(report) ? 0 : 1;
+}
+
 int export_command(const ExportRequest& request, bool json) {
   const std::vector<std::filesystem::path> written = export_trajectory(request);
   people(json) << fmt::format("{} files, the last is {}\n", written.size(),

@@ -8,6 +8,7 @@
 #include "pipeline/bench.hpp"
 #include "pipeline/check.hpp"
 #include "pipeline/export.hpp"
+#include "pipeline/untangle_mesh.hpp"
 
 namespace selvedge {
 
@@ -36,6 +37,7 @@ struct ViewArguments {
 int simulate_command(const SimulateArguments&, bool json);
 int plan_command(const SceneArguments&, bool json);
 int check_command(const CheckRequest&, bool json);
+int untangle_command(const UntangleRequest&, bool json);
 int export_command(const ExportRequest&, bool json);
 int view_command(const ViewArguments&, bool json);
 int bench_command(const BenchRequest&, bool json);

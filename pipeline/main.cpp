@@ -51,6 +51,16 @@ void check_options(CLI::App& command, CheckRequest& request) {
   command.add_option("--horizon", request.horizon, "largest gap looked for [m]")->check(CLI::PositiveNumber);
 }
 
+void untangle_options(CLI::App& command, UntangleRequest& request) {
+  command.add_option("file", request.file, "mesh (.obj, .ply)")->required();
+  command.add_option("--out", request.out, "where the untangled mesh goes (.obj, .ply)")->required();
+  command.add_option("--body", request.bodies, "mesh to part from, stands still; may be given again")
+      ->allow_extra_args(false);
+  command.add_option("--unit", request.unit, "of the coordinates: m, dm, cm, mm");
+  command.add_option("--layers", request.layers, "one number a piece of cloth, the innermost lowest")->delimiter(',');
+  command.add_option("--iterations", request.iterations, "at most")->check(CLI::PositiveNumber);
+}
+
 void export_options(CLI::App& command, ExportRequest& request) {
   command.add_option("trajectory", request.trajectory, "run.h5")->required();
   command.add_option("--format", request.format, "obj, ply, pc2 or xdmf");
@@ -78,6 +88,8 @@ void add_commands(CLI::App& app, Chosen& chosen) {
   add_command<SceneArguments>(app, chosen, "plan", "what a scene needs, what is left out, and why", scene_options,
                               plan_command);
   add_command<CheckRequest>(app, chosen, "check", "audit a mesh or a trajectory", check_options, check_command);
+  add_command<UntangleRequest>(app, chosen, "untangle", "part a cloth from itself and from bodies", untangle_options,
+                               untangle_command);
   add_command<ExportRequest>(app, chosen, "export", "a trajectory as meshes or point caches", export_options,
                              export_command);
   add_command<ViewArguments>(app, chosen, "view", "one page that plays trajectories in a browser", view_options,

@@ -91,6 +91,27 @@ Mesh read_mesh(const fs::path& path) {
   return mesh;
 }
 
+void write_mesh(const fs::path& path, const Points& x, const Triangles& triangles) {
+  const std::string extension = lower_extension(path);
+  if (extension != ".obj" && extension != ".ply")
+    throw Error("has an extension that no mesh writer knows", path.string(), "known: .obj, .ply");
+  extension == ".obj" ? write_obj(path, x, triangles) : write_ply(path, x, triangles);
+}
+
+void write_moved(const fs::path& from, const fs::path& to, const Points& x, const Mesh& mesh,
+                 std::vector<std::string>& warnings) {
+  if (lower_extension(from) != ".obj" || lower_extension(to) != ".obj") {
+    write_mesh(to, x, mesh.triangles);
+    if (mesh.uv.rows() > 0 || !mesh.groups.empty())
+      warnings.push_back(to.string() + ": texture coordinates, groups and polygons are not written to this format");
+    return;
+  }
+  const std::string text = whole_file(from);
+  write_file(to, moved_obj_text(text, x));
+  if (text.find("\nvn ") != std::string::npos)
+    warnings.push_back(to.string() + ": the normals (vn) are still those of the input");
+}
+
 void write_obj(const fs::path& path, const Points& x, const Triangles& triangles) {
   write_file(path, obj_text(x, triangles));
 }

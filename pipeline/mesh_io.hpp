@@ -26,6 +26,11 @@ Mesh read_mesh(const std::filesystem::path&);
 bool same_triangles(const Triangles& a, const Triangles& b);
 
 // Written beside and renamed: a reader never sees half a file.
+void write_mesh(const std::filesystem::path&, const Points& x, const Triangles&);  // by extension
+// The mesh of `from`, which was read as `mesh`, with other positions. OBJ to OBJ keeps every other line; what else is
+// left out, and normals that stay behind, are named in the warnings.
+void write_moved(const std::filesystem::path& from, const std::filesystem::path& to, const Points& x, const Mesh& mesh,
+                 std::vector<std::string>& warnings);
 void write_obj(const std::filesystem::path&, const Points& x, const Triangles&);
 void write_ply(const std::filesystem::path&, const Points& x, const Triangles&);
 

@@ -179,6 +179,32 @@ Mesh parse_obj(std::string_view text, const std::string& name) {
   return mesh;
 }
 
+std::string moved_obj_text(std::string_view text, const Points& x) {
+  std::string moved;
+  Eigen::Index next = 0;
+  bool continues = false, in_position = false;  // the line before ended in a backslash, and was of a position
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    const bool follows = continues;
+    std::string_view content = line;
+    while (!content.empty() && content.back() == '\r') content.remove_suffix(1);
+    continues = !content.empty() && content.back() == '\\';
+    const std::vector<std::string_view> words = split_words(content.substr(0, content.find('#')));
+    if (!follows) in_position = !words.empty() && words[0] == "v";
+    if (!in_position) {
+      moved += fmt::format("{}\n", line);
+    } else if (!follows) {
+      moved += fmt::format("v {} {} {}", x(next, 0), x(next, 1), x(next, 2));
+      for (std::size_t k = 4; k < words.size() && !continues; ++k) moved += fmt::format(" {}", words[k]);
+      moved += '\n';
+      ++next;
+    }
+  }
+  return moved;
+}
+
 std::string obj_text(const Points& x, const Triangles& triangles) {
   std::string text;
   for (Eigen::Index v = 0; v < x.rows(); ++v) text += fmt::format("v {} {} {}\n", x(v, 0), x(v, 1), x(v, 2));

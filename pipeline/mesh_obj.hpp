@@ -8,5 +8,7 @@ namespace selvedge {
 // are still in. `text` is the whole file, `name` stands in messages.
 Mesh parse_obj(std::string_view text, const std::string& name);
 std::string obj_text(const Points& x, const Triangles&);
+// The same text with other positions: one row of x for each `v` line, all else as it is.
+std::string moved_obj_text(std::string_view text, const Points& x);
 
 }  // namespace selvedge
