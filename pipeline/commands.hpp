@@ -8,6 +8,7 @@
 #include "pipeline/bench.hpp"
 #include "pipeline/check.hpp"
 #include "pipeline/export.hpp"
+#include "pipeline/stress.hpp"
 
 namespace selvedge {
 
@@ -39,6 +40,7 @@ int check_command(const CheckRequest&, bool json);
 int export_command(const ExportRequest&, bool json);
 int view_command(const ViewArguments&, bool json);
 int bench_command(const BenchRequest&, bool json);
+int stress_command(const StressRequest&, bool json);
 int info_command(bool json);
 
 }  // namespace selvedge
