@@ -14,7 +14,7 @@ PACKAGES_asan := $(PACKAGES_release)
 PACKAGES_tsan := $(PACKAGES_release) tsan
 PACKAGES_minimal := build viewer test
 
-.PHONY: help program demo test bench dev asan tsan minimal format check-format tidy clean
+.PHONY: help program demo test bench stress dev asan tsan minimal format check-format tidy clean
 .DEFAULT_GOAL := help
 
 help:  ## This list
@@ -30,6 +30,9 @@ demo: program  ## Build the program, simulate configs/demo.yaml, say where the p
 
 bench: program  ## Run the benchmark family: a table, and out/bench/*.json
 	@$(PROGRAM) bench --out out/bench
+
+stress: program  ## Run every stress scene ten times: a table, and out/stress/*; goes on where it was stopped
+	@$(PROGRAM) stress --out out/stress
 
 test: test-release  ## Build and run every test (FILTER=regular expression on test files)
 dev: test-dev  ## The same with assertions on and warnings as errors

@@ -42,6 +42,13 @@ std::string write_page(const std::filesystem::path& out) {
   }
 }
 
+// Whether all that the scene states came true, with a line each. A resumed run has not seen its first frames.
+bool report_outcome(const std::vector<Outcome>& outcomes, const std::vector<OutcomeResult>& results, std::ostream& to) {
+  for (std::size_t k = 0; k < outcomes.size(); ++k)
+    to << fmt::format("{:<20}{}\n", k == 0 ? "outcome" : "", outcome_text(outcomes[k], results[k]));
+  return all_came_true(results);
+}
+
 }  // namespace
 
 int simulate_command(const SimulateArguments& arguments, bool json) {
@@ -55,12 +62,16 @@ int simulate_command(const SimulateArguments& arguments, bool json) {
   request.resume = arguments.resume;
   request.progress = &progress;
   request.stop = InterruptWatch::interrupted;
+  OutcomeWatch outcome(setup.scene, setup.outcomes, setup.run.frames / setup.run.fps);
+  outcome(setup.initial, setup.drive_at(0));
+  request.observe = [&](const FrameEvent& event) { outcome(event.state, event.drive); };
   const RunSummary summary = run_scene(setup, *stepper, request);
   people(json) << summary_text(summary) << fmt::format("{:<20}{}\n", "trajectory", (request.out / "run.h5").string());
   if (arguments.view) people(json) << fmt::format("{:<20}{}\n", "page to look at", write_page(request.out));
+  const bool came_true = arguments.resume || report_outcome(setup.outcomes, outcome.results(), people(json));
   if (summary.end == RunEnd::interrupted) people(json) << "go on with --resume and the same arguments\n";
   if (json) std::cout << summary_json(summary);
-  return is_clean(summary) ? 0 : 1;
+  return is_clean(summary) && came_true ? 0 : 1;
 }
 
 int plan_command(const SceneArguments& arguments, bool json) {
@@ -122,6 +133,19 @@ int bench_command(const BenchRequest& request, bool json) {
                      [](const BenchMember& m) { return is_clean(m.summary); })
              ? 0
              : 1;
+}
+
+int stress_command(const StressRequest& request, bool json) {
+  const InterruptWatch watch;
+  StressRequest logged = request;
+  logged.log = &std::cerr;
+  logged.stop = InterruptWatch::interrupted;
+  const std::vector<StressRow> rows = stress(logged);
+  people(json) << stress_table(rows);
+  if (InterruptWatch::interrupted()) people(json) << "stopped; the same command goes on\n";
+  if (json) std::cout << stress_json(rows);
+  const bool passed = std::all_of(rows.begin(), rows.end(), [](const StressRow& row) { return row.passed(); });
+  return passed && !InterruptWatch::interrupted() ? 0 : 1;
 }
 
 int info_command(bool json) {

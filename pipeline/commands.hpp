@@ -8,6 +8,7 @@
 #include "pipeline/bench.hpp"
 #include "pipeline/check.hpp"
 #include "pipeline/export.hpp"
+#include "pipeline/stress.hpp"
 #include "pipeline/untangle_mesh.hpp"
 
 namespace selvedge {
@@ -41,6 +42,7 @@ int untangle_command(const UntangleRequest&, bool json);
 int export_command(const ExportRequest&, bool json);
 int view_command(const ViewArguments&, bool json);
 int bench_command(const BenchRequest&, bool json);
+int stress_command(const StressRequest&, bool json);
 int info_command(bool json);
 
 }  // namespace selvedge

@@ -188,6 +188,15 @@ Config checked_entry(const YAML::Node& node, const Key& key, const Config& paren
   return out;
 }
 
+// A value that stands for one key of the section: a scalar, or a list where that key takes one.
+bool is_plain(const YAML::Node& node, const Section& section) {
+  const Key* key = section.shorthand.empty() ? nullptr : find_key(section, section.shorthand);
+  if (!key) return false;
+  const bool takes_list =
+      key->kind == Kind::vector || key->kind == Kind::pair || key->kind == Kind::integers || key->kind == Kind::texts;
+  return node.IsScalar() || (takes_list && node.IsSequence());
+}
+
 }  // namespace
 
 Config checked_section(const YAML::Node& node, const Section& section, const std::string& path,
@@ -198,7 +207,7 @@ Config checked_section(const YAML::Node& node, const Section& section, const std
   out.where = origin.of(node, path, parent);
   out.given = true;
   YAML::Node map = node;
-  if (node.IsScalar() && !section.shorthand.empty()) {
+  if (is_plain(node, section)) {
     map.reset(YAML::Node(YAML::NodeType::Map));
     map[section.shorthand] = node;
   }

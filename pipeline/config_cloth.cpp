@@ -46,52 +46,6 @@ const Section& material_section() {
   return table;
 }
 
-std::vector<Key> triangulation_keys() {
-  return {word("triangulation", {"one_diagonal", "alternating", "unstructured"}, "alternating", "how it is cut"),
-          integer("seed", not_negative, "1", "of the unstructured triangulation")};
-}
-
-const Section& rectangle_section() {
-  static const Section table{
-      "rectangle",
-      "Horizontal, normal up, centred at the origin. Groups: left, right, top (-z), bottom, boundary, center, "
-      "top_left, top_right, bottom_left, bottom_right.",
-      "",
-      {},
-      std::vector<Key>{pair("size", Unit::length, "[1, 1]", "along x and z"),
-                       integers("resolution", {.low = 2}, 2, "vertices along x and z; in place of `edge`"),
-                       edge_key("0.02")} +
-          triangulation_keys()};
-  return table;
-}
-
-const Section& disc_section() {
-  static const Section table{
-      "disc",
-      "Horizontal, normal up, centred at the origin. Groups: boundary, center.",
-      "",
-      {},
-      std::vector<Key>{number("radius", Unit::length, positive, "0.5", ""),
-                       integers("resolution", {.low = 1}, 1, "rings of vertices round the centre; in place of `edge`"),
-                       edge_key("0.02")} +
-          triangulation_keys()};
-  return table;
-}
-
-const Section& tube_section() {
-  static const Section table{
-      "tube",
-      "Round the y axis, centred at the origin, normals outward. Groups: top, bottom, boundary.",
-      "",
-      {},
-      std::vector<Key>{
-          number("radius", Unit::length, positive, "0.2", ""), number("height", Unit::length, positive, "1", "along y"),
-          integers("resolution", {.low = 2}, 2, "vertices round (at least 6) and along; in place of `edge`"),
-          edge_key("0.02")} +
-          triangulation_keys()};
-  return table;
-}
-
 const Section& rest_section() {
   static const Section table{
       "rest",
@@ -123,25 +77,41 @@ const Section& pin_section() {
       "Vertices that are held, or moved as prescribed. A vertex that two pins name obeys the first.",
       "",
       {"vertices", "box", "group"},
-      {integers("vertices", not_negative, 1 << 30, "indices in the cloth, from 0"),
-       renamed(section(box_region_section(), "", "all vertices in a box of space, as placed"), "box"),
-       texts("group", "named groups of the cloth"), section(motion_section(), "", "left out: at rest")}};
+      selection_keys() + std::vector<Key>{section(motion_section(), "", "left out: at rest")}};
+  return table;
+}
+
+const Section& copies_section() {
+  static const Section table{
+      "copies",
+      "The cloth several times, named name_0, name_1, ... Each copy lies where the one before would lie after a turn "
+      "about the middle of its bounding box and a move.",
+      "count",
+      {},
+      {needed(integer("count", at_least_one, "", "how many in all")),
+       vector("translate", Unit::length, "[0, 0, 0]", "from copy to copy"),
+       vector("rotate", Unit::angle, "[0, 0, 0]", "from copy to copy: axis times angle")}};
   return table;
 }
 
 }  // namespace
 
+std::vector<Key> selection_keys() {
+  return {integers("vertices", not_negative, 1 << 30, "indices in the cloth, from 0"),
+          renamed(section(box_region_section(), "", "all vertices in a box of space, as placed"), "box"),
+          texts("group", "named groups of the cloth")};
+}
+
 const Section& cloth_section() {
   static const Section table{
       "cloth",
-      "Exactly one of rectangle, disc, tube and mesh says where it comes from.",
+      "Exactly one of rectangle, disc, tube, ribbon, tshirt and mesh says where it comes from.",
       "",
-      {"rectangle", "disc", "tube", "mesh"},
-      std::vector<Key>{text("name", "left out: cloth0, cloth1, ..."), section(rectangle_section(), "", "a sheet"),
-                       section(disc_section(), "", "a round sheet"), section(tube_section(), "", "a sleeve"),
-                       section(mesh_section(), "", "a file")} +
-          placement_keys() +
-          std::vector<Key>{vector("velocity", Unit::speed, "[0, 0, 0]", "at the start"),
+      {"rectangle", "disc", "tube", "ribbon", "tshirt", "mesh"},
+      std::vector<Key>{text("name", "left out: cloth0, cloth1, ...")} + sheet_keys() +
+          std::vector<Key>{section(mesh_section(), "", "a file")} + placement_keys() +
+          std::vector<Key>{section(copies_section(), "", ""),
+                           vector("velocity", Unit::speed, "[0, 0, 0]", "at the start"),
                            section(material_section(), "{}", ""), section(rest_section(), "{}", ""),
                            sections("pins", pin_section(), "[]", "")}};
   return table;

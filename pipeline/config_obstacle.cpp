@@ -35,6 +35,25 @@ const Section& box_section() {
   return table;
 }
 
+const Section& profile_point_section() {
+  static const Section table{
+      "profile_point", "", "at", {}, {needed(pair("at", Unit::length, "", "distance from the axis and height", any))}};
+  return table;
+}
+
+const Section& revolution_section() {
+  static const Section table{
+      "revolution",
+      "A line turned round the y axis: a funnel, a bowl, a spike.",
+      "",
+      {},
+      {needed(sections("profile", profile_point_section(), "",
+                       "points of the line, [distance from the axis, height] each")),
+       flag("closed", false, "whether the line returns to its first point, which makes a ring of solid section"),
+       edge_key("0.03")}};
+  return table;
+}
+
 const Section& sequence_section() {
   static const Section table{
       "sequence",
@@ -65,14 +84,15 @@ const Section& trajectory_section() {
 const Section& obstacle_section() {
   static const Section table{
       "obstacle",
-      "Exactly one of plane, sphere, capsule, box, mesh, sequence and trajectory says what it is; shapes are centred "
-      "at the origin before they are placed.",
+      "Exactly one of plane, sphere, capsule, box, revolution, mesh, sequence and trajectory says what it is; shapes "
+      "are "
+      "centred at the origin before they are placed.",
       "",
-      {"plane", "sphere", "capsule", "box", "mesh", "sequence", "trajectory"},
+      {"plane", "sphere", "capsule", "box", "revolution", "mesh", "sequence", "trajectory"},
       std::vector<Key>{text("name", "left out: obstacle0, obstacle1, ..."), section(plane_section(), "", ""),
                        section(sphere_section(), "", ""), section(capsule_section(), "", ""),
-                       section(box_section(), "", ""), section(mesh_section(), "", "a file"),
-                       section(sequence_section(), "", "moving meshes"),
+                       section(box_section(), "", ""), section(revolution_section(), "", ""),
+                       section(mesh_section(), "", "a file"), section(sequence_section(), "", "moving meshes"),
                        section(trajectory_section(), "", "an earlier run")} +
           placement_keys() + std::vector<Key>{section(motion_section(), "", "left out: at rest")}};
   return table;

@@ -107,7 +107,9 @@ const Section& scene_section() {
       {text("description", "for people"), needed(sections("cloths", cloth_section(), "", "at least one")),
        sections("obstacles", obstacle_section(), "[]", ""), vector("gravity", Unit::acceleration, "[0, -9.81, 0]", ""),
        section(wind_section(), "", ""), section(contact_section(), "{}", ""), section(run_section(), "{}", ""),
-       section(solver_section(), "{}", ""), section(output_section(), "{}", "")}};
+       section(solver_section(), "{}", ""), section(output_section(), "{}", ""),
+       sections("outcome", outcome_section(), "[]", "what must come true, checked as the run goes"),
+       texts("short_form", "`key=value` overrides that make a shorter run of it (`selvedge stress --short`)")}};
   return table;
 }
 

@@ -57,12 +57,12 @@ inline Key vector(std::string name, Unit unit, std::string otherwise, std::strin
           .unit = unit,
           .otherwise = std::move(otherwise)};
 }
-inline Key pair(std::string name, Unit unit, std::string otherwise, std::string about) {
+inline Key pair(std::string name, Unit unit, std::string otherwise, std::string about, Range range = positive) {
   return {.name = std::move(name),
           .kind = Kind::pair,
           .about = std::move(about),
           .unit = unit,
-          .range = positive,
+          .range = range,
           .otherwise = std::move(otherwise)};
 }
 inline Key integers(std::string name, Range range, int most, std::string about) {
@@ -111,6 +111,9 @@ Key interpolation_key();
 const Section& motion_section();
 const Section& mesh_section();
 const Section& cloth_section();
+std::vector<Key> sheet_keys();      // rectangle, disc, tube, ribbon, tshirt
+std::vector<Key> selection_keys();  // vertices, box, group
+const Section& outcome_section();
 const Section& obstacle_section();
 std::vector<Key> material_values();  // what may be said of a material by value
 

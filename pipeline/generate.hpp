@@ -28,6 +28,32 @@ Mesh make_disc(double radius, int rings, const SheetOptions&);
 // Groups: top bottom boundary. around >= 6, rows >= 2.
 Mesh make_tube(double radius, double height, int around, int rows, const SheetOptions&);
 
+// A point of a centre line and the way the ribbon faces there, which need not be square to the line.
+struct LinePoint {
+  Vec3 at, normal;
+};
+
+// A strip laid along a smooth line (centripetal Catmull-Rom) through at least two points: along x across vertices,
+// u along the line, v to its left as the normal is seen from above; the pattern is a flat rectangle as long as the
+// line. No normal may be along the line. Groups: start end middle boundary.
+Mesh make_ribbon(const std::vector<LinePoint>& line, double width, int along, int across, const SheetOptions&);
+
+// Length of that line [m]; least angle of a normal with the line, over the whole of it [rad].
+double line_length(const std::vector<LinePoint>& line);
+double least_normal_angle(const std::vector<LinePoint>& line);
+
+struct TshirtShape {
+  double width = 0.5, length = 0.65;                // of the body [m]
+  double sleeve_length = 0.15, sleeve_width = 0.2;  // of the sleeves beyond the body [m]
+  double neck = 0.2;                                // width of the opening [m]
+  double depth = 0.04;                              // from front to back, away from the seams [m]
+  double edge = 0.02;                               // side of the squares that are cut into triangles [m]
+};
+
+// A T-shirt of a front and a back with straight edges, joined at sides, shoulders and sleeves; upright, front to +Z,
+// normals outward, centred at the origin; no uv, since it is sewn. Groups: hem neck cuffs seams front back.
+Mesh make_tshirt(const TshirtShape&);
+
 // Triangles between two rows of vertices whose positions along the row ascend; `above` lies to the left of the
 // direction of ascent, so that triangles come out counter-clockwise.
 void add_strip(std::vector<std::array<int, 3>>& triangles, std::span<const int> below, std::span<const double> u_below,

@@ -81,6 +81,16 @@ void bench_options(CLI::App& command, BenchRequest& request) {
   command.add_option("--out", request.out, "folder for the results");
 }
 
+void stress_options(CLI::App& command, StressRequest& request) {
+  command.add_option("scenes", request.scenes, "names of scenes (all)");
+  command.add_option("--repeats", request.repeats, "runs of each scene")->check(CLI::PositiveNumber);
+  command.add_option("--seed", request.seed, "of the first repeat's jitter");
+  command.add_option("--jitter", request.jitter, "of the starts, in mean edge lengths")->check(CLI::NonNegativeNumber);
+  command.add_flag("--short", request.short_form, "the scenes' short forms");
+  command.add_option("--configs", request.configs, "folder of the scenes");
+  command.add_option("--out", request.out, "folder for the results");
+}
+
 void add_commands(CLI::App& app, Chosen& chosen) {
   struct Nothing {};
   add_command<SimulateArguments>(app, chosen, "simulate", "a scene in, an audited trajectory out", simulate_options,
@@ -95,6 +105,8 @@ void add_commands(CLI::App& app, Chosen& chosen) {
   add_command<ViewArguments>(app, chosen, "view", "one page that plays trajectories in a browser", view_options,
                              view_command);
   add_command<BenchRequest>(app, chosen, "bench", "the benchmark family", bench_options, bench_command);
+  add_command<StressRequest>(app, chosen, "stress", "scenes that must end clean and come out as they say",
+                             stress_options, stress_command);
   add_command<Nothing>(
       app, chosen, "info", "versions, packages, threads", [](CLI::App&, Nothing&) {},
       [](const Nothing&, bool json) { return info_command(json); });

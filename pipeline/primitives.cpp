@@ -52,17 +52,18 @@ struct Ring {
   int count;
 };
 
-// Rings from the south to the north pole; a ring of one vertex is a pole.
-Shape revolved(const std::vector<Ring>& rings) {
+// Rings from the south to the north pole; a ring of one vertex is a pole. Closed: the last is joined to the first.
+Shape revolved(const std::vector<Ring>& rings, bool closed = false) {
   std::vector<Vec3> x;
   TriangleList triangles;
   std::vector<int> previous;
   std::vector<double> u_previous;
-  for (const Ring& ring : rings) {
+  for (std::size_t r = 0; r < rings.size() + closed; ++r) {
+    const Ring& ring = rings[r % rings.size()];
     std::vector<int> row;
     std::vector<double> u;
-    const int first = static_cast<int>(x.size());
-    for (int i = 0; i < ring.count; ++i) {
+    const int first = r < rings.size() ? static_cast<int>(x.size()) : 0;
+    for (int i = 0; i < ring.count && r < rings.size(); ++i) {
       const double angle = 2 * std::numbers::pi * i / ring.count;
       x.emplace_back(ring.radius * std::sin(angle), ring.y, ring.radius * std::cos(angle));
     }
@@ -132,6 +133,30 @@ Shape make_capsule(double radius, double length, double edge) {
   for (int k = side > 0 ? cap : cap - 1; k >= 0; --k)
     rings.push_back({cap_ring(k).radius, length / 2 + cap_ring(k).y, cap_ring(k).count});
   return revolved(rings);
+}
+
+Shape make_revolution(const std::vector<Vec2>& profile, bool closed, double edge) {
+  assert(profile.size() >= 2 && edge > 0);
+  const std::size_t count = profile.size();
+  double doubled_area = 0;  // of the profile closed along the axis; positive: it runs up on the outside
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec2 &a = profile[k], &b = profile[(k + 1) % count];
+    doubled_area += a.x() * b.y() - b.x() * a.y();
+  }
+  std::vector<Vec2> line = profile;
+  if (doubled_area < 0) std::reverse(line.begin(), line.end());
+  std::vector<Ring> rings;
+  const auto add_ring = [&](const Vec2& p) {
+    const int around = std::max(8, pieces(2 * std::numbers::pi * p.x(), edge));
+    rings.push_back({p.x(), p.y(), p.x() > 0 ? around : 1});
+  };
+  for (std::size_t k = 0; k + !closed < count; ++k) {
+    const Vec2 &a = line[k], &b = line[(k + 1) % count];
+    const int n = pieces((b - a).norm(), edge);
+    for (int i = 0; i < n; ++i) add_ring(a + (b - a) * i / n);
+  }
+  if (!closed) add_ring(line.back());
+  return revolved(rings, closed);
 }
 
 Shape make_box(const Vec3& size, double edge) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "collision/points.hpp"
 
 namespace selvedge {
@@ -14,6 +16,10 @@ Shape make_plane(const Vec2& size, double edge);                // horizontal, n
 Shape make_sphere(double radius, double edge);                  // geodesic: subdivided icosahedron, 10 n^2 + 2 vertices
 Shape make_capsule(double radius, double length, double edge);  // along Y; length of the cylinder between the caps
 Shape make_box(const Vec3& size, double edge);
+
+// A line of at least two points (distance from the axis, height) turned round Y. It closes on itself (`closed`, then
+// every distance is above 0), or runs as given; where both ends lie on the axis the surface is closed as well.
+Shape make_revolution(const std::vector<Vec2>& profile, bool closed, double edge);
 
 // Vertices that a shape of this area would have, for refusing absurd edge lengths before memory runs out.
 double vertices_for(double area, double edge);

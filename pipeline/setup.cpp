@@ -9,6 +9,7 @@
 #include "pipeline/setup_cloth.hpp"
 #include "pipeline/setup_motion.hpp"
 #include "pipeline/setup_obstacle.hpp"
+#include "pipeline/setup_outcome.hpp"
 
 namespace selvedge {
 namespace {
@@ -163,25 +164,26 @@ RunOptions read_run(const Config& scene) {
   return run;
 }
 
-void check_names(const Config& list, const std::vector<std::string>& names) {
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
-        names.begin() + static_cast<std::ptrdiff_t>(i))
-      list.items[i].fail("has the name `" + names[i] + "` of another", "give every one its own name");
+// Adds the name of an item of a list to those that are taken.
+void take_name(const Config& item, const std::string& name, std::vector<std::string>& taken) {
+  if (std::find(taken.begin(), taken.end(), name) != taken.end())
+    item.fail("has the name `" + name + "` of another", "give every one its own name");
+  taken.push_back(name);
 }
 
-std::vector<ClothPart> read_cloths(Config& list, const std::filesystem::path& folder,
-                                   std::vector<std::string>& warnings) {
+std::vector<ClothPart> read_all_cloths(Config& list, const std::filesystem::path& folder,
+                                       std::vector<std::string>& warnings) {
   if (list.items.empty()) list.fail("is empty", "give at least one cloth");
   std::vector<ClothPart> parts;
   std::vector<std::string> names;
   for (std::size_t c = 0; c < list.items.size(); ++c) {
-    parts.push_back(read_cloth(list.items[c], fmt::format("cloth{}", c), folder, warnings));
-    names.push_back(parts.back().name);
+    for (ClothPart& part : read_cloths(list.items[c], fmt::format("cloth{}", c), folder, warnings)) {
+      take_name(list.items[c], part.name, names);
+      parts.push_back(std::move(part));
+    }
     if (parts.back().rest_is_flat != parts.front().rest_is_flat)
       list.items[c]["rest"]["flat"].fail("differs from the first cloth's", "all cloths of a scene rest alike");
   }
-  check_names(list, names);
   return parts;
 }
 
@@ -189,11 +191,10 @@ void read_obstacles(const Config& list, const std::filesystem::path& folder, Set
   std::vector<std::string> names;
   for (std::size_t o = 0; o < list.items.size(); ++o) {
     ObstaclePart part = read_obstacle(list.items[o], fmt::format("obstacle{}", o), folder, setup.warnings);
-    names.push_back(part.obstacle.name);
+    take_name(list.items[o], part.obstacle.name, names);
     setup.scene.obstacles.push_back(std::move(part.obstacle));
     world.obstacles.push_back(std::move(part.at));
   }
-  check_names(list, names);
 }
 
 // Neighbours of a triangle lie within its smallest altitude: a thicker cloth pushes them apart at rest.
@@ -221,7 +222,7 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
   const std::filesystem::path folder = file.parent_path();
   Setup setup;
   const auto world = std::make_shared<World>();
-  const std::vector<ClothPart> cloths = read_cloths(config["cloths"], folder, setup.warnings);
+  const std::vector<ClothPart> cloths = read_all_cloths(config["cloths"], folder, setup.warnings);
   setup.file = file;
   setup.scene.contact = read_contact(config["contact"]);
   setup.run = read_run(config);
@@ -238,6 +239,8 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
     setup.initial.x.row(setup.scene.pins[p]) = start.pins.row(static_cast<Eigen::Index>(p));
     setup.initial.v.row(setup.scene.pins[p]).setZero();
   }
+  setup.outcomes = read_outcomes(config["outcome"], cloths, setup.scene);
+  setup.short_form = config["short_form"].words;
   setup.config = to_yaml(config);
   return setup;
 }

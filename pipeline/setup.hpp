@@ -10,6 +10,7 @@
 #include "physics/conventional_stepper.hpp"
 #include "physics/scene.hpp"
 #include "physics/stepper.hpp"
+#include "pipeline/outcome.hpp"
 
 namespace selvedge {
 
@@ -30,6 +31,8 @@ struct Setup {
   State initial;
   RunOptions run;
   std::function<Drive(double time)> drive_at;  // the world at a time [s]
+  std::vector<Outcome> outcomes;               // what must come true
+  std::vector<std::string> short_form;         // overrides that make a shorter run of the scene
   std::vector<std::string> warnings;  // named and counted: degenerate triangles left out, isolated vertices, ...
 };
 

@@ -2,74 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <numeric>
 
 #include <fmt/format.h>
 
 #include "pipeline/config.hpp"
-#include "pipeline/generate.hpp"
 #include "pipeline/materials.hpp"
-#include "pipeline/mesh_io.hpp"
 #include "pipeline/setup_motion.hpp"
 #include "pipeline/setup_paths.hpp"
+#include "pipeline/setup_sheet.hpp"
 
 namespace selvedge {
 namespace {
-
-constexpr double most_vertices = 2e7;
-
-SheetOptions sheet_options(const Config& shape) {
-  const std::string& word = shape["triangulation"].text();
-  const Triangulation triangulation = word == "unstructured"  ? Triangulation::unstructured
-                                      : word == "alternating" ? Triangulation::alternating
-                                                              : Triangulation::one_diagonal;
-  return {triangulation, static_cast<std::uint64_t>(shape["seed"].number())};
-}
-
-void check_count(const Config& shape, double vertices) {
-  if (vertices > most_vertices)
-    shape.fail(fmt::format("would have {:.3g} vertices", vertices), "choose a lower resolution or a longer edge");
-}
-
-// Vertices along both sides, from `resolution` or the edge length.
-std::array<int, 2> counts(const Config& shape, double width, double height, int least_first) {
-  const Config& resolution = shape["resolution"];
-  std::array<double, 2> n{};
-  if (resolution.given) {
-    n = {resolution.numbers[0], resolution.numbers.back()};
-  } else {
-    const double edge = shape["edge"].number();
-    n = {std::max<double>(least_first, std::ceil(width / edge - 1e-9) + (least_first == 2)),
-         std::max(2.0, std::ceil(height / edge - 1e-9) + 1)};
-  }
-  if (n[0] < least_first) resolution.fail(fmt::format("is {}", n[0]), fmt::format("allowed: at least {}", least_first));
-  check_count(shape, n[0] * n[1]);
-  return {static_cast<int>(n[0]), static_cast<int>(n[1])};
-}
-
-Mesh read_sheet(const Config& section, const std::filesystem::path& folder) {
-  if (const Config& shape = section["rectangle"]; shape.given) {
-    const Vec2 size(shape["size"].numbers[0], shape["size"].numbers[1]);
-    const auto [columns, rows] = counts(shape, size.x(), size.y(), 2);
-    return make_rectangle(size, columns, rows, sheet_options(shape));
-  }
-  if (const Config& shape = section["disc"]; shape.given) {
-    const double radius = shape["radius"].number();
-    const double rings = shape["resolution"].given ? shape["resolution"].number()
-                                                   : std::max(1.0, std::ceil(radius / shape["edge"].number() - 1e-9));
-    check_count(shape, 3 * rings * rings);
-    return make_disc(radius, static_cast<int>(rings), sheet_options(shape));
-  }
-  if (const Config& shape = section["tube"]; shape.given) {
-    const double radius = shape["radius"].number(), height = shape["height"].number();
-    const auto [around, rows] = counts(shape, 2 * std::numbers::pi * radius, height, 6);
-    return make_tube(radius, height, around, rows, sheet_options(shape));
-  }
-  Mesh mesh = read_mesh(existing_path(section["mesh"]["file"], folder));
-  mesh.x *= read_unit(section["mesh"]["unit"]);
-  return mesh;
-}
 
 // The flat pattern in the texture coordinates. Mirrored triangles are mirrored back, which keeps warp and weft.
 std::vector<RestTriangle> pattern(const Config& at, const Mesh& mesh, double unit) {
@@ -158,16 +101,36 @@ std::vector<int> listed(const Config& list, Eigen::Index count) {
 
 PinPart read_pin(const Config& section, const Mesh& mesh) {
   PinPart pin;
-  pin.vertices = section["vertices"].given ? listed(section["vertices"], mesh.x.rows())
-                 : section["box"].given    ? in_box(section["box"], mesh.x)
-                                           : in_groups(section["group"], mesh);
-  std::sort(pin.vertices.begin(), pin.vertices.end());
-  pin.vertices.erase(std::unique(pin.vertices.begin(), pin.vertices.end()), pin.vertices.end());
+  pin.vertices = read_selection(section, mesh);
   pin.motion = read_motion(section["motion"], mesh.x(pin.vertices, Eigen::all));
   return pin;
 }
 
+// Turned about the middle of its box and moved, `times` times over.
+Points copied(const Config& copies, const Points& x, int times) {
+  if (times == 0) return x;
+  const Mat3 turn = rotation_matrix(times * copies["rotate"].vector());
+  const Eigen::RowVector3d middle = 0.5 * (x.colwise().minCoeff() + x.colwise().maxCoeff());
+  const Eigen::RowVector3d move = times * copies["translate"].vector().transpose();
+  return ((x.rowwise() - middle) * turn.transpose()).rowwise() + (middle + move);
+}
+
 }  // namespace
+
+std::vector<int> read_selection(const Config& section, const Mesh& mesh) {
+  std::vector<int> found;
+  if (section["vertices"].given)
+    found = listed(section["vertices"], mesh.x.rows());
+  else if (section["box"].given)
+    found = in_box(section["box"], mesh.x);
+  else if (section["group"].given)
+    found = in_groups(section["group"], mesh);
+  else
+    for (int v = 0; v < mesh.x.rows(); ++v) found.push_back(v);
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
 
 std::vector<RestTriangle> flattened(const Points& x, const Triangles& triangles, const Vec3& weft) {
   std::vector<RestTriangle> rest(static_cast<std::size_t>(triangles.rows()));
@@ -187,18 +150,24 @@ std::vector<RestTriangle> flattened(const Points& x, const Triangles& triangles,
   return rest;
 }
 
-ClothPart read_cloth(Config& section, const std::string& default_name, const std::filesystem::path& folder,
-                     std::vector<std::string>& warnings) {
+std::vector<ClothPart> read_cloths(Config& section, const std::string& default_name,
+                                   const std::filesystem::path& folder, std::vector<std::string>& warnings) {
   ClothPart part;
   part.name = section["name"].given ? section["name"].text() : default_name;
   part.material = read_material(section["material"], folder);
   part.mesh = read_sheet(section, folder);
   warnings.insert(warnings.end(), part.mesh.warnings.begin(), part.mesh.warnings.end());
   read_rest(section["rest"], part.mesh, !section["mesh"].given, section["scale"].number(), folder, part);
-  part.mesh.x = placed(section, part.mesh.x);
   part.velocity = section["velocity"].vector();
-  for (const Config& pin : section["pins"].items) part.pins.push_back(read_pin(pin, part.mesh));
-  return part;
+  const Points first = placed(section, part.mesh.x);
+  const Config& copies = section["copies"];
+  std::vector<ClothPart> parts(copies.given ? static_cast<std::size_t>(copies["count"].integer()) : 1, part);
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (copies.given) parts[k].name = fmt::format("{}_{}", part.name, k);
+    parts[k].mesh.x = copied(copies, first, static_cast<int>(k));
+    for (const Config& pin : section["pins"].items) parts[k].pins.push_back(read_pin(pin, parts[k].mesh));
+  }
+  return parts;
 }
 
 }  // namespace selvedge

@@ -25,9 +25,13 @@ struct ClothPart {
   std::vector<PinPart> pins;
 };
 
-// `folder` is the scene file's; warnings are added. The material's values are written back into the section.
-ClothPart read_cloth(Config& section, const std::string& default_name, const std::filesystem::path& folder,
-                     std::vector<std::string>& warnings);
+// The cloth of a section, or its copies. `folder` is the scene file's; warnings are added. The material's values are
+// written back into the section.
+std::vector<ClothPart> read_cloths(Config& section, const std::string& default_name,
+                                   const std::filesystem::path& folder, std::vector<std::string>& warnings);
+
+// The vertices that `vertices`, `box` or `group` of a section name, ascending; all where it names none.
+std::vector<int> read_selection(const Config& section, const Mesh&);
 
 // The flat metric of every triangle, v along the part of `weft` in the triangle's plane.
 std::vector<RestTriangle> flattened(const Points& x, const Triangles&, const Vec3& weft);

@@ -22,7 +22,28 @@ double checked_edge(const Config& shape, double area) {
   return edge;
 }
 
+Shape read_revolution(const Config& section) {
+  const Config& list = section["profile"];
+  const bool closed = section["closed"].flag();
+  std::vector<Vec2> profile;
+  double area = 0;
+  for (std::size_t k = 0; k < list.items.size(); ++k) {
+    const Config& point = list.items[k];
+    const Vec2 at(point["at"].numbers[0], point["at"].numbers[1]);
+    const bool end = !closed && (k == 0 || k + 1 == list.items.size());
+    if (at.x() < 0 || (at.x() == 0 && !end))
+      point.fail("is not beside the axis", end ? "give a distance of at least 0" : "give a distance above 0");
+    if (k > 0 && at == profile.back()) point.fail("repeats the point before", "give every point once");
+    if (k > 0) area += std::numbers::pi * (at.x() + profile.back().x()) * (at - profile.back()).norm();
+    profile.push_back(at);
+  }
+  if (profile.size() < (closed ? 3u : 2u))
+    list.fail("has too few points", closed ? "give at least three" : "give at least two");
+  return make_revolution(profile, closed, checked_edge(section, area));
+}
+
 Shape read_primitive(const Config& section) {
+  if (const Config& revolution = section["revolution"]; revolution.given) return read_revolution(revolution);
   if (const Config& plane = section["plane"]; plane.given) {
     const Vec2 size(plane["size"].numbers[0], plane["size"].numbers[1]);
     return make_plane(size, checked_edge(plane, size.prod()));

@@ -102,6 +102,17 @@ TEST_CASE("Wrong values are refused where they stand", "[config]") {
       {"obstacles: [{sequence: {pattern: nowhere_%03d.obj}}]\n", {"nowhere_000.obj"}},
       {"obstacles: [{trajectory: nowhere.h5}]\n", {"nowhere.h5"}},
       {"obstacles: [{name: a, sphere: {}}, {name: a, sphere: {}}]\n", {"name `a`"}},
+      {"obstacles: [{revolution: {profile: [[0.1, 0]]}}]\n", {"too few points", "two"}},
+      {"obstacles: [{revolution: {closed: true, profile: [[0.1, 0], [0.2, 1]]}}]\n", {"too few points", "three"}},
+      {"obstacles: [{revolution: {profile: [[0.1, 0], [0, 1], [0.1, 2]]}}]\n", {"profile.1", "axis", "above 0"}},
+      {"obstacles: [{revolution: {profile: [[0.1, 0], [-1, 1]]}}]\n", {"profile.1", "at least 0"}},
+      {"obstacles: [{revolution: {profile: [[0.1, 0], [0.1, 0]]}}]\n", {"repeats"}},
+      {"obstacles: [{revolution: {profile: [[1, 2, 3], 4]}}]\n", {"3 items"}},
+      {"outcome: [{name: a}]\n", {"exactly one", "wanted_pairs"}},
+      {"outcome: [{name: a, drift: {of: tube}}]\n", {"tube", "known: cloth0"}},
+      {"outcome: [{name: a, ahead: {obstacle: ball, direction: [1, 0, 0]}}]\n", {"ball", "there is none"}},
+      {"outcome: [{name: a, turns: {axis: [0, 0, 0]}}]\n", {"axis", "direction"}},
+      {"outcome: [{name: a, stretch: {}, from: 2, until: 1}]\n", {"until", "before `from`"}},
   }));
   const std::string message = refusal(sheet + scene);
   INFO(scene << " -> " << message);
@@ -129,10 +140,30 @@ TEST_CASE("Wrong cloths are refused where they stand", "[config]") {
       {"pins: [{group: top, vertices: 1}]", {"exactly one"}},
       {"pins: [{group: top, motion: {keyframes: []}}]", {"keyframes", "empty"}},
       {"scale: 0", {"scale", "above 0"}},
+      {"copies: 0", {"copies.count", "at least 1"}},
+      {"copies: {count: 2, translat: [0, 0, 1]}", {"did you mean `translate`"}},
   }));
   const std::string message = refusal("cloths:\n  - rectangle: {resolution: 4}\n    " + cloth + "\n");
   INFO(cloth << " -> " << message);
   CHECK_THAT(message, Contains("scene.yaml:3") || Contains("scene.yaml:2"));
+  for (const std::string& word : words) CHECK_THAT(message, Contains(word));
+}
+
+TEST_CASE("Wrong ribbons and garments are refused where they stand", "[config]") {
+  const auto [cloth, words] = GENERATE(table<std::string, std::vector<std::string>>({
+      {"ribbon: {line: [[0, 0, 0]]}", {"ribbon.line", "two points"}},
+      {"ribbon: {line: [[0, 0, 0], [0, 1, 0]]}", {"normal", "along the ribbon's line"}},
+      {"ribbon: {line: [[0, 0, 0], [1, 0, 0], [1, 0, 0]]}", {"line.2", "repeats"}},
+      {"ribbon: {line: [[0, 0, 0], [1, 0]]}", {"line.1", "2 items"}},
+      {"ribbon: {line: [[0, 0, 0], {at: [1, 0, 0], normal: [0, 0, 0]}]}", {"line.1", "direction"}},
+      {"ribbon: {width: 1}", {"line", "missing"}},
+      {"tshirt: {neck: 2}", {"neck", "shoulders"}},
+      {"tshirt: {sleeve_width: 2}", {"sleeve_width", "sides"}},
+      {"tshirt: {edge: 1e-6}", {"vertices", "longer edge"}},
+  }));
+  const std::string message = refusal("cloths:\n  - " + cloth + "\n");
+  INFO(cloth << " -> " << message);
+  CHECK_THAT(message, Contains("scene.yaml:2"));
   for (const std::string& word : words) CHECK_THAT(message, Contains(word));
 }
 
@@ -192,18 +223,23 @@ TEST_CASE("Overrides reach every key and are named when wrong", "[config]") {
 
 TEST_CASE("The full configuration reads back to itself", "[config]") {
   const Folder folder("config");
-  const Setup first =
-      read_setup(fake::write(folder, "a.yaml",
-                             "description: \"yes\"\ncloths:\n  - disc: {resolution: 3}\n    material: {name: silk, "
-                             "youngs_modulus: 123, poisson: 0.25}\n    translate: [1 cm, 0, 0]\n    pins:\n      - "
-                             "{group: boundary, motion: {keyframes: [{time: 1, rotate: [90 deg, 0, 0]}]}}\nobstacles:\n"
-                             "  - capsule: {}\nwind: {velocity: [1, 2, 3]}\n"));
+  const Setup first = read_setup(
+      fake::write(folder, "a.yaml",
+                  "description: \"yes\"\ncloths:\n  - disc: {resolution: 3}\n    material: {name: silk, "
+                  "youngs_modulus: 123, poisson: 0.25}\n    translate: [1 cm, 0, 0]\n    pins:\n      - "
+                  "{group: boundary, motion: {keyframes: [{time: 1, rotate: [90 deg, 0, 0]}]}}\nobstacles:\n"
+                  "  - capsule: {}\n  - revolution: {profile: [[1, 2], [2, 3]]}\nshort_form: [run.frames=3]\n"
+                  "outcome: [{name: a, lag: {}}, {name: b, drift: {of: {group: center}}, until: 2}]\nwind: {velocity: "
+                  "[1, 2, 3]}\n"));
   const Setup second = read_setup(fake::write(folder, "b.yaml", first.config));
   CHECK(second.config == first.config);
   CHECK(second.initial.x == first.initial.x);
   CHECK(second.scene.cloths[0].material.lame_mu == first.scene.cloths[0].material.lame_mu);
   CHECK(second.drive_at(1).pins == first.drive_at(1).pins);
   CHECK(second.drive_at(1).wind == first.drive_at(1).wind);
+  CHECK(second.short_form == first.short_form);
+  REQUIRE(second.outcomes.size() == 2);
+  CHECK(std::get<Drift>(second.outcomes[1].measure).vertices == std::get<Drift>(first.outcomes[1].measure).vertices);
   CHECK_THAT(first.config, Contains("thickness: 0.002"));
 }
 

@@ -168,6 +168,51 @@ TEST_CASE("Discs and tubes have their shape", "[generate]") {
   }
 }
 
+TEST_CASE("Ribbons follow their line and keep its length", "[generate]") {
+  const std::vector<LinePoint> straight{{Vec3(0, 1, 0), Vec3(0, 2, 0)}, {Vec3(0.5, 1, 0), Vec3(0, 2, 0)}};
+  const Mesh flat = make_ribbon(straight, 0.1, 11, 3, {});
+  CHECK(flat.x.col(1).isConstant(1));
+  CHECK(flat.x.col(0).maxCoeff() == Approx(0.5));
+  CHECK(area_of(flat.x, flat.triangles) == Approx(0.05));
+  CHECK(group(flat, "start") == std::vector<int>{0, 11, 22});
+  CHECK(flat.x.row(group(flat, "end")[1]).isApprox(Eigen::RowVector3d(0.5, 1, 0)));
+  CHECK(flat.x(group(flat, "middle")[0], 0) == Approx(0.25));
+
+  std::vector<LinePoint> ring;  // three quarters of a circle, the ribbon on edge and then lying flat
+  for (int k = 0; k <= 24; ++k) ring.push_back({Vec3(std::cos(pi * k / 16), 0, -std::sin(pi * k / 16)), Vec3::Zero()});
+  CHECK(line_length(ring) == Approx(1.5 * pi).epsilon(1e-3));
+  for (LinePoint& point : ring) point.normal = point.at;
+  CHECK(least_normal_angle(ring) > 1.3);
+  const Mesh hoop = make_ribbon(ring, 0.2, 95, 5, {any_triangulation(), 3});
+  CHECK(area_of(hoop.x, hoop.triangles) == Approx(0.3 * pi).epsilon(0.01));
+  CHECK((hoop.x.col(0).array().square() + hoop.x.col(2).array().square()).sqrt().isApproxToConstant(1, 0.01));
+  CHECK(hoop.x.col(1).maxCoeff() == Approx(0.1));
+  CHECK(oriented(hoop.triangles));
+  for (LinePoint& point : ring) point.normal = Vec3(1, 0, 0);
+  CHECK(least_normal_angle(ring) < 0.05);
+}
+
+TEST_CASE("A T-shirt is one piece with four openings", "[generate]") {
+  for (const double edge : {0.01, 0.02, 0.04, 0.5}) {
+    TshirtShape shape;
+    shape.edge = edge;
+    const Mesh shirt = make_tshirt(shape);
+    const Surface s = make_surface(static_cast<int>(shirt.x.rows()), shirt.triangles);
+    CHECK(s.component_count == 1);
+    CHECK(s.nonmanifold_edges == 0);
+    CHECK(oriented(shirt.triangles));
+    CHECK(boundary_loops(s).size() == 4);  // hem, neck, two cuffs
+    CHECK(euler(s) == -2);                 // a sphere with four holes
+    if (edge > 0.02) continue;
+    const double front = 0.5 * 0.65 + 2 * 0.15 * 0.2;
+    CHECK(area_of(shirt.x, shirt.triangles) == Approx(2 * front).epsilon(0.05));
+    CHECK(shirt.x.col(2).maxCoeff() == Approx(0.02));
+    CHECK(shirt.x.col(2).minCoeff() == Approx(-0.02));
+    CHECK(angles_of(shirt.x, shirt.triangles).first > 40);
+    for (const char* name : {"hem", "neck", "cuffs", "seams", "front", "back"}) CHECK_FALSE(group(shirt, name).empty());
+  }
+}
+
 TEST_CASE("Primitives are closed, oriented outward and near their volume", "[primitives]") {
   const auto check = [](const Shape& shape, double volume, double area, double edge) {
     const Surface s = make_surface(static_cast<int>(shape.x.rows()), shape.triangles);
@@ -190,6 +235,24 @@ TEST_CASE("Primitives are closed, oriented outward and near their volume", "[pri
   const Shape plane = make_plane(Vec2(4, 2), 0.5);
   CHECK(area_of(plane.x, plane.triangles) == Approx(8));
   CHECK(angles_of(make_sphere(1, 0.1).x, make_sphere(1, 0.1).triangles).first > 40);
+}
+
+TEST_CASE("Lines turned round the axis are oriented outward, whichever way they run", "[primitives]") {
+  const std::vector<Vec2> cone{{0, 0}, {0.2, 0}, {0, 0.6}}, ring{{0.2, 0}, {0.3, 0}, {0.3, 0.1}, {0.2, 0.1}};
+  for (const bool backward : {false, true})
+    for (const bool closed : {false, true}) {
+      std::vector<Vec2> profile = closed ? ring : cone;
+      if (backward) std::reverse(profile.begin(), profile.end());
+      const Shape shape = make_revolution(profile, closed, 0.01);
+      const Surface s = make_surface(static_cast<int>(shape.x.rows()), shape.triangles);
+      CHECK(is_closed(s));
+      CHECK(euler(s) == (closed ? 0 : 2));
+      CHECK(oriented(shape.triangles));
+      const double volume = closed ? pi * (0.09 - 0.04) * 0.1 : pi * 0.04 * 0.6 / 3;
+      CHECK(volume_of(shape.x, shape.triangles) == Approx(volume).epsilon(0.02));
+    }
+  const Shape open = make_revolution({{0.1, 0}, {0.2, 0.3}}, false, 0.02);
+  CHECK(boundary_loops(make_surface(static_cast<int>(open.x.rows()), open.triangles)).size() == 2);
 }
 
 TEST_CASE("Vertices of spheres lie on the sphere", "[primitives]") {

@@ -13,7 +13,7 @@ using namespace selvedge;
 
 namespace {
 
-struct Outcome {
+struct Ended {
   int status = -1;
   std::string out, err;
 };
@@ -23,7 +23,7 @@ std::string read_text(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-Outcome selvedge_program(const fake::Folder& folder, const std::string& arguments, const std::string& before = "") {
+Ended selvedge_program(const fake::Folder& folder, const std::string& arguments, const std::string& before = "") {
   const std::filesystem::path out = folder.path / "stdout", err = folder.path / "stderr";
   const std::string command =
       before + std::string(SELVEDGE_PROGRAM) + " " + arguments + " >" + out.string() + " 2>" + err.string();
@@ -47,7 +47,7 @@ TEST_CASE("a scene goes in and an audited trajectory comes out") {
   const fake::Folder folder("main_simulate");
   write_scene(folder);
   const std::string scene = (folder.path / "scene.yaml").string(), out = (folder.path / "out").string();
-  const Outcome run = selvedge_program(folder, "simulate " + scene + " --json --set run.frames=4 --out " + out);
+  const Ended run = selvedge_program(folder, "simulate " + scene + " --json --set run.frames=4 --out " + out);
   INFO(run.err);
   REQUIRE(run.status == 0);
   const auto summary = nlohmann::json::parse(run.out);
@@ -57,20 +57,20 @@ TEST_CASE("a scene goes in and an audited trajectory comes out") {
   for (const char* name : {"run.h5", "run.xdmf", "summary.json", "config.yaml", "view.html"})
     REQUIRE(std::filesystem::file_size(folder.path / "out" / name) > 0);
 
-  const Outcome check = selvedge_program(folder, "check " + out + "/run.h5 --json");
+  const Ended check = selvedge_program(folder, "check " + out + "/run.h5 --json");
   REQUIRE(check.status == 0);
   const auto report = nlohmann::json::parse(check.out);
   REQUIRE(report["frames"] == 5);
   REQUIRE(report["intersecting_pairs"] == 0);
   REQUIRE(report["max_stretch"] > 1.0);
 
-  const Outcome exported =
+  const Ended exported =
       selvedge_program(folder, "export " + out + "/run.h5 --format pc2 --json --out " + out + "/pc2");
   REQUIRE(exported.status == 0);
   REQUIRE(nlohmann::json::parse(exported.out)["files"].size() == 2);
 
   // The configuration that a run keeps gives the same run again.
-  const Outcome again = selvedge_program(folder, "simulate " + out + "/config.yaml --no-view --out " + out + "2");
+  const Ended again = selvedge_program(folder, "simulate " + out + "/config.yaml --no-view --out " + out + "2");
   INFO(again.err);
   REQUIRE(again.status == 0);
   const TrajectoryReader a(out + "/run.h5"), b(out + "2/run.h5");
@@ -81,7 +81,7 @@ TEST_CASE("a scene goes in and an audited trajectory comes out") {
 TEST_CASE("plan and info print one JSON object") {
   const fake::Folder folder("main_plan");
   write_scene(folder);
-  const Outcome plan = selvedge_program(folder, "plan --json " + (folder.path / "scene.yaml").string());
+  const Ended plan = selvedge_program(folder, "plan --json " + (folder.path / "scene.yaml").string());
   INFO(plan.err);
   REQUIRE(plan.status == 0);
   const auto lines = nlohmann::json::parse(plan.out)["plan"];
@@ -89,14 +89,14 @@ TEST_CASE("plan and info print one JSON object") {
   bool wind_is_out = false;
   for (const auto& line : lines) wind_is_out |= line["feature"] == "wind" && line["in"] == false;
   REQUIRE(wind_is_out);
-  const Outcome info = selvedge_program(folder, "info --json");
+  const Ended info = selvedge_program(folder, "info --json");
   REQUIRE(info.status == 0);
   REQUIRE(nlohmann::json::parse(info.out)["threads"] >= 1);
 }
 
 TEST_CASE("waiting threads spin briefly unless the user says otherwise") {
   const fake::Folder folder("main_threads");
-  const Outcome info =
+  const Ended info =
       selvedge_program(folder, "info --json", "env -u OMP_WAIT_POLICY -u GOMP_SPINCOUNT OMP_DISPLAY_ENV=VERBOSE ");
   REQUIRE(info.status == 0);
   if (info.err.find("GOMP_SPINCOUNT") == std::string::npos) {
@@ -105,7 +105,7 @@ TEST_CASE("waiting threads spin briefly unless the user says otherwise") {
   }
   CHECK(info.err.find("GOMP_SPINCOUNT = '10000'") != std::string::npos);
   CHECK(nlohmann::json::parse(info.out)["waiting"] == "GOMP_SPINCOUNT=10000");
-  const Outcome passive = selvedge_program(folder, "info --json", "env OMP_WAIT_POLICY=passive ");
+  const Ended passive = selvedge_program(folder, "info --json", "env OMP_WAIT_POLICY=passive ");
   CHECK(nlohmann::json::parse(passive.out)["waiting"] == "OMP_WAIT_POLICY=passive");
 }
 
@@ -115,7 +115,7 @@ TEST_CASE("bad input ends with status 2 and says what, where and the cure") {
   const std::string scene = (folder.path / "scene.yaml").string();
   for (const std::string arguments :
        {"simulate absent.yaml", "check absent.obj", "check absent.h5", "export absent.h5", "view absent.h5"}) {
-    const Outcome outcome = selvedge_program(folder, arguments);
+    const Ended outcome = selvedge_program(folder, arguments);
     INFO(arguments << "\n" << outcome.err);
     REQUIRE(outcome.status == 2);
     REQUIRE(outcome.out.empty());
@@ -136,7 +136,7 @@ TEST_CASE("a dirty mesh ends with status 1") {
   const fake::Folder folder("main_dirty");
   std::ofstream(folder.path / "crossing.obj")
       << "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 0.2 -1 0.2\nv 0.2 1 0.2\nv 0.2 0 0.9\nf 1 2 3\nf 4 5 6\n";
-  const Outcome outcome = selvedge_program(folder, "check --json " + (folder.path / "crossing.obj").string());
+  const Ended outcome = selvedge_program(folder, "check --json " + (folder.path / "crossing.obj").string());
   REQUIRE(outcome.status == 1);
   REQUIRE(nlohmann::json::parse(outcome.out)["intersecting_pairs"] == 1);
 }

@@ -156,6 +156,24 @@ TEST_CASE("Several cloths are numbered on end, each with its pins", "[setup]") {
   check_consistent(setup);
 }
 
+TEST_CASE("Copies lie where the one before would go, each with its pins", "[setup]") {
+  const Folder folder("setup");
+  const Setup setup = read(
+      folder,
+      "cloths: [{name: leaf, rectangle: {resolution: [3, 2], size: [2, 1]}, translate: [5, 0, 0], copies: {count: 3, "
+      "translate: [0, 1, 0], rotate: [0, 45 deg, 0]}, pins: [{group: left}]}, {name: other, rectangle: "
+      "{resolution: 2}}]");
+  REQUIRE(setup.scene.cloths.size() == 4);
+  CHECK(setup.scene.cloths[2].name == "leaf_2");
+  CHECK(setup.scene.cloths[3].first_vertex == 18);
+  CHECK(setup.scene.pins == std::vector<int>{0, 3, 6, 9, 12, 15});
+  CHECK(row(setup.initial.x, 12).isApprox(Vec3(5, 2, 0) + Vec3(0.5, 0, 1), 1e-12));  // a quarter turn of (-1, 0, 0.5)
+  CHECK(metric_error(setup.scene, setup.initial.x) < 1e-12);
+  check_consistent(setup);
+  CHECK_THROWS_WITH(read(folder, "cloths: [{name: a, disc: {}, copies: 2}, {name: a_1, disc: {}}]"),
+                    Contains("name `a_1`"));
+}
+
 TEST_CASE("Pins start where their motion starts", "[setup]") {
   const Folder folder("setup");
   const Setup setup = read(folder,
