@@ -38,16 +38,11 @@ std::uint64_t hash_of(const std::string& text) {
 struct Watch {
   OutcomeWatch outcome;
   const Scene& scene;
-  double vertex_steps = 0, held_vertices = 0;
   int wanted_frames = 0;
-  std::optional<long> passed_through{};
 
   void operator()(const FrameEvent& event) {
     outcome(event.state, event.drive);
-    const StepReport& report = event.report;
-    vertex_steps += static_cast<double>(scene.surface.vertex_count) * report.substeps;
-    held_vertices += report.collision.shortened;  // a zone counts as one vertex until the stepper counts vertices
-    if (report.collision.obstacle_lag > least_lag) {
+    if (event.report.collision.obstacle_lag > least_lag) {
       const FrameEvent& e = event;
       wanted_frames += measured(WantedPairs{}, scene, e.state, e.drive) > 0;
     }
@@ -144,11 +139,11 @@ std::optional<StressRow> run_repeat(const StressRequest& request, const Repeat& 
   row.worst_frame = summary.worst_frame;
   row.worst_inside = summary.worst_inside;
   row.wanted_frames = watch.wanted_frames;
-  row.passed_through = watch.passed_through;
+  row.passed_through = summary.passed_through;
   row.impulses = summary.impulses;
   row.zones = summary.zones;
   row.shortened = summary.shortened;
-  row.held_share = watch.vertex_steps > 0 ? watch.held_vertices / watch.vertex_steps : 0;
+  row.held_share = held_fraction(summary);
   row.obstacle_lag = summary.max_obstacle_lag;
   row.max_stretch = summary.max_stretch;
   const std::vector<OutcomeResult> results = watch.outcome.results();
