@@ -27,6 +27,7 @@ struct LeafPairs {
         {PairKind::vertex_face, {v + p.first_node, n[0] + f.first_node, n[1] + f.first_node, n[2] + f.first_node}});
   }
   void edge_edge(int ea, int eb, std::vector<NodePair>& pairs) const {
+    if (same && eb < ea) std::swap(ea, eb);
     const int *m = a.surface.edges.data() + 2 * ea, *n = b.surface.edges.data() + 2 * eb;
     if (same && (m[0] == n[0] || m[0] == n[1] || m[1] == n[0] || m[1] == n[1])) return;
     pairs.push_back(
@@ -125,6 +126,10 @@ std::array<Vec3, 4> corners(const NodePair& pair, const Points& x) {
   return {row(x, pair.nodes[0]), row(x, pair.nodes[1]), row(x, pair.nodes[2]), row(x, pair.nodes[3])};
 }
 
+Closest closest(PairKind kind, const std::array<Vec3, 4>& x) {
+  return kind == PairKind::vertex_face ? point_triangle(x[0], x[1], x[2], x[3]) : edge_edge(x[0], x[1], x[2], x[3]);
+}
+
 PairSearch::PairSearch(const ContactWorld& world) : world_(world) {
   cloth_.surface = world.cloth;
   obstacles_.resize(world.obstacles.size());
@@ -134,34 +139,22 @@ PairSearch::PairSearch(const ContactWorld& world) : world_(world) {
   }
 }
 
-void PairSearch::restart() {
-  cloth_.stale = true;
-  for (Part& obstacle : obstacles_) obstacle.stale = true;
-}
-
 void PairSearch::update(Part& part, const Points& x0, const Points& x1, double radius) {
   const auto from = x0.middleRows(part.first_node, part.surface->vertex_count);
   const auto to = x1.middleRows(part.first_node, part.surface->vertex_count);
-  const bool same = part.radius == radius && part.from == from && part.to == to;
-  if (same && !(part.stale && part.refitted)) {
-    part.stale = false;
-    return;
-  }
+  if (part.radius == radius && part.from == from && part.to == to) return;
   part.radius = radius;
   part.from = from;
   part.to = to;
   vertex_boxes(part.from, part.to, radius / 2, part.vertex_boxes);
   edge_boxes(*part.surface, part.vertex_boxes, part.edge_boxes);
   triangle_boxes(*part.surface, part.vertex_boxes, part.triangle_boxes);
-  if (part.stale) part.tree.built = false;
-  part.refitted = !selvedge::update(part.tree, part.triangle_boxes);
-  if (!part.refitted) {
+  if (selvedge::update(part.tree, part.triangle_boxes)) {
     part.vertices.share_out(part.tree.bvh, part.surface->triangles, part.surface->vertex_owner);
     part.edges.share_out(part.tree.bvh, part.surface->triangle_edges, part.surface->edge_owner);
   }
   part.vertices.set_boxes(part.vertex_boxes);
   part.edges.set_boxes(part.edge_boxes);
-  part.stale = false;
 }
 
 void PairSearch::find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs) {

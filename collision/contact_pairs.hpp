@@ -7,6 +7,7 @@
 
 #include "collision/bvh_traversal.hpp"
 #include "collision/ccd.hpp"
+#include "collision/distance.hpp"
 
 namespace selvedge {
 
@@ -29,7 +30,7 @@ ContactWorld make_contact_world(const Surface& cloth, std::vector<const Surface*
 // Positions of all nodes in that numbering.
 Points gather_nodes(const Points& cloth, const std::vector<Points>& obstacles);
 
-// Two primitives that share no vertex.
+// Two primitives that share no vertex. Of two edges of the cloth the one with the lower nodes comes first.
 struct NodePair {
   PairKind kind;
   std::array<int, 4> nodes;  // v, f0, f1, f2 | a0, a1, b0, b1
@@ -37,6 +38,8 @@ struct NodePair {
 };
 
 std::array<Vec3, 4> corners(const NodePair&, const Points& x);
+Closest closest(PairKind, const std::array<Vec3, 4>& corners);
+inline Closest closest(const NodePair& pair, const Points& x) { return closest(pair.kind, corners(pair, x)); }
 
 // Vertices or edges by the leaf of a tree of triangles that owns them, eight together.
 struct PrimitiveGroups {
@@ -56,8 +59,7 @@ struct PrimitiveGroups {
 class PairSearch {
  public:
   explicit PairSearch(const ContactWorld&);  // keeps a reference
-  // Call at a step's start: what follows depends on the positions given from here on and not on earlier steps.
-  void restart();
+  // In an order that depends on what the trees went through; the pairs themselves do not. `pairs` is overwritten.
   void find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs);
   // Pairs that are not to be found from here on; nothing ends it. Keeps the pointer.
   void leave_out(const Exemption* exemption) { left_out_ = exemption; }
@@ -68,7 +70,6 @@ class PairSearch {
     int first_node = 0;
     KeptBvh tree;
     PrimitiveGroups vertices, edges;
-    bool stale = true, refitted = false;
     Points from, to;  // what the boxes hold: a body that stands still is not refitted
     double radius = -1;
     std::vector<Box> triangle_boxes, vertex_boxes, edge_boxes;

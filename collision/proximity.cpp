@@ -8,12 +8,6 @@
 namespace selvedge {
 namespace {
 
-Closest closest(const NodePair& pair, const Points& x) {
-  const auto p = corners(pair, x);
-  return pair.kind == PairKind::vertex_face ? point_triangle(p[0], p[1], p[2], p[3])
-                                            : edge_edge(p[0], p[1], p[2], p[3]);
-}
-
 // Edges that meet at an end are met by vertex-face pairs already.
 bool crosses_inside(const Closest& c) {
   return c.weights[0] > 0 && c.weights[1] > 0 && c.weights[2] < 0 && c.weights[3] < 0;
@@ -45,6 +39,7 @@ std::vector<Proximity> close_pairs(const ContactWorld& world, std::span<const No
     }
   std::vector<Proximity> all;
   for (const auto& list : found) all.insert(all.end(), list.begin(), list.end());
+  std::sort(all.begin(), all.end(), [](const Proximity& a, const Proximity& b) { return a.pair < b.pair; });
   return all;
 }
 

@@ -14,11 +14,6 @@ std::vector<const Surface*> surfaces_of(std::span<const SheetView> obstacles) {
   return surfaces;
 }
 
-Closest closest(const NodePair& pair, const std::array<Vec3, 4>& x) {
-  return pair.kind == PairKind::vertex_face ? point_triangle(x[0], x[1], x[2], x[3])
-                                            : edge_edge(x[0], x[1], x[2], x[3]);
-}
-
 }  // namespace
 
 Repulsion::Repulsion(const Surface& cloth, std::span<const SheetView> obstacles, const KeptShape& shape)
@@ -52,12 +47,12 @@ std::vector<Separation> Repulsion::find(const Points& x, const std::vector<char>
       excluded = excluded || tangled[node];
     }
     if (!movable || excluded) continue;
-    const Closest now = closest(pair, corners(pair, nodes));
+    const Closest now = closest(pair, nodes);
     const double distance = std::sqrt(now.squared_distance);
     if (distance >= horizon || distance == 0) continue;
     double least = gap;
     if (neighbours(pair)) {
-      const Closest input = closest(pair, corners(pair, gather_nodes(shape_.x0, obstacle_points_)));
+      const Closest input = closest(pair, gather_nodes(shape_.x0, obstacle_points_));
       least = std::min(gap, 0.7 * std::sqrt(input.squared_distance));
     }
     Separation separation;

@@ -8,39 +8,25 @@
 namespace selvedge {
 namespace {
 
-// Boxes reach a thickness beyond the motion: half of it for ends that wander, half for the next proximity query. True
-// if the pairs had to be searched for.
-bool update_pairs(PairSearch& search, const ResolveOptions& options, const Points& x0, const Points& x1,
-                  PathPairs& path) {
-  const double slack = 0.5 * options.thickness;
-  const auto near_end = [&](const Points& x) {
-    return (x - path.end).rowwise().squaredNorm().maxCoeff() <= slack * slack;
-  };
-  if (path.end.rows() == x1.rows() && near_end(x1) && (near_end(x0) || path.start == x0)) return false;
-  path.start = x0;
-  path.end = x1;
-  search.find(x0, x1, 2 * options.thickness, path.pairs);
-  return true;
-}
-
-// Impacts of the pairs that have a free node and a node in `moved` (empty: every node), in the order of the pairs.
-std::vector<Impact> impacts_of(const std::vector<NodePair>& pairs, const Eigen::VectorXd& inverse_mass,
+// Impacts of the pairs that have a free node and a node in `moved` (empty: every node), sorted by pair.
+std::vector<Impact> impacts_of(const PathPairs& path, const Eigen::VectorXd& inverse_mass,
                                const std::vector<char>& moved, double separation, const Points& x0, const Points& x1) {
   constexpr int chunk = 4096;
-  const int chunks = (static_cast<int>(pairs.size()) + chunk - 1) / chunk;
+  const PathMotion motion(path, x0, x1);
+  const int count = static_cast<int>(path.pairs.size()), chunks = (count + chunk - 1) / chunk;
   std::vector<std::vector<Impact>> found(chunks);
 #pragma omp parallel for schedule(dynamic)
-  for (int c = 0; c < chunks; ++c) {
-    const int end = std::min<int>((c + 1) * chunk, static_cast<int>(pairs.size()));
-    for (int i = c * chunk; i < end; ++i) {
-      const auto any = [&](auto&& test) { return std::any_of(pairs[i].nodes.begin(), pairs[i].nodes.end(), test); };
+  for (int c = 0; c < chunks; ++c)
+    for (int i = c * chunk; i < std::min((c + 1) * chunk, count); ++i) {
+      const NodePair& pair = path.pairs[i];
+      const auto any = [&](auto&& test) { return std::any_of(pair.nodes.begin(), pair.nodes.end(), test); };
       if (!moved.empty() && !any([&](int n) { return moved[n] != 0; })) continue;
-      if (!any([&](int n) { return inverse_mass[n] > 0; })) continue;
-      if (const auto impact = find_impact(pairs[i], x0, x1, separation)) found[c].push_back(*impact);
+      if (!motion.may_come_within(i, separation) || !any([&](int n) { return inverse_mass[n] > 0; })) continue;
+      if (const auto impact = find_impact(pair, x0, x1, separation)) found[c].push_back(*impact);
     }
-  }
   std::vector<Impact> all;
   for (const auto& list : found) all.insert(all.end(), list.begin(), list.end());
+  std::sort(all.begin(), all.end(), [](const Impact& a, const Impact& b) { return a.pair < b.pair; });
   return all;
 }
 
@@ -84,9 +70,9 @@ bool rigidify(Resolution& r, std::span<Impact* const> impacts) {
 
 std::vector<Impact> new_impacts(Resolution& r) {
   r.watch.lap();
-  if (update_pairs(r.search, r.options, r.x0, r.x1, r.path)) std::fill(r.moved.begin(), r.moved.end(), 1);
+  if (update_pairs(r.search, r.options.thickness, r.x0, r.x1, r.path)) std::fill(r.moved.begin(), r.moved.end(), 1);
   r.report.broad_phase += r.watch.lap();
-  auto impacts = impacts_of(r.path.pairs, r.inverse_mass, r.moved, r.options.separation, r.x0, r.x1);
+  auto impacts = impacts_of(r.path, r.inverse_mass, r.moved, r.options.separation, r.x0, r.x1);
   for (Impact& impact : impacts) impact.friction = friction_of(r, impact.pair);
   std::fill(r.moved.begin(), r.moved.end(), 0);
   r.report.ccd += r.watch.lap();
@@ -116,9 +102,9 @@ void zone_round(Resolution& r, const std::vector<Impact>& fresh) {
 std::vector<Impact> find_impacts(PairSearch& search, const Eigen::VectorXd& inverse_mass, const ResolveOptions& options,
                                  const Points& x0, const Points& x1, PathPairs& path, ResolveReport& times) {
   Stopwatch watch;
-  update_pairs(search, options, x0, x1, path);
+  update_pairs(search, options.thickness, x0, x1, path);
   times.broad_phase += watch.lap();
-  auto impacts = impacts_of(path.pairs, inverse_mass, {}, options.separation, x0, x1);
+  auto impacts = impacts_of(path, inverse_mass, {}, options.separation, x0, x1);
   times.ccd += watch.lap();
   return impacts;
 }

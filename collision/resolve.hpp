@@ -1,5 +1,6 @@
 #pragma once
 
+#include "collision/path_pairs.hpp"
 #include "collision/response.hpp"
 
 namespace selvedge {
@@ -24,15 +25,7 @@ struct ResolveReport {
   double broad_phase = 0, ccd = 0, response = 0;  // [s]
 };
 
-// The pairs near a motion from `start` to `end`. They stay good, for the same start or for one near the end, as long as
-// nothing is farther than half a thickness from the end: a displacement budget that saves the search where little
-// moves.
-struct PathPairs {
-  Points start, end;
-  std::vector<NodePair> pairs;
-};
-
-// Every impact of the straight motion x0 -> x1 in which something can move, in the order of the pairs.
+// Every impact of the straight motion x0 -> x1 in which something can move, sorted by pair.
 std::vector<Impact> find_impacts(PairSearch&, const Eigen::VectorXd& inverse_mass, const ResolveOptions&,
                                  const Points& x0, const Points& x1, PathPairs&, ResolveReport& times);
 

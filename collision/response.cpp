@@ -11,10 +11,6 @@
 namespace selvedge {
 namespace {
 
-Closest closest(PairKind kind, const std::array<Vec3, 4>& p) {
-  return kind == PairKind::vertex_face ? point_triangle(p[0], p[1], p[2], p[3]) : edge_edge(p[0], p[1], p[2], p[3]);
-}
-
 Vec3 weighted(const Eigen::Vector4d& w, const std::array<Vec3, 4>& p) {
   return w[0] * p[0] + w[1] * p[1] + w[2] * p[2] + w[3] * p[3];
 }

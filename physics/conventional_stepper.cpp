@@ -147,7 +147,8 @@ ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const 
   }
 
   Stopwatch watch;
-  const auto proximities = find_proximities(world_, path_.pairs, nodes0, scene_.rest, scene_.contact.thickness);
+  const auto proximities = find_proximities(world_, pairs_within(path_, nodes0, scene_.contact.thickness), nodes0,
+                                            scene_.rest, scene_.contact.thickness);
   std::vector<ContactTerm> terms = contact_terms(scene_, world_, proximities, inverse_mass_, nodes0, nodes1, h);
   for (const Proximity& p : proximities) report.collision.min_gap = std::min(report.collision.min_gap, p.gap);
   report.seconds.response += watch.lap();
@@ -277,17 +278,17 @@ int ConventionalStepper::passed_through(const Points& nodes0, const Points& node
 void ConventionalStepper::prepare_contact(const State& from, double dt, const Points& wanted, Points& nodes,
                                           StepReport& report) {
   Stopwatch watch;
+  const bool exempt = exemption_.any();
   exemption_ = {};
   if (!from.clean && nodes.allFinite()) exemption_ = recover(world_, inverse_mass_, recovery_speed * dt, nodes);
   for (int v = 0; v < scene_.surface.vertex_count; ++v)
     report.collision.left_alone +=
         (!exemption_.self.empty() && exemption_.self[v]) || (!exemption_.body.empty() && exemption_.body[v]);
   self_crossings_.switch_off(nodes, wanted, exemption_);
+  if (exempt || exemption_.any()) path_ = {};  // what was listed then is not what is to be listed now
   search_.leave_out(exemption_.any() ? &exemption_ : nullptr);
   report.seconds.response += watch.lap();
-  search_.restart();
-  path_.start = path_.end = nodes;
-  search_.find(nodes, nodes, 2 * scene_.contact.thickness, path_.pairs);
+  update_pairs(search_, scene_.contact.thickness, nodes, nodes, path_);
   report.seconds.broad_phase += watch.lap();
 }
 

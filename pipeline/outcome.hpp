@@ -21,7 +21,7 @@ struct Turns {  // turns of vertices about their middle, followed from frame to 
   std::vector<int> vertices, against;  // `against` may be empty
   Vec3 axis;                           // of unit length
 };
-struct Separation {  // from the middle of some vertices to the middle of others [m]
+struct PartsApart {  // from the middle of some vertices to the middle of others [m]
   std::vector<int> from, to;
   Vec3 along;  // unit: the signed part in this direction; zero: the distance
 };
@@ -37,13 +37,13 @@ struct Ahead {  // how far the foremost vertex near an obstacle's axis is ahead 
 struct Drift {  // the farthest that a vertex is from where it was in the first frame that counts [m]
   std::vector<int> vertices;
 };
-struct Stretch {};              // largest principal stretch
+struct LargestStretch {};              // largest principal stretch
 struct Lag {                    // largest distance of an obstacle vertex from where it was wanted [m]
   std::optional<int> obstacle;  // absent: of any
 };
 struct WantedPairs {};  // intersecting pairs and vertices inside, with the obstacles where they were wanted
 
-using Measure = std::variant<OutsideBox, Turns, Separation, Disorder, Ahead, Drift, Stretch, Lag, WantedPairs>;
+using Measure = std::variant<OutsideBox, Turns, PartsApart, Disorder, Ahead, Drift, LargestStretch, Lag, WantedPairs>;
 
 // The measure must lie between `least` and `most` in every frame that counts, or in one of them (`once`).
 struct Outcome {

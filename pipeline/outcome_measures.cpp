@@ -71,7 +71,7 @@ double measured(const OutsideBox& m, const Scene&, const State& state, const Dri
   return farthest;
 }
 
-double measured(const Separation& m, const Scene&, const State& state, const Drive&) {
+double measured(const PartsApart& m, const Scene&, const State& state, const Drive&) {
   const Vec3 apart = middle(state.x, m.to) - middle(state.x, m.from);
   return m.along.isZero(0) ? apart.norm() : apart.dot(m.along);
 }
@@ -94,7 +94,7 @@ double measured(const Ahead& m, const Scene&, const State& state, const Drive&) 
   return foremost - (body * m.direction).maxCoeff();
 }
 
-double measured(const Stretch&, const Scene& scene, const State& state, const Drive&) {
+double measured(const LargestStretch&, const Scene& scene, const State& state, const Drive&) {
   const auto stretches = principal_stretches(scene, state.x);
   return stretches.rows() > 0 ? stretches.col(1).maxCoeff() : 1;
 }

@@ -6,10 +6,10 @@ namespace selvedge {
 
 // What the measures of outcome.hpp come to in one frame.
 double measured(const OutsideBox&, const Scene&, const State&, const Drive&);
-double measured(const Separation&, const Scene&, const State&, const Drive&);
+double measured(const PartsApart&, const Scene&, const State&, const Drive&);
 double measured(const Disorder&, const Scene&, const State&, const Drive&);
 double measured(const Ahead&, const Scene&, const State&, const Drive&);
-double measured(const Stretch&, const Scene&, const State&, const Drive&);
+double measured(const LargestStretch&, const Scene&, const State&, const Drive&);
 double measured(const Lag&, const Scene&, const State&, const Drive&);
 double measured(const WantedPairs&, const Scene&, const State&, const Drive&);
 

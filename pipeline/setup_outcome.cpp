@@ -51,14 +51,14 @@ Measure read_measure(const Config& section, const Parts& parts) {
     return Turns{selected(m["of"], parts), m["against"].given ? selected(m["against"], parts) : std::vector<int>{},
                  direction(m["axis"])};
   if (const Config& m = section["distance"]; m.given)
-    return Separation{selected(m["from"], parts), selected(m["to"], parts),
+    return PartsApart{selected(m["from"], parts), selected(m["to"], parts),
                       m["along"].given ? direction(m["along"]) : Vec3(0, 0, 0)};
   if (const Config& m = section["disorder"]; m.given) return Disorder{direction(m["up"])};
   if (const Config& m = section["ahead"]; m.given)
     return Ahead{selected(m["of"], parts), index_of(m["obstacle"], parts.scene.obstacles), direction(m["direction"]),
                  m["radius"].number()};
   if (const Config& m = section["drift"]; m.given) return Drift{selected(m["of"], parts)};
-  if (section["stretch"].given) return Stretch{};
+  if (section["stretch"].given) return LargestStretch{};
   if (const Config& m = section["lag"]; m.given) {
     if (!m["obstacle"].given) return Lag{};
     return Lag{index_of(m["obstacle"], parts.scene.obstacles)};

@@ -5,7 +5,6 @@
 #include <set>
 
 #include "collision/contact_pairs.hpp"
-#include "collision/distance.hpp"
 #include "tests/collision/sheets.hpp"
 
 using namespace selvedge;
@@ -14,12 +13,7 @@ using testing::sheet;
 
 namespace {
 
-double distance(const NodePair& pair, const Points& x) {
-  const auto p = corners(pair, x);
-  const Closest c =
-      pair.kind == PairKind::vertex_face ? point_triangle(p[0], p[1], p[2], p[3]) : edge_edge(p[0], p[1], p[2], p[3]);
-  return std::sqrt(c.squared_distance);
-}
+double distance(const NodePair& pair, const Points& x) { return std::sqrt(closest(pair, x).squared_distance); }
 
 std::vector<NodePair> every_pair(const Surface& s) {
   std::vector<NodePair> all;
@@ -62,7 +56,6 @@ TEST_CASE("contact pairs: none that comes near on its way is missed, none is lis
       x0.data()[i] += 0.3 * normal(random);
       x1.data()[i] += normal(random);
     }
-    if (trial % 2 == 0) search.restart();
     search.find(x0, x1, radius, found);
     std::set<NodePair> listed;
     for (const NodePair& pair : found) CHECK(listed.insert(canonical(pair)).second);
@@ -78,7 +71,7 @@ TEST_CASE("contact pairs: none that comes near on its way is missed, none is lis
   }
 }
 
-TEST_CASE("contact pairs: the same list after a restart, whatever came before", "[contact_pairs]") {
+TEST_CASE("contact pairs: the same pairs whatever came before", "[contact_pairs]") {
   const auto cloth = sheet(6, 1, 0.02);
   const auto ground = sheet(3, 2, 0);
   const Surface cloth_surface = make_surface(static_cast<int>(cloth.x.rows()), cloth.triangles);
@@ -94,8 +87,9 @@ TEST_CASE("contact pairs: the same list after a restart, whatever came before", 
   first.find(nodes, nodes, 0.04, fresh);
   second.find(moved, nodes, 0.04, used);
   second.find(moved, moved, 0.04, used);
-  second.restart();
   second.find(nodes, nodes, 0.04, used);
+  std::sort(fresh.begin(), fresh.end());
+  std::sort(used.begin(), used.end());
   CHECK(fresh == used);
   CHECK(std::any_of(fresh.begin(), fresh.end(), [&](const NodePair& p) { return !world.is_cloth(p.nodes[3]); }));
 }

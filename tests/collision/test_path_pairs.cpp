@@ -1,0 +1,81 @@
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "collision/path_pairs.hpp"
+#include "tests/collision/sheets.hpp"
+
+using namespace selvedge;
+using testing::join;
+using testing::sheet;
+
+namespace {
+
+Points shaken(const Points& x, double size, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0, size);
+  Points y = x;
+  for (Eigen::Index i = 0; i < y.size(); ++i) y.data()[i] += normal(random);
+  return y;
+}
+
+double least_distance(const NodePair& pair, const Points& x0, const Points& x1) {
+  double least = 1e30;
+  for (int k = 0; k <= 40; ++k) {
+    const Points x = x0 + k / 40.0 * (x1 - x0);
+    least = std::min(least, std::sqrt(closest(pair, x).squared_distance));
+  }
+  return least;
+}
+
+}  // namespace
+
+TEST_CASE("path pairs: a pair is left out only if it stays away", "[path_pairs]") {
+  const auto both = join(sheet(5, 0.2, 0), sheet(5, 0.2, 3e-3));
+  const Surface cloth = make_surface(static_cast<int>(both.x.rows()), both.triangles);
+  const ContactWorld world = make_contact_world(cloth, {}, true);
+  const double thickness = 4e-3;
+  PairSearch search(world);
+  PathPairs path;
+  const Points start = shaken(both.x, 5e-4, 1);
+  REQUIRE(update_pairs(search, thickness, start, start, path));
+  int out = 0, in = 0;
+  for (unsigned seed = 2; seed < 8; ++seed) {
+    // A common drift costs nothing; what differs from node to node does.
+    Points x0 = shaken(start, 3e-4, seed), x1 = shaken(start, 3e-4, 10 * seed);
+    x0.array() += 1e-4 * seed;
+    const PathMotion motion(path, x0, x1);
+    for (std::size_t i = 0; i < path.pairs.size(); ++i)
+      for (const double distance : {2e-4, 2e-3}) {
+        const bool may = motion.may_come_within(i, distance);
+        (may ? in : out)++;
+        if (!may) CHECK(least_distance(path.pairs[i], x0, x1) > distance);
+      }
+  }
+  CHECK(in > 100);
+  CHECK(out > 100);
+  Points far = start;
+  far.array() += 100;
+  CHECK_FALSE(PathMotion(path, far, far).may_come_within(0, 0.9 * path.gap[0]));
+}
+
+TEST_CASE("path pairs: what is near is listed, from a kept list as from a new one", "[path_pairs]") {
+  const auto both = join(sheet(6, 0.2, 0), sheet(5, 0.2, 3e-3));
+  const Surface cloth = make_surface(static_cast<int>(both.x.rows()), both.triangles);
+  const ContactWorld world = make_contact_world(cloth, {}, true);
+  const double thickness = 4e-3;
+  PairSearch search(world), other(world);
+  PathPairs kept, fresh;
+  REQUIRE(update_pairs(search, thickness, both.x, both.x, kept));
+  const Points near = shaken(both.x, 4e-4, 3);
+  REQUIRE_FALSE(update_pairs(search, thickness, near, near, kept));
+  REQUIRE(update_pairs(other, thickness, near, near, fresh));
+  std::vector<NodePair> a, b;
+  for (const NodePair& pair : pairs_within(kept, near, thickness))
+    if (closest(pair, near).squared_distance < thickness * thickness) a.push_back(pair);
+  for (const NodePair& pair : pairs_within(fresh, near, thickness))
+    if (closest(pair, near).squared_distance < thickness * thickness) b.push_back(pair);
+  std::sort(a.begin(), a.end());
+  std::sort(b.begin(), b.end());
+  CHECK(a.size() > 50);
+  CHECK(a == b);
+}
