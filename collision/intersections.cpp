@@ -47,9 +47,10 @@ bool apart_beside(const Vec3& normal, const Corners& face, const Corners& other,
   return false;
 }
 
-void refresh(const Surface& surface, const Points& x, IntersectionCache& cache) {
+// True if the tree was built anew.
+bool refresh(const Surface& surface, const Points& x, IntersectionCache& cache) {
   triangle_boxes(surface, x, x, 0, cache.boxes);
-  update(cache.tree, cache.boxes);
+  return update(cache.tree, cache.boxes);
 }
 
 }  // namespace
@@ -70,11 +71,15 @@ bool surely_apart(const Corners& first, const Corners& second) {
 }
 
 Pairs intersecting_pairs(const Surface& surface, const Points& x, IntersectionCache& cache) {
-  refresh(surface, x, cache);
+  const bool rebuilt = refresh(surface, x, cache);
   const Bvh& tree = cache.tree.bvh;
-  const BvhTraversal traversal{tree, tree, true};
+  if (cache.cull) {
+    if (rebuilt || cache.parts.part_of.size() != tree.nodes.size()) find_parts(surface, tree, cache.parts);
+    mark_quiet(surface, x, tree, cache.parts);
+  }
+  const BvhTraversal traversal{tree, tree, true, cache.cull ? &cache.parts.quiet : nullptr};
   Pairs pairs;
-  gather(traversal, cache.parts, pairs, [&](NodeWork w, Pairs& found) {
+  gather(traversal, cache.lists, pairs, [&](NodeWork w, Pairs& found) {
     const Bvh::Leaf &a = traversal.leaf_a(w), &b = traversal.leaf_b(w);
     const auto test = [&](int i, int j) {
       const int s = a.item[i], t = b.item[j];
@@ -94,7 +99,7 @@ Pairs intersecting_pairs(const Surface& first, const Points& x_first, Intersecti
   const Bvh& other = cache_second.tree.bvh;
   const BvhTraversal traversal{cache_first.tree.bvh, other, false};
   Pairs pairs;
-  gather(traversal, cache_first.parts, pairs, [&](NodeWork w, Pairs& found) {
+  gather(traversal, cache_first.lists, pairs, [&](NodeWork w, Pairs& found) {
     const Bvh::Leaf &a = traversal.leaf_a(w), &b = traversal.leaf_b(w);
     for_each_overlap(a, b, other.nodes[w.b].box, [&](int i, int j) {
       if (intersect(corners_of(first, x_first, a.item[i]), corners_of(second, x_second, b.item[j])))

@@ -4,14 +4,18 @@
 #include <vector>
 
 #include "collision/bvh_traversal.hpp"
+#include "collision/quiet.hpp"
 
 namespace selvedge {
 
-// What is kept between calls: a tree that is refitted. It changes the time that a call takes, and nothing else.
+// What is kept of one surface between calls: a tree that is refitted, and its flat parts. It changes the time that a
+// call takes, and nothing else.
 struct IntersectionCache {
+  bool cull = true;  // leave out what cannot intersect itself (quiet.hpp)
   KeptBvh tree;
+  QuietParts parts;
   std::vector<Box> boxes;
-  PartLists<std::pair<int, int>> parts;
+  PartLists<std::pair<int, int>> lists;
 };
 
 // Discrete detection for the solver's side: triangles of a surface that intersect and share no vertex, exact signs

@@ -12,7 +12,7 @@ namespace selvedge {
 // floating point, as it comes) and the test of a garment against a body. Without it everything here throws Error.
 bool obstacle_available();
 
-// A triangle mesh in FCL's tree of oriented boxes.
+// A triangle mesh in FCL's tree of axis-aligned boxes.
 class ObstacleModel {
  public:
   ObstacleModel(const Triangles&, const Points&);  // all finite

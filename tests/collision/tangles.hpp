@@ -104,7 +104,7 @@ inline std::vector<Tangle> tangles(int n) {
   // Each star of triangles winds twice round its vertex.
   add(grid_surface("double cover", 4 * n, 3,
                    [&](double u, double v) { return Vec3(v * std::cos(4 * pi * u), 0, v * std::sin(4 * pi * u)); }));
-  add(grid_surface("collapsed to a line", n, n, [](double u, double v) { return Vec3(u + v, 2 * u - v, 0); }));
+  add(grid_surface("sheared", n, n, [](double u, double v) { return Vec3(u + v, 2 * u - v, 0); }));
   add(grid_surface("collapsed to a segment", n, n,
                    [](double u, double v) { return Vec3(u + v, u + v, 0.5 * (u + v)); }));
   add(grid_surface("half collapsed", n, n, [](double u, double v) { return Vec3(std::max(u, 0.5), 0, v); }));

@@ -47,8 +47,9 @@ Pairs brute_cross(const Tangle& a, const Tangle& b) {
   return pairs;
 }
 
-Pairs tree_self(const Tangle& m) {
+Pairs tree_self(const Tangle& m, bool cull = true) {
   IntersectionCache cache;
+  cache.cull = cull;
   return intersecting_pairs(m.surface, m.x, cache);
 }
 
@@ -61,6 +62,7 @@ TEST_CASE("intersections: the tree finds the pairs that brute force finds", "[in
     const Pairs expected = brute_self(m);
     (expected.empty() ? clean : tangled) += 1;
     CHECK(tree_self(m) == expected);
+    CHECK(tree_self(m, false) == expected);
   }
   CHECK(clean >= 6);
   CHECK(tangled >= 8);
