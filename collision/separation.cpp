@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 
+#include "collision/bvh.hpp"
 #include "collision/contour_translation.hpp"
 #include "collision/distance.hpp"
 #include "collision/inside.hpp"
@@ -211,16 +213,51 @@ struct Nearest {
   std::array<double, 3> weight{};
 };
 
-Nearest nearest_of(const Setting& setting, int sheet, std::span<const int> faces, int own_vertex, const Vec3& p) {
-  const Surface& surface = *setting.sheets[sheet].surface;
-  const Points& x = *setting.sheets[sheet].x;
+double squared_distance(const Box& box, const Vec3& p) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double out = std::max({static_cast<double>(box.lo[k]) - p[k], p[k] - static_cast<double>(box.hi[k]), 0.0});
+    sum += out * out;
+  }
+  return sum;
+}
+
+// Some faces of a sheet, in a tree.
+struct Faces {
+  int sheet = 0;
+  std::vector<int> faces;
+  Bvh bvh;
+};
+
+Faces make_faces(const Setting& setting, int sheet, std::vector<int> faces) {
+  std::vector<Box> all, boxes;
+  triangle_boxes(*setting.sheets[sheet].surface, *setting.sheets[sheet].x, *setting.sheets[sheet].x, 0, all);
+  for (int t : faces) boxes.push_back(all[t]);
+  return {sheet, std::move(faces), build_bvh(boxes)};
+}
+
+// The face nearest to p of those that do not have the vertex.
+Nearest nearest_of(const Setting& setting, const Faces& faces, int own_vertex, const Vec3& p) {
+  const Surface& surface = *setting.sheets[faces.sheet].surface;
+  const Points& x = *setting.sheets[faces.sheet].x;
   Nearest nearest;
-  for (int t : faces) {
+  std::vector<int> stack;
+  if (!faces.faces.empty()) stack.push_back(0);
+  while (!stack.empty()) {
+    const Bvh::Node& node = faces.bvh.nodes[stack.back()];
+    stack.pop_back();
+    if (squared_distance(node.box, p) >= nearest.squared_distance) continue;
+    if (node.left >= 0) {
+      const double left = squared_distance(faces.bvh.nodes[node.left].box, p);
+      const double right = squared_distance(faces.bvh.nodes[node.right].box, p);
+      stack.push_back(left < right ? node.right : node.left);
+      stack.push_back(left < right ? node.left : node.right);
+      continue;
+    }
+    const int t = faces.faces[~node.left];
     const int i = surface.triangles(t, 0), j = surface.triangles(t, 1), k = surface.triangles(t, 2);
     if (own_vertex == i || own_vertex == j || own_vertex == k) continue;
     const Vec3 a = row(x, i), b = row(x, j), c = row(x, k);
-    const Vec3 lo = a.cwiseMin(b).cwiseMin(c), hi = a.cwiseMax(b).cwiseMax(c);
-    if ((p - p.cwiseMax(lo).cwiseMin(hi)).squaredNorm() >= nearest.squared_distance) continue;
     const Closest closest = point_triangle(p, a, b, c);
     if (closest.squared_distance >= nearest.squared_distance) continue;
     nearest = {t, closest.squared_distance, {-closest.weights[1], -closest.weights[2], -closest.weights[3]}};
@@ -246,10 +283,10 @@ void push_patch(const Setting& setting, const Patch& patch, std::span<const Regi
   const Target target = target_of(setting, patch, regions, patches);
   if (target.sign == 0 || target.faces.empty()) return;
   const double sign = target.sign > 0 ? 1 : -1;
+  const Faces faces = make_faces(setting, target.sheet, target.faces);
   for (int v : patch.vertices) {
-    const bool own = region.sheet == target.sheet;
-    const Nearest nearest =
-        nearest_of(setting, target.sheet, target.faces, own ? v : -1, row(*setting.sheets[region.sheet].x, v));
+    const int own = region.sheet == target.sheet ? v : -1;
+    const Nearest nearest = nearest_of(setting, faces, own, row(*setting.sheets[region.sheet].x, v));
     push_through(setting, v, target.sheet, nearest, sign, separations);
   }
 }
@@ -271,11 +308,13 @@ std::vector<char> inside_obstacle(std::span<const SheetView> sheets, int obstacl
 void push_out(const Setting& setting, std::vector<Separation>& separations) {
   for (int k = 1; k < static_cast<int>(setting.sheets.size()); ++k) {
     const std::vector<char> in = inside_obstacle(setting.sheets, k);
-    std::vector<int> faces(setting.sheets[k].surface->triangles.rows());
-    for (int t = 0; t < static_cast<int>(faces.size()); ++t) faces[t] = t;
+    if (std::find(in.begin(), in.end(), 1) == in.end()) continue;
+    std::vector<int> all(setting.sheets[k].surface->triangles.rows());
+    std::iota(all.begin(), all.end(), 0);
+    const Faces faces = make_faces(setting, k, std::move(all));
     for (int v = 0; v < static_cast<int>(in.size()); ++v)
       if (in[v] && setting.sheets[0].surface->vertex_owner[v] >= 0)
-        push_through(setting, v, k, nearest_of(setting, k, faces, -1, row(*setting.sheets[0].x, v)), 1, separations);
+        push_through(setting, v, k, nearest_of(setting, faces, -1, row(*setting.sheets[0].x, v)), 1, separations);
   }
 }
 
@@ -341,17 +380,14 @@ std::vector<Separation> part_contours(std::span<const SheetView> sheets, const S
   return separations;
 }
 
-std::vector<char> enclosed_vertices(std::span<const SheetView> sheets, std::span<const Region> regions) {
-  std::vector<char> enclosed(sheets[0].surface->vertex_count, 0);
-  for (const Region& region : regions)
-    if (region.sheet == 0)
-      for (int v : region.vertices) enclosed[v] = 1;
+std::vector<char> inside_obstacles(std::span<const SheetView> sheets) {
+  std::vector<char> inside_any(sheets[0].surface->vertex_count, 0);
   for (int k = 1; k < static_cast<int>(sheets.size()); ++k) {
     const std::vector<char> in = inside_obstacle(sheets, k);
     for (std::size_t v = 0; v < in.size(); ++v)
-      if (in[v] && sheets[0].surface->vertex_owner[v] >= 0) enclosed[v] = 1;
+      if (in[v] && sheets[0].surface->vertex_owner[v] >= 0) inside_any[v] = 1;
   }
-  return enclosed;
+  return inside_any;
 }
 
 }  // namespace selvedge

@@ -30,7 +30,7 @@ void order_layers(std::span<const SheetView> sheets, const Segments&, std::span<
 std::vector<Separation> part_contours(std::span<const SheetView> sheets, const Segments&, std::span<const Contour>,
                                       std::span<const Region>, const SeparationLengths&);
 
-// 1 at vertices of the cloth that lie on the wrong side by some region, or inside a closed obstacle.
-std::vector<char> enclosed_vertices(std::span<const SheetView> sheets, std::span<const Region>);
+// 1 at vertices of the cloth inside a closed obstacle; isolated ones count nowhere.
+std::vector<char> inside_obstacles(std::span<const SheetView> sheets);
 
 }  // namespace selvedge

@@ -19,13 +19,16 @@ struct Tangle {
   Segments found;
   std::vector<Contour> contours;
   std::vector<Region> regions;
+  std::vector<char> enclosed;  // vertices of the cloth on the wrong side
   int pairs = 0, vertex_pairs = 0;
-  double length = 0;
+  int inside = 0;     // vertices in closed obstacles, contours or not
+  double length = 0;  // of all contours [m]
+  double merit = 0;   // that, and a mean edge for each vertex in a closed obstacle [m]
 
-  bool clean() const { return pairs == 0 && vertex_pairs == 0; }
+  int wrong() const { return pairs + vertex_pairs + inside; }
+  bool clean() const { return wrong() == 0; }
   bool better_than(const Tangle& other) const {
-    const int all = pairs + vertex_pairs, others = other.pairs + other.vertex_pairs;
-    return all != others ? all < others : length < other.length;
+    return wrong() != other.wrong() ? wrong() < other.wrong() : merit < other.merit;
   }
 };
 
@@ -35,7 +38,7 @@ std::vector<SheetView> with_cloth(const Surface& cloth, const Points& x, std::sp
   return sheets;
 }
 
-Tangle find_tangle(std::span<const SheetView> sheets, const std::vector<int>& layers) {
+Tangle find_tangle(std::span<const SheetView> sheets, const KeptShape& shape, const std::vector<int>& layers) {
   Tangle tangle;
   tangle.found = find_segments(sheets);
   tangle.contours = find_contours(sheets, tangle.found);
@@ -44,12 +47,19 @@ Tangle find_tangle(std::span<const SheetView> sheets, const std::vector<int>& la
   tangle.pairs = intersecting_pairs(tangle.found);
   for (const Segment& segment : tangle.found.segments) tangle.vertex_pairs += segment.at_vertex();
   for (const Contour& contour : tangle.contours) tangle.length += contour.length;
+  const std::vector<char> inside = inside_obstacles(sheets);
+  tangle.inside = static_cast<int>(std::count(inside.begin(), inside.end(), 1));
+  tangle.merit = tangle.length + tangle.inside * shape.mean_edge;
+  tangle.enclosed = inside;
+  for (const Region& region : tangle.regions)
+    if (region.sheet == 0)
+      for (int v : region.vertices) tangle.enclosed[v] = 1;
   return tangle;
 }
 
 // Vertices of the cloth on contours, in touching triangles, or enclosed.
 std::vector<char> tangled_vertices(std::span<const SheetView> sheets, const Tangle& tangle) {
-  std::vector<char> marked = enclosed_vertices(sheets, tangle.regions);
+  std::vector<char> marked = tangle.enclosed;
   const auto mark = [&](int t) {
     for (int v : sheets[0].surface->triangles.row(t)) marked[v] = 1;
   };
@@ -85,6 +95,9 @@ struct Freedom {
   std::vector<int> vertices, triangles;
 };
 
+// What far vertices' motion is measured in: their own edges, or the mean edge where that is shorter [m].
+double far_unit(const KeptShape& shape, int vertex) { return std::min(shape.edge_length[vertex], shape.mean_edge); }
+
 Freedom make_freedom(const KeptShape& shape, const std::vector<char>& tangled, const UntangleOptions& options) {
   const std::vector<char> near = within_rings(shape, tangled, options.rings);
   const std::vector<char> around = within_rings(shape, near, 2 * options.rings);
@@ -92,7 +105,7 @@ Freedom make_freedom(const KeptShape& shape, const std::vector<char>& tangled, c
   freedom.reach.assign(shape.surface->vertex_count, 0);
   for (int v = 0; v < shape.surface->vertex_count; ++v) {
     if (!around[v]) continue;
-    freedom.reach[v] = near[v] ? std::numeric_limits<double>::infinity() : options.far_limit * shape.edge_length[v];
+    freedom.reach[v] = near[v] ? std::numeric_limits<double>::infinity() : options.far_limit * far_unit(shape, v);
     freedom.vertices.push_back(v);
   }
   for (int t = 0; t < shape.surface->triangles.rows(); ++t)
@@ -110,7 +123,7 @@ void widen(const KeptShape& shape, const std::vector<char>& tangled, const Untan
   bool wider = false;
   for (int v : more.vertices)
     if (freedom.reach[v] == 0) {
-      freedom.reach[v] = options.far_limit * shape.edge_length[v];
+      freedom.reach[v] = options.far_limit * far_unit(shape, v);
       freedom.vertices.push_back(v);
       wider = true;
     }
@@ -175,7 +188,7 @@ Tangle keep_clean(const KeptShape& shape, const Freedom& freedom, std::span<cons
     };
     for (const Segment& s : found.segments) judge(s.triangle[0], s.sheet[1], s.triangle[1]);
     for (const auto& [a, sheet, b] : found.touching) judge(a, sheet, b);
-    if (clean) return find_tangle(sheets, options.layers);
+    if (clean) return find_tangle(sheets, shape, options.layers);
     take_back(offends, round, before, x);
   }
 }
@@ -202,7 +215,7 @@ void measure(const KeptShape& shape, const std::vector<char>& near, UntangleResu
   double sum = 0;
   for (int v = 0; v < shape.surface->vertex_count; ++v) {
     const double moved = (result.x.row(v) - shape.x0.row(v)).norm();
-    if (!near[v] && shape.edge_length[v] > 0) result.far_move = std::max(result.far_move, moved / shape.edge_length[v]);
+    if (!near[v] && shape.edge_length[v] > 0) result.far_move = std::max(result.far_move, moved / far_unit(shape, v));
     if (moved <= 1e-6 * shape.mean_edge) continue;
     ++result.moved;
     sum += moved / shape.mean_edge;
@@ -221,7 +234,7 @@ UntangleResult untangle(const Surface& cloth, const Points& x0, std::span<const 
                         const UntangleOptions& options) {
   const KeptShape shape = keep_shape(cloth, x0);
   Points x = x0;
-  Tangle tangle = find_tangle(with_cloth(cloth, x, obstacles), options.layers);
+  Tangle tangle = find_tangle(with_cloth(cloth, x, obstacles), shape, options.layers);
   UntangleResult result;
   result.x = x;
   result.pairs_before = tangle.pairs;
@@ -232,7 +245,7 @@ UntangleResult untangle(const Surface& cloth, const Points& x0, std::span<const 
       within_rings(shape, tangled_vertices(with_cloth(cloth, x, obstacles), tangle), options.rings);
   Repulsion repulsion(cloth, obstacles, shape);
   Tangle best = tangle;
-  std::deque<double> lengths{tangle.length};
+  std::deque<double> merits{tangle.merit};
   int since_best = 0;
   for (; result.iterations < options.iterations && !tangle.clean() && since_best < patience; ++result.iterations) {
     if (options.progress) options.progress({result.iterations, tangle.pairs, tangle.length});
@@ -244,18 +257,18 @@ UntangleResult untangle(const Surface& cloth, const Points& x0, std::span<const 
     double step = options.step * shape.mean_edge;
     Points next;
     Tangle after;
-    const double bound = *std::max_element(lengths.begin(), lengths.end());
+    const double bound = *std::max_element(merits.begin(), merits.end());
     for (int attempt = 0; attempt < 3; ++attempt, step *= 0.4) {
       const std::vector<Separation> separations =
           part_contours(sheets, tangle.found, tangle.contours, tangle.regions, {options.gap * shape.mean_edge, step});
       next = propose(shape, freedom, separations, repulsions, options, x);
       after = keep_clean(shape, freedom, obstacles, tangled, options, x, next);
-      if (after.length <= bound) break;
+      if (after.merit <= bound) break;
     }
     x = next;
     tangle = std::move(after);
-    lengths.push_back(tangle.length);
-    if (lengths.size() > remembered) lengths.pop_front();
+    merits.push_back(tangle.merit);
+    if (merits.size() > remembered) merits.pop_front();
     ++since_best;
     if (tangle.better_than(best)) {
       best = tangle;

@@ -16,7 +16,7 @@ struct UntangleProgress {
 struct UntangleOptions {
   int iterations = 300;
   int rings = 3;            // of vertices round contours and enclosed regions that may move freely
-  double far_limit = 0.08;  // how far any other vertex may move, in lengths of its edges
+  double far_limit = 0.08;  // how far any other vertex may move, in its own edges or mean ones, the shorter
   double gap = 0.02;        // between what has been parted, in mean edge lengths
   double step = 0.25;       // largest motion asked for in one iteration, in mean edge lengths
   double least_stretch = 0.52, largest_stretch = 1.92;  // of every triangle against the input
@@ -32,10 +32,10 @@ struct UntangleResult {
   int vertex_pairs_before = 0, vertex_pairs_after = 0;  // triangles that share one vertex and cross
   double length_before = 0, length_after = 0;           // of all contours [m]
   int iterations = 0;
-  int moved = 0;                       // vertices moved by more than a millionth of an edge
-  double mean_edge = 0;                // of the input [m]
-  double mean_move = 0, max_move = 0;  // of these, in mean edge lengths
-  double far_move = 0;  // largest among vertices that are not free to move, in lengths of their own edges
+  int moved = 0;                                  // vertices moved by more than a millionth of an edge
+  double mean_edge = 0;                           // of the input [m]
+  double mean_move = 0, max_move = 0;             // of these, in mean edge lengths
+  double far_move = 0;                            // largest among vertices that are not free to move, as far_limit
   double least_stretch = 1, largest_stretch = 1;  // singular values against the input
   std::vector<Remainder> left;
 };
@@ -45,7 +45,8 @@ struct UntangleResult {
 // translational gradient of its length, averaged over the contour (Volino and Magnenat-Thalmann 2006). Vertices inside
 // a closed obstacle go to its nearest point. Displacements are kept smooth and the triangles near the shape of the
 // input. Pairs that are neither on nor inside a contour repel each other. A step is taken if the total length of the
-// contours does not grow beyond what it was a few steps ago, else a shorter one. Needs no history, is deterministic.
+// contours (and a mean edge for each vertex inside a closed obstacle) stays below what it was at most a few steps ago,
+// else a shorter one; the best state that was seen is the result. Needs no history, is deterministic.
 // All vertices must be finite.
 UntangleResult untangle(const Surface& cloth, const Points& x, std::span<const SheetView> obstacles,
                         const UntangleOptions& options = {});
