@@ -77,12 +77,12 @@ bool cross_at_vertex(const Soup& cloth, int a, int b) {
   return false;
 }
 
-void audit_region(const Region& region, const Soup& cloth, const Soup& bodies, bool with_self, Audit& found) {
+void audit_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, bool with_self, Audit& found) {
   const auto numbers = [&cloth](int a, int b) {
     return std::pair(std::min(cloth.number[a], cloth.number[b]), std::max(cloth.number[a], cloth.number[b]));
   };
   visit_pairs(
-      region, cloth.boxes, bodies.boxes, with_self,
+      cell, cloth.boxes, bodies.boxes, with_self,
       [&](int a, int b) {
         const int shared = shared_vertices(cloth.vertices[a], cloth.vertices[b]);
         if (shared == 0 && intersect(cloth.corners[a], cloth.corners[b])) found.self_pairs.push_back(numbers(a, b));
@@ -133,8 +133,8 @@ double squared_box_gap(const ExactBox& a, const ExactBox& b, double margin) {
   return sum;
 }
 
-// Least squared gap of the pairs in a region, or `bound` if none is nearer.
-double gap_in_region(const Region& region, const Soup& cloth, const Soup& bodies, double margin, double bound) {
+// Least squared gap of the pairs in a cell, or `bound` if none is nearer.
+double gap_in_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, double margin, double bound) {
   double least = bound;
   const auto take = [&](const Soup& second, int a, int b) {
     // A little slack for the rounding of the margins: passing over a pair must never change the result.
@@ -143,7 +143,7 @@ double gap_in_region(const Region& region, const Soup& cloth, const Soup& bodies
     least = std::min(least, intersect(p, q) ? 0.0 : squared_gap(p, q));
   };
   visit_pairs(
-      region, cloth.boxes, bodies.boxes, true,
+      cell, cloth.boxes, bodies.boxes, true,
       [&](int a, int b) {
         if (shared_vertices(cloth.vertices[a], cloth.vertices[b]) == 0) take(cloth, a, b);
       },
@@ -155,11 +155,11 @@ double gap_in_region(const Region& region, const Soup& cloth, const Soup& bodies
 
 Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, bool self) {
   const Soup mine = soup_of(cloth, x, 0), others = soup_of(obstacles, 0);
-  const std::vector<Region> regions = bisect(mine.boxes, others.boxes, self);
-  const int count = static_cast<int>(regions.size());
-  std::vector<Audit> found(regions.size());
+  const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, self);
+  const int count = static_cast<int>(cells.size());
+  std::vector<Audit> found(cells.size());
 #pragma omp parallel for schedule(dynamic, 4)
-  for (int r = 0; r < count; ++r) audit_region(regions[r], mine, others, self, found[r]);
+  for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, found[r]);
 
   Audit result;
   for (const Audit& part : found) {
@@ -179,11 +179,11 @@ double min_gap(const Surface& cloth, const Points& x, std::span<const AuditBody>
   // A box grows by half the horizon on each side, and a little more for rounding.
   const double margin = 0.5 * horizon * (1 + 1e-9);
   const Soup mine = soup_of(cloth, x, margin), others = soup_of(obstacles, margin);
-  const std::vector<Region> regions = bisect(mine.boxes, others.boxes, true);
-  const int count = static_cast<int>(regions.size());
-  std::vector<double> least(regions.size());
+  const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, true);
+  const int count = static_cast<int>(cells.size());
+  std::vector<double> least(cells.size());
 #pragma omp parallel for schedule(dynamic, 4)
-  for (int r = 0; r < count; ++r) least[r] = gap_in_region(regions[r], mine, others, margin, horizon * horizon);
+  for (int r = 0; r < count; ++r) least[r] = gap_in_cell(cells[r], mine, others, margin, horizon * horizon);
   const double nearest = least.empty() ? horizon * horizon : *std::min_element(least.begin(), least.end());
   return nearest < horizon * horizon ? std::sqrt(nearest) : std::numeric_limits<double>::infinity();
 }

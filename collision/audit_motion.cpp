@@ -131,10 +131,10 @@ struct PairAudit {
   }
 };
 
-void audit_region(const Region& region, const Side& cloth, const Side& bodies, bool self, int max_halvings,
-                  std::vector<PassedPair>& passed) {
+void audit_cell(const Cell& cell, const Side& cloth, const Side& bodies, bool self, int max_halvings,
+                std::vector<PassedPair>& passed) {
   visit_pairs(
-      region, cloth.boxes, bodies.boxes, self,
+      cell, cloth.boxes, bodies.boxes, self,
       [&](int a, int b) {
         PairAudit{cloth.faces[a], cloth.faces[b], max_halvings, passed}();
       },
@@ -155,11 +155,11 @@ MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x
     result.nonfinite += add(body, first_node, others);
     first_node += body.surface->vertex_count;
   }
-  const std::vector<Region> regions = bisect(mine.boxes, others.boxes, self);
-  const int count = static_cast<int>(regions.size());
-  std::vector<std::vector<PassedPair>> found(regions.size());
+  const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, self);
+  const int count = static_cast<int>(cells.size());
+  std::vector<std::vector<PassedPair>> found(cells.size());
 #pragma omp parallel for schedule(dynamic, 4)
-  for (int r = 0; r < count; ++r) audit_region(regions[r], mine, others, self, max_halvings, found[r]);
+  for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, max_halvings, found[r]);
   for (const auto& part : found) result.passed.insert(result.passed.end(), part.begin(), part.end());
   std::sort(result.passed.begin(), result.passed.end());
   return result;

@@ -17,7 +17,7 @@ struct Boxes {
   std::span<const ExactBox> first, second;
   bool within_first;
 
-  bool has_pair(const Region& r) const {
+  bool has_pair(const Cell& r) const {
     return (within_first && r.first.size() > 1) || (!r.first.empty() && !r.second.empty());
   }
 };
@@ -28,7 +28,7 @@ struct Spread {
 };
 
 // Extent and mean of the box centres along each axis, widest first.
-std::array<Spread, 3> spreads(const Boxes& boxes, const Region& r) {
+std::array<Spread, 3> spreads(const Boxes& boxes, const Cell& r) {
   std::array<Spread, 3> result;
   for (int k = 0; k < 3; ++k) {
     double lo = std::numeric_limits<double>::max(), hi = -lo, sum = 0;
@@ -55,11 +55,11 @@ void distribute(std::span<const ExactBox> boxes, const std::vector<int>& items, 
 }
 
 // Cuts `whole` across the widest axis that helps; false if none does.
-bool halve(const Boxes& boxes, const Region& whole, Region& lower, Region& upper) {
+bool halve(const Boxes& boxes, const Cell& whole, Cell& lower, Cell& upper) {
   const std::size_t count = whole.first.size() + whole.second.size();
   if (count <= few) return false;
   for (const Spread& cut : spreads(boxes, whole)) {
-    lower = upper = Region{whole.bounds, {}, {}};
+    lower = upper = Cell{whole.bounds, {}, {}};
     lower.bounds.hi[cut.axis] = upper.bounds.lo[cut.axis] = cut.middle;
     distribute(boxes.first, whole.first, cut, lower.first, upper.first);
     distribute(boxes.second, whole.second, cut, lower.second, upper.second);
@@ -77,20 +77,20 @@ std::vector<int> count_up(std::size_t count) {
   return all;
 }
 
-// Cuts the region until it is not worth it any more, or until there are `enough` parts. Parts without a possible pair
+// Cuts the cell until it is not worth it any more, or until there are `enough` parts. Parts without a possible pair
 // are dropped.
-std::vector<Region> cut(const Boxes& boxes, Region whole, std::size_t enough) {
-  std::vector<Region> open{std::move(whole)}, next, finished;
+std::vector<Cell> cut(const Boxes& boxes, Cell whole, std::size_t enough) {
+  std::vector<Cell> open{std::move(whole)}, next, finished;
   while (!open.empty() && open.size() < enough) {
     next.clear();
-    for (Region& region : open) {
-      if (!boxes.has_pair(region)) continue;
-      Region lower, upper;
-      if (halve(boxes, region, lower, upper)) {
+    for (Cell& cell : open) {
+      if (!boxes.has_pair(cell)) continue;
+      Cell lower, upper;
+      if (halve(boxes, cell, lower, upper)) {
         next.push_back(std::move(lower));
         next.push_back(std::move(upper));
       } else {
-        finished.push_back(std::move(region));
+        finished.push_back(std::move(cell));
       }
     }
     open.swap(next);
@@ -109,13 +109,13 @@ Sweep::Sweep(std::span<const ExactBox> boxes, std::span<const int> items, int al
   });
 }
 
-int sweep_axis(const Region& region, std::span<const ExactBox> first) {
+int sweep_axis(const Cell& cell, std::span<const ExactBox> first) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   int best = 0;
   double widest = -1;
   for (int k = 0; k < 3; ++k) {
     double lo = infinity, hi = -infinity, extent = 0;
-    for (const int i : region.first) {
+    for (const int i : cell.first) {
       lo = std::min(lo, first[i].lo[k]);
       hi = std::max(hi, first[i].hi[k]);
       extent += first[i].hi[k] - first[i].lo[k];
@@ -129,18 +129,18 @@ int sweep_axis(const Region& region, std::span<const ExactBox> first) {
   return best;
 }
 
-std::vector<Region> bisect(std::span<const ExactBox> first, std::span<const ExactBox> second, bool within_first) {
+std::vector<Cell> bisect(std::span<const ExactBox> first, std::span<const ExactBox> second, bool within_first) {
   const Boxes boxes{first, second, within_first};
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const ExactBox space{{-infinity, -infinity, -infinity}, {infinity, infinity, infinity}};
-  // First a few parts, then each of them on a thread of its own: the same regions whatever the number of threads.
-  std::vector<Region> parts = cut(boxes, {space, count_up(first.size()), count_up(second.size())}, 32);
+  // First a few parts, then each of them on a thread of its own: the same cells whatever the number of threads.
+  std::vector<Cell> parts = cut(boxes, {space, count_up(first.size()), count_up(second.size())}, 32);
   const int count = static_cast<int>(parts.size());
-  std::vector<std::vector<Region>> cut_up(parts.size());
+  std::vector<std::vector<Cell>> cut_up(parts.size());
 #pragma omp parallel for schedule(dynamic)
   for (int p = 0; p < count; ++p) cut_up[p] = cut(boxes, std::move(parts[p]), std::numeric_limits<std::size_t>::max());
-  std::vector<Region> finished;
-  for (std::vector<Region>& some : cut_up)
+  std::vector<Cell> finished;
+  for (std::vector<Cell>& some : cut_up)
     finished.insert(finished.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
   return finished;
 }

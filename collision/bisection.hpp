@@ -11,24 +11,24 @@ struct ExactBox {
   std::array<double, 3> lo, hi;
 };
 
-// A region of space with the boxes that touch it. A pair of boxes belongs to the region that holds the lowest corner of
+// A cell of space with the boxes that touch it. A pair of boxes belongs to the cell that holds the lowest corner of
 // what they have in common, so that each pair is met once.
-struct Region {
+struct Cell {
   ExactBox bounds;  // half-open: lo <= p < hi
   std::vector<int> first, second;
 };
 
-// Halves space until few boxes are left in each region or halving stops to help. Regions without a possible pair, of
+// Halves space until few boxes are left in each cell or halving stops to help. Cells without a possible pair, of
 // two of `first` (where within_first) or of one of `first` and one of `second`, are left out.
-std::vector<Region> bisect(std::span<const ExactBox> first, std::span<const ExactBox> second, bool within_first);
+std::vector<Cell> bisect(std::span<const ExactBox> first, std::span<const ExactBox> second, bool within_first);
 
 // Calls self(a, b) for the pairs of two of `first` (where within_first) and other(a, c) for those of one of `first` and
-// one of `second` that belong to the region. Boxes are those given to bisect.
+// one of `second` that belong to the cell. Boxes are those given to bisect.
 template <typename Self, typename Other>
-void visit_pairs(const Region& region, std::span<const ExactBox> first, std::span<const ExactBox> second,
-                 bool within_first, Self&& self, Other&& other);
+void visit_pairs(const Cell& cell, std::span<const ExactBox> first, std::span<const ExactBox> second, bool within_first,
+                 Self&& self, Other&& other);
 
-// Boxes of a region side by side, in the order of their lower ends along an axis.
+// Boxes of a cell side by side, in the order of their lower ends along an axis.
 struct Sweep {
   struct Entry {
     ExactBox box;
@@ -39,7 +39,7 @@ struct Sweep {
 
   Sweep(std::span<const ExactBox> boxes, std::span<const int> items, int axis);
 
-  // Calls visit(item) for the entries from place `from` on that overlap the box and belong to the region with it.
+  // Calls visit(item) for the entries from place `from` on that overlap the box and belong to the cell with it.
   template <typename Visit>
   void overlapping(std::size_t from, const ExactBox& box, const ExactBox& bounds, Visit&& visit) const {
     for (std::size_t i = from; i < entries.size() && entries[i].box.lo[axis] <= box.hi[axis]; ++i)
@@ -58,18 +58,18 @@ struct Sweep {
   }
 };
 
-// The axis along which the boxes of a region are spread the widest, in units of their own extent.
-int sweep_axis(const Region&, std::span<const ExactBox> first);
+// The axis along which the boxes of a cell are spread the widest, in units of their own extent.
+int sweep_axis(const Cell&, std::span<const ExactBox> first);
 
 template <typename Self, typename Other>
-void visit_pairs(const Region& region, std::span<const ExactBox> first, std::span<const ExactBox> second,
-                 bool within_first, Self&& self, Other&& other) {
-  const int axis = sweep_axis(region, first);
-  const Sweep mine(first, region.first, axis), theirs(second, region.second, axis);
+void visit_pairs(const Cell& cell, std::span<const ExactBox> first, std::span<const ExactBox> second, bool within_first,
+                 Self&& self, Other&& other) {
+  const int axis = sweep_axis(cell, first);
+  const Sweep mine(first, cell.first, axis), theirs(second, cell.second, axis);
   for (std::size_t i = 0; i < mine.entries.size(); ++i) {
     const auto& [box, a] = mine.entries[i];
-    if (within_first) mine.overlapping(i + 1, box, region.bounds, [&](int b) { self(a, b); });
-    theirs.overlapping(0, box, region.bounds, [&](int c) { other(a, c); });
+    if (within_first) mine.overlapping(i + 1, box, cell.bounds, [&](int b) { self(a, b); });
+    theirs.overlapping(0, box, cell.bounds, [&](int c) { other(a, c); });
   }
 }
 

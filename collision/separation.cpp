@@ -247,20 +247,22 @@ Nearest nearest_of(const Setting& setting, const Faces& faces, int own_vertex, c
     const Bvh::Node& node = faces.bvh.nodes[stack.back()];
     stack.pop_back();
     if (squared_distance(node.box, p) >= nearest.squared_distance) continue;
-    if (node.left >= 0) {
-      const double left = squared_distance(faces.bvh.nodes[node.left].box, p);
-      const double right = squared_distance(faces.bvh.nodes[node.right].box, p);
-      stack.push_back(left < right ? node.right : node.left);
-      stack.push_back(left < right ? node.left : node.right);
+    if (node.child >= 0) {
+      const double first = squared_distance(faces.bvh.nodes[node.child].box, p);
+      const double second = squared_distance(faces.bvh.nodes[node.child + 1].box, p);
+      stack.push_back(first < second ? node.child + 1 : node.child);
+      stack.push_back(first < second ? node.child : node.child + 1);
       continue;
     }
-    const int t = faces.faces[~node.left];
-    const int i = surface.triangles(t, 0), j = surface.triangles(t, 1), k = surface.triangles(t, 2);
-    if (own_vertex == i || own_vertex == j || own_vertex == k) continue;
-    const Vec3 a = row(x, i), b = row(x, j), c = row(x, k);
-    const Closest closest = point_triangle(p, a, b, c);
-    if (closest.squared_distance >= nearest.squared_distance) continue;
-    nearest = {t, closest.squared_distance, {-closest.weights[1], -closest.weights[2], -closest.weights[3]}};
+    for (const int item : faces.bvh.leaves[~node.child].item) {
+      if (item < 0) continue;
+      const int t = faces.faces[item];
+      const auto corner = surface.triangles.row(t);
+      if (own_vertex == corner(0) || own_vertex == corner(1) || own_vertex == corner(2)) continue;
+      const Closest closest = point_triangle(p, row(x, corner(0)), row(x, corner(1)), row(x, corner(2)));
+      if (closest.squared_distance >= nearest.squared_distance) continue;
+      nearest = {t, closest.squared_distance, {-closest.weights[1], -closest.weights[2], -closest.weights[3]}};
+    }
   }
   return nearest;
 }

@@ -215,3 +215,17 @@ TEST_CASE("modules: what the documents name exists", "[modules]") {
         Complaints{"docs/a.md:2: leads nowhere: README.md"});
   CHECK(dead_references(root, "README.md", "see `physics/nothing.cpp`\n").size() == 1);
 }
+
+TEST_CASE("modules: headers do not define two types of one name", "[modules]") {
+  // All are in one namespace; two layouts under one name would be merged by the linker without a word.
+  static const std::regex definition(R"((^|\n)(struct|class|enum class) (\w+)[^;{]*\{)");
+  std::map<std::string, std::string> where;
+  for (const std::string& folder : chain)
+    for (const auto& [file, text] : texts(folder, {".hpp"}))
+      for (std::sregex_iterator match(text.begin(), text.end(), definition), end; match != end; ++match) {
+        const auto [known, fresh] = where.emplace((*match)[3], file);
+        INFO(file << " and " << known->second << ": " << (*match)[3]);
+        CHECK(fresh);
+      }
+  CHECK(where.size() > 50);
+}
