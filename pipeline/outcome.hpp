@@ -37,7 +37,7 @@ struct Ahead {  // how far the foremost vertex near an obstacle's axis is ahead 
 struct Drift {  // the farthest that a vertex is from where it was in the first frame that counts [m]
   std::vector<int> vertices;
 };
-struct LargestStretch {};              // largest principal stretch
+struct LargestStretch {};       // largest principal stretch
 struct Lag {                    // largest distance of an obstacle vertex from where it was wanted [m]
   std::optional<int> obstacle;  // absent: of any
 };
