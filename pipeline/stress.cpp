@@ -9,7 +9,6 @@
 #include "collision/error.hpp"
 #include "pipeline/jitter.hpp"
 #include "pipeline/make_stepper.hpp"
-#include "pipeline/outcome_measures.hpp"
 #include "pipeline/run_scene.hpp"
 #include "pipeline/version.hpp"
 #include "pipeline/view.hpp"
@@ -37,15 +36,14 @@ std::uint64_t hash_of(const std::string& text) {
 // What the frames of a run show beyond its summary.
 struct Watch {
   OutcomeWatch outcome;
-  const Scene& scene;
   int wanted_frames = 0;
+  bool motion_audited = true;
 
   void operator()(const FrameEvent& event) {
     outcome(event.state, event.drive);
-    if (event.report.collision.obstacle_lag > least_lag) {
-      const FrameEvent& e = event;
-      wanted_frames += measured(WantedPairs{}, scene, e.state, e.drive) > 0;
-    }
+    const CollisionReport& collision = event.report.collision;
+    wanted_frames += collision.pairs_wanted > 0 || collision.depth_wanted > 0;
+    motion_audited = motion_audited && collision.passed_through >= 0;
   }
 };
 
@@ -120,7 +118,7 @@ std::optional<StressRow> run_repeat(const StressRequest& request, const Repeat& 
   Setup setup = read_scene(request, repeat.scene);
   row.jitter = jitter_start(setup, request.jitter, row.seed);
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
-  Watch watch{OutcomeWatch(setup.scene, setup.outcomes, setup.run.frames / setup.run.fps), setup.scene};
+  Watch watch{OutcomeWatch(setup.scene, setup.outcomes, setup.run.frames / setup.run.fps)};
   watch.outcome(setup.initial, setup.drive_at(0));
   RunRequest run;
   run.out = repeat.run_folder();
@@ -139,7 +137,7 @@ std::optional<StressRow> run_repeat(const StressRequest& request, const Repeat& 
   row.worst_frame = summary.worst_frame;
   row.worst_inside = summary.worst_inside;
   row.wanted_frames = watch.wanted_frames;
-  row.passed_through = summary.passed_through;
+  if (watch.motion_audited) row.passed_through = summary.passed_through;
   row.impulses = summary.impulses;
   row.zones = summary.zones;
   row.shortened = summary.shortened;

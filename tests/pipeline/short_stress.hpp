@@ -1,0 +1,32 @@
+#pragma once
+
+#include <catch2/catch.hpp>
+
+#include "pipeline/stress.hpp"
+#include "tests/pipeline/files.hpp"
+
+namespace selvedge::fake {
+
+// The scenes of the stress suite, in two files of tests that run side by side.
+inline const std::vector<std::string> stress_against_obstacles{"funnel", "impact", "pinch",     "spike",
+                                                               "spin",   "tshirt", "tablecloth"};
+inline const std::vector<std::string> stress_against_itself{"hold", "knot", "layers", "twist"};
+
+// Each of the scenes comes true once in its short form.
+inline void check_short_forms(const std::vector<std::string>& scenes) {
+  const Folder folder("short_stress_" + scenes[0]);
+  StressRequest request;
+  request.configs = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs" / "stress";
+  request.scenes = scenes;
+  request.out = folder.path;
+  request.repeats = 1;
+  request.short_form = true;
+  for (const StressRow& row : stress(request)) {
+    std::string why;
+    for (const std::string& line : row.failures) why += "\n  " + line;
+    INFO(row.scene << why);
+    CHECK(row.passed());
+  }
+}
+
+}  // namespace selvedge::fake
