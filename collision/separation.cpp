@@ -236,6 +236,14 @@ Faces make_faces(const Setting& setting, int sheet, std::vector<int> faces) {
   return {sheet, std::move(faces), build_bvh(boxes)};
 }
 
+void take_nearer(const Surface& surface, const Points& x, int t, int own_vertex, const Vec3& p, Nearest& nearest) {
+  const int i = surface.triangles(t, 0), j = surface.triangles(t, 1), k = surface.triangles(t, 2);
+  if (own_vertex == i || own_vertex == j || own_vertex == k) return;
+  const Closest closest = point_triangle(p, row(x, i), row(x, j), row(x, k));
+  if (closest.squared_distance < nearest.squared_distance)
+    nearest = {t, closest.squared_distance, {-closest.weights[1], -closest.weights[2], -closest.weights[3]}};
+}
+
 // The face nearest to p of those that do not have the vertex.
 Nearest nearest_of(const Setting& setting, const Faces& faces, int own_vertex, const Vec3& p) {
   const Surface& surface = *setting.sheets[faces.sheet].surface;
@@ -247,20 +255,15 @@ Nearest nearest_of(const Setting& setting, const Faces& faces, int own_vertex, c
     const Bvh::Node& node = faces.bvh.nodes[stack.back()];
     stack.pop_back();
     if (squared_distance(node.box, p) >= nearest.squared_distance) continue;
-    if (node.left >= 0) {
-      const double left = squared_distance(faces.bvh.nodes[node.left].box, p);
-      const double right = squared_distance(faces.bvh.nodes[node.right].box, p);
-      stack.push_back(left < right ? node.right : node.left);
-      stack.push_back(left < right ? node.left : node.right);
+    if (node.child >= 0) {
+      const double first = squared_distance(faces.bvh.nodes[node.child].box, p);
+      const double second = squared_distance(faces.bvh.nodes[node.child + 1].box, p);
+      stack.push_back(first < second ? node.child + 1 : node.child);
+      stack.push_back(first < second ? node.child : node.child + 1);
       continue;
     }
-    const int t = faces.faces[~node.left];
-    const int i = surface.triangles(t, 0), j = surface.triangles(t, 1), k = surface.triangles(t, 2);
-    if (own_vertex == i || own_vertex == j || own_vertex == k) continue;
-    const Vec3 a = row(x, i), b = row(x, j), c = row(x, k);
-    const Closest closest = point_triangle(p, a, b, c);
-    if (closest.squared_distance >= nearest.squared_distance) continue;
-    nearest = {t, closest.squared_distance, {-closest.weights[1], -closest.weights[2], -closest.weights[3]}};
+    for (int item : faces.bvh.leaves[~node.child].item)
+      if (item >= 0) take_nearer(surface, x, faces.faces[item], own_vertex, p, nearest);
   }
   return nearest;
 }

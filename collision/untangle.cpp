@@ -167,7 +167,6 @@ void keep_range(const KeptShape& shape, const Freedom& freedom, const UntangleOp
 // range. Returns the tangle of x.
 Tangle keep_clean(const KeptShape& shape, const Freedom& freedom, std::span<const SheetView> obstacles,
                   const std::vector<char>& tangled, const UntangleOptions& options, const Points& before, Points& x) {
-  const std::vector<char> allowed = within_rings(shape, tangled, 1);
   const Surface& cloth = *shape.surface;
   std::vector<char> offends(cloth.vertex_count, 0);
   for (int round = 0;; ++round) {
@@ -180,7 +179,7 @@ Tangle keep_clean(const KeptShape& shape, const Freedom& freedom, std::span<cons
       for (int v : cloth.triangles.row(a)) vertices.push_back(v);
       if (sheet == 0)
         for (int v : cloth.triangles.row(b)) vertices.push_back(v);
-      if (std::any_of(vertices.begin(), vertices.end(), [&](int v) { return allowed[v] != 0; })) return;
+      if (std::any_of(vertices.begin(), vertices.end(), [&](int v) { return tangled[v] != 0; })) return;
       for (int v : vertices) {
         clean = clean && x.row(v) == before.row(v);
         offends[v] = 1;
