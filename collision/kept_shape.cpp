@@ -99,16 +99,16 @@ std::vector<char> within_rings(const KeptShape& shape, const std::vector<char>& 
   return reached;
 }
 
-Stretch stretch_of(const KeptShape& shape, const Points& x, int triangle) {
+StretchRange stretch_of(const KeptShape& shape, const Points& x, int triangle) {
   if (!shape.measured[triangle]) return {};
   const Eigen::Vector2d value = principal(deformation(shape, x, triangle)).value;
   return {value[0], value[1]};
 }
 
-Stretch extreme_stretch(const KeptShape& shape, const Points& x) {
-  Stretch extreme;
+StretchRange extreme_stretch(const KeptShape& shape, const Points& x) {
+  StretchRange extreme;
   for (int t = 0; t < shape.surface->triangles.rows(); ++t) {
-    const Stretch stretch = stretch_of(shape, x, t);
+    const StretchRange stretch = stretch_of(shape, x, t);
     extreme.least = std::min(extreme.least, stretch.least);
     extreme.largest = std::max(extreme.largest, stretch.largest);
   }
@@ -130,7 +130,7 @@ void smooth_displacement(const KeptShape& shape, std::span<const int> vertices, 
 }
 
 void limit_stretch(const KeptShape& shape, std::span<const int> triangles, const std::vector<double>& reach,
-                   const Stretch& range, Points& x) {
+                   const StretchRange& range, Points& x) {
   for (int t : triangles) {
     if (!shape.measured[t]) continue;
     const Edges32 f = deformation(shape, x, t);
@@ -169,13 +169,13 @@ void limit_displacement(const KeptShape& shape, std::span<const int> vertices, c
   }
 }
 
-void hold_back(const KeptShape& shape, std::span<const int> triangles, const Stretch& range, const Points& before,
+void hold_back(const KeptShape& shape, std::span<const int> triangles, const StretchRange& range, const Points& before,
                Points& x) {
   std::vector<char> offends(shape.surface->vertex_count, 0);
   for (int round = 0;; ++round) {
     bool clean = true;
     for (int t : triangles) {
-      const Stretch stretch = stretch_of(shape, x, t);
+      const StretchRange stretch = stretch_of(shape, x, t);
       if (stretch.least >= range.least && stretch.largest <= range.largest) continue;
       for (int v : shape.surface->triangles.row(t)) {
         clean = clean && x.row(v) == before.row(v);

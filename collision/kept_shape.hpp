@@ -23,13 +23,13 @@ KeptShape keep_shape(const Surface&, const Points& x0);
 // Vertices within `rings` edges of the marked ones, these included.
 std::vector<char> within_rings(const KeptShape&, const std::vector<char>& marked, int rings);
 
-struct Stretch {
+struct StretchRange {
   double least = 1, largest = 1;
 };
 
 // Singular values of the deformation of a triangle from the input to x.
-Stretch stretch_of(const KeptShape&, const Points& x, int triangle);
-Stretch extreme_stretch(const KeptShape&, const Points& x);
+StretchRange stretch_of(const KeptShape&, const Points& x, int triangle);
+StretchRange extreme_stretch(const KeptShape&, const Points& x);
 
 // Moves the displacement x - x0 of each listed vertex toward the mean of its neighbours' by `share`.
 void smooth_displacement(const KeptShape&, std::span<const int> vertices, double share, Points& x);
@@ -37,7 +37,7 @@ void smooth_displacement(const KeptShape&, std::span<const int> vertices, double
 // One pass over the triangles: those stretched out of the range are brought back to it. reach: how far each vertex may
 // be from x0 [m], zero: it stays.
 void limit_stretch(const KeptShape&, std::span<const int> triangles, const std::vector<double>& reach,
-                   const Stretch& range, Points& x);
+                   const StretchRange& range, Points& x);
 
 // Brings each vertex back to within its reach of x0.
 void limit_displacement(const KeptShape&, std::span<const int> vertices, const std::vector<double>& reach, Points& x);
@@ -46,6 +46,7 @@ void limit_displacement(const KeptShape&, std::span<const int> vertices, const s
 void take_back(std::vector<char>& offends, int round, const Points& before, Points& x);
 
 // Takes vertices back toward `before`, where every triangle was in the range, until every triangle is in it again.
-void hold_back(const KeptShape&, std::span<const int> triangles, const Stretch& range, const Points& before, Points& x);
+void hold_back(const KeptShape&, std::span<const int> triangles, const StretchRange& range, const Points& before,
+               Points& x);
 
 }  // namespace selvedge

@@ -16,7 +16,7 @@ std::string name_of(const ContourSide& side) {
 
 // What held the cloth round the contour: its triangles' shape, or the distance that vertices off the contours may go.
 std::string held_by(std::span<const SheetView> sheets, const Contour& contour, const KeptShape& shape,
-                    const std::vector<double>& reach, const Stretch& range) {
+                    const std::vector<double>& reach, const StretchRange& range) {
   const Surface& cloth = *sheets[0].surface;
   const Points& x = *sheets[0].x;
   std::vector<char> marked(cloth.vertex_count, 0);
@@ -30,7 +30,7 @@ std::string held_by(std::span<const SheetView> sheets, const Contour& contour, c
     far = far || (near[v] && std::isfinite(reach[v]) && (x.row(v) - shape.x0.row(v)).norm() >= 0.95 * reach[v]);
   for (int t = 0; t < cloth.triangles.rows(); ++t) {
     if (!near[cloth.triangles(t, 0)] && !near[cloth.triangles(t, 1)] && !near[cloth.triangles(t, 2)]) continue;
-    const Stretch stretch = stretch_of(shape, x, t);
+    const StretchRange stretch = stretch_of(shape, x, t);
     stretched = stretched || stretch.least < 1.05 * range.least || stretch.largest > 0.95 * range.largest;
   }
   if (stretched) return "the triangles round it are stretched or pressed as far as they may be";
@@ -39,7 +39,7 @@ std::string held_by(std::span<const SheetView> sheets, const Contour& contour, c
 }
 
 std::string reason_of(std::span<const SheetView> sheets, const Segments& found, const Contour& contour,
-                      const KeptShape& shape, const std::vector<double>& reach, const Stretch& range) {
+                      const KeptShape& shape, const std::vector<double>& reach, const StretchRange& range) {
   const ContourSide &a = contour.sides[0], &b = contour.sides[1];
   std::string text = (contour.closed ? "closed, " : "open, ") + name_of(a) + " with ";
   text += a.sheet == b.sheet && a.component == b.component ? "itself" : name_of(b);
@@ -59,7 +59,7 @@ std::string reason_of(std::span<const SheetView> sheets, const Segments& found, 
 
 std::vector<Remainder> explain_remainders(std::span<const SheetView> sheets, const Segments& found,
                                           std::span<const Contour> contours, const KeptShape& shape,
-                                          const std::vector<double>& reach, const Stretch& range) {
+                                          const std::vector<double>& reach, const StretchRange& range) {
   std::vector<Remainder> remainders;
   for (const Contour& contour : contours) {
     Remainder left{0, contour.length, reason_of(sheets, found, contour, shape, reach, range)};

@@ -19,6 +19,7 @@ struct Remainder {
 // One for each contour, in their order, and one for the pairs that touch. reach and range: what held the vertices and
 // triangles.
 std::vector<Remainder> explain_remainders(std::span<const SheetView> sheets, const Segments&, std::span<const Contour>,
-                                          const KeptShape&, const std::vector<double>& reach, const Stretch& range);
+                                          const KeptShape&, const std::vector<double>& reach,
+                                          const StretchRange& range);
 
 }  // namespace selvedge

@@ -236,6 +236,14 @@ Faces make_faces(const Setting& setting, int sheet, std::vector<int> faces) {
   return {sheet, std::move(faces), build_bvh(boxes)};
 }
 
+void take_nearer(const Surface& surface, const Points& x, int t, int own_vertex, const Vec3& p, Nearest& nearest) {
+  const int i = surface.triangles(t, 0), j = surface.triangles(t, 1), k = surface.triangles(t, 2);
+  if (own_vertex == i || own_vertex == j || own_vertex == k) return;
+  const Closest closest = point_triangle(p, row(x, i), row(x, j), row(x, k));
+  if (closest.squared_distance < nearest.squared_distance)
+    nearest = {t, closest.squared_distance, {-closest.weights[1], -closest.weights[2], -closest.weights[3]}};
+}
+
 // The face nearest to p of those that do not have the vertex.
 Nearest nearest_of(const Setting& setting, const Faces& faces, int own_vertex, const Vec3& p) {
   const Surface& surface = *setting.sheets[faces.sheet].surface;
@@ -254,15 +262,8 @@ Nearest nearest_of(const Setting& setting, const Faces& faces, int own_vertex, c
       stack.push_back(first < second ? node.child : node.child + 1);
       continue;
     }
-    for (const int item : faces.bvh.leaves[~node.child].item) {
-      if (item < 0) continue;
-      const int t = faces.faces[item];
-      const auto corner = surface.triangles.row(t);
-      if (own_vertex == corner(0) || own_vertex == corner(1) || own_vertex == corner(2)) continue;
-      const Closest closest = point_triangle(p, row(x, corner(0)), row(x, corner(1)), row(x, corner(2)));
-      if (closest.squared_distance >= nearest.squared_distance) continue;
-      nearest = {t, closest.squared_distance, {-closest.weights[1], -closest.weights[2], -closest.weights[3]}};
-    }
+    for (int item : faces.bvh.leaves[~node.child].item)
+      if (item >= 0) take_nearer(surface, x, faces.faces[item], own_vertex, p, nearest);
   }
   return nearest;
 }

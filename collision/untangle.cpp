@@ -140,7 +140,7 @@ void widen(const KeptShape& shape, const std::vector<char>& tangled, const Untan
 
 Points propose(const KeptShape& shape, const Freedom& freedom, std::span<const Separation> separations,
                std::span<const Separation> repulsions, const UntangleOptions& options, const Points& from) {
-  const Stretch range{options.least_stretch, options.largest_stretch};
+  const StretchRange range{options.least_stretch, options.largest_stretch};
   Points x = from;
   for (int i = 0; i < sweeps; ++i) {
     smooth_displacement(shape, freedom.vertices, 0.3, x);
@@ -158,8 +158,8 @@ Points propose(const KeptShape& shape, const Freedom& freedom, std::span<const S
 
 void keep_range(const KeptShape& shape, const Freedom& freedom, const UntangleOptions& options, const Points& before,
                 Points& x) {
-  const Stretch range{options.least_stretch, options.largest_stretch};
-  const Stretch outer{0.97 * range.least, 1.03 * range.largest};
+  const StretchRange range{options.least_stretch, options.largest_stretch};
+  const StretchRange outer{0.97 * range.least, 1.03 * range.largest};
   hold_back(shape, freedom.triangles, outer, before, x);
 }
 
@@ -167,7 +167,6 @@ void keep_range(const KeptShape& shape, const Freedom& freedom, const UntangleOp
 // range. Returns the tangle of x.
 Tangle keep_clean(const KeptShape& shape, const Freedom& freedom, std::span<const SheetView> obstacles,
                   const std::vector<char>& tangled, const UntangleOptions& options, const Points& before, Points& x) {
-  const std::vector<char> allowed = within_rings(shape, tangled, 1);
   const Surface& cloth = *shape.surface;
   std::vector<char> offends(cloth.vertex_count, 0);
   for (int round = 0;; ++round) {
@@ -180,7 +179,7 @@ Tangle keep_clean(const KeptShape& shape, const Freedom& freedom, std::span<cons
       for (int v : cloth.triangles.row(a)) vertices.push_back(v);
       if (sheet == 0)
         for (int v : cloth.triangles.row(b)) vertices.push_back(v);
-      if (std::any_of(vertices.begin(), vertices.end(), [&](int v) { return allowed[v] != 0; })) return;
+      if (std::any_of(vertices.begin(), vertices.end(), [&](int v) { return tangled[v] != 0; })) return;
       for (int v : vertices) {
         clean = clean && x.row(v) == before.row(v);
         offends[v] = 1;
@@ -201,10 +200,10 @@ void relax(const KeptShape& shape, const Freedom& freedom, std::span<const Sheet
   tighter.least_stretch = std::max(options.least_stretch, 0.75);
   tighter.largest_stretch = std::min(options.largest_stretch, 1.35);
   for (int i = 0; i < relaxations; ++i) {
-    const Stretch now = extreme_stretch(shape, x);
+    const StretchRange now = extreme_stretch(shape, x);
     if (now.least >= tighter.least_stretch && now.largest <= tighter.largest_stretch) return;
     const std::vector<Separation> repulsions =
-        repulsion.find(x, none, freedom.reach, options.gap * shape.mean_edge, horizon * shape.mean_edge);
+        repulsion.find(x, none, freedom.reach, options.gap * shape.mean_edge, horizon * shape.mean_edge, false);
     Points next = propose(shape, freedom, {}, repulsions, tighter, x);
     if (!keep_clean(shape, freedom, obstacles, none, options, x, next).clean()) return;
     x = next;
@@ -223,44 +222,41 @@ void measure(const KeptShape& shape, const std::vector<char>& near, UntangleResu
   }
   result.mean_edge = shape.mean_edge;
   if (result.moved > 0) result.mean_move = sum / result.moved;
-  const Stretch stretch = extreme_stretch(shape, result.x);
+  const StretchRange stretch = extreme_stretch(shape, result.x);
   result.least_stretch = stretch.least;
   result.largest_stretch = stretch.largest;
 }
 
-}  // namespace
+struct Attempt {
+  Points x;  // the best that was seen
+  Tangle tangle;
+  Freedom freedom;
+  int iterations = 0;
+};
 
-UntangleResult untangle(const Surface& cloth, const Points& x0, std::span<const SheetView> obstacles,
-                        const UntangleOptions& options) {
-  const KeptShape shape = keep_shape(cloth, x0);
-  Points x = x0;
-  Tangle tangle = find_tangle(with_cloth(cloth, x, obstacles), shape, options.layers);
-  UntangleResult result;
-  result.x = x;
-  result.pairs_before = tangle.pairs;
-  result.vertex_pairs_before = tangle.vertex_pairs;
-  result.length_before = tangle.length;
-  Freedom freedom = make_freedom(shape, tangled_vertices(with_cloth(cloth, x, obstacles), tangle), options);
-  const std::vector<char> near =
-      within_rings(shape, tangled_vertices(with_cloth(cloth, x, obstacles), tangle), options.rings);
-  Repulsion repulsion(cloth, obstacles, shape);
-  Tangle best = tangle;
+// From the input on. wide: nothing at a contour repels anything.
+Attempt attempt(const KeptShape& shape, std::span<const SheetView> obstacles, const Tangle& input, Freedom freedom,
+                bool wide, Repulsion& repulsion, const UntangleOptions& options) {
+  const Surface& cloth = *shape.surface;
+  const double gap = options.gap * shape.mean_edge, reach = horizon * shape.mean_edge;
+  Attempt best{shape.x0, input, {}, 0};
+  Points x = shape.x0;
+  Tangle tangle = input;
   std::deque<double> merits{tangle.merit};
-  int since_best = 0;
-  for (; result.iterations < options.iterations && !tangle.clean() && since_best < patience; ++result.iterations) {
-    if (options.progress) options.progress({result.iterations, tangle.pairs, tangle.length});
+  int iteration = 0;
+  for (int since_best = 0; iteration < options.iterations && !tangle.clean() && since_best < patience; ++iteration) {
+    if (options.progress) options.progress({iteration, tangle.pairs, tangle.length});
     const std::vector<SheetView> sheets = with_cloth(cloth, x, obstacles);
     const std::vector<char> tangled = tangled_vertices(sheets, tangle);
     widen(shape, tangled, options, freedom);
-    const std::vector<Separation> repulsions =
-        repulsion.find(x, tangled, freedom.reach, options.gap * shape.mean_edge, horizon * shape.mean_edge);
+    const std::vector<Separation> repulsions = repulsion.find(x, tangled, freedom.reach, gap, reach, wide);
+    const double bound = *std::max_element(merits.begin(), merits.end());
     double step = options.step * shape.mean_edge;
     Points next;
     Tangle after;
-    const double bound = *std::max_element(merits.begin(), merits.end());
-    for (int attempt = 0; attempt < 3; ++attempt, step *= 0.4) {
+    for (int shorter = 0; shorter < 3; ++shorter, step *= 0.4) {
       const std::vector<Separation> separations =
-          part_contours(sheets, tangle.found, tangle.contours, tangle.regions, {options.gap * shape.mean_edge, step});
+          part_contours(sheets, tangle.found, tangle.contours, tangle.regions, {gap, step});
       next = propose(shape, freedom, separations, repulsions, options, x);
       after = keep_clean(shape, freedom, obstacles, tangled, options, x, next);
       if (after.merit <= bound) break;
@@ -270,21 +266,49 @@ UntangleResult untangle(const Surface& cloth, const Points& x0, std::span<const 
     merits.push_back(tangle.merit);
     if (merits.size() > remembered) merits.pop_front();
     ++since_best;
-    if (tangle.better_than(best)) {
-      best = tangle;
-      result.x = x;
-      since_best = 0;
-    }
+    if (!tangle.better_than(best.tangle)) continue;
+    best.tangle = tangle;
+    best.x = x;
+    since_best = 0;
   }
-  result.pairs_after = best.pairs;
-  result.vertex_pairs_after = best.vertex_pairs;
-  result.length_after = best.length;
-  if (best.clean())
-    relax(shape, freedom, obstacles, repulsion, options, result.x);
+  best.freedom = std::move(freedom);
+  best.iterations = iteration;
+  return best;
+}
+
+}  // namespace
+
+UntangleResult untangle(const Surface& cloth, const Points& x, std::span<const SheetView> obstacles,
+                        const UntangleOptions& options) {
+  const KeptShape shape = keep_shape(cloth, x);
+  const std::vector<SheetView> sheets = with_cloth(cloth, x, obstacles);
+  const Tangle input = find_tangle(sheets, shape, options.layers);
+  const std::vector<char> tangled = tangled_vertices(sheets, input);
+  const Freedom freedom = make_freedom(shape, tangled, options);
+  Repulsion repulsion(cloth, obstacles, shape);
+  // Two opinions of what repulsion keeps apart near a contour: where the one gets stuck the other may not.
+  Attempt best = attempt(shape, obstacles, input, freedom, false, repulsion, options);
+  int iterations = best.iterations;
+  if (!best.tangle.clean()) {
+    Attempt other = attempt(shape, obstacles, input, freedom, true, repulsion, options);
+    iterations += other.iterations;
+    if (other.tangle.better_than(best.tangle)) best = std::move(other);
+  }
+  UntangleResult result;
+  result.iterations = iterations;
+  if (best.tangle.clean())
+    relax(shape, best.freedom, obstacles, repulsion, options, best.x);
   else
-    result.left = explain_remainders(with_cloth(cloth, result.x, obstacles), best.found, best.contours, shape,
-                                     freedom.reach, {options.least_stretch, options.largest_stretch});
-  measure(shape, near, result);
+    result.left = explain_remainders(with_cloth(cloth, best.x, obstacles), best.tangle.found, best.tangle.contours,
+                                     shape, best.freedom.reach, {options.least_stretch, options.largest_stretch});
+  result.x = std::move(best.x);
+  result.pairs_before = input.pairs;
+  result.vertex_pairs_before = input.vertex_pairs;
+  result.length_before = input.length;
+  result.pairs_after = best.tangle.pairs;
+  result.vertex_pairs_after = best.tangle.vertex_pairs;
+  result.length_after = best.tangle.length;
+  measure(shape, within_rings(shape, tangled, options.rings), result);
   return result;
 }
 

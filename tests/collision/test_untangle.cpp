@@ -70,7 +70,7 @@ Outcome untangled(const testing::Sheet& mesh, const UntangleOptions& options = {
   CHECK(out.audited.intersecting_pairs() == out.result.pairs_after);
   CHECK(static_cast<int>(out.audited.vertex_pairs.size()) == out.result.vertex_pairs_after);
   CHECK(audit(out.surface, mesh.x, {}).intersecting_pairs() == out.result.pairs_before);
-  const Stretch stretch = extreme_stretch(keep_shape(out.surface, mesh.x), out.result.x);
+  const StretchRange stretch = extreme_stretch(keep_shape(out.surface, mesh.x), out.result.x);
   CHECK(stretch.least > 0.5);
   CHECK(stretch.largest < 2);
   CHECK(stretch.least == out.result.least_stretch);
