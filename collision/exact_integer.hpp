@@ -5,8 +5,9 @@
 
 namespace selvedge {
 
-// Signed integer wide enough for the product of three differences of any finite doubles on a common power of two:
-// 3 * (2098 + 1) bits. Lives on the stack and touches only the limbs that it uses.
+// Signed integer wide enough for the product of three differences of any finite doubles on a common power of two, each
+// interpolated between two with a weight of 53 and one of 40 bits: sums of a few with 3 * (2098 + 1 + 93 + 2) bits.
+// Lives on the stack and touches only the limbs that it uses.
 class ExactInteger {
  public:
   ExactInteger() : size_(0), negative_(false) {}
@@ -22,7 +23,7 @@ class ExactInteger {
   friend ExactInteger operator*(const ExactInteger& a, const ExactInteger& b);
 
  private:
-  static constexpr int capacity = 100;
+  static constexpr int capacity = 110;
   struct Uninitialised {
     std::uint64_t at[capacity];
     // Constructed empty on purpose: clearing 800 bytes would cost more than the sums do.

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "collision/error.hpp"
+#include "pipeline/ccd_report.hpp"
 #include "pipeline/info.hpp"
 #include "pipeline/interrupt.hpp"
 #include "pipeline/make_stepper.hpp"
@@ -102,6 +103,13 @@ int untangle_command(const UntangleRequest& request, bool json) {
   if (terminal) std::cerr << "\r\033[K" << std::flush;
   people(json) << untangle_text(report);
   if (json) std::cout << untangle_json(report);
+  return is_clean(report) ? 0 : 1;
+}
+
+int ccd_command(const CcdArguments& arguments, bool json) {
+  const CcdReport report = ccd_report(arguments.files);
+  people(json) << ccd_text(report);
+  if (json) std::cout << ccd_json(report);
   return is_clean(report) ? 0 : 1;
 }
 

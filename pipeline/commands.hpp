@@ -35,10 +35,15 @@ struct ViewArguments {
   std::filesystem::path out = "view.html";
 };
 
+struct CcdArguments {
+  std::vector<std::filesystem::path> files;
+};
+
 int simulate_command(const SimulateArguments&, bool json);
 int plan_command(const SceneArguments&, bool json);
 int check_command(const CheckRequest&, bool json);
 int untangle_command(const UntangleRequest&, bool json);
+int ccd_command(const CcdArguments&, bool json);
 int export_command(const ExportRequest&, bool json);
 int view_command(const ViewArguments&, bool json);
 int bench_command(const BenchRequest&, bool json);

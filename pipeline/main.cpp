@@ -61,6 +61,12 @@ void untangle_options(CLI::App& command, UntangleRequest& request) {
   command.add_option("--iterations", request.iterations, "at most")->check(CLI::PositiveNumber);
 }
 
+void ccd_options(CLI::App& command, CcdArguments& arguments) {
+  command
+      .add_option("files", arguments.files, "queries with known answers (.csv), in folders edge-edge or vertex-face")
+      ->required();
+}
+
 void export_options(CLI::App& command, ExportRequest& request) {
   command.add_option("trajectory", request.trajectory, "run.h5")->required();
   command.add_option("--format", request.format, "obj, ply, pc2 or xdmf");
@@ -100,6 +106,8 @@ void add_commands(CLI::App& app, Chosen& chosen) {
   add_command<CheckRequest>(app, chosen, "check", "audit a mesh or a trajectory", check_options, check_command);
   add_command<UntangleRequest>(app, chosen, "untangle", "part a cloth from itself and from bodies", untangle_options,
                                untangle_command);
+  add_command<CcdArguments>(app, chosen, "ccd", "continuous detection against queries with known answers", ccd_options,
+                            ccd_command);
   add_command<ExportRequest>(app, chosen, "export", "a trajectory as meshes or point caches", export_options,
                              export_command);
   add_command<ViewArguments>(app, chosen, "view", "one page that plays trajectories in a browser", view_options,

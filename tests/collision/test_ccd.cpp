@@ -1,15 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iostream>
 #include <limits>
 #include <random>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "collision/ccd.hpp"
 #include "collision/distance.hpp"
@@ -44,72 +37,9 @@ Four shifted(const Four& x, const Vec3& by) {
   return moved;
 }
 
-struct Query {
-  Four x0, x1;
-  bool hit;
-};
-
-std::vector<Query> read_queries(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::vector<Vec3> rows;
-  std::vector<bool> truths;
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream fields(line);
-    std::array<double, 7> value;
-    for (double& v : value) {
-      std::string field;
-      std::getline(fields, field, ',');
-      v = std::stod(field);
-    }
-    rows.emplace_back(value[0] / value[1], value[2] / value[3], value[4] / value[5]);
-    truths.push_back(value[6] != 0);
-  }
-  std::vector<Query> queries;
-  for (std::size_t r = 0; r + 8 <= rows.size(); r += 8)
-    queries.push_back({{rows[r], rows[r + 1], rows[r + 2], rows[r + 3]},
-                       {rows[r + 4], rows[r + 5], rows[r + 6], rows[r + 7]},
-                       truths[r]});
-  return queries;
-}
-
-std::filesystem::path data_folder() {
-  const char* set = std::getenv("SELVEDGE_DATA");
-  return set ? std::filesystem::path(set) : std::filesystem::path(SELVEDGE_SOURCE_DIR) / ".." / "shared" / "data";
-}
-
 constexpr PairKind both[] = {PairKind::vertex_face, PairKind::edge_edge};
 
 }  // namespace
-
-TEST_CASE("ccd: no false negative on queries with exact truth", "[ccd][data]") {
-  const std::filesystem::path folder = data_folder() / "ccd";
-  if (!std::filesystem::exists(folder)) {
-    std::cout << "skipped: no exact-truth queries in " << folder << " (set SELVEDGE_DATA)\n";
-    return;
-  }
-  int queries = 0, hits = 0, missed = 0, spurious = 0;
-  double farthest = 0;  // distance where a contact was reported
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-    if (entry.path().extension() != ".csv") continue;
-    const bool edges = entry.path().parent_path().filename() == "edge-edge";
-    for (const Query& query : read_queries(entry.path())) {
-      const PairKind kind = edges ? PairKind::edge_edge : PairKind::vertex_face;
-      const auto found = time_of_contact(kind, query.x0, query.x1, 0);
-      if (found) farthest = std::max(farthest, distance(kind, between(query.x0, query.x1, *found)));
-      ++queries;
-      hits += query.hit;
-      missed += query.hit && !found;
-      spurious += found && !query.hit;
-    }
-  }
-  INFO(queries << " queries, " << hits << " hits, " << spurious << " false positives");
-  CHECK(queries > 1000);
-  CHECK(hits > 0);
-  CHECK(missed == 0);
-  // These sets graze on purpose: what is reported without truth comes within rounding of contact.
-  CHECK(spurious < queries / 10);
-  CHECK(farthest < 2e-8);
-}
 
 TEST_CASE("ccd: never late and rarely early on random motions, from 1e-3 to 1e3", "[ccd]") {
   std::mt19937 random(1);

@@ -113,8 +113,8 @@ TEST_CASE("bad input ends with status 2 and says what, where and the cure") {
   const fake::Folder folder("main_bad");
   write_scene(folder);
   const std::string scene = (folder.path / "scene.yaml").string();
-  for (const std::string arguments :
-       {"simulate absent.yaml", "check absent.obj", "check absent.h5", "export absent.h5", "view absent.h5"}) {
+  for (const std::string arguments : {"simulate absent.yaml", "check absent.obj", "check absent.h5", "export absent.h5",
+                                      "view absent.h5", "ccd absent.csv"}) {
     const Ended outcome = selvedge_program(folder, arguments);
     INFO(arguments << "\n" << outcome.err);
     REQUIRE(outcome.status == 2);
@@ -130,6 +130,26 @@ TEST_CASE("bad input ends with status 2 and says what, where and the cure") {
   REQUIRE(selvedge_program(folder, "--help").status == 0);
   REQUIRE(selvedge_program(folder, "simulate " + scene + " --resume --out " + (folder.path / "new").string()).status ==
           2);
+}
+
+TEST_CASE("a denied contact ends with status 1") {
+  const fake::Folder folder("main_ccd");
+  std::filesystem::create_directories(folder.path / "edge-edge");
+  const std::string file = (folder.path / "edge-edge" / "queries.csv").string();
+  const auto status = [&](const char* truth) {
+    std::ofstream out(file);
+    for (const char* node : {"-1,1,1,1,0,1", "1,1,1,1,0,1", "0,1,0,1,-1,1", "0,1,0,1,1,1",  //
+                             "-1,1,1,2,0,1", "1,1,1,2,0,1", "0,1,0,1,-1,1", "0,1,0,1,1,1"})
+      out << node << "," << truth << "\n";
+    out.close();
+    const Ended outcome = selvedge_program(folder, "ccd --json " + file);
+    INFO(outcome.err);
+    REQUIRE(nlohmann::json::parse(outcome.out)["queries"] == 1);
+    REQUIRE(nlohmann::json::parse(outcome.out)["false_negatives"] == outcome.status);
+    return outcome.status;
+  };
+  REQUIRE(status("0") == 0);
+  REQUIRE(status("1") == 1);
 }
 
 TEST_CASE("a dirty mesh ends with status 1") {
