@@ -21,6 +21,7 @@ constexpr double friction_roughness = 0.2;  // of a solve with friction: stickin
 constexpr int halvings = 2;                 // of a substep whose zones do not settle, before the last resort
 constexpr double recovery_speed = 1;        // at most, of a vertex that starts tangled [m/s]
 constexpr double rounding = 1e-14;          // of positions that are added up over substeps
+constexpr int pinched_rounds = 4;           // of zones in a step that starts with obstacles that lag
 constexpr int hopeful_rounds = 12;          // of zones in a substep that may still be halved
 
 std::vector<const Surface*> surfaces(const std::vector<Obstacle>& obstacles) {
@@ -106,7 +107,8 @@ class ConventionalStepper final : public Stepper {
   StepperTraits traits_{"conventional"};
   PathPairs path_;  // pairs near the current positions
   SelfCrossings self_crossings_;
-  Exemption exemption_;  // of this step
+  bool pinched_ = false;  // this step started with obstacles that lag
+  Exemption exemption_;   // of this step
 };
 
 // As many as keep every vertex's motion in a substep within a few mesh edges, and at least two: implicit Euler at 1/30
@@ -183,6 +185,7 @@ ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const 
   ResolveOptions options = contact_;
   options.last_resort = last_resort;
   if (!last_resort) options.zone_rounds = hopeful_rounds;
+  if (pinched_) options.zone_rounds = pinched_rounds;
   const ResolveReport resolved = resolve(search_, world_, inverse_mass_, options, nodes0, nodes1, path_);
   add(resolved, report);
   if (!nodes1.allFinite()) return Outcome::not_finite;
@@ -279,6 +282,7 @@ void ConventionalStepper::prepare_contact(const State& from, double dt, const Po
                                           StepReport& report) {
   Stopwatch watch;
   const bool exempt = exemption_.any();
+  pinched_ = from.pinched;
   exemption_ = {};
   if (!from.clean && nodes.allFinite()) exemption_ = recover(world_, inverse_mass_, recovery_speed * dt, nodes);
   for (int v = 0; v < scene_.surface.vertex_count; ++v)

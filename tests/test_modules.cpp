@@ -218,7 +218,7 @@ TEST_CASE("modules: what the documents name exists", "[modules]") {
 
 TEST_CASE("modules: headers do not define two types of one name", "[modules]") {
   // All are in one namespace; two layouts under one name would be merged by the linker without a word.
-  static const std::regex definition(R"((^|\n)(struct|class|enum class) (\w+)[^;{]*\{)");
+  static const std::regex definition(R"((^|\n)(struct|class|enum class) (\w+)[^;{<]*\{)");
   std::map<std::string, std::string> where;
   for (const std::string& folder : chain)
     for (const auto& [file, text] : texts(folder, {".hpp"}))
