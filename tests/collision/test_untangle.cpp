@@ -126,6 +126,16 @@ TEST_CASE("untangle: tube through tube, all the way round", "[untangle]") {
   check_clean(untangled(testing::join(tube(20, 40, 0, band), tube(20, 40, 0.37, [](double, double) { return 0.32; }))));
 }
 
+TEST_CASE("untangle: tubes that lean into each other part without falling into each other again", "[untangle]") {
+  const auto round = [](double, double) { return 0.2; };
+  testing::Sheet across = tube(30, 28, 0.1, round);
+  for (int v = 0; v < across.x.rows(); ++v) {
+    const Vec3 p = row(across.x, v);
+    across.x.row(v) << p.y() + 0.01, p.x() + 0.02, p.z() + 0.25;
+  }
+  check_clean(untangled(testing::join(tube(30, 28, 0, round), across)));
+}
+
 TEST_CASE("untangle: the order of layers decides where most of a layer is through", "[untangle]") {
   // 70 % of the inner tube is outside: without a hint the rest follows it, with one it comes back.
   const auto wide = [](double x, double) { return x > -0.2 ? 0.335 : 0.305; };
