@@ -6,6 +6,7 @@
 
 #include "collision/bisection.hpp"
 #include "collision/distance.hpp"
+#include "collision/floating_point.hpp"
 #include "collision/inside.hpp"
 #include "collision/intersect.hpp"
 
@@ -154,6 +155,7 @@ double gap_in_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, doub
 }  // namespace
 
 Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, bool self) {
+  restore_standard_arithmetic();
   const Soup mine = soup_of(cloth, x, 0), others = soup_of(obstacles, 0);
   const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, self);
   const int count = static_cast<int>(cells.size());

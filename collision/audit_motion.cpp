@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "collision/bisection.hpp"
+#include "collision/floating_point.hpp"
 #include "collision/moving_pair.hpp"
 
 namespace selvedge {
@@ -147,6 +148,7 @@ void audit_cell(const Cell& cell, const Side& cloth, const Side& bodies, bool se
 
 MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x1, std::span<const MovingBody> bodies,
                          bool self, int max_halvings) {
+  restore_standard_arithmetic();
   MotionAudit result;
   Side mine, others;
   result.nonfinite = add({&cloth, &x0, &x1}, 0, mine);

@@ -5,6 +5,7 @@
 #include <deque>
 #include <limits>
 
+#include "collision/floating_point.hpp"
 #include "collision/kept_shape.hpp"
 #include "collision/repulsion.hpp"
 #include "collision/separation.hpp"
@@ -280,6 +281,7 @@ Attempt attempt(const KeptShape& shape, std::span<const SheetView> obstacles, co
 
 UntangleResult untangle(const Surface& cloth, const Points& x, std::span<const SheetView> obstacles,
                         const UntangleOptions& options) {
+  restore_standard_arithmetic();
   const KeptShape shape = keep_shape(cloth, x);
   const std::vector<SheetView> sheets = with_cloth(cloth, x, obstacles);
   const Tangle input = find_tangle(sheets, shape, options.layers);

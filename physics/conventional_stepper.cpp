@@ -5,6 +5,7 @@
 
 #include "collision/audit.hpp"
 #include "collision/audit_motion.hpp"
+#include "collision/floating_point.hpp"
 #include "collision/penetration_depth.hpp"
 #include "collision/resolve.hpp"
 #include "collision/stopwatch.hpp"
@@ -297,6 +298,7 @@ void ConventionalStepper::prepare_contact(const State& from, double dt, const Po
 }
 
 StepReport ConventionalStepper::step(const State& from, const Drive& drive, double dt, State& to) {
+  restore_standard_arithmetic();
   StepReport report;
   report.by = traits_.name;
   const int n = scene_.surface.vertex_count, planned = substeps_for(from, drive, dt);
