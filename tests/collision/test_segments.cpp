@@ -34,8 +34,10 @@ int reference_side(const std::array<Whole, 4>& p, const std::array<int, 4>& rank
       int bits = 0;
       for (int i = 0; i < 4; ++i) {
         if (moved >> i & 1) {
-          if (column[i] == 3) product = 0;
-          bits |= 1 << (3 * place[i] + 2 - column[i]);
+          if (column[i] == 3)
+            product = 0;
+          else
+            bits |= 1 << (3 * place[i] + 2 - column[i]);
         } else {
           product *= column[i] == 3 ? 1 : p[i][column[i]];
         }
