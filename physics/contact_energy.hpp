@@ -16,6 +16,7 @@ struct ContactTerm {
   double target = 0;          // gap at which the force vanishes [m]
   double softness = 0;        // width of the cubic onset [m]
   double stiffness = 0;       // [N/m]
+  double sink = 0;            // how far below its target a load may press the gap [m]
   double friction = 0;        // coefficient
   double normal_force = 0;    // lagged, for the friction bound [N]
   Vec3 drift = Vec3::Zero();  // displacement of the obstacle part: sum over obstacle nodes of weight * motion [m]

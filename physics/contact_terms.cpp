@@ -1,6 +1,7 @@
 #include "physics/contact_terms.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace selvedge {
 namespace {
@@ -8,6 +9,9 @@ namespace {
 constexpr double contact_stiffness = 200;  // times mass / h^2
 constexpr double overlap_removed = 0.1;    // of the overlap, at most, a step
 constexpr double onset = 0.02;             // width of the smooth onset, of the thickness
+constexpr double least_sink = 0.01;        // of the thickness, a step, under load
+constexpr double impact_sink = 0.25;       // of the gap at which an impact is stopped
+constexpr double most_stiffer = 100;       // times, from one solve to the next
 
 double compliance(const ContactTerm& term, const Eigen::VectorXd& inverse_mass) {
   double sum = 0;
@@ -42,40 +46,99 @@ bool linearise(const Scene& scene, const ContactWorld& world, const NodePair& pa
 
 }  // namespace
 
-std::vector<ContactTerm> contact_terms(const Scene& scene, const ContactWorld& world,
-                                       std::span<const Proximity> proximities, const Eigen::VectorXd& inverse_mass,
-                                       const Points& nodes0, const Points& nodes1, double h) {
-  std::vector<ContactTerm> terms;
-  terms.reserve(proximities.size());
+Contacts contact_terms(const Scene& scene, const ContactWorld& world, std::span<const Proximity> proximities,
+                       const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1, double h) {
+  Contacts contacts;
   for (const Proximity& p : proximities) {
+    const double lift = overlap_removed * (p.rest_gap - p.gap);
     ContactTerm term;
     term.normal = p.normal;
-    term.target = p.gap + overlap_removed * (p.rest_gap - p.gap);
+    term.target = p.gap + lift;
     term.softness = onset * p.rest_gap;
-    if (linearise(scene, world, p.pair, p.weights, inverse_mass, nodes0, nodes1, h, term)) terms.push_back(term);
+    // Loaded cloth comes to rest where it sinks by as much as it is lifted: at half the rest gap.
+    term.sink = std::max(overlap_removed * p.gap, least_sink * p.rest_gap);
+    if (!linearise(scene, world, p.pair, p.weights, inverse_mass, nodes0, nodes1, h, term)) continue;
+    contacts.pairs.push_back(p.pair);
+    contacts.terms.push_back(term);
   }
-  return terms;
+  return contacts;
 }
 
 void add_impact_terms(const Scene& scene, const ContactWorld& world, std::span<const Impact> impacts,
-                      std::span<const Proximity> owned, const Eigen::VectorXd& inverse_mass, const Points& nodes0,
-                      const Points& nodes1, double h, std::vector<ContactTerm>& terms) {
-  std::vector<NodePair> pairs;
-  for (const Proximity& p : owned) pairs.push_back(p.pair);
-  std::sort(pairs.begin(), pairs.end());
+                      const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1, double h,
+                      double deep, Contacts& contacts) {
+  std::vector<std::pair<NodePair, std::size_t>> owned;
+  for (std::size_t k = 0; k < contacts.pairs.size(); ++k) owned.emplace_back(contacts.pairs[k], k);
+  std::sort(owned.begin(), owned.end());
   for (const Impact& impact : impacts) {
-    if (std::binary_search(pairs.begin(), pairs.end(), impact.pair)) continue;
+    const bool is_deep = impact.target - impact_gap(impact, nodes1) > deep;
+    const auto owner = std::lower_bound(owned.begin(), owned.end(), std::pair(impact.pair, std::size_t{0}));
+    const bool has_term = owner != owned.end() && owner->first == impact.pair;
+    if (has_term && !is_deep) continue;
     ContactTerm term;
     term.normal = impact.normal;
     term.target = std::clamp(impact_gap(impact, nodes0), 0.0, 0.5 * scene.contact.thickness);
     term.softness = onset * scene.contact.thickness;
-    if (linearise(scene, world, impact.pair, impact.weights, inverse_mass, nodes0, nodes1, h, term))
-      terms.push_back(term);
+    term.sink = std::max(impact_sink * term.target, least_sink * scene.contact.thickness);
+    if (!linearise(scene, world, impact.pair, impact.weights, inverse_mass, nodes0, nodes1, h, term)) continue;
+    if (has_term) {
+      term.stiffness = std::max(term.stiffness, contacts.terms[owner->second].stiffness);
+      contacts.terms[owner->second] = term;
+    } else {
+      contacts.pairs.push_back(impact.pair);
+      contacts.terms.push_back(term);
+    }
   }
 }
 
-void lag_normal_forces(std::vector<ContactTerm>& terms, const Points& x) {
-  for (ContactTerm& term : terms) term.normal_force = -contact_force(term, contact_gap(term, x)).first;
+double lag_normal_forces(std::vector<ContactTerm>& terms, const Points& x) {
+  double sum = 0, before = 0;
+  for (ContactTerm& term : terms) {
+    before += term.friction * term.normal_force;
+    term.normal_force = -contact_force(term, contact_gap(term, x)).first;
+    sum += term.friction * term.normal_force;
+  }
+  return sum > 0 ? std::abs(sum - before) / sum : 0;
+}
+
+void follow(const Scene& scene, const ContactWorld& world, const Eigen::VectorXd& inverse_mass, const Points& nodes0,
+            const Points& nodes1, double h, Contacts& contacts) {
+  constexpr double same_side = 0.7;  // cosine
+  for (std::size_t k = 0; k < contacts.terms.size(); ++k) {
+    const NodePair& pair = contacts.pairs[k];
+    const ContactTerm& old = contacts.terms[k];
+    const Closest now = closest(pair, nodes1);
+    Vec3 between = Vec3::Zero();
+    for (int i = 0; i < 4; ++i) between += now.weights[i] * row(nodes1, pair.nodes[i]);
+    if (between.dot(old.normal) <= same_side * between.norm()) continue;
+    ContactTerm term;
+    term.normal = between.normalized();
+    term.target = old.target;
+    term.softness = old.softness;
+    term.sink = old.sink;
+    if (!linearise(scene, world, pair, now.weights, inverse_mass, nodes0, nodes1, h, term)) continue;
+    term.stiffness = old.stiffness;
+    term.normal_force = old.normal_force;
+    contacts.terms[k] = term;
+  }
+}
+
+void bear(std::vector<ContactTerm>& terms, const Eigen::VectorXd& inverse_mass, const Points& forces) {
+  for (ContactTerm& term : terms) {
+    double approach = 0;  // acceleration
+    for (int i = 0; i < 4; ++i)
+      if (term.nodes[i] >= 0)
+        approach -= term.weights[i] * inverse_mass[term.nodes[i]] * term.normal.dot(row(forces, term.nodes[i]));
+    const double load = approach / compliance(term, inverse_mass);
+    term.stiffness = std::max(term.stiffness, load / term.sink);
+  }
+}
+
+void stiffen(std::vector<ContactTerm>& terms, const Points& x) {
+  for (ContactTerm& term : terms) {
+    const double sunk = term.target - contact_gap(term, x) - 0.5 * term.softness;
+    if (sunk > term.sink) term.stiffness *= std::min(most_stiffer, sunk / term.sink);
+  }
 }
 
 void stick(std::span<const ContactTerm> terms, const Eigen::VectorXd& inverse_mass, const Points& x0, double h,

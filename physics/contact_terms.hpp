@@ -9,24 +9,43 @@
 
 namespace selvedge {
 
+// Contacts of a step, each with the pair that owns it.
+struct Contacts {
+  std::vector<NodePair> pairs;
+  std::vector<ContactTerm> terms;
+};
+
 // The proximities of a step as terms of its incremental potential. nodes0, nodes1: all nodes at the step's start, and
-// with obstacles where they end. A pair's stiffness is `contact_stiffness` times its mass over h^2, which makes a
-// layer's own weight sink it by the same small fraction of g h^2 at any density, scale or time step; its force vanishes
-// where a tenth of the overlap is gone, so that no pair is thrown apart (Bridson, Fedkiw and Anderson 2002,
+// with obstacles where they end. A pair's stiffness begins with `contact_stiffness` times its mass over h^2, which
+// makes a layer's own weight sink it by the same small fraction of g h^2 at any density, scale or time step; its force
+// vanishes where a tenth of the overlap is gone, so that no pair is thrown apart (Bridson, Fedkiw and Anderson 2002,
 // section 7.2).
-std::vector<ContactTerm> contact_terms(const Scene&, const ContactWorld&, std::span<const Proximity>,
-                                       const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1,
-                                       double h);
+Contacts contact_terms(const Scene&, const ContactWorld&, std::span<const Proximity>,
+                       const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1, double h);
 
-// Impacts that a first solve would run into, as terms of a second one, so that the whole cloth gives way and not the
-// four vertices alone. They stop half the thickness away, or where they are if that is nearer. Pairs that `terms` holds
-// already keep their one owner.
-void add_impact_terms(const Scene&, const ContactWorld&, std::span<const Impact>, std::span<const Proximity> owned,
-                      const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1, double h,
-                      std::vector<ContactTerm>& terms);
+// Impacts that a solve has run into, as terms of the next one, so that the whole cloth gives way and not the four
+// vertices alone. They stop half the thickness away, or where they are if that is nearer. A pair that has a term keeps
+// it, but is linearised anew where its impact is deeper than `deep` [m].
+void add_impact_terms(const Scene&, const ContactWorld&, std::span<const Impact>, const Eigen::VectorXd& inverse_mass,
+                      const Points& nodes0, const Points& nodes1, double h, double deep, Contacts&);
 
-// Sets the normal forces that bound friction from the gaps at x [N].
-void lag_normal_forces(std::vector<ContactTerm>&, const Points& x);
+// Sets the normal forces that bound friction from the gaps at x [N]. Returns by how much of it their sum has changed,
+// each times its friction.
+double lag_normal_forces(std::vector<ContactTerm>&, const Points& x);
+
+// Linearises terms anew at the ends nodes1 that a solve has found, so that forces act where the step ends, as implicit
+// Euler has it: with those of the start, sliding round a bend is braked. Pairs that have changed sides stay as they
+// are.
+void follow(const Scene&, const ContactWorld&, const Eigen::VectorXd& inverse_mass, const Points& nodes0,
+            const Points& nodes1, double h, Contacts&);
+
+// Makes terms as stiff as they must be to bear the forces on the cloth's vertices [N] without sinking more than they
+// may.
+void bear(std::vector<ContactTerm>&, const Eigen::VectorXd& inverse_mass, const Points& forces);
+
+// Makes terms that their load has pressed deeper than they may sink as stiff as that load asks for, so that tight cloth
+// is held by the solve and not by impulses.
+void stiffen(std::vector<ContactTerm>&, const Points& x);
 
 // Takes from the pairs' slip what Coulomb friction still allows beyond what the solve has used, all of it where the
 // pair sticks: the lagged potential alone would creep. Moves x, by Gauss-Seidel over the pairs.

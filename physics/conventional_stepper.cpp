@@ -19,6 +19,9 @@ namespace {
 constexpr double edges_a_substep = 2.5;     // how far a vertex may move, in mean edge lengths
 constexpr double first_roughness = 8;       // of the solve that only finds impacts and normal forces
 constexpr double friction_roughness = 0.2;  // of a solve with friction: sticking shows in small velocities
+constexpr int most_passes = 4;              // solves after the first one, as long as they run into deep impacts
+constexpr double normal_change = 0.02;      // of what bounds friction, at most, from the last solve but one
+constexpr double deep_impact = 0.05;        // that a single impulse should not meet, in mean edge lengths
 constexpr int halvings = 2;                 // of a substep whose zones do not settle, before the last resort
 constexpr double recovery_speed = 1;        // at most, of a vertex that starts tangled [m/s]
 constexpr double rounding = 1e-14;          // of positions that are added up over substeps
@@ -134,6 +137,12 @@ void add(const ResolveReport& resolved, StepReport& report) {
   report.seconds.response += resolved.response;
 }
 
+double deepest(std::span<const Impact> impacts, const Points& nodes) {
+  double depth = 0;
+  for (const Impact& impact : impacts) depth = std::max(depth, impact.target - impact_gap(impact, nodes));
+  return depth;
+}
+
 // nodes1 comes with obstacles where they are to end and the cloth at its first guess.
 ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const Points& pins, const Drive& drive,
                                                           double h, bool last_resort, Points& nodes1,
@@ -152,35 +161,34 @@ ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const 
   Stopwatch watch;
   const auto proximities = find_proximities(world_, pairs_within(path_, nodes0, scene_.contact.thickness), nodes0,
                                             scene_.rest, scene_.contact.thickness);
-  std::vector<ContactTerm> terms = contact_terms(scene_, world_, proximities, inverse_mass_, nodes0, nodes1, h);
+  Contacts contacts = contact_terms(scene_, world_, proximities, inverse_mass_, nodes0, nodes1, h);
+  // What each vertex is pulled by where it would go without contact.
+  if (!contacts.terms.empty()) bear(contacts.terms, inverse_mass_, -solver_.gradient(problem, x));
   for (const Proximity& p : proximities) report.collision.min_gap = std::min(report.collision.min_gap, p.gap);
   report.seconds.response += watch.lap();
 
-  // Impacts and the normal forces that bound friction are known after a first, rough solve.
-  problem.contacts = terms;
-  problem.roughness = first_roughness;
-  if (!solve(problem, x, report)) return Outcome::not_finite;
-  nodes1.topRows(n) = x;
-  ResolveReport times;
-  const auto impacts = find_impacts(search_, inverse_mass_, contact_, nodes0, nodes1, path_, times);
-  add(times, report);
-  watch.lap();
-  add_impact_terms(scene_, world_, impacts, proximities, inverse_mass_, nodes0, nodes1, h, terms);
-  report.collision.contacts = static_cast<int>(terms.size());
-  report.seconds.response += watch.lap();
-
-  lag_normal_forces(terms, x);
-  problem.contacts = terms;
-  problem.roughness = 1;
-  if (!solve(problem, x, report)) return Outcome::not_finite;
-  if (features_.friction && !terms.empty()) {
-    lag_normal_forces(terms, x);
-    problem.roughness = friction_roughness;
+  // Impacts, loads and the normal forces that bound friction are known after a first, rough solve.
+  for (int pass = 0;; ++pass) {
+    problem.contacts = contacts.terms;
+    problem.roughness = pass == 0 ? first_roughness : pass == 1 ? 1 : friction_roughness;
     if (!solve(problem, x, report)) return Outcome::not_finite;
+    nodes1.topRows(n) = x;
+    const double change = lag_normal_forces(contacts.terms, x);
+    if (pass == most_passes) break;
+    ResolveReport times;
+    const auto impacts = find_impacts(search_, inverse_mass_, contact_, nodes0, nodes1, path_, times);
+    add(times, report);
+    const bool enough = pass >= (features_.friction && !contacts.terms.empty() ? 2 : 1) && change < normal_change;
+    if (enough && deepest(impacts, nodes1) < deep_impact * edge_length_) break;
+    watch.lap();
+    add_impact_terms(scene_, world_, impacts, inverse_mass_, nodes0, nodes1, h, deep_impact * edge_length_, contacts);
+    stiffen(contacts.terms, x);
+    if (pass == 1) follow(scene_, world_, inverse_mass_, nodes0, nodes1, h, contacts);
+    report.seconds.response += watch.lap();
   }
+  report.collision.contacts = static_cast<int>(contacts.terms.size());
   watch.lap();
-  lag_normal_forces(terms, x);
-  stick(terms, inverse_mass_, x0, h, options_.implicit_euler.slip_speed * h, x);
+  stick(contacts.terms, inverse_mass_, x0, h, options_.implicit_euler.slip_speed * h, x);
   report.seconds.response += watch.lap();
   nodes1.topRows(n) = x;
   ResolveOptions options = contact_;

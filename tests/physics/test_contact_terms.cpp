@@ -27,7 +27,7 @@ struct VertexOnFloor {
   }
   std::vector<ContactTerm> terms(double gap, double rest_gap, double h) const {
     const Proximity p{{PairKind::vertex_face, {0, 1, 2, 3}}, {1, -0.375, -0.25, -0.375}, Vec3::UnitY(), gap, rest_gap};
-    return contact_terms(scene, world, std::vector{p}, inverse_mass, nodes(gap), nodes(gap), h);
+    return contact_terms(scene, world, std::vector{p}, inverse_mass, nodes(gap), nodes(gap), h).terms;
   }
 };
 
@@ -48,7 +48,7 @@ TEST_CASE("contact terms: a moving obstacle carries the gap and the slip with it
   const Proximity p{{PairKind::vertex_face, {0, 1, 2, 3}}, {1, -0.375, -0.25, -0.375}, Vec3::UnitY(), 1e-3, 2e-3};
   Points end = c.nodes(1e-3);
   end.bottomRows(3).rowwise() += Eigen::RowVector3d(0.02, 5e-4, 0);
-  const auto terms = contact_terms(c.scene, c.world, std::vector{p}, c.inverse_mass, c.nodes(1e-3), end, 0.01);
+  const auto terms = contact_terms(c.scene, c.world, std::vector{p}, c.inverse_mass, c.nodes(1e-3), end, 0.01).terms;
   CHECK(contact_gap(terms[0], c.nodes(1e-3)) == Approx(5e-4));
   const Vec3 slip = contact_slip(terms[0], c.nodes(1e-3), c.nodes(1e-3));
   CHECK(slip.x() == Approx(-0.02));
