@@ -124,13 +124,23 @@ void follow(const Scene& scene, const ContactWorld& world, const Eigen::VectorXd
 }
 
 void bear(std::vector<ContactTerm>& terms, const Eigen::VectorXd& inverse_mass, const Points& forces) {
-  for (ContactTerm& term : terms) {
-    double approach = 0;  // acceleration
+  std::vector<double> borne(forces.rows(), 0.0);  // by how many terms, of each vertex
+  for (const ContactTerm& term : terms)
     for (int i = 0; i < 4; ++i)
-      if (term.nodes[i] >= 0)
-        approach -= term.weights[i] * inverse_mass[term.nodes[i]] * term.normal.dot(row(forces, term.nodes[i]));
+      if (term.nodes[i] >= 0) borne[term.nodes[i]] += term.weights[i] * term.weights[i];
+  for (ContactTerm& term : terms) {
+    double approach = 0, alone = 0, shared = 0;  // acceleration; sums of squared weights
+    for (int i = 0; i < 4; ++i) {
+      const int node = term.nodes[i];
+      if (node < 0) continue;
+      const double square = term.weights[i] * term.weights[i];
+      approach -= term.weights[i] * inverse_mass[node] * term.normal.dot(row(forces, node));
+      alone += square;
+      shared += square * borne[node];
+    }
     const double load = approach / compliance(term, inverse_mass);
-    term.stiffness = std::max(term.stiffness, load / term.sink);
+    term.stiffness = std::max(term.stiffness, load * alone / shared / term.sink);
+    term.normal_force = std::max(0.0, load * alone / shared);
   }
 }
 

@@ -19,7 +19,7 @@ namespace {
 constexpr double edges_a_substep = 2.5;     // how far a vertex may move, in mean edge lengths
 constexpr double first_roughness = 8;       // of the solve that only finds impacts and normal forces
 constexpr double friction_roughness = 0.2;  // of a solve with friction: sticking shows in small velocities
-constexpr int most_passes = 4;              // solves after the first one, as long as they run into deep impacts
+constexpr int most_passes = 6;              // solves after the first one, at most
 constexpr double normal_change = 0.02;      // of what bounds friction, at most, from the last solve but one
 constexpr double deep_impact = 0.05;        // that a single impulse should not meet, in mean edge lengths
 constexpr int halvings = 2;                 // of a substep whose zones do not settle, before the last resort
@@ -88,6 +88,8 @@ class ConventionalStepper final : public Stepper {
   bool has_contact() const { return features_.self_contact || features_.obstacles; }
   int substeps_for(const State& from, const Drive& drive, double dt) const;
   bool solve(const StepProblem& problem, Points& x, StepReport& report);
+  bool solve_with_contact(StepProblem& problem, const Points& nodes0, Points& nodes1, Points& x, Contacts& contacts,
+                          StepReport& report);
   enum class Outcome { clean, unsettled, not_finite };
   Outcome substep(const Leg& leg, const Points& pins, const Drive& drive, double h, bool last_resort, Points& nodes1,
                   StepReport& report);
@@ -143,6 +145,31 @@ double deepest(std::span<const Impact> impacts, const Points& nodes) {
   return depth;
 }
 
+// Solves the substep with its contacts, again and again until what it runs into besides them is shallow and friction is
+// bounded by the normal forces that there are. x is the cloth in nodes1. False: not finite.
+bool ConventionalStepper::solve_with_contact(StepProblem& problem, const Points& nodes0, Points& nodes1, Points& x,
+                                             Contacts& contacts, StepReport& report) {
+  const double h = problem.h, deep = deep_impact * edge_length_;
+  for (int pass = 0;; ++pass) {
+    problem.contacts = contacts.terms;
+    problem.roughness = pass == 0 ? first_roughness : pass == 1 ? 1 : friction_roughness;
+    if (!solve(problem, x, report)) return false;
+    nodes1.topRows(x.rows()) = x;
+    const double change = lag_normal_forces(contacts.terms, x);
+    if (pass == most_passes) return true;
+    ResolveReport times;
+    const auto impacts = find_impacts(search_, inverse_mass_, contact_, nodes0, nodes1, path_, times);
+    add(times, report);
+    const int least = features_.friction && !contacts.terms.empty() ? 2 : 1;
+    if (pass >= least && change < normal_change && deepest(impacts, nodes1) < deep) return true;
+    Stopwatch watch;
+    add_impact_terms(scene_, world_, impacts, inverse_mass_, nodes0, nodes1, h, deep, contacts);
+    stiffen(contacts.terms, x);
+    if (pass == least - 1) follow(scene_, world_, inverse_mass_, nodes0, nodes1, h, contacts);
+    report.seconds.response += watch.lap();
+  }
+}
+
 // nodes1 comes with obstacles where they are to end and the cloth at its first guess.
 ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const Points& pins, const Drive& drive,
                                                           double h, bool last_resort, Points& nodes1,
@@ -161,31 +188,12 @@ ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const 
   Stopwatch watch;
   const auto proximities = find_proximities(world_, pairs_within(path_, nodes0, scene_.contact.thickness), nodes0,
                                             scene_.rest, scene_.contact.thickness);
-  Contacts contacts = contact_terms(scene_, world_, proximities, inverse_mass_, nodes0, nodes1, h);
-  // What each vertex is pulled by where it would go without contact.
-  if (!contacts.terms.empty()) bear(contacts.terms, inverse_mass_, -solver_.gradient(problem, x));
   for (const Proximity& p : proximities) report.collision.min_gap = std::min(report.collision.min_gap, p.gap);
+  Contacts contacts = contact_terms(scene_, world_, proximities, inverse_mass_, nodes0, nodes1, h);
+  // The load of a contact is what pulls at it where the cloth would go without any.
+  if (!contacts.terms.empty()) bear(contacts.terms, inverse_mass_, -solver_.gradient(problem, x));
   report.seconds.response += watch.lap();
-
-  // Impacts, loads and the normal forces that bound friction are known after a first, rough solve.
-  for (int pass = 0;; ++pass) {
-    problem.contacts = contacts.terms;
-    problem.roughness = pass == 0 ? first_roughness : pass == 1 ? 1 : friction_roughness;
-    if (!solve(problem, x, report)) return Outcome::not_finite;
-    nodes1.topRows(n) = x;
-    const double change = lag_normal_forces(contacts.terms, x);
-    if (pass == most_passes) break;
-    ResolveReport times;
-    const auto impacts = find_impacts(search_, inverse_mass_, contact_, nodes0, nodes1, path_, times);
-    add(times, report);
-    const bool enough = pass >= (features_.friction && !contacts.terms.empty() ? 2 : 1) && change < normal_change;
-    if (enough && deepest(impacts, nodes1) < deep_impact * edge_length_) break;
-    watch.lap();
-    add_impact_terms(scene_, world_, impacts, inverse_mass_, nodes0, nodes1, h, deep_impact * edge_length_, contacts);
-    stiffen(contacts.terms, x);
-    if (pass == 1) follow(scene_, world_, inverse_mass_, nodes0, nodes1, h, contacts);
-    report.seconds.response += watch.lap();
-  }
+  if (!solve_with_contact(problem, nodes0, nodes1, x, contacts, report)) return Outcome::not_finite;
   report.collision.contacts = static_cast<int>(contacts.terms.size());
   watch.lap();
   stick(contacts.terms, inverse_mass_, x0, h, options_.implicit_euler.slip_speed * h, x);

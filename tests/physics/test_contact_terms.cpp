@@ -79,3 +79,68 @@ TEST_CASE("contact terms: what friction allows beyond the solve stops the slip, 
     CHECK(allowed > 0.5e-5);
   }
 }
+
+TEST_CASE("contact terms: a load is borne without sinking more than allowed", "[contact_terms]") {
+  const VertexOnFloor c;
+  auto terms = c.terms(1e-3, 2e-3, 0.01);
+  const double unloaded = terms[0].stiffness;
+  Points forces = Points::Zero(1, 3);
+  forces(0, 1) = 5;
+  bear(terms, c.inverse_mass, forces);
+  CHECK(terms[0].stiffness == unloaded);  // pulled away
+  forces(0, 1) = -5;
+  bear(terms, c.inverse_mass, forces);
+  CHECK(terms[0].stiffness == Approx(5 / terms[0].sink));
+  CHECK(-contact_force(terms[0], terms[0].target - terms[0].sink).first == Approx(5).epsilon(0.25));  // less the onset
+}
+
+TEST_CASE("contact terms: one that was pressed too deep is stiffened, and not beyond reason", "[contact_terms]") {
+  const VertexOnFloor c;
+  auto terms = c.terms(1e-3, 2e-3, 0.01);
+  const double before = terms[0].stiffness;
+  stiffen(terms, c.nodes(1.09e-3));
+  CHECK(terms[0].stiffness == before);
+  const double deep = terms[0].target - 4 * terms[0].sink - 0.5 * terms[0].softness;
+  stiffen(terms, c.nodes(deep));
+  CHECK(terms[0].stiffness == Approx(4 * before));
+  stiffen(terms, c.nodes(-1e3));
+  CHECK(terms[0].stiffness == Approx(400 * before));
+}
+
+TEST_CASE("contact terms: they follow a pair to where its step ends, unless it has changed sides", "[contact_terms]") {
+  const VertexOnFloor c;
+  const Proximity p{{PairKind::vertex_face, {0, 1, 2, 3}}, {1, -0.375, -0.25, -0.375}, Vec3::UnitY(), 1e-3, 2e-3};
+  auto contacts = contact_terms(c.scene, c.world, std::vector{p}, c.inverse_mass, c.nodes(1e-3), c.nodes(1e-3), 0.01);
+  Points end = c.nodes(1.5e-3);
+  end(0, 0) = 0.2;
+  end.bottomRows(3).rowwise() += Eigen::RowVector3d(0, 2e-4, 0);
+  contacts.terms[0].stiffness = 77;
+  follow(c.scene, c.world, c.inverse_mass, c.nodes(1e-3), end, 0.01, contacts);
+  CHECK(contact_gap(contacts.terms[0], end) == Approx(1.3e-3));
+  CHECK(contacts.terms[0].stiffness == 77);
+  CHECK(contact_slip(contacts.terms[0], c.nodes(1e-3), end).x() == Approx(0.2));
+  const double offset = contacts.terms[0].offset;
+  end(0, 1) = -1e-3;
+  follow(c.scene, c.world, c.inverse_mass, c.nodes(1e-3), end, 0.01, contacts);
+  CHECK(contacts.terms[0].offset == offset);
+}
+
+TEST_CASE("contact terms: an impact makes a term; a deep one of a pair that has a term makes it anew",
+          "[contact_terms]") {
+  const VertexOnFloor c;
+  const Points start = c.nodes(3e-3);
+  Impact impact{{PairKind::vertex_face, {0, 1, 2, 3}}, {1, -0.375, -0.25, -0.375}, Vec3::UnitY()};
+  impact.target = 4e-4;
+  Contacts contacts;
+  add_impact_terms(c.scene, c.world, std::vector{impact}, c.inverse_mass, start, c.nodes(0), 0.01, 1e-3, contacts);
+  REQUIRE(contacts.terms.size() == 1);
+  CHECK(contacts.terms[0].target == Approx(0.5 * c.scene.contact.thickness));
+  impact.normal = Vec3(0.6, 0.8, 0);
+  add_impact_terms(c.scene, c.world, std::vector{impact}, c.inverse_mass, start, c.nodes(0), 0.01, 1e-3, contacts);
+  CHECK(contacts.terms[0].normal == Vec3::UnitY());  // 0.4 mm deep
+  contacts.terms[0].stiffness = 1e6;
+  add_impact_terms(c.scene, c.world, std::vector{impact}, c.inverse_mass, start, c.nodes(-1e-3), 0.01, 1e-3, contacts);
+  REQUIRE(contacts.terms.size() == 1);
+  CHECK(contacts.terms[0].normal == impact.normal);
+  CHECK(contacts.terms[0].stiffness == 1e6);
+}
