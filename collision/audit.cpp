@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "collision/audit_pair.hpp"
 #include "collision/bisection.hpp"
 #include "collision/distance.hpp"
 #include "collision/floating_point.hpp"
 #include "collision/inside.hpp"
-#include "collision/intersect.hpp"
 
 namespace selvedge {
 namespace {

@@ -5,7 +5,8 @@
 #include <random>
 #include <set>
 
-#include "collision/intersect.hpp"
+#include "collision/audit_pair.hpp"
+#include "collision/orientation.hpp"
 #include "collision/quiet.hpp"
 #include "tests/collision/tangles.hpp"
 
