@@ -111,6 +111,32 @@ TEST_CASE("untangle: a layer pushed through another over a third of the area", "
   }
 }
 
+TEST_CASE("untangle: what is pushed back pushes no clean layer through a body", "[untangle]") {
+  // Two layers between two plates, which stand still, with less room than the gap that all of them want; the upper
+  // layer has a bump through the upper plate.
+  const double room = 0.0005;
+  const auto bump = [=](double a, double b) { return Vec3(a, 0.02 * std::exp(-12 * (a * a + b * b)) - room, b); };
+  const testing::Sheet upper = bent(20, jitter, bump);
+  const testing::Sheet lower = bent(19, jitter, [=](double a, double b) { return Vec3(a, -2 * room, b); });
+  const testing::Sheet mesh = testing::join(upper, lower);
+  const testing::Sheet plates = testing::join(testing::sheet(7, 2.2, 0), testing::sheet(9, 2.2, -3 * room));
+  const Surface cloth = make_surface(static_cast<int>(mesh.x.rows()), mesh.triangles);
+  const Surface body = make_surface(static_cast<int>(plates.x.rows()), plates.triangles);
+  const std::array obstacles{SheetView{&body, &plates.x}};
+  for (int iterations : {2, 3, 4, 10}) {
+    INFO(iterations);
+    UntangleOptions options;
+    options.iterations = iterations;
+    const UntangleResult result = untangle(cloth, mesh.x, obstacles, options);
+    const Audit found = audit(cloth, result.x, std::array{AuditBody{&body, &plates.x}});
+    CHECK(found.self_pairs.empty());
+    int of_lower = 0;
+    for (const auto& [t, face] : found.obstacle_pairs) of_lower += t >= upper.triangles.rows();
+    CHECK(of_lower == 0);
+    CHECK(found.obstacle_pairs.empty() == (iterations == 10));
+  }
+}
+
 TEST_CASE("untangle: tube through tube, all the way round", "[untangle]") {
   const auto band = [](double x, double) { return 0.30 + 0.05 * std::exp(-std::pow(x / 0.22, 4)); };
   check_clean(untangled(testing::join(tube(20, 40, 0, band), tube(20, 40, 0.37, [](double, double) { return 0.32; }))));
