@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "collision/audit_inside.hpp"
+#include "collision/audit_pair.hpp"
 #include "collision/bisection.hpp"
 #include "collision/distance.hpp"
 #include "collision/floating_point.hpp"
-#include "collision/inside.hpp"
-#include "collision/intersect.hpp"
 
 namespace selvedge {
 namespace {
@@ -103,12 +103,22 @@ int count_nonfinite(const Points& x) {
   return count;
 }
 
-int count_inside(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles) {
-  std::vector<char> is_inside(cloth.vertex_count, 0);
+// pairs: those of the cloth's triangles with obstacles'.
+int count_inside(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, const Pairs& pairs) {
+  std::vector<char> is_inside(cloth.vertex_count, 0), undefined(cloth.triangles.rows(), 0);
+  for (int t = 0; t < cloth.triangles.rows(); ++t)
+    for (int v : cloth.triangles.row(t)) undefined[t] |= !x.row(v).allFinite();
+  int first = 0;
   for (const AuditBody& body : obstacles) {
-    if (!is_closed(*body.surface) || count_nonfinite(*body.points) > 0) continue;
-    const std::vector<char> here = inside(*body.surface, *body.points, x);
-    for (int v = 0; v < cloth.vertex_count; ++v) is_inside[v] |= here[v] && cloth.vertex_owner[v] >= 0;
+    const int end = first + static_cast<int>(body.surface->triangles.rows());
+    if (is_closed(*body.surface) && count_nonfinite(*body.points) == 0) {
+      std::vector<char> meets = undefined;
+      for (const auto& [a, c] : pairs)
+        if (c >= first && c < end) meets[a] = 1;
+      const std::vector<char> here = inside_body(cloth, x, meets, *body.surface, *body.points);
+      for (int v = 0; v < cloth.vertex_count; ++v) is_inside[v] |= here[v];
+    }
+    first = end;
   }
   return static_cast<int>(std::count(is_inside.begin(), is_inside.end(), 1));
 }
@@ -171,7 +181,7 @@ Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> ob
   }
   for (Pairs* pairs : {&result.self_pairs, &result.vertex_pairs, &result.obstacle_pairs})
     std::sort(pairs->begin(), pairs->end());
-  result.inside_vertices = count_inside(cloth, x, obstacles);
+  result.inside_vertices = count_inside(cloth, x, obstacles, result.obstacle_pairs);
   result.nonfinite = count_nonfinite(x);
   for (const AuditBody& body : obstacles) result.nonfinite += count_nonfinite(*body.points);
   return result;

@@ -8,8 +8,8 @@
 
 namespace selvedge {
 
-// Independent proof that a state is clean. Shares no code with proximity, CCD or response: its own broad phase
-// (bisection of space), exact triangle tests, exact ray parity for inside tests.
+// Independent proof that a state is clean: its own broad phase (bisection of space), its own exact tests of triangles
+// and of sides. In common with proximity, CCD and response it has the surface and exact orientation.
 struct Audit {
   std::vector<std::pair<int, int>> self_pairs;      // intersecting cloth triangles that share no vertex
   std::vector<std::pair<int, int>> vertex_pairs;    // cloth triangles that share one vertex and cross along a segment

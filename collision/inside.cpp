@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collision/intersect.hpp"
+#include "collision/orientation.hpp"
 
 namespace selvedge {
 namespace {
@@ -67,9 +67,17 @@ int moved_orientation(const Vec2& a, const Vec2& b, const Vec2& p) {
   return 0;
 }
 
+// The closed triangle, degenerate or not: p is in its plane and, seen along each axis, beyond no edge. Where the view
+// shows a line or a point alone the box decides.
 bool on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  return (p.array() >= a.array().min(b.array()).min(c.array())).all() &&
-         (p.array() <= a.array().max(b.array()).max(c.array())).all() && triangles_intersect(p, p, p, a, b, c);
+  if ((p.array() < a.array().min(b.array()).min(c.array())).any() ||
+      (p.array() > a.array().max(b.array()).max(c.array())).any() || orient3d(a, b, c, p) != 0)
+    return false;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [least, most] = std::minmax({orient2d(a, b, p, axis), orient2d(b, c, p, axis), orient2d(c, a, p, axis)});
+    if (least < 0 && most > 0) return false;
+  }
+  return true;
 }
 
 bool is_inside(const Grid& grid, const Surface& surface, const Points& x, const Vec3& p) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collision/intersect.hpp"
+#include "collision/triangle_pair.hpp"
 
 namespace selvedge {
 namespace {
@@ -26,8 +26,7 @@ bool share_vertex(const Triangles& triangles, int s, int t) {
 bool all_finite(const Corners& c) { return c[0].allFinite() && c[1].allFinite() && c[2].allFinite(); }
 
 bool intersect(const Corners& a, const Corners& b) {
-  return !surely_apart(a, b) && all_finite(a) && all_finite(b) &&
-         triangles_intersect(a[0], a[1], a[2], b[0], b[1], b[2]);
+  return !surely_apart(a, b) && all_finite(a) && all_finite(b) && triangles_meet(a, b);
 }
 
 // Does a plane across the direction m lie between them? Points are relative to one of them, each coordinate wrong by at

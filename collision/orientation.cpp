@@ -1,8 +1,9 @@
+#include "collision/orientation.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "collision/exact_integer.hpp"
-#include "collision/intersect.hpp"
 
 namespace selvedge {
 namespace {
@@ -73,6 +74,11 @@ int orient2d(const Vec2& a, const Vec2& b, const Vec2& c) {
   // A difference is zero only if its terms are equal: the common case of points on a line of the axes.
   if ((ab.x() == 0 || ac.y() == 0) && (ac.x() == 0 || ab.y() == 0)) return 0;
   return exact_orient2d(a, b, c);
+}
+
+int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  return orient2d(Vec2(a[u], a[v]), Vec2(b[u], b[v]), Vec2(c[u], c[v]));
 }
 
 }  // namespace selvedge

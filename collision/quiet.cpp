@@ -107,7 +107,7 @@ bool surely_apart(const Vec2& p, const Vec2& q, const Vec2& a, const Vec2& b, do
 }
 
 // Normals of the triangles in the order of the leaves, as long as twice their area, and their sums below each node.
-// Returns the square of the longest edge, NaN where a coordinate is undefined.
+// Returns more than the square of the longest edge.
 double sum_normals(const Surface& s, const Points& x, const Bvh& tree, QuietParts& parts) {
   parts.normals.resize(tree.item_count);
   parts.node_normals.resize(tree.nodes.size());

@@ -5,8 +5,8 @@
 #include <tuple>
 
 #include "collision/bvh.hpp"
-#include "collision/intersect.hpp"
 #include "collision/symbolic_orientation.hpp"
+#include "collision/triangle_pair.hpp"
 
 namespace selvedge {
 namespace {
@@ -126,8 +126,7 @@ PairResult cross(std::span<const SheetView> sheets, const Face& a, const Face& b
     }
   }
   if (shared.count == 1) result.shared_vertex = a.vertex[shared.in_a];
-  result.touching = result.crossings.empty() && shared.count == 0 && exact_zero &&
-                    triangles_intersect(a.at[0], a.at[1], a.at[2], b.at[0], b.at[1], b.at[2]);
+  result.touching = result.crossings.empty() && shared.count == 0 && exact_zero && triangles_meet(a.at, b.at);
   return result;
 }
 

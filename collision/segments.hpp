@@ -42,7 +42,7 @@ struct Segments {
   std::vector<Crossing> crossings;  // sorted by sheets, edge and face
   std::vector<Segment> segments;    // sorted by sheets and triangles
   // Pairs without a common vertex that touch or overlap in a plane without crossing, as a rule of the infinitesimal
-  // motion: closed triangles meet (triangles_intersect) exactly if they have a segment or are listed here.
+  // motion: closed triangles meet (triangles_meet) exactly if they have a segment or are listed here.
   std::vector<std::array<int, 3>> touching;  // triangle of sheet 0, sheet, triangle of that sheet; sorted
 };
 

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <vector>
 
-#include "collision/intersect.hpp"
+#include "collision/orientation.hpp"
 
 namespace selvedge {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "collision/ccd.hpp"
 #include "collision/floating_point.hpp"
-#include "collision/intersect.hpp"
+#include "collision/orientation.hpp"
 
 namespace selvedge {
 namespace {

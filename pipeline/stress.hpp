@@ -32,8 +32,8 @@ struct StressRow {
   double seconds = 0;
   long pairs = 0, vertex_pairs = 0, nonfinite = 0;  // by the audit, over all frames
   int worst_frame = 0, worst_inside = 0;
-  int wanted_frames = 0;               // frames that are not clean against the obstacles' wanted positions
-  std::optional<long> passed_through;  // by the audit of motion; absent: not audited
+  int wanted_frames = 0;    // frames that are not clean against the obstacles' wanted positions
+  long passed_through = 0;  // by the audit of motion, over all frames
   long impulses = 0, zones = 0, shortened = 0;
   double held_share = 0;    // vertex-steps whose motion was shortened with a zone, of all
   double obstacle_lag = 0;  // largest [m]

@@ -27,7 +27,7 @@ Json to_json(const StressRow& r) {
           {"worst_frame", r.worst_frame},
           {"inside_vertices", r.worst_inside},
           {"frames_touching_wanted", r.wanted_frames},
-          {"passed_through", r.passed_through ? Json(*r.passed_through) : Json(nullptr)},
+          {"passed_through", r.passed_through},
           {"impulses", r.impulses},
           {"zones", r.zones},
           {"shortened_zones", r.shortened},
@@ -54,7 +54,7 @@ StressRow from_json(const Json& j) {
   j.at("worst_frame").get_to(r.worst_frame);
   j.at("inside_vertices").get_to(r.worst_inside);
   j.at("frames_touching_wanted").get_to(r.wanted_frames);
-  if (!j.at("passed_through").is_null()) r.passed_through = j.at("passed_through").get<long>();
+  j.at("passed_through").get_to(r.passed_through);
   j.at("impulses").get_to(r.impulses);
   j.at("zones").get_to(r.zones);
   j.at("shortened_zones").get_to(r.shortened);
@@ -70,7 +70,7 @@ StressRow from_json(const Json& j) {
 std::string cell(const Json& value) {
   if (value.is_array()) return fmt::format("\"{}\"", fmt::join(value.get<std::vector<std::string>>(), "; "));
   if (value.is_string()) return value.get<std::string>();
-  return value.is_null() ? "" : value.dump();
+  return value.dump();
 }
 
 // Rows of one scene lie together.
@@ -87,15 +87,11 @@ long failed(const std::vector<StressRow>& rows) {
   return std::count_if(rows.begin(), rows.end(), [](const StressRow& r) { return !r.passed(); });
 }
 
-std::string passed_through_text(const StressRow& row) {
-  return row.passed_through ? fmt::format("{}", *row.passed_through) : "-";
-}
-
 std::string text_row(const StressRow& r) {
   return fmt::format(
       "{:<12} {:>3} {:>6} {:>8} {:>6} {:>7} {:>6} {:>7} {:>6} {:>8} {:>7.3f} {:>8.2g} {:>7.3f} {:>8.1f}\n", r.scene,
       r.repeat + 1, r.passed() ? "yes" : "NO", r.vertices, r.frames, r.pairs, r.vertex_pairs, r.worst_inside,
-      r.nonfinite, passed_through_text(r), 100 * r.held_share, r.obstacle_lag, r.max_stretch, r.seconds);
+      r.nonfinite, r.passed_through, 100 * r.held_share, r.obstacle_lag, r.max_stretch, r.seconds);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <map>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -144,6 +145,23 @@ std::string listed(const Complaints& complaints) {
   return text;
 }
 
+// What a file is made of, names without extension: what it includes of ours, with a header its source, and so on.
+void add_parts(const std::string& name, const std::map<std::string, std::string>& sources,
+               std::set<std::string>& parts) {
+  if (!parts.insert(name).second) return;
+  for (const std::string extension : {".hpp", ".cpp"})
+    if (const auto file = sources.find(name + extension); file != sources.end())
+      for (const Include& include : includes(file->second))
+        if (include.quoted) add_parts(include.header.substr(0, include.header.rfind('.')), sources, parts);
+}
+
+std::set<std::string> parts_of(const std::vector<std::string>& names,
+                               const std::map<std::string, std::string>& sources) {
+  std::set<std::string> parts;
+  for (const std::string& name : names) add_parts(name, sources, parts);
+  return parts;
+}
+
 template <class Rule>
 Complaints over_all_sources(const Rule& rule) {
   Complaints all;
@@ -214,6 +232,23 @@ TEST_CASE("modules: what the documents name exists", "[modules]") {
   CHECK(dead_references(root, "docs/a.md", "\n[it](README.md)\n") ==
         Complaints{"docs/a.md:2: leads nowhere: README.md"});
   CHECK(dead_references(root, "README.md", "see `physics/nothing.cpp`\n").size() == 1);
+}
+
+TEST_CASE("modules: what the audit has in common with the response", "[modules]") {
+  const auto ours = sources();
+  const auto audit = parts_of({"collision/audit", "collision/audit_motion"}, ours);
+  const auto response = parts_of({"collision/resolve", "collision/untangle", "collision/intersections",
+                                  "physics/recovery", "physics/contact_terms"},
+                                 ours);
+  std::set<std::string> common;
+  std::ranges::set_intersection(audit, response, std::inserter(common, common.end()));
+  // The surface and exact signs; and distances, for min_gap, which is no part of the audit.
+  CHECK(common == std::set<std::string>{"collision/distance", "collision/exact_integer", "collision/floating_point",
+                                        "collision/orientation", "collision/points", "collision/surface"});
+  CHECK(response.size() > 30);
+  CHECK(parts_of({"a"}, {{"a.cpp", "#include \"b.hpp\"\n#include <c.hpp>\n"},
+                         {"b.cpp", "#include \"d.hpp\"\n#include \"b.hpp\"\n"}}) ==
+        std::set<std::string>{"a", "b", "d"});
 }
 
 TEST_CASE("modules: headers do not define two types of one name", "[modules]") {

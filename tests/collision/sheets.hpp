@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "collision/surface.hpp"
 
 namespace selvedge::testing {
@@ -22,6 +24,22 @@ inline Sheet sheet(int n, double size, double height) {
       s.triangles.row(2 * (j * n + i) + 1) << b, c, d;
     }
   return s;
+}
+
+// A sheet of n x n quads over [-1, 1]^2 bent by `place`, a function of two parameters, which are moved off the lattice
+// by up to `jitter` so that nothing coincides.
+template <class Place>
+Sheet bent(int n, const Vec2& jitter, const Place& place) {
+  Sheet s = sheet(n, 2, 0);
+  for (int v = 0; v < s.x.rows(); ++v) {
+    const double a = s.x(v, 0) + jitter.x() * std::sin(7.0 * v), b = s.x(v, 2) + jitter.y() * std::cos(5.0 * v);
+    s.x.row(v) = place(a, b).transpose();
+  }
+  return s;
+}
+
+inline Sheet flat(int n, const Vec2& jitter) {
+  return bent(n, jitter, [](double a, double b) { return Vec3(a, 0, b); });
 }
 
 inline Sheet join(const Sheet& a, const Sheet& b) {

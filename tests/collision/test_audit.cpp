@@ -10,11 +10,13 @@
 #endif
 
 #include "collision/audit.hpp"
+#include "collision/audit_inside.hpp"
 #include "collision/inside.hpp"
-#include "collision/intersect.hpp"
+#include "collision/triangle_pair.hpp"
+#include "tests/collision/brute_force.hpp"
 
 using namespace selvedge;
-using Pairs = std::vector<std::pair<int, int>>;
+using testing::Pairs;
 
 namespace {
 
@@ -94,35 +96,9 @@ void crumple(Points& x, double size, unsigned seed) {
   for (double& coordinate : x.reshaped()) coordinate += push(random);
 }
 
-std::array<Vec3, 3> corners(const Mesh& mesh, int t) {
-  return {row(mesh.x, mesh.surface.triangles(t, 0)), row(mesh.x, mesh.surface.triangles(t, 1)),
-          row(mesh.x, mesh.surface.triangles(t, 2))};
-}
-
-bool meet(const Mesh& a, int i, const Mesh& b, int j) {
-  const auto p = corners(a, i), q = corners(b, j);
-  return triangles_intersect(p[0], p[1], p[2], q[0], q[1], q[2]);
-}
-
-Pairs brute_self(const Mesh& mesh) {
-  Pairs pairs;
-  const Triangles& t = mesh.surface.triangles;
-  for (int i = 0; i < t.rows(); ++i)
-    for (int j = i + 1; j < t.rows(); ++j) {
-      bool share = false;
-      for (int k = 0; k < 9; ++k) share |= t(i, k / 3) == t(j, k % 3);
-      if (!share && meet(mesh, i, mesh, j)) pairs.emplace_back(i, j);
-    }
-  return pairs;
-}
-
-Pairs brute_cross(const Mesh& a, const Mesh& b) {
-  Pairs pairs;
-  for (int i = 0; i < a.surface.triangles.rows(); ++i)
-    for (int j = 0; j < b.surface.triangles.rows(); ++j)
-      if (meet(a, i, b, j)) pairs.emplace_back(i, j);
-  return pairs;
-}
+// By the solver's test: the audit asks another.
+Pairs brute_self(const Mesh& mesh) { return testing::brute_self(mesh, triangles_meet); }
+Pairs brute_cross(const Mesh& a, const Mesh& b) { return testing::brute_cross(a, b, triangles_meet); }
 
 Audit audit(const Mesh& cloth, std::vector<const Mesh*> bodies = {}, bool self = true) {
   std::vector<AuditBody> obstacles;
@@ -225,6 +201,10 @@ TEST_CASE("audit: a cloth inside a closed body", "[audit]") {
   CHECK(audit(within, {&body}).inside_vertices == within.x.rows());
   CHECK(audit(within, {&body}).intersecting_pairs() == 0);
   CHECK(audit(around, {&body}).inside_vertices == 0);
+  // Through the second body of two: the vertices outside must not be counted with those inside.
+  const Mesh through = grid(8, {-4, 0.1, -4}, ex, ez), apart = grid(20, {9, 9, 9}, ex, ez);
+  CHECK(audit(through, {&body}).inside_vertices == 1);
+  CHECK(audit(through, {&apart, &body}).inside_vertices == 1);
   Mesh open = body;
   open.surface = make_surface(body.surface.vertex_count, body.surface.triangles.bottomRows(100));
   CHECK(audit(within, {&open}).inside_vertices == 0);
@@ -245,6 +225,74 @@ TEST_CASE("audit: the inside of a lattice cube is exact for points level with it
     const bool expected = points[i].minCoeff() > 0 && points[i].maxCoeff() < n;
     REQUIRE(static_cast<bool>(result[i]) == expected);
   }
+}
+
+TEST_CASE("audit: on a triangle is not inside, whatever is left of the triangle", "[audit]") {
+  // Two cubes, and in the first or between them two opposite triangles on few lattice points, so that many of these are
+  // segments or points.
+  std::mt19937 random(6);
+  std::uniform_int_distribution<int> at(1, 4);
+  Mesh second = lattice_cube(5);
+  second.x.col(0).array() += 12;
+  const Mesh cubes = together(lattice_cube(5), second);
+  const int n = cubes.surface.vertex_count, m = static_cast<int>(cubes.surface.triangles.rows());
+  Triangles triangles(m + 2, 3), strip(62, 3);
+  triangles << cubes.surface.triangles, Triangles::Zero(2, 3);
+  triangles.row(m) << n, n + 1, n + 2;
+  triangles.row(m + 1) << n, n + 2, n + 1;
+  for (int i = 0; i < 62; ++i) strip.row(i) << i, i + 1, i + 2;
+  const Surface body = make_surface(n + 3, triangles), cloth = make_surface(64, strip);
+  const std::vector<char> each_for_itself(62, 1);
+  int on = 0, wrong = 0, differ = 0;
+  for (int round = 0; round < 400; ++round) {
+    const int between = round % 2 * 6;
+    Points points(64, 3), x(n + 3, 3);
+    for (int i = 0; i < 64; ++i) points.row(i) << 1 + i % 4 + between, 1 + i / 4 % 4, 1 + i / 16;
+    x.topRows(n) = cubes.x;
+    for (int k = 0; k < 3; ++k) x.row(n + k) << at(random) + between, at(random), at(random);
+    if (round % 3 == 0) x.row(n + 2) = x.row(n) + (round % 4 / 2) * (x.row(n + 1) - x.row(n));
+    const std::vector<char> result = inside(body, x, points);
+    differ += inside_body(cloth, points, each_for_itself, body, x) != result;
+    for (int i = 0; i < 64; ++i) {
+      const Vec3 p = row(points, i);
+      const bool meets = triangles_meet({p, p, p}, {row(x, n), row(x, n + 1), row(x, n + 2)});
+      on += meets;
+      wrong += (result[i] != 0) != (between == 0 && !meets);
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(differ == 0);
+  CHECK(on > 1000);
+}
+
+TEST_CASE("audit: what is inside, by the audit's test and by the solver's", "[audit]") {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> place(-3, 3);
+  int some = 0, mixed = 0;
+  for (int round = 0; round < 60; ++round) {
+    // Bodies on a lattice that the cloth's vertices share; round ones, far from the origin; and crumpled ones, which
+    // pass through themselves.
+    Mesh body = round % 3 == 0 ? lattice_cube(4) : ball(6, 2), cloth = grid(6, {-1, 2, -1}, ex, ez);
+    const Vec3 shift = round % 2 ? Vec3(1e7, -1e6, 1e5) : Vec3::Zero();
+    if (round % 3 == 2) crumple(body.x, 0.7, round);
+    if (round % 5) crumple(cloth.x, 0.1 * (round % 5), round);
+    if (round % 5) cloth.x.rowwise() += 0.5 * Vec3(place(random), place(random), place(random)).transpose();
+    if (round % 4 == 1) cloth = ball(3, 0.2 * (round % 7));
+    body.x.rowwise() += shift.transpose();
+    cloth.x.rowwise() += shift.transpose();
+    const std::vector<char> solver = inside(body.surface, body.x, cloth.x);
+    std::vector<char> meets(cloth.surface.triangles.rows(), 0);
+    for (const auto& [a, c] : audit(cloth, {&body}).obstacle_pairs) meets[a] = 1;
+    REQUIRE(inside_body(cloth.surface, cloth.x, meets, body.surface, body.x) == solver);
+    // Each vertex for itself.
+    std::fill(meets.begin(), meets.end(), 1);
+    REQUIRE(inside_body(cloth.surface, cloth.x, meets, body.surface, body.x) == solver);
+    const auto count = std::count(solver.begin(), solver.end(), 1);
+    some += count > 0;
+    mixed += count > 0 && count < static_cast<int>(solver.size());
+  }
+  CHECK(some > 20);
+  CHECK(mixed > 15);
 }
 
 TEST_CASE("audit: undefined coordinates are counted and left out", "[audit]") {

@@ -9,24 +9,12 @@
 #include "tests/collision/sheets.hpp"
 
 using namespace selvedge;
+using testing::bent;
+using testing::flat;
 
 namespace {
 
-// A sheet of n x n quads over [-1, 1]^2 bent by `place`, a function of two parameters, which are moved off the lattice
-// by a little so that nothing coincides.
-template <class Place>
-testing::Sheet bent(int n, Place place) {
-  testing::Sheet s = testing::sheet(n, 2, 0);
-  for (int v = 0; v < s.x.rows(); ++v) {
-    const double a = s.x(v, 0) + 0.011 * std::sin(7.0 * v), b = s.x(v, 2) + 0.013 * std::cos(5.0 * v);
-    s.x.row(v) = place(a, b).transpose();
-  }
-  return s;
-}
-
-testing::Sheet flat(int n) {
-  return bent(n, [](double a, double b) { return Vec3(a, 0, b); });
-}
+const Vec2 jitter(0.011, 0.013);
 
 struct Case {
   testing::Sheet mesh;
@@ -102,7 +90,8 @@ double bump(double a, double b) { return 0.3 * std::exp(-12 * (a * a + b * b)) -
 }  // namespace
 
 TEST_CASE("contour: cloth through cloth is closed and cuts both", "[contour]") {
-  const Case c(testing::join(flat(12), bent(14, [](double a, double b) { return Vec3(a, bump(a, b), b); })));
+  const Case c(
+      testing::join(flat(12, jitter), bent(14, jitter, [](double a, double b) { return Vec3(a, bump(a, b), b); })));
   REQUIRE(c.contours.size() == 1);
   const Contour& contour = c.contours.front();
   CHECK(contour.closed);
@@ -123,7 +112,7 @@ TEST_CASE("contour: cloth through cloth is closed and cuts both", "[contour]") {
 TEST_CASE("contour: a bump within one triangle is inside without vertices on the other sheet", "[contour]") {
   testing::Sheet coarse = testing::sheet(1, 8, 0);
   coarse.x.col(0).array() += 1;
-  const Case c(testing::join(coarse, bent(14, [](double a, double b) { return Vec3(a, bump(a, b), b); })));
+  const Case c(testing::join(coarse, bent(14, jitter, [](double a, double b) { return Vec3(a, bump(a, b), b); })));
   REQUIRE(c.contours.size() == 1);
   CHECK(side_of(c.contours[0], 0).edges.empty());
   CHECK(side_of(c.contours[0], 0).cuts);
@@ -133,7 +122,7 @@ TEST_CASE("contour: a bump within one triangle is inside without vertices on the
 
 TEST_CASE("contour: a corner through a sheet is open and cuts the corner off", "[contour]") {
   const auto upright = [](double a, double b) { return Vec3(0.6 * (a - b), 0.6 * (a + b) + 0.9, 0.1 + 0.05 * a); };
-  const Case c(testing::join(flat(9), bent(10, upright)));
+  const Case c(testing::join(flat(9, jitter), bent(10, jitter, upright)));
   REQUIRE(c.contours.size() == 1);
   const Contour& contour = c.contours.front();
   CHECK_FALSE(contour.closed);
@@ -156,7 +145,8 @@ TEST_CASE("contour: a corner through a sheet is open and cuts the corner off", "
 }
 
 TEST_CASE("contour: sheet through a boundary cuts neither", "[contour]") {
-  const Case c(testing::join(flat(9), bent(10, [](double a, double b) { return Vec3(0.03 * b, a, b - 0.7); })));
+  const Case c(
+      testing::join(flat(9, jitter), bent(10, jitter, [](double a, double b) { return Vec3(0.03 * b, a, b - 0.7); })));
   REQUIRE(c.contours.size() == 1);
   const Contour& contour = c.contours.front();
   CHECK(contour.ends == std::array{ContourEnd::boundary, ContourEnd::boundary});
@@ -173,7 +163,7 @@ TEST_CASE("contour: sheet through a boundary cuts neither", "[contour]") {
 TEST_CASE("contour: a fold through itself runs between loop vertices and encloses one region", "[contour]") {
   // (u, v^2, v (v^2 + u^2 - 1)) crosses itself where u^2 + v^2 = 1, at v and -v.
   std::vector<double> from_origin;
-  const Case c(bent(15, [&](double a, double b) {
+  const Case c(bent(15, jitter, [&](double a, double b) {
     const double u = 1.6 * a, v = 1.6 * b + 0.01;
     from_origin.push_back(std::hypot(u, v));
     return Vec3(u, v * v, v * (v * v + u * u - 1));
@@ -195,7 +185,7 @@ TEST_CASE("contour: a fold through itself runs between loop vertices and enclose
 }
 
 TEST_CASE("contour: a pinch that runs out of the sheet ends at a loop vertex and at the boundary", "[contour]") {
-  const Case c(bent(15, [](double a, double b) { return Vec3(a * (b - 0.3), a, (b - 0.3) * (b - 0.3)); }));
+  const Case c(bent(15, jitter, [](double a, double b) { return Vec3(a * (b - 0.3), a, (b - 0.3) * (b - 0.3)); }));
   REQUIRE(c.contours.size() == 1);
   const Contour& contour = c.contours.front();
   CHECK(std::set{contour.ends[0], contour.ends[1]} == std::set{ContourEnd::vertex, ContourEnd::boundary});
@@ -209,7 +199,7 @@ TEST_CASE("contour: nested ones", "[contour]") {
     const double r = std::hypot(a, b);
     return Vec3(a, -3 * (r - 0.3) * (r - 0.7), b);
   };
-  const Case c(testing::join(flat(16), bent(17, crater)));
+  const Case c(testing::join(flat(16, jitter), bent(17, jitter, crater)));
   REQUIRE(c.contours.size() == 2);
   const int inner = c.contours[0].length < c.contours[1].length ? 0 : 1;
   for (int component = 0; component < 2; ++component) {
@@ -258,7 +248,7 @@ TEST_CASE("contour: a tube across another one", "[contour]") {
 }
 
 TEST_CASE("contour: a pocket pushed through the sheet that it is sewn on", "[contour]") {
-  testing::Sheet c0 = flat(16);
+  testing::Sheet c0 = flat(16, jitter);
   // A patch on the middle 8 x 8 quads that shares the vertices of its rim: edges of three triangles.
   std::vector<int> number(c0.x.rows(), -1);
   std::vector<Vec3> added;
@@ -300,9 +290,9 @@ TEST_CASE("contour: a pocket pushed through the sheet that it is sewn on", "[con
 }
 
 TEST_CASE("contour: three sheets through one place keep their contours apart", "[contour]") {
-  const auto a = bent(7, [](double u, double v) { return Vec3(u, 0.02 * u, v); });
-  const auto b = bent(8, [](double u, double v) { return Vec3(0.03 * v, 0.9 * u, 0.9 * v); });
-  const auto d = bent(9, [](double u, double v) { return Vec3(0.8 * u, 0.8 * v, 0.05 * u); });
+  const auto a = bent(7, jitter, [](double u, double v) { return Vec3(u, 0.02 * u, v); });
+  const auto b = bent(8, jitter, [](double u, double v) { return Vec3(0.03 * v, 0.9 * u, 0.9 * v); });
+  const auto d = bent(9, jitter, [](double u, double v) { return Vec3(0.8 * u, 0.8 * v, 0.05 * u); });
   const Case c(testing::join(testing::join(a, b), d));
   REQUIRE(c.surface.component_count == 3);
   REQUIRE(c.contours.size() == 3);
@@ -317,7 +307,8 @@ TEST_CASE("contour: three sheets through one place keep their contours apart", "
 }
 
 TEST_CASE("contour: cloth through a body that is an obstacle", "[contour]") {
-  const testing::Sheet cloth = flat(12), body = bent(14, [](double a, double b) { return Vec3(a, bump(a, b), b); });
+  const testing::Sheet cloth = flat(12, jitter),
+                       body = bent(14, jitter, [](double a, double b) { return Vec3(a, bump(a, b), b); });
   const Surface s0 = make_surface(static_cast<int>(cloth.x.rows()), cloth.triangles);
   const Surface s1 = make_surface(static_cast<int>(body.x.rows()), body.triangles);
   const std::array sheets{SheetView{&s0, &cloth.x}, SheetView{&s1, &body.x}};

@@ -14,7 +14,7 @@
 
 #include "collision/ccd.hpp"
 #include "collision/floating_point.hpp"
-#include "collision/intersect.hpp"
+#include "collision/orientation.hpp"
 
 using namespace selvedge;
 

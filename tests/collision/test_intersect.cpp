@@ -7,7 +7,10 @@
 #include <vector>
 
 #include "collision/exact_integer.hpp"
-#include "collision/intersect.hpp"
+#include "collision/orientation.hpp"
+#include "collision/triangle_pair.hpp"
+#include "tests/collision/brute_force.hpp"
+#include "tests/collision/tangles.hpp"
 
 using namespace selvedge;
 
@@ -93,9 +96,15 @@ Vec3 real(const Whole& p) { return p.cast<double>(); }
 // Far from the origin, on another scale and with other digits, yet the same answer: all of this is exact in doubles.
 Vec3 disguised(const Whole& p) { return (p.cast<double>() + Vec3(65536, -32768, 4096)) * 0x1p-30; }
 
+// What both tests of a pair say; they must not differ.
+bool meet(const testing::Corners& a, const testing::Corners& b) {
+  const bool solver = triangles_meet(a, b);
+  REQUIRE(testing::audit_sees_meet(a, b) == solver);
+  return solver;
+}
+
 bool meet(const std::array<Whole, 6>& p, Vec3 (*as)(const Whole&), const std::array<int, 6>& order) {
-  return triangles_intersect(as(p[order[0]]), as(p[order[1]]), as(p[order[2]]), as(p[order[3]]), as(p[order[4]]),
-                             as(p[order[5]]));
+  return meet({as(p[order[0]]), as(p[order[1]]), as(p[order[2]])}, {as(p[order[3]]), as(p[order[4]]), as(p[order[5]])});
 }
 
 int reference_orientation(const std::array<Whole, 4>& p) {
@@ -145,8 +154,8 @@ TEST_CASE("intersect: no underflow, no overflow", "[intersect]") {
     CHECK(orient3d(Vec3::Zero(), {scale, 0, 0}, {0, 1e307, 0}, {1, 1, -5e-324}) == -1);
     CHECK(orient2d(Vec2::Zero(), {scale, 0}, {1, scale}) == 1);
     CHECK(orient2d({-scale, -scale}, {0, 0}, {scale, scale}) == 0);
-    CHECK(triangles_intersect({-scale, 0, 0}, {scale, 0, 0}, {0, scale, 0}, {0, 0, -scale}, {0, 0, scale},
-                              {scale, 0, scale}));
+    CHECK(meet({Vec3(-scale, 0, 0), Vec3(scale, 0, 0), Vec3(0, scale, 0)},
+               {Vec3(0, 0, -scale), Vec3(0, 0, scale), Vec3(scale, 0, scale)}));
   }
 }
 
@@ -227,11 +236,58 @@ TEST_CASE("intersect: pairs with a common vertex agree with exact linear program
 }
 
 TEST_CASE("intersect: one unit in the last place decides", "[intersect]") {
-  const Vec3 a(0, 0, 0), b(1, 0, 0), c(0, 0, 1);
-  const double above = std::numeric_limits<double>::denorm_min();
-  CHECK(triangles_intersect(a, b, c, {0.25, 0, 0.25}, {0.3, 1, 0.2}, {0.2, 1, 0.3}));
-  CHECK_FALSE(triangles_intersect(a, b, c, {0.25, above, 0.25}, {0.3, 1, 0.2}, {0.2, 1, 0.3}));
-  CHECK(triangles_intersect(a, b, c, {0.5, -1, 0.5}, {0.5, 1, 0.5}, {2, 0, 2}));
-  CHECK_FALSE(
-      triangles_intersect(a, b, c, {0.5, -1, std::nextafter(0.5, 1)}, {0.5, 1, std::nextafter(0.5, 1)}, {2, 0, 2}));
+  const testing::Corners face{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, 1)};
+  const double above = std::numeric_limits<double>::denorm_min(), beyond = std::nextafter(0.5, 1);
+  CHECK(meet(face, {Vec3(0.25, 0, 0.25), Vec3(0.3, 1, 0.2), Vec3(0.2, 1, 0.3)}));
+  CHECK_FALSE(meet(face, {Vec3(0.25, above, 0.25), Vec3(0.3, 1, 0.2), Vec3(0.2, 1, 0.3)}));
+  CHECK(meet(face, {Vec3(0.5, -1, 0.5), Vec3(0.5, 1, 0.5), Vec3(2, 0, 2)}));
+  CHECK_FALSE(meet(face, {Vec3(0.5, -1, beyond), Vec3(0.5, 1, beyond), Vec3(2, 0, 2)}));
+}
+
+TEST_CASE("intersect: the audit's and the solver's test of a pair agree", "[intersect]") {
+  std::mt19937 random(9);
+  std::uniform_int_distribution<int> entry(-2, 2);
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  constexpr int count = 100000;
+#else
+  constexpr int count = 1000000;
+#endif
+  int meeting = 0, degenerate = 0, wrong = 0;
+  for (int i = 0; i < count; ++i) {
+    // Few points of a lattice, sheared out of the planes of the axes: many pairs touch, lie in one plane or have a
+    // degenerate triangle.
+    const int size = 1 + i % 3, depth = i % 4 == 0 ? 0 : i % 4 == 1 ? 1 : size;
+    std::uniform_int_distribution<int> at(-size, size), deep(-depth, depth);
+    Mat3 shear;
+    for (double& e : shear.reshaped()) e = entry(random);
+    testing::Corners a, b;
+    for (testing::Corners* t : {&a, &b})
+      for (Vec3& p : *t) p = shear * Vec3(at(random), at(random), deep(random));
+    const bool solver = triangles_meet(a, b);
+    meeting += solver;
+    degenerate += (a[1] - a[0]).cross(a[2] - a[0]).isZero(0) || (b[1] - b[0]).cross(b[2] - b[0]).isZero(0);
+    wrong += solver != testing::audit_sees_meet(a, b);
+  }
+  CHECK(wrong == 0);
+  CHECK(meeting > count / 5);
+  CHECK(meeting < count * 4 / 5);
+  CHECK(degenerate > count / 6);
+}
+
+TEST_CASE("intersect: the two tests agree on every pair of surfaces that make trouble", "[intersect]") {
+  int meeting = 0, pairs = 0, wrong = 0;
+  for (const testing::Tangle& m : testing::tangles(7)) {
+    const int count = static_cast<int>(m.surface.triangles.rows());
+    std::vector<testing::Corners> t;
+    for (int i = 0; i < count; ++i) t.push_back(testing::corners(m, i));
+    for (int i = 0; i < count; ++i)
+      for (int j = 0; j < i; ++j, ++pairs) {
+        const bool solver = triangles_meet(t[i], t[j]);
+        meeting += solver;
+        wrong += solver != testing::audit_sees_meet(t[i], t[j]);
+      }
+  }
+  CHECK(wrong == 0);
+  CHECK(meeting > 10000);
+  CHECK(pairs > 200000);
 }

@@ -6,46 +6,19 @@
 #include <omp.h>
 #endif
 
-#include "collision/intersect.hpp"
 #include "collision/intersections.hpp"
+#include "tests/collision/brute_force.hpp"
 #include "tests/collision/tangles.hpp"
 
 using namespace selvedge;
+using testing::Pairs;
 using testing::Tangle;
 using testing::tangles;
-using Pairs = std::vector<std::pair<int, int>>;
 
 namespace {
 
-std::array<Vec3, 3> corners(const Tangle& m, int t) {
-  return {row(m.x, m.surface.triangles(t, 0)), row(m.x, m.surface.triangles(t, 1)),
-          row(m.x, m.surface.triangles(t, 2))};
-}
-
-bool meet(const Tangle& a, int i, const Tangle& b, int j) {
-  const auto p = corners(a, i), q = corners(b, j);
-  return triangles_intersect(p[0], p[1], p[2], q[0], q[1], q[2]);
-}
-
-Pairs brute_self(const Tangle& m) {
-  Pairs pairs;
-  const Triangles& t = m.surface.triangles;
-  for (int i = 0; i < t.rows(); ++i)
-    for (int j = i + 1; j < t.rows(); ++j) {
-      bool share = false;
-      for (int k = 0; k < 9; ++k) share |= t(i, k / 3) == t(j, k % 3);
-      if (!share && meet(m, i, m, j)) pairs.emplace_back(i, j);
-    }
-  return pairs;
-}
-
-Pairs brute_cross(const Tangle& a, const Tangle& b) {
-  Pairs pairs;
-  for (int i = 0; i < a.surface.triangles.rows(); ++i)
-    for (int j = 0; j < b.surface.triangles.rows(); ++j)
-      if (meet(a, i, b, j)) pairs.emplace_back(i, j);
-  return pairs;
-}
+// By the audit's test: the tree asks another.
+Pairs brute_self(const Tangle& m) { return testing::brute_self(m, testing::audit_sees_meet); }
 
 Pairs tree_self(const Tangle& m, bool cull = true) {
   IntersectionCache cache;
@@ -87,7 +60,7 @@ TEST_CASE("intersections: of two surfaces", "[intersections]") {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Tangle &a = all[i], &b = all[(i + 5) % all.size()];
     INFO(a.name << ", " << b.name);
-    const Pairs expected = brute_cross(a, b);
+    const Pairs expected = testing::brute_cross(a, b, testing::audit_sees_meet);
     IntersectionCache cache_a, cache_b;
     meeting += !expected.empty();
     CHECK(intersecting_pairs(a.surface, a.x, cache_a, b.surface, b.x, cache_b) == expected);
@@ -131,7 +104,7 @@ TEST_CASE("intersections: the quick test never parts triangles that meet", "[int
     }
     const bool quick = surely_apart({p[0], p[1], p[2]}, {p[3], p[4], p[5]});
     apart += quick;
-    wrong += quick && triangles_intersect(p[0], p[1], p[2], p[3], p[4], p[5]);
+    wrong += quick && testing::audit_sees_meet({p[0], p[1], p[2]}, {p[3], p[4], p[5]});
   }
   CHECK(wrong == 0);
   CHECK(apart > 10000);

@@ -5,7 +5,8 @@
 #include <random>
 #include <set>
 
-#include "collision/intersect.hpp"
+#include "collision/audit_pair.hpp"
+#include "collision/orientation.hpp"
 #include "collision/quiet.hpp"
 #include "tests/collision/tangles.hpp"
 
@@ -138,6 +139,29 @@ TEST_CASE("quiet: a boundary that meets itself is seen by the boundary alone", "
   touching = open;
   touching.x(5, 0) = std::numeric_limits<double>::quiet_NaN();
   CHECK(marked(open.surface, open.x, touching.x).parts.quiet[0] == 0);
+}
+
+TEST_CASE("quiet: one vertex pushed over an edge by next to nothing is seen", "[quiet]") {
+  const Tangle flat = testing::grid_surface("flat", 16, 16, [](double u, double v) { return Vec3(u, 0, v); });
+  const int middle = 8 * 17 + 8;  // its star is the square of its eight neighbours
+  const auto is_quiet = [&](double beyond) {
+    Tangle pushed = flat;
+    pushed.x.row(middle) += Eigen::RowVector3d(1.0 / 16 + beyond, 0, 0.5 / 16);
+    return marked(flat.surface, flat.x, pushed.x).parts.quiet[0] == 1;
+  };
+  CHECK(is_quiet(-1e-3));
+  for (double beyond : {0.0, 1e-15, 1e-13, 1e-9, 1e-3}) {
+    INFO(beyond);
+    CHECK_FALSE(is_quiet(beyond));
+  }
+}
+
+TEST_CASE("quiet: what is flat is quiet at any scale", "[quiet]") {
+  for (double scale : {1e-6, 1e6}) {
+    const Points x = scale * tangles(16)[1].x;
+    const Surface surface = tangles(16)[1].surface;
+    CHECK(marked(surface, x, x).parts.quiet[0] == 1);
+  }
 }
 
 TEST_CASE("quiet: only disks are parts", "[quiet]") {

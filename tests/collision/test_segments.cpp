@@ -4,7 +4,7 @@
 #include <random>
 #include <set>
 
-#include "collision/intersect.hpp"
+#include "collision/audit_pair.hpp"
 #include "collision/segments.hpp"
 #include "collision/symbolic_orientation.hpp"
 #include "tests/collision/sheets.hpp"

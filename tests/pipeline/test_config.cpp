@@ -27,6 +27,14 @@ std::string refusal(const std::string& scene, const std::vector<std::string>& ov
   }
 }
 
+// Returns the message, which has all of the words.
+std::string check_refused(const std::string& scene, const std::vector<std::string>& words) {
+  const std::string message = refusal(scene);
+  INFO(scene << " -> " << message);
+  for (const std::string& word : words) CHECK_THAT(message, Contains(word));
+  return message;
+}
+
 const std::filesystem::path page = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "docs" / "scene.md";
 const std::string marker = "<!-- tables -->\n";
 
@@ -114,9 +122,7 @@ TEST_CASE("Wrong values are refused where they stand", "[config]") {
       {"outcome: [{name: a, turns: {axis: [0, 0, 0]}}]\n", {"axis", "direction"}},
       {"outcome: [{name: a, stretch: {}, from: 2, until: 1}]\n", {"until", "before `from`"}},
   }));
-  const std::string message = refusal(sheet + scene);
-  INFO(scene << " -> " << message);
-  for (const std::string& word : words) CHECK_THAT(message, Contains(word));
+  check_refused(sheet + scene, words);
 }
 
 TEST_CASE("Wrong cloths are refused where they stand", "[config]") {
@@ -143,10 +149,7 @@ TEST_CASE("Wrong cloths are refused where they stand", "[config]") {
       {"copies: 0", {"copies.count", "at least 1"}},
       {"copies: {count: 2, translat: [0, 0, 1]}", {"did you mean `translate`"}},
   }));
-  const std::string message = refusal("cloths:\n  - rectangle: {resolution: 4}\n    " + cloth + "\n");
-  INFO(cloth << " -> " << message);
-  CHECK_THAT(message, Contains("scene.yaml:3") || Contains("scene.yaml:2"));
-  for (const std::string& word : words) CHECK_THAT(message, Contains(word));
+  CHECK_THAT(check_refused(sheet + "    " + cloth + "\n", words), Contains("scene.yaml:3") || Contains("scene.yaml:2"));
 }
 
 TEST_CASE("Wrong ribbons and garments are refused where they stand", "[config]") {
@@ -161,10 +164,7 @@ TEST_CASE("Wrong ribbons and garments are refused where they stand", "[config]")
       {"tshirt: {sleeve_width: 2}", {"sleeve_width", "sides"}},
       {"tshirt: {edge: 1e-6}", {"vertices", "longer edge"}},
   }));
-  const std::string message = refusal("cloths:\n  - " + cloth + "\n");
-  INFO(cloth << " -> " << message);
-  CHECK_THAT(message, Contains("scene.yaml:2"));
-  for (const std::string& word : words) CHECK_THAT(message, Contains(word));
+  CHECK_THAT(check_refused("cloths:\n  - " + cloth + "\n", words), Contains("scene.yaml:2"));
 }
 
 TEST_CASE("Absurd resolutions are refused before memory runs out", "[config]") {

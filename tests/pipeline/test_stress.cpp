@@ -82,6 +82,7 @@ TEST_CASE("Each repeat is judged by its outcome, and a finished one is not run a
   const auto json = nlohmann::json::parse(fake::whole(request.out / "stress.json"));
   CHECK(json["passed"] == false);
   CHECK(json["scenes"][1]["passed"] == true);
+  CHECK(json["repeats"][0]["passed_through"] == 0);
 
   const std::vector<StressRow> again = stress(request);
   for (const StressRow& row : again) CHECK(row.kept);
@@ -92,6 +93,15 @@ TEST_CASE("Each repeat is judged by its outcome, and a finished one is not run a
   CHECK_FALSE(stress(request)[0].kept);  // another scene now
   request.short_form = true;
   CHECK(stress(request)[1].frames == 1);
+}
+
+TEST_CASE("What passed through is written, kept and read again", "[stress]") {
+  StressRow row;
+  row.passed_through = 7;
+  const std::string kept = stress_row_json(row, "key");
+  CHECK(read_stress_row(kept, "key").value().passed_through == 7);
+  CHECK_FALSE(read_stress_row(kept, "another key"));
+  CHECK(nlohmann::json::parse(stress_json({row}))["repeats"][0]["passed_through"] == 7);
 }
 
 TEST_CASE("A stress suite that cannot be run says why", "[stress]") {

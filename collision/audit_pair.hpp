@@ -4,15 +4,8 @@
 
 namespace selvedge {
 
-// All of these are exact for any finite doubles: floating filter first (Shewchuk 1997, stage A), then whole numbers of
-// as many digits as it takes, so that nothing underflows or overflows.
-
-// Sign of the volume of a tetrahedron: +1 if det[b-a, c-a, d-a] > 0 (d lies on the side of triangle abc from which it
-// looks counter-clockwise), -1 on the other, 0 if coplanar.
-int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
-
-// Sign of the area of a triangle in the plane (counter-clockwise: +1).
-int orient2d(const Vec2& a, const Vec2& b, const Vec2& c);
+// The audit's own triangle tests, edge by edge, on exact signs (orientation.hpp). The solver's are in triangle_pair.hpp
+// and share no more with these than the signs.
 
 // Do two closed triangles share a point? Touching and coplanar overlap count as intersecting. A degenerate triangle
 // counts as the segment or point that it is.

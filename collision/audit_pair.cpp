@@ -1,21 +1,19 @@
-#include "collision/intersect.hpp"
+#include "collision/audit_pair.hpp"
 
 #include <algorithm>
+
+#include "collision/orientation.hpp"
 
 namespace selvedge {
 namespace {
 
 Vec2 without(const Vec3& p, int axis) { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
 
-int projected_orientation(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
-  return orient2d(without(a, axis), without(b, axis), without(c, axis));
-}
-
 // An axis along which the plane of the three points can be seen, so that dropping it loses nothing; -1 if the points
 // lie on a line.
 int visible_axis(const Vec3& a, const Vec3& b, const Vec3& c) {
   for (int axis = 0; axis < 3; ++axis)
-    if (projected_orientation(a, b, c, axis) != 0) return axis;
+    if (orient2d(a, b, c, axis) != 0) return axis;
   return -1;
 }
 
