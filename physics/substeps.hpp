@@ -1,0 +1,19 @@
+#pragma once
+
+#include "physics/scene.hpp"
+#include "physics/stepper.hpp"
+
+namespace selvedge {
+
+// Where a step has come to: all nodes, and the cloth's velocity.
+struct Leg {
+  Points nodes, v;
+};
+
+// How many parts a step of dt [s] is cut into: as many as keep every vertex's motion in a substep within a few mesh
+// edges (edge_length: the mean one [m]), and at least two: implicit Euler at 1/30 s damps visibly.
+int substeps_for(const State& from, const Drive&, double dt, double edge_length, int max_substeps);
+
+Points pinned_rows(const Scene&, const Points& nodes);  // one row a Scene::pins entry
+
+}  // namespace selvedge
