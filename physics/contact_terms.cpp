@@ -50,7 +50,7 @@ std::vector<ContactTerm> contact_terms(const Scene& scene, const ContactWorld& w
   for (const Proximity& p : proximities) {
     ContactTerm term;
     term.normal = p.normal;
-    term.target = p.gap + overlap_removed * (p.rest_gap - p.gap);
+    term.target = std::min(p.rest_gap, p.gap + overlap_removed * (p.rest_gap - p.gap));
     term.softness = onset * p.rest_gap;
     if (linearise(scene, world, p.pair, p.weights, inverse_mass, nodes0, nodes1, h, term)) terms.push_back(term);
   }
@@ -72,6 +72,25 @@ void add_impact_terms(const Scene& scene, const ContactWorld& world, std::span<c
     if (linearise(scene, world, impact.pair, impact.weights, inverse_mass, nodes0, nodes1, h, term))
       terms.push_back(term);
   }
+}
+
+std::vector<ContactTerm> push_terms(std::span<const Separation> separations, const Eigen::VectorXd& inverse_mass,
+                                    double softness, double h) {
+  std::vector<ContactTerm> terms;
+  for (const Separation& s : separations) {
+    ContactTerm term;
+    if (s.count > static_cast<int>(term.nodes.size())) continue;
+    std::copy_n(s.vertex.begin(), term.nodes.size(), term.nodes.begin());
+    std::copy_n(s.weight.begin(), term.weights.size(), term.weights.begin());
+    term.normal = s.direction;
+    term.target = s.least;
+    term.softness = softness;
+    const double give = compliance(term, inverse_mass);
+    if (give <= 0) continue;
+    term.stiffness = contact_stiffness / (give * h * h);
+    terms.push_back(term);
+  }
+  return terms;
 }
 
 void lag_normal_forces(std::vector<ContactTerm>& terms, const Points& x) {

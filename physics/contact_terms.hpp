@@ -5,6 +5,7 @@
 
 #include "collision/proximity.hpp"
 #include "collision/response.hpp"
+#include "collision/separation.hpp"
 #include "physics/contact_energy.hpp"
 
 namespace selvedge {
@@ -13,7 +14,7 @@ namespace selvedge {
 // with obstacles where they end. A pair's stiffness is `contact_stiffness` times its mass over h^2, which makes a
 // layer's own weight sink it by the same small fraction of g h^2 at any density, scale or time step; its force vanishes
 // where a tenth of the overlap is gone, so that no pair is thrown apart (Bridson, Fedkiw and Anderson 2002,
-// section 7.2).
+// section 7.2). Pairs farther apart than their rest gap are stopped there.
 std::vector<ContactTerm> contact_terms(const Scene&, const ContactWorld&, std::span<const Proximity>,
                                        const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1,
                                        double h);
@@ -24,6 +25,11 @@ std::vector<ContactTerm> contact_terms(const Scene&, const ContactWorld&, std::s
 void add_impact_terms(const Scene&, const ContactWorld&, std::span<const Impact>, std::span<const Proximity> owned,
                       const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1, double h,
                       std::vector<ContactTerm>& terms);
+
+// Separations as terms without friction, as stiff as contacts; softness [m]. Those of more than four vertices are left
+// out.
+std::vector<ContactTerm> push_terms(std::span<const Separation>, const Eigen::VectorXd& inverse_mass, double softness,
+                                    double h);
 
 // Sets the normal forces that bound friction from the gaps at x [N].
 void lag_normal_forces(std::vector<ContactTerm>&, const Points& x);
