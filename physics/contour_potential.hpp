@@ -18,9 +18,9 @@ class ContourPotential {
   const Segments& segments(const Points& x);
   std::span<const SheetView> sheets() const { return sheets_.views; }  // the cloth where it was asked about last
 
-  // Adds the gradient of the chosen kind, and for each crossing one block a sheet that moves: a bound on the
-  // Gauss-Newton Hessian, so that a Newton step moves no crossing beyond the middle of its segments. The bound parts
-  // the two ends of a segment, and edge and face, by (a + b)^2 <= 2 (a^2 + b^2), since a block has four vertices.
+  // Adds the gradient of the chosen kind, and for each crossing one block a sheet that moves. They bound the
+  // Gauss-Newton Hessian, but for edges nearly parallel to their face, where they are capped. The bound parts the two
+  // ends of a segment, and edge and face, by (a + b)^2 <= 2 (a^2 + b^2), since a block has four vertices.
   void add_derivatives(const Points& x, Points& gradient, std::vector<ContactBlock>& blocks);
 
  private:

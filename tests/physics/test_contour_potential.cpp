@@ -83,7 +83,6 @@ TEST_CASE("contour potential: a force on the cloth alone has no sum", "[contour_
   }
 }
 
-// By the bound, one Newton step from the blocks alone cannot carry a crossing past its neighbours.
 TEST_CASE("contour potential: the blocks bound the Gauss-Newton Hessian", "[contour_potential]") {
   Phi phi(pierced_world(), ContourGradient::translational);
   const Points x = phi.w.state.x;
