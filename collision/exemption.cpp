@@ -4,6 +4,7 @@
 
 #include "collision/contour_regions.hpp"
 #include "collision/inside.hpp"
+#include "collision/world_sheets.hpp"
 
 namespace selvedge {
 namespace {
@@ -17,23 +18,14 @@ void mark_triangle(std::vector<char>& marks, int size, const Surface& surface, i
   for (int k = 0; k < 3; ++k) mark(marks, size, first + surface.triangles(triangle, k));
 }
 
-struct Sheets {
-  std::vector<Points> positions;
-  std::vector<SheetView> views;  // cloth, then obstacles
-};
-
-Sheets sheets_of(const ContactWorld& world, const Points& nodes) {
-  Sheets sheets;
-  sheets.positions.push_back(nodes.topRows(world.cloth->vertex_count));
-  for (std::size_t k = 0; k < world.obstacles.size(); ++k)
-    sheets.positions.push_back(nodes.middleRows(world.first_node[k], world.obstacles[k]->vertex_count));
-  sheets.views.push_back({world.cloth, &sheets.positions[0]});
-  for (std::size_t k = 0; k < world.obstacles.size(); ++k)
-    sheets.views.push_back({world.obstacles[k], &sheets.positions[k + 1]});
-  return sheets;
-}
-
 }  // namespace
+
+int Exemption::cloth_vertices() const {
+  int count = 0;
+  for (std::size_t v = 0; v < std::max(self.size(), body.size()); ++v)
+    count += (!self.empty() && self[v]) || (!body.empty() && body[v]);
+  return count;
+}
 
 bool Exemption::leaves_alone(const ContactWorld& world, const std::array<int, 4>& nodes) const {
   bool self_alone = false, body_alone = false, all_cloth = true, all_off = !off.empty();
@@ -50,7 +42,7 @@ bool Exemption::leaves_alone(const ContactWorld& world, const std::array<int, 4>
 }
 
 Exemption find_exemption(const ContactWorld& world, const Points& nodes) {
-  const Sheets sheets = sheets_of(world, nodes);
+  const WorldSheets sheets(world, nodes);
   const int n = world.cloth->vertex_count;
   Exemption exemption;
   const auto marks_for = [&](int partner_sheet) -> std::vector<char>& {

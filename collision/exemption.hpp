@@ -13,6 +13,7 @@ struct Exemption {
       off;  // of all nodes: an obstacle's, on or inside a contour of the obstacle with itself, or next to it
 
   bool cloth() const { return !self.empty() || !body.empty(); }
+  int cloth_vertices() const;  // how many of them
   bool any() const { return cloth() || !off.empty(); }
   bool leaves_alone(const ContactWorld&, const std::array<int, 4>& nodes) const;
 };

@@ -53,7 +53,7 @@ Contacts contact_terms(const Scene& scene, const ContactWorld& world, std::span<
     const double lift = overlap_removed * (p.rest_gap - p.gap);
     ContactTerm term;
     term.normal = p.normal;
-    term.target = p.gap + lift;
+    term.target = std::min(p.rest_gap, p.gap + lift);
     term.softness = onset * p.rest_gap;
     // Loaded cloth comes to rest where it sinks by as much as it is lifted: at half the rest gap.
     term.sink = std::max(overlap_removed * p.gap, least_sink * p.rest_gap);
@@ -89,6 +89,25 @@ void add_impact_terms(const Scene& scene, const ContactWorld& world, std::span<c
       contacts.terms.push_back(term);
     }
   }
+}
+
+std::vector<ContactTerm> push_terms(std::span<const Separation> separations, const Eigen::VectorXd& inverse_mass,
+                                    double softness, double h) {
+  std::vector<ContactTerm> terms;
+  for (const Separation& s : separations) {
+    ContactTerm term;
+    if (s.count > static_cast<int>(term.nodes.size())) continue;
+    std::copy_n(s.vertex.begin(), term.nodes.size(), term.nodes.begin());
+    std::copy_n(s.weight.begin(), term.weights.size(), term.weights.begin());
+    term.normal = s.direction;
+    term.target = s.least;
+    term.softness = softness;
+    const double give = compliance(term, inverse_mass);
+    if (give <= 0) continue;
+    term.stiffness = contact_stiffness / (give * h * h);
+    terms.push_back(term);
+  }
+  return terms;
 }
 
 double lag_normal_forces(std::vector<ContactTerm>& terms, const Points& x) {
@@ -139,7 +158,7 @@ void bear(std::vector<ContactTerm>& terms, const Eigen::VectorXd& inverse_mass, 
       shared += square * borne[node];
     }
     const double load = approach / compliance(term, inverse_mass);
-    term.stiffness = std::max(term.stiffness, load * alone / shared / term.sink);
+    term.stiffness = std::max(term.stiffness, load * std::sqrt(alone / shared) / term.sink);
     term.normal_force = std::max(0.0, load * alone / shared);
   }
 }

@@ -5,6 +5,7 @@
 
 #include "collision/proximity.hpp"
 #include "collision/response.hpp"
+#include "collision/separation.hpp"
 #include "physics/contact_energy.hpp"
 
 namespace selvedge {
@@ -19,7 +20,7 @@ struct Contacts {
 // with obstacles where they end. A pair's stiffness begins with `contact_stiffness` times its mass over h^2, which
 // makes a layer's own weight sink it by the same small fraction of g h^2 at any density, scale or time step; its force
 // vanishes where a tenth of the overlap is gone, so that no pair is thrown apart (Bridson, Fedkiw and Anderson 2002,
-// section 7.2).
+// section 7.2). Pairs farther apart than their rest gap are stopped there.
 Contacts contact_terms(const Scene&, const ContactWorld&, std::span<const Proximity>,
                        const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1, double h);
 
@@ -28,6 +29,11 @@ Contacts contact_terms(const Scene&, const ContactWorld&, std::span<const Proxim
 // it, but is linearised anew where its impact is deeper than `deep` [m].
 void add_impact_terms(const Scene&, const ContactWorld&, std::span<const Impact>, const Eigen::VectorXd& inverse_mass,
                       const Points& nodes0, const Points& nodes1, double h, double deep, Contacts&);
+
+// Separations as terms without friction, as stiff as contacts; softness [m]. Those of more than four vertices are left
+// out.
+std::vector<ContactTerm> push_terms(std::span<const Separation>, const Eigen::VectorXd& inverse_mass, double softness,
+                                    double h);
 
 // Sets the normal forces that bound friction from the gaps at x [N]. Returns by how much of it their sum has changed,
 // each times its friction.

@@ -3,20 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collision/audit.hpp"
-#include "collision/audit_motion.hpp"
 #include "collision/floating_point.hpp"
-#include "collision/penetration_depth.hpp"
 #include "collision/resolve.hpp"
 #include "collision/stopwatch.hpp"
 #include "physics/contact_terms.hpp"
 #include "physics/features.hpp"
 #include "physics/recovery.hpp"
+#include "physics/step_audit.hpp"
+#include "physics/substeps.hpp"
 
 namespace selvedge {
 namespace {
 
-constexpr double edges_a_substep = 2.5;     // how far a vertex may move, in mean edge lengths
 constexpr double first_roughness = 8;       // of the solve that only finds impacts and normal forces
 constexpr double friction_roughness = 0.2;  // of a solve with friction: sticking shows in small velocities
 constexpr int most_passes = 6;              // solves after the first one, at most
@@ -28,22 +26,6 @@ constexpr double rounding = 1e-14;          // of positions that are added up ov
 constexpr int pinched_rounds = 4;           // of zones in a step that starts with obstacles that lag
 constexpr int hopeful_rounds = 12;          // of zones in a substep that may still be halved
 
-std::vector<const Surface*> surfaces(const std::vector<Obstacle>& obstacles) {
-  std::vector<const Surface*> all;
-  for (const Obstacle& obstacle : obstacles) all.push_back(&obstacle.surface);
-  return all;
-}
-
-// Zero where positions are prescribed: pins, vertices without mass, obstacles.
-Eigen::VectorXd inverse_masses(const Scene& scene, int node_count) {
-  const Eigen::VectorXd masses = lumped_masses(scene);
-  Eigen::VectorXd inverse = Eigen::VectorXd::Zero(node_count);
-  for (int v = 0; v < masses.size(); ++v)
-    if (masses[v] > 0) inverse[v] = 1 / masses[v];
-  for (const int pin : scene.pins) inverse[pin] = 0;
-  return inverse;
-}
-
 ResolveOptions resolve_options(const ContactSettings& contact) {
   ResolveOptions options;
   options.thickness = contact.thickness;
@@ -53,27 +35,13 @@ ResolveOptions resolve_options(const ContactSettings& contact) {
   return options;
 }
 
-double mean_edge_length(const Scene& scene) {
-  double sum = 0;
-  for (const RestTriangle& t : scene.rest_triangle)
-    for (int k = 0; k < 3; ++k) sum += (t.col(k) - t.col((k + 1) % 3)).norm();
-  return scene.rest_triangle.empty() ? 0 : sum / (3 * static_cast<double>(scene.rest_triangle.size()));
-}
-
-Points rounded_to_float(const Points& x) { return x.cast<float>().cast<double>(); }
-
-// Where a step has come to: all nodes, and the cloth's velocity.
-struct Leg {
-  Points nodes, v;
-};
-
 class ConventionalStepper final : public Stepper {
  public:
   ConventionalStepper(const Scene& scene, const ConventionalOptions& options)
       : scene_(scene),
         options_(options),
         features_(features_of(scene)),
-        world_(make_contact_world(scene.surface, surfaces(scene.obstacles), features_.self_contact)),
+        world_(make_contact_world(scene.surface, obstacle_surfaces(scene), features_.self_contact)),
         search_(world_),
         contact_(resolve_options(scene.contact)),
         inverse_mass_(inverse_masses(scene, world_.node_count)),
@@ -86,7 +54,6 @@ class ConventionalStepper final : public Stepper {
 
  private:
   bool has_contact() const { return features_.self_contact || features_.obstacles; }
-  int substeps_for(const State& from, const Drive& drive, double dt) const;
   bool solve(const StepProblem& problem, Points& x, StepReport& report);
   bool solve_with_contact(StepProblem& problem, const Points& nodes0, Points& nodes1, Points& x, Contacts& contacts,
                           StepReport& report);
@@ -95,11 +62,8 @@ class ConventionalStepper final : public Stepper {
                   StepReport& report);
   bool advance(Leg& leg, const Points& nodes, const Points& pins, const Drive& drive, double h, int halvings_left,
                StepReport& report);
-  Points pinned(const Points& nodes) const;
-  Audit audit_positions(const Points& x, const std::vector<Points>& obstacles) const;
+  int substeps(const State& from, const Drive& drive, double dt, const Points& nodes) const;
   void prepare_contact(const State& from, double dt, const Points& wanted, Points& nodes, StepReport& report);
-  int passed_through(const Points& nodes0, const Points& nodes1) const;
-  void audit_state(const Drive& drive, State& state, StepReport& report) const;
 
   const Scene& scene_;
   ConventionalOptions options_;
@@ -116,18 +80,6 @@ class ConventionalStepper final : public Stepper {
   bool pinched_ = false;  // this step started with obstacles that lag
   Exemption exemption_;   // of this step
 };
-
-// As many as keep every vertex's motion in a substep within a few mesh edges, and at least two: implicit Euler at 1/30
-// s damps visibly.
-int ConventionalStepper::substeps_for(const State& from, const Drive& drive, double dt) const {
-  if (options_.substeps) return *options_.substeps;
-  double speed = drive.acceleration.norm() * dt;
-  if (from.v.rows() > 0) speed += from.v.rowwise().norm().maxCoeff();
-  for (std::size_t k = 0; k < from.obstacles.size(); ++k)
-    speed = std::max(speed, (drive.obstacles[k] - from.obstacles[k]).rowwise().norm().maxCoeff() / dt);
-  const double wanted = edge_length_ > 0 ? std::ceil(speed * dt / (edges_a_substep * edge_length_)) : 1;
-  return static_cast<int>(std::clamp<double>(wanted, 2, options_.max_substeps));
-}
 
 void add(const ResolveReport& resolved, StepReport& report) {
   report.collision.impulses += resolved.impulses;
@@ -221,26 +173,19 @@ bool ConventionalStepper::advance(Leg& leg, const Points& nodes, const Points& p
   if (outcome == Outcome::unsettled) {
     ++report.collision.halved_substeps;
     const Points middle = 0.5 * (leg.nodes + nodes);
-    const Points middle_pins = 0.5 * (pinned(leg.nodes) + pins);
+    const Points middle_pins = 0.5 * (pinned_rows(scene_, leg.nodes) + pins);
     return advance(leg, middle, middle_pins, drive, 0.5 * h, halvings_left - 1, report) &&
            advance(leg, nodes, pins, drive, 0.5 * h, halvings_left - 1, report);
   }
   ++report.substeps;
   if (has_contact()) {
     Stopwatch watch;
-    report.collision.passed_through += passed_through(leg.nodes, next);
+    report.collision.passed_through += passed_through(world_, exemption_, leg.nodes, next);
     report.seconds.audit += watch.lap();
   }
   leg.v = (next.topRows(n) - leg.nodes.topRows(n)) / h;
   leg.nodes = std::move(next);
   return true;
-}
-
-Points ConventionalStepper::pinned(const Points& nodes) const {
-  Points pins(scene_.pins.size(), 3);
-  for (std::size_t k = 0; k < scene_.pins.size(); ++k)
-    pins.row(static_cast<Eigen::Index>(k)) = nodes.row(scene_.pins[k]);
-  return pins;
 }
 
 bool ConventionalStepper::solve(const StepProblem& problem, Points& x, StepReport& report) {
@@ -254,46 +199,6 @@ bool ConventionalStepper::solve(const StepProblem& problem, Points& x, StepRepor
   return newton.finite;
 }
 
-// As a file stores them: the audit is of what a reader will see.
-Audit ConventionalStepper::audit_positions(const Points& x, const std::vector<Points>& obstacles) const {
-  std::vector<Points> positions;
-  for (const Points& obstacle : obstacles) positions.push_back(rounded_to_float(obstacle));
-  std::vector<AuditBody> bodies;
-  for (std::size_t k = 0; k < positions.size(); ++k) bodies.push_back({&scene_.obstacles[k].surface, &positions[k]});
-  return audit(scene_.surface, rounded_to_float(x), bodies, features_.self_contact);
-}
-
-void ConventionalStepper::audit_state(const Drive& drive, State& state, StepReport& report) const {
-  Stopwatch watch;
-  CollisionReport& collision = report.collision;
-  const Audit now = audit_positions(state.x, state.obstacles);
-  collision.pairs_after = collision.pairs_wanted = now.intersecting_pairs();
-  state.clean = collision.pairs_after == 0 && now.inside_vertices == 0;
-  if (state.pinched) {
-    collision.pairs_wanted = audit_positions(state.x, drive.obstacles).intersecting_pairs();
-    for (std::size_t k = 0; k < drive.obstacles.size(); ++k)
-      collision.depth_wanted =
-          std::max(collision.depth_wanted, penetration_depth(scene_.obstacles[k].surface, drive.obstacles[k], state.x));
-  }
-  if (collision.pairs_after > 0) report.reason = Reason::penetrating;
-  report.seconds.audit += watch.lap();
-}
-
-int ConventionalStepper::passed_through(const Points& nodes0, const Points& nodes1) const {
-  const int n = scene_.surface.vertex_count;
-  std::vector<Points> x0, x1;
-  for (std::size_t k = 0; k < world_.obstacles.size(); ++k) {
-    x0.push_back(nodes0.middleRows(world_.first_node[k], world_.obstacles[k]->vertex_count));
-    x1.push_back(nodes1.middleRows(world_.first_node[k], world_.obstacles[k]->vertex_count));
-  }
-  std::vector<MovingBody> bodies;
-  for (std::size_t k = 0; k < x0.size(); ++k) bodies.push_back({world_.obstacles[k], &x0[k], &x1[k]});
-  const MotionAudit motion =
-      audit_motion(scene_.surface, nodes0.topRows(n), nodes1.topRows(n), bodies, features_.self_contact);
-  return static_cast<int>(std::ranges::count_if(
-      motion.passed, [this](const PassedPair& pair) { return !exemption_.leaves_alone(world_, pair.nodes); }));
-}
-
 // Recovery where the start is tangled, what contact is to leave alone, and the pairs near the start.
 void ConventionalStepper::prepare_contact(const State& from, double dt, const Points& wanted, Points& nodes,
                                           StepReport& report) {
@@ -302,9 +207,7 @@ void ConventionalStepper::prepare_contact(const State& from, double dt, const Po
   pinched_ = from.pinched;
   exemption_ = {};
   if (!from.clean && nodes.allFinite()) exemption_ = recover(world_, inverse_mass_, recovery_speed * dt, nodes);
-  for (int v = 0; v < scene_.surface.vertex_count; ++v)
-    report.collision.left_alone +=
-        (!exemption_.self.empty() && exemption_.self[v]) || (!exemption_.body.empty() && exemption_.body[v]);
+  report.collision.left_alone = exemption_.cloth_vertices();
   self_crossings_.switch_off(nodes, wanted, exemption_);
   if (exempt || exemption_.any()) path_ = {};  // what was listed then is not what is to be listed now
   search_.leave_out(exemption_.any() ? &exemption_ : nullptr);
@@ -313,18 +216,26 @@ void ConventionalStepper::prepare_contact(const State& from, double dt, const Po
   report.seconds.broad_phase += watch.lap();
 }
 
+int ConventionalStepper::substeps(const State& from, const Drive& drive, double dt, const Points& nodes) const {
+  if (options_.substeps) return *options_.substeps;
+  const auto touching = has_contact() ? pairs_within(path_, nodes, scene_.contact.thickness) : std::vector<NodePair>{};
+  return substeps_for(from, drive, dt, edge_length_, options_.max_substeps, fastest_past(touching, from, drive, dt));
+}
+
 StepReport ConventionalStepper::step(const State& from, const Drive& drive, double dt, State& to) {
   restore_standard_arithmetic();
   StepReport report;
   report.by = traits_.name;
-  const int n = scene_.surface.vertex_count, planned = substeps_for(from, drive, dt);
+  const int n = scene_.surface.vertex_count;
   Leg leg{gather_nodes(from.x, from.obstacles), from.v};
   const Points wanted = gather_nodes(from.x, drive.obstacles);
   if (has_contact()) prepare_contact(from, dt, wanted, leg.nodes, report);
+  const int planned = substeps(from, drive, dt, leg.nodes);
   for (int s = 0; s < planned; ++s) {
     const double part = 1.0 / (planned - s);  // of what is left of the frame
     const Points nodes = leg.nodes + part * (wanted - leg.nodes);
-    const Points pins = pinned(leg.nodes) + part * (drive.pins - pinned(leg.nodes));
+    const Points held = pinned_rows(scene_, leg.nodes);
+    const Points pins = held + part * (drive.pins - held);
     // Cloth that left an obstacle no room will hardly do so now.
     if (!advance(leg, nodes, pins, drive, dt / planned, from.pinched ? 0 : halvings, report)) {
       report.status = StepStatus::rejected;
@@ -344,7 +255,7 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
     report.collision.obstacle_lag = (leg.nodes - wanted).bottomRows(leg.nodes.rows() - n).rowwise().norm().maxCoeff();
   to.pinched = report.collision.obstacle_lag > rounding * wanted.cwiseAbs().maxCoeff();
   if (!to.pinched) report.collision.obstacle_lag = 0;
-  audit_state(drive, to, report);
+  audit_state(scene_, world_, drive, to, report);
   return report;
 }
 

@@ -106,7 +106,6 @@ struct ImplicitEuler::Impl {
 
   void start(const StepProblem& problem) {
     prepare(scene, elastic, masses, problem, options.slip_speed, scratch, step);
-    drifting = drifting_components(scene, step);
     exact_from = exact_wait = first_exact;
   }
   LinearSystem system() const {
@@ -175,6 +174,7 @@ ImplicitEuler::Impl::Direction ImplicitEuler::Impl::find_direction(const Points&
     derivatives(step, x, scratch, gradient, &hessian, form);
     diagonal_blocks(system(), diagonal);
     if (below_rounding(gradient, diagonal, x)) return Direction::none;
+    drifting = drifting_components(scene, step);
     const bool accurate = solve_linear(exact ? Definite::perhaps : Definite::yes, report);
     correct_translations(scene, step, drifting, gradient, motion);
     const bool downhill = motion.allFinite() && gradient.cwiseProduct(motion).sum() < 0;

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 
 #include "physics/contact_energy.hpp"
+#include "physics/linear_system.hpp"
 #include "physics/scene.hpp"
 
 namespace selvedge {
@@ -28,6 +30,14 @@ struct NewtonReport {
   double residual = 0;  // largest force imbalance of a free vertex [N]
 };
 
+// A term of the potential that this solver knows nothing of. It may be anything that has a value; where it jumps or has
+// kinks the line search still holds Newton to what sinks.
+struct AddedTerm {
+  std::function<double(const Points& x)> value;  // [J]
+  // Adds a gradient [N], and blocks whose sum is a positive semidefinite stand-in for the second derivative.
+  std::function<void(const Points& x, Points& gradient, std::vector<ContactBlock>& blocks)> add_derivatives;
+};
+
 // One step's data. Everything is over the cloth's joint numbering.
 struct StepProblem {
   double h = 0;                // [s]
@@ -38,10 +48,11 @@ struct StepProblem {
   Vec3 wind = Vec3::Zero();
   std::span<const ContactTerm> contacts;
   double roughness = 1;  // times the tolerance: for a solve that only feeds another one
+  const AddedTerm* added = nullptr;
 };
 
 // Minimises the incremental potential
-//   E(x) = sum_i m_i |x_i - y_i|^2 / (2 h^2) + membrane + bending + damping + contact + friction,
+//   E(x) = sum_i m_i |x_i - y_i|^2 / (2 h^2) + membrane + bending + damping + contact + friction + added,
 //   y = x0 + h v0 + h^2 (acceleration + wind force / m),
 // with pins held exactly, by projected Newton with line search. Holds caches only (patterns, factors, scratch).
 class ImplicitEuler {

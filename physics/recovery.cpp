@@ -1,6 +1,7 @@
 #include "physics/recovery.hpp"
 
 #include "collision/untangle.hpp"
+#include "collision/world_sheets.hpp"
 
 namespace selvedge {
 
@@ -8,12 +9,8 @@ Exemption recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass
   Exemption exemption = find_exemption(world, nodes);
   if (!exemption.cloth()) return exemption;
   const int n = world.cloth->vertex_count;
-  std::vector<Points> positions;
-  std::vector<SheetView> obstacles;
-  for (std::size_t k = 0; k < world.obstacles.size(); ++k)
-    positions.push_back(nodes.middleRows(world.first_node[k], world.obstacles[k]->vertex_count));
-  for (std::size_t k = 0; k < positions.size(); ++k) obstacles.push_back({world.obstacles[k], &positions[k]});
-  const Points goal = untangle(*world.cloth, nodes.topRows(n), obstacles).x;
+  const WorldSheets sheets(world, nodes);
+  const Points goal = untangle(*world.cloth, sheets.positions[0], std::span(sheets.views).subspan(1)).x;
   for (int v = 0; v < n; ++v) {
     const Vec3 way = row(goal, v) - row(nodes, v);
     const double length = way.norm();

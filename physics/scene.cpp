@@ -28,4 +28,26 @@ Eigen::VectorXd lumped_masses(const Scene& scene) {
   return masses;
 }
 
+Eigen::VectorXd inverse_masses(const Scene& scene, int node_count) {
+  const Eigen::VectorXd masses = lumped_masses(scene);
+  Eigen::VectorXd inverse = Eigen::VectorXd::Zero(node_count);
+  for (int v = 0; v < masses.size(); ++v)
+    if (masses[v] > 0) inverse[v] = 1 / masses[v];
+  for (const int pin : scene.pins) inverse[pin] = 0;
+  return inverse;
+}
+
+double mean_edge_length(const Scene& scene) {
+  double sum = 0;
+  for (const RestTriangle& t : scene.rest_triangle)
+    for (int k = 0; k < 3; ++k) sum += (t.col(k) - t.col((k + 1) % 3)).norm();
+  return scene.rest_triangle.empty() ? 0 : sum / (3 * static_cast<double>(scene.rest_triangle.size()));
+}
+
+std::vector<const Surface*> obstacle_surfaces(const Scene& scene) {
+  std::vector<const Surface*> all;
+  for (const Obstacle& obstacle : scene.obstacles) all.push_back(&obstacle.surface);
+  return all;
+}
+
 }  // namespace selvedge

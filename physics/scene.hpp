@@ -74,4 +74,12 @@ double area(const RestTriangle&);  // signed; positive for flatten()
 // Lumped mass of every vertex [kg]: a third of each triangle's rest area times its cloth's density.
 Eigen::VectorXd lumped_masses(const Scene&);
 
+// Of every node of cloth and obstacles [1/kg]; zero where positions are prescribed: pins, vertices without mass,
+// obstacles.
+Eigen::VectorXd inverse_masses(const Scene&, int node_count);
+
+double mean_edge_length(const Scene&);  // of the triangles at rest [m]; 0 without triangles
+
+std::vector<const Surface*> obstacle_surfaces(const Scene&);
+
 }  // namespace selvedge

@@ -64,6 +64,13 @@ void prepare_contacts(int vertices, StepPotential& step) {
   step.lists = list_contacts(step.contacts, vertices);
 }
 
+// The added term's blocks follow those of the contacts and are others at every x.
+void add_term(const AddedTerm& added, const Points& x, StepPotential& step, Points& gradient) {
+  step.contacts.resize(step.problem->contacts.size());
+  added.add_derivatives(x, gradient, step.contacts);
+  step.lists = list_contacts(step.contacts, static_cast<int>(x.rows()));
+}
+
 // Row i of K0 (x - x0) / h.
 Vec3 damping_force(const StepPotential& step, const Points& motion, int i) {
   Vec3 force = multiply_row(step.elastic->pattern, step.damping, motion, i);
@@ -125,7 +132,7 @@ void energies(const StepPotential& step, const Points& x, StepScratch& scratch, 
   energies.clear();
   append_elastic_energies(*step.elastic, x, energies);
   if (!step.damping.empty()) scratch.motion = x - *step.problem->x0;
-  const int vertices = static_cast<int>(x.rows()), contacts = static_cast<int>(step.contacts.size());
+  const int vertices = static_cast<int>(x.rows()), contacts = static_cast<int>(step.problem->contacts.size());
   const int vertex_chunks = chunks_of(vertices), tasks = vertex_chunks + chunks_of(contacts);
   const std::size_t first = energies.size();
   energies.resize(first + tasks);
@@ -142,15 +149,17 @@ void energies(const StepPotential& step, const Points& x, StepScratch& scratch, 
     }
     energies[first + c] = sum;
   }
+  if (step.problem->added) energies.push_back(step.problem->added->value(x));
 }
 
 void derivatives(StepPotential& step, const Points& x, StepScratch& scratch, Points& gradient, PairBlocks* hessian,
                  HessianForm form) {
   const Points& x0 = *step.problem->x0;
   elastic_derivatives(*step.elastic, x, scratch.assembly, &gradient, hessian, form);
+  if (step.problem->added) add_term(*step.problem->added, x, step, gradient);
   if (!step.damping.empty()) scratch.motion = x - x0;
-  const int vertices = static_cast<int>(x.rows()), contacts = static_cast<int>(step.contacts.size());
-  scratch.contact_forces.resize(contacts);
+  const int vertices = static_cast<int>(x.rows()), contacts = static_cast<int>(step.problem->contacts.size());
+  scratch.contact_forces.assign(step.contacts.size(), Vec3::Zero());  // those of the added term are in its gradient
 #pragma omp parallel if (vertices > 2000)
   {
 #pragma omp for schedule(static)
@@ -166,7 +175,7 @@ void derivatives(StepPotential& step, const Points& x, StepScratch& scratch, Poi
       Vec3 sum = step.inertia[i] * (row(x, i) - row(step.ballistic, i));
       if (!step.drag.empty()) sum += step.drag[i] * (row(x, i) - row(x0, i));
       if (!step.damping.empty()) sum += damping_force(step, scratch.motion, i);
-      if (contacts > 0)
+      if (!step.lists.begin.empty())
         for (int k = step.lists.begin[i]; k < step.lists.begin[i + 1]; ++k)
           sum += step.lists.weight[k] * scratch.contact_forces[step.lists.contact[k]];
       gradient.row(i) += sum.transpose();

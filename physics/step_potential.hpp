@@ -10,7 +10,7 @@ namespace selvedge {
 
 // The incremental potential of one step, all that is constant during the step worked out:
 //   E(x) = sum_i m_i |x_i - y_i|^2 / (2 h^2) + m_i a_i |x_i - x0_i|^2 / (2 h) + elastic(x)
-//        + (x - x0) . K0 (x - x0) / (2 h) + contact(x) + friction(x),
+//        + (x - x0) . K0 (x - x0) / (2 h) + contact(x) + friction(x) + added(x),
 // with a the mass damping and K0 the PSD elastic Hessian at x0, each element times its stiffness damping. The sums over
 // vertices run over the free ones alone.
 struct StepPotential {
@@ -25,7 +25,7 @@ struct StepPotential {
   std::vector<double> flat_damping;  // stiffness damping over h of each vertex; empty without
   // For the linear system:
   std::vector<double> diagonal, flat_scale;
-  std::vector<ContactBlock> contacts;
+  std::vector<ContactBlock> contacts;  // and behind them, once derivatives were taken, the added term's blocks
   ContactLists lists;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "pipeline/config_tables.hpp"
+#include "pipeline/make_stepper.hpp"
 #include "pipeline/setup.hpp"
 
 // Defaults are read from the structs that hold them; a default that is written here has its only place here.
@@ -50,6 +51,26 @@ const Section& contact_section() {
   return table;
 }
 
+const Section& icm_section() {
+  const IcmOptions o;
+  static const Section table{
+      "icm",
+      "Contours minimised together with the cloth's energy, without continuous detection and without learning.",
+      "",
+      {},
+      {integer("outer_iterations", at_least_one, show(o.outer_iterations),
+               "a substep: pairs found anew, then a minimisation"),
+       number("contour_weight", Unit::none, not_negative, show(o.contour_weight),
+              "of the contours' squared segment lengths, in mean vertex masses over the time step squared"),
+       word("contour_gradient", {"translational", "full"}, "translational",
+            "`translational`: edges are moved, not shortened"),
+       number("push_speed", Unit::speed, not_negative, show(o.push_speed),
+              "at which what contours enclose is asked back; 0: the contour energy alone"),
+       number("reach", Unit::length, not_negative, show(o.reach),
+              "how far apart pairs may be that are kept from passing each other; the thickness at least")}};
+  return table;
+}
+
 const Section& run_section() {
   const RunOptions r;
   static const Section table{
@@ -61,7 +82,8 @@ const Section& run_section() {
        number("fps", Unit::rate, positive, show(r.fps), "frames a second"),
        with_words(integer("substeps", at_least_one, "auto", "time steps a frame; `auto`: from the speed"), {"auto"}),
        integer("max_substeps", at_least_one, show(r.conventional.max_substeps), "most that `auto` takes"),
-       word("stepper", {"conventional"}, r.stepper, "who makes the frames")}};
+       word("stepper", known_steppers(), r.stepper, "who makes the frames"),
+       section(icm_section(), "{}", "of the stepper `icm`")}};
   return table;
 }
 

@@ -15,6 +15,8 @@
 
 #include "collision/obstacle.hpp"
 #include "physics/cholesky.hpp"
+#include "pipeline/config.hpp"
+#include "pipeline/make_stepper.hpp"
 #include "pipeline/version.hpp"
 
 namespace selvedge {
@@ -70,7 +72,7 @@ std::vector<std::pair<std::string, std::string>> facts() {
           {"openmp", has_openmp() ? "in" : "left out (SELVEDGE_OPENMP=OFF)"},
           {"threads", std::to_string(threads())},
           {"waiting", waiting()},
-          {"steppers", "conventional"}};
+          {"steppers", joined(known_steppers())}};
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 
 #include "collision/error.hpp"
 #include "pipeline/commands.hpp"
+#include "pipeline/config.hpp"
+#include "pipeline/make_stepper.hpp"
 #include "pipeline/process_threads.hpp"
 #include "pipeline/version.hpp"
 
@@ -30,7 +32,7 @@ void scene_options(CLI::App& command, SceneArguments& arguments) {
   command.add_option("scene", arguments.scene, "scene file (YAML)")->required();
   command.add_option("--set", arguments.overrides, "key=value instead of the scene's, dotted keys")
       ->allow_extra_args(false);
-  command.add_option("--stepper", arguments.stepper, "conventional");
+  command.add_option("--stepper", arguments.stepper, joined(known_steppers()));
 }
 
 void simulate_options(CLI::App& command, SimulateArguments& arguments) {

@@ -9,9 +9,27 @@
 
 namespace selvedge {
 
+namespace {
+
+// What the scene needs, and what the stepper does without.
+std::vector<PlanLine> lines_of(const Setup& setup) {
+  std::vector<PlanLine> lines = plan_lines(setup.scene);
+  if (setup.run.stepper != "icm") return lines;
+  const std::string untouched = "left out by the stepper icm";
+  lines.push_back({"contour energy", true, "weight " + fmt::format("{}", setup.run.icm.contour_weight)});
+  lines.push_back(
+      {"continuous detection", false, untouched + ": what passes through on the way is found by the audit"});
+  lines.push_back({"impulses and impact zones", false, untouched + ": nothing undoes a motion"});
+  lines.push_back({"recovery before a step", false, untouched + ": the contour energy does it within"});
+  lines.push_back({"obstacles that give way", false, untouched + ": they are where they are wanted"});
+  return lines;
+}
+
+}  // namespace
+
 std::string plan_json(const Setup& setup) {
   nlohmann::ordered_json lines = nlohmann::ordered_json::array();
-  for (const PlanLine& line : plan_lines(setup.scene))
+  for (const PlanLine& line : lines_of(setup))
     lines.push_back({{"feature", line.feature}, {"in", line.in}, {"why", line.why}});
   const nlohmann::ordered_json json = {{"scene", setup.file.string()},
                                        {"stepper", setup.run.stepper},
@@ -26,7 +44,7 @@ std::string plan_json(const Setup& setup) {
 }
 
 std::string plan_text(const Setup& setup) {
-  const std::vector<PlanLine> lines = plan_lines(setup.scene);
+  const std::vector<PlanLine> lines = lines_of(setup);
   std::size_t width = 0;
   for (const PlanLine& line : lines) width = std::max(width, line.feature.size());
   std::string text =

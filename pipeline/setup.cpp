@@ -151,6 +151,17 @@ ImplicitEulerOptions read_solver(const Config& section) {
   return o;
 }
 
+IcmOptions read_icm(const Config& section) {
+  IcmOptions o;
+  o.outer_iterations = section["outer_iterations"].integer();
+  o.contour_weight = section["contour_weight"].number();
+  o.contour_gradient =
+      section["contour_gradient"].text() == "full" ? ContourGradient::full : ContourGradient::translational;
+  o.push_speed = section["push_speed"].number();
+  o.reach = section["reach"].number();
+  return o;
+}
+
 RunOptions read_run(const Config& scene) {
   const Config& section = scene["run"];
   RunOptions run;
@@ -161,6 +172,10 @@ RunOptions read_run(const Config& scene) {
   if (!section["substeps"].numbers.empty()) run.conventional.substeps = section["substeps"].integer();
   run.conventional.max_substeps = section["max_substeps"].integer();
   run.conventional.implicit_euler = read_solver(scene["solver"]);
+  run.icm = read_icm(section["icm"]);
+  run.icm.substeps = run.conventional.substeps;
+  run.icm.max_substeps = run.conventional.max_substeps;
+  run.icm.implicit_euler = run.conventional.implicit_euler;
   return run;
 }
 

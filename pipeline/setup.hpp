@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "physics/conventional_stepper.hpp"
+#include "physics/icm_stepper.hpp"
 #include "physics/scene.hpp"
 #include "physics/stepper.hpp"
 #include "pipeline/outcome.hpp"
@@ -21,6 +22,7 @@ struct RunOptions {
   std::string stepper = "conventional";
   std::string output;  // folder for the results; empty: chosen by the command
   ConventionalOptions conventional;
+  IcmOptions icm;
 };
 
 // A scene file, read: everything a run needs.

@@ -133,3 +133,18 @@ TEST_CASE("conventional stepper: friction holds a sheet on a slope below its ang
   const double expected = 0.5 * 9.81 * (std::sin(angle) - 0.2 * std::cos(angle));  // after 1 s
   CHECK(((sliding.state.x - w.state.x) * down).mean() == Approx(expected).epsilon(0.05));
 }
+
+TEST_CASE("conventional stepper: a sheet that slides is stepped finer than one that flies as fast",
+          "[conventional_stepper]") {
+  const auto substeps = [](double height) {
+    World w = make_world(testing::sheet(8, 0.2, height));
+    add_obstacle(w, testing::sheet(2, 2, 0));
+    w.drive.acceleration.setZero();
+    w.state.v.rowwise() = Eigen::RowVector3d(4, 0, 0);
+    State to;
+    return make_conventional_stepper(w.scene, {})->step(w.state, w.drive, 1.0 / 30, to).substeps;
+  };
+  const double edge = 0.2 * (2 + std::sqrt(2.0)) / (3 * 8), way = 4.0 / 30;
+  CHECK(substeps(0.1) == std::max(2.0, std::ceil(way / (2.5 * edge))));
+  CHECK(substeps(1.5e-3) == std::ceil(way / edge));
+}

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <functional>
+
 #include "physics/conventional_stepper.hpp"
 #include "tests/collision/sheets.hpp"
 
@@ -48,12 +50,16 @@ struct Run {
   double lag = 0;
 };
 
+using MakeStepper = std::function<std::unique_ptr<Stepper>(const Scene&)>;
+
+inline std::unique_ptr<Stepper> conventional(const Scene& scene) { return make_conventional_stepper(scene, {}); }
+
 // Drops the stepper, and with it all caches, every `renew` frames.
-inline Run run(const World& w, int frames, int renew = 1 << 30) {
+inline Run run(const World& w, int frames, int renew = 1 << 30, const MakeStepper& make = conventional) {
   Run r{w.state};
-  auto stepper = make_conventional_stepper(w.scene, {});
+  auto stepper = make(w.scene);
   for (int f = 0; f < frames; ++f) {
-    if (f % renew == renew - 1) stepper = make_conventional_stepper(w.scene, {});
+    if (f % renew == renew - 1) stepper = make(w.scene);
     State to;
     const StepReport report = stepper->step(r.state, w.drive, 1.0 / 30, to);
     REQUIRE(report.status == StepStatus::accepted);

@@ -209,6 +209,10 @@ TEST_CASE("Overrides reach every key and are named when wrong", "[config]") {
   CHECK(read("cloths.a.rectangle.resolution=5").scene.surface.vertex_count == 25);
   CHECK(read("gravity=[0, 0, 1 m/s2]").drive_at(0).acceleration.z() == 1);
   CHECK(read("run.substeps=3").run.conventional.substeps == 3);
+  CHECK(read("run.substeps=3").run.icm.substeps == 3);
+  CHECK(read("run.stepper=icm").run.stepper == "icm");
+  CHECK(read("run.icm.reach=3 mm").run.icm.reach == 0.003);
+  CHECK(read("run.icm.contour_gradient=full").run.icm.contour_gradient == ContourGradient::full);
   CHECK_FALSE(read("run.substeps=auto").run.conventional.substeps.has_value());
   // A plain value becomes a section when one of its keys is set.
   const Material material = read("cloths.0.material.density=0.5").scene.cloths[0].material;
@@ -253,6 +257,9 @@ TEST_CASE("Defaults are those of the structs", "[config]") {
   CHECK(used.membrane == wanted.membrane);
   CHECK(used.bending_model == wanted.bending_model);
   CHECK(setup.run.conventional.implicit_euler.velocity_tolerance == ImplicitEulerOptions{}.velocity_tolerance);
+  CHECK(setup.run.icm.contour_weight == IcmOptions{}.contour_weight);
+  CHECK(setup.run.icm.push_speed == IcmOptions{}.push_speed);
+  CHECK(setup.run.icm.contour_gradient == IcmOptions{}.contour_gradient);
   CHECK(setup.scene.contact.thickness == ContactSettings{}.thickness);
   CHECK_FALSE(setup.scene.wind.on);
 }

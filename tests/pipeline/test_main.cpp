@@ -89,6 +89,8 @@ TEST_CASE("plan and info print one JSON object") {
   bool wind_is_out = false;
   for (const auto& line : lines) wind_is_out |= line["feature"] == "wind" && line["in"] == false;
   REQUIRE(wind_is_out);
+  const std::string icm = (folder.path / "scene.yaml").string() + " --set run.stepper=icm";
+  REQUIRE(selvedge_program(folder, "plan " + icm).out.find("out  continuous detection") != std::string::npos);
   const Ended info = selvedge_program(folder, "info --json");
   REQUIRE(info.status == 0);
   REQUIRE(nlohmann::json::parse(info.out)["threads"] >= 1);
@@ -122,7 +124,9 @@ TEST_CASE("bad input ends with status 2 and says what, where and the cure") {
     REQUIRE(outcome.err.find("absent") != std::string::npos);
     REQUIRE(outcome.err.find("cure:") != std::string::npos);
   }
-  REQUIRE(selvedge_program(folder, "simulate " + scene + " --stepper magic").status == 2);
+  const Ended magic = selvedge_program(folder, "simulate " + scene + " --stepper magic");
+  REQUIRE(magic.status == 2);
+  REQUIRE(magic.err.find("icm") != std::string::npos);
   REQUIRE(selvedge_program(folder, "simulate " + scene + " --set run.framez=3").err.find("frames") !=
           std::string::npos);
   REQUIRE(selvedge_program(folder, "no_such_command").status == 2);

@@ -1,0 +1,52 @@
+#include "physics/step_audit.hpp"
+
+#include <algorithm>
+
+#include "collision/audit_motion.hpp"
+#include "collision/penetration_depth.hpp"
+#include "collision/stopwatch.hpp"
+#include "collision/world_sheets.hpp"
+
+namespace selvedge {
+namespace {
+
+Points rounded_to_float(const Points& x) { return x.cast<float>().cast<double>(); }
+
+}  // namespace
+
+Audit audit_positions(const Scene& scene, const ContactWorld& world, const Points& x,
+                      const std::vector<Points>& obstacles) {
+  std::vector<Points> positions;
+  for (const Points& obstacle : obstacles) positions.push_back(rounded_to_float(obstacle));
+  std::vector<AuditBody> bodies;
+  for (std::size_t k = 0; k < positions.size(); ++k) bodies.push_back({&scene.obstacles[k].surface, &positions[k]});
+  return audit(scene.surface, rounded_to_float(x), bodies, world.self);
+}
+
+void audit_state(const Scene& scene, const ContactWorld& world, const Drive& drive, State& state, StepReport& report) {
+  Stopwatch watch;
+  CollisionReport& collision = report.collision;
+  const Audit now = audit_positions(scene, world, state.x, state.obstacles);
+  collision.pairs_after = collision.pairs_wanted = now.intersecting_pairs();
+  state.clean = collision.pairs_after == 0 && now.inside_vertices == 0;
+  if (state.pinched) {
+    collision.pairs_wanted = audit_positions(scene, world, state.x, drive.obstacles).intersecting_pairs();
+    for (std::size_t k = 0; k < drive.obstacles.size(); ++k)
+      collision.depth_wanted =
+          std::max(collision.depth_wanted, penetration_depth(scene.obstacles[k].surface, drive.obstacles[k], state.x));
+  }
+  if (collision.pairs_after > 0) report.reason = Reason::penetrating;
+  report.seconds.audit += watch.lap();
+}
+
+int passed_through(const ContactWorld& world, const Exemption& exemption, const Points& nodes0, const Points& nodes1) {
+  const WorldSheets from(world, nodes0), to(world, nodes1);
+  std::vector<MovingBody> bodies;
+  for (std::size_t k = 1; k < from.views.size(); ++k)
+    bodies.push_back({from.views[k].surface, &from.positions[k], &to.positions[k]});
+  const MotionAudit motion = audit_motion(*world.cloth, from.positions[0], to.positions[0], bodies, world.self);
+  return static_cast<int>(std::ranges::count_if(
+      motion.passed, [&](const PassedPair& pair) { return !exemption.leaves_alone(world, pair.nodes); }));
+}
+
+}  // namespace selvedge

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "collision/audit.hpp"
+#include "collision/exemption.hpp"
+#include "physics/scene.hpp"
+#include "physics/stepper.hpp"
+
+namespace selvedge {
+
+// The audit that every stepper ends a step with. Positions are rounded to float, as a file stores them: what is audited
+// is what a reader will see. Cloth is held against itself where world.self.
+
+Audit audit_positions(const Scene&, const ContactWorld&, const Points& x, const std::vector<Points>& obstacles);
+
+// Of the state that a step made: sets `clean`, and in the report the intersecting pairs, those with obstacles where the
+// drive wanted them, the reason `penetrating` where any are left, and the seconds it took.
+void audit_state(const Scene&, const ContactWorld&, const Drive&, State&, StepReport&);
+
+// Pairs that met while all nodes moved straight from nodes0 to nodes1, those that contact leaves alone not counted.
+int passed_through(const ContactWorld&, const Exemption&, const Points& nodes0, const Points& nodes1);
+
+}  // namespace selvedge
