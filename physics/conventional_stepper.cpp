@@ -18,7 +18,7 @@ namespace {
 constexpr double first_roughness = 8;       // of the solve that only finds impacts and normal forces
 constexpr double friction_roughness = 0.2;  // of a solve with friction: sticking shows in small velocities
 constexpr int most_passes = 6;              // solves after the first one, at most
-constexpr double normal_change = 0.02;      // of what bounds friction, at most, from the last solve but one
+constexpr double normal_change = 0.05;      // of what bounds friction, at most, from the last solve but one
 constexpr double deep_impact = 0.05;        // that a single impulse should not meet, in mean edge lengths
 constexpr int halvings = 2;                 // of a substep whose zones do not settle, before the last resort
 constexpr double recovery_speed = 1;        // at most, of a vertex that starts tangled [m/s]

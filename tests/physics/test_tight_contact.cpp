@@ -68,7 +68,7 @@ double tension(const World& w, const Points& x, int first, int last) {
 
 struct Pulled {
   double ratio = 0, stretch = 0;
-  int impulses = 0, passes = 0;
+  int impulses = 0;
 };
 
 // Tightens the belt, then pulls it round the bar. The figures are of the last ten frames.
