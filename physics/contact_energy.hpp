@@ -16,6 +16,7 @@ struct ContactTerm {
   double target = 0;          // gap at which the force vanishes [m]
   double softness = 0;        // width of the cubic onset [m]
   double stiffness = 0;       // [N/m]
+  double stiffest = 0;        // that a load may make it [N/m]
   double sink = 0;            // how far below its target a load may press the gap [m]
   double friction = 0;        // coefficient
   double normal_force = 0;    // lagged, for the friction bound [N]

@@ -11,7 +11,7 @@ constexpr double overlap_removed = 0.1;    // of the overlap, at most, a step
 constexpr double onset = 0.02;             // width of the smooth onset, of the thickness
 constexpr double least_sink = 0.01;        // of the thickness, a step, under load
 constexpr double impact_sink = 0.25;       // of the gap at which an impact is stopped
-constexpr double most_stiffer = 100;       // times, from one solve to the next
+constexpr double most_stiffer = 100;       // times, in a step: where there is no room, no stiffness makes any
 
 double compliance(const ContactTerm& term, const Eigen::VectorXd& inverse_mass) {
   double sum = 0;
@@ -40,6 +40,7 @@ bool linearise(const Scene& scene, const ContactWorld& world, const NodePair& pa
   const double give = compliance(term, inverse_mass);
   if (give <= 0) return false;
   term.stiffness = contact_stiffness / (give * h * h);
+  term.stiffest = most_stiffer * term.stiffness;
   term.friction = obstacle ? scene.contact.friction : scene.contact.self_friction;
   return true;
 }
@@ -82,7 +83,9 @@ void add_impact_terms(const Scene& scene, const ContactWorld& world, std::span<c
     term.sink = std::max(impact_sink * term.target, least_sink * scene.contact.thickness);
     if (!linearise(scene, world, impact.pair, impact.weights, inverse_mass, nodes0, nodes1, h, term)) continue;
     if (has_term) {
-      term.stiffness = std::max(term.stiffness, contacts.terms[owner->second].stiffness);
+      const ContactTerm& old = contacts.terms[owner->second];
+      term.stiffness = std::max(term.stiffness, old.stiffness);
+      term.stiffest = std::max(term.stiffest, old.stiffest);
       contacts.terms[owner->second] = term;
     } else {
       contacts.pairs.push_back(impact.pair);
@@ -137,6 +140,7 @@ void follow(const Scene& scene, const ContactWorld& world, const Eigen::VectorXd
     term.sink = old.sink;
     if (!linearise(scene, world, pair, now.weights, inverse_mass, nodes0, nodes1, h, term)) continue;
     term.stiffness = old.stiffness;
+    term.stiffest = old.stiffest;
     term.normal_force = old.normal_force;
     contacts.terms[k] = term;
   }
@@ -159,6 +163,7 @@ void bear(std::vector<ContactTerm>& terms, const Eigen::VectorXd& inverse_mass, 
     }
     const double load = approach / compliance(term, inverse_mass);
     term.stiffness = std::max(term.stiffness, load * std::sqrt(alone / shared) / term.sink);
+    term.stiffest = most_stiffer * term.stiffness;
     term.normal_force = std::max(0.0, load * alone / shared);
   }
 }
@@ -166,7 +171,7 @@ void bear(std::vector<ContactTerm>& terms, const Eigen::VectorXd& inverse_mass, 
 void stiffen(std::vector<ContactTerm>& terms, const Points& x) {
   for (ContactTerm& term : terms) {
     const double sunk = term.target - contact_gap(term, x) - 0.5 * term.softness;
-    if (sunk > term.sink) term.stiffness *= std::min(most_stiffer, sunk / term.sink);
+    if (sunk > term.sink) term.stiffness = std::min(term.stiffness * sunk / term.sink, term.stiffest);
   }
 }
 
