@@ -244,10 +244,7 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
     }
   }
   report.status = StepStatus::accepted;
-  to.time = from.time + dt;
-  to.frame = from.frame + 1;
-  to.x = leg.nodes.topRows(n);
-  to.v = leg.v;
+  arrive(from, leg, dt, to);
   to.obstacles.resize(from.obstacles.size());
   for (std::size_t k = 0; k < from.obstacles.size(); ++k)
     to.obstacles[k] = leg.nodes.middleRows(world_.first_node[k], from.obstacles[k].rows());

@@ -190,10 +190,7 @@ StepReport IcmStepper::step(const State& from, const Drive& drive, double dt, St
     leg.nodes = std::move(next);
   }
   report.status = StepStatus::accepted;
-  to.time = from.time + dt;
-  to.frame = from.frame + 1;
-  to.x = leg.nodes.topRows(n);
-  to.v = leg.v;
+  arrive(from, leg, dt, to);
   to.obstacles = drive.obstacles;
   to.pinched = false;
   audit_state(scene_, world_, drive, to, report);

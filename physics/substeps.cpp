@@ -34,6 +34,13 @@ double fastest_past(std::span<const NodePair> pairs, const State& from, const Dr
   return fastest;
 }
 
+void arrive(const State& from, const Leg& leg, double dt, State& to) {
+  to.time = from.time + dt;
+  to.frame = from.frame + 1;
+  to.x = leg.nodes.topRows(from.x.rows());
+  to.v = leg.v;
+}
+
 Points pinned_rows(const Scene& scene, const Points& nodes) {
   Points pins(scene.pins.size(), 3);
   for (std::size_t k = 0; k < scene.pins.size(); ++k) pins.row(static_cast<Eigen::Index>(k)) = nodes.row(scene.pins[k]);

@@ -22,6 +22,9 @@ int substeps_for(const State& from, const Drive&, double dt, double edge_length,
 // The largest speed of a pair's one primitive past the other, of one vertex each [m/s].
 double fastest_past(std::span<const NodePair>, const State& from, const Drive&, double dt);
 
+// Writes where and when a step of dt [s] from `from` has come to, all but the obstacles.
+void arrive(const State& from, const Leg&, double dt, State& to);
+
 Points pinned_rows(const Scene&, const Points& nodes);  // one row a Scene::pins entry
 
 }  // namespace selvedge
