@@ -1,6 +1,4 @@
 #include "physics/equilibrium.hpp"
-#include <cstdio>
-#include <cstdlib>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +9,7 @@ namespace selvedge {
 namespace {
 
 constexpr double first_step = 0.3;  // in the time in which the load alone would move the cloth by its size
-constexpr double growth = 2, longest_step = 300;
+constexpr double growth = 3, long_step = 100, longest_step = 300;
 
 Points pins_at(const Scene& scene, const Points& x) {
   Points pins(static_cast<Eigen::Index>(scene.pins.size()), 3);
@@ -23,7 +21,7 @@ Points pins_at(const Scene& scene, const Points& x) {
 
 ImplicitEulerOptions to_the_end() {
   ImplicitEulerOptions options;
-  options.velocity_tolerance = 1e-8;
+  options.velocity_tolerance = 1e-6;
   options.max_newton = 40;
   options.linear_solver = Cholesky::available() ? LinearSolver::cholmod : LinearSolver::automatic;
   options.linear_tolerance = 1e-4;
@@ -42,9 +40,10 @@ Equilibrium settle(const Scene& scene, const Points& start, const StaticLoad& lo
   const Points rest_velocity = Points::Zero(start.rows(), 3), pins = pins_at(scene, start);
   const double extent = (start.colwise().maxCoeff() - start.colwise().minCoeff()).norm();
   const double typical = std::sqrt(extent * solver.masses().norm() / load.size);
-  Equilibrium result{start, false, 0, 0, 0};
+  Equilibrium result;
+  result.x = start;
   double step = first_step;
-  for (; result.steps < options.max_steps; ++result.steps) {
+  while (!result.converged && result.steps < options.max_steps) {
     const Points from = result.x;
     StepProblem problem;
     problem.h = step * typical;
@@ -53,18 +52,22 @@ Equilibrium settle(const Scene& scene, const Points& start, const StaticLoad& lo
     problem.pins = &pins;
     problem.acceleration = load.acceleration;
     problem.added = load.added;
-    // At the start of a step from rest the potential's gradient is the imbalance of all forces.
-    result.residual = solver.gradient(problem, from).norm() / load.size;
-    result.converged = result.residual <= options.tolerance;
-    if (result.converged) break;
     const NewtonReport newton = solver.solve(problem, result.x);
+    ++result.steps;
     result.iterations += newton.iterations;
     if (!newton.finite || !result.x.allFinite()) {
       result.x = from;
-      break;
+      return result;
     }
-    if (getenv("DBG")) printf("h %g res %g its %d lin %d conv %d newres %g\n", problem.h, result.residual, newton.iterations, newton.linear_iterations, newton.converged, newton.residual);
-    if (newton.converged) step = std::min(step * growth, longest_step);
+    result.moved = (result.x - from).norm() / std::sqrt(static_cast<double>(from.rows())) / extent;
+    const bool still = result.moved < options.tolerance;
+    if (still && step >= long_step) {
+      // At the start of a step from rest the potential's gradient is the imbalance of all forces.
+      problem.x0 = &result.x;
+      result.residual = solver.gradient(problem, result.x).norm() / load.size;
+      result.converged = true;
+    }
+    if (newton.converged || still) step = std::min(step * growth, longest_step);
   }
   return result;
 }

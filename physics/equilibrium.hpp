@@ -8,7 +8,7 @@ namespace selvedge {
 struct StaticLoad {
   Vec3 acceleration = Vec3::Zero();  // [m/s2]
   const AddedTerm* added = nullptr;  // its value is minus the work of the load
-  double size = 0;                   // what a force imbalance is measured against: the norm of all nodal loads [N]
+  double size = 0;                   // the norm of all nodal loads [N]
 };
 
 // A frame may be left with the imbalance that its tolerances allow, since the next one sees it; at rest there is no next
@@ -16,7 +16,7 @@ struct StaticLoad {
 ImplicitEulerOptions to_the_end();
 
 struct EquilibriumOptions {
-  double tolerance = 1e-6;  // of the norm of all force imbalances, in StaticLoad::size
+  double tolerance = 1e-6;  // of the root mean square motion in a long step, in the extent of the start
   int max_steps = 300;
   ImplicitEulerOptions implicit_euler = to_the_end();
 };
@@ -24,12 +24,14 @@ struct EquilibriumOptions {
 struct Equilibrium {
   Points x;
   bool converged = false;
-  double residual = 0;  // of the tolerance's kind
+  double moved = 0;     // in the last step, of the tolerance's kind
+  double residual = 0;  // norm of all force imbalances, in StaticLoad::size
   int steps = 0, iterations = 0;
 };
 
 // Steps of implicit Euler from rest, velocities forgotten after each and every step longer than the one before: each
-// is the minimiser of the energy near where it starts, so that the energy sinks in every step until forces balance.
+// is the minimiser of the energy near where it starts, so that the energy sinks in every step until nothing moves though
+// steps are so long that inertia holds nothing back.
 // Nothing is left of the way there: an equilibrium is stable where this ends in it from beside it.
 Equilibrium settle(const Scene&, const Points& start, const StaticLoad&, const EquilibriumOptions& = {});
 

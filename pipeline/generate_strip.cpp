@@ -68,19 +68,24 @@ void keep_side(Flat& flat, const Vec2& normal, double offset, double near) {
   flat.triangles = std::move(kept);
 }
 
-// Leaves out vertices that no triangle uses.
-void compact(Flat& flat) {
-  std::vector<int> place(flat.uv.size(), -1);
+// Leaves out vertices that no triangle uses, and joins those that a corner has gathered in one place.
+void compact(Flat& flat, double edge) {
+  std::map<std::pair<long, long>, int> places;
   std::vector<Vec2> used;
-  for (auto& triangle : flat.triangles)
-    for (int& v : triangle) {
-      if (place[v] < 0) {
-        place[v] = static_cast<int>(used.size());
-        used.push_back(flat.uv[v]);
-      }
-      v = place[v];
+  std::vector<std::array<int, 3>> kept;
+  for (const auto& triangle : flat.triangles) {
+    std::array<int, 3> corners{};
+    for (int k = 0; k < 3; ++k) {
+      const Vec2 cell = 1e6 / edge * flat.uv[triangle[k]];
+      const auto [place, is_new] =
+          places.try_emplace({std::lround(cell.x()), std::lround(cell.y())}, static_cast<int>(used.size()));
+      if (is_new) used.push_back(flat.uv[triangle[k]]);
+      corners[k] = place->second;
     }
+    if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0]) kept.push_back(corners);
+  }
   flat.uv = std::move(used);
+  flat.triangles = std::move(kept);
 }
 
 // Vertices at u, in the order of v.
@@ -124,7 +129,7 @@ Mesh cut_out(const StripShape& shape, double edge) {
   keep_side(flat, {-1, 0}, -shape.length, snap * edge);
   keep_side(flat, {0, 1}, 0, snap * edge);
   keep_side(flat, {0, -1}, -shape.width, snap * edge);
-  compact(flat);
+  compact(flat, edge);
   Mesh mesh;
   mesh.uv.resize(static_cast<Eigen::Index>(flat.uv.size()), 2);
   for (std::size_t v = 0; v < flat.uv.size(); ++v)

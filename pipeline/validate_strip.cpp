@@ -20,8 +20,8 @@ const std::vector<int>& group(const Mesh& mesh, const std::string& name) {
 Points settled(const Scene& scene, const Points& start, const StaticLoad& load) {
   const Equilibrium found = settle(scene, start, load);
   if (!found.converged)
-    throw Error(fmt::format("no equilibrium within {} steps: forces are out of balance by {:.2g} of the load",
-                            found.steps, found.residual),
+    throw Error(fmt::format("no equilibrium within {} steps: the last one still moved by {:.2g} of the extent",
+                            found.steps, found.moved),
                 "validate", "report it; another resolution or thickness may do");
   return found.x;
 }
