@@ -139,11 +139,19 @@ Mesh cut_out(const StripShape& shape, double edge) {
   return mesh;
 }
 
+// The farthest that an edge of a unit cell spans along or across the strip.
+double widest_span(double angle) {
+  const double c = std::abs(std::cos(angle)), s = std::abs(std::sin(angle));
+  return c + s;  // of a diagonal; legs span max(c, s)
+}
+
 }  // namespace
 
 Mesh make_strip(const StripShape& shape) {
   assert(shape.along >= 1 && shape.length > 0 && shape.width > 0);
-  const double edge = shape.length / shape.along, rounding = 1e-9 * edge;
+  const double quarter = shape.angle / (std::numbers::pi / 2);
+  const double span = std::abs(quarter - std::round(quarter)) < 1e-9 ? 1 : widest_span(shape.angle);
+  const double edge = shape.length / shape.along / span, rounding = 1e-9 * edge;
   Mesh mesh = cut_out(shape, edge);
   if (shape.sheet.triangulation == Triangulation::unstructured) {
     std::vector<bool> fixed;

@@ -7,7 +7,7 @@ namespace selvedge {
 // A strip cut out of a mesh that runs at an angle to it, for checks that must not depend on how cloth is cut.
 struct StripShape {
   double length = 1, width = 0.25;  // [m]
-  int along = 30;                   // elements along the length; those across have the same size, about
+  int along = 30;                   // elements: no edge spans more of the length or across than length / along, about
   double angle = 0;                 // of the strip to the mesh [rad]
   SheetOptions sheet;
   bool clamp = false;  // one more row of elements before the start

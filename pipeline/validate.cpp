@@ -164,7 +164,7 @@ std::string log_line(const ValidationRow& row) {
 const std::vector<ValidationCase>& validation_cases() {
   static const std::vector<ValidationCase> all = [] {
     std::vector<ValidationCase> joined;
-    for (const auto& some : {bending_cases()})
+    for (const auto& some : {bending_cases(), shell_cases(), membrane_cases(), motion_cases(), friction_cases(), drape_cases()})
       joined.insert(joined.end(), some.begin(), some.end());
     return joined;
   }();
@@ -197,7 +197,13 @@ std::vector<ValidationRow> validate(const ValidateRequest& request) {
         rows.push_back(row);
         if (request.log) *request.log << log_line(row) << std::flush;
       }
+      write_file(request.out / "validate.txt", validate_table(rows));
+      write_file(request.out / "validate.csv", validate_csv(rows));
+      write_file(request.out / "validate.json", validate_json(rows));
     }
+  write_file(request.out / "validate.md", validate_markdown(rows));
+  const std::string plots = plot_validation(rows, request.out);
+  if (request.log) *request.log << plots << "\n";
   return rows;
 }
 
