@@ -201,10 +201,10 @@ void add_flat(const Scene& scene, std::vector<Eigen::Triplet<double>>& entries) 
                                    2 * (1 - nu) * stencil.a.transpose() * stencil.a +
                                    2 * (1 - nu) * stencil.b.transpose() * stencil.b +
                                    misfit_stiffness * stencil.misfit.transpose() * stencil.misfit);
-    for (std::size_t i = 0; i < stencil.nodes.size(); ++i)
-      for (std::size_t j = 0; j < stencil.nodes.size(); ++j)
-        entries.emplace_back(stencil.nodes[i], stencil.nodes[j],
-                             local(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
+    for (Eigen::Index i = 0; i < local.rows(); ++i)  // rounding leaves the two triangles different
+      for (Eigen::Index j = 0; j < local.rows(); ++j)
+        entries.emplace_back(stencil.nodes[static_cast<std::size_t>(i)], stencil.nodes[static_cast<std::size_t>(j)],
+                             local(std::max(i, j), std::min(i, j)));
   }
 }
 
