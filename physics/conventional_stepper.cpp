@@ -17,6 +17,7 @@ namespace {
 
 constexpr double first_roughness = 8;       // of the solve that only finds impacts and normal forces
 constexpr double friction_roughness = 0.2;  // of a solve with friction: sticking shows in small velocities
+constexpr double contact_patience = 0.5;    // of each solve, for the next one goes on from it
 constexpr int most_passes = 6;              // solves after the first one, at most
 constexpr double normal_change = 0.05;      // of what bounds friction, at most, from the last solve but one
 constexpr double deep_impact = 0.05;        // that a single impulse should not meet, in mean edge lengths
@@ -102,6 +103,7 @@ double deepest(std::span<const Impact> impacts, const Points& nodes) {
 bool ConventionalStepper::solve_with_contact(StepProblem& problem, const Points& nodes0, Points& nodes1, Points& x,
                                              Contacts& contacts, StepReport& report) {
   const double h = problem.h, deep = deep_impact * edge_length_;
+  problem.patience = contact_patience;
   for (int pass = 0;; ++pass) {
     problem.contacts = contacts.terms;
     problem.roughness = pass == 0 ? first_roughness : pass == 1 ? 1 : friction_roughness;
