@@ -62,7 +62,7 @@ std::vector<Measured> end_moment(const ValidationValues& values) {
   // plane one, so that both rows at the tip are guided in it.
   std::vector<int> guided = strip.tip;
   guided.insert(guided.end(), strip.grip.begin(), strip.grip.end());
-  const double guide = full / (length * length);  // [N/m]
+  const double guide = full * std::pow(shape.along / length, 2);  // [N/m]
   load.value = [&](const Points& x) {
     double energy = -couple.force.dot(couple.arm(x));
     for (const int v : guided) energy += 0.5 * guide * std::pow(x(v, 2) - strip.start(v, 2), 2);
