@@ -15,11 +15,11 @@ using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 
 // Curvature form: the plate of physical stiffness B [N m] and Poisson's ratio nu, independent of the mesh's diagonals,
 //   E = B / 2 integral (tr K)^2 - 2 (1 - nu) det K = B integral (1 + nu) (tr K / 2)^2 + (1 - nu) (a^2 + b^2),
-// with K, its deviator a and b, measured at every vertex (physics/quadric_stencil.hpp). A sheet that bends one way alone
-// has B / 2 times its curvature squared, whatever nu is; the deviator is what resists twist. Vectors stand for the
-// entries of K, so that flat rest shapes have a constant Hessian Q (x) I3 (after Bergou et al. 2006).
-// Scenes with curved rest shapes: see CurvedVertex; of the plate's energy they have the part (tr K)^2 alone. A clamp is
-// two rows of pins: one row is a hinge. A cloth one element wide has no bending.
+// with K, its deviator a and b, measured at every vertex (physics/quadric_stencil.hpp). A sheet that bends one way
+// alone has B / 2 times its curvature squared, whatever nu is; the deviator is what resists twist. Vectors stand for
+// the entries of K, so that flat rest shapes have a constant Hessian Q (x) I3 (after Bergou et al. 2006). Scenes with
+// curved rest shapes: see CurvedVertex; of the plate's energy they have the part (tr K)^2 alone. A clamp is two rows of
+// pins: one row is a hinge. A cloth one element wide has no bending.
 struct CurvedVertex {      // E = 1/2 stiffness ((L x) . n - rest)^2 with n the area-weighted unit normal of the ring
   std::vector<int> nodes;  // the vertex first, then its ring in order
   std::vector<double> laplacian;  // weights of (L x) over nodes [1]

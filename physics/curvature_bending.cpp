@@ -6,12 +6,12 @@
 #include "physics/bending.hpp"
 #include "physics/quadric_stencil.hpp"
 
-// Flat rest shapes take the plate's whole energy by quadrics (physics/quadric_stencil.hpp). Curved ones take the part of
-// the mean curvature: L is the cotangent Laplacian of the rest metric, so that (L x)_i is the mean curvature vector integrated over vertex
-// i's Voronoi cell A_i. A_i is signed (obtuse triangles reach out of themselves): then (L x)_i / A_i is exact for every
-// paraboloid of revolution on every ring, and a rolled sheet's energy is off only by the ring's anisotropy. The energy
-// density found so counts on the area W_i that the vertex stands for: its own cell and those of the boundary vertices
-// next to it, without which a sheet would be soft along its edges and at a clamp.
+// Flat rest shapes take the plate's whole energy by quadrics (physics/quadric_stencil.hpp). Curved ones take the part
+// of the mean curvature: L is the cotangent Laplacian of the rest metric, so that (L x)_i is the mean curvature vector
+// integrated over vertex i's Voronoi cell A_i. A_i is signed (obtuse triangles reach out of themselves): then (L x)_i /
+// A_i is exact for every paraboloid of revolution on every ring, and a rolled sheet's energy is off only by the ring's
+// anisotropy. The energy density found so counts on the area W_i that the vertex stands for: its own cell and those of
+// the boundary vertices next to it, without which a sheet would be soft along its edges and at a clamp.
 namespace selvedge {
 namespace {
 
@@ -196,11 +196,11 @@ void add_flat(const Scene& scene, std::vector<Eigen::Triplet<double>>& entries) 
   for (const QuadricStencil& stencil : quadric_stencils(scene)) {
     const Material& material = scene.cloths[stencil.cloth].material;
     const double nu = bending_poisson(material);
-    const Eigen::MatrixXd local = material.bending * stencil.area *
-                                  (0.5 * (1 + nu) * stencil.trace.transpose() * stencil.trace +
-                                   2 * (1 - nu) * stencil.a.transpose() * stencil.a +
-                                   2 * (1 - nu) * stencil.b.transpose() * stencil.b +
-                                   misfit_stiffness * stencil.misfit.transpose() * stencil.misfit);
+    const Eigen::MatrixXd local =
+        material.bending * stencil.area *
+        (0.5 * (1 + nu) * stencil.trace.transpose() * stencil.trace + 2 * (1 - nu) * stencil.a.transpose() * stencil.a +
+         2 * (1 - nu) * stencil.b.transpose() * stencil.b +
+         misfit_stiffness * stencil.misfit.transpose() * stencil.misfit);
     for (Eigen::Index i = 0; i < local.rows(); ++i)  // rounding leaves the two triangles different
       for (Eigen::Index j = 0; j < local.rows(); ++j)
         entries.emplace_back(stencil.nodes[static_cast<std::size_t>(i)], stencil.nodes[static_cast<std::size_t>(j)],

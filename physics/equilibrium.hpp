@@ -11,8 +11,8 @@ struct StaticLoad {
   double size = 0;                   // the norm of all nodal loads [N]
 };
 
-// A frame may be left with the imbalance that its tolerances allow, since the next one sees it; at rest there is no next
-// one. So each step is solved to the end, directly where CHOLMOD is in the build.
+// A frame may be left with the imbalance that its tolerances allow, since the next one sees it; at rest there is no
+// next one. So each step is solved to the end, directly where CHOLMOD is in the build.
 ImplicitEulerOptions to_the_end();
 
 struct EquilibriumOptions {
@@ -30,9 +30,9 @@ struct Equilibrium {
 };
 
 // Steps of implicit Euler from rest, velocities forgotten after each and every step longer than the one before: each
-// is the minimiser of the energy near where it starts, so that the energy sinks in every step until nothing moves though
-// steps are so long that inertia holds nothing back.
-// Nothing is left of the way there: an equilibrium is stable where this ends in it from beside it.
+// is the minimiser of the energy near where it starts, so that the energy sinks in every step until nothing moves
+// though steps are so long that inertia holds nothing back. Nothing is left of the way there: an equilibrium is stable
+// where this ends in it from beside it.
 Equilibrium settle(const Scene&, const Points& start, const StaticLoad&, const EquilibriumOptions& = {});
 
 // Norm of the weights of a scene's free vertices [N].

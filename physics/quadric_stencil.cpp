@@ -11,8 +11,8 @@
 namespace selvedge {
 namespace {
 
-// Least eigenvalue of the fit's normal matrix over the largest, points scaled to a mean distance of 1: below, the points
-// are too close to a conic.
+// Least eigenvalue of the fit's normal matrix over the largest, points scaled to a mean distance of 1: below, the
+// points are too close to a conic.
 constexpr double least_determined = 5e-3;
 
 struct RestShape {
@@ -121,7 +121,8 @@ double density(const RestShape& shape, int vertex) {
   return whole / bending;
 }
 
-// Fits u(p) - u(0) = g . p + (K_uu p_u^2 + 2 K_uv p_u p_v + K_vv p_v^2) / 2. False where the points do not determine it.
+// Fits u(p) - u(0) = g . p + (K_uu p_u^2 + 2 K_uv p_u p_v + K_vv p_v^2) / 2. False where the points do not determine
+// it.
 bool fit_quadric(const RestShape& shape, const Chart& chart, QuadricStencil& stencil) {
   const auto count = static_cast<Eigen::Index>(chart.nodes.size());
   double size = 0;
@@ -160,8 +161,7 @@ bool fit_quadric(const RestShape& shape, const Chart& chart, QuadricStencil& ste
 std::array<double, 3> corner_areas(const RestTriangle& rest, double whole) {
   std::array<double, 3> areas{whole / 4, whole / 4, whole / 4};
   std::array<double, 3> dot{};
-  for (int k = 0; k < 3; ++k)
-    dot[k] = (rest.col((k + 1) % 3) - rest.col(k)).dot(rest.col((k + 2) % 3) - rest.col(k));
+  for (int k = 0; k < 3; ++k) dot[k] = (rest.col((k + 1) % 3) - rest.col(k)).dot(rest.col((k + 2) % 3) - rest.col(k));
   for (int k = 0; k < 3; ++k)
     if (dot[k] < 0) {
       areas[k] = whole / 2;
@@ -169,8 +169,9 @@ std::array<double, 3> corner_areas(const RestTriangle& rest, double whole) {
     }
   for (int k = 0; k < 3; ++k) {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
-    areas[k] = ((rest.col(j) - rest.col(k)).squaredNorm() * dot[i] + (rest.col(i) - rest.col(k)).squaredNorm() * dot[j]) /
-               (16 * whole);
+    areas[k] =
+        ((rest.col(j) - rest.col(k)).squaredNorm() * dot[i] + (rest.col(i) - rest.col(k)).squaredNorm() * dot[j]) /
+        (16 * whole);
   }
   return areas;
 }

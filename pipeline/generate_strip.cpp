@@ -132,8 +132,7 @@ Mesh cut_out(const StripShape& shape, double edge) {
   compact(flat, edge);
   Mesh mesh;
   mesh.uv.resize(static_cast<Eigen::Index>(flat.uv.size()), 2);
-  for (std::size_t v = 0; v < flat.uv.size(); ++v)
-    mesh.uv.row(static_cast<Eigen::Index>(v)) = flat.uv[v].transpose();
+  for (std::size_t v = 0; v < flat.uv.size(); ++v) mesh.uv.row(static_cast<Eigen::Index>(v)) = flat.uv[v].transpose();
   mesh.triangles = to_triangles(flat.triangles);
   make_delaunay(mesh.uv, mesh.triangles);
   return mesh;

@@ -14,12 +14,11 @@ struct StripShape {
   bool grip = false;   // and behind the end
 };
 
-// The mesh covers [0, length] x [0, width] in u, v, with straight edges, clamp and grip outside. The pattern's lattice is
-// turned by the angle; its vertices near an edge of the strip are moved onto it, triangles that cross it are cut there,
-// and edges are flipped until all triangles are Delaunay, which leaves the pattern inside as it is. At multiples of a
-// right angle it is the plain grid.
-// x = (u, v, 0). Groups: clamp (all vertices at u <= 0), root (those at u = 0), tip (u = length), grip (the row behind
-// it), side (v = 0).
+// The mesh covers [0, length] x [0, width] in u, v, with straight edges, clamp and grip outside. The pattern's lattice
+// is turned by the angle; its vertices near an edge of the strip are moved onto it, triangles that cross it are cut
+// there, and edges are flipped until all triangles are Delaunay, which leaves the pattern inside as it is. At multiples
+// of a right angle it is the plain grid. x = (u, v, 0). Groups: clamp (all vertices at u <= 0), root (those at u = 0),
+// tip (u = length), grip (the row behind it), side (v = 0).
 Mesh make_strip(const StripShape&);
 
 // The smallest angle of all triangles in their flat coordinates [rad].

@@ -19,8 +19,8 @@ double root_between(double low, double high, Function function) {
   return 0.5 * (low + high);
 }
 
-// Seen from the tip with t = 1 - s and phi = pi / 2 - theta: phi'' = gamma t sin(phi), phi'(0) = 0. By Runge and Kutta's
-// fourth-order steps to t = 1, or to where phi passes a right angle for good.
+// Seen from the tip with t = 1 - s and phi = pi / 2 - theta: phi'' = gamma t sin(phi), phi'(0) = 0. By Runge and
+// Kutta's fourth-order steps to t = 1, or to where phi passes a right angle for good.
 struct FromTip {
   double phi = 0, slope = 0, H = 0, W = 0;
 };
@@ -49,8 +49,8 @@ FromTip integrate(double gamma, double tip) {
 Cantilever elastica(double gamma) {
   assert(gamma > 0);
   // How nearly the tip hangs straight down ranges over hundreds of magnitudes, hence the logarithm.
-  const double log_tip =
-      root_between(-600, std::log(pi / 2), [gamma](double log) { return integrate(gamma, std::exp(log)).phi - pi / 2; });
+  const double log_tip = root_between(-600, std::log(pi / 2),
+                                      [gamma](double log) { return integrate(gamma, std::exp(log)).phi - pi / 2; });
   const FromTip found = integrate(gamma, std::exp(log_tip));
   return {found.H, found.W};
 }

@@ -33,8 +33,7 @@ std::vector<ValidationCase> chosen_cases(const std::vector<std::string>& names) 
   for (const std::string& name : names) {
     const auto place = std::find(known.begin(), known.end(), name);
     if (place == known.end())
-      throw Error("there is no case `" + name + "`", "validate",
-                  "cases: " + joined(known) + suggestion(name, known));
+      throw Error("there is no case `" + name + "`", "validate", "cases: " + joined(known) + suggestion(name, known));
     chosen.push_back(validation_cases()[static_cast<std::size_t>(place - known.begin())]);
   }
   return chosen;
@@ -55,7 +54,8 @@ void check_value(const ValidationParameter& parameter, const std::string& value)
   } catch (const std::exception&) {
   }
   if (used == 0 || used != value.size())
-    throw Error("`" + value + "` is not a number", where, "give " + parameter.name + " as a number: " + parameter.about);
+    throw Error("`" + value + "` is not a number", where,
+                "give " + parameter.name + " as a number: " + parameter.about);
   if (!parameter.range.has(number))
     throw Error(parameter.name + " is out of its range", where, "allowed: " + parameter.range.text());
 }
@@ -152,11 +152,14 @@ void judge(const Measured& found, const std::vector<ValidationRow>& rows, Valida
 }
 
 std::string log_line(const ValidationRow& row) {
-  const std::string expected = row.expected ? fmt::format(", expected {:.5g}, {:.2f} % off", *row.expected,
-                                                          100 * *row.error)
-                                            : "";
+  const std::string expected =
+      row.expected ? fmt::format(", expected {:.5g}, {:.2f} % off", *row.expected, 100 * *row.error) : "";
   return fmt::format("{} {}: {} {:.5g}{}: {} ({:.1f} s)\n", row.name, row.parameters, row.quantity, row.measured,
-                     expected, !row.counts ? "shown" : row.passed ? "passed" : "FAILED", row.seconds);
+                     expected,
+                     !row.counts  ? "shown"
+                     : row.passed ? "passed"
+                                  : "FAILED",
+                     row.seconds);
 }
 
 }  // namespace
@@ -164,7 +167,8 @@ std::string log_line(const ValidationRow& row) {
 const std::vector<ValidationCase>& validation_cases() {
   static const std::vector<ValidationCase> all = [] {
     std::vector<ValidationCase> joined;
-    for (const auto& some : {bending_cases(), shell_cases(), membrane_cases(), motion_cases(), friction_cases(), drape_cases()})
+    for (const auto& some :
+         {bending_cases(), shell_cases(), membrane_cases(), motion_cases(), friction_cases(), drape_cases()})
       joined.insert(joined.end(), some.begin(), some.end());
     return joined;
   }();

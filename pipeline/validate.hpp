@@ -54,8 +54,8 @@ std::string validate_markdown(const std::vector<ValidationRow>&);
 std::string validate_csv(const std::vector<ValidationRow>&);
 std::string validate_json(const std::vector<ValidationRow>&);
 
-// Writes cantilever.svg and drape.svg with the gnuplot scripts that made them, those for which there are rows, by gnuplot. Returns what was
-// written, or a line that says why nothing was.
+// Writes cantilever.svg and drape.svg with the gnuplot scripts that made them, those for which there are rows, by
+// gnuplot. Returns what was written, or a line that says why nothing was.
 std::string plot_validation(const std::vector<ValidationRow>&, const std::filesystem::path& folder);
 
 }  // namespace selvedge

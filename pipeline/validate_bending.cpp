@@ -10,16 +10,20 @@ namespace {
 
 constexpr double length = 0.1, density = 0.2, g = 9.81;  // of every strip here: [m], [kg/m2], [m/s2]
 
-const ValidationParameter thickness_parameter{
-    "thickness", "0.01", "0.01", "of the plate over the length; sets how little it stretches", {.low = 0, .low_in = false}, {}};
+const ValidationParameter thickness_parameter{"thickness",
+                                              "0.01",
+                                              "0.01",
+                                              "of the plate over the length; sets how little it stretches",
+                                              {.low = 0, .low_in = false},
+                                              {}};
 
 ValidationParameter gamma_parameter(const std::string& otherwise, const std::string& brief) {
   return {"gamma", otherwise, brief, "rho g L^3 over the bending stiffness", {.low = 0, .low_in = false}, {}};
 }
 
 Material plate(const ValidationValues& values, double gamma, double nu) {
-  return plate_material(density, density * g * length * length * length / gamma,
-                        values.number("thickness") * length, nu);
+  return plate_material(density, density * g * length * length * length / gamma, values.number("thickness") * length,
+                        nu);
 }
 
 std::vector<Measured> droop(const ValidationValues& values, BendingModel model) {
@@ -97,8 +101,8 @@ std::vector<ValidationCase> bending_cases() {
     return first;
   };
   const ValidationParameter nu{"nu", "0,0.3,0.5", "0.3", "Poisson's ratio", {.low = 0, .high = 0.9}, {}};
-  const ValidationParameter load{"load", "0.85,1.15", "0.85,1.15", "over the critical one",
-                                 {.low = 0, .low_in = false}, {}};
+  const ValidationParameter load{"load", "0.85,1.15", "0.85,1.15", "over the critical one", {.low = 0, .low_in = false},
+                                 {}};
   return {{"cantilever", "a level strip, clamped at one end, bends under its own weight",
            strip(resolution("30,60", "30"), "0,45,135", all_meshes,
                  {gamma_parameter("0.1,1,10,100", "10"), width_parameter(eighths, "of the strip over its length")}),

@@ -10,7 +10,7 @@ namespace selvedge {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double radius = 0.15, support = 0.09;          // [m]
+constexpr double radius = 0.15, support = 0.09;           // [m]
 constexpr double density = 0.2, g = 9.81, stretch = 1e3;  // [kg/m2], [m/s2], E h [N/m]
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
@@ -55,8 +55,8 @@ std::vector<Measured> drape(const ValidationValues& values) {
   material.bending = density * g * std::pow(length, 3);
   material.lame_mu = stretch / (2 * (1 + nu));
   material.lame_lambda = stretch * nu / (1 - nu * nu);
-  scene.cloths.push_back({"disc", material, 0, static_cast<int>(mesh.x.rows()), 0,
-                          static_cast<int>(mesh.triangles.rows())});
+  scene.cloths.push_back(
+      {"disc", material, 0, static_cast<int>(mesh.x.rows()), 0, static_cast<int>(mesh.triangles.rows())});
   scene.contact.self = false;
   Points start = mesh.x;
   for (int v = 0; v < start.rows(); ++v) {
@@ -74,11 +74,20 @@ std::vector<Measured> drape(const ValidationValues& values) {
 std::vector<ValidationCase> drape_cases() {
   return {{"drape",
            "a held disc drapes less the stiffer it is for its weight",
-           {{"mesh", "alternating", "alternating", "how the cloth is cut", {}, {"one_diagonal", "alternating", "unstructured"}},
+           {{"mesh",
+             "alternating",
+             "alternating",
+             "how the cloth is cut",
+             {},
+             {"one_diagonal", "alternating", "unstructured"}},
             {"resolution", "20", "10", "rings of vertices", {.low = 10, .high = 200}, {}},
             {"nu", "0.3", "0.3", "Poisson's ratio", {.low = 0, .high = 0.9}, {}},
-            {"bending_length", "1,1.5,2,2.5,3,3.9", "1.5,2.5,3.9", "cube root of B / (rho g) [cm], ascending",
-             {.low = 0, .low_in = false}, {}}},
+            {"bending_length",
+             "1,1.5,2,2.5,3,3.9",
+             "1.5,2.5,3.9",
+             "cube root of B / (rho g) [cm], ascending",
+             {.low = 0, .low_in = false},
+             {}}},
            drape}};
 }
 

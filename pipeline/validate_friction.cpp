@@ -140,9 +140,9 @@ std::vector<Measured> capstan(const ValidationValues& values) {
 std::vector<ValidationCase> friction_cases() {
   const Range not_negative{.low = 0};
   const auto with = [](std::vector<ValidationParameter> first, const std::string& resolution) {
-    for (const ValidationParameter& parameter :
-         strip_parameters({"resolution", resolution, resolution, "elements along the cloth", {.low = 4, .high = 400}, {}},
-                          "one_diagonal", "0"))
+    for (const ValidationParameter& parameter : strip_parameters(
+             {"resolution", resolution, resolution, "elements along the cloth", {.low = 4, .high = 400}, {}},
+             "one_diagonal", "0"))
       first.push_back(parameter);
     return first;
   };

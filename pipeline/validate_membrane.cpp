@@ -24,12 +24,13 @@ std::vector<Measured> catenary(const ValidationValues& values) {
   const double ratio = values.number("ratio"), distance = 1, length = ratio * distance;
   const double bending = density * g * std::pow(length, 3) / values.number("gamma");
   StripShape shape = strip_shape(values, length, values.number("width") * length);
-  Strip strip = make_strip_scene(shape, membrane(1e4 * density * g * length, 0, bending), Vec3::UnitX(),
-                                 -Vec3::UnitZ(), "root");
+  Strip strip =
+      make_strip_scene(shape, membrane(1e4 * density * g * length, 0, bending), Vec3::UnitX(), -Vec3::UnitZ(), "root");
   strip.scene.pins.insert(strip.scene.pins.end(), strip.tip.begin(), strip.tip.end());
   std::sort(strip.scene.pins.begin(), strip.scene.pins.end());
   double low = 1e-6, high = 3.14;  // half the arc's angle: sin(a) / a = distance / length
-  for (int i = 0; i < 100; ++i) (std::sin((low + high) / 2) / (low + high) * 2 > 1 / ratio ? low : high) = (low + high) / 2;
+  for (int i = 0; i < 100; ++i)
+    (std::sin((low + high) / 2) / (low + high) * 2 > 1 / ratio ? low : high) = (low + high) / 2;
   const double radius = length / (2 * low);
   Points start = strip.start;
   for (int v = 0; v < start.rows(); ++v) {
@@ -45,9 +46,9 @@ std::vector<Measured> catenary(const ValidationValues& values) {
 std::vector<Measured> hanging(const ValidationValues& values) {
   constexpr double length = 1;
   const double stretch = density * g * length / values.number("strain");
-  const Strip strip = make_strip_scene(strip_shape(values, length, values.number("width") * length),
-                                       membrane(stretch, values.number("nu"), 1e-5), -Vec3::UnitY(), Vec3::UnitX(),
-                                       "root");
+  const Strip strip =
+      make_strip_scene(strip_shape(values, length, values.number("width") * length),
+                       membrane(stretch, values.number("nu"), 1e-5), -Vec3::UnitY(), Vec3::UnitX(), "root");
   const Points x = settled(strip.scene, strip.start, Vec3(0, -g, 0));
   Eigen::MatrixXd basis(x.rows(), 2);
   basis << -strip.start.col(1), strip.start.col(1).cwiseAbs2();
@@ -64,7 +65,8 @@ std::vector<Measured> stretch(const ValidationValues& values) {
   const Strip strip = make_strip_scene(strip_shape(values, length, width), membrane(modulus, nu, 1e-5), Vec3::UnitX(),
                                        -Vec3::UnitZ(), "");
   const double force = 0.5 * l * modulus * (l * l - 1) * width;
-  const std::vector<double> at_root = line_shares(strip.start, strip.root), at_tip = line_shares(strip.start, strip.tip);
+  const std::vector<double> at_root = line_shares(strip.start, strip.root),
+                            at_tip = line_shares(strip.start, strip.tip);
   AddedTerm load;
   load.value = [&](const Points& x) {
     double work = 0;
@@ -94,18 +96,19 @@ std::vector<ValidationCase> membrane_cases() {
     first.insert(first.end(), common.begin(), common.end());
     return first;
   };
-  return {{"catenary", "a strip of little stiffness hangs between its pinned ends",
-           with({{"ratio", "1.05,1.5,3", "1.5", "length over the distance of the ends", {.low = 1, .low_in = false}, {}},
-                 {"gamma", "1e6", "1e6", "rho g L^3 over the bending stiffness", positive, {}}}),
-           catenary},
-          {"hanging", "a strip hangs by its upper end",
-           with({{"strain", "0.001", "0.001", "at the top", positive, {}},
-                 {"nu", "0", "0", "Poisson's ratio", poisson, {}}}),
-           hanging},
-          {"stretch", "St. Venant-Kirchhoff, pulled along",
-           with({{"stretch", "1.05,1.3", "1.3", "wanted", {.low = 1, .high = 2, .low_in = false}, {}},
-                 {"nu", "0,0.3", "0.3", "Poisson's ratio", poisson, {}}}),
-           stretch}};
+  return {
+      {"catenary", "a strip of little stiffness hangs between its pinned ends",
+       with({{"ratio", "1.05,1.5,3", "1.5", "length over the distance of the ends", {.low = 1, .low_in = false}, {}},
+             {"gamma", "1e6", "1e6", "rho g L^3 over the bending stiffness", positive, {}}}),
+       catenary},
+      {"hanging", "a strip hangs by its upper end",
+       with({{"strain", "0.001", "0.001", "at the top", positive, {}},
+             {"nu", "0", "0", "Poisson's ratio", poisson, {}}}),
+       hanging},
+      {"stretch", "St. Venant-Kirchhoff, pulled along",
+       with({{"stretch", "1.05,1.3", "1.3", "wanted", {.low = 1, .high = 2, .low_in = false}, {}},
+             {"nu", "0,0.3", "0.3", "Poisson's ratio", poisson, {}}}),
+       stretch}};
 }
 
 }  // namespace selvedge

@@ -19,8 +19,8 @@ double frequency(double bending, int mode) {
   return std::pow(clamped_free_root(mode), 2) / (2 * pi) * std::sqrt(bending / (density * std::pow(length, 4)));
 }
 
-// Started flat with the mode's velocity; the time between the first two returns through the flat shape is half a period.
-// Implicit Euler lowers w to atan(w h) / h, by 0.02 % where 240 steps make a period; nothing is corrected for.
+// Started flat with the mode's velocity; the time between the first two returns through the flat shape is half a
+// period. Implicit Euler lowers w to atan(w h) / h, by 0.02 % where 240 steps make a period; nothing is corrected for.
 double measured_frequency(const Strip& strip, double expected, int mode, int steps) {
   const Scene& scene = strip.scene;
   const double h = 1 / (expected * steps), root = clamped_free_root(mode);
@@ -62,7 +62,8 @@ std::vector<Measured> vibration(const ValidationValues& values) {
   const int steps = values.integer("steps");
   const double f1 = measured_frequency(strip, frequency(bending, 1), 1, steps);
   const double f2 = measured_frequency(strip, frequency(bending, 2), 2, steps);
-  return {{"f1 [Hz]", f1, frequency(bending, 1), Judged::relative, 0.02}, {"f2 / f1", f2 / f1, 6.2669, Judged::relative, 0.02}};
+  return {{"f1 [Hz]", f1, frequency(bending, 1), Judged::relative, 0.02},
+          {"f2 / f1", f2 / f1, 6.2669, Judged::relative, 0.02}};
 }
 
 }  // namespace

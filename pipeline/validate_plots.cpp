@@ -33,10 +33,12 @@ const char* const head = "set terminal svg size 480,320 font 'sans,11'\nset grid
 // Data in here-documents, so that a plot is one file that can be made again.
 std::string script(const std::string& name, const std::string& axes, const std::string& measured,
                    const std::string& expected) {
-  std::string text = std::string(head) + "set output '" + name + ".svg'\n" + axes + "$measured << EOD\n" + measured + "EOD\n";
+  std::string text =
+      std::string(head) + "set output '" + name + ".svg'\n" + axes + "$measured << EOD\n" + measured + "EOD\n";
   if (!expected.empty()) text += "$expected << EOD\n" + expected + "EOD\n";
-  text += expected.empty() ? "plot $measured with linespoints pt 7 title 'measured'\n"
-                           : "plot $expected with lines title 'expected', $measured with points pt 7 title 'measured'\n";
+  text += expected.empty()
+              ? "plot $measured with linespoints pt 7 title 'measured'\n"
+              : "plot $expected with lines title 'expected', $measured with points pt 7 title 'measured'\n";
   return text;
 }
 
@@ -52,7 +54,8 @@ std::string plot_validation(const std::vector<ValidationRow>& rows, const std::f
     if (measured.empty()) return;
     write_file(folder / (name + ".gnuplot"), script(name, axes, measured, expected));
     const std::string command = "cd '" + folder.string() + "' && gnuplot " + name + ".gnuplot";
-    if (std::system(command.c_str()) == 0) made += (made.empty() ? "plots: " : ", ") + (folder / (name + ".svg")).string();
+    if (std::system(command.c_str()) == 0)
+      made += (made.empty() ? "plots: " : ", ") + (folder / (name + ".svg")).string();
   };
   plot("cantilever", "gamma", "set logscale xy\nset xlabel 'rho g L^3 / B'\nset ylabel 'H / W'\n", master_curve());
   plot("drape", "bending_length", "set xlabel 'bending length [cm]'\nset ylabel 'drape coefficient'\n", "");

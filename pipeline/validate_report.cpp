@@ -74,7 +74,8 @@ std::string validate_table(const std::vector<ValidationRow>& rows) {
 
 std::string validate_markdown(const std::vector<ValidationRow>& rows) {
   std::string text =
-      "| case | parameters | quantity | measured | expected | error | bound | order | |\n|---|---|---|---|---|---|---|---|---|\n";
+      "| case | parameters | quantity | measured | expected | error | bound | order | "
+      "|\n|---|---|---|---|---|---|---|---|---|\n";
   for (const ValidationRow& row : rows)
     text += fmt::format("| {} | {} | {} | {:.5g} | {} | {} | {} | {} | {} |\n", row.name, row.parameters, row.quantity,
                         row.measured, number(row.expected), error_text(row), bound_text(row),

@@ -3,8 +3,9 @@
 
 #include "pipeline/validate_strip.hpp"
 
-// Large deflections under loads at the tip, without gravity (Sze, Liu and Lo 2004). The loads are terms of the potential,
-// which no scene file has: a dead force is linear in the positions, a moment is a couple that is aimed anew as its grip turns.
+// Large deflections under loads at the tip, without gravity (Sze, Liu and Lo 2004). The loads are terms of the
+// potential, which no scene file has: a dead force is linear in the positions, a moment is a couple that is aimed anew
+// as its grip turns.
 namespace selvedge {
 namespace {
 
@@ -34,8 +35,8 @@ std::vector<Measured> end_shear(const ValidationValues& values) {
           {"-U of the tip", -moved.x(), 3.286, Judged::relative, 0.02}};
 }
 
-// A couple on the row of elements behind the tip: forces square to it as it lay when the couple was last aimed. Where it
-// lies so at rest the couple is the moment.
+// A couple on the row of elements behind the tip: forces square to it as it lay when the couple was last aimed. Where
+// it lies so at rest the couple is the moment.
 struct Couple {
   const Strip& strip;
   Vec3 force = Vec3::Zero();  // on the grip, and its opposite on the tip
@@ -95,11 +96,13 @@ std::vector<Measured> end_moment(const ValidationValues& values) {
 }  // namespace
 
 std::vector<ValidationCase> shell_cases() {
-  const ValidationParameter fineness{"resolution", "30,60", "30", "elements along the strip", {.low = 4, .high = 400}, {}};
+  const ValidationParameter fineness{
+      "resolution", "30,60", "30", "elements along the strip", {.low = 4, .high = 400}, {}};
   const ValidationParameter coarse{"resolution", "40", "40", fineness.about, fineness.range, {}};
   const std::string meshes = "one_diagonal,alternating,unstructured";
   std::vector<ValidationParameter> moment = strip_parameters(coarse, "alternating,unstructured", "0,45");
-  moment.insert(moment.begin(), {"turn", "1", "1", "part of a whole circle", {.low = 0, .high = 1, .low_in = false}, {}});
+  moment.insert(moment.begin(),
+                {"turn", "1", "1", "part of a whole circle", {.low = 0, .high = 1, .low_in = false}, {}});
   return {{"end_shear", "a strip clamped at one end, a force at the other", strip_parameters(fineness, meshes, "0,45"),
            end_shear},
           {"end_moment", "a strip clamped at one end, rolled up by a moment at the other", moment, end_moment}};

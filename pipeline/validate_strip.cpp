@@ -37,7 +37,7 @@ std::vector<ValidationParameter> strip_parameters(const ValidationParameter& res
 }
 
 Triangulation read_triangulation(const std::string& word) {
-  return word == "one_diagonal" ? Triangulation::one_diagonal
+  return word == "one_diagonal"  ? Triangulation::one_diagonal
          : word == "alternating" ? Triangulation::alternating
                                  : Triangulation::unstructured;
 }
@@ -77,8 +77,8 @@ Strip make_strip_scene(const StripShape& shape, const Material& material, const 
     for (int k = 0; k < 3; ++k) rest.col(k) = mesh.uv.row(mesh.triangles(t, k)).transpose();
     scene.rest_triangle.push_back(rest);
   }
-  scene.cloths.push_back({"strip", material, 0, static_cast<int>(mesh.uv.rows()), 0,
-                          static_cast<int>(mesh.triangles.rows())});
+  scene.cloths.push_back(
+      {"strip", material, 0, static_cast<int>(mesh.uv.rows()), 0, static_cast<int>(mesh.triangles.rows())});
   scene.contact.self = false;
   if (!pinned.empty()) scene.pins = group(mesh, pinned);
   strip.root = group(mesh, "root");
