@@ -70,7 +70,7 @@ void apply_elastic(const Config& section, Material& material) {
   if (!given) return;
   for (const char* lame : {"lame_mu", "lame_lambda"})
     if (section[lame].given)
-      section[lame].fail("is given beside youngs_modulus or modulus, and poisson", "give one or the other");
+      section[lame].fail("is given beside youngs_modulus or modulus, and poisson", "give one pair or the other");
   const double nu = poisson.number(), h = modulus.given ? thickness.number() : 0;
   const double e = modulus.given ? modulus.number() * h : young.number();
   material.lame_mu = e / (2 * (1 + nu));

@@ -17,7 +17,7 @@ TEST_CASE("the elastica has the master curve of the literature") {
                                                      {10, 1.0668},    {20, 1.8639},  {50, 3.7056},  {100, 5.8881}};
   for (const auto& [gamma, ratio] : curve) {
     const Cantilever c = elastica(gamma);
-    CHECK(c.H / c.W == Approx(ratio).epsilon(2e-5));
+    CHECK(c.H / c.W == Approx(ratio).epsilon(5e-5));
     CHECK(c.H * c.H + c.W * c.W < 1);
   }
   CHECK(elastica(1e-4).H / elastica(1e-4).W == Approx(1e-4 / 8).epsilon(1e-6));
