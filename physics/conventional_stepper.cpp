@@ -57,7 +57,7 @@ class ConventionalStepper final : public Stepper {
  private:
   bool has_contact() const { return features_.self_contact || features_.obstacles; }
   NewtonReport solve(const StepProblem& problem, Points& x, StepReport& report);
-  NewtonReport solve_with_contact(StepProblem& problem, int most, const Points& nodes0, Points& nodes1, Points& x,
+  NewtonReport solve_with_contact(StepProblem& problem, bool squeezed, const Points& nodes0, Points& nodes1, Points& x,
                                   Contacts& contacts, StepReport& report);
   enum class Attempt { first, squeezed, last_resort };  // squeezed: zones did not settle, but perhaps obstacles yield
   enum class Outcome { clean, unsettled, not_finite };
@@ -78,6 +78,7 @@ class ConventionalStepper final : public Stepper {
   ImplicitEuler solver_;
   double edge_length_;
   StepperTraits traits_{"conventional"};
+  AuditMemory audited_;
   PathPairs path_;  // pairs near the current positions
   SelfCrossings self_crossings_;
   bool look_for_room_ = false;  // this step started with obstacles that lag, or some did not have room in it
@@ -101,23 +102,29 @@ double deepest(std::span<const Impact> impacts, const Points& nodes) {
 }
 
 // Solves the substep with its contacts, again and again until what it runs into besides them is shallow and friction is
-// bounded by the normal forces that there are, `most` times after the first at most. x is the cloth in nodes1. Reports
-// the last solve.
-NewtonReport ConventionalStepper::solve_with_contact(StepProblem& problem, int most, const Points& nodes0,
+// bounded by the normal forces that there are. x is the cloth in nodes1. Reports the last solve.
+NewtonReport ConventionalStepper::solve_with_contact(StepProblem& problem, bool squeezed, const Points& nodes0,
                                                      Points& nodes1, Points& x, Contacts& contacts,
                                                      StepReport& report) {
-  const double h = problem.h, deep = deep_impact * edge_length_;
+  const double h = problem.h, deep = deep_impact * edge_length_, creep = options_.implicit_euler.slip_speed * h;
+  // Where nothing touches, or nothing that does moves, the first solve is likely to be the last one.
+  const bool calm = !squeezed && mean_touching(contacts.terms, h * *problem.v0) < creep;
   for (int pass = 0;; ++pass) {
     problem.contacts = contacts.terms;
-    problem.roughness = pass == 0 ? first_roughness : pass == 1 ? 1 : friction_roughness;
+    problem.roughness = pass == 0 && !calm ? first_roughness : pass <= 1 ? 1 : friction_roughness;
+    if (calm && features_.friction && !contacts.terms.empty()) problem.roughness = friction_roughness;
     const NewtonReport newton = solve(problem, x, report);
     if (!newton.finite) return newton;
     nodes1.topRows(x.rows()) = x;
+    const std::vector<ContactTerm> solved = calm ? contacts.terms : std::vector<ContactTerm>{};
     const double change = lag_normal_forces(contacts.terms, x);
-    if (pass == most) return newton;
+    if (pass == (squeezed ? squeezed_passes : most_passes)) return newton;
     ResolveReport times;
     const auto impacts = find_impacts(search_, inverse_mass_, contact_, nodes0, nodes1, path_, times);
     add(times, report);
+    if (calm && mean_touching(contacts.terms, x - *problem.x0) < creep && deepest(impacts, nodes1) < deep &&
+        mistaken_friction(solved, contacts.terms, *problem.x0, x, creep) < normal_change)
+      return newton;
     const int least = features_.friction && !contacts.terms.empty() ? 2 : 1;
     if (pass >= least && change < normal_change && deepest(impacts, nodes1) < deep) return newton;
     Stopwatch watch;
@@ -164,8 +171,7 @@ ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const 
   // The load of a contact is what pulls at it where the cloth would go without any.
   if (!contacts.terms.empty()) bear(contacts.terms, inverse_mass_, -solver_.gradient(problem, x));
   report.seconds.response += watch.lap();
-  const NewtonReport newton =
-      solve_with_contact(problem, squeezed ? squeezed_passes : most_passes, nodes0, nodes1, x, contacts, report);
+  const NewtonReport newton = solve_with_contact(problem, squeezed, nodes0, nodes1, x, contacts, report);
   if (!newton.finite) return Outcome::not_finite;
   report.collision.contacts = static_cast<int>(contacts.terms.size());
   watch.lap();
@@ -210,7 +216,7 @@ bool ConventionalStepper::advance(Leg& leg, const Points& nodes, const Points& p
   ++report.substeps;
   if (has_contact()) {
     Stopwatch watch;
-    report.collision.passed_through += passed_through(world_, exemption_, leg.nodes, next);
+    report.collision.passed_through += passed_through(world_, exemption_, leg.nodes, next, audited_);
     report.seconds.audit += watch.lap();
   }
   leg.v = (next.topRows(n) - leg.nodes.topRows(n)) / h;
@@ -281,7 +287,7 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
     report.collision.obstacle_lag = (leg.nodes - wanted).bottomRows(leg.nodes.rows() - n).rowwise().norm().maxCoeff();
   to.pinched = report.collision.obstacle_lag > rounding * wanted.cwiseAbs().maxCoeff();
   if (!to.pinched) report.collision.obstacle_lag = 0;
-  audit_state(scene_, world_, drive, to, report);
+  audit_state(scene_, world_, drive, to, audited_, report);
   return report;
 }
 

@@ -103,7 +103,40 @@ TEST_CASE("conventional stepper: plates that close on cloth lag, leave it clean,
 
 TEST_CASE("conventional stepper: caches carry no state", "[conventional_stepper]") {
   const World w = folding_world(10);
+  const Run kept = run(w, 20), dropped = run(w, 20, 3);
+  same_bits(kept.state, dropped.state);
+  CHECK(kept.contacts == dropped.contacts);
+}
+
+// Two small sheets on a plate, which have come to rest.
+World resting_world() {
+  World w = make_world(testing::join(testing::sheet(5, 0.1, 2e-3), testing::sheet(6, 0.08, 5e-3)));
+  add_obstacle(w, testing::sheet(4, 0.4, 0));
+  w.state = run(w, 45).state;
+  return w;
+}
+
+TEST_CASE("conventional stepper: caches carry no state at rest either", "[conventional_stepper]") {
+  const World w = resting_world();
   same_bits(run(w, 20).state, run(w, 20, 3).state);
+}
+
+TEST_CASE("conventional stepper: cloth at rest is solved once a substep, and stays", "[conventional_stepper]") {
+  const World w = resting_world();
+  auto stepper = make_conventional_stepper(w.scene, {});
+  State state = w.state, to;
+  int iterations = 0, substeps = 0;
+  for (int f = 0; f < 60; ++f) {
+    const StepReport report = stepper->step(state, w.drive, 1.0 / 30, to);
+    iterations += report.iterations;
+    substeps += report.substeps;
+    CHECK(report.collision.contacts > 20);
+    CHECK(report.collision.pairs_after == 0);
+    state = to;
+  }
+  CHECK(substeps == 120);
+  CHECK(iterations < 2 * substeps);
+  CHECK((state.x - w.state.x).rowwise().norm().maxCoeff() < 1e-4);
 }
 
 #ifdef _OPENMP
