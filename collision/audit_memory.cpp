@@ -9,8 +9,9 @@
 namespace selvedge {
 namespace {
 
-constexpr double reach_in_edges = 0.4;  // of the cloth's mean edge
-constexpr double slow = 0.125;          // of the reach, since the last audit: then remembering pays
+constexpr double most_reach = 0.4, first_reach = 0.2;  // in the cloth's mean edges
+constexpr double many = 16;                            // pairs for each of the cloth's triangles: less reach will do
+constexpr double slow = 0.125;                         // of the reach, since the last audit: then remembering pays
 
 using Corners = std::array<Vec3, 3>;
 
@@ -176,6 +177,15 @@ void measure(AuditMemory& memory, const Surface& cloth, std::span<const MovingBo
   }
 }
 
+// In a crowd a short list is worth more than a large budget.
+void shorten(AuditMemory& memory, double most) {
+  while (static_cast<double>(memory.self_pairs.size() + memory.body_pairs.size()) > most) {
+    memory.reach /= 2;
+    for (auto* pairs : {&memory.self_pairs, &memory.body_pairs})
+      if (std::erase_if(*pairs, [&](const AuditMemory::Pair& pair) { return pair.gap >= memory.reach; }) == 0) return;
+  }
+}
+
 // How far each vertex is from the reference at either end; false if one is farther than it may be, or not finite.
 bool within_budget(const Points& reference, const MovingBody& body, double most, Eigen::VectorXd& moved) {
   if (reference.rows() != body.x0->rows()) return false;
@@ -240,13 +250,15 @@ AuditQuestions open_questions(AuditMemory& memory, const MovingBody& cloth, std:
     for (const MovingBody& sheet : sheets) memory.last.push_back(*sheet.x1);
     return questions;
   }
-  const double reach = reach_in_edges * mean_edge(*cloth.surface, *cloth.x1);
+  const double edge = mean_edge(*cloth.surface, *cloth.x1);
+  const double reach = std::min(most_reach * edge, memory.reach > 0 ? 2 * memory.reach : first_reach * edge);
   memory.reference.clear();
   if (!is_slow(memory, sheets, reach)) return questions;
   memory.reference = memory.last;
   memory.reach = reach;
   memory.inside = -1;
   measure(memory, *cloth.surface, bodies, self);
+  shorten(memory, many * static_cast<double>(cloth.surface->triangles.rows()));
   ask(memory, sheets, questions);
   return questions;
 }
