@@ -53,6 +53,16 @@ bool below_rounding(const Points& gradient, std::span<const Mat3> diagonal, cons
   return true;
 }
 
+Vertices rest_vertices(const Scene& scene) {
+  std::vector<std::array<int, 2>> border;
+  for (int e = 0; e < scene.surface.edges.rows(); ++e)
+    if (scene.surface.edge_triangles[e][1] < 0)
+      border.push_back({scene.surface.edges(e, 0), scene.surface.edges(e, 1)});
+  Edges open(border.size(), 2);
+  for (std::size_t e = 0; e < border.size(); ++e) open.row(e) << border[e][0], border[e][1];
+  return {scene.rest, make_graph(scene.surface.vertex_count, scene.surface.edges), rims(scene.rest, open)};
+}
+
 // Connected components that nothing holds or touches.
 std::vector<char> drifting_components(const Scene& scene, const StepPotential& step) {
   std::vector<char> drifting(scene.surface.component_count, true);
@@ -102,7 +112,7 @@ struct ImplicitEuler::Impl {
         options(o),
         masses(m),
         elastic(make_elastic(s)),
-        linear(o.linear_solver, static_cast<int>(std::ranges::count(free_vertices(s, m), 1))) {}
+        linear(o.linear_solver, rest_vertices(s), free_vertices(s, m)) {}
 
   void start(const StepProblem& problem) {
     prepare(scene, elastic, masses, problem, options.slip_speed, scratch, step);
@@ -112,6 +122,7 @@ struct ImplicitEuler::Impl {
     return {elastic.pattern, hessian,       step.diagonal, elastic.flat,
             step.flat_scale, step.contacts, step.lists,    step.free};
   }
+  double goal(const Points& x) const;
   bool choose_first_guess(Points& x);
   bool solve_linear(Definite, NewtonReport&);
   enum class Direction { none, rough, accurate };  // none: x is the minimiser to rounding
@@ -154,6 +165,13 @@ bool ImplicitEuler::Impl::choose_first_guess(Points& x) {
     energy = trial_energy;
   }
   return std::isfinite(std::min(guess, ballistic)) && x.allFinite();
+}
+
+// What a Newton step's RMS displacement has to fall below [m].
+double ImplicitEuler::Impl::goal(const Points& x) const {
+  const StepProblem& problem = *step.problem;
+  return std::max(options.velocity_tolerance * problem.h * problem.roughness,
+                  options.relative_tolerance * std::max(problem.roughness, 1.0) * root_mean_square(x - *problem.x0));
 }
 
 // One linear solve for the Newton step; true if it is as accurate as asked for.
@@ -228,8 +246,8 @@ NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
   impl.start(problem);
   report.finite = impl.choose_first_guess(x);
   if (!report.finite) return report;
-  const double goal = impl.options.velocity_tolerance * problem.h * problem.roughness;
-  while (!report.converged && report.iterations < impl.options.max_newton) {
+  const int most = std::max(1, static_cast<int>(std::lround(problem.patience * impl.options.max_newton)));
+  while (!report.converged && report.iterations < most) {
     const auto direction = impl.find_direction(x, report);
     if (direction == Impl::Direction::none) {
       report.converged = true;
@@ -239,7 +257,7 @@ NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
     if (length == 0) break;
     ++report.iterations;
     report.converged =
-        direction == Impl::Direction::accurate && std::max(length, 1.0) * root_mean_square(impl.motion) < goal;
+        direction == Impl::Direction::accurate && std::max(length, 1.0) * root_mean_square(impl.motion) < impl.goal(x);
   }
   derivatives(impl.step, x, impl.scratch, impl.gradient, nullptr);
   report.residual = largest_row(impl.gradient);

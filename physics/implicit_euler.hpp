@@ -11,14 +11,15 @@
 
 namespace selvedge {
 
-enum class LinearSolver { automatic, cholmod, pcg };
+enum class LinearSolver { automatic, cholmod, pcg, multigrid };  // pcg: block Jacobi; multigrid: PCG with a V-cycle
 
 struct ImplicitEulerOptions {
-  double velocity_tolerance =
-      2e-3;  // Newton ends when its largest displacement is below this times the time step [m/s]
+  double velocity_tolerance = 2e-3;  // Newton ends when the RMS of its displacement is below this times the time
+                                     // step [m/s],
+  double relative_tolerance = 3e-3;  // or below this part of the RMS motion in the step
   int max_newton = 8;
   LinearSolver linear_solver = LinearSolver::automatic;
-  double linear_tolerance = 0.1;  // relative residual of PCG in a Newton iteration
+  double linear_tolerance = 0.25;  // of PCG in a Newton iteration, in the norm of its preconditioner
   int max_linear = 2000;
   double slip_speed = 2e-3;  // below it lagged friction is viscous [m/s]
 };
@@ -49,6 +50,7 @@ struct StepProblem {
   std::span<const ContactTerm> contacts;
   double roughness = 1;  // times the tolerance: for a solve that only feeds another one
   const AddedTerm* added = nullptr;
+  double patience = 1;  // times the most iterations, for a solve that another one goes on from
 };
 
 // Minimises the incremental potential

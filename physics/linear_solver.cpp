@@ -2,30 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "collision/error.hpp"
 #include "physics/cholesky.hpp"
 #include "physics/lower_triangle.hpp"
+#include "physics/multigrid.hpp"
 #include "physics/pcg.hpp"
 
 namespace selvedge {
 namespace {
 
 // Free vertices up to which CHOLMOD is taken. Measured on hanging N x N sheets, one thread, steps of 1/60 s: 1.7
-// against 0.5 ms a frame for 81 vertices and 53 against 10 for 625, so float PCG is ahead nearly from the start.
+// against 0.5 ms a frame with block Jacobi for 81 vertices and 53 against 10 for 625.
 constexpr int direct_limit = 60;
 
+constexpr double jacobi_share = 0.4;           // of a tolerance: block Jacobi's norm hardly sees smooth errors
 constexpr double float_tolerance = 1e-3;       // what one pass in float surely reaches
 constexpr double refinement_tolerance = 1e-4;  // of each pass where several are needed
 constexpr int max_passes = 12;
-
-LinearSolver choose(LinearSolver wanted, int free_vertices) {
-  if (wanted == LinearSolver::cholmod && !Cholesky::available())
-    throw Error("this build has no CHOLMOD", "linear solver",
-                "choose pcg or automatic, or build with SuiteSparse (libsuitesparse-dev)");
-  if (wanted != LinearSolver::automatic) return wanted;
-  return Cholesky::available() && free_vertices <= direct_limit ? LinearSolver::cholmod : LinearSolver::pcg;
-}
 
 // Everything of a PCG solve in one precision.
 template <class Real>
@@ -33,11 +28,12 @@ struct Iterative {
   PcgMatrix<Real> matrix;
   BlockJacobi<Real> jacobi;
   PcgVectors<Real> vectors;
-  Preconditioner<Real> preconditioner = [this](const Quads<Real>& r, Quads<Real>& z) { jacobi.apply(r, z); };
+  Preconditioner<Real> preconditioner;
 
   void fill(const LinearSystem& system, std::span<const Mat3> diagonal) {
     matrix.fill(system);
     jacobi.fill(diagonal, system.free);
+    preconditioner = [this](const Quads<Real>& r, Quads<Real>& z) { jacobi.apply(r, z); };
   }
 
   // x += A^-1 right, with `right` scaled into the range of Real.
@@ -67,15 +63,27 @@ double preconditioner_norm(const Points& r, std::span<const Mat3> diagonal, std:
 
 }  // namespace
 
+LinearSolver chosen_solver(LinearSolver wanted, int free_vertices) {
+  if (wanted == LinearSolver::cholmod && !Cholesky::available())
+    throw Error("this build has no CHOLMOD", "linear solver",
+                "choose pcg or automatic, or build with SuiteSparse (libsuitesparse-dev)");
+  if (wanted != LinearSolver::automatic) return wanted;
+  return Cholesky::available() && free_vertices <= direct_limit ? LinearSolver::cholmod : LinearSolver::multigrid;
+}
+
 struct LinearSystemSolver::Impl {
   LinearSolver chosen;
   Cholesky cholesky;
   LowerTriangle lower;
   std::vector<double> packed_right, packed_solution;
+  Vertices vertices;
+  std::vector<char> free;
+  std::unique_ptr<Multigrid> multigrid;  // made when first needed
   Iterative<float> single;
   std::unique_ptr<Iterative<double>> full;  // made when float first fails
 
   bool solve_direct(const LinearSystem&, std::span<const Mat3> diagonal, const Points& right, Points& x);
+  void prepare_single(const LinearSystem&, std::span<const Mat3> diagonal);
   template <class Real>
   LinearReport solve_iterative(Iterative<Real>&, const LinearSystem&, std::span<const Mat3> diagonal,
                                const Points& right, double tolerance, int max_iterations, Points& x);
@@ -104,7 +112,6 @@ LinearReport LinearSystemSolver::Impl::solve_iterative(Iterative<Real>& method, 
                                                        std::span<const Mat3> diagonal, const Points& right,
                                                        double tolerance, int max_iterations, Points& x) {
   LinearReport report;
-  method.fill(system, diagonal);
   x.setZero(right.rows(), 3);
   if (tolerance >= float_tolerance) {
     const PcgReport pass = method.add_solution(right, system.free, tolerance, max_iterations, x);
@@ -130,8 +137,20 @@ LinearReport LinearSystemSolver::Impl::solve_iterative(Iterative<Real>& method, 
   return report;
 }
 
-LinearSystemSolver::LinearSystemSolver(LinearSolver wanted, int free_vertices) : impl_(std::make_unique<Impl>()) {
-  impl_->chosen = choose(wanted, free_vertices);
+// Where multigrid cannot be had, block Jacobi stays.
+void LinearSystemSolver::Impl::prepare_single(const LinearSystem& system, std::span<const Mat3> diagonal) {
+  single.fill(system, diagonal);
+  if (chosen != LinearSolver::multigrid) return;
+  if (!multigrid) multigrid = std::make_unique<Multigrid>(vertices, free);
+  if (multigrid->fill(system, diagonal, single.matrix))
+    single.preconditioner = [this](const Quads<float>& r, Quads<float>& z) { multigrid->apply(r, z); };
+}
+
+LinearSystemSolver::LinearSystemSolver(LinearSolver wanted, Vertices vertices, std::span<const char> free)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->vertices = std::move(vertices);
+  impl_->free.assign(free.begin(), free.end());
+  impl_->chosen = chosen_solver(wanted, static_cast<int>(std::ranges::count(free, 1)));
 }
 LinearSystemSolver::~LinearSystemSolver() = default;
 LinearSolver LinearSystemSolver::chosen() const { return impl_->chosen; }
@@ -144,11 +163,14 @@ LinearReport LinearSystemSolver::solve(const LinearSystem& system, std::span<con
     if (impl.solve_direct(system, diagonal, right, x)) return {true, 1};
     if (definite == Definite::perhaps) return {false, 1};
   } else {
-    report = impl.solve_iterative(impl.single, system, diagonal, right, tolerance, max_iterations, x);
+    impl.prepare_single(system, diagonal);
+    const double share = impl.chosen == LinearSolver::pcg ? jacobi_share : 1;
+    report = impl.solve_iterative(impl.single, system, diagonal, right, share * tolerance, max_iterations, x);
     if (report.converged || definite == Definite::perhaps) return report;
     if (impl.solve_direct(system, diagonal, right, x)) return {true, report.iterations + 1};
   }
   if (!impl.full) impl.full = std::make_unique<Iterative<double>>();
+  impl.full->fill(system, diagonal);
   const LinearReport last = impl.solve_iterative(*impl.full, system, diagonal, right, tolerance, max_iterations, x);
   return {last.converged, report.iterations + last.iterations};
 }

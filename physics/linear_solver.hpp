@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "physics/coarsening.hpp"
 #include "physics/implicit_euler.hpp"
 #include "physics/linear_system.hpp"
 
@@ -14,12 +15,15 @@ struct LinearReport {
   int iterations = 0;  // of PCG; a direct solve counts as one
 };
 
-// CHOLMOD and PCG behind one call. Holds caches only: patterns, factors, vectors.
+// `automatic` takes CHOLMOD, where the build has it, for scenes of few free vertices, and multigrid for larger ones.
+// Asking for CHOLMOD in a build without it is an Error.
+LinearSolver chosen_solver(LinearSolver wanted, int free_vertices);
+
+// CHOLMOD and PCG behind one call. Holds caches only: patterns, hierarchies, factors, vectors.
 class LinearSystemSolver {
  public:
-  // `automatic` takes CHOLMOD, where the build has it, for scenes of few free vertices, and PCG for larger ones. Asking
-  // for CHOLMOD in a build without it is an Error.
-  LinearSystemSolver(LinearSolver wanted, int free_vertices);
+  // The hierarchy is made from the vertices when first needed.
+  LinearSystemSolver(LinearSolver wanted, Vertices, std::span<const char> free);
   ~LinearSystemSolver();
   LinearSolver chosen() const;
 

@@ -22,6 +22,7 @@ class PcgMatrix {
  public:
   void fill(const LinearSystem&);
   int rows() const { return rows_; }
+  std::span<const BlockColumns<Real>> blocks() const { return blocks_; }  // as PairPattern::column has them
   int contacts() const { return static_cast<int>(response_.size()); }
   // q = A p by the calling team; partial sums of p . q, one a chunk.
   void multiply(const Quads<Real>& p, Quads<Real>& q, std::vector<double>& partial);

@@ -97,6 +97,45 @@ SELVEDGE_CLONES double multiply_rows(const RowView<double>& a, const Quad<double
                                      int end) {
   return multiply_rows_inline(a, u, y, begin, end);
 }
+SELVEDGE_CLONES void multiply_level(const LevelView& a, const Quad<float>* u, Quad<float>* y, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    const Quad<float> own = u[i];
+    Quad<float> even{}, odd{};
+    add_product(a.diagonal[i], own, even);
+    for (int part = 0; part < 2; ++part) {
+      int k = a.begin[part][i];
+      const int last = a.begin[part][i + 1];
+      for (; k + 1 < last; k += 2) {
+        add_product(a.block[part][k], {u[a.column[part][k]].lanes - own.lanes}, even);
+        add_product(a.block[part][k + 1], {u[a.column[part][k + 1]].lanes - own.lanes}, odd);
+      }
+      if (k < last) add_product(a.block[part][k], {u[a.column[part][k]].lanes - own.lanes}, odd);
+    }
+    y[i].lanes = even.lanes + odd.lanes;
+  }
+}
+SELVEDGE_CLONES void gather(const WeightView& p, const Quad<float>* u, Quad<float>* y, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    Quad<float> sum{};
+    for (int k = p.begin[i]; k < p.begin[i + 1]; ++k) sum.lanes += u[p.column[k]].lanes * p.weight[k];
+    y[i] = sum;
+  }
+}
+SELVEDGE_CLONES void add_gathered(const WeightView& p, const Quad<float>* u, Quad<float>* step, Quad<float>* y,
+                                  int begin, int end) {
+  gather(p, u, step, begin, end);
+  for (int i = begin; i < end; ++i) y[i].lanes += step[i].lanes;
+}
+SELVEDGE_CLONES void chebyshev(float keep, float factor, const BlockColumns<float>* inverse, const Quad<float>* product,
+                               Quad<float>* residual, Quad<float>* step, Quad<float>* x, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    residual[i].lanes -= product[i].lanes;
+    Quad<float> next{step[i].lanes * keep};
+    add_product(inverse[i], {residual[i].lanes * factor}, next);
+    step[i] = next;
+    x[i].lanes += next.lanes;
+  }
+}
 SELVEDGE_CLONES void contact_responses(const ContactView<float>& a, const Quad<float>* u, Quad<float>* response,
                                        int begin, int end) {
   contact_responses_inline(a, u, response, begin, end);

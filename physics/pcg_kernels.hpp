@@ -52,6 +52,28 @@ struct ContactView {
 double multiply_rows(const RowView<float>&, const Quad<float>* u, Quad<float>* y, int begin, int end);
 double multiply_rows(const RowView<double>&, const Quad<double>* u, Quad<double>* y, int begin, int end);
 
+// A coarse level's matrix by rows: y_i = D_i u_i + sum B_ij (u_j - u_i), the sum over two sets of blocks.
+struct LevelView {
+  const BlockColumns<float>* diagonal;
+  const int* begin[2];
+  const int* column[2];
+  const BlockColumns<float>* block[2];
+};
+void multiply_level(const LevelView&, const Quad<float>* u, Quad<float>* y, int begin, int end);
+
+// Weighted sums of other rows' values, by rows: y = P u, or y += P u.
+struct WeightView {
+  const int* begin;
+  const int* column;
+  const float* weight;
+};
+void gather(const WeightView&, const Quad<float>* u, Quad<float>* y, int begin, int end);
+void add_gathered(const WeightView&, const Quad<float>* u, Quad<float>* step, Quad<float>* y, int begin, int end);
+
+// One step of a Chebyshev iteration: residual -= product, step = keep step + factor inverse residual, x += step.
+void chebyshev(float keep, float factor, const BlockColumns<float>* inverse, const Quad<float>* product,
+               Quad<float>* residual, Quad<float>* step, Quad<float>* x, int begin, int end);
+
 // The force of contacts [begin, end) on a weight of one.
 void contact_responses(const ContactView<float>&, const Quad<float>* u, Quad<float>* response, int begin, int end);
 void contact_responses(const ContactView<double>&, const Quad<double>* u, Quad<double>* response, int begin, int end);

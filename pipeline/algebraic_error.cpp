@@ -14,6 +14,7 @@ double rms(const Points& difference) {
 
 ImplicitEulerOptions tightened(ImplicitEulerOptions options) {
   options.velocity_tolerance = 1e-10;
+  options.relative_tolerance = 0;
   options.max_newton = 100;
   options.linear_tolerance = 1e-10;
   options.max_linear = 100000;

@@ -95,11 +95,15 @@ const Section& solver_section() {
       "",
       {},
       {number("velocity_tolerance", Unit::speed, positive, show(o.velocity_tolerance),
-              "Newton ends when its largest displacement is below this times the time step"),
+              "Newton ends when the RMS of its displacement is below this times the time step,"),
+       number("relative_tolerance", Unit::none, not_negative, show(o.relative_tolerance),
+              "or below this part of the RMS motion in the step"),
        integer("max_newton", at_least_one, show(o.max_newton), "iterations a step"),
-       word("linear_solver", {"automatic", "cholmod", "pcg"}, "automatic", "`automatic`: by size"),
+       word("linear_solver", {"automatic", "cholmod", "pcg", "multigrid"}, "automatic",
+            "`automatic`: cholmod for the smallest scenes, otherwise multigrid"),
        number("linear_tolerance", Unit::none, {.low = 0, .high = 1, .low_in = false, .high_in = false},
-              show(o.linear_tolerance), "relative residual of PCG in a Newton iteration"),
+              show(o.linear_tolerance),
+              "residual of PCG in a Newton iteration, relative, in its preconditioner's norm"),
        integer("max_linear", at_least_one, show(o.max_linear), "PCG iterations"),
        number("slip_speed", Unit::speed, positive, show(o.slip_speed), "below it friction is viscous")}};
   return table;

@@ -6,14 +6,29 @@
 #include <nlohmann/json.hpp>
 
 #include "physics/features.hpp"
+#include "physics/linear_solver.hpp"
+#include "physics/step_potential.hpp"
 
 namespace selvedge {
 
 namespace {
 
+std::string linear_solver_of(const Setup& setup) {
+  const std::vector<char> free = free_vertices(setup.scene, lumped_masses(setup.scene));
+  const int count = static_cast<int>(std::ranges::count(free, 1));
+  const LinearSolver wanted = setup.run.conventional.implicit_euler.linear_solver;
+  const LinearSolver chosen = chosen_solver(wanted, count);
+  const char* name = chosen == LinearSolver::cholmod ? "CHOLMOD"
+                     : chosen == LinearSolver::pcg   ? "PCG with block Jacobi"
+                                                     : "PCG with a multigrid V-cycle";
+  return fmt::format("{}, {}{} free vertices", name, wanted == LinearSolver::automatic ? "for " : "as asked for, ",
+                     count);
+}
+
 // What the scene needs, and what the stepper does without.
 std::vector<PlanLine> lines_of(const Setup& setup) {
   std::vector<PlanLine> lines = plan_lines(setup.scene);
+  lines.push_back({"linear solver", true, linear_solver_of(setup)});
   if (setup.run.stepper != "icm") return lines;
   const std::string untouched = "left out by the stepper icm";
   lines.push_back({"contour energy", true, "weight " + fmt::format("{}", setup.run.icm.contour_weight)});

@@ -140,11 +140,13 @@ ContactSettings read_contact(const Config& section) {
 ImplicitEulerOptions read_solver(const Config& section) {
   ImplicitEulerOptions o;
   o.velocity_tolerance = section["velocity_tolerance"].number();
+  o.relative_tolerance = section["relative_tolerance"].number();
   o.max_newton = section["max_newton"].integer();
   const std::string& solver = section["linear_solver"].text();
-  o.linear_solver = solver == "cholmod" ? LinearSolver::cholmod
-                    : solver == "pcg"   ? LinearSolver::pcg
-                                        : LinearSolver::automatic;
+  o.linear_solver = solver == "cholmod"     ? LinearSolver::cholmod
+                    : solver == "pcg"       ? LinearSolver::pcg
+                    : solver == "multigrid" ? LinearSolver::multigrid
+                                            : LinearSolver::automatic;
   o.linear_tolerance = section["linear_tolerance"].number();
   o.max_linear = section["max_linear"].integer();
   o.slip_speed = section["slip_speed"].number();

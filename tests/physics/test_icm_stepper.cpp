@@ -72,6 +72,7 @@ TEST_CASE("icm stepper: without contact its step is implicit Euler's", "[icm_ste
   IcmOptions options;
   options.substeps = 1;
   options.implicit_euler.velocity_tolerance = 1e-9;
+  options.implicit_euler.relative_tolerance = 0;
   options.implicit_euler.linear_tolerance = 1e-9;
   options.implicit_euler.max_newton = 60;
   const double dt = 1.0 / 60;

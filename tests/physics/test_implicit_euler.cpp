@@ -35,6 +35,7 @@ Points rows_of(const Points& x, const std::vector<int>& vertices) {
 ImplicitEulerOptions accurate(LinearSolver solver = LinearSolver::automatic) {
   ImplicitEulerOptions options;
   options.velocity_tolerance = 1e-10;
+  options.relative_tolerance = 0;
   options.linear_tolerance = 1e-10;
   options.max_newton = 60;
   options.linear_solver = solver;

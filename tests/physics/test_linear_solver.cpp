@@ -25,6 +25,14 @@ struct Example {
   std::vector<Mat3> blocks;
   Points right;
 
+  Vertices vertices() const {  // of a square grid
+    const int side = static_cast<int>(std::lround(std::sqrt(pattern.rows)));
+    Points rest(pattern.rows, 3);
+    for (int i = 0; i < pattern.rows; ++i) rest.row(i) << i % side, i / side, 0;
+    Edges edges(pattern.pairs.size(), 2);
+    for (std::size_t e = 0; e < pattern.pairs.size(); ++e) edges.row(e) << pattern.pairs[e][0], pattern.pairs[e][1];
+    return {rest, make_graph(pattern.rows, edges), std::vector<Rim>(pattern.rows, Rim::inside)};
+  }
   LinearSystem system() const { return {pattern, pairs, diagonal, flat, flat_scale, contacts, lists, free}; }
 };
 
@@ -112,7 +120,7 @@ Points exact(const Example& e) {
 }
 
 Points solve(const Example& e, LinearSolver method, double tolerance, LinearReport& report) {
-  LinearSystemSolver solver(method, e.pattern.rows);
+  LinearSystemSolver solver(method, e.vertices(), e.free);
   Points x;
   report = solver.solve(e.system(), e.blocks, e.right, tolerance, 3000, x);
   return x;
@@ -138,9 +146,11 @@ TEST_CASE("CHOLMOD and PCG give the dense answer, with every combination of term
   const Example e = make_example(10, stiffness, contacts, flat);
   const Points truth = exact(e);
   LinearReport report;
-  const Points iterative = solve(e, LinearSolver::pcg, 1e-11, report);
-  CHECK(report.converged);
-  CHECK((iterative - truth).norm() < 1e-8 * truth.norm());
+  for (const LinearSolver method : {LinearSolver::pcg, LinearSolver::multigrid}) {
+    const Points iterative = solve(e, method, 1e-11, report);
+    CHECK(report.converged);
+    CHECK((iterative - truth).norm() < 1e-8 * truth.norm());
+  }
   if (!Cholesky::available()) return;
   const Points direct = solve(e, LinearSolver::cholmod, 1e-11, report);
   CHECK(report.converged);
@@ -179,7 +189,7 @@ TEST_CASE("Translations of a cloth a billion times stiffer than heavy survive fl
 TEST_CASE("The pattern of the direct solver follows the contacts", "[linear_solver]") {
   if (!Cholesky::available()) return;
   Example e = make_example(10, 5.0, false, true);
-  LinearSystemSolver solver(LinearSolver::cholmod, e.pattern.rows);
+  LinearSystemSolver solver(LinearSolver::cholmod, e.vertices(), e.free);
   Points x;
   CHECK(solver.solve(e.system(), e.blocks, e.right, 0.05, 100, x).converged);
   CHECK((x - exact(e)).norm() < 1e-10 * x.norm());
@@ -189,7 +199,7 @@ TEST_CASE("The pattern of the direct solver follows the contacts", "[linear_solv
 }
 
 TEST_CASE("Nothing to do, nothing free, nothing finite", "[linear_solver]") {
-  const LinearSolver method = GENERATE(values({LinearSolver::pcg, LinearSolver::automatic}));
+  const LinearSolver method = GENERATE(values({LinearSolver::pcg, LinearSolver::multigrid, LinearSolver::automatic}));
   Example e = make_example(8, 1.0, true, true);
   LinearReport report;
   const Points right = e.right;
@@ -217,16 +227,21 @@ TEST_CASE("One and two threads solve with the same bits", "[linear_solver][threa
   const Example e = make_example(60, 20.0, true, true);
   LinearReport report;
   Points one, two;
-  with_threads(1, [&] { one = solve(e, LinearSolver::pcg, 1e-6, report); });
-  with_threads(2, [&] { two = solve(e, LinearSolver::pcg, 1e-6, report); });
+  const LinearSolver method = GENERATE(values({LinearSolver::pcg, LinearSolver::multigrid}));
+  with_threads(1, [&] { one = solve(e, method, 1e-6, report); });
+  with_threads(2, [&] { two = solve(e, method, 1e-6, report); });
   CHECK(report.converged);
   CHECK(same_bits(one, two));
 }
 
 TEST_CASE("CHOLMOD asked for where it is absent is an error", "[linear_solver]") {
+  const auto solver = [](LinearSolver wanted, int side) {
+    const Example e = make_example(side, 1.0, false, false);
+    return LinearSystemSolver(wanted, e.vertices(), e.free).chosen();
+  };
   if (Cholesky::available())
-    CHECK(LinearSystemSolver(LinearSolver::automatic, 50).chosen() == LinearSolver::cholmod);
+    CHECK(solver(LinearSolver::automatic, 7) == LinearSolver::cholmod);
   else
-    CHECK_THROWS_AS(LinearSystemSolver(LinearSolver::cholmod, 100), Error);
-  CHECK(LinearSystemSolver(LinearSolver::automatic, 100000).chosen() == LinearSolver::pcg);
+    CHECK_THROWS_AS(solver(LinearSolver::cholmod, 10), Error);
+  CHECK(solver(LinearSolver::automatic, 40) == LinearSolver::multigrid);
 }

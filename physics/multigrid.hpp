@@ -1,0 +1,28 @@
+#pragma once
+
+#include <memory>
+
+#include "physics/coarsening.hpp"
+#include "physics/pcg.hpp"
+
+namespace selvedge {
+
+// One symmetric V-cycle of Galerkin multigrid as a preconditioner in float: the hierarchy of vertices is made once from
+// the rest shape, the patterns of the coarse matrices once, those of contacts whenever contacts change. Smoothed by
+// Chebyshev polynomials of the fourth kind over block Jacobi (Lottes 2023), solved by Cholesky on the coarsest level.
+class Multigrid {
+ public:
+  Multigrid(const Vertices&, std::span<const char> free);
+  ~Multigrid();
+  // `fine` is the system's matrix in float and stays where it is until the last apply(). False where the matrix turned
+  // out not to be positive definite: there is nothing to apply then.
+  bool fill(const LinearSystem&, std::span<const Mat3> diagonal, PcgMatrix<float>& fine);
+  // z = M^-1 r, as Preconditioner asks for.
+  void apply(const Quads<float>& r, Quads<float>& z);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace selvedge

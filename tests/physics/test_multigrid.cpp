@@ -1,0 +1,285 @@
+#include <cmath>
+#include <random>
+
+#include <Eigen/Dense>
+#include <catch2/catch.hpp>
+
+#include "physics/galerkin.hpp"
+#include "physics/multigrid.hpp"
+#include "tests/physics/threads.hpp"
+
+using namespace selvedge;
+
+namespace {
+
+// A jittered grid of triangles over a unit square, its inner vertices moved by up to a third of an edge.
+struct Sheet {
+  Vertices vertices;
+  std::vector<int> element_begin{0}, element_nodes;
+};
+
+Sheet make_sheet(int side, double jitter) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> shift(-jitter, jitter);
+  Sheet sheet;
+  const int n = side * side;
+  sheet.vertices.rest.resize(n, 3);
+  for (int i = 0; i < n; ++i) {
+    const int u = i % side, v = i / side;
+    const bool inner = u > 0 && v > 0 && u + 1 < side && v + 1 < side;
+    sheet.vertices.rest.row(i) << (u + (inner ? shift(random) : 0)) / (side - 1),
+        (v + (inner ? shift(random) : 0)) / (side - 1), 0;
+  }
+  for (int v = 0; v + 1 < side; ++v)
+    for (int u = 0; u + 1 < side; ++u)
+      for (const auto& t : {std::array{0, 1, side}, std::array{side + 1, side, 1}}) {
+        for (int k : t) sheet.element_nodes.push_back(v * side + u + k);
+        sheet.element_begin.push_back(static_cast<int>(sheet.element_nodes.size()));
+      }
+  const PairPattern pattern = make_pair_pattern(n, sheet.element_begin, sheet.element_nodes);
+  Edges edges(pattern.pairs.size(), 2), border(4 * (side - 1), 2);
+  for (std::size_t e = 0; e < pattern.pairs.size(); ++e) edges.row(e) << pattern.pairs[e][0], pattern.pairs[e][1];
+  for (int k = 0; k + 1 < side; ++k) {
+    border.row(4 * k) << k, k + 1;
+    border.row(4 * k + 1) << n - side + k, n - side + k + 1;
+    border.row(4 * k + 2) << k * side, (k + 1) * side;
+    border.row(4 * k + 3) << k * side + side - 1, (k + 1) * side + side - 1;
+  }
+  sheet.vertices.graph = make_graph(n, edges);
+  sheet.vertices.rim = rims(sheet.vertices.rest, border);
+  return sheet;
+}
+
+Eigen::MatrixXd dense(const Prolongation& p) {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(p.fine_count(), p.coarse_count());
+  for (int i = 0; i < p.fine_count(); ++i)
+    for (int k = p.begin[i]; k < p.begin[i + 1]; ++k) matrix(i, p.coarse[k]) += p.weight[k];
+  return matrix;
+}
+
+BlockColumns<float> block(const Mat3& from) {
+  BlockColumns<float> to{};
+  for (int k = 0; k < 3; ++k)
+    for (int r = 0; r < 3; ++r) to.column[k].lanes[r] = static_cast<float>(from(r, k));
+  return to;
+}
+
+Mat3 matrix(const BlockColumns<float>& from) {
+  Mat3 to;
+  for (int k = 0; k < 3; ++k)
+    for (int r = 0; r < 3; ++r) to(r, k) = from.column[k].lanes[r];
+  return to;
+}
+
+using Blocks = std::vector<BlockColumns<float>>;
+
+// y_i = D_i u_i + sum_j B_ij (u_j - u_i) as a matrix.
+Eigen::MatrixXd dense(const RowPattern& pattern, const Blocks& blocks, const Blocks& diagonal) {
+  const int n = static_cast<int>(diagonal.size());
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+  for (int i = 0; i < n; ++i) {
+    whole.block<3, 3>(3 * i, 3 * i) += matrix(diagonal[i]);
+    for (int k = pattern.begin[i]; k < pattern.begin[i + 1]; ++k) {
+      whole.block<3, 3>(3 * i, 3 * pattern.column[k]) += matrix(blocks[k]);
+      whole.block<3, 3>(3 * i, 3 * i) -= matrix(blocks[k]);
+    }
+  }
+  return whole;
+}
+
+Eigen::MatrixXd three_times(const Eigen::MatrixXd& p) {
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(3 * p.rows(), 3 * p.cols());
+  for (int i = 0; i < p.rows(); ++i)
+    for (int a = 0; a < p.cols(); ++a) whole.block<3, 3>(3 * i, 3 * a) = p(i, a) * Mat3::Identity();
+  return whole;
+}
+
+// Springs along edges in random directions, mass, bending of the graph, contacts across the sheet, a held row.
+struct Example {
+  Sheet sheet;
+  PairPattern pattern;
+  PairBlocks pairs;
+  std::vector<double> diagonal, flat_scale;
+  SparseMatrix flat;
+  std::vector<ContactBlock> contacts;
+  ContactLists lists;
+  std::vector<char> free;
+  std::vector<Mat3> blocks;
+  LinearSystem system() const { return {pattern, pairs, diagonal, flat, flat_scale, contacts, lists, free}; }
+};
+
+Example make_example(int side, double stiffness, int contacts) {
+  Example e;
+  e.sheet = make_sheet(side, 0.3);
+  const int n = side * side;
+  e.pattern = make_pair_pattern(n, e.sheet.element_begin, e.sheet.element_nodes);
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  for (const auto& [i, j] : e.pattern.pairs) {
+    const Vec3 along = (row(e.sheet.vertices.rest, j) - row(e.sheet.vertices.rest, i)).normalized();
+    e.pairs.push_back(-stiffness * (along * along.transpose() + 0.02 * Mat3::Identity()));
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const auto& [i, j] : e.pattern.pairs)
+    for (const auto& [a, b, v] : {std::tuple{i, j, 1.}, std::tuple{j, i, 1.}, std::tuple{i, i, -1.},
+                                  std::tuple{j, j, -1.}})
+      entries.emplace_back(a, b, v);
+  SparseMatrix laplacian(n, n);
+  laplacian.setFromTriplets(entries.begin(), entries.end());
+  e.flat = 1e-3 * stiffness * SparseMatrix(laplacian * laplacian);
+  e.flat.makeCompressed();
+  e.flat_scale.assign(n, 1.2);
+  e.diagonal.assign(n, 1);
+  e.free.assign(n, 1);
+  for (int i = 0; i < side / 2; ++i) e.free[i] = 0;
+  for (int c = 0; c < contacts; ++c) {
+    const int first = (c * 29) % (n / 2);
+    const Vec3 direction(normal(random), normal(random), normal(random));
+    const bool obstacle = c % 3 == 0;
+    e.contacts.push_back({{first, first + 1, n - 1 - first, obstacle ? -1 : n - 2 - first},
+                          {0.4, 0.6, obstacle ? 0.0 : -0.3, obstacle ? 0.0 : -0.7},
+                          direction.normalized(),
+                          2 * stiffness,
+                          c % 2 ? 0.0 : 0.2 * stiffness});
+    if (obstacle) e.contacts.back().nodes[2] = -1;
+  }
+  e.lists = list_contacts(e.contacts, n);
+  diagonal_blocks(e.system(), e.blocks);
+  return e;
+}
+
+Points apply(Multigrid& multigrid, const Points& r) {
+  Quads<float> in(r.rows()), out(r.rows());
+  for (int i = 0; i < r.rows(); ++i)
+    for (int k = 0; k < 3; ++k) in[i].lanes[k] = static_cast<float>(r(i, k));
+  multigrid.apply(in, out);
+  Points z(r.rows(), 3);
+  for (int i = 0; i < r.rows(); ++i)
+    for (int k = 0; k < 3; ++k) z(i, k) = out[i].lanes[k];
+  return z;
+}
+
+}  // namespace
+
+TEST_CASE("Coarse vertices: a quarter, no two neighbours; linear functions are kept up to the corners",
+          "[multigrid]") {
+  const double jitter = GENERATE(0.0, 0.3);
+  const Vertices fine = make_sheet(24, jitter).vertices;
+  const std::vector<char> free(fine.graph.size(), 1);
+  const Prolongation p = coarsen(fine, free);
+  CHECK(p.coarse_count() > 0.18 * p.fine_count());
+  CHECK(p.coarse_count() < 0.34 * p.fine_count());
+  std::vector<char> chosen(p.fine_count(), false);
+  for (int i : p.chosen) chosen[i] = true;
+  for (int i = 0; i < p.fine_count(); ++i)
+    for (int k = fine.graph.begin[i]; k < fine.graph.begin[i + 1]; ++k)
+      CHECK(!(chosen[i] && chosen[fine.graph.neighbour[k]]));
+  const Eigen::MatrixXd weights = dense(p);
+  CHECK(weights.minCoeff() >= 0);
+  CHECK((weights.rowwise().sum().array() - 1).abs().maxCoeff() < 1e-12);
+  const Vertices coarse = coarse_vertices(fine, p);
+  // Weights under a thousandth are dropped.
+  CHECK((weights * coarse.rest - fine.rest).rowwise().norm().maxCoeff() < (jitter > 0 ? 5e-3 / 23 : 1e-12));
+  for (int a = 0; a < coarse.graph.size(); ++a) CHECK(coarse.graph.begin[a + 1] - coarse.graph.begin[a] >= 2);
+}
+
+TEST_CASE("What comes from held vertices is left out, and they are on no coarse level", "[multigrid]") {
+  const Vertices fine = make_sheet(12, 0.2).vertices;
+  std::vector<char> free(fine.graph.size(), 1);
+  for (int i = 0; i < 12; ++i) free[i] = 0;
+  const Prolongation p = coarsen(fine, free);
+  for (int i : p.chosen) CHECK(free[i]);
+  const Eigen::VectorXd sums = dense(p).rowwise().sum();
+  for (int i = 0; i < 12; ++i) CHECK(sums[i] == 0);
+  CHECK(sums.maxCoeff() < 1 + 1e-12);
+  CHECK(sums.segment(12, 12).minCoeff() < 0.9);
+}
+
+TEST_CASE("Galerkin products are P^T A P, of matrices and of contacts", "[multigrid]") {
+  const Example e = make_example(9, 50, 40);
+  const Prolongation p = coarsen(e.sheet.vertices, e.free);
+  const Eigen::MatrixXd weights = three_times(dense(p));
+  std::mt19937 random(5);
+  std::normal_distribution<float> normal;
+  const auto some = [&] {
+    Mat3 m;
+    for (int k = 0; k < 9; ++k) m(k) = normal(random);
+    return block(m);
+  };
+  const RowPattern fine{e.pattern.row_begin, e.pattern.column};
+  Blocks blocks(fine.column.size()), diagonal(e.pattern.rows);
+  std::generate(blocks.begin(), blocks.end(), some);
+  std::generate(diagonal.begin(), diagonal.end(), some);
+  RowPattern coarse;
+  const Product product = make_product(fine, true, p, transpose(p), coarse);
+  Blocks coarse_blocks(coarse.column.size(), BlockColumns<float>{}), coarse_diagonal(p.coarse_count(), BlockColumns<float>{});
+  accumulate(product, blocks.data(), diagonal.data(), coarse_blocks.data(), coarse_diagonal.data(), 0,
+             p.coarse_count());
+  const Eigen::MatrixXd expected = weights.transpose() * dense(fine, blocks, diagonal) * weights;
+  CHECK((dense(coarse, coarse_blocks, coarse_diagonal) - expected).norm() < 1e-5 * expected.norm());
+
+  Eigen::MatrixXd touching = Eigen::MatrixXd::Zero(weights.rows(), weights.rows());
+  Blocks factors;
+  for (const ContactBlock& contact : e.contacts) {
+    factors.push_back(block(contact_matrix(contact)));
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b < 4; ++b)
+        if (contact.nodes[a] >= 0 && contact.nodes[b] >= 0)
+          touching.block<3, 3>(3 * contact.nodes[a], 3 * contact.nodes[b]) +=
+              contact.weights[a] * contact.weights[b] * contact_matrix(contact);
+  }
+  const Product of_contacts = make_product(e.contacts, p, coarse);
+  coarse_blocks.assign(coarse.column.size(), BlockColumns<float>{});
+  coarse_diagonal.assign(p.coarse_count(), BlockColumns<float>{});
+  accumulate(of_contacts, factors.data(), nullptr, coarse_blocks.data(), coarse_diagonal.data(), 0, p.coarse_count());
+  const Eigen::MatrixXd expected_touching = weights.transpose() * touching * weights;
+  CHECK((dense(coarse, coarse_blocks, coarse_diagonal) - expected_touching).norm() < 1e-5 * expected_touching.norm());
+}
+
+TEST_CASE("A V-cycle is symmetric and positive, and no eigenvalue of it times the matrix is far from one",
+          "[multigrid]") {
+  const Example e = make_example(14, GENERATE(1.0, 1e4), GENERATE(0, 60));
+  PcgMatrix<float> fine;
+  fine.fill(e.system());
+  Multigrid multigrid(e.sheet.vertices, e.free);
+  REQUIRE(multigrid.fill(e.system(), e.blocks, fine));
+  const int n = e.pattern.rows;
+  std::vector<int> unknowns;
+  for (int i = 0; i < 3 * n; ++i)
+    if (e.free[i / 3]) unknowns.push_back(i);
+  const int m = static_cast<int>(unknowns.size());
+  Eigen::MatrixXd cycle(m, m), a(m, m);
+  for (int column = 0; column < m; ++column) {
+    Points unit = Points::Zero(n, 3), product;
+    unit(unknowns[column] / 3, unknowns[column] % 3) = 1;
+    multiply(e.system(), unit, product);
+    const Points z = apply(multigrid, unit);
+    for (int k = 0; k < m; ++k) {
+      cycle(k, column) = z(unknowns[k] / 3, unknowns[k] % 3);
+      a(k, column) = product(unknowns[k] / 3, unknowns[k] % 3);
+    }
+    for (int i = 0; i < n; ++i)
+      if (!e.free[i]) CHECK(z.row(i).norm() == 0);
+  }
+  CHECK((cycle - cycle.transpose()).norm() < 1e-3 * cycle.norm());
+  const Eigen::MatrixXd factor = a.llt().matrixL();
+  const Eigen::VectorXd values =
+      (factor.transpose() * (0.5 * (cycle + cycle.transpose())) * factor).selfadjointView<Eigen::Lower>().eigenvalues();
+  CHECK(values.minCoeff() > (e.contacts.empty() ? 0.3 : 0.08));
+  CHECK(values.maxCoeff() < 1.2);
+}
+
+TEST_CASE("Contacts that come and go change the coarse matrices", "[multigrid]") {
+  Example with = make_example(14, 1e3, 60), without = make_example(14, 1e3, 0);
+  PcgMatrix<float> fine;
+  Multigrid kept(with.sheet.vertices, with.free), fresh(with.sheet.vertices, with.free);
+  Points r = Points::Random(with.pattern.rows, 3);
+  for (const Example* e : {&without, &with, &without, &with}) {
+    fine.fill(e->system());
+    REQUIRE(kept.fill(e->system(), e->blocks, fine));
+    const Points z = apply(kept, r);
+    Multigrid anew(e->sheet.vertices, e->free);
+    REQUIRE(anew.fill(e->system(), e->blocks, fine));
+    CHECK(same_bits(z, apply(anew, r)));
+  }
+}
