@@ -13,11 +13,13 @@ using Vec12 = Eigen::Matrix<double, 12, 1>;
 using Mat12 = Eigen::Matrix<double, 12, 12>;
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 
-// Curvature form: physical stiffness B [N m], independent of the mesh's diagonals. Mean curvature normal at interior
-// vertices by the cotangent Laplacian L of the rest metric, (L x)_i / A_i with A_i the vertex's Voronoi cell. It counts
-// on the area W_i the vertex stands for: its own cell and those of the boundary vertices it is the nearest to.
-// Flat rest shape: E = 1/2 sum_i B_i W_i |(L x)_i / A_i|^2, constant Hessian Q (x) I3 (after Bergou et al. 2006).
-// Curved rest shape: see CurvedVertex. A component without interior vertices has no bending.
+// Curvature form: the plate of physical stiffness B [N m] and Poisson's ratio nu, independent of the mesh's diagonals,
+//   E = B / 2 integral (tr K)^2 - 2 (1 - nu) det K = B integral (1 + nu) (tr K / 2)^2 + (1 - nu) (a^2 + b^2),
+// with K, its deviator a and b, measured at every vertex (physics/quadric_stencil.hpp). A sheet that bends one way
+// alone has B / 2 times its curvature squared, whatever nu is; the deviator is what resists twist. Vectors stand for
+// the entries of K, so that flat rest shapes have a constant Hessian Q (x) I3 (after Bergou et al. 2006). Scenes with
+// curved rest shapes: see CurvedVertex; of the plate's energy they have the part (tr K)^2 alone. A clamp is two rows of
+// pins: one row is a hinge. A cloth one element wide has no bending.
 struct CurvedVertex {      // E = 1/2 stiffness ((L x) . n - rest)^2 with n the area-weighted unit normal of the ring
   std::vector<int> nodes;  // the vertex first, then its ring in order
   std::vector<double> laplacian;  // weights of (L x) over nodes [1]
@@ -29,6 +31,9 @@ struct CurvatureBending {
   std::vector<CurvedVertex> curved;
 };
 CurvatureBending curvature_bending(const Scene&);  // cloths with BendingModel::curvature and bending > 0
+
+// Poisson's ratio of a plate of this material: the membrane's own in plane stress, 0 for woven cloth.
+double bending_poisson(const Material&);
 
 double curved_energy(const CurvedVertex&, const Points& x);
 // gradient: 3k, hessian: 3k x 3k (Gauss-Newton, PSD), k = nodes.size(). Returns the energy.

@@ -4,12 +4,14 @@
 #include <tuple>
 
 #include "physics/bending.hpp"
+#include "physics/quadric_stencil.hpp"
 
-// L is the cotangent Laplacian of the rest metric, so that (L x)_i is the mean curvature vector integrated over vertex
-// i's Voronoi cell A_i. A_i is signed (obtuse triangles reach out of themselves): then (L x)_i / A_i is exact for every
-// paraboloid of revolution on every ring, and a rolled sheet's energy is off only by the ring's anisotropy. The energy
-// density found so counts on the area W_i that the vertex stands for: its own cell and those of the boundary vertices
-// next to it, without which a sheet would be soft along its edges and at a clamp.
+// Flat rest shapes take the plate's whole energy by quadrics (physics/quadric_stencil.hpp). Curved ones take the part
+// of the mean curvature: L is the cotangent Laplacian of the rest metric, so that (L x)_i is the mean curvature vector
+// integrated over vertex i's Voronoi cell A_i. A_i is signed (obtuse triangles reach out of themselves): then (L x)_i /
+// A_i is exact for every paraboloid of revolution on every ring, and a rolled sheet's energy is off only by the ring's
+// anisotropy. The energy density found so counts on the area W_i that the vertex stands for: its own cell and those of
+// the boundary vertices next to it, without which a sheet would be soft along its edges and at a clamp.
 namespace selvedge {
 namespace {
 
@@ -178,30 +180,66 @@ Vec3 ring_normal(const CurvedVertex& vertex, const Points& x) {
   return sum;
 }
 
-}  // namespace
+// Adds stiffness |weights . x|^2 / 2.
+void add_square(const std::vector<int>& nodes, const std::vector<double>& weights, double stiffness,
+                std::vector<Eigen::Triplet<double>>& entries) {
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    for (std::size_t j = 0; j < nodes.size(); ++j)
+      entries.emplace_back(nodes[i], nodes[j], stiffness * (weights[i] * weights[j]));
+}
 
-CurvatureBending curvature_bending(const Scene& scene) {
+// Of the misfit, over the plate's. Too small leaves unstructured sheets soft, by 1.4 % at 10 with 60 elements along a
+// clamped strip; too large makes coarse ones stiff where curvature changes fast, by 5 % at 200 with 30.
+constexpr double misfit_stiffness = 60;
+
+void add_flat(const Scene& scene, std::vector<Eigen::Triplet<double>>& entries) {
+  for (const QuadricStencil& stencil : quadric_stencils(scene)) {
+    const Material& material = scene.cloths[stencil.cloth].material;
+    const double nu = bending_poisson(material);
+    const Eigen::MatrixXd local =
+        material.bending * stencil.area *
+        (0.5 * (1 + nu) * stencil.trace.transpose() * stencil.trace + 2 * (1 - nu) * stencil.a.transpose() * stencil.a +
+         2 * (1 - nu) * stencil.b.transpose() * stencil.b +
+         misfit_stiffness * stencil.misfit.transpose() * stencil.misfit);
+    for (Eigen::Index i = 0; i < local.rows(); ++i)  // rounding leaves the two triangles different
+      for (Eigen::Index j = 0; j < local.rows(); ++j)
+        entries.emplace_back(stencil.nodes[static_cast<std::size_t>(i)], stencil.nodes[static_cast<std::size_t>(j)],
+                             local(std::max(i, j), std::min(i, j)));
+  }
+}
+
+// In a scene with curved rest shapes; what of them is flat keeps the constant form.
+void add_curved(const Scene& scene, CurvatureBending& bending, std::vector<Eigen::Triplet<double>>& entries) {
   // A rest curvature below this angle per vertex is rounding in the input and counts as flat.
   constexpr double flat_angle = 1e-5;
-  CurvatureBending bending;
-  std::vector<Eigen::Triplet<double>> entries;
   for (Stencil& stencil : make_stencils(scene)) {
     const double weight = std::max(stencil.weight, stencil.cell);  // a boundary cell can be negative
     const double stiffness = stencil.bending * weight / (stencil.cell * stencil.cell);
-    if (!scene.rest_is_flat) {
-      CurvedVertex vertex{stencil.nodes, stencil.laplacian, stiffness, 0};
-      const Vec3 curvature = laplacian_of(vertex, scene.rest);
-      if (curvature.norm() > flat_angle * std::sqrt(stencil.cell)) {
-        vertex.rest = curvature.dot(ring_normal(vertex, scene.rest).normalized());
-        bending.curved.push_back(std::move(vertex));
-        continue;
-      }
+    CurvedVertex vertex{stencil.nodes, stencil.laplacian, stiffness, 0};
+    const Vec3 curvature = laplacian_of(vertex, scene.rest);
+    if (curvature.norm() > flat_angle * std::sqrt(stencil.cell)) {
+      vertex.rest = curvature.dot(ring_normal(vertex, scene.rest).normalized());
+      bending.curved.push_back(std::move(vertex));
+    } else {
+      add_square(stencil.nodes, stencil.laplacian, stiffness, entries);
     }
-    for (std::size_t i = 0; i < stencil.nodes.size(); ++i)
-      for (std::size_t j = 0; j < stencil.nodes.size(); ++j)
-        entries.emplace_back(stencil.nodes[i], stencil.nodes[j],
-                             stiffness * (stencil.laplacian[i] * stencil.laplacian[j]));
   }
+}
+
+}  // namespace
+
+double bending_poisson(const Material& material) {
+  const double sum = material.lame_lambda + 2 * material.lame_mu;
+  return material.membrane == MembraneModel::baraff_witkin || !(sum > 0) ? 0 : material.lame_lambda / sum;
+}
+
+CurvatureBending curvature_bending(const Scene& scene) {
+  CurvatureBending bending;
+  std::vector<Eigen::Triplet<double>> entries;
+  if (scene.rest_is_flat)
+    add_flat(scene, entries);
+  else
+    add_curved(scene, bending, entries);
   bending.flat.resize(scene.surface.vertex_count, scene.surface.vertex_count);
   bending.flat.setFromTriplets(entries.begin(), entries.end());
   return bending;

@@ -156,6 +156,15 @@ int stress_command(const StressRequest& request, bool json) {
   return passed && !InterruptWatch::interrupted() ? 0 : 1;
 }
 
+int validate_command(const ValidateRequest& request, bool json) {
+  ValidateRequest logged = request;
+  logged.log = &std::cerr;
+  const std::vector<ValidationRow> rows = validate(logged);
+  people(json) << validate_table(rows);
+  if (json) std::cout << validate_json(rows);
+  return passed(rows) ? 0 : 1;
+}
+
 int info_command(bool json) {
   std::cout << (json ? info_json() : info_text());
   return 0;

@@ -10,6 +10,7 @@
 #include "pipeline/export.hpp"
 #include "pipeline/stress.hpp"
 #include "pipeline/untangle_mesh.hpp"
+#include "pipeline/validate.hpp"
 
 namespace selvedge {
 
@@ -48,6 +49,7 @@ int export_command(const ExportRequest&, bool json);
 int view_command(const ViewArguments&, bool json);
 int bench_command(const BenchRequest&, bool json);
 int stress_command(const StressRequest&, bool json);
+int validate_command(const ValidateRequest&, bool json);
 int info_command(bool json);
 
 }  // namespace selvedge

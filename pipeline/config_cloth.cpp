@@ -13,6 +13,12 @@ std::vector<Key> material_values() {
       word("membrane", {"stvk", "stable_neo_hookean", "baraff_witkin"}, "stvk", "in-plane model"),
       number("youngs_modulus", Unit::stiffness, not_negative, "",
              "Young's modulus times thickness; with `poisson` in place of the Lame coefficients"),
+      number(
+          "modulus", Unit::pressure, not_negative, "",
+          "Young's modulus of a plate; with `thickness` and `poisson` in place of `youngs_modulus`, and of `bending` "
+          "unless that is given"),
+      number("thickness", Unit::length, positive, "",
+             "h of that plate: membrane E h, bending E h^3 / (12 (1 - nu^2)); it has no part in contact"),
       number("poisson", Unit::none, {.low = 0, .high = 1, .high_in = false}, "", "Poisson's ratio, plane stress"),
       number("lame_mu", Unit::stiffness, not_negative, show(m.lame_mu), "membrane shear modulus, thickness included"),
       number("lame_lambda", Unit::stiffness, not_negative, show(m.lame_lambda),
@@ -22,7 +28,10 @@ std::vector<Key> material_values() {
       number("shear", Unit::stiffness, not_negative, show(m.shear), "baraff_witkin: shear stiffness"),
       word("bending_model", {"curvature", "hinge"}, "curvature",
            "`curvature`: physical and independent of the mesh; `hinge`: dihedral angles, as in the papers"),
-      number("bending", Unit::bending, not_negative, show(m.bending), "bending stiffness per width"),
+      number("bending", Unit::bending, not_negative, show(m.bending), "bending stiffness per width, of a plate"),
+      number("hinge_bending", Unit::bending, not_negative, "",
+             "the papers' coefficient k of k l^2 / (4 (A0 + A1)) angle^2 / 2; makes bending_model hinge, in place of "
+             "`bending`"),
       number("stiffness_damping", Unit::time, not_negative, show(m.stiffness_damping),
              "Rayleigh: damping force is this times the stiffness times the velocity"),
       number("mass_damping", Unit::rate, not_negative, show(m.mass_damping),

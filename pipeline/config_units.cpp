@@ -41,6 +41,10 @@ constexpr std::array symbols = {
     Symbol{"Nm", Unit::bending, 1},
     Symbol{"mNm", Unit::bending, 1e-3},
     Symbol{"uNm", Unit::bending, 1e-6},
+    Symbol{"Pa", Unit::pressure, 1},
+    Symbol{"kPa", Unit::pressure, 1e3},
+    Symbol{"MPa", Unit::pressure, 1e6},
+    Symbol{"GPa", Unit::pressure, 1e9},
 };
 
 // "N m", "kg/m^2" and "kg/m²" are written as in the table.

@@ -18,6 +18,7 @@ enum class Unit {
   density,
   stiffness,
   bending,
+  pressure,
 };
 
 // SI symbol, empty for Unit::none.

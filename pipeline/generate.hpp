@@ -63,8 +63,11 @@ Triangles to_triangles(const std::vector<std::array<int, 3>>&);
 
 using Points2 = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
-// Moves every free vertex by up to `amount` [m] without turning a triangle over, smooths a little, and flips edges
-// until the mesh is Delaunay (Lawson 1977). With period > 0 the first coordinate wraps round.
+// Flips edges until the mesh is Delaunay (Lawson 1977). With period > 0 the first coordinate wraps round.
+void make_delaunay(const Points2& uv, Triangles&, double period = 0);
+
+// Moves every free vertex by up to `amount` [m] without turning a triangle over, smooths a little, and makes
+// the mesh Delaunay.
 void make_unstructured(Points2& uv, Triangles&, const std::vector<bool>& fixed, double amount, std::uint64_t seed,
                        double period = 0);
 

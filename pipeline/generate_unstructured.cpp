@@ -99,16 +99,17 @@ int flip_sweep(const Points2& uv, Triangles& triangles, double period) {
 
 }  // namespace
 
+void make_delaunay(const Points2& uv, Triangles& triangles, double period) {
+  while (flip_sweep(uv, triangles, period) > 0) {
+  }
+}
+
 void make_unstructured(Points2& uv, Triangles& triangles, const std::vector<bool>& fixed, double amount,
                        std::uint64_t seed, double period) {
-  const auto make_delaunay = [&] {
-    while (flip_sweep(uv, triangles, period) > 0) {
-    }
-  };
   shake(uv, triangles, fixed, amount, seed, period);
-  make_delaunay();
+  make_delaunay(uv, triangles, period);
   smooth(uv, triangles, fixed, 0.4, period);
-  make_delaunay();
+  make_delaunay(uv, triangles, period);
 }
 
 }  // namespace selvedge

@@ -99,6 +99,14 @@ void stress_options(CLI::App& command, StressRequest& request) {
   command.add_option("--out", request.out, "folder for the results");
 }
 
+void validate_options(CLI::App& command, ValidateRequest& request) {
+  command.add_option("cases", request.cases, "names of cases (all)");
+  command.add_option("--set", request.overrides, "parameter=value[,value...] instead of the cases' own")
+      ->allow_extra_args(false);
+  command.add_flag("--short", request.short_form, "the cases' short lists of parameters");
+  command.add_option("--out", request.out, "folder for the results");
+}
+
 void add_commands(CLI::App& app, Chosen& chosen) {
   struct Nothing {};
   add_command<SimulateArguments>(app, chosen, "simulate", "a scene in, an audited trajectory out", simulate_options,
@@ -117,6 +125,8 @@ void add_commands(CLI::App& app, Chosen& chosen) {
   add_command<BenchRequest>(app, chosen, "bench", "the benchmark family", bench_options, bench_command);
   add_command<StressRequest>(app, chosen, "stress", "scenes that must end clean and come out as they say",
                              stress_options, stress_command);
+  add_command<ValidateRequest>(app, chosen, "validate", "physics with known answers", validate_options,
+                               validate_command);
   add_command<Nothing>(
       app, chosen, "info", "versions, packages, threads", [](CLI::App&, Nothing&) {},
       [](const Nothing&, bool json) { return info_command(json); });

@@ -44,21 +44,48 @@ std::string word_of(const Config& entry, const Values& values, Value value) {
   return entry.key->choices[static_cast<std::size_t>(std::find(values.begin(), values.end(), value) - values.begin())];
 }
 
+void apply_hinge(const Config& section, Material& material) {
+  const Config& hinge = section["hinge_bending"];
+  if (!hinge.given) return;
+  if (section["bending"].given) hinge.fail("is given beside bending", "give one of them");
+  if (section["bending_model"].given && section["bending_model"].text() != "hinge")
+    hinge.fail("is given beside bending_model: " + section["bending_model"].text(), "leave bending_model out");
+  material.bending_model = BendingModel::hinge;
+  material.bending = hinge.number();
+}
+
+// Young's modulus, with or without a thickness, and Poisson's ratio, in place of the Lame coefficients.
+void apply_elastic(const Config& section, Material& material) {
+  const Config &young = section["youngs_modulus"], &poisson = section["poisson"], &modulus = section["modulus"],
+               &thickness = section["thickness"];
+  if (modulus.given != thickness.given)
+    (modulus.given ? modulus : thickness).fail("stands alone", "give modulus, thickness and poisson");
+  if (modulus.given && young.given) modulus.fail("is given beside youngs_modulus", "give one of them");
+  const bool given = young.given || modulus.given;
+  if (given != poisson.given)
+    (young.given     ? young
+     : modulus.given ? modulus
+                     : poisson)
+        .fail("stands alone", "give both youngs_modulus and poisson, or modulus, thickness and poisson");
+  if (!given) return;
+  for (const char* lame : {"lame_mu", "lame_lambda"})
+    if (section[lame].given)
+      section[lame].fail("is given beside youngs_modulus or modulus, and poisson", "give one or the other");
+  const double nu = poisson.number(), h = modulus.given ? thickness.number() : 0;
+  const double e = modulus.given ? modulus.number() * h : young.number();
+  material.lame_mu = e / (2 * (1 + nu));
+  material.lame_lambda = e * nu / (1 - nu * nu);
+  if (modulus.given && !section["bending"].given && !section["hinge_bending"].given)
+    material.bending = e * h * h / (12 * (1 - nu * nu));
+}
+
 void apply(const Config& section, Material& material) {
   for (const Field& field : fields)
     if (section[field.name].given) material.*field.value = section[field.name].number();
   if (section["membrane"].given) material.membrane = chosen(section["membrane"], membrane_models);
   if (section["bending_model"].given) material.bending_model = chosen(section["bending_model"], bending_models);
-  const Config &young = section["youngs_modulus"], &poisson = section["poisson"];
-  if (young.given != poisson.given)
-    (young.given ? young : poisson).fail("stands alone", "give both youngs_modulus and poisson");
-  if (!young.given) return;
-  for (const char* lame : {"lame_mu", "lame_lambda"})
-    if (section[lame].given)
-      section[lame].fail("is given beside youngs_modulus and poisson", "give one pair or the other");
-  const double e = young.number(), nu = poisson.number();
-  material.lame_mu = e / (2 * (1 + nu));
-  material.lame_lambda = e * nu / (1 - nu * nu);
+  apply_hinge(section, material);
+  apply_elastic(section, material);
 }
 
 std::vector<fs::path> material_folders(const fs::path& folder) {
@@ -93,7 +120,7 @@ void write_back(const Material& material, Config& section) {
   for (const Field& field : fields) section[field.name].numbers = {material.*field.value};
   section["membrane"].words = {word_of(section["membrane"], membrane_models, material.membrane)};
   section["bending_model"].words = {word_of(section["bending_model"], bending_models, material.bending_model)};
-  for (const char* replaced : {"youngs_modulus", "poisson"}) {
+  for (const char* replaced : {"youngs_modulus", "modulus", "thickness", "poisson", "hinge_bending"}) {
     section[replaced].numbers.clear();
     section[replaced].given = false;
   }

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace selvedge {
+
+struct ValidateRequest {
+  std::vector<std::string> cases;      // by name; none: all
+  std::vector<std::string> overrides;  // parameter=value[,value...] in place of the cases' own
+  std::filesystem::path out = "out/validate";
+  bool short_form = false;      // the cases' short lists of parameters
+  std::ostream* log = nullptr;  // a line as each run ends
+};
+
+// How a figure is judged.
+enum class Judged {
+  relative,  // |measured / expected - 1| at most the bound
+  absolute,  // |measured - expected| at most the bound
+  at_most,   // measured at most the bound
+  at_least,  // measured at least the bound
+  rises,     // measured above that of the run before by the bound
+};
+
+struct ValidationRow {
+  std::string name;        // of the case
+  std::string parameters;  // of the run, name=value
+  std::string quantity;    // what was measured
+  double measured = 0;
+  std::optional<double> expected;
+  Judged judged = Judged::relative;
+  double bound = 0;
+  std::optional<double> error;  // relative or absolute
+  std::optional<double> order;  // of convergence, from the next coarser run of otherwise the same parameters
+  bool counts = true;           // false: shown beside the others, need not pass
+  bool passed = false;
+  double seconds = 0;  // of the run
+  std::map<std::string, std::string> values;
+};
+
+// Every run of every case: all combinations of its parameters' values. Throws Error for an unknown case, parameter or
+// value. Leaves validate.txt, validate.csv, validate.json in the folder, and plots where gnuplot is there.
+std::vector<ValidationRow> validate(const ValidateRequest&);
+
+bool passed(const std::vector<ValidationRow>&);
+
+std::string validate_table(const std::vector<ValidationRow>&);
+std::string validate_markdown(const std::vector<ValidationRow>&);
+std::string validate_csv(const std::vector<ValidationRow>&);
+std::string validate_json(const std::vector<ValidationRow>&);
+
+// Writes cantilever.svg and drape.svg with the gnuplot scripts that made them, those for which there are rows, by
+// gnuplot. Returns what was written, or a line that says why nothing was.
+std::string plot_validation(const std::vector<ValidationRow>&, const std::filesystem::path& folder);
+
+}  // namespace selvedge
