@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "collision/audit_inside.hpp"
+#include "collision/audit_memory.hpp"
 #include "collision/audit_pair.hpp"
 #include "collision/bisection.hpp"
 #include "collision/distance.hpp"
@@ -23,22 +24,24 @@ struct Soup {
   std::vector<ExactBox> boxes;
 };
 
-void add_triangles(const Surface& surface, const Points& x, int first_number, double margin, Soup& soup) {
-  for (int t = 0; t < surface.triangles.rows(); ++t) {
-    const std::array<int, 3> v{surface.triangles(t, 0), surface.triangles(t, 1), surface.triangles(t, 2)};
-    const std::array<Vec3, 3> p{row(x, v[0]), row(x, v[1]), row(x, v[2])};
-    if (!(p[0].allFinite() && p[1].allFinite() && p[2].allFinite())) continue;
-    ExactBox box;
-    for (int k = 0; k < 3; ++k) {
-      const auto [lo, hi] = std::minmax({p[0][k], p[1][k], p[2][k]});
-      box.lo[k] = lo - margin;
-      box.hi[k] = hi + margin;
-    }
-    soup.corners.push_back(p);
-    soup.vertices.push_back(v);
-    soup.number.push_back(first_number + t);
-    soup.boxes.push_back(box);
+void add_triangle(const Surface& surface, const Points& x, int t, int first_number, double margin, Soup& soup) {
+  const std::array<int, 3> v{surface.triangles(t, 0), surface.triangles(t, 1), surface.triangles(t, 2)};
+  const std::array<Vec3, 3> p{row(x, v[0]), row(x, v[1]), row(x, v[2])};
+  if (!(p[0].allFinite() && p[1].allFinite() && p[2].allFinite())) return;
+  ExactBox box;
+  for (int k = 0; k < 3; ++k) {
+    const auto [lo, hi] = std::minmax({p[0][k], p[1][k], p[2][k]});
+    box.lo[k] = lo - margin;
+    box.hi[k] = hi + margin;
   }
+  soup.corners.push_back(p);
+  soup.vertices.push_back(v);
+  soup.number.push_back(first_number + t);
+  soup.boxes.push_back(box);
+}
+
+void add_triangles(const Surface& surface, const Points& x, int first_number, double margin, Soup& soup) {
+  for (int t = 0; t < surface.triangles.rows(); ++t) add_triangle(surface, x, t, first_number, margin, soup);
 }
 
 Soup soup_of(const Surface& surface, const Points& x, double margin) {
@@ -78,17 +81,17 @@ bool cross_at_vertex(const Soup& cloth, int a, int b) {
   return false;
 }
 
+// Of two triangles of the cloth.
+void judge_pair(const Soup& cloth, int a, int b, Audit& found) {
+  const int shared = shared_vertices(cloth.vertices[a], cloth.vertices[b]);
+  const std::pair numbers = std::minmax({cloth.number[a], cloth.number[b]});
+  if (shared == 0 && intersect(cloth.corners[a], cloth.corners[b])) found.self_pairs.push_back(numbers);
+  if (shared == 1 && cross_at_vertex(cloth, a, b)) found.vertex_pairs.push_back(numbers);
+}
+
 void audit_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, bool with_self, Audit& found) {
-  const auto numbers = [&cloth](int a, int b) {
-    return std::pair(std::min(cloth.number[a], cloth.number[b]), std::max(cloth.number[a], cloth.number[b]));
-  };
   visit_pairs(
-      cell, cloth.boxes, bodies.boxes, with_self,
-      [&](int a, int b) {
-        const int shared = shared_vertices(cloth.vertices[a], cloth.vertices[b]);
-        if (shared == 0 && intersect(cloth.corners[a], cloth.corners[b])) found.self_pairs.push_back(numbers(a, b));
-        if (shared == 1 && cross_at_vertex(cloth, a, b)) found.vertex_pairs.push_back(numbers(a, b));
-      },
+      cell, cloth.boxes, bodies.boxes, with_self, [&](int a, int b) { judge_pair(cloth, a, b, found); },
       [&](int a, int c) {
         if (intersect(cloth.corners[a], bodies.corners[c]))
           found.obstacle_pairs.emplace_back(cloth.number[a], bodies.number[c]);
@@ -162,10 +165,51 @@ double gap_in_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, doub
   return least;
 }
 
+void sort_pairs(Audit& result) {
+  for (Pairs* pairs : {&result.self_pairs, &result.vertex_pairs, &result.obstacle_pairs})
+    std::sort(pairs->begin(), pairs->end());
+}
+
+// Looks at what the memory leaves open. Where no triangle has come to an obstacle since the reference, none of its
+// vertices has come into it or out of it.
+Audit answer(const AuditQuestions& questions, const Surface& cloth, const Points& x,
+             std::span<const AuditBody> obstacles, AuditMemory& memory) {
+  Audit result;
+  for (const AuditMemory::Pair& pair : questions.self_pairs) {
+    Soup two;
+    for (const int t : {pair.a, pair.b}) add_triangle(cloth, x, t, 0, 0, two);
+    judge_pair(two, 0, 1, result);
+  }
+  for (const AuditMemory::Pair& pair : questions.body_pairs) {
+    const AuditBody* body = obstacles.data();
+    int t = pair.b;
+    for (; t >= body->surface->triangles.rows(); ++body) t -= static_cast<int>(body->surface->triangles.rows());
+    Soup mine, other;
+    add_triangle(cloth, x, pair.a, 0, 0, mine);
+    add_triangle(*body->surface, *body->points, t, pair.b - t, 0, other);
+    if (intersect(mine.corners[0], other.corners[0])) result.obstacle_pairs.emplace_back(pair.a, pair.b);
+  }
+  sort_pairs(result);
+  if (questions.body_pairs.empty() && memory.inside >= 0) {
+    result.inside_vertices = memory.inside;
+  } else {
+    result.inside_vertices = count_inside(cloth, x, obstacles, result.obstacle_pairs);
+    if (questions.body_pairs.empty()) memory.inside = result.inside_vertices;
+  }
+  return result;
+}
+
 }  // namespace
 
-Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, bool self) {
+Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, bool self,
+            AuditMemory* memory) {
   restore_standard_arithmetic();
+  if (memory) {
+    std::vector<MovingBody> bodies;
+    for (const AuditBody& body : obstacles) bodies.push_back({body.surface, body.points, body.points});
+    const AuditQuestions questions = open_questions(*memory, {&cloth, &x, &x}, bodies, self);
+    if (!questions.all) return answer(questions, cloth, x, obstacles, *memory);
+  }
   const Soup mine = soup_of(cloth, x, 0), others = soup_of(obstacles, 0);
   const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, self);
   const int count = static_cast<int>(cells.size());
@@ -179,8 +223,7 @@ Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> ob
     append(result.vertex_pairs, part.vertex_pairs);
     append(result.obstacle_pairs, part.obstacle_pairs);
   }
-  for (Pairs* pairs : {&result.self_pairs, &result.vertex_pairs, &result.obstacle_pairs})
-    std::sort(pairs->begin(), pairs->end());
+  sort_pairs(result);
   result.inside_vertices = count_inside(cloth, x, obstacles, result.obstacle_pairs);
   result.nonfinite = count_nonfinite(x);
   for (const AuditBody& body : obstacles) result.nonfinite += count_nonfinite(*body.points);

@@ -24,9 +24,12 @@ struct AuditBody {
   const Points* points = nullptr;
 };
 
+struct AuditMemory;
+
 // Pairs come sorted. Isolated vertices are not tested for inside; neither is an obstacle that is open or not finite.
-// self = false leaves the cloth-cloth test out.
-Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, bool self = true);
+// self = false leaves the cloth-cloth test out. memory: saves time, and changes nothing else.
+Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, bool self = true,
+            AuditMemory* memory = nullptr);
 
 // Smallest distance between two triangles that share no vertex, within the cloth and from cloth to obstacles [m];
 // zero where any intersect; infinity where there is no such pair within `horizon`.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "collision/audit_memory.hpp"
 #include "collision/bisection.hpp"
 #include "collision/floating_point.hpp"
 #include "collision/moving_pair.hpp"
@@ -137,19 +138,50 @@ void audit_cell(const Cell& cell, const Side& cloth, const Side& bodies, bool se
   visit_pairs(
       cell, cloth.boxes, bodies.boxes, self,
       [&](int a, int b) {
-        PairAudit{cloth.faces[a], cloth.faces[b], max_halvings, passed}();
+        PairAudit{cloth.faces[std::min(a, b)], cloth.faces[std::max(a, b)], max_halvings, passed}();
       },
       [&](int a, int c) {
         PairAudit{cloth.faces[a], bodies.faces[c], max_halvings, passed}();
       });
 }
 
+// Of the pairs that the memory leaves open; all are finite.
+std::vector<PassedPair> passed_of(const AuditQuestions& questions, const MovingBody& cloth,
+                                  std::span<const MovingBody> bodies, int max_halvings) {
+  std::vector<PassedPair> passed;
+  const auto face = [](const MovingBody& body, int t, int first_node) {
+    return Side::Face{body.surface, body.x0, body.x1, t, first_node};
+  };
+  for (const AuditMemory::Pair& pair : questions.self_pairs)
+    PairAudit{face(cloth, std::min(pair.a, pair.b), 0), face(cloth, std::max(pair.a, pair.b), 0), max_halvings,
+              passed}();
+  for (const AuditMemory::Pair& pair : questions.body_pairs) {
+    const MovingBody* body = bodies.data();
+    int t = pair.b, first_node = cloth.surface->vertex_count;
+    for (; t >= body->surface->triangles.rows(); ++body) {
+      t -= static_cast<int>(body->surface->triangles.rows());
+      first_node += body->surface->vertex_count;
+    }
+    PairAudit{face(cloth, pair.a, 0), face(*body, t, first_node), max_halvings, passed}();
+  }
+  std::sort(passed.begin(), passed.end());
+  return passed;
+}
+
 }  // namespace
 
 MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x1, std::span<const MovingBody> bodies,
-                         bool self, int max_halvings) {
+                         bool self, AuditMemory* memory, int max_halvings) {
   restore_standard_arithmetic();
   MotionAudit result;
+  if (memory) {
+    const MovingBody moving{&cloth, &x0, &x1};
+    const AuditQuestions questions = open_questions(*memory, moving, bodies, self);
+    if (!questions.all) {
+      result.passed = passed_of(questions, moving, bodies, max_halvings);
+      return result;
+    }
+  }
   Side mine, others;
   result.nonfinite = add({&cloth, &x0, &x1}, 0, mine);
   int first_node = cloth.vertex_count;

@@ -33,11 +33,14 @@ struct MotionAudit {
 // itself (where `self`) and with the bodies, that are not proven to stay apart while all vertices move straight. Shares
 // no code with the solver's tree, distances or continuous detection.
 //
+struct AuditMemory;
+
 // A pair is apart over an interval of time if one fixed direction separates it at both ends: along a fixed direction
 // every gap of two nodes is linear in time. Where no direction among those of the closest features does, the interval
 // is halved; what is not apart after `max_halvings` counts as passed. So a pair that meets is always found, and one
 // that is found came within about its motion times 2^-max_halvings, or the rounding of its size.
+// memory: saves time, and changes nothing else.
 MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x1, std::span<const MovingBody> bodies,
-                         bool self = true, int max_halvings = 30);
+                         bool self = true, AuditMemory* memory = nullptr, int max_halvings = 30);
 
 }  // namespace selvedge

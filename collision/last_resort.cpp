@@ -8,11 +8,6 @@ namespace {
 constexpr double first_obstacle_mass = 1e3;  // of a yielding obstacle's node, in mean cloth vertices; then halved
 constexpr int halvings = 4;                  // before a motion is held still
 
-double mean_free(const Eigen::VectorXd& inverse_mass) {
-  const auto free = (inverse_mass.array() > 0).count();
-  return free > 0 ? inverse_mass.sum() / static_cast<double>(free) : 0.0;
-}
-
 void join_nodes(ZoneSets& sets, const Impact& impact, const auto& belongs) {
   int first = -1;
   for (const int node : impact.pair.nodes)
@@ -22,7 +17,7 @@ void join_nodes(ZoneSets& sets, const Impact& impact, const auto& belongs) {
 }  // namespace
 
 std::vector<Impact> yield_rounds(Resolution& r, std::vector<Impact> impacts) {
-  double inverse = mean_free(r.inverse_mass) / first_obstacle_mass;
+  double inverse = mean_inverse_mass(r.inverse_mass) / first_obstacle_mass;
   for (int round = 0; !impacts.empty() && round < r.options.yield_rounds; ++round, inverse *= 2) {
     std::vector<char> stuck(r.world.node_count, 0);
     for (const Impact& impact : impacts)
@@ -40,7 +35,7 @@ std::vector<Impact> yield_rounds(Resolution& r, std::vector<Impact> impacts) {
     for (const Impact& impact : impacts) collect(impact);
     for (const Impact& impact : r.impacts)
       if (is_stuck(impact)) collect(impact);
-    for (const int node : yielding) r.inverse_mass[node] = inverse;
+    for (const int node : yielding) r.inverse_mass[node] = std::max(r.inverse_mass[node], inverse);
     for (const Impact& impact : r.impacts) join_nodes(r.zones, impact, [&](int node) { return r.is_free(node); });
     zone_round(r, impacts);
     impacts = new_impacts(r);

@@ -21,6 +21,7 @@ struct Resolution {
   std::vector<char> moved;     // nodes whose path changed since their pairs were tested
   std::deque<Impact> impacts;  // all that zones hold
   ZoneSets zones;
+  double violation = 0;  // left by the last round of zones, at most [m]
 
   bool is_free(int node) const { return inverse_mass[node] > 0; }
 };

@@ -90,9 +90,11 @@ void zone_round(Resolution& r, const std::vector<Impact>& fresh) {
   for (const Impact& impact : fresh) touched[zone_of(r, impact)];
   for (Impact& impact : r.impacts)
     if (const auto zone = touched.find(zone_of(r, impact)); zone != touched.end()) zone->second.push_back(&impact);
+  r.violation = 0;
   for (auto& [root, impacts] : touched) {
     if (!r.options.rigid_zones || !rigidify(r, impacts))
-      project_zone(impacts, r.inverse_mass, r.x0, r.x1, r.options.zone_sweeps, 0.1 * r.options.separation);
+      r.violation = std::max(r.violation, project_zone(impacts, r.inverse_mass, r.x0, r.x1, r.options.zone_sweeps,
+                                                       0.1 * r.options.separation));
     for (const Impact* impact : impacts) mark_free(r, *impact);
   }
   r.report.zones += static_cast<int>(touched.size());
@@ -118,11 +120,16 @@ ResolveReport resolve(PairSearch& search, const ContactWorld& world, const Eigen
                {},           std::vector<char>(world.node_count, 1),
                {},           ZoneSets(world.node_count)};
   std::vector<Impact> impacts = new_impacts(r);
-  for (int round = 0; !impacts.empty() && round < options.impulse_rounds + options.zone_rounds; ++round) {
+  bool contradictory = false;  // zones ask for what cannot be, and more rounds do not change that
+  for (int round = 0; !impacts.empty() && !contradictory && round < options.impulse_rounds + options.zone_rounds;
+       ++round) {
+    const double before = r.violation;
     if (round < options.impulse_rounds)
       impulse_round(r, std::move(impacts));
     else
       zone_round(r, impacts);
+    contradictory =
+        !options.last_resort && r.violation > options.separation && r.violation > 0.9 * before && before > 0;
     impacts = new_impacts(r);
   }
   if (!impacts.empty() && options.last_resort) {

@@ -16,13 +16,6 @@ Vec3 weighted(const Eigen::Vector4d& w, const std::array<Vec3, 4>& p) {
   return w[0] * p[0] + w[1] * p[1] + w[2] * p[2] + w[3] * p[3];
 }
 
-// Inverse of the mass that the pair feels along any direction.
-double compliance(const Impact& impact, const Eigen::VectorXd& inverse_mass) {
-  double sum = 0;
-  for (int i = 0; i < 4; ++i) sum += impact.weights[i] * impact.weights[i] * inverse_mass[impact.pair.nodes[i]];
-  return sum;
-}
-
 void push(const Impact& impact, const Eigen::VectorXd& inverse_mass, const Vec3& impulse, Points& x1) {
   for (int i = 0; i < 4; ++i) {
     const int node = impact.pair.nodes[i];
@@ -50,6 +43,17 @@ void rub(Impact& impact, double give, const Eigen::VectorXd& inverse_mass, const
 
 double impact_gap(const Impact& impact, const Points& x) {
   return impact.normal.dot(weighted(impact.weights, corners(impact.pair, x)));
+}
+
+double compliance(const Impact& impact, const Eigen::VectorXd& inverse_mass) {
+  double sum = 0;
+  for (int i = 0; i < 4; ++i) sum += impact.weights[i] * impact.weights[i] * inverse_mass[impact.pair.nodes[i]];
+  return sum;
+}
+
+double mean_inverse_mass(const Eigen::VectorXd& inverse_mass) {
+  const auto free = (inverse_mass.array() > 0).count();
+  return free > 0 ? inverse_mass.sum() / static_cast<double>(free) : 0.0;
 }
 
 std::optional<Impact> find_impact(const NodePair& pair, const Points& x0, const Points& x1, double separation) {

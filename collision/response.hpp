@@ -25,6 +25,11 @@ std::optional<Impact> find_impact(const NodePair&, const Points& x0, const Point
 
 double impact_gap(const Impact&, const Points& x);
 
+// Inverse of the mass that the pair feels along any direction [1/kg].
+double compliance(const Impact&, const Eigen::VectorXd& inverse_mass);
+
+double mean_inverse_mass(const Eigen::VectorXd&);  // of the nodes that are free; 0 if none is [1/kg]
+
 // Inelastic impulse of Bridson, Fedkiw and Anderson 2002 (section 7.3) in positions: moves the ends x1 of the four
 // nodes, by their inverse masses [1/kg] (0: prescribed), so that the gap reaches its target, and takes from the pair's
 // slip over the step what Coulomb friction allows (all of it where it sticks).

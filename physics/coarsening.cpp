@@ -10,10 +10,10 @@
 namespace selvedge {
 namespace {
 
-constexpr int most_candidates = 12;       // kept vertices among which a vertex is interpolated
-constexpr double straight = 0.766;        // cosine of the largest turn of a border without a corner
-constexpr double least_weight = 1e-3;     // below it a weight is zero
-constexpr double aside = 1e-9;            // of a triangle's sides squared: a smaller area is none
+constexpr int most_candidates = 12;    // kept vertices among which a vertex is interpolated
+constexpr double straight = 0.766;     // cosine of the largest turn of a border without a corner
+constexpr double least_weight = 1e-3;  // below it a weight is zero
+constexpr double aside = 1e-9;         // of a triangle's sides squared: a smaller area is none
 
 // Not free ones count as kept, for what is interpolated from them is known to be zero.
 std::vector<char> choose(const Vertices& fine, std::span<const char> free) {

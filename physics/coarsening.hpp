@@ -32,9 +32,9 @@ struct Prolongation {
   int coarse_count() const { return static_cast<int>(chosen.size()); }
 };
 
-// Keeps about one vertex in four: a maximal set of which no two are neighbours, corners first, then borders. Each of the
-// others lies between three kept vertices (on a border: two) of its surroundings in the tangent plane at rest, which
-// keeps linear functions on flat rest shapes. Deterministic.
+// Keeps about one vertex in four: a maximal set of which no two are neighbours, corners first, then borders. Each of
+// the others lies between three kept vertices (on a border: two) of its surroundings in the tangent plane at rest,
+// which keeps linear functions on flat rest shapes. Deterministic.
 Prolongation coarsen(const Vertices&, std::span<const char> free);
 
 // The kept vertices; neighbours are those that two neighbouring fine vertices, or one, interpolate from.

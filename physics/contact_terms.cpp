@@ -123,6 +123,35 @@ double lag_normal_forces(std::vector<ContactTerm>& terms, const Points& x) {
   return sum > 0 ? std::abs(sum - before) / sum : 0;
 }
 
+double mean_touching(std::span<const ContactTerm> terms, const Points& motion) {
+  double sum = 0;
+  int count = 0;
+  for (const ContactTerm& term : terms)
+    for (const int node : term.nodes)
+      if (node >= 0) {
+        sum += motion.row(node).squaredNorm();
+        ++count;
+      }
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+double mistaken_friction(std::span<const ContactTerm> solved, std::span<const ContactTerm> lagged, const Points& x0,
+                         const Points& x, double slip_width) {
+  std::vector<double> over(x.rows(), 0.0);
+  double wrong = 0, allowed = 0;
+  for (std::size_t k = 0; k < solved.size(); ++k) {
+    const double slip = contact_slip(solved[k], x0, x).norm();
+    const double used = friction_force(solved[k], Vec3(slip, 0, 0), slip_width).factor * slip;
+    const double bound = lagged[k].friction * lagged[k].normal_force;
+    allowed += bound;
+    if (slip >= slip_width) wrong += std::abs(used - bound);
+    for (int i = 0; i < 4 && slip < slip_width; ++i)
+      if (solved[k].nodes[i] >= 0) over[solved[k].nodes[i]] += std::abs(solved[k].weights[i]) * (used - bound);
+  }
+  for (const double excess : over) wrong += std::max(0.0, excess);
+  return wrong > 0 ? wrong / allowed : 0;
+}
+
 void follow(const Scene& scene, const ContactWorld& world, const Eigen::VectorXd& inverse_mass, const Points& nodes0,
             const Points& nodes1, double h, Contacts& contacts) {
   constexpr double same_side = 0.7;  // cosine
@@ -147,12 +176,15 @@ void follow(const Scene& scene, const ContactWorld& world, const Eigen::VectorXd
 }
 
 void bear(std::vector<ContactTerm>& terms, const Eigen::VectorXd& inverse_mass, const Points& forces) {
-  std::vector<double> borne(forces.rows(), 0.0);  // by how many terms, of each vertex
+  std::vector<double> borne(forces.rows(), 0.0), held(borne);  // by how many terms, of each vertex; by what weight
   for (const ContactTerm& term : terms)
     for (int i = 0; i < 4; ++i)
-      if (term.nodes[i] >= 0) borne[term.nodes[i]] += term.weights[i] * term.weights[i];
+      if (term.nodes[i] >= 0) {
+        borne[term.nodes[i]] += term.weights[i] * term.weights[i];
+        held[term.nodes[i]] += std::abs(term.weights[i]);
+      }
   for (ContactTerm& term : terms) {
-    double approach = 0, alone = 0, shared = 0;  // acceleration; sums of squared weights
+    double approach = 0, alone = 0, shared = 0, together = 0;  // acceleration; sums of squared weights
     for (int i = 0; i < 4; ++i) {
       const int node = term.nodes[i];
       if (node < 0) continue;
@@ -160,11 +192,12 @@ void bear(std::vector<ContactTerm>& terms, const Eigen::VectorXd& inverse_mass, 
       approach -= term.weights[i] * inverse_mass[node] * term.normal.dot(row(forces, node));
       alone += square;
       shared += square * borne[node];
+      together += std::abs(term.weights[i]) * held[node];
     }
     const double load = approach / compliance(term, inverse_mass);
     term.stiffness = std::max(term.stiffness, load * std::sqrt(alone / shared) / term.sink);
     term.stiffest = most_stiffer * term.stiffness;
-    term.normal_force = std::max(0.0, load * alone / shared);
+    term.normal_force = std::max(0.0, load * alone / together);
   }
 }
 

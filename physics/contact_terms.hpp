@@ -39,6 +39,15 @@ std::vector<ContactTerm> push_terms(std::span<const Separation>, const Eigen::Ve
 // each times its friction.
 double lag_normal_forces(std::vector<ContactTerm>&, const Points& x);
 
+// Root mean square of a motion over what the terms hold, vertex by vertex as often as held; 0 without terms.
+double mean_touching(std::span<const ContactTerm>, const Points& motion);
+
+// How wrong friction at x is, in a solve with the terms `solved`, by the normal forces found there: the sum of what is
+// too much, and of what is missing where the pair slides, over the sum of what is allowed. `lagged`: the same terms
+// with those forces.
+double mistaken_friction(std::span<const ContactTerm> solved, std::span<const ContactTerm> lagged, const Points& x0,
+                         const Points& x, double slip_width);
+
 // Linearises terms anew at the ends nodes1 that a solve has found, so that forces act where the step ends, as implicit
 // Euler has it: with those of the start, sliding round a bend is braked. Pairs that have changed sides stay as they
 // are.

@@ -5,6 +5,7 @@
 
 #include "collision/floating_point.hpp"
 #include "collision/resolve.hpp"
+#include "collision/room.hpp"
 #include "collision/stopwatch.hpp"
 #include "physics/contact_terms.hpp"
 #include "physics/features.hpp"
@@ -19,12 +20,13 @@ constexpr double first_roughness = 8;       // of the solve that only finds impa
 constexpr double friction_roughness = 0.2;  // of a solve with friction: sticking shows in small velocities
 constexpr double contact_patience = 0.5;    // of each solve, for the next one goes on from it
 constexpr int most_passes = 6;              // solves after the first one, at most
+constexpr int squeezed_passes = 3;          // where there is no room: no stiffness makes any
 constexpr double normal_change = 0.05;      // of what bounds friction, at most, from the last solve but one
 constexpr double deep_impact = 0.05;        // that a single impulse should not meet, in mean edge lengths
 constexpr int halvings = 2;                 // of a substep whose zones do not settle, before the last resort
 constexpr double recovery_speed = 1;        // at most, of a vertex that starts tangled [m/s]
 constexpr double rounding = 1e-14;          // of positions that are added up over substeps
-constexpr int pinched_rounds = 4;           // of zones in a step that starts with obstacles that lag
+constexpr int squeezed_rounds = 4;          // of zones, where there is no room
 constexpr int hopeful_rounds = 12;          // of zones in a substep that may still be halved
 
 ResolveOptions resolve_options(const ContactSettings& contact) {
@@ -55,11 +57,12 @@ class ConventionalStepper final : public Stepper {
 
  private:
   bool has_contact() const { return features_.self_contact || features_.obstacles; }
-  bool solve(const StepProblem& problem, Points& x, StepReport& report);
-  bool solve_with_contact(StepProblem& problem, const Points& nodes0, Points& nodes1, Points& x, Contacts& contacts,
-                          StepReport& report);
+  NewtonReport solve(const StepProblem& problem, Points& x, StepReport& report);
+  NewtonReport solve_with_contact(StepProblem& problem, bool squeezed, const Points& nodes0, Points& nodes1, Points& x,
+                                  Contacts& contacts, StepReport& report);
+  enum class Attempt { first, squeezed, last_resort };  // squeezed: zones did not settle, but perhaps obstacles yield
   enum class Outcome { clean, unsettled, not_finite };
-  Outcome substep(const Leg& leg, const Points& pins, const Drive& drive, double h, bool last_resort, Points& nodes1,
+  Outcome substep(const Leg& leg, const Points& pins, const Drive& drive, double h, Attempt attempt, Points& nodes1,
                   StepReport& report);
   bool advance(Leg& leg, const Points& nodes, const Points& pins, const Drive& drive, double h, int halvings_left,
                StepReport& report);
@@ -76,10 +79,11 @@ class ConventionalStepper final : public Stepper {
   ImplicitEuler solver_;
   double edge_length_;
   StepperTraits traits_{"conventional"};
+  AuditMemory audited_;
   PathPairs path_;  // pairs near the current positions
   SelfCrossings self_crossings_;
-  bool pinched_ = false;  // this step started with obstacles that lag
-  Exemption exemption_;   // of this step
+  bool look_for_room_ = false;  // this step started with obstacles that lag, or some did not have room in it
+  Exemption exemption_;         // of this step
 };
 
 void add(const ResolveReport& resolved, StepReport& report) {
@@ -99,23 +103,32 @@ double deepest(std::span<const Impact> impacts, const Points& nodes) {
 }
 
 // Solves the substep with its contacts, again and again until what it runs into besides them is shallow and friction is
-// bounded by the normal forces that there are. x is the cloth in nodes1. False: not finite.
-bool ConventionalStepper::solve_with_contact(StepProblem& problem, const Points& nodes0, Points& nodes1, Points& x,
-                                             Contacts& contacts, StepReport& report) {
-  const double h = problem.h, deep = deep_impact * edge_length_;
+// bounded by the normal forces that there are. x is the cloth in nodes1. Reports the last solve.
+NewtonReport ConventionalStepper::solve_with_contact(StepProblem& problem, bool squeezed, const Points& nodes0,
+                                                     Points& nodes1, Points& x, Contacts& contacts,
+                                                     StepReport& report) {
+  const double h = problem.h, deep = deep_impact * edge_length_, creep = options_.implicit_euler.slip_speed * h;
+  // Where nothing touches, or nothing that does moves, the first solve is likely to be the last one.
+  const bool calm = !squeezed && mean_touching(contacts.terms, h * *problem.v0) < creep;
   problem.patience = contact_patience;
   for (int pass = 0;; ++pass) {
     problem.contacts = contacts.terms;
-    problem.roughness = pass == 0 ? first_roughness : pass == 1 ? 1 : friction_roughness;
-    if (!solve(problem, x, report)) return false;
+    problem.roughness = pass == 0 && !calm ? first_roughness : pass <= 1 ? 1 : friction_roughness;
+    if (calm && features_.friction && !contacts.terms.empty()) problem.roughness = friction_roughness;
+    const NewtonReport newton = solve(problem, x, report);
+    if (!newton.finite) return newton;
     nodes1.topRows(x.rows()) = x;
+    const std::vector<ContactTerm> solved = calm ? contacts.terms : std::vector<ContactTerm>{};
     const double change = lag_normal_forces(contacts.terms, x);
-    if (pass == most_passes) return true;
+    if (pass == (squeezed ? squeezed_passes : most_passes)) return newton;
     ResolveReport times;
     const auto impacts = find_impacts(search_, inverse_mass_, contact_, nodes0, nodes1, path_, times);
     add(times, report);
+    if (calm && mean_touching(contacts.terms, x - *problem.x0) < creep && deepest(impacts, nodes1) < deep &&
+        mistaken_friction(solved, contacts.terms, *problem.x0, x, creep) < normal_change)
+      return newton;
     const int least = features_.friction && !contacts.terms.empty() ? 2 : 1;
-    if (pass >= least && change < normal_change && deepest(impacts, nodes1) < deep) return true;
+    if (pass >= least && change < normal_change && deepest(impacts, nodes1) < deep) return newton;
     Stopwatch watch;
     add_impact_terms(scene_, world_, impacts, inverse_mass_, nodes0, nodes1, h, deep, contacts);
     stiffen(contacts.terms, x);
@@ -126,7 +139,7 @@ bool ConventionalStepper::solve_with_contact(StepProblem& problem, const Points&
 
 // nodes1 comes with obstacles where they are to end and the cloth at its first guess.
 ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const Points& pins, const Drive& drive,
-                                                          double h, bool last_resort, Points& nodes1,
+                                                          double h, Attempt attempt, Points& nodes1,
                                                           StepReport& report) {
   const Points& nodes0 = leg.nodes;
   const int n = scene_.surface.vertex_count;
@@ -134,7 +147,9 @@ ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const 
   Points x = nodes1.topRows(n);
   StepProblem problem{h, &x0, &leg.v, &pins, drive.acceleration, drive.wind, {}, 1};
   if (!has_contact()) {
-    if (!solve(problem, x, report) || !x.allFinite()) return Outcome::not_finite;
+    const NewtonReport newton = solve(problem, x, report);
+    if (!newton.finite || !x.allFinite()) return Outcome::not_finite;
+    if (!newton.converged) report.reason = Reason::not_converged;
     nodes1.topRows(n) = x;
     return Outcome::clean;
   }
@@ -143,34 +158,55 @@ ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const 
   const auto proximities = find_proximities(world_, pairs_within(path_, nodes0, scene_.contact.thickness), nodes0,
                                             scene_.rest, scene_.contact.thickness);
   for (const Proximity& p : proximities) report.collision.min_gap = std::min(report.collision.min_gap, p.gap);
+  report.seconds.response += watch.lap();
+  Eigen::VectorXd inverse_mass = inverse_mass_;
+  bool squeezed = false;
+  if (look_for_room_ || attempt == Attempt::squeezed) {
+    ResolveReport times;
+    squeezed = make_room(search_, world_, contact_, proximities, nodes0, nodes1, path_, inverse_mass, times);
+    add(times, report);
+    if (attempt == Attempt::squeezed && !squeezed) return Outcome::unsettled;
+    look_for_room_ = true;
+    watch.lap();
+  }
   Contacts contacts = contact_terms(scene_, world_, proximities, inverse_mass_, nodes0, nodes1, h);
   // The load of a contact is what pulls at it where the cloth would go without any.
   if (!contacts.terms.empty()) bear(contacts.terms, inverse_mass_, -solver_.gradient(problem, x));
   report.seconds.response += watch.lap();
-  if (!solve_with_contact(problem, nodes0, nodes1, x, contacts, report)) return Outcome::not_finite;
+  const NewtonReport newton = solve_with_contact(problem, squeezed, nodes0, nodes1, x, contacts, report);
+  if (!newton.finite) return Outcome::not_finite;
   report.collision.contacts = static_cast<int>(contacts.terms.size());
   watch.lap();
   stick(contacts.terms, inverse_mass_, x0, h, options_.implicit_euler.slip_speed * h, x);
   report.seconds.response += watch.lap();
   nodes1.topRows(n) = x;
   ResolveOptions options = contact_;
-  options.last_resort = last_resort;
-  if (!last_resort) options.zone_rounds = hopeful_rounds;
-  if (pinched_) options.zone_rounds = pinched_rounds;
-  const ResolveReport resolved = resolve(search_, world_, inverse_mass_, options, nodes0, nodes1, path_);
+  options.last_resort = attempt == Attempt::last_resort;
+  if (!options.last_resort) options.zone_rounds = hopeful_rounds;
+  if (squeezed) options.zone_rounds = squeezed_rounds;
+  const ResolveReport resolved = resolve(search_, world_, inverse_mass, options, nodes0, nodes1, path_);
   add(resolved, report);
   if (!nodes1.allFinite()) return Outcome::not_finite;
-  return resolved.clean || last_resort ? Outcome::clean : Outcome::unsettled;
+  if (!resolved.clean && !options.last_resort) return Outcome::unsettled;
+  if (!newton.converged) report.reason = Reason::not_converged;
+  return Outcome::clean;
 }
 
-// Takes the leg over h to where `nodes` has the obstacles and to `pins`. Where zones do not settle the time is halved,
-// and only the last halves take the last resort. False: not finite.
+// Takes the leg over h to where `nodes` has the obstacles and to `pins`. Where zones do not settle, obstacles that
+// leave no room give way; if there are none the time is halved, and only the last halves take the last resort. False:
+// not finite.
 bool ConventionalStepper::advance(Leg& leg, const Points& nodes, const Points& pins, const Drive& drive, double h,
                                   int halvings_left, StepReport& report) {
   const int n = scene_.surface.vertex_count;
-  Points next = nodes;
-  next.topRows(n) = leg.nodes.topRows(n) + h * leg.v;
-  const Outcome outcome = substep(leg, pins, drive, h, halvings_left == 0, next, report);
+  Points next;
+  const auto attempt = [&](Attempt kind) {
+    next = nodes;
+    next.topRows(n) = leg.nodes.topRows(n) + h * leg.v;
+    for (std::size_t k = 0; k < scene_.pins.size(); ++k) next.row(scene_.pins[k]) = pins.row(static_cast<int>(k));
+    return substep(leg, pins, drive, h, kind, next, report);
+  };
+  Outcome outcome = attempt(halvings_left == 0 ? Attempt::last_resort : Attempt::first);
+  if (outcome == Outcome::unsettled && !look_for_room_ && features_.obstacles) outcome = attempt(Attempt::squeezed);
   if (outcome == Outcome::not_finite) return false;
   if (outcome == Outcome::unsettled) {
     ++report.collision.halved_substeps;
@@ -182,7 +218,7 @@ bool ConventionalStepper::advance(Leg& leg, const Points& nodes, const Points& p
   ++report.substeps;
   if (has_contact()) {
     Stopwatch watch;
-    report.collision.passed_through += passed_through(world_, exemption_, leg.nodes, next);
+    report.collision.passed_through += passed_through(world_, exemption_, leg.nodes, next, audited_);
     report.seconds.audit += watch.lap();
   }
   leg.v = (next.topRows(n) - leg.nodes.topRows(n)) / h;
@@ -190,15 +226,14 @@ bool ConventionalStepper::advance(Leg& leg, const Points& nodes, const Points& p
   return true;
 }
 
-bool ConventionalStepper::solve(const StepProblem& problem, Points& x, StepReport& report) {
+NewtonReport ConventionalStepper::solve(const StepProblem& problem, Points& x, StepReport& report) {
   Stopwatch watch;
   const NewtonReport newton = solver_.solve(problem, x);
   report.iterations += newton.iterations;
   report.linear_iterations += newton.linear_iterations;
   report.residual = newton.residual;
-  if (!newton.converged && problem.roughness <= 1) report.reason = Reason::not_converged;
   report.seconds.solve += watch.lap();
-  return newton.finite;
+  return newton;
 }
 
 // Recovery where the start is tangled, what contact is to leave alone, and the pairs near the start.
@@ -206,7 +241,7 @@ void ConventionalStepper::prepare_contact(const State& from, double dt, const Po
                                           StepReport& report) {
   Stopwatch watch;
   const bool exempt = exemption_.any();
-  pinched_ = from.pinched;
+  look_for_room_ = from.pinched;
   exemption_ = {};
   if (!from.clean && nodes.allFinite()) exemption_ = recover(world_, inverse_mass_, recovery_speed * dt, nodes);
   report.collision.left_alone = exemption_.cloth_vertices();
@@ -254,7 +289,7 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
     report.collision.obstacle_lag = (leg.nodes - wanted).bottomRows(leg.nodes.rows() - n).rowwise().norm().maxCoeff();
   to.pinched = report.collision.obstacle_lag > rounding * wanted.cwiseAbs().maxCoeff();
   if (!to.pinched) report.collision.obstacle_lag = 0;
-  audit_state(scene_, world_, drive, to, report);
+  audit_state(scene_, world_, drive, to, audited_, report);
   return report;
 }
 

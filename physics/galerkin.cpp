@@ -111,7 +111,8 @@ Restriction transpose(const Prolongation& p) {
 }
 
 // With s_i the sum of row i of P, row a of P^T A P in the form that sees differences only:
-//   sum_i P_ia [ D_i (s_i u_a + sum_b P_ib (u_b - u_a)) + sum_j B_ij ((s_j - s_i) u_a + sum_b (P_jb - P_ib) (u_b - u_a)) ].
+//   sum_i P_ia [ D_i (s_i u_a + sum_b P_ib (u_b - u_a)) + sum_j B_ij ((s_j - s_i) u_a + sum_b (P_jb - P_ib) (u_b -
+//   u_a)) ].
 Product make_product(const RowPattern& fine, bool diagonal, const Prolongation& p, const Restriction& restriction,
                      RowPattern& coarse) {
   Product product;

@@ -44,6 +44,6 @@ Product make_product(std::span<const ContactBlock>, const Prolongation&, RowPatt
 
 // Adds to the target blocks of rows [begin, end).
 void accumulate(const Product&, const BlockColumns<float>* source, const BlockColumns<float>* source_diagonal,
-               BlockColumns<float>* target, BlockColumns<float>* target_diagonal, int begin, int end);
+                BlockColumns<float>* target, BlockColumns<float>* target_diagonal, int begin, int end);
 
 }  // namespace selvedge

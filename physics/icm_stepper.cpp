@@ -63,6 +63,7 @@ class IcmStepper final : public Stepper {
   Eigen::VectorXd inverse_mass_;
   double mean_mass_, edge_length_;
   ImplicitEuler solver_;
+  AuditMemory audited_;
   SelfCrossings self_crossings_;
   StepperTraits traits_{"icm"};
   // Of this substep:
@@ -183,7 +184,7 @@ StepReport IcmStepper::step(const State& from, const Drive& drive, double dt, St
     leg.v = (next.topRows(n) - leg.nodes.topRows(n)) / h;
     if (has_contact()) {
       Stopwatch watch;
-      report.collision.passed_through += passed_through(world_, exemption_, leg.nodes, next);
+      report.collision.passed_through += passed_through(world_, exemption_, leg.nodes, next, audited_);
       report.seconds.audit += watch.lap();
     }
     if (s == 0) report.collision.left_alone = exemption_.cloth_vertices();
@@ -193,7 +194,7 @@ StepReport IcmStepper::step(const State& from, const Drive& drive, double dt, St
   arrive(from, leg, dt, to);
   to.obstacles = drive.obstacles;
   to.pinched = false;
-  audit_state(scene_, world_, drive, to, report);
+  audit_state(scene_, world_, drive, to, audited_, report);
   return report;
 }
 

@@ -30,9 +30,8 @@ struct Iterative {
   PcgVectors<Real> vectors;
   Preconditioner<Real> preconditioner;
 
-  void fill(const LinearSystem& system, std::span<const Mat3> diagonal) {
-    matrix.fill(system);
-    jacobi.fill(diagonal, system.free);
+  void take_jacobi(std::span<const Mat3> diagonal, std::span<const char> free) {
+    jacobi.fill(diagonal, free);
     preconditioner = [this](const Quads<Real>& r, Quads<Real>& z) { jacobi.apply(r, z); };
   }
 
@@ -137,13 +136,14 @@ LinearReport LinearSystemSolver::Impl::solve_iterative(Iterative<Real>& method, 
   return report;
 }
 
-// Where multigrid cannot be had, block Jacobi stays.
+// Where multigrid cannot be had, block Jacobi takes its place.
 void LinearSystemSolver::Impl::prepare_single(const LinearSystem& system, std::span<const Mat3> diagonal) {
-  single.fill(system, diagonal);
-  if (chosen != LinearSolver::multigrid) return;
-  if (!multigrid) multigrid = std::make_unique<Multigrid>(vertices, free);
-  if (multigrid->fill(system, diagonal, single.matrix))
+  single.matrix.fill(system);
+  if (chosen == LinearSolver::multigrid && !multigrid) multigrid = std::make_unique<Multigrid>(vertices, free);
+  if (chosen == LinearSolver::multigrid && multigrid->fill(system, diagonal, single.matrix))
     single.preconditioner = [this](const Quads<float>& r, Quads<float>& z) { multigrid->apply(r, z); };
+  else
+    single.take_jacobi(diagonal, system.free);
 }
 
 LinearSystemSolver::LinearSystemSolver(LinearSolver wanted, Vertices vertices, std::span<const char> free)
@@ -170,7 +170,8 @@ LinearReport LinearSystemSolver::solve(const LinearSystem& system, std::span<con
     if (impl.solve_direct(system, diagonal, right, x)) return {true, report.iterations + 1};
   }
   if (!impl.full) impl.full = std::make_unique<Iterative<double>>();
-  impl.full->fill(system, diagonal);
+  impl.full->matrix.fill(system);
+  impl.full->take_jacobi(diagonal, system.free);
   const LinearReport last = impl.solve_iterative(*impl.full, system, diagonal, right, tolerance, max_iterations, x);
   return {last.converged, report.iterations + last.iterations};
 }

@@ -15,9 +15,9 @@ constexpr int chunk = 256;          // rows of one task; fixed, so that sums do 
 constexpr int one_thread = 1024;    // rows below which a level costs more in a team than alone
 constexpr int coarsest = 48;        // vertices that Cholesky takes
 constexpr int smoothing_steps = 2;  // before and after the coarse correction
-// Of the eigenvalues of the inverse diagonal blocks times the matrix. For triangles it is at most 3, for contacts 4; flat
-// bending has 3.3 on regular meshes, and the polynomial does no harm up to 5. Estimating it by the power method took
-// longer than it saved.
+// Of the eigenvalues of the inverse diagonal blocks times the matrix. For triangles it is at most 3, for contacts 4;
+// flat bending has 3.3 on regular meshes, and the polynomial does no harm up to 5. Estimating it by the power method
+// took longer than it saved.
 constexpr float longest = 4;
 constexpr int most_levels = 12;
 constexpr double least_coarsening = 0.7;  // of the vertices; a level that keeps more is not worth having
@@ -75,10 +75,9 @@ struct Level {
 };
 
 bool same(std::span<const ContactBlock> contacts, const std::vector<ContactBlock>& known) {
-  return std::equal(contacts.begin(), contacts.end(), known.begin(), known.end(),
-                    [](const ContactBlock& a, const ContactBlock& b) {
-                      return a.nodes == b.nodes && a.weights == b.weights;
-                    });
+  return std::equal(
+      contacts.begin(), contacts.end(), known.begin(), known.end(),
+      [](const ContactBlock& a, const ContactBlock& b) { return a.nodes == b.nodes && a.weights == b.weights; });
 }
 
 }  // namespace
@@ -172,8 +171,8 @@ void Multigrid::Impl::make_patterns(const LinearSystem& system) {
     flat_diagonal.assign(diagonal_sums.begin(), diagonal_sums.end());
   }
   for (std::size_t l = 2; l < levels.size(); ++l)
-    levels[l].product = make_product(levels[l - 1].pattern, true, levels[l - 1].prolongation,
-                                     levels[l - 1].restriction, levels[l].pattern);
+    levels[l].product = make_product(levels[l - 1].pattern, true, levels[l - 1].prolongation, levels[l - 1].restriction,
+                                     levels[l].pattern);
   for (std::size_t l = 1; l < levels.size(); ++l) {
     levels[l].block.resize(levels[l].pattern.column.size());
     levels[l].diagonal.resize(levels[l].rows);
@@ -185,9 +184,9 @@ void Multigrid::Impl::make_contact_patterns(std::span<const ContactBlock> wanted
   for (std::size_t l = 1; l < levels.size(); ++l) {
     const Level& finer = levels[l - 1];
     Level& level = levels[l];
-    level.touching_product = l == 1 ? make_product(wanted, finer.prolongation, level.touching)
-                                    : make_product(finer.touching, false, finer.prolongation, finer.restriction,
-                                                   level.touching);
+    level.touching_product =
+        l == 1 ? make_product(wanted, finer.prolongation, level.touching)
+               : make_product(finer.touching, false, finer.prolongation, finer.restriction, level.touching);
     level.touching_block.resize(level.touching.column.size());
   }
 }
@@ -217,10 +216,10 @@ void Multigrid::Impl::fill_second(const LinearSystem& system, Level& level) {
           level.block[k] = scalar(has_flat ? scale * flat[k] : 0.f);
         for (int k = level.touching.begin[a]; k < level.touching.begin[a + 1]; ++k) level.touching_block[k] = {};
       }
-      accumulate(level.product, fine->blocks().data(), fine_diagonal.data(), level.block.data(),
-                  level.diagonal.data(), begin, end);
+      accumulate(level.product, fine->blocks().data(), fine_diagonal.data(), level.block.data(), level.diagonal.data(),
+                 begin, end);
       accumulate(level.touching_product, contact_factor.data(), nullptr, level.touching_block.data(),
-                  level.diagonal.data(), begin, end);
+                 level.diagonal.data(), begin, end);
     });
   }
 }
@@ -234,25 +233,29 @@ void Multigrid::Impl::fill_coarser(const Level& finer, Level& level) {
       for (int k = level.touching.begin[a]; k < level.touching.begin[a + 1]; ++k) level.touching_block[k] = {};
     }
     accumulate(level.product, finer.block.data(), finer.diagonal.data(), level.block.data(), level.diagonal.data(),
-                begin, end);
+               begin, end);
     accumulate(level.touching_product, finer.touching_block.data(), nullptr, level.touching_block.data(),
-                level.diagonal.data(), begin, end);
+               level.diagonal.data(), begin, end);
   });
 }
 
+// False where a block is not one of a positive definite matrix.
 bool Multigrid::Impl::invert_diagonal(Level& level) {
   level.inverse.resize(level.rows);
-  bool finite = true;
-  for (int a = 0; a < level.rows; ++a) {
-    Mat3 whole = matrix(level.diagonal[a]);
-    for (int k = level.pattern.begin[a]; k < level.pattern.begin[a + 1]; ++k) whole -= matrix(level.block[k]);
-    for (int k = level.touching.begin[a]; k < level.touching.begin[a + 1]; ++k)
-      whole -= matrix(level.touching_block[k]);
-    const Mat3 inverse = (0.5 * (whole + whole.transpose())).inverse();
-    finite = finite && inverse.allFinite() && inverse.trace() > 0;
-    set(inverse, level.inverse[a]);
-  }
-  return finite;
+  std::vector<char> positive(chunks_of(level.rows), true);
+#pragma omp parallel if (level.rows >= one_thread)
+  for_chunks(true, level.rows, [&](int begin, int end) {
+    for (int a = begin; a < end; ++a) {
+      Mat3 whole = matrix(level.diagonal[a]);
+      for (int k = level.pattern.begin[a]; k < level.pattern.begin[a + 1]; ++k) whole -= matrix(level.block[k]);
+      for (int k = level.touching.begin[a]; k < level.touching.begin[a + 1]; ++k)
+        whole -= matrix(level.touching_block[k]);
+      const Mat3 inverse = (0.5 * (whole + whole.transpose())).inverse();
+      if (!inverse.allFinite() || !(inverse.trace() > 0)) positive[begin / chunk] = false;
+      set(inverse, level.inverse[a]);
+    }
+  });
+  return std::ranges::all_of(positive, [](char yes) { return yes != 0; });
 }
 
 bool Multigrid::Impl::factor_coarsest() {
@@ -329,8 +332,8 @@ void Multigrid::Impl::smooth(int l, bool team, Quads<float>& x, bool further) {
     const float keep = static_cast<float>(2 * k - 3) / static_cast<float>(2 * k + 1);
     const float factor = static_cast<float>(8 * k - 4) / (static_cast<float>(2 * k + 1) * longest);
     for_chunks(team, level.rows, [&](int begin, int end) {
-      chebyshev(k == 1 ? 0.f : keep, factor, level.inverse.data(), level.product_of_step.data(),
-                level.residual.data(), level.step.data(), x.data(), begin, end);
+      chebyshev(k == 1 ? 0.f : keep, factor, level.inverse.data(), level.product_of_step.data(), level.residual.data(),
+                level.step.data(), x.data(), begin, end);
     });
     if (k < smoothing_steps || further) multiply(l, team, level.step, level.product_of_step);
   }

@@ -15,18 +15,19 @@ Points rounded_to_float(const Points& x) { return x.cast<float>().cast<double>()
 }  // namespace
 
 Audit audit_positions(const Scene& scene, const ContactWorld& world, const Points& x,
-                      const std::vector<Points>& obstacles) {
+                      const std::vector<Points>& obstacles, AuditMemory* memory) {
   std::vector<Points> positions;
   for (const Points& obstacle : obstacles) positions.push_back(rounded_to_float(obstacle));
   std::vector<AuditBody> bodies;
   for (std::size_t k = 0; k < positions.size(); ++k) bodies.push_back({&scene.obstacles[k].surface, &positions[k]});
-  return audit(scene.surface, rounded_to_float(x), bodies, world.self);
+  return audit(scene.surface, rounded_to_float(x), bodies, world.self, memory);
 }
 
-void audit_state(const Scene& scene, const ContactWorld& world, const Drive& drive, State& state, StepReport& report) {
+void audit_state(const Scene& scene, const ContactWorld& world, const Drive& drive, State& state, AuditMemory& memory,
+                 StepReport& report) {
   Stopwatch watch;
   CollisionReport& collision = report.collision;
-  const Audit now = audit_positions(scene, world, state.x, state.obstacles);
+  const Audit now = audit_positions(scene, world, state.x, state.obstacles, &memory);
   collision.pairs_after = collision.pairs_wanted = now.intersecting_pairs();
   state.clean = collision.pairs_after == 0 && now.inside_vertices == 0;
   if (state.pinched) {
@@ -39,12 +40,14 @@ void audit_state(const Scene& scene, const ContactWorld& world, const Drive& dri
   report.seconds.audit += watch.lap();
 }
 
-int passed_through(const ContactWorld& world, const Exemption& exemption, const Points& nodes0, const Points& nodes1) {
+int passed_through(const ContactWorld& world, const Exemption& exemption, const Points& nodes0, const Points& nodes1,
+                   AuditMemory& memory) {
   const WorldSheets from(world, nodes0), to(world, nodes1);
   std::vector<MovingBody> bodies;
   for (std::size_t k = 1; k < from.views.size(); ++k)
     bodies.push_back({from.views[k].surface, &from.positions[k], &to.positions[k]});
-  const MotionAudit motion = audit_motion(*world.cloth, from.positions[0], to.positions[0], bodies, world.self);
+  const MotionAudit motion =
+      audit_motion(*world.cloth, from.positions[0], to.positions[0], bodies, world.self, &memory);
   return static_cast<int>(std::ranges::count_if(
       motion.passed, [&](const PassedPair& pair) { return !exemption.leaves_alone(world, pair.nodes); }));
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "collision/audit.hpp"
+#include "collision/audit_memory.hpp"
 #include "collision/exemption.hpp"
 #include "physics/scene.hpp"
 #include "physics/stepper.hpp"
@@ -10,13 +11,16 @@ namespace selvedge {
 // The audit that every stepper ends a step with. Positions are rounded to float, as a file stores them: what is audited
 // is what a reader will see. Cloth is held against itself where world.self.
 
-Audit audit_positions(const Scene&, const ContactWorld&, const Points& x, const std::vector<Points>& obstacles);
+// Memories, where given, save time where little moves.
+
+Audit audit_positions(const Scene&, const ContactWorld&, const Points& x, const std::vector<Points>& obstacles,
+                      AuditMemory* = nullptr);
 
 // Of the state that a step made: sets `clean`, and in the report the intersecting pairs, those with obstacles where the
 // drive wanted them, the reason `penetrating` where any are left, and the seconds it took.
-void audit_state(const Scene&, const ContactWorld&, const Drive&, State&, StepReport&);
+void audit_state(const Scene&, const ContactWorld&, const Drive&, State&, AuditMemory&, StepReport&);
 
 // Pairs that met while all nodes moved straight from nodes0 to nodes1, those that contact leaves alone not counted.
-int passed_through(const ContactWorld&, const Exemption&, const Points& nodes0, const Points& nodes1);
+int passed_through(const ContactWorld&, const Exemption&, const Points& nodes0, const Points& nodes1, AuditMemory&);
 
 }  // namespace selvedge

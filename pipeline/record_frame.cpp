@@ -6,10 +6,11 @@
 namespace selvedge {
 namespace {
 
-void audit_frame(const Scene& scene, const Points& x, const std::vector<Points>& obstacles, Frame& frame) {
+void audit_frame(const Scene& scene, const Points& x, const std::vector<Points>& obstacles, AuditMemory* memory,
+                 Frame& frame) {
   std::vector<AuditBody> bodies;
   for (std::size_t k = 0; k < obstacles.size(); ++k) bodies.push_back({&scene.obstacles[k].surface, &obstacles[k]});
-  const Audit result = audit(scene.surface, x, bodies, scene.contact.self);
+  const Audit result = audit(scene.surface, x, bodies, scene.contact.self, memory);
   frame.self_pairs = static_cast<int>(result.self_pairs.size());
   frame.vertex_pairs = static_cast<int>(result.vertex_pairs.size());
   frame.obstacle_pairs = static_cast<int>(result.obstacle_pairs.size());
@@ -24,7 +25,7 @@ void audit_frame(const Scene& scene, const Points& x, const std::vector<Points>&
 
 }  // namespace
 
-Frame record_frame(const Scene& scene, const FrameEvent& event) {
+Frame record_frame(const Scene& scene, const FrameEvent& event, AuditMemory* memory) {
   Frame frame;
   frame.time = event.state.time;
   frame.x = event.state.x.cast<float>();
@@ -36,7 +37,7 @@ Frame record_frame(const Scene& scene, const FrameEvent& event) {
   }
   frame.report = event.report;
   const Clock::time_point before_audit = Clock::now();
-  audit_frame(scene, x, obstacles, frame);
+  audit_frame(scene, x, obstacles, memory, frame);
   frame.report.seconds.audit += seconds_since(before_audit);
   const auto stretches = principal_stretches(scene, x);
   if (stretches.rows() > 0) {

@@ -36,6 +36,7 @@ struct Recorder {
   RunSummary& summary;
   TrajectoryWriter writer;
   int next = 0;
+  AuditMemory audited{};
   Clock::time_point last_checkpoint = Clock::now();
 
   void add(const Frame& frame) {
@@ -49,7 +50,7 @@ struct Recorder {
   }
 
   bool operator()(const FrameEvent& event) {
-    add(record_frame(setup.scene, event));
+    add(record_frame(setup.scene, event, &audited));
     if (request.observe) request.observe(event);
     if (request.progress) request.progress->frame(event.state.frame);
     const bool stop = request.stop && request.stop();

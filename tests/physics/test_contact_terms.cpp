@@ -94,6 +94,54 @@ TEST_CASE("contact terms: a load is borne without sinking more than allowed", "[
   CHECK(-contact_force(terms[0], terms[0].target - terms[0].sink).first == Approx(5).epsilon(0.25));  // less the onset
 }
 
+TEST_CASE("contact terms: a load is shared as it is, whatever bears it", "[contact_terms]") {
+  // An edge of two vertices on a bar; then a vertex under three terms.
+  const Eigen::VectorXd inverse_mass = Eigen::VectorXd::Constant(2, 1e4);
+  Points forces(2, 3);
+  forces << 0, -3, 0, 0, -3, 0;
+  ContactTerm edge;
+  edge.nodes = {0, 1, -1, -1};
+  edge.weights = {0.5, 0.5, 0, 0};
+  edge.sink = 1e-4;
+  std::vector<ContactTerm> terms{edge};
+  bear(terms, inverse_mass, forces);
+  CHECK(terms[0].normal_force == Approx(6));
+
+  ContactTerm vertex;
+  vertex.nodes = {0, -1, -1, -1};
+  vertex.weights = {1, 0, 0, 0};
+  vertex.sink = 1e-4;
+  terms.assign(3, vertex);
+  bear(terms, inverse_mass, forces);
+  for (const ContactTerm& term : terms) CHECK(term.normal_force == Approx(1));
+}
+
+TEST_CASE("contact terms: friction is mistaken where its bound was", "[contact_terms]") {
+  const double width = 1e-3;
+  ContactTerm term;
+  term.nodes = {0, -1, -1, -1};
+  term.weights = {1, 0, 0, 0};
+  term.friction = 0.5;
+  term.normal_force = 2;
+  ContactTerm more = term, less = term;
+  more.normal_force = 4;
+  less.normal_force = 1;
+  const std::vector solved{term}, higher{more}, lower{less};
+  const Points from = Points::Zero(1, 3);
+  Points to = from;
+  to(0, 0) = 10 * width;  // slides: too much and too little are both wrong
+  CHECK(mistaken_friction(solved, solved, from, to, width) == 0);
+  CHECK(mistaken_friction(solved, higher, from, to, width) == Approx(0.5));
+  CHECK(mistaken_friction(solved, lower, from, to, width) == Approx(1));
+  to(0, 0) = 0.1 * width;  // sticks with a fifth of what it may take
+  CHECK(mistaken_friction(solved, higher, from, to, width) == 0);
+  CHECK(mistaken_friction(solved, lower, from, to, width) == 0);
+  to(0, 0) = 0.9 * width;
+  CHECK(mistaken_friction(solved, lower, from, to, width) > 0.9);
+  CHECK(mean_touching(solved, to) == Approx(0.9 * width));
+  CHECK(mean_touching({}, to) == 0);
+}
+
 TEST_CASE("contact terms: one that was pressed too deep is stiffened, and not beyond reason", "[contact_terms]") {
   const VertexOnFloor c;
   auto terms = c.terms(1e-3, 2e-3, 0.01);

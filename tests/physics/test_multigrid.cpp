@@ -121,8 +121,8 @@ Example make_example(int side, double stiffness, int contacts) {
   }
   std::vector<Eigen::Triplet<double>> entries;
   for (const auto& [i, j] : e.pattern.pairs)
-    for (const auto& [a, b, v] : {std::tuple{i, j, 1.}, std::tuple{j, i, 1.}, std::tuple{i, i, -1.},
-                                  std::tuple{j, j, -1.}})
+    for (const auto& [a, b, v] :
+         {std::tuple{i, j, 1.}, std::tuple{j, i, 1.}, std::tuple{i, i, -1.}, std::tuple{j, j, -1.}})
       entries.emplace_back(a, b, v);
   SparseMatrix laplacian(n, n);
   laplacian.setFromTriplets(entries.begin(), entries.end());
@@ -161,8 +161,7 @@ Points apply(Multigrid& multigrid, const Points& r) {
 
 }  // namespace
 
-TEST_CASE("Coarse vertices: a quarter, no two neighbours; linear functions are kept up to the corners",
-          "[multigrid]") {
+TEST_CASE("Coarse vertices: a quarter, no two neighbours; linear functions are kept up to the corners", "[multigrid]") {
   const double jitter = GENERATE(0.0, 0.3);
   const Vertices fine = make_sheet(24, jitter).vertices;
   const std::vector<char> free(fine.graph.size(), 1);
@@ -212,7 +211,8 @@ TEST_CASE("Galerkin products are P^T A P, of matrices and of contacts", "[multig
   std::generate(diagonal.begin(), diagonal.end(), some);
   RowPattern coarse;
   const Product product = make_product(fine, true, p, transpose(p), coarse);
-  Blocks coarse_blocks(coarse.column.size(), BlockColumns<float>{}), coarse_diagonal(p.coarse_count(), BlockColumns<float>{});
+  Blocks coarse_blocks(coarse.column.size(), BlockColumns<float>{}),
+      coarse_diagonal(p.coarse_count(), BlockColumns<float>{});
   accumulate(product, blocks.data(), diagonal.data(), coarse_blocks.data(), coarse_diagonal.data(), 0,
              p.coarse_count());
   const Eigen::MatrixXd expected = weights.transpose() * dense(fine, blocks, diagonal) * weights;

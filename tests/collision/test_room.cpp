@@ -1,0 +1,123 @@
+#include <catch2/catch.hpp>
+
+#include "collision/room.hpp"
+#include "tests/collision/sheets.hpp"
+
+using namespace selvedge;
+using testing::sheet;
+
+namespace {
+
+constexpr double thickness = 2e-3, separation = 2e-4;
+
+// Layers of cloth between two plates; the plates end where `to` says.
+struct Press {
+  Surface cloth;
+  std::vector<Surface> plates;
+  ContactWorld world;
+  Points x0, x1, wanted;
+  Eigen::VectorXd inverse_mass;
+  int cloth_nodes = 0;
+
+  Press(int layers, double cloth_size, double gap, double to, int plate_cells = 3) {
+    auto stack = sheet(6, cloth_size, 0);
+    for (int k = 1; k < layers; ++k) stack = testing::join(stack, sheet(6 + k, cloth_size, k * gap));
+    cloth_nodes = static_cast<int>(stack.x.rows());
+    cloth = make_surface(cloth_nodes, stack.triangles);
+    const auto low = sheet(plate_cells, 0.3, -gap), high = sheet(plate_cells, 0.3, layers * gap);
+    for (const auto& plate : {low, high})
+      plates.push_back(make_surface(static_cast<int>(plate.x.rows()), plate.triangles));
+    world = make_contact_world(cloth, {&plates[0], &plates[1]}, true);
+    x0 = gather_nodes(stack.x, {low.x, high.x});
+    x1 = x0;
+    const double middle = 0.5 * (layers - 1) * gap;
+    for (int v = cloth_nodes; v < x1.rows(); ++v) x1(v, 1) = middle + (x0(v, 1) < middle ? -0.5 : 0.5) * to;
+    wanted = x1;
+    inverse_mass = Eigen::VectorXd::Zero(x0.rows());
+    inverse_mass.head(cloth_nodes).setConstant(1e4);
+  }
+  bool make_room() {
+    PairSearch search(world);
+    PathPairs path;
+    ResolveOptions options;
+    options.thickness = thickness;
+    options.separation = separation;
+    update_pairs(search, thickness, x0, x1, path);
+    const auto near = find_proximities(world, path.pairs, x0, Points(x0.topRows(cloth_nodes)), thickness);
+    ResolveReport report;
+    return selvedge::make_room(search, world, options, near, x0, x1, path, inverse_mass, report);
+  }
+  double lag(int node) const { return (x1.row(node) - wanted.row(node)).norm(); }
+};
+
+}  // namespace
+
+TEST_CASE("room: plates that would meet stop with room for every layer, and not much more", "[room]") {
+  for (const int layers : {1, 3}) {
+    Press press(layers, 0.2, 1e-3, -1e-3);
+    REQUIRE(press.make_room());
+    const double least = (layers + 1) * 2 * separation;
+    CHECK(press.x1.topRows(press.cloth_nodes) == press.x0.topRows(press.cloth_nodes));
+    const int per_plate = press.plates[0].vertex_count;
+    for (int v = 0; v < per_plate; ++v) {
+      const int low = press.cloth_nodes + v, high = low + per_plate;
+      if (std::abs(press.x0(low, 0)) > 0.11 || std::abs(press.x0(low, 2)) > 0.11) continue;
+      CHECK(press.x1(high, 1) - press.x1(low, 1) > 0.9 * least);
+      CHECK(press.x1(high, 1) - press.x1(low, 1) < (layers + 1) * 1e-3);
+      CHECK(press.inverse_mass[low] > 0);
+    }
+  }
+}
+
+TEST_CASE("room: plates that leave just enough room are where they are wanted", "[room]") {
+  for (const int layers : {1, 3}) {
+    Press press(layers, 0.2, 1.5e-3, 1.05 * (layers + 1) * 2 * separation);
+    const Eigen::VectorXd before = press.inverse_mass;
+    CHECK_FALSE(press.make_room());
+    CHECK(press.x1 == press.wanted);
+    CHECK(press.inverse_mass == before);
+  }
+}
+
+TEST_CASE("room: a plate alone pushes cloth and does not give way", "[room]") {
+  Press press(2, 0.2, 1.5e-3, -1e-3);
+  const int per_plate = press.plates[0].vertex_count;
+  press.x1.bottomRows(per_plate).col(1).array() += 0.1;
+  press.wanted = press.x1;
+  CHECK_FALSE(press.make_room());
+  CHECK(press.x1 == press.wanted);
+}
+
+TEST_CASE("room: plates wanted deep in each other do not fold round what is between them", "[room]") {
+  Press press(1, 0.05, 1e-3, -0.05, 24);
+  REQUIRE(press.make_room());
+  double most = 0, steepest = 0;
+  int node = press.cloth_nodes;
+  for (const Surface& plate : press.plates) {
+    for (int e = 0; e < plate.edges.rows(); ++e) {
+      const int a = node + plate.edges(e, 0), b = node + plate.edges(e, 1);
+      const Vec3 change = row(press.x1, a) - row(press.wanted, a) - row(press.x1, b) + row(press.wanted, b);
+      steepest = std::max(steepest, change.norm() / (press.wanted.row(a) - press.wanted.row(b)).norm());
+    }
+    for (int v = 0; v < plate.vertex_count; ++v) most = std::max(most, press.lag(node + v));
+    node += plate.vertex_count;
+  }
+  CHECK(most > 0.024);
+  CHECK(most < 0.03);
+  CHECK(steepest < 0.9);
+}
+
+TEST_CASE("room: only what is near the cloth gives way", "[room]") {
+  Press press(1, 0.05, 1e-3, -1e-3, 24);
+  REQUIRE(press.make_room());
+  double most = 0;
+  for (int v = press.cloth_nodes; v < press.x0.rows(); ++v) {
+    const bool far = std::abs(press.x0(v, 0)) > 0.05 || std::abs(press.x0(v, 2)) > 0.05;
+    if (far) {
+      CHECK(press.lag(v) == 0);
+      CHECK(press.inverse_mass[v] == 0);
+    }
+    most = std::max(most, press.lag(v));
+  }
+  CHECK(most > 0.5 * (1e-3 + 2 * separation));
+}
