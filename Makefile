@@ -8,13 +8,13 @@ CONFIGURE := $(if $(CI),-DSELVEDGE_WERROR=ON)
 SOURCES = git ls-files '*.cpp' '*.hpp'
 PROGRAM := build/release/selvedge
 
-PACKAGES_release := build suitesparse fcl viewer test
+PACKAGES_release := build suitesparse fcl viewer plots test
 PACKAGES_dev := $(PACKAGES_release)
 PACKAGES_asan := $(PACKAGES_release)
 PACKAGES_tsan := $(PACKAGES_release) tsan
 PACKAGES_minimal := build viewer test
 
-.PHONY: help program demo test bench stress dev asan tsan minimal format check-format tidy clean
+.PHONY: help program demo test validate bench stress dev asan tsan minimal format check-format tidy clean
 .DEFAULT_GOAL := help
 
 help:  ## This list
@@ -27,6 +27,10 @@ program:
 
 demo: program  ## Build the program, simulate configs/demo.yaml, say where the page to look at is
 	@$(PROGRAM) simulate configs/demo.yaml --out out/demo
+
+validate: program  ## Physics with known answers: a table and plots, and out/validate/*
+	@cmake/install-packages.sh plots
+	@$(PROGRAM) validate --out out/validate
 
 bench: program  ## Run the benchmark family: a table, and out/bench/*.json
 	@$(PROGRAM) bench --out out/bench
