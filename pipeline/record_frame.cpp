@@ -25,7 +25,7 @@ void audit_frame(const Scene& scene, const Points& x, const std::vector<Points>&
 
 }  // namespace
 
-Frame record_frame(const Scene& scene, const FrameEvent& event, AuditMemory* memory) {
+Frame record_frame(const Scene& scene, const EnergyTerms& terms, const FrameEvent& event, AuditMemory* memory) {
   Frame frame;
   frame.time = event.state.time;
   frame.x = event.state.x.cast<float>();
@@ -44,16 +44,16 @@ Frame record_frame(const Scene& scene, const FrameEvent& event, AuditMemory* mem
     frame.min_stretch = stretches.col(0).minCoeff();
     frame.max_stretch = stretches.col(1).maxCoeff();
   }
-  frame.energy = energies(scene, x, event.state.v, event.drive.acceleration);
+  frame.energy = energies(scene, terms, x, event.state.v, event.drive.acceleration);
   frame.seconds = seconds_since(event.started);
   return frame;
 }
 
-Frame record_initial(const Scene& scene, const State& state, const Drive& drive) {
+Frame record_initial(const Scene& scene, const EnergyTerms& terms, const State& state, const Drive& drive) {
   StepReport report;
   report.status = StepStatus::accepted;
   report.by = "initial";
-  return record_frame(scene, {state, drive, report, Clock::now()});
+  return record_frame(scene, terms, {state, drive, report, Clock::now()});
 }
 
 }  // namespace selvedge

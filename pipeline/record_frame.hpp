@@ -1,6 +1,7 @@
 #pragma once
 
 #include "collision/audit_memory.hpp"
+#include "physics/measures.hpp"
 #include "pipeline/simulate.hpp"
 #include "pipeline/trajectory_hdf5.hpp"
 
@@ -9,9 +10,9 @@ namespace selvedge {
 // What a trajectory keeps of a frame. Positions are rounded to float first; the audit, the stretches and the energies
 // are those of the rounded positions, because these are what a reader gets.
 // The memory, where given, saves time where little moves.
-Frame record_frame(const Scene&, const FrameEvent&, AuditMemory* = nullptr);
+Frame record_frame(const Scene&, const EnergyTerms&, const FrameEvent&, AuditMemory* = nullptr);
 
 // Frame 0: the state before any step.
-Frame record_initial(const Scene&, const State&, const Drive&);
+Frame record_initial(const Scene&, const EnergyTerms&, const State&, const Drive&);
 
 }  // namespace selvedge

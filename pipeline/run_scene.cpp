@@ -36,6 +36,7 @@ struct Recorder {
   RunSummary& summary;
   TrajectoryWriter writer;
   int next = 0;
+  EnergyTerms terms = energy_terms(setup.scene);
   AuditMemory audited{};
   Clock::time_point last_checkpoint = Clock::now();
 
@@ -50,7 +51,7 @@ struct Recorder {
   }
 
   bool operator()(const FrameEvent& event) {
-    add(record_frame(setup.scene, event, &audited));
+    add(record_frame(setup.scene, terms, event, &audited));
     if (request.observe) request.observe(event);
     if (request.progress) request.progress->frame(event.state.frame);
     const bool stop = request.stop && request.stop();
@@ -99,7 +100,7 @@ RunSummary run_scene(const Setup& setup, Stepper& stepper, const RunRequest& req
     copy_frames(file, state.frame, recorder);
     std::filesystem::rename(first_file, file);
   } else {
-    recorder.add(record_initial(setup.scene, state, setup.drive_at(state.time)));
+    recorder.add(record_initial(setup.scene, recorder.terms, state, setup.drive_at(state.time)));
   }
 
   if (request.progress) request.progress->begin(state.frame, setup.run.frames);

@@ -97,10 +97,10 @@ TEST_CASE("a run leaves a trajectory, its sidecar, the configuration and a summa
 
 TEST_CASE("what is recorded is measured on the positions as written") {
   Setup setup = fake::setup();
-  const Frame plain = record_initial(setup.scene, setup.initial, setup.drive_at(0));
+  const Frame plain = record_initial(setup.scene, energy_terms(setup.scene), setup.initial, setup.drive_at(0));
   setup.initial.x *= 1 + 1e-9;  // lost in the rounding to float
   REQUIRE(principal_stretches(setup.scene, setup.initial.x).maxCoeff() != plain.max_stretch);
-  const Frame frame = record_initial(setup.scene, setup.initial, setup.drive_at(0));
+  const Frame frame = record_initial(setup.scene, energy_terms(setup.scene), setup.initial, setup.drive_at(0));
   REQUIRE(frame.max_stretch == plain.max_stretch);
   REQUIRE(frame.min_stretch == plain.min_stretch);
 }
