@@ -82,7 +82,7 @@ struct LinearSystemSolver::Impl {
   std::unique_ptr<Iterative<double>> full;  // made when float first fails
 
   bool solve_direct(const LinearSystem&, std::span<const Mat3> diagonal, const Points& right, Points& x);
-  void prepare_single(const LinearSystem&, std::span<const Mat3> diagonal);
+  double prepare_single(const LinearSystem&, std::span<const Mat3> diagonal);
   template <class Real>
   LinearReport solve_iterative(Iterative<Real>&, const LinearSystem&, std::span<const Mat3> diagonal,
                                const Points& right, double tolerance, int max_iterations, Points& x);
@@ -136,14 +136,16 @@ LinearReport LinearSystemSolver::Impl::solve_iterative(Iterative<Real>& method, 
   return report;
 }
 
-// Where multigrid cannot be had, block Jacobi takes its place.
-void LinearSystemSolver::Impl::prepare_single(const LinearSystem& system, std::span<const Mat3> diagonal) {
+// Where multigrid cannot be had, block Jacobi takes its place. Returns the preconditioner's share of a tolerance.
+double LinearSystemSolver::Impl::prepare_single(const LinearSystem& system, std::span<const Mat3> diagonal) {
   single.matrix.fill(system);
   if (chosen == LinearSolver::multigrid && !multigrid) multigrid = std::make_unique<Multigrid>(vertices, free);
-  if (chosen == LinearSolver::multigrid && multigrid->fill(system, diagonal, single.matrix))
+  if (chosen == LinearSolver::multigrid && multigrid->fill(system, diagonal, single.matrix)) {
     single.preconditioner = [this](const Quads<float>& r, Quads<float>& z) { multigrid->apply(r, z); };
-  else
-    single.take_jacobi(diagonal, system.free);
+    return 1;
+  }
+  single.take_jacobi(diagonal, system.free);
+  return jacobi_share;
 }
 
 LinearSystemSolver::LinearSystemSolver(LinearSolver wanted, Vertices vertices, std::span<const char> free)
@@ -163,8 +165,7 @@ LinearReport LinearSystemSolver::solve(const LinearSystem& system, std::span<con
     if (impl.solve_direct(system, diagonal, right, x)) return {true, 1};
     if (definite == Definite::perhaps) return {false, 1};
   } else {
-    impl.prepare_single(system, diagonal);
-    const double share = impl.chosen == LinearSolver::pcg ? jacobi_share : 1;
+    const double share = impl.prepare_single(system, diagonal);
     report = impl.solve_iterative(impl.single, system, diagonal, right, share * tolerance, max_iterations, x);
     if (report.converged || definite == Definite::perhaps) return report;
     if (impl.solve_direct(system, diagonal, right, x)) return {true, report.iterations + 1};

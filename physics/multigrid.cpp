@@ -260,7 +260,7 @@ bool Multigrid::Impl::invert_diagonal(Level& level) {
 
 bool Multigrid::Impl::factor_coarsest() {
   const Level& level = levels.back();
-  direct = levels.size() > 1 && level.rows <= 4 * coarsest;
+  direct = level.rows <= 4 * coarsest;
   if (!direct) return true;
   const int n = level.rows;
   Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(3 * n, 3 * n);
@@ -301,6 +301,7 @@ void Multigrid::Impl::multiply(int l, bool team, const Quads<float>& u, Quads<fl
 
 bool Multigrid::fill(const LinearSystem& system, std::span<const Mat3> diagonal, PcgMatrix<float>& fine) {
   Impl& impl = *impl_;
+  if (impl.levels.size() < 2) return false;
   impl.fine = &fine;
   impl.partial.resize(chunks_of(fine.rows()));
   if (!impl.patterns) {

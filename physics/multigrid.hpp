@@ -14,8 +14,8 @@ class Multigrid {
  public:
   Multigrid(const Vertices&, std::span<const char> free);
   ~Multigrid();
-  // `fine` is the system's matrix in float and stays where it is until the last apply(). False where the matrix turned
-  // out not to be positive definite: there is nothing to apply then.
+  // `fine` is the system's matrix in float and stays where it is until the last apply(). False where the mesh is too
+  // small to have a coarse level, or the matrix turned out not to be positive definite: there is nothing to apply then.
   bool fill(const LinearSystem&, std::span<const Mat3> diagonal, PcgMatrix<float>& fine);
   // z = M^-1 r, as Preconditioner asks for.
   void apply(const Quads<float>& r, Quads<float>& z);
