@@ -14,7 +14,7 @@ PACKAGES_asan := $(PACKAGES_release)
 PACKAGES_tsan := $(PACKAGES_release) tsan
 PACKAGES_minimal := build viewer test
 
-.PHONY: help program demo test validate bench stress dev asan tsan minimal format check-format tidy clean
+.PHONY: help program demo test validate bench stress stability compare dev asan tsan minimal format check-format tidy clean
 .DEFAULT_GOAL := help
 
 help:  ## This list
@@ -37,6 +37,13 @@ bench: program  ## Run the benchmark family: a table, and out/bench/*.json
 
 stress: program  ## Run every stress scene ten times: a table, and out/stress/*; goes on where it was stopped
 	@$(PROGRAM) stress --out out/stress
+
+stability: program  ## Stiff and extreme cases, pass or fail each: a table, and out/stability/*
+	@$(PROGRAM) stability --out out/stability
+
+compare: program  ## Compare the conventional stepper's settings: tables and plots of error against run time, and out/compare/*
+	@cmake/install-packages.sh plots
+	@$(PROGRAM) compare configs/compare/conventional.yaml --out out/compare
 
 test: test-release  ## Build and run every test (FILTER=regular expression on test files)
 dev: test-dev  ## The same with assertions on and warnings as errors

@@ -10,6 +10,7 @@
 #include "collision/bisection.hpp"
 #include "collision/distance.hpp"
 #include "collision/floating_point.hpp"
+#include "collision/moving_pair.hpp"
 
 namespace selvedge {
 namespace {
@@ -70,12 +71,19 @@ bool intersect(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
   return triangles_intersect(a[0], a[1], a[2], b[0], b[1], b[2]);
 }
 
+// Triangles s, a1, a2 and s, b1, b2: nearly always some plane through s has them on its two sides, beyond doubt.
+bool surely_beside(const Vec3& s, const Vec3& a1, const Vec3& a2, const Vec3& b1, const Vec3& b2) {
+  const std::array<Vec3, 2> a{a1 - s, a2 - s}, b{b1 - s, b2 - s};
+  return stay_apart_beside({a, a}, {b, b});
+}
+
 // a and b share one vertex.
 bool cross_at_vertex(const Soup& cloth, int a, int b) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       if (cloth.vertices[a][i] == cloth.vertices[b][j]) {
         const auto &p = cloth.corners[a], &q = cloth.corners[b];
+        if (surely_beside(p[i], p[(i + 1) % 3], p[(i + 2) % 3], q[(j + 1) % 3], q[(j + 2) % 3])) return false;
         return triangles_cross_at_vertex(p[i], p[(i + 1) % 3], p[(i + 2) % 3], q[(j + 1) % 3], q[(j + 2) % 3]);
       }
   return false;

@@ -227,15 +227,24 @@ double mean_edge(const Surface& surface, const Points& x) {
   return surface.edges.rows() > 0 ? sum / static_cast<double>(surface.edges.rows()) : 0;
 }
 
-// Whether little has moved since the last audit, which this one becomes.
+// This audit becomes the last one. True if it is of a motion.
+bool take_note(AuditMemory& memory, std::span<const MovingBody> sheets) {
+  memory.moving = std::ranges::any_of(sheets, [](const MovingBody& sheet) { return sheet.x0 != sheet.x1; });
+  memory.last.clear();
+  for (const MovingBody& sheet : sheets) memory.last.push_back(*sheet.x1);
+  return memory.moving;
+}
+
+// Whether little has moved since the last audit, which this one becomes. A state after a motion, at whose end it is,
+// moves as that did.
 bool is_slow(AuditMemory& memory, std::span<const MovingBody> sheets, double reach) {
   bool slowly = memory.last.size() == sheets.size();
   Eigen::VectorXd moved;
   for (std::size_t k = 0; k < sheets.size() && slowly; ++k)
     slowly = within_budget(memory.last[k], sheets[k], slow * reach, moved);
-  memory.last.clear();
-  for (const MovingBody& sheet : sheets) memory.last.push_back(*sheet.x1);
-  return slowly;
+  const bool after_motion = memory.moving;
+  if (take_note(memory, sheets) || !after_motion) memory.slow = slowly;
+  return memory.slow;
 }
 
 }  // namespace
@@ -246,8 +255,7 @@ AuditQuestions open_questions(AuditMemory& memory, const MovingBody& cloth, std:
   sheets.insert(sheets.end(), bodies.begin(), bodies.end());
   AuditQuestions questions;
   if (ask(memory, sheets, questions)) {
-    memory.last.clear();
-    for (const MovingBody& sheet : sheets) memory.last.push_back(*sheet.x1);
+    take_note(memory, sheets);
     return questions;
   }
   const double edge = mean_edge(*cloth.surface, *cloth.x1);

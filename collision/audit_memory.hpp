@@ -20,6 +20,8 @@ struct AuditMemory {
   };
   std::vector<Points> reference;  // cloth, then obstacles; empty: nothing is remembered
   std::vector<Points> last;       // where the last audit was
+  bool moving = false;            // it was of a motion
+  bool slow = false;              // and there was little of that
   double reach = 0;               // pairs farther apart than this are not listed [m]
   std::vector<Pair> self_pairs, body_pairs;
   int inside = -1;  // cloth vertices inside obstacles at the reference; -1: not known

@@ -18,21 +18,38 @@ struct Side {
     int triangle, first_node;
   };
   std::vector<Face> faces;
-  std::vector<ExactBox> boxes;
+  std::vector<ExactBox> start, end, boxes;  // at both ends, and round both
 };
 
 bool finite(const Points& x0, const Points& x1, int v) { return x0.row(v).allFinite() && x1.row(v).allFinite(); }
 
-ExactBox swept_box(const Side::Face& face) {
+ExactBox box_of(const Side::Face& face, const Points& x) {
   const int* v = face.surface->triangles.data() + 3 * face.triangle;
   ExactBox box;
   for (int k = 0; k < 3; ++k) {
-    const auto [lo, hi] = std::minmax({(*face.x0)(v[0], k), (*face.x0)(v[1], k), (*face.x0)(v[2], k),
-                                       (*face.x1)(v[0], k), (*face.x1)(v[1], k), (*face.x1)(v[2], k)});
-    box.lo[k] = lo;
-    box.hi[k] = hi;
+    box.lo[k] = std::min({x(v[0], k), x(v[1], k), x(v[2], k)});
+    box.hi[k] = std::max({x(v[0], k), x(v[1], k), x(v[2], k)});
   }
   return box;
+}
+
+ExactBox round_both(const ExactBox& a, const ExactBox& b) {
+  ExactBox box;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = std::min(a.lo[k], b.lo[k]);
+    box.hi[k] = std::max(a.hi[k], b.hi[k]);
+  }
+  return box;
+}
+
+// Is one of the faces above the other along an axis, at both ends and so all the way? What moves along together is told
+// apart so, without rounding, however far it moves.
+bool stay_apart_along_an_axis(const Side& a, int i, const Side& b, int j) {
+  const ExactBox &a0 = a.start[i], &a1 = a.end[i], &b0 = b.start[j], &b1 = b.end[j];
+  bool apart = false;
+  for (int k = 0; k < 3; ++k)
+    apart |= ((a0.hi[k] < b0.lo[k]) & (a1.hi[k] < b1.lo[k])) | ((b0.hi[k] < a0.lo[k]) & (b1.hi[k] < a1.lo[k]));
+  return apart;
 }
 
 // Returns the number of vertices that are not finite.
@@ -43,7 +60,9 @@ int add(const MovingBody& body, int first_node, Side& side) {
   for (int t = 0; t < s.triangles.rows(); ++t) {
     if (!good[s.triangles(t, 0)] || !good[s.triangles(t, 1)] || !good[s.triangles(t, 2)]) continue;
     side.faces.push_back({&s, body.x0, body.x1, t, first_node});
-    side.boxes.push_back(swept_box(side.faces.back()));
+    side.start.push_back(box_of(side.faces.back(), *body.x0));
+    side.end.push_back(box_of(side.faces.back(), *body.x1));
+    side.boxes.push_back(round_both(side.start.back(), side.end.back()));
   }
   return static_cast<int>(std::count(good.begin(), good.end(), 0));
 }
@@ -106,6 +125,17 @@ struct PairAudit {
     }
   }
 
+  // Both ends of the edge that the faces share, then the corners opposite.
+  MovingPoints<4> at_common_edge() const {
+    std::array<int, 2> alone{};  // the corner of a that b does not have, and the other way round
+    for (int k = 0; k < 3; ++k) {
+      if (!same(k, 0) && !same(k, 1) && !same(k, 2)) alone[0] = k;
+      if (!same(0, k) && !same(1, k) && !same(2, k)) alone[1] = k;
+    }
+    const Node s = corner(a, alone[0] + 1);
+    return relative_to<4>(s, {s, corner(a, alone[0] + 2), corner(a, alone[0]), corner(b, alone[1])});
+  }
+
   bool triangles_stay_apart() const {
     int shared = 0, at_a = 0, at_b = 0;
     for (int i = 0; i < 3; ++i)
@@ -115,7 +145,8 @@ struct PairAudit {
           at_a = i;
           at_b = j;
         }
-    if (shared > 1) return false;
+    if (shared > 2) return false;
+    if (shared == 2) return stay_apart_at_edge(at_common_edge());
     const Node origin = corner(a, at_a);
     if (shared == 1)
       return stay_apart_beside(relative_to<2>(origin, {corner(a, at_a + 1), corner(a, at_a + 2)}),
@@ -138,9 +169,11 @@ void audit_cell(const Cell& cell, const Side& cloth, const Side& bodies, bool se
   visit_pairs(
       cell, cloth.boxes, bodies.boxes, self,
       [&](int a, int b) {
+        if (stay_apart_along_an_axis(cloth, a, cloth, b)) return;
         PairAudit{cloth.faces[std::min(a, b)], cloth.faces[std::max(a, b)], max_halvings, passed}();
       },
       [&](int a, int c) {
+        if (stay_apart_along_an_axis(cloth, a, bodies, c)) return;
         PairAudit{cloth.faces[a], bodies.faces[c], max_halvings, passed}();
       });
 }

@@ -29,12 +29,12 @@ struct MotionAudit {
   int passed_through() const { return static_cast<int>(passed.size()); }
 };
 
+struct AuditMemory;
+
 // Independent proof that a motion is clean: vertex-face and edge-edge pairs that share no vertex, of the cloth with
 // itself (where `self`) and with the bodies, that are not proven to stay apart while all vertices move straight. Shares
 // no code with the solver's tree, distances or continuous detection.
 //
-struct AuditMemory;
-
 // A pair is apart over an interval of time if one fixed direction separates it at both ends: along a fixed direction
 // every gap of two nodes is linear in time. Where no direction among those of the closest features does, the interval
 // is halved; what is not apart after `max_halvings` counts as passed. So a pair that meets is always found, and one

@@ -16,22 +16,60 @@ struct Side {
   const PrimitiveGroups &vertices, &edges;
 };
 
+// The straight motion of all nodes that is searched.
+struct Motion {
+  const Points &from, &to;
+  double radius;
+  bool still;
+
+  Motion(const Points& x0, const Points& x1, double r) : from(x0), to(x1), radius(r * (1 + 1e-9)), still(x0 == x1) {}
+
+  // 1: the second primitive lies more than the radius above the first one along the axis; -1: below; 0: neither.
+  static int order(const Points& x, const NodePair& pair, int split, int axis, double radius) {
+    double lo[2], hi[2];
+    for (int i = 0; i < 4; ++i) {
+      const int side = i >= split;
+      const double at = x(pair.nodes[i], axis);
+      const bool first = i == 0 || i == split;
+      lo[side] = first ? at : std::min(lo[side], at);
+      hi[side] = first ? at : std::max(hi[side], at);
+    }
+    return lo[1] - hi[0] > radius ? 1 : lo[0] - hi[1] > radius ? -1 : 0;
+  }
+  // Boxes round whole motions overlap where cloth moves by many of its edges. What moves along together is told apart
+  // by an axis that keeps the two apart at both ends, and so all the way.
+  bool keeps_apart(const NodePair& pair) const {
+    if (still) return false;
+    const int split = pair.kind == PairKind::vertex_face ? 1 : 2;
+    for (int axis = 0; axis < 3; ++axis)
+      if (const int before = order(from, pair, split, axis, radius);
+          before != 0 && before == order(to, pair, split, axis, radius))
+        return true;
+    return false;
+  }
+};
+
 struct LeafPairs {
   const Side &a, &b;
   bool same;  // one surface: primitives that share a vertex are no pair
+  const Motion& motion;
+
+  void keep(const NodePair& pair, std::vector<NodePair>& pairs) const {
+    if (!motion.keeps_apart(pair)) pairs.push_back(pair);
+  }
 
   void vertex_face(const Side& p, int v, const Side& f, int face, std::vector<NodePair>& pairs) const {
     const int* n = f.surface.triangles.data() + 3 * face;
     if (same && (v == n[0] || v == n[1] || v == n[2])) return;
-    pairs.push_back(
-        {PairKind::vertex_face, {v + p.first_node, n[0] + f.first_node, n[1] + f.first_node, n[2] + f.first_node}});
+    keep({PairKind::vertex_face, {v + p.first_node, n[0] + f.first_node, n[1] + f.first_node, n[2] + f.first_node}},
+         pairs);
   }
   void edge_edge(int ea, int eb, std::vector<NodePair>& pairs) const {
     if (same && eb < ea) std::swap(ea, eb);
     const int *m = a.surface.edges.data() + 2 * ea, *n = b.surface.edges.data() + 2 * eb;
     if (same && (m[0] == n[0] || m[0] == n[1] || m[1] == n[0] || m[1] == n[1])) return;
-    pairs.push_back(
-        {PairKind::edge_edge, {m[0] + a.first_node, m[1] + a.first_node, n[0] + b.first_node, n[1] + b.first_node}});
+    keep({PairKind::edge_edge, {m[0] + a.first_node, m[1] + a.first_node, n[0] + b.first_node, n[1] + b.first_node}},
+         pairs);
   }
   void vertices_with_faces(const Side& p, int leaf_p, const Side& f, int leaf_f, const Box& box_f,
                            std::vector<NodePair>& pairs) const {
@@ -162,11 +200,13 @@ void PairSearch::find(const Points& x0, const Points& x1, double radius, std::ve
   update(cloth_, x0, x1, radius);
   const auto side = [](const Part& p) { return Side{*p.surface, p.first_node, p.tree.bvh, p.vertices, p.edges}; };
   const Side cloth = side(cloth_);
-  if (world_.self) gather(BvhTraversal{cloth.bvh, cloth.bvh, true}, scratch_, pairs, LeafPairs{cloth, cloth, true});
+  const Motion motion(x0, x1, radius);
+  if (world_.self)
+    gather(BvhTraversal{cloth.bvh, cloth.bvh, true}, scratch_, pairs, LeafPairs{cloth, cloth, true, motion});
   for (Part& obstacle : obstacles_) {
     update(obstacle, x0, x1, radius);
     const Side body = side(obstacle);
-    gather(BvhTraversal{cloth.bvh, body.bvh, false}, scratch_, pairs, LeafPairs{cloth, body, false});
+    gather(BvhTraversal{cloth.bvh, body.bvh, false}, scratch_, pairs, LeafPairs{cloth, body, false, motion});
   }
   if (left_out_)
     std::erase_if(pairs, [this](const NodePair& pair) { return left_out_->leaves_alone(world_, pair.nodes); });

@@ -153,6 +153,24 @@ bool stay_apart_beside(const MovingPoints<2>& a, const MovingPoints<2>& b) {
   return is_edge_on(toward_b * length_a - toward_a * length_b, a, b, reach);
 }
 
+// Along the edge's perpendicular a lies before s and t, b behind them; leant along the edge, s and t are told apart as
+// well, one way for the edges s a and t b, the other way for t a and s b.
+bool stay_apart_at_edge(const MovingPoints<4>& p) {
+  const double reach = reach_of(p);
+  const Vec3 edge = p.middle(1) - p.middle(0), from = p.middle(2), to = p.middle(3);
+  const Vec3 perpendicular = across(edge, to - from);
+  const Vec3 lean = 0.25 * (perpendicular.norm() / edge.norm()) * edge;
+  const auto in_order = [&](const Vec3& m, int first, int second) {
+    const double slack = slack_of(m, reach);
+    const auto ordered = [&](const std::array<Vec3, 4>& x) {
+      const double begin = m.dot(x[first]), end = m.dot(x[second]);
+      return begin - m.dot(x[2]) > slack && end - begin > slack && m.dot(x[3]) - end > slack;
+    };
+    return ordered(p.start) && ordered(p.end);
+  };
+  return in_order(perpendicular + lean, 0, 1) && in_order(perpendicular - lean, 1, 0);
+}
+
 bool vertex_and_face_stay_apart(const MovingPoints<4>& p, int max_halvings) {
   return stays_apart(p, max_halvings, some_direction_separates_face);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace selvedge {
 namespace {
@@ -111,6 +112,24 @@ std::vector<ContactTerm> push_terms(std::span<const Separation> separations, con
     terms.push_back(term);
   }
   return terms;
+}
+
+AddedTerm added_pushes(std::vector<ContactTerm> terms) {
+  const auto shared = std::make_shared<const std::vector<ContactTerm>>(std::move(terms));
+  return {[shared](const Points& x) {
+            double energy = 0;
+            for (const ContactTerm& term : *shared) energy += contact_force(term, contact_gap(term, x)).energy;
+            return energy;
+          },
+          [shared](const Points& x, Points& gradient, std::vector<ContactBlock>& blocks) {
+            for (const ContactTerm& term : *shared) {
+              const ContactForce push = contact_force(term, contact_gap(term, x));
+              for (std::size_t k = 0; k < term.nodes.size(); ++k)
+                if (term.nodes[k] >= 0)
+                  gradient.row(term.nodes[k]) += push.first * term.weights[k] * term.normal.transpose();
+              blocks.push_back({term.nodes, term.weights, term.normal, push.second, 0});
+            }
+          }};
 }
 
 double lag_normal_forces(std::vector<ContactTerm>& terms, const Points& x) {

@@ -7,6 +7,7 @@
 #include "collision/response.hpp"
 #include "collision/separation.hpp"
 #include "physics/contact_energy.hpp"
+#include "physics/implicit_euler.hpp"
 
 namespace selvedge {
 
@@ -34,6 +35,9 @@ void add_impact_terms(const Scene&, const ContactWorld&, std::span<const Impact>
 // out.
 std::vector<ContactTerm> push_terms(std::span<const Separation>, const Eigen::VectorXd& inverse_mass, double softness,
                                     double h);
+
+// Terms without friction as one of the potential, for solves that have contacts beside them.
+AddedTerm added_pushes(std::vector<ContactTerm>);
 
 // Sets the normal forces that bound friction from the gaps at x [N]. Returns by how much of it their sum has changed,
 // each times its friction.

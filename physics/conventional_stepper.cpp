@@ -7,6 +7,7 @@
 #include "collision/resolve.hpp"
 #include "collision/room.hpp"
 #include "collision/stopwatch.hpp"
+#include "physics/bdf2.hpp"
 #include "physics/contact_terms.hpp"
 #include "physics/features.hpp"
 #include "physics/recovery.hpp"
@@ -28,6 +29,18 @@ constexpr double recovery_speed = 1;        // at most, of a vertex that starts 
 constexpr double rounding = 1e-14;          // of positions that are added up over substeps
 constexpr int squeezed_rounds = 4;          // of zones, where there is no room
 constexpr int hopeful_rounds = 12;          // of zones in a substep that may still be halved
+
+// Where a substep ends. The nodes come with obstacles where they are to end and the cloth at its first guess.
+struct Arrival {
+  Points nodes, v;
+  bool touched = false;  // something was near, met, or left alone
+  int parts = 1;         // that it should be taken in
+};
+
+// How often a substep may still be cut.
+struct Cuts {
+  int halvings, parts;
+};
 
 ResolveOptions resolve_options(const ContactSettings& contact) {
   ResolveOptions options;
@@ -59,14 +72,18 @@ class ConventionalStepper final : public Stepper {
   bool has_contact() const { return features_.self_contact || features_.obstacles; }
   NewtonReport solve(const StepProblem& problem, Points& x, StepReport& report);
   NewtonReport solve_with_contact(StepProblem& problem, bool squeezed, const Points& nodes0, Points& nodes1, Points& x,
-                                  Contacts& contacts, StepReport& report);
+                                  Contacts& contacts, int most_parts, int& parts, StepReport& report);
   enum class Attempt { first, squeezed, last_resort };  // squeezed: zones did not settle, but perhaps obstacles yield
-  enum class Outcome { clean, unsettled, not_finite };
-  Outcome substep(const Leg& leg, const Points& pins, const Drive& drive, double h, Attempt attempt, Points& nodes1,
-                  StepReport& report);
-  bool advance(Leg& leg, const Points& nodes, const Points& pins, const Drive& drive, double h, int halvings_left,
+  enum class Outcome { clean, hasty, unsettled, not_finite };  // hasty: met something in full motion
+  Outcome substep(const Leg& leg, const Points& pins, const Drive& drive, double h, Attempt attempt, int most_parts,
+                  Arrival& to, StepReport& report);
+  bool goes_on(const Leg& leg, const Points& pins, double h) const;
+  bool smooth_substep(const Leg& leg, const Points& pins, const Drive& drive, Arrival& to, StepReport& report);
+  bool advance(Leg& leg, const Points& nodes, const Points& pins, const Drive& drive, double h, Cuts left,
                StepReport& report);
-  int substeps(const State& from, const Drive& drive, double dt, const Points& nodes) const;
+  bool advance_in_parts(Leg& leg, const Points& nodes, const Points& pins, const Drive& drive, double h, int parts,
+                        Cuts left, StepReport& report);
+  int planned_substeps(const State& from, const Drive& drive, double dt, const Points& nodes) const;
   void prepare_contact(const State& from, double dt, const Points& wanted, Points& nodes, StepReport& report);
 
   const Scene& scene_;
@@ -82,8 +99,9 @@ class ConventionalStepper final : public Stepper {
   AuditMemory audited_;
   PathPairs path_;  // pairs near the current positions
   SelfCrossings self_crossings_;
-  bool look_for_room_ = false;  // this step started with obstacles that lag, or some did not have room in it
-  Exemption exemption_;         // of this step
+  bool look_for_room_ = false;      // this step started with obstacles that lag, or some did not have room in it
+  Exemption exemption_;             // of this step
+  std::vector<Separation> gained_;  // by its recovery
 };
 
 void add(const ResolveReport& resolved, StepReport& report) {
@@ -103,18 +121,19 @@ double deepest(std::span<const Impact> impacts, const Points& nodes) {
 }
 
 // Solves the substep with its contacts, again and again until what it runs into besides them is shallow and friction is
-// bounded by the normal forces that there are. x is the cloth in nodes1. Reports the last solve.
+// bounded by the normal forces that there are. x is the cloth in nodes1. Reports the last solve. Ends after the first
+// one where that shows that the substep should be taken in parts.
 NewtonReport ConventionalStepper::solve_with_contact(StepProblem& problem, bool squeezed, const Points& nodes0,
-                                                     Points& nodes1, Points& x, Contacts& contacts,
-                                                     StepReport& report) {
+                                                     Points& nodes1, Points& x, Contacts& contacts, int most_parts,
+                                                     int& parts, StepReport& report) {
   const double h = problem.h, deep = deep_impact * edge_length_, creep = options_.implicit_euler.slip_speed * h;
   // Where nothing touches, or nothing that does moves, the first solve is likely to be the last one.
   const bool calm = !squeezed && mean_touching(contacts.terms, h * *problem.v0) < creep;
   problem.patience = contact_patience;
   for (int pass = 0;; ++pass) {
     problem.contacts = contacts.terms;
-    problem.roughness = pass == 0 && !calm ? first_roughness : pass <= 1 ? 1 : friction_roughness;
-    if (calm && features_.friction && !contacts.terms.empty()) problem.roughness = friction_roughness;
+    const bool friction = features_.friction && !contacts.terms.empty();
+    problem.roughness = pass > 1 || (calm && friction) ? friction_roughness : pass == 0 && !calm ? first_roughness : 1;
     const NewtonReport newton = solve(problem, x, report);
     if (!newton.finite) return newton;
     nodes1.topRows(x.rows()) = x;
@@ -124,10 +143,12 @@ NewtonReport ConventionalStepper::solve_with_contact(StepProblem& problem, bool 
     ResolveReport times;
     const auto impacts = find_impacts(search_, inverse_mass_, contact_, nodes0, nodes1, path_, times);
     add(times, report);
+    if (pass == 0) parts = parts_for_way(farthest_past(impacts, nodes0, nodes1), edge_length_, most_parts);
+    if (parts > 1) return newton;
     if (calm && mean_touching(contacts.terms, x - *problem.x0) < creep && deepest(impacts, nodes1) < deep &&
         mistaken_friction(solved, contacts.terms, *problem.x0, x, creep) < normal_change)
       return newton;
-    const int least = features_.friction && !contacts.terms.empty() ? 2 : 1;
+    const int least = friction ? 2 : 1;
     if (pass >= least && change < normal_change && deepest(impacts, nodes1) < deep) return newton;
     Stopwatch watch;
     add_impact_terms(scene_, world_, impacts, inverse_mass_, nodes0, nodes1, h, deep, contacts);
@@ -137,20 +158,57 @@ NewtonReport ConventionalStepper::solve_with_contact(StepProblem& problem, bool 
   }
 }
 
-// nodes1 comes with obstacles where they are to end and the cloth at its first guess.
+// Whether BDF2 goes on from the leg's history: one of this length, and no pin changes its speed by an edge a substep.
+bool ConventionalStepper::goes_on(const Leg& leg, const Points& pins, double h) const {
+  if (options_.integrator != Integrator::bdf2 || leg.history.h != h) return false;
+  for (std::size_t k = 0; k < scene_.pins.size(); ++k) {
+    const int pin = scene_.pins[k];
+    const Vec3 now = row(pins, static_cast<int>(k)) - row(leg.nodes, pin);
+    if ((now - (row(leg.nodes, pin) - row(leg.history.x, pin))).norm() > edge_length_) return false;
+  }
+  return true;
+}
+
+// The substep by BDF2. False, with `to` as it was, if it runs into something or is not finite.
+bool ConventionalStepper::smooth_substep(const Leg& leg, const Points& pins, const Drive& drive, Arrival& to,
+                                         StepReport& report) {
+  const int n = scene_.surface.vertex_count;
+  const StepStart start = bdf2_start(leg.history, leg.nodes.topRows(n), leg.v);
+  const StepProblem problem{start.h, &start.x, &start.v, &pins, drive.acceleration, drive.wind, {}, 1};
+  Points x = to.nodes.topRows(n);
+  const NewtonReport newton = solve(problem, x, report);
+  if (!newton.finite || !x.allFinite()) return false;
+  Points nodes = to.nodes;
+  nodes.topRows(n) = x;
+  if (has_contact()) {
+    ResolveReport times;
+    const auto impacts = find_impacts(search_, inverse_mass_, contact_, leg.nodes, nodes, path_, times);
+    add(times, report);
+    if (!impacts.empty()) return false;
+  }
+  if (!newton.converged) report.reason = Reason::not_converged;
+  to.nodes = std::move(nodes);
+  to.v = (x - start.x) / start.h;
+  return true;
+}
+
 ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const Points& pins, const Drive& drive,
-                                                          double h, Attempt attempt, Points& nodes1,
+                                                          double h, Attempt attempt, int most_parts, Arrival& to,
                                                           StepReport& report) {
   const Points& nodes0 = leg.nodes;
+  Points& nodes1 = to.nodes;
   const int n = scene_.surface.vertex_count;
+  const bool smooth = attempt == Attempt::first && goes_on(leg, pins, h);
   const Points x0 = nodes0.topRows(n);
   Points x = nodes1.topRows(n);
   StepProblem problem{h, &x0, &leg.v, &pins, drive.acceleration, drive.wind, {}, 1};
   if (!has_contact()) {
+    if (smooth && smooth_substep(leg, pins, drive, to, report)) return Outcome::clean;
     const NewtonReport newton = solve(problem, x, report);
     if (!newton.finite || !x.allFinite()) return Outcome::not_finite;
     if (!newton.converged) report.reason = Reason::not_converged;
     nodes1.topRows(n) = x;
+    to.v = (x - x0) / h;
     return Outcome::clean;
   }
 
@@ -159,6 +217,9 @@ ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const 
                                             scene_.rest, scene_.contact.thickness);
   for (const Proximity& p : proximities) report.collision.min_gap = std::min(report.collision.min_gap, p.gap);
   report.seconds.response += watch.lap();
+  to.touched = !proximities.empty() || exemption_.any();
+  if (smooth && !to.touched && smooth_substep(leg, pins, drive, to, report)) return Outcome::clean;
+  watch.lap();
   Eigen::VectorXd inverse_mass = inverse_mass_;
   bool squeezed = false;
   if (look_for_room_ || attempt == Attempt::squeezed) {
@@ -169,12 +230,19 @@ ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const 
     look_for_room_ = true;
     watch.lap();
   }
+  AddedTerm held;
+  if (!gained_.empty()) {
+    held = added_pushes(push_terms(gained_, inverse_mass_, 0.1 * scene_.contact.thickness, h));
+    problem.added = &held;
+  }
   Contacts contacts = contact_terms(scene_, world_, proximities, inverse_mass_, nodes0, nodes1, h);
   // The load of a contact is what pulls at it where the cloth would go without any.
   if (!contacts.terms.empty()) bear(contacts.terms, inverse_mass_, -solver_.gradient(problem, x));
   report.seconds.response += watch.lap();
-  const NewtonReport newton = solve_with_contact(problem, squeezed, nodes0, nodes1, x, contacts, report);
+  const NewtonReport newton =
+      solve_with_contact(problem, squeezed, nodes0, nodes1, x, contacts, most_parts, to.parts, report);
   if (!newton.finite) return Outcome::not_finite;
+  if (to.parts > 1) return Outcome::hasty;
   report.collision.contacts = static_cast<int>(contacts.terms.size());
   watch.lap();
   stick(contacts.terms, inverse_mass_, x0, h, options_.implicit_euler.slip_speed * h, x);
@@ -189,40 +257,57 @@ ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const 
   if (!nodes1.allFinite()) return Outcome::not_finite;
   if (!resolved.clean && !options.last_resort) return Outcome::unsettled;
   if (!newton.converged) report.reason = Reason::not_converged;
+  to.v = (nodes1.topRows(n) - x0) / h;
+  to.touched = to.touched || !contacts.terms.empty() || resolved.impulses + resolved.zones > 0;
   return Outcome::clean;
 }
 
-// Takes the leg over h to where `nodes` has the obstacles and to `pins`. Where zones do not settle, obstacles that
-// leave no room give way; if there are none the time is halved, and only the last halves take the last resort. False:
-// not finite.
+bool ConventionalStepper::advance_in_parts(Leg& leg, const Points& nodes, const Points& pins, const Drive& drive,
+                                           double h, int parts, Cuts left, StepReport& report) {
+  for (int s = 0; s < parts; ++s) {
+    const double part = 1.0 / (parts - s);  // of what is left
+    const Points next = leg.nodes + part * (nodes - leg.nodes);
+    const Points held = pinned_rows(scene_, leg.nodes);
+    const Points next_pins = held + part * (pins - held);
+    if (!advance(leg, next, next_pins, drive, h / parts, left, report)) return false;
+  }
+  return true;
+}
+
+// Takes the leg over h to where `nodes` has the obstacles and to `pins`; in parts where it meets something in full
+// motion. Where zones do not settle, obstacles that leave no room give way; if there are none the time is halved, and
+// only the last halves take the last resort. False: not finite.
 bool ConventionalStepper::advance(Leg& leg, const Points& nodes, const Points& pins, const Drive& drive, double h,
-                                  int halvings_left, StepReport& report) {
+                                  Cuts left, StepReport& report) {
   const int n = scene_.surface.vertex_count;
-  Points next;
+  Arrival next;
   const auto attempt = [&](Attempt kind) {
-    next = nodes;
-    next.topRows(n) = leg.nodes.topRows(n) + h * leg.v;
-    for (std::size_t k = 0; k < scene_.pins.size(); ++k) next.row(scene_.pins[k]) = pins.row(static_cast<int>(k));
-    return substep(leg, pins, drive, h, kind, next, report);
+    next.nodes = nodes;
+    next.nodes.topRows(n) = leg.nodes.topRows(n) + h * leg.v;
+    for (std::size_t k = 0; k < scene_.pins.size(); ++k) next.nodes.row(scene_.pins[k]) = pins.row(static_cast<int>(k));
+    return substep(leg, pins, drive, h, kind, left.parts, next, report);
   };
-  Outcome outcome = attempt(halvings_left == 0 ? Attempt::last_resort : Attempt::first);
+  Outcome outcome = attempt(left.halvings == 0 ? Attempt::last_resort : Attempt::first);
+  if (outcome == Outcome::hasty)
+    return advance_in_parts(leg, nodes, pins, drive, h, next.parts, {left.halvings, 1}, report);
+  left.parts = 1;
   if (outcome == Outcome::unsettled && !look_for_room_ && features_.obstacles) outcome = attempt(Attempt::squeezed);
   if (outcome == Outcome::not_finite) return false;
   if (outcome == Outcome::unsettled) {
     ++report.collision.halved_substeps;
-    const Points middle = 0.5 * (leg.nodes + nodes);
-    const Points middle_pins = 0.5 * (pinned_rows(scene_, leg.nodes) + pins);
-    return advance(leg, middle, middle_pins, drive, 0.5 * h, halvings_left - 1, report) &&
-           advance(leg, nodes, pins, drive, 0.5 * h, halvings_left - 1, report);
+    return advance_in_parts(leg, nodes, pins, drive, h, 2, {left.halvings - 1, 1}, report);
   }
   ++report.substeps;
   if (has_contact()) {
     Stopwatch watch;
-    report.collision.passed_through += passed_through(world_, exemption_, leg.nodes, next, audited_);
+    report.collision.passed_through += passed_through(world_, exemption_, leg.nodes, next.nodes, audited_);
     report.seconds.audit += watch.lap();
   }
-  leg.v = (next.topRows(n) - leg.nodes.topRows(n)) / h;
-  leg.nodes = std::move(next);
+  leg.history = {};
+  if (options_.integrator == Integrator::bdf2 && !next.touched)
+    leg.history = {h, leg.nodes.topRows(n), std::move(leg.v)};
+  leg.v = std::move(next.v);
+  leg.nodes = std::move(next.nodes);
   return true;
 }
 
@@ -243,7 +328,12 @@ void ConventionalStepper::prepare_contact(const State& from, double dt, const Po
   const bool exempt = exemption_.any();
   look_for_room_ = from.pinched;
   exemption_ = {};
-  if (!from.clean && nodes.allFinite()) exemption_ = recover(world_, inverse_mass_, recovery_speed * dt, nodes);
+  gained_.clear();
+  if (!from.clean && nodes.allFinite()) {
+    Recovery recovery = recover(world_, inverse_mass_, recovery_speed * dt, nodes);
+    exemption_ = std::move(recovery.left);
+    gained_ = std::move(recovery.gained);
+  }
   report.collision.left_alone = exemption_.cloth_vertices();
   self_crossings_.switch_off(nodes, wanted, exemption_);
   if (exempt || exemption_.any()) path_ = {};  // what was listed then is not what is to be listed now
@@ -253,32 +343,33 @@ void ConventionalStepper::prepare_contact(const State& from, double dt, const Po
   report.seconds.broad_phase += watch.lap();
 }
 
-int ConventionalStepper::substeps(const State& from, const Drive& drive, double dt, const Points& nodes) const {
+int ConventionalStepper::planned_substeps(const State& from, const Drive& drive, double dt, const Points& nodes) const {
   if (options_.substeps) return *options_.substeps;
   const auto touching = has_contact() ? pairs_within(path_, nodes, scene_.contact.thickness) : std::vector<NodePair>{};
-  return substeps_for(from, drive, dt, edge_length_, options_.max_substeps, fastest_past(touching, from, drive, dt));
+  return substeps_for_contact(fastest_past(touching, from, drive, dt), dt, edge_length_, options_.max_substeps);
 }
 
 StepReport ConventionalStepper::step(const State& from, const Drive& drive, double dt, State& to) {
   restore_standard_arithmetic();
+  if (const auto restart = restart_of(from, drive, options_.substeps.value_or(options_.max_substeps))) {
+    StepReport report = step(restart->state, drive, dt, to);
+    report.collision.jumped = restart->jumped;
+    return report;
+  }
   StepReport report;
   report.by = traits_.name;
   const int n = scene_.surface.vertex_count;
-  Leg leg{gather_nodes(from.x, from.obstacles), from.v};
+  Leg leg{gather_nodes(from.x, from.obstacles), from.v, from.history};
   const Points wanted = gather_nodes(from.x, drive.obstacles);
   if (has_contact()) prepare_contact(from, dt, wanted, leg.nodes, report);
-  const int planned = substeps(from, drive, dt, leg.nodes);
-  for (int s = 0; s < planned; ++s) {
-    const double part = 1.0 / (planned - s);  // of what is left of the frame
-    const Points nodes = leg.nodes + part * (wanted - leg.nodes);
-    const Points held = pinned_rows(scene_, leg.nodes);
-    const Points pins = held + part * (drive.pins - held);
-    // Cloth that left an obstacle no room will hardly do so now.
-    if (!advance(leg, nodes, pins, drive, dt / planned, from.pinched ? 0 : halvings, report)) {
-      report.status = StepStatus::rejected;
-      report.reason = Reason::not_finite;
-      return report;
-    }
+  if (exemption_.any() || leg.nodes.topRows(n) != from.x) leg.history = {};
+  const int planned = planned_substeps(from, drive, dt, leg.nodes);
+  // Cloth that left an obstacle no room will hardly do so now.
+  const Cuts cuts{from.pinched ? 0 : halvings, options_.substeps ? 1 : options_.max_substeps / planned};
+  if (!advance_in_parts(leg, wanted, drive.pins, drive, dt, planned, cuts, report)) {
+    report.status = StepStatus::rejected;
+    report.reason = Reason::not_finite;
+    return report;
   }
   report.status = StepStatus::accepted;
   arrive(from, leg, dt, to);

@@ -1,9 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <queue>
-#include <tuple>
 
 #include "physics/bending.hpp"
+#include "physics/nearest.hpp"
 #include "physics/quadric_stencil.hpp"
 
 // Flat rest shapes take the plate's whole energy by quadrics (physics/quadric_stencil.hpp). Curved ones take the part
@@ -104,39 +103,6 @@ Stencil make_stencil(const Scene& scene, const std::vector<Corners>& corners, in
   return stencil;
 }
 
-double rest_length(const Scene& scene, int edge) {
-  const int t = scene.surface.edge_owner[edge];
-  for (int k = 0; k < 3; ++k)
-    if (scene.surface.triangle_edges(t, k) == edge)
-      return (scene.rest_triangle[t].col(k) - scene.rest_triangle[t].col((k + 1) % 3)).norm();
-  return 0;
-}
-
-// For every vertex the stencil of the nearest interior vertex along edges, -1 where there is none; the lower one on a
-// tie. Paths do not pass through interior vertices.
-std::vector<int> nearest_stencil(const Scene& scene, const std::vector<Stencil>& stencils) {
-  const Surface& surface = scene.surface;
-  std::vector<std::vector<std::pair<int, double>>> neighbours(surface.vertex_count);
-  for (int e = 0; e < surface.edges.rows(); ++e) {
-    const double length = rest_length(scene, e);
-    neighbours[surface.edges(e, 0)].emplace_back(surface.edges(e, 1), length);
-    neighbours[surface.edges(e, 1)].emplace_back(surface.edges(e, 0), length);
-  }
-  using Entry = std::tuple<double, int, int>;  // distance, stencil, vertex
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  for (std::size_t s = 0; s < stencils.size(); ++s) queue.emplace(0, static_cast<int>(s), stencils[s].nodes[0]);
-  std::vector<int> nearest(surface.vertex_count, -1);
-  while (!queue.empty()) {
-    const auto [distance, stencil, vertex] = queue.top();
-    queue.pop();
-    if (nearest[vertex] >= 0) continue;
-    nearest[vertex] = stencil;
-    for (const auto& [next, length] : neighbours[vertex])
-      if (nearest[next] < 0) queue.emplace(distance + length, stencil, next);
-  }
-  return nearest;
-}
-
 std::vector<Stencil> make_stencils(const Scene& scene) {
   std::vector<Corners> corners(scene.rest_triangle.size());
   std::transform(scene.rest_triangle.begin(), scene.rest_triangle.end(), corners.begin(), corners_of);
@@ -152,7 +118,9 @@ std::vector<Stencil> make_stencils(const Scene& scene) {
     }
   }
   if (stencils.empty()) return stencils;
-  const std::vector<int> nearest = nearest_stencil(scene, stencils);
+  std::vector<int> centres;
+  for (const Stencil& stencil : stencils) centres.push_back(stencil.nodes[0]);
+  const std::vector<int> nearest = nearest_along_edges(scene, centres);
   for (int t = 0; t < scene.surface.triangles.rows(); ++t)
     for (int k = 0; k < 3; ++k) {
       const int v = scene.surface.triangles(t, k);

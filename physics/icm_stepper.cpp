@@ -160,11 +160,16 @@ bool IcmStepper::substep(const Leg& leg, const Points& pins, const Drive& drive,
 
 StepReport IcmStepper::step(const State& from, const Drive& drive, double dt, State& to) {
   restore_standard_arithmetic();
+  if (const auto restart = restart_of(from, drive, options_.substeps.value_or(options_.max_substeps))) {
+    StepReport report = step(restart->state, drive, dt, to);
+    report.collision.jumped = restart->jumped;
+    return report;
+  }
   StepReport report;
   report.by = traits_.name;
   const int n = scene_.surface.vertex_count;
   const int planned =
-      options_.substeps ? *options_.substeps : substeps_for(from, drive, dt, edge_length_, options_.max_substeps);
+      options_.substeps ? *options_.substeps : substeps_for_speed(from, drive, dt, edge_length_, options_.max_substeps);
   Leg leg{gather_nodes(from.x, from.obstacles), from.v};
   const Points wanted = gather_nodes(from.x, drive.obstacles);
   if (has_contact() && !from.clean && leg.nodes.allFinite())

@@ -9,6 +9,7 @@
 #include <Eigen/LU>
 
 #include "physics/linear_solver.hpp"
+#include "physics/measures.hpp"
 #include "physics/step_potential.hpp"
 
 namespace selvedge {
@@ -19,7 +20,10 @@ constexpr double sufficient_decrease = 1e-4;  // Armijo
 constexpr int max_halvings = 40;
 constexpr double almost_linear = 0.7;  // change over slope; 0.5 where the quadratic model is exact
 constexpr double max_length = 16;
-constexpr int first_exact = 3;  // Newton iterations with filtered Hessians before the exact one is tried
+constexpr double usual_stiffness = 1e5;  // of vertices, over their inertia: linear solves need not know of more
+constexpr double stiff_allowance = 4;    // energy of a last step, over that of its goal as plain motion
+constexpr int most_stiff = 8;            // times the most iterations
+constexpr int first_exact = 3;           // Newton iterations with filtered Hessians before the exact one is tried
 
 struct EnergyChange {
   double change = 0;  // [J]
@@ -35,10 +39,6 @@ EnergyChange energy_change(const std::vector<double>& from, const std::vector<do
   }
   result.noise = 8 * rounding * size;
   return result;
-}
-
-double root_mean_square(const Points& points) {
-  return points.rows() > 0 ? std::sqrt(points.squaredNorm() / static_cast<double>(points.rows())) : 0.0;
 }
 
 double largest_row(const Points& points) {
@@ -105,6 +105,7 @@ struct ImplicitEuler::Impl {
   Points gradient, motion, trial;
   std::vector<double> energy, trial_energy;
   std::vector<char> drifting;
+  double relative_stiffness = 0;       // mean_stiffness of the last system
   int exact_from = 0, exact_wait = 0;  // Newton iterations until the exact Hessian is tried
 
   Impl(const Scene& s, const ImplicitEulerOptions& o, const Eigen::VectorXd& m)
@@ -117,12 +118,15 @@ struct ImplicitEuler::Impl {
   void start(const StepProblem& problem) {
     prepare(scene, elastic, masses, problem, options.slip_speed, scratch, step);
     exact_from = exact_wait = first_exact;
+    linear.start_family();
   }
   LinearSystem system() const {
     return {elastic.pattern, hessian,       step.diagonal, elastic.flat,
             step.flat_scale, step.contacts, step.lists,    step.free};
   }
   double goal(const Points& x) const;
+  double energy_goal(const Points& x) const;
+  double mean_stiffness() const;
   bool choose_first_guess(Points& x);
   bool solve_linear(Definite, NewtonReport&);
   enum class Direction { none, rough, accurate };  // none: x is the minimiser to rounding
@@ -174,10 +178,30 @@ double ImplicitEuler::Impl::goal(const Points& x) const {
                   options.relative_tolerance * std::max(problem.roughness, 1.0) * root_mean_square(x - *problem.x0));
 }
 
-// One linear solve for the Newton step; true if it is as accurate as asked for.
+// What the energy that a Newton step can still gain has to fall below [J]: in stiff cloth small errors store much.
+double ImplicitEuler::Impl::energy_goal(const Points& x) const {
+  const double reach = stiff_allowance * goal(x);
+  return reach * reach * std::accumulate(step.inertia.begin(), step.inertia.end(), 0.0);
+}
+
+// Mean stiffness of the vertices over their inertia.
+double ImplicitEuler::Impl::mean_stiffness() const {
+  double stiffness = 0, inertia = 0;
+  for (std::size_t i = 0; i < diagonal.size(); ++i) {
+    if (!step.free[i]) continue;
+    stiffness += diagonal[i].trace() / 3;
+    inertia += step.inertia[i];
+  }
+  return inertia > 0 ? stiffness / inertia : 0;
+}
+
+// One linear solve for the Newton step; true if it is as accurate as asked for. The norm in which it converges weighs a
+// motion by its stiffness: the stiffer the cloth, the less of it are the soft modes, which carry the motion.
 bool ImplicitEuler::Impl::solve_linear(Definite definite, NewtonReport& report) {
+  relative_stiffness = mean_stiffness();
+  const double tolerance = options.linear_tolerance * std::min(1.0, std::sqrt(usual_stiffness / relative_stiffness));
   const LinearReport solved =
-      linear.solve(system(), diagonal, -gradient, options.linear_tolerance, options.max_linear, motion, definite);
+      linear.solve(system(), diagonal, -gradient, tolerance, options.max_linear, motion, definite);
   report.linear_iterations += solved.iterations;
   return solved.converged;
 }
@@ -247,17 +271,19 @@ NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
   report.finite = impl.choose_first_guess(x);
   if (!report.finite) return report;
   const int most = std::max(1, static_cast<int>(std::lround(problem.patience * impl.options.max_newton)));
-  while (!report.converged && report.iterations < most) {
+  bool stiff = false;  // the last step could gain more energy than its length says
+  while (!report.converged && report.iterations < (stiff ? most_stiff * most : most)) {
     const auto direction = impl.find_direction(x, report);
     if (direction == Impl::Direction::none) {
       report.converged = true;
       break;
     }
-    const double length = impl.line_search(x);
+    const double gain = -impl.gradient.cwiseProduct(impl.motion).sum(), length = impl.line_search(x);
     if (length == 0) break;
     ++report.iterations;
-    report.converged =
-        direction == Impl::Direction::accurate && std::max(length, 1.0) * root_mean_square(impl.motion) < impl.goal(x);
+    stiff = impl.relative_stiffness > usual_stiffness && gain > impl.energy_goal(x);
+    report.converged = !stiff && direction == Impl::Direction::accurate &&
+                       std::max(length, 1.0) * root_mean_square(impl.motion) < impl.goal(x);
   }
   derivatives(impl.step, x, impl.scratch, impl.gradient, nullptr);
   report.residual = largest_row(impl.gradient);

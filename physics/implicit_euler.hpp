@@ -16,7 +16,7 @@ enum class LinearSolver { automatic, cholmod, pcg, multigrid };  // pcg: block J
 struct ImplicitEulerOptions {
   double velocity_tolerance = 2e-3;  // Newton ends when the RMS of its displacement is below this times the time
                                      // step [m/s],
-  double relative_tolerance = 3e-3;  // or below this part of the RMS motion in the step
+  double relative_tolerance = 2e-3;  // or below this part of the RMS motion in the step
   int max_newton = 8;
   LinearSolver linear_solver = LinearSolver::automatic;
   double linear_tolerance = 0.25;  // of PCG in a Newton iteration, in the norm of its preconditioner
@@ -54,8 +54,8 @@ struct StepProblem {
 };
 
 // Minimises the incremental potential
-//   E(x) = sum_i m_i |x_i - y_i|^2 / (2 h^2) + membrane + bending + damping + contact + friction + added,
-//   y = x0 + h v0 + h^2 (acceleration + wind force / m),
+//   E(x) = sum_i m_i |x_i - y_i|^2 / (2 h^2) + membrane + bending + damping + wind + contact + friction + added,
+//   y = x0 + h v0 + h^2 acceleration,
 // with pins held exactly, by projected Newton with line search. Holds caches only (patterns, factors, scratch).
 class ImplicitEuler {
  public:

@@ -17,6 +17,9 @@ namespace {
 // against 0.5 ms a frame with block Jacobi for 81 vertices and 53 against 10 for 625.
 constexpr int direct_limit = 60;
 
+constexpr int stiff_iterations = 150;  // of an automatic PCG solve, beyond which CHOLMOD takes the next ones
+constexpr int stiff_turns = 1000;      // that many, then PCG is tried again
+
 constexpr double jacobi_share = 0.4;           // of a tolerance: block Jacobi's norm hardly sees smooth errors
 constexpr double float_tolerance = 1e-3;       // what one pass in float surely reaches
 constexpr double refinement_tolerance = 1e-4;  // of each pass where several are needed
@@ -65,24 +68,28 @@ double preconditioner_norm(const Points& r, std::span<const Mat3> diagonal, std:
 LinearSolver chosen_solver(LinearSolver wanted, int free_vertices) {
   if (wanted == LinearSolver::cholmod && !Cholesky::available())
     throw Error("this build has no CHOLMOD", "linear solver",
-                "choose pcg or automatic, or build with SuiteSparse (libsuitesparse-dev)");
+                "choose multigrid, pcg or automatic, or build with SuiteSparse (libsuitesparse-dev)");
   if (wanted != LinearSolver::automatic) return wanted;
   return Cholesky::available() && free_vertices <= direct_limit ? LinearSolver::cholmod : LinearSolver::multigrid;
 }
 
 struct LinearSystemSolver::Impl {
   LinearSolver chosen;
+  bool automatic = false;
+  int direct_turns = 0;  // solves for CHOLMOD, since PCG found the system stiff
   Cholesky cholesky;
   LowerTriangle lower;
   std::vector<double> packed_right, packed_solution;
   Vertices vertices;
   std::vector<char> free;
   std::unique_ptr<Multigrid> multigrid;  // made when first needed
+  int fresh_iterations = -1;             // that PCG took with the coarse levels made for its system; -1: make them
   Iterative<float> single;
   std::unique_ptr<Iterative<double>> full;  // made when float first fails
 
   bool solve_direct(const LinearSystem&, std::span<const Mat3> diagonal, const Points& right, Points& x);
   double prepare_single(const LinearSystem&, std::span<const Mat3> diagonal);
+  void judge_preconditioner(const LinearReport&);
   template <class Real>
   LinearReport solve_iterative(Iterative<Real>&, const LinearSystem&, std::span<const Mat3> diagonal,
                                const Points& right, double tolerance, int max_iterations, Points& x);
@@ -139,10 +146,14 @@ LinearReport LinearSystemSolver::Impl::solve_iterative(Iterative<Real>& method, 
 // Where multigrid cannot be had, block Jacobi takes its place. Returns the preconditioner's share of a tolerance.
 double LinearSystemSolver::Impl::prepare_single(const LinearSystem& system, std::span<const Mat3> diagonal) {
   single.matrix.fill(system);
-  if (chosen == LinearSolver::multigrid && !multigrid) multigrid = std::make_unique<Multigrid>(vertices, free);
-  if (chosen == LinearSolver::multigrid && multigrid->fill(system, diagonal, single.matrix)) {
-    single.preconditioner = [this](const Quads<float>& r, Quads<float>& z) { multigrid->apply(r, z); };
-    return 1;
+  if (chosen == LinearSolver::multigrid) {
+    if (!multigrid) multigrid = std::make_unique<Multigrid>(vertices, free);
+    const bool kept = fresh_iterations >= 0;
+    if (kept) multigrid->fill_finest(system, diagonal, single.matrix);
+    if (kept || multigrid->fill(system, diagonal, single.matrix)) {
+      single.preconditioner = [this](const Quads<float>& r, Quads<float>& z) { multigrid->apply(r, z); };
+      return 1;
+    }
   }
   single.take_jacobi(diagonal, system.free);
   return jacobi_share;
@@ -152,21 +163,38 @@ LinearSystemSolver::LinearSystemSolver(LinearSolver wanted, Vertices vertices, s
     : impl_(std::make_unique<Impl>()) {
   impl_->vertices = std::move(vertices);
   impl_->free.assign(free.begin(), free.end());
+  impl_->automatic = wanted == LinearSolver::automatic;
   impl_->chosen = chosen_solver(wanted, static_cast<int>(std::ranges::count(free, 1)));
 }
 LinearSystemSolver::~LinearSystemSolver() = default;
 LinearSolver LinearSystemSolver::chosen() const { return impl_->chosen; }
 
+// After a solve with the preconditioner of prepare_single(): coarse levels of an earlier system are kept as long as
+// they need no more iterations than they did for that one.
+void LinearSystemSolver::Impl::judge_preconditioner(const LinearReport& report) {
+  if (fresh_iterations < 0)
+    fresh_iterations = report.converged ? report.iterations : -1;
+  else if (!report.converged || report.iterations > fresh_iterations)
+    fresh_iterations = -1;
+}
+
+void LinearSystemSolver::start_family() { impl_->fresh_iterations = -1; }
+
 LinearReport LinearSystemSolver::solve(const LinearSystem& system, std::span<const Mat3> diagonal, const Points& right,
                                        double tolerance, int max_iterations, Points& x, Definite definite) {
   Impl& impl = *impl_;
   LinearReport report;
-  if (impl.chosen == LinearSolver::cholmod) {
+  if (impl.chosen == LinearSolver::cholmod || impl.direct_turns > 0) {
+    impl.direct_turns = std::max(0, impl.direct_turns - 1);
     if (impl.solve_direct(system, diagonal, right, x)) return {true, 1};
     if (definite == Definite::perhaps) return {false, 1};
-  } else {
+  }
+  if (impl.chosen != LinearSolver::cholmod) {
     const double share = impl.prepare_single(system, diagonal);
     report = impl.solve_iterative(impl.single, system, diagonal, right, share * tolerance, max_iterations, x);
+    if (share == 1) impl.judge_preconditioner(report);
+    if (impl.automatic && report.iterations > stiff_iterations && Cholesky::available())
+      impl.direct_turns = stiff_turns;
     if (report.converged || definite == Definite::perhaps) return report;
     if (impl.solve_direct(system, diagonal, right, x)) return {true, report.iterations + 1};
   }

@@ -15,17 +15,22 @@ struct LinearReport {
   int iterations = 0;  // of PCG; a direct solve counts as one
 };
 
-// `automatic` takes CHOLMOD, where the build has it, for scenes of few free vertices, and multigrid for larger ones.
+// `automatic` takes CHOLMOD, where the build has it, for scenes of few free vertices, and multigrid for larger ones; in
+// systems so stiff that multigrid needs very many iterations CHOLMOD takes over for a while.
 // Asking for CHOLMOD in a build without it is an Error.
 LinearSolver chosen_solver(LinearSolver wanted, int free_vertices);
 
-// CHOLMOD and PCG behind one call. Holds caches only: patterns, hierarchies, factors, vectors.
+// CHOLMOD and PCG behind one call. Holds caches: patterns, hierarchies, factors, vectors.
 class LinearSystemSolver {
  public:
   // The hierarchy is made from the vertices when first needed.
   LinearSystemSolver(LinearSolver wanted, Vertices, std::span<const char> free);
   ~LinearSystemSolver();
   LinearSolver chosen() const;
+
+  // The systems from here on are one family: of one step, with the same contacts. Their preconditioner is made for the
+  // first of them and serves the others as well as it does.
+  void start_family();
 
   // Solves A x = right; `diagonal` are the blocks of diagonal_blocks(). x is zero on rows that are not free. PCG stops
   // when the residual's preconditioner norm has fallen by `tolerance`; it works in float, refined in double where the

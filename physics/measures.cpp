@@ -28,6 +28,10 @@ Energies energies(const Scene& scene, const Points& x, const Points& v, const Ve
   return energies(scene, energy_terms(scene), x, v, acceleration);
 }
 
+double root_mean_square(const Points& points) {
+  return points.rows() > 0 ? std::sqrt(points.squaredNorm() / static_cast<double>(points.rows())) : 0.0;
+}
+
 Eigen::Matrix<double, Eigen::Dynamic, 2> principal_stretches(const Scene& scene, const Points& x) {
   Eigen::Matrix<double, Eigen::Dynamic, 2> stretches;
   stretches.setOnes(scene.surface.triangles.rows(), 2);

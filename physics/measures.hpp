@@ -21,6 +21,9 @@ struct Energies {  // [J]; gravity is -sum m acceleration . x
 Energies energies(const Scene&, const EnergyTerms&, const Points& x, const Points& v, const Vec3& acceleration);
 Energies energies(const Scene&, const Points& x, const Points& v, const Vec3& acceleration);
 
+// Of the rows' lengths; 0 without rows.
+double root_mean_square(const Points&);
+
 // Principal stretches of every triangle: columns smallest, largest. 1 is rest, and stands for a triangle
 // without rest area.
 Eigen::Matrix<double, Eigen::Dynamic, 2> principal_stretches(const Scene&, const Points& x);

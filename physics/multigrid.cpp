@@ -35,18 +35,6 @@ void for_chunks(bool team, int rows, const F& f) {
   }
 }
 
-void set(const Mat3& from, BlockColumns<float>& to) {
-  for (int k = 0; k < 3; ++k)
-    for (int r = 0; r < 4; ++r) to.column[k].lanes[r] = r < 3 ? static_cast<float>(from(r, k)) : 0.f;
-}
-
-Mat3 matrix(const BlockColumns<float>& from) {
-  Mat3 to;
-  for (int k = 0; k < 3; ++k)
-    for (int r = 0; r < 3; ++r) to(r, k) = from.column[k].lanes[r];
-  return to;
-}
-
 using Blocks = std::vector<BlockColumns<float>>;
 
 // A level of the hierarchy. The finest has no matrix of its own.
@@ -199,18 +187,14 @@ void Multigrid::Impl::fill_second(const LinearSystem& system, Level& level) {
   {
 #pragma omp for schedule(static)
     for (int c = 0; c < static_cast<int>(contact_factor.size()); ++c)
-      set(contact_matrix(system.contacts[c]), contact_factor[c]);
+      contact_factor[c] = columns_of<float>(contact_matrix(system.contacts[c]));
 #pragma omp for schedule(static)
     for (int i = 0; i < static_cast<int>(fine_diagonal.size()); ++i)
-      set(system.diagonal[i] * Mat3::Identity(), fine_diagonal[i]);
+      fine_diagonal[i] = columns_of<float>(system.diagonal[i] * Mat3::Identity());
     for_chunks(true, level.rows, [&](int begin, int end) {
       for (int a = begin; a < end; ++a) {
         const float scale = has_flat ? static_cast<float>(system.flat_scale[levels[0].prolongation.chosen[a]]) : 0.f;
-        const auto scalar = [](float s) {
-          BlockColumns<float> b{};
-          for (int k = 0; k < 3; ++k) b.column[k].lanes[k] = s;
-          return b;
-        };
+        const auto scalar = [](double value) { return columns_of<float>(value * Mat3::Identity()); };
         level.diagonal[a] = scalar(has_flat ? scale * flat_diagonal[a] : 0.f);
         for (int k = level.pattern.begin[a]; k < level.pattern.begin[a + 1]; ++k)
           level.block[k] = scalar(has_flat ? scale * flat[k] : 0.f);
@@ -246,13 +230,13 @@ bool Multigrid::Impl::invert_diagonal(Level& level) {
 #pragma omp parallel if (level.rows >= one_thread)
   for_chunks(true, level.rows, [&](int begin, int end) {
     for (int a = begin; a < end; ++a) {
-      Mat3 whole = matrix(level.diagonal[a]);
-      for (int k = level.pattern.begin[a]; k < level.pattern.begin[a + 1]; ++k) whole -= matrix(level.block[k]);
+      Mat3 whole = block_of(level.diagonal[a]);
+      for (int k = level.pattern.begin[a]; k < level.pattern.begin[a + 1]; ++k) whole -= block_of(level.block[k]);
       for (int k = level.touching.begin[a]; k < level.touching.begin[a + 1]; ++k)
-        whole -= matrix(level.touching_block[k]);
+        whole -= block_of(level.touching_block[k]);
       const Mat3 inverse = (0.5 * (whole + whole.transpose())).inverse();
       if (!inverse.allFinite() || !(inverse.trace() > 0)) positive[begin / chunk] = false;
-      set(inverse, level.inverse[a]);
+      level.inverse[a] = columns_of<float>(inverse);
     }
   });
   return std::ranges::all_of(positive, [](char yes) { return yes != 0; });
@@ -266,13 +250,13 @@ bool Multigrid::Impl::factor_coarsest() {
   Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(3 * n, 3 * n);
   const auto add = [&](int a, const RowPattern& pattern, const Blocks& block) {
     for (int k = pattern.begin[a]; k < pattern.begin[a + 1]; ++k) {
-      const Mat3 entry = matrix(block[k]);
+      const Mat3 entry = block_of(block[k]);
       whole.block<3, 3>(3 * a, 3 * pattern.column[k]) += entry;
       whole.block<3, 3>(3 * a, 3 * a) -= entry;
     }
   };
   for (int a = 0; a < n; ++a) {
-    whole.block<3, 3>(3 * a, 3 * a) += matrix(level.diagonal[a]);
+    whole.block<3, 3>(3 * a, 3 * a) += block_of(level.diagonal[a]);
     add(a, level.pattern, level.block);
     add(a, level.touching, level.touching_block);
   }
@@ -299,21 +283,26 @@ void Multigrid::Impl::multiply(int l, bool team, const Quads<float>& u, Quads<fl
   for_chunks(team, levels[l].rows, [&](int begin, int end) { multiply_level(view, u.data(), y.data(), begin, end); });
 }
 
+void Multigrid::fill_finest(const LinearSystem& system, std::span<const Mat3> diagonal, PcgMatrix<float>& fine) {
+  Impl& impl = *impl_;
+  impl.fine = &fine;
+  impl.partial.resize(chunks_of(fine.rows()));
+  Level& finest = impl.levels[0];
+  finest.inverse.resize(finest.rows);
+#pragma omp parallel for schedule(static) if (chunks_of(finest.rows) > 8)
+  for (int i = 0; i < finest.rows; ++i)
+    finest.inverse[i] = columns_of<float>(system.free[i] ? Mat3(diagonal[i].inverse()) : Mat3(Mat3::Zero()));
+}
+
 bool Multigrid::fill(const LinearSystem& system, std::span<const Mat3> diagonal, PcgMatrix<float>& fine) {
   Impl& impl = *impl_;
   if (impl.levels.size() < 2) return false;
-  impl.fine = &fine;
-  impl.partial.resize(chunks_of(fine.rows()));
   if (!impl.patterns) {
     impl.make_patterns(system);
     impl.make_contact_patterns(system.contacts);
   }
   if (!same(system.contacts, impl.contacts)) impl.make_contact_patterns(system.contacts);
-  Level& finest = impl.levels[0];
-  finest.inverse.resize(finest.rows);
-#pragma omp parallel for schedule(static) if (chunks_of(finest.rows) > 8)
-  for (int i = 0; i < finest.rows; ++i)
-    set(system.free[i] ? Mat3(diagonal[i].inverse()) : Mat3(Mat3::Zero()), finest.inverse[i]);
+  fill_finest(system, diagonal, fine);
   for (std::size_t l = 1; l < impl.levels.size(); ++l) {
     if (l == 1)
       impl.fill_second(system, impl.levels[1]);

@@ -17,6 +17,10 @@ class Multigrid {
   // `fine` is the system's matrix in float and stays where it is until the last apply(). False where the mesh is too
   // small to have a coarse level, or the matrix turned out not to be positive definite: there is nothing to apply then.
   bool fill(const LinearSystem&, std::span<const Mat3> diagonal, PcgMatrix<float>& fine);
+  // For a system like the one of the last fill() that did well, with the same contacts: the finest level's smoother
+  // alone; the coarse levels stay as they are. What comes of it is symmetric and positive definite all the same, for
+  // the coarse correction, whatever matrix it is of, is applied between one smoother and its transpose.
+  void fill_finest(const LinearSystem&, std::span<const Mat3> diagonal, PcgMatrix<float>& fine);
   // z = M^-1 r, as Preconditioner asks for.
   void apply(const Quads<float>& r, Quads<float>& z);
 

@@ -11,6 +11,22 @@ namespace selvedge {
 template <class Real>
 using Quads = std::vector<Quad<Real>>;
 
+// A block in the kernels' layout, and back.
+template <class Real>
+BlockColumns<Real> columns_of(const Mat3& block) {
+  BlockColumns<Real> columns{};
+  for (int k = 0; k < 3; ++k)
+    for (int r = 0; r < 3; ++r) columns.column[k].lanes[r] = static_cast<Real>(block(r, k));
+  return columns;
+}
+template <class Real>
+Mat3 block_of(const BlockColumns<Real>& columns) {
+  Mat3 block;
+  for (int k = 0; k < 3; ++k)
+    for (int r = 0; r < 3; ++r) block(r, k) = columns.column[k].lanes[r];
+  return block;
+}
+
 // z = M^-1 r on all rows. Called by every thread of an OpenMP team, with its loops shared among them; complete when it
 // returns. z must be zero on rows that are not free, whatever r is there.
 template <class Real>

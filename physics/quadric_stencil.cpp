@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <queue>
-#include <tuple>
 
 #include <Eigen/Eigenvalues>
+
+#include "physics/nearest.hpp"
 
 namespace selvedge {
 namespace {
@@ -187,32 +187,6 @@ std::vector<double> vertex_areas(const RestShape& shape) {
   return areas;
 }
 
-// For every vertex which of the stencils' is nearest along edges, -1 where none can be reached; the lower one on a tie.
-std::vector<int> nearest_stencil(const Scene& scene, const std::vector<QuadricStencil>& stencils) {
-  const Surface& surface = scene.surface;
-  std::vector<std::vector<std::pair<int, double>>> neighbours(surface.vertex_count);
-  for (int t = 0; t < surface.triangles.rows(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const int a = surface.triangles(t, k), b = surface.triangles(t, (k + 1) % 3);
-      const double length = rest_distance(scene, t, k, (k + 1) % 3);
-      neighbours[a].emplace_back(b, length);
-      neighbours[b].emplace_back(a, length);
-    }
-  using Entry = std::tuple<double, int, int>;  // distance, stencil, vertex
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  for (std::size_t s = 0; s < stencils.size(); ++s) queue.emplace(0, static_cast<int>(s), stencils[s].vertex);
-  std::vector<int> nearest(surface.vertex_count, -1);
-  while (!queue.empty()) {
-    const auto [distance, stencil, vertex] = queue.top();
-    queue.pop();
-    if (nearest[vertex] >= 0) continue;
-    nearest[vertex] = stencil;
-    for (const auto& [next, length] : neighbours[vertex])
-      if (nearest[next] < 0) queue.emplace(distance + length, stencil, next);
-  }
-  return nearest;
-}
-
 }  // namespace
 
 std::vector<QuadricStencil> quadric_stencils(const Scene& scene) {
@@ -236,7 +210,9 @@ std::vector<QuadricStencil> quadric_stencils(const Scene& scene) {
       }
     }
   }
-  const std::vector<int> nearest = nearest_stencil(scene, stencils);
+  std::vector<int> centres;
+  for (const QuadricStencil& stencil : stencils) centres.push_back(stencil.vertex);
+  const std::vector<int> nearest = nearest_along_edges(scene, centres);
   for (std::size_t v = 0; v < areas.size(); ++v)
     if (nearest[v] >= 0) stencils[nearest[v]].area += areas[v];
   return stencils;

@@ -2,12 +2,19 @@
 
 #include "collision/exemption.hpp"
 #include "collision/intersections.hpp"
+#include "collision/separation.hpp"
 
 namespace selvedge {
 
 // What a step that starts tangled does first: `untangle` says where the cloth should be, and every vertex that may move
-// goes there by at most `reach` [m]. Returns what is still tangled then, for contact to leave alone.
-Exemption recover(const ContactWorld&, const Eigen::VectorXd& inverse_mass, double reach, Points& nodes);
+// goes there by at most `reach` [m]. `left` is what is still tangled then, for contact to leave alone, and `gained`
+// what the solve must not lose again: a vertex that springs back gets nowhere, and what holds it pulls the cloth after
+// it.
+struct Recovery {
+  Exemption left;
+  std::vector<Separation> gained;
+};
+Recovery recover(const ContactWorld&, const Eigen::VectorXd& inverse_mass, double reach, Points& nodes);
 
 // Which obstacles cross themselves, in the positions of a step's start or end. Remembers what it was asked last.
 class SelfCrossings {

@@ -37,12 +37,14 @@ Eigen::VectorXd inverse_masses(const Scene& scene, int node_count) {
   return inverse;
 }
 
-double mean_edge_length(const Scene& scene) {
+double mean_edge_length(std::span<const RestTriangle> triangles) {
   double sum = 0;
-  for (const RestTriangle& t : scene.rest_triangle)
+  for (const RestTriangle& t : triangles)
     for (int k = 0; k < 3; ++k) sum += (t.col(k) - t.col((k + 1) % 3)).norm();
-  return scene.rest_triangle.empty() ? 0 : sum / (3 * static_cast<double>(scene.rest_triangle.size()));
+  return triangles.empty() ? 0 : sum / (3 * static_cast<double>(triangles.size()));
 }
+
+double mean_edge_length(const Scene& scene) { return mean_edge_length(scene.rest_triangle); }
 
 std::vector<const Surface*> obstacle_surfaces(const Scene& scene) {
   std::vector<const Surface*> all;

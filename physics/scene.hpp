@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -78,7 +79,8 @@ Eigen::VectorXd lumped_masses(const Scene&);
 // obstacles.
 Eigen::VectorXd inverse_masses(const Scene&, int node_count);
 
-double mean_edge_length(const Scene&);  // of the triangles at rest [m]; 0 without triangles
+double mean_edge_length(std::span<const RestTriangle>);  // [m]; 0 without triangles
+double mean_edge_length(const Scene&);                   // of all triangles at rest
 
 std::vector<const Surface*> obstacle_surfaces(const Scene&);
 

@@ -9,9 +9,8 @@
 namespace selvedge {
 
 // The audit that every stepper ends a step with. Positions are rounded to float, as a file stores them: what is audited
-// is what a reader will see. Cloth is held against itself where world.self.
-
-// Memories, where given, save time where little moves.
+// is what a reader will see. Cloth is held against itself where world.self. Memories, where given, save time where
+// little moves.
 
 Audit audit_positions(const Scene&, const ContactWorld&, const Points& x, const std::vector<Points>& obstacles,
                       AuditMemory* = nullptr);

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "physics/external.hpp"
-
 namespace selvedge {
 namespace {
 
@@ -18,11 +16,6 @@ void prepare_inertia(const Scene& scene, const Eigen::VectorXd& masses, StepPote
   const double h = problem.h;
   step.ballistic = *problem.x0 + h * *problem.v0;
   step.ballistic.rowwise() += h * h * problem.acceleration.transpose();
-  if (scene.wind.on) {
-    const Points wind = wind_forces(scene, *problem.x0, *problem.v0, problem.wind);
-    for (int i = 0; i < vertices; ++i)
-      if (step.free[i]) step.ballistic.row(i) += h * h / masses[i] * wind.row(i);
-  }
   step.inertia.resize(vertices);
   for (int i = 0; i < vertices; ++i) step.inertia[i] = masses[i] / (h * h);
   step.diagonal = step.inertia;
@@ -61,12 +54,19 @@ void prepare_contacts(int vertices, StepPotential& step) {
   step.contacts.clear();
   for (const ContactTerm& term : step.problem->contacts)
     step.contacts.push_back({term.nodes, term.weights, term.normal, 0, 0});
+  const double h = step.problem->h;
+  for (const WindFace& face : step.wind)
+    step.contacts.push_back({{face.corners[0], face.corners[1], face.corners[2], -1},
+                             {1.0 / 3, 1.0 / 3, 1.0 / 3, 0},
+                             face.normal,
+                             face.across / h,
+                             face.along / h});
   step.lists = list_contacts(step.contacts, vertices);
 }
 
-// The added term's blocks follow those of the contacts and are others at every x.
+// The added term's blocks come last and are others at every x.
 void add_term(const AddedTerm& added, const Points& x, StepPotential& step, Points& gradient) {
-  step.contacts.resize(step.problem->contacts.size());
+  step.contacts.resize(step.problem->contacts.size() + step.wind.size());
   added.add_derivatives(x, gradient, step.contacts);
   step.lists = list_contacts(step.contacts, static_cast<int>(x.rows()));
 }
@@ -86,6 +86,24 @@ double vertex_energy(const StepPotential& step, const Points& x, const Points& m
   }
   if (!step.damping.empty()) energy += 0.5 * row(motion, i).dot(damping_force(step, motion, i));
   return energy;
+}
+
+// How far the middle of a triangle moves past the air, and the force that asks for it [N].
+struct Drag {
+  Vec3 slip, force;
+};
+
+Drag drag_of(const StepPotential& step, const WindFace& face, const Points& x) {
+  const StepProblem& problem = *step.problem;
+  Vec3 slip = -problem.h * problem.wind;
+  for (const int corner : face.corners) slip += (row(x, corner) - row(*problem.x0, corner)) / 3;
+  const Vec3 across = slip.dot(face.normal) * face.normal;
+  return {slip, (face.across * across + face.along * (slip - across)) / problem.h};
+}
+
+double wind_energy(const StepPotential& step, const WindFace& face, const Points& x) {
+  const Drag drag = drag_of(step, face, x);
+  return 0.5 * drag.slip.dot(drag.force);
 }
 
 double contact_energy(const StepPotential& step, const Points& x, const ContactTerm& term) {
@@ -125,6 +143,7 @@ void prepare(const Scene& scene, const Elastic& elastic, const Eigen::VectorXd& 
   if (step.free.empty()) step.free = free_vertices(scene, masses);
   prepare_inertia(scene, masses, step);
   prepare_damping(scene, scratch, step);
+  step.wind = wind_faces(scene, *problem.x0, *problem.v0, problem.wind);
   prepare_contacts(scene.surface.vertex_count, step);
 }
 
@@ -132,8 +151,9 @@ void energies(const StepPotential& step, const Points& x, StepScratch& scratch, 
   energies.clear();
   append_elastic_energies(*step.elastic, x, energies);
   if (!step.damping.empty()) scratch.motion = x - *step.problem->x0;
-  const int vertices = static_cast<int>(x.rows()), contacts = static_cast<int>(step.problem->contacts.size());
-  const int vertex_chunks = chunks_of(vertices), tasks = vertex_chunks + chunks_of(contacts);
+  const int vertices = static_cast<int>(x.rows()), contacts = static_cast<int>(step.problem->contacts.size()),
+            pushes = contacts + static_cast<int>(step.wind.size());
+  const int vertex_chunks = chunks_of(vertices), tasks = vertex_chunks + chunks_of(pushes);
   const std::size_t first = energies.size();
   energies.resize(first + tasks);
 #pragma omp parallel for schedule(static) if (tasks > 16)
@@ -144,8 +164,9 @@ void energies(const StepPotential& step, const Points& x, StepScratch& scratch, 
         sum += vertex_energy(step, x, scratch.motion, i);
     } else {
       const int begin = (c - vertex_chunks) * chunk;
-      for (int k = begin; k < std::min(contacts, begin + chunk); ++k)
-        sum += contact_energy(step, x, step.problem->contacts[k]);
+      for (int k = begin; k < std::min(pushes, begin + chunk); ++k)
+        sum += k < contacts ? contact_energy(step, x, step.problem->contacts[k])
+                            : wind_energy(step, step.wind[k - contacts], x);
     }
     energies[first + c] = sum;
   }
@@ -158,7 +179,8 @@ void derivatives(StepPotential& step, const Points& x, StepScratch& scratch, Poi
   elastic_derivatives(*step.elastic, x, scratch.assembly, &gradient, hessian, form);
   if (step.problem->added) add_term(*step.problem->added, x, step, gradient);
   if (!step.damping.empty()) scratch.motion = x - x0;
-  const int vertices = static_cast<int>(x.rows()), contacts = static_cast<int>(step.problem->contacts.size());
+  const int vertices = static_cast<int>(x.rows()), contacts = static_cast<int>(step.problem->contacts.size()),
+            faces = static_cast<int>(step.wind.size());
   scratch.contact_forces.assign(step.contacts.size(), Vec3::Zero());  // those of the added term are in its gradient
 #pragma omp parallel if (vertices > 2000)
   {
@@ -166,6 +188,8 @@ void derivatives(StepPotential& step, const Points& x, StepScratch& scratch, Poi
     for (int c = 0; c < contacts; ++c)
       contact_derivatives(step.problem->contacts[c], x0, x, step.slip_width, scratch.contact_forces[c],
                           step.contacts[c]);
+#pragma omp for schedule(static)
+    for (int t = 0; t < faces; ++t) scratch.contact_forces[contacts + t] = drag_of(step, step.wind[t], x).force;
 #pragma omp for schedule(static)
     for (int i = 0; i < vertices; ++i) {
       if (!step.free[i]) {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "physics/assembly.hpp"
+#include "physics/external.hpp"
 #include "physics/implicit_euler.hpp"
 #include "physics/linear_system.hpp"
 
@@ -10,9 +11,9 @@ namespace selvedge {
 
 // The incremental potential of one step, all that is constant during the step worked out:
 //   E(x) = sum_i m_i |x_i - y_i|^2 / (2 h^2) + m_i a_i |x_i - x0_i|^2 / (2 h) + elastic(x)
-//        + (x - x0) . K0 (x - x0) / (2 h) + contact(x) + friction(x) + added(x),
-// with a the mass damping and K0 the PSD elastic Hessian at x0, each element times its stiffness damping. The sums over
-// vertices run over the free ones alone.
+//        + (x - x0) . K0 (x - x0) / (2 h) + sum_t d_t . D_t d_t / (2 h) + contact(x) + friction(x) + added(x),
+// with a the mass damping, K0 the PSD elastic Hessian at x0, each element times its stiffness damping, and D_t the drag
+// of triangle t of which the middle moves d_t past the air. The sums over vertices run over the free ones alone.
 struct StepPotential {
   const Elastic* elastic = nullptr;
   const StepProblem* problem = nullptr;
@@ -23,9 +24,10 @@ struct StepPotential {
   std::vector<double> drag;          // m a / h [N/m]; empty without mass damping
   PairBlocks damping;                // pairs of K0 / h; empty without stiffness damping
   std::vector<double> flat_damping;  // stiffness damping over h of each vertex; empty without
+  std::vector<WindFace> wind;        // at x0
   // For the linear system:
   std::vector<double> diagonal, flat_scale;
-  std::vector<ContactBlock> contacts;  // and behind them, once derivatives were taken, the added term's blocks
+  std::vector<ContactBlock> contacts;  // then the wind's, then, once derivatives were taken, the added term's
   ContactLists lists;
 };
 

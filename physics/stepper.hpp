@@ -8,6 +8,12 @@
 
 namespace selvedge {
 
+// Where the last substep began, for an integrator of two steps that may go on from it.
+struct StepHistory {
+  double h = 0;  // its length [s]; 0: there is none
+  Points x, v;
+};
+
 // All that the next step depends on: a copy is a checkpoint.
 struct State {
   double time = 0;  // [s]
@@ -16,6 +22,7 @@ struct State {
   std::vector<Points> obstacles;  // where they are; may lag behind Drive::obstacles
   bool pinched = false;           // they do: cloth left them no room in the step that ended here
   bool clean = false;             // known to be free of intersections, by the audit of the step that ended here
+  StepHistory history;
 };
 
 // What the world imposes on a step, given at the step's END.
@@ -43,6 +50,7 @@ struct CollisionReport {
   int held_vertices = 0;    // cloth vertices in them, all substeps
   int passed_through = 0;   // pairs that met on their way by the audit of the motion, those left alone not counted
   int left_alone = 0;       // cloth vertices on or inside a contour at the start, after recovery
+  int jumped = 0;           // obstacles put where they were wanted without a sweep: too far for one
   double min_gap = std::numeric_limits<double>::infinity();  // of the contacts [m]
   double obstacle_lag = 0;                // largest distance of an obstacle vertex from where it was wanted [m]
   int pairs_before = 0, pairs_after = 0;  // intersecting triangle pairs by the audit; -1: not audited

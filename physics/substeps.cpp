@@ -9,17 +9,30 @@ namespace {
 constexpr double edges_a_substep = 2.5;  // how far a vertex may move, in mean edge lengths
 constexpr double edges_past = 1;         // how far contact, linearised, may slide: more locks cloth pulled round a post
 
+constexpr int least_substeps = 2;
+
+// Of a way, each no longer than that.
+int parts(double way, double longest, int least, int most) {
+  return longest > 0 ? static_cast<int>(std::clamp<double>(std::ceil(way / longest), std::min(least, most), most))
+                     : least;
+}
+
 }  // namespace
 
-int substeps_for(const State& from, const Drive& drive, double dt, double edge_length, int max_substeps,
-                 double contact_speed) {
+int substeps_for_speed(const State& from, const Drive& drive, double dt, double edge_length, int max_substeps) {
   double speed = drive.acceleration.norm() * dt;
   if (from.v.rows() > 0) speed += from.v.rowwise().norm().maxCoeff();
   for (std::size_t k = 0; k < from.obstacles.size(); ++k)
     speed = std::max(speed, (drive.obstacles[k] - from.obstacles[k]).rowwise().norm().maxCoeff() / dt);
-  const double edges =
-      edge_length > 0 ? dt * std::max(speed / edges_a_substep, contact_speed / edges_past) / edge_length : 1;
-  return static_cast<int>(std::clamp<double>(std::ceil(edges), 2, max_substeps));
+  return parts(dt * speed, edges_a_substep * edge_length, least_substeps, max_substeps);
+}
+
+int substeps_for_contact(double contact_speed, double dt, double edge_length, int max_substeps) {
+  return parts(dt * contact_speed, edges_past * edge_length, least_substeps, max_substeps);
+}
+
+int parts_for_way(double way, double edge_length, int most) {
+  return parts(way, edges_a_substep * edge_length, 1, most);
 }
 
 double fastest_past(std::span<const NodePair> pairs, const State& from, const Drive& drive, double dt) {
@@ -34,11 +47,41 @@ double fastest_past(std::span<const NodePair> pairs, const State& from, const Dr
   return fastest;
 }
 
+double farthest_past(std::span<const Impact> impacts, const Points& nodes0, const Points& nodes1) {
+  double farthest = 0;
+  for (const Impact& impact : impacts) {
+    const auto way = [&](int i) { return Vec3(row(nodes1, impact.pair.nodes[i]) - row(nodes0, impact.pair.nodes[i])); };
+    const int split = impact.pair.kind == PairKind::vertex_face ? 1 : 2;
+    for (int a = 0; a < split; ++a)
+      for (int b = split; b < 4; ++b) farthest = std::max(farthest, (way(a) - way(b)).norm());
+  }
+  return farthest;
+}
+
+std::optional<Restart> restart_of(const State& from, const Drive& drive, int max_substeps) {
+  std::optional<Restart> restart;
+  if (from.pinched) return restart;
+  for (std::size_t k = 0; k < from.obstacles.size(); ++k) {
+    const Points& at = from.obstacles[k];
+    if (at.rows() == 0) continue;
+    const double size = (at.colwise().maxCoeff() - at.colwise().minCoeff()).norm();
+    const double way = (drive.obstacles[k] - at).colwise().mean().norm();
+    if (!(way > max_substeps * size)) continue;
+    if (!restart) restart = Restart{from};
+    restart->state.obstacles[k] = drive.obstacles[k];
+    restart->state.clean = false;
+    restart->state.history = {};
+    ++restart->jumped;
+  }
+  return restart;
+}
+
 void arrive(const State& from, const Leg& leg, double dt, State& to) {
   to.time = from.time + dt;
   to.frame = from.frame + 1;
   to.x = leg.nodes.topRows(from.x.rows());
   to.v = leg.v;
+  to.history = leg.history;
 }
 
 Points pinned_rows(const Scene& scene, const Points& nodes) {

@@ -1,26 +1,45 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "collision/contact_pairs.hpp"
+#include "collision/response.hpp"
 #include "physics/scene.hpp"
 #include "physics/stepper.hpp"
 
 namespace selvedge {
 
-// Where a step has come to: all nodes, and the cloth's velocity.
+// Where a step has come to: all nodes, the cloth's velocity, and what an integrator of two steps goes on from.
 struct Leg {
   Points nodes, v;
+  StepHistory history = {};
 };
 
-// How many parts a step of dt [s] is cut into: as many as keep every vertex's motion in a substep within a few mesh
-// edges (edge_length: the mean one [m]) and that of touching pairs past each other within one, and at least two:
-// implicit Euler at 1/30 s damps visibly. contact_speed [m/s]: of the pairs that touch.
-int substeps_for(const State& from, const Drive&, double dt, double edge_length, int max_substeps,
-                 double contact_speed = 0);
+// How many parts a step of dt [s] is cut into. At least two: implicit Euler at 1/30 s damps visibly. edge_length: the
+// mean one [m]; speeds in m/s.
+// As many as keep every vertex's motion in a substep within a few mesh edges.
+int substeps_for_speed(const State& from, const Drive&, double dt, double edge_length, int max_substeps);
+// As many as keep the motion of touching pairs past each other within one edge.
+int substeps_for_contact(double contact_speed, double dt, double edge_length, int max_substeps);
+// Of a substep in which something meets after moving `way` [m] past each other: more than a few edges are too many to
+// linearise contact over.
+int parts_for_way(double way, double edge_length, int most);
 
 // The largest speed of a pair's one primitive past the other, of one vertex each [m/s].
 double fastest_past(std::span<const NodePair>, const State& from, const Drive&, double dt);
+
+// The farthest that nodes of one primitive of an impact move past those of the other, of all [m].
+double farthest_past(std::span<const Impact>, const Points& nodes0, const Points& nodes1);
+
+// A start with every obstacle where it is wanted that would have to move farther than its own size (the diagonal of its
+// box) in a substep: that is no motion to sweep along but a new start, and a tangled one it may be.
+struct Restart {
+  State state;
+  int jumped = 0;  // obstacles
+};
+// Absent where no obstacle jumps, and where the state's obstacles lag: those are on their way.
+std::optional<Restart> restart_of(const State& from, const Drive&, int max_substeps);
 
 // Writes where and when a step of dt [s] from `from` has come to, all but the obstacles.
 void arrive(const State& from, const Leg&, double dt, State& to);

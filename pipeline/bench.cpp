@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/compare_parts.hpp"
 #include "pipeline/make_stepper.hpp"
 #include "pipeline/peak_memory.hpp"
 #include "pipeline/run_scene.hpp"
@@ -34,11 +35,19 @@ std::optional<AlgebraicError> worst_error(const Setup& setup, const StateSampler
   return worst;
 }
 
+// Energy lost in a run to `end` over what the same steps, each solved to its minimiser, lose.
+std::optional<double> energy_decay(const Setup& setup, const State& end, const Setup& converged) {
+  const auto reference = timed_run(converged, {});
+  if (!reference || !reference->trouble.empty() || !(reference->lost > 0)) return {};
+  return (energy_of(setup, setup.initial) - energy_of(setup, end)) / reference->lost;
+}
+
 BenchMember run_member(const BenchRequest& request, const std::string& scene, int size) {
   std::vector<std::string> overrides{
       fmt::format("cloths.0.{}.resolution={}", scene == "tube" ? "tube" : "rectangle", size)};
   if (request.frames) overrides.push_back(fmt::format("run.frames={}", *request.frames));
-  const Setup setup = read_setup(request.configs / (scene + ".yaml"), overrides);
+  const std::filesystem::path file = request.configs / (scene + ".yaml");
+  const Setup setup = read_setup(file, overrides);
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
 
   StateSampler sampler;
@@ -50,8 +59,13 @@ BenchMember run_member(const BenchRequest& request, const std::string& scene, in
   run.checkpoint_seconds = 1e9;
   if (scene == "hang") run.observe = std::ref(sampler);
   reset_peak_memory();
-  BenchMember member{scene, size, run_scene(setup, *stepper, run), {}};
+  BenchMember member{scene, size, run_scene(setup, *stepper, run), {}, {}};
   member.algebraic = worst_error(setup, sampler);
+  if (scene == "hang") {
+    overrides.insert(overrides.end(), {"solver.relative_tolerance=0", "solver.velocity_tolerance=1e-5",
+                                       "solver.max_newton=40", "solver.linear_tolerance=0.01"});
+    member.decay = energy_decay(setup, sampler.before, read_setup(file, overrides));
+  }
   return member;
 }
 

@@ -26,6 +26,7 @@ struct BenchMember {
   int size = 0;
   RunSummary summary;
   std::optional<AlgebraicError> algebraic;  // worst of the contact-free states that were looked at; hang only
+  std::optional<double> decay;              // energy lost, over what a run with converged steps loses; hang only
 };
 
 struct BenchResult {

@@ -42,7 +42,8 @@ const std::vector<Column>& columns() {
       {"nonfinite", "nonfinite", 0, [](M m) { return double(m.summary.nonfinite); }},
       {"max_stretch", "stretch", 3, [](M m) { return m.summary.max_stretch; }},
       {"algebraic_error", "alg. error", 6,
-       [](M m) { return m.algebraic ? m.algebraic->error : std::numeric_limits<double>::quiet_NaN(); }}};
+       [](M m) { return m.algebraic ? m.algebraic->error : std::numeric_limits<double>::quiet_NaN(); }},
+      {"energy_decay", "decay", 3, [](M m) { return m.decay.value_or(std::numeric_limits<double>::quiet_NaN()); }}};
   return all;
 }
 

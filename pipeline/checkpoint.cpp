@@ -36,6 +36,9 @@ void write_checkpoint(const std::filesystem::path& path, const State& state, con
     write_points(file, "v", state.v);
     for (std::size_t k = 0; k < state.obstacles.size(); ++k)
       write_points(file, "obstacle_" + std::to_string(k), state.obstacles[k]);
+    file.write_constant("history_h", H5T_NATIVE_DOUBLE, {1}, &state.history.h);
+    write_points(file, "history_x", state.history.x);
+    write_points(file, "history_v", state.history.v);
     file.close();
   } catch (const Error&) {
     file.abandon();
@@ -66,6 +69,9 @@ State read_checkpoint(const std::filesystem::path& path, const std::string& conf
   state.v = read_points(file, "v");
   for (int k = 0; file.has("obstacle_" + std::to_string(k)); ++k)
     state.obstacles.push_back(read_points(file, "obstacle_" + std::to_string(k)));
+  file.read_all("history_h", H5T_NATIVE_DOUBLE, &state.history.h);
+  state.history.x = read_points(file, "history_x");
+  state.history.v = read_points(file, "history_v");
   return state;
 }
 

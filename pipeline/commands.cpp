@@ -43,6 +43,14 @@ std::string write_page(const std::filesystem::path& out) {
   }
 }
 
+// Long work that says how it goes on and can be interrupted.
+template <class Request>
+Request followed(Request request) {
+  request.log = &std::cerr;
+  request.stop = InterruptWatch::interrupted;
+  return request;
+}
+
 // Whether all that the scene states came true, with a line each. A resumed run has not seen its first frames.
 bool report_outcome(const std::vector<Outcome>& outcomes, const std::vector<OutcomeResult>& results, std::ostream& to) {
   for (std::size_t k = 0; k < outcomes.size(); ++k)
@@ -145,15 +153,21 @@ int bench_command(const BenchRequest& request, bool json) {
 
 int stress_command(const StressRequest& request, bool json) {
   const InterruptWatch watch;
-  StressRequest logged = request;
-  logged.log = &std::cerr;
-  logged.stop = InterruptWatch::interrupted;
-  const std::vector<StressRow> rows = stress(logged);
+  const std::vector<StressRow> rows = stress(followed(request));
   people(json) << stress_table(rows);
   if (InterruptWatch::interrupted()) people(json) << "stopped; the same command goes on\n";
   if (json) std::cout << stress_json(rows);
   const bool passed = std::all_of(rows.begin(), rows.end(), [](const StressRow& row) { return row.passed(); });
   return passed && !InterruptWatch::interrupted() ? 0 : 1;
+}
+
+int compare_command(const CompareRequest& request, bool json) {
+  const InterruptWatch watch;
+  const CompareResult result = compare(followed(request));
+  people(json) << compare_table(result) << result.plots << "\n";
+  if (!result.finished) people(json) << "stopped; the same command goes on\n";
+  if (json) std::cout << compare_json(result);
+  return result.finished ? 0 : 1;
 }
 
 int validate_command(const ValidateRequest& request, bool json) {
@@ -163,6 +177,14 @@ int validate_command(const ValidateRequest& request, bool json) {
   people(json) << validate_table(rows);
   if (json) std::cout << validate_json(rows);
   return passed(rows) ? 0 : 1;
+}
+
+int stability_command(const StabilityRequest& request, bool json) {
+  const InterruptWatch watch;
+  const std::vector<StabilityRow> rows = stability(followed(request));
+  people(json) << stability_table(rows);
+  if (json) std::cout << stability_json(rows);
+  return passed(rows) && !InterruptWatch::interrupted() ? 0 : 1;
 }
 
 int info_command(bool json) {

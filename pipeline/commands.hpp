@@ -7,7 +7,9 @@
 
 #include "pipeline/bench.hpp"
 #include "pipeline/check.hpp"
+#include "pipeline/compare.hpp"
 #include "pipeline/export.hpp"
+#include "pipeline/stability.hpp"
 #include "pipeline/stress.hpp"
 #include "pipeline/untangle_mesh.hpp"
 #include "pipeline/validate.hpp"
@@ -49,7 +51,9 @@ int export_command(const ExportRequest&, bool json);
 int view_command(const ViewArguments&, bool json);
 int bench_command(const BenchRequest&, bool json);
 int stress_command(const StressRequest&, bool json);
+int compare_command(const CompareRequest&, bool json);
 int validate_command(const ValidateRequest&, bool json);
+int stability_command(const StabilityRequest&, bool json);
 int info_command(bool json);
 
 }  // namespace selvedge

@@ -90,6 +90,20 @@ const Section& pin_section() {
   return table;
 }
 
+const Section& start_section() {
+  static const Section table{
+      "start",
+      "How the start differs from the cloth as made and placed; the rest shape does not follow. A cloth that starts in "
+      "one point, where no force acts, is opened by small random displacements, and a warning says so.",
+      "",
+      {},
+      {vector("stretch", Unit::none, "[1, 1, 1]", "factors along x, y and z about the middle of its box; 0 flattens"),
+       number("crumple", Unit::length, not_negative, "0",
+              "random displacement of every vertex, at most, along each axis"),
+       integer("seed", not_negative, "1", "of what is random")}};
+  return table;
+}
+
 const Section& copies_section() {
   static const Section table{
       "copies",
@@ -119,7 +133,7 @@ const Section& cloth_section() {
       {"rectangle", "disc", "tube", "ribbon", "tshirt", "mesh"},
       std::vector<Key>{text("name", "left out: cloth0, cloth1, ...")} + sheet_keys() +
           std::vector<Key>{section(mesh_section(), "", "a file")} + placement_keys() +
-          std::vector<Key>{section(copies_section(), "", ""),
+          std::vector<Key>{section(copies_section(), "", ""), section(start_section(), "{}", ""),
                            vector("velocity", Unit::speed, "[0, 0, 0]", "at the start"),
                            section(material_section(), "{}", ""), section(rest_section(), "{}", ""),
                            sections("pins", pin_section(), "[]", "")}};

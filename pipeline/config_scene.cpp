@@ -80,7 +80,9 @@ const Section& run_section() {
       {},
       {integer("frames", at_least_one, show(r.frames), "how many"),
        number("fps", Unit::rate, positive, show(r.fps), "frames a second"),
-       with_words(integer("substeps", at_least_one, "auto", "time steps a frame; `auto`: from the speed"), {"auto"}),
+       with_words(
+           integer("substeps", at_least_one, "auto", "time steps a frame; `auto`: from the speed of what touches"),
+           {"auto"}),
        integer("max_substeps", at_least_one, show(r.conventional.max_substeps), "most that `auto` takes"),
        word("stepper", known_steppers(), r.stepper, "who makes the frames"),
        section(icm_section(), "{}", "of the stepper `icm`")}};
@@ -91,10 +93,13 @@ const Section& solver_section() {
   const ImplicitEulerOptions o;
   static const Section table{
       "solver",
-      "Implicit Euler.",
+      "",
       "",
       {},
-      {number("velocity_tolerance", Unit::speed, positive, show(o.velocity_tolerance),
+      {word("integrator", {"implicit_euler", "bdf2"}, "implicit_euler",
+            "`bdf2`: of second order in time where nothing touches, with less damping; implicit Euler elsewhere. "
+            "Not of the stepper `icm`"),
+       number("velocity_tolerance", Unit::speed, positive, show(o.velocity_tolerance),
               "Newton ends when the RMS of its displacement is below this times the time step,"),
        number("relative_tolerance", Unit::none, not_negative, show(o.relative_tolerance),
               "or below this part of the RMS motion in the step"),

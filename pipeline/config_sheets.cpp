@@ -19,7 +19,9 @@ const Section& rectangle_section() {
       {},
       std::vector<Key>{pair("size", Unit::length, "[1, 1]", "along x and z"),
                        integers("resolution", {.low = 2}, 2, "vertices along x and z; in place of `edge`"),
-                       edge_key("0.02")} +
+                       edge_key("0.02"),
+                       pair("grading", Unit::none, "[1, 1]",
+                            "last over first spacing of the vertices along x and z, in geometric steps")} +
           triangulation_keys()};
   return table;
 }

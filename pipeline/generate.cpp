@@ -185,6 +185,20 @@ Mesh make_rectangle(const Vec2& size, int columns, int rows, const SheetOptions&
   return mesh;
 }
 
+void grade_rectangle(Mesh& mesh, const Vec2& size, int columns, int rows, const Vec2& grading) {
+  // Of n spacings the k-th is q^k times the first, q^(n - 1) = grading; between vertices the same law goes on.
+  const auto graded = [](double u, int n, double ratio) {
+    if (n < 2 || ratio == 1) return u;
+    const double q = std::log(ratio) / (n - 1);
+    return std::expm1(q * n * u) / std::expm1(q * n);
+  };
+  for (int i = 0; i < mesh.uv.rows(); ++i) {
+    mesh.uv(i, 0) = size.x() * (graded(mesh.uv(i, 0) / size.x() + 0.5, columns - 1, grading.x()) - 0.5);
+    mesh.uv(i, 1) = size.y() * (0.5 - graded(0.5 - mesh.uv(i, 1) / size.y(), rows - 1, grading.y()));
+  }
+  lay_flat(mesh);
+}
+
 Mesh make_disc(double radius, int rings, const SheetOptions& options) {
   assert(rings >= 1 && radius > 0);
   Mesh mesh;

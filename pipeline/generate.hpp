@@ -21,6 +21,10 @@ struct SheetOptions {
 // corners top_left top_right bottom_left bottom_right, as seen from above with -Z up.
 Mesh make_rectangle(const Vec2& size, int columns, int rows, const SheetOptions&);
 
+// Moves the vertices of a structured rectangle along its sides so that their spacings grow geometrically, the last one
+// `grading` times as long as the first along u and along -v.
+void grade_rectangle(Mesh&, const Vec2& size, int columns, int rows, const Vec2& grading);
+
 // Rings of 6, 12, 18 ... vertices round a centre, normal +Y. Groups: boundary center. rings >= 1.
 Mesh make_disc(double radius, int rings, const SheetOptions&);
 

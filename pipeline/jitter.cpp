@@ -18,13 +18,6 @@ double uniform(std::uint64_t& state) {  // in [-1, 1)
   return static_cast<double>(z >> 11) * 0x1p-52 - 1;
 }
 
-double mean_rest_edge(const Scene& scene) {
-  double sum = 0;
-  for (const RestTriangle& t : scene.rest_triangle)
-    for (int k = 0; k < 3; ++k) sum += (t.col(k) - t.col((k + 1) % 3)).norm();
-  return scene.rest_triangle.empty() ? 0 : sum / (3 * static_cast<double>(scene.rest_triangle.size()));
-}
-
 // As a trajectory stores it.
 bool is_clean_start(const Scene& scene, const Points& x, const std::vector<Points>& obstacles) {
   std::vector<Points> rounded;
@@ -38,15 +31,19 @@ bool is_clean_start(const Scene& scene, const Points& x, const std::vector<Point
 
 }  // namespace
 
+Points random_shifts(Eigen::Index rows, std::uint64_t seed) {
+  Points shifts(rows, 3);
+  for (Eigen::Index i = 0; i < shifts.size(); ++i) shifts.data()[i] = uniform(seed);
+  return shifts;
+}
+
 double jitter_start(Setup& setup, double amount, std::uint64_t seed) {
   const Points start = setup.initial.x;
   if (!is_clean_start(setup.scene, start, setup.initial.obstacles))
     throw Error("the start is not clean", setup.file.string(), "move the cloths and obstacles of the scene apart");
-  Points shift(start.rows(), 3);
-  std::uint64_t state = seed;
-  for (Eigen::Index i = 0; i < shift.size(); ++i) shift.data()[i] = uniform(state);
+  Points shift = random_shifts(start.rows(), seed);
   for (const int pin : setup.scene.pins) shift.row(pin).setZero();
-  shift *= mean_rest_edge(setup.scene);
+  shift *= mean_edge_length(setup.scene);
   for (int halvings = 0; halvings < most_halvings; ++halvings, amount /= 2) {
     setup.initial.x = start + amount * shift;
     if (is_clean_start(setup.scene, setup.initial.x, setup.initial.obstacles)) return amount;

@@ -99,11 +99,25 @@ void stress_options(CLI::App& command, StressRequest& request) {
   command.add_option("--out", request.out, "folder for the results");
 }
 
+void compare_options(CLI::App& command, CompareRequest& request) {
+  command.add_option("comparison", request.file, "comparison file (YAML)")->required();
+  command.add_flag("--short", request.short_form, "the short forms of the comparison and its scenes");
+  command.add_option("--out", request.out, "folder for the results");
+}
+
 void validate_options(CLI::App& command, ValidateRequest& request) {
   command.add_option("cases", request.cases, "names of cases (all)");
   command.add_option("--set", request.overrides, "parameter=value[,value...] instead of the cases' own")
       ->allow_extra_args(false);
   command.add_flag("--short", request.short_form, "the cases' short lists of parameters");
+  command.add_option("--out", request.out, "folder for the results");
+}
+
+void stability_options(CLI::App& command, StabilityRequest& request) {
+  command.add_option("suite", request.suite, "suite file (configs/stability.yaml)");
+  command.add_option("--case", request.cases, "names of cases (all)")->allow_extra_args(false);
+  command.add_option("--stepper", request.stepper, "in place of the scenes' own");
+  command.add_flag("--short", request.short_form, "the runs that the suite marks as short");
   command.add_option("--out", request.out, "folder for the results");
 }
 
@@ -125,8 +139,12 @@ void add_commands(CLI::App& app, Chosen& chosen) {
   add_command<BenchRequest>(app, chosen, "bench", "the benchmark family", bench_options, bench_command);
   add_command<StressRequest>(app, chosen, "stress", "scenes that must end clean and come out as they say",
                              stress_options, stress_command);
+  add_command<CompareRequest>(app, chosen, "compare", "settings against references: error against run time",
+                              compare_options, compare_command);
   add_command<ValidateRequest>(app, chosen, "validate", "physics with known answers", validate_options,
                                validate_command);
+  add_command<StabilityRequest>(app, chosen, "stability", "stiff and extreme cases, pass or fail each",
+                                stability_options, stability_command);
   add_command<Nothing>(
       app, chosen, "info", "versions, packages, threads", [](CLI::App&, Nothing&) {},
       [](const Nothing&, bool json) { return info_command(json); });

@@ -173,6 +173,10 @@ RunOptions read_run(const Config& scene) {
   if (scene["output"]["folder"].given) run.output = scene["output"]["folder"].text();
   if (!section["substeps"].numbers.empty()) run.conventional.substeps = section["substeps"].integer();
   run.conventional.max_substeps = section["max_substeps"].integer();
+  const Config& integrator = scene["solver"]["integrator"];
+  run.conventional.integrator = integrator.text() == "bdf2" ? Integrator::bdf2 : Integrator::implicit_euler;
+  if (run.conventional.integrator == Integrator::bdf2 && run.stepper == "icm")
+    integrator.fail("is not one of the stepper `icm`", "leave it out, or take the stepper `conventional`");
   run.conventional.implicit_euler = read_solver(scene["solver"]);
   run.icm = read_icm(section["icm"]);
   run.icm.substeps = run.conventional.substeps;

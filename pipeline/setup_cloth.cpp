@@ -10,6 +10,7 @@
 #include "pipeline/setup_motion.hpp"
 #include "pipeline/setup_paths.hpp"
 #include "pipeline/setup_sheet.hpp"
+#include "pipeline/setup_start.hpp"
 
 namespace selvedge {
 namespace {
@@ -165,6 +166,7 @@ std::vector<ClothPart> read_cloths(Config& section, const std::string& default_n
   for (std::size_t k = 0; k < parts.size(); ++k) {
     if (copies.given) parts[k].name = fmt::format("{}_{}", part.name, k);
     parts[k].mesh.x = copied(copies, first, static_cast<int>(k));
+    apply_start(section["start"], parts[k], warnings);
     for (const Config& pin : section["pins"].items) parts[k].pins.push_back(read_pin(pin, parts[k].mesh));
   }
   return parts;

@@ -75,7 +75,14 @@ Mesh read_sheet(const Config& section, const std::filesystem::path& folder) {
   if (const Config& shape = section["rectangle"]; shape.given) {
     const Vec2 size(shape["size"].numbers[0], shape["size"].numbers[1]);
     const auto [columns, rows] = counts(shape, size.x(), size.y(), 2);
-    return make_rectangle(size, columns, rows, sheet_options(shape));
+    const SheetOptions options = sheet_options(shape);
+    Mesh mesh = make_rectangle(size, columns, rows, options);
+    const Vec2 grading(shape["grading"].numbers[0], shape["grading"].numbers[1]);
+    if (grading == Vec2(1, 1)) return mesh;
+    if (options.triangulation == Triangulation::unstructured)
+      shape["grading"].fail("is for structured triangulations", "choose one_diagonal or alternating");
+    grade_rectangle(mesh, size, columns, rows, grading);
+    return mesh;
   }
   if (const Config& shape = section["disc"]; shape.given) {
     const double radius = shape["radius"].number();

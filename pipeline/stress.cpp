@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 #include "collision/error.hpp"
 #include "pipeline/jitter.hpp"
+#include "pipeline/kept_rows.hpp"
 #include "pipeline/make_stepper.hpp"
 #include "pipeline/run_scene.hpp"
-#include "pipeline/version.hpp"
 #include "pipeline/view.hpp"
 #include "pipeline/write_file.hpp"
 
@@ -19,19 +17,6 @@ namespace {
 
 constexpr double least_lag = 1e-9;  // below it an obstacle is where it was wanted, but for rounding [m]
 constexpr double most_held = 0.01;  // share of vertex-steps: frozen cloth is not clean cloth
-
-std::string whole_file(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
-
-// Fowler, Noll and Vo's 64-bit hash, variant 1a.
-std::uint64_t hash_of(const std::string& text) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return hash;
-}
 
 // What the frames of a run show beyond its summary.
 struct Watch {
@@ -182,7 +167,7 @@ std::vector<StressRow> stress(const StressRequest& request) {
   make_folder(request.out);
   const std::vector<std::string> scenes = request.scenes.empty() ? scene_names(request.configs) : request.scenes;
   for (const std::string& scene : scenes) read_scene(request, scene);  // errors before hours of work
-  const std::uint64_t program = hash_of(whole_file("/proc/self/exe"));
+  const std::string program = program_key();
   std::vector<StressRow> rows;
   for (const std::string& scene : scenes) {
     const std::filesystem::path folder = request.out / scene;
@@ -191,8 +176,8 @@ std::vector<StressRow> stress(const StressRequest& request) {
     bool failed_before = false;
     for (int k = 0; k < request.repeats; ++k) {
       const Repeat repeat{scene, k, folder,
-                          fmt::format("{:016x} {:016x} {} {} {}", program, hash_of(config), request.seed,
-                                      request.jitter, request.short_form ? "short" : "full")};
+                          fmt::format("{} {:016x} {} {} {}", program, hash_of(config), request.seed, request.jitter,
+                                      request.short_form ? "short" : "full")};
       std::optional<StressRow> row = read_stress_row(whole_file(repeat.row_file()), repeat.key);
       if (!row) {
         row = run_repeat(request, repeat);

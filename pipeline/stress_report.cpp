@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/json_csv.hpp"
 #include "pipeline/stress.hpp"
 #include "pipeline/version.hpp"
 
@@ -67,12 +68,6 @@ StressRow from_json(const Json& j) {
   return r;
 }
 
-std::string cell(const Json& value) {
-  if (value.is_array()) return fmt::format("\"{}\"", fmt::join(value.get<std::vector<std::string>>(), "; "));
-  if (value.is_string()) return value.get<std::string>();
-  return value.dump();
-}
-
 // Rows of one scene lie together.
 template <class Each>
 void for_each_scene(const std::vector<StressRow>& rows, const Each& each) {
@@ -125,18 +120,9 @@ std::string stress_json(const std::vector<StressRow>& rows) {
 }
 
 std::string stress_csv(const std::vector<StressRow>& rows) {
-  std::vector<std::string> lines;
-  for (const StressRow& row : rows) {
-    std::vector<std::string> titles, cells;
-    const Json json = to_json(row);
-    for (const auto& [name, value] : json.items()) {
-      titles.push_back(name);
-      cells.push_back(cell(value));
-    }
-    if (lines.empty()) lines.push_back(fmt::format("{}", fmt::join(titles, ",")));
-    lines.push_back(fmt::format("{}", fmt::join(cells, ",")));
-  }
-  return fmt::format("{}\n", fmt::join(lines, "\n"));
+  Json table = Json::array();
+  for (const StressRow& row : rows) table.push_back(to_json(row));
+  return csv_of_json(table.dump());
 }
 
 std::string stress_table(const std::vector<StressRow>& rows) {

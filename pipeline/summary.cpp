@@ -94,13 +94,14 @@ double mean_milliseconds(const RunSummary& summary) {
   return all.empty() ? 0 : 1000 * std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size());
 }
 
-double median_milliseconds(const RunSummary& summary) {
-  std::vector<double> sorted = summary.frame_seconds;
-  if (sorted.empty()) return 0;
-  std::sort(sorted.begin(), sorted.end());
-  const std::size_t half = sorted.size() / 2;
-  return 1000 * (sorted.size() % 2 ? sorted[half] : 0.5 * (sorted[half - 1] + sorted[half]));
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
+
+double median_milliseconds(const RunSummary& summary) { return 1000 * median(summary.frame_seconds); }
 
 bool is_clean(const RunSummary& summary) {
   return summary.end == RunEnd::finished && summary.pairs == 0 && summary.worst_inside == 0 && summary.nonfinite == 0 &&

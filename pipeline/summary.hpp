@@ -43,6 +43,7 @@ void add_frame(RunSummary&, int index, const Frame&);
 // Vertices times substeps that motion shortened held back, over all: frozen cloth is not clean cloth.
 double held_fraction(const RunSummary&);
 
+double median(std::vector<double>);  // 0 of none
 double mean_milliseconds(const RunSummary&);
 double median_milliseconds(const RunSummary&);
 

@@ -42,22 +42,12 @@ std::vector<Measured> drape(const ValidationValues& values) {
   const int rings = values.integer("resolution");
   const double length = 0.01 * values.number("bending_length"), nu = values.number("nu");
   const Mesh mesh = make_disc(radius, rings, {read_triangulation(values.word("mesh")), 1});
-  Scene scene;
-  scene.surface = make_surface(static_cast<int>(mesh.x.rows()), mesh.triangles);
-  scene.rest = mesh.x;
-  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
-    RestTriangle rest;
-    for (int k = 0; k < 3; ++k) rest.col(k) = mesh.uv.row(mesh.triangles(t, k)).transpose();
-    scene.rest_triangle.push_back(rest);
-  }
   Material material;
   material.density = density;
   material.bending = density * g * std::pow(length, 3);
   material.lame_mu = stretch / (2 * (1 + nu));
   material.lame_lambda = stretch * nu / (1 - nu * nu);
-  scene.cloths.push_back(
-      {"disc", material, 0, static_cast<int>(mesh.x.rows()), 0, static_cast<int>(mesh.triangles.rows())});
-  scene.contact.self = false;
+  Scene scene = flat_cloth("disc", mesh, mesh.x, material);
   Points start = mesh.x;
   for (int v = 0; v < start.rows(); ++v) {
     const double r = std::hypot(start(v, 0), start(v, 2)), beyond = std::max(0.0, r - support);

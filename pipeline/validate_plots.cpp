@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdlib>
 
+#include "pipeline/gnuplot.hpp"
 #include "pipeline/known_answers.hpp"
 #include "pipeline/validate.hpp"
-#include "pipeline/write_file.hpp"
 
 namespace selvedge {
 namespace {
@@ -28,13 +27,8 @@ std::string master_curve() {
   return text;
 }
 
-const char* const head = "set terminal svg size 480,320 font 'sans,11'\nset grid\nset key left top\n";
-
-// Data in here-documents, so that a plot is one file that can be made again.
-std::string script(const std::string& name, const std::string& axes, const std::string& measured,
-                   const std::string& expected) {
-  std::string text =
-      std::string(head) + "set output '" + name + ".svg'\n" + axes + "$measured << EOD\n" + measured + "EOD\n";
+std::string script(const std::string& axes, const std::string& measured, const std::string& expected) {
+  std::string text = axes + "$measured << EOD\n" + measured + "EOD\n";
   if (!expected.empty()) text += "$expected << EOD\n" + expected + "EOD\n";
   text += expected.empty()
               ? "plot $measured with linespoints pt 7 title 'measured'\n"
@@ -45,16 +39,13 @@ std::string script(const std::string& name, const std::string& axes, const std::
 }  // namespace
 
 std::string plot_validation(const std::vector<ValidationRow>& rows, const std::filesystem::path& folder) {
-  if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
-    return "no plots: gnuplot is not there (package gnuplot-nox)";
+  if (!gnuplot_is_there()) return no_gnuplot;
   std::string made;
   const auto plot = [&](const std::string& name, const std::string& parameter, const std::string& axes,
                         const std::string& expected) {
     const std::string measured = points_of(rows, name, parameter);
     if (measured.empty()) return;
-    write_file(folder / (name + ".gnuplot"), script(name, axes, measured, expected));
-    const std::string command = "cd '" + folder.string() + "' && gnuplot " + name + ".gnuplot";
-    if (std::system(command.c_str()) == 0)
+    if (make_plot(folder, name, script(axes, measured, expected)))
       made += (made.empty() ? "plots: " : ", ") + (folder / (name + ".svg")).string();
   };
   plot("cantilever", "gamma", "set logscale xy\nset xlabel 'rho g L^3 / B'\nset ylabel 'H / W'\n", master_curve());

@@ -62,6 +62,21 @@ StripShape strip_shape(const ValidationValues& values, double length, double wid
   return shape;
 }
 
+Scene flat_cloth(const std::string& name, const Mesh& mesh, const Points& rest, const Material& material) {
+  Scene scene;
+  scene.surface = make_surface(static_cast<int>(rest.rows()), mesh.triangles);
+  scene.rest = rest;
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    RestTriangle triangle;
+    for (int k = 0; k < 3; ++k) triangle.col(k) = mesh.uv.row(mesh.triangles(t, k)).transpose();
+    scene.rest_triangle.push_back(triangle);
+  }
+  scene.cloths.push_back(
+      {name, material, 0, static_cast<int>(rest.rows()), 0, static_cast<int>(mesh.triangles.rows())});
+  scene.contact.self = false;
+  return scene;
+}
+
 Strip make_strip_scene(const StripShape& shape, const Material& material, const Vec3& along, const Vec3& across,
                        const std::string& pinned) {
   const Mesh mesh = make_strip(shape);
@@ -69,18 +84,8 @@ Strip make_strip_scene(const StripShape& shape, const Material& material, const 
   Eigen::Matrix<double, 2, 3> frame;
   frame << along.transpose(), across.transpose();
   strip.start = mesh.uv * frame;
-  Scene& scene = strip.scene;
-  scene.surface = make_surface(static_cast<int>(mesh.uv.rows()), mesh.triangles);
-  scene.rest = strip.start;
-  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
-    RestTriangle rest;
-    for (int k = 0; k < 3; ++k) rest.col(k) = mesh.uv.row(mesh.triangles(t, k)).transpose();
-    scene.rest_triangle.push_back(rest);
-  }
-  scene.cloths.push_back(
-      {"strip", material, 0, static_cast<int>(mesh.uv.rows()), 0, static_cast<int>(mesh.triangles.rows())});
-  scene.contact.self = false;
-  if (!pinned.empty()) scene.pins = group(mesh, pinned);
+  strip.scene = flat_cloth("strip", mesh, strip.start, material);
+  if (!pinned.empty()) strip.scene.pins = group(mesh, pinned);
   strip.root = group(mesh, "root");
   strip.tip = group(mesh, "tip");
   strip.grip = group(mesh, "grip");

@@ -14,6 +14,9 @@ Triangulation read_triangulation(const std::string&);
 // A plate of stiffness B per width and of thickness h as cloth: E h = 12 (1 - nu^2) B / h^2.
 Material plate_material(double density, double bending, double thickness, double nu);
 
+// A single cloth that rests in the plane of its texture coordinates, without contact with itself; `rest`: in space.
+Scene flat_cloth(const std::string& name, const Mesh&, const Points& rest, const Material&);
+
 // A strip along x, its width along `across` and pinned where its group says.
 struct Strip {
   Scene scene;

@@ -92,6 +92,24 @@ TEST_CASE("audit memory: an audit with it finds what one without it finds", "[au
   CHECK(passed > 100);
 }
 
+TEST_CASE("audit memory: a state at the end of a fast motion is not remembered, one after a slow motion is",
+          "[audit_memory]") {
+  Rest rest;
+  const auto remembers = [&](double way) {
+    AuditMemory memory;
+    const std::vector<MovingBody> bodies{{&rest.body, &rest.y, &rest.y}};
+    for (int step = 0; step < 3; ++step) {
+      const Points x0 = rest.x;
+      rest.x.col(0).array() += way;
+      audit_motion(rest.cloth, x0, rest.x, bodies, true, &memory);
+      same(rest.state(&memory), rest.state(nullptr));
+    }
+    return !memory.reference.empty();
+  };
+  CHECK_FALSE(remembers(0.01));
+  CHECK(remembers(1e-5));
+}
+
 TEST_CASE("audit memory: what sinks into a body is seen inside it", "[audit_memory]") {
   Rest rest;
   AuditMemory memory;

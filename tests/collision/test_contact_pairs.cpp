@@ -71,6 +71,19 @@ TEST_CASE("contact pairs: none that comes near on its way is missed, none is lis
   }
 }
 
+TEST_CASE("contact pairs: what flies far together is not paired for it", "[contact_pairs]") {
+  const auto cloth = sheet(12, 1, 0);
+  const Surface surface = make_surface(static_cast<int>(cloth.x.rows()), cloth.triangles);
+  const ContactWorld world = make_contact_world(surface, {}, true);
+  PairSearch search(world);
+  std::vector<NodePair> still, flying;
+  search.find(cloth.x, cloth.x, 0.02, still);
+  const Points there = cloth.x.rowwise() + Eigen::RowVector3d(1.3, -0.9, 2);
+  search.find(cloth.x, there, 0.02, flying);
+  CHECK(flying.size() <= still.size());
+  CHECK_FALSE(flying.empty());
+}
+
 TEST_CASE("contact pairs: the same pairs whatever came before", "[contact_pairs]") {
   const auto cloth = sheet(6, 1, 0.02);
   const auto ground = sheet(3, 2, 0);

@@ -172,17 +172,24 @@ TEST_CASE("conventional stepper: friction holds a sheet on a slope below its ang
   CHECK(((sliding.state.x - w.state.x) * down).mean() == Approx(expected).epsilon(0.05));
 }
 
-TEST_CASE("conventional stepper: a sheet that slides is stepped finer than one that flies as fast",
+TEST_CASE("conventional stepper: a sheet that slides or hits is stepped finer than one that flies as fast",
           "[conventional_stepper]") {
-  const auto substeps = [](double height) {
+  const auto substeps = [](double height, const Vec3& velocity) {
     World w = make_world(testing::sheet(8, 0.2, height));
-    add_obstacle(w, testing::sheet(2, 2, 0));
+    add_obstacle(w, testing::sheet(2, 4, 0));
     w.drive.acceleration.setZero();
-    w.state.v.rowwise() = Eigen::RowVector3d(4, 0, 0);
+    w.state.v.rowwise() = velocity.transpose();
     State to;
-    return make_conventional_stepper(w.scene, {})->step(w.state, w.drive, 1.0 / 30, to).substeps;
+    const StepReport report = make_conventional_stepper(w.scene, {})->step(w.state, w.drive, 1.0 / 30, to);
+    CHECK(to.clean);
+    CHECK(report.collision.passed_through == 0);
+    return report.substeps;
   };
-  const double edge = 0.2 * (2 + std::sqrt(2.0)) / (3 * 8), way = 4.0 / 30;
-  CHECK(substeps(0.1) == std::max(2.0, std::ceil(way / (2.5 * edge))));
-  CHECK(substeps(1.5e-3) == std::ceil(way / edge));
+  const double edge = 0.2 * (2 + std::sqrt(2.0)) / (3 * 8);
+  CHECK(substeps(0.1, {10, 0, 0}) == 2);
+  CHECK(substeps(1.5e-3, {4, 0, 0}) == std::ceil(4.0 / 30 / edge));
+  // It meets the floor in the first of two substeps, or in the second.
+  const double parts = std::ceil(10.0 / 60 / (2.5 * edge));
+  CHECK(substeps(0.1, {0, -10, 0}) == parts + 1);
+  CHECK(substeps(0.25, {0, -10, 0}) == 1 + parts);
 }

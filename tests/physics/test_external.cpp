@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "physics/external.hpp"
+#include "physics/implicit_euler.hpp"
 #include "tests/physics/meshes.hpp"
 
 using namespace selvedge;
@@ -54,4 +55,30 @@ TEST_CASE("wind: a collapsed triangle feels nothing", "[external]") {
   const Scene scene = sheet(1, 1);
   const Points zero = Points::Zero(scene.rest.rows(), 3);
   CHECK(wind_forces(scene, zero, zero, Vec3(1, 2, 3)).norm() == 0);
+}
+
+TEST_CASE("wind: a storm carries a loose light sheet up to its own speed and not beyond", "[external]") {
+  Scene scene = sheet(1, 0.1);
+  scene.cloths[0].material.density = 0.015;
+  const Vec3 wind(0, 100, 0);
+  Points x = scene.rest, v = Points::Zero(x.rows(), 3);
+  ImplicitEuler solver(scene, {});
+  double before = 0;
+  for (int step = 0; step < 30; ++step) {
+    StepProblem problem;
+    problem.h = 1.0 / 30;
+    problem.x0 = &x;
+    problem.v0 = &v;
+    problem.wind = wind;
+    Points next = x;
+    CHECK(solver.solve(problem, next).converged);
+    v = 30 * (next - x);
+    x = next;
+    const double speed = Vec3(v.colwise().mean()).dot(wind) / 100;
+    CHECK(speed > before - 0.1);
+    CHECK(speed < 100.1);
+    before = speed;
+  }
+  CHECK(before > 95);
+  CHECK(v.rowwise().norm().maxCoeff() < 110);
 }

@@ -7,6 +7,7 @@
 #include "collision/error.hpp"
 #include "physics/cholesky.hpp"
 #include "physics/linear_solver.hpp"
+#include "tests/physics/linear_example.hpp"
 #include "tests/physics/threads.hpp"
 
 using namespace selvedge;
@@ -14,26 +15,15 @@ using namespace selvedge;
 namespace {
 
 // A made-up cloth: random elements that do not see translations, a squared graph Laplacian, contacts and held vertices.
-struct Example {
-  PairPattern pattern;
-  PairBlocks pairs;
-  std::vector<double> diagonal, flat_scale;
-  SparseMatrix flat;
-  std::vector<ContactBlock> contacts;
-  ContactLists lists;
-  std::vector<char> free;
-  std::vector<Mat3> blocks;
+struct Example : testing::LinearExample {
   Points right;
 
   Vertices vertices() const {  // of a square grid
     const int side = static_cast<int>(std::lround(std::sqrt(pattern.rows)));
     Points rest(pattern.rows, 3);
     for (int i = 0; i < pattern.rows; ++i) rest.row(i) << i % side, i / side, 0;
-    Edges edges(pattern.pairs.size(), 2);
-    for (std::size_t e = 0; e < pattern.pairs.size(); ++e) edges.row(e) << pattern.pairs[e][0], pattern.pairs[e][1];
-    return {rest, make_graph(pattern.rows, edges), std::vector<Rim>(pattern.rows, Rim::inside)};
+    return {rest, testing::graph_of(pattern), std::vector<Rim>(pattern.rows, Rim::inside)};
   }
-  LinearSystem system() const { return {pattern, pairs, diagonal, flat, flat_scale, contacts, lists, free}; }
 };
 
 Example make_example(int side, double stiffness, bool with_contacts, bool with_flat) {
@@ -41,13 +31,7 @@ Example make_example(int side, double stiffness, bool with_contacts, bool with_f
   std::normal_distribution<double> normal;
   Example e;
   const int n = side * side;
-  std::vector<int> begin{0}, nodes;
-  for (int i = 0; i + 1 < side; ++i)
-    for (int j = 0; j + 1 < side; ++j)
-      for (const auto& t : {std::array{0, 1, side}, std::array{side + 1, side, 1}}) {
-        for (int k : t) nodes.push_back(i * side + j + k);
-        begin.push_back(static_cast<int>(nodes.size()));
-      }
+  const auto [begin, nodes] = testing::grid_elements(side);
   e.pattern = make_pair_pattern(n, begin, nodes);
   e.pairs.assign(e.pattern.pairs.size(), Mat3::Zero());
   for (std::size_t t = 0; t + 1 < begin.size(); ++t)
@@ -72,14 +56,7 @@ Example make_example(int side, double stiffness, bool with_contacts, bool with_f
   }
   for (int i = 0; i < n; i += 17) e.free[i] = 0;
   if (with_flat) {
-    Eigen::SparseMatrix<double, Eigen::RowMajor> laplacian(n, n);
-    std::vector<Eigen::Triplet<double>> entries;
-    for (const auto& [i, j] : e.pattern.pairs)
-      for (const auto& [a, b, v] :
-           {std::tuple{i, j, 1.}, std::tuple{j, i, 1.}, std::tuple{i, i, -1.}, std::tuple{j, j, -1.}})
-        entries.emplace_back(a, b, v);
-    laplacian.setFromTriplets(entries.begin(), entries.end());
-    e.flat = 0.1 * stiffness * (laplacian * laplacian);
+    e.flat = 0.1 * stiffness * testing::squared_laplacian(e.pattern);
     e.flat.makeCompressed();
   }
   if (with_contacts)
@@ -92,8 +69,7 @@ Example make_example(int side, double stiffness, bool with_contacts, bool with_f
                             10 * stiffness,
                             c % 3 ? 0.0 : stiffness});
     }
-  e.lists = list_contacts(e.contacts, n);
-  diagonal_blocks(e.system(), e.blocks);
+  e.finish();
   return e;
 }
 

@@ -6,6 +6,7 @@
 
 #include "physics/galerkin.hpp"
 #include "physics/multigrid.hpp"
+#include "tests/physics/linear_example.hpp"
 #include "tests/physics/threads.hpp"
 
 using namespace selvedge;
@@ -15,7 +16,7 @@ namespace {
 // A jittered grid of triangles over a unit square, its inner vertices moved by up to a third of an edge.
 struct Sheet {
   Vertices vertices;
-  std::vector<int> element_begin{0}, element_nodes;
+  PairPattern pattern;
 };
 
 Sheet make_sheet(int side, double jitter) {
@@ -30,22 +31,16 @@ Sheet make_sheet(int side, double jitter) {
     sheet.vertices.rest.row(i) << (u + (inner ? shift(random) : 0)) / (side - 1),
         (v + (inner ? shift(random) : 0)) / (side - 1), 0;
   }
-  for (int v = 0; v + 1 < side; ++v)
-    for (int u = 0; u + 1 < side; ++u)
-      for (const auto& t : {std::array{0, 1, side}, std::array{side + 1, side, 1}}) {
-        for (int k : t) sheet.element_nodes.push_back(v * side + u + k);
-        sheet.element_begin.push_back(static_cast<int>(sheet.element_nodes.size()));
-      }
-  const PairPattern pattern = make_pair_pattern(n, sheet.element_begin, sheet.element_nodes);
-  Edges edges(pattern.pairs.size(), 2), border(4 * (side - 1), 2);
-  for (std::size_t e = 0; e < pattern.pairs.size(); ++e) edges.row(e) << pattern.pairs[e][0], pattern.pairs[e][1];
+  const testing::GridElements elements = testing::grid_elements(side);
+  sheet.pattern = make_pair_pattern(n, elements.begin, elements.nodes);
+  Edges border(4 * (side - 1), 2);
   for (int k = 0; k + 1 < side; ++k) {
     border.row(4 * k) << k, k + 1;
     border.row(4 * k + 1) << n - side + k, n - side + k + 1;
     border.row(4 * k + 2) << k * side, (k + 1) * side;
     border.row(4 * k + 3) << k * side + side - 1, (k + 1) * side + side - 1;
   }
-  sheet.vertices.graph = make_graph(n, edges);
+  sheet.vertices.graph = testing::graph_of(sheet.pattern);
   sheet.vertices.rim = rims(sheet.vertices.rest, border);
   return sheet;
 }
@@ -57,20 +52,6 @@ Eigen::MatrixXd dense(const Prolongation& p) {
   return matrix;
 }
 
-BlockColumns<float> block(const Mat3& from) {
-  BlockColumns<float> to{};
-  for (int k = 0; k < 3; ++k)
-    for (int r = 0; r < 3; ++r) to.column[k].lanes[r] = static_cast<float>(from(r, k));
-  return to;
-}
-
-Mat3 matrix(const BlockColumns<float>& from) {
-  Mat3 to;
-  for (int k = 0; k < 3; ++k)
-    for (int r = 0; r < 3; ++r) to(r, k) = from.column[k].lanes[r];
-  return to;
-}
-
 using Blocks = std::vector<BlockColumns<float>>;
 
 // y_i = D_i u_i + sum_j B_ij (u_j - u_i) as a matrix.
@@ -78,10 +59,10 @@ Eigen::MatrixXd dense(const RowPattern& pattern, const Blocks& blocks, const Blo
   const int n = static_cast<int>(diagonal.size());
   Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(3 * n, 3 * n);
   for (int i = 0; i < n; ++i) {
-    whole.block<3, 3>(3 * i, 3 * i) += matrix(diagonal[i]);
+    whole.block<3, 3>(3 * i, 3 * i) += block_of(diagonal[i]);
     for (int k = pattern.begin[i]; k < pattern.begin[i + 1]; ++k) {
-      whole.block<3, 3>(3 * i, 3 * pattern.column[k]) += matrix(blocks[k]);
-      whole.block<3, 3>(3 * i, 3 * i) -= matrix(blocks[k]);
+      whole.block<3, 3>(3 * i, 3 * pattern.column[k]) += block_of(blocks[k]);
+      whole.block<3, 3>(3 * i, 3 * i) -= block_of(blocks[k]);
     }
   }
   return whole;
@@ -95,38 +76,22 @@ Eigen::MatrixXd three_times(const Eigen::MatrixXd& p) {
 }
 
 // Springs along edges in random directions, mass, bending of the graph, contacts across the sheet, a held row.
-struct Example {
+struct Example : testing::LinearExample {
   Sheet sheet;
-  PairPattern pattern;
-  PairBlocks pairs;
-  std::vector<double> diagonal, flat_scale;
-  SparseMatrix flat;
-  std::vector<ContactBlock> contacts;
-  ContactLists lists;
-  std::vector<char> free;
-  std::vector<Mat3> blocks;
-  LinearSystem system() const { return {pattern, pairs, diagonal, flat, flat_scale, contacts, lists, free}; }
 };
 
 Example make_example(int side, double stiffness, int contacts) {
   Example e;
   e.sheet = make_sheet(side, 0.3);
   const int n = side * side;
-  e.pattern = make_pair_pattern(n, e.sheet.element_begin, e.sheet.element_nodes);
+  e.pattern = e.sheet.pattern;
   std::mt19937 random(11);
   std::normal_distribution<double> normal;
   for (const auto& [i, j] : e.pattern.pairs) {
     const Vec3 along = (row(e.sheet.vertices.rest, j) - row(e.sheet.vertices.rest, i)).normalized();
     e.pairs.push_back(-stiffness * (along * along.transpose() + 0.02 * Mat3::Identity()));
   }
-  std::vector<Eigen::Triplet<double>> entries;
-  for (const auto& [i, j] : e.pattern.pairs)
-    for (const auto& [a, b, v] :
-         {std::tuple{i, j, 1.}, std::tuple{j, i, 1.}, std::tuple{i, i, -1.}, std::tuple{j, j, -1.}})
-      entries.emplace_back(a, b, v);
-  SparseMatrix laplacian(n, n);
-  laplacian.setFromTriplets(entries.begin(), entries.end());
-  e.flat = 1e-3 * stiffness * SparseMatrix(laplacian * laplacian);
+  e.flat = 1e-3 * stiffness * testing::squared_laplacian(e.pattern);
   e.flat.makeCompressed();
   e.flat_scale.assign(n, 1.2);
   e.diagonal.assign(n, 1);
@@ -143,8 +108,7 @@ Example make_example(int side, double stiffness, int contacts) {
                           c % 2 ? 0.0 : 0.2 * stiffness});
     if (obstacle) e.contacts.back().nodes[2] = -1;
   }
-  e.lists = list_contacts(e.contacts, n);
-  diagonal_blocks(e.system(), e.blocks);
+  e.finish();
   return e;
 }
 
@@ -157,6 +121,41 @@ Points apply(Multigrid& multigrid, const Points& r) {
   for (int i = 0; i < r.rows(); ++i)
     for (int k = 0; k < 3; ++k) z(i, k) = out[i].lanes[k];
   return z;
+}
+
+// The V-cycle and the example's matrix on the free unknowns, dense.
+struct DenseCycle {
+  Eigen::MatrixXd cycle, matrix;
+
+  // Of the cycle times the matrix.
+  Eigen::VectorXd eigenvalues() const {
+    const Eigen::MatrixXd factor = matrix.llt().matrixL();
+    const Eigen::MatrixXd even = 0.5 * (cycle + cycle.transpose());
+    return (factor.transpose() * even * factor).selfadjointView<Eigen::Lower>().eigenvalues();
+  }
+};
+
+DenseCycle dense_cycle(const Example& e, Multigrid& multigrid) {
+  const int n = e.pattern.rows;
+  std::vector<int> unknowns;
+  for (int i = 0; i < 3 * n; ++i)
+    if (e.free[i / 3]) unknowns.push_back(i);
+  const int m = static_cast<int>(unknowns.size());
+  DenseCycle dense{Eigen::MatrixXd(m, m), Eigen::MatrixXd(m, m)};
+  for (int column = 0; column < m; ++column) {
+    Points unit = Points::Zero(n, 3), product;
+    unit(unknowns[column] / 3, unknowns[column] % 3) = 1;
+    multiply(e.system(), unit, product);
+    const Points z = apply(multigrid, unit);
+    for (int k = 0; k < m; ++k) {
+      dense.cycle(k, column) = z(unknowns[k] / 3, unknowns[k] % 3);
+      dense.matrix(k, column) = product(unknowns[k] / 3, unknowns[k] % 3);
+    }
+    for (int i = 0; i < n; ++i)
+      if (!e.free[i]) CHECK(z.row(i).norm() == 0);
+  }
+  CHECK((dense.cycle - dense.cycle.transpose()).norm() < 1e-3 * dense.cycle.norm());
+  return dense;
 }
 
 }  // namespace
@@ -203,7 +202,7 @@ TEST_CASE("Galerkin products are P^T A P, of matrices and of contacts", "[multig
   const auto some = [&] {
     Mat3 m;
     for (int k = 0; k < 9; ++k) m(k) = normal(random);
-    return block(m);
+    return columns_of<float>(m);
   };
   const RowPattern fine{e.pattern.row_begin, e.pattern.column};
   Blocks blocks(fine.column.size()), diagonal(e.pattern.rows);
@@ -221,7 +220,7 @@ TEST_CASE("Galerkin products are P^T A P, of matrices and of contacts", "[multig
   Eigen::MatrixXd touching = Eigen::MatrixXd::Zero(weights.rows(), weights.rows());
   Blocks factors;
   for (const ContactBlock& contact : e.contacts) {
-    factors.push_back(block(contact_matrix(contact)));
+    factors.push_back(columns_of<float>(contact_matrix(contact)));
     for (int a = 0; a < 4; ++a)
       for (int b = 0; b < 4; ++b)
         if (contact.nodes[a] >= 0 && contact.nodes[b] >= 0)
@@ -243,30 +242,20 @@ TEST_CASE("A V-cycle is symmetric and positive, and no eigenvalue of it times th
   fine.fill(e.system());
   Multigrid multigrid(e.sheet.vertices, e.free);
   REQUIRE(multigrid.fill(e.system(), e.blocks, fine));
-  const int n = e.pattern.rows;
-  std::vector<int> unknowns;
-  for (int i = 0; i < 3 * n; ++i)
-    if (e.free[i / 3]) unknowns.push_back(i);
-  const int m = static_cast<int>(unknowns.size());
-  Eigen::MatrixXd cycle(m, m), a(m, m);
-  for (int column = 0; column < m; ++column) {
-    Points unit = Points::Zero(n, 3), product;
-    unit(unknowns[column] / 3, unknowns[column] % 3) = 1;
-    multiply(e.system(), unit, product);
-    const Points z = apply(multigrid, unit);
-    for (int k = 0; k < m; ++k) {
-      cycle(k, column) = z(unknowns[k] / 3, unknowns[k] % 3);
-      a(k, column) = product(unknowns[k] / 3, unknowns[k] % 3);
-    }
-    for (int i = 0; i < n; ++i)
-      if (!e.free[i]) CHECK(z.row(i).norm() == 0);
-  }
-  CHECK((cycle - cycle.transpose()).norm() < 1e-3 * cycle.norm());
-  const Eigen::MatrixXd factor = a.llt().matrixL();
-  const Eigen::VectorXd values =
-      (factor.transpose() * (0.5 * (cycle + cycle.transpose())) * factor).selfadjointView<Eigen::Lower>().eigenvalues();
+  const Eigen::VectorXd values = dense_cycle(e, multigrid).eigenvalues();
   CHECK(values.minCoeff() > (e.contacts.empty() ? 0.3 : 0.08));
   CHECK(values.maxCoeff() < 1.2);
+}
+
+TEST_CASE("A V-cycle with the coarse levels of another matrix is symmetric and positive all the same", "[multigrid]") {
+  const Example before = make_example(14, 1e2, 0), e = make_example(14, GENERATE(1.0, 1e4), 0);
+  PcgMatrix<float> fine;
+  fine.fill(before.system());
+  Multigrid multigrid(e.sheet.vertices, e.free);
+  REQUIRE(multigrid.fill(before.system(), before.blocks, fine));
+  fine.fill(e.system());
+  multigrid.fill_finest(e.system(), e.blocks, fine);
+  CHECK(dense_cycle(e, multigrid).eigenvalues().minCoeff() > 1e-3);
 }
 
 TEST_CASE("Contacts that come and go change the coarse matrices", "[multigrid]") {

@@ -1,4 +1,7 @@
+#include <random>
+
 #include "collision/audit.hpp"
+#include "collision/untangle.hpp"
 #include "physics/recovery.hpp"
 #include "tests/physics/worlds.hpp"
 
@@ -68,7 +71,7 @@ TEST_CASE("recovery: a clean start is left as it is", "[recovery]") {
   const ContactWorld world = with_its_obstacle(w);
   Points nodes = gather_nodes(w.state.x, w.state.obstacles);
   const Points before = nodes;
-  CHECK_FALSE(recover(world, Eigen::VectorXd::Ones(nodes.rows()), 1, nodes).any());
+  CHECK_FALSE(recover(world, Eigen::VectorXd::Ones(nodes.rows()), 1, nodes).left.any());
   CHECK(nodes == before);
 }
 
@@ -90,6 +93,27 @@ TEST_CASE("recovery: a body that crosses itself is switched off there and nowher
   CHECK(r.passed_through == 0);
 }
 
+TEST_CASE("recovery: what cannot be parted is not pushed, the rest is", "[recovery]") {
+  testing::Sheet ball = sheet(4, 0.2, 0);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> within(-0.04, 0.04);
+  for (int v = 0; v < ball.x.rows(); ++v) ball.x.row(v) << within(random), within(random), within(random);
+  const World w = make_world(ball);
+  const ContactWorld world = make_contact_world(w.scene.surface, {}, true);
+  const UntangleResult parted = untangle(w.scene.surface, w.state.x, {});
+  REQUIRE(parted.pairs_after > 0);
+  const Exemption there = find_exemption(world, parted.x);
+  Points nodes = w.state.x;
+  recover(world, Eigen::VectorXd::Ones(nodes.rows()), 0.01, nodes);
+  int pushed = 0;
+  for (int v = 0; v < nodes.rows(); ++v) {
+    const bool moved = nodes.row(v) != w.state.x.row(v);
+    CHECK_FALSE((moved && there.self[v]));
+    pushed += moved;
+  }
+  CHECK(pushed > 0);
+}
+
 TEST_CASE("recovery: what is left alone is every pair with a tangled vertex", "[recovery]") {
   World w = make_world(sheet(2, 0.4, 0));
   add_obstacle(w, block({0, -0.2, 0}, 0.06));
@@ -109,4 +133,39 @@ TEST_CASE("recovery: what is left alone is every pair with a tangled vertex", "[
   CHECK_FALSE(exemption.leaves_alone(world, {0, 9, 10, 11}));
   exemption.off[11] = 1;
   CHECK(exemption.leaves_alone(world, {0, 9, 10, 11}));
+}
+
+TEST_CASE("recovery: a body that jumps farther than its size is not swept along, and what it lands on gets clean",
+          "[recovery]") {
+  World w = make_world(sheet(12, 0.4, 0));
+  add_obstacle(w, block({3, 0, 0}, 0.03));
+  w.drive.acceleration.setZero();
+  const Points there = block({0.01, 0, 0.02}, 0.03).x;
+  const auto stepper = make_conventional_stepper(w.scene, {});
+  State state = w.state, to;
+  w.drive.obstacles = {there};
+  StepReport report = stepper->step(state, w.drive, 1.0 / 30, to);
+  REQUIRE(report.status == StepStatus::accepted);
+  CHECK(report.collision.jumped == 1);
+  CHECK(to.obstacles[0] == there);
+  CHECK((to.x - state.x).rowwise().norm().maxCoeff() < 0.1);  // a sweep at 90 m/s would carry it off
+  for (int frame = 0; frame < 20; ++frame) {
+    state = to;
+    report = stepper->step(state, w.drive, 1.0 / 30, to);
+    CHECK(report.collision.jumped == 0);
+  }
+  CHECK(to.clean);
+}
+
+TEST_CASE("recovery: a fast body that does not jump sweeps the cloth along", "[recovery]") {
+  World w = make_world(sheet(12, 0.4, 0));
+  add_obstacle(w, block({0, -0.3, 0}, 0.06));
+  w.drive.acceleration.setZero();
+  w.drive.obstacles = {block({0, 1, 0}, 0.06).x};
+  State to;
+  const StepReport report = make_conventional_stepper(w.scene, {})->step(w.state, w.drive, 1.0 / 30, to);
+  REQUIRE(report.status == StepStatus::accepted);
+  CHECK(report.collision.jumped == 0);
+  CHECK(to.clean);
+  CHECK(to.x.col(1).maxCoeff() > 1);
 }

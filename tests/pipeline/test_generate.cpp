@@ -261,3 +261,18 @@ TEST_CASE("Vertices of spheres lie on the sphere", "[primitives]") {
     CHECK((sphere.x.rowwise().norm().array() - 0.8).abs().maxCoeff() < 1e-14);
   }
 }
+
+TEST_CASE("rectangle: graded spacings grow geometrically and keep the size and the groups", "[generate]") {
+  const Vec2 size(2, 1);
+  Mesh mesh = make_rectangle(size, 9, 5, {});
+  grade_rectangle(mesh, size, 9, 5, {1000, 10});
+  CHECK(area_of(mesh.x, mesh.triangles) == Approx(2));
+  CHECK(mesh.x.col(0).minCoeff() == Approx(-1));
+  CHECK(mesh.x.col(0).maxCoeff() == Approx(1));
+  const double first = mesh.x(1, 0) - mesh.x(0, 0), second = mesh.x(2, 0) - mesh.x(1, 0),
+               last = mesh.x(8, 0) - mesh.x(7, 0);
+  CHECK(last / first == Approx(1000));
+  CHECK(second / first == Approx(std::pow(1000, 1.0 / 7)));
+  const auto z = [&](int row) { return mesh.x(9 * row, 2); };  // rows go from the bottom, +z, to the top
+  CHECK((z(0) - z(1)) / (z(3) - z(4)) == Approx(10));
+}

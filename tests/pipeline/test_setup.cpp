@@ -103,9 +103,33 @@ TEST_CASE("Every shipped material is physical and found by name", "[setup]") {
     const double bending_length = std::cbrt(m.bending / (9.81 * m.density));
     CHECK(bending_length > 0.0076);
     CHECK(bending_length < 0.039);
+    CHECK(m.density > 0.015);
+    CHECK(m.density < 0.87);
+    if (m.membrane == MembraneModel::baraff_witkin) {  // woven: shear is what gives
+      CHECK(m.shear > 0);
+      CHECK(m.shear < 0.5 * std::min(m.warp, m.weft));
+    }
     ++count;
   }
-  CHECK(count >= 4);
+  CHECK(count >= 12);
+}
+
+TEST_CASE("Every number of a shipped material has a unit or a source beside it, every material a row in the docs",
+          "[setup]") {
+  const std::string page = fake::whole(std::filesystem::path(SELVEDGE_SOURCE_DIR) / "docs" / "materials.md");
+  for (const auto& entry : std::filesystem::directory_iterator(config("materials"))) {
+    INFO(entry.path().stem().string());
+    CHECK_THAT(page, Contains("\n| `" + entry.path().stem().string() + "` |"));
+    std::istringstream lines(fake::whole(entry.path()));
+    for (std::string line; std::getline(lines, line);) {
+      const std::size_t colon = line.find(": ");
+      if (colon == std::string::npos || line[0] == '#' || line.find_first_of("0123456789", colon) == std::string::npos)
+        continue;
+      INFO(line);
+      const bool prose = line.starts_with("description") || line.starts_with(' ');
+      CHECK((prose || line.find(" # ", colon) != std::string::npos));
+    }
+  }
 }
 
 TEST_CASE("A material beside the scene comes before the program's, values before both", "[setup]") {
@@ -332,4 +356,33 @@ TEST_CASE("Wind may be keyframed, and is on only where it does something", "[set
   CHECK(read(folder, sheet + "wind: {}\n").scene.wind.on);  // still air drags
   CHECK_FALSE(read(folder, sheet + "wind: {drag: 0, lift: 0}\n").scene.wind.on);
   CHECK_FALSE(read(folder, sheet).scene.wind.on);
+}
+
+TEST_CASE("A start may be stretched, flattened and crumpled; the rest shape stays", "[setup]") {
+  const Folder folder("start");
+  const std::string cloth = "cloths: [{rectangle: {size: [1, 0.5], resolution: 5}, translate: [0, 1, 0], start: ";
+  const Setup made = read(folder, cloth + "{}}]");
+  const Setup twice = read(folder, cloth + "{stretch: [2, 1, -1]}}]");
+  CHECK(metric_error(twice.scene, made.initial.x) < 1e-12);
+  const Eigen::RowVector3d factors(2, 1, -1), middle(0, 1, 0);
+  CHECK((twice.initial.x.rowwise() - middle -
+         ((made.initial.x.rowwise() - middle).array().rowwise() * factors.array()).matrix())
+            .norm() < 1e-12);
+  const Setup crumpled = read(folder, cloth + "{crumple: 10 cm, seed: 3}}]");
+  const Points moved = crumpled.initial.x - made.initial.x;
+  CHECK(moved.cwiseAbs().maxCoeff() <= 0.1);
+  CHECK(moved.cwiseAbs().maxCoeff() > 0.09);
+  CHECK(crumpled.initial.x != read(folder, cloth + "{crumple: 10 cm, seed: 4}}]").initial.x);
+  CHECK(metric_error(crumpled.scene, made.initial.x) < 1e-12);
+}
+
+TEST_CASE("A cloth that starts in one point is opened, and a warning says so", "[setup]") {
+  const Folder folder("start");
+  const Setup setup =
+      read(folder, "cloths: [{name: dot, rectangle: {size: [1, 1], resolution: 5}, start: {stretch: [0, 0, 0]}}]");
+  REQUIRE(setup.warnings.size() == 1);
+  CHECK_THAT(setup.warnings[0], Contains("`dot` starts in one point") && Contains("seed 1"));
+  const Points& x = setup.initial.x;
+  CHECK((x.colwise().maxCoeff() - x.colwise().minCoeff()).maxCoeff() > 1e-4);
+  CHECK(x.cwiseAbs().maxCoeff() < 3e-4);
 }

@@ -175,6 +175,7 @@ TEST_CASE("a checkpoint keeps every bit") {
   state.frame = 7;
   state.time = 0.1 + 0.2;
   state.v.setConstant(1.0 / 3);
+  if (GENERATE(false, true)) state.history = {1.0 / 60, 0.7 * state.x, 0.7 * state.v};
   write_checkpoint(folder.path / "c.h5", state, "a: 1\n");
   const State read = read_checkpoint(folder.path / "c.h5", "a: 1\n");
   REQUIRE(read.frame == state.frame);
@@ -182,6 +183,9 @@ TEST_CASE("a checkpoint keeps every bit") {
   REQUIRE(read.x == state.x);
   REQUIRE(read.v == state.v);
   REQUIRE(read.obstacles == state.obstacles);
+  REQUIRE(read.history.h == state.history.h);
+  REQUIRE(read.history.x == state.history.x);
+  REQUIRE(read.history.v == state.history.v);
 }
 
 TEST_CASE("a run that fails leaves no results of the run before it") {
