@@ -234,7 +234,8 @@ ImplicitEuler::Impl::Direction ImplicitEuler::Impl::find_direction(const Points&
 }
 
 // Moves x along `motion` until the potential has sunk enough; the step length, or 0 if no step did. Filtered Hessians
-// overrate the stiffness of buckling cloth: where the potential sinks almost linearly, longer steps are tried.
+// overrate the stiffness of buckling cloth: where the potential sinks almost linearly, and by more than rounding,
+// longer steps are tried.
 double ImplicitEuler::Impl::line_search(Points& x) {
   const double slope = gradient.cwiseProduct(motion).sum();
   const auto try_length = [&](double length) {
@@ -250,7 +251,9 @@ double ImplicitEuler::Impl::line_search(Points& x) {
   for (int halving = 0; halving < max_halvings && !enough(); ++halving) best = try_length(length *= 0.5);
   if (!enough()) return 0;
   std::vector<double> best_energy = trial_energy;
-  while (length >= 1 && length < max_length && best.change < almost_linear * length * slope - best.noise) {
+  const bool measurable = -slope > best.noise;
+  while (measurable && length >= 1 && length < max_length &&
+         best.change < almost_linear * length * slope - best.noise) {
     const EnergyChange longer = try_length(2 * length);
     if (!(longer.change < best.change)) break;
     best = longer;

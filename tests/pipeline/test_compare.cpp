@@ -119,7 +119,7 @@ TEST_CASE("A comparison measures errors, times and energy, and is not done twice
   CHECK(coarse.dt == Approx(1.0 / 30));
   CHECK(fine.dt == Approx(1.0 / 120));
   for (const CompareRow& r : result.rows) {
-    CHECK(r.trouble.empty());
+    CHECK(r.trouble == "");
     CHECK(r.ms > 0);
     CHECK(r.newton > 0);
     CHECK(r.pairs == 0);
