@@ -16,6 +16,26 @@ void hold_blas_to_one_thread() {
     if (void* found = dlsym(RTLD_DEFAULT, name)) reinterpret_cast<SetThreads>(found)(1);
 }
 
+// While one lives, CHOLMOD starts no threads. It asks for a team of four whatever the number of threads that it may
+// have; such a team spins on two cores, and takes the place of ours each time. Looked up, as CHOLMOD has OpenMP where
+// we may not.
+class OneThread {
+ public:
+  OneThread() : levels_(get_ ? get_() : 0) {
+    if (set_) set_(0);
+  }
+  ~OneThread() {
+    if (set_) set_(levels_);
+  }
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+ private:
+  int (*get_)() = reinterpret_cast<int (*)()>(dlsym(RTLD_DEFAULT, "omp_get_max_active_levels"));
+  void (*set_)(int) = reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "omp_set_max_active_levels"));
+  int levels_;
+};
+
 }  // namespace
 
 struct Cholesky::Impl {
@@ -62,6 +82,7 @@ bool Cholesky::factor(std::span<double> values) {
   if (!impl_->factor) return false;
   impl_->matrix.x = values.data();
   impl_->matrix.xtype = CHOLMOD_REAL;
+  const OneThread alone;
   cholmod_factorize(&impl_->matrix, impl_->factor, &impl_->common);
   return impl_->common.status == CHOLMOD_OK && impl_->factor->minor == impl_->factor->n;
 }

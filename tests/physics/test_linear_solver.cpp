@@ -1,4 +1,6 @@
 #include <cmath>
+#include <filesystem>
+#include <iterator>
 #include <random>
 
 #include <Eigen/Dense>
@@ -220,4 +222,19 @@ TEST_CASE("CHOLMOD asked for where it is absent is an error", "[linear_solver]")
   else
     CHECK_THROWS_AS(solver(LinearSolver::cholmod, 10), Error);
   CHECK(solver(LinearSolver::automatic, 40) == LinearSolver::multigrid);
+}
+
+TEST_CASE("CHOLMOD starts no threads of its own", "[linear_solver]") {
+  if (!Cholesky::available() || !std::filesystem::exists("/proc/self/task")) return;
+  const auto threads = [] {
+    return std::distance(std::filesystem::directory_iterator("/proc/self/task"), std::filesystem::directory_iterator());
+  };
+  const Example e = make_example(30, 1e3, true, true);
+  LinearSystemSolver solver(LinearSolver::cholmod, e.vertices(), e.free);
+  with_threads(1, [&] {
+    const auto before = threads();
+    Points x;
+    REQUIRE(solver.solve(e.system(), e.blocks, e.right, 1e-8, 1, x).converged);
+    CHECK(threads() <= before);
+  });
 }
