@@ -27,7 +27,7 @@ void audit_state(const Scene& scene, const ContactWorld& world, const Drive& dri
                  StepReport& report) {
   Stopwatch watch;
   CollisionReport& collision = report.collision;
-  const Audit now = audit_positions(scene, world, state.x, state.obstacles, &memory);
+  const Audit& now = report.audit.emplace(audit_positions(scene, world, state.x, state.obstacles, &memory));
   collision.pairs_after = collision.pairs_wanted = now.intersecting_pairs();
   state.clean = collision.pairs_after == 0 && now.inside_vertices == 0;
   if (state.pinched) {

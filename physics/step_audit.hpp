@@ -15,8 +15,8 @@ namespace selvedge {
 Audit audit_positions(const Scene&, const ContactWorld&, const Points& x, const std::vector<Points>& obstacles,
                       AuditMemory* = nullptr);
 
-// Of the state that a step made: sets `clean`, and in the report the intersecting pairs, those with obstacles where the
-// drive wanted them, the reason `penetrating` where any are left, and the seconds it took.
+// Of the state that a step made: sets `clean`, and in the report the audit, the intersecting pairs, those with
+// obstacles where the drive wanted them, the reason `penetrating` where any are left, and the seconds it took.
 void audit_state(const Scene&, const ContactWorld&, const Drive&, State&, AuditMemory&, StepReport&);
 
 // Pairs that met while all nodes moved straight from nodes0 to nodes1, those that contact leaves alone not counted.

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "collision/audit.hpp"
 #include "collision/points.hpp"
 
 namespace selvedge {
@@ -12,6 +14,13 @@ namespace selvedge {
 struct StepHistory {
   double h = 0;  // its length [s]; 0: there is none
   Points x, v;
+};
+
+// How long each cloth has been where it is, and in which wind and under which gravity.
+struct Rest {
+  std::vector<double> seconds;  // one a cloth; empty: not known
+  Points place;                 // about where, all cloths on end
+  Vec3 wind = Vec3::Zero(), acceleration = Vec3::Zero();
 };
 
 // All that the next step depends on: a copy is a checkpoint.
@@ -23,6 +32,7 @@ struct State {
   bool pinched = false;           // they do: cloth left them no room in the step that ended here
   bool clean = false;             // known to be free of intersections, by the audit of the step that ended here
   StepHistory history;
+  Rest rest;
 };
 
 // What the world imposes on a step, given at the step's END.
@@ -64,11 +74,13 @@ struct StepReport {  // starts as failure
   std::string by;  // who made the state
   bool fell_back = false;
   int substeps = 0;
+  int resting = 0;     // cloths that were left out because they rest (resting_stepper.hpp)
   int iterations = 0;  // Newton, all substeps
   int linear_iterations = 0;
   double residual = 0;  // largest force imbalance at the last substep's end [N]
   PhaseTimes seconds;
   CollisionReport collision;
+  std::optional<Audit> audit;  // of the state that was made, rounded to float (step_audit.hpp); absent: not audited
 };
 
 struct StepperTraits {

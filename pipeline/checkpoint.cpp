@@ -19,6 +19,26 @@ Points read_points(const h5::File& file, const std::string& name) {
   return points;
 }
 
+void write_rest(const h5::File& file, const Rest& rest) {
+  file.write_constant("rest_seconds", H5T_NATIVE_DOUBLE, {static_cast<hsize_t>(rest.seconds.size())},
+                      rest.seconds.data());
+  Points air(2, 3);
+  air << rest.wind.transpose(), rest.acceleration.transpose();
+  write_points(file, "rest_air", air);
+  write_points(file, "rest_place", rest.place);
+}
+
+Rest read_rest(const h5::File& file) {
+  Rest rest;
+  rest.seconds.resize(file.shape(file.open_dataset("rest_seconds").id()).at(0));
+  if (!rest.seconds.empty()) file.read_all("rest_seconds", H5T_NATIVE_DOUBLE, rest.seconds.data());
+  const Points air = read_points(file, "rest_air");
+  rest.place = read_points(file, "rest_place");
+  rest.wind = row(air, 0);
+  rest.acceleration = row(air, 1);
+  return rest;
+}
+
 }  // namespace
 
 void write_checkpoint(const std::filesystem::path& path, const State& state, const std::string& config) {
@@ -39,6 +59,7 @@ void write_checkpoint(const std::filesystem::path& path, const State& state, con
     file.write_constant("history_h", H5T_NATIVE_DOUBLE, {1}, &state.history.h);
     write_points(file, "history_x", state.history.x);
     write_points(file, "history_v", state.history.v);
+    write_rest(file, state.rest);
     file.close();
   } catch (const Error&) {
     file.abandon();
@@ -72,6 +93,7 @@ State read_checkpoint(const std::filesystem::path& path, const std::string& conf
   file.read_all("history_h", H5T_NATIVE_DOUBLE, &state.history.h);
   state.history.x = read_points(file, "history_x");
   state.history.v = read_points(file, "history_v");
+  state.rest = read_rest(file);
   return state;
 }
 

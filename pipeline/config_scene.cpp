@@ -85,6 +85,7 @@ const Section& run_section() {
            {"auto"}),
        integer("max_substeps", at_least_one, show(r.conventional.max_substeps), "most that `auto` takes"),
        word("stepper", known_steppers(), r.stepper, "who makes the frames"),
+       flag("rest", r.rest, "cloths that rest, with nothing moving near them, are left out of the work"),
        section(icm_section(), "{}", "of the stepper `icm`")}};
   return table;
 }

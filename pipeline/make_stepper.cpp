@@ -1,6 +1,7 @@
 #include "pipeline/make_stepper.hpp"
 
 #include "collision/error.hpp"
+#include "physics/resting_stepper.hpp"
 #include "pipeline/config.hpp"
 
 namespace selvedge {
@@ -10,10 +11,21 @@ const std::vector<std::string>& known_steppers() {
   return known;
 }
 
+namespace {
+
+MakeStepper maker_of(const Setup& setup) {
+  const RunOptions& run = setup.run;
+  if (run.stepper == "conventional")
+    return [options = run.conventional](const Scene& scene) { return make_conventional_stepper(scene, options); };
+  if (run.stepper == "icm") return [options = run.icm](const Scene& scene) { return make_icm_stepper(scene, options); };
+  throw Error("unknown stepper `" + run.stepper + "`", setup.file.string(), "known: " + joined(known_steppers()));
+}
+
+}  // namespace
+
 std::unique_ptr<Stepper> make_stepper(const Setup& setup) {
-  if (setup.run.stepper == "conventional") return make_conventional_stepper(setup.scene, setup.run.conventional);
-  if (setup.run.stepper == "icm") return make_icm_stepper(setup.scene, setup.run.icm);
-  throw Error("unknown stepper `" + setup.run.stepper + "`", setup.file.string(), "known: " + joined(known_steppers()));
+  const MakeStepper make = maker_of(setup);
+  return setup.run.rest ? make_resting_stepper(setup.scene, make) : make(setup.scene);
 }
 
 }  // namespace selvedge

@@ -29,6 +29,9 @@ std::string linear_solver_of(const Setup& setup) {
 std::vector<PlanLine> lines_of(const Setup& setup) {
   std::vector<PlanLine> lines = plan_lines(setup.scene);
   lines.push_back({"linear solver", true, linear_solver_of(setup)});
+  lines.push_back({"cloths at rest", !setup.run.rest,
+                   setup.run.rest ? "left out of a step as long as nothing that moves comes near them"
+                                  : "stepped like others, as run.rest asks"});
   if (setup.run.stepper != "icm") return lines;
   const std::string untouched = "left out by the stepper icm";
   lines.push_back({"contour energy", true, "weight " + fmt::format("{}", setup.run.icm.contour_weight)});

@@ -6,11 +6,13 @@
 namespace selvedge {
 namespace {
 
-void audit_frame(const Scene& scene, const Points& x, const std::vector<Points>& obstacles, AuditMemory* memory,
-                 Frame& frame) {
+Audit audit_frame(const Scene& scene, const Points& x, const std::vector<Points>& obstacles) {
   std::vector<AuditBody> bodies;
   for (std::size_t k = 0; k < obstacles.size(); ++k) bodies.push_back({&scene.obstacles[k].surface, &obstacles[k]});
-  const Audit result = audit(scene.surface, x, bodies, scene.contact.self, memory);
+  return audit(scene.surface, x, bodies, scene.contact.self);
+}
+
+void record_audit(const Audit& result, Frame& frame) {
   frame.self_pairs = static_cast<int>(result.self_pairs.size());
   frame.vertex_pairs = static_cast<int>(result.vertex_pairs.size());
   frame.obstacle_pairs = static_cast<int>(result.obstacle_pairs.size());
@@ -25,7 +27,7 @@ void audit_frame(const Scene& scene, const Points& x, const std::vector<Points>&
 
 }  // namespace
 
-Frame record_frame(const Scene& scene, const EnergyTerms& terms, const FrameEvent& event, AuditMemory* memory) {
+Frame record_frame(const Scene& scene, const EnergyTerms& terms, const FrameEvent& event) {
   Frame frame;
   frame.time = event.state.time;
   frame.x = event.state.x.cast<float>();
@@ -37,7 +39,7 @@ Frame record_frame(const Scene& scene, const EnergyTerms& terms, const FrameEven
   }
   frame.report = event.report;
   const Clock::time_point before_audit = Clock::now();
-  audit_frame(scene, x, obstacles, memory, frame);
+  record_audit(event.report.audit ? *event.report.audit : audit_frame(scene, x, obstacles), frame);
   frame.report.seconds.audit += seconds_since(before_audit);
   const auto stretches = principal_stretches(scene, x);
   if (stretches.rows() > 0) {

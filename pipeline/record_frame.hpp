@@ -1,6 +1,5 @@
 #pragma once
 
-#include "collision/audit_memory.hpp"
 #include "physics/measures.hpp"
 #include "pipeline/simulate.hpp"
 #include "pipeline/trajectory_hdf5.hpp"
@@ -9,8 +8,8 @@ namespace selvedge {
 
 // What a trajectory keeps of a frame. Positions are rounded to float first; the audit, the stretches and the energies
 // are those of the rounded positions, because these are what a reader gets.
-// The memory, where given, saves time where little moves.
-Frame record_frame(const Scene&, const EnergyTerms&, const FrameEvent&, AuditMemory* = nullptr);
+// What the stepper has audited is not audited again.
+Frame record_frame(const Scene&, const EnergyTerms&, const FrameEvent&);
 
 // Frame 0: the state before any step.
 Frame record_initial(const Scene&, const EnergyTerms&, const State&, const Drive&);

@@ -37,7 +37,6 @@ struct Recorder {
   TrajectoryWriter writer;
   int next = 0;
   EnergyTerms terms = energy_terms(setup.scene);
-  AuditMemory audited{};
   Clock::time_point last_checkpoint = Clock::now();
 
   void add(const Frame& frame) {
@@ -51,7 +50,7 @@ struct Recorder {
   }
 
   bool operator()(const FrameEvent& event) {
-    add(record_frame(setup.scene, terms, event, &audited));
+    add(record_frame(setup.scene, terms, event));
     if (request.observe) request.observe(event);
     if (request.progress) request.progress->frame(event.state.frame);
     const bool stop = request.stop && request.stop();

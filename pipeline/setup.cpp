@@ -170,6 +170,7 @@ RunOptions read_run(const Config& scene) {
   run.frames = section["frames"].integer();
   run.fps = section["fps"].number();
   run.stepper = section["stepper"].text();
+  run.rest = section["rest"].flag();
   if (scene["output"]["folder"].given) run.output = scene["output"]["folder"].text();
   if (!section["substeps"].numbers.empty()) run.conventional.substeps = section["substeps"].integer();
   run.conventional.max_substeps = section["max_substeps"].integer();

@@ -20,6 +20,7 @@ struct RunOptions {
   int frames = 60;
   double fps = 30;
   std::string stepper = "conventional";
+  bool rest = true;    // cloths that rest are left out
   std::string output;  // folder for the results; empty: chosen by the command
   ConventionalOptions conventional;
   IcmOptions icm;

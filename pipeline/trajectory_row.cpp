@@ -22,6 +22,7 @@ std::vector<Column> columns() {
           {"status", offsetof(Row, status), whole},
           {"fell_back", offsetof(Row, fell_back), whole},
           {"substeps", offsetof(Row, substeps), whole},
+          {"resting", offsetof(Row, resting), whole},
           {"iterations", offsetof(Row, iterations), whole},
           {"linear_iterations", offsetof(Row, linear_iterations), whole},
           {"residual", offsetof(Row, residual), real},
@@ -84,6 +85,7 @@ TrajectoryRow row_of(const Frame& frame, int by, std::int64_t bad_begin) {
   row.status = static_cast<int>(report.status);
   row.fell_back = report.fell_back;
   row.substeps = report.substeps;
+  row.resting = report.resting;
   row.iterations = report.iterations;
   row.linear_iterations = report.linear_iterations;
   row.residual = report.residual;
@@ -114,6 +116,7 @@ void fill_from_row(const TrajectoryRow& row, const std::vector<std::string>& nam
   report.status = static_cast<StepStatus>(row.status);
   report.fell_back = row.fell_back != 0;
   report.substeps = row.substeps;
+  report.resting = row.resting;
   report.iterations = row.iterations;
   report.linear_iterations = row.linear_iterations;
   report.residual = row.residual;

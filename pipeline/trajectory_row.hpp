@@ -14,7 +14,7 @@ namespace selvedge {
 struct TrajectoryRow {
   double time, seconds;
   std::int32_t by, reason, status;  // rows of codes/by, codes/reason, codes/status
-  std::int32_t fell_back, substeps, iterations, linear_iterations;
+  std::int32_t fell_back, substeps, resting, iterations, linear_iterations;
   double residual;
   PhaseTimes phase;
   CollisionReport collision;

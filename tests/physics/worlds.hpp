@@ -2,9 +2,8 @@
 
 #include <catch2/catch.hpp>
 
-#include <functional>
-
 #include "physics/conventional_stepper.hpp"
+#include "physics/resting_stepper.hpp"
 #include "tests/collision/sheets.hpp"
 
 // Small scenes for the tests of steppers.
@@ -50,7 +49,6 @@ struct Run {
   double lag = 0;
 };
 
-using MakeStepper = std::function<std::unique_ptr<Stepper>(const Scene&)>;
 
 inline std::unique_ptr<Stepper> conventional(const Scene& scene) { return make_conventional_stepper(scene, {}); }
 

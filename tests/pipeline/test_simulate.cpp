@@ -105,6 +105,27 @@ TEST_CASE("what is recorded is measured on the positions as written") {
   REQUIRE(frame.min_stretch == plain.min_stretch);
 }
 
+TEST_CASE("a frame that the stepper has audited is recorded as an audit of the file would have it") {
+  for (const double height : {-0.05, -0.5}) {  // through the sheet, and below it
+    Setup setup = fake::setup();
+    setup.initial.obstacles[0] = fake::tetrahedron_points(0.5, height);
+    const auto stepper = make_conventional_stepper(setup.scene, {});
+    Drive drive = setup.drive_at(0);
+    drive.obstacles = setup.initial.obstacles;
+    State state;
+    StepReport report = stepper->step(setup.initial, drive, 1e-4, state);
+    REQUIRE(report.audit);
+    const EnergyTerms terms = energy_terms(setup.scene);
+    const Frame told = record_frame(setup.scene, terms, {state, drive, report, Clock::now()});
+    report.audit.reset();
+    const Frame audited = record_frame(setup.scene, terms, {state, drive, report, Clock::now()});
+    CHECK(told.bad_triangles == audited.bad_triangles);
+    CHECK(told.obstacle_pairs == audited.obstacle_pairs);
+    CHECK(told.inside_vertices == audited.inside_vertices);
+    CHECK((told.obstacle_pairs > 0) == (height > -0.1));
+  }
+}
+
 TEST_CASE("an intersection is found, marked and makes the run unclean") {
   const fake::Folder folder("dirty");
   Setup setup = fake::setup(2);
@@ -175,7 +196,10 @@ TEST_CASE("a checkpoint keeps every bit") {
   state.frame = 7;
   state.time = 0.1 + 0.2;
   state.v.setConstant(1.0 / 3);
-  if (GENERATE(false, true)) state.history = {1.0 / 60, 0.7 * state.x, 0.7 * state.v};
+  if (GENERATE(false, true)) {
+    state.history = {1.0 / 60, 0.7 * state.x, 0.7 * state.v};
+    state.rest = {{0.1, 1.0 / 3}, 0.9 * state.x, {1, 0, 0.3}, {0, -9.81, 0}};
+  }
   write_checkpoint(folder.path / "c.h5", state, "a: 1\n");
   const State read = read_checkpoint(folder.path / "c.h5", "a: 1\n");
   REQUIRE(read.frame == state.frame);
@@ -186,6 +210,10 @@ TEST_CASE("a checkpoint keeps every bit") {
   REQUIRE(read.history.h == state.history.h);
   REQUIRE(read.history.x == state.history.x);
   REQUIRE(read.history.v == state.history.v);
+  REQUIRE(read.rest.seconds == state.rest.seconds);
+  REQUIRE(read.rest.place == state.rest.place);
+  REQUIRE(read.rest.wind == state.rest.wind);
+  REQUIRE(read.rest.acceleration == state.rest.acceleration);
 }
 
 TEST_CASE("a run that fails leaves no results of the run before it") {

@@ -1,0 +1,102 @@
+#include "physics/part_of_scene.hpp"
+
+#include <algorithm>
+
+namespace selvedge {
+namespace {
+
+Points rows_of(const Points& whole, const std::vector<int>& rows) {
+  Points part(static_cast<Eigen::Index>(rows.size()), 3);
+  for (std::size_t i = 0; i < rows.size(); ++i) part.row(static_cast<Eigen::Index>(i)) = whole.row(rows[i]);
+  return part;
+}
+
+void put_rows(const Points& part, const std::vector<int>& rows, Points& whole) {
+  for (std::size_t i = 0; i < rows.size(); ++i) whole.row(rows[i]) = part.row(static_cast<Eigen::Index>(i));
+}
+
+void append_range(int first, int count, std::vector<int>& numbers) {
+  for (int i = first; i < first + count; ++i) numbers.push_back(i);
+}
+
+}  // namespace
+
+PartOfScene part_of(const Scene& whole, std::span<const char> cloths) {
+  PartOfScene part;
+  Scene& scene = part.scene;
+  std::vector<int> renumbered(whole.surface.vertex_count, -1);
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    if (!cloths[c]) continue;
+    const Cloth& cloth = whole.cloths[c];
+    Cloth& own = scene.cloths.emplace_back(cloth);
+    own.first_vertex = static_cast<int>(part.vertices.size());
+    own.first_triangle = static_cast<int>(part.triangles.size());
+    append_range(cloth.first_vertex, cloth.vertex_count, part.vertices);
+    append_range(cloth.first_triangle, cloth.triangle_count, part.triangles);
+  }
+  for (std::size_t i = 0; i < part.vertices.size(); ++i) renumbered[part.vertices[i]] = static_cast<int>(i);
+  Triangles triangles(static_cast<Eigen::Index>(part.triangles.size()), 3);
+  for (std::size_t t = 0; t < part.triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k)
+      triangles(static_cast<Eigen::Index>(t), k) = renumbered[whole.surface.triangles(part.triangles[t], k)];
+    scene.rest_triangle.push_back(whole.rest_triangle[part.triangles[t]]);
+  }
+  scene.surface = make_surface(static_cast<int>(part.vertices.size()), triangles);
+  scene.rest = rows_of(whole.rest, part.vertices);
+  scene.rest_is_flat = whole.rest_is_flat;
+  for (std::size_t p = 0; p < whole.pins.size(); ++p) {
+    const int pin = renumbered[whole.pins[p]];
+    if (pin < 0) continue;
+    scene.pins.push_back(pin);
+    part.pins.push_back(static_cast<int>(p));
+  }
+  scene.obstacles = whole.obstacles;
+  scene.contact = whole.contact;
+  scene.wind = whole.wind;
+  return part;
+}
+
+State state_of(const PartOfScene& part, const State& whole) {
+  State state;
+  state.time = whole.time;
+  state.frame = whole.frame;
+  state.x = rows_of(whole.x, part.vertices);
+  state.v = rows_of(whole.v, part.vertices);
+  state.obstacles = whole.obstacles;
+  state.pinched = whole.pinched;
+  state.clean = whole.clean;
+  if (whole.history.h > 0)
+    state.history = {whole.history.h, rows_of(whole.history.x, part.vertices), rows_of(whole.history.v, part.vertices)};
+  return state;
+}
+
+Drive drive_of(const PartOfScene& part, const Drive& whole) {
+  return {rows_of(whole.pins, part.pins), whole.obstacles, whole.wind, whole.acceleration};
+}
+
+void put(const PartOfScene& part, const State& state, State& whole) {
+  put_rows(state.x, part.vertices, whole.x);
+  put_rows(state.v, part.vertices, whole.v);
+  whole.obstacles = state.obstacles;
+  whole.pinched = state.pinched;
+  whole.clean = state.clean;
+  whole.history = {state.history.h, {}, {}};
+  if (state.history.h > 0) {
+    whole.history.x = whole.x;
+    whole.history.v.setZero(whole.x.rows(), 3);
+    put_rows(state.history.x, part.vertices, whole.history.x);
+    put_rows(state.history.v, part.vertices, whole.history.v);
+  }
+}
+
+Audit whole_audit(const PartOfScene& part, Audit audit) {
+  for (auto* pairs : {&audit.self_pairs, &audit.vertex_pairs})
+    for (auto& [a, b] : *pairs) {
+      a = part.triangles[a];
+      b = part.triangles[b];
+    }
+  for (auto& [triangle, other] : audit.obstacle_pairs) triangle = part.triangles[triangle];
+  return audit;
+}
+
+}  // namespace selvedge

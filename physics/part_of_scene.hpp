@@ -1,0 +1,27 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "physics/scene.hpp"
+#include "physics/stepper.hpp"
+
+namespace selvedge {
+
+// Some of a scene's cloths with all of its obstacles, as a scene of their own, and the way between the two numberings.
+struct PartOfScene {
+  Scene scene;
+  std::vector<int> vertices, triangles,
+      pins;  // of the part: their numbers in the whole; pins: positions in Scene::pins
+};
+PartOfScene part_of(const Scene&, std::span<const char> cloths);  // chosen ones, one a cloth
+
+State state_of(const PartOfScene&, const State& whole);
+Drive drive_of(const PartOfScene&, const Drive& whole);
+
+// Puts what a step has made of the part into a state of the whole, all but what only the whole has.
+void put(const PartOfScene&, const State& part, State& whole);
+// The same of an audit, where the rest of the whole is clean.
+Audit whole_audit(const PartOfScene&, Audit part);
+
+}  // namespace selvedge
