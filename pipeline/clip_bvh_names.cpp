@@ -2,9 +2,9 @@
 #include <cctype>
 
 #include "collision/error.hpp"
+#include "pipeline/body_smpl.hpp"
 #include "pipeline/clip_bvh.hpp"
 #include "pipeline/config.hpp"
-#include "pipeline/smpl_joints.hpp"
 
 namespace selvedge {
 namespace {
@@ -101,7 +101,7 @@ Found best(const Chain& chain, const std::map<std::string, int>& names, bool lef
 }  // namespace
 
 std::vector<int> matched_joints(const Bvh& bvh, const std::map<std::string, std::string>& options) {
-  const std::vector<std::string>& smpl = smpl_joint_names();
+  const std::vector<std::string> smpl = smpl_joint_names(24);
   std::vector<std::string> theirs;
   std::map<std::string, int> by_plain;
   for (std::size_t j = 0; j < bvh.joints.size(); ++j) {

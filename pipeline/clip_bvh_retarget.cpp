@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "collision/error.hpp"
+#include "pipeline/body_smpl.hpp"
 #include "pipeline/clip_bvh.hpp"
 #include "pipeline/clip_procedural_figure.hpp"
 #include "pipeline/motion.hpp"
@@ -124,7 +125,7 @@ Clip retargeted(const Bvh& bvh, const Points& joints, const BvhOptions& options)
   BodyModel body;
   body.parents = smpl_joint_parents();
 
-  Clip clip{std::filesystem::path(bvh.file).stem().string(), bvh.fps, smpl_joint_names(), {}, {}};
+  Clip clip{std::filesystem::path(bvh.file).stem().string(), bvh.fps, smpl_joint_names(24), {}, {}};
   const Vec3 root = row(k.joints, pelvis), hips = 0.5 * (row(k.joints, left_hip) + row(k.joints, left_hip + 1)) - root;
   Vec3 origin = Vec3::Zero();
   double lowest = std::numeric_limits<double>::infinity();  // of the feet, compared to standing

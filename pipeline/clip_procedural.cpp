@@ -1,9 +1,9 @@
 #include "pipeline/clip_procedural.hpp"
 
 #include "collision/error.hpp"
+#include "pipeline/body_smpl.hpp"
 #include "pipeline/clip_procedural_moves.hpp"
 #include "pipeline/config.hpp"
-#include "pipeline/smpl_joints.hpp"
 
 namespace selvedge {
 namespace {
@@ -40,7 +40,7 @@ Clip make_clip(const std::string& name, const Points& joints, std::optional<doub
   for (const NamedMovement& one : all_movements()) {
     if (one.name != name) continue;
     const Skeleton k = measured(joints, floor);
-    return {name, 30, smpl_joint_names(), performed(one.make(k), k), {}};
+    return {name, 30, smpl_joint_names(24), performed(one.make(k), k), {}};
   }
   const std::vector<std::string> names = procedural_clip_names();
   throw Error("is no procedural clip", "clip " + name, "clips: " + joined(names) + suggestion(name, names));
