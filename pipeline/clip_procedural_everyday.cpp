@@ -19,7 +19,7 @@ Movement idle(const Skeleton& k) {
     set_arm(f, 1, 0.4, -0.06 * to, 0.2, 0.3);
     hold(m, 1.6 + 1.4 * i, 2.2 + 1.4 * i, f);
   }
-  hold(m, 7.4, 8, standing());
+  hold(m, 7.2, 8, standing());
   return m;
 }
 

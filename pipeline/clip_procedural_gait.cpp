@@ -44,7 +44,7 @@ Vec3 beside(const Place& place, double left, double ahead) {
 Movement walked(const Skeleton& k, const Gait& g, double seconds) {
   Movement m = movement(k, seconds);
   m.smoothing = std::min(0.1, 0.14 * g.time);
-  const double begin = 0.35, step = g.step * k.leg, curvature = step == 0 ? 0 : g.turn / step;
+  const double begin = std::max(0.35, 0.75 * g.time), step = g.step * k.leg, curvature = step == 0 ? 0 : g.turn / step;
   std::vector<double> times = {0, begin}, ways = {0, 0};
   double way = 0, before = 0;
   for (int i = 0; i < g.steps; ++i) {

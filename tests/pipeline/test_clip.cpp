@@ -44,10 +44,10 @@ double angle_between(const Vec3& a, const Vec3& b) {
 }  // namespace
 
 TEST_CASE("clip: rotations go along great arcs", "[clip]") {
-  // A third of the way from 90 degrees about x to 90 about y: R(x, 90)^T R(y, 90) is a turn by 120 about (-1, 1, 1).
+  // A third of the way from 90 degrees about x to 90 about y: R(x, 90)^T R(y, 90) is a turn by 120 about (-1, 1, -1).
   const Clip clip = two_poses(Vec3(pi / 2, 0, 0), Vec3(0, pi / 2, 0), 1);
   const Mat3 third =
-      rotation_matrix(Vec3(pi / 2, 0, 0)) * rotation_matrix(Vec3(-1, 1, 1) / std::sqrt(3) * (2 * pi / 9));
+      rotation_matrix(Vec3(pi / 2, 0, 0)) * rotation_matrix(Vec3(-1, 1, -1) / std::sqrt(3) * (2 * pi / 9));
   CHECK((rotation_matrix(joint(pose_at(clip, 1.0 / 3), 1)) - third).norm() < 1e-12);
   CHECK(joint(pose_at(clip, 0.5), 0).isZero(0));
 
