@@ -106,7 +106,9 @@ std::vector<int> matched_joints(const Bvh& bvh, const std::map<std::string, std:
   std::map<std::string, int> by_plain;
   for (std::size_t j = 0; j < bvh.joints.size(); ++j) {
     theirs.push_back(bvh.joints[j].name);
-    by_plain.emplace(plain(bvh.joints[j].name), static_cast<int>(j));
+    // MakeHuman puts a joint `__UpLeg_L` where UpLeg_L hangs on the hips.
+    const auto [entry, fresh] = by_plain.emplace(plain(theirs[j]), static_cast<int>(j));
+    if (!fresh && theirs[static_cast<std::size_t>(entry->second)].starts_with("_")) entry->second = static_cast<int>(j);
   }
   std::map<std::string, int> found;
   for (const Chain& chain : chains())

@@ -72,12 +72,13 @@ double leg_ratio(const Bvh& bvh, const Source& s, const Skeleton& k) {
 
 // For each joint of the body the rotation that takes its zero pose to the file's rest pose.
 std::vector<Mat3> alignment(const Source& s, const Skeleton& k) {
-  const auto across = [](const Vec3& left, const Vec3& right) -> Vec3 {
-    return (left - right).cwiseProduct(Vec3(1, 0, 1));
-  };
   const auto body = [&](int j) { return row(k.joints, j); };
-  const Mat3 heading = least_rotation(across(body(left_hip), body(left_hip + 1)),
-                                      across(s.at(s.rest, left_hip), s.at(s.rest, left_hip + 1)));
+  const auto angle = [](const Vec3& left, const Vec3& right) {
+    return std::atan2(right.z() - left.z(), left.x() - right.x());
+  };
+  const double turn =
+      angle(s.at(s.rest, left_hip), s.at(s.rest, left_hip + 1)) - angle(body(left_hip), body(left_hip + 1));
+  const Mat3 heading = rotation_matrix(Vec3(0, turn, 0));  // from hip to hip, seen from above
   std::vector<Mat3> align(24, heading);
   const auto along = [&](int parent, int joint, int child) {
     const Mat3& before = align[static_cast<std::size_t>(parent)];

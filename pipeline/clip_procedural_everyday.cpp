@@ -7,7 +7,7 @@ namespace {
 Movement idle(const Skeleton& k) {
   Movement m = movement(k, 8);
   m.smoothing = 0.5;
-  hold(m, 0, 0.6, standing());
+  hold(m, 0, 0.8, standing());
   for (int i = 0; i < 4; ++i) {
     Figure f = standing();
     const double to = i % 2 == 0 ? 1 : -1;

@@ -173,7 +173,7 @@ TEST_CASE("clip_procedural: walks get somewhere, in proportion to the legs", "[c
   CHECK(way("walk", half).z() == Approx(0.5 * way("walk", one).z()).epsilon(1e-3));
   CHECK(way("walk_backward", one).z() < -2);
   CHECK(way("run", one).z() > way("walk_fast", one).z());
-  CHECK(way("idle", one).norm() < 1e-6);
+  CHECK(way("idle", one).norm() < 1e-9);
   CHECK(std::abs(way("walk_turning", one).x()) > 1);
 }
 
