@@ -140,7 +140,7 @@ std::vector<BvhJoint> read_hierarchy(Reader& r) {
   return joints;
 }
 
-void read_motion(Reader& r, Bvh& bvh) {
+void read_motion(Reader& r, BvhFile& bvh) {
   int columns = 0;
   for (const BvhJoint& joint : bvh.joints) columns += static_cast<int>(joint.channels.size());
   r.expect("MOTION");
@@ -167,9 +167,9 @@ void read_motion(Reader& r, Bvh& bvh) {
 
 }  // namespace
 
-Bvh parse_bvh(std::string_view text, const std::string& name) {
+BvhFile parse_bvh(std::string_view text, const std::string& name) {
   Reader r{name, split(text)};
-  Bvh bvh;
+  BvhFile bvh;
   bvh.file = name;
   r.expect("HIERARCHY");
   bvh.joints = read_hierarchy(r);
@@ -177,7 +177,7 @@ Bvh parse_bvh(std::string_view text, const std::string& name) {
   return bvh;
 }
 
-Bvh read_bvh(const std::filesystem::path& path) {
+BvhFile read_bvh(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
   if (in) text << in.rdbuf();
@@ -185,7 +185,7 @@ Bvh read_bvh(const std::filesystem::path& path) {
   return parse_bvh(text.str(), path.string());
 }
 
-BvhPose bvh_pose(const Bvh& bvh, int frame) {
+BvhPose bvh_pose(const BvhFile& bvh, int frame) {
   BvhPose pose;
   pose.positions.resize(static_cast<Eigen::Index>(bvh.joints.size()), 3);
   for (std::size_t j = 0; j < bvh.joints.size(); ++j) {

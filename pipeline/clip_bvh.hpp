@@ -23,7 +23,7 @@ struct BvhJoint {
 };
 
 // A file as it is: its own names, unit and axes.
-struct Bvh {
+struct BvhFile {
   std::string file;
   std::vector<BvhJoint> joints;  // parents first; end sites are left out
   double fps = 0;
@@ -31,15 +31,15 @@ struct Bvh {
 };
 
 // Reads any order of channels, none to six a joint. Throws Error with file and line.
-Bvh read_bvh(const std::filesystem::path&);
-Bvh parse_bvh(std::string_view text, const std::string& name);
+BvhFile read_bvh(const std::filesystem::path&);
+BvhFile parse_bvh(std::string_view text, const std::string& name);
 
 // Rotation of each joint in the file's axes and position of each in its unit. frame -1: the zero pose of the file.
 struct BvhPose {
   std::vector<Mat3> rotations;
   Points positions;
 };
-BvhPose bvh_pose(const Bvh&, int frame);
+BvhPose bvh_pose(const BvhFile&, int frame);
 
 struct BvhOptions {
   std::map<std::string, std::string> joints;  // joints of the file by SMPL's names; the rest go by common names
@@ -51,7 +51,7 @@ struct BvhOptions {
 // Index of the file's joint for each of SMPL's 24, -1 for none: by the options, else by the naming of the rig that fits
 // best (CMU, Mixamo, LAFAN, MakeHuman, Biped, Blender, Poser, SMPL, Unreal). Throws Error for an unknown name in the
 // options and where hips, knees, ankles, shoulders or elbows are missing.
-std::vector<int> matched_joints(const Bvh&, const std::map<std::string, std::string>& joints);
+std::vector<int> matched_joints(const BvhFile&, const std::map<std::string, std::string>& joints);
 
 // The motion for a body whose 24 joints in the zero pose are given. The rest poses of file and body differ, so
 // rotations cannot be copied. Both are taken as standing upright: a joint turns the body's bone as it turns the file's
@@ -60,6 +60,6 @@ std::vector<int> matched_joints(const Bvh&, const std::map<std::string, std::str
 // which the file stands becomes Y, its heading stays. Only the root's translation counts; it is scaled, starts above
 // the origin, and the lowest foot of the clip touches the ground. Throws Error where the rest pose does not stand
 // upright.
-Clip retargeted(const Bvh&, const Points& joints, const BvhOptions&);
+Clip retargeted(const BvhFile&, const Points& joints, const BvhOptions&);
 
 }  // namespace selvedge

@@ -76,7 +76,8 @@ std::string plain(const std::string& name) {
 
 std::string of_side(std::string pattern, bool left) {
   const auto replace = [&](char sign, const std::string& by) {
-    if (const std::size_t at = pattern.find(sign); at != std::string::npos) pattern.replace(at, 1, by);
+    if (const std::size_t at = pattern.find(sign); at != std::string::npos)
+      pattern = pattern.substr(0, at) + by + pattern.substr(at + 1);
   };
   replace('#', left ? "left" : "right");
   replace('$', left ? "l" : "r");
@@ -100,7 +101,7 @@ Found best(const Chain& chain, const std::map<std::string, int>& names, bool lef
 
 }  // namespace
 
-std::vector<int> matched_joints(const Bvh& bvh, const std::map<std::string, std::string>& options) {
+std::vector<int> matched_joints(const BvhFile& bvh, const std::map<std::string, std::string>& options) {
   const std::vector<std::string> smpl = smpl_joint_names(24);
   std::vector<std::string> theirs;
   std::map<std::string, int> by_plain;

@@ -45,7 +45,7 @@ struct Source {
 };
 
 // The rotation that takes the axis along which the file stands to Y, in quarter turns.
-Mat3 upright_axes(const Bvh& bvh, const Source& s) {
+Mat3 upright_axes(const BvhFile& bvh, const Source& s) {
   const auto middle = [&](int left) -> Vec3 {
     return 0.5 * (row(s.rest.positions, s.joint[static_cast<std::size_t>(left)]) +
                   row(s.rest.positions, s.joint[static_cast<std::size_t>(left + 1)]));
@@ -62,7 +62,7 @@ Mat3 upright_axes(const Bvh& bvh, const Source& s) {
 
 double limb(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).norm() + (c - b).norm(); }
 
-double leg_ratio(const Bvh& bvh, const Source& s, const Skeleton& k) {
+double leg_ratio(const BvhFile& bvh, const Source& s, const Skeleton& k) {
   double leg = 0;
   for (const int side : {0, 1})
     leg += 0.5 * limb(s.at(s.rest, left_hip + side), s.at(s.rest, left_knee + side), s.at(s.rest, left_ankle + side));
@@ -113,7 +113,7 @@ BodyPose pose_of(const Source& s, const BvhPose& pose, const std::vector<Mat3>& 
 
 }  // namespace
 
-Clip retargeted(const Bvh& bvh, const Points& joints, const BvhOptions& options) {
+Clip retargeted(const BvhFile& bvh, const Points& joints, const BvhOptions& options) {
   if (options.rest_frame < -1 || options.rest_frame >= bvh.motion.rows())
     throw Error(fmt::format("has no frame {} to rest in, it has {}", options.rest_frame, bvh.motion.rows()), bvh.file,
                 "");
