@@ -64,6 +64,11 @@ Mat3 rotation_matrix(const Vec3& rotation_vector) {
   return Eigen::AngleAxisd(angle, rotation_vector / angle).toRotationMatrix();
 }
 
+Vec3 rotation_vector(const Mat3& rotation) {
+  const Eigen::AngleAxisd turn(rotation);  // by way of a quaternion: exact near 0 and pi
+  return turn.angle() * turn.axis();
+}
+
 Points moved(const Motion& motion, const Points& x, double time) {
   const Pose pose = pose_at(motion, time);
   Points result = x;

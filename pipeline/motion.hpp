@@ -36,4 +36,7 @@ Vec3 keyed_vector(const std::vector<double>& times, const std::vector<Vec3>& val
 
 Mat3 rotation_matrix(const Vec3& rotation_vector);
 
+// The rotation vector of a rotation, no longer than pi.
+Vec3 rotation_vector(const Mat3&);
+
 }  // namespace selvedge
