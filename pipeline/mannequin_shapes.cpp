@@ -43,9 +43,9 @@ Vec3 height(const Place& at) { return 0.035 * (at.p - mannequin_joints().front()
 Vec3 weight(const Place& at) {
   const Vec3 trunk = from_trunk_axis(at.p);
   const double belly = bump(at.p.y(), 1.03, 0.24), front = step(at.p.z(), -0.02, 0.08);
-  Vec3 d = at.trunk * (0.055 + 0.020 * belly) * trunk;
-  d.z() += at.trunk * belly * front * 0.010 * bump(at.p.x(), 0, 0.16);
-  d += at.leg * (0.03 + 0.035 * step(at.p.y(), 0.42, 0.70)) * (1 - 0.8 * at.foot) * from_leg_axis(at.p);
+  Vec3 d = at.trunk * (0.062 + 0.022 * belly) * trunk;
+  d.z() += at.trunk * belly * front * 0.011 * bump(at.p.x(), 0, 0.16);
+  d += at.leg * (0.032 + 0.040 * step(at.p.y(), 0.42, 0.70)) * (1 - 0.8 * at.foot) * from_leg_axis(at.p);
   d += at.arm * (0.06 - 0.035 * step(at.p.x(), 0.30, 0.62)) * (1 - 0.8 * at.hand) * from_arm_axis(at.p);
   d += at.head * 0.03 * (1 - step(at.p.y(), 1.54, 1.66)) * Vec3(at.p.x(), 0, at.p.z() + 0.01);
   return d;
@@ -72,7 +72,7 @@ Vec3 waist(const Place& at) { return 0.065 * at.trunk * bump(at.p.y(), 1.08, 0.1
 
 Vec3 chest(const Place& at) {
   const double ribs = bump(at.p.y(), 1.25, 0.18);
-  const double side = (at.p.x() - 0.075) / 0.085, up = (at.p.y() - 1.262) / 0.085;
+  const double side = (at.p.x() - 0.075) / 0.11, up = (at.p.y() - 1.262) / 0.12;
   const double breast = 1 - step(side * side + up * up, 0, 1);
   return at.trunk *
          (0.018 * ribs * from_trunk_axis(at.p) + 0.009 * breast * step(at.p.z(), 0, 0.07) * Vec3(0.1, -0.15, 1));

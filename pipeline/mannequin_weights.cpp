@@ -20,7 +20,10 @@ double share(const std::string& joint, const Vec3& at, const Vec3& p) {
   if (joint == "spine1") return step(q.y(), -0.07, 0.05);
   if (joint == "spine2") return step(q.y(), -0.06, 0.06);
   if (joint == "spine3") return step(q.y(), -0.05, 0.05);
-  if (joint == "neck") return step(q.y() + 0.3 * q.z(), -0.04, 0.04) * (1 - step(std::abs(p.x()), 0.07, 0.12));
+  if (joint == "neck") {  // the slopes towards the shoulders are the trunk's, however wide the head
+    const double width = std::abs(p.x()) - 2 * std::max(0.0, p.y() - 1.46);
+    return step(q.y() + 0.3 * q.z(), -0.04, 0.04) * (1 - step(width, 0.07, 0.12));
+  }
   if (joint == "head") return step(0.9 * q.y() + 0.45 * q.z(), -0.03, 0.03);
   if (joint == "left_hip") {
     // The crease rises outward and to the front; between the legs left and right share what is close to the middle.
@@ -31,7 +34,9 @@ double share(const std::string& joint, const Vec3& at, const Vec3& p) {
   if (joint == "left_knee") return step(-q.y(), -0.07, 0.07);
   if (joint == "left_ankle") return step(0.3 * q.z() - 0.95 * q.y(), -0.04, 0.04);
   if (joint == "left_foot") return step(q.z(), -0.035, 0.035);
-  if (joint == "left_collar") return step(p.x(), 0.02, 0.13) * step(p.y(), 1.25, 1.38);
+  if (joint == "left_collar")
+    return step(p.x(), 0.02, 0.13) * step(p.y() + std::max(0.0, p.x() - 0.15), 1.25, 1.38) *
+           (1 - step(p.y(), 1.44, 1.50));
   if (joint == "left_shoulder") {  // the flank below the arm is the trunk's
     const double inner = 0.163 + 0.6 * std::max(0.0, 1.37 - p.y());
     return step(p.x(), inner - 0.07, inner + 0.07);
