@@ -7,7 +7,7 @@
 namespace selvedge {
 namespace {
 
-constexpr std::array columns{&Section::u_low, &Section::u_high, &Section::v_low, &Section::v_high};
+constexpr std::array columns{&LoftSection::u_low, &LoftSection::u_high, &LoftSection::v_low, &LoftSection::v_high};
 
 // Ellipses, blended: the p-norm of scaled coordinates less 1, over the length of its gradient.
 double scaled_norm_value(const Vec3& q, const Vec3& radii, double exponent) {
@@ -18,13 +18,13 @@ double scaled_norm_value(const Vec3& q, const Vec3& radii, double exponent) {
   return (norm - 1) / powers.cwiseQuotient(radii).norm();
 }
 
-Section section_at(const Loft& loft, double at) {
+LoftSection section_at(const Loft& loft, double at) {
   const auto& list = loft.sections;
   std::size_t k = 0;
   while (k + 2 < list.size() && at > list[k + 1].at) ++k;
   const double h = list[k + 1].at - list[k].at, t = (at - list[k].at) / h;
   const double h00 = (1 + 2 * t) * (1 - t) * (1 - t), h10 = t * (1 - t) * (1 - t);
-  Section section{at, 0, 0, 0, 0};
+  LoftSection section{at, 0, 0, 0, 0};
   for (const auto column : columns)
     section.*column = h00 * (list[k].*column) + h10 * h * (loft.slopes[k].*column) + (1 - h00) * (list[k + 1].*column) +
                       t * t * (t - 1) * h * (loft.slopes[k + 1].*column);
@@ -35,7 +35,7 @@ double value(const Loft& loft, const Vec3& p) {
   const int u = (loft.axis + 1) % 3, v = (loft.axis + 2) % 3;
   const double low = loft.sections.front().at, high = loft.sections.back().at, s = p[loft.axis];
   const double at = std::clamp(s, low, high);
-  const Section section = section_at(loft, at);
+  const LoftSection section = section_at(loft, at);
   const Vec3 q(p[u] - (section.u_low + section.u_high) / 2, p[v] - (section.v_low + section.v_high) / 2, s - at);
   const Vec3 radii((section.u_high - section.u_low) / 2, (section.v_high - section.v_low) / 2,
                    s < low ? loft.cap_low : loft.cap_high);
@@ -63,7 +63,7 @@ using Bounds = Eigen::AlignedBox3d;
 Bounds bounds(const Loft& loft) {
   Bounds box;
   const int u = (loft.axis + 1) % 3, v = (loft.axis + 2) % 3;
-  for (const Section& section : loft.sections)
+  for (const LoftSection& section : loft.sections)
     for (const double end : {-loft.cap_low, loft.cap_high}) {
       Vec3 low, high;
       low[loft.axis] = high[loft.axis] = section.at + end;
@@ -113,11 +113,11 @@ double value(const Limb& limb, const Vec3& p) {
 
 }  // namespace
 
-Loft make_loft(int axis, double cap_low, double cap_high, double exponent, std::vector<Section> sections) {
+Loft make_loft(int axis, double cap_low, double cap_high, double exponent, std::vector<LoftSection> sections) {
   assert(sections.size() >= 2);
   Loft loft{axis, cap_low, cap_high, exponent, std::move(sections), {}};
   const auto& list = loft.sections;
-  loft.slopes.assign(list.size(), Section{});
+  loft.slopes.assign(list.size(), LoftSection{});
   for (std::size_t k = 1; k + 1 < list.size(); ++k)
     for (const auto column : columns) {
       const double h0 = list[k].at - list[k - 1].at, h1 = list[k + 1].at - list[k].at;

@@ -9,7 +9,7 @@
 namespace selvedge {
 
 // A cross-section of a loft: where on the axis, and from where to where it reaches in the two other coordinates [m].
-struct Section {
+struct LoftSection {
   double at, u_low, u_high, v_low, v_high;
 };
 
@@ -17,12 +17,12 @@ struct Section {
 // cubics (Fritsch and Carlson 1980), with half ellipsoids on both ends.
 struct Loft {
   int axis = 1;
-  double cap_low = 0, cap_high = 0;  // lengths of the ends [m]
-  double exponent = 2;               // of the sections: 2 an ellipse, more is boxier
-  std::vector<Section> sections;     // by ascending `at`, at least two
-  std::vector<Section> slopes;       // filled by make_loft
+  double cap_low = 0, cap_high = 0;   // lengths of the ends [m]
+  double exponent = 2;                // of the sections: 2 an ellipse, more is boxier
+  std::vector<LoftSection> sections;  // by ascending `at`, at least two
+  std::vector<LoftSection> slopes;    // filled by make_loft
 };
-Loft make_loft(int axis, double cap_low, double cap_high, double exponent, std::vector<Section> sections);
+Loft make_loft(int axis, double cap_low, double cap_high, double exponent, std::vector<LoftSection> sections);
 
 struct Ellipsoid {
   Vec3 centre, radii;

@@ -7,8 +7,8 @@ namespace selvedge {
 namespace {
 
 // Sections across Y that are symmetric in X: height, back, front, half width.
-std::vector<Section> upright(const std::vector<std::array<double, 4>>& table) {
-  std::vector<Section> sections;
+std::vector<LoftSection> upright(const std::vector<std::array<double, 4>>& table) {
+  std::vector<LoftSection> sections;
   for (const auto& [y, back, front, half_width] : table) sections.push_back({y, back, front, -half_width, half_width});
   return sections;
 }

@@ -24,7 +24,7 @@ double share(const std::string& joint, const Vec3& at, const Vec3& p) {
     const double width = std::abs(p.x()) - 2 * std::max(0.0, p.y() - 1.46);
     return step(q.y() + 0.3 * q.z(), -0.04, 0.04) * (1 - step(width, 0.07, 0.12));
   }
-  if (joint == "head") return step(0.9 * q.y() + 0.45 * q.z(), -0.03, 0.03);
+  if (joint == "head") return step(0.95 * q.y() + 0.3 * q.z(), -0.03, 0.03);
   if (joint == "left_hip") {
     // The crease rises outward and to the front; between the legs left and right share what is close to the middle.
     const double crease = at.y() - 0.015 + 0.25 * q.x() + 0.25 * q.z();

@@ -133,9 +133,10 @@ bool collapse_round(Work& work, const RemeshTarget& target, double shortest, dou
     if (work.boundary[static_cast<std::size_t>(gone)]) std::swap(kept, gone);
     const bool both = work.boundary[static_cast<std::size_t>(gone)];
     if (both && !work.is_boundary(e)) continue;
-    const auto around_gone = ring(work, gone), around_kept = ring(work, kept);
     const auto is_used = [&](int v) { return used[static_cast<std::size_t>(v)] != 0; };
-    if (is_used(kept) || is_used(gone) || std::any_of(around_gone.begin(), around_gone.end(), is_used) ||
+    if (is_used(kept) || is_used(gone)) continue;
+    const auto around_gone = ring(work, gone), around_kept = ring(work, kept);
+    if (std::any_of(around_gone.begin(), around_gone.end(), is_used) ||
         std::any_of(around_kept.begin(), around_kept.end(), is_used))
       continue;
     std::vector<int> common;
@@ -204,8 +205,9 @@ bool flip_round(Work& work, bool by_angles) {
     const int c = work.opposite(s, a, b), d = work.opposite(t, a, b);
     bool free = !(work.boundary[static_cast<std::size_t>(c)] && work.boundary[static_cast<std::size_t>(d)]);
     for (const int v : {a, b, c, d}) free = free && !used[static_cast<std::size_t>(v)];
+    if (!free) continue;
     const auto around = ring(work, c);
-    if (!free || std::binary_search(around.begin(), around.end(), d)) continue;
+    if (std::binary_search(around.begin(), around.end(), d)) continue;
     auto first = work.triangle(s), second = work.triangle(t);
     const Vec3 before = normal(work, first).normalized() + normal(work, second).normalized();
     std::replace(first.begin(), first.end(), b, d);
