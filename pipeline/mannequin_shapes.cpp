@@ -75,7 +75,7 @@ Vec3 chest(const Place& at) {
   const double side = (at.p.x() - 0.075) / 0.11, up = (at.p.y() - 1.262) / 0.12;
   const double breast = 1 - step(side * side + up * up, 0, 1);
   return at.trunk *
-         (0.018 * ribs * from_trunk_axis(at.p) + 0.009 * breast * step(at.p.z(), 0, 0.07) * Vec3(0.1, -0.15, 1));
+         (0.024 * ribs * from_trunk_axis(at.p) + 0.0068 * breast * step(at.p.z(), 0, 0.07) * Vec3(0.1, -0.15, 1));
 }
 
 Vec3 muscle(const Place& at) {
