@@ -5,6 +5,12 @@ find_package(yaml-cpp REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(fmt REQUIRED)
+# Debian's CMake package of libzip asks for programs that it does not install.
+find_path(LIBZIP_INCLUDE zip.h REQUIRED)
+find_library(LIBZIP_LIBRARY zip REQUIRED)
+add_library(selvedge_libzip INTERFACE)
+target_include_directories(selvedge_libzip SYSTEM INTERFACE ${LIBZIP_INCLUDE})
+target_link_libraries(selvedge_libzip INTERFACE ${LIBZIP_LIBRARY})
 
 if(SELVEDGE_OPENMP)
   find_package(OpenMP REQUIRED COMPONENTS CXX)

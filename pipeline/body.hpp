@@ -40,16 +40,27 @@ struct BodyPose {
 // are refused, missing ones are zero. Throws Error.
 Points shaped(const SkinnedSurface&, const Eigen::VectorXd& shape);
 
-// Joint positions of the shaped body, joints x 3 [m].
+// Joint positions of the shaped body, joints x 3 [m]. Throws Error as `shaped` does.
 Points joint_positions(const BodyModel&, const Eigen::VectorXd& shape);
 
-// Transforms of the zero pose into the pose, one a joint, 3 x 4 each.
+// Transforms of the zero pose into the pose, one a joint, 3 x 4 each; without the pose's translation.
 using JointTransforms = std::vector<Eigen::Matrix<double, 3, 4>>;
 JointTransforms joint_transforms(const BodyModel&, const Points& joints, const BodyPose&);
 
 // The surface in a pose: shape and pose blend shapes, then linear blend skinning, then the translation. In parallel;
-// any number of threads gives the same bits.
+// any number of threads gives the same bits. Throws Error for a pose or transforms of another number of joints, and for
+// rotations that are not finite. Pose blend shapes: Loper et al. 2015, eq. 9, one column an entry, row by row.
 Points posed(const SkinnedSurface&, const Eigen::VectorXd& shape, const BodyPose&, const JointTransforms&);
 Points posed(const BodyModel&, const Eigen::VectorXd& shape, const BodyPose&);
+
+// What the parts of a body are called where it comes from, for errors.
+struct BodyFields {
+  std::string rest = "rest", triangles = "triangles", weights = "weights", shape_directions = "shape_directions",
+              pose_directions = "pose_directions", joints = "joints", parents = "parents", regressor = "regressor";
+};
+
+// Throws Error, naming `file` and the field, unless the sizes fit, indices are in range, all numbers are finite,
+// weights sum to 1 (within 1e-3), and parents come before children. For readers and generators of bodies.
+void check_body(const BodyModel&, const std::string& file, const BodyFields& = {});
 
 }  // namespace selvedge

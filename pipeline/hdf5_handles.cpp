@@ -32,7 +32,7 @@ std::string cure_for(const std::string& reason) {
     return "free some space or choose another folder; what was written is readable up to the last full frame";
   if (reason.find("No such file") != std::string::npos) return "check the path";
   if (reason.find("ermission") != std::string::npos) return "check who may write there, or choose another folder";
-  return "check that the file is a trajectory of this program and that its disk works";
+  return "check that the file is one of this program and that its disk works";
 }
 
 }  // namespace
@@ -162,7 +162,8 @@ std::vector<hsize_t> File::shape(hid_t dataset) const {
 std::vector<std::string> File::read_text_rows(hid_t dataset) const {
   const Handle type(H5Dget_type(dataset), H5Tclose);
   if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) > 0)
-    throw Error("a text is stored in a form this program does not write", path_.string(), "is it a trajectory?");
+    throw Error("a text is stored in a form this program does not write", path_.string(),
+                "is it a file of this program? Texts must have a fixed length");
   const std::size_t width = H5Tget_size(type.id());
   const std::vector<hsize_t> rows = shape(dataset);
   std::vector<char> padded(width * (rows.empty() ? 1 : rows[0]));

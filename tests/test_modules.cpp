@@ -34,6 +34,7 @@ const std::vector<Heavy> heavy_packages = {
     {"CLI11", "CLI/.*", "pipeline/.*\\.cpp"},
     {"nlohmann-json", "nlohmann/.*", "pipeline/.*\\.cpp"},
     {"fmt", "fmt/.*", "pipeline/.*"},
+    {"libzip", "zip\\.h", "pipeline/npz\\.cpp"},
     {"Catch2", "catch2/.*", "tests/.*"},
 };
 

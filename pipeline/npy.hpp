@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace selvedge {
+
+// An array as numpy stores it, in C order: the last index runs fastest.
+template <class T>
+struct NpyArray {
+  std::vector<Eigen::Index> shape;  // empty: a single value
+  std::vector<T> values;
+};
+
+// Where an array comes from, for errors.
+struct NpyPlace {
+  std::string file, field;
+
+  std::string text() const { return file + ": " + field; }
+};
+
+// Arrays from the bytes of an .npy file (format versions 1 to 3 of numpy.lib.format), stored in C or Fortran order,
+// little-endian. Throws Error for what is no such file, is shorter or longer than its shape says, holds pickled Python
+// objects (which are never read), or holds values of another kind.
+
+// Floats of 32 and 64 bits, integers and booleans.
+NpyArray<double> npy_numbers(std::string_view bytes, const NpyPlace&);
+
+// Integers, booleans, and floats whose values are whole.
+NpyArray<std::int64_t> npy_integers(std::string_view bytes, const NpyPlace&);
+
+// Unicode and byte strings, as UTF-8.
+NpyArray<std::string> npy_texts(std::string_view bytes, const NpyPlace&);
+
+}  // namespace selvedge
