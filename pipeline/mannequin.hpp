@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 
 #include "pipeline/body.hpp"
 
@@ -17,5 +18,12 @@ constexpr double mannequin_pelvis_height = 0.94;
 // the pelvis at the origin, the arms along X, left at +X, facing +Z. Without pose directions. Made anew by each call,
 // which takes seconds; the same bits on one machine and build. Coefficients are meant to lie within -3 and 3.
 BodyModel make_mannequin();
+
+// To be raised with every change of what make_mannequin makes, so that no file of an older one is used.
+constexpr int mannequin_recipe = 1;
+
+// The mannequin of a file in the folder, which is made and written where there is none or none that can be read.
+// Throws Error if it cannot be written.
+BodyModel kept_mannequin(const std::filesystem::path& folder);
 
 }  // namespace selvedge

@@ -10,14 +10,18 @@
 
 #include "collision/inside.hpp"
 #include "collision/intersections.hpp"
+#include "pipeline/body_hdf5.hpp"
 #include "pipeline/mannequin.hpp"
+#include "pipeline/mannequin_form.hpp"
+#include "tests/pipeline/files.hpp"
 
 using namespace selvedge;
 
 namespace {
 
-const BodyModel& body() {
-  static const BodyModel made = make_mannequin();
+const BodyModel& body() {  // made by the first call, into a folder that is not there yet
+  static const fake::Folder folder("mannequin");
+  static const BodyModel made = kept_mannequin(folder.path / "kept");
   return made;
 }
 
@@ -26,11 +30,7 @@ const Surface& surface() {
   return made;
 }
 
-// Added by hand here, so that this file needs nothing but the model.
-Points with_shape(const Eigen::VectorXd& coefficients) {
-  const Eigen::VectorXd d = body().skin.shape_directions * coefficients;
-  return body().skin.rest + Eigen::Map<const Points>(d.data(), body().skin.rest.rows(), 3);
-}
+Points with_shape(const Eigen::VectorXd& coefficients) { return shaped(body().skin, coefficients); }
 
 int shape_index(const std::string& name) {
   const auto found = std::find(mannequin_shapes.begin(), mannequin_shapes.end(), name);
@@ -264,11 +264,73 @@ TEST_CASE("mannequin: free of self-intersection at three sigma") {
   }
 }
 
-TEST_CASE("mannequin: the same bits twice") {
-  const BodyModel again = make_mannequin();
-  CHECK(again.skin.rest == body().skin.rest);
-  CHECK(again.skin.triangles == body().skin.triangles);
-  CHECK(again.skin.shape_directions == body().skin.shape_directions);
-  CHECK(Eigen::MatrixXd(again.skin.weights) == Eigen::MatrixXd(body().skin.weights));
-  CHECK(Eigen::MatrixXd(again.regressor) == Eigen::MatrixXd(body().regressor));
+TEST_CASE("mannequin: the same bits twice, made anew or from a file") {
+  const auto check_same = [](const BodyModel& other) {
+    CHECK(other.name == body().name);
+    CHECK(other.skin.rest == body().skin.rest);
+    CHECK(other.skin.triangles == body().skin.triangles);
+    CHECK(other.skin.shape_directions == body().skin.shape_directions);
+    CHECK(Eigen::MatrixXd(other.skin.weights) == Eigen::MatrixXd(body().skin.weights));
+    CHECK(Eigen::MatrixXd(other.regressor) == Eigen::MatrixXd(body().regressor));
+  };
+  const fake::Folder folder("mannequin_again");
+  const auto file = folder.path / ("mannequin-" + std::to_string(mannequin_recipe) + ".h5");
+  BodyModel marked = body();  // seen if the file is what is used
+  marked.skin.rest(0, 1) += 1;
+  write_body(file, marked);
+  CHECK(kept_mannequin(folder.path).skin.rest == marked.skin.rest);
+  std::filesystem::resize_file(file, 1000);
+  check_same(kept_mannequin(folder.path));
+  check_same(read_body(file));
+  check_body(body(), "mannequin");
+}
+
+TEST_CASE("mannequin: the recipe's number goes with its tables") {
+  // When this fails because the mannequin was changed: raise mannequin_recipe, and write the new sums here.
+  const Form form = mannequin_form();
+  double form_sum = 0, joint_sum = 0;
+  for (int i = 0; i < 48; ++i)
+    for (int j = 0; j < 24; ++j)
+      form_sum += signed_value(form, Vec3(0.04 * (i % 24), 0.075 * j, i < 24 ? -0.05 : 0.08));
+  for (const MannequinJoint& entry : mannequin_joints())
+    joint_sum = 0.9 * joint_sum + entry.position.dot(Vec3(1, 2, 3));
+  CHECK(mannequin_recipe == 1);
+  CHECK(form_sum == Approx(261.6565464563).epsilon(1e-9));
+  CHECK(joint_sum == Approx(21.5901970964).epsilon(1e-9));
+  CHECK(body().skin.shape_directions.norm() == Approx(2.2845859568).epsilon(1e-3));
+  CHECK(Eigen::MatrixXd(body().skin.weights).norm() == Approx(75.9532251826).epsilon(1e-3));
+}
+
+TEST_CASE("mannequin: bends at its joints and nowhere else") {
+  const auto turned = [](const std::map<std::string, Vec3>& rotations) {
+    BodyPose pose{Points::Zero(24, 3), Vec3::Zero()};
+    for (const auto& [name, rotation] : rotations) pose.rotations.row(joint(name)) = rotation.transpose();
+    return posed(body(), Eigen::VectorXd(), pose);
+  };
+  const Points& x = body().skin.rest;
+  const double quarter = std::numbers::pi / 2;
+  CHECK((turned({}) - x).cwiseAbs().maxCoeff() < 1e-12);
+
+  const Points bent = turned({{"left_elbow", {0, 0, quarter}}, {"left_knee", {quarter, 0, 0}}});
+  const Vec3 elbow = row(Points(body().regressor * x), joint("left_elbow"));
+  for (int v = 0; v < x.rows(); ++v) {
+    const Vec3 moved = row(bent, v) - row(x, v), arm = row(x, v) - elbow;
+    if (x(v, 0) < 0 || (x(v, 1) > -0.2 && x(v, 0) < 0.3)) CHECK(moved.norm() < 1e-9);
+    if (x(v, 0) > 0.55 && x(v, 1) > 0) CHECK((row(bent, v) - elbow - Vec3(-arm.y(), arm.x(), arm.z())).norm() < 1e-9);
+  }
+  CHECK(volume_of(bent) == Approx(volume_of(x)).epsilon(0.03));
+
+  const Points arms_down = turned({{"left_shoulder", {0, 0, -1.3}}, {"right_shoulder", {0, 0, 1.3}}});
+  CHECK(volume_of(arms_down) == Approx(volume_of(x)).epsilon(0.03));
+  CHECK(arms_down.col(0).maxCoeff() < 0.4);
+  const Points sitting = turned({{"left_hip", {-quarter, 0, 0}},
+                                 {"right_hip", {-quarter, 0, 0}},
+                                 {"left_knee", {quarter, 0, 0}},
+                                 {"right_knee", {quarter, 0, 0}}});
+  CHECK(volume_of(sitting) == Approx(volume_of(x)).epsilon(0.06));
+  CHECK(sitting.col(2).maxCoeff() > 0.4);
+  // Edges keep about their lengths, so that no skin is torn.
+  for (const Points* pose : {&bent, &arms_down, &sitting})
+    for (const auto& edge : surface().edges.rowwise())
+      if ((row(*pose, edge[1]) - row(*pose, edge[0])).norm() > 0.06) FAIL_CHECK("torn at " << x.row(edge[0]));
 }
