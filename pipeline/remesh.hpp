@@ -13,7 +13,8 @@ struct RemeshTarget {
 
 // Even triangles of a surface, by splitting, collapsing and flipping edges and moving vertices along the surface
 // (Botsch and Kobbelt 2004). The surface may have a boundary in the plane x = 0, which stays there, so that the mesh
-// and its mirror image close each other. The same input gives the same bits.
+// and its mirror image close each other. What is thinner than an edge may lose its thickness. The same input gives the
+// same bits.
 Shape remeshed(Shape, const RemeshTarget&, int rounds);
 
 }  // namespace selvedge

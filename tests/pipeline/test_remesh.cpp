@@ -92,6 +92,16 @@ TEST_CASE("remesh: even triangles of the wanted size, on the surface, with the b
       CHECK((b - a).cross(c - a).dot(a + b + c) > 0);
     }
   }
+  // A blade, thinner than an edge: opposite sides of its boundary must not be joined.
+  const Form blade = make_form({{{{Ellipsoid{{0, 0, 0}, {0.06, 0.008, 0.1}}}}}});
+  const auto blade_value = [&](const Vec3& p) { return signed_value(blade, p); };
+  const Shape thin =
+      remeshed(isosurface(blade_value, Vec3(0, -0.05, -0.15), Vec3(0.1, 0.05, 0.15), 0.005),
+               {[](const Vec3&) { return 0.02; }, [&](const Vec3& p) { return projected(blade, p); }}, 5);
+  check_boundary(thin);
+  CHECK(surface_of(thin).nonmanifold_edges == 0);
+  CHECK(euler(surface_of(thin)) == 1);
+
   // Finer on one side.
   const auto graded = [](const Vec3& p) { return p.y() > 0 ? 0.008 : 0.02; };
   const Shape uneven = remeshed(rough, {graded, onto_ball}, 5);
