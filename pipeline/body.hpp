@@ -49,7 +49,7 @@ JointTransforms joint_transforms(const BodyModel&, const Points& joints, const B
 
 // The surface in a pose: shape and pose blend shapes, then linear blend skinning, then the translation. In parallel;
 // any number of threads gives the same bits. Throws Error for a pose or transforms of another number of joints, and for
-// rotations that are not finite. Pose blend shapes: Loper et al. 2015, eq. 9, one column an entry, row by row.
+// rotations that are not finite. Pose blend shapes: Loper et al. 2015, section 3, one column an entry, row by row.
 Points posed(const SkinnedSurface&, const Eigen::VectorXd& shape, const BodyPose&, const JointTransforms&);
 Points posed(const BodyModel&, const Eigen::VectorXd& shape, const BodyPose&);
 
