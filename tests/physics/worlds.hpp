@@ -49,7 +49,6 @@ struct Run {
   double lag = 0;
 };
 
-
 inline std::unique_ptr<Stepper> conventional(const Scene& scene) { return make_conventional_stepper(scene, {}); }
 
 // Drops the stepper, and with it all caches, every `renew` frames.
