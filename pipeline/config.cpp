@@ -43,6 +43,8 @@ std::string kind_text(const Key& key) {
       return "[x, y, z]";
     case Kind::pair:
       return "number or [a, b]";
+    case Kind::numbers:
+      return "number or list of numbers";
     case Kind::integers:
       return "integer or list of integers";
     case Kind::texts:

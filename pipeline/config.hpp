@@ -11,7 +11,7 @@
 
 namespace selvedge {
 
-enum class Kind { number, integer, boolean, text, path, vector, pair, integers, texts, section, sections };
+enum class Kind { number, integer, boolean, text, path, vector, pair, numbers, integers, texts, section, sections };
 
 struct Range {
   double low = -1e300, high = 1e300;
@@ -32,7 +32,7 @@ struct Key {
   std::string otherwise{};             // default as YAML text; empty: none
   std::vector<std::string> choices{};  // words allowed: the only values of a text, the exceptions of a number
   bool required = false;
-  int most = 1 << 30;                // longest list of integers or texts; one value may be given without brackets
+  int most = 1 << 30;                // longest list of numbers or texts; one value may be given without brackets
   const Section* section = nullptr;  // of a section or of each in a list of sections
 };
 

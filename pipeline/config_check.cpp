@@ -56,6 +56,9 @@ std::string expected(const Key& key) {
     case Kind::pair:
       kind = "a number or two of them [a, b]";
       break;
+    case Kind::numbers:
+      kind = "a number or a list of them";
+      break;
     case Kind::integers:
       kind = "an integer or a list of them";
       break;
@@ -132,6 +135,7 @@ void check_value(const Check& check, const YAML::Node& node) {
       each(check_number, 2, 2);
       if (check.out.numbers.size() == 1) check.out.numbers.push_back(check.out.numbers[0]);
       return;
+    case Kind::numbers:
     case Kind::integers:
       return each(check_number, 1, static_cast<std::size_t>(key.most));
     case Kind::texts:
@@ -192,8 +196,8 @@ Config checked_entry(const YAML::Node& node, const Key& key, const Config& paren
 bool is_plain(const YAML::Node& node, const Section& section) {
   const Key* key = section.shorthand.empty() ? nullptr : find_key(section, section.shorthand);
   if (!key) return false;
-  const bool takes_list =
-      key->kind == Kind::vector || key->kind == Kind::pair || key->kind == Kind::integers || key->kind == Kind::texts;
+  const bool takes_list = key->kind == Kind::vector || key->kind == Kind::pair || key->kind == Kind::numbers ||
+                          key->kind == Kind::integers || key->kind == Kind::texts;
   return node.IsScalar() || (takes_list && node.IsSequence());
 }
 

@@ -79,21 +79,35 @@ const Section& trajectory_section() {
   return table;
 }
 
+const Section& body_section() {
+  static const Section table{
+      "body",
+      "A skinned body, posed anew at every time.",
+      "model",
+      {},
+      {named("model", "mannequin",
+             "`mannequin`, made by code, or a file: SMPL, SMPL-H or SMPL-X as .npz, any rigged body as .h5"),
+       numbers("shape", any, "coefficients of its shapes; left out: what an AMASS clip gives an SMPL body, else zero"),
+       text("clip", "a procedural clip, or a file: .bvh, or AMASS .npz; left out: it stands in the zero pose"),
+       number("blend_in", Unit::time, not_negative, "0", "from the start pose into the clip; 0: starts at frame 0"),
+       word("start_pose", {"zero", "arms_down"}, "zero", "what is blended in from")}};
+  return table;
+}
+
 }  // namespace
 
 const Section& obstacle_section() {
   static const Section table{
       "obstacle",
-      "Exactly one of plane, sphere, capsule, box, revolution, mesh, sequence and trajectory says what it is; shapes "
-      "are "
-      "centred at the origin before they are placed.",
+      "Exactly one of plane, sphere, capsule, box, revolution, mesh, sequence, trajectory and body says what it is; "
+      "shapes are centred at the origin before they are placed.",
       "",
-      {"plane", "sphere", "capsule", "box", "revolution", "mesh", "sequence", "trajectory"},
+      {"plane", "sphere", "capsule", "box", "revolution", "mesh", "sequence", "trajectory", "body"},
       std::vector<Key>{text("name", "left out: obstacle0, obstacle1, ..."), section(plane_section(), "", ""),
                        section(sphere_section(), "", ""), section(capsule_section(), "", ""),
                        section(box_section(), "", ""), section(revolution_section(), "", ""),
                        section(mesh_section(), "", "a file"), section(sequence_section(), "", "moving meshes"),
-                       section(trajectory_section(), "", "an earlier run")} +
+                       section(trajectory_section(), "", "an earlier run"), section(body_section(), "", "a person")} +
           placement_keys() + std::vector<Key>{section(motion_section(), "", "left out: at rest")}};
   return table;
 }

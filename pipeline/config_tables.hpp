@@ -47,6 +47,9 @@ inline Key word(std::string name, std::vector<std::string> choices, std::string 
 inline Key text(std::string name, std::string about) {
   return {.name = std::move(name), .kind = Kind::text, .about = std::move(about)};
 }
+inline Key named(std::string name, std::string otherwise, std::string about) {
+  return {.name = std::move(name), .kind = Kind::text, .about = std::move(about), .otherwise = std::move(otherwise)};
+}
 inline Key path(std::string name, std::string about) {
   return {.name = std::move(name), .kind = Kind::path, .about = std::move(about)};
 }
@@ -64,6 +67,9 @@ inline Key pair(std::string name, Unit unit, std::string otherwise, std::string 
           .unit = unit,
           .range = range,
           .otherwise = std::move(otherwise)};
+}
+inline Key numbers(std::string name, Range range, std::string about) {
+  return {.name = std::move(name), .kind = Kind::numbers, .about = std::move(about), .range = range};
 }
 inline Key integers(std::string name, Range range, int most, std::string about) {
   return {.name = std::move(name), .kind = Kind::integers, .about = std::move(about), .range = range, .most = most};

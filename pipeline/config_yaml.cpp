@@ -91,7 +91,8 @@ void emit_value(YAML::Emitter& out, const Config& entry) {
     return;
   }
   const bool list = entry.key->kind == Kind::vector || entry.key->kind == Kind::pair ||
-                    entry.key->kind == Kind::integers || entry.key->kind == Kind::texts;
+                    entry.key->kind == Kind::numbers || entry.key->kind == Kind::integers ||
+                    entry.key->kind == Kind::texts;
   if (list) out << YAML::Flow << YAML::BeginSeq;
   for (const double number : entry.numbers) {
     if (entry.key->kind == Kind::boolean)

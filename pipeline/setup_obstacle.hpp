@@ -17,6 +17,9 @@ struct ObstaclePart {
 ObstaclePart read_obstacle(const Config& section, const std::string& default_name, const std::filesystem::path& folder,
                            std::vector<std::string>& warnings);
 
+// An obstacle with a `body` section: a skinned body in the poses of its clip. Without a name.
+ObstaclePart read_performer(const Config& section, const std::filesystem::path& folder);
+
 // Vertex positions of a body that changes shape: frames at a steady rate, the same faces in all.
 struct Sequence {
   std::vector<Points> frames;

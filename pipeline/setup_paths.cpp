@@ -14,6 +14,12 @@ fs::path config_folder() {
   return fs::path(SELVEDGE_SOURCE_DIR) / "configs";
 }
 
+fs::path cache_folder() {
+  for (const auto& [name, below] : {std::pair{"XDG_CACHE_HOME", ""}, std::pair{"HOME", ".cache"}})
+    if (const char* value = std::getenv(name); value && *value) return fs::path(value) / below / "selvedge";
+  return fs::temp_directory_path() / "selvedge";
+}
+
 namespace {
 
 std::string variable(const Config& at, const std::string& name) {

@@ -9,6 +9,10 @@ namespace selvedge {
 // The folder `configs` of the program: share/selvedge/configs beside an installed program, else the source's.
 std::filesystem::path config_folder();
 
+// Where what is made once is kept: selvedge in XDG_CACHE_HOME, else in the user's .cache, else in the system's folder
+// for temporary files.
+std::filesystem::path cache_folder();
+
 // `text` with ${NAME} replaced by the environment's value (SELVEDGE_DATA has the default ../shared/data beside the
 // source), relative to `folder`. Throws Error at `at` for an unknown variable.
 std::filesystem::path expanded_path(const Config& at, const std::string& text, const std::filesystem::path& folder);

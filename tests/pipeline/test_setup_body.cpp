@@ -1,0 +1,85 @@
+#include <catch2/catch.hpp>
+
+#include "pipeline/mannequin.hpp"
+#include "pipeline/setup.hpp"
+#include "tests/pipeline/files.hpp"
+
+using namespace selvedge;
+using Catch::Matchers::Contains;
+using fake::Folder;
+
+namespace {
+
+Setup with_body(const Folder& folder, const std::string& body, const std::string& more = "") {
+  return read_setup(fake::write(folder, "scene.yaml",
+                                "cloths:\n  - {rectangle: {size: [0.3, 0.3], resolution: 3}, translate: [0, 3, 0]}\n"
+                                "obstacles:\n  - name: person\n    body: " +
+                                    body + "\n" + more));
+}
+
+Points body_at(const Setup& setup, double time) { return setup.drive_at(time).obstacles.at(0); }
+
+}  // namespace
+
+TEST_CASE("A body without a clip stands in the zero pose, with its shape", "[setup_body]") {
+  const Folder folder("body_still");
+  const Setup setup = with_body(folder, "{model: mannequin, shape: [1, 0.5]}");
+  const BodyModel body = make_mannequin();
+  const Obstacle& person = setup.scene.obstacles.at(0);
+  CHECK(person.name == "person");
+  CHECK_FALSE(person.moving);
+  CHECK(person.surface.triangles == body.skin.triangles);
+  CHECK(is_closed(person.surface));
+  const Points expected = shaped(body.skin, Eigen::Vector2d(1, 0.5));
+  CHECK((setup.initial.obstacles.at(0) - expected).cwiseAbs().maxCoeff() < 1e-12);
+  CHECK(body_at(setup, 0.7) == body_at(setup, 0));
+  const Setup again = read_setup(fake::write(folder, "again.yaml", setup.config));
+  CHECK(again.initial.obstacles.at(0) == setup.initial.obstacles.at(0));
+}
+
+TEST_CASE("A clip moves the body over the ground, blended in from a start pose, and placed", "[setup_body]") {
+  const Folder folder("body_walks");
+  const Setup walk = with_body(folder, "{clip: walk}");
+  CHECK(walk.scene.obstacles.at(0).moving);
+  for (const double time : {0.0, 1.3, 2.9}) {
+    const Points x = body_at(walk, time);
+    CHECK(x.allFinite());
+    CHECK(std::abs(x.col(1).minCoeff()) < 0.02);  // the soles
+    CHECK(x.col(1).maxCoeff() == Approx(1.72).margin(0.06));
+  }
+  CHECK((body_at(walk, 2) - body_at(walk, 1)).colwise().mean().norm() > 0.3);
+
+  const Setup soft = with_body(folder, "{clip: walk, blend_in: 1, start_pose: zero}");
+  const Points start = body_at(soft, 0), later = body_at(soft, 2.3);
+  CHECK(start.col(0).maxCoeff() - start.col(0).minCoeff() == Approx(1.78).margin(0.05));  // arms out
+  CHECK((later - body_at(walk, 1.3)).cwiseAbs().maxCoeff() < 1e-9);
+
+  const Setup aside = with_body(folder, "{clip: walk}", "    translate: [2, 0, 1]\n");
+  CHECK((body_at(aside, 1) - body_at(walk, 1)).rowwise().norm().minCoeff() == Approx(std::sqrt(5.0)));
+}
+
+TEST_CASE("A body walks as a BVH file has it", "[setup_body]") {
+  const auto file = fake::open_data() / "makehuman" / "walk1.bvh";
+  if (!std::filesystem::exists(file)) {
+    WARN("skipped: no " << file);
+    return;
+  }
+  const Folder folder("body_bvh");
+  const Setup walk = with_body(folder, "{clip: '" + file.string() + "'}");
+  const Points x = body_at(walk, 1);
+  CHECK(x.col(1).minCoeff() > -0.05);
+  CHECK(x.col(1).maxCoeff() == Approx(1.7).margin(0.12));
+}
+
+TEST_CASE("What is wrong with a body is named by file, line and cure", "[setup_body]") {
+  const Folder folder("body_faulty");
+  CHECK_THROWS_WITH(with_body(folder, "{clip: wlak}"),
+                    Contains("scene.yaml:5") && Contains("unknown clip") && Contains("did you mean `walk`"));
+  CHECK_THROWS_WITH(with_body(folder, "{shape: [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1]}"), Contains("at most 10"));
+  CHECK_THROWS_WITH(with_body(folder, "{shape: [tall]}"), Contains("list of them"));
+  CHECK_THROWS_WITH(with_body(folder, "{model: person.npz}"), Contains("missing file"));
+  fake::write(folder, "person.fbx", "");
+  CHECK_THROWS_WITH(with_body(folder, "{model: person.fbx}"), Contains("docs/bodies.md"));
+  fake::write(folder, "person.h5", "no hdf5");
+  CHECK_THROWS_WITH(with_body(folder, "{model: person.h5}"), Contains("person.h5"));
+}
