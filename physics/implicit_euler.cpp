@@ -41,10 +41,6 @@ EnergyChange energy_change(const std::vector<double>& from, const std::vector<do
   return result;
 }
 
-double largest_row(const Points& points) {
-  return points.rows() > 0 ? std::sqrt(points.rowwise().squaredNorm().maxCoeff()) : 0.0;
-}
-
 // Positions are known to a rounding error, so forces are known to that error times the stiffness.
 bool below_rounding(const Points& gradient, std::span<const Mat3> diagonal, const Points& x) {
   const double error = 2 * rounding * x.cwiseAbs().maxCoeff();

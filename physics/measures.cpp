@@ -28,6 +28,10 @@ Energies energies(const Scene& scene, const Points& x, const Points& v, const Ve
   return energies(scene, energy_terms(scene), x, v, acceleration);
 }
 
+double largest_row(const Points& points) {
+  return points.rows() > 0 ? std::sqrt(points.rowwise().squaredNorm().maxCoeff()) : 0.0;
+}
+
 double root_mean_square(const Points& points) {
   return points.rows() > 0 ? std::sqrt(points.squaredNorm() / static_cast<double>(points.rows())) : 0.0;
 }

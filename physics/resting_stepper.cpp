@@ -5,6 +5,7 @@
 #include <map>
 
 #include "collision/box.hpp"
+#include "physics/measures.hpp"
 #include "physics/part_of_scene.hpp"
 
 namespace selvedge {
@@ -16,9 +17,7 @@ constexpr std::size_t most_kept = 4;   // scenes of part of the cloths; one is a
 
 using Chosen = std::vector<char>;  // one a cloth
 
-double largest_row(const Points& points) {
-  return points.rows() > 0 ? std::sqrt(points.rowwise().squaredNorm().maxCoeff()) : 0.0;
-}
+bool any(const Chosen& cloths) { return std::ranges::count(cloths, true) > 0; }
 
 Box box_of_motion(const Points& x0, const Points& x1, double margin) {
   Box box = empty_box;
@@ -100,16 +99,16 @@ std::vector<Box> RestingStepper::moving_boxes(const State& from, const Drive& dr
 
 // True if one of the resting cloths is near one of the boxes: it rests no more.
 bool RestingStepper::wake(const State& from, const std::vector<Box>& moving, Chosen& resting) const {
-  bool any = false;
+  bool woken = false;
   for (std::size_t c = 0; c < resting.size(); ++c) {
     if (!resting[c]) continue;
     const Points x = rows(from.x, static_cast<int>(c));
     const Box own = box_of_motion(x, x, scene_.contact.thickness);
     if (std::ranges::none_of(moving, [&](const Box& other) { return overlap(own, other); })) continue;
     resting[c] = false;
-    any = true;
+    woken = true;
   }
-  return any;
+  return woken;
 }
 
 RestingStepper::Part& RestingStepper::part(const Chosen& resting) {
@@ -177,10 +176,10 @@ Rest RestingStepper::rest_after(const State& from, const State& to, const Drive&
 
 StepReport RestingStepper::step(const State& from, const Drive& drive, double dt, State& to) {
   Chosen resting = still_ones(from, drive);
-  while (wake(from, moving_boxes(from, drive, dt, resting), resting)) {
+  while (any(resting) && wake(from, moving_boxes(from, drive, dt, resting), resting)) {
   }
   StepReport report = step_others(from, drive, dt, resting, to);
-  while (report.status == StepStatus::accepted && comes_near(from, to, resting))
+  while (report.status == StepStatus::accepted && any(resting) && comes_near(from, to, resting))
     report = step_others(from, drive, dt, resting, to);
   if (report.status == StepStatus::accepted) to.rest = rest_after(from, to, drive, dt);
   return report;
