@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pipeline/body.hpp"
+
+namespace selvedge {
+
+// A garment on the body that it was made for.
+struct Garment {
+  std::string name;
+  SkinnedSurface skin;  // as worn in the body's zero pose and shape, with the directions it takes from the body
+  BodyPose made_in;     // the pose in which its shape is its rest shape; no rows: the zero pose
+  std::vector<std::pair<std::string, std::vector<int>>> groups;  // by name, vertices ascending
+  std::vector<int> pins;                                         // vertices that stay with the body, ascending
+};
+
+// How a garment vertex takes weights and directions from the body: from the nearest vertex, as tight garments do, or
+// from all vertices about as near as that one, averaged (Gaussian, as wide as the vertex is far from the body), as
+// loose ones do. ContourCraft (Grigorev et al. 2024) samples the same two ways, the loose one at random.
+enum class Fit { tight, loose };
+
+// A surface x worn in the body's zero pose and shape, given the body's weights and directions. Throws Error for one
+// without vertices.
+SkinnedSurface attached(const Points& x, const Triangles&, const BodyModel&, Fit);
+
+// The garment worn by the body in a shape and pose: skinned, which may tangle it.
+Points worn(const Garment&, const BodyModel&, const Eigen::VectorXd& shape, const BodyPose&);
+
+// Its rest shape on a body of that shape: as made, resized by the shape directions.
+Points rest_shape(const Garment&, const BodyModel&, const Eigen::VectorXd& shape);
+
+}  // namespace selvedge
