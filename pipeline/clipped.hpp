@@ -1,0 +1,15 @@
+#pragma once
+
+#include "pipeline/border.hpp"
+#include "pipeline/primitives.hpp"
+
+namespace selvedge {
+
+// What of a surface the border keeps. Its new boundary lies in the border: triangles that cross it are cut, vertices
+// within `snap` of it are moved onto it [m]. Vertices without triangles are dropped.
+Shape clipped(const Shape&, const Border&, double snap);
+
+// The component with most vertices.
+Shape largest_component(const Shape&);
+
+}  // namespace selvedge
