@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <utility>
 #include <vector>
@@ -13,31 +14,46 @@ namespace selvedge {
 namespace {
 
 struct Cutter {
+  const Border& border;
+  std::span<const Border> earlier;
   std::vector<Vec3> x;
-  std::vector<double> side;  // signed distance of each vertex, zero where it was moved onto the border
+  std::vector<double> side;  // value of each vertex, zero where it was moved onto the border
   std::map<std::pair<int, int>, int> crossings;
   std::vector<std::array<int, 3>> triangles;
-
-  bool is_in(int v) const { return side[static_cast<std::size_t>(v)] <= 0; }
-  int crossing(int a, int b, const Border& border) {
-    if (a > b) std::swap(a, b);
-    const auto [entry, fresh] = crossings.emplace(std::pair{a, b}, static_cast<int>(x.size()));
-    if (fresh) {
-      const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
-      const double t = side[i] / (side[i] - side[j]);
-      x.push_back(border.onto((1 - t) * x[i] + t * x[j]));
-    }
-    return entry->second;
-  }
 };
 
-void cut(Cutter& cutter, const std::array<int, 3>& corners, const Border& border) {
+// Onto the border, and onto the earlier ones that both ends lie in.
+Vec3 onto_all(const Cutter& cutter, const Vec3& a, const Vec3& b, Vec3 p) {
+  constexpr double rounding = 1e-7;
+  constexpr int most = 20;  // two borders that cross at a right angle need few
+  std::vector<const Border*> borders;
+  for (const Border& one : cutter.earlier)
+    if (std::abs(one.value(a)) < rounding && std::abs(one.value(b)) < rounding) borders.push_back(&one);
+  borders.push_back(&cutter.border);
+  for (int k = 0; k < (borders.size() > 1 ? most : 1); ++k)
+    for (const Border* one : borders) p = one->onto(p);
+  return p;
+}
+
+int crossing(Cutter& cutter, int a, int b) {
+  if (a > b) std::swap(a, b);
+  const auto [entry, fresh] = cutter.crossings.emplace(std::pair{a, b}, static_cast<int>(cutter.x.size()));
+  if (fresh) {
+    const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+    const double t = cutter.side[i] / (cutter.side[i] - cutter.side[j]);
+    const Vec3 from = cutter.x[i], to = cutter.x[j];
+    cutter.x.push_back(onto_all(cutter, from, to, (1 - t) * from + t * to));
+  }
+  return entry->second;
+}
+
+void cut(Cutter& cutter, const std::array<int, 3>& corners) {
   std::vector<int> kept;  // the part inside, a triangle or a quadrangle
   for (std::size_t k = 0; k < 3; ++k) {
     const int a = corners[k], b = corners[(k + 1) % 3];
-    if (cutter.is_in(a)) kept.push_back(a);
     const double sa = cutter.side[static_cast<std::size_t>(a)], sb = cutter.side[static_cast<std::size_t>(b)];
-    if (sa * sb < 0) kept.push_back(cutter.crossing(a, b, border));
+    if (sa <= 0) kept.push_back(a);
+    if (sa * sb < 0) kept.push_back(crossing(cutter, a, b));
   }
   for (std::size_t k = 2; k < kept.size(); ++k) cutter.triangles.push_back({kept[0], kept[k - 1], kept[k]});
 }
@@ -60,20 +76,20 @@ Shape packed(const std::vector<Vec3>& x, std::vector<std::array<int, 3>> triangl
 
 }  // namespace
 
-Shape clipped(const Shape& shape, const Border& border, double snap) {
-  Cutter cutter;
+Shape clipped(const Shape& shape, const Border& border, std::span<const Border> earlier, double snap) {
+  Cutter cutter{border, earlier, {}, {}, {}, {}};
   for (int v = 0; v < shape.x.rows(); ++v) {
     const Vec3 p = row(shape.x, v);
     const double distance = border.value(p);
     const bool on = std::abs(distance) < snap;
-    cutter.x.push_back(on ? border.onto(p) : p);
+    cutter.x.push_back(on ? onto_all(cutter, p, p, p) : p);
     cutter.side.push_back(on ? 0 : distance);
   }
   for (const auto& t : shape.triangles.rowwise()) {
     const std::array<int, 3> corners{t[0], t[1], t[2]};
     bool any_inside = false;  // one whose corners are all on the border or beyond has no part inside
     for (const int v : corners) any_inside = any_inside || cutter.side[static_cast<std::size_t>(v)] < 0;
-    if (any_inside) cut(cutter, corners, border);
+    if (any_inside) cut(cutter, corners);
   }
   return packed(cutter.x, std::move(cutter.triangles));
 }

@@ -15,6 +15,9 @@ namespace selvedge {
 using Profile = std::vector<std::array<double, 2>>;
 double at(const Profile&, double coordinate);
 
+// How far edges lie below a surface as round as a limb whose points they join [m].
+double sagitta(double edge);
+
 // Where a garment ends: what lies beyond the border is cut away. Paired ones are cut on both sides of x = 0 and named
 // _left and _right.
 struct Opening {
@@ -40,8 +43,7 @@ struct GarmentCut {
   std::vector<Opening> openings = {};
   std::string pinned = {};  // the group that stays with the body; empty: it hangs from the shoulders
   bool legs_apart = false;  // however loose they are
-  bool open_front = false;
-  double collar = 0;  // how deep it falls; 0: there is none
+  double collar = 0;        // how deep it falls; 0: there is none
   std::vector<Pocket> pockets = {};
 };
 

@@ -8,6 +8,7 @@
 #include "collision/error.hpp"
 #include "collision/surface.hpp"
 #include "pipeline/clipped.hpp"
+#include "pipeline/garment_trim.hpp"
 #include "pipeline/isosurface.hpp"
 #include "pipeline/mirrored_mesh.hpp"
 #include "pipeline/remesh.hpp"
@@ -20,12 +21,6 @@ const GarmentCut& cut_of(const std::string& name) {
     if (cut.name == name) return cut;
   throw Error("is the unknown garment `" + name + "`", "garment",
               "one of " + fmt::format("{}", fmt::join(garment_names(), ", ")));
-}
-
-// Straight edges lie below the surface they are on by about this much where it is as round as a limb.
-double sagitta(double edge) {
-  constexpr double limb_radius = 0.045;
-  return edge * edge / (8 * limb_radius);
 }
 
 double ease_at(const GarmentCut& cut, const Vec3& p) {
@@ -51,17 +46,18 @@ double beyond(const GarmentCut& cut, const Vec3& p) {
 // A garment's surface is the zero level of `surface`; `solid` is what it encloses, shut at its openings, for those worn
 // over it.
 struct Field {
-  std::function<double(const Vec3&)> surface, solid;
+  DistanceField surface, solid;
 };
 
 Field field_of(const GarmentCut& cut, const GarmentOptions& options, const std::vector<Field>& under) {
   std::vector<Limb> lofts;
   if (!cut.lofts.empty()) lofts.push_back({cut.lofts, 0.03});
+  // Arms are in the form at x > 0 alone.
   const Form form = mannequin_form(cut.limbs, std::move(lofts));
   const double more = sagitta(options.edge);
   const auto surface = [&cut, form, more, gap = options.gap, under](const Vec3& p) {
     constexpr double blend = 0.02;
-    double value = signed_value(form, p) - ease_at(cut, p) - more;
+    double value = signed_value(form, Vec3(std::abs(p.x()), p.y(), p.z())) - ease_at(cut, p) - more;
     for (const Field& inner : under) value = merged(value, inner.solid(p) - gap - more, blend);
     if (cut.legs_apart) value = std::max(value, std::min(0.004 - std::abs(p.x()), 0.735 - p.y()));
     return value;
@@ -78,24 +74,10 @@ Shape half_of(const GarmentCut& cut, const Field& field, double edge) {
   Shape shape = isosurface(nearby, Vec3(0, -0.02, -0.6), Vec3(0.9, 1.56, 0.6), grid);
   RemeshTarget target{[edge](const Vec3&) { return edge; }, [&](const Vec3& p) { return projected(field.surface, p); }};
   for (const Opening& opening : cut.openings) {
-    shape = clipped(shape, opening.border, 0.1 * grid);
+    shape = clipped(shape, opening.border, target.borders, 0.1 * grid);
     target.borders.push_back(opening.border);
   }
   return remeshed(largest_component(shape), target, rounds);
-}
-
-// Both halves; in front, an open one has a gap between them.
-Shape whole_of(const GarmentCut& cut, const Shape& half) {
-  if (!cut.open_front) return mirrored(half).shape;
-  constexpr double gap = 0.008, taper = 0.06;
-  Shape apart = half;
-  std::vector<char> joined(static_cast<std::size_t>(half.x.rows()), 1);
-  for (int v = 0; v < half.x.rows(); ++v) {
-    if (half.x(v, 2) <= 0) continue;
-    joined[static_cast<std::size_t>(v)] = half.x(v, 0) > 0;
-    apart.x(v, 0) += gap * std::max(0.0, 1 - half.x(v, 0) / taper);
-  }
-  return mirrored(apart).shape;
 }
 
 using Groups = std::vector<std::pair<std::string, std::vector<int>>>;
@@ -108,8 +90,7 @@ void add(Groups& groups, const std::string& name, int vertex) {
     groups.push_back({name, {vertex}});
 }
 
-Groups groups_of(const GarmentCut& cut, const Shape& shape, double edge) {
-  Groups groups;
+void add_opening_groups(const GarmentCut& cut, const Shape& shape, Groups& groups) {
   const Surface surface = make_surface(static_cast<int>(shape.x.rows()), shape.triangles);
   for (const std::vector<int>& loop : boundary_loops(surface))
     for (const int v : loop) {
@@ -118,14 +99,25 @@ Groups groups_of(const GarmentCut& cut, const Shape& shape, double edge) {
         if (std::abs(opening.border.value(q)) < 1e-6)
           add(groups, !opening.paired ? opening.group : opening.group + (p.x() > 0 ? "_left" : "_right"), v);
     }
+}
+
+void add_place_groups(const GarmentCut& cut, const Shape& shape, double edge, Groups& groups) {
   for (int v = 0; v < shape.x.rows(); ++v) {
     const Vec3 p = row(shape.x, v);
     const double reach = std::abs(p.x());
     if (p.y() > 1.38 && reach > 0.05 && reach < 0.2) add(groups, p.x() > 0 ? "shoulder_left" : "shoulder_right", v);
     if (cut.pinned != "waist" && std::abs(p.y() - 1.08) < edge) add(groups, "waist", v);
   }
-  for (auto& [name, vertices] : groups) std::sort(vertices.begin(), vertices.end());
-  return groups;
+}
+
+void add_trimmings(const GarmentCut& cut, const Field& field, double edge, Shape& shape, Groups& groups) {
+  for (const Opening& opening : cut.openings)
+    if (opening.group == "neck" && cut.collar > 0)
+      groups.emplace_back("collar", add_collar(shape, field.surface, opening.border, cut.collar, edge));
+  for (const Pocket& pocket : cut.pockets) {
+    std::vector<int> stitched;
+    for (const int v : add_pocket(shape, field.surface, pocket, edge, stitched)) add(groups, "pocket", v);
+  }
 }
 
 }  // namespace
@@ -135,12 +127,19 @@ Garment make_garment(const std::string& name, const BodyModel& mannequin, const 
   if (!(options.edge >= 0.005 && options.edge <= 0.05))
     throw Error(fmt::format("is {} m", options.edge), "edge of a garment", "allowed: 0.005 to 0.05 m");
   std::vector<Field> fields;
+  for (const std::string& inner : under)
+    if (cut_of(inner).collar > 0 || !cut_of(inner).pockets.empty())
+      throw Error("has a collar or pockets", "garment " + inner + " under others", "wear it over them");
   for (const std::string& inner : under) fields.push_back(field_of(cut_of(inner), options, fields));
   const GarmentCut& cut = cut_of(name);
-  const Shape shape = whole_of(cut, half_of(cut, field_of(cut, options, fields), options.edge));
+  const Field field = field_of(cut, options, fields);
+  Shape shape = mirrored(half_of(cut, field, options.edge)).shape;
   Garment garment;
   garment.name = name;
-  garment.groups = groups_of(cut, shape, options.edge);
+  add_opening_groups(cut, shape, garment.groups);
+  add_place_groups(cut, shape, options.edge, garment.groups);
+  add_trimmings(cut, field, options.edge, shape, garment.groups);
+  for (auto& [group, vertices] : garment.groups) std::sort(vertices.begin(), vertices.end());
   const Points x = shape.x.rowwise() - mannequin_joints().front().position.transpose();
   garment.skin = attached(x, shape.triangles, mannequin, cut.fit);
   for (const auto& [group, vertices] : garment.groups)

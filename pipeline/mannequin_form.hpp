@@ -19,7 +19,7 @@ struct MannequinJoint {
 // SMPL's 24 joints (Loper et al. 2015) in its order.
 std::vector<MannequinJoint> mannequin_joints();
 
-// The body's surface, or that of some of its limbs merged with other solids; arms and legs are pairs.
+// The body's surface, or that of some of its limbs merged with other solids, right for x >= 0.
 enum class MannequinLimb { torso, head, arm, leg };
 Form mannequin_form(const std::vector<MannequinLimb>& = {MannequinLimb::torso, MannequinLimb::head, MannequinLimb::arm,
                                                          MannequinLimb::leg},
