@@ -23,16 +23,22 @@ const GarmentCut& cut_of(const std::string& name) {
               "one of " + fmt::format("{}", fmt::join(garment_names(), ", ")));
 }
 
+// From 0 to 1, smoothly.
+double rise(double value, double from, double to) {
+  const double t = std::clamp((value - from) / (to - from), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
 double ease_at(const GarmentCut& cut, const Vec3& p) {
-  const double torso = at(cut.ease, p.y()), reach = std::abs(p.x());
-  if (cut.sleeve_ease.empty()) return torso;
-  // Sleeves begin at the shoulders and only above the armpits.
-  const auto rise = [](double value, double from, double to) {
-    const double t = std::clamp((value - from) / (to - from), 0.0, 1.0);
-    return t * t * (3 - 2 * t);
-  };
-  const double share = rise(reach, 0.16, 0.24) * rise(p.y(), 1.10, 1.25);
-  return torso + share * (at(cut.sleeve_ease, reach) - torso);
+  double ease = at(cut.ease, p.y());
+  const double reach = std::abs(p.x());
+  if (!cut.sleeve_ease.empty())  // sleeves begin at the shoulders and only above the armpits
+    ease += rise(reach, 0.16, 0.24) * rise(p.y(), 1.10, 1.25) * (at(cut.sleeve_ease, reach) - ease);
+  if (cut.legs_apart) {  // between the legs there is little room
+    constexpr double least = 0.004;
+    ease += (1 - rise(reach, 0.03, 0.11)) * (1 - rise(p.y(), 0.78, 0.90)) * (least - ease);
+  }
+  return ease;
 }
 
 // About how far a point lies beyond the nearest opening, negative on the side that is kept [m].
@@ -43,8 +49,8 @@ double beyond(const GarmentCut& cut, const Vec3& p) {
   return farthest;
 }
 
-// A garment's surface is the zero level of `surface`; `solid` is what it encloses, shut at its openings, for those worn
-// over it.
+// A garment's surface is the zero level of `surface`; `solid` is what it encloses, for those worn over it, which get
+// narrower only slowly beyond its openings, so that they pass over its borders without a step.
 struct Field {
   DistanceField surface, solid;
 };
@@ -58,11 +64,13 @@ Field field_of(const GarmentCut& cut, const GarmentOptions& options, const std::
   const auto surface = [&cut, form, more, gap = options.gap, under](const Vec3& p) {
     constexpr double blend = 0.02;
     double value = signed_value(form, Vec3(std::abs(p.x()), p.y(), p.z())) - ease_at(cut, p) - more;
-    for (const Field& inner : under) value = merged(value, inner.solid(p) - gap - more, blend);
-    if (cut.legs_apart) value = std::max(value, std::min(0.004 - std::abs(p.x()), 0.735 - p.y()));
+    for (const Field& inner : under) value = merged(value, inner.solid(p) - gap - 1.5 * more, blend);
     return value;
   };
-  const auto solid = [&cut, surface](const Vec3& p) { return std::max(surface(p), beyond(cut, p)); };
+  const auto solid = [&cut, surface](const Vec3& p) {
+    constexpr double slope = 0.25;
+    return surface(p) + slope * std::max(0.0, beyond(cut, p));
+  };
   return {surface, solid};
 }
 
