@@ -62,5 +62,6 @@ struct BodyFields {
 // Throws Error, naming `file` and the field, unless the sizes fit, indices are in range, all numbers are finite,
 // weights sum to 1 (within 1e-3), and parents come before children. For readers and generators of bodies.
 void check_body(const BodyModel&, const std::string& file, const BodyFields& = {});
+void check_skin(const SkinnedSurface&, Eigen::Index joints, const std::string& file, const BodyFields& = {});
 
 }  // namespace selvedge

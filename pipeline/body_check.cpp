@@ -20,7 +20,7 @@ struct Checker {
   void size(const std::string& field, const Matrix& matrix, Eigen::Index rows, Eigen::Index cols) const {
     if (matrix.rows() != rows || matrix.cols() != cols)
       fail(field, fmt::format("is {} x {}, not {} x {}", matrix.rows(), matrix.cols(), rows, cols),
-           "are all fields of one and the same body?");
+           "are all fields of one and the same file?");
   }
 
   void finite(const std::string& field, const Eigen::Ref<const Eigen::MatrixXd>& matrix, int first_by) const {
@@ -39,14 +39,18 @@ struct Checker {
 };
 
 void check_triangles(const Checker& check, const BodyFields& names, const SkinnedSurface& skin) {
-  if (skin.triangles.rows() == 0) check.fail(names.triangles, "is empty", "give the body's triangles");
+  if (skin.triangles.rows() == 0) check.fail(names.triangles, "is empty", "give the triangles");
   for (Eigen::Index t = 0; t < skin.triangles.rows(); ++t)
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < 3; ++k) {
+      if (skin.triangles(t, k) == skin.triangles(t, (k + 1) % 3))
+        check.fail(names.triangles, fmt::format("has vertex {} twice in triangle {}", skin.triangles(t, k), t),
+                   "leave degenerate triangles out");
       if (skin.triangles(t, k) < 0 || skin.triangles(t, k) >= skin.rest.rows())
         check.fail(
             names.triangles,
-            fmt::format("names vertex {} in triangle {}, the body has {}", skin.triangles(t, k), t, skin.rest.rows()),
+            fmt::format("names vertex {} in triangle {}, there are {}", skin.triangles(t, k), t, skin.rest.rows()),
             "vertices count from 0");
+    }
 }
 
 void check_weights(const Checker& check, const BodyFields& names, const SkinWeights& weights) {
@@ -76,14 +80,11 @@ void check_joints(const Checker& check, const BodyFields& names, const BodyModel
 
 }  // namespace
 
-void check_body(const BodyModel& body, const std::string& file, const BodyFields& names) {
+void check_skin(const SkinnedSurface& skin, Eigen::Index joints, const std::string& file, const BodyFields& names) {
   const Checker check{file};
-  const SkinnedSurface& skin = body.skin;
-  const Eigen::Index vertices = skin.rest.rows(), joints = static_cast<Eigen::Index>(body.parents.size());
-  if (vertices == 0) check.fail(names.rest, "is empty", "give the body's vertices");
-  if (joints == 0) check.fail(names.parents, "is empty", "give the body's joints, at least a root");
+  const Eigen::Index vertices = skin.rest.rows();
+  if (vertices == 0) check.fail(names.rest, "is empty", "give the vertices");
   check.size(names.weights, skin.weights, vertices, joints);
-  check.size(names.regressor, body.regressor, joints, vertices);
   check.size(names.shape_directions, skin.shape_directions, 3 * vertices, skin.shape_directions.cols());
   if (skin.pose_directions.cols() > 0)
     check.size(names.pose_directions, skin.pose_directions, 3 * vertices, 9 * (joints - 1));
@@ -91,8 +92,16 @@ void check_body(const BodyModel& body, const std::string& file, const BodyFields
   check.finite(names.shape_directions, skin.shape_directions, 3);
   check.finite(names.pose_directions, skin.pose_directions, 3);
   check_triangles(check, names, skin);
-  check_joints(check, names, body);
   check_weights(check, names, skin.weights);
+}
+
+void check_body(const BodyModel& body, const std::string& file, const BodyFields& names) {
+  const Checker check{file};
+  const Eigen::Index joints = static_cast<Eigen::Index>(body.parents.size());
+  if (joints == 0) check.fail(names.parents, "is empty", "give the body's joints, at least a root");
+  check_skin(body.skin, joints, file, names);
+  check.size(names.regressor, body.regressor, joints, body.skin.rest.rows());
+  check_joints(check, names, body);
   check.finite(names.regressor, body.regressor);
   for (Eigen::Index j = 0; j < joints; ++j)
     if (!SkinWeights::InnerIterator(body.regressor, j))

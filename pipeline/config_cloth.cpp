@@ -86,21 +86,12 @@ const Section& pin_section() {
       "Vertices that are held, or moved as prescribed. A vertex that two pins name obeys the first.",
       "",
       {"vertices", "box", "group"},
-      selection_keys() + std::vector<Key>{section(motion_section(), "", "left out: at rest")}};
-  return table;
-}
-
-const Section& start_section() {
-  static const Section table{
-      "start",
-      "How the start differs from the cloth as made and placed; the rest shape does not follow. A cloth that starts in "
-      "one point, where no force acts, is opened by small random displacements, and a warning says so.",
-      "",
-      {},
-      {vector("stretch", Unit::none, "[1, 1, 1]", "factors along x, y and z about the middle of its box; 0 flattens"),
-       number("crumple", Unit::length, not_negative, "0",
-              "random displacement of every vertex, at most, along each axis"),
-       integer("seed", not_negative, "1", "of what is random")}};
+      selection_keys() +
+          std::vector<Key>{section(motion_section(), "", "left out: at rest"),
+                           with_words(text("follow",
+                                           "`body`: of a garment, goes where the body takes it as skinned, in "
+                                           "place of `motion`"),
+                                      {"body"})}};
   return table;
 }
 
@@ -128,11 +119,13 @@ std::vector<Key> selection_keys() {
 const Section& cloth_section() {
   static const Section table{
       "cloth",
-      "Exactly one of rectangle, disc, tube, ribbon, tshirt and mesh says where it comes from.",
+      "Exactly one of rectangle, disc, tube, ribbon, tshirt, mesh and garment says where it comes from.",
       "",
-      {"rectangle", "disc", "tube", "ribbon", "tshirt", "mesh"},
+      {"rectangle", "disc", "tube", "ribbon", "tshirt", "mesh", "garment"},
       std::vector<Key>{text("name", "left out: cloth0, cloth1, ...")} + sheet_keys() +
-          std::vector<Key>{section(mesh_section(), "", "a file")} + placement_keys() +
+          std::vector<Key>{section(mesh_section(), "", "a file"),
+                           section(garment_section(), "", "what a body of the scene wears")} +
+          placement_keys() +
           std::vector<Key>{section(copies_section(), "", ""), section(start_section(), "{}", ""),
                            vector("velocity", Unit::speed, "[0, 0, 0]", "at the start"),
                            section(material_section(), "{}", ""), section(rest_section(), "{}", ""),

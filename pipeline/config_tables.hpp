@@ -119,6 +119,8 @@ const Section& mesh_section();
 const Section& cloth_section();
 std::vector<Key> sheet_keys();      // rectangle, disc, tube, ribbon, tshirt
 std::vector<Key> selection_keys();  // vertices, box, group
+const Section& garment_section();
+const Section& start_section();
 const Section& outcome_section();
 const Section& obstacle_section();
 std::vector<Key> material_values();  // what may be said of a material by value

@@ -15,6 +15,7 @@ struct Garment {
   BodyPose made_in;     // the pose in which its shape is its rest shape; no rows: the zero pose
   std::vector<std::pair<std::string, std::vector<int>>> groups;  // by name, vertices ascending
   std::vector<int> pins;                                         // vertices that stay with the body, ascending
+  std::string made_for = {};                                     // the body's name; empty: not known
 };
 
 // How a garment vertex takes weights and directions from the body: from the nearest vertex, as tight garments do, or
@@ -31,5 +32,9 @@ Points worn(const Garment&, const BodyModel&, const Eigen::VectorXd& shape, cons
 
 // Its rest shape on a body of that shape: as made, resized by the shape directions.
 Points rest_shape(const Garment&, const BodyModel&, const Eigen::VectorXd& shape);
+
+// Throws Error, naming `file` and the field, unless the sizes fit, indices are in range and ascend, all numbers are
+// finite and weights sum to 1. For readers and makers of garments.
+void check_garment(const Garment&, const std::string& file);
 
 }  // namespace selvedge

@@ -17,14 +17,14 @@ namespace {
 struct PinnedVertex {
   int vertex;  // of the scene
   const PinPart* by = nullptr;
+  int place = 0;  // among the part's vertices
 };
 
 // The world over time, kept by Setup::drive_at.
 struct World {
-  struct PinGroup {  // pins that move together
-    std::vector<int> rows;
-    Points start;
-    Motion motion;
+  struct PinGroup {                 // pins that move together
+    std::vector<int> rows, places;  // of them all; among what `at` gives
+    std::function<Points(double time)> at;
   };
   int pin_count = 0;
   std::vector<PinGroup> pins;
@@ -39,7 +39,7 @@ Drive drive(const World& world, double time) {
   Drive d;
   d.pins.resize(world.pin_count, 3);
   for (const World::PinGroup& group : world.pins)
-    d.pins(group.rows, Eigen::all) = moved(group.motion, group.start, time);
+    d.pins(group.rows, Eigen::all) = group.at(time)(group.places, Eigen::all);
   for (const auto& at : world.obstacles) d.obstacles.push_back(at(time));
   if (!world.wind.empty()) d.wind = keyed_vector(world.wind_times, world.wind, world.wind_interpolation, time);
   d.acceleration = world.gravity;
@@ -62,7 +62,7 @@ void join(const std::vector<ClothPart>& parts, Scene& scene, State& initial) {
     scene.cloths.push_back({part.name, part.material, static_cast<int>(v), static_cast<int>(nv), static_cast<int>(t),
                             static_cast<int>(nt)});
     initial.x.middleRows(v, nv) = part.mesh.x;
-    initial.v.middleRows(v, nv).rowwise() = part.velocity.transpose();
+    initial.v.middleRows(v, nv) = part.velocity;
     scene.rest.middleRows(v, nv) = part.rest;
     all.middleRows(t, nt) = part.mesh.triangles.array() + static_cast<int>(v);
     scene.rest_triangle.insert(scene.rest_triangle.end(), part.rest_triangle.begin(), part.rest_triangle.end());
@@ -74,22 +74,26 @@ void join(const std::vector<ClothPart>& parts, Scene& scene, State& initial) {
 }
 
 // Vertices without mass cannot move freely: they stay where they are.
-PinPart massless(const Scene& scene, std::vector<std::string>& warnings) {
+PinPart massless(const Scene& scene, const Points& x, std::vector<std::string>& warnings) {
   const Eigen::VectorXd masses = lumped_masses(scene);
   PinPart held;
   for (int v = 0; v < masses.size(); ++v)
     if (!(masses[v] > 0)) held.vertices.push_back(v);
   if (!held.vertices.empty())
     warnings.push_back(fmt::format("{} vertices without mass are held in place", held.vertices.size()));
+  held.at = [place = Points(x(held.vertices, Eigen::all))](double) { return place; };
   return held;
 }
 
-void add_pins(const std::vector<ClothPart>& parts, const PinPart& held, Scene& scene, const Points& x, World& world) {
+void add_pins(const std::vector<ClothPart>& parts, const PinPart& held, Scene& scene, World& world) {
   std::vector<PinnedVertex> all;
+  const auto add = [&all](const PinPart& pin, int first) {
+    for (std::size_t k = 0; k < pin.vertices.size(); ++k)
+      all.push_back({first + pin.vertices[k], &pin, static_cast<int>(k)});
+  };
   for (std::size_t c = 0; c < parts.size(); ++c)
-    for (const PinPart& pin : parts[c].pins)
-      for (const int v : pin.vertices) all.push_back({v + scene.cloths[c].first_vertex, &pin});
-  for (const int v : held.vertices) all.push_back({v, &held});
+    for (const PinPart& pin : parts[c].pins) add(pin, scene.cloths[c].first_vertex);
+  add(held, 0);
   // The first pin that names a vertex keeps it.
   std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.vertex < b.vertex; });
   all.erase(std::unique(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.vertex == b.vertex; }),
@@ -99,15 +103,11 @@ void add_pins(const std::vector<ClothPart>& parts, const PinPart& held, Scene& s
   std::vector<const PinPart*> owners;
   for (std::size_t r = 0; r < all.size(); ++r) {
     const auto owner = std::find(owners.begin(), owners.end(), all[r].by);
-    if (owner == owners.end()) world.pins.emplace_back().motion = all[r].by->motion;
+    if (owner == owners.end()) world.pins.emplace_back().at = all[r].by->at;
     World::PinGroup& group = world.pins[static_cast<std::size_t>(owner - owners.begin())];
     if (owner == owners.end()) owners.push_back(all[r].by);
     group.rows.push_back(static_cast<int>(r));
-  }
-  for (World::PinGroup& group : world.pins) {
-    group.start.resize(static_cast<Eigen::Index>(group.rows.size()), 3);
-    for (std::size_t r = 0; r < group.rows.size(); ++r)
-      group.start.row(static_cast<Eigen::Index>(r)) = x.row(scene.pins[static_cast<std::size_t>(group.rows[r])]);
+    group.places.push_back(all[r].place);
   }
 }
 
@@ -193,13 +193,13 @@ void take_name(const Config& item, const std::string& name, std::vector<std::str
   taken.push_back(name);
 }
 
-std::vector<ClothPart> read_all_cloths(Config& list, const std::filesystem::path& folder,
+std::vector<ClothPart> read_all_cloths(Config& list, const std::filesystem::path& folder, const Performances& bodies,
                                        std::vector<std::string>& warnings) {
   if (list.items.empty()) list.fail("is empty", "give at least one cloth");
   std::vector<ClothPart> parts;
   std::vector<std::string> names;
   for (std::size_t c = 0; c < list.items.size(); ++c) {
-    for (ClothPart& part : read_cloths(list.items[c], fmt::format("cloth{}", c), folder, warnings)) {
+    for (ClothPart& part : read_cloths(list.items[c], fmt::format("cloth{}", c), folder, bodies, warnings)) {
       take_name(list.items[c], part.name, names);
       parts.push_back(std::move(part));
     }
@@ -209,10 +209,11 @@ std::vector<ClothPart> read_all_cloths(Config& list, const std::filesystem::path
   return parts;
 }
 
-void read_obstacles(const Config& list, const std::filesystem::path& folder, Setup& setup, World& world) {
+void read_obstacles(const Config& list, const std::filesystem::path& folder, const Performances& bodies, Setup& setup,
+                    World& world) {
   std::vector<std::string> names;
   for (std::size_t o = 0; o < list.items.size(); ++o) {
-    ObstaclePart part = read_obstacle(list.items[o], fmt::format("obstacle{}", o), folder, setup.warnings);
+    ObstaclePart part = bodies[o] ? obstacle_of(bodies[o]) : read_obstacle(list.items[o], o, folder, setup.warnings);
     take_name(list.items[o], part.obstacle.name, names);
     setup.scene.obstacles.push_back(std::move(part.obstacle));
     world.obstacles.push_back(std::move(part.at));
@@ -244,14 +245,15 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
   const std::filesystem::path folder = file.parent_path();
   Setup setup;
   const auto world = std::make_shared<World>();
-  const std::vector<ClothPart> cloths = read_all_cloths(config["cloths"], folder, setup.warnings);
+  const Performances bodies = read_performances(config["obstacles"], folder);
+  const std::vector<ClothPart> cloths = read_all_cloths(config["cloths"], folder, bodies, setup.warnings);
   setup.file = file;
   setup.scene.contact = read_contact(config["contact"]);
   setup.run = read_run(config);
   world->gravity = config["gravity"].vector();
   join(cloths, setup.scene, setup.initial);
-  add_pins(cloths, massless(setup.scene, setup.warnings), setup.scene, setup.initial.x, *world);
-  read_obstacles(config["obstacles"], folder, setup, *world);
+  add_pins(cloths, massless(setup.scene, setup.initial.x, setup.warnings), setup.scene, *world);
+  read_obstacles(config["obstacles"], folder, bodies, setup, *world);
   read_wind(config["wind"], setup.scene.wind, *world);
   warn_of_thickness(setup.scene, setup.warnings);
   setup.drive_at = [world](double time) { return drive(*world, time); };

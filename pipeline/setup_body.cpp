@@ -1,5 +1,6 @@
+#include "pipeline/setup_body.hpp"
+
 #include <algorithm>
-#include <memory>
 
 #include "pipeline/body_hdf5.hpp"
 #include "pipeline/body_smpl.hpp"
@@ -8,20 +9,12 @@
 #include "pipeline/clip_procedural.hpp"
 #include "pipeline/mannequin.hpp"
 #include "pipeline/setup_motion.hpp"
-#include "pipeline/setup_obstacle.hpp"
 #include "pipeline/setup_paths.hpp"
 
 namespace selvedge {
 namespace {
 
 constexpr double amass_fps = 30;
-
-// A body, its shape and what it does.
-struct Performance {
-  BodyModel body;
-  Eigen::VectorXd shape;
-  Clip clip;  // without poses: it stands in the zero pose
-};
 
 BodyModel read_model(const Config& model, const std::filesystem::path& folder) {
   if (model.text() == "mannequin") return kept_mannequin(cache_folder());
@@ -65,9 +58,17 @@ Clip read_clip(const Config& clip, const Performance& who, const std::filesystem
   return make_clip(clip.text(), smpl_joints(who.body, joints, clip), floor);
 }
 
+// Scaled, turned and moved as the body is.
+Points in_scene(const Performance& who, const Points& x, double time) {
+  return moved(who.motion, placed(who.section, x), time);
+}
+
+}  // namespace
+
 Performance read_performance(const Config& section, const std::filesystem::path& folder) {
   const Config &clip = section["clip"], &shape = section["shape"];
-  Performance who{read_model(section["model"], folder), {}, {}};
+  Performance who;
+  who.body = read_model(section["model"], folder);
   const bool of_smpl = std::filesystem::path(section["model"].text()).extension() == ".npz";
   if (shape.given)
     who.shape =
@@ -84,21 +85,41 @@ Performance read_performance(const Config& section, const std::filesystem::path&
   return who;
 }
 
-}  // namespace
+Performances read_performances(const Config& obstacles, const std::filesystem::path& folder) {
+  Performances all;
+  for (const Config& section : obstacles.items) {
+    all.emplace_back();
+    if (!section["body"].given) continue;
+    const auto who = std::make_shared<Performance>(read_performance(section["body"], folder));
+    who->name = obstacle_name(section, all.size() - 1);
+    who->section = section;
+    who->motion = read_motion(section["motion"], body_at(*who, 0));
+    all.back() = who;
+  }
+  return all;
+}
 
-ObstaclePart read_performer(const Config& section, const std::filesystem::path& folder) {
-  const auto who = std::make_shared<const Performance>(read_performance(section["body"], folder));
-  const auto skin_at = [who, section](double time) {
-    BodyPose pose{Points::Zero(static_cast<Eigen::Index>(who->body.joints.size()), 3)};
-    if (!who->clip.poses.empty()) pose = matched(pose_at(who->clip, time), who->clip.joints, who->body.joints);
-    return placed(section, posed(who->body, who->shape, pose));
-  };
-  const Points start = skin_at(0);
-  const Motion motion = read_motion(section["motion"], start);
+BodyPose pose_at(const Performance& who, double time) {
+  if (who.clip.poses.empty()) return {Points::Zero(static_cast<Eigen::Index>(who.body.joints.size()), 3)};
+  return matched(pose_at(who.clip, time), who.clip.joints, who.body.joints);
+}
+
+Points body_at(const Performance& who, double time) {
+  return in_scene(who, posed(who.body, who.shape, pose_at(who, time)), time);
+}
+
+Points worn_at(const Performance& who, const Garment& garment, double time) {
+  return in_scene(who, worn(garment, who.body, who.shape, pose_at(who, time)), time);
+}
+
+bool is_still(const Performance& who) { return who.clip.poses.size() < 2 && is_still(who.motion); }
+
+ObstaclePart obstacle_of(const std::shared_ptr<const Performance>& who) {
   ObstaclePart part;
-  part.obstacle.surface = make_surface(static_cast<int>(start.rows()), who->body.skin.triangles);
-  part.obstacle.moving = who->clip.poses.size() > 1 || !is_still(motion);
-  part.at = [skin_at, motion](double time) { return moved(motion, skin_at(time), time); };
+  part.obstacle.name = who->name;
+  part.obstacle.surface = make_surface(static_cast<int>(who->body.skin.rest.rows()), who->body.skin.triangles);
+  part.obstacle.moving = !is_still(*who);
+  part.at = [who](double time) { return body_at(*who, time); };
   return part;
 }
 

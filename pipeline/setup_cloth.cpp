@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/config.hpp"
 #include "pipeline/materials.hpp"
 #include "pipeline/setup_motion.hpp"
 #include "pipeline/setup_paths.hpp"
@@ -100,11 +99,38 @@ std::vector<int> listed(const Config& list, Eigen::Index count) {
   return found;
 }
 
-PinPart read_pin(const Config& section, const Mesh& mesh) {
-  PinPart pin;
-  pin.vertices = read_selection(section, mesh);
-  pin.motion = read_motion(section["motion"], mesh.x(pin.vertices, Eigen::all));
-  return pin;
+// Pins that stay with the body.
+PinPart following(const std::shared_ptr<const Wearing>& worn, const std::vector<int>& vertices) {
+  return {vertices, [worn, vertices](double time) -> Points { return worn_at(*worn, time)(vertices, Eigen::all); }};
+}
+
+PinPart read_pin(const Config& section, const ClothPart& part) {
+  const std::vector<int> vertices = read_selection(section, part.mesh);
+  if (const Config& follow = section["follow"]; follow.given) {
+    if (!part.worn)
+      follow.fail("is given for a cloth that no body wears", "make the cloth a `garment`, or leave it out");
+    if (section["motion"].given) section["motion"].fail("is given beside `follow`", "give one of them");
+    return following(part.worn, vertices);
+  }
+  const Points start = part.mesh.x(vertices, Eigen::all);
+  const Motion motion = read_motion(section["motion"], start);
+  return {vertices, [start, motion](double time) { return moved(motion, start, time); }};
+}
+
+// A sheet, placed, or a garment, worn: mesh, rest shape and velocity.
+void read_shape(const Config& section, const std::filesystem::path& folder, const Performances& bodies,
+                std::vector<std::string>& warnings, ClothPart& part) {
+  const bool worn = section["garment"].given;
+  if (worn) part.worn = read_wearing(section, folder, bodies, warnings);
+  part.mesh = worn ? rest_mesh(*part.worn) : read_sheet(section, folder);
+  warnings.insert(warnings.end(), part.mesh.warnings.begin(), part.mesh.warnings.end());
+  const Config& placement = worn ? part.worn->by->section : section;
+  read_rest(section["rest"], part.mesh, !section["mesh"].given, placement["scale"].number(), folder, part);
+  part.mesh.x = worn ? worn_at(*part.worn, 0) : placed(section, part.mesh.x);
+  if (worn && section["start"]["moving"].flag())
+    part.velocity = worn_velocity(*part.worn, 0);
+  else
+    part.velocity = section["velocity"].vector().transpose().replicate(part.mesh.x.rows(), 1);
 }
 
 // Turned about the middle of its box and moved, `times` times over.
@@ -152,22 +178,21 @@ std::vector<RestTriangle> flattened(const Points& x, const Triangles& triangles,
 }
 
 std::vector<ClothPart> read_cloths(Config& section, const std::string& default_name,
-                                   const std::filesystem::path& folder, std::vector<std::string>& warnings) {
+                                   const std::filesystem::path& folder, const Performances& bodies,
+                                   std::vector<std::string>& warnings) {
   ClothPart part;
   part.name = section["name"].given ? section["name"].text() : default_name;
   part.material = read_material(section["material"], folder);
-  part.mesh = read_sheet(section, folder);
-  warnings.insert(warnings.end(), part.mesh.warnings.begin(), part.mesh.warnings.end());
-  read_rest(section["rest"], part.mesh, !section["mesh"].given, section["scale"].number(), folder, part);
-  part.velocity = section["velocity"].vector();
-  const Points first = placed(section, part.mesh.x);
+  read_shape(section, folder, bodies, warnings, part);
   const Config& copies = section["copies"];
   std::vector<ClothPart> parts(copies.given ? static_cast<std::size_t>(copies["count"].integer()) : 1, part);
   for (std::size_t k = 0; k < parts.size(); ++k) {
     if (copies.given) parts[k].name = fmt::format("{}_{}", part.name, k);
-    parts[k].mesh.x = copied(copies, first, static_cast<int>(k));
+    parts[k].mesh.x = copied(copies, part.mesh.x, static_cast<int>(k));
     apply_start(section["start"], parts[k], warnings);
-    for (const Config& pin : section["pins"].items) parts[k].pins.push_back(read_pin(pin, parts[k].mesh));
+    for (const Config& pin : section["pins"].items) parts[k].pins.push_back(read_pin(pin, parts[k]));
+    if (part.worn && !part.worn->garment.pins.empty())
+      parts[k].pins.push_back(following(part.worn, part.worn->garment.pins));
   }
   return parts;
 }

@@ -1,16 +1,13 @@
 #pragma once
 
-#include "pipeline/mesh_io.hpp"
-#include "pipeline/motion.hpp"
 #include "pipeline/setup.hpp"
+#include "pipeline/setup_garment.hpp"
 
 namespace selvedge {
 
-struct Config;
-
 struct PinPart {
-  std::vector<int> vertices;  // of the cloth, ascending
-  Motion motion;
+  std::vector<int> vertices;              // of the cloth, ascending
+  std::function<Points(double time)> at;  // where they are, a row a vertex
 };
 
 // One cloth of a scene file, numbered by itself.
@@ -21,14 +18,16 @@ struct ClothPart {
   Points rest;
   std::vector<RestTriangle> rest_triangle;
   bool rest_is_flat = true;
-  Vec3 velocity = Vec3::Zero();
+  Points velocity;  // at the start
   std::vector<PinPart> pins;
+  std::shared_ptr<const Wearing> worn;  // null for what is no garment
 };
 
 // The cloth of a section, or its copies. `folder` is the scene file's; warnings are added. The material's values are
 // written back into the section.
 std::vector<ClothPart> read_cloths(Config& section, const std::string& default_name,
-                                   const std::filesystem::path& folder, std::vector<std::string>& warnings);
+                                   const std::filesystem::path& folder, const Performances&,
+                                   std::vector<std::string>& warnings);
 
 // The vertices that `vertices`, `box` or `group` of a section name, ascending; all where it names none.
 std::vector<int> read_selection(const Config& section, const Mesh&);

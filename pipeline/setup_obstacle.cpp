@@ -78,25 +78,22 @@ Sequence read_body(const Config& section, const std::filesystem::path& folder, s
   return one_frame(std::move(shape.x), std::move(shape.triangles));
 }
 
-// What keeps its shape, or has one for every frame.
-ObstaclePart read_meshes(const Config& section, const std::filesystem::path& folder,
-                         std::vector<std::string>& warnings) {
+}  // namespace
+
+std::string obstacle_name(const Config& section, std::size_t index) {
+  return section["name"].given ? section["name"].text() : fmt::format("obstacle{}", index);
+}
+
+ObstaclePart read_obstacle(const Config& section, std::size_t index, const std::filesystem::path& folder,
+                           std::vector<std::string>& warnings) {
   const auto body = std::make_shared<Sequence>(read_body(section, folder, warnings));
   for (Points& frame : body->frames) frame = placed(section, frame);
   const Motion motion = read_motion(section["motion"], body->frames[0]);
   ObstaclePart part;
+  part.obstacle.name = obstacle_name(section, index);
   part.obstacle.surface = make_surface(static_cast<int>(body->frames[0].rows()), body->triangles);
   part.obstacle.moving = body->frames.size() > 1 || !is_still(motion);
   part.at = [body, motion](double time) { return moved(motion, sequence_at(*body, time), time); };
-  return part;
-}
-
-}  // namespace
-
-ObstaclePart read_obstacle(const Config& section, const std::string& default_name, const std::filesystem::path& folder,
-                           std::vector<std::string>& warnings) {
-  ObstaclePart part = section["body"].given ? read_performer(section, folder) : read_meshes(section, folder, warnings);
-  part.obstacle.name = section["name"].given ? section["name"].text() : default_name;
   return part;
 }
 

@@ -13,12 +13,12 @@ struct ObstaclePart {
   std::function<Points(double time)> at;  // positions wanted at a time [s]
 };
 
-// `folder` is the scene file's; warnings are added.
-ObstaclePart read_obstacle(const Config& section, const std::string& default_name, const std::filesystem::path& folder,
-                           std::vector<std::string>& warnings);
+// The name given, or that of its place in the list.
+std::string obstacle_name(const Config& section, std::size_t index);
 
-// An obstacle with a `body` section: a skinned body in the poses of its clip. Without a name.
-ObstaclePart read_performer(const Config& section, const std::filesystem::path& folder);
+// An obstacle that is no skinned body (setup_body.hpp). `folder` is the scene file's; warnings are added.
+ObstaclePart read_obstacle(const Config& section, std::size_t index, const std::filesystem::path& folder,
+                           std::vector<std::string>& warnings);
 
 // Vertex positions of a body that changes shape: frames at a steady rate, the same faces in all.
 struct Sequence {

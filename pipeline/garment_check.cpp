@@ -1,0 +1,43 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "collision/error.hpp"
+#include "pipeline/garment.hpp"
+
+namespace selvedge {
+namespace {
+
+void check_vertices(const std::vector<int>& vertices, Eigen::Index count, const std::string& where) {
+  const auto repeated = std::adjacent_find(vertices.begin(), vertices.end(), std::greater_equal());
+  if (repeated != vertices.end())
+    throw Error(fmt::format("has vertex {} before {}", repeated[0], repeated[1]), where, "give each once, ascending");
+  if (!vertices.empty() && (vertices.front() < 0 || vertices.back() >= count))
+    throw Error(
+        fmt::format("names vertex {}, there are {}", vertices.front() < 0 ? vertices.front() : vertices.back(), count),
+        where, "vertices count from 0");
+}
+
+}  // namespace
+
+void check_garment(const Garment& garment, const std::string& file) {
+  const Eigen::Index vertices = garment.skin.rest.rows(), joints = garment.skin.weights.cols();
+  check_skin(garment.skin, joints, file);
+  const BodyPose& made = garment.made_in;
+  if (made.rotations.rows() != 0 && made.rotations.rows() != joints)
+    throw Error(fmt::format("has {} joints, the weights have {}", made.rotations.rows(), joints), file + ": made_in",
+                "give a rotation for every joint of the body, or leave it out");
+  if (!made.rotations.allFinite() || !made.translation.allFinite())
+    throw Error("is not finite", file + ": made_in", "repair the file where it was made");
+  std::set<std::string> names;
+  for (const auto& [name, members] : garment.groups) {
+    if (name.empty() || !names.insert(name).second)
+      throw Error(fmt::format("has the name `{}` twice or an empty one", name), file + ": groups",
+                  "give every group its own name");
+    check_vertices(members, vertices, file + ": groups `" + name + "`");
+  }
+  check_vertices(garment.pins, vertices, file + ": pins");
+}
+
+}  // namespace selvedge

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "pipeline/body.hpp"
+#include "pipeline/hdf5_handles.hpp"
+
+namespace selvedge::h5 {
+
+// What a form of ours is called in its files, and the page that describes it.
+struct FileForm {
+  std::string format;  // text of the field `format`
+  std::string noun;    // body, garment
+  std::string page;    // docs/bodies.md
+};
+
+// Fields of a file in one of our forms. What is missing, or of another shape, throws Error that names file, field and
+// page.
+class Fields {
+ public:
+  Fields(const std::filesystem::path&, FileForm);
+
+  [[noreturn]] void fail(const std::string& field, const std::string& what) const;
+  bool has(const std::string& field) const { return file_.has(field); }
+  std::string text(const std::string& field) const { return file_.read_text(field); }
+  std::vector<std::string> texts(const std::string& field) const;
+  std::vector<int> integers(const std::string& field) const;
+  Points points(const std::string& field) const;
+  Triangles triangles(const std::string& field) const;
+  SkinWeights sparse(const std::string& field, Eigen::Index rows, Eigen::Index cols) const;
+  SkinnedSurface skin(Eigen::Index joints) const;
+
+ private:
+  std::vector<Eigen::Index> shape_of(const std::string& field, std::size_t rank) const;
+  template <class T>
+  std::vector<T> list(const std::string& field, hid_t type) const;
+  template <class Matrix>
+  Matrix rows_of_three(const std::string& field, hid_t type) const;
+  Eigen::MatrixXd directions(const std::string& field, Eigen::Index vertices) const;
+  FileForm form_;
+  File file_;
+};
+
+void write_integers(const File&, const std::string& name, const std::vector<int>&);
+void write_points(const File&, const std::string& name, const Points&);
+void write_sparse(const File&, const std::string& name, const SkinWeights&);
+void write_skin(const File&, const SkinnedSurface&);
+
+// A file of that form, written beside and renamed: `fields` writes what comes after `format`.
+void write_form(const std::filesystem::path&, const FileForm&, const std::function<void(const File&)>& fields);
+
+}  // namespace selvedge::h5

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+
+#include "pipeline/clip.hpp"
+#include "pipeline/config.hpp"
+#include "pipeline/garment.hpp"
+#include "pipeline/motion.hpp"
+#include "pipeline/setup_obstacle.hpp"
+
+namespace selvedge {
+
+// A body of a scene, what it does and where: the obstacle and the garments on it share it.
+struct Performance {
+  std::string name;  // the obstacle's
+  BodyModel body;
+  Eigen::VectorXd shape;
+  Clip clip;       // without poses: it stands in the zero pose
+  Config section;  // the obstacle's: how it is placed
+  Motion motion;   // of what is placed
+};
+
+// The bodies of a scene's obstacles, one an obstacle, null for what is none. `folder` is the scene file's.
+using Performances = std::vector<std::shared_ptr<const Performance>>;
+Performances read_performances(const Config& obstacles, const std::filesystem::path& folder);
+
+// A `body` section by itself: model, shape and clip.
+Performance read_performance(const Config& body, const std::filesystem::path& folder);
+
+BodyPose pose_at(const Performance&, double time);
+
+// The body, and a garment on it, where the scene has them at a time [s].
+Points body_at(const Performance&, double time);
+Points worn_at(const Performance&, const Garment&, double time);
+
+bool is_still(const Performance&);
+
+// The obstacle that a body is.
+ObstaclePart obstacle_of(const std::shared_ptr<const Performance>&);
+
+}  // namespace selvedge

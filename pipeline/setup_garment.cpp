@@ -1,0 +1,86 @@
+#include "pipeline/setup_garment.hpp"
+
+#include <fmt/format.h>
+
+#include "pipeline/garment_hdf5.hpp"
+#include "pipeline/setup_paths.hpp"
+
+namespace selvedge {
+namespace {
+
+// A garment's place comes from its body, and copies could not wear it.
+void check_placed_by_body(const Config& cloth) {
+  const auto refuse = [&](const char* key, bool differs) {
+    if (differs)
+      cloth[key].fail("is given for a garment", "leave it out: a garment is where its body is; place the body instead");
+  };
+  refuse("scale", cloth["scale"].number() != 1);
+  for (const char* key : {"rotate", "translate", "velocity"}) refuse(key, cloth[key].vector() != Vec3(0, 0, 0));
+  refuse("copies", cloth["copies"].given);
+}
+
+std::shared_ptr<const Performance> wearer(const Config& garment, const Performances& bodies) {
+  std::vector<std::string> names;
+  std::shared_ptr<const Performance> found;
+  const Config& on = garment["on"];
+  for (const auto& body : bodies) {
+    if (!body) continue;
+    names.push_back(body->name);
+    if (!on.given || body->name == on.text()) found = body;
+  }
+  if (names.empty()) garment.fail("has no body to be worn by", "add an obstacle with a `body`");
+  if (on.given && !found)
+    on.fail("names `" + on.text() + "`, which is no body of the scene",
+            "bodies: " + joined(names) + suggestion(on.text(), names));
+  if (!on.given && names.size() > 1)
+    garment.fail("does not say who wears it", "name one of the bodies " + joined(names) + " with `on`");
+  return found;
+}
+
+void check_fits(const Config& file, const Garment& garment, const Performance& who) {
+  const auto joints = static_cast<Eigen::Index>(who.body.joints.size());
+  const std::string cure = "take the body that the garment was made for, or make it anew with `selvedge dress`";
+  if (garment.skin.weights.cols() != joints)
+    file.fail(fmt::format("is a garment for a body with {} joints, `{}` has {}", garment.skin.weights.cols(), who.name,
+                          joints),
+              cure);
+  if (garment.skin.shape_directions.cols() < who.shape.size())
+    file.fail(fmt::format("is a garment with {} shapes, `{}` is given {}", garment.skin.shape_directions.cols(),
+                          who.name, who.shape.size()),
+              cure);
+}
+
+}  // namespace
+
+std::shared_ptr<const Wearing> read_wearing(const Config& cloth, const std::filesystem::path& folder,
+                                            const Performances& bodies, std::vector<std::string>& warnings) {
+  const Config& section = cloth["garment"];
+  check_placed_by_body(cloth);
+  const auto who = wearer(section, bodies);
+  const Config& file = section["file"];
+  const auto wearing = std::make_shared<Wearing>(Wearing{read_garment(existing_path(file, folder)), who});
+  Garment& garment = wearing->garment;
+  check_fits(file, garment, *who);
+  if (!garment.made_for.empty() && garment.made_for != who->body.name)
+    warnings.push_back(fmt::format("garment `{}` was made for the body `{}`, and `{}` is `{}`", garment.name,
+                                   garment.made_for, who->name, who->body.name));
+  if (!section["pins"].flag()) garment.pins.clear();
+  return wearing;
+}
+
+Mesh rest_mesh(const Wearing& wearing) {
+  Mesh mesh;
+  mesh.x = rest_shape(wearing.garment, wearing.by->body, wearing.by->shape);
+  mesh.triangles = wearing.garment.skin.triangles;
+  mesh.groups = wearing.garment.groups;
+  return mesh;
+}
+
+Points worn_at(const Wearing& wearing, double time) { return worn_at(*wearing.by, wearing.garment, time); }
+
+Points worn_velocity(const Wearing& wearing, double time) {
+  const double fps = wearing.by->clip.fps;
+  return fps * (worn_at(wearing, time + 1 / fps) - worn_at(wearing, time));
+}
+
+}  // namespace selvedge

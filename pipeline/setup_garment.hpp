@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "pipeline/mesh_io.hpp"
+#include "pipeline/setup_body.hpp"
+
+namespace selvedge {
+
+// A garment of a scene and the body that wears it.
+struct Wearing {
+  Garment garment;
+  std::shared_ptr<const Performance> by;
+};
+
+// The garment of a cloth's section; `folder` is the scene file's, warnings are added.
+std::shared_ptr<const Wearing> read_wearing(const Config& cloth, const std::filesystem::path& folder,
+                                            const Performances&, std::vector<std::string>& warnings);
+
+// Its rest shape on the body, with its groups, before the body is placed.
+Mesh rest_mesh(const Wearing&);
+
+// As skinned, where the scene has it at a time [s], and how fast it moves there, by the clip's next frame.
+Points worn_at(const Wearing&, double time);
+Points worn_velocity(const Wearing&, double time);
+
+}  // namespace selvedge

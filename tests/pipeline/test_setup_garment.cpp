@@ -1,0 +1,188 @@
+#include <catch2/catch.hpp>
+
+#include <numeric>
+
+#include "pipeline/clip_procedural.hpp"
+#include "pipeline/garment_hdf5.hpp"
+#include "pipeline/make_stepper.hpp"
+#include "pipeline/setup.hpp"
+#include "pipeline/simulate.hpp"
+#include "tests/pipeline/fake_garment.hpp"
+#include "tests/pipeline/files.hpp"
+
+using namespace selvedge;
+using Catch::Matchers::Contains;
+using fake::Folder;
+
+namespace {
+
+// A band round the trunk that is the mannequin's own surface, all of it pinned.
+fake::Piece write_band(const Folder& folder) {
+  const BodyModel& body = fake::mannequin();
+  fake::Piece piece = fake::trunk(body, -0.05, 0.3, 0);
+  Garment band{"band", attached(piece.x, piece.triangles, body, Fit::tight), {}, {}, {}, body.name};
+  band.pins.resize(piece.from.size());
+  std::iota(band.pins.begin(), band.pins.end(), 0);
+  band.groups = {{"first", {0, 1, 2}}, {"last", {static_cast<int>(piece.from.size()) - 1}}};
+  write_garment(folder.path / "band.h5", band);
+  return piece;
+}
+
+constexpr int around = 40;
+
+Garment write_skirt(const Folder& folder) {
+  const BodyModel& body = fake::mannequin();
+  const fake::Piece piece = fake::skirt(body, -0.35, 0.1, 0.015, around, 14);
+  Garment skirt{"skirt", attached(piece.x, piece.triangles, body, Fit::loose), {}, {}, {}, body.name};
+  skirt.pins.resize(around);
+  std::iota(skirt.pins.begin(), skirt.pins.end(), 0);
+  skirt.groups = {{"waist", skirt.pins}};
+  write_garment(folder.path / "skirt.h5", skirt);
+  return skirt;
+}
+
+Setup read(const Folder& folder, const std::string& cloth, const std::string& body, const std::string& more = "") {
+  return read_setup(fake::write(folder, "scene.yaml",
+                                "cloths:\n  - " + cloth + "\nobstacles:\n  - " + body + "\n" + more +
+                                    "contact: {thickness: 3 mm}\nrun: {fps: 30, frames: 20}\n"));
+}
+
+double farthest(const Points& a, const Points& b) { return (a - b).rowwise().norm().maxCoeff(); }
+
+}  // namespace
+
+TEST_CASE("A garment's pins go where its body goes, in its shape, clip, placement and motion", "[setup_garment]") {
+  const Folder folder("garment_pins");
+  const fake::Piece piece = write_band(folder);
+  for (const std::string body :
+       {"{name: person, body: {clip: walk}}", "{name: person, body: {shape: [1, -1, 0.5], clip: run}}",
+        "{name: person, body: {}}",
+        "{name: person, body: {clip: walk}, scale: 1.2, rotate: [0, 1, 0.2], translate: [1, 2, 3], motion: {keyframes: "
+        "[{time: 0}, {time: 1, translate: [0, 1, 0], rotate: [0, 0, 1]}]}}"}) {
+    INFO(body);
+    const Setup setup = read(folder, "{garment: band.h5}", body);
+    REQUIRE(setup.scene.pins.size() == piece.from.size());
+    for (const double time : {0.0, 0.37, 1.2}) {
+      const Drive drive = setup.drive_at(time);
+      CHECK(farthest(drive.pins, drive.obstacles.at(0)(piece.from, Eigen::all)) < 1e-12);
+    }
+    CHECK(farthest(setup.initial.x, setup.initial.obstacles.at(0)(piece.from, Eigen::all)) < 1e-12);
+    CHECK(setup.initial.v.isZero());  // all are pins
+    CHECK(setup.warnings.empty());
+  }
+}
+
+TEST_CASE("A garment rests as it was made, resized by the body's shape and scale", "[setup_garment]") {
+  const Folder folder("garment_rest");
+  const fake::Piece piece = write_band(folder);
+  const Setup setup = read(folder, "{garment: {file: band.h5, on: person}, rest: {flat: false}}",
+                           "{name: person, scale: 2, body: {shape: [0, 2], clip: squat}}");
+  const Points expected = 2 * shaped(fake::mannequin().skin, Eigen::Vector2d(0, 2))(piece.from, Eigen::all);
+  CHECK(farthest(setup.scene.rest, expected) < 1e-12);
+  CHECK_FALSE(setup.scene.rest_is_flat);
+  double error = 0;
+  for (int t = 0; t < piece.triangles.rows(); ++t) {
+    const RestTriangle& rest = setup.scene.rest_triangle[static_cast<std::size_t>(t)];
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 edge = row(expected, piece.triangles(t, (k + 1) % 3)) - row(expected, piece.triangles(t, k));
+      error = std::max(error, std::abs((rest.col((k + 1) % 3) - rest.col(k)).norm() - edge.norm()));
+    }
+  }
+  CHECK(error < 1e-12);
+  const Setup again = read_setup(fake::write(folder, "again.yaml", setup.config));
+  CHECK(again.initial.x == setup.initial.x);
+}
+
+TEST_CASE("Whose pins follow the body, and how fast a garment starts", "[setup_garment]") {
+  const Folder folder("garment_follow");
+  const fake::Piece piece = write_band(folder);
+  const std::string walking = "{body: {clip: walk}, motion: {keyframes: [{time: 0}, {time: 1, translate: [2, 0, 0]}]}}";
+  const Setup free = read(folder, "{garment: {file: band.h5, pins: false}}", walking);
+  CHECK(free.scene.pins.empty());
+  const double fps = make_clip("walk", joint_positions(fake::mannequin(), {})).fps;
+  const Points motion = fps * (free.drive_at(1 / fps).obstacles[0] - free.drive_at(0).obstacles[0]);
+  CHECK(farthest(free.initial.v, motion(piece.from, Eigen::all)) < 1e-9);
+  CHECK(free.initial.v.col(0).mean() == Approx(2).margin(0.1));
+  const Setup still = read(folder, "{garment: {file: band.h5, pins: false}, start: {moving: false}}", walking);
+  CHECK(still.initial.v.isZero());
+
+  // The scene's own pins come first; the garment's stay for the others.
+  const Setup held = read(folder,
+                          "{garment: band.h5, pins: [{group: first, motion: {keyframes: [{time: 0}, {time: 1, "
+                          "translate: [0, 5, 0]}]}}]}",
+                          walking);
+  const Drive later = held.drive_at(1);
+  CHECK(farthest(later.pins.topRows(3), held.initial.x.topRows(3).rowwise() + Eigen::RowVector3d(0, 5, 0)) < 1e-12);
+  CHECK(farthest(later.pins.bottomRows(3), later.obstacles[0](piece.from, Eigen::all).bottomRows(3)) < 1e-12);
+
+  const Setup some =
+      read(folder, "{garment: {file: band.h5, pins: false}, pins: [{group: last, follow: body}]}", walking);
+  REQUIRE(some.scene.pins.size() == 1);
+  const Drive drive = some.drive_at(0.8);
+  CHECK(farthest(drive.pins, drive.obstacles[0].row(piece.from.back())) < 1e-12);
+}
+
+TEST_CASE("What is wrong with a garment is named by file, line and cure", "[setup_garment]") {
+  const Folder folder("garment_faulty");
+  write_band(folder);
+  const std::string person = "{name: person, body: {}}";
+  const auto complaint = [&](const std::string& cloth, const std::string& bodies) {
+    try {
+      read(folder, cloth, bodies);
+    } catch (const std::exception& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK_THAT(complaint("{garment: {file: band.h5, on: persn}}", person),
+             Contains("scene.yaml:2") && Contains("no body") && Contains("did you mean `person`"));
+  CHECK_THAT(complaint("{garment: band.h5}", "{sphere: {}}"), Contains("no body to be worn by"));
+  CHECK_THAT(complaint("{garment: band.h5}", person + "\n  - {name: other, body: {}}"),
+             Contains("who wears it") && Contains("person, other"));
+  CHECK_THAT(complaint("{garment: {on: person}}", person), Contains("file"));
+  CHECK_THAT(complaint("{garment: shirt.h5}", person), Contains("missing file"));
+  for (const std::string key :
+       {"translate: [0, 1, 0]", "rotate: [0, 1, 0]", "scale: 2", "velocity: [1, 0, 0]", "copies: {count: 2}"})
+    CHECK_THAT(complaint("{garment: band.h5, " + key + "}", person), Contains("where its body is"));
+  CHECK_THAT(complaint("{rectangle: {resolution: 4}, pins: [{group: left, follow: body}]}", person),
+             Contains("no body wears"));
+  CHECK_THAT(
+      complaint("{garment: band.h5, pins: [{group: first, follow: body, motion: {keyframes: [{time: 0}]}}]}", person),
+      Contains("beside `follow`"));
+  CHECK_THAT(complaint("{garment: band.h5, rest: uv}", person), Contains("texture coordinates"));
+
+  Garment other = read_garment(folder.path / "band.h5");
+  other.skin.shape_directions.conservativeResize(Eigen::NoChange, 1);
+  other.made_for = "SMPL_NEUTRAL";
+  write_garment(folder.path / "other.h5", other);
+  CHECK_THAT(complaint("{garment: other.h5}", "{body: {shape: [1, 1]}}"), Contains("1 shapes"));
+  const Setup setup = read(folder, "{garment: other.h5}", "{name: person, body: {shape: [1]}}");
+  REQUIRE(setup.warnings.size() == 1);
+  CHECK_THAT(setup.warnings[0], Contains("SMPL_NEUTRAL") && Contains("`person` is `mannequin 1`"));
+  SkinWeights few(other.skin.rest.rows(), 2);
+  for (int v = 0; v < few.rows(); ++v) few.insert(v, 1) = 1;
+  other.skin.weights = few;
+  write_garment(folder.path / "few.h5", other);
+  CHECK_THAT(complaint("{garment: few.h5}", person), Contains("2 joints") && Contains("has 24"));
+}
+
+TEST_CASE("A skirt on a walking mannequin stays clean and its waist stays on the body", "[setup_garment]") {
+  const Folder folder("garment_walk");
+  const Garment skirt = write_skirt(folder);
+  const Setup setup = read(folder, "{garment: skirt.h5, material: {stiffness_damping: 2 ms}}", "{body: {clip: walk}}");
+  const std::unique_ptr<Stepper> stepper = make_stepper(setup);
+  State state = setup.initial;
+  int pairs = 0, inside = 0, passed = 0;
+  simulate(*stepper, setup.drive_at, 1 / setup.run.fps, setup.run.frames, state, [&](const FrameEvent& event) {
+    REQUIRE(event.report.audit);
+    INFO(event.state.frame);
+    CHECK(farthest(event.state.x.topRows(around), event.drive.pins) < 1e-12);
+    CHECK((event.report.audit->intersecting_pairs() == 0 || event.state.frame < 5));
+    pairs = event.report.audit->intersecting_pairs();
+    inside = event.report.audit->inside_vertices;
+    passed += event.report.collision.passed_through;
+    return true;
+  });
+  CHECK(state.frame == 20);
+  CHECK(pairs + inside + passed == 0);
+}
