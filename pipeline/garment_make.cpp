@@ -144,6 +144,7 @@ Garment make_garment(const std::string& name, const BodyModel& mannequin, const 
   Shape shape = mirrored(half_of(cut, field, options.edge)).shape;
   Garment garment;
   garment.name = name;
+  garment.made_for = mannequin.name;
   add_opening_groups(cut, shape, garment.groups);
   add_place_groups(cut, shape, options.edge, garment.groups);
   add_trimmings(cut, field, options.edge, shape, garment.groups);

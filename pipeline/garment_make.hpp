@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,6 +21,14 @@ struct GarmentOptions {
 // that are not from 5 mm to 5 cm.
 Garment make_garment(const std::string& name, const BodyModel& mannequin, const GarmentOptions& = {},
                      std::span<const std::string> under = {});
+
+// To be raised with every change of what make_garment makes, so that no file of an older one is used.
+constexpr int garment_recipe = 1;
+
+// The same from a file in the folder, which is made and written where there is none or none that can be read. Throws
+// Error as well if it cannot be written.
+Garment kept_garment(const std::filesystem::path& folder, const std::string& name, const BodyModel& mannequin,
+                     const GarmentOptions& = {}, std::span<const std::string> under = {});
 
 std::vector<std::string> garment_names();
 

@@ -86,12 +86,14 @@ Wardrobe read_wardrobe(const std::filesystem::path& path) {
   return wardrobe;
 }
 
-std::vector<Garment> make_outfit(const Outfit& outfit, const BodyModel& mannequin, double edge) {
+std::vector<Garment> kept_outfit(const std::filesystem::path& folder, const Outfit& outfit, const BodyModel& mannequin,
+                                 double edge) {
   std::vector<Garment> garments;
   GarmentOptions options;
   options.edge = edge;
   for (std::size_t k = 0; k < outfit.garments.size(); ++k)
-    garments.push_back(make_garment(outfit.garments[k], mannequin, options, std::span(outfit.garments).first(k)));
+    garments.push_back(
+        kept_garment(folder, outfit.garments[k], mannequin, options, std::span(outfit.garments).first(k)));
   return garments;
 }
 

@@ -27,7 +27,8 @@ struct Wardrobe {
 // without a split, and outfits that have garments of the other split.
 Wardrobe read_wardrobe(const std::filesystem::path&);
 
-// The garments of an outfit at an edge length, each made over those before it.
-std::vector<Garment> make_outfit(const Outfit&, const BodyModel& mannequin, double edge);
+// The garments of an outfit at an edge length, each over those before it, kept in the folder as kept_garment does.
+std::vector<Garment> kept_outfit(const std::filesystem::path& folder, const Outfit&, const BodyModel& mannequin,
+                                 double edge);
 
 }  // namespace selvedge

@@ -95,11 +95,14 @@ TEST_CASE("Garments by code are manifold, clean on any shape, and well shaped", 
   struct Expected {
     int loops, components;
   };
-  const std::map<std::string, Expected> expected{
-      {"tshirt", {4, 1}},        {"long_sleeved_shirt", {4, 1}}, {"tank_top", {4, 1}},     {"trousers", {3, 1}},
-      {"wide_trousers", {3, 1}}, {"shorts", {3, 1}},             {"skirt_short", {2, 1}},  {"skirt_long", {2, 1}},
-      {"skirt_flared", {2, 1}},  {"dress_tight", {4, 1}},        {"dress_flowing", {4, 1}}, {"poncho", {2, 1}},
-      {"open_shirt", {4, 2}},    {"vest", {5, 3}},               {"jacket", {5, 3}}};
+  const std::map<std::string, Expected> expected{{"tshirt", {4, 1}},        {"long_sleeved_shirt", {4, 1}},
+                                                 {"tank_top", {4, 1}},      {"trousers", {3, 1}},
+                                                 {"wide_trousers", {3, 1}}, {"shorts", {3, 1}},
+                                                 {"skirt_short", {2, 1}},   {"skirt_long", {2, 1}},
+                                                 {"skirt_flared", {2, 1}},  {"dress_tight", {4, 1}},
+                                                 {"dress_flowing", {4, 1}}, {"poncho", {2, 1}},
+                                                 {"open_shirt", {4, 2}},    {"vest", {5, 3}},
+                                                 {"jacket", {5, 3}}};
   fake::Dice dice{std::mt19937(11)};
   for (const std::string& name : garment_names()) {
     INFO(name);
@@ -132,7 +135,8 @@ TEST_CASE("A garment is the same each time, symmetric, and as fine as asked", "[
   for (const int v : *left) CHECK(one.skin.rest(v, 0) == Approx(0.37));
   const Surface surface = make_surface(static_cast<int>(one.skin.rest.rows()), one.skin.triangles);
   double sum = 0;
-  for (const auto& edge : surface.edges.rowwise()) sum += (one.skin.rest.row(edge[0]) - one.skin.rest.row(edge[1])).norm();
+  for (const auto& edge : surface.edges.rowwise())
+    sum += (one.skin.rest.row(edge[0]) - one.skin.rest.row(edge[1])).norm();
   CHECK(sum / static_cast<double>(surface.edges.rows()) == Approx(coarse).epsilon(0.1));
 }
 
@@ -143,7 +147,7 @@ TEST_CASE("Small outfits are clean on any shape", "[garment]") {
   for (const Outfit& outfit : wardrobe.outfits) {
     INFO(outfit.name);
     (outfit.validation ? validation : training).push_back(outfit.garments.size());
-    const std::vector<Garment> garments = make_outfit(outfit, mannequin(), outfit.small_edge);
+    const std::vector<Garment> garments = kept_outfit(cache_folder(), outfit, mannequin(), outfit.small_edge);
     Eigen::Index vertices = 0;
     for (const Garment& garment : garments) vertices += garment.skin.rest.rows();
     CHECK(vertices >= 2000);
