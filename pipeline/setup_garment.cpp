@@ -37,17 +37,21 @@ std::shared_ptr<const Performance> wearer(const Config& garment, const Performan
   return found;
 }
 
-void check_fits(const Config& file, const Garment& garment, const Performance& who) {
+void check_fits(const Config& section, const Garment& garment, const Performance& who) {
   const auto joints = static_cast<Eigen::Index>(who.body.joints.size());
   const std::string cure = "take the body that the garment was made for, or make it anew with `selvedge dress`";
   if (garment.skin.weights.cols() != joints)
-    file.fail(fmt::format("is a garment for a body with {} joints, `{}` has {}", garment.skin.weights.cols(), who.name,
-                          joints),
-              cure);
+    section.fail(fmt::format("is a garment for a body with {} joints, `{}` has {}", garment.skin.weights.cols(),
+                             who.name, joints),
+                 cure);
   if (garment.skin.shape_directions.cols() < who.shape.size())
-    file.fail(fmt::format("is a garment with {} shapes, `{}` is given {}", garment.skin.shape_directions.cols(),
-                          who.name, who.shape.size()),
-              cure);
+    section.fail(fmt::format("is a garment with {} shapes, `{}` is given {}", garment.skin.shape_directions.cols(),
+                             who.name, who.shape.size()),
+                 cure);
+}
+
+Garment garment_of(const Config& section, const std::filesystem::path& folder) {
+  return read_garment(existing_path(section["file"], folder));
 }
 
 }  // namespace
@@ -57,10 +61,9 @@ std::shared_ptr<const Wearing> read_wearing(const Config& cloth, const std::file
   const Config& section = cloth["garment"];
   check_placed_by_body(cloth);
   const auto who = wearer(section, bodies);
-  const Config& file = section["file"];
-  const auto wearing = std::make_shared<Wearing>(Wearing{read_garment(existing_path(file, folder)), who});
+  const auto wearing = std::make_shared<Wearing>(Wearing{garment_of(section, folder), who});
   Garment& garment = wearing->garment;
-  check_fits(file, garment, *who);
+  check_fits(section, garment, *who);
   if (!garment.made_for.empty() && garment.made_for != who->body.name)
     warnings.push_back(fmt::format("garment `{}` was made for the body `{}`, and `{}` is `{}`", garment.name,
                                    garment.made_for, who->name, who->body.name));
