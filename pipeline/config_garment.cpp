@@ -1,18 +1,27 @@
 #include "pipeline/config_tables.hpp"
+#include "pipeline/garment_make.hpp"
 
 // What a body of the scene wears, and how cloths start.
 namespace selvedge::table {
 
 const Section& garment_section() {
-  static const Section table{"garment",
-                             "A garment on a body of the scene: it is resized by the body's shape, starts where the "
-                             "body's first pose takes it, "
-                             "and goes with the body's placement and motion, in place of a placement of its own.",
-                             "file",
-                             {"file"},
-                             {path("file", "made by `selvedge dress` (.h5)"),
-                              text("on", "name of the obstacle that wears it; left out: the only body"),
-                              flag("pins", true, "whether the garment's own pins stay with the body, as skinned")}};
+  const GarmentOptions options;
+  static const Section table{
+      "garment",
+      "A garment on a body of the scene: it is resized by the body's shape, starts where the body's first pose takes "
+      "it, and goes with the body's placement and motion, in place of a placement of its own. Exactly one of file, cut "
+      "and outfit says what it is; those by code are for the mannequin. An outfit is one cloth for each of its "
+      "garments, named after them.",
+      "file",
+      {"file", "cut", "outfit"},
+      {path("file", "made by `selvedge dress` (.h5)"),
+       with_words(text("cut", "a garment by code, see docs/garments.md"), garment_names()),
+       texts("over", "of a `cut`: garments by code that are worn under it, from the body outward"),
+       number("edge", Unit::length, positive, show(options.edge), "of a `cut`: length of its edges"),
+       text("outfit", "of configs/outfits.yaml"),
+       word("form", {"small", "full"}, "small", "of the outfit: for quick runs, or with all its vertices"),
+       text("on", "name of the obstacle that wears it; left out: the only body"),
+       flag("pins", true, "whether the garment's own pins stay with the body, as skinned")}};
   return table;
 }
 

@@ -87,13 +87,6 @@ Bounds bounds(const Cone& cone) {
   return box.merged(Bounds(cone.to.array() - cone.to_radius, cone.to.array() + cone.to_radius));
 }
 
-// The smaller of two values, rounded where they differ by less than `blend`.
-double merged(double a, double b, double blend) {
-  if (blend <= 0) return std::min(a, b);
-  const double h = std::max(blend - std::abs(a - b), 0.0);
-  return std::min(a, b) - h * h / (4 * blend);
-}
-
 // Values are at most the distance; what is farther than the blend, with room for how much less they are, adds nothing.
 double value(const Limb& limb, const Vec3& p) {
   constexpr double nothing = 1e3, room = 0.02;
@@ -147,20 +140,30 @@ double signed_value(const Form& form, const Vec3& p) {
   return all;
 }
 
-Vec3 projected(const Form& form, const Vec3& p) {
+double merged(double a, double b, double blend) {
+  if (blend <= 0) return std::min(a, b);
+  const double h = std::max(blend - std::abs(a - b), 0.0);
+  return std::min(a, b) - h * h / (4 * blend);
+}
+
+Vec3 projected(const std::function<double(const Vec3&)>& value, const Vec3& p) {
   Vec3 q = p;
   for (int round = 0; round < 4; ++round) {
-    const double distance = signed_value(form, q);
+    const double distance = value(q);
     if (std::abs(distance) < 1e-6) break;
     constexpr double difference = 1e-6;
     Vec3 g;
-    for (int k = 0; k < 3; ++k) g[k] = (signed_value(form, q + difference * Vec3::Unit(k)) - distance) / difference;
+    for (int k = 0; k < 3; ++k) g[k] = (value(q + difference * Vec3::Unit(k)) - distance) / difference;
     Vec3 step = -distance * g / std::max(g.squaredNorm(), 0.25);
     constexpr double longest = 0.01;
     if (step.norm() > longest) step *= longest / step.norm();
     q += step;
   }
   return q;
+}
+
+Vec3 projected(const Form& form, const Vec3& p) {
+  return projected([&](const Vec3& q) { return signed_value(form, q); }, p);
 }
 
 }  // namespace selvedge

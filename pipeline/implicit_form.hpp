@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <variant>
 #include <vector>
 
@@ -59,7 +60,11 @@ Form make_form(std::vector<Limb>);
 // About the signed distance to the form's surface, negative inside; once continuously differentiable near it [m].
 double signed_value(const Form&, const Vec3& p);
 
-// The surface's point near p, along gradients.
+// The zero level's point near p, along gradients of a function that is about a distance there.
+Vec3 projected(const std::function<double(const Vec3&)>& value, const Vec3& p);
 Vec3 projected(const Form&, const Vec3& p);
+
+// The smaller of two values, rounded where they differ by less than `blend`: the union of two solids.
+double merged(double a, double b, double blend);
 
 }  // namespace selvedge

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace selvedge {
 namespace {
@@ -191,7 +192,16 @@ std::vector<MannequinJoint> mannequin_joints() {
           {"right_hand", 21, {-0.785, 1.384, -0.018}}};
 }
 
-Form mannequin_form() { return make_form({torso(), head(), arm(), leg()}); }
+Form mannequin_form(const std::vector<MannequinLimb>& which, std::vector<Limb> others) {
+  std::vector<Limb> limbs;
+  for (const MannequinLimb limb : which)
+    limbs.push_back(limb == MannequinLimb::torso  ? torso()
+                    : limb == MannequinLimb::head ? head()
+                    : limb == MannequinLimb::arm  ? arm()
+                                                  : leg());
+  std::move(others.begin(), others.end(), std::back_inserter(limbs));
+  return make_form(std::move(limbs));
+}
 
 double mannequin_edge(const Vec3& p) {
   const auto ramp = [](double value, double from, double to) {

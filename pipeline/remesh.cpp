@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "collision/surface.hpp"
@@ -16,7 +18,9 @@ struct Work {
   std::vector<Vec3> x;
   std::vector<std::array<int, 3>> triangles;
   Surface surface;
-  std::vector<char> boundary;  // of each vertex
+  std::vector<char> boundary;          // of each vertex
+  const std::vector<Border>& borders;  // that the boundary lies in
+  std::vector<std::uint32_t> lies_in;  // of each boundary vertex, a bit a border
 
   const Vec3& at(int vertex) const { return x[static_cast<std::size_t>(vertex)]; }
   std::array<int, 3>& triangle(int t) { return triangles[static_cast<std::size_t>(t)]; }
@@ -24,6 +28,8 @@ struct Work {
   double length(int edge) const { return (at(surface.edges(edge, 1)) - at(surface.edges(edge, 0))).norm(); }
   Vec3 middle(int edge) const { return 0.5 * (at(surface.edges(edge, 0)) + at(surface.edges(edge, 1))); }
   bool is_boundary(int edge) const { return surface.edge_triangles[static_cast<std::size_t>(edge)][1] < 0; }
+  std::uint32_t borders_of(int vertex) const { return lies_in[static_cast<std::size_t>(vertex)]; }
+  bool is_corner(int vertex) const { return std::popcount(borders_of(vertex)) > 1; }
   int opposite(int t, int a, int b) const {
     for (const int v : triangle(t))
       if (v != a && v != b) return v;
@@ -33,6 +39,29 @@ struct Work {
 
 Vec3 normal(const Work& work, const std::array<int, 3>& t) {
   return (work.at(t[1]) - work.at(t[0])).cross(work.at(t[2]) - work.at(t[0]));
+}
+
+// Which borders a boundary vertex lies in. Positions have been projected, so that rounding is all they are off by.
+std::uint32_t borders_at(const Work& work, const Vec3& x) {
+  constexpr double rounding = 1e-7;
+  std::uint32_t bits = 0;
+  for (std::size_t k = 0; k < work.borders.size(); ++k)
+    if (std::abs(work.borders[k].value(x)) < rounding) bits |= std::uint32_t{1} << k;
+  return bits;
+}
+
+Vec3 onto_borders(const Work& work, std::uint32_t bits, Vec3 x) {
+  for (std::size_t k = 0; k < work.borders.size(); ++k)
+    if (bits >> k & 1) x = work.borders[k].onto(x);
+  return x;
+}
+
+// In the borders that both ends lie in, where the edge is the boundary's.
+Vec3 middle_on_borders(const Work& work, int edge) {
+  const std::uint32_t common = work.is_boundary(edge) ? work.borders_of(work.surface.edges(edge, 0)) &
+                                                            work.borders_of(work.surface.edges(edge, 1))
+                                                      : 0;
+  return onto_borders(work, common, work.middle(edge));
 }
 
 // Drops triangles marked as gone and vertices without triangles, and finds the topology anew.
@@ -55,6 +84,9 @@ void pack(Work& work) {
   for (int e = 0; e < work.surface.edges.rows(); ++e)
     if (work.is_boundary(e))
       for (const int k : {0, 1}) work.boundary[static_cast<std::size_t>(work.surface.edges(e, k))] = 1;
+  work.lies_in.assign(work.x.size(), 0);
+  for (std::size_t v = 0; v < work.x.size(); ++v)
+    if (work.boundary[v]) work.lies_in[v] = borders_at(work, work.x[v]);
 }
 
 // Neighbours of a vertex, sorted.
@@ -94,7 +126,7 @@ bool split_round(Work& work, const RemeshTarget& target, double longest) {
     if (std::any_of(sides.begin(), sides.end(), [&](int t) { return t >= 0 && used[static_cast<std::size_t>(t)]; }))
       continue;
     const int a = work.surface.edges(e, 0), b = work.surface.edges(e, 1), fresh = static_cast<int>(work.x.size());
-    work.x.push_back(work.middle(e));
+    work.x.push_back(middle_on_borders(work, e));
     for (const int t : sides) {
       if (t < 0) continue;
       used[static_cast<std::size_t>(t)] = 1;
@@ -133,6 +165,8 @@ bool collapse_round(Work& work, const RemeshTarget& target, double shortest, dou
     if (work.boundary[static_cast<std::size_t>(gone)]) std::swap(kept, gone);
     const bool both = work.boundary[static_cast<std::size_t>(gone)];
     if (both && !work.is_boundary(e)) continue;
+    if (work.is_corner(gone)) std::swap(kept, gone);
+    if (work.is_corner(gone)) continue;
     const auto is_used = [&](int v) { return used[static_cast<std::size_t>(v)] != 0; };
     if (is_used(kept) || is_used(gone)) continue;
     const auto around_gone = ring(work, gone), around_kept = ring(work, kept);
@@ -150,7 +184,7 @@ bool collapse_round(Work& work, const RemeshTarget& target, double shortest, dou
                  !std::binary_search(around_kept.begin(), around_kept.end(), v);
         }))
       continue;
-    const Vec3 to = kept_at_boundary && !both ? work.at(kept) : work.middle(e);
+    const Vec3 to = (kept_at_boundary && !both) || work.is_corner(kept) ? work.at(kept) : middle_on_borders(work, e);
     if (!may_move(work, target, gone, kept, to, longest) || !may_move(work, target, kept, gone, to, longest)) continue;
     for (const int t : work.surface.triangles_of(gone)) {
       auto& corners = work.triangle(t);
@@ -245,9 +279,8 @@ void relax(Work& work, const RemeshTarget& target) {
         weight[v] += 1;
       }
   for (std::size_t v = 0; v < work.x.size(); ++v) {
-    Vec3 moved = target.surface(sum[v] / weight[v]);
-    if (work.boundary[v]) moved.x() = 0;
-    work.x[v] = moved;
+    if (work.is_corner(static_cast<int>(v))) continue;
+    work.x[v] = onto_borders(work, work.lies_in[v], target.surface(sum[v] / weight[v]));
   }
 }
 
@@ -256,7 +289,7 @@ void relax(Work& work, const RemeshTarget& target) {
 Shape remeshed(Shape shape, const RemeshTarget& target, int rounds) {
   constexpr double longest = 4.0 / 3, shortest = 4.0 / 5;
   constexpr int most = 30;  // rounds of one pass; what is left then waits for the next
-  Work work;
+  Work work{{}, {}, {}, {}, target.borders, {}};
   for (int v = 0; v < shape.x.rows(); ++v) work.x.push_back(row(shape.x, v));
   for (Eigen::Index t = 0; t < shape.triangles.rows(); ++t)
     work.triangles.push_back({shape.triangles(t, 0), shape.triangles(t, 1), shape.triangles(t, 2)});

@@ -118,10 +118,9 @@ PinPart read_pin(const Config& section, const ClothPart& part) {
 }
 
 // A sheet, placed, or a garment, worn: mesh, rest shape and velocity.
-void read_shape(const Config& section, const std::filesystem::path& folder, const Performances& bodies,
-                std::vector<std::string>& warnings, ClothPart& part) {
-  const bool worn = section["garment"].given;
-  if (worn) part.worn = read_wearing(section, folder, bodies, warnings);
+void read_shape(const Config& section, const std::filesystem::path& folder, std::vector<std::string>& warnings,
+                ClothPart& part) {
+  const bool worn = part.worn != nullptr;
   part.mesh = worn ? rest_mesh(*part.worn) : read_sheet(section, folder);
   warnings.insert(warnings.end(), part.mesh.warnings.begin(), part.mesh.warnings.end());
   const Config& placement = worn ? part.worn->by->section : section;
@@ -140,6 +139,33 @@ Points copied(const Config& copies, const Points& x, int times) {
   const Eigen::RowVector3d middle = 0.5 * (x.colwise().minCoeff() + x.colwise().maxCoeff());
   const Eigen::RowVector3d move = times * copies["translate"].vector().transpose();
   return ((x.rowwise() - middle) * turn.transpose()).rowwise() + (middle + move);
+}
+
+std::vector<ClothPart> read_copies(const Config& section, const std::filesystem::path& folder,
+                                   std::vector<std::string>& warnings, ClothPart part) {
+  read_shape(section, folder, warnings, part);
+  const Config& copies = section["copies"];
+  if (!copies.given) return {part};
+  std::vector<ClothPart> parts(static_cast<std::size_t>(copies["count"].integer()), part);
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    parts[k].name = fmt::format("{}_{}", part.name, k);
+    parts[k].mesh.x = copied(copies, part.mesh.x, static_cast<int>(k));
+  }
+  return parts;
+}
+
+// The garments of an outfit are named after themselves.
+std::vector<ClothPart> read_worn(const Config& section, const std::filesystem::path& folder, const Performances& bodies,
+                                 std::vector<std::string>& warnings, const ClothPart& plain) {
+  const bool is_outfit = section["garment"]["outfit"].given;
+  std::vector<ClothPart> parts;
+  for (auto& worn : read_wearings(section, folder, bodies, warnings)) {
+    ClothPart& part = parts.emplace_back(plain);
+    if (is_outfit) part.name = (section["name"].given ? plain.name + "_" : "") + worn->garment.name;
+    part.worn = worn;
+    read_shape(section, folder, warnings, part);
+  }
+  return parts;
 }
 
 }  // namespace
@@ -183,16 +209,15 @@ std::vector<ClothPart> read_cloths(Config& section, const std::string& default_n
   ClothPart part;
   part.name = section["name"].given ? section["name"].text() : default_name;
   part.material = read_material(section["material"], folder);
-  read_shape(section, folder, bodies, warnings, part);
-  const Config& copies = section["copies"];
-  std::vector<ClothPart> parts(copies.given ? static_cast<std::size_t>(copies["count"].integer()) : 1, part);
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    if (copies.given) parts[k].name = fmt::format("{}_{}", part.name, k);
-    parts[k].mesh.x = copied(copies, part.mesh.x, static_cast<int>(k));
-    apply_start(section["start"], parts[k], warnings);
-    for (const Config& pin : section["pins"].items) parts[k].pins.push_back(read_pin(pin, parts[k]));
-    if (part.worn && !part.worn->garment.pins.empty())
-      parts[k].pins.push_back(following(part.worn, part.worn->garment.pins));
+  std::vector<ClothPart> parts;
+  if (section["garment"].given)
+    parts = read_worn(section, folder, bodies, warnings, part);
+  else
+    parts = read_copies(section, folder, warnings, part);
+  for (ClothPart& one : parts) {
+    apply_start(section["start"], one, warnings);
+    for (const Config& pin : section["pins"].items) one.pins.push_back(read_pin(pin, one));
+    if (one.worn && !one.worn->garment.pins.empty()) one.pins.push_back(following(one.worn, one.worn->garment.pins));
   }
   return parts;
 }

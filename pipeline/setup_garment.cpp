@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "pipeline/garment_hdf5.hpp"
+#include "pipeline/garment_make.hpp"
+#include "pipeline/outfit.hpp"
 #include "pipeline/setup_paths.hpp"
 
 namespace selvedge {
@@ -37,38 +39,77 @@ std::shared_ptr<const Performance> wearer(const Config& garment, const Performan
   return found;
 }
 
-void check_fits(const Config& section, const Garment& garment, const Performance& who) {
+void check_fits(const Config& file, const Garment& garment, const Performance& who) {
   const auto joints = static_cast<Eigen::Index>(who.body.joints.size());
   const std::string cure = "take the body that the garment was made for, or make it anew with `selvedge dress`";
   if (garment.skin.weights.cols() != joints)
-    section.fail(fmt::format("is a garment for a body with {} joints, `{}` has {}", garment.skin.weights.cols(),
-                             who.name, joints),
-                 cure);
+    file.fail(fmt::format("is a garment for a body with {} joints, `{}` has {}", garment.skin.weights.cols(), who.name,
+                          joints),
+              cure);
   if (garment.skin.shape_directions.cols() < who.shape.size())
-    section.fail(fmt::format("is a garment with {} shapes, `{}` is given {}", garment.skin.shape_directions.cols(),
-                             who.name, who.shape.size()),
-                 cure);
+    file.fail(fmt::format("is a garment with {} shapes, `{}` is given {}", garment.skin.shape_directions.cols(),
+                          who.name, who.shape.size()),
+              cure);
 }
 
-Garment garment_of(const Config& section, const std::filesystem::path& folder) {
-  return read_garment(existing_path(section["file"], folder));
+void check_mannequin(const Config& garment, const Performance& who) {
+  if (who.body.name.starts_with("mannequin")) return;
+  garment.fail("is for the mannequin, and `" + who.name + "` is `" + who.body.name + "`",
+               "make it for that body with `selvedge dress`, and name its file");
+}
+
+Garment read_cut(const Config& section, const Performance& who) {
+  check_mannequin(section["cut"], who);
+  GarmentOptions options;
+  options.edge = section["edge"].number();
+  return kept_garment(cache_folder(), section["cut"].text(), who.body, options, section["over"].words);
+}
+
+std::vector<Garment> read_outfit(const Config& section, const Performance& who) {
+  const Config& name = section["outfit"];
+  check_mannequin(name, who);
+  const Wardrobe wardrobe = read_wardrobe(config_folder() / "outfits.yaml");
+  std::vector<std::string> known;
+  for (const Outfit& outfit : wardrobe.outfits) {
+    known.push_back(outfit.name);
+    if (outfit.name == name.text())
+      return kept_outfit(cache_folder(), outfit, who.body,
+                         section["form"].text() == "full" ? outfit.edge : outfit.small_edge);
+  }
+  name.fail("is the unknown outfit `" + name.text() + "`",
+            "outfits: " + joined(known) + suggestion(name.text(), known));
+}
+
+Garment read_file(const Config& file, const std::filesystem::path& folder, const Performance& who,
+                  std::vector<std::string>& warnings) {
+  Garment garment = read_garment(existing_path(file, folder));
+  check_fits(file, garment, who);
+  if (!garment.made_for.empty() && garment.made_for != who.body.name)
+    warnings.push_back(fmt::format("garment `{}` was made for the body `{}`, and `{}` is `{}`", garment.name,
+                                   garment.made_for, who.name, who.body.name));
+  return garment;
 }
 
 }  // namespace
 
-std::shared_ptr<const Wearing> read_wearing(const Config& cloth, const std::filesystem::path& folder,
-                                            const Performances& bodies, std::vector<std::string>& warnings) {
+std::vector<std::shared_ptr<const Wearing>> read_wearings(const Config& cloth, const std::filesystem::path& folder,
+                                                          const Performances& bodies,
+                                                          std::vector<std::string>& warnings) {
   const Config& section = cloth["garment"];
   check_placed_by_body(cloth);
   const auto who = wearer(section, bodies);
-  const auto wearing = std::make_shared<Wearing>(Wearing{garment_of(section, folder), who});
-  Garment& garment = wearing->garment;
-  check_fits(section, garment, *who);
-  if (!garment.made_for.empty() && garment.made_for != who->body.name)
-    warnings.push_back(fmt::format("garment `{}` was made for the body `{}`, and `{}` is `{}`", garment.name,
-                                   garment.made_for, who->name, who->body.name));
-  if (!section["pins"].flag()) garment.pins.clear();
-  return wearing;
+  std::vector<Garment> garments;
+  if (section["outfit"].given)
+    garments = read_outfit(section, *who);
+  else
+    garments.push_back(section["cut"].given ? read_cut(section, *who)
+                                            : read_file(section["file"], folder, *who, warnings));
+  std::vector<std::shared_ptr<const Wearing>> worn;
+  for (Garment& garment : garments) {
+    if (!section["pins"].flag()) garment.pins.clear();
+    worn.push_back(std::make_shared<Wearing>(Wearing{std::move(garment), who}));
+  }
+  return worn;
 }
 
 Mesh rest_mesh(const Wearing& wearing) {

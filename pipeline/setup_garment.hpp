@@ -14,9 +14,9 @@ struct Wearing {
   std::shared_ptr<const Performance> by;
 };
 
-// The garment of a cloth's section; `folder` is the scene file's, warnings are added.
-std::shared_ptr<const Wearing> read_wearing(const Config& cloth, const std::filesystem::path& folder,
-                                            const Performances&, std::vector<std::string>& warnings);
+// The garment of a cloth's section, or those of its outfit; `folder` is the scene file's, warnings are added.
+std::vector<std::shared_ptr<const Wearing>> read_wearings(const Config& cloth, const std::filesystem::path& folder,
+                                                          const Performances&, std::vector<std::string>& warnings);
 
 // Its rest shape on the body, with its groups, before the body is placed.
 Mesh rest_mesh(const Wearing&);
