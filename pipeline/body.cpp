@@ -54,6 +54,29 @@ void check_pose(Eigen::Index joints, const BodyPose& pose) {
     throw Error("is not finite", "pose", "repair the motion where it was made");
 }
 
+// The coefficients of the pose blend shapes, none where there are none.
+Eigen::VectorXd checked_correction(const SkinnedSurface& skin, const BodyPose& pose,
+                                   const JointTransforms& transforms) {
+  const Eigen::Index joints = skin.weights.cols();
+  check_pose(joints, pose);
+  if (static_cast<Eigen::Index>(transforms.size()) != joints)
+    throw Error(fmt::format("has {} transforms, the weights have {} joints", transforms.size(), joints), "pose",
+                "take the weights from the same body");
+  if (skin.pose_directions.cols() == 0) return {};
+  if (skin.pose_directions.cols() != 9 * (joints - 1))
+    throw Error(fmt::format("has {} columns for {} joints", skin.pose_directions.cols(), joints), "pose directions",
+                fmt::format("give {}", 9 * (joints - 1)));
+  return pose_coefficients(pose);
+}
+
+Eigen::Matrix<double, 3, 4> blended(const SkinWeights& weights, Eigen::Index vertex,
+                                    const JointTransforms& transforms) {
+  Eigen::Matrix<double, 3, 4> blend = Eigen::Matrix<double, 3, 4>::Zero();
+  for (SkinWeights::InnerIterator entry(weights, vertex); entry; ++entry)
+    blend += entry.value() * transforms[static_cast<std::size_t>(entry.col())];
+  return blend;
+}
+
 }  // namespace
 
 Points shaped(const SkinnedSurface& skin, const Eigen::VectorXd& shape) {
@@ -93,28 +116,38 @@ JointTransforms joint_transforms(const BodyModel& body, const Points& joints, co
 
 Points posed(const SkinnedSurface& skin, const Eigen::VectorXd& shape, const BodyPose& pose,
              const JointTransforms& transforms) {
-  const Eigen::Index joints = skin.weights.cols();
   check_shape(skin, shape);
-  check_pose(joints, pose);
-  if (static_cast<Eigen::Index>(transforms.size()) != joints)
-    throw Error(fmt::format("has {} transforms, the weights have {} joints", transforms.size(), joints), "pose",
-                "take the weights from the same body");
-  const bool corrects = skin.pose_directions.cols() > 0;
-  if (corrects && skin.pose_directions.cols() != 9 * (joints - 1))
-    throw Error(fmt::format("has {} columns for {} joints", skin.pose_directions.cols(), joints), "pose directions",
-                fmt::format("give {}", 9 * (joints - 1)));
-  const Eigen::VectorXd correction = corrects ? pose_coefficients(pose) : Eigen::VectorXd();
+  const Eigen::VectorXd correction = checked_correction(skin, pose, transforms);
   Points x = skin.rest;
   for_chunks(x.rows(), [&](Eigen::Index begin, Eigen::Index end) {
     add_directions(skin.shape_directions, shape, begin, end, x);
     add_directions(skin.pose_directions, correction, begin, end, x);
     for (Eigen::Index v = begin; v < end; ++v) {
-      Eigen::Matrix<double, 3, 4> blend = Eigen::Matrix<double, 3, 4>::Zero();
-      for (SkinWeights::InnerIterator entry(skin.weights, v); entry; ++entry)
-        blend += entry.value() * transforms[static_cast<std::size_t>(entry.col())];
+      const auto blend = blended(skin.weights, v, transforms);
       const Vec3 before = x.row(v).transpose();
       x.row(v) = (blend.leftCols<3>() * before + blend.col(3) + pose.translation).transpose();
     }
+  });
+  return x;
+}
+
+Points unposed(const SkinnedSurface& skin, const Eigen::VectorXd& shape, const BodyPose& pose,
+               const JointTransforms& transforms) {
+  constexpr double flat = 1e-3;  // volume that is left of 1
+  check_shape(skin, shape);
+  const Eigen::VectorXd correction = checked_correction(skin, pose, transforms);
+  Points x = skin.rest;
+  for (Eigen::Index v = 0; v < x.rows(); ++v) {
+    const auto blend = blended(skin.weights, v, transforms);
+    const Mat3 turn = blend.leftCols<3>();
+    if (!(turn.determinant() > flat))
+      throw Error(fmt::format("is flattened by the pose at vertex {}", v), "garment",
+                  "give the garment in a pose that is nearer to the zero pose");
+    x.row(v) = (turn.inverse() * (row(x, static_cast<int>(v)) - pose.translation - blend.col(3))).transpose();
+  }
+  for_chunks(x.rows(), [&](Eigen::Index begin, Eigen::Index end) {
+    add_directions(skin.shape_directions, -shape, begin, end, x);
+    add_directions(skin.pose_directions, -correction, begin, end, x);
   });
   return x;
 }

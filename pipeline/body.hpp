@@ -53,6 +53,10 @@ JointTransforms joint_transforms(const BodyModel&, const Points& joints, const B
 Points posed(const SkinnedSurface&, const Eigen::VectorXd& shape, const BodyPose&, const JointTransforms&);
 Points posed(const BodyModel&, const Eigen::VectorXd& shape, const BodyPose&);
 
+// The other way: the zero pose and shape of a surface whose `rest` is where the pose has it. Throws Error as `posed`
+// does, and for a vertex that transforms of opposite turns flatten.
+Points unposed(const SkinnedSurface&, const Eigen::VectorXd& shape, const BodyPose&, const JointTransforms&);
+
 // What the parts of a body are called where it comes from, for errors.
 struct BodyFields {
   std::string rest = "rest", triangles = "triangles", weights = "weights", shape_directions = "shape_directions",

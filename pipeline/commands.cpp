@@ -114,6 +114,13 @@ int untangle_command(const UntangleRequest& request, bool json) {
   return is_clean(report) ? 0 : 1;
 }
 
+int dress_command(const DressRequest& request, bool json) {
+  const DressReport report = dress(request);
+  people(json) << dress_text(report);
+  if (json) std::cout << dress_json(report);
+  return is_clean(report) ? 0 : 1;
+}
+
 int ccd_command(const CcdArguments& arguments, bool json) {
   const CcdReport report = ccd_report(arguments.files);
   people(json) << ccd_text(report);

@@ -71,6 +71,13 @@ struct Config {
 // Throws Error with file, line, key, what is allowed and the nearest known key.
 Config read_config(const std::filesystem::path&, const Section&, const std::vector<std::string>& overrides = {});
 
+// A section whose values come from elsewhere than a file, by keys that are not dotted; `where` is for errors.
+struct GivenValue {
+  std::string key, where;
+  std::vector<std::string> words;  // several: a list
+};
+Config read_values(const Section&, const std::vector<GivenValue>&);
+
 // The whole configuration, defaults filled in, as YAML that reads back to the same.
 std::string to_yaml(const Config&);
 

@@ -79,6 +79,8 @@ const Section& trajectory_section() {
   return table;
 }
 
+}  // namespace
+
 const Section& body_section() {
   static const Section table{
       "body",
@@ -93,8 +95,6 @@ const Section& body_section() {
        word("start_pose", {"zero", "arms_down"}, "zero", "what is blended in from")}};
   return table;
 }
-
-}  // namespace
 
 const Section& obstacle_section() {
   static const Section table{

@@ -123,6 +123,7 @@ const Section& garment_section();
 const Section& start_section();
 const Section& outcome_section();
 const Section& obstacle_section();
+const Section& body_section();
 std::vector<Key> material_values();  // what may be said of a material by value
 
 }  // namespace selvedge::table

@@ -34,6 +34,9 @@ struct Quantity {
 // "0.002", "2 mm", "150 g/m2": a plain number is SI; a unit of another dimension, NaN and infinity are problems.
 Quantity read_quantity(std::string_view text, Unit);
 
+// Metres in the unit of length that an option names. Throws Error for one that is not known.
+double metres_per_unit(const std::string& unit);
+
 // The whole text as a finite or infinite number, nothing otherwise. Knows no locale.
 std::optional<double> read_number(std::string_view text);
 

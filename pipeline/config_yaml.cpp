@@ -122,7 +122,7 @@ void emit(YAML::Emitter& out, const Config& config) {
 
 std::string Origin::of(const YAML::Node& node, const std::string& path, const std::string& parent) const {
   for (auto o = overrides.rbegin(); o != overrides.rend(); ++o)
-    if (path == o->path || path.starts_with(o->path + ".")) return "--set " + o->text;
+    if (path == o->path || path.starts_with(o->path + ".")) return o->where;
   const YAML::Mark mark = node.Mark();
   return mark.is_null() ? parent : fmt::format("{}:{}", file, mark.line + 1);
 }
@@ -153,7 +153,7 @@ void apply_override(const std::string& assignment, YAML::Node root, const Sectio
   }
   const YAML::Node value = loaded(assignment.substr(equals + 1), where);
   assign(root, section, words, 0, value, where);
-  origin.overrides.push_back({assignment.substr(0, equals), assignment});
+  origin.overrides.push_back({assignment.substr(0, equals), where});
 }
 
 Config read_config(const std::filesystem::path& path, const Section& section,
@@ -169,6 +169,19 @@ Config read_config(const std::filesystem::path& path, const Section& section,
   } catch (const YAML::Exception& e) {
     throw Error("cannot be read: " + e.msg, origin.file, "");
   }
+}
+
+Config read_values(const Section& section, const std::vector<GivenValue>& values) {
+  Origin origin{"the command line", {}};
+  YAML::Node root(YAML::NodeType::Map);
+  for (const GivenValue& given : values) {
+    if (given.words.size() == 1)
+      root[given.key] = given.words[0];
+    else
+      root[given.key] = given.words;
+    origin.overrides.push_back({given.key, given.where});
+  }
+  return checked_section(root, section, "", origin.file, origin);
 }
 
 std::string to_yaml(const Config& config) {

@@ -9,9 +9,9 @@
 
 namespace selvedge {
 
-// One key=value of the command line, applied to the file's tree.
+// A value of the command line, put into the file's tree: `where` it was given.
 struct Override {
-  std::string path, text;
+  std::string path, where;
 };
 
 // Where a node of a file was written, for messages.

@@ -63,6 +63,22 @@ void untangle_options(CLI::App& command, UntangleRequest& request) {
   command.add_option("--iterations", request.iterations, "at most")->check(CLI::PositiveNumber);
 }
 
+void dress_options(CLI::App& command, DressRequest& request) {
+  command.add_option("mesh", request.mesh, "garment where the body wears it (.obj, .ply)")->required();
+  command.add_option("--out", request.out, "the garment for scenes (.h5)")->required();
+  command.add_option("--unit", request.unit, "of the coordinates: m, dm, cm, mm");
+  command.add_option("--body", request.body, "mannequin, or a file (.npz, .h5)");
+  command.add_option("--shape", request.shape, "of that body: coefficients")->delimiter(',');
+  command.add_option("--pose", request.pose, "clip that the body stands in: a name, .bvh or .npz (zero pose)");
+  command.add_option("--time", request.time, "of the clip [s]");
+  command.add_option("--rotate", request.rotations, "JOINT=x,y,z: its rotation in that pose, axis times angle [rad]")
+      ->allow_extra_args(false);
+  command.add_option("--fit", request.fit, "tight: weights of the nearest vertex; loose: averaged")
+      ->check(CLI::IsMember({"tight", "loose"}));
+  command.add_option("--pin", request.pins, "group that stays with the body, or none; may be given again")
+      ->allow_extra_args(false);
+}
+
 void ccd_options(CLI::App& command, CcdArguments& arguments) {
   command
       .add_option("files", arguments.files, "queries with known answers (.csv), in folders edge-edge or vertex-face")
@@ -139,6 +155,8 @@ void add_commands(CLI::App& app, Chosen& chosen) {
   add_command<CheckRequest>(app, chosen, "check", "audit a mesh or a trajectory", check_options, check_command);
   add_command<UntangleRequest>(app, chosen, "untangle", "part a cloth from itself and from bodies", untangle_options,
                                untangle_command);
+  add_command<DressRequest>(app, chosen, "dress", "a garment for scenes from a mesh that a body wears", dress_options,
+                            dress_command);
   add_command<CcdArguments>(app, chosen, "ccd", "continuous detection against queries with known answers", ccd_options,
                             ccd_command);
   add_command<ExportRequest>(app, chosen, "export", "a trajectory as meshes or point caches", export_options,
