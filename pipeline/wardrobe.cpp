@@ -30,9 +30,9 @@ struct Wear {
 std::vector<Wear> everything(const Wardrobe& wardrobe) {
   std::vector<Wear> all;
   for (const std::string& name : garment_names())
-    all.push_back({name, false,
-                   std::find(wardrobe.validation.begin(), wardrobe.validation.end(), name) !=
-                       wardrobe.validation.end()});
+    all.push_back(
+        {name, false,
+         std::find(wardrobe.validation.begin(), wardrobe.validation.end(), name) != wardrobe.validation.end()});
   for (const Outfit& outfit : wardrobe.outfits) all.push_back({outfit.name, true, outfit.validation});
   return all;
 }
@@ -147,9 +147,9 @@ void keep_or_remove(const RowPlace& place, bool keep) {
 }
 
 std::string log_line(const WardrobeRow& row) {
-  std::string line = fmt::format("{} {}: {}, {} frames, {:.0f} ms each{}\n", row.wear, row.clip,
-                                 row.passed() ? "passed" : "FAILED", row.frames, row.milliseconds,
-                                 row.kept ? " (kept from before)" : "");
+  std::string line =
+      fmt::format("{} {}: {}, {} frames, {:.0f} ms each{}\n", row.wear, row.clip, row.passed() ? "passed" : "FAILED",
+                  row.frames, row.milliseconds, row.kept ? " (kept from before)" : "");
   for (const std::string& why : row.failures) line += "  " + why + "\n";
   return line;
 }

@@ -26,12 +26,12 @@ struct WardrobeRow {
   std::string wear, clip;
   bool validation = false;  // of the clip or of what is worn
   int vertices = 0, frames = 0, frames_wanted = 0;
-  int excused_frames = 0;    // the body passes through itself, or did so up to ten frames before
-  long cloth_pairs = 0;      // over all frames
-  long body_pairs = 0;       // over the frames that are not excused, as are those below
-  double lag = 0;            // of the body, largest [m]
-  double depth = 0;          // of a cloth vertex in the body where it was wanted, largest [m]
-  double milliseconds = 0;   // median of a frame
+  int excused_frames = 0;   // the body passes through itself, or did so up to ten frames before
+  long cloth_pairs = 0;     // over all frames
+  long body_pairs = 0;      // over the frames that are not excused, as are those below
+  double lag = 0;           // of the body, largest [m]
+  double depth = 0;         // of a cloth vertex in the body where it was wanted, largest [m]
+  double milliseconds = 0;  // median of a frame
   double max_stretch = 1;
   std::vector<std::string> failures;
   bool kept = false;  // from an earlier call

@@ -83,9 +83,9 @@ std::string wardrobe_csv(const std::vector<WardrobeRow>& rows) {
 }
 
 std::string wardrobe_table(const std::vector<WardrobeRow>& rows) {
-  std::string text = fmt::format("{:<20} {:>8} {:>6} {:>7} {:>7} {:>7} {:>8} {:>11} {:>10} {:>8} {:>6}\n", "worn",
-                                 "vertices", "clips", "passed", "frames", "excused", "pairs", "body pairs", "depth [m]",
-                                 "lag [m]", "ms");
+  std::string text =
+      fmt::format("{:<20} {:>8} {:>6} {:>7} {:>7} {:>7} {:>8} {:>11} {:>10} {:>8} {:>6}\n", "worn", "vertices", "clips",
+                  "passed", "frames", "excused", "pairs", "body pairs", "depth [m]", "lag [m]", "ms");
   for (auto first = rows.begin(); first != rows.end();) {  // rows of one wear lie together
     const auto last = std::find_if(first, rows.end(), [&](const WardrobeRow& r) { return r.wear != first->wear; });
     WardrobeRow all;
