@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -9,6 +10,7 @@
 #include "pipeline/materials.hpp"
 #include "pipeline/setup_motion.hpp"
 #include "pipeline/setup_paths.hpp"
+#include "pipeline/setup_seams.hpp"
 #include "pipeline/setup_sheet.hpp"
 #include "pipeline/setup_start.hpp"
 
@@ -75,6 +77,11 @@ std::vector<int> in_box(const Config& box, const Points& x) {
   return found;
 }
 
+void sort_unique(std::vector<int>& numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
 std::vector<int> in_groups(const Config& group, const Mesh& mesh) {
   std::vector<std::string> known;
   for (const auto& [name, vertices] : mesh.groups) known.push_back(name);
@@ -87,23 +94,25 @@ std::vector<int> in_groups(const Config& group, const Mesh& mesh) {
     const std::vector<int>& vertices = mesh.groups[static_cast<std::size_t>(match - known.begin())].second;
     found.insert(found.end(), vertices.begin(), vertices.end());
   }
+  sort_unique(found);
   return found;
 }
 
-std::vector<int> listed(const Config& list, Eigen::Index count) {
+std::vector<int> listed(const Config& list, const ClothPart& part) {
+  const std::size_t count = part.sewn.empty() ? static_cast<std::size_t>(part.mesh.x.rows()) : part.sewn.size();
   std::vector<int> found;
   for (const double v : list.numbers) {
     if (v >= static_cast<double>(count))
       list.fail(fmt::format("names vertex {}, which does not exist", v), fmt::format("allowed: 0 to {}", count - 1));
-    found.push_back(static_cast<int>(v));
+    found.push_back(part.sewn.empty() ? static_cast<int>(v) : part.sewn[static_cast<std::size_t>(v)]);
   }
   return found;
 }
 
-PinPart read_pin(const Config& section, const Mesh& mesh) {
+PinPart read_pin(const Config& section, const ClothPart& part) {
   PinPart pin;
-  pin.vertices = read_selection(section, mesh);
-  pin.motion = read_motion(section["motion"], mesh.x(pin.vertices, Eigen::all));
+  pin.vertices = read_selection(section, part);
+  pin.motion = read_motion(section["motion"], part.mesh.x(pin.vertices, Eigen::all));
   return pin;
 }
 
@@ -118,18 +127,18 @@ Points copied(const Config& copies, const Points& x, int times) {
 
 }  // namespace
 
-std::vector<int> read_selection(const Config& section, const Mesh& mesh) {
-  std::vector<int> found;
-  if (section["vertices"].given)
-    found = listed(section["vertices"], mesh.x.rows());
-  else if (section["box"].given)
-    found = in_box(section["box"], mesh.x);
-  else if (section["group"].given)
-    found = in_groups(section["group"], mesh);
-  else
-    for (int v = 0; v < mesh.x.rows(); ++v) found.push_back(v);
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
+std::vector<int> read_vertices(const Config& section, const ClothPart& part) {
+  if (section["vertices"].given) return listed(section["vertices"], part);
+  if (section["box"].given) return in_box(section["box"], part.mesh.x);
+  if (section["group"].given) return in_groups(section["group"], part.mesh);
+  std::vector<int> all(static_cast<std::size_t>(part.mesh.x.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+std::vector<int> read_selection(const Config& section, const ClothPart& part) {
+  std::vector<int> found = read_vertices(section, part);
+  sort_unique(found);
   return found;
 }
 
@@ -160,14 +169,15 @@ std::vector<ClothPart> read_cloths(Config& section, const std::string& default_n
   warnings.insert(warnings.end(), part.mesh.warnings.begin(), part.mesh.warnings.end());
   read_rest(section["rest"], part.mesh, !section["mesh"].given, section["scale"].number(), folder, part);
   part.velocity = section["velocity"].vector();
-  const Points first = placed(section, part.mesh.x);
+  part.mesh.x = placed(section, part.mesh.x);
+  sew(section["seams"], folder, part, warnings);
   const Config& copies = section["copies"];
   std::vector<ClothPart> parts(copies.given ? static_cast<std::size_t>(copies["count"].integer()) : 1, part);
   for (std::size_t k = 0; k < parts.size(); ++k) {
     if (copies.given) parts[k].name = fmt::format("{}_{}", part.name, k);
-    parts[k].mesh.x = copied(copies, first, static_cast<int>(k));
+    parts[k].mesh.x = copied(copies, part.mesh.x, static_cast<int>(k));
     apply_start(section["start"], parts[k], warnings);
-    for (const Config& pin : section["pins"].items) parts[k].pins.push_back(read_pin(pin, parts[k].mesh));
+    for (const Config& pin : section["pins"].items) parts[k].pins.push_back(read_pin(pin, parts[k]));
   }
   return parts;
 }
