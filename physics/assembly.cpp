@@ -60,7 +60,10 @@ void derivatives_of_chunk(const Elastic& elastic, const Points& x, int begin, in
                           HessianForm form, AssemblyScratch& scratch) {
   const int hinges_begin = static_cast<int>(elastic.membrane.size());
   const int curved_begin = hinges_begin + static_cast<int>(elastic.hinges.size());
+  const int springs_begin = curved_begin + static_cast<int>(elastic.curved.size());
   const bool psd = form != HessianForm::exact;
+  Vec6 gradient6;
+  Mat6 hessian6;
   Vec9 gradient9;
   Mat9 hessian9;
   Vec12 gradient12;
@@ -77,9 +80,12 @@ void derivatives_of_chunk(const Elastic& elastic, const Points& x, int begin, in
     } else if (e < curved_begin) {
       hinge_derivatives(elastic.hinges[e - hinges_begin], x, gradient12, pairs ? &hessian12 : nullptr, psd);
       store(elastic, e, gradient12, hessian12, weight, forces, pairs, scratch);
-    } else {
+    } else if (e < springs_begin) {
       curved_derivatives(elastic.curved[e - curved_begin], x, gradient, pairs ? &hessian : nullptr);
       store(elastic, e, gradient, hessian, weight, forces, pairs, scratch);
+    } else {
+      spring_derivatives(elastic.springs[e - springs_begin], x, gradient6, pairs ? &hessian6 : nullptr, psd);
+      store(elastic, e, gradient6, hessian6, weight, forces, pairs, scratch);
     }
   }
 }
@@ -87,14 +93,17 @@ void derivatives_of_chunk(const Elastic& elastic, const Points& x, int begin, in
 double energy_of_chunk(const Elastic& elastic, const Points& x, int begin, int end) {
   const int hinges_begin = static_cast<int>(elastic.membrane.size());
   const int curved_begin = hinges_begin + static_cast<int>(elastic.hinges.size());
+  const int springs_begin = curved_begin + static_cast<int>(elastic.curved.size());
   double sum = 0;
   for (int e = begin; e < end; ++e) {
     if (e < hinges_begin)
       sum += membrane_energy(elastic.materials[elastic.membrane[e].material], elastic.membrane[e], x);
     else if (e < curved_begin)
       sum += hinge_energy(elastic.hinges[e - hinges_begin], x);
-    else
+    else if (e < springs_begin)
       sum += curved_energy(elastic.curved[e - curved_begin], x);
+    else
+      sum += spring_energy(elastic.springs[e - springs_begin], x);
   }
   return sum;
 }
@@ -114,6 +123,7 @@ Elastic make_elastic(const Scene& scene) {
   elastic.hinges = hinges(scene);
   CurvatureBending bending = curvature_bending(scene);
   elastic.curved = std::move(bending.curved);
+  elastic.springs = scene.springs;
   if (bending.flat.nonZeros() > 0) elastic.flat = std::move(bending.flat);
   elastic.flat.makeCompressed();
 
@@ -123,6 +133,11 @@ Elastic make_elastic(const Scene& scene) {
   for (const CurvedVertex& vertex : elastic.curved) append_element(elastic, vertex.nodes);
   for (int e = 0; e < element_count(elastic); ++e)
     elastic.element_damping.push_back(elastic.vertex_damping[elastic.element_nodes[elastic.element_begin[e]]]);
+  for (const Spring& spring : elastic.springs) {
+    assert(spring.a != spring.b);
+    append_element(elastic, std::array{spring.a, spring.b});
+    elastic.element_damping.push_back(0.5 * (elastic.vertex_damping[spring.a] + elastic.vertex_damping[spring.b]));
+  }
 
   elastic.pattern = make_pair_pattern(vertices, elastic.element_begin, elastic.element_nodes);
   make_gather_lists(elastic, vertices);

@@ -118,6 +118,7 @@ Features features_of(const Scene& scene) {
   f.mass_damping = cloths_with(scene, [](const Cloth& c) { return c.material.mass_damping > 0; }) > 0;
   f.wind = wind_acts(scene);
   f.pins = !scene.pins.empty();
+  f.springs = !scene.springs.empty();
   return f;
 }
 
@@ -133,7 +134,7 @@ std::vector<PlanLine> plan_lines(const Scene& scene) {
     return in ? count(damped(rate), "cloth") + " with a rate > 0"
               : std::string("left out, its rate is 0 in every cloth");
   };
-  return {
+  std::vector<PlanLine> lines{
       {"membrane", f.membrane,
        f.membrane ? count(membranes, "cloth") + ", " + count(scene.surface.triangles.rows(), "triangle")
                   : "left out, no cloth has a membrane stiffness > 0"},
@@ -157,6 +158,10 @@ std::vector<PlanLine> plan_lines(const Scene& scene) {
       {"self-contact", f.self_contact, why_self(scene, f.self_contact)},
       {"friction", f.friction, why_friction(scene, f)},
   };
+  if (f.springs)
+    lines.push_back(
+        {"springs", true, count(static_cast<long long>(scene.springs.size()), "pair") + " of vertices joined"});
+  return lines;
 }
 
 }  // namespace selvedge

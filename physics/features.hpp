@@ -17,6 +17,7 @@ struct Features {
   bool stiffness_damping = false, mass_damping = false;
   bool wind = false;
   bool pins = false;
+  bool springs = false;
 };
 Features features_of(const Scene&);
 

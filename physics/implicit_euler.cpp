@@ -10,6 +10,7 @@
 
 #include "physics/linear_solver.hpp"
 #include "physics/measures.hpp"
+#include "physics/springs.hpp"
 #include "physics/step_potential.hpp"
 
 namespace selvedge {
@@ -59,21 +60,30 @@ Vertices rest_vertices(const Scene& scene) {
   return {scene.rest, make_graph(scene.surface.vertex_count, scene.surface.edges), rims(scene.rest, open)};
 }
 
-// Connected components that nothing holds or touches.
-std::vector<char> drifting_components(const Scene& scene, const StepPotential& step) {
+// Of each vertex the connected component, those that springs join taken as one.
+std::vector<int> joined_components(const Scene& scene) {
+  const std::vector<int>& component = scene.surface.component;
+  const std::vector<int> joined = joined_by_springs(scene.springs, component, scene.surface.component_count);
+  std::vector<int> of_vertex;
+  for (const int c : component) of_vertex.push_back(joined[c]);
+  return of_vertex;
+}
+
+// Components that nothing holds or touches.
+std::vector<char> drifting_components(const Scene& scene, const std::vector<int>& component,
+                                      const StepPotential& step) {
   std::vector<char> drifting(scene.surface.component_count, true);
-  for (int pin : scene.pins) drifting[scene.surface.component[pin]] = false;
+  for (int pin : scene.pins) drifting[component[pin]] = false;
   for (const ContactBlock& contact : step.contacts)
     for (int node : contact.nodes)
-      if (node >= 0) drifting[scene.surface.component[node]] = false;
+      if (node >= 0) drifting[component[node]] = false;
   return drifting;
 }
 
 // Elastic forces do not see a translation, so the best one of a drifting component is known exactly, whatever the
 // linear solver left of it. Keeps linear momentum to rounding and never raises the quadratic model.
-void correct_translations(const Scene& scene, const StepPotential& step, const std::vector<char>& drifting,
-                          const Points& gradient, Points& motion) {
-  const std::vector<int>& component = scene.surface.component;
+void correct_translations(const std::vector<int>& component, const StepPotential& step,
+                          const std::vector<char>& drifting, const Points& gradient, Points& motion) {
   std::vector<double> weight(drifting.size(), 0.0);
   std::vector<Vec3> missing(drifting.size(), Vec3::Zero());
   for (int i = 0; i < motion.rows(); ++i) {
@@ -93,6 +103,7 @@ struct ImplicitEuler::Impl {
   ImplicitEulerOptions options;
   Eigen::VectorXd masses;
   Elastic elastic;
+  std::vector<int> component;  // of each vertex
   StepPotential step;
   StepScratch scratch;
   LinearSystemSolver linear;
@@ -109,6 +120,7 @@ struct ImplicitEuler::Impl {
         options(o),
         masses(m),
         elastic(make_elastic(s)),
+        component(joined_components(s)),
         linear(o.linear_solver, rest_vertices(s), free_vertices(s, m)) {}
 
   void start(const StepProblem& problem) {
@@ -212,9 +224,9 @@ ImplicitEuler::Impl::Direction ImplicitEuler::Impl::find_direction(const Points&
     derivatives(step, x, scratch, gradient, &hessian, form);
     diagonal_blocks(system(), diagonal);
     if (below_rounding(gradient, diagonal, x)) return Direction::none;
-    drifting = drifting_components(scene, step);
+    drifting = drifting_components(scene, component, step);
     const bool accurate = solve_linear(exact ? Definite::perhaps : Definite::yes, report);
-    correct_translations(scene, step, drifting, gradient, motion);
+    correct_translations(component, step, drifting, gradient, motion);
     const bool downhill = motion.allFinite() && gradient.cwiseProduct(motion).sum() < 0;
     if (accurate && downhill) return Direction::accurate;
     if (exact) {

@@ -54,7 +54,8 @@ struct StepProblem {
 };
 
 // Minimises the incremental potential
-//   E(x) = sum_i m_i |x_i - y_i|^2 / (2 h^2) + membrane + bending + damping + wind + contact + friction + added,
+//   E(x) = sum_i m_i |x_i - y_i|^2 / (2 h^2) + membrane + bending + springs + damping + wind + contact
+//          + friction + added,
 //   y = x0 + h v0 + h^2 acceleration,
 // with pins held exactly, by projected Newton with line search. Holds caches only (patterns, factors, scratch).
 class ImplicitEuler {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "physics/springs.hpp"
+
 namespace selvedge {
 
 EnergyTerms energy_terms(const Scene& scene) {
@@ -21,6 +23,7 @@ Energies energies(const Scene& scene, const EnergyTerms& terms, const Points& x,
   }
   for (const CurvedVertex& vertex : terms.curvature.curved) energy.bending += curved_energy(vertex, x);
   for (const Hinge& hinge : terms.hinges) energy.bending += hinge_energy(hinge, x);
+  for (const Spring& spring : scene.springs) energy.springs += spring_energy(spring, x);
   return energy;
 }
 

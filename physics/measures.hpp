@@ -15,8 +15,8 @@ struct EnergyTerms {
 EnergyTerms energy_terms(const Scene&);
 
 struct Energies {  // [J]; gravity is -sum m acceleration . x
-  double kinetic = 0, gravity = 0, membrane = 0, bending = 0;
-  double total() const { return kinetic + gravity + membrane + bending; }
+  double kinetic = 0, gravity = 0, membrane = 0, bending = 0, springs = 0;
+  double total() const { return kinetic + gravity + membrane + bending + springs; }
 };
 Energies energies(const Scene&, const EnergyTerms&, const Points& x, const Points& v, const Vec3& acceleration);
 Energies energies(const Scene&, const Points& x, const Points& v, const Vec3& acceleration);

@@ -1,6 +1,7 @@
 #include "physics/part_of_scene.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 namespace selvedge {
 namespace {
@@ -49,6 +50,11 @@ PartOfScene part_of(const Scene& whole, std::span<const char> cloths) {
     if (pin < 0) continue;
     scene.pins.push_back(pin);
     part.pins.push_back(static_cast<int>(p));
+  }
+  for (const Spring& spring : whole.springs) {
+    const int a = renumbered[spring.a], b = renumbered[spring.b];
+    assert((a < 0) == (b < 0));
+    if (a >= 0) scene.springs.push_back({a, b, spring.rest_length, spring.stiffness});
   }
   scene.obstacles = whole.obstacles;
   scene.contact = whole.contact;

@@ -14,7 +14,8 @@ struct PartOfScene {
   std::vector<int> vertices, triangles,
       pins;  // of the part: their numbers in the whole; pins: positions in Scene::pins
 };
-PartOfScene part_of(const Scene&, std::span<const char> cloths);  // chosen ones, one a cloth
+// The chosen ones, one a cloth. Cloths that springs join must be chosen together (assert).
+PartOfScene part_of(const Scene&, std::span<const char> cloths);
 
 State state_of(const PartOfScene&, const State& whole);
 Drive drive_of(const PartOfScene&, const Drive& whole);

@@ -7,6 +7,7 @@
 #include "collision/box.hpp"
 #include "physics/measures.hpp"
 #include "physics/part_of_scene.hpp"
+#include "physics/springs.hpp"
 
 namespace selvedge {
 namespace {
@@ -28,10 +29,23 @@ Box box_of_motion(const Points& x0, const Points& x1, double margin) {
 // Round all that moves from x0 to x1 and strays from the way by no more than its length.
 Box box_of_motion(const Points& x0, const Points& x1) { return box_of_motion(x0, x1, largest_row(x1 - x0)); }
 
+// Of each cloth the lowest one that springs join it to.
+std::vector<int> joined_cloths(const Scene& scene) {
+  std::vector<int> cloth_of_vertex;
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
+    cloth_of_vertex.insert(cloth_of_vertex.end(), static_cast<std::size_t>(scene.cloths[c].vertex_count),
+                           static_cast<int>(c));
+  return joined_by_springs(scene.springs, cloth_of_vertex, static_cast<int>(scene.cloths.size()));
+}
+
 class RestingStepper final : public Stepper {
  public:
   RestingStepper(const Scene& scene, MakeStepper make)
-      : scene_(scene), make_(std::move(make)), whole_(make_(scene)), still_(still_edges * mean_edge_length(scene)) {}
+      : scene_(scene),
+        make_(std::move(make)),
+        whole_(make_(scene)),
+        still_(still_edges * mean_edge_length(scene)),
+        joined_(joined_cloths(scene)) {}
 
   const StepperTraits& traits() const override { return whole_->traits(); }
   StepReport step(const State& from, const Drive& drive, double dt, State& to) override;
@@ -45,6 +59,7 @@ class RestingStepper final : public Stepper {
     return x.middleRows(scene_.cloths[cloth].first_vertex, scene_.cloths[cloth].vertex_count);
   }
   bool pins_move(const State& from, const Drive& drive, int cloth) const;
+  void keep_joined(Chosen& resting) const;
   Chosen still_ones(const State& from, const Drive& drive) const;
   bool wake(const State& from, const std::vector<Box>& moving, Chosen& resting) const;
   std::vector<Box> moving_boxes(const State& from, const Drive& drive, double dt, const Chosen& resting) const;
@@ -56,7 +71,8 @@ class RestingStepper final : public Stepper {
   const Scene& scene_;
   MakeStepper make_;
   std::unique_ptr<Stepper> whole_;
-  double still_;  // [m]
+  double still_;             // [m]
+  std::vector<int> joined_;  // of each cloth the lowest one that springs join it to
   std::map<Chosen, Part> parts_;
 };
 
@@ -71,6 +87,13 @@ bool RestingStepper::pins_move(const State& from, const Drive& drive, int cloth)
   return false;
 }
 
+// Cloths that springs join rest only if all of them do.
+void RestingStepper::keep_joined(Chosen& resting) const {
+  Chosen all(resting.size(), true);
+  for (std::size_t c = 0; c < resting.size(); ++c) all[joined_[c]] = all[joined_[c]] && resting[c];
+  for (std::size_t c = 0; c < resting.size(); ++c) resting[c] = all[joined_[c]];
+}
+
 // Cloths that rest if nothing comes near them.
 Chosen RestingStepper::still_ones(const State& from, const Drive& drive) const {
   Chosen still(scene_.cloths.size(), false);
@@ -78,6 +101,7 @@ Chosen RestingStepper::still_ones(const State& from, const Drive& drive) const {
   if (from.rest.wind != drive.wind || from.rest.acceleration != drive.acceleration) return still;
   for (std::size_t c = 0; c < still.size(); ++c)
     still[c] = from.rest.seconds[c] >= still_seconds && !pins_move(from, drive, static_cast<int>(c));
+  keep_joined(still);
   return still;
 }
 
@@ -108,6 +132,7 @@ bool RestingStepper::wake(const State& from, const std::vector<Box>& moving, Cho
     resting[c] = false;
     woken = true;
   }
+  if (woken) keep_joined(resting);
   return woken;
 }
 

@@ -49,6 +49,13 @@ struct Wind {
   double lift = 0.0;         // coefficient of the tangential part
 };
 
+// Joins two vertices, of the same cloth or of different ones, such as a button does: it pulls and pushes alike.
+struct Spring {
+  int a = 0, b = 0;        // vertices of the scene
+  double rest_length = 0;  // [m]
+  double stiffness = 1e4;  // [N/m]
+};
+
 struct ContactSettings {
   double thickness = 2e-3;     // distance that resting layers keep [m]
   double friction = 0.3;       // cloth on obstacle
@@ -64,6 +71,7 @@ struct Scene {
   std::vector<RestTriangle> rest_triangle;  // one a triangle; the metric of the rest shape
   bool rest_is_flat = true;                 // no rest angles, no rest curvature
   std::vector<int> pins;                    // vertices with prescribed positions, ascending
+  std::vector<Spring> springs;
   std::vector<Obstacle> obstacles;
   ContactSettings contact;
   Wind wind;

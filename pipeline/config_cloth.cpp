@@ -129,6 +129,7 @@ const Section& cloth_section() {
           std::vector<Key>{section(copies_section(), "", ""), section(start_section(), "{}", ""),
                            vector("velocity", Unit::speed, "[0, 0, 0]", "at the start"),
                            section(material_section(), "{}", ""), section(rest_section(), "{}", ""),
+                           sections("seams", seam_section(), "[]", "sewn in themselves: panels that become a garment"),
                            sections("pins", pin_section(), "[]", "")}};
   return table;
 }

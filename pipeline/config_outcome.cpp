@@ -2,7 +2,6 @@
 
 // What a scene must come to.
 namespace selvedge::table {
-namespace {
 
 const Section& selection_section() {
   static const Section table{
@@ -15,6 +14,8 @@ const Section& selection_section() {
           selection_keys()};
   return table;
 }
+
+namespace {
 
 Key selected(std::string name, std::string about) {
   return renamed(section(selection_section(), "", std::move(about)), std::move(name));

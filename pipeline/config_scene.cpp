@@ -137,6 +137,7 @@ const Section& scene_section() {
       "",
       {},
       {text("description", "for people"), needed(sections("cloths", cloth_section(), "", "at least one")),
+       sections("springs", spring_section(), "[]", "buttons and stitches"),
        sections("obstacles", obstacle_section(), "[]", ""), vector("gravity", Unit::acceleration, "[0, -9.81, 0]", ""),
        section(wind_section(), "", ""), section(contact_section(), "{}", ""), section(run_section(), "{}", ""),
        section(solver_section(), "{}", ""), section(output_section(), "{}", ""),

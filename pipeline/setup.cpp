@@ -10,6 +10,8 @@
 #include "pipeline/setup_motion.hpp"
 #include "pipeline/setup_obstacle.hpp"
 #include "pipeline/setup_outcome.hpp"
+#include "pipeline/setup_seams.hpp"
+#include "pipeline/setup_springs.hpp"
 
 namespace selvedge {
 namespace {
@@ -263,6 +265,8 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
     setup.initial.x.row(setup.scene.pins[p]) = start.pins.row(static_cast<Eigen::Index>(p));
     setup.initial.v.row(setup.scene.pins[p]).setZero();
   }
+  warn_of_stretched_seams(cloths, setup.scene, setup.initial.x, setup.warnings);
+  setup.scene.springs = read_springs(config["springs"], cloths, setup.scene, setup.initial.x, setup.warnings);
   setup.outcomes = read_outcomes(config["outcome"], cloths, setup.scene);
   setup.short_form = config["short_form"].words;
   setup.config = to_yaml(config);

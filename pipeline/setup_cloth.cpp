@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 
 #include "pipeline/materials.hpp"
 #include "pipeline/setup_motion.hpp"
 #include "pipeline/setup_paths.hpp"
+#include "pipeline/setup_seams.hpp"
 #include "pipeline/setup_sheet.hpp"
 #include "pipeline/setup_start.hpp"
 
@@ -74,6 +76,11 @@ std::vector<int> in_box(const Config& box, const Points& x) {
   return found;
 }
 
+void sort_unique(std::vector<int>& numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
 std::vector<int> in_groups(const Config& group, const Mesh& mesh) {
   std::vector<std::string> known;
   for (const auto& [name, vertices] : mesh.groups) known.push_back(name);
@@ -86,15 +93,17 @@ std::vector<int> in_groups(const Config& group, const Mesh& mesh) {
     const std::vector<int>& vertices = mesh.groups[static_cast<std::size_t>(match - known.begin())].second;
     found.insert(found.end(), vertices.begin(), vertices.end());
   }
+  sort_unique(found);
   return found;
 }
 
-std::vector<int> listed(const Config& list, Eigen::Index count) {
+std::vector<int> listed(const Config& list, const ClothPart& part) {
+  const std::size_t count = part.sewn.empty() ? static_cast<std::size_t>(part.mesh.x.rows()) : part.sewn.size();
   std::vector<int> found;
   for (const double v : list.numbers) {
     if (v >= static_cast<double>(count))
       list.fail(fmt::format("names vertex {}, which does not exist", v), fmt::format("allowed: 0 to {}", count - 1));
-    found.push_back(static_cast<int>(v));
+    found.push_back(part.sewn.empty() ? static_cast<int>(v) : part.sewn[static_cast<std::size_t>(v)]);
   }
   return found;
 }
@@ -105,7 +114,7 @@ PinPart following(const std::shared_ptr<const Wearing>& worn, const std::vector<
 }
 
 PinPart read_pin(const Config& section, const ClothPart& part) {
-  const std::vector<int> vertices = read_selection(section, part.mesh);
+  const std::vector<int> vertices = read_selection(section, part);
   if (const Config& follow = section["follow"]; follow.given) {
     if (!part.worn)
       follow.fail("is given for a cloth that no body wears", "make the cloth a `garment`, or leave it out");
@@ -126,6 +135,7 @@ void read_shape(const Config& section, const std::filesystem::path& folder, std:
   const Config& placement = worn ? part.worn->by->section : section;
   read_rest(section["rest"], part.mesh, !section["mesh"].given, placement["scale"].number(), folder, part);
   part.mesh.x = worn ? worn_at(*part.worn, 0) : placed(section, part.mesh.x);
+  if (!worn) sew(section["seams"], folder, part, warnings);
   if (worn && section["start"]["moving"].flag())
     part.velocity = worn_velocity(*part.worn, 0);
   else
@@ -170,18 +180,18 @@ std::vector<ClothPart> read_worn(const Config& section, const std::filesystem::p
 
 }  // namespace
 
-std::vector<int> read_selection(const Config& section, const Mesh& mesh) {
-  std::vector<int> found;
-  if (section["vertices"].given)
-    found = listed(section["vertices"], mesh.x.rows());
-  else if (section["box"].given)
-    found = in_box(section["box"], mesh.x);
-  else if (section["group"].given)
-    found = in_groups(section["group"], mesh);
-  else
-    for (int v = 0; v < mesh.x.rows(); ++v) found.push_back(v);
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
+std::vector<int> read_vertices(const Config& section, const ClothPart& part) {
+  if (section["vertices"].given) return listed(section["vertices"], part);
+  if (section["box"].given) return in_box(section["box"], part.mesh.x);
+  if (section["group"].given) return in_groups(section["group"], part.mesh);
+  std::vector<int> all(static_cast<std::size_t>(part.mesh.x.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+std::vector<int> read_selection(const Config& section, const ClothPart& part) {
+  std::vector<int> found = read_vertices(section, part);
+  sort_unique(found);
   return found;
 }
 

@@ -21,6 +21,8 @@ struct ClothPart {
   Points velocity;  // at the start
   std::vector<PinPart> pins;
   std::shared_ptr<const Wearing> worn;  // null for what is no garment
+  std::vector<int> sewn;                // of each vertex as read or made: its number here; empty where nothing is sewn
+  double sewn_apart = 0;                // how far vertices that are one now were apart [m]
 };
 
 // The cloth of a section, or its copies. `folder` is the scene file's; warnings are added. The material's values are
@@ -29,8 +31,10 @@ std::vector<ClothPart> read_cloths(Config& section, const std::string& default_n
                                    const std::filesystem::path& folder, const Performances&,
                                    std::vector<std::string>& warnings);
 
-// The vertices that `vertices`, `box` or `group` of a section name, ascending; all where it names none.
-std::vector<int> read_selection(const Config& section, const Mesh&);
+// The vertices that `vertices`, `box` or `group` of a section name; all where it names none. Vertices that are listed
+// keep their order and have the numbers that they were read or made with; those that come back have the part's own.
+std::vector<int> read_vertices(const Config& section, const ClothPart&);
+std::vector<int> read_selection(const Config& section, const ClothPart&);  // the same, ascending, each once
 
 // The flat metric of every triangle, v along the part of `weft` in the triangle's plane.
 std::vector<RestTriangle> flattened(const Points& x, const Triangles&, const Vec3& weft);

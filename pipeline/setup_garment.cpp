@@ -19,6 +19,8 @@ void check_placed_by_body(const Config& cloth) {
   refuse("scale", cloth["scale"].number() != 1);
   for (const char* key : {"rotate", "translate", "velocity"}) refuse(key, cloth[key].vector() != Vec3(0, 0, 0));
   refuse("copies", cloth["copies"].given);
+  if (!cloth["seams"].items.empty())
+    cloth["seams"].fail("is given for a garment", "sew the mesh first, then make the garment of it");
 }
 
 std::shared_ptr<const Performance> wearer(const Config& garment, const Performances& bodies) {

@@ -1,6 +1,7 @@
 #include "pipeline/setup_outcome.hpp"
 
 #include "pipeline/config.hpp"
+#include "pipeline/setup_names.hpp"
 
 namespace selvedge {
 namespace {
@@ -9,17 +10,6 @@ struct Parts {
   const std::vector<ClothPart>& cloths;
   const Scene& scene;
 };
-
-template <class Named>
-int index_of(const Config& name, const std::vector<Named>& all) {
-  std::vector<std::string> known;
-  for (const Named& one : all) {
-    if (one.name == name.text()) return static_cast<int>(known.size());
-    known.push_back(one.name);
-  }
-  name.fail("names `" + name.text() + "`, which is not in the scene",
-            known.empty() ? "there is none" : "known: " + joined(known) + suggestion(name.text(), known));
-}
 
 // Vertices of the scene.
 std::vector<int> selected(const Config& section, const Parts& parts) {
@@ -31,7 +21,7 @@ std::vector<int> selected(const Config& section, const Parts& parts) {
     if (named && index_of(section["cloth"], parts.cloths) != static_cast<int>(c)) continue;
     const Cloth& cloth = parts.scene.cloths[c];
     if (part)
-      for (const int v : read_selection(section, parts.cloths[c].mesh)) all.push_back(cloth.first_vertex + v);
+      for (const int v : read_selection(section, parts.cloths[c])) all.push_back(cloth.first_vertex + v);
     else
       for (int v = 0; v < cloth.vertex_count; ++v) all.push_back(cloth.first_vertex + v);
   }

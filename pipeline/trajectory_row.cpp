@@ -57,6 +57,7 @@ std::vector<Column> columns() {
           {"gravity_energy", offsetof(Row, gravity_energy), real},
           {"membrane_energy", offsetof(Row, membrane_energy), real},
           {"bending_energy", offsetof(Row, bending_energy), real},
+          {"spring_energy", offsetof(Row, spring_energy), real},
           {"bad_begin", offsetof(Row, bad_begin), H5T_NATIVE_INT64},
           {"bad_count", offsetof(Row, bad_count), whole}};
 }
@@ -102,6 +103,7 @@ TrajectoryRow row_of(const Frame& frame, int by, std::int64_t bad_begin) {
   row.gravity_energy = frame.energy.gravity;
   row.membrane_energy = frame.energy.membrane;
   row.bending_energy = frame.energy.bending;
+  row.spring_energy = frame.energy.springs;
   row.bad_begin = bad_begin;
   row.bad_count = static_cast<int>(frame.bad_triangles.size());
   return row;
@@ -129,7 +131,7 @@ void fill_from_row(const TrajectoryRow& row, const std::vector<std::string>& nam
   frame.nonfinite = row.nonfinite;
   frame.max_stretch = row.max_stretch;
   frame.min_stretch = row.min_stretch;
-  frame.energy = {row.kinetic_energy, row.gravity_energy, row.membrane_energy, row.bending_energy};
+  frame.energy = {row.kinetic_energy, row.gravity_energy, row.membrane_energy, row.bending_energy, row.spring_energy};
 }
 
 const std::vector<std::string>& reason_names() {

@@ -20,7 +20,7 @@ struct TrajectoryRow {
   CollisionReport collision;
   std::int32_t self_pairs, vertex_pairs, obstacle_pairs, inside_vertices, nonfinite;
   double max_stretch, min_stretch;
-  double kinetic_energy, gravity_energy, membrane_energy, bending_energy;
+  double kinetic_energy, gravity_energy, membrane_energy, bending_energy, spring_energy;
   std::int64_t bad_begin;  // frames/bad_triangles [bad_begin, bad_begin + bad_count)
   std::int32_t bad_count;
 };

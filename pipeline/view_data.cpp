@@ -62,6 +62,7 @@ struct Series {
     add("gravity", f.energy.gravity);
     add("membrane", f.energy.membrane);
     add("bending", f.energy.bending);
+    add("springs", f.energy.springs);
     add("seconds", f.seconds);
     add("contacts", f.report.collision.contacts);
     add("iterations", f.report.iterations);

@@ -10,7 +10,8 @@ const energyColours = {
   kinetic: "#3f8ae0",
   gravity: "#8a939d",
   membrane: "#e0922f",
-  bending: "#2fa58a"
+  bending: "#2fa58a",
+  springs: "#a0569c"
 };
 const strainStops = ["#2b2f6b", "#2c5f9e", "#2f93a6", "#63bd8c", "#c5d968", "#fff3a3"];
 

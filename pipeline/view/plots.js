@@ -96,10 +96,11 @@ function drawCurves(canvas, curves, run, view) {
   context.fillText(view.topText, left + 2, top + 2);
 }
 
-// Gravity is counted from its lowest frame, so that all four share one axis that begins at zero.
+// Gravity is counted from its lowest frame, so that all share one axis that begins at zero. Springs show where there are any.
 function energyCurves(run) {
   const lowest = run.series.gravity.reduce((low, value) => (value !== null && value < low ? value : low), Infinity);
   return Object.keys(energyColours)
+      .filter((name) => name !== "springs" || run.series.springs.some((value) => value))
       .map((name) => ({
              name,
              colour: energyColours[name],

@@ -92,3 +92,12 @@ TEST_CASE("plan: a line for every feature, in or out, with a reason that has the
   CHECK(line(scene, "self-contact").why == "left out by the user; the file is labelled self: not audited");
   CHECK_FALSE(line(scene, "self-contact").in);
 }
+
+TEST_CASE("plan: springs have a line where there are any", "[features]") {
+  Scene scene = plain();
+  CHECK_FALSE(features_of(scene).springs);
+  for (const PlanLine& entry : plan_lines(scene)) CHECK(entry.feature != "springs");
+  scene.springs = {{0, 5, 0.1, 10}};
+  CHECK(features_of(scene).springs);
+  CHECK(line(scene, "springs").why == "1 pair of vertices joined");
+}

@@ -64,6 +64,17 @@ TEST_CASE("measures: elastic energies are sums over the terms, each cloth with i
   CHECK(energy.gravity == 0);
 }
 
+TEST_CASE("measures: springs store half their stiffness times the stretch squared", "[measures]") {
+  Scene scene = two_cloths();
+  scene.springs = {{0, scene.cloths[1].first_vertex, 0.1, 30}, {1, 2, 0.05, 7}};
+  Points x = scene.rest;
+  x.bottomRows(scene.cloths[1].vertex_count).col(1).array() += 0.3;
+  const double apart = (x.row(0) - x.row(scene.cloths[1].first_vertex)).norm();
+  const Energies energy = energies(scene, x, Points::Zero(x.rows(), 3), Vec3::Zero());
+  CHECK(energy.springs == Approx(0.5 * 30 * std::pow(apart - 0.1, 2) + 0.5 * 7 * std::pow(0.1 - 0.05, 2)));
+  CHECK(energy.total() == Approx(energy.membrane + energy.bending + energy.springs));
+}
+
 TEST_CASE("measures: bending energy of curved rest shapes counts", "[measures]") {
   meshes::Mesh mesh = grid(6, 6, 0.6, 0.6);
   mesh.flat.clear();

@@ -132,6 +132,44 @@ TEST_CASE("resting stepper: where all rest nothing is solved", "[resting]") {
   CHECK(to.clean);
 }
 
+TEST_CASE("resting stepper: cloths that a spring joins rest together or move together", "[resting]") {
+  World still = two_cloths(lying, moved(lying, {0.12, 0, 0}));
+  still.scene.springs = {{5, 36, 0.02, 100}};
+  CHECK(resting_next(still, until_resting(still, 2)) == 2);
+
+  World w = one_swings();
+  w.scene.springs = {{5, 36, (w.state.x.row(5) - w.state.x.row(36)).norm(), 1e-6}};
+  const auto stepper = resting(w.scene);
+  State state = w.state, to;
+  for (int f = 0; f < 40; ++f) {
+    CHECK(stepper->step(state, w.drive, 1.0 / 30, to).resting == 0);
+    state = to;
+  }
+  CHECK(state.rest.seconds[0] > 0.5);  // it would rest alone
+  w.scene.springs.clear();
+  CHECK(resting_next(w, state) == 1);
+
+  World woken = still;  // what comes near the one wakes the other
+  State calm = until_resting(still, 2);
+  add_obstacle(woken, moved(testing::sheet(2, 0.02, 0), {0.15, 0.02, 0}));
+  calm.obstacles.push_back(woken.drive.obstacles[1]);
+  woken.drive.obstacles[1].col(1).array() -= 0.01;
+  CHECK(resting_next(woken, calm) == 0);
+  woken.scene.springs.clear();
+  CHECK(resting_next(woken, calm) == 1);
+}
+
+TEST_CASE("resting stepper: a part of a scene keeps its springs, in its own numbers", "[resting]") {
+  World w = two_cloths(lying, moved(lying, {0.12, 0, 0}));
+  w.scene.springs = {{40, 50, 0.1, 7}, {1, 2, 0.2, 8}};
+  const std::vector<Spring> first = part_of(w.scene, std::vector<char>{1, 0}).scene.springs;
+  const std::vector<Spring> second = part_of(w.scene, std::vector<char>{0, 1}).scene.springs;
+  REQUIRE((first.size() == 1 && second.size() == 1));
+  CHECK((first[0].a == 1 && first[0].b == 2 && first[0].rest_length == 0.2 && first[0].stiffness == 8));
+  CHECK((second[0].a == 4 && second[0].b == 14 && second[0].rest_length == 0.1 && second[0].stiffness == 7));
+  CHECK(part_of(w.scene, std::vector<char>{1, 1}).scene.springs.size() == 2);
+}
+
 TEST_CASE("resting stepper: a start at zero speed does not rest, and caches carry no state", "[resting]") {
   const World w = one_swings();
   CHECK(resting_next(w, w.state) == 0);

@@ -41,6 +41,30 @@ TEST_CASE("work: a fall takes none, and gains none", "[work]") {
   CHECK(fall.gain < 1e-9);  // implicit Euler falls a little deep
 }
 
+TEST_CASE("work: a stretched spring that lets go gives what it held, and no more", "[work]") {
+  testing::Sheet above = sheet(4, 0.2, 0.5);
+  World w = make_world(testing::join(sheet(4, 0.2, 0), above));
+  w.drive.acceleration.setZero();
+  w.scene.springs = {{12, 25 + 12, 0.3, 20}};  // the middles
+  const double held = energies(w.scene, w.state.x, w.state.v, w.drive.acceleration).springs;
+  REQUIRE(held == Approx(0.5 * 20 * 0.04));
+  const Books pull = books(w, 10, [&](int) { return w.drive; });
+  CHECK(pull.work.total() == 0);
+  CHECK(pull.gain < 0);
+  CHECK(pull.gain > -0.9 * held);
+}
+
+TEST_CASE("work: a weight that hangs on a spring from a pin asks for no work", "[work]") {
+  World w = make_world(testing::join(sheet(2, 0.1, 0), sheet(2, 0.1, -0.2)));
+  for (int i = 0; i < 9; ++i) w.scene.pins.push_back(i);
+  w.drive.pins = w.state.x.topRows(9);
+  w.scene.springs = {{4, 9 + 4, 0.1, 2}};
+  w.scene.cloths[0].material.stiffness_damping = 0.05;
+  const Books hang = books(w, 60, [&](int) { return w.drive; });
+  CHECK(hang.work.total() == 0);
+  CHECK(hang.gain < 0);
+}
+
 TEST_CASE("work: what lifts a sheet by its pins is bounded, and not by much more than the lift", "[work]") {
   World w = make_world(sheet(6, 0.4, 0));
   w.scene.pins = {0, 1, 2, 3, 4, 5, 6};

@@ -86,7 +86,7 @@ inline Frame frame(const Scene& scene, int index) {
   frame.report.collision.contacts = 7 * index;
   frame.self_pairs = index;
   frame.max_stretch = 1 + 0.1 * index;
-  frame.energy = {1.0 * index, 2, 3, 4};
+  frame.energy = {1.0 * index, 2, 3, 4, 5};
   for (int k = 0; k < index % 3; ++k) frame.bad_triangles.push_back(k + index % 2);
   return frame;
 }

@@ -28,6 +28,7 @@ void require_same(const Frame& a, const Frame& b) {
   REQUIRE(a.self_pairs == b.self_pairs);
   REQUIRE(a.max_stretch == b.max_stretch);
   REQUIRE(a.energy.kinetic == b.energy.kinetic);
+  REQUIRE(a.energy.springs == b.energy.springs);
   REQUIRE(a.bad_triangles == b.bad_triangles);
 }
 
