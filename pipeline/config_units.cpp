@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "collision/error.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -122,6 +124,13 @@ Quantity read_quantity(std::string_view text, Unit unit) {
   }
   if (!std::isfinite(*value)) return {0, "is not finite"};
   return {*value * factor, {}};
+}
+
+double metres_per_unit(const std::string& unit) {
+  const Quantity quantity = read_quantity("1 " + unit, Unit::length);
+  if (!quantity.problem.empty())
+    throw Error("unknown unit `" + unit + "`", "--unit", "known: " + unit_symbols(Unit::length));
+  return quantity.value;
 }
 
 }  // namespace selvedge

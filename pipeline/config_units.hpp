@@ -34,6 +34,9 @@ struct Quantity {
 // "0.002", "2 mm", "150 g/m2": a plain number is SI; a unit of another dimension, NaN and infinity are problems.
 Quantity read_quantity(std::string_view text, Unit);
 
+// Metres in one of a unit that a command was given as --unit. Throws Error for an unknown one.
+double metres_per_unit(const std::string& unit);
+
 // The whole text as a finite or infinite number, nothing otherwise. Knows no locale.
 std::optional<double> read_number(std::string_view text);
 

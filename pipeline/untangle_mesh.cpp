@@ -17,13 +17,6 @@ struct Body {
   Points x;
 };
 
-double metres_per_unit(const std::string& unit) {
-  const Quantity quantity = read_quantity("1 " + unit, Unit::length);
-  if (!quantity.problem.empty())
-    throw Error("unknown unit `" + unit + "`", "--unit", "known: " + unit_symbols(Unit::length));
-  return quantity.value;
-}
-
 std::vector<Body> read_bodies(const UntangleRequest& request, UntangleReport& report) {
   std::vector<Body> bodies;
   for (const std::filesystem::path& file : request.bodies) {
