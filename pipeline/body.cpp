@@ -114,6 +114,16 @@ JointTransforms joint_transforms(const BodyModel& body, const Points& joints, co
   return transforms;
 }
 
+Points posed_joints(const BodyModel& body, const Points& joints, const BodyPose& pose) {
+  const JointTransforms transforms = joint_transforms(body, joints, pose);
+  Points x(joints.rows(), 3);
+  for (Eigen::Index j = 0; j < x.rows(); ++j) {
+    const Vec3 rest = joints.row(j).transpose();
+    x.row(j) = (transforms[static_cast<std::size_t>(j)] * rest.homogeneous() + pose.translation).transpose();
+  }
+  return x;
+}
+
 Points posed(const SkinnedSurface& skin, const Eigen::VectorXd& shape, const BodyPose& pose,
              const JointTransforms& transforms) {
   check_shape(skin, shape);

@@ -47,6 +47,9 @@ Points joint_positions(const BodyModel&, const Eigen::VectorXd& shape);
 using JointTransforms = std::vector<Eigen::Matrix<double, 3, 4>>;
 JointTransforms joint_transforms(const BodyModel&, const Points& joints, const BodyPose&);
 
+// Where the joints are in a pose, with its translation. Throws Error as joint_transforms does.
+Points posed_joints(const BodyModel&, const Points& joints, const BodyPose&);
+
 // The surface in a pose: shape and pose blend shapes, then linear blend skinning, then the translation. In parallel;
 // any number of threads gives the same bits. Throws Error for a pose or transforms of another number of joints, and for
 // rotations that are not finite. Pose blend shapes: Loper et al. 2015, section 3, one column an entry, row by row.

@@ -9,24 +9,10 @@
 #include "pipeline/clip_procedural_figure.hpp"
 #include "pipeline/motion.hpp"
 #include "pipeline/smpl_joints.hpp"
+#include "pipeline/t_pose.hpp"
 
 namespace selvedge {
 namespace {
-
-enum Smpl {
-  pelvis = 0,
-  left_hip = 1,
-  left_knee = 4,
-  left_ankle = 7,
-  left_foot = 10,
-  left_shoulder = 16,
-  left_elbow = 18,
-  left_wrist = 20
-};
-
-Mat3 least_rotation(const Vec3& from, const Vec3& to) {
-  return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
-}
 
 struct Source {
   std::vector<int> joint;  // of the file, for each of SMPL's
@@ -36,7 +22,7 @@ struct Source {
   Vec3 at(const BvhPose& pose, int smpl) const {
     return upright * row(pose.positions, joint[static_cast<std::size_t>(smpl)]);
   }
-  Vec3 hips(const BvhPose& pose) const { return 0.5 * (at(pose, left_hip) + at(pose, left_hip + 1)); }
+  Vec3 hips(const BvhPose& pose) const { return 0.5 * (at(pose, smpl::hip) + at(pose, smpl::hip + 1)); }
   // How a joint has turned from rest, with Y up.
   Mat3 turned(const BvhPose& pose, int smpl) const {
     const auto j = static_cast<std::size_t>(joint[static_cast<std::size_t>(smpl)]);
@@ -50,14 +36,14 @@ Mat3 upright_axes(const BvhFile& bvh, const Source& s) {
     return 0.5 * (row(s.rest.positions, s.joint[static_cast<std::size_t>(left)]) +
                   row(s.rest.positions, s.joint[static_cast<std::size_t>(left + 1)]));
   };
-  const Vec3 legs = middle(left_hip) - middle(left_ankle), trunk = middle(left_shoulder) - middle(left_hip);
+  const Vec3 legs = middle(smpl::hip) - middle(smpl::ankle), trunk = middle(smpl::shoulder) - middle(smpl::hip);
   int axis = 0;
   (legs + trunk).cwiseAbs().maxCoeff(&axis);
   const Vec3 up = std::copysign(1, (legs + trunk)[axis]) * Vec3::Unit(axis);
   if (legs.dot(up) < 0.7 * legs.norm() || trunk.dot(up) < 0.7 * trunk.norm())
     throw Error("does not stand upright in its rest pose", bvh.file,
                 "give rest_frame, the number of a frame in which it does");
-  return least_rotation(up, Vec3::UnitY());
+  return Eigen::Quaterniond::FromTwoVectors(up, Vec3::UnitY()).toRotationMatrix();
 }
 
 double limb(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).norm() + (c - b).norm(); }
@@ -65,37 +51,24 @@ double limb(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).norm()
 double leg_ratio(const BvhFile& bvh, const Source& s, const Skeleton& k) {
   double leg = 0;
   for (const int side : {0, 1})
-    leg += 0.5 * limb(s.at(s.rest, left_hip + side), s.at(s.rest, left_knee + side), s.at(s.rest, left_ankle + side));
+    leg +=
+        0.5 * limb(s.at(s.rest, smpl::hip + side), s.at(s.rest, smpl::knee + side), s.at(s.rest, smpl::ankle + side));
   if (!(leg > 0)) throw Error("has legs without length", bvh.file, "give joints that lie apart");
   return k.leg / leg;
 }
 
 // For each joint of the body the rotation that takes its zero pose to the file's rest pose.
 std::vector<Mat3> alignment(const Source& s, const Skeleton& k) {
-  const auto body = [&](int j) { return row(k.joints, j); };
   const auto angle = [](const Vec3& left, const Vec3& right) {
     return std::atan2(right.z() - left.z(), left.x() - right.x());
   };
-  const double turn =
-      angle(s.at(s.rest, left_hip), s.at(s.rest, left_hip + 1)) - angle(body(left_hip), body(left_hip + 1));
+  const double turn = angle(s.at(s.rest, smpl::hip), s.at(s.rest, smpl::hip + 1)) -
+                      angle(row(k.joints, smpl::hip), row(k.joints, smpl::hip + 1));
   const Mat3 heading = rotation_matrix(Vec3(0, turn, 0));  // from hip to hip, seen from above
-  std::vector<Mat3> align(24, heading);
-  const auto along = [&](int parent, int joint, int child) {
-    const Mat3& before = align[static_cast<std::size_t>(parent)];
-    const Vec3 theirs = s.at(s.rest, child) - s.at(s.rest, joint);
-    align[static_cast<std::size_t>(joint)] =
-        theirs.norm() > 0 ? least_rotation(before * (body(child) - body(joint)), theirs) * before : before;
-  };
-  for (const int side : {0, 1}) {
-    along(pelvis, left_hip + side, left_knee + side);
-    along(left_hip + side, left_knee + side, left_ankle + side);
-    along(pelvis, left_shoulder + side, left_elbow + side);
-    const auto elbow = static_cast<std::size_t>(left_elbow + side), wrist = static_cast<std::size_t>(left_wrist + side);
-    align[elbow] = align[static_cast<std::size_t>(left_shoulder + side)];
-    if (s.joint[wrist] >= 0) along(left_shoulder + side, left_elbow + side, left_wrist + side);
-    align[wrist] = align[wrist + 2] = align[elbow];
-  }
-  return align;
+  return turned_limbs(k.joints, heading, [&](int joint, int child) -> Vec3 {
+    const bool known = child < smpl::hand && s.joint[static_cast<std::size_t>(child)] >= 0;
+    return known ? Vec3(s.at(s.rest, child) - s.at(s.rest, joint)) : Vec3::Zero();
+  });
 }
 
 // A joint that the file lacks goes with its parent.
@@ -127,22 +100,19 @@ Clip retargeted(const BvhFile& bvh, const Points& joints, const BvhOptions& opti
   body.parents = smpl_joint_parents();
 
   Clip clip{std::filesystem::path(bvh.file).stem().string(), bvh.fps, smpl_joint_names(24), {}, {}};
-  const Vec3 root = row(k.joints, pelvis), hips = 0.5 * (row(k.joints, left_hip) + row(k.joints, left_hip + 1)) - root;
+  const Vec3 root = row(k.joints, smpl::pelvis),
+             hips = 0.5 * (row(k.joints, smpl::hip) + row(k.joints, smpl::hip + 1)) - root;
   Vec3 origin = Vec3::Zero();
   double lowest = std::numeric_limits<double>::infinity();  // of the feet, compared to standing
   for (int f = 0; f < bvh.motion.rows(); ++f) {
     const BvhPose theirs = bvh_pose(bvh, f);
     BodyPose pose = pose_of(s, theirs, align);
-    const Mat3 turn = rotation_matrix(row(pose.rotations, pelvis));
+    const Mat3 turn = rotation_matrix(row(pose.rotations, smpl::pelvis));
     pose.translation = scale * s.hips(theirs) - turn * hips - root;
     if (f == 0) origin = (pose.translation + root).cwiseProduct(Vec3(1, 0, 1));
-    const JointTransforms posed = joint_transforms(body, k.joints, pose);
-    for (const int foot : {+left_ankle, left_ankle + 1, +left_foot, left_foot + 1}) {
-      const Vec3 rest = row(k.joints, foot);
-      const auto& transform = posed[static_cast<std::size_t>(foot)];
-      const double y = transform.row(1).dot(rest.homogeneous()) + pose.translation.y();
-      lowest = std::min(lowest, y - (rest.y() - k.floor));
-    }
+    const Points posed = posed_joints(body, k.joints, pose);
+    for (const int foot : {+smpl::ankle, smpl::ankle + 1, +smpl::foot, smpl::foot + 1})
+      lowest = std::min(lowest, posed(foot, 1) - (k.joints(foot, 1) - k.floor));
     clip.poses.push_back(std::move(pose));
   }
   for (BodyPose& pose : clip.poses) pose.translation -= origin + Vec3(0, lowest, 0);

@@ -121,6 +121,13 @@ int dress_command(const DressRequest& request, bool json) {
   return is_clean(report) ? 0 : 1;
 }
 
+int body_command(const BodyRequest& request, bool json) {
+  const BodyReport report = convert_body(request);
+  people(json) << body_text(report);
+  if (json) std::cout << body_json(report);
+  return 0;
+}
+
 int ccd_command(const CcdArguments& arguments, bool json) {
   const CcdReport report = ccd_report(arguments.files);
   people(json) << ccd_text(report);

@@ -8,6 +8,7 @@
 #include "pipeline/bench.hpp"
 #include "pipeline/check.hpp"
 #include "pipeline/compare.hpp"
+#include "pipeline/convert_body.hpp"
 #include "pipeline/dress.hpp"
 #include "pipeline/export.hpp"
 #include "pipeline/stability.hpp"
@@ -49,6 +50,7 @@ int plan_command(const SceneArguments&, bool json);
 int check_command(const CheckRequest&, bool json);
 int untangle_command(const UntangleRequest&, bool json);
 int dress_command(const DressRequest&, bool json);
+int body_command(const BodyRequest&, bool json);
 int ccd_command(const CcdArguments&, bool json);
 int export_command(const ExportRequest&, bool json);
 int view_command(const ViewArguments&, bool json);

@@ -79,6 +79,14 @@ void dress_options(CLI::App& command, DressRequest& request) {
       ->allow_extra_args(false);
 }
 
+void body_options(CLI::App& command, BodyRequest& request) {
+  command.add_option("file", request.file, "mesh (.obj, .ply) or model of the SMPL family (.npz)")->required();
+  command.add_option("--skeleton", request.skeleton, "of the mesh, as MakeHuman has it (.mhskel)");
+  command.add_option("--weights", request.weights, "of the mesh, as MakeHuman has them (.mhw)");
+  command.add_option("--unit", request.unit, "of the mesh: m, dm, cm, mm");
+  command.add_option("--out", request.out, "where the body goes (.h5)")->required();
+}
+
 void ccd_options(CLI::App& command, CcdArguments& arguments) {
   command
       .add_option("files", arguments.files, "queries with known answers (.csv), in folders edge-edge or vertex-face")
@@ -157,6 +165,8 @@ void add_commands(CLI::App& app, Chosen& chosen) {
                                untangle_command);
   add_command<DressRequest>(app, chosen, "dress", "a garment for scenes from a mesh that a body wears", dress_options,
                             dress_command);
+  add_command<BodyRequest>(app, chosen, "body", "a rigged body from other programs' files, for scenes", body_options,
+                           body_command);
   add_command<CcdArguments>(app, chosen, "ccd", "continuous detection against queries with known answers", ccd_options,
                             ccd_command);
   add_command<ExportRequest>(app, chosen, "export", "a trajectory as meshes or point caches", export_options,

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/joint_regressor.hpp"
 #include "pipeline/mannequin_form.hpp"
 #include "pipeline/mannequin_skin.hpp"
 
@@ -25,22 +26,6 @@ Band band_of(const std::string& joint) {
   if (part == "wrist" || part == "hand") return {0, 0.025, 0.07};
   if (part == "neck" || part == "head") return {1, 0.03, 0.13};
   return {1, 0.04, 0.20};
-}
-
-// Weights near the given ones that sum to 1 and have their mean at the point, none below zero: the least change in
-// squares relative to the weights, without those that fall below zero, until none does.
-void meet(const Points& x, const std::vector<int>& vertices, const Vec3& point, Eigen::VectorXd& weights) {
-  Eigen::MatrixXd conditions(4, weights.size());
-  for (std::size_t k = 0; k < vertices.size(); ++k)
-    conditions.col(static_cast<Eigen::Index>(k)) << 1, row(x, vertices[k]) - point;
-  for (int round = 0; round < 20; ++round) {
-    const Eigen::MatrixXd scaled = conditions * weights.asDiagonal();
-    const Eigen::Vector4d missing = Eigen::Vector4d(1, 0, 0, 0) - conditions * weights;
-    const Eigen::Matrix4d system = scaled * conditions.transpose();
-    weights += scaled.transpose() * system.ldlt().solve(missing);
-    if (weights.minCoeff() >= 0) return;
-    weights = weights.cwiseMax(0);
-  }
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include "pipeline/setup_body.hpp"
 
 #include <algorithm>
+#include <memory>
+#include <optional>
 
 #include "pipeline/body_hdf5.hpp"
 #include "pipeline/body_smpl.hpp"
@@ -10,6 +12,8 @@
 #include "pipeline/mannequin.hpp"
 #include "pipeline/setup_motion.hpp"
 #include "pipeline/setup_paths.hpp"
+#include "pipeline/smpl_joints.hpp"
+#include "pipeline/t_pose.hpp"
 
 namespace selvedge {
 namespace {
@@ -24,38 +28,59 @@ BodyModel read_model(const Config& model, const std::filesystem::path& folder) {
   model.fail("is neither `mannequin` nor a .npz or .h5 file", "convert the body as docs/bodies.md says");
 }
 
-// The joints that clips are made for, 24 x 3; hands that the body lacks are where its wrists are.
-Points smpl_joints(const BodyModel& body, const Points& joints, const Config& clip) {
-  const std::vector<std::string> names = smpl_joint_names(24);
-  Points found(24, 3);
-  for (int j = 0; j < 24; ++j) {
-    const auto at = std::find(body.joints.begin(), body.joints.end(), names[j]);
-    if (at != body.joints.end())
-      found.row(j) = joints.row(at - body.joints.begin());
-    else if (j >= 22)
-      found.row(j) = found.row(j - 2);
-    else
-      clip.fail("needs the joint `" + names[j] + "`, which the body " + body.name + " lacks",
-                "name the body's joints as SMPL does, see docs/mannequin.md");
-  }
-  return found;
+// What clips are made for: the body in SMPL's zero pose.
+struct Measures {
+  Points joints;     // 24 x 3
+  double floor = 0;  // y of the soles
+};
+
+Measures measured(const Performance& who, const Points& joints, const std::optional<BodyPose>& t_pose) {
+  if (!t_pose) return {smpl_joints(who.body, joints), shaped(who.body.skin, who.shape).col(1).minCoeff()};
+  return {smpl_joints(who.body, posed_joints(who.body, joints, *t_pose)),
+          posed(who.body, who.shape, *t_pose).col(1).minCoeff()};
 }
 
-Clip read_clip(const Config& clip, const Performance& who, const std::filesystem::path& folder) {
-  const Points joints = joint_positions(who.body, who.shape);
-  const double floor = shaped(who.body.skin, who.shape).col(1).minCoeff();
+void check_joints(const BodyModel& body, const Config& clip) {
+  const std::vector<std::string> names = smpl_joint_names(smpl::joints);
+  const std::vector<int> found = smpl_joints_among(body.joints);
+  for (std::size_t j = 0; j < found.size(); ++j)
+    if (found[j] < 0)
+      clip.fail("needs the joint `" + names[j] + "`, which the body " + body.name + " lacks",
+                "name the body's joints as SMPL does, see docs/mannequin.md");
+}
+
+// Rotations from SMPL's zero pose.
+Clip read_clip(const Config& clip, const Measures& who, const std::filesystem::path& folder) {
   const std::filesystem::path name(clip.text());
-  if (name.extension() == ".npz") return read_amass(existing_path(clip, folder), amass_fps, row(joints, 0));
+  if (name.extension() == ".npz")
+    return read_amass(existing_path(clip, folder), amass_fps, row(who.joints, smpl::pelvis));
   if (name.extension() == ".bvh") {
     BvhOptions options;
-    options.floor = floor;
-    return retargeted(read_bvh(existing_path(clip, folder)), smpl_joints(who.body, joints, clip), options);
+    options.floor = who.floor;
+    return retargeted(read_bvh(existing_path(clip, folder)), who.joints, options);
   }
   const std::vector<std::string> known = procedural_clip_names();
   if (std::find(known.begin(), known.end(), clip.text()) == known.end())
     clip.fail("is the unknown clip `" + clip.text() + "`",
               "name a .bvh or .npz file, or one of " + joined(known) + suggestion(clip.text(), known));
-  return make_clip(clip.text(), smpl_joints(who.body, joints, clip), floor);
+  return make_clip(clip.text(), who.joints, who.floor);
+}
+
+// The clip by the body's own joints, from its own zero pose. A start with the arms down comes before the body's own
+// zero pose is accounted for, since it is said in SMPL's; the zero pose that cloth was fitted to is the body's own.
+Clip performed(const Config& section, const Performance& who, const std::filesystem::path& folder) {
+  const double seconds = section["blend_in"].number();
+  const bool from_zero = section["start_pose"].text() == "zero";
+  const auto blended = [&](const Clip& clip, StartPose start, bool wanted) {
+    return wanted && seconds > 0 ? blended_in(clip, seconds, start) : clip;
+  };
+  check_joints(who.body, section["clip"]);
+  const Points joints = joint_positions(who.body, who.shape);
+  const std::optional<BodyPose> t = t_pose(who.body, joints);
+  Clip clip = read_clip(section["clip"], measured(who, joints, t), folder);
+  clip = blended(clip, StartPose::arms_down, !from_zero);
+  if (t) clip = from_own_zero_pose(clip, who.body, joints, *t);
+  return blended(clip, StartPose::zero, from_zero);
 }
 
 // Scaled, turned and moved as the body is.
@@ -78,10 +103,7 @@ Performance read_performance(const Config& section, const std::filesystem::path&
   if (who.shape.size() > who.body.skin.shape_directions.cols())
     shape.fail("has more coefficients than the body has shapes",
                "give at most " + std::to_string(who.body.skin.shape_directions.cols()));
-  if (!clip.given) return who;
-  who.clip = read_clip(clip, who, folder);
-  const StartPose start = section["start_pose"].text() == "zero" ? StartPose::zero : StartPose::arms_down;
-  if (const double seconds = section["blend_in"].number(); seconds > 0) who.clip = blended_in(who.clip, seconds, start);
+  if (clip.given) who.clip = performed(section, who, folder);
   return who;
 }
 

@@ -35,13 +35,7 @@ inline Points skeleton(double size = 1, double legs = 1) {
 inline Points posed_joints(const Points& joints, const BodyPose& pose) {
   BodyModel body;
   body.parents = smpl_joint_parents();
-  const JointTransforms transforms = joint_transforms(body, joints, pose);
-  Points x(joints.rows(), 3);
-  for (Eigen::Index j = 0; j < x.rows(); ++j) {
-    const Vec3 rest = joints.row(j).transpose();
-    x.row(j) = (transforms[static_cast<std::size_t>(j)] * rest.homogeneous() + pose.translation).transpose();
-  }
-  return x;
+  return selvedge::posed_joints(body, joints, pose);
 }
 
 }  // namespace selvedge::fake

@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "collision/error.hpp"
+#include "pipeline/body_hdf5.hpp"
+#include "pipeline/convert_body.hpp"
 #include "tests/pipeline/fake_body.hpp"
 #include "tests/pipeline/fake_npz.hpp"
 #include "tests/pipeline/files.hpp"
@@ -163,6 +165,14 @@ TEST_CASE("a model that was read poses as the one that was written") {
   const Eigen::VectorXd shape = Eigen::VectorXd::LinSpaced(10, -2, 2);
   const BodyPose pose = fake::pose(24);
   CHECK((posed(read, shape, pose) - posed(written, shape, pose)).cwiseAbs().maxCoeff() < 1e-6);
+}
+
+TEST_CASE("the command writes a model of the family as scenes read it") {
+  const fake::Folder folder("smpl_converted");
+  const auto path = fake::write_npz(folder.path / "m.npz", published<double, std::uint32_t>(model(24, 10)));
+  const BodyReport report = convert_body({path, {}, {}, "m", folder.path / "m.h5"});
+  CHECK((report.vertices == vertices && report.joints == 24 && report.shapes == 10 && !report.closed));
+  check_same(read_body(folder.path / "m.h5"), read_smpl(path), 10);
 }
 
 TEST_CASE("the joint regressor may come as the parts of a sparse matrix") {

@@ -115,8 +115,9 @@ TEST_CASE("bad input ends with status 2 and says what, where and the cure") {
   const fake::Folder folder("main_bad");
   write_scene(folder);
   const std::string scene = (folder.path / "scene.yaml").string();
-  for (const std::string arguments : {"simulate absent.yaml", "check absent.obj", "check absent.h5", "export absent.h5",
-                                      "view absent.h5", "ccd absent.csv", "dress absent.obj --out garment.h5"}) {
+  for (const std::string arguments :
+       {"simulate absent.yaml", "check absent.obj", "check absent.h5", "export absent.h5", "view absent.h5",
+        "ccd absent.csv", "dress absent.obj --out garment.h5", "body absent.npz --out body.h5"}) {
     const Ended outcome = selvedge_program(folder, arguments);
     INFO(arguments << "\n" << outcome.err);
     REQUIRE(outcome.status == 2);

@@ -1,7 +1,11 @@
 #include <catch2/catch.hpp>
 
+#include "pipeline/body_hdf5.hpp"
+#include "pipeline/body_makehuman.hpp"
 #include "pipeline/mannequin.hpp"
 #include "pipeline/setup.hpp"
+#include "tests/pipeline/fake_makehuman.hpp"
+#include "tests/pipeline/fake_skeleton.hpp"
 #include "tests/pipeline/files.hpp"
 
 using namespace selvedge;
@@ -69,6 +73,54 @@ TEST_CASE("A body walks as a BVH file has it", "[setup_body]") {
   const Points x = body_at(walk, 1);
   CHECK(x.col(1).minCoeff() > -0.05);
   CHECK(x.col(1).maxCoeff() == Approx(1.7).margin(0.12));
+}
+
+TEST_CASE("A body that was modelled with its arms down starts as it was and moves as one with its arms out",
+          "[setup_body]") {
+  const Folder folder("body_lowered");
+  const auto write = [&](const std::string& name, const Points& joints) {
+    fake::MakeHuman rig(joints);
+    rig.off.setZero();
+    const auto [mesh, skeleton, weights] = rig.write(folder);
+    const BodyModel body = read_makehuman(mesh, skeleton, weights, rig.unit);
+    write_body(folder.path / name, body);
+    return body;
+  };
+  write("out.h5", fake::skeleton());
+  const BodyModel lowered = write("lowered.h5", fake::lowered(fake::skeleton()));
+  const auto joint = [](const Points& x, int j) { return Vec3(x.middleRows(6 * j, 6).colwise().mean().transpose()); };
+
+  // Cloth that was fitted to the body as it is starts clean.
+  const Setup soft = with_body(folder, "{model: lowered.h5, clip: walk, blend_in: 1, start_pose: zero}");
+  Points start = body_at(soft, 0);
+  start.rowwise() += lowered.skin.rest.row(40) - start.row(40);
+  CHECK((start - lowered.skin.rest).cwiseAbs().maxCoeff() < 1e-9);
+
+  for (const std::string body :
+       {"clip: arms_up_down", "clip: walk", "clip: walk, blend_in: 1, start_pose: arms_down"}) {
+    INFO(body);
+    const Setup a = with_body(folder, "{model: lowered.h5, " + body + "}");
+    const Setup b = with_body(folder, "{model: out.h5, " + body + "}");
+    for (const double time : {0.0, 0.5, 1.5, 2.5}) {
+      const Points x = body_at(a, time), y = body_at(b, time);
+      for (const auto& [from, to] : std::vector<std::pair<int, int>>{{16, 18}, {18, 20}, {17, 19}, {19, 21}}) {
+        const Vec3 ours = (joint(x, to) - joint(x, from)).normalized();
+        CHECK((ours - (joint(y, to) - joint(y, from)).normalized()).norm() <
+              0.15);  // its own arms are not quite along X
+      }
+      CHECK(std::abs(x.col(1).minCoeff()) < 0.02);
+    }
+  }
+  // Arms hang, so that it is not chance.
+  const Points hanging = body_at(with_body(folder, "{model: lowered.h5, clip: walk}"), 0);
+  CHECK((joint(hanging, 18) - joint(hanging, 16)).normalized().y() < -0.8);
+
+  BodyModel lacking = lowered;
+  lacking.joints[4] = "knee";
+  write_body(folder.path / "lacking.h5", lacking);
+  CHECK_THROWS_WITH(with_body(folder, "{model: lacking.h5, clip: walk}"),
+                    Contains("scene.yaml:5") && Contains("left_knee") && Contains("lacks"));
+  CHECK_NOTHROW(with_body(folder, "{model: lacking.h5}"));
 }
 
 TEST_CASE("What is wrong with a body is named by file, line and cure", "[setup_body]") {
