@@ -6,7 +6,9 @@
 
 #include "collision/audit.hpp"
 #include "pipeline/garment_hdf5.hpp"
+#include "pipeline/make_stepper.hpp"
 #include "pipeline/plan.hpp"
+#include "pipeline/run_scene.hpp"
 #include "tests/pipeline/fake_garment.hpp"
 #include "tests/pipeline/files.hpp"
 #ifdef _OPENMP
@@ -136,6 +138,31 @@ TEST_CASE("A draped start has the same bits whoever steps the scene, with any nu
   Setup stopped = read(folder, draped);
   CHECK_FALSE(prepare(stopped, [] { return true; }));
   CHECK(stopped.initial.frame == -10);
+}
+
+TEST_CASE("A run with a draped start that was interrupted is resumed without draping again", "[prepare]") {
+  const Folder folder("prepare_resume");
+  write_skirt(folder);
+  Setup setup = read(folder, draped);
+  const Setup unprepared = setup;
+  prepare(setup);
+  const auto run = [&](const Setup& scene, const std::string& out, bool resume, int frames) {
+    RunRequest request;
+    request.out = folder.path / out;
+    request.resume = resume;
+    int made = 0;
+    request.stop = [&] { return ++made == frames; };
+    return run_scene(scene, *make_stepper(scene), request);
+  };
+  const RunSummary whole = run(setup, "whole", false, 100);
+  CHECK_THAT(summary_json(whole), Contains("draped in 10 frames"));
+  CHECK(run(setup, "parts", false, 2).end == RunEnd::interrupted);
+  CHECK(run(unprepared, "parts", true, 100).end == RunEnd::finished);
+  const TrajectoryReader one(folder.path / "whole" / "run.h5"), other(folder.path / "parts" / "run.h5");
+  REQUIRE(one.frame_count() == 6);
+  REQUIRE(other.frame_count() == 6);
+  CHECK(one.frame(0).report.by == "initial");
+  for (int i = 0; i < 6; ++i) CHECK(one.frame(i).x == other.frame(i).x);
 }
 
 TEST_CASE("A draped garment's other pins go with the body until time 0", "[prepare]") {
