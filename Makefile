@@ -14,7 +14,7 @@ PACKAGES_asan := $(PACKAGES_release)
 PACKAGES_tsan := $(PACKAGES_release) tsan
 PACKAGES_minimal := build viewer test
 
-.PHONY: help program demo test validate bench stress stability compare dev asan tsan minimal format check-format tidy clean
+.PHONY: help program demo test validate bench stress stability wardrobe compare dev asan tsan minimal format check-format tidy clean
 .DEFAULT_GOAL := help
 
 help:  ## This list
@@ -40,6 +40,10 @@ stress: program  ## Run every stress scene ten times: a table, and out/stress/*;
 
 stability: program  ## Stiff and extreme cases, pass or fail each: a table, and out/stability/*
 	@$(PROGRAM) stability --out out/stability
+
+wardrobe: program  ## Every garment by code through every clip: a table, and out/wardrobe/*; goes on where it was stopped
+	@for k in $$(seq $(JOBS)); do OMP_NUM_THREADS=1 $(PROGRAM) wardrobe --share $$k $(JOBS) --out out/wardrobe & done; wait
+	@$(PROGRAM) wardrobe --out out/wardrobe
 
 compare: program  ## Compare the conventional stepper's settings: tables and plots of error against run time, and out/compare/*
 	@cmake/install-packages.sh plots

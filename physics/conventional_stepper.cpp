@@ -329,13 +329,15 @@ void ConventionalStepper::prepare_contact(const State& from, double dt, const Po
   look_for_room_ = from.pinched;
   exemption_ = {};
   gained_.clear();
+  Exemption bodies;
+  self_crossings_.switch_off(nodes, wanted, bodies);
   if (!from.clean && nodes.allFinite()) {
-    Recovery recovery = recover(world_, inverse_mass_, recovery_speed * dt, nodes);
+    Recovery recovery = recover(world_, inverse_mass_, recovery_speed * dt, bodies.off, nodes);
     exemption_ = std::move(recovery.left);
     gained_ = std::move(recovery.gained);
   }
+  exemption_.off = std::move(bodies.off);
   report.collision.left_alone = exemption_.cloth_vertices();
-  self_crossings_.switch_off(nodes, wanted, exemption_);
   if (exempt || exemption_.any()) path_ = {};  // what was listed then is not what is to be listed now
   search_.leave_out(exemption_.any() ? &exemption_ : nullptr);
   report.seconds.response += watch.lap();

@@ -9,12 +9,14 @@ namespace selvedge {
 // What a step that starts tangled does first: `untangle` says where the cloth should be, and every vertex that may move
 // goes there by at most `reach` [m]. `left` is what is still tangled then, for contact to leave alone, and `gained`
 // what the solve must not lose again: a vertex that springs back gets nowhere, and what holds it pulls the cloth after
-// it.
+// it. Cloth at a part of a body that is switched off, since the body crosses itself there, can be nowhere: it waits
+// where it is. Cloth that does not cross itself will not do so after.
 struct Recovery {
   Exemption left;
   std::vector<Separation> gained;
 };
-Recovery recover(const ContactWorld&, const Eigen::VectorXd& inverse_mass, double reach, Points& nodes);
+Recovery recover(const ContactWorld&, const Eigen::VectorXd& inverse_mass, double reach, const std::vector<char>& off,
+                 Points& nodes);
 
 // Which obstacles cross themselves, in the positions of a step's start or end. Remembers what it was asked last.
 class SelfCrossings {

@@ -173,6 +173,16 @@ int stress_command(const StressRequest& request, bool json) {
   return passed && !InterruptWatch::interrupted() ? 0 : 1;
 }
 
+int wardrobe_command(const WardrobeRequest& request, bool json) {
+  const InterruptWatch watch;
+  const std::vector<WardrobeRow> rows = wardrobe(followed(request));
+  people(json) << wardrobe_table(rows);
+  if (InterruptWatch::interrupted()) people(json) << "stopped; the same command goes on\n";
+  if (json) std::cout << wardrobe_json(rows);
+  const bool passed = std::all_of(rows.begin(), rows.end(), [](const WardrobeRow& row) { return row.passed(); });
+  return passed && !InterruptWatch::interrupted() ? 0 : 1;
+}
+
 int compare_command(const CompareRequest& request, bool json) {
   const InterruptWatch watch;
   const CompareResult result = compare(followed(request));

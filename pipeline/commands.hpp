@@ -14,6 +14,7 @@
 #include "pipeline/stress.hpp"
 #include "pipeline/untangle_mesh.hpp"
 #include "pipeline/validate.hpp"
+#include "pipeline/wardrobe.hpp"
 
 namespace selvedge {
 
@@ -56,6 +57,7 @@ int stress_command(const StressRequest&, bool json);
 int compare_command(const CompareRequest&, bool json);
 int validate_command(const ValidateRequest&, bool json);
 int stability_command(const StabilityRequest&, bool json);
+int wardrobe_command(const WardrobeRequest&, bool json);
 int info_command(bool json);
 
 }  // namespace selvedge

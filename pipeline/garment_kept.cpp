@@ -10,8 +10,8 @@ namespace selvedge {
 
 Garment kept_garment(const std::filesystem::path& folder, const std::string& name, const BodyModel& mannequin,
                      const GarmentOptions& options, std::span<const std::string> under) {
-  std::string stem = fmt::format("{}-{}-{}-{:.9g}-{:.9g}", name, mannequin_recipe, garment_recipe, options.edge,
-                                 options.gap);
+  std::string stem =
+      fmt::format("{}-{}-{}-{:.9g}-{:.9g}", name, mannequin_recipe, garment_recipe, options.edge, options.gap);
   for (const std::string& inner : under) stem += "-" + inner;
   const std::filesystem::path file = folder / "garments" / (stem + ".h5");
   if (std::filesystem::exists(file)) {

@@ -137,6 +137,15 @@ void stability_options(CLI::App& command, StabilityRequest& request) {
   command.add_option("--out", request.out, "folder for the results");
 }
 
+void wardrobe_options(CLI::App& command, WardrobeRequest& request) {
+  command.add_option("wear", request.wear, "names of garments and outfits by code (all)");
+  command.add_option("--clips", request.clips, "names of procedural clips (all)")->delimiter(',');
+  command.add_option("--frames", request.most_frames, "of a clip at most")->check(CLI::PositiveNumber);
+  command.add_option("--share", request.share, "K N: every Nth row from the Kth on, for several processes at once");
+  command.add_option("--configs", request.configs, "folder of the configurations");
+  command.add_option("--out", request.out, "folder for the results");
+}
+
 void add_commands(CLI::App& app, Chosen& chosen) {
   struct Nothing {};
   add_command<SimulateArguments>(app, chosen, "simulate", "a scene in, an audited trajectory out", simulate_options,
@@ -163,6 +172,8 @@ void add_commands(CLI::App& app, Chosen& chosen) {
                                validate_command);
   add_command<StabilityRequest>(app, chosen, "stability", "stiff and extreme cases, pass or fail each",
                                 stability_options, stability_command);
+  add_command<WardrobeRequest>(app, chosen, "wardrobe", "every garment by code through every procedural clip",
+                               wardrobe_options, wardrobe_command);
   add_command<Nothing>(
       app, chosen, "info", "versions, packages, threads", [](CLI::App&, Nothing&) {},
       [](const Nothing&, bool json) { return info_command(json); });

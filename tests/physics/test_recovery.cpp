@@ -71,7 +71,7 @@ TEST_CASE("recovery: a clean start is left as it is", "[recovery]") {
   const ContactWorld world = with_its_obstacle(w);
   Points nodes = gather_nodes(w.state.x, w.state.obstacles);
   const Points before = nodes;
-  CHECK_FALSE(recover(world, Eigen::VectorXd::Ones(nodes.rows()), 1, nodes).left.any());
+  CHECK_FALSE(recover(world, Eigen::VectorXd::Ones(nodes.rows()), 1, {}, nodes).left.any());
   CHECK(nodes == before);
 }
 
@@ -104,7 +104,7 @@ TEST_CASE("recovery: what cannot be parted is not pushed, the rest is", "[recove
   REQUIRE(parted.pairs_after > 0);
   const Exemption there = find_exemption(world, parted.x);
   Points nodes = w.state.x;
-  recover(world, Eigen::VectorXd::Ones(nodes.rows()), 0.01, nodes);
+  recover(world, Eigen::VectorXd::Ones(nodes.rows()), 0.01, {}, nodes);
   int pushed = 0;
   for (int v = 0; v < nodes.rows(); ++v) {
     const bool moved = nodes.row(v) != w.state.x.row(v);
