@@ -48,16 +48,23 @@ Quaternion heading(const Quaternion& rotation) {
   return twist.norm() < 1e-9 ? Quaternion::Identity() : twist.normalized();
 }
 
-BodyPose start_pose(const Clip& clip, StartPose start) {
-  const BodyPose& first = clip.poses.front();
-  BodyPose pose{Points::Zero(first.rotations.rows(), 3), first.translation};
-  for (Eigen::Index j = 0; j < pose.rotations.rows(); ++j) {
+Points start_rotations(const Clip& clip, StartPose start) {
+  Points rotations = Points::Zero(clip.poses.front().rotations.rows(), 3);
+  const double down = start == StartPose::arms_down ? std::numbers::pi / 4 : 0;
+  for (Eigen::Index j = 0; j < rotations.rows(); ++j) {
     const std::string& name = clip.joints[static_cast<std::size_t>(j)];
-    const double down = start == StartPose::arms_down ? std::numbers::pi / 4 : 0;
-    if (name == "left_shoulder") pose.rotations(j, 2) = -down;
-    if (name == "right_shoulder") pose.rotations(j, 2) = down;
+    if (name == "left_shoulder") rotations(j, 2) = -down;
+    if (name == "right_shoulder") rotations(j, 2) = down;
   }
-  if (pose.rotations.rows() > 0) pose.rotations.row(0) = vector_of(heading(quaternion(first.rotations, 0))).transpose();
+  return rotations;
+}
+
+// With the heading and the place of frame 0.
+BodyPose start_pose(const Clip& clip, const Points& rotations) {
+  const BodyPose& first = clip.poses.front();
+  BodyPose pose{rotations, first.translation};
+  if (pose.rotations.rows() > 0)
+    pose.rotations.row(0) = vector_of(heading(quaternion(first.rotations, 0)) * quaternion(rotations, 0)).transpose();
   return pose;
 }
 
@@ -107,11 +114,16 @@ BodyPose matched(const BodyPose& pose, const std::vector<std::string>& from, con
 
 Clip blended_in(const Clip& clip, double seconds, StartPose start) {
   check_has_poses(clip);
+  return blended_in(clip, seconds, start_rotations(clip, start));
+}
+
+Clip blended_in(const Clip& clip, double seconds, const Points& rotations) {
+  check_has_poses(clip);
   if (!(seconds >= 0)) throw Error(fmt::format("blends in over {} s", seconds), "clip " + clip.name, "0 or more");
   const int frames = static_cast<int>(std::ceil(seconds * clip.fps - 1e-9));
   Clip result = clip;
   result.poses.clear();
-  const BodyPose rest = start_pose(clip, start);
+  const BodyPose rest = start_pose(clip, rotations);
   const Vec3 first = clip.poses.front().translation;
   const Vec3 velocity = clip.fps * (pose_at(clip, 1 / clip.fps).translation - first);
   for (int f = 0; f < frames; ++f) {

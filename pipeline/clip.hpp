@@ -33,5 +33,7 @@ enum class StartPose { zero, arms_down };
 // as fast as the clip does; rounded up to whole frames. The start pose has the heading and height of frame 0. Throws
 // Error where seconds are negative or the clip has no poses.
 Clip blended_in(const Clip&, double seconds, StartPose);
+// The same from any rotations of the clip's joints, the root's before the heading.
+Clip blended_in(const Clip&, double seconds, const Points& rotations);
 
 }  // namespace selvedge

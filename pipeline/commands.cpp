@@ -13,6 +13,7 @@
 #include "pipeline/interrupt.hpp"
 #include "pipeline/make_stepper.hpp"
 #include "pipeline/plan.hpp"
+#include "pipeline/prepare.hpp"
 #include "pipeline/run_scene.hpp"
 #include "pipeline/view.hpp"
 
@@ -61,11 +62,15 @@ bool report_outcome(const std::vector<Outcome>& outcomes, const std::vector<Outc
 }  // namespace
 
 int simulate_command(const SimulateArguments& arguments, bool json) {
-  const Setup setup = read_scene(arguments.scene);
+  Setup setup = read_scene(arguments.scene);
   for (const std::string& warning : setup.warnings) std::cerr << "warning: " << warning << "\n";
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
   Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
   const InterruptWatch watch;
+  if (!arguments.resume && !prepare(setup, InterruptWatch::interrupted, &progress)) {
+    people(json) << "stopped before the first frame\n";
+    return 1;
+  }
   RunRequest request;
   request.out = folder_for(arguments, setup);
   request.resume = arguments.resume;

@@ -9,6 +9,7 @@
 #include "pipeline/compare_parts.hpp"
 #include "pipeline/kept_rows.hpp"
 #include "pipeline/make_stepper.hpp"
+#include "pipeline/prepare.hpp"
 #include "pipeline/progress.hpp"
 #include "pipeline/summary.hpp"
 #include "pipeline/write_file.hpp"
@@ -98,6 +99,20 @@ bool find_errors(const CompareRequest& request, const Comparison& comparison, Sc
                                errors->trouble));
     }
     work.errors.push_back(*errors);
+  }
+  return true;
+}
+
+// All settings start alike: what one scene needs to be prepared is done once. False: stopped.
+bool prepare_settings(const CompareRequest& request, SceneWork& work) {
+  const Setup* first = nullptr;
+  for (std::optional<Setup>& setup : work.setups) {
+    if (!setup) continue;
+    if (first)
+      setup->initial = first->initial;
+    else if (!prepare(*setup, request.stop))
+      return false;
+    first = &*setup;
   }
   return true;
 }
@@ -199,7 +214,7 @@ CompareResult compare(const CompareRequest& request) {
   for (const CompareScene& scene : comparison.scenes) all.push_back(open_scene(request, comparison, scene, program));
   CompareResult result;
   for (SceneWork& work : all) {
-    result.finished = result.finished && find_errors(request, comparison, work);
+    result.finished = find_errors(request, comparison, work) && prepare_settings(request, work);
     for (int repeat = 0; result.finished && repeat < comparison.repeats; ++repeat) {
       result.finished = time_settings(request, comparison, repeat, work);
       write_results(request, comparison, all, result);

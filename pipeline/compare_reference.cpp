@@ -10,6 +10,7 @@
 #include "pipeline/algebraic_error.hpp"
 #include "pipeline/jitter.hpp"
 #include "pipeline/make_stepper.hpp"
+#include "pipeline/prepare.hpp"
 #include "pipeline/simulate.hpp"
 
 namespace selvedge {
@@ -117,7 +118,8 @@ Setup read_compared(const CompareScene& scene, bool short_form, const std::vecto
 
 std::optional<CompareReference> make_reference(const Comparison& comparison, const CompareScene& scene, bool short_form,
                                                const Stop& stop) {
-  const Setup setup = with_steps(comparison, scene, short_form, fine);
+  Setup setup = with_steps(comparison, scene, short_form, fine);
+  if (!prepare(setup, stop)) return {};
   const Setup coarser = with_steps(comparison, scene, short_form, half_as_fine);
   CompareReference reference;
   if (!run_reference(setup, scene, stop, reference)) return {};

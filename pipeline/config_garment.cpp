@@ -1,5 +1,6 @@
 #include "pipeline/config_tables.hpp"
 #include "pipeline/garment_make.hpp"
+#include "pipeline/setup_start.hpp"
 
 // What a body of the scene wears, and how cloths start.
 namespace selvedge::table {
@@ -26,6 +27,7 @@ const Section& garment_section() {
 }
 
 const Section& start_section() {
+  const Draping draping;
   static const Section table{
       "start",
       "How the start differs from the cloth as made and placed; the rest shape does not follow. A cloth that starts in "
@@ -36,6 +38,12 @@ const Section& start_section() {
        number("crumple", Unit::length, not_negative, "0",
               "random displacement of every vertex, at most, along each axis"),
        integer("seed", not_negative, "1", "of what is random"),
+       word(
+           "from", {"skinned", "draped"}, "skinned",
+           "of a garment: where the body's first pose takes it, maybe tangled; or grown clean before time 0, while the "
+           "body comes from the pose that it was made in (all garments of a scene alike)"),
+       number("seconds", Unit::time, positive, show(draping.seconds), "of a draped start: how long the body takes"),
+       number("hold", Unit::time, not_negative, show(draping.hold), "and holds its first pose, until time 0"),
        flag("moving", true, "a garment starts as fast as the body takes it along; false: at rest")}};
   return table;
 }

@@ -32,6 +32,8 @@ std::vector<PlanLine> lines_of(const Setup& setup) {
   lines.push_back({"cloths at rest", !setup.run.rest,
                    setup.run.rest ? "left out of a step as long as nothing that moves comes near them"
                                   : "stepped like others, as run.rest asks"});
+  if (setup.initial.frame < 0)
+    lines.push_back({"draped start", true, fmt::format("{} frames before time 0, not recorded", -setup.initial.frame)});
   if (setup.run.stepper != "icm") return lines;
   const std::string untouched = "left out by the stepper icm";
   lines.push_back({"contour energy", true, "weight " + fmt::format("{}", setup.run.icm.contour_weight)});

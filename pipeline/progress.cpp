@@ -17,7 +17,8 @@ std::string duration_text(double seconds) {
 Progress::Progress(std::ostream& stream, bool terminal)
     : stream_(stream), terminal_(terminal), interval_(terminal ? 0.1 : 5) {}
 
-void Progress::begin(int done, int frames) {
+void Progress::begin(int done, int frames, const std::string& what) {
+  what_ = what;
   first_ = done;
   frames_ = frames;
   started_ = shown_ = Clock::now();
@@ -26,7 +27,7 @@ void Progress::begin(int done, int frames) {
 std::string Progress::line(int index) const {
   const double elapsed = seconds_since(started_), rate = elapsed > 0 ? (index - first_) / elapsed : 0;
   const std::string left = rate > 0 ? duration_text((frames_ - index) / rate) + " left" : "";
-  return fmt::format("frame {} of {}, {:.3g} frames/s, {}", index, frames_, rate, left);
+  return fmt::format("{} {} of {}, {:.3g} frames/s, {}", what_, index, frames_, rate, left);
 }
 
 void Progress::frame(int index) {

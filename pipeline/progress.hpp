@@ -11,7 +11,7 @@ namespace selvedge {
 class Progress {
  public:
   Progress(std::ostream& stream, bool terminal);
-  void begin(int done, int frames);  // `done` frames were there before
+  void begin(int done, int frames, const std::string& what = "frame");  // `done` of them were there before
   void frame(int index);
   void end();
 
@@ -19,6 +19,7 @@ class Progress {
   std::string line(int index) const;
   std::ostream& stream_;
   bool terminal_;
+  std::string what_;
   int first_ = 0, frames_ = 0;
   double interval_;  // between plain lines [s], doubled after each
   Clock::time_point started_, shown_;

@@ -1,6 +1,7 @@
 #include "pipeline/run_scene.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "collision/error.hpp"
 #include "pipeline/checkpoint.hpp"
@@ -19,6 +20,7 @@ RunSummary empty_summary(const Setup& setup, const Stepper& stepper) {
   summary.program_version = program_version();
   summary.scene = setup.file.string();
   summary.stepper = stepper.traits().name;
+  summary.prepared = setup.prepared;
   summary.vertices = setup.scene.surface.vertex_count;
   summary.triangles = static_cast<int>(setup.scene.surface.triangles.rows());
   summary.frames_wanted = setup.run.frames;
@@ -84,6 +86,7 @@ void finish(RunSummary& summary, const StepReport& last, int frame) {
 }  // namespace
 
 RunSummary run_scene(const Setup& setup, Stepper& stepper, const RunRequest& request) {
+  assert(request.resume || setup.initial.frame >= 0);
   make_folder(request.out);
   const std::filesystem::path file = request.out / "run.h5", saved = request.out / "checkpoint.h5";
   State state = request.resume ? read_checkpoint(saved, setup.config) : setup.initial;

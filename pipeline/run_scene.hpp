@@ -18,9 +18,10 @@ struct RunRequest {
   std::function<void(const FrameEvent&)> observe;  // shown every frame, outside the measured time
 };
 
-// Simulates a scene into a folder: run.h5 (trajectory), run.xdmf, summary.json, config.yaml, and checkpoint.h5 until
-// the run has finished. A rejected step is recorded as a frame with the last accepted positions and ends the run.
-// Throws Error where files cannot be written or there is nothing to resume.
+// Simulates a scene, prepared (prepare.hpp) unless it is resumed, into a folder: run.h5 (trajectory), run.xdmf,
+// summary.json, config.yaml, and checkpoint.h5 until the run has finished. A rejected step is recorded as a frame with
+// the last accepted positions and ends the run. Throws Error where files cannot be written or there is nothing to
+// resume.
 RunSummary run_scene(const Setup&, Stepper&, const RunRequest&);
 
 }  // namespace selvedge

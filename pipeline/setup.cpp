@@ -63,7 +63,7 @@ void join(const std::vector<ClothPart>& parts, Scene& scene, State& initial) {
     const Eigen::Index nv = part.mesh.x.rows(), nt = part.mesh.triangles.rows();
     scene.cloths.push_back({part.name, part.material, static_cast<int>(v), static_cast<int>(nv), static_cast<int>(t),
                             static_cast<int>(nt)});
-    initial.x.middleRows(v, nv) = part.mesh.x;
+    initial.x.middleRows(v, nv) = part.first;
     initial.v.middleRows(v, nv) = part.velocity;
     scene.rest.middleRows(v, nv) = part.rest;
     all.middleRows(t, nt) = part.mesh.triangles.array() + static_cast<int>(v);
@@ -205,6 +205,9 @@ std::vector<ClothPart> read_all_cloths(Config& list, const std::filesystem::path
       take_name(list.items[c], part.name, names);
       parts.push_back(std::move(part));
     }
+    const auto garment = std::ranges::find_if(parts, [](const ClothPart& part) { return part.worn != nullptr; });
+    if (parts.back().worn && parts.back().draping != garment->draping)
+      list.items[c].fail("starts otherwise than the first garment", "give all garments of a scene the same `start`");
     if (parts.back().rest_is_flat != parts.front().rest_is_flat)
       list.items[c]["rest"]["flat"].fail("differs from the first cloth's", "all cloths of a scene rest alike");
   }
@@ -248,10 +251,12 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
   Setup setup;
   const auto world = std::make_shared<World>();
   const Performances bodies = read_performances(config["obstacles"], folder);
-  const std::vector<ClothPart> cloths = read_all_cloths(config["cloths"], folder, bodies, setup.warnings);
+  std::vector<ClothPart> cloths = read_all_cloths(config["cloths"], folder, bodies, setup.warnings);
   setup.file = file;
   setup.scene.contact = read_contact(config["contact"]);
   setup.run = read_run(config);
+  setup.initial.frame = -begin_draped(bodies, setup.run.fps, cloths);
+  setup.initial.time = setup.initial.frame / setup.run.fps;
   world->gravity = config["gravity"].vector();
   join(cloths, setup.scene, setup.initial);
   add_pins(cloths, massless(setup.scene, setup.initial.x, setup.warnings), setup.scene, *world);
@@ -259,7 +264,7 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
   read_wind(config["wind"], setup.scene.wind, *world);
   warn_of_thickness(setup.scene, setup.warnings);
   setup.drive_at = [world](double time) { return drive(*world, time); };
-  const Drive start = setup.drive_at(0);
+  const Drive start = setup.drive_at(setup.initial.time);
   setup.initial.obstacles = start.obstacles;
   for (std::size_t p = 0; p < setup.scene.pins.size(); ++p) {
     setup.initial.x.row(setup.scene.pins[p]) = start.pins.row(static_cast<Eigen::Index>(p));
@@ -267,6 +272,8 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
   }
   warn_of_stretched_seams(cloths, setup.scene, setup.initial.x, setup.warnings);
   setup.scene.springs = read_springs(config["springs"], cloths, setup.scene, setup.initial.x, setup.warnings);
+  setup.velocity = setup.initial.v;
+  if (setup.initial.frame < 0) setup.initial.v.setZero();
   setup.outcomes = read_outcomes(config["outcome"], cloths, setup.scene);
   setup.short_form = config["short_form"].words;
   setup.config = to_yaml(config);

@@ -31,7 +31,9 @@ struct Setup {
   std::filesystem::path file;
   std::string config;  // the full configuration as YAML, overrides applied
   Scene scene;
-  State initial;
+  State initial;         // before time 0 where the start is still to be made, which `prepare` does
+  Points velocity;       // at time 0
+  std::string prepared;  // what was done before time 0; empty: nothing
   RunOptions run;
   std::function<Drive(double time)> drive_at;  // the world at a time [s]
   std::vector<Outcome> outcomes;               // what must come true

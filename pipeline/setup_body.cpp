@@ -1,6 +1,7 @@
 #include "pipeline/setup_body.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -121,7 +122,15 @@ Performances read_performances(const Config& obstacles, const std::filesystem::p
   return all;
 }
 
+void come_from(const Points& rotations, double begins, double seconds, Performance& who) {
+  const double fps = std::ceil(seconds * who.clip.fps) / seconds;  // whole frames
+  const Clip still{who.name, fps, who.body.joints, {pose_at(who, 0)}, {}};
+  who.before = blended_in(still, seconds, rotations);
+  who.begins = begins;
+}
+
 BodyPose pose_at(const Performance& who, double time) {
+  if (time < 0 && !who.before.poses.empty()) return pose_at(who.before, time - who.begins);
   if (who.clip.poses.empty()) return {Points::Zero(static_cast<Eigen::Index>(who.body.joints.size()), 3)};
   return matched(pose_at(who.clip, time), who.clip.joints, who.body.joints);
 }
@@ -134,7 +143,9 @@ Points worn_at(const Performance& who, const Garment& garment, double time) {
   return in_scene(who, worn(garment, who.body, who.shape, pose_at(who, time)), time);
 }
 
-bool is_still(const Performance& who) { return who.clip.poses.size() < 2 && is_still(who.motion); }
+bool is_still(const Performance& who) {
+  return who.clip.poses.size() < 2 && who.before.poses.size() < 2 && is_still(who.motion);
+}
 
 ObstaclePart obstacle_of(const std::shared_ptr<const Performance>& who) {
   ObstaclePart part;

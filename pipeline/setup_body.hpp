@@ -15,17 +15,23 @@ struct Performance {
   std::string name;  // the obstacle's
   BodyModel body;
   Eigen::VectorXd shape;
-  Clip clip;       // without poses: it stands in the zero pose
-  Config section;  // the obstacle's: how it is placed
-  Motion motion;   // of what is placed
+  Clip clip;          // without poses: it stands in the zero pose
+  Config section;     // the obstacle's: how it is placed
+  Motion motion;      // of what is placed
+  Clip before;        // up to time 0, where the scene's time begins before it
+  double begins = 0;  // when it does [s]
 };
 
 // The bodies of a scene's obstacles, one an obstacle, null for what is none. `folder` is the scene file's.
-using Performances = std::vector<std::shared_ptr<const Performance>>;
+using Performances = std::vector<std::shared_ptr<Performance>>;
 Performances read_performances(const Config& obstacles, const std::filesystem::path& folder);
 
 // A `body` section by itself: model, shape and clip.
 Performance read_performance(const Config& body, const std::filesystem::path& folder);
+
+// Makes the scene's time begin that early, with that many seconds of the body's way from these rotations of its joints
+// into its pose at time 0, which it holds from then on.
+void come_from(const Points& rotations, double begins, double seconds, Performance&);
 
 BodyPose pose_at(const Performance&, double time);
 

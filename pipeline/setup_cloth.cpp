@@ -11,7 +11,6 @@
 #include "pipeline/setup_paths.hpp"
 #include "pipeline/setup_seams.hpp"
 #include "pipeline/setup_sheet.hpp"
-#include "pipeline/setup_start.hpp"
 
 namespace selvedge {
 namespace {
@@ -123,7 +122,11 @@ PinPart read_pin(const Config& section, const ClothPart& part) {
   }
   const Points start = part.mesh.x(vertices, Eigen::all);
   const Motion motion = read_motion(section["motion"], start);
-  return {vertices, [start, motion](double time) { return moved(motion, start, time); }};
+  if (!part.worn) return {vertices, [start, motion](double time) { return moved(motion, start, time); }};
+  // A garment that is draped goes with the body until its pins begin to move.
+  return {vertices, [start, motion, before = following(part.worn, vertices).at](double time) {
+            return time < 0 ? before(time) : moved(motion, start, time);
+          }};
 }
 
 // A sheet, placed, or a garment, worn: mesh, rest shape and velocity.
@@ -226,6 +229,7 @@ std::vector<ClothPart> read_cloths(Config& section, const std::string& default_n
     parts = read_copies(section, folder, warnings, part);
   for (ClothPart& one : parts) {
     apply_start(section["start"], one, warnings);
+    one.first = one.mesh.x;
     for (const Config& pin : section["pins"].items) one.pins.push_back(read_pin(pin, one));
     if (one.worn && !one.worn->garment.pins.empty()) one.pins.push_back(following(one.worn, one.worn->garment.pins));
   }

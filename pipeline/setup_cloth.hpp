@@ -2,6 +2,7 @@
 
 #include "pipeline/setup.hpp"
 #include "pipeline/setup_garment.hpp"
+#include "pipeline/setup_start.hpp"
 
 namespace selvedge {
 
@@ -14,15 +15,17 @@ struct PinPart {
 struct ClothPart {
   std::string name;
   Material material;
-  Mesh mesh;  // x: as placed
+  Mesh mesh;     // x: as placed, at time 0
+  Points first;  // where it is when the scene's time begins
   Points rest;
   std::vector<RestTriangle> rest_triangle;
   bool rest_is_flat = true;
-  Points velocity;  // at the start
+  Points velocity;  // at time 0
   std::vector<PinPart> pins;
   std::shared_ptr<const Wearing> worn;  // null for what is no garment
   std::vector<int> sewn;                // of each vertex as read or made: its number here; empty where nothing is sewn
   double sewn_apart = 0;                // how far vertices that are one now were apart [m]
+  std::optional<Draping> draping;
 };
 
 // The cloth of a section, or its copies. `folder` is the scene file's; warnings are added. The material's values are

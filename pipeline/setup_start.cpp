@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "pipeline/jitter.hpp"
 #include "pipeline/setup_cloth.hpp"
 
@@ -11,10 +14,47 @@ namespace {
 constexpr double opening = 1e-3;    // of a cloth in one point, in mean edge lengths
 constexpr double one_point = 1e-9;  // extent of what counts as one, in mean edge lengths
 
+// Whether the section asks for a draped start, and not for what that leaves no trace of.
+std::optional<Draping> read_draping(const Config& section, const ClothPart& part) {
+  const Config& from = section["from"];
+  if (from.text() != "draped") return {};
+  if (!part.worn) from.fail("is given for a cloth that no body wears", "make the cloth a `garment`, or leave it out");
+  if (section["stretch"].vector() != Vec3::Ones() || section["crumple"].number() > 0)
+    from.fail("is given beside `stretch` or `crumple`", "a draped start is grown clean: leave these out");
+  return Draping{section["seconds"].number(), section["hold"].number()};
+}
+
+// The pose that all garments on the body were made in; the zero pose where they differ.
+Points made_in(const std::vector<ClothPart>& parts, const Performance& who) {
+  const Points zero = Points::Zero(static_cast<Eigen::Index>(who.body.joints.size()), 3);
+  std::optional<Points> common;
+  for (const ClothPart& part : parts) {
+    if (!part.worn || part.worn->by.get() != &who) continue;
+    const Points& own = part.worn->garment.made_in.rotations;
+    const Points& made = own.rows() == 0 ? zero : own;
+    if (common && *common != made) return zero;
+    common = made;
+  }
+  return common.value_or(zero);
+}
+
 }  // namespace
+
+int begin_draped(const Performances& bodies, double fps, std::vector<ClothPart>& parts) {
+  const auto draped = std::ranges::find_if(parts, [](const ClothPart& part) { return part.draping.has_value(); });
+  if (draped == parts.end()) return 0;
+  const auto [seconds, hold] = *draped->draping;
+  const int frames = static_cast<int>(std::ceil((seconds + hold) * fps - 1e-9));
+  for (const auto& who : bodies)
+    if (who) come_from(made_in(parts, *who), -frames / fps, seconds, *who);
+  for (ClothPart& part : parts)
+    if (part.worn) part.first = worn_at(*part.worn, -frames / fps);
+  return frames;
+}
 
 void apply_start(const Config& section, ClothPart& part, std::vector<std::string>& warnings) {
   Points& x = part.mesh.x;
+  part.draping = read_draping(section, part);
   if (x.rows() == 0) return;
   const auto seed = static_cast<std::uint64_t>(section["seed"].number());
   const Vec3 stretch = section["stretch"].vector();

@@ -8,6 +8,7 @@
 #include "physics/features.hpp"
 #include "physics/step_audit.hpp"
 #include "pipeline/make_stepper.hpp"
+#include "pipeline/prepare.hpp"
 #include "pipeline/run_scene.hpp"
 #include "pipeline/stability_suite.hpp"
 #include "pipeline/stability_watch.hpp"
@@ -86,7 +87,8 @@ std::optional<StabilityRow> run_one(const StabilityRequest& request, const Stabi
                                     const StabilityCase& one, const StabilityRun& run,
                                     const std::filesystem::path& folder) {
   const Clock::time_point started = Clock::now();
-  const Setup setup = read_run(request, one, run);
+  Setup setup = read_run(request, one, run);
+  if (!prepare(setup, request.stop)) return {};
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
   StabilityWatch watch(setup);
   StabilityRow row;

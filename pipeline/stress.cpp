@@ -8,6 +8,7 @@
 #include "pipeline/jitter.hpp"
 #include "pipeline/kept_rows.hpp"
 #include "pipeline/make_stepper.hpp"
+#include "pipeline/prepare.hpp"
 #include "pipeline/run_scene.hpp"
 #include "pipeline/view.hpp"
 #include "pipeline/write_file.hpp"
@@ -99,6 +100,7 @@ std::optional<StressRow> run_repeat(const StressRequest& request, const Repeat& 
   row.repeat = repeat.index;
   row.seed = request.seed + static_cast<std::uint64_t>(repeat.index);
   Setup setup = read_scene(request, repeat.scene);
+  if (!prepare(setup, request.stop)) return {};
   row.jitter = jitter_start(setup, request.jitter, row.seed);
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
   Watch watch{OutcomeWatch(setup.scene, setup.outcomes, setup.run.frames / setup.run.fps)};

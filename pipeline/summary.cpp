@@ -116,6 +116,7 @@ std::string summary_json(const RunSummary& s) {
       {"program_version", s.program_version},
       {"scene", s.scene},
       {"stepper", s.stepper},
+      {"prepared", s.prepared},
       {"vertices", s.vertices},
       {"triangles", s.triangles},
       {"end", end_name(s.end)},
@@ -166,6 +167,7 @@ std::string summary_text(const RunSummary& s) {
     text += fmt::format("{:<20}{}\n", label, value);
   };
   const std::string end = s.end == RunEnd::finished ? "" : fmt::format(", {} {}", end_name(s.end), s.reason);
+  if (!s.prepared.empty()) add("start", s.prepared);
   add("frames", fmt::format("{} of {}{}", s.frames, s.frames_wanted, end));
   add("cloth", fmt::format("{} vertices, {} triangles", s.vertices, s.triangles));
   add("time a frame", fmt::format("{:.1f} ms (median {:.1f})", mean_milliseconds(s), median_milliseconds(s)));

@@ -15,6 +15,7 @@ enum class RunEnd { running, finished, interrupted, rejected };
 // What a run came to. Frame 0 counts for what was found in the frames, not for time.
 struct RunSummary {
   std::string program_version, scene, stepper;
+  std::string prepared;  // what was done before time 0; empty: nothing
   int vertices = 0, triangles = 0;
   int frames_wanted = 0, frames = 0;  // frames simulated
   RunEnd end = RunEnd::running;

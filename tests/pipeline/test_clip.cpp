@@ -101,6 +101,13 @@ TEST_CASE("clip: blending in starts at rest and passes frame 0 as the clip does"
       CHECK(angle_between(joint(blended.poses[f], 1), joint(blended.poses[f + 1], 1)) < 0.2);
     }
   }
+  Points bent = Points::Zero(clip.poses[0].rotations.rows(), 3);
+  bent.row(0) << 0.3, 0, 0;
+  bent.row(1) << 0, 0.2, 0.5;
+  const Clip other = blended_in(clip, 0.5, bent);
+  CHECK(joint(other.poses[0], 1).isApprox(Vec3(0, 0.2, 0.5), 1e-12));
+  const Mat3 turned = rotation_matrix(Vec3(0, 1, 0)) * rotation_matrix(Vec3(0.3, 0, 0));
+  CHECK(rotation_matrix(joint(other.poses[0], 0)).isApprox(turned, 1e-12));
   CHECK(blended_in(clip, 0, StartPose::zero).poses.size() == clip.poses.size());
   CHECK_THROWS_AS(blended_in(clip, -1, StartPose::zero), Error);
 }
