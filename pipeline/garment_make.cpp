@@ -82,7 +82,7 @@ Shape half_of(const GarmentCut& cut, const Field& field, double edge) {
   Shape shape = isosurface(nearby, Vec3(0, -0.02, -0.6), Vec3(0.9, 1.56, 0.6), grid);
   RemeshTarget target{[edge](const Vec3&) { return edge; }, [&](const Vec3& p) { return projected(field.surface, p); }};
   for (const Opening& opening : cut.openings) {
-    shape = clipped(shape, opening.border, target.borders, 0.1 * grid);
+    shape = clipped(shape, opening.border, target.borders);
     target.borders.push_back(opening.border);
   }
   return remeshed(largest_component(shape), target, rounds);

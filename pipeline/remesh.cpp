@@ -41,13 +41,17 @@ Vec3 normal(const Work& work, const std::array<int, 3>& t) {
   return (work.at(t[1]) - work.at(t[0])).cross(work.at(t[2]) - work.at(t[0]));
 }
 
-// Which borders a boundary vertex lies in. Positions have been projected, so that rounding is all they are off by.
+// Which borders a boundary vertex lies in: those it is in but for rounding, or else the nearest.
 std::uint32_t borders_at(const Work& work, const Vec3& x) {
   constexpr double rounding = 1e-7;
   std::uint32_t bits = 0;
-  for (std::size_t k = 0; k < work.borders.size(); ++k)
-    if (std::abs(work.borders[k].value(x)) < rounding) bits |= std::uint32_t{1} << k;
-  return bits;
+  std::size_t nearest = 0;
+  for (std::size_t k = 0; k < work.borders.size(); ++k) {
+    const double distance = std::abs(work.borders[k].value(x));
+    if (distance < rounding) bits |= std::uint32_t{1} << k;
+    if (distance < std::abs(work.borders[nearest].value(x))) nearest = k;
+  }
+  return bits != 0 ? bits : std::uint32_t{1} << nearest;
 }
 
 Vec3 onto_borders(const Work& work, std::uint32_t bits, Vec3 x) {
