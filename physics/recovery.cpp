@@ -2,11 +2,13 @@
 
 #include "collision/untangle.hpp"
 #include "collision/world_sheets.hpp"
+#include "physics/balanced_motion.hpp"
 
 namespace selvedge {
 namespace {
 
-constexpr int most_pairs = 10;  // of triangles that cross, each triangle of the cloth
+constexpr int most_pairs = 10;       // of triangles that cross, each triangle of the cloth
+constexpr double negligible = 1e-6;  // way, in mean edge lengths
 
 // Cloth that crosses itself through and through, a sheet that starts in one point say, has no sides to go to: its own
 // stiffness opens it first.
@@ -27,6 +29,58 @@ std::vector<char> tangled_at(const ContactWorld& world, const Points& nodes, con
   return find_exemption(world, goal).self;
 }
 
+// A contact term has four vertices. Where an edge has gone through a face that is one too few: its nearer end stands
+// for it.
+Separation on_four(Separation s) {
+  if (s.count <= 4) return s;
+  const int near = s.weight[0] > s.weight[1] ? 0 : 1;
+  s.vertex = {s.vertex[near], s.vertex[2], s.vertex[3], s.vertex[4], -1};
+  s.weight = {1, s.weight[2], s.weight[3], s.weight[4], 0};
+  s.count = 4;
+  return s;
+}
+
+// What the way to where the cloth should be asks of all that is to be parted: its two sides go against each other, or
+// vertices against an obstacle, in the direction that the way takes them apart, `least` far and at most by `reach` [m].
+// Where all vertices are lost nothing is asked.
+std::vector<Separation> pushes_along(const Points& way, const std::vector<char>& lost, const WorldSheets& sheets,
+                                     double shortest, double reach) {
+  const Segments found = find_segments(sheets.views);
+  const std::vector<Contour> contours = find_contours(sheets.views, found);
+  std::vector<Separation> pushes;
+  for (const Separation& s :
+       part_contours(sheets.views, found, contours, enclosed_regions(sheets.views, contours), {})) {
+    Separation push = on_four(s);
+    Vec3 apart = Vec3::Zero();
+    bool hopeful = false;
+    for (int i = 0; i < push.count; ++i) {
+      apart += push.weight[i] * row(way, push.vertex[i]);
+      hopeful = hopeful || lost.empty() || !lost[push.vertex[i]];
+    }
+    const double length = apart.norm();
+    if (!hopeful || length <= shortest) continue;
+    push.direction = apart / length;
+    push.least = std::min(length, reach);
+    pushes.push_back(push);
+  }
+  return pushes;
+}
+
+// Vertices that would go through an obstacle anew stay: it holds them up. Returns what is tangled then.
+Exemption stop_at_obstacles(const ContactWorld& world, const Exemption& before, const Points& from, Points& nodes) {
+  for (;;) {
+    Exemption left = find_exemption(world, nodes);
+    bool stopped = false;
+    for (std::size_t v = 0; v < left.body.size(); ++v) {
+      const auto at = static_cast<Eigen::Index>(v);
+      if (!left.body[v] || (!before.body.empty() && before.body[v]) || nodes.row(at) == from.row(at)) continue;
+      nodes.row(at) = from.row(at);
+      stopped = true;
+    }
+    if (!stopped) return left;
+  }
+}
+
 }  // namespace
 
 Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass, double reach, Points& nodes) {
@@ -41,24 +95,20 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
   Recovery recovery{find_exemption(world, nodes), {}};
   if (!recovery.left.cloth()) return recovery;
   const WorldSheets sheets(world, nodes);
-  const UntangleResult parted = untangle(*world.cloth, sheets.positions[0], std::span(sheets.views).subspan(1));
-  const Points& goal = parted.x;
+  const Points& from = sheets.positions[0];
+  const UntangleResult parted = untangle(*world.cloth, from, std::span(sheets.views).subspan(1));
   const std::vector<char> lost = tangled_at(world, nodes, parted);
-  for (int v = 0; v < n; ++v) {
-    if (!lost.empty() && lost[v]) continue;
-    const Vec3 way = row(goal, v) - row(nodes, v);
-    const double length = way.norm();
-    if (!(inverse_mass[v] > 0 && length > 0)) continue;
-    nodes.row(v) += std::min(1.0, reach / length) * way.transpose();
-    Separation gained;
-    gained.vertex[0] = v;
-    gained.weight[0] = 1;
-    gained.count = 1;
-    gained.direction = way / length;
-    gained.least = gained.direction.dot(row(nodes, v));
-    recovery.gained.push_back(gained);
+  Points way = parted.x - from;
+  recovery.gained = pushes_along(way, lost, sheets, negligible * parted.mean_edge, reach);
+  for (int v = 0; v < n; ++v)
+    if (!lost.empty() && lost[v]) way.row(v).setZero();
+  nodes.topRows(n) += balanced_motion(*world.cloth, inverse_mass, recovery.gained, way, reach);
+  recovery.left = stop_at_obstacles(world, recovery.left, from, nodes);
+  for (Separation& gained : recovery.gained) {
+    gained.least = 0;
+    for (int i = 0; i < gained.count; ++i)
+      gained.least += gained.weight[i] * gained.direction.dot(row(nodes, gained.vertex[i]));
   }
-  recovery.left = find_exemption(world, nodes);
   return recovery;
 }
 
