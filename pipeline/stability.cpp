@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "collision/error.hpp"
-#include "physics/features.hpp"
 #include "physics/step_audit.hpp"
 #include "pipeline/make_stepper.hpp"
 #include "pipeline/run_scene.hpp"
@@ -36,12 +35,6 @@ Setup read_run(const StabilityRequest& request, const StabilityCase& one, const 
   std::vector<std::string> overrides = run.overrides;
   if (request.stepper) overrides.push_back("run.stepper=" + *request.stepper);
   return read_setup(one.scene, overrides);
-}
-
-Audit audit_of(const Scene& scene, const State& state) {
-  const ContactWorld world =
-      make_contact_world(scene.surface, obstacle_surfaces(scene), features_of(scene).self_contact);
-  return audit_positions(scene, world, state.x, state.obstacles);
 }
 
 std::vector<std::string> failures_of(const StabilityRow& row, const RunSummary& summary,
@@ -97,7 +90,7 @@ std::optional<StabilityRow> run_one(const StabilityRequest& request, const Stabi
   to_run.observe = [&](const FrameEvent& event) {
     watch(event);
     if (event.state.frame < setup.run.frames) return;
-    const Audit end = audit_of(setup.scene, event.state);
+    const Audit end = audit_positions(setup.scene, event.state.x, event.state.obstacles);
     row.end_pairs = end.intersecting_pairs();
     row.end_inside = end.inside_vertices;
   };
@@ -109,7 +102,7 @@ std::optional<StabilityRow> run_one(const StabilityRequest& request, const Stabi
   row.vertices = summary.vertices;
   row.frames = summary.frames;
   row.frames_wanted = summary.frames_wanted;
-  const Audit start = audit_of(setup.scene, setup.initial);
+  const Audit start = audit_positions(setup.scene, setup.initial.x, setup.initial.obstacles);
   row.clean_start = start.intersecting_pairs() == 0 && start.inside_vertices == 0;
   row.pairs = summary.pairs;
   row.max_stretch = summary.max_stretch;
