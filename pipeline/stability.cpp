@@ -67,11 +67,7 @@ void keep_or_remove(const std::filesystem::path& folder, bool keep, std::ostream
     std::filesystem::remove_all(folder);
     return;
   }
-  try {
-    write_view({folder / "run.h5"}, folder / "view.html");
-  } catch (const Error& error) {
-    if (log) *log << "no page: " << error.what() << "\n";
-  }
+  if (const auto trouble = write_page(folder); trouble && log) *log << "no page: " << *trouble << "\n";
 }
 
 // Absent: stopped before its end.
