@@ -382,7 +382,7 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
     report.collision.obstacle_lag = (leg.nodes - wanted).bottomRows(leg.nodes.rows() - n).rowwise().norm().maxCoeff();
   to.pinched = report.collision.obstacle_lag > rounding * wanted.cwiseAbs().maxCoeff();
   if (!to.pinched) report.collision.obstacle_lag = 0;
-  audit_state(scene_, world_, drive, to, audited_, report);
+  audit_state(scene_, drive, to, audited_, report);
   return report;
 }
 

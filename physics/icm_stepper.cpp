@@ -173,7 +173,7 @@ StepReport IcmStepper::step(const State& from, const Drive& drive, double dt, St
   Leg leg{gather_nodes(from.x, from.obstacles), from.v};
   const Points wanted = gather_nodes(from.x, drive.obstacles);
   if (has_contact() && !from.clean && leg.nodes.allFinite())
-    report.collision.pairs_before = audit_positions(scene_, world_, from.x, from.obstacles).intersecting_pairs();
+    report.collision.pairs_before = audit_positions(scene_, from.x, from.obstacles).intersecting_pairs();
   for (int s = 0; s < planned; ++s) {
     const double part = 1.0 / (planned - s);  // of what is left of the frame
     const double h = dt / planned;
@@ -199,7 +199,7 @@ StepReport IcmStepper::step(const State& from, const Drive& drive, double dt, St
   arrive(from, leg, dt, to);
   to.obstacles = drive.obstacles;
   to.pinched = false;
-  audit_state(scene_, world_, drive, to, audited_, report);
+  audit_state(scene_, drive, to, audited_, report);
   return report;
 }
 

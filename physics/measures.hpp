@@ -23,7 +23,7 @@ Energies energies(const Scene&, const Points& x, const Points& v, const Vec3& ac
 
 // Of the rows' lengths; 0 without rows.
 double root_mean_square(const Points&);
-double largest_row(const Points&);  // its length; 0 without rows
+double largest_row(const Points&);
 
 // Principal stretches of every triangle: columns smallest, largest. 1 is rest, and stands for a triangle
 // without rest area.

@@ -4,11 +4,14 @@
 
 #include "collision/untangle.hpp"
 #include "collision/world_sheets.hpp"
+#include "physics/balanced_motion.hpp"
 
 namespace selvedge {
 namespace {
 
-constexpr int most_pairs = 10;  // of triangles that cross, each triangle of the cloth
+constexpr int most_pairs = 10;       // of triangles that cross, each triangle of the cloth
+constexpr int most_halvings = 3;     // of a way that would have clean cloth cross itself
+constexpr double negligible = 1e-6;  // way, in mean edge lengths
 
 // Cloth that crosses itself through and through, a sheet that starts in one point say, has no sides to go to: its own
 // stiffness opens it first.
@@ -58,29 +61,67 @@ std::vector<char> waiting(const ContactWorld& world, const Points& nodes, const 
   return waits;
 }
 
-bool is_marked(const std::vector<char>& marks, int v) { return !marks.empty() && marks[v] != 0; }
-
 bool none_is_left(const Exemption& found, const std::vector<char>& waits) {
   return found.self.empty() && (found.body.empty() || found.body == waits);
 }
 
-// Where the vertices should be, for those that go there.
-struct Goal {
-  int vertex;
-  Vec3 way;
-};
+// Marks of either; empty where neither has any.
+std::vector<char> either(std::vector<char> a, const std::vector<char>& b) {
+  if (a.empty()) return b;
+  for (std::size_t v = 0; v < b.size(); ++v) a[v] = a[v] || b[v];
+  return a;
+}
 
-std::vector<Goal> goals(const ContactWorld& world, const Eigen::VectorXd& inverse_mass, const Points& nodes,
-                        const std::vector<char>& waits) {
-  const WorldSheets sheets(world, nodes);
-  const UntangleResult parted = untangle(*world.cloth, sheets.positions[0], std::span(sheets.views).subspan(1));
-  const std::vector<char> lost = tangled_at(world, nodes, parted);
-  std::vector<Goal> list;
-  for (int v = 0; v < world.cloth->vertex_count; ++v) {
-    const Vec3 way = row(parted.x, v) - row(nodes, v);
-    if (inverse_mass[v] > 0 && way.norm() > 0 && !is_marked(lost, v) && !is_marked(waits, v)) list.push_back({v, way});
+// A contact term has four vertices. Where an edge has gone through a face that is one too few: its nearer end stands
+// for it.
+Separation on_four(Separation s) {
+  if (s.count <= 4) return s;
+  const int near = s.weight[0] > s.weight[1] ? 0 : 1;
+  s.vertex = {s.vertex[near], s.vertex[2], s.vertex[3], s.vertex[4], -1};
+  s.weight = {1, s.weight[2], s.weight[3], s.weight[4], 0};
+  s.count = 4;
+  return s;
+}
+
+// What the way to where the cloth should be asks of all that is to be parted: its two sides go against each other, or
+// vertices against an obstacle, in the direction that the way takes them apart, `least` far and at most by `reach` [m].
+// Where all vertices are lost nothing is asked.
+std::vector<Separation> pushes_along(const Points& way, const std::vector<char>& lost, const WorldSheets& sheets,
+                                     double shortest, double reach) {
+  const Segments found = find_segments(sheets.views);
+  const std::vector<Contour> contours = find_contours(sheets.views, found);
+  std::vector<Separation> pushes;
+  for (const Separation& s :
+       part_contours(sheets.views, found, contours, enclosed_regions(sheets.views, contours), {})) {
+    Separation push = on_four(s);
+    Vec3 apart = Vec3::Zero();
+    bool hopeful = false;
+    for (int i = 0; i < push.count; ++i) {
+      apart += push.weight[i] * row(way, push.vertex[i]);
+      hopeful = hopeful || lost.empty() || !lost[push.vertex[i]];
+    }
+    const double length = apart.norm();
+    if (!hopeful || length <= shortest) continue;
+    push.direction = apart / length;
+    push.least = std::min(length, reach);
+    pushes.push_back(push);
   }
-  return list;
+  return pushes;
+}
+
+// Vertices that would go through an obstacle anew stay: it holds them up. Returns what is tangled then.
+Exemption stop_at_obstacles(const ContactWorld& world, const Exemption& before, const Points& from, Points& nodes) {
+  for (;;) {
+    Exemption left = find_exemption(world, nodes);
+    bool stopped = false;
+    for (std::size_t v = 0; v < left.body.size(); ++v) {
+      const auto at = static_cast<Eigen::Index>(v);
+      if (!left.body[v] || (!before.body.empty() && before.body[v]) || nodes.row(at) == from.row(at)) continue;
+      nodes.row(at) = from.row(at);
+      stopped = true;
+    }
+    if (!stopped) return left;
+  }
 }
 
 }  // namespace
@@ -96,28 +137,31 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
     return nothing;
   }
   Recovery recovery{find_exemption(world, nodes), {}};
-  const bool crossed_itself = !recovery.left.self.empty();
-  const std::vector<char> waits = waiting(world, nodes, recovery.left.body, off);
-  if (!recovery.left.cloth() || none_is_left(recovery.left, waits)) return recovery;
-  const std::vector<Goal> list = goals(world, inverse_mass, nodes, waits);
-  constexpr int most_halvings = 3;
+  const Exemption before = recovery.left;
+  const std::vector<char> waits = waiting(world, nodes, before.body, off);
+  if (!before.cloth() || none_is_left(before, waits)) return recovery;
+  const WorldSheets sheets(world, nodes);
+  const Points& from = sheets.positions[0];
+  const UntangleResult parted = untangle(*world.cloth, from, std::span(sheets.views).subspan(1));
+  const std::vector<char> lost = either(tangled_at(world, nodes, parted), waits);
+  const Points whole_way = parted.x - from;
+  Points way = whole_way;
+  for (int v = 0; v < n; ++v)
+    if (!lost.empty() && lost[v]) way.row(v).setZero();
   for (int halving = 0; halving <= most_halvings; ++halving, reach /= 2) {
+    std::vector<Separation> gained = pushes_along(whole_way, lost, sheets, negligible * parted.mean_edge, reach);
     Points moved = nodes;
-    for (const auto& [v, way] : list) moved.row(v) += std::min(1.0, reach / way.norm()) * way.transpose();
-    Exemption left = find_exemption(world, moved);
-    if (!crossed_itself && !left.self.empty()) continue;
+    moved.topRows(n) += balanced_motion(*world.cloth, inverse_mass, gained, way, reach);
+    Exemption left = stop_at_obstacles(world, before, from, moved);
+    if (before.self.empty() && !left.self.empty()) continue;
     nodes = std::move(moved);
-    recovery.left = std::move(left);
-    for (const auto& [v, way] : list) {
-      Separation gained;
-      gained.vertex[0] = v;
-      gained.weight[0] = 1;
-      gained.count = 1;
-      gained.direction = way.normalized();
-      gained.least = gained.direction.dot(row(nodes, v));
-      recovery.gained.push_back(gained);
-    }
+    recovery = {std::move(left), std::move(gained)};
     break;
+  }
+  for (Separation& gained : recovery.gained) {
+    gained.least = 0;
+    for (int i = 0; i < gained.count; ++i)
+      gained.least += gained.weight[i] * gained.direction.dot(row(nodes, gained.vertex[i]));
   }
   return recovery;
 }

@@ -14,24 +14,22 @@ Points rounded_to_float(const Points& x) { return x.cast<float>().cast<double>()
 
 }  // namespace
 
-Audit audit_positions(const Scene& scene, const ContactWorld& world, const Points& x,
-                      const std::vector<Points>& obstacles, AuditMemory* memory) {
+Audit audit_positions(const Scene& scene, const Points& x, const std::vector<Points>& obstacles, AuditMemory* memory) {
   std::vector<Points> positions;
   for (const Points& obstacle : obstacles) positions.push_back(rounded_to_float(obstacle));
   std::vector<AuditBody> bodies;
   for (std::size_t k = 0; k < positions.size(); ++k) bodies.push_back({&scene.obstacles[k].surface, &positions[k]});
-  return audit(scene.surface, rounded_to_float(x), bodies, world.self, memory);
+  return audit(scene.surface, rounded_to_float(x), bodies, scene.contact.self, memory);
 }
 
-void audit_state(const Scene& scene, const ContactWorld& world, const Drive& drive, State& state, AuditMemory& memory,
-                 StepReport& report) {
+void audit_state(const Scene& scene, const Drive& drive, State& state, AuditMemory& memory, StepReport& report) {
   Stopwatch watch;
   CollisionReport& collision = report.collision;
-  const Audit& now = report.audit.emplace(audit_positions(scene, world, state.x, state.obstacles, &memory));
+  const Audit& now = report.audit.emplace(audit_positions(scene, state.x, state.obstacles, &memory));
   collision.pairs_after = collision.pairs_wanted = now.intersecting_pairs();
   state.clean = collision.pairs_after == 0 && now.inside_vertices == 0;
   if (state.pinched) {
-    collision.pairs_wanted = audit_positions(scene, world, state.x, drive.obstacles).intersecting_pairs();
+    collision.pairs_wanted = audit_positions(scene, state.x, drive.obstacles).intersecting_pairs();
     for (std::size_t k = 0; k < drive.obstacles.size(); ++k)
       collision.depth_wanted =
           std::max(collision.depth_wanted, penetration_depth(scene.obstacles[k].surface, drive.obstacles[k], state.x));

@@ -7,7 +7,6 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "collision/error.hpp"
 #include "pipeline/ccd_report.hpp"
 #include "pipeline/info.hpp"
 #include "pipeline/interrupt.hpp"
@@ -34,14 +33,10 @@ std::filesystem::path folder_for(const SimulateArguments& arguments, const Setup
   return std::filesystem::path("out") / arguments.scene.scene.stem();
 }
 
-// The page is an extra: a run is not lost because it cannot be made.
-std::string write_page(const std::filesystem::path& out) {
-  try {
-    write_view({out / "run.h5"}, out / "view.html");
-    return (out / "view.html").string();
-  } catch (const Error& error) {
-    return std::string("not made: ") + error.what();
-  }
+// Makes the page and says where it is, or why it is not.
+std::string page_text(const std::filesystem::path& out) {
+  const std::optional<std::string> trouble = write_page(out);
+  return trouble ? "not made: " + *trouble : (out / "view.html").string();
 }
 
 // Long work that says how it goes on and can be interrupted.
@@ -81,7 +76,7 @@ int simulate_command(const SimulateArguments& arguments, bool json) {
   request.observe = [&](const FrameEvent& event) { outcome(event.state, event.drive); };
   const RunSummary summary = run_scene(setup, *stepper, request);
   people(json) << summary_text(summary) << fmt::format("{:<20}{}\n", "trajectory", (request.out / "run.h5").string());
-  if (arguments.view) people(json) << fmt::format("{:<20}{}\n", "page to look at", write_page(request.out));
+  if (arguments.view) people(json) << fmt::format("{:<20}{}\n", "page to look at", page_text(request.out));
   const bool came_true = arguments.resume || report_outcome(setup.outcomes, outcome.results(), people(json));
   if (summary.end == RunEnd::interrupted) people(json) << "go on with --resume and the same arguments\n";
   if (json) std::cout << summary_json(summary);

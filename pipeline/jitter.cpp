@@ -1,7 +1,7 @@
 #include "pipeline/jitter.hpp"
 
-#include "collision/audit.hpp"
 #include "collision/error.hpp"
+#include "physics/step_audit.hpp"
 
 namespace selvedge {
 namespace {
@@ -18,13 +18,8 @@ double uniform(std::uint64_t& state) {  // in [-1, 1)
   return static_cast<double>(z >> 11) * 0x1p-52 - 1;
 }
 
-// As a trajectory stores it.
-bool is_clean_start(const Scene& scene, const Points& x, const std::vector<Points>& obstacles) {
-  std::vector<Points> rounded;
-  for (const Points& obstacle : obstacles) rounded.push_back(obstacle.cast<float>().cast<double>());
-  std::vector<AuditBody> bodies;
-  for (std::size_t k = 0; k < rounded.size(); ++k) bodies.push_back({&scene.obstacles[k].surface, &rounded[k]});
-  const Audit found = audit(scene.surface, x.cast<float>().cast<double>(), bodies, scene.contact.self);
+bool is_clean_start(const Scene& scene, const State& start) {
+  const Audit found = audit_positions(scene, start.x, start.obstacles);
   return found.intersecting_pairs() == 0 && found.vertex_pairs.empty() && found.inside_vertices == 0 &&
          found.nonfinite == 0;
 }
@@ -39,14 +34,14 @@ Points random_shifts(Eigen::Index rows, std::uint64_t seed) {
 
 double jitter_start(Setup& setup, double amount, std::uint64_t seed) {
   const Points start = setup.initial.x;
-  if (!is_clean_start(setup.scene, start, setup.initial.obstacles))
+  if (!is_clean_start(setup.scene, setup.initial))
     throw Error("the start is not clean", setup.file.string(), "move the cloths and obstacles of the scene apart");
   Points shift = random_shifts(start.rows(), seed);
   for (const int pin : setup.scene.pins) shift.row(pin).setZero();
   shift *= mean_edge_length(setup.scene);
   for (int halvings = 0; halvings < most_halvings; ++halvings, amount /= 2) {
     setup.initial.x = start + amount * shift;
-    if (is_clean_start(setup.scene, setup.initial.x, setup.initial.obstacles)) return amount;
+    if (is_clean_start(setup.scene, setup.initial)) return amount;
   }
   setup.initial.x = start;
   return 0;

@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <set>
 
+#include "physics/step_audit.hpp"
+
 namespace selvedge {
 namespace {
-
-Audit audit_frame(const Scene& scene, const Points& x, const std::vector<Points>& obstacles) {
-  std::vector<AuditBody> bodies;
-  for (std::size_t k = 0; k < obstacles.size(); ++k) bodies.push_back({&scene.obstacles[k].surface, &obstacles[k]});
-  return audit(scene.surface, x, bodies, scene.contact.self);
-}
 
 void record_audit(const Audit& result, Frame& frame) {
   frame.self_pairs = static_cast<int>(result.self_pairs.size());
@@ -32,14 +28,11 @@ Frame record_frame(const Scene& scene, const EnergyTerms& terms, const FrameEven
   frame.time = event.state.time;
   frame.x = event.state.x.cast<float>();
   const Points x = frame.x.cast<double>();
-  std::vector<Points> obstacles;
-  for (const Points& obstacle : event.state.obstacles) {
-    frame.obstacles.push_back(obstacle.cast<float>());
-    obstacles.push_back(frame.obstacles.back().cast<double>());
-  }
+  for (const Points& obstacle : event.state.obstacles) frame.obstacles.push_back(obstacle.cast<float>());
   frame.report = event.report;
   const Clock::time_point before_audit = Clock::now();
-  record_audit(event.report.audit ? *event.report.audit : audit_frame(scene, x, obstacles), frame);
+  record_audit(event.report.audit ? *event.report.audit : audit_positions(scene, event.state.x, event.state.obstacles),
+               frame);
   frame.report.seconds.audit += seconds_since(before_audit);
   const auto stretches = principal_stretches(scene, x);
   if (stretches.rows() > 0) {

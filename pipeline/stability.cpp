@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "collision/error.hpp"
-#include "physics/features.hpp"
 #include "physics/step_audit.hpp"
 #include "pipeline/make_stepper.hpp"
 #include "pipeline/prepare.hpp"
@@ -39,12 +38,6 @@ Setup read_run(const StabilityRequest& request, const StabilityCase& one, const 
   return read_setup(one.scene, overrides);
 }
 
-Audit audit_of(const Scene& scene, const State& state) {
-  const ContactWorld world =
-      make_contact_world(scene.surface, obstacle_surfaces(scene), features_of(scene).self_contact);
-  return audit_positions(scene, world, state.x, state.obstacles);
-}
-
 std::vector<std::string> failures_of(const StabilityRow& row, const RunSummary& summary,
                                      const StabilityLimits& limits) {
   std::vector<std::string> all;
@@ -75,11 +68,7 @@ void keep_or_remove(const std::filesystem::path& folder, bool keep, std::ostream
     std::filesystem::remove_all(folder);
     return;
   }
-  try {
-    write_view({folder / "run.h5"}, folder / "view.html");
-  } catch (const Error& error) {
-    if (log) *log << "no page: " << error.what() << "\n";
-  }
+  if (const auto trouble = write_page(folder); trouble && log) *log << "no page: " << *trouble << "\n";
 }
 
 // Absent: stopped before its end.
@@ -99,7 +88,7 @@ std::optional<StabilityRow> run_one(const StabilityRequest& request, const Stabi
   to_run.observe = [&](const FrameEvent& event) {
     watch(event);
     if (event.state.frame < setup.run.frames) return;
-    const Audit end = audit_of(setup.scene, event.state);
+    const Audit end = audit_positions(setup.scene, event.state.x, event.state.obstacles);
     row.end_pairs = end.intersecting_pairs();
     row.end_inside = end.inside_vertices;
   };
@@ -111,7 +100,7 @@ std::optional<StabilityRow> run_one(const StabilityRequest& request, const Stabi
   row.vertices = summary.vertices;
   row.frames = summary.frames;
   row.frames_wanted = summary.frames_wanted;
-  const Audit start = audit_of(setup.scene, setup.initial);
+  const Audit start = audit_positions(setup.scene, setup.initial.x, setup.initial.obstacles);
   row.clean_start = start.intersecting_pairs() == 0 && start.inside_vertices == 0;
   row.pairs = summary.pairs;
   row.max_stretch = summary.max_stretch;

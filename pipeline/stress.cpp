@@ -142,11 +142,7 @@ void keep_or_remove(const Repeat& repeat, bool keep, std::ostream* log) {
     std::filesystem::remove_all(repeat.run_folder());
     return;
   }
-  try {
-    write_view({repeat.run_folder()}, repeat.run_folder() / "view.html");
-  } catch (const Error& error) {
-    if (log) *log << "no page: " << error.what() << "\n";
-  }
+  if (const auto trouble = write_page(repeat.run_folder()); trouble && log) *log << "no page: " << *trouble << "\n";
 }
 
 void write_tables(const StressRequest& request, const std::vector<StressRow>& rows) {

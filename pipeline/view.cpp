@@ -46,4 +46,13 @@ void write_view(const std::vector<std::filesystem::path>& runs, const std::files
   write_view(runs, html, ViewOptions{});
 }
 
+std::optional<std::string> write_page(const std::filesystem::path& folder) {
+  try {
+    write_view({folder / "run.h5"}, folder / "view.html");
+    return {};
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
 }  // namespace selvedge

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,5 +37,9 @@ std::string view_page(const std::vector<ViewRun>& runs, const ViewOptions& optio
 void write_view(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& html,
                 const ViewOptions& options);
 void write_view(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& html);
+
+// The page view.html beside the run.h5 of a run's folder. It is an extra, and no run is lost because it cannot be made:
+// says why not. Absent: it was made.
+std::optional<std::string> write_page(const std::filesystem::path& folder);
 
 }  // namespace selvedge

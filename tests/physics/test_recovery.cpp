@@ -2,6 +2,7 @@
 
 #include "collision/audit.hpp"
 #include "collision/untangle.hpp"
+#include "physics/measures.hpp"
 #include "physics/recovery.hpp"
 #include "tests/physics/worlds.hpp"
 
@@ -39,6 +40,20 @@ void check_recovers(World w) {
   }
   CHECK(state.clean);
   CHECK(fastest < 0.1);
+}
+
+// A sheet of 4 x 4 quads, all vertices of which lie anywhere within `size` of `centre`.
+World lump(unsigned seed, double size, const Vec3& centre) {
+  World w = make_world(sheet(4, 0.2, 0));
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> within(-size, size);
+  for (int v = 0; v < w.state.x.rows(); ++v)
+    for (int k = 0; k < 3; ++k) w.state.x(v, k) = centre[k] + within(random);
+  return w;
+}
+
+Vec3 mass_mean(const Scene& scene, const Points& rows) {
+  return linear_momentum(scene, rows) / lumped_masses(scene).sum();
 }
 
 ContactWorld with_its_obstacle(const World& w) {
@@ -93,25 +108,103 @@ TEST_CASE("recovery: a body that crosses itself is switched off there and nowher
   CHECK(r.passed_through == 0);
 }
 
-TEST_CASE("recovery: what cannot be parted is not pushed, the rest is", "[recovery]") {
-  testing::Sheet ball = sheet(4, 0.2, 0);
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> within(-0.04, 0.04);
-  for (int v = 0; v < ball.x.rows(); ++v) ball.x.row(v) << within(random), within(random), within(random);
-  const World w = make_world(ball);
+TEST_CASE("recovery: nothing is asked of what cannot be parted, the rest goes without momentum", "[recovery]") {
+  const World w = lump(7, 0.04, Vec3::Zero());
   const ContactWorld world = make_contact_world(w.scene.surface, {}, true);
   const UntangleResult parted = untangle(w.scene.surface, w.state.x, {});
   REQUIRE(parted.pairs_after > 0);
   const Exemption there = find_exemption(world, parted.x);
+  const Eigen::VectorXd inverse_mass = inverse_masses(w.scene, world.node_count);
   Points nodes = w.state.x;
-  recover(world, Eigen::VectorXd::Ones(nodes.rows()), 0.01, {}, nodes);
-  int pushed = 0;
-  for (int v = 0; v < nodes.rows(); ++v) {
-    const bool moved = nodes.row(v) != w.state.x.row(v);
-    CHECK_FALSE((moved && there.self[v]));
-    pushed += moved;
+  const Recovery recovery = recover(world, inverse_mass, 0.01, {}, nodes);
+  REQUIRE_FALSE(recovery.gained.empty());
+  for (const Separation& gained : recovery.gained) {
+    bool hopeful = false;
+    double sum = 0, value = 0;
+    for (int i = 0; i < gained.count; ++i) {
+      hopeful = hopeful || !there.self[gained.vertex[i]];
+      sum += gained.weight[i];
+      value += gained.weight[i] * gained.direction.dot(row(nodes, gained.vertex[i]));
+    }
+    CHECK(hopeful);
+    CHECK(gained.count <= 4);
+    CHECK(std::abs(sum) < 1e-12);
+    CHECK(gained.least == Approx(value));
   }
-  CHECK(pushed > 0);
+  const Points moved = nodes - w.state.x;
+  CHECK(moved.rowwise().norm().maxCoeff() > 0.005);
+  CHECK(moved.rowwise().norm().maxCoeff() < 0.010001);
+  CHECK(mass_mean(w.scene, moved).norm() < 1e-15);
+}
+
+TEST_CASE("recovery: cloth tangled with itself gets out of it without momentum", "[recovery]") {
+  for (const unsigned seed : {7u, 8u}) {
+    World w = lump(seed, 0.04, Vec3::Zero());
+    w.drive.acceleration.setZero();
+    const auto stepper = make_conventional_stepper(w.scene, {});
+    State state = w.state, to;
+    int frame = 0;
+    for (; frame < 20 && !(frame > 0 && state.clean); ++frame) {
+      REQUIRE(stepper->step(state, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
+      CHECK(mass_mean(w.scene, to.v).norm() < 2e-3);  // of 1 to 3 m/s
+      state = to;
+    }
+    CHECK(state.clean);
+    CHECK((mass_mean(w.scene, state.x) - mass_mean(w.scene, w.state.x)).norm() < 1e-3);
+  }
+}
+
+TEST_CASE("recovery: a light cloth gives way to a heavy one, and both to pins", "[recovery]") {
+  testing::Sheet upright = testing::tilted(sheet(9, 0.2, 0), 1.5);
+  upright.x.col(0).array() += 0.013;
+  upright.x.col(1).array() += 0.06;
+  const auto level = sheet(10, 0.4, 0);
+  World w = make_world(testing::join(level, upright));
+  const int n = static_cast<int>(level.x.rows()), faces = static_cast<int>(level.triangles.rows());
+  w.scene.cloths[0].vertex_count = n;
+  w.scene.cloths[0].triangle_count = faces;
+  w.scene.cloths.push_back(
+      {"heavy", {}, n, static_cast<int>(upright.x.rows()), faces, static_cast<int>(upright.triangles.rows())});
+  w.scene.cloths[1].material.density = 20;
+  const ContactWorld world = make_contact_world(w.scene.surface, {}, true);
+  const auto moved_by_recovery = [&] {
+    Points nodes = w.state.x;
+    recover(world, inverse_masses(w.scene, world.node_count), 0.03, {}, nodes);
+    return Points(nodes - w.state.x);
+  };
+  Points moved = moved_by_recovery();
+  CHECK(mass_mean(w.scene, moved).norm() < 1e-15);
+  CHECK(moved.bottomRows(upright.x.rows()).norm() < 0.5 * moved.topRows(n).norm());
+  for (int v = 0; v < n; ++v) w.scene.pins.push_back(v);
+  moved = moved_by_recovery();
+  CHECK(moved.topRows(n).norm() == 0);
+  w.drive.pins = w.state.x.topRows(n);
+  check_recovers(w);
+}
+
+TEST_CASE("recovery: cloth that comes out of a body leaves its momentum there", "[recovery]") {
+  World w = make_world(sheet(12, 0.4, 0.04));
+  add_obstacle(w, block({0.01, 0, 0.02}, 0.06));
+  const ContactWorld world = with_its_obstacle(w);
+  Points nodes = gather_nodes(w.state.x, w.state.obstacles);
+  recover(world, inverse_masses(w.scene, world.node_count), 0.01, {}, nodes);
+  const Points moved = nodes.topRows(w.state.x.rows()) - w.state.x;
+  for (int v = 0; v < moved.rows(); ++v) CHECK(moved(v, 1) >= -1e-3);
+  CHECK(mass_mean(w.scene, moved).y() > 1e-4);
+}
+
+TEST_CASE("recovery: a tangled cloth is put through no floor", "[recovery]") {
+  for (const unsigned seed : {7u, 8u, 9u}) {
+    World w = lump(seed, 0.04, {0, 0.041, 0});
+    add_obstacle(w, sheet(6, 1, 0));
+    const ContactWorld world = with_its_obstacle(w);
+    const Eigen::VectorXd inverse_mass = inverse_masses(w.scene, world.node_count);
+    Points nodes = gather_nodes(w.state.x, w.state.obstacles);
+    REQUIRE(find_exemption(world, nodes).body.empty());
+    const Recovery recovery = recover(world, inverse_mass, 0.03, {}, nodes);
+    CHECK(recovery.left.body.empty());
+    CHECK(nodes.topRows(w.state.x.rows()).col(1).minCoeff() > 0);
+  }
 }
 
 TEST_CASE("recovery: what is left alone is every pair with a tangled vertex", "[recovery]") {

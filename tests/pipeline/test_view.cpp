@@ -134,3 +134,11 @@ TEST_CASE("view: a trajectory file becomes a page named after its folder", "[vie
   CHECK_THROWS_AS(write_view({file}, folder.path / "taken.html", options), Error);
   CHECK_FALSE(std::filesystem::exists(folder.path / "taken.html.part"));
 }
+
+TEST_CASE("view: a page that cannot be made says why, and is no error", "[view]") {
+  const fake::Folder folder("view_extra");
+  const std::optional<std::string> trouble = write_page(folder.path);
+  REQUIRE(trouble);
+  CHECK(trouble->find("run.h5") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(folder.path / "view.html"));
+}
