@@ -17,7 +17,7 @@ struct Cutter {
   const Border& border;
   std::span<const Border> earlier;
   std::vector<Vec3> x;
-  std::vector<double> side;  // value of each vertex
+  std::vector<double> side;  // value of each vertex, zero where it was moved onto the border
   std::map<std::pair<int, int>, int> crossings;
   std::vector<std::array<int, 3>> triangles;
 };
@@ -76,11 +76,14 @@ Shape packed(const std::vector<Vec3>& x, std::vector<std::array<int, 3>> triangl
 
 }  // namespace
 
-Shape clipped(const Shape& shape, const Border& border, std::span<const Border> earlier) {
+Shape clipped(const Shape& shape, const Border& border, std::span<const Border> earlier, double snap) {
   Cutter cutter{border, earlier, {}, {}, {}, {}};
   for (int v = 0; v < shape.x.rows(); ++v) {
-    cutter.x.push_back(row(shape.x, v));
-    cutter.side.push_back(border.value(cutter.x.back()));
+    const Vec3 p = row(shape.x, v);
+    const double distance = border.value(p);
+    const bool on = std::abs(distance) < snap;
+    cutter.x.push_back(on ? onto_all(cutter, p, p, p) : p);
+    cutter.side.push_back(on ? 0 : distance);
   }
   for (const auto& t : shape.triangles.rowwise()) {
     const std::array<int, 3> corners{t[0], t[1], t[2]};

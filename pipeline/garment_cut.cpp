@@ -32,7 +32,9 @@ Opening front() {
 }
 // Round, as wide and deep as given, its middle so far in front of the neck and so far down.
 Opening neck(double half_width, double depth, double forward, double down) {
-  return {"neck", border_round(Vec3(0, 1.45 - down, -0.02 + forward), Vec3(half_width, 0.08 + down, depth))};
+  const Vec3 centre(0, 1.45 - down, -0.02 + forward), radii(half_width, 0.08 + down, depth);
+  const auto widened = [centre, radii](double by) { return border_round(centre, radii + Vec3(by, 0, by)); };
+  return {"neck", widened(0), false, widened};
 }
 
 // Sections across Y, symmetric in X: height, back, front, half width.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct Opening {
   std::string group;
   Border border;
   bool paired = false;
+  std::function<Border(double)> widened = {};  // the border of round ones, so much farther from the neck [m]
 };
 
 // A patch on the front, stitched on along its sides and its lower edge.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 #include <fmt/format.h>
 
@@ -82,7 +83,7 @@ Shape half_of(const GarmentCut& cut, const Field& field, double edge) {
   Shape shape = isosurface(nearby, Vec3(0, -0.02, -0.6), Vec3(0.9, 1.56, 0.6), grid);
   RemeshTarget target{[edge](const Vec3&) { return edge; }, [&](const Vec3& p) { return projected(field.surface, p); }};
   for (const Opening& opening : cut.openings) {
-    shape = clipped(shape, opening.border, target.borders);
+    shape = clipped(shape, opening.border, target.borders, 0.1 * grid);
     target.borders.push_back(opening.border);
   }
   return remeshed(largest_component(shape), target, rounds);
@@ -134,12 +135,21 @@ Garment make_garment(const std::string& name, const BodyModel& mannequin, const 
                      std::span<const std::string> under) {
   if (!(options.edge >= 0.005 && options.edge <= 0.05))
     throw Error(fmt::format("is {} m", options.edge), "edge of a garment", "allowed: 0.005 to 0.05 m");
+  // Over others the neck of the body is thicker, and so is the opening.
+  std::deque<GarmentCut> cuts;
+  const auto over_others = [&](const GarmentCut& cut) -> const GarmentCut& {
+    const double more = static_cast<double>(cuts.size()) * (options.gap + 1.5 * sagitta(options.edge));
+    cuts.push_back(cut);
+    for (Opening& opening : cuts.back().openings)
+      if (opening.widened) opening.border = opening.widened(more);
+    return cuts.back();
+  };
   std::vector<Field> fields;
   for (const std::string& inner : under)
     if (cut_of(inner).collar > 0 || !cut_of(inner).pockets.empty())
       throw Error("has a collar or pockets", "garment " + inner + " under others", "wear it over them");
-  for (const std::string& inner : under) fields.push_back(field_of(cut_of(inner), options, fields));
-  const GarmentCut& cut = cut_of(name);
+  for (const std::string& inner : under) fields.push_back(field_of(over_others(cut_of(inner)), options, fields));
+  const GarmentCut& cut = over_others(cut_of(name));
   const Field field = field_of(cut, options, fields);
   Shape shape = mirrored(half_of(cut, field, options.edge)).shape;
   Garment garment;
