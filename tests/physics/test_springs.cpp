@@ -158,6 +158,7 @@ TEST_CASE("springs: each stepper brings the weight to rest where it belongs", "[
   ConventionalOptions options;
   options.implicit_euler.velocity_tolerance = 1e-6;
   options.implicit_euler.relative_tolerance = 0;
+  options.implicit_euler.linear_tolerance = 1e-6;
   ConventionalOptions bdf2 = options;
   bdf2.integrator = Integrator::bdf2;
   IcmOptions icm;
