@@ -17,9 +17,9 @@ constexpr double rest_room = 0.3;  // of that distance: the room asked for at mo
 constexpr double deepest = 0.7;    // of a part's thickness, that another is in it: beyond, it comes out behind
 constexpr int sweeps = 12, press_rings = 6;
 constexpr double smoothing = 0.5;
-constexpr int mend_rings = 1;            // round what crosses, that are mended together
-constexpr int few = 40, many = 250;      // pairs in one place: worth mending once pressed, as skinned
-constexpr double overshoot = 1.5;        // of the farthest way, by mending
+constexpr int mend_rings = 1;        // round what crosses, that are mended together
+constexpr int few = 60, many = 250;  // pairs in one place: worth mending once pressed, as skinned
+constexpr double overshoot = 1.5;    // of the farthest way, by mending
 constexpr int mend_iterations = 15;
 constexpr double mend_gap = 0.1, mend_far = 0.5;  // in mean edge lengths
 
