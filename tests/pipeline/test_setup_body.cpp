@@ -63,7 +63,8 @@ TEST_CASE("A clip moves the body over the ground, blended in from a start pose, 
   CHECK((body_at(aside, 1) - body_at(walk, 1)).rowwise().norm().minCoeff() == Approx(std::sqrt(5.0)));
 }
 
-TEST_CASE("A body with a clip gives way where it would pass through itself, unless no room is asked for", "[setup_body]") {
+TEST_CASE("A body with a clip gives way where it would pass through itself, unless no room is asked for",
+          "[setup_body]") {
   const Folder folder("body_flesh");
   const Setup flesh = with_body(folder, "{clip: walk}"), skinned = with_body(folder, "{clip: walk, room: 0}");
   const Surface& surface = flesh.scene.obstacles.at(0).surface;
