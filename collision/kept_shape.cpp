@@ -115,18 +115,18 @@ StretchRange extreme_stretch(const KeptShape& shape, const Points& x) {
   return extreme;
 }
 
-void smooth_displacement(const KeptShape& shape, std::span<const int> vertices, double share, Points& x) {
+void smooth_displacement(const KeptShape& shape, const Points& from, std::span<const int> vertices, double share,
+                         Points& x) {
   std::vector<Vec3> moved;
   moved.reserve(vertices.size());
   for (int v : vertices) {
     const int begin = shape.neighbour_begin[v], end = shape.neighbour_begin[v + 1];
-    const Vec3 own = row(x, v) - row(shape.x0, v);
+    const Vec3 own = row(x, v) - row(from, v);
     Vec3 mean = Vec3::Zero();
-    for (int i = begin; i < end; ++i) mean += row(x, shape.neighbour[i]) - row(shape.x0, shape.neighbour[i]);
+    for (int i = begin; i < end; ++i) mean += row(x, shape.neighbour[i]) - row(from, shape.neighbour[i]);
     moved.push_back(end > begin ? Vec3(own + share * (mean / (end - begin) - own)) : own);
   }
-  for (std::size_t i = 0; i < vertices.size(); ++i)
-    x.row(vertices[i]) = shape.x0.row(vertices[i]) + moved[i].transpose();
+  for (std::size_t i = 0; i < vertices.size(); ++i) x.row(vertices[i]) = from.row(vertices[i]) + moved[i].transpose();
 }
 
 void limit_stretch(const KeptShape& shape, std::span<const int> triangles, const std::vector<double>& reach,

@@ -31,8 +31,8 @@ struct StretchRange {
 StretchRange stretch_of(const KeptShape&, const Points& x, int triangle);
 StretchRange extreme_stretch(const KeptShape&, const Points& x);
 
-// Moves the displacement x - x0 of each listed vertex toward the mean of its neighbours' by `share`.
-void smooth_displacement(const KeptShape&, std::span<const int> vertices, double share, Points& x);
+// Moves the displacement x - from of each listed vertex toward the mean of its neighbours' by `share`.
+void smooth_displacement(const KeptShape&, const Points& from, std::span<const int> vertices, double share, Points& x);
 
 // One pass over the triangles: those stretched out of the range are brought back to it. reach: how far each vertex may
 // be from x0 [m], zero: it stays.

@@ -144,7 +144,7 @@ Points propose(const KeptShape& shape, const Freedom& freedom, std::span<const S
   const StretchRange range{options.least_stretch, options.largest_stretch};
   Points x = from;
   for (int i = 0; i < sweeps; ++i) {
-    smooth_displacement(shape, freedom.vertices, 0.3, x);
+    smooth_displacement(shape, shape.x0, freedom.vertices, 0.3, x);
     limit_stretch(shape, freedom.triangles, freedom.reach, range, x);
     satisfy(repulsions, freedom.reach, x);
     satisfy(separations, freedom.reach, x);

@@ -103,9 +103,9 @@ Movement dance_disco(const Skeleton& k) {
     if (up) {
       set_arm(f, side, 2.3, 0.3, 0, 0.1);
     } else {
-      reach(f, k, side, Vec3(-0.45, -0.7, 0.5), Vec3(1, -0.3, 0));
+      reach(f, k, side, Vec3(-0.2, -0.55, 0.66), Vec3(1, -0.5, 0.4));
     }
-    reach(f, k, 1 - side, Vec3(0.15, -0.85, 0.12), Vec3(1, 0, -0.4));  // hand on the hip
+    reach(f, k, 1 - side, Vec3(0.48, -0.8, 0.2), Vec3(1, 0, -0.2));  // hand on the hip
     m.keys.push_back({1.1 + 0.5 * i, f});
   }
   m.steps.push_back({0, 5.95, 6.4, stance(k, 0), 0, 0.05 * k.leg, 0.2, 0});

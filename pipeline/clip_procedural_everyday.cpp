@@ -53,7 +53,7 @@ Movement reach_across(const Skeleton& k) {
     const double t = 0.6 + 2.7 * side, s = k.mirror[side];
     Figure front = standing(), across = standing();
     reach(front, k, side, Vec3(0.25, -0.25, 0.75), Vec3(0.6, -1, 0));
-    reach(across, k, side, Vec3(-0.55, -0.12, 0.68), Vec3(0.6, -1, 0.2));
+    reach(across, k, side, Vec3(-0.35, -0.12, 0.75), Vec3(0.6, -1, 0.2));
     across.spine() = Vec3(0.1, 0, -0.45 * s);
     across.head() = Vec3(0, 0, -0.3 * s);
     across.yaw() = -0.12 * s;
@@ -85,19 +85,19 @@ Movement stretch(const Skeleton& k) {
   Movement m = movement(k, 8);
   m.smoothing = 0.28;
   Figure up = standing(), down = standing();
-  set_arms(up, 2.6, 0.2, 0.3, 0.3);
+  set_arms(up, 2.3, 0.2, 0.3, 0.3);
   up.spine() = Vec3(-0.25, 0, 0);
   up.head() = Vec3(-0.25, 0, 0);
   for (const int side : {0, 1}) {
     up.heel_up(side) = 0.5;
-    up.shrug(side) = 0.2;
+    up.shrug(side) = 0.1;
   }
   up.pelvis() = Vec3(0, 0.08 * k.leg, 0.08 * k.leg);
   down.lean() = 1.35;
   down.spine() = Vec3(0.85, 0, 0);
   down.head() = Vec3(0.3, 0, 0);
   down.pelvis() = Vec3(0, -0.01 * k.leg, -0.16 * k.leg);
-  set_arms(down, 0.15, 2.0, 0, 0.15);
+  set_arms(down, 0.2, 1.6, 0, 0.15);
   hold(m, 0, 0.5, standing());
   hold(m, 1.9, 2.6, up);
   hold(m, 4.5, 5.2, down);
@@ -129,10 +129,10 @@ Movement pick_up(const Skeleton& k) {
   down.lean() = 0.75;
   down.spine() = Vec3(0.7, 0, -0.2);
   down.head() = Vec3(-0.35, 0, 0);
-  set_arms(down, 0.2, 1.2, 0.1, 0.2);
+  set_arms(down, 0.1, 1.4, 0.1, 0.2);
   for (const int side : {0, 1}) down.knee_out(side) = 0.3;
   Figure held = standing();
-  reach_both(held, k, Vec3(0.15, -0.45, 0.6), Vec3(0.7, -1, -0.3));
+  reach_both(held, k, Vec3(0.32, -0.45, 0.6), Vec3(0.7, -1, -0.3));
   hold(m, 0, 0.5, standing());
   hold(m, 1.9, 2.4, down);
   hold(m, 3.7, 4.3, held);

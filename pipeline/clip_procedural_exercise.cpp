@@ -80,7 +80,7 @@ Movement squat(const Skeleton& k) {
   hold(m, 0, 0.5, standing());
   for (int i = 0; i < 2; ++i) {
     const double t = 1.6 + 2.5 * i;
-    hold(m, t, t + 0.4, squatting(k, i == 0 ? 0.42 : 0.62));
+    hold(m, t, t + 0.4, squatting(k, i == 0 ? 0.42 : 0.56));
     hold(m, t + 1.5, t + 1.6, standing());
   }
   hold(m, 5.8, 6, standing());
@@ -95,7 +95,7 @@ Movement jump(const Skeleton& k) {
     const double t = 0.5 + 2.2 * i, leave = t + 0.85, land = leave + 0.42;
     Figure low = squatting(k, 0.36), high = standing(), soft = squatting(k, 0.3);
     set_arms(low, 0.3, -0.7, 0, 0.2);
-    set_arms(high, 0.3, 2.4, 0, 0.3);
+    set_arms(high, 1.2, 1.9, 0, 0.3);
     set_arms(soft, 0.5, 0.9, 0, 0.4);
     hold(m, t + 0.5, t + 0.58, low);
     hold(m, leave - 0.02, land - 0.1, high);
@@ -149,7 +149,7 @@ Movement side_bends(const Skeleton& k) {
     f.head() = Vec3(0, 0.3 * to, 0);
     f.pelvis().x() = -0.06 * to * k.leg;
     set_arm(f, i == 0 ? 1 : 0, 2.6, 0.1, 0.3, 0.5);
-    set_arm(f, i == 0 ? 0 : 1, 0.35, 0.1, 0.1, 0.15);
+    set_arm(f, i == 0 ? 0 : 1, 0.9, 0.1, 0.1, 0.15);
     hold(m, 1.6 + 2.5 * i, 2.0 + 2.5 * i, f);
     if (i == 0) m.keys.push_back({2.9, standing()});
   }

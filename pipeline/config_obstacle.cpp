@@ -92,7 +92,10 @@ const Section& body_section() {
        numbers("shape", any, "coefficients of its shapes; left out: what an AMASS clip gives an SMPL body, else zero"),
        text("clip", "a procedural clip, or a file: .bvh, or AMASS .npz; left out: it stands in the zero pose"),
        number("blend_in", Unit::time, not_negative, "0", "from the start pose into the clip; 0: starts at frame 0"),
-       word("start_pose", {"zero", "arms_down"}, "zero", "what is blended in from")}};
+       word("start_pose", {"zero", "arms_down"}, "zero", "what is blended in from"),
+       number(
+           "room", Unit::length, not_negative, "1 cm",
+           "between parts of a moving body that come together: it gives way like flesh; 0: it passes through itself")}};
   return table;
 }
 

@@ -56,12 +56,13 @@ const Section& distance_section() {
 }
 
 const Section& disorder_section() {
-  static const Section table{
-      "disorder",
-      "Vertices that lie below the cloth that comes before theirs in the scene, where they are over it.",
-      "",
-      {},
-      {vector("up", Unit::none, "[0, 1, 0]", "from the first cloth to the last")}};
+  static const Section table{"disorder",
+                             "Vertices that lie below the cloth that comes before theirs in the scene: along `up` its "
+                             "nearest triangle shows them "
+                             "the side that most of it has below. An edge that curls over them changes nothing.",
+                             "",
+                             {},
+                             {vector("up", Unit::none, "[0, 1, 0]", "from the first cloth to the last")}};
   return table;
 }
 

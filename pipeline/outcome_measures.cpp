@@ -35,21 +35,40 @@ std::optional<double> height_over(const Vec3& p, const Vec3& a, const Vec3& b, c
   return up.dot(p - (u * a + v * b + w * c) / sum);
 }
 
+// Which way the most of a cloth looks: 1 up, -1 down.
+double facing(const Scene& scene, const Points& x, const Cloth& cloth, const Vec3& up) {
+  double area = 0;
+  for (int t = cloth.first_triangle; t < cloth.first_triangle + cloth.triangle_count; ++t) {
+    const auto corners = scene.surface.triangles.row(t);
+    const Vec3 a = row(x, corners[0]);
+    area += up.dot((row(x, corners[1]) - a).cross(row(x, corners[2]) - a));
+  }
+  return area < 0 ? -1 : 1;
+}
+
+// Vertices of the upper cloth to which the nearest triangle of the lower one, along `up`, shows the side that most of
+// it has below: a corner that curls over the upper cloth's edge shows the same side as what lies flat.
 int below(const Scene& scene, const Points& x, const Cloth& lower, const Cloth& upper, const Vec3& up) {
-  std::vector<bool> under(static_cast<std::size_t>(upper.vertex_count), false);
+  const double upside = facing(scene, x, lower, up);
+  const auto count = static_cast<std::size_t>(upper.vertex_count);
+  std::vector<double> nearest(count, std::numeric_limits<double>::infinity());
+  std::vector<bool> under(count, false);
   for (int t = lower.first_triangle; t < lower.first_triangle + lower.triangle_count; ++t) {
     const Vec3 a = row(x, scene.surface.triangles(t, 0)), b = row(x, scene.surface.triangles(t, 1)),
                c = row(x, scene.surface.triangles(t, 2));
     const Vec3 low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+    const double looks = upside * up.dot((b - a).cross(c - a));
     // Along the axes across `up` a point outside the triangle's box cannot be over it.
-    for (int i = 0; i < upper.vertex_count; ++i) {
-      const Vec3 p = row(x, upper.first_vertex + i);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 p = row(x, upper.first_vertex + static_cast<int>(i));
       bool apart = false;
       for (int axis = 0; axis < 3; ++axis)
         apart = apart || (up[axis] == 0 && (p[axis] < low[axis] || p[axis] > high[axis]));
       if (apart) continue;
       const auto height = height_over(p, a, b, c, up);
-      if (height && *height < 0) under[static_cast<std::size_t>(i)] = true;
+      if (!height || std::abs(*height) >= nearest[i]) continue;
+      nearest[i] = std::abs(*height);
+      under[i] = *height * looks < 0;
     }
   }
   return static_cast<int>(std::count(under.begin(), under.end(), true));

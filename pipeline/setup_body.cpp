@@ -104,7 +104,12 @@ Performance read_performance(const Config& section, const std::filesystem::path&
   if (who.shape.size() > who.body.skin.shape_directions.cols())
     shape.fail("has more coefficients than the body has shapes",
                "give at most " + std::to_string(who.body.skin.shape_directions.cols()));
-  if (clip.given) who.clip = performed(section, who, folder);
+  if (!clip.given) return who;
+  who.clip = performed(section, who, folder);
+  if (const double room = section["room"].number(); room > 0)
+    who.flesh =
+        std::make_shared<GiveWay>(make_surface(static_cast<int>(who.body.skin.rest.rows()), who.body.skin.triangles),
+                                  shaped(who.body.skin, who.shape), GiveWayOptions{.room = room});
   return who;
 }
 
@@ -136,7 +141,8 @@ BodyPose pose_at(const Performance& who, double time) {
 }
 
 Points body_at(const Performance& who, double time) {
-  return in_scene(who, posed(who.body, who.shape, pose_at(who, time)), time);
+  const Points x = posed(who.body, who.shape, pose_at(who, time));
+  return in_scene(who, who.flesh ? (*who.flesh)(x) : x, time);
 }
 
 Points worn_at(const Performance& who, const Garment& garment, double time) {

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "collision/give_way.hpp"
 #include "pipeline/clip.hpp"
 #include "pipeline/config.hpp"
 #include "pipeline/garment.hpp"
@@ -15,11 +16,12 @@ struct Performance {
   std::string name;  // the obstacle's
   BodyModel body;
   Eigen::VectorXd shape;
-  Clip clip;          // without poses: it stands in the zero pose
-  Config section;     // the obstacle's: how it is placed
-  Motion motion;      // of what is placed
-  Clip before;        // up to time 0, where the scene's time begins before it
-  double begins = 0;  // when it does [s]
+  Clip clip;                             // without poses: it stands in the zero pose
+  std::shared_ptr<const GiveWay> flesh;  // null: it passes through itself
+  Config section;                        // the obstacle's: how it is placed
+  Motion motion;                         // of what is placed
+  Clip before;                           // up to time 0, where the scene's time begins before it
+  double begins = 0;                     // when it does [s]
 };
 
 // The bodies of a scene's obstacles, one an obstacle, null for what is none. `folder` is the scene file's.
@@ -35,7 +37,7 @@ void come_from(const Points& rotations, double begins, double seconds, Performan
 
 BodyPose pose_at(const Performance&, double time);
 
-// The body, and a garment on it, where the scene has them at a time [s].
+// The body, giving way where it has flesh, and a garment on it, where the scene has them at a time [s].
 Points body_at(const Performance&, double time);
 Points worn_at(const Performance&, const Garment&, double time);
 

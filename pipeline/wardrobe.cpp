@@ -1,10 +1,12 @@
 #include "pipeline/wardrobe.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 
 #include "collision/error.hpp"
+#include "collision/intersections.hpp"
 #include "pipeline/clip_split.hpp"
 #include "pipeline/garment_make.hpp"
 #include "pipeline/kept_rows.hpp"
@@ -65,16 +67,19 @@ Setup read_row(const WardrobeRequest& request, const Wear& wear, const ClipEntry
 // In which frames the body, the first obstacle, passes through itself or did so a few frames before.
 std::vector<char> excused_frames(const Setup& setup) {
   std::vector<char> excused(static_cast<std::size_t>(setup.run.frames) + 1, 0);
+  IntersectionCache cache;
   int left = 0;
   for (int frame = 0; frame <= setup.run.frames; ++frame) {
-    const Drive drive = setup.drive_at(frame / setup.run.fps);
-    const Audit found = audit(setup.scene.obstacles[0].surface, drive.obstacles[0], {});
-    if (!found.self_pairs.empty()) left = frames_after + 1;
+    const Points body = setup.drive_at(frame / setup.run.fps).obstacles[0];
+    if (!intersecting_pairs(setup.scene.obstacles[0].surface, body, cache).empty()) left = frames_after + 1;
     excused[static_cast<std::size_t>(frame)] = left > 0;
     left = std::max(0, left - 1);
   }
   return excused;
 }
+
+// Of each clip, found once.
+using ExcusedFrames = std::map<std::string, std::vector<char>>;
 
 // Adds a frame to its row.
 struct Watch {
@@ -115,9 +120,10 @@ struct RowPlace {
 
 // Absent: stopped before its end.
 std::optional<WardrobeRow> run_row(const WardrobeRequest& request, const Wear& wear, const ClipEntry& clip,
-                                   const RowPlace& place) {
+                                   const RowPlace& place, ExcusedFrames& known) {
   const Setup setup = read_row(request, wear, clip);
-  const std::vector<char> excused = excused_frames(setup);
+  if (!known.contains(clip.name)) known[clip.name] = excused_frames(setup);
+  const std::vector<char>& excused = known[clip.name];
   WardrobeRow row;
   row.wear = wear.name;
   row.clip = clip.name;
@@ -166,6 +172,7 @@ std::vector<WardrobeRow> wardrobe(const WardrobeRequest& request) {
                                whole_file(request.configs / "wardrobe" / "outfit.yaml");
   const std::string key = fmt::format("{} {:016x} {}", program_key(), hash_of(settings), request.most_frames);
   std::vector<WardrobeRow> rows;
+  ExcusedFrames excused;
   int count = 0;
   for (const Wear& wear : wears)
     for (const ClipEntry& clip : all_clips) {
@@ -174,7 +181,7 @@ std::vector<WardrobeRow> wardrobe(const WardrobeRequest& request) {
       make_folder(place.folder.parent_path());
       std::optional<WardrobeRow> row = read_wardrobe_row(whole_file(place.file), key);
       if (!row) {
-        row = run_row(request, wear, clip, place);
+        row = run_row(request, wear, clip, place, excused);
         if (!row) return rows;
         keep_or_remove(place, !row->passed() || clip.name == all_clips.front().name);
         write_file(place.file, wardrobe_row_json(*row, key));

@@ -86,6 +86,17 @@ TEST_CASE("A layer pushed through the one below is out of order", "[outcome]") {
   CHECK(measure_of(setup, state) == 1);
 }
 
+TEST_CASE("An edge that curls over the layer above it leaves the order as it is", "[outcome]") {
+  const Setup setup = asking("disorder: {}");
+  State state = setup.initial;
+  const Cloth& low = setup.scene.cloths[0];
+  for (int v = low.first_vertex; v < low.first_vertex + low.vertex_count; ++v)
+    if (state.x(v, 0) < -0.4) state.x.row(v) += Eigen::RowVector3d(0.6, 0.3, 0);
+  CHECK(measure_of(setup, state) == 0);
+  state.x.bottomRows(setup.scene.cloths[1].vertex_count).col(1).array() -= 0.11;
+  CHECK(measure_of(setup, state) > 0);
+}
+
 TEST_CASE("What obstacles want is measured apart from where they are", "[outcome]") {
   const Setup setup = read(two_sheets + "outcome: [{name: it, lag: ball}, {name: pairs, wanted_pairs: {}}]\n");
   State state = setup.initial;

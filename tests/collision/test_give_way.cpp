@@ -1,0 +1,146 @@
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <numbers>
+
+#include "collision/audit.hpp"
+#include "collision/cell_grid.hpp"
+#include "collision/give_way.hpp"
+
+using namespace selvedge;
+
+namespace {
+
+constexpr double radius = 0.06;
+
+struct Arm {
+  Surface surface;
+  Points straight;
+};
+
+// A closed rod along x, from -0.5 to 0.5.
+Arm arm() {
+  constexpr int rings = 60, around = 24;
+  Points x(rings * around + 2, 3);
+  Triangles triangles(2 * rings * around, 3);
+  int count = 0;
+  for (int i = 0; i < rings; ++i)
+    for (int j = 0; j < around; ++j) {
+      const double at = (i + 0.5) / rings - 0.5, angle = 2 * std::numbers::pi * j / around;
+      const double r = radius * std::min(1.0, std::sqrt((0.5 - std::abs(at)) / 0.06));
+      x.row(i * around + j) << at, r * std::cos(angle), r * std::sin(angle);
+      const int next = (j + 1) % around, a = i * around + j, b = i * around + next;
+      if (i + 1 < rings) {
+        triangles.row(count++) << a, a + around, b;
+        triangles.row(count++) << b, a + around, b + around;
+      }
+    }
+  const int first = rings * around, last = first + 1;
+  x.row(first) << -0.5, 0, 0;
+  x.row(last) << 0.5, 0, 0;
+  for (int j = 0; j < around; ++j) {
+    const int next = (j + 1) % around;
+    triangles.row(count++) << first, j, next;
+    triangles.row(count++) << last, (rings - 1) * around + next, (rings - 1) * around + j;
+  }
+  return {make_surface(static_cast<int>(x.rows()), triangles.topRows(count)), x};
+}
+
+// Skinned to two bones that meet at the origin, the second one turned about z.
+Points bent(const Points& straight, double angle) {
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix();
+  Points x = straight;
+  for (int v = 0; v < x.rows(); ++v) {
+    const double t = std::clamp((x(v, 0) + 0.08) / 0.16, 0.0, 1.0), w = t * t * (3 - 2 * t);
+    const Vec3 at = row(straight, v);
+    x.row(v) = ((1 - w) * at + w * (turn * at)).transpose();
+  }
+  return x;
+}
+
+int crossings(const Surface& surface, const Points& x) { return audit(surface, x, {}).intersecting_pairs(); }
+
+double farthest(const Points& a, const Points& b) { return (a - b).rowwise().norm().maxCoeff(); }
+
+}  // namespace
+
+TEST_CASE("flesh in the bend of a limb gives way", "[give_way]") {
+  const Arm rod = arm();
+  const GiveWayOptions options;
+  const GiveWay give(rod.surface, rod.straight, options);
+  for (const double degrees : {100.0, 110.0, 120.0}) {
+    CAPTURE(degrees);
+    const Points x = bent(rod.straight, degrees * std::numbers::pi / 180);
+    const Points y = give(x);
+    CHECK(crossings(rod.surface, x) > 0);
+    CHECK(crossings(rod.surface, y) == 0);
+    CHECK(farthest(x, y) < 1.5 * options.most);
+    for (int v = 0; v < x.rows(); ++v)
+      if (std::abs(rod.straight(v, 0)) > 0.4) REQUIRE(y.row(v) == x.row(v));
+    CHECK(give(x) == y);
+  }
+}
+
+TEST_CASE("parts that come together leave room for cloth", "[give_way]") {
+  const Arm rod = arm();
+  const Points x = bent(rod.straight, 2.1);
+  for (const double room : {0.0, 0.005, 0.01}) {
+    CAPTURE(room);
+    const GiveWay give(rod.surface, rod.straight, {.room = room});
+    const Points y = give(x);
+    // Inner sides of the two halves, well before the fold's bottom.
+    double least = 1;
+    for (int v = 0; v < x.rows(); ++v)
+      for (int w = 0; w < x.rows(); ++w)
+        if (rod.straight(v, 0) < -0.12 && rod.straight(w, 0) > 0.12)
+          least = std::min(least, (y.row(v) - y.row(w)).norm());
+    CHECK(crossings(rod.surface, y) == 0);
+    CHECK(least > 0.8 * room);
+  }
+}
+
+TEST_CASE("a body without parts that come together is left as it is", "[give_way]") {
+  const Arm rod = arm();
+  const GiveWay give(rod.surface, rod.straight);
+  CHECK(give(rod.straight) == rod.straight);
+  const Points x = bent(rod.straight, 0.5);
+  CHECK(give(x) == x);
+}
+
+TEST_CASE("where too much would have to give way the body passes through itself", "[give_way]") {
+  const Arm rod = arm();
+  const GiveWay give(rod.surface, rod.straight);
+  const Points x = bent(rod.straight, std::numbers::pi);  // both halves in one place
+  const Points y = give(x);
+  CHECK(y.allFinite());
+  CHECK(crossings(rod.surface, y) > 0);
+  CHECK(farthest(x, y) < 0.07);
+}
+
+TEST_CASE("what gives way moves as smoothly as the pose", "[give_way]") {
+  const Arm rod = arm();
+  const GiveWay give(rod.surface, rod.straight);
+  double jump = 0;
+  Points before;
+  for (double angle = 1.5; angle < 1.95; angle += 0.01) {
+    const Points x = bent(rod.straight, angle), way = give(x) - x;
+    if (before.rows() > 0) jump = std::max(jump, farthest(way, before));
+    before = way;
+  }
+  CHECK(jump < 0.015);
+}
+
+TEST_CASE("a grid of cells misses no neighbour", "[give_way]") {
+  const Points x = 0.3 * bent(arm().straight, 1);
+  const CellGrid grid(x, 0.02);
+  for (const int v : {0, 77, 400, 1100}) {
+    const Vec3 at = row(x, v) + Vec3(0.01, -0.4 * (v == 77), 0);
+    const double reach = 0.033;
+    std::vector<int> seen;
+    grid.for_each_near(at, reach, [&](int w) { seen.push_back(w); });
+    for (int w = 0; w < x.rows(); ++w)
+      if ((row(x, w) - at).norm() <= reach) REQUIRE(std::count(seen.begin(), seen.end(), w) == 1);
+    CHECK(seen.size() < 0.5 * x.rows());
+  }
+  CHECK_NOTHROW(CellGrid(Points(0, 3), 1).for_each_near(Vec3::Zero(), 1, [](int) { FAIL("none is there"); }));
+}
