@@ -20,7 +20,7 @@ constexpr double smoothing = 0.5;
 constexpr int mend_rings = 1;        // round what crosses, that are mended together
 constexpr int few = 60, many = 250;  // pairs in one place: worth mending once pressed, as skinned
 constexpr double overshoot = 1.5;    // of the farthest way, by mending
-constexpr int mend_iterations = 15;
+constexpr int mend_iterations = 40;
 constexpr double mend_gap = 0.1, mend_far = 0.5;  // in mean edge lengths
 
 // How thick the body is under each vertex: to the nearest one behind it that looks the other way, at most `most` [m].
@@ -187,7 +187,8 @@ Points GiveWay::operator()(const Points& x) const {
     for (int v = 0; v < body_.vertex_count; ++v)
       if (near[v]) place.push_back(v);
     if (after <= few && mend(place, Points(result), x, result)) continue;
-    if (before > many || !mend(place, x, x, result)) result(place, Eigen::all) = x(place, Eigen::all);
+    if (before <= many && mend(place, x, x, result)) continue;
+    if (after > before) result(place, Eigen::all) = x(place, Eigen::all);
   }
   return result;
 }

@@ -9,9 +9,10 @@
 namespace selvedge {
 namespace {
 
-constexpr int most_pairs = 10;       // of triangles that cross, each triangle of the cloth
-constexpr int most_halvings = 3;     // of a way that would have clean cloth cross itself
-constexpr double negligible = 1e-6;  // way, in mean edge lengths
+constexpr int most_pairs = 10;        // of triangles that cross, each triangle of the cloth
+constexpr int most_halvings = 3;      // of a way that would have clean cloth cross itself
+constexpr int hasty_iterations = 20;  // of untangling from a body that crosses itself: some of it must wait anyway
+constexpr double negligible = 1e-6;   // way, in mean edge lengths
 
 // Cloth that crosses itself through and through, a sheet that starts in one point say, has no sides to go to: its own
 // stiffness opens it first.
@@ -142,7 +143,9 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
   if (!before.cloth() || none_is_left(before, waits)) return recovery;
   const WorldSheets sheets(world, nodes);
   const Points& from = sheets.positions[0];
-  const UntangleResult parted = untangle(*world.cloth, from, std::span(sheets.views).subspan(1));
+  UntangleOptions options;
+  if (!off.empty()) options.iterations = hasty_iterations;
+  const UntangleResult parted = untangle(*world.cloth, from, std::span(sheets.views).subspan(1), options);
   const std::vector<char> lost = either(tangled_at(world, nodes, parted), waits);
   const Points whole_way = parted.x - from;
   Points way = whole_way;

@@ -57,7 +57,7 @@ const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 }  // namespace
 
 TEST_CASE("Shipped scenes read without warnings", "[setup]") {
-  for (const char* name : {"demo.yaml", "bench/hang.yaml", "bench/drop.yaml", "bench/tube.yaml"}) {
+  for (const char* name : {"demo.yaml", "fall.yaml", "bench/hang.yaml", "bench/drop.yaml", "bench/tube.yaml"}) {
     INFO(name);
     const Setup setup = read_setup(config(name));
     CHECK(setup.warnings.empty());

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "collision/audit.hpp"
 #include "pipeline/body_hdf5.hpp"
 #include "pipeline/body_makehuman.hpp"
 #include "pipeline/mannequin.hpp"
@@ -60,6 +61,19 @@ TEST_CASE("A clip moves the body over the ground, blended in from a start pose, 
 
   const Setup aside = with_body(folder, "{clip: walk}", "    translate: [2, 0, 1]\n");
   CHECK((body_at(aside, 1) - body_at(walk, 1)).rowwise().norm().minCoeff() == Approx(std::sqrt(5.0)));
+}
+
+TEST_CASE("A body with a clip gives way where it would pass through itself, unless no room is asked for",
+          "[setup_body]") {
+  const Folder folder("body_flesh");
+  const Setup flesh = with_body(folder, "{clip: walk}"), skinned = with_body(folder, "{clip: walk, room: 0}");
+  const Surface& surface = flesh.scene.obstacles.at(0).surface;
+  const auto crossings = [&](const Points& x) { return audit(surface, x, {}).intersecting_pairs(); };
+  for (const double time : {0.0, 1.1, 3.2}) {
+    CHECK(crossings(body_at(skinned, time)) > 0);  // under the arms
+    CHECK(crossings(body_at(flesh, time)) == 0);
+    CHECK((body_at(flesh, time) - body_at(skinned, time)).rowwise().norm().maxCoeff() < 0.045);
+  }
 }
 
 TEST_CASE("A body walks as a BVH file has it", "[setup_body]") {
