@@ -16,24 +16,24 @@ void put_rows(const Points& part, const std::vector<int>& rows, Points& whole) {
   for (std::size_t i = 0; i < rows.size(); ++i) whole.row(rows[i]) = part.row(static_cast<Eigen::Index>(i));
 }
 
-void append_range(int first, int count, std::vector<int>& numbers) {
-  for (int i = first; i < first + count; ++i) numbers.push_back(i);
-}
-
-}  // namespace
-
-PartOfScene part_of(const Scene& whole, std::span<const char> cloths) {
+// What is marked of the vertices and triangles of a scene; a triangle needs its vertices.
+PartOfScene part_with(const Scene& whole, std::span<const char> has_vertex, std::span<const char> has_triangle) {
   PartOfScene part;
   Scene& scene = part.scene;
-  std::vector<int> renumbered(whole.surface.vertex_count, -1);
-  for (std::size_t c = 0; c < cloths.size(); ++c) {
-    if (!cloths[c]) continue;
-    const Cloth& cloth = whole.cloths[c];
-    Cloth& own = scene.cloths.emplace_back(cloth);
+  std::vector<int> renumbered(static_cast<std::size_t>(whole.surface.vertex_count), -1);
+  const auto take = [](int first, int count, std::span<const char> marks, std::vector<int>& numbers) {
+    const std::size_t before = numbers.size();
+    for (int i = first; i < first + count; ++i)
+      if (marks[static_cast<std::size_t>(i)]) numbers.push_back(i);
+    return static_cast<int>(numbers.size() - before);
+  };
+  for (const Cloth& cloth : whole.cloths) {
+    Cloth own = cloth;
     own.first_vertex = static_cast<int>(part.vertices.size());
     own.first_triangle = static_cast<int>(part.triangles.size());
-    append_range(cloth.first_vertex, cloth.vertex_count, part.vertices);
-    append_range(cloth.first_triangle, cloth.triangle_count, part.triangles);
+    own.vertex_count = take(cloth.first_vertex, cloth.vertex_count, has_vertex, part.vertices);
+    own.triangle_count = take(cloth.first_triangle, cloth.triangle_count, has_triangle, part.triangles);
+    if (own.vertex_count > 0) scene.cloths.push_back(own);
   }
   for (std::size_t i = 0; i < part.vertices.size(); ++i) renumbered[part.vertices[i]] = static_cast<int>(i);
   Triangles triangles(static_cast<Eigen::Index>(part.triangles.size()), 3);
@@ -53,13 +53,35 @@ PartOfScene part_of(const Scene& whole, std::span<const char> cloths) {
   }
   for (const Spring& spring : whole.springs) {
     const int a = renumbered[spring.a], b = renumbered[spring.b];
-    assert((a < 0) == (b < 0));
-    if (a >= 0) scene.springs.push_back({a, b, spring.rest_length, spring.stiffness});
+    if (a >= 0 && b >= 0) scene.springs.push_back({a, b, spring.rest_length, spring.stiffness});
   }
   scene.obstacles = whole.obstacles;
   scene.contact = whole.contact;
   scene.wind = whole.wind;
   return part;
+}
+
+}  // namespace
+
+PartOfScene part_of(const Scene& whole, std::span<const char> cloths) {
+  std::vector<char> vertices(static_cast<std::size_t>(whole.surface.vertex_count), 0);
+  std::vector<char> triangles(static_cast<std::size_t>(whole.surface.triangles.rows()), 0);
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    const Cloth& cloth = whole.cloths[c];
+    std::fill_n(vertices.begin() + cloth.first_vertex, cloth.vertex_count, cloths[c]);
+    std::fill_n(triangles.begin() + cloth.first_triangle, cloth.triangle_count, cloths[c]);
+  }
+  assert(std::ranges::all_of(whole.springs, [&](const Spring& s) { return vertices[s.a] == vertices[s.b]; }));
+  return part_with(whole, vertices, triangles);
+}
+
+PartOfScene part_of_triangles(const Scene& whole, std::span<const char> triangles) {
+  std::vector<char> vertices(static_cast<std::size_t>(whole.surface.vertex_count), 0);
+  for (int v = 0; v < whole.surface.vertex_count; ++v) {
+    const std::span<const int> round = whole.surface.triangles_of(v);
+    vertices[v] = round.empty() || std::ranges::any_of(round, [&](int t) { return triangles[t] != 0; });
+  }
+  return part_with(whole, vertices, triangles);
 }
 
 State state_of(const PartOfScene& part, const State& whole) {
@@ -77,7 +99,7 @@ State state_of(const PartOfScene& part, const State& whole) {
 }
 
 Drive drive_of(const PartOfScene& part, const Drive& whole) {
-  return {rows_of(whole.pins, part.pins), whole.obstacles, whole.wind, whole.acceleration};
+  return {rows_of(whole.pins, part.pins), whole.obstacles, whole.wind, whole.acceleration, {}};
 }
 
 void put(const PartOfScene& part, const State& state, State& whole) {

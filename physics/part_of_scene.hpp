@@ -8,7 +8,8 @@
 
 namespace selvedge {
 
-// Some of a scene's cloths with all of its obstacles, as a scene of their own, and the way between the two numberings.
+// Some of a scene's triangles with all of its obstacles, as a scene of their own, and the way between the two
+// numberings.
 struct PartOfScene {
   Scene scene;
   std::vector<int> vertices, triangles,
@@ -16,6 +17,9 @@ struct PartOfScene {
 };
 // The chosen ones, one a cloth. Cloths that springs join must be chosen together (assert).
 PartOfScene part_of(const Scene&, std::span<const char> cloths);
+// The chosen ones, one a triangle, with their vertices and with vertices that have no triangle in the whole. A spring
+// that loses an end is left out; so is a cloth that loses all vertices.
+PartOfScene part_of_triangles(const Scene&, std::span<const char> triangles);
 
 State state_of(const PartOfScene&, const State& whole);
 Drive drive_of(const PartOfScene&, const Drive& whole);

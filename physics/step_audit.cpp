@@ -6,6 +6,8 @@
 #include "collision/penetration_depth.hpp"
 #include "collision/stopwatch.hpp"
 #include "collision/world_sheets.hpp"
+#include "physics/cut_out.hpp"
+#include "physics/part_of_scene.hpp"
 
 namespace selvedge {
 namespace {
@@ -22,19 +24,30 @@ Audit audit_positions(const Scene& scene, const Points& x, const std::vector<Poi
   return audit(scene.surface, rounded_to_float(x), bodies, scene.contact.self, memory);
 }
 
+Audit audit_uncut(const Scene& scene, const State& state) {
+  if (state.cut_out.empty()) return audit_positions(scene, state.x, state.obstacles);
+  const PartOfScene part = part_of_triangles(scene, all_but(scene, state.cut_out));
+  return whole_audit(part, audit_positions(part.scene, state_of(part, state).x, state.obstacles));
+}
+
+void take_audit(Audit audit, State& state, StepReport& report) {
+  const int pairs = audit.intersecting_pairs();
+  report.collision.pairs_after = report.collision.pairs_wanted = pairs;
+  state.clean = pairs == 0 && audit.inside_vertices == 0;
+  if (pairs > 0) report.reason = Reason::penetrating;
+  report.audit = std::move(audit);
+}
+
 void audit_state(const Scene& scene, const Drive& drive, State& state, AuditMemory& memory, StepReport& report) {
   Stopwatch watch;
+  take_audit(audit_positions(scene, state.x, state.obstacles, &memory), state, report);
   CollisionReport& collision = report.collision;
-  const Audit& now = report.audit.emplace(audit_positions(scene, state.x, state.obstacles, &memory));
-  collision.pairs_after = collision.pairs_wanted = now.intersecting_pairs();
-  state.clean = collision.pairs_after == 0 && now.inside_vertices == 0;
   if (state.pinched) {
     collision.pairs_wanted = audit_positions(scene, state.x, drive.obstacles).intersecting_pairs();
     for (std::size_t k = 0; k < drive.obstacles.size(); ++k)
       collision.depth_wanted =
           std::max(collision.depth_wanted, penetration_depth(scene.obstacles[k].surface, drive.obstacles[k], state.x));
   }
-  if (collision.pairs_after > 0) report.reason = Reason::penetrating;
   report.seconds.audit += watch.lap();
 }
 

@@ -18,6 +18,11 @@ Audit audit_positions(const Scene&, const Points& x, const std::vector<Points>& 
 // obstacles where the drive wanted them, the reason `penetrating` where any are left, and the seconds it took.
 void audit_state(const Scene&, const Drive&, State&, AuditMemory&, StepReport&);
 
+// Of the state without the triangles that are cut out of it, and as audit_state does without the drive: sets `clean`,
+// and in the report the audit, the intersecting pairs and the reason.
+Audit audit_uncut(const Scene&, const State&);
+void take_audit(Audit, State&, StepReport&);
+
 // Pairs that met while all nodes moved straight from nodes0 to nodes1, those that contact leaves alone not counted.
 int passed_through(const ContactWorld&, const Exemption&, const Points& nodes0, const Points& nodes1, AuditMemory&);
 

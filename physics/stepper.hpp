@@ -33,6 +33,7 @@ struct State {
   bool clean = false;             // known to be free of intersections, by the audit of the step that ended here
   StepHistory history;
   Rest rest;
+  std::vector<int> cut_out;  // triangles that are out of the simulation, ascending (cut_out.hpp)
 };
 
 // What the world imposes on a step, given at the step's END.
@@ -41,6 +42,7 @@ struct Drive {
   std::vector<Points> obstacles;     // wanted positions
   Vec3 wind = Vec3::Zero();          // [m/s]
   Vec3 acceleration = Vec3::Zero();  // gravity [m/s2]
+  Points worn;                       // one row a vertex: where it goes if it is cut out; empty where none ever is
 };
 
 enum class StepStatus { not_run, accepted, rejected };
@@ -60,6 +62,7 @@ struct CollisionReport {
   int held_vertices = 0;    // cloth vertices in them, all substeps
   int passed_through = 0;   // pairs that met on their way by the audit of the motion, those left alone not counted
   int left_alone = 0;       // cloth vertices on or inside a contour at the start, after recovery
+  int cut_out = 0;          // triangles out of the simulation at the end: no pair is counted of them
   int jumped = 0;           // obstacles put where they were wanted without a sweep: too far for one
   double min_gap = std::numeric_limits<double>::infinity();  // of the contacts [m]
   double obstacle_lag = 0;                // largest distance of an obstacle vertex from where it was wanted [m]

@@ -1,5 +1,7 @@
 #include "pipeline/check.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -119,11 +121,16 @@ void check_trajectory(const CheckRequest& request, CheckReport& report) {
   Bodies bodies;
   for (const TrajectoryInfo::Body& body : info.obstacles) bodies.add(body.vertex_count, body.triangles, Points());
   add_body_files(request, bodies, report);
+  int last_cut = -1;
   for (int i = 0; i < reader.frame_count(); ++i) {
     const Frame frame = reader.frame(i);
     for (std::size_t k = 0; k < frame.obstacles.size(); ++k) bodies.points[k] = frame.obstacles[k].cast<double>();
     check_frame(scene, frame.x.cast<double>(), bodies, request.horizon, report);
+    if (frame.report.collision.cut_out > 0) last_cut = i;
   }
+  if (last_cut >= 0)
+    report.warnings.push_back(
+        fmt::format("the run had cut triangles out up to frame {}; they are checked all the same", last_cut));
   report.vertices = scene.surface.vertex_count;
   report.triangles = static_cast<int>(info.triangles.rows());
   report.bodies = static_cast<int>(bodies.surfaces.size());

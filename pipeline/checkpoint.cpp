@@ -1,14 +1,11 @@
 #include "pipeline/checkpoint.hpp"
 
 #include "collision/error.hpp"
+#include "pipeline/hdf5_fields.hpp"
 #include "pipeline/hdf5_handles.hpp"
 
 namespace selvedge {
 namespace {
-
-void write_points(const h5::File& file, const std::string& name, const Points& points) {
-  file.write_constant(name, H5T_NATIVE_DOUBLE, {static_cast<hsize_t>(points.rows()), 3}, points.data());
-}
 
 Points read_points(const h5::File& file, const std::string& name) {
   const std::vector<hsize_t> shape = file.shape(file.open_dataset(name).id());
@@ -24,8 +21,8 @@ void write_rest(const h5::File& file, const Rest& rest) {
                       rest.seconds.data());
   Points air(2, 3);
   air << rest.wind.transpose(), rest.acceleration.transpose();
-  write_points(file, "rest_air", air);
-  write_points(file, "rest_place", rest.place);
+  h5::write_points(file, "rest_air", air);
+  h5::write_points(file, "rest_place", rest.place);
 }
 
 Rest read_rest(const h5::File& file) {
@@ -52,14 +49,15 @@ void write_checkpoint(const std::filesystem::path& path, const State& state, con
     const int pinched = state.pinched, clean = state.clean;
     file.write_constant("pinched", H5T_NATIVE_INT, {1}, &pinched);
     file.write_constant("clean", H5T_NATIVE_INT, {1}, &clean);
-    write_points(file, "x", state.x);
-    write_points(file, "v", state.v);
+    h5::write_points(file, "x", state.x);
+    h5::write_points(file, "v", state.v);
     for (std::size_t k = 0; k < state.obstacles.size(); ++k)
-      write_points(file, "obstacle_" + std::to_string(k), state.obstacles[k]);
+      h5::write_points(file, "obstacle_" + std::to_string(k), state.obstacles[k]);
     file.write_constant("history_h", H5T_NATIVE_DOUBLE, {1}, &state.history.h);
-    write_points(file, "history_x", state.history.x);
-    write_points(file, "history_v", state.history.v);
+    h5::write_points(file, "history_x", state.history.x);
+    h5::write_points(file, "history_v", state.history.v);
     write_rest(file, state.rest);
+    h5::write_integers(file, "cut_out", state.cut_out);
     file.close();
   } catch (const Error&) {
     file.abandon();
@@ -94,6 +92,8 @@ State read_checkpoint(const std::filesystem::path& path, const std::string& conf
   state.history.x = read_points(file, "history_x");
   state.history.v = read_points(file, "history_v");
   state.rest = read_rest(file);
+  state.cut_out.resize(file.shape(file.open_dataset("cut_out").id()).at(0));
+  if (!state.cut_out.empty()) file.read_all("cut_out", H5T_NATIVE_INT32, state.cut_out.data());
   return state;
 }
 

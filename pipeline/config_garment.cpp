@@ -39,9 +39,10 @@ const Section& start_section() {
               "random displacement of every vertex, at most, along each axis"),
        integer("seed", not_negative, "1", "of what is random"),
        word(
-           "from", {"skinned", "draped"}, "skinned",
+           "from", {"skinned", "draped", "cut"}, "skinned",
            "of a garment: where the body's first pose takes it, maybe tangled; or grown clean before time 0, while the "
-           "body comes from the pose that it was made in (all garments of a scene alike)"),
+           "body comes from the pose that it was made in; or skinned, and what is tangled is cut out until it is free "
+           "(all garments of a scene alike)"),
        number("seconds", Unit::time, positive, show(draping.seconds), "of a draped start: how long the body takes"),
        number("hold", Unit::time, not_negative, show(draping.hold), "and holds its first pose, until time 0"),
        flag("moving", true, "a garment starts as fast as the body takes it along; false: at rest")}};

@@ -8,6 +8,13 @@
 
 namespace selvedge {
 
+// Joins two vertices of a garment by a spring, such as a pocket's and one of the front behind it.
+struct Stitch {
+  int a = 0, b = 0;
+  double rest_length = 0;  // [m]
+  bool operator==(const Stitch&) const = default;
+};
+
 // A garment on the body that it was made for.
 struct Garment {
   std::string name;
@@ -16,6 +23,7 @@ struct Garment {
   std::vector<std::pair<std::string, std::vector<int>>> groups;  // by name, vertices ascending
   std::vector<int> pins;                                         // vertices that stay with the body, ascending
   std::string made_for = {};                                     // the body's name; empty: not known
+  std::vector<Stitch> stitches = {};
 };
 
 // How a garment vertex takes weights and directions from the body: from the nearest vertex, as tight garments do, or
@@ -34,7 +42,7 @@ Points worn(const Garment&, const BodyModel&, const Eigen::VectorXd& shape, cons
 Points rest_shape(const Garment&, const BodyModel&, const Eigen::VectorXd& shape);
 
 // Throws Error, naming `file` and the field, unless the sizes fit, indices are in range and ascend, all numbers are
-// finite and weights sum to 1. For readers and makers of garments.
+// finite, weights sum to 1 and stitches join different vertices. For readers and makers of garments.
 void check_garment(const Garment&, const std::string& file);
 
 }  // namespace selvedge

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "collision/error.hpp"
@@ -17,6 +18,16 @@ void check_vertices(const std::vector<int>& vertices, Eigen::Index count, const 
     throw Error(
         fmt::format("names vertex {}, there are {}", vertices.front() < 0 ? vertices.front() : vertices.back(), count),
         where, "vertices count from 0");
+}
+
+void check_stitches(const std::vector<Stitch>& stitches, Eigen::Index count, const std::string& where) {
+  for (const auto& [a, b, rest_length] : stitches) {
+    if (std::min(a, b) < 0 || std::max(a, b) >= count)
+      throw Error(fmt::format("join vertices {} and {}, there are {}", a, b, count), where, "vertices count from 0");
+    if (a == b) throw Error(fmt::format("join vertex {} with itself", a), where, "join different vertices");
+    if (!(rest_length >= 0 && std::isfinite(rest_length)))
+      throw Error(fmt::format("have the rest length {}", rest_length), where, "give lengths in metres, at least 0");
+  }
 }
 
 }  // namespace
@@ -38,6 +49,7 @@ void check_garment(const Garment& garment, const std::string& file) {
     check_vertices(members, vertices, file + ": groups `" + name + "`");
   }
   check_vertices(garment.pins, vertices, file + ": pins");
+  check_stitches(garment.stitches, vertices, file + ": stitches");
 }
 
 }  // namespace selvedge

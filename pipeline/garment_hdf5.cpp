@@ -57,6 +57,34 @@ BodyPose read_made_in(const h5::Fields& fields) {
   return pose;
 }
 
+void write_stitches(const h5::File& file, const std::vector<Stitch>& stitches) {
+  if (stitches.empty()) return;
+  std::vector<int> from, to;
+  std::vector<double> lengths;
+  for (const auto& [a, b, rest_length] : stitches) {
+    from.push_back(a);
+    to.push_back(b);
+    lengths.push_back(rest_length);
+  }
+  const h5::Handle group = file.make_group("stitches");
+  h5::write_integers(file, "stitches/from", from);
+  h5::write_integers(file, "stitches/to", to);
+  h5::write_numbers(file, "stitches/rest_lengths", lengths);
+}
+
+std::vector<Stitch> read_stitches(const h5::Fields& fields) {
+  if (!fields.has("stitches")) return {};
+  const std::vector<int> from = fields.integers("stitches/from"), to = fields.integers("stitches/to");
+  const std::vector<double> lengths = fields.numbers("stitches/rest_lengths");
+  if (to.size() != from.size())
+    fields.fail("stitches/to", fmt::format("has {} entries, not {}", to.size(), from.size()));
+  if (lengths.size() != from.size())
+    fields.fail("stitches/rest_lengths", fmt::format("has {} entries, not {}", lengths.size(), from.size()));
+  std::vector<Stitch> stitches;
+  for (std::size_t k = 0; k < from.size(); ++k) stitches.push_back({from[k], to[k], lengths[k]});
+  return stitches;
+}
+
 Eigen::Index read_joint_count(const h5::Fields& fields) {
   const std::vector<int> count = fields.integers("joint_count");
   if (count.size() != 1 || count[0] < 1) fields.fail("joint_count", "is not one number above 0");
@@ -75,6 +103,7 @@ void write_garment(const std::filesystem::path& path, const Garment& garment) {
     write_made_in(file, garment.made_in);
     write_groups(file, garment);
     h5::write_integers(file, "pins", garment.pins);
+    write_stitches(file, garment.stitches);
   });
 }
 
@@ -87,6 +116,7 @@ Garment read_garment(const std::filesystem::path& path) {
   garment.made_in = read_made_in(fields);
   read_groups(fields, garment);
   if (fields.has("pins")) garment.pins = fields.integers("pins");
+  garment.stitches = read_stitches(fields);
   check_garment(garment, path.string());
   return garment;
 }

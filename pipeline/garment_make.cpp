@@ -119,14 +119,14 @@ void add_place_groups(const GarmentCut& cut, const Shape& shape, double edge, Gr
   }
 }
 
-void add_trimmings(const GarmentCut& cut, const Field& field, double edge, Shape& shape, Groups& groups) {
+void add_trimmings(const GarmentCut& cut, const Field& field, double edge, Shape& shape, Groups& groups,
+                   std::vector<Stitch>& stitches) {
+  const int ground = static_cast<int>(shape.x.rows());
   for (const Opening& opening : cut.openings)
     if (opening.group == "neck" && cut.collar > 0)
       groups.emplace_back("collar", add_collar(shape, field.surface, opening.border, cut.collar, edge));
-  for (const Pocket& pocket : cut.pockets) {
-    std::vector<int> stitched;
-    for (const int v : add_pocket(shape, field.surface, pocket, edge, stitched)) add(groups, "pocket", v);
-  }
+  for (const Pocket& pocket : cut.pockets)
+    for (const int v : add_pocket(shape, field.surface, pocket, edge, ground, stitches)) add(groups, "pocket", v);
 }
 
 }  // namespace
@@ -157,7 +157,7 @@ Garment make_garment(const std::string& name, const BodyModel& mannequin, const 
   garment.made_for = mannequin.name;
   add_opening_groups(cut, shape, garment.groups);
   add_place_groups(cut, shape, options.edge, garment.groups);
-  add_trimmings(cut, field, options.edge, shape, garment.groups);
+  add_trimmings(cut, field, options.edge, shape, garment.groups, garment.stitches);
   for (auto& [group, vertices] : garment.groups) std::sort(vertices.begin(), vertices.end());
   const Points x = shape.x.rowwise() - mannequin_joints().front().position.transpose();
   garment.skin = attached(x, shape.triangles, mannequin, cut.fit);

@@ -88,6 +88,13 @@ void add_squares(const std::vector<int>& below, const std::vector<int>& above, b
   }
 }
 
+// To the nearest of the points.
+Stitch stitch_to(const Points& points, const Vec3& p, int vertex) {
+  Eigen::Index nearest = 0;
+  const double squared = (points.rowwise() - p.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
+  return {vertex, static_cast<int>(nearest), std::sqrt(squared)};
+}
+
 }  // namespace
 
 std::vector<int> add_collar(Shape& shape, const DistanceField& field, const Border& neck, double depth, double edge) {
@@ -116,14 +123,14 @@ std::vector<int> add_collar(Shape& shape, const DistanceField& field, const Bord
   return fresh;
 }
 
-std::vector<int> add_pocket(Shape& shape, const DistanceField& field, const Pocket& pocket, double edge,
-                            std::vector<int>& stitched) {
+std::vector<int> add_pocket(Shape& shape, const DistanceField& field, const Pocket& pocket, double edge, int ground,
+                            std::vector<Stitch>& stitches) {
   const auto squares = [&](double length) { return std::max(2, static_cast<int>(std::lround(length / edge))); };
   const int columns = squares(pocket.size.x()), rows = squares(pocket.size.y());
   constexpr double before = 0.16;  // the front is behind this [m]
   std::vector<Vec3> x;
   std::vector<std::array<int, 3>> triangles;
-  std::vector<int> below, fresh;
+  std::vector<int> below, fresh, stitched;
   for (int j = 0; j <= rows; ++j) {
     std::vector<int> line;
     for (int i = 0; i <= columns; ++i) {
@@ -141,6 +148,7 @@ std::vector<int> add_pocket(Shape& shape, const DistanceField& field, const Pock
     below = line;
   }
   append(shape, x, triangles);
+  for (const int v : stitched) stitches.push_back(stitch_to(shape.x.topRows(ground), row(shape.x, v), v));
   return fresh;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pipeline/border.hpp"
+#include "pipeline/garment.hpp"
 #include "pipeline/garment_cut.hpp"
 #include "pipeline/primitives.hpp"
 
@@ -17,8 +18,9 @@ using DistanceField = std::function<double(const Vec3&)>;
 // outward, and falls so far that it lies `depth` wide on the garment. Returns its vertices.
 std::vector<int> add_collar(Shape&, const DistanceField&, const Border& neck, double depth, double edge);
 
-// Adds a pocket as a component of its own, which hangs before the front. Returns its vertices; `stitched` has those on
-// its sides and lower edge.
-std::vector<int> add_pocket(Shape&, const DistanceField&, const Pocket&, double edge, std::vector<int>& stitched);
+// Adds a pocket as a component of its own, which hangs before the front. Returns its vertices. Those on its sides and
+// lower edge are stitched, each to the nearest of the shape's first `ground` vertices, at the distance that it has.
+std::vector<int> add_pocket(Shape&, const DistanceField&, const Pocket&, double edge, int ground,
+                            std::vector<Stitch>& stitches);
 
 }  // namespace selvedge

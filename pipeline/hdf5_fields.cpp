@@ -78,6 +78,8 @@ std::vector<int> Fields::integers(const std::string& field) const {
   return list<std::int32_t>(field, H5T_NATIVE_INT32);
 }
 
+std::vector<double> Fields::numbers(const std::string& field) const { return list<double>(field, H5T_NATIVE_DOUBLE); }
+
 Points Fields::points(const std::string& field) const { return rows_of_three<Points>(field, H5T_NATIVE_DOUBLE); }
 
 Triangles Fields::triangles(const std::string& field) const {
@@ -86,7 +88,7 @@ Triangles Fields::triangles(const std::string& field) const {
 
 SkinWeights Fields::sparse(const std::string& field, Eigen::Index rows, Eigen::Index cols) const {
   const auto begins = integers(field + "/indptr"), indices = integers(field + "/indices");
-  const auto data = list<double>(field + "/data", H5T_NATIVE_DOUBLE);
+  const auto data = numbers(field + "/data");
   if (static_cast<Eigen::Index>(begins.size()) != rows + 1)
     fail(field + "/indptr", fmt::format("has {} entries, not {}", begins.size(), rows + 1));
   if (indices.size() != data.size())
@@ -119,6 +121,10 @@ SkinnedSurface Fields::skin(Eigen::Index joints) const {
 
 void write_integers(const File& file, const std::string& name, const std::vector<int>& values) {
   file.write_constant(name, H5T_NATIVE_INT32, {values.size()}, values.data());
+}
+
+void write_numbers(const File& file, const std::string& name, const std::vector<double>& values) {
+  file.write_constant(name, H5T_NATIVE_DOUBLE, {values.size()}, values.data());
 }
 
 void write_points(const File& file, const std::string& name, const Points& points) {

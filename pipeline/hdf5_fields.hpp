@@ -28,6 +28,7 @@ class Fields {
   std::string text(const std::string& field) const { return file_.read_text(field); }
   std::vector<std::string> texts(const std::string& field) const;
   std::vector<int> integers(const std::string& field) const;
+  std::vector<double> numbers(const std::string& field) const;
   Points points(const std::string& field) const;
   Triangles triangles(const std::string& field) const;
   SkinWeights sparse(const std::string& field, Eigen::Index rows, Eigen::Index cols) const;
@@ -45,6 +46,7 @@ class Fields {
 };
 
 void write_integers(const File&, const std::string& name, const std::vector<int>&);
+void write_numbers(const File&, const std::string& name, const std::vector<double>&);
 void write_points(const File&, const std::string& name, const Points&);
 void write_sparse(const File&, const std::string& name, const SkinWeights&);
 void write_skin(const File&, const SkinnedSurface&);

@@ -1,6 +1,7 @@
 #include "pipeline/make_stepper.hpp"
 
 #include "collision/error.hpp"
+#include "physics/cutting_stepper.hpp"
 #include "physics/resting_stepper.hpp"
 #include "pipeline/config.hpp"
 
@@ -25,7 +26,9 @@ MakeStepper maker_of(const Setup& setup) {
 
 std::unique_ptr<Stepper> make_stepper(const Setup& setup) {
   const MakeStepper make = maker_of(setup);
-  return setup.run.rest ? make_resting_stepper(setup.scene, make) : make(setup.scene);
+  std::unique_ptr<Stepper> whole = setup.run.rest ? make_resting_stepper(setup.scene, make) : make(setup.scene);
+  if (setup.initial.cut_out.empty()) return whole;
+  return make_cutting_stepper(setup.scene, make, std::move(whole));
 }
 
 }  // namespace selvedge

@@ -34,6 +34,7 @@ std::vector<PlanLine> lines_of(const Setup& setup) {
                                   : "stepped like others, as run.rest asks"});
   if (setup.initial.frame < 0)
     lines.push_back({"draped start", true, fmt::format("{} frames before time 0, not recorded", -setup.initial.frame)});
+  if (!setup.initial.cut_out.empty()) lines.push_back({"cut start", true, setup.prepared + " until they are free"});
   if (setup.run.stepper != "icm") return lines;
   const std::string untouched = "left out by the stepper icm";
   lines.push_back({"contour energy", true, "weight " + fmt::format("{}", setup.run.icm.contour_weight)});

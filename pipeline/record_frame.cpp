@@ -31,10 +31,11 @@ Frame record_frame(const Scene& scene, const EnergyTerms& terms, const FrameEven
   for (const Points& obstacle : event.state.obstacles) frame.obstacles.push_back(obstacle.cast<float>());
   frame.report = event.report;
   const Clock::time_point before_audit = Clock::now();
-  record_audit(event.report.audit ? *event.report.audit : audit_positions(scene, event.state.x, event.state.obstacles),
-               frame);
+  record_audit(event.report.audit ? *event.report.audit : audit_uncut(scene, event.state), frame);
   frame.report.seconds.audit += seconds_since(before_audit);
-  const auto stretches = principal_stretches(scene, x);
+  auto stretches = principal_stretches(scene, x);
+  // What is cut out is stretched by nothing: it follows the body.
+  for (const int t : event.state.cut_out) stretches.row(t).setOnes();
   if (stretches.rows() > 0) {
     frame.min_stretch = stretches.col(0).minCoeff();
     frame.max_stretch = stretches.col(1).maxCoeff();
@@ -48,6 +49,7 @@ Frame record_initial(const Scene& scene, const EnergyTerms& terms, const State& 
   StepReport report;
   report.status = StepStatus::accepted;
   report.by = "initial";
+  report.collision.cut_out = static_cast<int>(state.cut_out.size());
   return record_frame(scene, terms, {state, drive, report, Clock::now()});
 }
 

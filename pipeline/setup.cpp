@@ -31,6 +31,7 @@ struct World {
   int pin_count = 0;
   std::vector<PinGroup> pins;
   std::vector<std::function<Points(double)>> obstacles;
+  std::function<Points(double)> worn;  // empty: nothing is cut out
   Vec3 gravity = Vec3::Zero();
   std::vector<double> wind_times;
   std::vector<Vec3> wind;
@@ -45,6 +46,7 @@ Drive drive(const World& world, double time) {
   for (const auto& at : world.obstacles) d.obstacles.push_back(at(time));
   if (!world.wind.empty()) d.wind = keyed_vector(world.wind_times, world.wind, world.wind_interpolation, time);
   d.acceleration = world.gravity;
+  if (world.worn) d.worn = world.worn(time);
   return d;
 }
 
@@ -206,7 +208,7 @@ std::vector<ClothPart> read_all_cloths(Config& list, const std::filesystem::path
       parts.push_back(std::move(part));
     }
     const auto garment = std::ranges::find_if(parts, [](const ClothPart& part) { return part.worn != nullptr; });
-    if (parts.back().worn && parts.back().draping != garment->draping)
+    if (parts.back().worn && (parts.back().draping != garment->draping || parts.back().cut != garment->cut))
       list.items[c].fail("starts otherwise than the first garment", "give all garments of a scene the same `start`");
     if (parts.back().rest_is_flat != parts.front().rest_is_flat)
       list.items[c]["rest"]["flat"].fail("differs from the first cloth's", "all cloths of a scene rest alike");
@@ -272,6 +274,10 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
   }
   warn_of_stretched_seams(cloths, setup.scene, setup.initial.x, setup.warnings);
   setup.scene.springs = read_springs(config["springs"], cloths, setup.scene, setup.initial.x, setup.warnings);
+  world->worn = begin_cut(cloths, setup.scene, setup.initial);
+  if (std::ranges::any_of(cloths, &ClothPart::cut))
+    setup.prepared =
+        fmt::format("cut: {} of {} triangles out", setup.initial.cut_out.size(), setup.scene.surface.triangles.rows());
   setup.velocity = setup.initial.v;
   if (setup.initial.frame < 0) setup.initial.v.setZero();
   setup.outcomes = read_outcomes(config["outcome"], cloths, setup.scene);

@@ -33,7 +33,7 @@ struct Setup {
   Scene scene;
   State initial;         // before time 0 where the start is still to be made, which `prepare` does
   Points velocity;       // at time 0
-  std::string prepared;  // what was done before time 0; empty: nothing
+  std::string prepared;  // what was done for the start; empty: nothing
   RunOptions run;
   std::function<Drive(double time)> drive_at;  // the world at a time [s]
   std::vector<Outcome> outcomes;               // what must come true

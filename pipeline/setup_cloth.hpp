@@ -26,6 +26,7 @@ struct ClothPart {
   std::vector<int> sewn;                // of each vertex as read or made: its number here; empty where nothing is sewn
   double sewn_apart = 0;                // how far vertices that are one now were apart [m]
   std::optional<Draping> draping;
+  bool cut = false;  // what of it is tangled is cut out at the start
 };
 
 // The cloth of a section, or its copies. `folder` is the scene file's; warnings are added. The material's values are

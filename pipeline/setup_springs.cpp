@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <span>
+
 #include "pipeline/config.hpp"
 #include "pipeline/setup_names.hpp"
 #include "pipeline/setup_pairs.hpp"
@@ -18,28 +21,49 @@ std::vector<int> read_side(const Config& section, const std::vector<ClothPart>& 
   return vertices;
 }
 
+void warn_of_short(std::span<const Spring> springs, const std::string& what, const ContactSettings& contact,
+                   std::vector<std::string>& warnings) {
+  const auto shorter =
+      std::ranges::count_if(springs, [&](const Spring& spring) { return spring.rest_length < contact.thickness; });
+  if (shorter > 0 && contact.self)
+    warnings.push_back(
+        fmt::format("{}: {} springs are shorter at rest than contact.thickness {} m, to which contact "
+                    "pushes their ends apart",
+                    what, shorter, contact.thickness));
+}
+
+std::vector<Spring> stitches_of(const Wearing& worn, int first_vertex) {
+  const double scale = worn.by->section["scale"].number();
+  std::vector<Spring> springs;
+  for (const auto& [a, b, rest_length] : worn.garment.stitches)
+    springs.push_back({first_vertex + a, first_vertex + b, scale * rest_length});
+  return springs;
+}
+
 }  // namespace
 
 std::vector<Spring> read_springs(const Config& list, const std::vector<ClothPart>& parts, const Scene& scene,
                                  const Points& x, std::vector<std::string>& warnings) {
-  std::vector<Spring> springs;
+  std::vector<Spring> all;
+  const auto add = [&](std::span<const Spring> springs, const std::string& what) {
+    warn_of_short(springs, what, scene.contact, warnings);
+    all.insert(all.end(), springs.begin(), springs.end());
+  };
+  for (std::size_t c = 0; c < parts.size(); ++c)
+    if (parts[c].worn) add(stitches_of(*parts[c].worn, scene.cloths[c].first_vertex), "stitches of " + parts[c].name);
   for (const Config& section : list.items) {
     const bool listed = section["pair"].text() == "listed", given = section["rest_length"].given;
-    const double thickness = scene.contact.thickness;
-    int shorter = 0;
+    std::vector<Spring> springs;
     for (const auto& [a, b] :
          read_pairs(section, read_side(section["from"], parts, scene), read_side(section["to"], parts, scene), x)) {
-      const double rest = given ? section["rest_length"].number() : listed ? thickness : (row(x, b) - row(x, a)).norm();
+      const double rest = given    ? section["rest_length"].number()
+                          : listed ? scene.contact.thickness
+                                   : (row(x, b) - row(x, a)).norm();
       springs.push_back({a, b, rest, section["stiffness"].number()});
-      shorter += rest < thickness;
     }
-    if (shorter > 0 && scene.contact.self)
-      warnings.push_back(
-          fmt::format("{}: {} springs are shorter at rest than contact.thickness {} m, to which contact "
-                      "pushes their ends apart",
-                      section.path, shorter, thickness));
+    add(springs, section.path);
   }
-  return springs;
+  return all;
 }
 
 }  // namespace selvedge

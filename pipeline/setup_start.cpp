@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/cut_out.hpp"
 #include "pipeline/jitter.hpp"
 #include "pipeline/setup_cloth.hpp"
 
@@ -14,14 +15,16 @@ namespace {
 constexpr double opening = 1e-3;    // of a cloth in one point, in mean edge lengths
 constexpr double one_point = 1e-9;  // extent of what counts as one, in mean edge lengths
 
-// Whether the section asks for a draped start, and not for what that leaves no trace of.
-std::optional<Draping> read_draping(const Config& section, const ClothPart& part) {
+// How the section has a garment start, and nothing beside it that would leave no trace.
+void read_from(const Config& section, ClothPart& part) {
   const Config& from = section["from"];
-  if (from.text() != "draped") return {};
+  if (from.text() == "skinned") return;
   if (!part.worn) from.fail("is given for a cloth that no body wears", "make the cloth a `garment`, or leave it out");
   if (section["stretch"].vector() != Vec3::Ones() || section["crumple"].number() > 0)
-    from.fail("is given beside `stretch` or `crumple`", "a draped start is grown clean: leave these out");
-  return Draping{section["seconds"].number(), section["hold"].number()};
+    from.fail("is given beside `stretch` or `crumple`",
+              "a draped start is grown clean, a cut one goes on from the skinned garment: leave these out");
+  part.cut = from.text() == "cut";
+  if (!part.cut) part.draping = Draping{section["seconds"].number(), section["hold"].number()};
 }
 
 // The pose that all garments on the body were made in; the zero pose where they differ.
@@ -52,9 +55,28 @@ int begin_draped(const Performances& bodies, double fps, std::vector<ClothPart>&
   return frames;
 }
 
+std::function<Points(double)> begin_cut(const std::vector<ClothPart>& parts, const Scene& scene, State& initial) {
+  std::vector<char> may(static_cast<std::size_t>(scene.surface.triangles.rows()), 0);
+  std::vector<std::pair<int, std::shared_ptr<const Wearing>>> worn;  // from which vertex on
+  for (std::size_t c = 0; c < parts.size(); ++c) {
+    if (!parts[c].cut) continue;
+    std::fill_n(may.begin() + scene.cloths[c].first_triangle, scene.cloths[c].triangle_count, 1);
+    worn.emplace_back(scene.cloths[c].first_vertex, parts[c].worn);
+  }
+  if (worn.empty()) return {};
+  initial.cut_out = cut_out_at_start(scene, initial, may);
+  if (initial.cut_out.empty()) return {};
+  return [worn, vertices = scene.surface.vertex_count](double time) {
+    Points all = Points::Zero(vertices, 3);
+    for (const auto& [first, wearing] : worn)
+      all.middleRows(first, wearing->garment.skin.rest.rows()) = worn_at(*wearing, time);
+    return all;
+  };
+}
+
 void apply_start(const Config& section, ClothPart& part, std::vector<std::string>& warnings) {
   Points& x = part.mesh.x;
-  part.draping = read_draping(section, part);
+  read_from(section, part);
   if (x.rows() == 0) return;
   const auto seed = static_cast<std::uint64_t>(section["seed"].number());
   const Vec3 stretch = section["stretch"].vector();

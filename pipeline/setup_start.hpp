@@ -1,5 +1,9 @@
 #pragma once
 
+#include <functional>
+
+#include "physics/scene.hpp"
+#include "physics/stepper.hpp"
 #include "pipeline/setup_body.hpp"
 
 namespace selvedge {
@@ -19,5 +23,9 @@ void apply_start(const Config& section, ClothPart&, std::vector<std::string>& wa
 // Where the scene's garments are to be draped, lets its time begin before 0 and puts them on their bodies as they are
 // then. Returns how many frames before.
 int begin_draped(const Performances&, double fps, std::vector<ClothPart>&);
+
+// Where garments are to start by cutting, cuts what of them is tangled out of the scene's state at time 0. Returns
+// where vertices that are cut out go, a row a vertex of the scene; nothing where none is.
+std::function<Points(double time)> begin_cut(const std::vector<ClothPart>&, const Scene&, State&);
 
 }  // namespace selvedge

@@ -72,6 +72,7 @@ std::vector<std::string> failures_of(const StressRow& row, const RunSummary& sum
   fail_if(row.pairs > 0, fmt::format("{} intersecting pairs, most in frame {}", row.pairs, row.worst_frame));
   fail_if(row.vertex_pairs > 0, fmt::format("{} pairs that share a vertex cross", row.vertex_pairs));
   fail_if(row.worst_inside > 0, fmt::format("{} vertices inside an obstacle", row.worst_inside));
+  fail_if(summary.cut_out_at_end > 0, fmt::format("{} triangles still cut out", summary.cut_out_at_end));
   fail_if(row.passed_through > 0, fmt::format("{} passed through", row.passed_through));
   fail_if(row.held_share >= most_held, fmt::format("{:.2f} % of vertex-steps held back", 100 * row.held_share));
   if (!obstacles_must_lag(setup)) {

@@ -70,6 +70,9 @@ void add_frame(RunSummary& summary, int index, const Frame& frame) {
   }
   summary.worst_inside = std::max(summary.worst_inside, frame.inside_vertices);
   summary.nonfinite += frame.nonfinite;
+  if (index == 0) summary.cut_out_at_start = collision.cut_out;
+  summary.cut_out_at_end = collision.cut_out;
+  if (collision.cut_out > 0) summary.last_cut_frame = index;
   summary.max_contacts = std::max(summary.max_contacts, collision.contacts);
   summary.impulses += collision.impulses;
   summary.zones += collision.zones;
@@ -105,7 +108,7 @@ double median_milliseconds(const RunSummary& summary) { return 1000 * median(sum
 
 bool is_clean(const RunSummary& summary) {
   return summary.end == RunEnd::finished && summary.pairs == 0 && summary.worst_inside == 0 && summary.nonfinite == 0 &&
-         summary.passed_through == 0;
+         summary.passed_through == 0 && summary.cut_out_at_end == 0;
 }
 
 std::string summary_json(const RunSummary& s) {
@@ -140,6 +143,9 @@ std::string summary_json(const RunSummary& s) {
       {"vertex_sharing_pairs_all_frames", s.vertex_pairs},
       {"inside_vertices", s.worst_inside},
       {"nonfinite", s.nonfinite},
+      {"cut_out_triangles", s.cut_out_at_start},
+      {"cut_out_triangles_at_end", s.cut_out_at_end},
+      {"cut_out_last_frame", s.last_cut_frame},
       {"max_contacts", s.max_contacts},
       {"impulses", s.impulses},
       {"zones", s.zones},
@@ -177,6 +183,12 @@ std::string summary_text(const RunSummary& s) {
   add("intersecting pairs",
       s.pairs == 0 ? "0 in every frame"
                    : fmt::format("{} in frame {} ({} over all frames)", s.worst_pairs, s.worst_frame, s.pairs));
+  if (s.cut_out_at_start > 0)
+    add("cut out",
+        s.cut_out_at_end > 0
+            ? fmt::format("{} triangles at the start, {} at the end: no pair is counted of them", s.cut_out_at_start,
+                          s.cut_out_at_end)
+            : fmt::format("{} triangles at the start, none after frame {}", s.cut_out_at_start, s.last_cut_frame));
   if (!s.self_audited) add("self", "not audited");
   if (s.vertex_pairs > 0) add("crossing at a vertex", fmt::format("{} pairs over all frames", s.vertex_pairs));
   if (s.worst_inside > 0) add("inside obstacles", fmt::format("{} vertices in the worst frame", s.worst_inside));

@@ -15,7 +15,7 @@ enum class RunEnd { running, finished, interrupted, rejected };
 // What a run came to. Frame 0 counts for what was found in the frames, not for time.
 struct RunSummary {
   std::string program_version, scene, stepper;
-  std::string prepared;  // what was done before time 0; empty: nothing
+  std::string prepared;  // what was done for the start; empty: nothing
   int vertices = 0, triangles = 0;
   int frames_wanted = 0, frames = 0;  // frames simulated
   RunEnd end = RunEnd::running;
@@ -29,6 +29,7 @@ struct RunSummary {
   bool self_audited = true;
   long pairs = 0, vertex_pairs = 0;  // over all frames
   int worst_pairs = 0, worst_frame = 0, worst_inside = 0;
+  int cut_out_at_start = 0, cut_out_at_end = 0, last_cut_frame = -1;  // triangles; -1: none is ever
   long nonfinite = 0;
   int max_contacts = 0;
   long impulses = 0, zones = 0, halved_substeps = 0, shortened = 0, held_vertices = 0, passed_through = 0;
@@ -49,7 +50,7 @@ double mean_milliseconds(const RunSummary&);
 double median_milliseconds(const RunSummary&);
 
 // Ran to its end, and every frame finite, without intersecting pairs, without vertices inside obstacles, reached by a
-// motion in which nothing passed through.
+// motion in which nothing passed through, with nothing left that is cut out.
 bool is_clean(const RunSummary&);
 
 std::string summary_json(const RunSummary&);

@@ -39,6 +39,7 @@ std::vector<Column> columns() {
           {"held_vertices", offsetof(Row, collision.held_vertices), whole},
           {"passed_through", offsetof(Row, collision.passed_through), whole},
           {"left_alone", offsetof(Row, collision.left_alone), whole},
+          {"cut_out", offsetof(Row, collision.cut_out), whole},
           {"jumped", offsetof(Row, collision.jumped), whole},
           {"contact_gap", offsetof(Row, collision.min_gap), real},
           {"obstacle_lag", offsetof(Row, collision.obstacle_lag), real},

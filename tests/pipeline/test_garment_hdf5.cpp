@@ -19,6 +19,7 @@ Garment shirt(int joints, int vertices, int shapes, bool corrections) {
   garment.groups = {{"hem", {0, 3, 5}}, {"none", {}}, {"left cuff", {3, vertices - 1}}};
   garment.pins = {1, 2, vertices - 1};
   garment.made_for = "random";
+  garment.stitches = {{0, vertices - 1, 0.006}, {5, 2, 0}, {0, 7, 1.0 / 3}};
   return garment;
 }
 
@@ -36,6 +37,7 @@ void check_same(const Garment& a, const Garment& b) {
   CHECK(a.made_in.translation == b.made_in.translation);
   CHECK(a.groups == b.groups);
   CHECK(a.pins == b.pins);
+  CHECK(a.stitches == b.stitches);
 }
 
 // What reading says of a file from which a field was taken and, if there are values, written anew.
@@ -105,6 +107,11 @@ TEST_CASE("a garment that is not sound is not written") {
     g.made_in = fake::pose(5);
     g.made_in.translation.x() = std::nan("");
   });
+  refused([](Garment& g) { g.stitches[1].b = 40; });
+  refused([](Garment& g) { g.stitches[1].a = -1; });
+  refused([](Garment& g) { g.stitches[1].b = 5; });
+  refused([](Garment& g) { g.stitches[1].rest_length = -1e-3; });
+  refused([](Garment& g) { g.stitches[1].rest_length = std::nan(""); });
   refused([](Garment& g) { g.skin.rest(7, 1) = std::nan(""); });
   refused([](Garment& g) { g.skin.triangles(7, 1) = 40; });
   refused([](Garment& g) { g.skin.triangles(7, 1) = g.skin.triangles(7, 2); });
@@ -115,20 +122,23 @@ TEST_CASE("a garment's file without what it needs is refused, by field") {
   const fake::Folder folder("lacking_garment");
   CHECK_THROWS_AS(read_garment(folder.path / "absent.h5"), Error);
   CHECK_THROWS_AS(read_garment(fake::write(folder, "text.h5", "no HDF5")), Error);
-  for (const std::string field :
-       {"format", "rest", "triangles", "weights", "weights/indices", "joint_count", "groups/names", "groups/begin",
-        "groups/vertices", "made_in/rotations", "made_in/translation"}) {
+  for (const std::string field : {"format", "rest", "triangles", "weights", "weights/indices", "joint_count",
+                                  "groups/names", "groups/begin", "groups/vertices", "made_in/rotations",
+                                  "made_in/translation", "stitches/from", "stitches/to", "stitches/rest_lengths"}) {
     INFO(field);
     CHECK_THAT(complaint(field), Contains(field));
   }
   for (const std::string field :
-       {"name", "made_for", "shape_directions", "pose_directions", "made_in", "groups", "pins"})
+       {"name", "made_for", "shape_directions", "pose_directions", "made_in", "groups", "pins", "stitches"})
     CHECK(complaint(field).empty());
 }
 
 TEST_CASE("a garment's fields with wrong indices are refused, by field") {
   CHECK_THAT(complaint("pins", {1, 40}), Contains("pins") && Contains("names vertex 40"));
   CHECK_THAT(complaint("pins", {4, 1}), Contains("pins") && Contains("ascending"));
+  CHECK_THAT(complaint("stitches/from", {0, 5, 40}), Contains("stitches") && Contains("vertices 40 and 7"));
+  CHECK_THAT(complaint("stitches/to", {1, 2}), Contains("stitches/to") && Contains("2 entries, not 3"));
+  CHECK_THAT(complaint("stitches/rest_lengths", {1}), Contains("stitches/rest_lengths"));
   CHECK_THAT(complaint("joint_count", {4}), Contains("weights/indices"));
   CHECK_THAT(complaint("joint_count", {6}), Contains("pose_directions"));
   CHECK_THAT(complaint("joint_count", {5, 5}), Contains("joint_count"));

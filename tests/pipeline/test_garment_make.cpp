@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 
 #include "collision/audit.hpp"
 #include "collision/error.hpp"
@@ -144,6 +145,42 @@ TEST_CASE("A garment is the same each time, symmetric, and as fine as asked", "[
   for (const auto& edge : surface.edges.rowwise())
     sum += (one.skin.rest.row(edge[0]) - one.skin.rest.row(edge[1])).norm();
   CHECK(sum / static_cast<double>(surface.edges.rows()) == Approx(coarse).epsilon(0.1));
+}
+
+TEST_CASE("Pockets are stitched along their sides and lower edge to the nearest vertex behind", "[garment]") {
+  for (const auto& [name, pockets] : {std::pair{"open_shirt", 1}, {"vest", 2}, {"jacket", 2}}) {
+    INFO(name);
+    const Garment garment = coarse_garment(name);
+    const Points& x = garment.skin.rest;
+    const std::vector<int>*pocket = group_of(garment, "pocket"), *collar = group_of(garment, "collar");
+    REQUIRE(pocket);
+    const auto has = [](const std::vector<int>* group, int v) {
+      return group && std::binary_search(group->begin(), group->end(), v);
+    };
+    const Surface surface = make_surface(static_cast<int>(x.rows()), garment.skin.triangles);
+    std::set<int> expected, stitched;
+    for (const std::vector<int>& loop : boundary_loops(surface)) {
+      if (!has(pocket, loop[0])) continue;
+      const auto height = [&](int v) { return x(v, 1); };
+      const double top = x(std::ranges::max(loop, {}, height), 1);
+      const auto across = [&](int v) { return x(v, 0); };
+      const auto [left, right] = std::ranges::minmax(loop, {}, across);
+      for (const int v : loop)  // all but what is on the upper edge between its corners
+        if (x(v, 1) < top - 0.01 || x(v, 0) < x(left, 0) + 1e-3 || x(v, 0) > x(right, 0) - 1e-3) expected.insert(v);
+    }
+    for (const auto& [a, b, rest_length] : garment.stitches) {
+      stitched.insert(a);
+      CHECK((has(pocket, a) && !has(pocket, b) && !has(collar, b)));
+      CHECK(rest_length == Approx((x.row(b) - x.row(a)).norm()));
+      CHECK(rest_length < coarse);
+      for (int v = 0; v < x.rows(); ++v)
+        if (!has(pocket, v) && !has(collar, v)) CHECK((x.row(v) - x.row(a)).norm() > rest_length - 1e-9);
+    }
+    CHECK(stitched == expected);
+    CHECK(stitched.size() == garment.stitches.size());
+    CHECK(stitched.size() >= static_cast<std::size_t>(7 * pockets));
+  }
+  CHECK(coarse_garment("tshirt").stitches.empty());
 }
 
 TEST_CASE("Small outfits are clean on any shape", "[garment]") {

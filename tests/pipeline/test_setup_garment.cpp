@@ -186,3 +186,39 @@ TEST_CASE("A skirt on a walking mannequin stays clean and its waist stays on the
   CHECK(state.frame == 20);
   CHECK(pairs + inside + passed == 0);
 }
+
+TEST_CASE("A garment brings its stitches along: behind other cloths, as long as its body's scale has them",
+          "[setup_garment]") {
+  const Folder folder("garment_stitches");
+  write_band(folder);
+  Garment band = read_garment(folder.path / "band.h5");
+  band.stitches = {{0, 7, 0.004}, {5, 2, 0.01}};
+  write_garment(folder.path / "band.h5", band);
+  const Setup setup =
+      read(folder, "{rectangle: {resolution: 3}, translate: [3, 0, 0]}\n  - {name: band, garment: band.h5}",
+           "{body: {}, scale: 0.5}",
+           "springs: [{from: {cloth: band, vertices: 1}, to: {cloth: band, vertices: 9}, "
+           "rest_length: 1 cm, stiffness: 20}]\n");
+  const std::vector<Spring>& springs = setup.scene.springs;
+  REQUIRE(springs.size() == 3);
+  CHECK((springs[0].a == 9 && springs[0].b == 16 && springs[0].rest_length == Approx(0.002)));
+  CHECK((springs[1].a == 14 && springs[1].b == 11 && springs[1].rest_length == Approx(0.005)));
+  CHECK((springs[0].stiffness == Spring{}.stiffness && springs[2].stiffness == 20 && springs[2].a == 10));
+  REQUIRE(setup.warnings.size() == 1);
+  CHECK_THAT(setup.warnings[0], Contains("stitches of band: 1 springs are shorter"));
+}
+
+TEST_CASE("Pockets of a garment by code stay where they are stitched", "[setup_garment]") {
+  const Folder folder("garment_pockets");
+  const Setup setup = read(folder, "{garment: {cut: vest, edge: 32 mm}}", "{body: {}}");
+  REQUIRE(setup.scene.springs.size() >= 14);
+  CHECK(setup.warnings.empty());
+  State state = setup.initial;
+  simulate(*make_stepper(setup), setup.drive_at, 1 / setup.run.fps, 8, state,
+           [](const FrameEvent& event) { return event.report.audit && event.report.audit->intersecting_pairs() == 0; });
+  REQUIRE(state.frame == 8);
+  double apart = 0;
+  for (const Spring& spring : setup.scene.springs)
+    apart = std::max(apart, std::abs((row(state.x, spring.b) - row(state.x, spring.a)).norm() - spring.rest_length));
+  CHECK(apart < 1e-3);
+}
