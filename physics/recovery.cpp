@@ -9,10 +9,10 @@
 namespace selvedge {
 namespace {
 
-constexpr int most_pairs = 10;        // of triangles that cross, each triangle of the cloth
-constexpr int most_halvings = 3;      // of a way that would have clean cloth cross itself
+constexpr int most_pairs = 10;       // of triangles that cross, each triangle of the cloth
+constexpr int most_halvings = 3;     // of a way that would have clean cloth cross itself
 constexpr int hasty_iterations = 5;  // of untangling from a body that crosses itself: some of it must wait anyway
-constexpr double negligible = 1e-6;   // way, in mean edge lengths
+constexpr double negligible = 1e-6;  // way, in mean edge lengths
 
 // Cloth that crosses itself through and through, a sheet that starts in one point say, has no sides to go to: its own
 // stiffness opens it first.

@@ -55,9 +55,10 @@ TEST_CASE("A garment's pins go where its body goes, in its shape, clip, placemen
   const Folder folder("garment_pins");
   const fake::Piece piece = write_band(folder);
   for (const std::string body :
-       {"{name: person, body: {clip: walk, room: 0}}", "{name: person, body: {shape: [1, -1, 0.5], clip: run, room: 0}}",
-        "{name: person, body: {}}",
-        "{name: person, body: {clip: walk, room: 0}, scale: 1.2, rotate: [0, 1, 0.2], translate: [1, 2, 3], motion: {keyframes: "
+       {"{name: person, body: {clip: walk, room: 0}}",
+        "{name: person, body: {shape: [1, -1, 0.5], clip: run, room: 0}}", "{name: person, body: {}}",
+        "{name: person, body: {clip: walk, room: 0}, scale: 1.2, rotate: [0, 1, 0.2], translate: [1, 2, 3], motion: "
+        "{keyframes: "
         "[{time: 0}, {time: 1, translate: [0, 1, 0], rotate: [0, 0, 1]}]}}"}) {
     INFO(body);
     const Setup setup = read(folder, "{garment: band.h5}", body);
@@ -96,7 +97,8 @@ TEST_CASE("A garment rests as it was made, resized by the body's shape and scale
 TEST_CASE("Whose pins follow the body, and how fast a garment starts", "[setup_garment]") {
   const Folder folder("garment_follow");
   const fake::Piece piece = write_band(folder);
-  const std::string walking = "{body: {clip: walk, room: 0}, motion: {keyframes: [{time: 0}, {time: 1, translate: [2, 0, 0]}]}}";
+  const std::string walking =
+      "{body: {clip: walk, room: 0}, motion: {keyframes: [{time: 0}, {time: 1, translate: [2, 0, 0]}]}}";
   const Setup free = read(folder, "{garment: {file: band.h5, pins: false}}", walking);
   CHECK(free.scene.pins.empty());
   const double fps = make_clip("walk", joint_positions(fake::mannequin(), {})).fps;
@@ -169,7 +171,8 @@ TEST_CASE("What is wrong with a garment is named by file, line and cure", "[setu
 TEST_CASE("A skirt on a walking mannequin stays clean and its waist stays on the body", "[setup_garment]") {
   const Folder folder("garment_walk");
   const Garment skirt = write_skirt(folder);
-  const Setup setup = read(folder, "{garment: skirt.h5, material: {stiffness_damping: 2 ms}}", "{body: {clip: walk, room: 0}}");
+  const Setup setup =
+      read(folder, "{garment: skirt.h5, material: {stiffness_damping: 2 ms}}", "{body: {clip: walk, room: 0}}");
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
   State state = setup.initial;
   int pairs = 0, inside = 0, passed = 0;
