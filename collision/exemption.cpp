@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "collision/contour_regions.hpp"
-#include "collision/inside.hpp"
+#include "collision/separation.hpp"
 #include "collision/world_sheets.hpp"
 
 namespace selvedge {
@@ -49,26 +48,16 @@ Exemption find_exemption(const ContactWorld& world, const Points& nodes) {
     return partner_sheet == 0 ? exemption.self : exemption.body;
   };
   const Segments found = find_segments(sheets.views);
-  for (const Segment& segment : found.segments) {
-    if (segment.sheet[1] == 0 && !world.self) continue;
-    for (int side = 0; side < 2; ++side)
-      if (segment.sheet[side] == 0) mark_triangle(marks_for(segment.sheet[1]), n, *world.cloth, segment.triangle[side]);
-  }
-  for (const auto& [triangle, sheet, other] : found.touching) {
-    if (sheet == 0 && !world.self) continue;
-    mark_triangle(marks_for(sheet), n, *world.cloth, triangle);
-    if (sheet == 0) mark_triangle(exemption.self, n, *world.cloth, other);
-  }
+  for_each_meeting(world, found, [&](int triangle, int partner_sheet) {
+    mark_triangle(marks_for(partner_sheet), n, *world.cloth, triangle);
+  });
   if (exemption.cloth())
     for (const Region& region : enclosed_regions(sheets.views, find_contours(sheets.views, found)))
       if (region.sheet == 0 && (region.partner_sheet != 0 || world.self))
         for (const int v : region.vertices) mark(marks_for(region.partner_sheet), n, v);
-  for (std::size_t k = 0; k < world.obstacles.size(); ++k) {
-    if (!is_closed(*world.obstacles[k])) continue;
-    const std::vector<char> is_inside = inside(*world.obstacles[k], sheets.positions[k + 1], sheets.positions[0]);
-    for (int v = 0; v < n; ++v)
-      if (is_inside[v]) mark(exemption.body, n, v);
-  }
+  const std::vector<char> inside = inside_obstacles(sheets.views);
+  for (int v = 0; v < n; ++v)
+    if (inside[v]) mark(exemption.body, n, v);
   return exemption;
 }
 

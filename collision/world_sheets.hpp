@@ -17,4 +17,19 @@ struct WorldSheets {
   WorldSheets(WorldSheets&&) = default;
 };
 
+// Visits the triangles of the cloth that meet another one, each once a pair, with the sheet of the other one: those of
+// its segments and touching pairs, with the cloth itself only where world.self.
+template <class Visit>
+void for_each_meeting(const ContactWorld& world, const Segments& found, Visit visit) {
+  for (const Segment& segment : found.segments)
+    if (segment.sheet[1] != 0 || world.self)
+      for (int side = 0; side < 2; ++side)
+        if (segment.sheet[side] == 0) visit(segment.triangle[side], segment.sheet[1]);
+  for (const auto& [triangle, sheet, other] : found.touching) {
+    if (sheet == 0 && !world.self) continue;
+    visit(triangle, sheet);
+    if (sheet == 0) visit(other, sheet);
+  }
+}
+
 }  // namespace selvedge

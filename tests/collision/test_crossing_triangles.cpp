@@ -5,6 +5,7 @@
 #include <set>
 
 #include "collision/audit.hpp"
+#include "collision/exemption.hpp"
 #include "tests/collision/sheets.hpp"
 
 using namespace selvedge;
@@ -38,6 +39,14 @@ std::set<int> audited(const Sheet& cloth, const Sheet& obstacle, bool self) {
   return found;
 }
 
+// A tetrahedron.
+Sheet round_origin() {
+  Sheet s{Points(4, 3), Triangles(4, 3)};
+  s.x << 0, 3, 0, -3, -1, -3, 3, -1, -3, 0, -1, 3;
+  s.triangles << 0, 2, 1, 0, 3, 2, 0, 1, 3, 1, 2, 3;
+  return s;
+}
+
 }  // namespace
 
 TEST_CASE("crossing triangles: those that the audit finds in a pair", "[crossing_triangles]") {
@@ -59,9 +68,7 @@ TEST_CASE("crossing triangles: those that the audit finds in a pair", "[crossing
 TEST_CASE("crossing triangles: those with a vertex inside a closed obstacle, and those that only touch",
           "[crossing_triangles]") {
   // A small sheet wholly inside a tetrahedron crosses none of its faces.
-  Sheet tetrahedron{Points(4, 3), Triangles(4, 3)};
-  tetrahedron.x << 0, 3, 0, -3, -1, -3, 3, -1, -3, 0, -1, 3;
-  tetrahedron.triangles << 0, 2, 1, 0, 3, 2, 0, 1, 3, 1, 2, 3;
+  Sheet tetrahedron = round_origin();
   const Sheet small = testing::sheet(2, 0.2, 0);
   CHECK(crossing(small, tetrahedron, true).size() == 8);
   tetrahedron.triangles.conservativeResize(3, 3);  // open: it has no inside
@@ -73,4 +80,18 @@ TEST_CASE("crossing triangles: those with a vertex inside a closed obstacle, and
   above.triangles.row(2) << 4, 5, 6;
   CHECK(crossing(above, tetrahedron, true) == std::set<int>{0, 2});
   CHECK(crossing(above, tetrahedron, false).empty());
+}
+
+TEST_CASE("crossing triangles: vertices in no triangle are inside nothing", "[crossing_triangles]") {
+  const Sheet tetrahedron = round_origin();
+  Sheet cloth = testing::sheet(2, 0.2, 10);
+  const int count = static_cast<int>(cloth.x.rows());
+  cloth.x.conservativeResize(count + 1, 3);
+  cloth.x.bottomRows(1).setZero();
+  CHECK(crossing(cloth, tetrahedron, true).empty());
+  const Surface surface = make_surface(count + 1, cloth.triangles), body = make_surface(4, tetrahedron.triangles);
+  const ContactWorld world = make_contact_world(surface, {&body}, true);
+  CHECK_FALSE(find_exemption(world, gather_nodes(cloth.x, {tetrahedron.x})).any());
+  cloth.x.col(1).setZero();
+  CHECK(find_exemption(world, gather_nodes(cloth.x, {tetrahedron.x})).cloth_vertices() == count);
 }
