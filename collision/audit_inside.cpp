@@ -12,7 +12,8 @@ namespace {
 
 constexpr int most_rounds = 24;
 
-// Vertices that triangles beside the body join, by their lowest one.
+// Vertices that triangles beside the body join, by their lowest one. The response's
+// DisjointSets are not for the audit.
 std::vector<int> one_sided_groups(const Surface& cloth, const std::vector<char>& meets) {
   std::vector<int> up(cloth.vertex_count);
   std::iota(up.begin(), up.end(), 0);

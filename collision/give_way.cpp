@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "collision/cell_grid.hpp"
+#include "collision/disjoint_sets.hpp"
 #include "collision/intersections.hpp"
 #include "collision/untangle.hpp"
 
@@ -41,14 +41,9 @@ std::vector<double> thicknesses(const Surface& body, const Points& x, double mos
 // Marked vertices that hang together along edges or by a pair of triangles.
 std::vector<std::vector<int>> places_of(const std::vector<char>& marked, const Surface& body,
                                         const std::vector<std::pair<int, int>>& pairs) {
-  std::vector<int> parent(marked.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets sets(body.vertex_count);
   const auto join = [&](int a, int b) {
-    if (marked[a] && marked[b]) parent[std::max(root(a), root(b))] = std::min(root(a), root(b));
+    if (marked[a] && marked[b]) sets.join(a, b);
   };
   for (const auto& edge : body.edges.rowwise()) join(edge[0], edge[1]);
   for (const auto& [a, b] : pairs) join(body.triangles(a, 0), body.triangles(b, 0));
@@ -56,7 +51,7 @@ std::vector<std::vector<int>> places_of(const std::vector<char>& marked, const S
   std::vector<int> number(marked.size(), -1);
   for (int v = 0; v < body.vertex_count; ++v) {
     if (!marked[v]) continue;
-    int& place = number[root(v)];
+    int& place = number[sets.root(v)];
     if (place < 0) {
       place = static_cast<int>(places.size());
       places.emplace_back();

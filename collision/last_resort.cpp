@@ -8,7 +8,7 @@ namespace {
 constexpr double first_obstacle_mass = 1e3;  // of a yielding obstacle's node, in mean cloth vertices; then halved
 constexpr int halvings = 4;                  // before a motion is held still
 
-void join_nodes(ZoneSets& sets, const Impact& impact, const auto& belongs) {
+void join_nodes(DisjointSets& sets, const Impact& impact, const auto& belongs) {
   int first = -1;
   for (const int node : impact.pair.nodes)
     if (belongs(node)) sets.join(first < 0 ? first = node : first, node);
@@ -44,7 +44,7 @@ std::vector<Impact> yield_rounds(Resolution& r, std::vector<Impact> impacts) {
 }
 
 bool shorten_rounds(Resolution& r, std::vector<Impact> impacts) {
-  ZoneSets sets(r.world.node_count);
+  DisjointSets sets(r.world.node_count);
   impacts.insert(impacts.end(), r.impacts.begin(), r.impacts.end());
   std::vector<int> halved(r.world.node_count, 0);
   bool clean = true;

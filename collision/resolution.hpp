@@ -2,6 +2,7 @@
 
 #include <deque>
 
+#include "collision/disjoint_sets.hpp"
 #include "collision/resolve.hpp"
 #include "collision/stopwatch.hpp"
 
@@ -20,7 +21,7 @@ struct Resolution {
   Stopwatch watch;
   std::vector<char> moved;     // nodes whose path changed since their pairs were tested
   std::deque<Impact> impacts;  // all that zones hold
-  ZoneSets zones;
+  DisjointSets zones;
   double violation = 0;  // left by the last round of zones, at most [m]
 
   bool is_free(int node) const { return inverse_mass[node] > 0; }

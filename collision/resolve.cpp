@@ -118,7 +118,7 @@ ResolveReport resolve(PairSearch& search, const ContactWorld& world, const Eigen
                x0,           x1,
                path,         {},
                {},           std::vector<char>(world.node_count, 1),
-               {},           ZoneSets(world.node_count)};
+               {},           DisjointSets(world.node_count)};
   std::vector<Impact> impacts = new_impacts(r);
   bool contradictory = false;  // zones ask for what cannot be, and more rounds do not change that
   for (int round = 0; !impacts.empty() && !contradictory && round < options.impulse_rounds + options.zone_rounds;

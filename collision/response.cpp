@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include <Eigen/QR>
 
@@ -140,19 +139,6 @@ void rigidify_zone(std::span<const int> nodes, const Eigen::VectorXd& inverse_ma
   const double angle = turn.norm();
   const Mat3 rotation = angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Mat3(Mat3::Identity());
   for (const int node : nodes) x1.row(node) = (centre + moved + rotation * (row(x0, node) - centre)).transpose();
-}
-
-ZoneSets::ZoneSets(int node_count) : parent_(node_count) { std::iota(parent_.begin(), parent_.end(), 0); }
-
-int ZoneSets::root(int node) {
-  while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
-  return node;
-}
-
-void ZoneSets::join(int a, int b) {
-  a = root(a);
-  b = root(b);
-  parent_[std::max(a, b)] = std::min(a, b);
 }
 
 }  // namespace selvedge

@@ -47,15 +47,4 @@ double project_zone(std::span<Impact*> impacts, const Eigen::VectorXd& inverse_m
 // them changes. Prescribed nodes may not be among them.
 void rigidify_zone(std::span<const int> nodes, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1);
 
-// Disjoint sets of nodes.
-class ZoneSets {
- public:
-  explicit ZoneSets(int node_count);
-  int root(int node);
-  void join(int a, int b);
-
- private:
-  std::vector<int> parent_;
-};
-
 }  // namespace selvedge

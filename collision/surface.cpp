@@ -5,6 +5,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "collision/disjoint_sets.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -62,21 +64,10 @@ void make_vertex_triangles(Surface& s) {
 }
 
 void make_components(Surface& s) {
-  std::vector<int> parent(s.vertex_count);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&parent](int v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  for (int e = 0; e < s.edges.rows(); ++e) {
-    const int a = root(s.edges(e, 0)), b = root(s.edges(e, 1));
-    parent[std::max(a, b)] = std::min(a, b);
-  }
-  s.component.resize(s.vertex_count);
-  for (int v = 0; v < s.vertex_count; ++v) {
-    const int r = root(v);
-    s.component[v] = r == v ? s.component_count++ : s.component[r];
-  }
+  DisjointSets sets(s.vertex_count);
+  for (int e = 0; e < s.edges.rows(); ++e) sets.join(s.edges(e, 0), s.edges(e, 1));
+  s.component = sets.numbers();
+  s.component_count = sets.count();
 }
 
 }  // namespace

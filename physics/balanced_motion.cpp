@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collision/response.hpp"
+#include "collision/disjoint_sets.hpp"
 
 namespace selvedge {
 namespace {
@@ -30,8 +30,8 @@ Points cut_to(double reach, const Eigen::VectorXd& inverse_mass, const Points& w
   return move;
 }
 
-ZoneSets moving_together(const Surface& cloth, std::span<const Separation> pushes, const Points& move) {
-  ZoneSets sets(cloth.vertex_count);
+DisjointSets moving_together(const Surface& cloth, std::span<const Separation> pushes, const Points& move) {
+  DisjointSets sets(cloth.vertex_count);
   for (int e = 0; e < cloth.edges.rows(); ++e) {
     const int a = cloth.edges(e, 0), b = cloth.edges(e, 1);
     if (!move.row(a).isZero(0) && !move.row(b).isZero(0)) sets.join(a, b);
@@ -41,7 +41,7 @@ ZoneSets moving_together(const Surface& cloth, std::span<const Separation> pushe
   return sets;
 }
 
-void take_means(const Eigen::VectorXd& inverse_mass, const std::vector<char>& leans, ZoneSets& sets, Points& move) {
+void take_means(const Eigen::VectorXd& inverse_mass, const std::vector<char>& leans, DisjointSets& sets, Points& move) {
   std::vector<double> mass(leans.size(), 0.0);
   std::vector<Vec3> momentum(leans.size(), Vec3::Zero());
   for (int v = 0; v < move.rows(); ++v) {
@@ -69,7 +69,7 @@ void meet(std::span<const Separation> pushes, const Eigen::VectorXd& inverse_mas
     }
 }
 
-void shorten_sets(double reach, ZoneSets& sets, Points& move) {
+void shorten_sets(double reach, DisjointSets& sets, Points& move) {
   std::vector<double> most(move.rows(), 0.0);
   for (int v = 0; v < move.rows(); ++v) most[sets.root(v)] = std::max(most[sets.root(v)], move.row(v).norm());
   for (int v = 0; v < move.rows(); ++v)
@@ -81,7 +81,7 @@ void shorten_sets(double reach, ZoneSets& sets, Points& move) {
 Points balanced_motion(const Surface& cloth, const Eigen::VectorXd& inverse_mass, std::span<const Separation> pushes,
                        const Points& way, double reach) {
   Points move = cut_to(reach, inverse_mass, way);
-  ZoneSets sets = moving_together(cloth, pushes, move);
+  DisjointSets sets = moving_together(cloth, pushes, move);
   std::vector<char> leans(cloth.vertex_count, 0);
   for (const Separation& push : pushes)
     if (leans_on_prescribed(push, inverse_mass)) leans[sets.root(push.vertex[0])] = 1;

@@ -1,7 +1,8 @@
 #include "physics/springs.hpp"
 
 #include <algorithm>
-#include <numeric>
+
+#include "collision/disjoint_sets.hpp"
 
 namespace selvedge {
 
@@ -28,17 +29,10 @@ double spring_derivatives(const Spring& spring, const Points& x, Vec6& gradient,
 }
 
 std::vector<int> joined_by_springs(std::span<const Spring> springs, std::span<const int> part_of_vertex, int parts) {
+  DisjointSets sets(parts);
+  for (const Spring& spring : springs) sets.join(part_of_vertex[spring.a], part_of_vertex[spring.b]);
   std::vector<int> joined(static_cast<std::size_t>(parts));
-  std::iota(joined.begin(), joined.end(), 0);
-  const auto root = [&joined](int part) {
-    while (joined[part] != part) part = joined[part] = joined[joined[part]];
-    return part;
-  };
-  for (const Spring& spring : springs) {
-    const int a = root(part_of_vertex[spring.a]), b = root(part_of_vertex[spring.b]);
-    joined[std::max(a, b)] = std::min(a, b);
-  }
-  for (int part = 0; part < parts; ++part) joined[part] = root(part);
+  for (int part = 0; part < parts; ++part) joined[part] = sets.root(part);
   return joined;
 }
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <fstream>
-#include <numeric>
 #include <sstream>
 
 #include <fmt/format.h>
 
+#include "collision/disjoint_sets.hpp"
 #include "collision/error.hpp"
 #include "physics/measures.hpp"
 #include "pipeline/config.hpp"
@@ -72,23 +72,10 @@ std::vector<SewnPair> read_seams(const Config& list, const std::filesystem::path
 }
 
 Weld weld(std::vector<SewnPair> pairs, Eigen::Index count) {
-  std::vector<int> lowest(static_cast<std::size_t>(count));
-  std::iota(lowest.begin(), lowest.end(), 0);
-  const auto root = [&lowest](int v) {
-    while (lowest[v] != v) v = lowest[v] = lowest[lowest[v]];
-    return v;
-  };
-  for (const SewnPair& pair : pairs) {
-    const int a = root(pair.vertices[0]), b = root(pair.vertices[1]);
-    lowest[std::max(a, b)] = std::min(a, b);
-  }
-  Weld result{std::move(pairs), std::vector<int>(lowest.size()), {}};
-  for (int v = 0; v < static_cast<int>(count); ++v) {
-    const bool first = root(v) == v;
-    result.vertex[v] = first ? static_cast<int>(result.members.size()) : result.vertex[root(v)];
-    if (first) result.members.push_back(0);
-    ++result.members[result.vertex[v]];
-  }
+  DisjointSets sets(static_cast<int>(count));
+  for (const SewnPair& pair : pairs) sets.join(pair.vertices[0], pair.vertices[1]);
+  Weld result{std::move(pairs), sets.numbers(), std::vector<int>(static_cast<std::size_t>(sets.count()), 0)};
+  for (const int v : result.vertex) ++result.members[v];
   return result;
 }
 

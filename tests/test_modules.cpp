@@ -243,9 +243,15 @@ TEST_CASE("modules: what the audit has in common with the response", "[modules]"
                                  ours);
   std::set<std::string> common;
   std::ranges::set_intersection(audit, response, std::inserter(common, common.end()));
-  // The surface and exact signs; and distances, for min_gap, which is no part of the audit.
-  CHECK(common == std::set<std::string>{"collision/distance", "collision/exact_integer", "collision/floating_point",
-                                        "collision/orientation", "collision/points", "collision/surface"});
+  // The surface, with the sets that number its components, and exact signs; and distances, for min_gap, which is no
+  // part of the audit.
+  CHECK(common == std::set<std::string>{"collision/disjoint_sets", "collision/distance", "collision/exact_integer",
+                                        "collision/floating_point", "collision/orientation", "collision/points",
+                                        "collision/surface"});
+  auto without_surface = ours;
+  without_surface.erase("collision/surface.cpp");
+  CHECK_FALSE(
+      parts_of({"collision/audit", "collision/audit_motion"}, without_surface).contains("collision/disjoint_sets"));
   CHECK(response.size() > 30);
   CHECK(parts_of({"a"}, {{"a.cpp", "#include \"b.hpp\"\n#include <c.hpp>\n"},
                          {"b.cpp", "#include \"d.hpp\"\n#include \"b.hpp\"\n"}}) ==

@@ -137,11 +137,3 @@ TEST_CASE("response: a rigid zone keeps distances and both momenta", "[response]
   rigidify_zone(two, inverse_mass, line, line_end);
   CHECK((line_end.row(1) - line_end.row(0)).norm() == Approx(1));
 }
-
-TEST_CASE("response: sets of nodes join", "[response]") {
-  ZoneSets sets(6);
-  sets.join(1, 4);
-  sets.join(4, 5);
-  CHECK(sets.root(5) == sets.root(1));
-  CHECK(sets.root(0) != sets.root(1));
-}
