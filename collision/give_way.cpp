@@ -2,17 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "collision/cell_grid.hpp"
 #include "collision/disjoint_sets.hpp"
 #include "collision/intersections.hpp"
+#include "collision/kept_shape.hpp"
 #include "collision/untangle.hpp"
 
 namespace selvedge {
 namespace {
 
-constexpr double opposed = -0.3;   // cosine of two normals, at most, of surfaces that face each other
-constexpr double closer = 0.5;     // of their distance at rest: what is nearer has come together
+using Pairs = std::vector<std::pair<int, int>>;  // of triangles that cross
+
+constexpr double opposed = -0.3;  // cosine of two normals, at most, of surfaces that face each other
+constexpr double straight =
+    0.7;                        // cosine, at least, of a normal with the way through the body; aside, skin curves round
+constexpr double closer = 0.5;  // of their distance at rest: what is nearer has come together
 constexpr double rest_room = 0.3;  // of that distance: the room asked for at most, for a fold has a bottom
 constexpr double deepest = 0.7;    // of a part's thickness, that another is in it: beyond, it comes out behind
 constexpr int sweeps = 12, press_rings = 6;
@@ -32,33 +38,10 @@ std::vector<double> thicknesses(const Surface& body, const Points& x, double mos
     grid.for_each_near(row(x, v), most, [&](int w) {
       const Vec3 way = row(x, v) - row(x, w);
       const double distance = way.norm(), deep = way.dot(row(normals, v));
-      if (distance < thickness[v] && deep > 0.7 * distance && row(normals, w).dot(row(normals, v)) < opposed)
+      if (distance < thickness[v] && deep > straight * distance && row(normals, w).dot(row(normals, v)) < opposed)
         thickness[v] = distance;
     });
   return thickness;
-}
-
-// Marked vertices that hang together along edges or by a pair of triangles.
-std::vector<std::vector<int>> places_of(const std::vector<char>& marked, const Surface& body,
-                                        const std::vector<std::pair<int, int>>& pairs) {
-  DisjointSets sets(body.vertex_count);
-  const auto join = [&](int a, int b) {
-    if (marked[a] && marked[b]) sets.join(a, b);
-  };
-  for (const auto& edge : body.edges.rowwise()) join(edge[0], edge[1]);
-  for (const auto& [a, b] : pairs) join(body.triangles(a, 0), body.triangles(b, 0));
-  std::vector<std::vector<int>> places;
-  std::vector<int> number(marked.size(), -1);
-  for (int v = 0; v < body.vertex_count; ++v) {
-    if (!marked[v]) continue;
-    int& place = number[sets.root(v)];
-    if (place < 0) {
-      place = static_cast<int>(places.size());
-      places.emplace_back();
-    }
-    places[place].push_back(v);
-  }
-  return places;
 }
 
 // The triangles among some vertices.
@@ -76,114 +59,164 @@ Surface part_of(const Surface& body, const std::vector<int>& vertices) {
 
 }  // namespace
 
-GiveWay::GiveWay(Surface body, const Points& rest, const GiveWayOptions& options)
-    : body_(std::move(body)),
-      shape_(keep_shape(body_, rest)),
-      options_(options),
-      thickness_(thicknesses(body_, rest, 2 * options.most + options.room)) {}
+// A body before it is posed.
+struct Flesh {
+  Flesh(Surface surface, const Points& rest, const GiveWayOptions& o)
+      : body(std::move(surface)),
+        shape(keep_shape(body, rest)),
+        options(o),
+        reach(2 * o.most + o.room),
+        thickness(thicknesses(body, rest, reach)) {}
+  Flesh(const Flesh&) = delete;  // the shape looks at the body
+  Flesh& operator=(const Flesh&) = delete;
 
-// The nearest vertex of a part that faces it and that was farther at rest; -1: none.
-int GiveWay::facing(int v, const CellGrid& grid, const Points& x, const Points& normals) const {
-  const double reach = 2 * options_.most + options_.room;
+  Surface body;
+  KeptShape shape;
+  GiveWayOptions options;
+  double reach;                   // within which vertices meet: both go as far as they can, and leave room [m]
+  std::vector<double> thickness;  // under each vertex [m]
+};
+
+namespace {
+
+// A vertex and the one that it meets, on another part of the body.
+struct Meeting {
+  int vertex, partner;
+  Vec3 apart;    // the way to go [unit]
+  double least;  // distance along it [m]
+  double share;  // of what is missing that the vertex goes
+};
+
+// The nearest vertex of a part that faces v and that was farther at rest; -1: none.
+int facing(const Flesh& flesh, int v, const CellGrid& grid, const Points& x, const Points& normals) {
+  const Points& rest = flesh.shape.x0;
   int found = -1;
-  double nearest = reach * reach;
-  grid.for_each_near(row(x, v), reach, [&](int w) {
+  double nearest = flesh.reach * flesh.reach;
+  grid.for_each_near(row(x, v), flesh.reach, [&](int w) {
     const Vec3 way = row(x, v) - row(x, w);
     const double square = way.squaredNorm();
     if (square >= nearest || row(normals, w).dot(row(normals, v)) > opposed) return;
-    const double thin = deepest * std::min(thickness_[v], thickness_[w]);
+    const double thin = deepest * std::min(flesh.thickness[v], flesh.thickness[w]);
     if (square >= thin * thin && way.dot(row(normals, w)) < 0) return;
-    if (square >= closer * closer * (shape_.x0.row(v) - shape_.x0.row(w)).squaredNorm()) return;
+    if (square >= closer * closer * (rest.row(v) - rest.row(w)).squaredNorm()) return;
     nearest = square;
     found = w;
   });
   return found;
 }
 
-std::vector<GiveWay::Meeting> GiveWay::meetings(const Points& x) const {
-  const Points normals = vertex_normals(body_, x);
-  const CellGrid grid(x, options_.most + options_.room / 2);
+std::vector<Meeting> meetings(const Flesh& flesh, const Points& x) {
+  const Points normals = vertex_normals(flesh.body, x);
+  const Points& rest = flesh.shape.x0;
+  const CellGrid grid(x, flesh.reach / 2);
   std::vector<Meeting> found;
-  for (int v = 0; v < body_.vertex_count; ++v) {
-    const int w = facing(v, grid, x, normals);
+  for (int v = 0; v < flesh.body.vertex_count; ++v) {
+    const int w = facing(flesh, v, grid, x, normals);
     if (w < 0) continue;
     const Vec3 apart = (row(normals, w) - row(normals, v)).normalized(), way = row(x, v) - row(x, w);
     const double gap = way.dot(apart), aside = (way - gap * apart).norm();
-    const double least = std::min(options_.room, rest_room * (shape_.x0.row(v) - shape_.x0.row(w)).norm());
+    const double least = std::min(flesh.options.room, rest_room * (rest.row(v) - rest.row(w)).norm());
     // What passes it by, an edge or more aside, is not over it; either goes half the way.
-    const double share = 0.5 * std::clamp(2 - aside / shape_.edge_length[v], 0.0, 1.0);
+    const double share = 0.5 * std::clamp(2 - aside / flesh.shape.edge_length[v], 0.0, 1.0);
     if (gap < least && share > 0) found.push_back({v, w, apart, least, share});
   }
   return found;
 }
 
+// The marked vertices and what goes along with them, listed.
+std::vector<int> with_surroundings(const KeptShape& shape, const std::vector<char>& marked) {
+  const std::vector<char> near = within_rings(shape, marked, press_rings);
+  std::vector<int> vertices;
+  for (std::size_t v = 0; v < near.size(); ++v)
+    if (near[v]) vertices.push_back(static_cast<int>(v));
+  return vertices;
+}
+
 // Each vertex of a meeting goes its share, and what lies round it goes along, less and less.
-Points GiveWay::pressed(const Points& x) const {
-  const std::vector<Meeting> found = meetings(x);
+Points pressed(const Flesh& flesh, const Points& x) {
+  const std::vector<Meeting> found = meetings(flesh, x);
   if (found.empty()) return x;
-  std::vector<char> meets(static_cast<std::size_t>(body_.vertex_count), 0);
+  std::vector<char> meets(static_cast<std::size_t>(flesh.body.vertex_count), 0);
   for (const Meeting& m : found) meets[m.vertex] = 1;
-  const std::vector<char> near = within_rings(shape_, meets, press_rings);
-  std::vector<int> moving;
-  for (int v = 0; v < body_.vertex_count; ++v)
-    if (near[v]) moving.push_back(v);
+  const std::vector<int> moving = with_surroundings(flesh.shape, meets);
   Points to = x;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    smooth_displacement(shape_, x, moving, smoothing, to);
+    smooth_displacement(flesh.shape, x, moving, smoothing, to);
     const Points from = to;
     for (const Meeting& m : found) {
       const double missing = m.least - m.apart.dot(row(from, m.vertex) - row(from, m.partner));
       if (missing <= 0) continue;
       const Vec3 way = row(from, m.vertex) + m.share * missing * m.apart - row(x, m.vertex);
-      to.row(m.vertex) = (row(x, m.vertex) + way * std::min(1.0, options_.most / way.norm())).transpose();
+      to.row(m.vertex) = (row(x, m.vertex) + way * std::min(1.0, flesh.options.most / way.norm())).transpose();
     }
   }
   return to;
 }
 
-// Untangles a place and what lies round it; false, and nothing done, where it stays tangled or goes too far.
-bool GiveWay::mend(const std::vector<int>& place, const Points& from, const Points& x, Points& result) const {
+// Where a pressed body crosses itself still.
+struct Place {
+  std::vector<int> vertices;        // what crosses, skinned or pressed, and what lies round it
+  std::ptrdiff_t skinned, pressed;  // how many pairs of triangles cross there
+};
+
+// What crosses and hangs together, along edges or by a pair, is one place.
+std::vector<Place> places_of(const Flesh& flesh, const Pairs& skinned, const Pairs& pressed) {
+  const Surface& body = flesh.body;
+  DisjointSets sets(body.vertex_count);
+  std::vector<char> crosses(static_cast<std::size_t>(body.vertex_count), 0);
+  for (const Pairs* pairs : {&skinned, &pressed})
+    for (const auto& [a, b] : *pairs) {
+      sets.join(body.triangles(a, 0), body.triangles(b, 0));
+      for (const int t : {a, b})
+        for (const int v : body.triangles.row(t)) crosses[v] = 1;
+    }
+  const std::vector<char> near = within_rings(flesh.shape, crosses, mend_rings);
+  for (const auto& edge : body.edges.rowwise())
+    if (near[edge[0]] && near[edge[1]]) sets.join(edge[0], edge[1]);
+  std::vector<Place> places;
+  for (int root = 0; root < body.vertex_count; ++root) {
+    if (!near[root] || sets.root(root) != root) continue;
+    const auto is_here = [&](const auto& pair) { return sets.root(body.triangles(pair.first, 0)) == root; };
+    std::vector<char> core(near.size());
+    for (int v = 0; v < body.vertex_count; ++v) core[v] = sets.root(v) == root;
+    const auto left = std::ranges::count_if(pressed, is_here);
+    if (left > 0)
+      places.push_back({with_surroundings(flesh.shape, core), std::ranges::count_if(skinned, is_here), left});
+  }
+  return places;
+}
+
+// A place untangled by itself, from where its vertices are now; none where it stays tangled or goes too far from x.
+std::optional<Points> mended(const Flesh& flesh, const Place& place, const Points& from, const Points& x) {
   UntangleOptions mending;
   mending.iterations = mend_iterations;
   mending.gap = mend_gap;
   mending.far_limit = mend_far;
-  const UntangleResult parted = untangle(part_of(body_, place), from(place, Eigen::all), {}, mending);
-  const double way = (parted.x - x(place, Eigen::all)).rowwise().norm().maxCoeff();
-  if (parted.pairs_after > 0 || way > overshoot * options_.most) return false;
-  result(place, Eigen::all) = parted.x;
-  return true;
+  const UntangleResult parted =
+      untangle(part_of(flesh.body, place.vertices), from(place.vertices, Eigen::all), {}, mending);
+  const double way = (parted.x - x(place.vertices, Eigen::all)).rowwise().norm().maxCoeff();
+  if (parted.pairs_after > 0 || way > overshoot * flesh.options.most) return {};
+  return parted.x;
 }
 
+}  // namespace
+
+GiveWay::GiveWay(Surface body, const Points& rest, const GiveWayOptions& options)
+    : flesh_(std::make_shared<const Flesh>(std::move(body), rest, options)) {}
+
+// Pressed apart where parts meet. Where that does not do, mended place by place: from there, or as skinned, or else
+// left as it crosses less.
 Points GiveWay::operator()(const Points& x) const {
-  Points result = pressed(x);
+  Points result = pressed(*flesh_, x);
   IntersectionCache cache;
-  const auto left = intersecting_pairs(body_, result, cache);
+  const Pairs left = intersecting_pairs(flesh_->body, result, cache);
   if (left.empty()) return result;
-  auto pairs = intersecting_pairs(body_, x, cache);
-  std::vector<char> crosses(static_cast<std::size_t>(body_.vertex_count), 0);
-  std::vector<int> was(crosses.size(), 0), is(crosses.size(), 0);
-  for (const auto& [a, b] : pairs) ++was[body_.triangles(a, 0)];
-  for (const auto& [a, b] : left) ++is[body_.triangles(a, 0)];
-  pairs.insert(pairs.end(), left.begin(), left.end());
-  for (const auto& [a, b] : pairs)
-    for (const int t : {a, b})
-      for (const int v : body_.triangles.row(t)) crosses[v] = 1;
-  for (const std::vector<int>& core : places_of(within_rings(shape_, crosses, mend_rings), body_, pairs)) {
-    int before = 0, after = 0;
-    std::vector<char> marked(crosses.size(), 0);
-    for (const int v : core) {
-      before += was[v];
-      after += is[v];
-      marked[v] = 1;
-    }
-    if (after == 0) continue;
-    const std::vector<char> near = within_rings(shape_, marked, press_rings);
-    std::vector<int> place;
-    for (int v = 0; v < body_.vertex_count; ++v)
-      if (near[v]) place.push_back(v);
-    if (after <= few && mend(place, Points(result), x, result)) continue;
-    if (before <= many && mend(place, x, x, result)) continue;
-    if (after > before) result(place, Eigen::all) = x(place, Eigen::all);
+  for (const Place& place : places_of(*flesh_, intersecting_pairs(flesh_->body, x, cache), left)) {
+    std::optional<Points> better;
+    if (place.pressed <= few) better = mended(*flesh_, place, result, x);
+    if (!better && place.skinned <= many) better = mended(*flesh_, place, x, x);
+    if (!better && place.pressed > place.skinned) better = x(place.vertices, Eigen::all);
+    if (better) result(place.vertices, Eigen::all) = *better;
   }
   return result;
 }

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <vector>
+#include <memory>
 
-#include "collision/kept_shape.hpp"
 #include "collision/surface.hpp"
 
 namespace selvedge {
@@ -19,29 +18,12 @@ class GiveWay {
  public:
   // rest: the body where its parts are apart, as in the zero pose [m].
   GiveWay(Surface body, const Points& rest, const GiveWayOptions& = {});
-  GiveWay(const GiveWay&) = delete;
-  GiveWay& operator=(const GiveWay&) = delete;
 
   // The surface that is skinned to x, moved. Depends on x alone.
   Points operator()(const Points& x) const;
 
  private:
-  // A vertex and the one that it meets, on another part of the body.
-  struct Meeting {
-    int vertex, partner;
-    Vec3 apart;    // the way to go [unit]
-    double least;  // distance along it [m]
-    double share;  // of what is missing that the vertex goes
-  };
-  int facing(int vertex, const class CellGrid&, const Points& x, const Points& normals) const;
-  std::vector<Meeting> meetings(const Points& x) const;
-  Points pressed(const Points& x) const;
-  bool mend(const std::vector<int>& place, const Points& from, const Points& x, Points& result) const;
-
-  Surface body_;
-  KeptShape shape_;
-  GiveWayOptions options_;
-  std::vector<double> thickness_;  // of the body under each vertex [m]
+  std::shared_ptr<const struct Flesh> flesh_;
 };
 
 }  // namespace selvedge

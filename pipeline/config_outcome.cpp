@@ -56,13 +56,14 @@ const Section& distance_section() {
 }
 
 const Section& disorder_section() {
-  static const Section table{"disorder",
-                             "Vertices that lie below the cloth that comes before theirs in the scene: along `up` its "
-                             "nearest triangle shows them "
-                             "the side that most of it has below. An edge that curls over them changes nothing.",
-                             "",
-                             {},
-                             {vector("up", Unit::none, "[0, 1, 0]", "from the first cloth to the last")}};
+  static const Section table{
+      "disorder",
+      "How many vertices lie below the cloth that comes before theirs in the scene: along `up`, the nearest triangle "
+      "of that cloth shows them the side that most of it has below. Those that a corner of it curls over do not "
+      "count.",
+      "",
+      {},
+      {vector("up", Unit::none, "[0, 1, 0]", "from the first cloth to the last")}};
   return table;
 }
 
@@ -70,8 +71,8 @@ const Section& ahead_section() {
   static const Section table{
       "ahead",
       "How far the foremost vertex near the axis through an obstacle's middle is ahead of the obstacle's foremost "
-      "point [m]; "
-      "minus infinity where no vertex is near. Cloth that the obstacle has passed through is no longer ahead of it.",
+      "point [m]; minus infinity where no vertex is near. Cloth that the obstacle has passed through is no longer "
+      "ahead of it.",
       "",
       {},
       {needed(text("obstacle", "its name")), needed(vector("direction", Unit::none, "", "in which it is foremost")),
@@ -106,8 +107,7 @@ const Section& lag_section() {
 const Section& wanted_pairs_section() {
   static const Section table{"wanted_pairs",
                              "Pairs of triangles of cloth and obstacle that would intersect, and vertices that would "
-                             "be inside, if the obstacles "
-                             "were where they are wanted.",
+                             "be inside, if the obstacles were where they are wanted.",
                              "",
                              {},
                              {}};
@@ -120,8 +120,7 @@ const Section& outcome_section() {
   static const Section table{
       "outcome",
       "One thing that must come true: a measure, one number a frame, and the range where it must lie. Of `least` and "
-      "`most` "
-      "one at least is given, or the number must be at most 0.",
+      "`most` one at least is given, or the number must be at most 0.",
       "",
       {"outside", "turns", "distance", "disorder", "ahead", "drift", "stretch", "lag", "wanted_pairs"},
       {needed(text("name", "what comes true, for people")),

@@ -68,8 +68,7 @@ const Section& ribbon_section() {
   static const Section table{
       "ribbon",
       "A straight strip of cloth laid along a smooth line through points (centripetal Catmull-Rom). Its pattern is "
-      "flat, so "
-      "a ribbon that is laid round a bend without room starts strained. Groups: start, end, middle, boundary.",
+      "flat, so a ribbon that is laid round a bend without room starts strained. Groups: start, end, middle, boundary.",
       "",
       {},
       std::vector<Key>{needed(sections("line", line_point_section(), "", "at least two points, [x, y, z] each")),
@@ -86,8 +85,7 @@ const Section& tshirt_section() {
   static const Section table{
       "tshirt",
       "A front and a back joined at the sides, the shoulders and along the sleeves; upright, front to +z, centred at "
-      "the "
-      "origin. Groups: hem, neck, cuffs, seams, front, back.",
+      "the origin. Groups: hem, neck, cuffs, seams, front, back.",
       "",
       {},
       {number("width", Unit::length, positive, show(shape.width), "of the body"),
