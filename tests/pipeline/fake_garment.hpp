@@ -2,11 +2,13 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "collision/surface.hpp"
-#include "pipeline/garment.hpp"
+#include "pipeline/garment_hdf5.hpp"
 #include "pipeline/mannequin.hpp"
 #include "pipeline/setup_paths.hpp"
+#include "tests/pipeline/fake_run.hpp"
 
 namespace selvedge::fake {
 
@@ -87,6 +89,25 @@ inline Piece skirt(const BodyModel& body, double low, double high, double room, 
       piece.triangles.row(2 * (r * around + k) + 1) << c, b, d;
     }
   return piece;
+}
+
+struct SkirtFile {
+  double low = -0.3, room = 0.015;
+  int around = 30, rings = 9;
+  std::string file = "skirt.h5";
+  BodyPose made_in = {};
+};
+
+// A skirt that hangs from its pinned waist; groups: waist, and the first vertex of the hem.
+inline Garment write_skirt(const Folder& folder, const SkirtFile& s = {}) {
+  const BodyModel& body = mannequin();
+  const Piece piece = skirt(body, s.low, 0.1, s.room, s.around, s.rings);
+  Garment made{"skirt", attached(piece.x, piece.triangles, body, Fit::loose), s.made_in, {}, {}, body.name};
+  made.pins.resize(static_cast<std::size_t>(s.around));
+  std::iota(made.pins.begin(), made.pins.end(), 0);
+  made.groups = {{"waist", made.pins}, {"hem", {(s.rings - 1) * s.around}}};
+  write_garment(folder.path / s.file, made);
+  return made;
 }
 
 }  // namespace selvedge::fake

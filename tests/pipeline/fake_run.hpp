@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "pipeline/setup.hpp"
+#include "pipeline/run_scene.hpp"
 #include "pipeline/trajectory_hdf5.hpp"
 
 namespace selvedge::fake {
@@ -133,6 +133,17 @@ inline Setup setup(int frames = 12) {
     return drive;
   };
   return setup;
+}
+
+// Runs a scene into a folder, or goes on with it, and is interrupted after `stop_after` frames.
+inline RunSummary run(const Setup& setup, Stepper& stepper, const std::filesystem::path& out, bool resume = false,
+                      int stop_after = 1 << 30) {
+  RunRequest request;
+  request.out = out;
+  request.resume = resume;
+  int seen = 0;
+  request.stop = [&] { return ++seen >= stop_after; };
+  return run_scene(setup, stepper, request);
 }
 
 }  // namespace selvedge::fake

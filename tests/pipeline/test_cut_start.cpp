@@ -1,12 +1,8 @@
 #include <catch2/catch.hpp>
 
-#include <numeric>
-
 #include "pipeline/check.hpp"
-#include "pipeline/garment_hdf5.hpp"
 #include "pipeline/make_stepper.hpp"
 #include "pipeline/plan.hpp"
-#include "pipeline/run_scene.hpp"
 #include "pipeline/setup.hpp"
 #include "pipeline/trajectory_hdf5.hpp"
 #include "tests/pipeline/fake_garment.hpp"
@@ -18,18 +14,7 @@ using fake::Folder;
 
 namespace {
 
-constexpr int around = 30;
-
-// A skirt that hangs from a pinned waist, and the mannequin with a rod through it: a box that is drawn out sideways.
-void write_skirt(const Folder& folder) {
-  const BodyModel& body = fake::mannequin();
-  const fake::Piece piece = fake::skirt(body, -0.3, 0.1, 0.03, around, 9);
-  Garment skirt{"skirt", attached(piece.x, piece.triangles, body, Fit::loose), {}, {}, {}, body.name};
-  skirt.pins.resize(around);
-  std::iota(skirt.pins.begin(), skirt.pins.end(), 0);
-  write_garment(folder.path / "skirt.h5", skirt);
-}
-
+// A skirt, and the mannequin with a rod through it: a box that is drawn out sideways.
 Setup read(const Folder& folder, const std::string& cloth, const std::string& more = "", double speed = 0.9) {
   return read_setup(
       fake::write(folder, "scene.yaml",
@@ -43,19 +28,14 @@ Setup read(const Folder& folder, const std::string& cloth, const std::string& mo
 const std::string cut = "{garment: skirt.h5, start: {from: cut}}";
 
 RunSummary run(const Setup& setup, const Folder& folder, const std::string& out, bool resume = false, int stop = 100) {
-  RunRequest request;
-  request.out = folder.path / out;
-  request.resume = resume;
-  int made = 0;
-  request.stop = [&] { return ++made == stop; };
-  return run_scene(setup, *make_stepper(setup), request);
+  return fake::run(setup, *make_stepper(setup), folder.path / out, resume, stop);
 }
 
 }  // namespace
 
 TEST_CASE("A cut start has no pair in any frame, says what is out, and ends whole", "[cut_start]") {
   const Folder folder("cut_start");
-  write_skirt(folder);
+  fake::write_skirt(folder, {.room = 0.03});
   const Setup setup = read(folder, cut), skinned = read(folder, "{garment: skirt.h5}");
   CHECK(setup.initial.frame == 0);
   CHECK(setup.initial.x == skinned.initial.x);
@@ -92,7 +72,7 @@ TEST_CASE("A cut start has no pair in any frame, says what is out, and ends whol
 
 TEST_CASE("A run that ends with triangles cut out is not clean", "[cut_start]") {
   const Folder folder("cut_stays");
-  write_skirt(folder);
+  fake::write_skirt(folder, {.room = 0.03});
   const RunSummary summary = run(read(folder, cut, "", 0), folder, "stays");
   CHECK(summary.end == RunEnd::finished);
   CHECK(summary.pairs + summary.worst_inside == 0);
@@ -103,7 +83,7 @@ TEST_CASE("A run that ends with triangles cut out is not clean", "[cut_start]") 
 
 TEST_CASE("A run with a cut start is resumed to the same bits", "[cut_start]") {
   const Folder folder("cut_resume");
-  write_skirt(folder);
+  fake::write_skirt(folder, {.room = 0.03});
   const Setup setup = read(folder, cut);
   run(setup, folder, "whole");
   CHECK(run(setup, folder, "parts", false, 2).end == RunEnd::interrupted);
@@ -120,7 +100,7 @@ TEST_CASE("A run with a cut start is resumed to the same bits", "[cut_start]") {
 
 TEST_CASE("A cut start of what is clean cuts nothing; one that cannot be is named", "[cut_start]") {
   const Folder folder("cut_faulty");
-  write_skirt(folder);
+  fake::write_skirt(folder, {.room = 0.03});
   const Setup clean = read_setup(
       fake::write(folder, "clean.yaml", "cloths:\n  - " + cut + "\nobstacles:\n  - {name: person, body: {}}\n"));
   CHECK(clean.initial.cut_out.empty());

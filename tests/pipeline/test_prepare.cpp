@@ -2,13 +2,9 @@
 
 #include <catch2/catch.hpp>
 
-#include <numeric>
-
 #include "collision/audit.hpp"
-#include "pipeline/garment_hdf5.hpp"
 #include "pipeline/make_stepper.hpp"
 #include "pipeline/plan.hpp"
-#include "pipeline/run_scene.hpp"
 #include "tests/pipeline/fake_garment.hpp"
 #include "tests/pipeline/files.hpp"
 #ifdef _OPENMP
@@ -20,19 +16,6 @@ using Catch::Matchers::Contains;
 using fake::Folder;
 
 namespace {
-
-constexpr int around = 30;
-
-Garment write_skirt(const Folder& folder, const std::string& name = "skirt.h5", const BodyPose& made_in = {}) {
-  const BodyModel& body = fake::mannequin();
-  const fake::Piece piece = fake::skirt(body, -0.3, 0.1, 0.015, around, 9);
-  Garment skirt{"skirt", attached(piece.x, piece.triangles, body, Fit::loose), made_in, {}, {}, body.name};
-  skirt.pins.resize(around);
-  std::iota(skirt.pins.begin(), skirt.pins.end(), 0);
-  skirt.groups = {{"waist", skirt.pins}, {"hem", {8 * around}}};
-  write_garment(folder.path / name, skirt);
-  return skirt;
-}
 
 Setup read(const Folder& folder, const std::string& cloth, const std::string& more = "",
            const std::vector<std::string>& overrides = {}) {
@@ -58,7 +41,7 @@ Audit audit_of(const Setup& setup) {
 
 TEST_CASE("A scene with a draped start begins before time 0, in the pose that the garment was made in", "[prepare]") {
   const Folder folder("prepare_before");
-  const Garment skirt = write_skirt(folder);
+  const Garment skirt = fake::write_skirt(folder);
   const BodyModel& body = fake::mannequin();
   const Setup setup = read(folder, draped), skinned = read(folder, "{garment: skirt.h5}");
   CHECK(skinned.initial.frame == 0);
@@ -80,7 +63,7 @@ TEST_CASE("A scene with a draped start begins before time 0, in the pose that th
 
   BodyPose bent{Points::Zero(24, 3)};
   bent.rotations.row(1) << -0.8, 0, 0;
-  write_skirt(folder, "bent.h5", bent);
+  fake::write_skirt(folder, {.file = "bent.h5", .made_in = bent});
   const Setup other = read(folder, "{garment: bent.h5, start: {from: draped}}");
   CHECK(other.initial.frame == -30);
   const Points expected = posed(body, {}, bent);
@@ -96,7 +79,7 @@ TEST_CASE("A scene with a draped start begins before time 0, in the pose that th
 
 TEST_CASE("Draped cloth is clean at time 0, where its pins and its body are wanted", "[prepare]") {
   const Folder folder("prepare_clean");
-  write_skirt(folder);
+  const auto waist = static_cast<Eigen::Index>(fake::write_skirt(folder).pins.size());
   const std::string pin = "  - {rectangle: {size: [0.1, 0.1], resolution: 3}, translate: [3, 5, 0]}\n";
   Setup setup = read(folder, draped, pin);
   int asked = 0;
@@ -114,7 +97,7 @@ TEST_CASE("Draped cloth is clean at time 0, where its pins and its body are want
   // It moves as the body begins to; the pins' velocity is theirs to say. The sheet has fallen along.
   const Setup skinned = read(folder, "{garment: skirt.h5}", pin);
   CHECK(setup.initial.v == skinned.initial.v);
-  CHECK(setup.initial.v.col(0).segment(around, 50).mean() > 0.5);
+  CHECK(setup.initial.v.col(0).segment(waist, 50).mean() > 0.5);
   CHECK(setup.initial.x.bottomRows(9).col(1).maxCoeff() < 4.5);
   // Nothing is left to prepare.
   const Points x = setup.initial.x;
@@ -124,7 +107,7 @@ TEST_CASE("Draped cloth is clean at time 0, where its pins and its body are want
 
 TEST_CASE("A draped start has the same bits whoever steps the scene, with any number of threads", "[prepare]") {
   const Folder folder("prepare_bits");
-  write_skirt(folder);
+  fake::write_skirt(folder);
   Setup one = read(folder, draped),
         two = read(folder, draped, "", {"run.stepper=icm", "run.substeps=1", "run.frames=9"});
   prepare(one);
@@ -144,17 +127,12 @@ TEST_CASE("A draped start has the same bits whoever steps the scene, with any nu
 
 TEST_CASE("A run with a draped start that was interrupted is resumed without draping again", "[prepare]") {
   const Folder folder("prepare_resume");
-  write_skirt(folder);
+  fake::write_skirt(folder);
   Setup setup = read(folder, draped);
   const Setup unprepared = setup;
   prepare(setup);
   const auto run = [&](const Setup& scene, const std::string& out, bool resume, int frames) {
-    RunRequest request;
-    request.out = folder.path / out;
-    request.resume = resume;
-    int made = 0;
-    request.stop = [&] { return ++made == frames; };
-    return run_scene(scene, *make_stepper(scene), request);
+    return fake::run(scene, *make_stepper(scene), folder.path / out, resume, frames);
   };
   const RunSummary whole = run(setup, "whole", false, 100);
   CHECK_THAT(summary_json(whole), Contains("draped in 10 frames"));
@@ -169,7 +147,7 @@ TEST_CASE("A run with a draped start that was interrupted is resumed without dra
 
 TEST_CASE("A draped garment's other pins go with the body until time 0", "[prepare]") {
   const Folder folder("prepare_pins");
-  write_skirt(folder);
+  fake::write_skirt(folder);
   const std::string start = "start: {from: draped, seconds: 0.35, hold: 0.15}";
   const Setup setup =
       read(folder, "{garment: {file: skirt.h5, pins: false}, " + start +
@@ -183,7 +161,7 @@ TEST_CASE("A draped garment's other pins go with the body until time 0", "[prepa
 
 TEST_CASE("What is wrong with a draped start is named", "[prepare]") {
   const Folder folder("prepare_faulty");
-  write_skirt(folder);
+  fake::write_skirt(folder);
   CHECK_THROWS_WITH(read(folder, "{rectangle: {resolution: 4}, start: {from: draped}}"),
                     Contains("scene.yaml:2") && Contains("no body wears"));
   CHECK_THROWS_WITH(read(folder, "{garment: skirt.h5, start: {from: draped, crumple: 1 mm}}"), Contains("crumple"));

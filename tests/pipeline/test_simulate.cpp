@@ -6,7 +6,6 @@
 #include "collision/error.hpp"
 #include "pipeline/checkpoint.hpp"
 #include "pipeline/record_frame.hpp"
-#include "pipeline/run_scene.hpp"
 #include "pipeline/simulate.hpp"
 #include "tests/pipeline/fake_run.hpp"
 
@@ -22,12 +21,7 @@ nlohmann::json read_json(const std::filesystem::path& path) {
 RunSummary run(const Setup& setup, const std::filesystem::path& out, int stop_after = 1 << 30, bool resume = false,
                int fails_at = 1 << 30) {
   fake::FallingStepper stepper(fails_at);
-  RunRequest request;
-  request.out = out;
-  request.resume = resume;
-  int seen = 0;
-  request.stop = [&] { return ++seen >= stop_after; };
-  return run_scene(setup, stepper, request);
+  return fake::run(setup, stepper, out, resume, stop_after);
 }
 
 }  // namespace
