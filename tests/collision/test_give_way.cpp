@@ -18,7 +18,7 @@ struct Arm {
   Points straight;
 };
 
-// A closed rod along x, from -0.5 to 0.5.
+// A closed rod along x, from -0.5 to 0.5, with its normals outward.
 Arm arm() {
   constexpr int rings = 60, around = 24;
   Points x(rings * around + 2, 3);
@@ -31,8 +31,8 @@ Arm arm() {
       x.row(i * around + j) << at, r * std::cos(angle), r * std::sin(angle);
       const int next = (j + 1) % around, a = i * around + j, b = i * around + next;
       if (i + 1 < rings) {
-        triangles.row(count++) << a, a + around, b;
-        triangles.row(count++) << b, a + around, b + around;
+        triangles.row(count++) << a, b, a + around;
+        triangles.row(count++) << b, b + around, a + around;
       }
     }
   const int first = rings * around, last = first + 1;
@@ -40,8 +40,8 @@ Arm arm() {
   x.row(last) << 0.5, 0, 0;
   for (int j = 0; j < around; ++j) {
     const int next = (j + 1) % around;
-    triangles.row(count++) << first, j, next;
-    triangles.row(count++) << last, (rings - 1) * around + next, (rings - 1) * around + j;
+    triangles.row(count++) << first, next, j;
+    triangles.row(count++) << last, (rings - 1) * around + j, (rings - 1) * around + next;
   }
   return {make_surface(static_cast<int>(x.rows()), triangles.topRows(count)), x};
 }
@@ -58,6 +58,26 @@ Points bent(const Points& straight, double angle) {
   return x;
 }
 
+// Two rods, parts of one body.
+Surface twice(const Surface& rod) {
+  Triangles triangles(2 * rod.triangles.rows(), 3);
+  triangles << rod.triangles, (rod.triangles.array() + rod.vertex_count).matrix();
+  return make_surface(2 * rod.vertex_count, triangles);
+}
+
+// The second one moved by `up` along y, after it has been scaled.
+Points beside(const Points& rod, double up, double scale = 1) {
+  Points x(2 * rod.rows(), 3);
+  x << rod, scale * rod;
+  x.bottomRows(rod.rows()).col(1).array() += up;
+  return x;
+}
+
+// From the lower part up to the upper one.
+double gap_between(const Points& x) {
+  return x.bottomRows(x.rows() / 2).col(1).minCoeff() - x.topRows(x.rows() / 2).col(1).maxCoeff();
+}
+
 int crossings(const Surface& surface, const Points& x) { return audit(surface, x, {}).intersecting_pairs(); }
 
 double farthest(const Points& a, const Points& b) { return (a - b).rowwise().norm().maxCoeff(); }
@@ -66,6 +86,8 @@ double farthest(const Points& a, const Points& b) { return (a - b).rowwise().nor
 
 TEST_CASE("flesh in the bend of a limb gives way", "[give_way]") {
   const Arm rod = arm();
+  const Points normals = vertex_normals(rod.surface, rod.straight);
+  for (int v = 0; v < rod.surface.vertex_count; ++v) REQUIRE(row(normals, v).dot(row(rod.straight, v)) > 0);
   const GiveWayOptions options;
   const GiveWay give(rod.surface, rod.straight, options);
   for (const double degrees : {100.0, 110.0, 120.0}) {
@@ -97,6 +119,55 @@ TEST_CASE("parts that come together leave room for cloth", "[give_way]") {
     CHECK(crossings(rod.surface, y) == 0);
     CHECK(least > 0.8 * room);
   }
+}
+
+TEST_CASE("two parts that come together go half the way each, as far as they may", "[give_way]") {
+  const Arm rod = arm();
+  const Surface both = twice(rod.surface);
+  const double gap = 0.004;
+  const Points rest = beside(rod.straight, 0.5), x = beside(rod.straight, 2 * radius + gap);
+  for (const double room : {0.0, 0.008, 0.02})
+    for (const double most : {0.003, 0.045}) {
+      CAPTURE(room, most);
+      const Points y = GiveWay(both, rest, {.room = room, .most = most})(x);
+      const double missing = std::max(0.0, room - gap), way = std::min(most, missing / 2);
+      CHECK(gap_between(y) == Approx(gap + 2 * way).margin(0.1 * missing));
+      CHECK(farthest(x, y) == Approx(way).epsilon(1e-3));
+      // Their far sides.
+      CHECK(y.col(1).minCoeff() == x.col(1).minCoeff());
+      CHECK(y.col(1).maxCoeff() == x.col(1).maxCoeff());
+    }
+  // Less room where they are near at rest.
+  const Points y = GiveWay(both, beside(rod.straight, 2 * radius + 0.02), {.room = 0.02})(x);
+  CHECK(gap_between(y) == Approx(0.3 * 0.02).margin(1e-4));
+}
+
+TEST_CASE("what lies round a spot that gives way goes along", "[give_way]") {
+  const Arm rod = arm();
+  const Surface both = twice(rod.surface);
+  Points x = beside(rod.straight, 2 * radius + 0.002);
+  for (int v = rod.surface.vertex_count; v < x.rows(); ++v)
+    x.row(v) = Eigen::RowVector3d(x(v, 2), x(v, 1), -x(v, 0));  // across
+  const Points way = GiveWay(both, beside(rod.straight, 0.5))(x) - x;
+  const double most = way.rowwise().norm().maxCoeff();
+  CHECK(most > 0.003);
+  for (const auto& edge : both.edges.rowwise()) REQUIRE((way.row(edge[0]) - way.row(edge[1])).norm() < 0.6 * most);
+}
+
+TEST_CASE("neither the other side of a part is met nor what looks the same way", "[give_way]") {
+  const Arm rod = arm();
+  // Squeezed, but to more than half its thickness.
+  const Points thin = 0.5 * rod.straight;
+  Points squeezed = thin;
+  squeezed.col(1) *= 0.6;
+  CHECK(farthest(GiveWay(rod.surface, thin)(squeezed), squeezed) == 0);
+  // The middle of a thin part that is deep within another one: the near skin looks its way, from the far one it would
+  // come out behind.
+  const Surface both = twice(rod.surface);
+  const Points x = beside(rod.straight, 0.034, 0.3), y = GiveWay(both, beside(rod.straight, 0.5, 0.3))(x);
+  CHECK(crossings(both, x) == 0);
+  for (int v = 0; v < x.rows(); ++v)
+    if (std::abs(x(v, 0)) < 0.03) REQUIRE(y.row(v) == x.row(v));
 }
 
 TEST_CASE("a body without parts that come together is left as it is", "[give_way]") {
