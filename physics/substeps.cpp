@@ -9,7 +9,9 @@ namespace {
 constexpr double edges_a_substep = 2.5;  // how far a vertex may move, in mean edge lengths
 constexpr double edges_past = 1;         // how far contact, linearised, may slide: more locks cloth pulled round a post
 
-constexpr int least_substeps = 2;
+constexpr double visibly_damped = 1.0 / 48;  // steps of implicit Euler that are longer are [s]
+
+int least_substeps(double dt) { return dt > visibly_damped ? 2 : 1; }
 
 // Of a way, each no longer than that.
 int parts(double way, double longest, int least, int most) {
@@ -24,11 +26,11 @@ int substeps_for_speed(const State& from, const Drive& drive, double dt, double 
   if (from.v.rows() > 0) speed += from.v.rowwise().norm().maxCoeff();
   for (std::size_t k = 0; k < from.obstacles.size(); ++k)
     speed = std::max(speed, (drive.obstacles[k] - from.obstacles[k]).rowwise().norm().maxCoeff() / dt);
-  return parts(dt * speed, edges_a_substep * edge_length, least_substeps, max_substeps);
+  return parts(dt * speed, edges_a_substep * edge_length, least_substeps(dt), max_substeps);
 }
 
 int substeps_for_contact(double contact_speed, double dt, double edge_length, int max_substeps) {
-  return parts(dt * contact_speed, edges_past * edge_length, least_substeps, max_substeps);
+  return parts(dt * contact_speed, edges_past * edge_length, least_substeps(dt), max_substeps);
 }
 
 int parts_for_way(double way, double edge_length, int most) {

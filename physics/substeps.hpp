@@ -16,8 +16,8 @@ struct Leg {
   StepHistory history = {};
 };
 
-// How many parts a step of dt [s] is cut into. At least two: implicit Euler at 1/30 s damps visibly. edge_length: the
-// mean one [m]; speeds in m/s.
+// How many parts a step of dt [s] is cut into. At least two of one longer than 1/48 s: implicit Euler at 1/30 s damps
+// visibly. edge_length: the mean one [m]; speeds in m/s.
 // As many as keep every vertex's motion in a substep within a few mesh edges.
 int substeps_for_speed(const State& from, const Drive&, double dt, double edge_length, int max_substeps);
 // As many as keep the motion of touching pairs past each other within one edge.

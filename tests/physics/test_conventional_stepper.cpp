@@ -174,19 +174,20 @@ TEST_CASE("conventional stepper: friction holds a sheet on a slope below its ang
 
 TEST_CASE("conventional stepper: a sheet that slides or hits is stepped finer than one that flies as fast",
           "[conventional_stepper]") {
-  const auto substeps = [](double height, const Vec3& velocity) {
+  const auto substeps = [](double height, const Vec3& velocity, double dt = 1.0 / 30) {
     World w = make_world(testing::sheet(8, 0.2, height));
     add_obstacle(w, testing::sheet(2, 4, 0));
     w.drive.acceleration.setZero();
     w.state.v.rowwise() = velocity.transpose();
     State to;
-    const StepReport report = make_conventional_stepper(w.scene, {})->step(w.state, w.drive, 1.0 / 30, to);
+    const StepReport report = make_conventional_stepper(w.scene, {})->step(w.state, w.drive, dt, to);
     CHECK(to.clean);
     CHECK(report.collision.passed_through == 0);
     return report.substeps;
   };
   const double edge = 0.2 * (2 + std::sqrt(2.0)) / (3 * 8);
   CHECK(substeps(0.1, {10, 0, 0}) == 2);
+  CHECK(substeps(0.1, {10, 0, 0}, 1.0 / 60) == 1);  // short enough to damp little
   CHECK(substeps(1.5e-3, {4, 0, 0}) == std::ceil(4.0 / 30 / edge));
   // It meets the floor in the first of two substeps, or in the second.
   const double parts = std::ceil(10.0 / 60 / (2.5 * edge));
