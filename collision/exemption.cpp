@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "collision/buried.hpp"
+#include "collision/contour_regions.hpp"
 #include "collision/separation.hpp"
 #include "collision/world_sheets.hpp"
 
@@ -68,11 +70,7 @@ void switch_off(const ContactWorld& world, int obstacle, const Points& nodes, Ex
   const std::vector<SheetView> view{{&body, &x}};
   const Segments found = find_segments(view);
   if (found.segments.empty()) return;
-  std::vector<char> crossed(body.vertex_count, 0);
-  for (const Segment& segment : found.segments)
-    for (const int triangle : segment.triangle) mark_triangle(crossed, body.vertex_count, body, triangle);
-  for (const Region& region : enclosed_regions(view, find_contours(view, found)))
-    for (const int v : region.vertices) crossed[v] = 1;
+  const std::vector<char> crossed = buried_vertices(body, x, found);
   // The margin: every triangle at a crossed vertex.
   for (int t = 0; t < body.triangles.rows(); ++t) {
     const auto corners = body.triangles.row(t);

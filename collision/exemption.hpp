@@ -10,7 +10,7 @@ struct Exemption {
   std::vector<char> self;  // of the cloth's vertices: on or inside a contour of the cloth with itself
   std::vector<char> body;  // of the cloth's vertices: on a contour with an obstacle, or inside a closed one
   std::vector<char>
-      off;  // of all nodes: an obstacle's, on or inside a contour of the obstacle with itself, or next to it
+      off;  // of all nodes: an obstacle's, where it crosses itself or is buried in itself (buried.hpp), or next to it
 
   bool cloth() const { return !self.empty() || !body.empty(); }
   int cloth_vertices() const;  // how many of them

@@ -80,33 +80,40 @@ bool on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   return true;
 }
 
-bool is_inside(const Grid& grid, const Surface& surface, const Points& x, const Vec3& p) {
-  if (!((p.array() >= grid.lo.array()).all() && (p.array() <= grid.hi.array()).all())) return false;
+int winding_number(const Grid& grid, const Surface& surface, const Points& x, const Vec3& p) {
+  if (!((p.array() >= grid.lo.array()).all() && (p.array() <= grid.hi.array()).all())) return 0;
   const Vec2 flat = grid.flat(p);
   const auto [i, j] = grid.cell(flat);
   const int cell = i * grid.cells + j;
-  bool odd = false;
+  int winding = 0;
   for (int at = grid.begin[cell]; at < grid.begin[cell + 1]; ++at) {
     const int t = grid.triangles[at];
     const Vec3 a = row(x, surface.triangles(t, 0)), b = row(x, surface.triangles(t, 1));
     const Vec3 c = row(x, surface.triangles(t, 2));
-    if (on_triangle(p, a, b, c)) return false;
+    if (on_triangle(p, a, b, c)) return 0;
     const Vec2 a2 = grid.flat(a), b2 = grid.flat(b), c2 = grid.flat(c);
     const int seen = moved_orientation(a2, b2, flat);
     if (seen == 0 || moved_orientation(b2, c2, flat) != seen || moved_orientation(c2, a2, flat) != seen) continue;
-    odd ^= orient3d(a, b, c, p) != seen;  // p lies before the triangle, seen along the ray
+    if (orient3d(a, b, c, p) != seen) winding += seen;  // p lies before the triangle, seen along the ray
   }
-  return odd;
+  return winding;
 }
 
 }  // namespace
 
-std::vector<char> inside(const Surface& surface, const Points& x, const Points& points) {
+std::vector<int> winding_numbers(const Surface& surface, const Points& x, const Points& points) {
   const Grid grid = make_grid(surface, x);
-  std::vector<char> result(points.rows(), 0);
+  std::vector<int> result(points.rows(), 0);
   const int count = static_cast<int>(points.rows());
 #pragma omp parallel for schedule(dynamic, 256)
-  for (int i = 0; i < count; ++i) result[i] = is_inside(grid, surface, x, row(points, i));
+  for (int i = 0; i < count; ++i) result[i] = winding_number(grid, surface, x, row(points, i));
+  return result;
+}
+
+std::vector<char> inside(const Surface& surface, const Points& x, const Points& points) {
+  const std::vector<int> winding = winding_numbers(surface, x, points);
+  std::vector<char> result(winding.size());
+  std::ranges::transform(winding, result.begin(), [](int number) { return number % 2 != 0; });
   return result;
 }
 

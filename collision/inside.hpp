@@ -11,4 +11,8 @@ namespace selvedge {
 // is not inside, and neither is a point with an undefined coordinate. The surface must be closed and finite.
 std::vector<char> inside(const Surface& surface, const Points& x, const Points& points);
 
+// How often the closed surface winds round each point, by the same rays: 1 inside a surface that is oriented outwards
+// and does not cross itself, 2 where two of its parts overlap. On the surface 0.
+std::vector<int> winding_numbers(const Surface& surface, const Points& x, const Points& points);
+
 }  // namespace selvedge

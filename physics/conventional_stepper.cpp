@@ -8,6 +8,7 @@
 #include "collision/room.hpp"
 #include "collision/stopwatch.hpp"
 #include "physics/bdf2.hpp"
+#include "physics/carrying.hpp"
 #include "physics/contact_terms.hpp"
 #include "physics/features.hpp"
 #include "physics/recovery.hpp"
@@ -26,6 +27,7 @@ constexpr double normal_change = 0.05;      // of what bounds friction, at most,
 constexpr double deep_impact = 0.05;        // that a single impulse should not meet, in mean edge lengths
 constexpr int halvings = 2;                 // of a substep whose zones do not settle, before the last resort
 constexpr double recovery_speed = 1;        // at most, of a vertex that starts tangled [m/s]
+constexpr double carrying_speed = 3;        // at most, of one that is drawn to where it is worn [m/s]
 constexpr double rounding = 1e-14;          // of positions that are added up over substeps
 constexpr int squeezed_rounds = 4;          // of zones, where there is no room
 constexpr int hopeful_rounds = 12;          // of zones in a substep that may still be halved
@@ -84,7 +86,8 @@ class ConventionalStepper final : public Stepper {
   bool advance_in_parts(Leg& leg, const Points& nodes, const Points& pins, const Drive& drive, double h, int parts,
                         Cuts left, StepReport& report);
   int planned_substeps(const State& from, const Drive& drive, double dt, const Points& nodes) const;
-  void prepare_contact(const State& from, double dt, const Points& wanted, Points& nodes, StepReport& report);
+  void prepare_contact(const State& from, const Drive& drive, double dt, const Points& wanted, Points& nodes,
+                       StepReport& report);
 
   const Scene& scene_;
   ConventionalOptions options_;
@@ -102,6 +105,7 @@ class ConventionalStepper final : public Stepper {
   bool look_for_room_ = false;      // this step started with obstacles that lag, or some did not have room in it
   Exemption exemption_;             // of this step
   std::vector<Separation> gained_;  // by its recovery
+  std::vector<char> carried_;       // in this step, to where they are worn
 };
 
 void add(const ResolveReport& resolved, StepReport& report) {
@@ -230,11 +234,11 @@ ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const 
     look_for_room_ = true;
     watch.lap();
   }
-  AddedTerm held;
-  if (!gained_.empty()) {
-    held = added_pushes(push_terms(gained_, inverse_mass_, 0.1 * scene_.contact.thickness, h));
-    problem.added = &held;
-  }
+  AddedTerm added;
+  if (!gained_.empty()) added = added_pushes(push_terms(gained_, inverse_mass_, 0.1 * scene_.contact.thickness, h));
+  if (!carried_.empty())
+    added = sum_of(std::move(added), carrying_term(carried_, solver_.masses(), x0, drive.worn, carrying_speed * h, h));
+  if (added.value) problem.added = &added;
   Contacts contacts = contact_terms(scene_, world_, proximities, inverse_mass_, nodes0, nodes1, h);
   // The load of a contact is what pulls at it where the cloth would go without any.
   if (!contacts.terms.empty()) bear(contacts.terms, inverse_mass_, -solver_.gradient(problem, x));
@@ -322,21 +326,25 @@ NewtonReport ConventionalStepper::solve(const StepProblem& problem, Points& x, S
 }
 
 // Recovery where the start is tangled, what contact is to leave alone, and the pairs near the start.
-void ConventionalStepper::prepare_contact(const State& from, double dt, const Points& wanted, Points& nodes,
-                                          StepReport& report) {
+void ConventionalStepper::prepare_contact(const State& from, const Drive& drive, double dt, const Points& wanted,
+                                          Points& nodes, StepReport& report) {
   Stopwatch watch;
   const bool exempt = exemption_.any();
   look_for_room_ = from.pinched;
   exemption_ = {};
   gained_.clear();
-  Exemption bodies;
-  self_crossings_.switch_off(nodes, wanted, bodies);
+  std::optional<Exemption> untouched;
   if (!from.clean && nodes.allFinite()) {
-    Recovery recovery = recover(world_, inverse_mass_, recovery_speed * dt, bodies.off, nodes);
+    untouched = hopeless(world_, nodes);
+    exemption_ = untouched ? *untouched : find_exemption(world_, nodes);
+  }
+  self_crossings_.switch_off(nodes, wanted, exemption_);
+  carried_ = carried_vertices(world_, exemption_, drive.worn, nodes, edge_length_);
+  if (exemption_.cloth() && !untouched) {
+    Recovery recovery = recover(world_, inverse_mass_, recovery_speed * dt, exemption_, carried_, nodes);
     exemption_ = std::move(recovery.left);
     gained_ = std::move(recovery.gained);
   }
-  exemption_.off = std::move(bodies.off);
   report.collision.left_alone = exemption_.cloth_vertices();
   if (exempt || exemption_.any()) path_ = {};  // what was listed then is not what is to be listed now
   search_.leave_out(exemption_.any() ? &exemption_ : nullptr);
@@ -363,7 +371,7 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
   const int n = scene_.surface.vertex_count;
   Leg leg{gather_nodes(from.x, from.obstacles), from.v, from.history};
   const Points wanted = gather_nodes(from.x, drive.obstacles);
-  if (has_contact()) prepare_contact(from, dt, wanted, leg.nodes, report);
+  if (has_contact()) prepare_contact(from, drive, dt, wanted, leg.nodes, report);
   if (exemption_.any() || leg.nodes.topRows(n) != from.x) leg.history = {};
   const int planned = planned_substeps(from, drive, dt, leg.nodes);
   // Cloth that left an obstacle no room will hardly do so now.

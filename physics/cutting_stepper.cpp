@@ -65,7 +65,8 @@ StepReport CuttingStepper::step_rest(const State& from, const Drive& drive, doub
   to = from;
   to.time = end.time;
   to.frame = end.frame;
-  to.x = drive.worn;
+  for (Eigen::Index v = 0; v < to.x.rows(); ++v)
+    if (drive.worn.row(v).allFinite()) to.x.row(v) = drive.worn.row(v);
   for (std::size_t p = 0; p < scene_.pins.size(); ++p)
     to.x.row(scene_.pins[p]) = drive.pins.row(static_cast<Eigen::Index>(p));
   to.v = (to.x - from.x) / dt;

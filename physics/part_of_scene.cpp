@@ -99,7 +99,8 @@ State state_of(const PartOfScene& part, const State& whole) {
 }
 
 Drive drive_of(const PartOfScene& part, const Drive& whole) {
-  return {rows_of(whole.pins, part.pins), whole.obstacles, whole.wind, whole.acceleration, {}};
+  return {rows_of(whole.pins, part.pins), whole.obstacles, whole.wind, whole.acceleration,
+          whole.worn.rows() == 0 ? Points() : rows_of(whole.worn, part.vertices)};
 }
 
 void put(const PartOfScene& part, const State& state, State& whole) {

@@ -14,16 +14,6 @@ constexpr int most_halvings = 3;     // of a way that would have clean cloth cro
 constexpr int hasty_iterations = 5;  // of untangling from a body that crosses itself: some of it must wait anyway
 constexpr double negligible = 1e-6;  // way, in mean edge lengths
 
-// Cloth that crosses itself through and through, a sheet that starts in one point say, has no sides to go to: its own
-// stiffness opens it first.
-bool is_hopeless(const ContactWorld& world, const Points& nodes) {
-  if (!world.self) return false;
-  IntersectionCache cache;
-  const Points cloth = nodes.topRows(world.cloth->vertex_count);
-  return intersecting_pairs(*world.cloth, cloth, cache).size() >
-         most_pairs * std::size_t(world.cloth->triangles.rows());
-}
-
 // The vertices that cross the cloth still, where `untangle` says that they should be: to push them towards it for ever
 // would keep the cloth from resting. Empty where there are none.
 std::vector<char> tangled_at(const ContactWorld& world, const Points& nodes, const UntangleResult& parted) {
@@ -33,11 +23,11 @@ std::vector<char> tangled_at(const ContactWorld& world, const Points& nodes, con
   return find_exemption(world, goal).self;
 }
 
-// Tangled cloth that hangs together with a crossing of a part of a body that is switched off; empty where there is
-// none.
+// Tangled cloth that hangs together with what is carried, or with a crossing of a part of a body that is switched off;
+// empty where there is none.
 std::vector<char> waiting(const ContactWorld& world, const Points& nodes, const std::vector<char>& tangled,
-                          const std::vector<char>& off) {
-  if (off.empty() || tangled.empty()) return {};
+                          const std::vector<char>& off, const std::vector<char>& carried) {
+  if ((off.empty() && carried.empty()) || tangled.empty()) return {};
   const WorldSheets sheets(world, nodes);
   std::vector<char> waits(tangled.size(), 0);
   std::vector<int> front;
@@ -46,7 +36,10 @@ std::vector<char> waiting(const ContactWorld& world, const Points& nodes, const 
     waits[v] = 1;
     front.push_back(v);
   };
+  for (int v = 0; v < static_cast<int>(carried.size()); ++v)
+    if (carried[v]) add(v);
   for (const Segment& segment : find_segments(sheets.views).segments) {
+    if (off.empty()) break;
     if ((segment.sheet[0] == 0) == (segment.sheet[1] == 0)) continue;
     const int side = segment.sheet[0] == 0 ? 0 : 1, obstacle = segment.sheet[1 - side] - 1;
     const auto body = world.obstacles[obstacle]->triangles.row(segment.triangle[1 - side]);
@@ -127,24 +120,29 @@ Exemption stop_at_obstacles(const ContactWorld& world, const Exemption& before, 
 
 }  // namespace
 
-Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass, double reach,
-                 const std::vector<char>& off, Points& nodes) {
+std::optional<Exemption> hopeless(const ContactWorld& world, const Points& nodes) {
+  if (!world.self) return {};
+  IntersectionCache cache;
+  const Points cloth = nodes.topRows(world.cloth->vertex_count);
+  if (intersecting_pairs(*world.cloth, cloth, cache).size() <= most_pairs * std::size_t(world.cloth->triangles.rows()))
+    return {};
+  ContactWorld bodies = world;
+  bodies.self = false;
+  Exemption exemption = find_exemption(bodies, nodes);
+  exemption.self.assign(static_cast<std::size_t>(world.cloth->vertex_count), 1);
+  return exemption;
+}
+
+Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass, double reach, const Exemption& before,
+                 const std::vector<char>& carried, Points& nodes) {
   const int n = world.cloth->vertex_count;
-  if (is_hopeless(world, nodes)) {
-    ContactWorld bodies = world;
-    bodies.self = false;
-    Recovery nothing{find_exemption(bodies, nodes), {}};
-    nothing.left.self.assign(static_cast<std::size_t>(n), 1);
-    return nothing;
-  }
-  Recovery recovery{find_exemption(world, nodes), {}};
-  const Exemption before = recovery.left;
-  const std::vector<char> waits = waiting(world, nodes, before.body, off);
+  Recovery recovery{before, {}};
+  const std::vector<char> waits = waiting(world, nodes, before.body, before.off, carried);
   if (!before.cloth() || none_is_left(before, waits)) return recovery;
   const WorldSheets sheets(world, nodes);
   const Points& from = sheets.positions[0];
   UntangleOptions options;
-  if (!off.empty()) options.iterations = hasty_iterations;
+  if (std::ranges::find(waits, 1) != waits.end()) options.iterations = hasty_iterations;
   const UntangleResult parted = untangle(*world.cloth, from, std::span(sheets.views).subspan(1), options);
   const std::vector<char> lost = either(tangled_at(world, nodes, parted), waits);
   const Points whole_way = parted.x - from;
@@ -159,6 +157,7 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
     if (before.self.empty() && !left.self.empty()) continue;
     nodes = std::move(moved);
     recovery = {std::move(left), std::move(gained)};
+    recovery.left.off = before.off;
     break;
   }
   for (Separation& gained : recovery.gained) {

@@ -1,24 +1,31 @@
 #pragma once
 
+#include <optional>
+
 #include "collision/exemption.hpp"
 #include "collision/intersections.hpp"
 #include "collision/separation.hpp"
 
 namespace selvedge {
 
+// What contact leaves alone of cloth that crosses itself through and through, a sheet that starts in one point say: it
+// has no sides to go to, and its own stiffness opens it first. Absent where it does not.
+std::optional<Exemption> hopeless(const ContactWorld&, const Points& nodes);
+
 // What a step that starts tangled does first: `untangle` says where the cloth should be, and every vertex that may move
 // goes there by at most `reach` [m], through no obstacle that it was clean of. Cloth that is tangled with cloth gets no
 // linear momentum of it: one side goes against the other. `left` is what is still tangled then, for contact to leave
 // alone, and `gained` what the solve must not lose again, how far the sides have come against each other, or a vertex
 // against an obstacle: what springs back gets nowhere, and what holds it pulls the cloth after it.
-// Cloth at a part of a body that is switched off (`off`, of the nodes; or empty), since the body crosses itself there,
-// can be nowhere: it waits where it is. Cloth that does not cross itself will not do so after.
+// Cloth that is carried (carrying.hpp; or empty) and what is tangled together with it, and tangled cloth at a part of a
+// body that is switched off, is left alone: it waits. Cloth that does not cross itself will not do so after. `before`
+// is what is tangled, as find_exemption has it, and what is switched off.
 struct Recovery {
   Exemption left;
   std::vector<Separation> gained;
 };
-Recovery recover(const ContactWorld&, const Eigen::VectorXd& inverse_mass, double reach, const std::vector<char>& off,
-                 Points& nodes);
+Recovery recover(const ContactWorld&, const Eigen::VectorXd& inverse_mass, double reach, const Exemption& before,
+                 const std::vector<char>& carried, Points& nodes);
 
 // Which obstacles cross themselves, in the positions of a step's start or end. Remembers what it was asked last.
 class SelfCrossings {

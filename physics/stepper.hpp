@@ -42,7 +42,8 @@ struct Drive {
   std::vector<Points> obstacles;     // wanted positions
   Vec3 wind = Vec3::Zero();          // [m/s]
   Vec3 acceleration = Vec3::Zero();  // gravity [m/s2]
-  Points worn;                       // one row a vertex: where it goes if it is cut out; empty where none ever is
+  Points worn;                       // one row a vertex: where the body that wears it has it by skinning alone, not a
+                                     // number where none does; empty where nothing is worn
 };
 
 enum class StepStatus { not_run, accepted, rejected };

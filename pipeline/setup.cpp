@@ -31,7 +31,7 @@ struct World {
   int pin_count = 0;
   std::vector<PinGroup> pins;
   std::vector<std::function<Points(double)>> obstacles;
-  std::function<Points(double)> worn;  // empty: nothing is cut out
+  std::function<Points(double)> worn;  // empty: nothing is worn
   Vec3 gravity = Vec3::Zero();
   std::vector<double> wind_times;
   std::vector<Vec3> wind;
@@ -274,7 +274,8 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
   }
   warn_of_stretched_seams(cloths, setup.scene, setup.initial.x, setup.warnings);
   setup.scene.springs = read_springs(config["springs"], cloths, setup.scene, setup.initial.x, setup.warnings);
-  world->worn = begin_cut(cloths, setup.scene, setup.initial);
+  world->worn = worn_in_scene(cloths, setup.scene);
+  begin_cut(cloths, setup.scene, setup.initial);
   if (std::ranges::any_of(cloths, &ClothPart::cut))
     setup.prepared =
         fmt::format("cut: {} of {} triangles out", setup.initial.cut_out.size(), setup.scene.surface.triangles.rows());

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "physics/cut_out.hpp"
 #include "pipeline/jitter.hpp"
@@ -55,19 +56,24 @@ int begin_draped(const Performances& bodies, double fps, std::vector<ClothPart>&
   return frames;
 }
 
-std::function<Points(double)> begin_cut(const std::vector<ClothPart>& parts, const Scene& scene, State& initial) {
+void begin_cut(const std::vector<ClothPart>& parts, const Scene& scene, State& initial) {
   std::vector<char> may(static_cast<std::size_t>(scene.surface.triangles.rows()), 0);
-  std::vector<std::pair<int, std::shared_ptr<const Wearing>>> worn;  // from which vertex on
+  bool any = false;
   for (std::size_t c = 0; c < parts.size(); ++c) {
     if (!parts[c].cut) continue;
+    any = true;
     std::fill_n(may.begin() + scene.cloths[c].first_triangle, scene.cloths[c].triangle_count, 1);
-    worn.emplace_back(scene.cloths[c].first_vertex, parts[c].worn);
   }
+  if (any) initial.cut_out = cut_out_at_start(scene, initial, may);
+}
+
+std::function<Points(double)> worn_in_scene(const std::vector<ClothPart>& parts, const Scene& scene) {
+  std::vector<std::pair<int, std::shared_ptr<const Wearing>>> worn;  // from which vertex on
+  for (std::size_t c = 0; c < parts.size(); ++c)
+    if (parts[c].worn) worn.emplace_back(scene.cloths[c].first_vertex, parts[c].worn);
   if (worn.empty()) return {};
-  initial.cut_out = cut_out_at_start(scene, initial, may);
-  if (initial.cut_out.empty()) return {};
   return [worn, vertices = scene.surface.vertex_count](double time) {
-    Points all = Points::Zero(vertices, 3);
+    Points all = Points::Constant(vertices, 3, std::numeric_limits<double>::quiet_NaN());
     for (const auto& [first, wearing] : worn)
       all.middleRows(first, wearing->garment.skin.rest.rows()) = worn_at(*wearing, time);
     return all;

@@ -24,8 +24,10 @@ void apply_start(const Config& section, ClothPart&, std::vector<std::string>& wa
 // then. Returns how many frames before.
 int begin_draped(const Performances&, double fps, std::vector<ClothPart>&);
 
-// Where garments are to start by cutting, cuts what of them is tangled out of the scene's state at time 0. Returns
-// where vertices that are cut out go, a row a vertex of the scene; nothing where none is.
-std::function<Points(double time)> begin_cut(const std::vector<ClothPart>&, const Scene&, State&);
+// Where garments are to start by cutting, cuts what of them is tangled out of the scene's state at time 0.
+void begin_cut(const std::vector<ClothPart>&, const Scene&, State&);
+
+// Where the scene's garments are worn at a time, as Drive::worn has it; nothing where there is no garment.
+std::function<Points(double time)> worn_in_scene(const std::vector<ClothPart>&, const Scene&);
 
 }  // namespace selvedge

@@ -86,7 +86,8 @@ TEST_CASE("recovery: a clean start is left as it is", "[recovery]") {
   const ContactWorld world = with_its_obstacle(w);
   Points nodes = gather_nodes(w.state.x, w.state.obstacles);
   const Points before = nodes;
-  CHECK_FALSE(recover(world, Eigen::VectorXd::Ones(nodes.rows()), 1, {}, nodes).left.any());
+  CHECK_FALSE(
+      recover(world, Eigen::VectorXd::Ones(nodes.rows()), 1, find_exemption(world, nodes), {}, nodes).left.any());
   CHECK(nodes == before);
 }
 
@@ -116,7 +117,7 @@ TEST_CASE("recovery: nothing is asked of what cannot be parted, the rest goes wi
   const Exemption there = find_exemption(world, parted.x);
   const Eigen::VectorXd inverse_mass = inverse_masses(w.scene, world.node_count);
   Points nodes = w.state.x;
-  const Recovery recovery = recover(world, inverse_mass, 0.01, {}, nodes);
+  const Recovery recovery = recover(world, inverse_mass, 0.01, find_exemption(world, nodes), {}, nodes);
   REQUIRE_FALSE(recovery.gained.empty());
   for (const Separation& gained : recovery.gained) {
     bool hopeful = false;
@@ -171,7 +172,7 @@ TEST_CASE("recovery: a light cloth gives way to a heavy one, and both to pins", 
   const ContactWorld world = make_contact_world(w.scene.surface, {}, true);
   const auto moved_by_recovery = [&] {
     Points nodes = w.state.x;
-    recover(world, inverse_masses(w.scene, world.node_count), 0.03, {}, nodes);
+    recover(world, inverse_masses(w.scene, world.node_count), 0.03, find_exemption(world, nodes), {}, nodes);
     return Points(nodes - w.state.x);
   };
   Points moved = moved_by_recovery();
@@ -189,7 +190,7 @@ TEST_CASE("recovery: cloth that comes out of a body leaves its momentum there", 
   add_obstacle(w, block({0.01, 0, 0.02}, 0.06));
   const ContactWorld world = with_its_obstacle(w);
   Points nodes = gather_nodes(w.state.x, w.state.obstacles);
-  recover(world, inverse_masses(w.scene, world.node_count), 0.01, {}, nodes);
+  recover(world, inverse_masses(w.scene, world.node_count), 0.01, find_exemption(world, nodes), {}, nodes);
   const Points moved = nodes.topRows(w.state.x.rows()) - w.state.x;
   for (int v = 0; v < moved.rows(); ++v) CHECK(moved(v, 1) >= -1e-3);
   CHECK(mass_mean(w.scene, moved).y() > 1e-4);
@@ -203,7 +204,7 @@ TEST_CASE("recovery: a tangled cloth is put through no floor", "[recovery]") {
     const Eigen::VectorXd inverse_mass = inverse_masses(w.scene, world.node_count);
     Points nodes = gather_nodes(w.state.x, w.state.obstacles);
     REQUIRE(find_exemption(world, nodes).body.empty());
-    const Recovery recovery = recover(world, inverse_mass, 0.03, {}, nodes);
+    const Recovery recovery = recover(world, inverse_mass, 0.03, find_exemption(world, nodes), {}, nodes);
     CHECK(recovery.left.body.empty());
     CHECK(nodes.topRows(w.state.x.rows()).col(1).minCoeff() > 0);
   }
