@@ -1,38 +1,24 @@
 #include "physics/carrying.hpp"
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <utility>
 
 #include "collision/cell_grid.hpp"
-#include "collision/distance.hpp"
 
 namespace selvedge {
 namespace {
 
-// Marks the cloth near the triangles of which all corners are switched off.
-void add_near(const ContactWorld& world, const std::vector<char>& off, const Points& nodes, double reach,
+void add_near(const ContactWorld& world, const std::vector<char>& switched_off, const Points& nodes, double reach,
               std::vector<char>& carried) {
-  const CellGrid grid(nodes.topRows(world.cloth->vertex_count), reach);
-  for (std::size_t k = 0; k < world.obstacles.size(); ++k)
-    for (const auto& triangle : world.obstacles[k]->triangles.rowwise()) {
-      std::array<Vec3, 3> corners;
-      bool all = true;
-      for (int c = 0; c < 3; ++c) {
-        const int node = world.first_node[k] + triangle[c];
-        all = all && off[node];
-        corners[c] = row(nodes, node);
-      }
-      if (!all) continue;
-      const Vec3 middle = (corners[0] + corners[1] + corners[2]) / 3;
-      double radius = 0;
-      for (const Vec3& corner : corners) radius = std::max(radius, (corner - middle).norm());
-      grid.for_each_near(middle, radius + reach, [&](int v) {
-        const Closest closest = point_triangle(row(nodes, v), corners[0], corners[1], corners[2]);
-        if (closest.squared_distance < reach * reach) carried[v] = 1;
-      });
-    }
+  std::vector<int> off;
+  for (int node = world.cloth->vertex_count; node < world.node_count; ++node)
+    if (switched_off[node]) off.push_back(node);
+  const CellGrid grid(nodes(off, Eigen::all), reach);
+  for (int v = 0; v < world.cloth->vertex_count; ++v)
+    grid.for_each_near(row(nodes, v), reach, [&](int i) {
+      if ((nodes.row(off[static_cast<std::size_t>(i)]) - nodes.row(v)).norm() < reach) carried[v] = 1;
+    });
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace selvedge {
 // itself it would sink in, and where a limb comes out again it would be on its wrong side. So it is drawn to where it
 // is worn (Drive::worn), which goes along with the body; contact with what is not switched off holds as ever.
 
-// The worn vertices that are nearer than `reach` [m] to a triangle that is switched off. 1 a vertex of the cloth; empty
+// The worn vertices that are nearer than `reach` [m] to a node that is switched off. 1 a vertex of the cloth; empty
 // where there is none.
 std::vector<char> carried_vertices(const ContactWorld&, const Exemption&, const Points& worn, const Points& nodes,
                                    double reach);

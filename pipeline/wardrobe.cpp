@@ -64,22 +64,31 @@ Setup read_row(const WardrobeRequest& request, const Wear& wear, const ClipEntry
   return setup;
 }
 
-// In which frames the body, the first obstacle, passes through itself or did so a few frames before.
-std::vector<char> excused_frames(const Setup& setup) {
-  std::vector<char> excused(static_cast<std::size_t>(setup.run.frames) + 1, 0);
+// What all that is worn through a clip shares: where the body is, asked by the same times each, and in which frames it
+// passes through itself or did so a few frames before.
+struct ClipBody {
+  std::map<double, Points> at;
+  std::vector<char> excused;
+};
+
+// Has the setup's body, its first obstacle, found once a clip.
+void share_body(const Setup& setup, ClipBody& body) {
+  std::function<Points(double)>& at = setup.obstacles_at->front();
+  at = [found = at, &body](double time) {
+    const auto [place, absent] = body.at.try_emplace(time);
+    if (absent) place->second = found(time);
+    return place->second;
+  };
+  if (!body.excused.empty()) return;
   IntersectionCache cache;
   int left = 0;
-  for (int frame = 0; frame <= setup.run.frames; ++frame) {
-    const Points body = setup.drive_at(frame / setup.run.fps).obstacles[0];
-    if (!intersecting_pairs(setup.scene.obstacles[0].surface, body, cache).empty()) left = frames_after + 1;
-    excused[static_cast<std::size_t>(frame)] = left > 0;
+  double time = setup.initial.time;
+  for (int frame = 0; frame <= setup.run.frames; ++frame, time += 1 / setup.run.fps) {
+    if (!intersecting_pairs(setup.scene.obstacles[0].surface, at(time), cache).empty()) left = frames_after + 1;
+    body.excused.push_back(left > 0);
     left = std::max(0, left - 1);
   }
-  return excused;
 }
-
-// Of each clip, found once.
-using ExcusedFrames = std::map<std::string, std::vector<char>>;
 
 // Adds a frame to its row.
 struct Watch {
@@ -120,10 +129,10 @@ struct RowPlace {
 
 // Absent: stopped before its end.
 std::optional<WardrobeRow> run_row(const WardrobeRequest& request, const Wear& wear, const ClipEntry& clip,
-                                   const RowPlace& place, ExcusedFrames& known) {
+                                   const RowPlace& place, ClipBody& body) {
   const Setup setup = read_row(request, wear, clip);
-  if (!known.contains(clip.name)) known[clip.name] = excused_frames(setup);
-  const std::vector<char>& excused = known[clip.name];
+  share_body(setup, body);
+  const std::vector<char>& excused = body.excused;
   WardrobeRow row;
   row.wear = wear.name;
   row.clip = clip.name;
@@ -172,16 +181,16 @@ std::vector<WardrobeRow> wardrobe(const WardrobeRequest& request) {
                                whole_file(request.configs / "wardrobe" / "outfit.yaml");
   const std::string key = fmt::format("{} {:016x} {}", program_key(), hash_of(settings), request.most_frames);
   std::vector<WardrobeRow> rows;
-  ExcusedFrames excused;
-  int count = 0;
-  for (const Wear& wear : wears)
-    for (const ClipEntry& clip : all_clips) {
-      if (count++ % request.share[1] != request.share[0] - 1) continue;
+  for (std::size_t c = 0; c < all_clips.size(); ++c) {
+    if (static_cast<int>(c) % request.share[1] != request.share[0] - 1) continue;
+    const ClipEntry& clip = all_clips[c];
+    ClipBody body;
+    for (const Wear& wear : wears) {
       const RowPlace place{request.out / wear.name / clip.name, request.out / wear.name / (clip.name + ".json"), key};
       make_folder(place.folder.parent_path());
       std::optional<WardrobeRow> row = read_wardrobe_row(whole_file(place.file), key);
       if (!row) {
-        row = run_row(request, wear, clip, place, excused);
+        row = run_row(request, wear, clip, place, body);
         if (!row) return rows;
         keep_or_remove(place, !row->passed() || clip.name == all_clips.front().name);
         write_file(place.file, wardrobe_row_json(*row, key));
@@ -189,6 +198,9 @@ std::vector<WardrobeRow> wardrobe(const WardrobeRequest& request) {
       rows.push_back(*row);
       if (request.log) *request.log << log_line(*row) << std::flush;
     }
+  }
+  const auto order = [&](const WardrobeRow& row) { return std::ranges::find(wears, row.wear, &Wear::name); };
+  std::ranges::stable_sort(rows, {}, order);
   write_file(request.out / "wardrobe.json", wardrobe_json(rows));
   write_file(request.out / "wardrobe.csv", wardrobe_csv(rows));
   write_file(request.out / "wardrobe.txt", wardrobe_table(rows));

@@ -15,7 +15,7 @@ struct WardrobeRequest {
   std::vector<std::string> wear;              // garments and outfits; empty: all
   std::vector<std::string> clips;             // empty: all
   int most_frames = 0;                        // of a clip; 0: all
-  std::array<int, 2> share{1, 1};             // which part of the rows, of how many: for several processes at once
+  std::array<int, 2> share{1, 1};             // which part of the clips, of how many: for several processes at once
   std::filesystem::path out = "out/wardrobe";
   std::ostream* log = nullptr;  // a line as each row ends
   std::function<bool()> stop;   // asked after every frame; true ends the command, an unfinished row is not kept
