@@ -15,10 +15,12 @@ void add_near(const ContactWorld& world, const std::vector<char>& switched_off, 
   for (int node = world.cloth->vertex_count; node < world.node_count; ++node)
     if (switched_off[node]) off.push_back(node);
   const CellGrid grid(nodes(off, Eigen::all), reach);
-  for (int v = 0; v < world.cloth->vertex_count; ++v)
+  for (int v = 0; v < world.cloth->vertex_count; ++v) {
+    if (!nodes.row(v).allFinite()) continue;
     grid.for_each_near(row(nodes, v), reach, [&](int i) {
       if ((nodes.row(off[static_cast<std::size_t>(i)]) - nodes.row(v)).norm() < reach) carried[v] = 1;
     });
+  }
 }
 
 }  // namespace
