@@ -53,7 +53,7 @@ void multiply(const LinearSystem& system, const Points& u, Points& y) {
   y.resize(rows, 3);
   std::vector<Vec3> responses(system.contacts.size());
   for (std::size_t c = 0; c < responses.size(); ++c) responses[c] = contact_response(system.contacts[c], u);
-#pragma omp parallel for schedule(static) if (rows > 2000)
+#pragma omp parallel for schedule(static) if (rows > 1000)
   for (int i = 0; i < rows; ++i) {
     Vec3 sum = Vec3::Zero();
     if (system.free[i]) {
@@ -70,7 +70,7 @@ void multiply(const LinearSystem& system, const Points& u, Points& y) {
 void diagonal_blocks(const LinearSystem& system, std::vector<Mat3>& blocks) {
   const int rows = system.pattern.rows;
   blocks.resize(rows);
-#pragma omp parallel for schedule(static) if (rows > 2000)
+#pragma omp parallel for schedule(static) if (rows > 1000)
   for (int i = 0; i < rows; ++i) {
     Mat3 block = diagonal_block(system.pattern, system.pairs, i);
     double scalar = system.diagonal[i];

@@ -12,7 +12,7 @@ namespace selvedge {
 namespace {
 
 constexpr int chunk = 256;          // rows of one task; fixed, so that sums do not depend on the number of threads
-constexpr int one_thread = 1024;    // rows below which a level costs more in a team than alone
+constexpr int one_thread = 512;     // rows below which a level costs more in a team than alone
 constexpr int coarsest = 48;        // vertices that Cholesky takes
 constexpr int smoothing_steps = 2;  // before and after the coarse correction
 // Of the eigenvalues of the inverse diagonal blocks times the matrix. For triangles it is at most 3, for contacts 4;
@@ -183,7 +183,7 @@ void Multigrid::Impl::fill_second(const LinearSystem& system, Level& level) {
   const bool has_flat = !flat.empty();
   contact_factor.resize(system.contacts.size());
   fine_diagonal.resize(system.diagonal.size());
-#pragma omp parallel if (chunks_of(levels[0].rows) > 8)
+#pragma omp parallel if (chunks_of(levels[0].rows) > 2)
   {
 #pragma omp for schedule(static)
     for (int c = 0; c < static_cast<int>(contact_factor.size()); ++c)
@@ -289,7 +289,7 @@ void Multigrid::fill_finest(const LinearSystem& system, std::span<const Mat3> di
   impl.partial.resize(chunks_of(fine.rows()));
   Level& finest = impl.levels[0];
   finest.inverse.resize(finest.rows);
-#pragma omp parallel for schedule(static) if (chunks_of(finest.rows) > 8)
+#pragma omp parallel for schedule(static) if (chunks_of(finest.rows) > 2)
   for (int i = 0; i < finest.rows; ++i)
     finest.inverse[i] = columns_of<float>(system.free[i] ? Mat3(diagonal[i].inverse()) : Mat3(Mat3::Zero()));
 }

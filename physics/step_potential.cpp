@@ -156,7 +156,7 @@ void energies(const StepPotential& step, const Points& x, StepScratch& scratch, 
   const int vertex_chunks = chunks_of(vertices), tasks = vertex_chunks + chunks_of(pushes);
   const std::size_t first = energies.size();
   energies.resize(first + tasks);
-#pragma omp parallel for schedule(static) if (tasks > 16)
+#pragma omp parallel for schedule(static) if (tasks > 8)
   for (int c = 0; c < tasks; ++c) {
     double sum = 0;
     if (c < vertex_chunks) {
@@ -182,7 +182,7 @@ void derivatives(StepPotential& step, const Points& x, StepScratch& scratch, Poi
   const int vertices = static_cast<int>(x.rows()), contacts = static_cast<int>(step.problem->contacts.size()),
             faces = static_cast<int>(step.wind.size());
   scratch.contact_forces.assign(step.contacts.size(), Vec3::Zero());  // those of the added term are in its gradient
-#pragma omp parallel if (vertices > 2000)
+#pragma omp parallel if (vertices > 1000)
   {
 #pragma omp for schedule(static)
     for (int c = 0; c < contacts; ++c)
