@@ -58,9 +58,9 @@ const Section& distance_section() {
 const Section& disorder_section() {
   static const Section table{
       "disorder",
-      "How many vertices lie below the cloth that comes before theirs in the scene: along `up`, the nearest triangle "
-      "of that cloth shows them the side that most of it has below. Those that a corner of it curls over do not "
-      "count.",
+      "How many vertices lie below the cloth that comes before theirs in the scene: with the side that most of their "
+      "cloth has above they look, along `up`, at the side that most of that one has below. What is folded round the "
+      "other's edge does not count.",
       "",
       {},
       {vector("up", Unit::none, "[0, 1, 0]", "from the first cloth to the last")}};

@@ -25,7 +25,7 @@ struct PartsApart {  // from the middle of some vertices to the middle of others
   std::vector<int> from, to;
   Vec3 along;  // unit: the signed part in this direction; zero: the distance
 };
-struct Disorder {  // vertices to which the cloth before theirs in the scene shows its lower side
+struct Disorder {  // vertices whose upper side looks at the lower side of the cloth before theirs in the scene
   Vec3 up;         // of unit length
 };
 struct Ahead {  // how far the foremost vertex near an obstacle's axis is ahead of the obstacle's foremost point [m]

@@ -46,10 +46,12 @@ double facing(const Scene& scene, const Points& x, const Cloth& cloth, const Vec
   return area < 0 ? -1 : 1;
 }
 
-// Vertices of the upper cloth to which the nearest triangle of the lower one, along `up`, shows the side that most of
-// it has below: a corner that curls over the upper cloth's edge shows the same side as what lies flat.
+// Vertices of the upper cloth that look, with the side that most of it has above, at the side that most of the lower
+// cloth has below, at its nearest triangle along `up`. A corner of either that is folded round the other's edge shows
+// it the same side as what lies flat.
 int below(const Scene& scene, const Points& x, const Cloth& lower, const Cloth& upper, const Vec3& up) {
-  const double upside = facing(scene, x, lower, up);
+  const double upside = facing(scene, x, lower, up), own_upside = facing(scene, x, upper, up);
+  const Points normals = vertex_normals(scene.surface, x);
   const auto count = static_cast<std::size_t>(upper.vertex_count);
   std::vector<double> nearest(count, std::numeric_limits<double>::infinity());
   std::vector<bool> under(count, false);
@@ -68,7 +70,8 @@ int below(const Scene& scene, const Points& x, const Cloth& lower, const Cloth& 
       const auto height = height_over(p, a, b, c, up);
       if (!height || std::abs(*height) >= nearest[i]) continue;
       nearest[i] = std::abs(*height);
-      under[i] = *height * looks < 0;
+      const double own_looks = own_upside * up.dot(row(normals, upper.first_vertex + static_cast<int>(i)));
+      under[i] = *height * looks < 0 && own_looks * looks > 0;
     }
   }
   return static_cast<int>(std::count(under.begin(), under.end(), true));

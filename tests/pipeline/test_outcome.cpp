@@ -97,6 +97,21 @@ TEST_CASE("An edge that curls over the layer above it leaves the order as it is"
   CHECK(measure_of(setup, state) > 0);
 }
 
+TEST_CASE("An edge that is folded under the layer below leaves the order as it is", "[outcome]") {
+  const Setup setup = asking("disorder: {}");
+  const Cloth& high = setup.scene.cloths[1];
+  State state = setup.initial;
+  for (int v = high.first_vertex; v < high.first_vertex + high.vertex_count; ++v) {
+    if (state.x(v, 0) > 0.5)
+      state.x.row(v) += Eigen::RowVector3d(-0.2, -0.2, 0);  // the last row, under the lower sheet, which ends at 0.5
+    else if (state.x(v, 0) > 0.2)
+      state.x(v, 0) = 0.65;
+  }
+  CHECK(measure_of(setup, state) == 0);
+  state.x.bottomRows(high.vertex_count).col(1).array() -= 0.11;
+  CHECK(measure_of(setup, state) == 8);  // the two rows over the lower sheet and not beyond its edge
+}
+
 TEST_CASE("What obstacles want is measured apart from where they are", "[outcome]") {
   const Setup setup = read(two_sheets + "outcome: [{name: it, lag: ball}, {name: pairs, wanted_pairs: {}}]\n");
   State state = setup.initial;
