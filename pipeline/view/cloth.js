@@ -112,6 +112,38 @@ function markMeshes(geometry, most) {
   return [seen, hidden];
 }
 
+// Mean edge of the rest shape, as if its triangles were equilateral; 1 / (2 area)^2 is the determinant of the metric.
+function edgeLength(metric) {
+  let area = 0;
+  for (let i = 0; i < metric.length; i += 3)
+    area += 0.5 / Math.sqrt(metric[i] * metric[i + 2] - metric[i + 1] * metric[i + 1]);
+  return Math.sqrt(area / Math.max(1, metric.length / 3) * 4 / Math.sqrt(3));
+}
+
+// Round heads that are a third of an edge wide, so that cloth worn over a pinned waist covers them.
+function pinHeads(run, geometry) {
+  const pins = new THREE.BufferGeometry();
+  pins.setAttribute("position", geometry.attributes.position);
+  pins.setIndex(run.pins);
+  const material = new THREE.ShaderMaterial({
+    uniforms: {width: {value: 0.35 * edgeLength(run.metric)}, tall: {value: 1}},
+    vertexShader: `uniform float width, tall;
+      void main() {
+        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+        gl_PointSize = clamp(width * projectionMatrix[1][1] * 0.5 * tall / gl_Position.w, 2.0, 14.0);
+      }`,
+    fragmentShader: `void main() {
+        if (length(gl_PointCoord - 0.5) > 0.5) discard;
+        gl_FragColor = vec4(vec3(0.95), 1.0);
+      }`,
+  });
+  const heads = new THREE.Points(pins, material);
+  heads.onBeforeRender = (renderer) => {
+    material.uniforms.tall.value = renderer.getCurrentViewport(new THREE.Vector4()).w;
+  };
+  return heads;
+}
+
 // Builds the objects of one run in a group and returns them with `show(drawn, look)`.
 function makeFigure(run) {
   const group = new THREE.Group(), table = strainTable(true);
@@ -132,11 +164,7 @@ function makeFigure(run) {
   const marks = markMeshes(geometry, Math.max(1, ...run.marked.map((list) => list.length)));
   group.add(...sides, wire, ...marks);
 
-  const pins = new THREE.BufferGeometry();
-  pins.setAttribute("position", geometry.attributes.position);
-  pins.setIndex(run.pins);
-  group.add(
-      new THREE.Points(pins, new THREE.PointsMaterial({color: linear("#f2f4f7"), size: 5, sizeAttenuation: false})));
+  group.add(pinHeads(run, geometry));
 
   const bodies = run.obstacles.map((body) => {
     const mesh = new THREE.Mesh(surfaceGeometry(body.vertices, body.triangles), new THREE.MeshStandardMaterial({
