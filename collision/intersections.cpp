@@ -29,15 +29,35 @@ bool intersect(const Corners& a, const Corners& b) {
   return !surely_apart(a, b) && all_finite(a) && all_finite(b) && triangles_meet(a, b);
 }
 
-// Does a plane across the direction m lie between them? Points are relative to one of them, each coordinate wrong by at
-// most u = 2^-53 of itself, and at most `reach` in the sum of their coordinates. With the rounding of three products
-// and two sums m . p is wrong by less than 5 u max |m_k| reach, on both sides together by 10 u; 2e-15 is 18 u. What
-// underflows is less than 1e-300.
+struct Range {
+  double low, high;
+};
+
+Range range_along(const Vec3& m, const Corners& c) {
+  const double p = m.dot(c[0]), q = m.dot(c[1]), r = m.dot(c[2]);
+  return {std::min(std::min(p, q), r), std::max(std::max(p, q), r)};
+}
+
+// Of what rounding can do to a difference of two products m . p. Points are relative to one of them, each coordinate
+// wrong by at most u = 2^-53 of itself, and at most `reach` in the sum of their coordinates. With the rounding of three
+// products and two sums m . p is wrong by less than 5 u max |m_k| reach, on both sides together by 10 u; 2e-15 is 18 u.
+// What underflows is less than 1e-300.
+double slack_along(const Vec3& m, double reach) { return 2e-15 * m.cwiseAbs().maxCoeff() * reach + 1e-300; }
+
+// Does a plane across the direction m lie between them?
 bool apart_along(const Vec3& m, const Corners& a, const Corners& b, double reach) {
-  const double slack = 2e-15 * m.cwiseAbs().maxCoeff() * reach + 1e-300;
-  const auto [a_lo, a_hi] = std::minmax({m.dot(a[0]), m.dot(a[1]), m.dot(a[2])});
-  const auto [b_lo, b_hi] = std::minmax({m.dot(b[0]), m.dot(b[1]), m.dot(b[2])});
-  return b_lo - a_hi > slack || a_lo - b_hi > slack;
+  const Range of_a = range_along(m, a), of_b = range_along(m, b);
+  return std::max(of_b.low - of_a.high, of_a.low - of_b.high) > slack_along(m, reach);
+}
+
+// Does the face's plane, through its corner `on`, have the other triangle on one side? With R for `reach`, the computed
+// normal is wrong by less than 3 u 4 R^2 in each coordinate, along an edge (2 R) of the face by 24 u R^3; that the
+// edges are wrong by 4 u R in the sum of their coordinates adds 16 u R^3. So far the face's other corners may be off
+// the plane; 1e-14 is 90 u.
+bool apart_by_plane(const Vec3& normal, const Vec3& on, const Corners& other, double reach) {
+  const Range beyond = range_along(normal, other);
+  const double height = normal.dot(on), slack = slack_along(normal, reach) + 1e-14 * reach * reach * reach;
+  return std::max(beyond.low - height, height - beyond.high) > slack;
 }
 
 bool apart_beside(const Vec3& normal, const Corners& face, const Corners& other, double reach) {
@@ -63,9 +83,9 @@ bool surely_apart(const Corners& first, const Corners& second) {
     reach = std::max({reach, a[k].cwiseAbs().sum(), b[k].cwiseAbs().sum()});
   }
   const Vec3 normal_a = a[1].cross(a[2]);
-  if (apart_along(normal_a, a, b, reach)) return true;
+  if (apart_by_plane(normal_a, a[0], b, reach)) return true;
   const Vec3 normal_b = (b[1] - b[0]).cross(b[2] - b[0]);
-  if (apart_along(normal_b, a, b, reach)) return true;
+  if (apart_by_plane(normal_b, b[0], a, reach)) return true;
   return apart_beside(normal_a, a, b, reach) || apart_beside(normal_b, b, a, reach);
 }
 

@@ -110,6 +110,26 @@ TEST_CASE("intersections: the quick test never parts triangles that meet", "[int
   CHECK(apart > 10000);
 }
 
+TEST_CASE("intersections: the quick test never parts a sliver from what touches its corner", "[intersections]") {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> place(-1, 1), exponent(-56, -20), part(0, 1);
+  const auto anywhere = [&] { return Vec3(place(random), place(random), place(random)); };
+  int apart = 0, wrong = 0;
+  for (int i = 0; i < 40000; ++i) {
+    const Vec3 far = i % 2 ? Vec3(20 * anywhere()) : Vec3(0, 0, 0);
+    std::array<Vec3, 3> sliver{far + anywhere(), far + anywhere(), {}}, other;
+    sliver[2] = sliver[0] + part(random) * (sliver[1] - sliver[0]) + std::exp2(exponent(random)) * anywhere();
+    std::swap(sliver[i % 3], sliver[2]);
+    other[0] = sliver[(i / 3) % 3];  // touches
+    for (int k = 1; k < 3; ++k) other[k] = other[0] + anywhere();
+    wrong += i % 4 < 2 ? surely_apart(sliver, other) : surely_apart(other, sliver);
+    other[0] += 0.01 * anywhere();
+    apart += surely_apart(sliver, other);
+  }
+  CHECK(wrong == 0);
+  CHECK(apart > 1000);
+}
+
 #ifdef _OPENMP
 TEST_CASE("intersections: the same for any number of threads", "[intersections][threads]") {
   const Tangle m = tangles(30)[3];
