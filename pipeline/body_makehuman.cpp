@@ -9,6 +9,7 @@
 
 #include "collision/error.hpp"
 #include "collision/surface.hpp"
+#include "pipeline/body_part.hpp"
 #include "pipeline/body_smpl.hpp"
 #include "pipeline/joint_regressor.hpp"
 #include "pipeline/makehuman_rig.hpp"
@@ -20,8 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double most_torn = 0.01;      // of the edges; a renumbered base mesh has 0.05
-constexpr double farthest_miss = 1e-4;  // of a joint from its reference [m]
+constexpr double most_torn = 0.01;  // of the edges; a renumbered base mesh has 0.05
 
 // The bones that a joint of SMPL is made of, where it begins; of joints in pairs those of a side.
 std::vector<std::string> bones_of(const std::string& joint) {
@@ -84,42 +84,7 @@ struct Rig {
   }
 };
 
-// The body in the mesh: rows of the mesh, and its triangles by rows of the body.
-struct Part {
-  std::vector<int> vertices, row_of;  // row_of: -1 for what is not of the body
-  Triangles triangles;
-};
-
-Part body_of(const Mesh& mesh, const fs::path& file) {
-  std::vector<char> of_body(static_cast<std::size_t>(mesh.x.rows()), 1);
-  for (const auto& [group, vertices] : mesh.groups) {
-    if (group != "body") continue;
-    std::fill(of_body.begin(), of_body.end(), 0);
-    for (const int v : vertices) of_body[static_cast<std::size_t>(v)] = 1;
-  }
-  std::vector<char> used(of_body.size(), 0);
-  std::vector<std::array<int, 3>> triangles;
-  for (const auto& t : mesh.triangles.rowwise()) {
-    const auto inside = [&](int k) { return of_body[static_cast<std::size_t>(t[k])] != 0; };
-    if (!inside(0) || !inside(1) || !inside(2)) continue;
-    triangles.push_back({t[0], t[1], t[2]});
-    for (int k = 0; k < 3; ++k) used[static_cast<std::size_t>(t[k])] = 1;
-  }
-  if (triangles.empty()) throw Error("has no faces of a body", file.string(), "its group `body` must have them");
-  Part part{{}, std::vector<int>(used.size(), -1), Triangles(static_cast<Eigen::Index>(triangles.size()), 3)};
-  for (std::size_t v = 0; v < used.size(); ++v) {
-    if (!used[v]) continue;
-    part.row_of[v] = static_cast<int>(part.vertices.size());
-    part.vertices.push_back(static_cast<int>(v));
-  }
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k)
-      part.triangles(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(k)) =
-          part.row_of[static_cast<std::size_t>(triangles[t][k])];
-  return part;
-}
-
-SkinWeights folded(const std::vector<RigWeight>& weights, const std::vector<int>& joints, const Part& part,
+SkinWeights folded(const std::vector<RigWeight>& weights, const std::vector<int>& joints, const BodyPart& part,
                    const fs::path& file) {
   std::vector<Eigen::Triplet<double>> entries;
   for (const RigWeight& one : weights) {
@@ -165,18 +130,6 @@ void check_order(const Surface& surface, const SkinWeights& weights, const fs::p
         mesh.string(), "give the base mesh that " + file.filename().string() + " was made for (base.obj)");
 }
 
-// What a vertex has of a joint times what it has of the joint's parent, or of its children for the root: what bends
-// where the joint is.
-Eigen::VectorXd bends_at(const Eigen::MatrixXd& weights, int joint) {
-  const std::vector<int>& parents = smpl_joint_parents();
-  Eigen::VectorXd others = Eigen::VectorXd::Zero(weights.rows());
-  for (int other = 0; other < smpl::joints; ++other)
-    if (other == parents[static_cast<std::size_t>(joint)] ||
-        (joint == 0 && parents[static_cast<std::size_t>(other)] == 0))
-      others += weights.col(other);
-  return weights.col(joint).cwiseProduct(others);
-}
-
 // Where the middles of the bones' reference vertices are; nothing if the mesh lacks one.
 std::optional<Vec3> reference(const Rig& rig, const std::string& joint, const Points& mesh) {
   Vec3 sum = Vec3::Zero();
@@ -193,39 +146,6 @@ std::optional<Vec3> reference(const Rig& rig, const std::string& joint, const Po
   return sum;
 }
 
-SkinWeights make_regressor(const Rig& rig, const Points& mesh, const SkinnedSurface& skin, const fs::path& file) {
-  const std::vector<std::string> names = smpl_joint_names(smpl::joints);
-  const Eigen::MatrixXd weights = skin.weights;
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int j = 0; j < smpl::joints; ++j) {
-    const std::string& name = names[static_cast<std::size_t>(j)];
-    const Eigen::VectorXd bends = bends_at(weights, j);
-    std::vector<int> vertices;
-    for (int v = 0; v < bends.size(); ++v)
-      if (bends[v] > 0) vertices.push_back(v);
-    if (vertices.empty())
-      throw Error("has no vertex that moves with both the joint " + name + " and its parent", file.string(),
-                  "give weights that pass smoothly from bone to bone");
-    Eigen::VectorXd share(static_cast<Eigen::Index>(vertices.size()));
-    for (std::size_t k = 0; k < vertices.size(); ++k) share[static_cast<Eigen::Index>(k)] = bends[vertices[k]];
-    share /= share.sum();
-    const std::optional<Vec3> place = reference(rig, name, mesh);
-    if (place) meet(skin.rest, vertices, *place, share);
-    Vec3 mean = Vec3::Zero();
-    for (std::size_t k = 0; k < vertices.size(); ++k) {
-      mean += share[static_cast<Eigen::Index>(k)] * row(skin.rest, vertices[k]);
-      if (share[static_cast<Eigen::Index>(k)] > 0)
-        entries.emplace_back(j, vertices[k], share[static_cast<Eigen::Index>(k)]);
-    }
-    if (place && !((mean - *place).norm() < farthest_miss))
-      throw Error("puts the joint " + name + " outside the vertices that move with it and its parent",
-                  rig.file.string(), "give mesh, skeleton and weights of one body");
-  }
-  SkinWeights regressor(smpl::joints, skin.rest.rows());
-  regressor.setFromTriplets(entries.begin(), entries.end());
-  return regressor;
-}
-
 }  // namespace
 
 BodyModel read_makehuman(const fs::path& mesh_file, const fs::path& skeleton, const fs::path& weights_file,
@@ -233,7 +153,7 @@ BodyModel read_makehuman(const fs::path& mesh_file, const fs::path& skeleton, co
   Mesh mesh = read_mesh(mesh_file);
   mesh.x *= metres;
   const Rig rig{skeleton, read_rig_bones(skeleton)};
-  const Part part = body_of(mesh, mesh_file);
+  const BodyPart part = body_part(mesh, mesh_file);
   BodyModel body;
   body.name = mesh_file.stem().string();
   body.joints = smpl_joint_names(smpl::joints);
@@ -244,7 +164,9 @@ BodyModel read_makehuman(const fs::path& mesh_file, const fs::path& skeleton, co
   body.skin.shape_directions.resize(body.skin.rest.size(), 0);
   check_order(make_surface(static_cast<int>(body.skin.rest.rows()), part.triangles), body.skin.weights, mesh_file,
               weights_file);
-  body.regressor = make_regressor(rig, mesh.x, body.skin, weights_file);
+  std::vector<std::optional<Vec3>> places;
+  for (const std::string& joint : body.joints) places.push_back(reference(rig, joint, mesh.x));
+  body.regressor = joint_regressor(body, places, {weights_file.string(), skeleton.string()});
   check_body(body, mesh_file.string());
   return body;
 }

@@ -8,6 +8,7 @@
 #include "collision/error.hpp"
 #include "collision/surface.hpp"
 #include "pipeline/body_hdf5.hpp"
+#include "pipeline/body_jointed.hpp"
 #include "pipeline/body_makehuman.hpp"
 #include "pipeline/body_smpl.hpp"
 #include "pipeline/config_units.hpp"
@@ -24,9 +25,15 @@ BodyModel read(const BodyRequest& request) {
   if (extension != ".obj" && extension != ".ply")
     throw Error("is neither a mesh (.obj, .ply) nor a model of the SMPL family (.npz)", request.file.string(),
                 "write other bodies in HDF5 yourself, see docs/bodies.md");
+  const double metres = metres_per_unit(request.unit);
+  const bool rigged = !request.skeleton.empty() || !request.weights.empty();
+  if (!request.joints.empty() && rigged)
+    throw Error("has its joints twice", request.file.string(), "give --joints, or --skeleton and --weights");
+  if (!request.joints.empty()) return read_jointed(request.file, request.joints, metres);
   if (request.skeleton.empty() || request.weights.empty())
-    throw Error("is a mesh without a skeleton or weights", request.file.string(), "give --skeleton and --weights");
-  return read_makehuman(request.file, request.skeleton, request.weights, metres_per_unit(request.unit));
+    throw Error("is a mesh without a skeleton or weights", request.file.string(),
+                "give --skeleton and --weights, or --joints");
+  return read_makehuman(request.file, request.skeleton, request.weights, metres);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@ struct BodyRequest {
   std::filesystem::path skeleton, weights;  // MakeHuman's .mhskel and .mhw
   std::string unit = "m";                   // of the mesh
   std::filesystem::path out;                // our HDF5 form (.h5)
+  std::filesystem::path joints{};           // or where its joints are (.yaml)
 };
 
 struct BodyReport {

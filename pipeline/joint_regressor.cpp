@@ -1,6 +1,24 @@
 #include "pipeline/joint_regressor.hpp"
 
+#include "collision/error.hpp"
+
 namespace selvedge {
+namespace {
+
+constexpr double farthest_miss = 1e-4;  // of a joint from its place [m]
+
+// What a vertex has of a joint times what it has of the joint's parent, or of its children for the root: what bends
+// where the joint is.
+Eigen::VectorXd bends_at(const Eigen::MatrixXd& weights, const std::vector<int>& parents, int joint) {
+  Eigen::VectorXd others = Eigen::VectorXd::Zero(weights.rows());
+  for (int other = 0; other < weights.cols(); ++other)
+    if (other == parents[static_cast<std::size_t>(joint)] ||
+        (parents[static_cast<std::size_t>(joint)] < 0 && parents[static_cast<std::size_t>(other)] == joint))
+      others += weights.col(other);
+  return weights.col(joint).cwiseProduct(others);
+}
+
+}  // namespace
 
 void meet(const Points& x, const std::vector<int>& vertices, const Vec3& point, Eigen::VectorXd& weights) {
   Eigen::MatrixXd conditions(4, weights.size());
@@ -14,6 +32,36 @@ void meet(const Points& x, const std::vector<int>& vertices, const Vec3& point, 
     if (weights.minCoeff() >= 0) return;
     weights = weights.cwiseMax(0);
   }
+}
+
+SkinWeights joint_regressor(const BodyModel& body, const std::vector<std::optional<Vec3>>& places,
+                            const RegressorFiles& files) {
+  const Points& rest = body.skin.rest;
+  const Eigen::MatrixXd weights = body.skin.weights;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int j = 0; j < static_cast<int>(body.joints.size()); ++j) {
+    const std::string& name = body.joints[static_cast<std::size_t>(j)];
+    const Eigen::VectorXd bends = bends_at(weights, body.parents, j);
+    std::vector<int> vertices;
+    for (int v = 0; v < bends.size(); ++v)
+      if (bends[v] > 0) vertices.push_back(v);
+    if (vertices.empty())
+      throw Error("has no vertex that moves with both the joint " + name + " and its parent", files.weights,
+                  "give weights that pass smoothly from bone to bone");
+    Eigen::VectorXd share = bends(vertices) / bends.sum();
+    const std::optional<Vec3>& place = places[static_cast<std::size_t>(j)];
+    if (place) meet(rest, vertices, *place, share);
+    const Vec3 mean = rest(vertices, Eigen::all).transpose() * share;
+    if (place && !((mean - *place).norm() < farthest_miss))
+      throw Error("puts the joint " + name + " outside the vertices that move with it and its parent", files.places,
+                  "give mesh, skeleton and weights of one body");
+    for (std::size_t k = 0; k < vertices.size(); ++k)
+      if (share[static_cast<Eigen::Index>(k)] > 0)
+        entries.emplace_back(j, vertices[k], share[static_cast<Eigen::Index>(k)]);
+  }
+  SkinWeights regressor(static_cast<Eigen::Index>(body.joints.size()), rest.rows());
+  regressor.setFromTriplets(entries.begin(), entries.end());
+  return regressor;
 }
 
 }  // namespace selvedge

@@ -83,6 +83,7 @@ void body_options(CLI::App& command, BodyRequest& request) {
   command.add_option("file", request.file, "mesh (.obj, .ply) or model of the SMPL family (.npz)")->required();
   command.add_option("--skeleton", request.skeleton, "of the mesh, as MakeHuman has it (.mhskel)");
   command.add_option("--weights", request.weights, "of the mesh, as MakeHuman has them (.mhw)");
+  command.add_option("--joints", request.joints, "where the joints of a mesh are that has neither (.yaml)");
   command.add_option("--unit", request.unit, "of the mesh: m, dm, cm, mm");
   command.add_option("--out", request.out, "where the body goes (.h5)")->required();
 }
