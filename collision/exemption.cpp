@@ -42,6 +42,12 @@ bool Exemption::leaves_alone(const ContactWorld& world, const std::array<int, 4>
   return all_cloth ? self_alone : body_alone || all_off;
 }
 
+std::vector<char> either(std::vector<char> a, const std::vector<char>& b) {
+  if (a.empty()) return b;
+  for (std::size_t v = 0; v < b.size(); ++v) a[v] = a[v] || b[v];
+  return a;
+}
+
 Exemption find_exemption(const ContactWorld& world, const Points& nodes) {
   const WorldSheets sheets(world, nodes);
   const int n = world.cloth->vertex_count;

@@ -18,6 +18,9 @@ struct Exemption {
   bool leaves_alone(const ContactWorld&, const std::array<int, 4>& nodes) const;
 };
 
+// Marks of either; empty where neither has any.
+std::vector<char> either(std::vector<char> a, const std::vector<char>& b);
+
 // Contours of the cloth with itself (where world.self) and with the obstacles, and its vertices inside closed
 // obstacles. Positions must be finite.
 Exemption find_exemption(const ContactWorld&, const Points& nodes);

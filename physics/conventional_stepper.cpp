@@ -11,6 +11,7 @@
 #include "physics/carrying.hpp"
 #include "physics/contact_terms.hpp"
 #include "physics/features.hpp"
+#include "physics/pierced.hpp"
 #include "physics/recovery.hpp"
 #include "physics/step_audit.hpp"
 #include "physics/substeps.hpp"
@@ -339,12 +340,15 @@ void ConventionalStepper::prepare_contact(const State& from, const Drive& drive,
     exemption_ = untouched ? *untouched : find_exemption(world_, nodes);
   }
   self_crossings_.switch_off(nodes, wanted, exemption_);
-  carried_ = carried_vertices(world_, exemption_, drive.worn, nodes, edge_length_);
+  const std::vector<char> pierced =
+      untouched ? std::vector<char>() : pierced_vertices(world_, exemption_, nodes, wanted, drive.worn);
+  carried_ = either(carried_vertices(world_, exemption_, drive.worn, nodes, edge_length_), pierced);
   if (exemption_.cloth() && !untouched) {
     Recovery recovery = recover(world_, inverse_mass_, recovery_speed * dt, exemption_, carried_, nodes);
     exemption_ = std::move(recovery.left);
     gained_ = std::move(recovery.gained);
   }
+  exemption_.body = either(std::move(exemption_.body), pierced);
   report.collision.left_alone = exemption_.cloth_vertices();
   if (exempt || exemption_.any()) path_ = {};  // what was listed then is not what is to be listed now
   search_.leave_out(exemption_.any() ? &exemption_ : nullptr);

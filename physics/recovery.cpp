@@ -59,13 +59,6 @@ bool none_is_left(const Exemption& found, const std::vector<char>& waits) {
   return found.self.empty() && (found.body.empty() || found.body == waits);
 }
 
-// Marks of either; empty where neither has any.
-std::vector<char> either(std::vector<char> a, const std::vector<char>& b) {
-  if (a.empty()) return b;
-  for (std::size_t v = 0; v < b.size(); ++v) a[v] = a[v] || b[v];
-  return a;
-}
-
 // A contact term has four vertices. Where an edge has gone through a face that is one too few: its nearer end stands
 // for it.
 Separation on_four(Separation s) {

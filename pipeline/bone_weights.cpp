@@ -12,8 +12,8 @@
 namespace selvedge {
 namespace {
 
-constexpr double leaf_length = 0.5;   // of a bone without an end, of its parent's
-constexpr double same = 1 + 1e-6;     // distances that differ by less are equal: bones that end in one joint
+constexpr double leaf_length = 0.5;  // of a bone without an end, of its parent's
+constexpr double same = 1 + 1e-6;    // distances that differ by less are equal: bones that end in one joint
 constexpr double least_weight = 1e-3;
 constexpr double least_cotangent = 1e-3;  // of an edge, so that heat spreads over bad triangles, too
 constexpr int at_once = 2000;             // lines of sight, for the memory of their pairs

@@ -167,7 +167,8 @@ TEST_CASE("jointed body: what is wrong is named by file and line", "[body_jointe
   off(0, 0) += 0.06;
   refused(joints_file(off, false), "mirrored");
   fake::write(folder, "joints.yaml", good);
-  BodyRequest twice{folder.path / "mesh.obj", "a.mhskel", {}, "m", folder.path / "body.h5", folder.path / "joints.yaml"};
+  BodyRequest twice{folder.path / "mesh.obj",   "a.mhskel", {}, "m", folder.path / "body.h5",
+                    folder.path / "joints.yaml"};
   CHECK_THROWS_WITH(convert_body(twice), Contains("twice"));
 }
 

@@ -1,0 +1,66 @@
+#include "physics/pierced.hpp"
+
+#include <algorithm>
+
+#include "collision/separation.hpp"
+#include "collision/world_sheets.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double long_limb = 2.5;  // beyond a contour round it, in radii of the contour
+
+// How far the vertices of a side's smaller part reach from the middle of its curve, in radii of the curve.
+double slenderness(const SheetView& sheet, const ContourSide& side) {
+  const Points& x = *sheet.x;
+  const auto from = [&](int e) { return row(x, sheet.surface->edges(e, 0)); };
+  Vec3 middle = Vec3::Zero();
+  for (const int e : side.edges) middle += from(e) / static_cast<double>(side.edges.size());
+  double radius = 0, reach = 0;
+  for (const int e : side.edges) radius = std::max(radius, (from(e) - middle).norm());
+  for (const int v : side.inside) reach = std::max(reach, (row(x, v) - middle).norm());
+  return radius > 0 ? reach / radius : 0;
+}
+
+bool goes_through(const WorldSheets& sheets, const Contour& contour, const std::vector<char>& inside) {
+  const ContourSide &first = contour.sides[0], &second = contour.sides[1];
+  if (!contour.closed || (first.sheet == 0) == (second.sheet == 0)) return false;
+  const ContourSide &cloth = first.sheet == 0 ? first : second, &body = first.sheet == 0 ? second : first;
+  return body.cuts && std::ranges::all_of(cloth.inside, [&](int v) { return inside[v] != 0; }) &&
+         slenderness(sheets.views[body.sheet], body) > long_limb;
+}
+
+std::vector<char> pierced_components(const ContactWorld& world, const Points& nodes) {
+  std::vector<char> pierced(static_cast<std::size_t>(world.cloth->component_count), 0);
+  const WorldSheets sheets(world, nodes);
+  const std::vector<char> inside = inside_obstacles(sheets.views);
+  for (const Contour& contour : find_contours(sheets.views, find_segments(sheets.views)))
+    if (goes_through(sheets, contour, inside))
+      for (const ContourSide& side : contour.sides)
+        if (side.sheet == 0) pierced[side.component] = 1;
+  return pierced;
+}
+
+}  // namespace
+
+std::vector<char> pierced_vertices(const ContactWorld& world, const Exemption& exemption, const Points& nodes,
+                                   const Points& wanted, const Points& worn) {
+  if (exemption.body.empty() || !exemption.off.empty() || worn.rows() == 0) return {};
+  std::vector<char> pierced = pierced_components(world, nodes);
+  Points there = wanted;
+  for (int v = 0; v < worn.rows(); ++v) {
+    const bool is_worn = worn.row(v).allFinite();
+    if (!is_worn) pierced[world.cloth->component[v]] = 0;
+    there.row(v) = is_worn ? worn.row(v) : nodes.row(v);
+  }
+  if (std::ranges::find(pierced, 1) == pierced.end()) return {};
+  const std::vector<char> anyway = pierced_components(world, there);
+  std::vector<char> vertices(static_cast<std::size_t>(worn.rows()), 0);
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const int component = world.cloth->component[v];
+    vertices[v] = pierced[component] && !anyway[component];
+  }
+  return std::ranges::find(vertices, 1) == vertices.end() ? std::vector<char>() : vertices;
+}
+
+}  // namespace selvedge

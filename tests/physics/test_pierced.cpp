@@ -1,0 +1,89 @@
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+#include "physics/pierced.hpp"
+#include "tests/physics/worlds.hpp"
+
+using namespace selvedge;
+using testing::Sheet;
+
+namespace {
+
+// A closed spindle along y, oriented outwards.
+Sheet spindle(double radius, double half_length) {
+  const int along = 24, round = 16;
+  Sheet s{Points(2 + (along - 1) * round, 3), Triangles(2 * (along - 1) * round, 3)};
+  s.x.row(0) << 0, half_length, 0;
+  s.x.row(1) << 0, -half_length, 0;
+  const auto at = [&](int i, int j) { return i == 0 ? 0 : i == along ? 1 : 2 + (i - 1) * round + j % round; };
+  int t = 0;
+  for (int i = 0; i < along; ++i)
+    for (int j = 0; j < round; ++j) {
+      const double a = std::numbers::pi * i / along, b = 2 * std::numbers::pi * (j + 0.3) / round;
+      if (i > 0)
+        s.x.row(at(i, j)) << radius * std::sin(a) * std::cos(b), half_length * std::cos(a),
+            radius * std::sin(a) * std::sin(b);
+      if (i > 0) s.triangles.row(t++) << at(i, j), at(i, j + 1), at(i + 1, j);
+      if (i + 1 < along) s.triangles.row(t++) << at(i, j + 1), at(i + 1, j + 1), at(i + 1, j);
+    }
+  return s;
+}
+
+// A sheet with a body through its middle, and a second sheet beside them; both are worn 0.5 m farther up.
+struct Skewer {
+  testing::World w;
+  ContactWorld world;
+  Points nodes;
+
+  explicit Skewer(const Sheet& body) {
+    Sheet beside = testing::sheet(4, 0.2, 0);
+    beside.x.rowwise() += Eigen::RowVector3d(0.6, 0, 0);
+    w = testing::make_world(testing::join(testing::sheet(16, 0.6, 0.013), beside));
+    testing::add_obstacle(w, body);
+    w.state.clean = false;
+    w.drive.worn = w.state.x;
+    w.drive.worn.col(1).array() += 0.5;
+    world = make_contact_world(w.scene.surface, {&w.scene.obstacles[0].surface}, true);
+    nodes = gather_nodes(w.state.x, w.state.obstacles);
+  }
+  std::vector<char> pierced() const { return pierced_vertices(world, find_exemption(world, nodes), nodes, nodes, w.drive.worn); }
+};
+
+}  // namespace
+
+TEST_CASE("pierced: all of a cloth that something long has gone through, and no other", "[pierced]") {
+  const std::vector<char> marked = Skewer(spindle(0.05, 0.3)).pierced();
+  REQUIRE(marked.size() == 17 * 17 + 25);
+  CHECK(std::count(marked.begin(), marked.begin() + 17 * 17, 1) == 17 * 17);
+  CHECK(std::count(marked.begin() + 17 * 17, marked.end(), 1) == 0);
+}
+
+TEST_CASE("pierced: nothing that can be pushed out, or is so where it is worn, or has no place to go to", "[pierced]") {
+  CHECK(Skewer(spindle(0.05, 0.06)).pierced().empty());  // a bump
+  Skewer there(spindle(0.05, 0.3));
+  there.w.drive.worn.col(1).array() -= 0.52;
+  CHECK(there.pierced().empty());
+  Skewer unworn(spindle(0.05, 0.3));
+  unworn.w.drive.worn.row(40).setConstant(std::numeric_limits<double>::quiet_NaN());
+  CHECK(unworn.pierced().empty());
+  unworn.w.drive.worn.resize(0, 3);
+  CHECK(unworn.pierced().empty());
+  const Skewer crossing(spindle(0.05, 0.3));
+  Exemption exemption = find_exemption(crossing.world, crossing.nodes);
+  exemption.off.assign(static_cast<std::size_t>(crossing.world.node_count), 0);
+  CHECK(pierced_vertices(crossing.world, exemption, crossing.nodes, crossing.nodes, crossing.w.drive.worn).empty());
+}
+
+TEST_CASE("pierced: the stepper takes the cloth off, through the body, and only to where it is worn", "[pierced]") {
+  Skewer skewer(spindle(0.05, 0.3));
+  skewer.w.drive.acceleration.setZero();
+  skewer.w.drive.worn.col(1).array() -= 1;  // below: by itself it would leave over the nearer end, above
+  const testing::Run off = testing::run(skewer.w, 12);
+  CHECK(off.state.clean);
+  CHECK(off.state.x.topRows(17 * 17).col(1).maxCoeff() < -0.25);
+  skewer.w.drive.worn.resize(0, 3);
+  CHECK(testing::run(skewer.w, 12).state.x.topRows(17 * 17).col(1).mean() > 0.01);
+}
