@@ -49,7 +49,9 @@ struct Skewer {
     world = make_contact_world(w.scene.surface, {&w.scene.obstacles[0].surface}, true);
     nodes = gather_nodes(w.state.x, w.state.obstacles);
   }
-  std::vector<char> pierced() const { return pierced_vertices(world, find_exemption(world, nodes), nodes, nodes, w.drive.worn); }
+  std::vector<char> pierced() const {
+    return pierced_vertices(world, find_exemption(world, nodes), nodes, nodes, w.drive.worn);
+  }
 };
 
 }  // namespace
