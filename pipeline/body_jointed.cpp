@@ -78,13 +78,7 @@ BodyModel read_jointed(const std::filesystem::path& mesh_file, const std::filesy
   mesh.x *= metres;
   const BodyPart part = body_part(mesh, mesh_file);
   const Config file = read_config(joints_file, file_section());
-  BodyModel body;
-  body.name = mesh_file.stem().string();
-  body.joints = smpl_joint_names(smpl::joints);
-  body.parents = smpl_joint_parents();
-  body.skin.rest = mesh.x(part.vertices, Eigen::all);
-  body.skin.triangles = part.triangles;
-  body.skin.shape_directions.resize(body.skin.rest.size(), 0);
+  BodyModel body = body_without_rig(mesh, part, mesh_file);
   const Surface surface = make_surface(static_cast<int>(part.vertices.size()), part.triangles);
   const Points joints = places(file["joints"], body.joints);
   check_inside(body, surface, joints, file["joints"]);

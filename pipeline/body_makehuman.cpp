@@ -154,14 +154,8 @@ BodyModel read_makehuman(const fs::path& mesh_file, const fs::path& skeleton, co
   mesh.x *= metres;
   const Rig rig{skeleton, read_rig_bones(skeleton)};
   const BodyPart part = body_part(mesh, mesh_file);
-  BodyModel body;
-  body.name = mesh_file.stem().string();
-  body.joints = smpl_joint_names(smpl::joints);
-  body.parents = smpl_joint_parents();
-  body.skin.rest = mesh.x(part.vertices, Eigen::all);
-  body.skin.triangles = part.triangles;
+  BodyModel body = body_without_rig(mesh, part, mesh_file);
   body.skin.weights = folded(read_rig_weights(weights_file, rig.bones), rig.joints(), part, weights_file);
-  body.skin.shape_directions.resize(body.skin.rest.size(), 0);
   check_order(make_surface(static_cast<int>(body.skin.rest.rows()), part.triangles), body.skin.weights, mesh_file,
               weights_file);
   std::vector<std::optional<Vec3>> places;

@@ -4,6 +4,8 @@
 #include <array>
 
 #include "collision/error.hpp"
+#include "pipeline/body_smpl.hpp"
+#include "pipeline/smpl_joints.hpp"
 
 namespace selvedge {
 
@@ -34,6 +36,17 @@ BodyPart body_part(const Mesh& mesh, const std::filesystem::path& file) {
       part.triangles(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(k)) =
           part.row_of[static_cast<std::size_t>(triangles[t][k])];
   return part;
+}
+
+BodyModel body_without_rig(const Mesh& mesh, const BodyPart& part, const std::filesystem::path& file) {
+  BodyModel body;
+  body.name = file.stem().string();
+  body.joints = smpl_joint_names(smpl::joints);
+  body.parents = smpl_joint_parents();
+  body.skin.rest = mesh.x(part.vertices, Eigen::all);
+  body.skin.triangles = part.triangles;
+  body.skin.shape_directions.resize(body.skin.rest.size(), 0);
+  return body;
 }
 
 }  // namespace selvedge
