@@ -220,13 +220,6 @@ bool ask(const AuditMemory& memory, std::span<const MovingBody> sheets, AuditQue
   return true;
 }
 
-double mean_edge(const Surface& surface, const Points& x) {
-  double sum = 0;
-  for (int e = 0; e < surface.edges.rows(); ++e)
-    sum += (x.row(surface.edges(e, 0)) - x.row(surface.edges(e, 1))).norm();
-  return surface.edges.rows() > 0 ? sum / static_cast<double>(surface.edges.rows()) : 0;
-}
-
 // This audit becomes the last one. True if it is of a motion.
 bool take_note(AuditMemory& memory, std::span<const MovingBody> sheets) {
   memory.moving = std::ranges::any_of(sheets, [](const MovingBody& sheet) { return sheet.x0 != sheet.x1; });

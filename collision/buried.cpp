@@ -17,12 +17,6 @@ DisjointSets pieces_between(const std::vector<char>& marked, const Surface& surf
   return pieces;
 }
 
-double mean_edge(const Surface& surface, const Points& x) {
-  double length = 0;
-  for (const auto& edge : surface.edges.rowwise()) length += (x.row(edge[0]) - x.row(edge[1])).norm();
-  return length / static_cast<double>(surface.edges.rows());
-}
-
 }  // namespace
 
 std::vector<char> buried_vertices(const Surface& surface, const Points& x, const Segments& found) {

@@ -61,9 +61,8 @@ void make_neighbours(KeptShape& shape) {
     shape.neighbour[next[b]++] = a;
     shape.edge_length[a] += length;
     shape.edge_length[b] += length;
-    shape.mean_edge += length;
   }
-  if (s.edges.rows() > 0) shape.mean_edge /= static_cast<double>(s.edges.rows());
+  shape.mean_edge = mean_edge(s, shape.x0);
   for (int v = 0; v < s.vertex_count; ++v) {
     const int count = shape.neighbour_begin[v + 1] - shape.neighbour_begin[v];
     if (count > 0) shape.edge_length[v] /= count;

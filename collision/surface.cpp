@@ -83,6 +83,12 @@ Surface make_surface(int vertex_count, const Triangles& triangles) {
   return s;
 }
 
+double mean_edge(const Surface& surface, const Points& x) {
+  double sum = 0;
+  for (const auto& edge : surface.edges.rowwise()) sum += (x.row(edge[0]) - x.row(edge[1])).norm();
+  return surface.edges.rows() > 0 ? sum / static_cast<double>(surface.edges.rows()) : 0;
+}
+
 bool is_closed(const Surface& s) {
   return s.triangles.rows() > 0 && s.nonmanifold_edges == 0 &&
          std::all_of(s.edge_triangles.begin(), s.edge_triangles.end(), [](const auto& t) { return t[1] >= 0; });

@@ -40,6 +40,8 @@ bool is_closed(const Surface&);  // every edge has exactly two triangles
 // loop. Edges that do not close, which only triangles of clashing orientation have, are left out.
 std::vector<std::vector<int>> boundary_loops(const Surface&);
 
+double mean_edge(const Surface&, const Points&);  // length [m]; 0 without edges
+
 // Area-weighted unit vertex normals, n x 3; zero at isolated vertices.
 Points vertex_normals(const Surface&, const Points&);
 

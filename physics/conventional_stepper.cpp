@@ -51,6 +51,7 @@ ResolveOptions resolve_options(const ContactSettings& contact) {
   options.separation = 0.1 * contact.thickness;
   options.friction = contact.friction;
   options.self_friction = contact.self_friction;
+  options.rigid_zones = contact.rigid_zones;
   return options;
 }
 

@@ -61,6 +61,7 @@ struct ContactSettings {
   double friction = 0.3;       // cloth on obstacle
   double self_friction = 0.3;  // cloth on cloth
   bool self = true;            // false: cloth-cloth contact is left out and not audited
+  bool rigid_zones = false;    // impact zones of cloth alone go on as rigid bodies
 };
 
 // Constant during a run. All cloths are one surface: vertices and triangles numbered cloth after cloth.

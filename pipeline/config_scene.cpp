@@ -47,7 +47,10 @@ const Section& contact_section() {
       {number("thickness", Unit::length, positive, show(c.thickness), "distance that resting layers keep"),
        number("friction", Unit::none, not_negative, show(c.friction), "coefficient, cloth on obstacle"),
        number("self_friction", Unit::none, not_negative, show(c.self_friction), "coefficient, cloth on cloth"),
-       flag("self", c.self, "false leaves cloth-cloth contact out; the run is then labelled \"self: not audited\"")}};
+       flag("self", c.self, "false leaves cloth-cloth contact out; the run is then labelled \"self: not audited\""),
+       flag("rigid_zones", c.rigid_zones,
+            "true: cloth in an impact zone goes on as one rigid body, which settles at once but does not slide; zones "
+            "that lean on an obstacle are never rigid")}};
   return table;
 }
 

@@ -138,7 +138,7 @@ void read_wind(const Config& section, Wind& wind, World& world) {
 
 ContactSettings read_contact(const Config& section) {
   return {section["thickness"].number(), section["friction"].number(), section["self_friction"].number(),
-          section["self"].flag()};
+          section["self"].flag(), section["rigid_zones"].flag()};
 }
 
 ImplicitEulerOptions read_solver(const Config& section) {

@@ -1,5 +1,7 @@
 #include <catch2/catch.hpp>
 
+#include <cmath>
+
 #include "collision/surface.hpp"
 
 using namespace selvedge;
@@ -13,6 +15,10 @@ TEST_CASE("surface: two triangles share one edge", "[surface]") {
   CHECK(s.component_count == 2);
   CHECK(s.nonmanifold_edges == 0);
   CHECK_FALSE(is_closed(s));
+  Points x(5, 3);
+  x << 0, 0, 0, 2, 0, 0, 0, 2, 0, 2, 2, 0, 9, 9, 9;
+  CHECK(mean_edge(s, x) == Approx((4 * 2 + std::sqrt(8)) / 5));
+  CHECK(mean_edge(make_surface(1, Triangles(0, 3)), Points::Zero(1, 3)) == 0);
   const auto loops = boundary_loops(s);
   REQUIRE(loops.size() == 1);
   CHECK(loops[0].size() == 4);

@@ -258,7 +258,8 @@ TEST_CASE("Flattened triangles keep their lengths and lay the weft along v", "[s
 TEST_CASE("Faulty meshes simulate with warnings: what has no mass is held", "[setup]") {
   const Folder folder("setup");
   fake::write(folder, "a.obj", square + "v 5 5 5\nv 2 0 0\nf 1 2 3\nf 1 3 4\nf 1 2 6\nf 1 1 2\nf 3 1 2\n");
-  const Setup setup = read(folder, "cloths: [{mesh: a.obj}]\ncontact: {thickness: 0.8}\n");
+  const Setup setup = read(folder, "cloths: [{mesh: a.obj}]\ncontact: {thickness: 0.8, rigid_zones: true}\n");
+  CHECK(setup.scene.contact.rigid_zones);
   CHECK(setup.scene.pins == std::vector<int>{4, 5});
   const auto warned = [&](const std::string& words) {
     return std::any_of(setup.warnings.begin(), setup.warnings.end(),
