@@ -38,10 +38,10 @@ Range range_along(const Vec3& m, const Corners& c) {
   return {std::min(std::min(p, q), r), std::max(std::max(p, q), r)};
 }
 
-// Of what rounding can do to a difference of two products m . p. Points are relative to one of them, each coordinate
-// wrong by at most u = 2^-53 of itself, and at most `reach` in the sum of their coordinates. With the rounding of three
-// products and two sums m . p is wrong by less than 5 u max |m_k| reach, on both sides together by 10 u; 2e-15 is 18 u.
-// What underflows is less than 1e-300.
+// A bound of what rounding does to a difference of two products m . p. Points are relative to one of them, each
+// coordinate wrong by at most u = 2^-53 of itself, and at most `reach` in the sum of their coordinates. With the
+// rounding of three products and two sums m . p is wrong by less than 5 u max |m_k| reach, on both sides together by 10
+// u; 2e-15 is 18 u. What underflows is less than 1e-300.
 double slack_along(const Vec3& m, double reach) { return 2e-15 * m.cwiseAbs().maxCoeff() * reach + 1e-300; }
 
 // Does a plane across the direction m lie between them?

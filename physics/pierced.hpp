@@ -10,11 +10,12 @@ namespace selvedge {
 // is no way out for it but over the limb's end. Where the body is free of itself again, all of such cloth is drawn to
 // where it is worn (carrying.hpp), through the body, and is untangled from there.
 
-// The worn vertices of the components of the cloth that a closed obstacle goes through: it has a contour with the
-// obstacle that cuts a patch out of the cloth which lies in the obstacle as a whole, and that goes round a part of the
-// obstacle which is long for its width. Not those which would be gone through just so where they are worn, nor where
-// an obstacle crosses itself. `exemption` is what is tangled and switched off at `nodes`; `wanted` has the obstacles at
-// the step's end. 1 a vertex of the cloth; empty where there is none.
+// The worn vertices of the components of the cloth that an obstacle goes through: it has a contour with the obstacle
+// that cuts a patch out of the cloth which lies in the obstacle as a whole (an open one has an inside only for patches
+// without vertices), and that goes round a part of the obstacle which is long for its width. Not those which would be
+// gone through just so where they are worn, nor where an obstacle crosses itself. `exemption` is what is tangled and
+// switched off at `nodes`; `wanted` has the obstacles at the step's end. 1 a vertex of the cloth; empty where there is
+// none.
 std::vector<char> pierced_vertices(const ContactWorld&, const Exemption& exemption, const Points& nodes,
                                    const Points& wanted, const Points& worn);
 

@@ -17,6 +17,18 @@ using namespace table;
 
 bool is_right(const std::string& joint) { return joint.starts_with("right_"); }
 
+const Section& joints_section() {
+  static const Section table = [] {
+    Section all{"joints", "SMPL's joints; of the right side those that are not where the left ones are.", "", {}, {}};
+    for (const std::string& name : smpl_joint_names(smpl::joints)) {
+      const Key key = vector(name, Unit::length, "", is_right(name) ? "left out: the left one, mirrored" : "");
+      all.keys.push_back(is_right(name) ? key : needed(key));
+    }
+    return all;
+  }();
+  return table;
+}
+
 const Section& file_section() {
   static const Section table{"joints of a body",
                              "The whole file.",
@@ -59,18 +71,6 @@ void check_inside(const BodyModel& body, const Surface& surface, const Points& j
 }
 
 }  // namespace
-
-const Section& joints_section() {
-  static const Section table = [] {
-    Section all{"joints", "SMPL's joints; of the right side those that are not where the left ones are.", "", {}, {}};
-    for (const std::string& name : smpl_joint_names(smpl::joints)) {
-      const Key key = vector(name, Unit::length, "", is_right(name) ? "left out: the left one, mirrored" : "");
-      all.keys.push_back(is_right(name) ? key : needed(key));
-    }
-    return all;
-  }();
-  return table;
-}
 
 BodyModel read_jointed(const std::filesystem::path& mesh_file, const std::filesystem::path& joints_file,
                        double metres) {

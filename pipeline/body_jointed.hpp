@@ -3,12 +3,8 @@
 #include <filesystem>
 
 #include "pipeline/body.hpp"
-#include "pipeline/config.hpp"
 
 namespace selvedge {
-
-// The places of SMPL's 24 joints in a body, by name.
-const Section& joints_section();
 
 // A body of a mesh (OBJ, PLY) and a file (YAML) that says where its joints are; weights as `bone_weights` makes them.
 // The joints of the right side may be left out: they are those of the left, mirrored at the plane through the pelvis

@@ -46,15 +46,16 @@ SkinWeights joint_regressor(const BodyModel& body, const std::vector<std::option
     for (int v = 0; v < bends.size(); ++v)
       if (bends[v] > 0) vertices.push_back(v);
     if (vertices.empty())
-      throw Error("has no vertex that moves with both the joint " + name + " and its parent", files.weights,
-                  "give weights that pass smoothly from bone to bone");
+      throw Error(
+          "has no vertex that moves with both the joint " + name + " and its parent", files.weights,
+          "give weights that pass smoothly from bone to bone, or places of joints between which some of the body lies");
     Eigen::VectorXd share = bends(vertices) / bends.sum();
     const std::optional<Vec3>& place = places[static_cast<std::size_t>(j)];
     if (place) meet(rest, vertices, *place, share);
     const Vec3 mean = rest(vertices, Eigen::all).transpose() * share;
     if (place && !((mean - *place).norm() < farthest_miss))
       throw Error("puts the joint " + name + " outside the vertices that move with it and its parent", files.places,
-                  "give mesh, skeleton and weights of one body");
+                  "give the files of one body, or a place nearer to the middle of the limb");
     for (std::size_t k = 0; k < vertices.size(); ++k)
       if (share[static_cast<Eigen::Index>(k)] > 0)
         entries.emplace_back(j, vertices[k], share[static_cast<Eigen::Index>(k)]);
