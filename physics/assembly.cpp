@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "physics/membrane_lanes.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -56,6 +58,35 @@ void store(const Elastic& elastic, int e, const Gradient& gradient, const Hessia
     }
 }
 
+void derivatives_of_membranes(const Elastic& elastic, const Points& x, int begin, int end, bool forces, bool pairs,
+                              HessianForm form, AssemblyScratch& scratch) {
+  MembraneLanes lanes;
+  for (int first = begin; first < end; first += lanes.count) {
+    std::span<const MembraneElement> elements(elastic.membrane.data() + first, end - first);
+    elements = elements.first(together(elastic.materials, elements));
+    membrane_derivatives(elastic.materials, elements, x, pairs, form != HessianForm::exact, lanes);
+    for (int l = 0; l < lanes.count; ++l) {
+      const int e = first + l, slot = elastic.element_begin[e];
+      const auto corner = [&](int k) {
+        return Vec3(lanes.force[3 * k][l], lanes.force[3 * k + 1][l], lanes.force[3 * k + 2][l]);
+      };
+      if (forces) {
+        scratch.forces.row(slot) = -(corner(0) + corner(1)).transpose();
+        for (int k = 0; k < 2; ++k) scratch.forces.row(slot + 1 + k) = corner(k).transpose();
+      }
+      if (!pairs) continue;
+      const double weight = form == HessianForm::damping ? elastic.element_damping[e] : 1;
+      const std::array<int, 3>& nodes = elements[l].nodes;
+      for (int i = 0, pair = 0; i < 3; ++i)
+        for (int j = i + 1; j < 3; ++j, ++pair) {
+          Mat3& block = scratch.pairs[elastic.pair_begin[e] + pair];
+          block = weight * block_of(lanes, pair, l);
+          if (nodes[i] > nodes[j]) block.transposeInPlace();
+        }
+    }
+  }
+}
+
 void derivatives_of_chunk(const Elastic& elastic, const Points& x, int begin, int end, bool forces, bool pairs,
                           HessianForm form, AssemblyScratch& scratch) {
   const int hinges_begin = static_cast<int>(elastic.membrane.size());
@@ -64,20 +95,15 @@ void derivatives_of_chunk(const Elastic& elastic, const Points& x, int begin, in
   const bool psd = form != HessianForm::exact;
   Vec6 gradient6;
   Mat6 hessian6;
-  Vec9 gradient9;
-  Mat9 hessian9;
   Vec12 gradient12;
   Mat12 hessian12;
   Eigen::VectorXd gradient;
   Eigen::MatrixXd hessian;
-  for (int e = begin; e < end; ++e) {
+  if (begin < hinges_begin)
+    derivatives_of_membranes(elastic, x, begin, std::min(end, hinges_begin), forces, pairs, form, scratch);
+  for (int e = std::max(begin, hinges_begin); e < end; ++e) {
     const double weight = form == HessianForm::damping ? elastic.element_damping[e] : 1;
-    if (e < hinges_begin) {
-      const MembraneElement& element = elastic.membrane[e];
-      membrane_derivatives(elastic.materials[element.material], element, x, gradient9, pairs ? &hessian9 : nullptr,
-                           psd);
-      store(elastic, e, gradient9, hessian9, weight, forces, pairs, scratch);
-    } else if (e < curved_begin) {
+    if (e < curved_begin) {
       hinge_derivatives(elastic.hinges[e - hinges_begin], x, gradient12, pairs ? &hessian12 : nullptr, psd);
       store(elastic, e, gradient12, hessian12, weight, forces, pairs, scratch);
     } else if (e < springs_begin) {
@@ -95,10 +121,12 @@ double energy_of_chunk(const Elastic& elastic, const Points& x, int begin, int e
   const int curved_begin = hinges_begin + static_cast<int>(elastic.hinges.size());
   const int springs_begin = curved_begin + static_cast<int>(elastic.curved.size());
   double sum = 0;
-  for (int e = begin; e < end; ++e) {
-    if (e < hinges_begin)
-      sum += membrane_energy(elastic.materials[elastic.membrane[e].material], elastic.membrane[e], x);
-    else if (e < curved_begin)
+  if (begin < hinges_begin) {
+    const std::span<const MembraneElement> all = elastic.membrane;
+    sum = membrane_energy(elastic.materials, all.subspan(begin, std::min(end, hinges_begin) - begin), x);
+  }
+  for (int e = std::max(begin, hinges_begin); e < end; ++e) {
+    if (e < curved_begin)
       sum += hinge_energy(elastic.hinges[e - hinges_begin], x);
     else if (e < springs_begin)
       sum += curved_energy(elastic.curved[e - curved_begin], x);
@@ -149,7 +177,7 @@ void append_elastic_energies(const Elastic& elastic, const Points& x, std::vecto
   const std::size_t first = energies.size();
   const int element_chunks = chunks_of(count), tasks = element_chunks + chunks_of(rows);
   energies.resize(first + tasks);
-#pragma omp parallel for schedule(static) if (tasks > 8)
+#pragma omp parallel for schedule(static, 4) if (tasks > 8)
   for (int c = 0; c < tasks; ++c) {
     if (c < element_chunks) {
       energies[first + c] = energy_of_chunk(elastic, x, c * chunk, std::min(count, (c + 1) * chunk));

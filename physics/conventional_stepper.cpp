@@ -138,6 +138,7 @@ NewtonReport ConventionalStepper::solve_with_contact(StepProblem& problem, bool 
   problem.patience = contact_patience;
   for (int pass = 0;; ++pass) {
     problem.contacts = contacts.terms;
+    problem.goes_on = pass > 0;
     const bool friction = features_.friction && !contacts.terms.empty();
     problem.roughness = pass > 1 || (calm && friction) ? friction_roughness : pass == 0 && !calm ? first_roughness : 1;
     const NewtonReport newton = solve(problem, x, report);
@@ -193,6 +194,7 @@ bool ConventionalStepper::smooth_substep(const Leg& leg, const Points& pins, con
     if (!impacts.empty()) return false;
   }
   if (!newton.converged) report.reason = Reason::not_converged;
+  report.residual = solver_.imbalance(problem, x);
   to.nodes = std::move(nodes);
   to.v = (x - start.x) / start.h;
   return true;
@@ -213,6 +215,7 @@ ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const 
     const NewtonReport newton = solve(problem, x, report);
     if (!newton.finite || !x.allFinite()) return Outcome::not_finite;
     if (!newton.converged) report.reason = Reason::not_converged;
+    report.residual = solver_.imbalance(problem, x);
     nodes1.topRows(n) = x;
     to.v = (x - x0) / h;
     return Outcome::clean;
@@ -251,6 +254,8 @@ ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const 
   if (to.parts > 1) return Outcome::hasty;
   report.collision.contacts = static_cast<int>(contacts.terms.size());
   watch.lap();
+  report.residual = solver_.imbalance(problem, x);
+  report.seconds.solve += watch.lap();
   stick(contacts.terms, inverse_mass_, x0, h, options_.implicit_euler.slip_speed * h, x);
   report.seconds.response += watch.lap();
   nodes1.topRows(n) = x;
@@ -322,7 +327,6 @@ NewtonReport ConventionalStepper::solve(const StepProblem& problem, Points& x, S
   const NewtonReport newton = solver_.solve(problem, x);
   report.iterations += newton.iterations;
   report.linear_iterations += newton.linear_iterations;
-  report.residual = newton.residual;
   report.seconds.solve += watch.lap();
   return newton;
 }

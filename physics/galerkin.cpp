@@ -9,38 +9,68 @@ namespace {
 
 constexpr double rounding = 1e-12;
 
-// Collects the terms of one coarse row after the other and gives columns their slots.
+// Collects the terms of one coarse row after the other, right of the diagonal and on it, and gives columns their slots.
 class RowCollector {
  public:
-  RowCollector(int columns, RowPattern& pattern, Product& product)
-      : slot_(columns, -1), pattern_(pattern), product_(product) {
-    pattern_.begin = product_.begin = {0};
-    pattern_.column.clear();
-  }
+  explicit RowCollector(int columns) : slot_(columns, -1) { product_.begin = {0}; }
   void start(int row) { row_ = row; }
   void add(int source, int column, double weight) {
-    if (weight == 0) return;
+    if (weight == 0 || column < row_) return;
     product_.term.push_back({source, column == row_ ? -1 : slot(column), static_cast<float>(weight)});
   }
   void finish() {
-    for (std::size_t k = pattern_.begin.back(); k < pattern_.column.size(); ++k) slot_[pattern_.column[k]] = -1;
-    pattern_.begin.push_back(static_cast<int>(pattern_.column.size()));
+    for (std::size_t k = begin_.back(); k < column_.size(); ++k) slot_[column_[k]] = -1;
+    begin_.push_back(static_cast<int>(column_.size()));
     product_.begin.push_back(static_cast<int>(product_.term.size()));
   }
+  Product with_mirrored(RowPattern& whole);
 
  private:
   int slot(int column) {
     if (slot_[column] < 0) {
-      slot_[column] = static_cast<int>(pattern_.column.size());
-      pattern_.column.push_back(column);
+      slot_[column] = static_cast<int>(column_.size());
+      column_.push_back(column);
     }
     return slot_[column];
   }
   int row_ = 0;
-  std::vector<int> slot_;
-  RowPattern& pattern_;
-  Product& product_;
+  std::vector<int> slot_, begin_{0}, column_;  // slots are positions in column_
+  Product product_;
 };
+
+// The product with what was collected and its mirror image in one pattern: each row's left part first.
+Product RowCollector::with_mirrored(RowPattern& whole) {
+  const int rows = static_cast<int>(begin_.size()) - 1;
+  std::vector<int> left_begin(rows + 1, 0), left_slot(column_.size()), left_row(column_.size());
+  for (const int b : column_) ++left_begin[b + 1];
+  std::partial_sum(left_begin.begin(), left_begin.end(), left_begin.begin());
+  std::vector<int> next(left_begin.begin(), left_begin.end() - 1);
+  for (int a = 0; a < rows; ++a)
+    for (int k = begin_[a]; k < begin_[a + 1]; ++k) {
+      const int at = next[column_[k]]++;
+      left_slot[at] = k;
+      left_row[at] = a;
+    }
+  std::vector<int> entry(column_.size());  // of each slot in the whole pattern
+  whole.begin = {0};
+  whole.column.clear();
+  product_.mirror.clear();
+  for (int a = 0; a < rows; ++a) {
+    for (int at = left_begin[a]; at < left_begin[a + 1]; ++at) {
+      whole.column.push_back(left_row[at]);
+      product_.mirror.push_back(entry[left_slot[at]]);
+    }
+    for (int k = begin_[a]; k < begin_[a + 1]; ++k) {
+      entry[k] = static_cast<int>(whole.column.size());
+      whole.column.push_back(column_[k]);
+    }
+    whole.end_row(a);
+    product_.mirror.resize(whole.column.size(), -1);
+  }
+  for (ProductTerm& term : product_.term)
+    if (term.target >= 0) term.target = entry[term.target];
+  return std::move(product_);
+}
 
 // A sum that is meant to be zero or one is.
 double without_rounding(double sum) {
@@ -115,8 +145,7 @@ Restriction transpose(const Prolongation& p) {
 //   u_a)) ].
 Product make_product(const RowPattern& fine, bool diagonal, const Prolongation& p, const Restriction& restriction,
                      RowPattern& coarse) {
-  Product product;
-  RowCollector rows(p.coarse_count(), coarse, product);
+  RowCollector rows(p.coarse_count());
   std::vector<double> sum(p.fine_count());
   for (int i = 0; i < p.fine_count(); ++i) sum[i] = weight_sum(p, i);
   for (int a = 0; a < p.coarse_count(); ++a) {
@@ -140,7 +169,7 @@ Product make_product(const RowPattern& fine, bool diagonal, const Prolongation& 
     }
     rows.finish();
   }
-  return product;
+  return rows.with_mirrored(coarse);
 }
 
 Product make_product(std::span<const ContactBlock> contacts, const Prolongation& p, RowPattern& coarse) {
@@ -155,8 +184,7 @@ Product make_product(std::span<const ContactBlock> contacts, const Prolongation&
       contact[at] = c;
       place[at] = k;
     }
-  Product product;
-  RowCollector rows(p.coarse_count(), coarse, product);
+  RowCollector rows(p.coarse_count());
   for (int a = 0; a < p.coarse_count(); ++a) {
     rows.start(a);
     for (int at = begin[a]; at < begin[a + 1]; ++at) {
@@ -168,18 +196,30 @@ Product make_product(std::span<const ContactBlock> contacts, const Prolongation&
     }
     rows.finish();
   }
-  return product;
+  return rows.with_mirrored(coarse);
 }
 
-void accumulate(const Product& product, const BlockColumns<float>* source, const BlockColumns<float>* source_diagonal,
-                BlockColumns<float>* target, BlockColumns<float>* target_diagonal, int begin, int end) {
+void accumulate(const Product& product, const BlockPair<float>* source, const BlockColumns<float>* source_diagonal,
+                BlockPair<float>* target, BlockColumns<float>* target_diagonal, int begin, int end) {
   for (int a = begin; a < end; ++a)
     for (int t = product.begin[a]; t < product.begin[a + 1]; ++t) {
       const ProductTerm term = product.term[t];
-      const BlockColumns<float>& from = term.source < 0 ? source_diagonal[~term.source] : source[term.source];
-      BlockColumns<float>& to = term.target < 0 ? target_diagonal[a] : target[term.target];
-      for (int k = 0; k < 3; ++k) to.column[k].lanes += from.column[k].lanes * term.weight;
+      for (int k = 0; k < 3; ++k) {
+        const Quad<float>& from =
+            term.source < 0 ? source_diagonal[~term.source].column[k] : column_of(source, term.source, k);
+        Quad<float>& to = term.target < 0 ? target_diagonal[a].column[k] : column_of(target, term.target, k);
+        to.lanes += from.lanes * term.weight;
+      }
     }
+}
+
+void reflect(const Product& product, const RowPattern& pattern, BlockPair<float>* target, int begin, int end) {
+  for (int entry = pattern.begin[begin]; entry < pattern.begin[end]; ++entry) {
+    const int of = product.mirror[entry];
+    if (of < 0) continue;
+    for (int k = 0; k < 3; ++k)
+      for (int r = 0; r < 3; ++r) column_of(target, entry, k).lanes[r] = column_of(target, of, r).lanes[k];
+  }
 }
 
 }  // namespace selvedge

@@ -109,7 +109,7 @@ bool IcmStepper::minimise(const StepProblem& problem, Points& x, StepReport& rep
   const NewtonReport newton = solver_.solve(problem, x);
   report.iterations += newton.iterations;
   report.linear_iterations += newton.linear_iterations;
-  report.residual = newton.residual;
+  report.residual = solver_.imbalance(problem, x);
   if (!newton.converged) report.reason = Reason::not_converged;
   report.seconds.solve += watch.lap();
   return newton.finite && x.allFinite();

@@ -160,9 +160,17 @@ Points ImplicitEuler::gradient(const StepProblem& problem, const Points& x) {
   return impl_->gradient;
 }
 
+double ImplicitEuler::imbalance(const StepProblem& problem, const Points& x) {
+  return largest_row(gradient(problem, x));
+}
+
 // The caller's guess or the ballistic positions, whichever has the lower potential (free fall is then exact). Pins are
 // put where they belong. False if neither potential is finite.
 bool ImplicitEuler::Impl::choose_first_guess(Points& x) {
+  if (step.problem->goes_on) {
+    energies(step, x, scratch, energy);
+    return std::isfinite(std::accumulate(energy.begin(), energy.end(), 0.0)) && x.allFinite();
+  }
   trial = x;
   for (int i = 0; i < x.rows(); ++i)
     if (step.free[i]) trial.row(i) = step.ballistic.row(i);
@@ -296,8 +304,6 @@ NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
     report.converged = !stiff && direction == Impl::Direction::accurate &&
                        std::max(length, 1.0) * root_mean_square(impl.motion) < impl.goal(x);
   }
-  derivatives(impl.step, x, impl.scratch, impl.gradient, nullptr);
-  report.residual = largest_row(impl.gradient);
   return report;
 }
 

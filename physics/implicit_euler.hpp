@@ -28,7 +28,6 @@ struct NewtonReport {
   bool converged = false;
   bool finite = true;
   int iterations = 0, linear_iterations = 0;
-  double residual = 0;  // largest force imbalance of a free vertex [N]
 };
 
 // A term of the potential that this solver knows nothing of. It may be anything that has a value; where it jumps or has
@@ -50,7 +49,8 @@ struct StepProblem {
   std::span<const ContactTerm> contacts;
   double roughness = 1;  // times the tolerance: for a solve that only feeds another one
   const AddedTerm* added = nullptr;
-  double patience = 1;  // times the most iterations, for a solve that another one goes on from
+  double patience = 1;   // times the most iterations, for a solve that another one goes on from
+  bool goes_on = false;  // from where an earlier solve of the same step ended: no other first guess is weighed
 };
 
 // Minimises the incremental potential
@@ -65,7 +65,8 @@ class ImplicitEuler {
   // x: first guess in, minimiser out.
   NewtonReport solve(const StepProblem&, Points& x);
   double potential(const StepProblem&, const Points& x);
-  Points gradient(const StepProblem&, const Points& x);  // zero rows at pins
+  Points gradient(const StepProblem&, const Points& x);   // zero rows at pins
+  double imbalance(const StepProblem&, const Points& x);  // largest force on a free vertex [N]
   LinearSolver chosen_solver() const;
   const Eigen::VectorXd& masses() const;
 

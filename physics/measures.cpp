@@ -7,7 +7,9 @@
 namespace selvedge {
 
 EnergyTerms energy_terms(const Scene& scene) {
-  return {lumped_masses(scene), membrane_elements(scene), curvature_bending(scene), hinges(scene)};
+  EnergyTerms terms{lumped_masses(scene), {}, membrane_elements(scene), curvature_bending(scene), hinges(scene)};
+  for (const Cloth& cloth : scene.cloths) terms.materials.push_back(cloth.material);
+  return terms;
 }
 
 Energies energies(const Scene& scene, const EnergyTerms& terms, const Points& x, const Points& v,
@@ -15,8 +17,7 @@ Energies energies(const Scene& scene, const EnergyTerms& terms, const Points& x,
   Energies energy;
   energy.kinetic = 0.5 * terms.masses.dot(v.rowwise().squaredNorm());
   energy.gravity = -terms.masses.dot(x * acceleration);
-  for (const MembraneElement& element : terms.membrane)
-    energy.membrane += membrane_energy(scene.cloths[element.material].material, element, x);
+  energy.membrane = membrane_energy(terms.materials, terms.membrane, x);
   if (terms.curvature.flat.nonZeros() > 0) {
     const Points forces = terms.curvature.flat * x;
     energy.bending += 0.5 * forces.cwiseProduct(x).sum();

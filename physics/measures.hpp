@@ -7,7 +7,8 @@ namespace selvedge {
 
 // Everything of a scene that its energies need and positions do not change. Build it once for a run.
 struct EnergyTerms {
-  Eigen::VectorXd masses;  // [kg]
+  Eigen::VectorXd masses;           // [kg]
+  std::vector<Material> materials;  // of the cloths
   std::vector<MembraneElement> membrane;
   CurvatureBending curvature;
   std::vector<Hinge> hinges;

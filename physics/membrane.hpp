@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "physics/scene.hpp"
@@ -26,11 +27,14 @@ Mat32 deformation_gradient(const MembraneElement&, const Points& x);
 
 // Energy of one element [J] for the material's model: St. Venant-Kirchhoff, stable neo-Hookean on principal stretches,
 // or Baraff-Witkin in its I5/I6 form (Kim 2020).
-double membrane_energy(const Material&, const MembraneElement&, const Points& x);
+double membrane_energy(const Material&, MembraneElement, const Points& x);
+
+// Energy of elements of cloths with these materials [J].
+double membrane_energy(std::span<const Material>, std::span<const MembraneElement>, const Points& x);
 
 // Gradient in the order x0 y0 z0 x1 y1 z1 x2 y2 z2 [N] and the Hessian projected to PSD in closed form [N/m];
-// the unprojected Hessian with psd = false. Returns the energy.
-double membrane_derivatives(const Material&, const MembraneElement&, const Points& x, Vec9& gradient, Mat9* hessian,
-                            bool psd = true);
+// the unprojected Hessian with psd = false. Many elements are faster in lanes (membrane_lanes.hpp).
+void membrane_derivatives(const Material&, MembraneElement, const Points& x, Vec9& gradient, Mat9* hessian,
+                          bool psd = true);
 
 }  // namespace selvedge

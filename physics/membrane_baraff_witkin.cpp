@@ -61,7 +61,6 @@ void add_shear(double k, const Vec3& a, const Vec3& b, bool psd, MembraneDensity
 MembraneDensity baraff_witkin_density(const Material& material, const Mat32& F, bool hessian, bool psd) {
   const Vec3 a = F.col(0), b = F.col(1);
   MembraneDensity density;
-  density.energy = baraff_witkin_energy(material, F);
   density.axes.setIdentity();
   add_stretch(material.warp, a, psd, density.stress_a, density.hessian_aa);
   add_stretch(material.weft, b, psd, density.stress_b, density.hessian_bb);

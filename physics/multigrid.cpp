@@ -11,7 +11,7 @@
 namespace selvedge {
 namespace {
 
-constexpr int chunk = 256;          // rows of one task; fixed, so that sums do not depend on the number of threads
+constexpr int chunk = 64;           // rows of one task
 constexpr int one_thread = 512;     // rows below which a level costs more in a team than alone
 constexpr int coarsest = 48;        // vertices that Cholesky takes
 constexpr int smoothing_steps = 2;  // before and after the coarse correction
@@ -36,6 +36,12 @@ void for_chunks(bool team, int rows, const F& f) {
 }
 
 using Blocks = std::vector<BlockColumns<float>>;
+using PairedBlocks = std::vector<BlockPair<float>>;
+
+Mat3 block_at(const PairedBlocks& blocks, int entry) {
+  return block_of(BlockColumns<float>{column_of(blocks.data(), entry, 0), column_of(blocks.data(), entry, 1),
+                                      column_of(blocks.data(), entry, 2)});
+}
 
 // A level of the hierarchy. The finest has no matrix of its own.
 struct Level {
@@ -47,7 +53,8 @@ struct Level {
   // The matrix, a product of the finer level's; `touching`: of its contacts.
   RowPattern pattern, touching;
   Product product, touching_product;
-  Blocks block, touching_block, diagonal;
+  PairedBlocks block, touching_block;
+  Blocks diagonal;
   // Of the smoother.
   Blocks inverse;
   Quads<float> right, x, step, product_of_step, residual;
@@ -62,6 +69,20 @@ struct Level {
   WeightView down() const { return {restriction.begin.data(), restriction.fine.data(), restriction_weight.data()}; }
 };
 
+void take_away(const PairedBlocks& blocks, const RowPattern& pattern, int row, BlockColumns<float>& sum) {
+  for (int entry = pattern.begin[row]; entry < pattern.begin[row + 1]; ++entry)
+    for (int k = 0; k < 3; ++k) sum.column[k].lanes -= column_of(blocks.data(), entry, k).lanes;
+}
+
+void clear(PairedBlocks& blocks, const RowPattern& pattern, int begin, int end) {
+  std::fill(blocks.begin() + pattern.begin[begin] / 2, blocks.begin() + pattern.begin[end] / 2, BlockPair<float>{});
+}
+
+void reflect(Level& level, int begin, int end) {
+  reflect(level.product, level.pattern, level.block.data(), begin, end);
+  reflect(level.touching_product, level.touching, level.touching_block.data(), begin, end);
+}
+
 bool same(std::span<const ContactBlock> contacts, const std::vector<ContactBlock>& known) {
   return std::equal(
       contacts.begin(), contacts.end(), known.begin(), known.end(),
@@ -73,10 +94,11 @@ bool same(std::span<const ContactBlock> contacts, const std::vector<ContactBlock
 struct Multigrid::Impl {
   std::vector<Level> levels;
   PcgMatrix<float>* fine = nullptr;
-  bool patterns = false;                   // of the coarse matrices are made
-  std::vector<float> flat, flat_diagonal;  // of the second level: the product of LinearSystem::flat
-  std::vector<ContactBlock> contacts;      // that the patterns were made for
-  Blocks contact_factor, fine_diagonal;
+  bool patterns = false;                 // of the coarse matrices are made
+  std::vector<float> far, far_diagonal;  // of the second level: the product of the flat entries in no block
+  std::vector<ContactBlock> contacts;    // that the patterns were made for
+  PairedBlocks contact_factor;
+  Blocks fine_diagonal;
   Eigen::LLT<Eigen::MatrixXd> cholesky;
   Eigen::VectorXd coarse_right;
   bool direct = false;  // the coarsest level is solved by Cholesky
@@ -116,53 +138,52 @@ Multigrid::Multigrid(const Vertices& vertices, std::span<const char> free) : imp
 }
 Multigrid::~Multigrid() = default;
 
-// The first product takes elastic and flat entries together; the flat ones are constant and scalar and are worked out
-// here.
+// The first product takes the blocks and the flat entries that are in none together; the latter are constant and scalar
+// and are worked out here.
 void Multigrid::Impl::make_patterns(const LinearSystem& system) {
   patterns = true;
   if (levels.size() < 2) return;
-  const int elastic = static_cast<int>(system.pattern.column.size());
-  const bool has_flat = system.flat.rows() > 0;
+  const RowPattern &near = fine->pattern(), &beyond = fine->far();
+  const int blocks = static_cast<int>(near.column.size());
   RowPattern joint{{0}, {}};
-  std::vector<int> entry;  // of the pattern, or behind those of the flat matrix
-  for (int i = 0; i < system.pattern.rows; ++i) {
-    for (int k = system.pattern.row_begin[i]; k < system.pattern.row_begin[i + 1]; ++k) {
-      joint.column.push_back(system.pattern.column[k]);
+  std::vector<int> entry;  // of the blocks, or behind those the place of a flat value
+  for (int i = 0; i < near.rows(); ++i) {
+    for (int k = near.begin[i]; k < near.begin[i + 1]; ++k) {
+      joint.column.push_back(near.column[k]);
       entry.push_back(k);
     }
-    if (has_flat)
-      for (int k = system.flat.outerIndexPtr()[i]; k < system.flat.outerIndexPtr()[i + 1]; ++k)
-        if (system.flat.innerIndexPtr()[k] != i) {
-          joint.column.push_back(system.flat.innerIndexPtr()[k]);
-          entry.push_back(elastic + k);
-        }
-    joint.begin.push_back(static_cast<int>(joint.column.size()));
+    for (int k = beyond.begin[i]; k < beyond.begin[i + 1]; ++k) {
+      joint.column.push_back(beyond.column[k]);
+      entry.push_back(blocks + fine->far_place()[k]);
+    }
+    joint.end_row(i);
   }
   Level& second = levels[1];
-  const Product both = make_product(joint, true, levels[0].prolongation, levels[0].restriction, second.pattern);
+  Product both = make_product(joint, true, levels[0].prolongation, levels[0].restriction, second.pattern);
   std::vector<double> sums(second.pattern.column.size(), 0.0), diagonal_sums(second.rows, 0.0);
   second.product.begin = {0};
   for (int a = 0; a < second.rows; ++a) {
     for (int k = both.begin[a]; k < both.begin[a + 1]; ++k) {
       ProductTerm term = both.term[k];
       if (term.source >= 0) term.source = entry[term.source];
-      if (term.source < elastic)
+      if (term.source < blocks)
         second.product.term.push_back(term);
       else
         (term.target < 0 ? diagonal_sums[a] : sums[term.target]) +=
-            static_cast<double>(term.weight) * system.flat.valuePtr()[term.source - elastic];
+            static_cast<double>(term.weight) * system.flat.valuePtr()[term.source - blocks];
     }
     second.product.begin.push_back(static_cast<int>(second.product.term.size()));
   }
-  if (has_flat) {
-    flat.assign(sums.begin(), sums.end());
-    flat_diagonal.assign(diagonal_sums.begin(), diagonal_sums.end());
+  second.product.mirror = std::move(both.mirror);
+  if (!beyond.column.empty()) {
+    far.assign(sums.begin(), sums.end());
+    far_diagonal.assign(diagonal_sums.begin(), diagonal_sums.end());
   }
   for (std::size_t l = 2; l < levels.size(); ++l)
     levels[l].product = make_product(levels[l - 1].pattern, true, levels[l - 1].prolongation, levels[l - 1].restriction,
                                      levels[l].pattern);
   for (std::size_t l = 1; l < levels.size(); ++l) {
-    levels[l].block.resize(levels[l].pattern.column.size());
+    levels[l].block.assign(levels[l].pattern.column.size() / 2, {});
     levels[l].diagonal.resize(levels[l].rows);
   }
 }
@@ -175,52 +196,59 @@ void Multigrid::Impl::make_contact_patterns(std::span<const ContactBlock> wanted
     level.touching_product =
         l == 1 ? make_product(wanted, finer.prolongation, level.touching)
                : make_product(finer.touching, false, finer.prolongation, finer.restriction, level.touching);
-    level.touching_block.resize(level.touching.column.size());
+    level.touching_block.assign(level.touching.column.size() / 2, {});
   }
 }
 
 void Multigrid::Impl::fill_second(const LinearSystem& system, Level& level) {
-  const bool has_flat = !flat.empty();
-  contact_factor.resize(system.contacts.size());
-  fine_diagonal.resize(system.diagonal.size());
+  const int touching = static_cast<int>(contacts.size());
+  contact_factor.resize((touching + 1) / 2);
+  fine_diagonal.resize(fine->rows());
 #pragma omp parallel if (chunks_of(levels[0].rows) > 2)
   {
 #pragma omp for schedule(static)
-    for (int c = 0; c < static_cast<int>(contact_factor.size()); ++c)
-      contact_factor[c] = columns_of<float>(contact_matrix(system.contacts[c]));
+    for (int p = 0; p < static_cast<int>(contact_factor.size()); ++p)
+      for (int c = 2 * p; c < std::min(touching, 2 * p + 2); ++c)
+        for (int k = 0; k < 3; ++k)
+          column_of(contact_factor.data(), c, k) = columns_of<float>(contact_matrix(fine->contacts()[c])).column[k];
 #pragma omp for schedule(static)
-    for (int i = 0; i < static_cast<int>(fine_diagonal.size()); ++i)
-      fine_diagonal[i] = columns_of<float>(system.diagonal[i] * Mat3::Identity());
+    for (int i = 0; i < fine->rows(); ++i) fine_diagonal[i] = fine->diagonal(i);
     for_chunks(true, level.rows, [&](int begin, int end) {
       for (int a = begin; a < end; ++a) {
-        const float scale = has_flat ? static_cast<float>(system.flat_scale[levels[0].prolongation.chosen[a]]) : 0.f;
+        const float scale = far.empty() ? 0.f : static_cast<float>(system.flat_scale[levels[0].prolongation.chosen[a]]);
         const auto scalar = [](double value) { return columns_of<float>(value * Mat3::Identity()); };
-        level.diagonal[a] = scalar(has_flat ? scale * flat_diagonal[a] : 0.f);
-        for (int k = level.pattern.begin[a]; k < level.pattern.begin[a + 1]; ++k)
-          level.block[k] = scalar(has_flat ? scale * flat[k] : 0.f);
-        for (int k = level.touching.begin[a]; k < level.touching.begin[a + 1]; ++k) level.touching_block[k] = {};
+        level.diagonal[a] = scalar(far.empty() ? 0.f : scale * far_diagonal[a]);
+        for (int e = level.pattern.begin[a]; e < level.pattern.begin[a + 1]; ++e)
+          for (int k = 0; k < 3; ++k) {
+            Quad<float>& column = column_of(level.block.data(), e, k);
+            column = Quad<float>{};
+            if (!far.empty()) column.lanes[k] = scale * far[e];
+          }
       }
-      accumulate(level.product, fine->blocks().data(), fine_diagonal.data(), level.block.data(), level.diagonal.data(),
-                 begin, end);
+      clear(level.touching_block, level.touching, begin, end);
+      accumulate(level.product, fine->blocks(), fine_diagonal.data(), level.block.data(), level.diagonal.data(), begin,
+                 end);
       accumulate(level.touching_product, contact_factor.data(), nullptr, level.touching_block.data(),
                  level.diagonal.data(), begin, end);
     });
+    for_chunks(true, level.rows, [&](int begin, int end) { reflect(level, begin, end); });
   }
 }
 
 void Multigrid::Impl::fill_coarser(const Level& finer, Level& level) {
 #pragma omp parallel if (chunks_of(level.rows) > 2)
-  for_chunks(true, level.rows, [&](int begin, int end) {
-    for (int a = begin; a < end; ++a) {
-      level.diagonal[a] = {};
-      for (int k = level.pattern.begin[a]; k < level.pattern.begin[a + 1]; ++k) level.block[k] = {};
-      for (int k = level.touching.begin[a]; k < level.touching.begin[a + 1]; ++k) level.touching_block[k] = {};
-    }
-    accumulate(level.product, finer.block.data(), finer.diagonal.data(), level.block.data(), level.diagonal.data(),
-               begin, end);
-    accumulate(level.touching_product, finer.touching_block.data(), nullptr, level.touching_block.data(),
-               level.diagonal.data(), begin, end);
-  });
+  {
+    for_chunks(true, level.rows, [&](int begin, int end) {
+      for (int a = begin; a < end; ++a) level.diagonal[a] = {};
+      clear(level.block, level.pattern, begin, end);
+      clear(level.touching_block, level.touching, begin, end);
+      accumulate(level.product, finer.block.data(), finer.diagonal.data(), level.block.data(), level.diagonal.data(),
+                 begin, end);
+      accumulate(level.touching_product, finer.touching_block.data(), nullptr, level.touching_block.data(),
+                 level.diagonal.data(), begin, end);
+    });
+    for_chunks(true, level.rows, [&](int begin, int end) { reflect(level, begin, end); });
+  }
 }
 
 // False where a block is not one of a positive definite matrix.
@@ -230,10 +258,10 @@ bool Multigrid::Impl::invert_diagonal(Level& level) {
 #pragma omp parallel if (level.rows >= one_thread)
   for_chunks(true, level.rows, [&](int begin, int end) {
     for (int a = begin; a < end; ++a) {
-      Mat3 whole = block_of(level.diagonal[a]);
-      for (int k = level.pattern.begin[a]; k < level.pattern.begin[a + 1]; ++k) whole -= block_of(level.block[k]);
-      for (int k = level.touching.begin[a]; k < level.touching.begin[a + 1]; ++k)
-        whole -= block_of(level.touching_block[k]);
+      BlockColumns<float> sum = level.diagonal[a];
+      take_away(level.block, level.pattern, a, sum);
+      take_away(level.touching_block, level.touching, a, sum);
+      const Mat3 whole = block_of(sum);
       const Mat3 inverse = (0.5 * (whole + whole.transpose())).inverse();
       if (!inverse.allFinite() || !(inverse.trace() > 0)) positive[begin / chunk] = false;
       level.inverse[a] = columns_of<float>(inverse);
@@ -248,9 +276,9 @@ bool Multigrid::Impl::factor_coarsest() {
   if (!direct) return true;
   const int n = level.rows;
   Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(3 * n, 3 * n);
-  const auto add = [&](int a, const RowPattern& pattern, const Blocks& block) {
+  const auto add = [&](int a, const RowPattern& pattern, const PairedBlocks& block) {
     for (int k = pattern.begin[a]; k < pattern.begin[a + 1]; ++k) {
-      const Mat3 entry = block_of(block[k]);
+      const Mat3 entry = block_at(block, k);
       whole.block<3, 3>(3 * a, 3 * pattern.column[k]) += entry;
       whole.block<3, 3>(3 * a, 3 * a) -= entry;
     }
@@ -297,11 +325,10 @@ void Multigrid::fill_finest(const LinearSystem& system, std::span<const Mat3> di
 bool Multigrid::fill(const LinearSystem& system, std::span<const Mat3> diagonal, PcgMatrix<float>& fine) {
   Impl& impl = *impl_;
   if (impl.levels.size() < 2) return false;
-  if (!impl.patterns) {
-    impl.make_patterns(system);
-    impl.make_contact_patterns(system.contacts);
-  }
-  if (!same(system.contacts, impl.contacts)) impl.make_contact_patterns(system.contacts);
+  impl.fine = &fine;
+  const bool first = !impl.patterns;
+  if (first) impl.make_patterns(system);
+  if (first || !same(fine.contacts(), impl.contacts)) impl.make_contact_patterns(fine.contacts());
   fill_finest(system, diagonal, fine);
   for (std::size_t l = 1; l < impl.levels.size(); ++l) {
     if (l == 1)

@@ -1,6 +1,7 @@
 #include "physics/pcg.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include <Eigen/LU>
@@ -27,6 +28,16 @@ void set(const Vec3& v, Quad<Real>& quad) {
 }
 
 template <class Real>
+void add(const BlockColumns<Real>& block, BlockPair<Real>* blocks, int entry) {
+  for (int k = 0; k < 3; ++k) column_of(blocks, entry, k).lanes += block.column[k].lanes;
+}
+
+bool share_an_element(const PairPattern& pattern, int i, int j) {
+  const auto first = pattern.column.begin();
+  return i == j || std::binary_search(first + pattern.row_begin[i], first + pattern.row_begin[i + 1], j);
+}
+
+template <class Real>
 void product(const Quads<Real>& a, const Quads<Real>& b, int rows, std::vector<double>& partial) {
 #pragma omp for schedule(static)
   for (int c = 0; c < chunks_of(rows); ++c)
@@ -36,26 +47,103 @@ void product(const Quads<Real>& a, const Quads<Real>& b, int rows, std::vector<d
 }  // namespace
 
 template <class Real>
-void PcgMatrix<Real>::fill(const LinearSystem& system) {
+void PcgMatrix<Real>::lay_out(const LinearSystem& system) {
   const PairPattern& pattern = system.pattern;
-  rows_ = pattern.rows;
   const bool flat = system.flat.rows() > 0;
-  blocks_.resize(pattern.column.size());
-  diagonal_.resize(rows_);
-  if (flat) flat_.resize(system.flat.nonZeros());
-#pragma omp parallel for schedule(static) if (chunks_of(rows_) > small)
-  for (int i = 0; i < rows_; ++i) {
-    diagonal_[i] = static_cast<Real>(system.diagonal[i]);
-    for (int k = pattern.row_begin[i]; k < pattern.row_begin[i + 1]; ++k) {
-      const Mat3& block = system.pairs[pattern.pair[k]];
-      blocks_[k] = columns_of<Real>(pattern.column[k] > i ? block : Mat3(block.transpose()));
+  near_.begin = far_.begin = {0};
+  for (int i = 0; i < pattern.rows; ++i) {
+    const auto first = pattern.column.begin() + pattern.row_begin[i],
+               last = pattern.column.begin() + pattern.row_begin[i + 1];
+    near_.column.insert(near_.column.end(), first, last);
+    for (int k = pattern.row_begin[i]; k < pattern.row_begin[i + 1]; ++k) near_entry_.push_back(k);
+    near_.end_row(i);
+    near_entry_.resize(near_.column.size(), -1);
+    near_place_.resize(near_.column.size(), -1);
+    for (int k = flat ? system.flat.outerIndexPtr()[i] : 0; flat && k < system.flat.outerIndexPtr()[i + 1]; ++k) {
+      const int j = system.flat.innerIndexPtr()[k];
+      if (j == i) continue;
+      const auto found = std::lower_bound(first, last, j);
+      if (found != last && *found == j) {
+        near_place_[near_.begin[i] + (found - first)] = k;
+      } else {
+        far_.column.push_back(j);
+        far_place_.push_back(k);
+      }
     }
-    if (flat)
-      for (int k = system.flat.outerIndexPtr()[i]; k < system.flat.outerIndexPtr()[i + 1]; ++k)
-        flat_[k] = static_cast<Real>(system.flat_scale[i] * system.flat.valuePtr()[k]);
+    far_.end_row(i);
+    far_place_.resize(far_.column.size(), -1);
   }
+  blocks_.assign(near_.column.size() / 2, {});
+  diagonal_.resize(rows());
+  far_value_.assign(far_.column.size(), Real(0));
+  is_held_.assign(rows(), false);
+  held_.resize(rows());
+}
 
-  const int contacts = static_cast<int>(system.contacts.size());
+template <class Real>
+void PcgMatrix<Real>::sort_contacts(const LinearSystem& system) {
+  const auto nodes = [](const ContactBlock& contact) { return contact.nodes; };
+  if (!std::ranges::equal(system.contacts, known_, {}, nodes)) {
+    known_.clear();
+    is_near_.clear();
+    for (const ContactBlock& contact : system.contacts) {
+      bool near = true;
+      for (const int i : contact.nodes)
+        for (const int j : contact.nodes) near = near && (i < 0 || j < 0 || share_an_element(system.pattern, i, j));
+      known_.push_back(contact.nodes);
+      is_near_.push_back(near);
+    }
+  }
+  contacts_.clear();
+  for (std::size_t c = 0; c < known_.size(); ++c)
+    if (!is_near_[c]) contacts_.push_back(system.contacts[c]);
+}
+
+// Row i of w w^T (x) C: w_i C (s u_i + sum_j w_j (u_j - u_i)), s the sum of all weights.
+template <class Real>
+void PcgMatrix<Real>::add_contacts(const LinearSystem& system, int i) {
+  Mat3 held = Mat3::Zero();
+  is_held_[i] = false;
+  for (int l = system.lists.begin[i]; l < system.lists.begin[i + 1]; ++l) {
+    const int c = system.lists.contact[l];
+    if (!is_near_[c]) continue;
+    const ContactBlock& contact = system.contacts[c];
+    const Mat3 factor = system.lists.weight[l] * contact_matrix(contact);
+    double sum = 0;
+    for (int n = 0; n < 4; ++n) {
+      if (contact.nodes[n] < 0) continue;
+      sum += contact.weights[n];
+      for (int k = near_.begin[i]; k < near_.begin[i + 1] && contact.nodes[n] != i; ++k)
+        if (near_.column[k] == contact.nodes[n]) add(columns_of<Real>(contact.weights[n] * factor), blocks_.data(), k);
+    }
+    held += sum * factor;
+    is_held_[i] = true;
+  }
+  if (is_held_[i]) held_[i] = columns_of<Real>(held);
+}
+
+template <class Real>
+void PcgMatrix<Real>::fill_row(const LinearSystem& system, int i) {
+  const double* flat = system.flat.rows() > 0 ? system.flat.valuePtr() : nullptr;
+  diagonal_[i] = static_cast<Real>(system.diagonal[i]);
+  for (int k = near_.begin[i]; k < near_.begin[i + 1]; ++k) {
+    if (near_entry_[k] < 0) continue;
+    const double* pair = system.pairs[system.pattern.pair[near_entry_[k]]].data();
+    const double bend = near_place_[k] >= 0 ? system.flat_scale[i] * flat[near_place_[k]] : 0;
+    const int down = near_.column[k] > i ? 1 : 3, across = 4 - down;
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r)
+        column_of(blocks_.data(), k, c).lanes[r] = static_cast<Real>(pair[across * c + down * r] + (r == c ? bend : 0));
+  }
+  for (int k = far_.begin[i]; k < far_.begin[i + 1]; ++k)
+    if (far_place_[k] >= 0) far_value_[k] = static_cast<Real>(system.flat_scale[i] * flat[far_place_[k]]);
+  if (!system.lists.begin.empty()) add_contacts(system, i);
+}
+
+template <class Real>
+void PcgMatrix<Real>::fill_contacts() {
+  const int contacts = static_cast<int>(contacts_.size());
+  lists_ = list_contacts(contacts_, rows());
   nodes_.resize(4 * contacts);
   weights_.resize(4 * contacts);
   normals_.resize(contacts);
@@ -63,7 +151,7 @@ void PcgMatrix<Real>::fill(const LinearSystem& system) {
   tangent_.resize(contacts);
   difference_.resize(contacts);
   for (int c = 0; c < contacts; ++c) {
-    const ContactBlock& contact = system.contacts[c];
+    const ContactBlock& contact = contacts_[c];
     for (int k = 0; k < 4; ++k) {
       nodes_[4 * c + k] = std::max(contact.nodes[k], 0);
       weights_[4 * c + k] = contact.nodes[k] < 0 ? Real(0) : static_cast<Real>(contact.weights[k]);
@@ -72,37 +160,64 @@ void PcgMatrix<Real>::fill(const LinearSystem& system) {
     tangent_[c] = static_cast<Real>(contact.tangent_stiffness);
     difference_[c] = static_cast<Real>(contact.normal_stiffness - contact.tangent_stiffness);
   }
-  weights_by_row_.assign(system.lists.weight.begin(), system.lists.weight.end());
-
-  view_ = {};
-  view_.begin = pattern.row_begin.data();
-  view_.column = pattern.column.data();
-  view_.block = blocks_.data();
-  view_.diagonal = diagonal_.data();
-  if (flat) {
-    view_.flat_begin = system.flat.outerIndexPtr();
-    view_.flat_column = system.flat.innerIndexPtr();
-    view_.flat_value = flat_.data();
-  }
-  if (contacts > 0) {
-    view_.contact_begin = system.lists.begin.data();
-    view_.contact = system.lists.contact.data();
-    view_.contact_weight = weights_by_row_.data();
-    view_.contact_response = response_.data();
-  }
+  weights_by_row_.assign(lists_.weight.begin(), lists_.weight.end());
   contact_view_ = {nodes_.data(), weights_.data(), normals_.data(), tangent_.data(), difference_.data()};
 }
 
 template <class Real>
+void PcgMatrix<Real>::fill(const LinearSystem& system) {
+  if (near_.begin.empty()) lay_out(system);
+  assert(near_entry_.size() >= system.pattern.column.size());
+  sort_contacts(system);
+  fill_contacts();
+  const bool touched = !system.lists.begin.empty();
+#pragma omp parallel for schedule(static) if (chunks_of(rows()) > small)
+  for (int i = 0; i < rows(); ++i) fill_row(system, i);
+  if (!touched) std::ranges::fill(is_held_, false);
+
+  view_ = {};
+  view_.begin = near_.begin.data();
+  view_.column = near_.column.data();
+  view_.block = blocks_.data();
+  view_.diagonal = diagonal_.data();
+  if (touched) {
+    view_.is_held = is_held_.data();
+    view_.held = held_.data();
+  }
+  if (!far_.column.empty()) {
+    view_.far_begin = far_.begin.data();
+    view_.far_column = far_.column.data();
+    view_.far_value = far_value_.data();
+  }
+  if (!contacts_.empty()) {
+    view_.contact_begin = lists_.begin.data();
+    view_.contact = lists_.contact.data();
+    view_.contact_weight = weights_by_row_.data();
+    view_.contact_response = response_.data();
+  }
+}
+
+template <class Real>
+BlockColumns<Real> PcgMatrix<Real>::diagonal(int i) const {
+  BlockColumns<Real> own = columns_of<Real>(Mat3::Identity());
+  for (int k = 0; k < 3; ++k) {
+    own.column[k].lanes *= diagonal_[i];
+    if (is_held_[i]) own.column[k].lanes += held_[i].column[k].lanes;
+  }
+  return own;
+}
+
+template <class Real>
 void PcgMatrix<Real>::multiply(const Quads<Real>& p, Quads<Real>& q, std::vector<double>& partial) {
-  if (contacts() > 0) {
+  const int contacts = static_cast<int>(contacts_.size());
+  if (contacts > 0) {
 #pragma omp for schedule(static)
-    for (int c = 0; c < chunks_of(contacts()); ++c)
-      contact_responses(contact_view_, p.data(), response_.data(), c * chunk, std::min(contacts(), (c + 1) * chunk));
+    for (int c = 0; c < chunks_of(contacts); ++c)
+      contact_responses(contact_view_, p.data(), response_.data(), c * chunk, std::min(contacts, (c + 1) * chunk));
   }
 #pragma omp for schedule(static)
-  for (int c = 0; c < chunks_of(rows_); ++c)
-    partial[c] = multiply_rows(view_, p.data(), q.data(), c * chunk, std::min(rows_, (c + 1) * chunk));
+  for (int c = 0; c < chunks_of(rows()); ++c)
+    partial[c] = multiply_rows(view_, p.data(), q.data(), c * chunk, std::min(rows(), (c + 1) * chunk));
 }
 
 template <class Real>

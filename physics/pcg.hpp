@@ -27,30 +27,59 @@ Mat3 block_of(const BlockColumns<Real>& columns) {
   return block;
 }
 
+// Entries of rows off the diagonal, in any order. Each row's number is even: where need be the last entry is one of the
+// row's own, whose block is zero.
+struct RowPattern {
+  std::vector<int> begin, column;
+  int rows() const { return static_cast<int>(begin.size()) - 1; }
+  void end_row(int row) {
+    if (column.size() % 2 != 0) column.push_back(row);
+    begin.push_back(static_cast<int>(column.size()));
+  }
+};
+
 // z = M^-1 r on all rows. Called by every thread of an OpenMP team, with its loops shared among them; complete when it
 // returns. z must be zero on rows that are not free, whatever r is there.
 template <class Real>
 using Preconditioner = std::function<void(const Quads<Real>& r, Quads<Real>& z)>;
 
-// A LinearSystem in the layout of the kernels. Keeps pointers into the system's pattern and lists.
+// A LinearSystem in the layout of the kernels. Flat entries and contacts between vertices that share an element are
+// parts of its blocks; what couples others is kept beside them.
 template <class Real>
 class PcgMatrix {
  public:
-  void fill(const LinearSystem&);
-  int rows() const { return rows_; }
-  std::span<const BlockColumns<Real>> blocks() const { return blocks_; }  // as PairPattern::column has them
-  int contacts() const { return static_cast<int>(response_.size()); }
+  void fill(const LinearSystem&);  // with patterns that stay those of the first one
+  int rows() const { return near_.rows(); }
+  const RowPattern& pattern() const { return near_; }
+  const BlockPair<Real>* blocks() const { return blocks_.data(); }
+  BlockColumns<Real> diagonal(int i) const;       // what acts on the row's own motion, not on differences
+  const RowPattern& far() const { return far_; }  // flat entries that are in no block, with the place of their value
+  std::span<const int> far_place() const { return far_place_; }
+  std::span<const ContactBlock> contacts() const { return contacts_; }  // that are in no block
   // q = A p by the calling team; partial sums of p . q, one a chunk.
   void multiply(const Quads<Real>& p, Quads<Real>& q, std::vector<double>& partial);
 
  private:
-  int rows_ = 0;
-  RowView<Real> view_{};
+  void lay_out(const LinearSystem&);
+  void sort_contacts(const LinearSystem&);
+  void fill_row(const LinearSystem&, int i);
+  void add_contacts(const LinearSystem&, int i);
+  void fill_contacts();
+
+  RowPattern near_, far_;
+  std::vector<int> near_entry_, near_place_, far_place_;  // in the system's pattern and in its flat matrix; -1: nowhere
+  std::vector<BlockPair<Real>> blocks_;
+  std::vector<Real> diagonal_, far_value_;
+  std::vector<std::array<int, 4>> known_;  // the nodes of all contacts, as they were sorted
+  std::vector<char> is_near_;              // of each contact: it is a part of the blocks
+  std::vector<char> is_held_;              // of each row: such contacts act on its own motion, by `held_`
+  std::vector<BlockColumns<Real>> held_;
+  std::vector<ContactBlock> contacts_;
+  ContactLists lists_;
   ContactView<Real> contact_view_{};
-  std::vector<BlockColumns<Real>> blocks_;
-  std::vector<Real> diagonal_, flat_, weights_by_row_;
+  RowView<Real> view_{};
   std::vector<int> nodes_;
-  std::vector<Real> weights_, tangent_, difference_;
+  std::vector<Real> weights_, tangent_, difference_, weights_by_row_;
   Quads<Real> normals_, response_;
 };
 

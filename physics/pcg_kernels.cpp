@@ -15,6 +15,48 @@ template <class Real>
   y.lanes += block.column[2].lanes * u.lanes[2];
 }
 
+template <class Real>
+struct EightLanes;
+template <>
+struct EightLanes<float> {
+  using Type = float __attribute__((vector_size(32)));
+};
+template <>
+struct EightLanes<double> {
+  using Type = double __attribute__((vector_size(64)));
+};
+template <class Real>
+using Eight = typename EightLanes<Real>::Type;
+
+template <class Real>
+[[gnu::always_inline]] inline Eight<Real> side_by_side(const Quad<Real>& a, const Quad<Real>& b) {
+  return __builtin_shufflevector(a.lanes, b.lanes, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+template <class Real>
+[[gnu::always_inline]] inline Quad<Real> everywhere(Real value) {
+  return {typename Quad<Real>::Lanes{} + value};
+}
+
+template <class Real>
+[[gnu::always_inline]] inline Eight<Real> eight_at(const Quad<Real> (&two)[2]) {
+  Eight<Real> lanes;
+  __builtin_memcpy(&lanes, two, sizeof lanes);
+  return lanes;
+}
+
+template <class Real>
+[[gnu::always_inline]] inline void add_products(const BlockPair<Real>& block, const Eight<Real>& u, Eight<Real>& y) {
+  y += eight_at(block.column[0]) * __builtin_shufflevector(u, u, 0, 0, 0, 0, 4, 4, 4, 4);
+  y += eight_at(block.column[1]) * __builtin_shufflevector(u, u, 1, 1, 1, 1, 5, 5, 5, 5);
+  y += eight_at(block.column[2]) * __builtin_shufflevector(u, u, 2, 2, 2, 2, 6, 6, 6, 6);
+}
+
+template <class Real>
+[[gnu::always_inline]] inline Quad<Real> sum_of_halves(const Eight<Real>& a) {
+  return {__builtin_shufflevector(a, a, 0, 1, 2, 3) + __builtin_shufflevector(a, a, 4, 5, 6, 7)};
+}
+
 // Off-diagonal blocks act on differences, which keeps translations exact in any precision.
 template <class Real>
 [[gnu::always_inline]] inline double multiply_rows_inline(const RowView<Real>& a, const Quad<Real>* u, Quad<Real>* y,
@@ -22,24 +64,20 @@ template <class Real>
   Quad<Real> product{};
   for (int i = begin; i < end; ++i) {
     const Quad<Real> own = u[i];
-    Quad<Real> even{own.lanes * a.diagonal[i]}, odd{};
-    int k = a.begin[i];
-    for (; k + 1 < a.begin[i + 1]; k += 2) {
-      add_product(a.block[k], {u[a.column[k]].lanes - own.lanes}, even);
-      add_product(a.block[k + 1], {u[a.column[k + 1]].lanes - own.lanes}, odd);
-    }
-    if (k < a.begin[i + 1]) add_product(a.block[k], {u[a.column[k]].lanes - own.lanes}, even);
-    if (a.flat_begin) {
-      for (k = a.flat_begin[i]; k + 1 < a.flat_begin[i + 1]; k += 2) {
-        even.lanes += (u[a.flat_column[k]].lanes - own.lanes) * a.flat_value[k];
-        odd.lanes += (u[a.flat_column[k + 1]].lanes - own.lanes) * a.flat_value[k + 1];
-      }
-      if (k < a.flat_begin[i + 1]) even.lanes += (u[a.flat_column[k]].lanes - own.lanes) * a.flat_value[k];
-    }
+    const Eight<Real> owns = side_by_side(own, own);
+    Quad<Real> sum{own.lanes * a.diagonal[i]};
+    Eight<Real> near{}, far{};
+    for (int k = a.begin[i]; k < a.begin[i + 1]; k += 2)
+      add_products(a.block[k / 2], side_by_side(u[a.column[k]], u[a.column[k + 1]]) - owns, near);
+    if (a.far_begin)
+      for (int k = a.far_begin[i]; k < a.far_begin[i + 1]; k += 2)
+        far += (side_by_side(u[a.far_column[k]], u[a.far_column[k + 1]]) - owns) *
+               side_by_side(everywhere(a.far_value[k]), everywhere(a.far_value[k + 1]));
+    if (a.is_held && a.is_held[i]) add_product(a.held[i], own, sum);
     if (a.contact_begin)
-      for (k = a.contact_begin[i]; k < a.contact_begin[i + 1]; ++k)
-        even.lanes += a.contact_response[a.contact[k]].lanes * a.contact_weight[k];
-    y[i].lanes = even.lanes + odd.lanes;
+      for (int k = a.contact_begin[i]; k < a.contact_begin[i + 1]; ++k)
+        sum.lanes += a.contact_response[a.contact[k]].lanes * a.contact_weight[k];
+    y[i].lanes = sum.lanes + sum_of_halves<Real>(near).lanes + sum_of_halves<Real>(far).lanes;
     product.lanes += y[i].lanes * own.lanes;
   }
   return sum_of(product);
@@ -100,18 +138,14 @@ SELVEDGE_CLONES double multiply_rows(const RowView<double>& a, const Quad<double
 SELVEDGE_CLONES void multiply_level(const LevelView& a, const Quad<float>* u, Quad<float>* y, int begin, int end) {
   for (int i = begin; i < end; ++i) {
     const Quad<float> own = u[i];
-    Quad<float> even{}, odd{};
-    add_product(a.diagonal[i], own, even);
-    for (int part = 0; part < 2; ++part) {
-      int k = a.begin[part][i];
-      const int last = a.begin[part][i + 1];
-      for (; k + 1 < last; k += 2) {
-        add_product(a.block[part][k], {u[a.column[part][k]].lanes - own.lanes}, even);
-        add_product(a.block[part][k + 1], {u[a.column[part][k + 1]].lanes - own.lanes}, odd);
-      }
-      if (k < last) add_product(a.block[part][k], {u[a.column[part][k]].lanes - own.lanes}, odd);
-    }
-    y[i].lanes = even.lanes + odd.lanes;
+    const Eight<float> owns = side_by_side(own, own);
+    Quad<float> sum{};
+    add_product(a.diagonal[i], own, sum);
+    Eight<float> sums{};
+    for (int part = 0; part < 2; ++part)
+      for (int k = a.begin[part][i]; k < a.begin[part][i + 1]; k += 2)
+        add_products(a.block[part][k / 2], side_by_side(u[a.column[part][k]], u[a.column[part][k + 1]]) - owns, sums);
+    y[i].lanes = sum.lanes + sum_of_halves<float>(sums).lanes;
   }
 }
 SELVEDGE_CLONES void gather(const WeightView& p, const Quad<float>* u, Quad<float>* y, int begin, int end) {

@@ -1,7 +1,8 @@
 #pragma once
 
 // The inner loops of PCG over ranges of rows, compiled for several instruction sets. Vertices are four lanes wide (x,
-// y, z, 0), so that a block times a vertex is three multiplications of a column by a lane.
+// y, z, 0), so that a block times a vertex is three multiplications of a column by a lane; a row's blocks are taken
+// two at a time.
 
 namespace selvedge {
 
@@ -13,7 +14,7 @@ struct Quad<float> {
   Lanes lanes;
 };
 template <>
-struct Quad<double> {
+struct alignas(32) Quad<double> {  // as clones for wide registers take it to be, which others would not
   using Lanes = double __attribute__((vector_size(32)));
   Lanes lanes;
 };
@@ -23,16 +24,29 @@ struct BlockColumns {
   Quad<Real> column[3];
 };
 
-// A matrix by rows, as LinearSystem means it. Null pointers: no such term.
+// The blocks of two entries of a row, an even one and the next.
+template <class Real>
+struct BlockPair {
+  Quad<Real> column[3][2];
+};
+template <class Pair>  // of a matrix whose blocks lie in pairs
+auto& column_of(Pair* pairs, int entry, int k) {
+  return pairs[entry / 2].column[k][entry % 2];
+}
+
+// A matrix by rows, as LinearSystem means it: y_i = (diagonal_i + held_i) u_i + sum B_ij (u_j - u_i) + contacts. Rows
+// begin at even entries and end before even ones. Null pointers: no such term.
 template <class Real>
 struct RowView {
   const int* begin;
   const int* column;
-  const BlockColumns<Real>* block;
+  const BlockPair<Real>* block;
   const Real* diagonal;
-  const int* flat_begin;
-  const int* flat_column;
-  const Real* flat_value;
+  const char* is_held;
+  const BlockColumns<Real>* held;
+  const int* far_begin;
+  const int* far_column;
+  const Real* far_value;
   const int* contact_begin;
   const int* contact;
   const Real* contact_weight;
@@ -52,12 +66,13 @@ struct ContactView {
 double multiply_rows(const RowView<float>&, const Quad<float>* u, Quad<float>* y, int begin, int end);
 double multiply_rows(const RowView<double>&, const Quad<double>* u, Quad<double>* y, int begin, int end);
 
-// A coarse level's matrix by rows: y_i = D_i u_i + sum B_ij (u_j - u_i), the sum over two sets of blocks.
+// A coarse level's matrix by rows: y_i = D_i u_i + sum B_ij (u_j - u_i), the sum over two sets of blocks, laid out
+// like those of a RowView.
 struct LevelView {
   const BlockColumns<float>* diagonal;
   const int* begin[2];
   const int* column[2];
-  const BlockColumns<float>* block[2];
+  const BlockPair<float>* block[2];
 };
 void multiply_level(const LevelView&, const Quad<float>* u, Quad<float>* y, int begin, int end);
 

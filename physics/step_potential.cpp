@@ -156,7 +156,7 @@ void energies(const StepPotential& step, const Points& x, StepScratch& scratch, 
   const int vertex_chunks = chunks_of(vertices), tasks = vertex_chunks + chunks_of(pushes);
   const std::size_t first = energies.size();
   energies.resize(first + tasks);
-#pragma omp parallel for schedule(static) if (tasks > 8)
+#pragma omp parallel for schedule(static, 4) if (tasks > 8)
   for (int c = 0; c < tasks; ++c) {
     double sum = 0;
     if (c < vertex_chunks) {

@@ -53,6 +53,21 @@ Eigen::MatrixXd dense(const Prolongation& p) {
 }
 
 using Blocks = std::vector<BlockColumns<float>>;
+using PairedBlocks = std::vector<BlockPair<float>>;
+
+PairedBlocks paired(const Blocks& blocks) {
+  PairedBlocks pairs((blocks.size() + 1) / 2, BlockPair<float>{});
+  for (std::size_t entry = 0; entry < blocks.size(); ++entry)
+    for (int k = 0; k < 3; ++k) column_of(pairs.data(), static_cast<int>(entry), k) = blocks[entry].column[k];
+  return pairs;
+}
+
+Blocks single(const PairedBlocks& pairs) {
+  Blocks blocks(2 * pairs.size());
+  for (std::size_t entry = 0; entry < blocks.size(); ++entry)
+    for (int k = 0; k < 3; ++k) blocks[entry].column[k] = column_of(pairs.data(), static_cast<int>(entry), k);
+  return blocks;
+}
 
 // y_i = D_i u_i + sum_j B_ij (u_j - u_i) as a matrix.
 Eigen::MatrixXd dense(const RowPattern& pattern, const Blocks& blocks, const Blocks& diagonal) {
@@ -204,18 +219,51 @@ TEST_CASE("Galerkin products are P^T A P, of matrices and of contacts", "[multig
     for (int k = 0; k < 9; ++k) m(k) = normal(random);
     return columns_of<float>(m);
   };
-  const RowPattern fine{e.pattern.row_begin, e.pattern.column};
-  Blocks blocks(fine.column.size()), diagonal(e.pattern.rows);
-  std::generate(blocks.begin(), blocks.end(), some);
-  std::generate(diagonal.begin(), diagonal.end(), some);
+  // Of a symmetric matrix: B_ji is the transpose of B_ij, diagonals and the rows' sums of blocks are symmetric, the
+  // blocks are not.
+  const auto symmetric = [&] {
+    const Mat3 m = block_of(some());
+    return columns_of<float>(m + m.transpose());
+  };
+  RowPattern fine{{0}, {}};
+  Blocks blocks, diagonal(e.pattern.rows);
+  std::vector<BlockColumns<float>> of_pair(e.pattern.pairs.size());
+  std::generate(of_pair.begin(), of_pair.end(), symmetric);
+  const auto known = [&](int i, int j) { return std::ranges::binary_search(e.pattern.pairs, std::array{i, j}); };
+  const auto add = [&](int i, int j, const Mat3& m) {
+    BlockColumns<float>& block = of_pair[find_pair(e.pattern, i, j)];
+    block = columns_of<float>(block_of(block) + m);
+  };
+  int loops = 0;
+  for (const auto& [i, j] : e.pattern.pairs)
+    for (int k = j + 1; k < e.pattern.rows; ++k) {
+      if (!known(i, k) || !known(j, k)) continue;
+      const Mat3 m = block_of(some()), skew = m - m.transpose();
+      add(i, j, skew);
+      add(j, k, skew);
+      add(i, k, -skew);
+      ++loops;
+    }
+  REQUIRE(loops > 50);
+  for (int i = 0; i < e.pattern.rows; ++i) {
+    for (int k = e.pattern.row_begin[i]; k < e.pattern.row_begin[i + 1]; ++k) {
+      const Mat3 block = block_of(of_pair[e.pattern.pair[k]]);
+      fine.column.push_back(e.pattern.column[k]);
+      blocks.push_back(columns_of<float>(e.pattern.column[k] > i ? block : Mat3(block.transpose())));
+    }
+    fine.end_row(i);
+    blocks.resize(fine.column.size(), BlockColumns<float>{});
+  }
+  std::generate(diagonal.begin(), diagonal.end(), symmetric);
   RowPattern coarse;
   const Product product = make_product(fine, true, p, transpose(p), coarse);
-  Blocks coarse_blocks(coarse.column.size(), BlockColumns<float>{}),
-      coarse_diagonal(p.coarse_count(), BlockColumns<float>{});
-  accumulate(product, blocks.data(), diagonal.data(), coarse_blocks.data(), coarse_diagonal.data(), 0,
+  PairedBlocks coarse_blocks(coarse.column.size() / 2, BlockPair<float>{});
+  Blocks coarse_diagonal(p.coarse_count(), BlockColumns<float>{});
+  accumulate(product, paired(blocks).data(), diagonal.data(), coarse_blocks.data(), coarse_diagonal.data(), 0,
              p.coarse_count());
+  reflect(product, coarse, coarse_blocks.data(), 0, p.coarse_count());
   const Eigen::MatrixXd expected = weights.transpose() * dense(fine, blocks, diagonal) * weights;
-  CHECK((dense(coarse, coarse_blocks, coarse_diagonal) - expected).norm() < 1e-5 * expected.norm());
+  CHECK((dense(coarse, single(coarse_blocks), coarse_diagonal) - expected).norm() < 1e-5 * expected.norm());
 
   Eigen::MatrixXd touching = Eigen::MatrixXd::Zero(weights.rows(), weights.rows());
   Blocks factors;
@@ -228,11 +276,14 @@ TEST_CASE("Galerkin products are P^T A P, of matrices and of contacts", "[multig
               contact.weights[a] * contact.weights[b] * contact_matrix(contact);
   }
   const Product of_contacts = make_product(e.contacts, p, coarse);
-  coarse_blocks.assign(coarse.column.size(), BlockColumns<float>{});
+  coarse_blocks.assign(coarse.column.size() / 2, BlockPair<float>{});
   coarse_diagonal.assign(p.coarse_count(), BlockColumns<float>{});
-  accumulate(of_contacts, factors.data(), nullptr, coarse_blocks.data(), coarse_diagonal.data(), 0, p.coarse_count());
+  accumulate(of_contacts, paired(factors).data(), nullptr, coarse_blocks.data(), coarse_diagonal.data(), 0,
+             p.coarse_count());
+  reflect(of_contacts, coarse, coarse_blocks.data(), 0, p.coarse_count());
   const Eigen::MatrixXd expected_touching = weights.transpose() * touching * weights;
-  CHECK((dense(coarse, coarse_blocks, coarse_diagonal) - expected_touching).norm() < 1e-5 * expected_touching.norm());
+  CHECK((dense(coarse, single(coarse_blocks), coarse_diagonal) - expected_touching).norm() <
+        1e-5 * expected_touching.norm());
 }
 
 TEST_CASE("A V-cycle is symmetric and positive, and no eigenvalue of it times the matrix is far from one",
