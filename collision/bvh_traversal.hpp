@@ -14,13 +14,31 @@ struct NodeWork {
   int a, b;
 };
 
+// Boxes at both ends of a motion round what boxes of whole motions are round.
+struct EndBoxes {
+  Box start, end;
+};
+
+// Boxes round whole motions overlap where things move by many of their own sizes. What moves along together is told
+// apart by an axis along which the boxes at the start are apart and those at the end, in the same order: on straight
+// motions so they are all the way.
+[[gnu::always_inline]] inline bool apart_in_order(const EndBoxes& a, const EndBoxes& b) {
+  bool apart = false;
+  for (int k = 0; k < 3; ++k)
+    apart |= ((a.start.hi[k] < b.start.lo[k]) & (a.end.hi[k] < b.end.lo[k])) |
+             ((b.start.hi[k] < a.start.lo[k]) & (b.end.hi[k] < a.end.lo[k]));
+  return apart;
+}
+
 // The way through one tree with itself (first and second the same) or through two. Below a node of one tree that is
-// marked in `quiet` no pair of its items with each other is visited.
+// marked in `quiet` no pair of its items with each other is visited; nor are nodes that are apart in order by the boxes
+// in `first_ends` and `second_ends`, where there are some.
 struct BvhTraversal {
   const Bvh& first;
   const Bvh& second;
   bool within_one;
   const std::vector<char>* quiet = nullptr;
+  const EndBoxes *first_ends = nullptr, *second_ends = nullptr;  // by node
 
   bool is_self(NodeWork w) const { return within_one && w.a == w.b; }
   bool is_leaf(NodeWork w) const { return first.nodes[w.a].child < 0 && second.nodes[w.b].child < 0; }
@@ -32,7 +50,9 @@ struct BvhTraversal {
   void split(NodeWork w, std::vector<NodeWork>& out) const {
     const Bvh::Node &a = first.nodes[w.a], &b = second.nodes[w.b];
     const auto add = [&](int i, int j) {
-      if (overlap(first.nodes[i].box, second.nodes[j].box)) out.push_back({i, j});
+      if (overlap(first.nodes[i].box, second.nodes[j].box) &&
+          !(first_ends && apart_in_order(first_ends[i], second_ends[j])))
+        out.push_back({i, j});
     };
     if (is_self(w)) {
       if (is_quiet(w)) return;
@@ -57,16 +77,21 @@ struct BvhTraversal {
   std::vector<NodeWork> frontier() const;
 };
 
+// One bit a lane, of comparisons of both halves of a leaf.
+using LaneFlags [[gnu::vector_size(16)]] = int;
+[[gnu::always_inline]] inline unsigned bits_of(LaneFlags first, LaneFlags second) {
+  constexpr LaneFlags low{1, 2, 4, 8}, high{16, 32, 64, 128};
+  const LaneFlags bits = (first & low) | (second & high);
+  return static_cast<unsigned>(bits[0] | bits[1] | bits[2] | bits[3]);
+}
+
 // One bit an item of the leaf: does its box overlap the box?
 [[gnu::always_inline]] inline unsigned overlaps(const Bvh::Leaf& leaf, const Box& box) {
   const auto half = [&](int h) {
     return (leaf.lo[0][h] <= box.hi[0]) & (leaf.hi[0][h] >= box.lo[0]) & (leaf.lo[1][h] <= box.hi[1]) &
            (leaf.hi[1][h] >= box.lo[1]) & (leaf.lo[2][h] <= box.hi[2]) & (leaf.hi[2][h] >= box.lo[2]);
   };
-  using Flags [[gnu::vector_size(16)]] = int;
-  constexpr Flags low{1, 2, 4, 8}, high{16, 32, 64, 128};
-  const Flags bits = (half(0) & low) | (half(1) & high);
-  return static_cast<unsigned>(bits[0] | bits[1] | bits[2] | bits[3]);
+  return bits_of(half(0), half(1));
 }
 
 inline Box box_of(const Bvh::Leaf& leaf, int i) {

@@ -1,96 +1,101 @@
 #include "collision/contact_pairs.hpp"
 
 #include <algorithm>
+#include <bit>
 
 #include "collision/exemption.hpp"
 
 namespace selvedge {
 namespace {
 
+// Primitives that a leaf of a tree owns, side by side; where things move fast with their boxes at both ends.
+struct Group {
+  const Bvh::Leaf& leaf;
+  const Bvh::Leaf *start = nullptr, *end = nullptr;
+
+  // Of the items of the other group, one bit each: those that item i may come near.
+  unsigned near(int i, const Group& other) const {
+    const unsigned bits = overlaps(other.leaf, box_of(leaf, i));
+    return bits == 0 || !start ? bits
+                               : bits & ~apart_in_order(*other.start, *other.end, {box_of(*start, i), box_of(*end, i)});
+  }
+};
+
 // A surface that takes part in a search: its tree and, by leaf of the tree, the vertices and edges that the leaf's
-// triangles own, in groups like leaves.
+// triangles own, in groups like leaves. Without `node_ends` nothing has boxes at both ends.
 struct Side {
   const Surface& surface;
   int first_node;
   const Bvh& bvh;
   const PrimitiveGroups &vertices, &edges;
-};
+  const EndLeaves &face_ends, &vertex_ends, &edge_ends;
+  const EndBoxes* node_ends;
 
-// The straight motion of all nodes that is searched.
-struct Motion {
-  const Points &from, &to;
-  double radius;
-  bool still;
-
-  Motion(const Points& x0, const Points& x1, double r) : from(x0), to(x1), radius(r * (1 + 1e-9)), still(x0 == x1) {}
-
-  // 1: the second primitive lies more than the radius above the first one along the axis; -1: below; 0: neither.
-  static int order(const Points& x, const NodePair& pair, int split, int axis, double radius) {
-    double lo[2], hi[2];
-    for (int i = 0; i < 4; ++i) {
-      const int side = i >= split;
-      const double at = x(pair.nodes[i], axis);
-      const bool first = i == 0 || i == split;
-      lo[side] = first ? at : std::min(lo[side], at);
-      hi[side] = first ? at : std::max(hi[side], at);
-    }
-    return lo[1] - hi[0] > radius ? 1 : lo[0] - hi[1] > radius ? -1 : 0;
+  Group group(const Bvh::Leaf& leaf, const EndLeaves& ends, std::size_t at) const {
+    return node_ends ? Group{leaf, &ends.start[at], &ends.end[at]} : Group{leaf};
   }
-  // Boxes round whole motions overlap where cloth moves by many of its edges. What moves along together is told apart
-  // by an axis that keeps the two apart at both ends, and so all the way.
-  bool keeps_apart(const NodePair& pair) const {
-    if (still) return false;
-    const int split = pair.kind == PairKind::vertex_face ? 1 : 2;
-    for (int axis = 0; axis < 3; ++axis)
-      if (const int before = order(from, pair, split, axis, radius);
-          before != 0 && before == order(to, pair, split, axis, radius))
-        return true;
-    return false;
+  Group faces(int leaf) const { return group(bvh.leaves[leaf], face_ends, leaf); }
+  template <class Visit>
+  void for_each_group(const PrimitiveGroups& all, const EndLeaves& ends, int first, int last, Visit&& visit) const {
+    for (int g = first; g < last; ++g) visit(group(all.groups[g], ends, g));
   }
 };
+
+// Calls visit(i, j) for the places i in a and j in b of what may come near. box_b holds all of b.
+template <class Visit>
+[[gnu::always_inline]] inline void for_each_near(const Group& a, const Group& b, const Box& box_b, Visit&& visit) {
+  for (unsigned from = overlaps(a.leaf, box_b); from != 0; from &= from - 1) {
+    const int i = std::countr_zero(from);
+    for (unsigned bits = a.near(i, b); bits != 0; bits &= bits - 1) visit(i, std::countr_zero(bits));
+  }
+}
 
 struct LeafPairs {
   const Side &a, &b;
   bool same;  // one surface: primitives that share a vertex are no pair
-  const Motion& motion;
-
-  void keep(const NodePair& pair, std::vector<NodePair>& pairs) const {
-    if (!motion.keeps_apart(pair)) pairs.push_back(pair);
-  }
 
   void vertex_face(const Side& p, int v, const Side& f, int face, std::vector<NodePair>& pairs) const {
     const int* n = f.surface.triangles.data() + 3 * face;
     if (same && (v == n[0] || v == n[1] || v == n[2])) return;
-    keep({PairKind::vertex_face, {v + p.first_node, n[0] + f.first_node, n[1] + f.first_node, n[2] + f.first_node}},
-         pairs);
+    pairs.push_back(
+        {PairKind::vertex_face, {v + p.first_node, n[0] + f.first_node, n[1] + f.first_node, n[2] + f.first_node}});
   }
   void edge_edge(int ea, int eb, std::vector<NodePair>& pairs) const {
     if (same && eb < ea) std::swap(ea, eb);
     const int *m = a.surface.edges.data() + 2 * ea, *n = b.surface.edges.data() + 2 * eb;
     if (same && (m[0] == n[0] || m[0] == n[1] || m[1] == n[0] || m[1] == n[1])) return;
-    keep({PairKind::edge_edge, {m[0] + a.first_node, m[1] + a.first_node, n[0] + b.first_node, n[1] + b.first_node}},
-         pairs);
+    pairs.push_back(
+        {PairKind::edge_edge, {m[0] + a.first_node, m[1] + a.first_node, n[0] + b.first_node, n[1] + b.first_node}});
   }
   void vertices_with_faces(const Side& p, int leaf_p, const Side& f, int leaf_f, const Box& box_f,
                            std::vector<NodePair>& pairs) const {
-    const Bvh::Leaf& faces = f.bvh.leaves[leaf_f];
-    for (const Bvh::Leaf& group : p.vertices.of(leaf_p))
-      for_each_overlap(group, faces, box_f,
-                       [&](int i, int j) { vertex_face(p, group.item[i], f, faces.item[j], pairs); });
+    const Group faces = f.faces(leaf_f);
+    p.for_each_group(
+        p.vertices, p.vertex_ends, p.vertices.begin[leaf_p], p.vertices.begin[leaf_p + 1], [&](const Group& group) {
+          for_each_near(group, faces, box_f,
+                        [&](int i, int j) { vertex_face(p, group.leaf.item[i], f, faces.leaf.item[j], pairs); });
+        });
+  }
+  void edges_with_edges(const Group& first, int from, int to, const Box& box_b, std::vector<NodePair>& pairs) const {
+    b.for_each_group(b.edges, b.edge_ends, from, to, [&](const Group& second) {
+      for_each_near(first, second, box_b,
+                    [&](int i, int j) { edge_edge(first.leaf.item[i], second.leaf.item[j], pairs); });
+    });
   }
   void edges_with_edges(int leaf_a, int leaf_b, const Box& box_b, std::vector<NodePair>& pairs) const {
-    for (const Bvh::Leaf& first : a.edges.of(leaf_a))
-      for (const Bvh::Leaf& second : b.edges.of(leaf_b))
-        for_each_overlap(first, second, box_b, [&](int i, int j) { edge_edge(first.item[i], second.item[j], pairs); });
+    a.for_each_group(a.edges, a.edge_ends, a.edges.begin[leaf_a], a.edges.begin[leaf_a + 1], [&](const Group& first) {
+      edges_with_edges(first, b.edges.begin[leaf_b], b.edges.begin[leaf_b + 1], box_b, pairs);
+    });
   }
   void edges_within(int leaf, const Box& box, std::vector<NodePair>& pairs) const {
-    const auto groups = a.edges.of(leaf);
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      const Bvh::Leaf& own = groups[g];
-      for_each_overlap(own, [&](int i, int j) { edge_edge(own.item[i], own.item[j], pairs); });
-      for (const Bvh::Leaf& later : groups.subspan(g + 1))
-        for_each_overlap(own, later, box, [&](int i, int j) { edge_edge(own.item[i], later.item[j], pairs); });
-    }
+    int next = a.edges.begin[leaf];
+    const int last = a.edges.begin[leaf + 1];
+    a.for_each_group(a.edges, a.edge_ends, next, last, [&](const Group& own) {
+      for (int i = 0; i < Bvh::leaf_size && own.leaf.item[i] >= 0; ++i)
+        for (unsigned bits = own.near(i, own) & (~1u << i); bits != 0; bits &= bits - 1)
+          edge_edge(own.leaf.item[i], own.leaf.item[std::countr_zero(bits)], pairs);
+      edges_with_edges(own, ++next, last, box, pairs);
+    });
   }
   void operator()(NodeWork w, std::vector<NodePair>& pairs) const {
     const Bvh::Node &node_a = a.bvh.nodes[w.a], &node_b = b.bvh.nodes[w.b];
@@ -177,36 +182,60 @@ PairSearch::PairSearch(const ContactWorld& world) : world_(world) {
   }
 }
 
-void PairSearch::update(Part& part, const Points& x0, const Points& x1, double radius) {
+void PrimitiveBoxes::set(const Surface& surface, const Points& x0, const Points& x1, double radius) {
+  vertex_boxes(x0, x1, radius, vertices);
+  edge_boxes(surface, vertices, edges);
+  triangle_boxes(surface, vertices, triangles);
+}
+
+void PairSearch::update(Part& part, const Points& x0, const Points& x1, double radius, bool ends) {
   const auto from = x0.middleRows(part.first_node, part.surface->vertex_count);
   const auto to = x1.middleRows(part.first_node, part.surface->vertex_count);
-  if (part.radius == radius && part.from == from && part.to == to) return;
-  part.radius = radius;
-  part.from = from;
-  part.to = to;
-  vertex_boxes(part.from, part.to, radius / 2, part.vertex_boxes);
-  edge_boxes(*part.surface, part.vertex_boxes, part.edge_boxes);
-  triangle_boxes(*part.surface, part.vertex_boxes, part.triangle_boxes);
-  if (selvedge::update(part.tree, part.triangle_boxes)) {
-    part.vertices.share_out(part.tree.bvh, part.surface->triangles, part.surface->vertex_owner);
-    part.edges.share_out(part.tree.bvh, part.surface->triangle_edges, part.surface->edge_owner);
+  if (part.radius != radius || part.from != from || part.to != to) {
+    part.radius = radius;
+    part.from = from;
+    part.to = to;
+    part.boxes.set(*part.surface, part.from, part.to, radius / 2);
+    if (selvedge::update(part.tree, part.boxes.triangles)) {
+      part.vertices.share_out(part.tree.bvh, part.surface->triangles, part.surface->vertex_owner);
+      part.edges.share_out(part.tree.bvh, part.surface->triangle_edges, part.surface->edge_owner);
+    }
+    part.vertices.set_boxes(part.boxes.vertices);
+    part.edges.set_boxes(part.boxes.edges);
+    part.has_ends = false;
   }
-  part.vertices.set_boxes(part.vertex_boxes);
-  part.edges.set_boxes(part.edge_boxes);
+  if (ends && !part.has_ends) update_ends(part);
+}
+
+void PairSearch::update_ends(Part& part) {
+  part.start.set(*part.surface, part.from, part.from, part.radius / 2);
+  part.end.set(*part.surface, part.to, part.to, part.radius / 2);
+  set_end_boxes(part.tree.bvh.leaves, part.start.triangles, part.end.triangles, part.face_ends);
+  set_end_boxes(part.vertices.groups, part.start.vertices, part.end.vertices, part.vertex_ends);
+  set_end_boxes(part.edges.groups, part.start.edges, part.end.edges, part.edge_ends);
+  set_end_boxes(part.tree.bvh, part.face_ends, part.node_ends);
+  part.has_ends = true;
 }
 
 void PairSearch::find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs) {
   pairs.clear();
-  update(cloth_, x0, x1, radius);
-  const auto side = [](const Part& p) { return Side{*p.surface, p.first_node, p.tree.bvh, p.vertices, p.edges}; };
+  // Boxes at both ends tell more apart than those round whole motions only where these are the longer ones.
+  const bool ends = !((x1 - x0).rowwise().squaredNorm().maxCoeff() <= radius * radius);
+  update(cloth_, x0, x1, radius, ends);
+  const auto side = [&](const Part& p) {
+    return Side{*p.surface,    p.first_node, p.tree.bvh,
+                p.vertices,    p.edges,      p.face_ends,
+                p.vertex_ends, p.edge_ends,  ends ? p.node_ends.data() : nullptr};
+  };
   const Side cloth = side(cloth_);
-  const Motion motion(x0, x1, radius);
-  if (world_.self)
-    gather(BvhTraversal{cloth.bvh, cloth.bvh, true}, scratch_, pairs, LeafPairs{cloth, cloth, true, motion});
+  const auto gather_with = [&](const Side& other, bool same) {
+    gather(BvhTraversal{cloth.bvh, other.bvh, same, nullptr, cloth.node_ends, other.node_ends}, scratch_, pairs,
+           LeafPairs{cloth, other, same});
+  };
+  if (world_.self) gather_with(cloth, true);
   for (Part& obstacle : obstacles_) {
-    update(obstacle, x0, x1, radius);
-    const Side body = side(obstacle);
-    gather(BvhTraversal{cloth.bvh, body.bvh, false}, scratch_, pairs, LeafPairs{cloth, body, false, motion});
+    update(obstacle, x0, x1, radius, ends);
+    gather_with(side(obstacle), false);
   }
   if (left_out_)
     std::erase_if(pairs, [this](const NodePair& pair) { return left_out_->leaves_alone(world_, pair.nodes); });

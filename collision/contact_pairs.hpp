@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "collision/bvh_traversal.hpp"
 #include "collision/ccd.hpp"
 #include "collision/distance.hpp"
+#include "collision/end_boxes.hpp"
 
 namespace selvedge {
 
@@ -46,11 +46,14 @@ struct PrimitiveGroups {
   std::vector<Bvh::Leaf> groups;
   std::vector<int> begin;  // those of leaf l are groups[begin[l] .. begin[l + 1])
 
-  std::span<const Bvh::Leaf> of(int leaf) const {
-    return {groups.data() + begin[leaf], static_cast<std::size_t>(begin[leaf + 1] - begin[leaf])};
-  }
   void share_out(const Bvh&, const Triangles& primitives, const std::vector<int>& owner);
   void set_boxes(std::span<const Box>);
+};
+
+// Of a surface's vertices, edges and triangles.
+struct PrimitiveBoxes {
+  std::vector<Box> vertices, edges, triangles;
+  void set(const Surface&, const Points& x0, const Points& x1, double radius);
 };
 
 // Finds vertex-face and edge-edge pairs that may come within `radius` of each other while all nodes move straight from
@@ -72,9 +75,13 @@ class PairSearch {
     PrimitiveGroups vertices, edges;
     Points from, to;  // what the boxes hold: a body that stands still is not refitted
     double radius = -1;
-    std::vector<Box> triangle_boxes, vertex_boxes, edge_boxes;
+    PrimitiveBoxes boxes, start, end;
+    bool has_ends = false;
+    EndLeaves face_ends, vertex_ends, edge_ends;
+    std::vector<EndBoxes> node_ends;
   };
-  static void update(Part&, const Points& x0, const Points& x1, double radius);
+  static void update(Part&, const Points& x0, const Points& x1, double radius, bool ends);
+  static void update_ends(Part&);
 
   const ContactWorld& world_;
   const Exemption* left_out_ = nullptr;

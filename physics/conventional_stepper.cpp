@@ -21,7 +21,7 @@ namespace {
 
 constexpr double first_roughness = 8;       // of the solve that only finds impacts and normal forces
 constexpr double friction_roughness = 0.2;  // of a solve with friction: sticking shows in small velocities
-constexpr double contact_patience = 0.5;    // of each solve, for the next one goes on from it
+constexpr double contact_patience = 0.5;    // of a solve with contacts, for the next one goes on from it
 constexpr int most_passes = 6;              // solves after the first one, at most
 constexpr int squeezed_passes = 3;          // where there is no room: no stiffness makes any
 constexpr double normal_change = 0.05;      // of what bounds friction, at most, from the last solve but one
@@ -135,9 +135,9 @@ NewtonReport ConventionalStepper::solve_with_contact(StepProblem& problem, bool 
   const double h = problem.h, deep = deep_impact * edge_length_, creep = options_.implicit_euler.slip_speed * h;
   // Where nothing touches, or nothing that does moves, the first solve is likely to be the last one.
   const bool calm = !squeezed && mean_touching(contacts.terms, h * *problem.v0) < creep;
-  problem.patience = contact_patience;
   for (int pass = 0;; ++pass) {
     problem.contacts = contacts.terms;
+    problem.patience = contacts.terms.empty() ? 1 : contact_patience;
     problem.goes_on = pass > 0;
     const bool friction = features_.friction && !contacts.terms.empty();
     problem.roughness = pass > 1 || (calm && friction) ? friction_roughness : pass == 0 && !calm ? first_roughness : 1;

@@ -16,9 +16,9 @@ struct MembraneLanes {
   // The edges x1 - x0 and x2 - x0 in space, the inverse of the rest edges by rows, rest area, Lame's mu and lambda.
   Lane edge[6], inverse[4], area, mu, lambda;
 
-  // Second stage, for derivatives: with F = a a0^T + b b0^T, a0 and b0 orthonormal axes of the rest plane that the model
-  // chooses, psi is a function of the vectors a and b. d psi / da, d psi / db, the second derivatives aa and bb (xx xy
-  // xz yy yz zz) and ab (by rows) [N/m].
+  // Second stage, for derivatives: with F = a a0^T + b b0^T, a0 and b0 orthonormal axes of the rest plane that the
+  // model chooses, psi is a function of the vectors a and b. d psi / da, d psi / db, the second derivatives aa and bb
+  // (xx xy xz yy yz zz) and ab (by rows) [N/m].
   Lane axis_a[2], axis_b[2], stress_a[3], stress_b[3], aa[6], bb[6], ab[9];
 
   Lane energy;       // [J]

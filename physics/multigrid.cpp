@@ -12,7 +12,7 @@ namespace selvedge {
 namespace {
 
 constexpr int chunk = 64;           // rows of one task
-constexpr int one_thread = 512;     // rows below which a level costs more in a team than alone
+constexpr int one_thread = 128;     // rows below which a level costs more in a team than alone
 constexpr int coarsest = 48;        // vertices that Cholesky takes
 constexpr int smoothing_steps = 2;  // before and after the coarse correction
 // Of the eigenvalues of the inverse diagonal blocks times the matrix. For triangles it is at most 3, for contacts 4;
@@ -33,6 +33,13 @@ void for_chunks(bool team, int rows, const F& f) {
   } else {
     f(0, rows);
   }
+}
+
+// f(row) over all rows, shared among a team of its own where there are many: rows differ in what they cost.
+template <class F>
+void for_rows(int rows, const F& f) {
+#pragma omp parallel for schedule(dynamic, 8) if (rows > 32)
+  for (int row = 0; row < rows; ++row) f(row);
 }
 
 using Blocks = std::vector<BlockColumns<float>>;
@@ -74,13 +81,15 @@ void take_away(const PairedBlocks& blocks, const RowPattern& pattern, int row, B
     for (int k = 0; k < 3; ++k) sum.column[k].lanes -= column_of(blocks.data(), entry, k).lanes;
 }
 
-void clear(PairedBlocks& blocks, const RowPattern& pattern, int begin, int end) {
-  std::fill(blocks.begin() + pattern.begin[begin] / 2, blocks.begin() + pattern.begin[end] / 2, BlockPair<float>{});
+void clear(PairedBlocks& blocks, const RowPattern& pattern, int row) {
+  std::fill(blocks.begin() + pattern.begin[row] / 2, blocks.begin() + pattern.begin[row + 1] / 2, BlockPair<float>{});
 }
 
-void reflect(Level& level, int begin, int end) {
-  reflect(level.product, level.pattern, level.block.data(), begin, end);
-  reflect(level.touching_product, level.touching, level.touching_block.data(), begin, end);
+void reflect(Level& level) {
+  for_rows(level.rows, [&](int a) {
+    reflect(level.product, level.pattern, level.block.data(), a, a + 1);
+    reflect(level.touching_product, level.touching, level.touching_block.data(), a, a + 1);
+  });
 }
 
 bool same(std::span<const ContactBlock> contacts, const std::vector<ContactBlock>& known) {
@@ -206,66 +215,57 @@ void Multigrid::Impl::fill_second(const LinearSystem& system, Level& level) {
   fine_diagonal.resize(fine->rows());
 #pragma omp parallel if (chunks_of(levels[0].rows) > 2)
   {
-#pragma omp for schedule(static)
+#pragma omp for schedule(static) nowait
     for (int p = 0; p < static_cast<int>(contact_factor.size()); ++p)
       for (int c = 2 * p; c < std::min(touching, 2 * p + 2); ++c)
         for (int k = 0; k < 3; ++k)
           column_of(contact_factor.data(), c, k) = columns_of<float>(contact_matrix(fine->contacts()[c])).column[k];
 #pragma omp for schedule(static)
     for (int i = 0; i < fine->rows(); ++i) fine_diagonal[i] = fine->diagonal(i);
-    for_chunks(true, level.rows, [&](int begin, int end) {
-      for (int a = begin; a < end; ++a) {
-        const float scale = far.empty() ? 0.f : static_cast<float>(system.flat_scale[levels[0].prolongation.chosen[a]]);
-        const auto scalar = [](double value) { return columns_of<float>(value * Mat3::Identity()); };
-        level.diagonal[a] = scalar(far.empty() ? 0.f : scale * far_diagonal[a]);
-        for (int e = level.pattern.begin[a]; e < level.pattern.begin[a + 1]; ++e)
-          for (int k = 0; k < 3; ++k) {
-            Quad<float>& column = column_of(level.block.data(), e, k);
-            column = Quad<float>{};
-            if (!far.empty()) column.lanes[k] = scale * far[e];
-          }
-      }
-      clear(level.touching_block, level.touching, begin, end);
-      accumulate(level.product, fine->blocks(), fine_diagonal.data(), level.block.data(), level.diagonal.data(), begin,
-                 end);
-      accumulate(level.touching_product, contact_factor.data(), nullptr, level.touching_block.data(),
-                 level.diagonal.data(), begin, end);
-    });
-    for_chunks(true, level.rows, [&](int begin, int end) { reflect(level, begin, end); });
   }
+  for_rows(level.rows, [&](int a) {
+    const float scale = far.empty() ? 0.f : static_cast<float>(system.flat_scale[levels[0].prolongation.chosen[a]]);
+    level.diagonal[a] = BlockColumns<float>{};
+    clear(level.block, level.pattern, a);
+    clear(level.touching_block, level.touching, a);
+    for (int k = 0; k < 3 && !far.empty(); ++k) {
+      level.diagonal[a].column[k].lanes[k] = scale * far_diagonal[a];
+      for (int e = level.pattern.begin[a]; e < level.pattern.begin[a + 1]; ++e)
+        column_of(level.block.data(), e, k).lanes[k] = scale * far[e];
+    }
+    accumulate(level.product, fine->blocks(), fine_diagonal.data(), level.block.data(), level.diagonal.data(), a,
+               a + 1);
+    accumulate(level.touching_product, contact_factor.data(), nullptr, level.touching_block.data(),
+               level.diagonal.data(), a, a + 1);
+  });
+  reflect(level);
 }
 
 void Multigrid::Impl::fill_coarser(const Level& finer, Level& level) {
-#pragma omp parallel if (chunks_of(level.rows) > 2)
-  {
-    for_chunks(true, level.rows, [&](int begin, int end) {
-      for (int a = begin; a < end; ++a) level.diagonal[a] = {};
-      clear(level.block, level.pattern, begin, end);
-      clear(level.touching_block, level.touching, begin, end);
-      accumulate(level.product, finer.block.data(), finer.diagonal.data(), level.block.data(), level.diagonal.data(),
-                 begin, end);
-      accumulate(level.touching_product, finer.touching_block.data(), nullptr, level.touching_block.data(),
-                 level.diagonal.data(), begin, end);
-    });
-    for_chunks(true, level.rows, [&](int begin, int end) { reflect(level, begin, end); });
-  }
+  for_rows(level.rows, [&](int a) {
+    level.diagonal[a] = BlockColumns<float>{};
+    clear(level.block, level.pattern, a);
+    clear(level.touching_block, level.touching, a);
+    accumulate(level.product, finer.block.data(), finer.diagonal.data(), level.block.data(), level.diagonal.data(), a,
+               a + 1);
+    accumulate(level.touching_product, finer.touching_block.data(), nullptr, level.touching_block.data(),
+               level.diagonal.data(), a, a + 1);
+  });
+  reflect(level);
 }
 
 // False where a block is not one of a positive definite matrix.
 bool Multigrid::Impl::invert_diagonal(Level& level) {
   level.inverse.resize(level.rows);
-  std::vector<char> positive(chunks_of(level.rows), true);
-#pragma omp parallel if (level.rows >= one_thread)
-  for_chunks(true, level.rows, [&](int begin, int end) {
-    for (int a = begin; a < end; ++a) {
-      BlockColumns<float> sum = level.diagonal[a];
-      take_away(level.block, level.pattern, a, sum);
-      take_away(level.touching_block, level.touching, a, sum);
-      const Mat3 whole = block_of(sum);
-      const Mat3 inverse = (0.5 * (whole + whole.transpose())).inverse();
-      if (!inverse.allFinite() || !(inverse.trace() > 0)) positive[begin / chunk] = false;
-      level.inverse[a] = columns_of<float>(inverse);
-    }
+  std::vector<char> positive(level.rows);
+  for_rows(level.rows, [&](int a) {
+    BlockColumns<float> sum = level.diagonal[a];
+    take_away(level.block, level.pattern, a, sum);
+    take_away(level.touching_block, level.touching, a, sum);
+    const Mat3 whole = block_of(sum);
+    const Mat3 inverse = (0.5 * (whole + whole.transpose())).inverse();
+    positive[a] = inverse.allFinite() && inverse.trace() > 0;
+    level.inverse[a] = columns_of<float>(inverse);
   });
   return std::ranges::all_of(positive, [](char yes) { return yes != 0; });
 }

@@ -9,9 +9,9 @@
 namespace selvedge {
 namespace {
 
-constexpr int chunk = 256;      // rows of one partial sum; fixed, so that sums do not depend on the number of threads
+constexpr int chunk = 64;       // rows of one partial sum; fixed, so that sums do not depend on the number of threads
 constexpr double foreseen = 4;  // times what the square of the norm is expected to be
-constexpr int small = 2;        // chunks below which a team of threads costs more than it saves
+constexpr int small = 8;        // chunks below which a team of threads costs more than it saves
 
 int chunks_of(int rows) { return (rows + chunk - 1) / chunk; }
 
