@@ -9,6 +9,7 @@
 #include "collision/error.hpp"
 #include "physics/cholesky.hpp"
 #include "physics/linear_solver.hpp"
+#include "physics/pcg.hpp"
 #include "tests/physics/linear_example.hpp"
 #include "tests/physics/threads.hpp"
 
@@ -174,6 +175,44 @@ TEST_CASE("The pattern of the direct solver follows the contacts", "[linear_solv
   e = make_example(10, 5.0, true, true);
   CHECK(solver.solve(e.system(), e.blocks, e.right, 0.05, 100, x).converged);
   CHECK((x - exact(e)).norm() < 1e-10 * x.norm());
+}
+
+TEST_CASE("The matrix of the kernels is the system's: contacts at a vertex, within elements and across",
+          "[linear_solver]") {
+  const bool flat = GENERATE(true, false);
+  Example e = make_example(12, 3.0, true, flat);
+  const Vec3 n = Vec3(1, 2, -1).normalized();
+  for (const int i : {13, 40, 77}) {
+    e.contacts.push_back({{i, -1, -1, -1}, {1, 0, 0, 0}, n, 50, 4});
+    e.contacts.push_back({{i, i + 1, i + 12, -1}, {0.2, 0.3, 0.5, 0}, n, 30, 0});
+    e.contacts.push_back({{-1, i + 1, -1, i + 12}, {0, -0.4, 0, -0.6}, n, 20, 7});
+  }
+  e.finish();
+  PcgMatrix<double> matrix;
+  for (const double stiffness : {1.0, 0.25}) {  // filled again with other numbers, and with fewer contacts
+    if (stiffness != 1) e.contacts.erase(e.contacts.begin() + 3, e.contacts.begin() + 9);
+    for (ContactBlock& contact : e.contacts) contact.normal_stiffness *= stiffness;
+    e.flat_scale.assign(e.pattern.rows, stiffness);
+    e.finish();
+    matrix.fill(e.system());
+    CHECK(matrix.contacts().size() == static_cast<std::size_t>(e.contacts.size() - 9));
+    Points u = e.right, expected;
+    for (int i = 0; i < u.rows(); ++i)
+      if (!e.free[i]) u.row(i).setZero();
+    multiply(e.system(), u, expected);
+    Quads<double> in(u.rows()), out(u.rows());
+    for (int i = 0; i < u.rows(); ++i)
+      for (int k = 0; k < 3; ++k) in[i].lanes[k] = u(i, k);
+    std::vector<double> partial(u.rows());
+    matrix.multiply(in, out, partial);
+    for (int i = 0; i < u.rows(); ++i)
+      for (int k = 0; k < 3 && e.free[i]; ++k) CHECK(out[i].lanes[k] == Approx(expected(i, k)).margin(1e-10));
+  }
+  e.contacts.clear();  // what contacts have left does not stay
+  e.finish();
+  matrix.fill(e.system());
+  for (int i = 0; i < e.pattern.rows; ++i)
+    CHECK(block_of(matrix.diagonal(i)).isApprox(Mat3(e.diagonal[i] * Mat3::Identity())));
 }
 
 TEST_CASE("Nothing to do, nothing free, nothing finite", "[linear_solver]") {
