@@ -24,6 +24,7 @@ struct Vector {
   double x, y, z;
 };
 [[gnu::always_inline]] inline Vector operator*(double a, const Vector& v) { return {a * v.x, a * v.y, a * v.z}; }
+[[gnu::always_inline]] inline Vector operator/(const Vector& v, double a) { return {v.x / a, v.y / a, v.z / a}; }
 [[gnu::always_inline]] inline Vector operator+(const Vector& a, const Vector& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
@@ -64,12 +65,12 @@ struct Svd {  // F = s1 u1 v1^T + s2 u2 v2^T, normal = u1 x u2; V = [v1 v2] is a
   result.s = length > 0 ? std::copysign(half >= 0 ? small : large, r) : 0;
   const Vector g1 = result.c * f + result.s * g, g2 = result.c * g + -result.s * f;
   result.s1 = std::sqrt(dot(g1, g1));
-  result.u1 = choose(result.s1 > 0, 1 / (result.s1 > 0 ? result.s1 : 1) * g1, {1, 0, 0});
+  result.u1 = choose(result.s1 > 0, g1 / (result.s1 > 0 ? result.s1 : 1), {1, 0, 0});
   const Vector across = g2 + -dot(result.u1, g2) * result.u1;
   result.s2 = std::sqrt(dot(across, across));
   // Below rounding of s1 the direction of `across` is noise that need not be perpendicular to u1.
   const bool has_direction = result.s2 > 1e-14 * result.s1;
-  result.u2 = choose(has_direction, 1 / (has_direction ? result.s2 : 1) * across, any_perpendicular(result.u1));
+  result.u2 = choose(has_direction, across / (has_direction ? result.s2 : 1), any_perpendicular(result.u1));
   result.normal = cross(result.u1, result.u2);
   return result;
 }
