@@ -314,7 +314,7 @@ void Multigrid::Impl::multiply(int l, bool team, const Quads<float>& u, Quads<fl
 void Multigrid::fill_finest(const LinearSystem& system, std::span<const Mat3> diagonal, PcgMatrix<float>& fine) {
   Impl& impl = *impl_;
   impl.fine = &fine;
-  impl.partial.resize(chunks_of(fine.rows()));
+  impl.partial.resize(fine.chunks());
   Level& finest = impl.levels[0];
   finest.inverse.resize(finest.rows);
 #pragma omp parallel for schedule(static) if (chunks_of(finest.rows) > 2)

@@ -208,6 +208,11 @@ BlockColumns<Real> PcgMatrix<Real>::diagonal(int i) const {
 }
 
 template <class Real>
+int PcgMatrix<Real>::chunks() const {
+  return chunks_of(rows());
+}
+
+template <class Real>
 void PcgMatrix<Real>::multiply(const Quads<Real>& p, Quads<Real>& q, std::vector<double>& partial) {
   const int contacts = static_cast<int>(contacts_.size());
   if (contacts > 0) {

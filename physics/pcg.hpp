@@ -56,7 +56,8 @@ class PcgMatrix {
   const RowPattern& far() const { return far_; }  // flat entries that are in no block, with the place of their value
   std::span<const int> far_place() const { return far_place_; }
   std::span<const ContactBlock> contacts() const { return contacts_; }  // that are in no block
-  // q = A p by the calling team; partial sums of p . q, one a chunk.
+  // q = A p by the calling team; partial sums of p . q, one for each of chunks().
+  int chunks() const;
   void multiply(const Quads<Real>& p, Quads<Real>& q, std::vector<double>& partial);
 
  private:

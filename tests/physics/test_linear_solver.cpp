@@ -203,7 +203,7 @@ TEST_CASE("The matrix of the kernels is the system's: contacts at a vertex, with
     Quads<double> in(u.rows()), out(u.rows());
     for (int i = 0; i < u.rows(); ++i)
       for (int k = 0; k < 3; ++k) in[i].lanes[k] = u(i, k);
-    std::vector<double> partial(u.rows());
+    std::vector<double> partial(matrix.chunks());
     matrix.multiply(in, out, partial);
     for (int i = 0; i < u.rows(); ++i)
       for (int k = 0; k < 3 && e.free[i]; ++k) CHECK(out[i].lanes[k] == Approx(expected(i, k)).margin(1e-10));
