@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 
 #include "collision/exemption.hpp"
 
@@ -143,8 +145,9 @@ int ContactWorld::obstacle_of(int node) const {
   return static_cast<int>(above - first_node.begin()) - 1;
 }
 
-ContactWorld make_contact_world(const Surface& cloth, std::vector<const Surface*> obstacles, bool self) {
-  ContactWorld world{&cloth, std::move(obstacles), {}, self, cloth.vertex_count};
+ContactWorld make_contact_world(const Surface& cloth, std::vector<const Surface*> obstacles, bool self,
+                                const Points* rest) {
+  ContactWorld world{&cloth, std::move(obstacles), {}, self, cloth.vertex_count, rest};
   for (const Surface* obstacle : world.obstacles) {
     world.first_node.push_back(world.node_count);
     world.node_count += obstacle->vertex_count;
@@ -239,6 +242,14 @@ void PairSearch::find(const Points& x0, const Points& x1, double radius, std::ve
   }
   if (left_out_)
     std::erase_if(pairs, [this](const NodePair& pair) { return left_out_->leaves_alone(world_, pair.nodes); });
+}
+
+double rest_distance(const ContactWorld& world, const NodePair& pair) {
+  const auto in_cloth = [&](int node) { return world.is_cloth(node); };
+  if (!world.rest || !std::all_of(pair.nodes.begin(), pair.nodes.end(), in_cloth) ||
+      world.cloth->component[pair.nodes[0]] != world.cloth->component[pair.nodes[3]])
+    return std::numeric_limits<double>::infinity();
+  return std::sqrt(closest(pair, *world.rest).squared_distance);
 }
 
 }  // namespace selvedge

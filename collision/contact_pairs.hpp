@@ -20,12 +20,14 @@ struct ContactWorld {
   std::vector<int> first_node;  // of each obstacle
   bool self = true;             // cloth against itself
   int node_count = 0;
+  const Points* rest = nullptr;  // of the cloth [m]; without it nothing counts as resting close
 
   bool is_cloth(int node) const { return node < cloth->vertex_count; }
   int obstacle_of(int node) const;  // -1: cloth
 };
 
-ContactWorld make_contact_world(const Surface& cloth, std::vector<const Surface*> obstacles, bool self);
+ContactWorld make_contact_world(const Surface& cloth, std::vector<const Surface*> obstacles, bool self,
+                                const Points* rest = nullptr);
 
 // Positions of all nodes in that numbering.
 Points gather_nodes(const Points& cloth, const std::vector<Points>& obstacles);
@@ -40,6 +42,9 @@ struct NodePair {
 std::array<Vec3, 4> corners(const NodePair&, const Points& x);
 Closest closest(PairKind, const std::array<Vec3, 4>& corners);
 inline Closest closest(const NodePair& pair, const Points& x) { return closest(pair.kind, corners(pair, x)); }
+
+// Distance in the rest shape of a pair of one cloth; infinite for any other, and where the world has no rest shape [m].
+double rest_distance(const ContactWorld&, const NodePair&);
 
 // Vertices or edges by the leaf of a tree of triangles that owns them, eight together.
 struct PrimitiveGroups {
@@ -66,6 +71,7 @@ class PairSearch {
   void find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs);
   // Pairs that are not to be found from here on; nothing ends it. Keeps the pointer.
   void leave_out(const Exemption* exemption) { left_out_ = exemption; }
+  const ContactWorld& world() const { return world_; }
 
  private:
   struct Part {  // a surface with its tree

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "collision/contour_regions.hpp"
+#include "collision/edge_parity.hpp"
 
 namespace selvedge {
 namespace {
@@ -116,24 +117,19 @@ std::vector<Contour> trace(std::span<const SheetView> sheets, const Segments& fo
   return contours;
 }
 
-// The vertices of colour 1, the rarer one. Parts of one size cannot be told apart.
-bool smaller_part(const EdgeParity& parity, const Surface& surface, int component, std::vector<int>& inside) {
-  std::vector<char> colours;
-  if (!parity.colour(component, colours)) return false;
-  inside.clear();
-  std::ptrdiff_t others = 0;
-  for (int v = 0; v < surface.vertex_count; ++v) {
-    if (colours[v] == 1) inside.push_back(v);
-    others += colours[v] == 0;
-  }
-  return static_cast<std::ptrdiff_t>(inside.size()) < others;
-}
-
 bool same_component(const Contour& contour) {
   return contour.sides[0].sheet == contour.sides[1].sheet && contour.sides[0].component == contour.sides[1].component;
 }
 
-void judge_sides(std::span<const SheetView> sheets, Contour& contour) {
+// Puts the vertices that the curves part from the rest into `side`; it cuts if they do.
+void judge_cut(const EdgeParity& parity, const std::vector<int>& sizes, ContourSide& side) {
+  std::optional<std::vector<int>> part = parity.smaller_part(side.component, sizes[side.component]);
+  side.cuts = part.has_value();
+  if (part) side.inside = std::move(*part);
+}
+
+// sizes: of the components of each sheet.
+void judge_sides(std::span<const SheetView> sheets, std::span<const std::vector<int>> sizes, Contour& contour) {
   const bool loop = contour.ends[0] == ContourEnd::vertex || contour.ends[1] == ContourEnd::vertex;
   if (loop || contour.one_trace) {
     if (!ends_outside(contour, 0) || !ends_outside(contour, 1) || !same_component(contour)) return;
@@ -142,8 +138,8 @@ void judge_sides(std::span<const SheetView> sheets, Contour& contour) {
     parity.add(contour, 0);
     parity.add(contour, 1);
     ContourSide &first = contour.sides[0], &second = contour.sides[1];
-    first.cuts = second.cuts = smaller_part(parity, surface, first.component, first.inside);
-    if (!first.cuts) first.inside.clear();
+    judge_cut(parity, sizes[first.sheet], first);
+    second.cuts = first.cuts;
     second.inside = first.inside;
     return;
   }
@@ -153,8 +149,7 @@ void judge_sides(std::span<const SheetView> sheets, Contour& contour) {
     const Surface& surface = *sheets[side.sheet].surface;
     EdgeParity parity(surface);
     parity.add(contour, k);
-    side.cuts = smaller_part(parity, surface, side.component, side.inside);
-    if (!side.cuts) side.inside.clear();
+    judge_cut(parity, sizes[side.sheet], side);
   }
 }
 
@@ -173,15 +168,28 @@ bool lies_inside(const Surface& surface, const ContourSide& inner, const Contour
   return true;
 }
 
+// A side that parts its component, by the vertices that it encloses.
+struct Enclosure {
+  int contour = 0;
+  const ContourSide* side = nullptr;
+};
+
 void mark_nested(std::span<const SheetView> sheets, std::vector<Contour>& contours) {
-  for (Contour& inner : contours)
-    for (ContourSide& side : inner.sides) {
+  std::vector<std::vector<std::vector<Enclosure>>> round;  // each vertex of each sheet
+  for (const SheetView& sheet : sheets) round.emplace_back(sheet.surface->vertex_count);
+  for (int c = 0; c < static_cast<int>(contours.size()); ++c)
+    for (const ContourSide& side : contours[c].sides)
+      if (side.cuts)
+        for (const int v : side.inside) round[side.sheet][v].push_back({c, &side});
+  for (int c = 0; c < static_cast<int>(contours.size()); ++c)
+    for (ContourSide& side : contours[c].sides) {
       if (!side.cuts) continue;
-      for (const Contour& outer : contours)
-        for (const ContourSide& other : outer.sides)
-          if (&outer != &inner && other.cuts && !other.inside.empty() && other.sheet == side.sheet &&
-              other.component == side.component && lies_inside(*sheets[side.sheet].surface, side, other))
-            side.nested = true;
+      const Surface& surface = *sheets[side.sheet].surface;
+      const int one = side.inside.empty() ? surface.triangles(side.triangles.front(), 0) : side.inside.front();
+      const std::vector<Enclosure>& all = round[side.sheet][one];
+      side.nested = std::any_of(all.begin(), all.end(), [&](const Enclosure& outer) {
+        return outer.contour != c && lies_inside(surface, side, *outer.side);
+      });
     }
 }
 
@@ -189,7 +197,9 @@ void mark_nested(std::span<const SheetView> sheets, std::vector<Contour>& contou
 
 std::vector<Contour> find_contours(std::span<const SheetView> sheets, const Segments& segments) {
   std::vector<Contour> contours = trace(sheets, segments);
-  for (Contour& contour : contours) judge_sides(sheets, contour);
+  std::vector<std::vector<int>> sizes;
+  for (const SheetView& sheet : sheets) sizes.push_back(component_sizes(*sheet.surface));
+  for (Contour& contour : contours) judge_sides(sheets, sizes, contour);
   mark_nested(sheets, contours);
   return contours;
 }

@@ -3,98 +3,10 @@
 #include <algorithm>
 #include <map>
 
+#include "collision/edge_parity.hpp"
 #include "collision/inside.hpp"
 
 namespace selvedge {
-namespace {
-
-int corner_of(const Surface& surface, int triangle, int vertex) {
-  for (int k = 0; k < 3; ++k)
-    if (surface.triangles(triangle, k) == vertex) return k;
-  return -1;
-}
-
-int across(const Surface& surface, int edge, int triangle) {
-  const std::array<int, 2>& two = surface.edge_triangles[edge];
-  return two[0] == triangle ? two[1] : two[0];
-}
-
-// Edges at a vertex passed on the way from one triangle of it to another, turning one way; false if a boundary or a
-// branch comes between.
-bool fan(const Surface& surface, int vertex, int from, int to, bool forward, std::vector<int>& edges) {
-  edges.clear();
-  int previous = -1;
-  for (int t = from; t != to;) {
-    const int k = corner_of(surface, t, vertex);
-    if (k < 0) return false;
-    const int ahead = surface.triangle_edges(t, k), behind = surface.triangle_edges(t, (k + 2) % 3);
-    const int edge = previous < 0 ? (forward ? ahead : behind) : (ahead == previous ? behind : ahead);
-    edges.push_back(edge);
-    previous = edge;
-    t = across(surface, edge, t);
-    if (t < 0 || t == from || edges.size() > static_cast<std::size_t>(surface.triangles_of(vertex).size()))
-      return false;
-  }
-  return true;
-}
-
-}  // namespace
-
-void EdgeParity::add_detour(int vertex, int from_triangle, int to_triangle) {
-  std::vector<int> edges;
-  if (!fan(surface_, vertex, from_triangle, to_triangle, true, edges) &&
-      !fan(surface_, vertex, from_triangle, to_triangle, false, edges))
-    return;
-  for (int edge : edges) odd_[edge] ^= 1;
-}
-
-void EdgeParity::add(const Contour& contour, int side) {
-  for (int edge : contour.sides[side].edges) odd_[edge] ^= 1;
-  if (side != 0) return;  // the other side has the same loop vertices
-  for (int end = 0; end < 2; ++end) {
-    if (contour.ends[end] != ContourEnd::vertex) continue;
-    const int at = end == 0 ? contour.points.front() : contour.points.back();
-    const auto triangle = [&](int s) {
-      return end == 0 ? contour.sides[s].triangles.front() : contour.sides[s].triangles.back();
-    };
-    add_detour(~at, triangle(0), triangle(1));
-  }
-}
-
-bool EdgeParity::colour(int component, std::vector<char>& colours) const {
-  colours.assign(surface_.vertex_count, -1);
-  long total = 0, ones = 0;
-  bool consistent = true;
-  for (int seed = 0; seed < surface_.vertex_count; ++seed) {
-    if (surface_.component[seed] != component || colours[seed] >= 0) continue;
-    std::vector<int> stack{seed};
-    colours[seed] = 0;
-    while (!stack.empty()) {
-      const int v = stack.back();
-      stack.pop_back();
-      ++total;
-      ones += colours[v];
-      for (int t : surface_.triangles_of(v))
-        for (int k = 0; k < 3; ++k) {
-          const int edge = surface_.triangle_edges(t, k);
-          const int a = surface_.edges(edge, 0), b = surface_.edges(edge, 1);
-          if (a != v && b != v) continue;
-          const int other = a == v ? b : a;
-          const char expected = static_cast<char>(colours[v] ^ odd_[edge]);
-          if (colours[other] < 0) {
-            colours[other] = expected;
-            stack.push_back(other);
-          } else if (colours[other] != expected) {
-            consistent = false;
-          }
-        }
-    }
-  }
-  if (2 * ones > total)
-    for (char& c : colours)
-      if (c >= 0) c ^= 1;
-  return consistent;
-}
 
 bool ends_outside(const Contour& contour, int side) {
   if (contour.closed) return true;

@@ -7,20 +7,6 @@
 
 namespace selvedge {
 
-// Edges of a surface that curves cross: crossing one an odd number of times changes the colour.
-class EdgeParity {
- public:
-  explicit EdgeParity(const Surface& surface) : surface_(surface), odd_(surface.edges.rows(), 0) {}
-  void add(const Contour&, int side);  // with a detour round loop vertices at its ends
-  // Colours of the vertices of a component, 0 for the more frequent one; false if there is no colouring.
-  bool colour(int component, std::vector<char>& colours) const;
-
- private:
-  void add_detour(int vertex, int from_triangle, int to_triangle);
-  const Surface& surface_;
-  std::vector<char> odd_;
-};
-
 // Does the curve end nowhere inside its sheet? A side that ends at loop vertices does so together with the other side.
 bool ends_outside(const Contour&, int side);
 

@@ -13,14 +13,10 @@ bool crosses_inside(const Closest& c) {
   return c.weights[0] > 0 && c.weights[1] > 0 && c.weights[2] < 0 && c.weights[3] < 0;
 }
 
-double rest_gap(const ContactWorld& world, const NodePair& pair, const Points& rest, double thickness) {
-  const bool inside_cloth = std::all_of(pair.nodes.begin(), pair.nodes.end(), [&](int n) { return world.is_cloth(n); });
-  if (!inside_cloth || world.cloth->component[pair.nodes[0]] != world.cloth->component[pair.nodes[3]]) return thickness;
-  return std::min(thickness, 0.7 * std::sqrt(closest(pair, rest).squared_distance));
-}
+constexpr double kept_of_rest = 0.7;  // of the rest distance, by a pair that rests close
 
 std::vector<Proximity> close_pairs(const ContactWorld& world, std::span<const NodePair> candidates, const Points& x,
-                                   const Points& rest, double thickness) {
+                                   double thickness) {
   constexpr int chunk = 8192;
   const int chunks = (static_cast<int>(candidates.size()) + chunk - 1) / chunk;
   std::vector<std::vector<Proximity>> found(chunks);
@@ -31,7 +27,8 @@ std::vector<Proximity> close_pairs(const ContactWorld& world, std::span<const No
       const Closest near = closest(pair, x);
       if (near.squared_distance >= thickness * thickness || near.squared_distance == 0) continue;
       if (pair.kind == PairKind::edge_edge && !crosses_inside(near)) continue;
-      const double gap = std::sqrt(near.squared_distance), keep = rest_gap(world, pair, rest, thickness);
+      const double gap = std::sqrt(near.squared_distance),
+                   keep = std::min(thickness, kept_of_rest * rest_distance(world, pair));
       if (gap >= keep) continue;
       Vec3 between = Vec3::Zero();
       for (int i = 0; i < 4; ++i) between += near.weights[i] * row(x, pair.nodes[i]);
@@ -46,8 +43,8 @@ std::vector<Proximity> close_pairs(const ContactWorld& world, std::span<const No
 }  // namespace
 
 std::vector<Proximity> find_proximities(const ContactWorld& world, std::span<const NodePair> candidates,
-                                        const Points& x, const Points& rest, double thickness) {
-  const std::vector<Proximity> all = close_pairs(world, candidates, x, rest, thickness);
+                                        const Points& x, double thickness) {
+  const std::vector<Proximity> all = close_pairs(world, candidates, x, thickness);
   const Points normals = vertex_normals(*world.cloth, x.topRows(world.cloth->vertex_count));
   std::vector<std::pair<std::array<int, 4>, std::pair<double, int>>>
       claims;  // (primitive, partner, side) -> (gap, index)

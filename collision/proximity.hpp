@@ -17,9 +17,8 @@ struct Proximity {
 
 // Proximities among `candidates` at positions x. Of the faces near a vertex only the closest on each side counts, and
 // of the edges near an edge likewise, so that one contact is not met by many forces. Pairs of one cloth that rest close
-// to each other keep at most 0.7 of their rest distance. Sorted by pair, whatever the order of the candidates. rest:
-// rest positions of the cloth.
+// to each other keep at most 0.7 of their rest distance. Sorted by pair, whatever the order of the candidates.
 std::vector<Proximity> find_proximities(const ContactWorld&, std::span<const NodePair> candidates, const Points& x,
-                                        const Points& rest, double thickness);
+                                        double thickness);
 
 }  // namespace selvedge

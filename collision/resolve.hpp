@@ -7,7 +7,8 @@ namespace selvedge {
 
 struct ResolveOptions {
   double thickness = 2e-3;   // distance that resting layers keep [m]
-  double separation = 2e-4;  // no pair that started farther apart comes closer [m]
+  double separation = 2e-4;  // no pair that started farther apart comes closer [m]; the same part of their rest
+                             // distance holds for pairs of one cloth that rest closer than the thickness
   double friction = 0.3, self_friction = 0.3;
   int impulse_rounds = 4;  // rounds of single impulses before zones
   int zone_rounds = 30;    // rounds of impact zones before the last resort

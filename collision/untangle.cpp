@@ -39,9 +39,11 @@ std::vector<SheetView> with_cloth(const Surface& cloth, const Points& x, std::sp
   return sheets;
 }
 
-Tangle find_tangle(std::span<const SheetView> sheets, const KeptShape& shape, const std::vector<int>& layers) {
+// found: the segments of the sheets.
+Tangle tangle_of(std::span<const SheetView> sheets, Segments found, const KeptShape& shape,
+                 const std::vector<int>& layers) {
   Tangle tangle;
-  tangle.found = find_segments(sheets);
+  tangle.found = std::move(found);
   tangle.contours = find_contours(sheets, tangle.found);
   tangle.regions = enclosed_regions(sheets, tangle.contours);
   if (!layers.empty()) order_layers(sheets, tangle.found, tangle.contours, layers, tangle.regions);
@@ -173,7 +175,7 @@ Tangle keep_clean(const KeptShape& shape, const Freedom& freedom, std::span<cons
   for (int round = 0;; ++round) {
     keep_range(shape, freedom, options, before, x);
     const std::vector<SheetView> sheets = with_cloth(cloth, x, obstacles);
-    const Segments found = find_segments(sheets);
+    Segments found = find_segments(sheets);
     bool clean = true;
     const auto judge = [&](int a, int sheet, int b) {
       std::vector<int> vertices;
@@ -188,7 +190,7 @@ Tangle keep_clean(const KeptShape& shape, const Freedom& freedom, std::span<cons
     };
     for (const Segment& s : found.segments) judge(s.triangle[0], s.sheet[1], s.triangle[1]);
     for (const auto& [a, sheet, b] : found.touching) judge(a, sheet, b);
-    if (clean) return find_tangle(sheets, shape, options.layers);
+    if (clean) return tangle_of(sheets, std::move(found), shape, options.layers);
     take_back(offends, round, before, x);
   }
 }
@@ -284,7 +286,7 @@ UntangleResult untangle(const Surface& cloth, const Points& x, std::span<const S
   restore_standard_arithmetic();
   const KeptShape shape = keep_shape(cloth, x);
   const std::vector<SheetView> sheets = with_cloth(cloth, x, obstacles);
-  const Tangle input = find_tangle(sheets, shape, options.layers);
+  const Tangle input = tangle_of(sheets, find_segments(sheets), shape, options.layers);
   const std::vector<char> tangled = tangled_vertices(sheets, input);
   const Freedom freedom = make_freedom(shape, tangled, options);
   Repulsion repulsion(cloth, obstacles, shape);

@@ -25,13 +25,14 @@ constexpr double contact_patience = 0.5;    // of a solve with contacts, for the
 constexpr int most_passes = 6;              // solves after the first one, at most
 constexpr int squeezed_passes = 3;          // where there is no room: no stiffness makes any
 constexpr double normal_change = 0.05;      // of what bounds friction, at most, from the last solve but one
-constexpr double deep_impact = 0.05;        // that a single impulse should not meet, in mean edge lengths
 constexpr int halvings = 2;                 // of a substep whose zones do not settle, before the last resort
 constexpr double recovery_speed = 1;        // at most, of a vertex that starts tangled [m/s]
 constexpr double carrying_speed = 3;        // at most, of one that is drawn to where it is worn [m/s]
 constexpr double rounding = 1e-14;          // of positions that are added up over substeps
 constexpr int squeezed_rounds = 4;          // of zones, where there is no room
 constexpr int hopeful_rounds = 12;          // of zones in a substep that may still be halved
+constexpr double tearing = 10;              // times the energy of the substep: more is not left in it by impulses
+constexpr double kept_way = 0.5;            // of that to the first impact, where everything stops short
 
 // Where a substep ends. The nodes come with obstacles where they are to end and the cloth at its first guess.
 struct Arrival {
@@ -61,12 +62,13 @@ class ConventionalStepper final : public Stepper {
       : scene_(scene),
         options_(options),
         features_(features_of(scene)),
-        world_(make_contact_world(scene.surface, obstacle_surfaces(scene), features_.self_contact)),
+        world_(make_contact_world(scene.surface, obstacle_surfaces(scene), features_.self_contact, &scene.rest)),
         search_(world_),
         contact_(resolve_options(scene.contact)),
         inverse_mass_(inverse_masses(scene, world_.node_count)),
         solver_(scene, options.implicit_euler),
         edge_length_(mean_edge_length(scene)),
+        deep_(deep_impact(scene)),
         self_crossings_(world_) {}
 
   const StepperTraits& traits() const override { return traits_; }
@@ -81,6 +83,8 @@ class ConventionalStepper final : public Stepper {
   enum class Outcome { clean, hasty, unsettled, not_finite };  // hasty: met something in full motion
   Outcome substep(const Leg& leg, const Points& pins, const Drive& drive, double h, Attempt attempt, int most_parts,
                   Arrival& to, StepReport& report);
+  bool torn(const StepProblem& problem, const Points& x, const Points& after);
+  void stop_short(const Points& nodes0, const Points& wanted, Points& nodes1, StepReport& report);
   bool goes_on(const Leg& leg, const Points& pins, double h) const;
   bool smooth_substep(const Leg& leg, const Points& pins, const Drive& drive, Arrival& to, StepReport& report);
   bool advance(Leg& leg, const Points& nodes, const Points& pins, const Drive& drive, double h, Cuts left,
@@ -99,7 +103,7 @@ class ConventionalStepper final : public Stepper {
   ResolveOptions contact_;
   Eigen::VectorXd inverse_mass_;
   ImplicitEuler solver_;
-  double edge_length_;
+  double edge_length_, deep_;
   StepperTraits traits_{"conventional"};
   AuditMemory audited_;
   PathPairs path_;  // pairs near the current positions
@@ -120,19 +124,13 @@ void add(const ResolveReport& resolved, StepReport& report) {
   report.seconds.response += resolved.response;
 }
 
-double deepest(std::span<const Impact> impacts, const Points& nodes) {
-  double depth = 0;
-  for (const Impact& impact : impacts) depth = std::max(depth, impact.target - impact_gap(impact, nodes));
-  return depth;
-}
-
 // Solves the substep with its contacts, again and again until what it runs into besides them is shallow and friction is
 // bounded by the normal forces that there are. x is the cloth in nodes1. Reports the last solve. Ends after the first
 // one where that shows that the substep should be taken in parts.
 NewtonReport ConventionalStepper::solve_with_contact(StepProblem& problem, bool squeezed, const Points& nodes0,
                                                      Points& nodes1, Points& x, Contacts& contacts, int most_parts,
                                                      int& parts, StepReport& report) {
-  const double h = problem.h, deep = deep_impact * edge_length_, creep = options_.implicit_euler.slip_speed * h;
+  const double h = problem.h, creep = options_.implicit_euler.slip_speed * h;
   // Where nothing touches, or nothing that does moves, the first solve is likely to be the last one.
   const bool calm = !squeezed && mean_touching(contacts.terms, h * *problem.v0) < creep;
   for (int pass = 0;; ++pass) {
@@ -152,13 +150,13 @@ NewtonReport ConventionalStepper::solve_with_contact(StepProblem& problem, bool 
     add(times, report);
     if (pass == 0) parts = parts_for_way(farthest_past(impacts, nodes0, nodes1), edge_length_, most_parts);
     if (parts > 1) return newton;
-    if (calm && mean_touching(contacts.terms, x - *problem.x0) < creep && deepest(impacts, nodes1) < deep &&
+    if (calm && mean_touching(contacts.terms, x - *problem.x0) < creep && deepest(impacts, nodes1) < deep_ &&
         mistaken_friction(solved, contacts.terms, *problem.x0, x, creep) < normal_change)
       return newton;
     const int least = friction ? 2 : 1;
-    if (pass >= least && change < normal_change && deepest(impacts, nodes1) < deep) return newton;
+    if (pass >= least && change < normal_change && deepest(impacts, nodes1) < deep_) return newton;
     Stopwatch watch;
-    add_impact_terms(scene_, world_, impacts, inverse_mass_, nodes0, nodes1, h, deep, contacts);
+    add_impact_terms(scene_, world_, impacts, inverse_mass_, nodes0, nodes1, h, deep_, contacts);
     stiffen(contacts.terms, x);
     if (pass == least - 1) follow(scene_, world_, inverse_mass_, nodes0, nodes1, h, contacts);
     report.seconds.response += watch.lap();
@@ -200,6 +198,26 @@ bool ConventionalStepper::smooth_substep(const Leg& leg, const Points& pins, con
   return true;
 }
 
+// Whether the response has taken the cloth from x to where it stores far more than there is to be stored. Impulses
+// know nothing of the cloth: what is a small way to them may be many times the width of a sliver.
+bool ConventionalStepper::torn(const StepProblem& problem, const Points& x, const Points& after) {
+  const double moving = 0.5 * solver_.masses().dot((x - *problem.x0).rowwise().squaredNorm()) / (problem.h * problem.h);
+  return solver_.potential(problem, after) > tearing * (solver_.potential(problem, x) + moving);
+}
+
+// Takes everything together as far as nothing meets.
+void ConventionalStepper::stop_short(const Points& nodes0, const Points& wanted, Points& nodes1, StepReport& report) {
+  ResolveReport times;
+  double first = 1;
+  for (const Impact& impact : find_impacts(search_, inverse_mass_, contact_, nodes0, wanted, path_, times))
+    first = std::min(first, impact.time);
+  nodes1 = nodes0 + kept_way * first * (wanted - nodes0);
+  update_pairs(search_, contact_.thickness, nodes0, nodes1, path_);
+  times.shortened = 1;
+  times.held = scene_.surface.vertex_count;
+  add(times, report);
+}
+
 ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const Points& pins, const Drive& drive,
                                                           double h, Attempt attempt, int most_parts, Arrival& to,
                                                           StepReport& report) {
@@ -222,8 +240,8 @@ ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const 
   }
 
   Stopwatch watch;
-  const auto proximities = find_proximities(world_, pairs_within(path_, nodes0, scene_.contact.thickness), nodes0,
-                                            scene_.rest, scene_.contact.thickness);
+  const auto proximities =
+      find_proximities(world_, pairs_within(path_, nodes0, scene_.contact.thickness), nodes0, scene_.contact.thickness);
   for (const Proximity& p : proximities) report.collision.min_gap = std::min(report.collision.min_gap, p.gap);
   report.seconds.response += watch.lap();
   to.touched = !proximities.empty() || exemption_.any();
@@ -263,10 +281,15 @@ ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const 
   options.last_resort = attempt == Attempt::last_resort;
   if (!options.last_resort) options.zone_rounds = hopeful_rounds;
   if (squeezed) options.zone_rounds = squeezed_rounds;
+  const Points wanted = nodes1;
   const ResolveReport resolved = resolve(search_, world_, inverse_mass, options, nodes0, nodes1, path_);
   add(resolved, report);
   if (!nodes1.allFinite()) return Outcome::not_finite;
   if (!resolved.clean && !options.last_resort) return Outcome::unsettled;
+  if (resolved.impulses > 0 && torn(problem, x, nodes1.topRows(n))) {
+    if (!options.last_resort) return Outcome::unsettled;
+    stop_short(nodes0, wanted, nodes1, report);
+  }
   if (!newton.converged) report.reason = Reason::not_converged;
   to.v = (nodes1.topRows(n) - x0) / h;
   to.touched = to.touched || !contacts.terms.empty() || resolved.impulses + resolved.zones > 0;

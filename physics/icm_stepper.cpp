@@ -36,7 +36,7 @@ class IcmStepper final : public Stepper {
       : scene_(scene),
         options_(options),
         features_(features_of(scene)),
-        world_(make_contact_world(scene.surface, obstacle_surfaces(scene), features_.self_contact)),
+        world_(make_contact_world(scene.surface, obstacle_surfaces(scene), features_.self_contact, &scene.rest)),
         search_(world_),
         inverse_mass_(inverse_masses(scene, world_.node_count)),
         mean_mass_(mean_mass(inverse_mass_)),
@@ -82,7 +82,7 @@ void IcmStepper::find_pairs(const Points& nodes0, const Points& at, const Points
   std::erase_if(pairs_, [&](const NodePair& pair) {
     return std::binary_search(held_.begin(), held_.end(), pair) || exemption.leaves_alone(world_, pair.nodes);
   });
-  std::vector<Proximity> near = find_proximities(world_, pairs_, at, scene_.rest, reach);
+  std::vector<Proximity> near = find_proximities(world_, pairs_, at, reach);
   for (Proximity& p : near) {
     p.rest_gap = std::min(p.rest_gap, scene_.contact.thickness);
     report.collision.min_gap = std::min(report.collision.min_gap, p.gap);

@@ -23,13 +23,16 @@ constexpr double almost_linear = 0.7;  // change over slope; 0.5 where the quadr
 constexpr double max_length = 16;
 constexpr double usual_stiffness = 1e5;  // of vertices, over their inertia: linear solves need not know of more
 constexpr double stiff_allowance = 4;    // energy of a last step, over that of its goal as plain motion
-constexpr int most_stiff = 8;            // times the most iterations
+constexpr double far_off = 0.1;          // of the potential: what is left of more, impulses would meet
+constexpr int most_more = 8;             // times the most iterations, of a solve that either of these keeps
 constexpr int first_exact = 3;           // Newton iterations with filtered Hessians before the exact one is tried
 
 struct EnergyChange {
   double change = 0;  // [J]
   double noise = 0;   // below which a change means nothing
 };
+
+double sum_of(const std::vector<double>& parts) { return std::accumulate(parts.begin(), parts.end(), 0.0); }
 
 EnergyChange energy_change(const std::vector<double>& from, const std::vector<double>& to) {
   EnergyChange result;
@@ -151,7 +154,7 @@ const Eigen::VectorXd& ImplicitEuler::masses() const { return impl_->masses; }
 double ImplicitEuler::potential(const StepProblem& problem, const Points& x) {
   impl_->start(problem);
   energies(impl_->step, x, impl_->scratch, impl_->energy);
-  return std::accumulate(impl_->energy.begin(), impl_->energy.end(), 0.0);
+  return sum_of(impl_->energy);
 }
 
 Points ImplicitEuler::gradient(const StepProblem& problem, const Points& x) {
@@ -169,7 +172,7 @@ double ImplicitEuler::imbalance(const StepProblem& problem, const Points& x) {
 bool ImplicitEuler::Impl::choose_first_guess(Points& x) {
   if (step.problem->goes_on) {
     energies(step, x, scratch, energy);
-    return std::isfinite(std::accumulate(energy.begin(), energy.end(), 0.0)) && x.allFinite();
+    return std::isfinite(sum_of(energy)) && x.allFinite();
   }
   trial = x;
   for (int i = 0; i < x.rows(); ++i)
@@ -178,8 +181,8 @@ bool ImplicitEuler::Impl::choose_first_guess(Points& x) {
     x.row(scene.pins[p]) = trial.row(scene.pins[p]) = step.problem->pins->row(p);
   energies(step, x, scratch, energy);
   energies(step, trial, scratch, trial_energy);
-  const double guess = std::accumulate(energy.begin(), energy.end(), 0.0);
-  const double ballistic = std::accumulate(trial_energy.begin(), trial_energy.end(), 0.0);
+  const double guess = sum_of(energy);
+  const double ballistic = sum_of(trial_energy);
   if (ballistic < guess || (std::isfinite(ballistic) && !std::isfinite(guess))) {
     x = trial;
     energy = trial_energy;
@@ -197,7 +200,7 @@ double ImplicitEuler::Impl::goal(const Points& x) const {
 // What the energy that a Newton step can still gain has to fall below [J]: in stiff cloth small errors store much.
 double ImplicitEuler::Impl::energy_goal(const Points& x) const {
   const double reach = stiff_allowance * goal(x);
-  return reach * reach * std::accumulate(step.inertia.begin(), step.inertia.end(), 0.0);
+  return reach * reach * sum_of(step.inertia);
 }
 
 // Mean stiffness of the vertices over their inertia.
@@ -290,8 +293,8 @@ NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
   report.finite = impl.choose_first_guess(x);
   if (!report.finite) return report;
   const int most = std::max(1, static_cast<int>(std::lround(problem.patience * impl.options.max_newton)));
-  bool stiff = false;  // the last step could gain more energy than its length says
-  while (!report.converged && report.iterations < (stiff ? most_stiff * most : most)) {
+  bool unfinished = false;  // the last step could gain more energy than its length says, or much of all there is
+  while (!report.converged && report.iterations < (unfinished ? most_more * most : most)) {
     const auto direction = impl.find_direction(x, report);
     if (direction == Impl::Direction::none) {
       report.converged = true;
@@ -300,8 +303,9 @@ NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
     const double gain = -impl.gradient.cwiseProduct(impl.motion).sum(), length = impl.line_search(x);
     if (length == 0) break;
     ++report.iterations;
-    stiff = impl.relative_stiffness > usual_stiffness && gain > impl.energy_goal(x);
-    report.converged = !stiff && direction == Impl::Direction::accurate &&
+    const bool far = !problem.contacts.empty() && gain > far_off * std::abs(sum_of(impl.energy));
+    unfinished = far || (impl.relative_stiffness > usual_stiffness && gain > impl.energy_goal(x));
+    report.converged = !unfinished && direction == Impl::Direction::accurate &&
                        std::max(length, 1.0) * root_mean_square(impl.motion) < impl.goal(x);
   }
   return report;

@@ -9,10 +9,11 @@
 namespace selvedge {
 namespace {
 
-constexpr int most_pairs = 10;       // of triangles that cross, each triangle of the cloth
-constexpr int most_halvings = 3;     // of a way that would have clean cloth cross itself
-constexpr int hasty_iterations = 5;  // of untangling from a body that crosses itself: some of it must wait anyway
-constexpr double negligible = 1e-6;  // way, in mean edge lengths
+constexpr int most_pairs = 10;         // of triangles that cross, each triangle of the cloth
+constexpr int most_parting = 150'000;  // pairs times iterations of untangling, a step: the next one goes on
+constexpr int most_halvings = 3;       // of a way that would have clean cloth cross itself
+constexpr int hasty_iterations = 5;    // of untangling from a body that crosses itself: some of it must wait anyway
+constexpr double negligible = 1e-6;    // way, in mean edge lengths
 
 // The vertices that cross the cloth still, where `untangle` says that they should be: to push them towards it for ever
 // would keep the cloth from resting. Empty where there are none.
@@ -96,6 +97,13 @@ std::vector<Separation> pushes_along(const Points& way, const std::vector<char>&
   return pushes;
 }
 
+// Pairs of triangles of the cloth that cross each other.
+std::size_t pairs_within_cloth(const ContactWorld& world, const Points& nodes) {
+  IntersectionCache cache;
+  const Points cloth = nodes.topRows(world.cloth->vertex_count);
+  return intersecting_pairs(*world.cloth, cloth, cache).size();
+}
+
 // Vertices that would go through an obstacle anew stay: it holds them up. Returns what is tangled then.
 Exemption stop_at_obstacles(const ContactWorld& world, const Exemption& before, const Points& from, Points& nodes) {
   for (;;) {
@@ -115,10 +123,7 @@ Exemption stop_at_obstacles(const ContactWorld& world, const Exemption& before, 
 
 std::optional<Exemption> hopeless(const ContactWorld& world, const Points& nodes) {
   if (!world.self) return {};
-  IntersectionCache cache;
-  const Points cloth = nodes.topRows(world.cloth->vertex_count);
-  if (intersecting_pairs(*world.cloth, cloth, cache).size() <= most_pairs * std::size_t(world.cloth->triangles.rows()))
-    return {};
+  if (pairs_within_cloth(world, nodes) <= most_pairs * std::size_t(world.cloth->triangles.rows())) return {};
   ContactWorld bodies = world;
   bodies.self = false;
   Exemption exemption = find_exemption(bodies, nodes);
@@ -135,7 +140,10 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
   const WorldSheets sheets(world, nodes);
   const Points& from = sheets.positions[0];
   UntangleOptions options;
-  if (std::ranges::find(waits, 1) != waits.end()) options.iterations = hasty_iterations;
+  options.iterations = std::ranges::find(waits, 1) != waits.end()
+                           ? hasty_iterations
+                           : std::min(options.iterations,
+                                      most_parting / std::max(1, static_cast<int>(pairs_within_cloth(world, nodes))));
   const UntangleResult parted = untangle(*world.cloth, from, std::span(sheets.views).subspan(1), options);
   const std::vector<char> lost = either(tangled_at(world, nodes, parted), waits);
   const Points whole_way = parted.x - from;

@@ -1,5 +1,6 @@
 #include "physics/scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace selvedge {
@@ -35,6 +36,12 @@ Eigen::VectorXd inverse_masses(const Scene& scene, int node_count) {
     if (masses[v] > 0) inverse[v] = 1 / masses[v];
   for (const int pin : scene.pins) inverse[pin] = 0;
   return inverse;
+}
+
+double smallest_altitude(const RestTriangle& t) {
+  double longest = 0;
+  for (int k = 0; k < 3; ++k) longest = std::max(longest, (t.col(k) - t.col((k + 1) % 3)).norm());
+  return longest > 0 ? 2 * std::abs(area(t)) / longest : 0;
 }
 
 double mean_edge_length(std::span<const RestTriangle> triangles) {

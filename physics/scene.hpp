@@ -88,6 +88,7 @@ Eigen::VectorXd lumped_masses(const Scene&);
 // obstacles.
 Eigen::VectorXd inverse_masses(const Scene&, int node_count);
 
+double smallest_altitude(const RestTriangle&);           // [m]; 0 of a triangle without extent
 double mean_edge_length(std::span<const RestTriangle>);  // [m]; 0 without triangles
 double mean_edge_length(const Scene&);                   // of all triangles at rest
 

@@ -8,6 +8,7 @@ namespace {
 
 constexpr double edges_a_substep = 2.5;  // how far a vertex may move, in mean edge lengths
 constexpr double edges_past = 1;         // how far contact, linearised, may slide: more locks cloth pulled round a post
+constexpr double edges_deep = 0.05;      // that an impact may be for impulses alone
 
 constexpr double visibly_damped = 1.0 / 48;  // steps of implicit Euler that are longer are [s]
 
@@ -58,6 +59,19 @@ double farthest_past(std::span<const Impact> impacts, const Points& nodes0, cons
       for (int b = split; b < 4; ++b) farthest = std::max(farthest, (way(a) - way(b)).norm());
   }
   return farthest;
+}
+
+double deepest(std::span<const Impact> impacts, const Points& nodes1) {
+  double depth = 0;
+  for (const Impact& impact : impacts) depth = std::max(depth, impact.target - impact_gap(impact, nodes1));
+  return depth;
+}
+
+double deep_impact(const Scene& scene) {
+  const double deep = edges_deep * mean_edge_length(scene), thickness = scene.contact.thickness;
+  const bool narrow = std::any_of(scene.rest_triangle.begin(), scene.rest_triangle.end(),
+                                  [&](const RestTriangle& t) { return smallest_altitude(t) < thickness; });
+  return narrow ? std::min(deep, thickness) : deep;
 }
 
 std::optional<Restart> restart_of(const State& from, const Drive& drive, int max_substeps) {

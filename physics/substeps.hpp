@@ -32,6 +32,12 @@ double fastest_past(std::span<const NodePair>, const State& from, const Drive&, 
 // The farthest that nodes of one primitive of an impact move past those of the other, of all [m].
 double farthest_past(std::span<const Impact>, const Points& nodes0, const Points& nodes1);
 
+// How far impacts are from their targets at the end, at most [m].
+double deepest(std::span<const Impact>, const Points& nodes1);
+// How deep an impact may be for impulses alone to meet it: part of an edge, and where triangles are narrower than
+// contact is thick, no more than that [m].
+double deep_impact(const Scene&);
+
 // A start with every obstacle where it is wanted that would have to move farther than its own size (the diagonal of its
 // box) in a substep: that is no motion to sweep along but a new start, and a tangled one it may be.
 struct Restart {

@@ -24,7 +24,7 @@ Work& Work::operator+=(const Work& other) {
 
 WorkBound::WorkBound(const Scene& scene)
     : scene_(scene),
-      world_(make_contact_world(scene.surface, obstacle_surfaces(scene), features_of(scene).self_contact)),
+      world_(make_contact_world(scene.surface, obstacle_surfaces(scene), features_of(scene).self_contact, &scene.rest)),
       search_(world_),
       elastic_(make_elastic(scene)),
       masses_(lumped_masses(scene)) {}
@@ -72,8 +72,7 @@ Work WorkBound::operator()(const State& from, const State& to, const Drive& driv
     for (const int node : pair.nodes)
       if (world_.is_cloth(node)) raise(carried, node, moved);
   }
-  for (const Proximity& p :
-       find_proximities(world_, pairs_within(path, nodes0, thickness), nodes0, scene_.rest, thickness))
+  for (const Proximity& p : find_proximities(world_, pairs_within(path, nodes0, thickness), nodes0, thickness))
     for (const int node : p.pair.nodes)
       if (world_.is_cloth(node)) raise(pressed, node, p.rest_gap - p.gap);
   if (!from.clean) {

@@ -231,10 +231,8 @@ void read_obstacles(const Config& list, const std::filesystem::path& folder, con
 void warn_of_thickness(const Scene& scene, std::vector<std::string>& warnings) {
   int thin = 0, flat = 0;
   for (const RestTriangle& triangle : scene.rest_triangle) {
-    double longest = 0;
-    for (int k = 0; k < 3; ++k) longest = std::max(longest, (triangle.col(k) - triangle.col((k + 1) % 3)).norm());
-    const double altitude = longest > 0 ? 2 * area(triangle) / longest : 0;
-    if (altitude <= 1e-9 * longest)
+    const double altitude = smallest_altitude(triangle);
+    if (altitude * altitude <= 2e-9 * area(triangle))  // a billionth of the longest edge
       ++flat;
     else if (altitude < scene.contact.thickness)
       ++thin;

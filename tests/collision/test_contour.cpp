@@ -2,10 +2,13 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <random>
 #include <set>
 
 #include "collision/contour.hpp"
 #include "collision/contour_regions.hpp"
+#include "collision/edge_parity.hpp"
 #include "tests/collision/sheets.hpp"
 
 using namespace selvedge;
@@ -321,4 +324,39 @@ TEST_CASE("contour: cloth through a body that is an obstacle", "[contour]") {
   const std::vector<Region> regions = enclosed_regions(sheets, contours);
   REQUIRE(regions.size() == 2);
   for (const Region& region : regions) CHECK(region.vertices == contours[0].sides[region.sheet].inside);
+}
+
+TEST_CASE("contour: the smaller part, grown from its curve, is the rarer colour of the whole component", "[contour]") {
+  testing::Sheet crumpled = testing::join(flat(12, jitter), flat(9, jitter));
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal(0, 0.2);
+  for (double& coordinate : crumpled.x.reshaped()) coordinate += normal(random);
+  const Case c(crumpled);
+  const std::vector<int> sizes = component_sizes(c.surface);
+  CHECK(sizes == std::vector<int>{169, 100});
+  int parted = 0, neither = 0;
+  const auto compare = [&](const EdgeParity& parity, int component) {
+    std::vector<char> colours;
+    std::vector<int> ones;
+    std::optional<std::vector<int>> expected;
+    if (parity.colour(component, colours)) {
+      for (int v = 0; v < c.surface.vertex_count; ++v)
+        if (colours[v] == 1) ones.push_back(v);
+      if (2 * static_cast<int>(ones.size()) < sizes[component]) expected = ones;
+    }
+    REQUIRE(parity.smaller_part(component, sizes[component]) == expected);
+    expected ? ++parted : ++neither;
+  };
+  EdgeParity all(c.surface);
+  for (const Contour& contour : c.contours)
+    for (int k = 0; k < 2; ++k) {
+      EdgeParity alone(c.surface);
+      alone.add(contour, k);
+      compare(alone, contour.sides[k].component);
+      if (!ends_outside(contour, 0) || !ends_outside(contour, 1)) continue;
+      all.add(contour, k);
+      for (const int component : {0, 1}) compare(all, component);
+    }
+  CHECK(parted > 20);
+  CHECK(neither > 20);
 }

@@ -43,7 +43,7 @@ struct Press {
     options.thickness = thickness;
     options.separation = separation;
     update_pairs(search, thickness, x0, x1, path);
-    const auto near = find_proximities(world, path.pairs, x0, Points(x0.topRows(cloth_nodes)), thickness);
+    const auto near = find_proximities(world, path.pairs, x0, thickness);
     ResolveReport report;
     return selvedge::make_room(search, world, options, near, x0, x1, path, inverse_mass, report);
   }
