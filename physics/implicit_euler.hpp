@@ -14,9 +14,9 @@ namespace selvedge {
 enum class LinearSolver { automatic, cholmod, pcg, multigrid };  // pcg: block Jacobi; multigrid: PCG with a V-cycle
 
 struct ImplicitEulerOptions {
-  double velocity_tolerance = 2e-3;  // Newton ends when the RMS of its displacement is below this times the time
-                                     // step [m/s],
-  double relative_tolerance = 2e-3;  // or below this part of the RMS motion in the step
+  double velocity_tolerance = 1.7e-3;  // Newton ends when the RMS of its displacement is below this times the time
+                                       // step [m/s],
+  double relative_tolerance = 1.7e-3;  // or below this part of the RMS motion in the step
   int max_newton = 8;
   LinearSolver linear_solver = LinearSolver::automatic;
   double linear_tolerance = 0.25;  // of PCG in a Newton iteration, in the norm of its preconditioner
