@@ -132,7 +132,7 @@ std::vector<Measured> capstan(const ValidationValues& values) {
     slack += pull(elastic, state.x, belt.root, near) / last;
     tight += pull(elastic, state.x, belt.tip, far) / last;
   }
-  return {{"T2 / T1", tight / slack, std::exp(mu * wrap), Judged::relative, 0.03}};
+  return {{"T2 / T1", tight / slack, std::exp(mu * wrap), Judged::relative, 0.02}};
 }
 
 }  // namespace
