@@ -25,7 +25,9 @@ struct Soup {
   std::vector<ExactBox> boxes;
 };
 
-void add_triangle(const Surface& surface, const Points& x, int t, int first_number, double margin, Soup& soup) {
+// If its box comes within the bounds.
+void add_triangle(const Surface& surface, const Points& x, int t, int first_number, double margin,
+                  const ExactBox& bounds, Soup& soup) {
   const std::array<int, 3> v{surface.triangles(t, 0), surface.triangles(t, 1), surface.triangles(t, 2)};
   const std::array<Vec3, 3> p{row(x, v[0]), row(x, v[1]), row(x, v[2])};
   if (!(p[0].allFinite() && p[1].allFinite() && p[2].allFinite())) return;
@@ -35,27 +37,31 @@ void add_triangle(const Surface& surface, const Points& x, int t, int first_numb
     box.lo[k] = lo - margin;
     box.hi[k] = hi + margin;
   }
+  if (!overlap(box, bounds)) return;
   soup.corners.push_back(p);
   soup.vertices.push_back(v);
   soup.number.push_back(first_number + t);
   soup.boxes.push_back(box);
 }
 
-void add_triangles(const Surface& surface, const Points& x, int first_number, double margin, Soup& soup) {
-  for (int t = 0; t < surface.triangles.rows(); ++t) add_triangle(surface, x, t, first_number, margin, soup);
+void add_triangles(const Surface& surface, const Points& x, int first_number, double margin, const ExactBox& bounds,
+                   Soup& soup) {
+  for (int t = 0; t < surface.triangles.rows(); ++t) add_triangle(surface, x, t, first_number, margin, bounds, soup);
 }
 
 Soup soup_of(const Surface& surface, const Points& x, double margin) {
   Soup soup;
-  add_triangles(surface, x, 0, margin, soup);
+  add_triangles(surface, x, 0, margin, everywhere, soup);
   return soup;
 }
 
-Soup soup_of(std::span<const AuditBody> bodies, double margin) {
+// What of the bodies may meet that of the cloth.
+Soup soup_near(const Soup& cloth, std::span<const AuditBody> bodies, double margin) {
+  const ExactBox bounds = hull_of(cloth.boxes);
   Soup soup;
   int first_number = 0;
   for (const AuditBody& body : bodies) {
-    add_triangles(*body.surface, *body.points, first_number, margin, soup);
+    add_triangles(*body.surface, *body.points, first_number, margin, bounds, soup);
     first_number += static_cast<int>(body.surface->triangles.rows());
   }
   return soup;
@@ -185,7 +191,7 @@ Audit answer(const AuditQuestions& questions, const Surface& cloth, const Points
   Audit result;
   for (const AuditMemory::Pair& pair : questions.self_pairs) {
     Soup two;
-    for (const int t : {pair.a, pair.b}) add_triangle(cloth, x, t, 0, 0, two);
+    for (const int t : {pair.a, pair.b}) add_triangle(cloth, x, t, 0, 0, everywhere, two);
     judge_pair(two, 0, 1, result);
   }
   for (const AuditMemory::Pair& pair : questions.body_pairs) {
@@ -193,8 +199,8 @@ Audit answer(const AuditQuestions& questions, const Surface& cloth, const Points
     int t = pair.b;
     for (; t >= body->surface->triangles.rows(); ++body) t -= static_cast<int>(body->surface->triangles.rows());
     Soup mine, other;
-    add_triangle(cloth, x, pair.a, 0, 0, mine);
-    add_triangle(*body->surface, *body->points, t, pair.b - t, 0, other);
+    add_triangle(cloth, x, pair.a, 0, 0, everywhere, mine);
+    add_triangle(*body->surface, *body->points, t, pair.b - t, 0, everywhere, other);
     if (intersect(mine.corners[0], other.corners[0])) result.obstacle_pairs.emplace_back(pair.a, pair.b);
   }
   sort_pairs(result);
@@ -218,7 +224,7 @@ Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> ob
     const AuditQuestions questions = open_questions(*memory, {&cloth, &x, &x}, bodies, self);
     if (!questions.all) return answer(questions, cloth, x, obstacles, *memory);
   }
-  const Soup mine = soup_of(cloth, x, 0), others = soup_of(obstacles, 0);
+  const Soup mine = soup_of(cloth, x, 0), others = soup_near(mine, obstacles, 0);
   const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, self);
   const int count = static_cast<int>(cells.size());
   std::vector<Audit> found(cells.size());
@@ -241,7 +247,7 @@ Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> ob
 double min_gap(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, double horizon) {
   // A box grows by half the horizon on each side, and a little more for rounding.
   const double margin = 0.5 * horizon * (1 + 1e-9);
-  const Soup mine = soup_of(cloth, x, margin), others = soup_of(obstacles, margin);
+  const Soup mine = soup_of(cloth, x, margin), others = soup_near(mine, obstacles, margin);
   const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, true);
   const int count = static_cast<int>(cells.size());
   std::vector<double> least(cells.size());

@@ -52,17 +52,20 @@ bool stay_apart_along_an_axis(const Side& a, int i, const Side& b, int j) {
   return apart;
 }
 
-// Returns the number of vertices that are not finite.
-int add(const MovingBody& body, int first_node, Side& side) {
+// The faces that come within the bounds. Returns the number of vertices that are not finite.
+int add(const MovingBody& body, int first_node, const ExactBox& bounds, Side& side) {
   const Surface& s = *body.surface;
   std::vector<char> good(s.vertex_count);
   for (int v = 0; v < s.vertex_count; ++v) good[v] = finite(*body.x0, *body.x1, v);
   for (int t = 0; t < s.triangles.rows(); ++t) {
     if (!good[s.triangles(t, 0)] || !good[s.triangles(t, 1)] || !good[s.triangles(t, 2)]) continue;
-    side.faces.push_back({&s, body.x0, body.x1, t, first_node});
-    side.start.push_back(box_of(side.faces.back(), *body.x0));
-    side.end.push_back(box_of(side.faces.back(), *body.x1));
-    side.boxes.push_back(round_both(side.start.back(), side.end.back()));
+    const Side::Face face{&s, body.x0, body.x1, t, first_node};
+    const ExactBox start = box_of(face, *body.x0), end = box_of(face, *body.x1), both = round_both(start, end);
+    if (!overlap(both, bounds)) continue;
+    side.faces.push_back(face);
+    side.start.push_back(start);
+    side.end.push_back(end);
+    side.boxes.push_back(both);
   }
   return static_cast<int>(std::count(good.begin(), good.end(), 0));
 }
@@ -216,10 +219,11 @@ MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x
     }
   }
   Side mine, others;
-  result.nonfinite = add({&cloth, &x0, &x1}, 0, mine);
+  result.nonfinite = add({&cloth, &x0, &x1}, 0, everywhere, mine);
+  const ExactBox round_cloth = hull_of(mine.boxes);
   int first_node = cloth.vertex_count;
   for (const MovingBody& body : bodies) {
-    result.nonfinite += add(body, first_node, others);
+    result.nonfinite += add(body, first_node, round_cloth, others);
     first_node += body.surface->vertex_count;
   }
   const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, self);

@@ -101,6 +101,22 @@ std::vector<Cell> cut(const Boxes& boxes, Cell whole, std::size_t enough) {
 
 }  // namespace
 
+ExactBox hull_of(std::span<const ExactBox> boxes) {
+  ExactBox hull{{endless, endless, endless}, {-endless, -endless, -endless}};
+  for (const ExactBox& box : boxes)
+    for (int k = 0; k < 3; ++k) {
+      hull.lo[k] = std::min(hull.lo[k], box.lo[k]);
+      hull.hi[k] = std::max(hull.hi[k], box.hi[k]);
+    }
+  return hull;
+}
+
+bool overlap(const ExactBox& a, const ExactBox& b) {
+  bool meet = true;
+  for (int k = 0; k < 3; ++k) meet &= (a.lo[k] <= b.hi[k]) & (b.lo[k] <= a.hi[k]);
+  return meet;
+}
+
 Sweep::Sweep(std::span<const ExactBox> boxes, std::span<const int> items, int along) : axis(along) {
   entries.reserve(items.size());
   for (const int item : items) entries.push_back({boxes[item], item});
@@ -110,17 +126,16 @@ Sweep::Sweep(std::span<const ExactBox> boxes, std::span<const int> items, int al
 }
 
 int sweep_axis(const Cell& cell, std::span<const ExactBox> first) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   int best = 0;
   double widest = -1;
   for (int k = 0; k < 3; ++k) {
-    double lo = infinity, hi = -infinity, extent = 0;
+    double lo = endless, hi = -endless, extent = 0;
     for (const int i : cell.first) {
       lo = std::min(lo, first[i].lo[k]);
       hi = std::max(hi, first[i].hi[k]);
       extent += first[i].hi[k] - first[i].lo[k];
     }
-    const double spread = extent > 0 ? (hi - lo) / extent : hi > lo ? infinity : 0;
+    const double spread = extent > 0 ? (hi - lo) / extent : hi > lo ? endless : 0;
     if (spread > widest) {
       widest = spread;
       best = k;
@@ -131,10 +146,8 @@ int sweep_axis(const Cell& cell, std::span<const ExactBox> first) {
 
 std::vector<Cell> bisect(std::span<const ExactBox> first, std::span<const ExactBox> second, bool within_first) {
   const Boxes boxes{first, second, within_first};
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  const ExactBox space{{-infinity, -infinity, -infinity}, {infinity, infinity, infinity}};
   // First a few parts, then each of them on a thread of its own: the same cells whatever the number of threads.
-  std::vector<Cell> parts = cut(boxes, {space, count_up(first.size()), count_up(second.size())}, 32);
+  std::vector<Cell> parts = cut(boxes, {everywhere, count_up(first.size()), count_up(second.size())}, 32);
   const int count = static_cast<int>(parts.size());
   std::vector<std::vector<Cell>> cut_up(parts.size());
 #pragma omp parallel for schedule(dynamic)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,11 @@ namespace selvedge {
 struct ExactBox {
   std::array<double, 3> lo, hi;
 };
+
+inline constexpr double endless = std::numeric_limits<double>::infinity();
+inline constexpr ExactBox everywhere{{-endless, -endless, -endless}, {endless, endless, endless}};
+ExactBox hull_of(std::span<const ExactBox>);  // overlaps nothing where there are none
+bool overlap(const ExactBox&, const ExactBox&);
 
 // A cell of space with the boxes that touch it. A pair of boxes belongs to the cell that holds the lowest corner of
 // what they have in common, so that each pair is met once.
