@@ -138,13 +138,17 @@ std::vector<Candidate> candidates(std::span<const SheetView> sheets) {
   std::vector<Candidate> result;
   std::vector<std::pair<int, int>> pairs;
   std::vector<Box> boxes;
-  triangle_boxes(*sheets[0].surface, *sheets[0].x, *sheets[0].x, 0, boxes);
-  const Bvh own = build_bvh(boxes);
+  Bvh built, other_built;
+  const auto tree_of = [&](const SheetView& sheet, Bvh& place) -> const Bvh& {
+    if (sheet.tree) return *sheet.tree;
+    triangle_boxes(*sheet.surface, *sheet.x, *sheet.x, 0, boxes);
+    return place = build_bvh(boxes);
+  };
+  const Bvh& own = tree_of(sheets[0], built);
   self_pairs(own, pairs);
   for (const auto& [a, b] : pairs) result.push_back({0, std::min(a, b), std::max(a, b)});
   for (int k = 1; k < static_cast<int>(sheets.size()); ++k) {
-    triangle_boxes(*sheets[k].surface, *sheets[k].x, *sheets[k].x, 0, boxes);
-    cross_pairs(own, build_bvh(boxes), pairs);
+    cross_pairs(own, tree_of(sheets[k], other_built), pairs);
     for (const auto& [a, b] : pairs) result.push_back({k, a, b});
   }
   return result;

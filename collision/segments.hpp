@@ -9,10 +9,13 @@
 
 namespace selvedge {
 
+struct Bvh;
+
 // A surface where it is now.
 struct SheetView {
   const Surface* surface = nullptr;
   const Points* x = nullptr;
+  const Bvh* tree = nullptr;  // of its triangles' boxes there, if whoever asks has one: saves building it
 };
 
 // Where an edge of one surface passes through a face of another or of its own. `sheet` numbers the surfaces of a query.

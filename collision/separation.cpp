@@ -230,9 +230,15 @@ struct Faces {
 };
 
 Faces make_faces(const Setting& setting, int sheet, std::vector<int> faces) {
-  std::vector<Box> all, boxes;
-  triangle_boxes(*setting.sheets[sheet].surface, *setting.sheets[sheet].x, *setting.sheets[sheet].x, 0, all);
-  for (int t : faces) boxes.push_back(all[t]);
+  const Surface& surface = *setting.sheets[sheet].surface;
+  const Points& x = *setting.sheets[sheet].x;
+  std::vector<Box> boxes;
+  for (const int t : faces) {
+    const auto box = [&](int k) {
+      return moving_point_box(row(x, surface.triangles(t, k)), row(x, surface.triangles(t, k)), 0);
+    };
+    boxes.push_back(hull(box(0), box(1), box(2)));
+  }
   return {sheet, std::move(faces), build_bvh(boxes)};
 }
 

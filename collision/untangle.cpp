@@ -5,6 +5,7 @@
 #include <deque>
 #include <limits>
 
+#include "collision/bvh.hpp"
 #include "collision/floating_point.hpp"
 #include "collision/kept_shape.hpp"
 #include "collision/repulsion.hpp"
@@ -38,6 +39,23 @@ std::vector<SheetView> with_cloth(const Surface& cloth, const Points& x, std::sp
   sheets.insert(sheets.end(), obstacles.begin(), obstacles.end());
   return sheets;
 }
+
+// Obstacles with a tree each: they stand still while it is asked again and again what meets them.
+struct Standing {
+  std::vector<Bvh> trees;
+  std::vector<SheetView> views;
+
+  explicit Standing(std::span<const SheetView> obstacles) : views(obstacles.begin(), obstacles.end()) {
+    std::vector<Box> boxes;
+    for (const SheetView& obstacle : obstacles) {
+      triangle_boxes(*obstacle.surface, *obstacle.x, *obstacle.x, 0, boxes);
+      trees.push_back(build_bvh(boxes));
+    }
+    for (std::size_t k = 0; k < trees.size(); ++k) views[k].tree = &trees[k];
+  }
+  Standing(const Standing&) = delete;  // the views look at the trees
+  Standing& operator=(const Standing&) = delete;
+};
 
 // found: the segments of the sheets.
 Tangle tangle_of(std::span<const SheetView> sheets, Segments found, const KeptShape& shape,
@@ -281,9 +299,11 @@ Attempt attempt(const KeptShape& shape, std::span<const SheetView> obstacles, co
 
 }  // namespace
 
-UntangleResult untangle(const Surface& cloth, const Points& x, std::span<const SheetView> obstacles,
+UntangleResult untangle(const Surface& cloth, const Points& x, std::span<const SheetView> around,
                         const UntangleOptions& options) {
   restore_standard_arithmetic();
+  const Standing standing(around);
+  const std::span<const SheetView> obstacles = standing.views;
   const KeptShape shape = keep_shape(cloth, x);
   const std::vector<SheetView> sheets = with_cloth(cloth, x, obstacles);
   const Tangle input = tangle_of(sheets, find_segments(sheets), shape, options.layers);

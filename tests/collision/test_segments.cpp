@@ -5,6 +5,7 @@
 #include <set>
 
 #include "collision/audit_pair.hpp"
+#include "collision/bvh.hpp"
 #include "collision/segments.hpp"
 #include "collision/symbolic_orientation.hpp"
 #include "tests/collision/sheets.hpp"
@@ -108,6 +109,16 @@ int check_mesh(const WholeMesh& mesh) {
   const Surface surface = make_surface(static_cast<int>(mesh.x.size()), mesh.triangles);
   const Points x = real(mesh);
   const Segments found = find_segments(std::array{SheetView{&surface, &x}});
+  KeptBvh tree;  // whatever it went through
+  std::vector<Box> boxes;
+  for (const double turn : {-1.0, 1.0}) {
+    triangle_boxes(surface, turn * x, turn * x, 0, boxes);
+    update(tree, boxes);
+  }
+  const Segments by_tree = find_segments(std::array{SheetView{&surface, &x, &tree.bvh}});
+  REQUIRE(by_tree.crossings == found.crossings);
+  REQUIRE(by_tree.touching == found.touching);
+  REQUIRE(by_tree.segments.size() == found.segments.size());
 
   std::map<std::pair<int, int>, std::set<std::pair<int, int>>> expected;  // triangles -> (edge, face)
   std::set<std::pair<int, int>> touching;
