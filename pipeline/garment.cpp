@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "collision/error.hpp"
 
@@ -22,22 +23,33 @@ Eigen::VectorXd vertex_areas(const SkinnedSurface& skin) {
   return areas;
 }
 
-Shares shares_of(const Vec3& p, const SkinnedSurface& body, const Eigen::VectorXd& areas, Fit fit) {
+// width: of the Gaussian [m]; none: as wide as p is far from the body.
+Shares shares_of(const Vec3& p, const SkinnedSurface& body, const Eigen::VectorXd& areas, Fit fit,
+                 std::optional<double> width = {}) {
   constexpr double reach = 3;  // standard deviations
   const Eigen::VectorXd squared = (body.rest.rowwise() - p.transpose()).rowwise().squaredNorm();
   Eigen::Index nearest = 0;
-  const double least = squared.minCoeff(&nearest);
-  if (fit == Fit::tight || !(least > 0)) return {{static_cast<int>(nearest), 1.0}};
+  const double least = squared.minCoeff(&nearest), variance = width ? *width * *width : least;
+  if (fit == Fit::tight || !(variance > 0)) return {{static_cast<int>(nearest), 1.0}};
   Shares shares;
   double sum = 0;
   for (Eigen::Index v = 0; v < squared.size(); ++v) {
-    const double beyond = (squared[v] - least) / least;
+    const double beyond = (squared[v] - least) / variance;
     if (beyond > reach * reach) continue;
     shares.emplace_back(static_cast<int>(v), areas[v] * std::exp(-beyond / 2));
     sum += shares.back().second;
   }
   if (!(sum > 0)) return {{static_cast<int>(nearest), 1.0}};
   for (auto& [vertex, share] : shares) share /= sum;
+  return shares;
+}
+
+std::vector<Shares> all_shares(const Points& x, const SkinnedSurface& body, Fit fit, std::optional<double> width = {}) {
+  const Eigen::VectorXd areas = vertex_areas(body);
+  std::vector<Shares> shares(static_cast<std::size_t>(x.rows()));
+#pragma omp parallel for schedule(static)
+  for (Eigen::Index v = 0; v < x.rows(); ++v)
+    shares[static_cast<std::size_t>(v)] = shares_of(x.row(v).transpose(), body, areas, fit, width);
   return shares;
 }
 
@@ -74,15 +86,21 @@ SkinWeights mixed_weights(const SkinWeights& from, const std::vector<Shares>& sh
 
 SkinnedSurface attached(const Points& x, const Triangles& triangles, const BodyModel& body, Fit fit) {
   if (x.rows() == 0) throw Error("has no vertices", "garment", "give a mesh with vertices and faces");
-  const Eigen::VectorXd areas = vertex_areas(body.skin);
-  std::vector<Shares> shares(static_cast<std::size_t>(x.rows()));
-#pragma omp parallel for schedule(static)
-  for (Eigen::Index v = 0; v < x.rows(); ++v)
-    shares[static_cast<std::size_t>(v)] = shares_of(x.row(v).transpose(), body.skin, areas, fit);
+  const std::vector<Shares> shares = all_shares(x, body.skin, fit);
   SkinnedSurface skin{x, triangles, mixed_weights(body.skin.weights, shares), {}, {}};
   mix(body.skin.shape_directions, shares, skin.shape_directions);
   mix(body.skin.pose_directions, shares, skin.pose_directions);
   return skin;
+}
+
+SkinWeights shares_of_body(const Points& x, const BodyModel& body, double width) {
+  std::vector<Eigen::Triplet<double>> entries;
+  const std::vector<Shares> shares = all_shares(x, body.skin, Fit::loose, width);
+  for (std::size_t v = 0; v < shares.size(); ++v)
+    for (const auto& [vertex, share] : shares[v]) entries.emplace_back(static_cast<int>(v), vertex, share);
+  SkinWeights all(x.rows(), body.skin.rest.rows());
+  all.setFromTriplets(entries.begin(), entries.end());
+  return all;
 }
 
 Points worn(const Garment& garment, const BodyModel& body, const Eigen::VectorXd& shape, const BodyPose& pose) {

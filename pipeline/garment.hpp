@@ -35,6 +35,10 @@ enum class Fit { tight, loose };
 // without vertices.
 SkinnedSurface attached(const Points& x, const Triangles&, const BodyModel&, Fit);
 
+// What each vertex worn in the body's zero pose takes from the body's vertices when those are moved: the ones about as
+// near as the nearest, averaged (Gaussian, `width` [m] wide). Rows sum to 1.
+SkinWeights shares_of_body(const Points& x, const BodyModel&, double width);
+
 // The garment worn by the body in a shape and pose: skinned, which may tangle it.
 Points worn(const Garment&, const BodyModel&, const Eigen::VectorXd& shape, const BodyPose&);
 

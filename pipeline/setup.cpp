@@ -30,7 +30,7 @@ struct World {
   };
   int pin_count = 0;
   std::vector<PinGroup> pins;
-  std::shared_ptr<ObstacleMotions> obstacles = std::make_shared<ObstacleMotions>();
+  std::vector<std::function<Points(double time)>> obstacles;
   std::function<Points(double)> worn;  // empty: nothing is worn
   Vec3 gravity = Vec3::Zero();
   std::vector<double> wind_times;
@@ -43,7 +43,7 @@ Drive drive(const World& world, double time) {
   d.pins.resize(world.pin_count, 3);
   for (const World::PinGroup& group : world.pins)
     d.pins(group.rows, Eigen::all) = group.at(time)(group.places, Eigen::all);
-  for (const auto& at : *world.obstacles) d.obstacles.push_back(at(time));
+  for (const auto& at : world.obstacles) d.obstacles.push_back(at(time));
   if (!world.wind.empty()) d.wind = keyed_vector(world.wind_times, world.wind, world.wind_interpolation, time);
   d.acceleration = world.gravity;
   if (world.worn) d.worn = world.worn(time);
@@ -223,7 +223,7 @@ void read_obstacles(const Config& list, const std::filesystem::path& folder, con
     ObstaclePart part = bodies[o] ? obstacle_of(bodies[o]) : read_obstacle(list.items[o], o, folder, setup.warnings);
     take_name(list.items[o], part.obstacle.name, names);
     setup.scene.obstacles.push_back(std::move(part.obstacle));
-    world.obstacles->push_back(std::move(part.at));
+    world.obstacles.push_back(std::move(part.at));
   }
 }
 
@@ -263,7 +263,7 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
   read_obstacles(config["obstacles"], folder, bodies, setup, *world);
   read_wind(config["wind"], setup.scene.wind, *world);
   warn_of_thickness(setup.scene, setup.warnings);
-  setup.obstacles_at = world->obstacles;
+  for (const auto& who : bodies) setup.bodies.push_back(who ? who->known : nullptr);
   setup.drive_at = [world](double time) { return drive(*world, time); };
   const Drive start = setup.drive_at(setup.initial.time);
   setup.initial.obstacles = start.obstacles;

@@ -26,8 +26,7 @@ struct RunOptions {
   IcmOptions icm;
 };
 
-// Where each obstacle is wanted at a time [s].
-using ObstacleMotions = std::vector<std::function<Points(double time)>>;
+struct PosedBodies;
 
 // A scene file, read: everything a run needs.
 struct Setup {
@@ -38,10 +37,10 @@ struct Setup {
   Points velocity;       // at time 0
   std::string prepared;  // what was done for the start; empty: nothing
   RunOptions run;
-  std::function<Drive(double time)> drive_at;     // the world at a time [s]
-  std::shared_ptr<ObstacleMotions> obstacles_at;  // which drive_at asks: another may be put in an obstacle's place
-  std::vector<Outcome> outcomes;                  // what must come true
-  std::vector<std::string> short_form;            // overrides that make a shorter run of the scene
+  std::function<Drive(double time)> drive_at;        // the world at a time [s]
+  std::vector<std::shared_ptr<PosedBodies>> bodies;  // of each obstacle, null for what is no body: what drive_at knows
+  std::vector<Outcome> outcomes;                     // what must come true
+  std::vector<std::string> short_form;               // overrides that make a shorter run of the scene
   std::vector<std::string> warnings;  // named and counted: degenerate triangles left out, isolated vertices, ...
 };
 

@@ -84,17 +84,13 @@ Clip performed(const Config& section, const Performance& who, const std::filesys
   return blended(clip, StartPose::zero, from_zero);
 }
 
-// Scaled, turned and moved as the body is.
-Points in_scene(const Performance& who, const Points& x, double time) {
-  return moved(who.motion, placed(who.section, x), time);
-}
-
 }  // namespace
 
 Performance read_performance(const Config& section, const std::filesystem::path& folder) {
   const Config &clip = section["clip"], &shape = section["shape"];
   Performance who;
   who.body = read_model(section["model"], folder);
+  who.surface = make_surface(static_cast<int>(who.body.skin.rest.rows()), who.body.skin.triangles);
   const bool of_smpl = std::filesystem::path(section["model"].text()).extension() == ".npz";
   if (shape.given)
     who.shape =
@@ -107,9 +103,7 @@ Performance read_performance(const Config& section, const std::filesystem::path&
   if (!clip.given) return who;
   who.clip = performed(section, who, folder);
   if (const double room = section["room"].number(); room > 0)
-    who.flesh =
-        std::make_shared<GiveWay>(make_surface(static_cast<int>(who.body.skin.rest.rows()), who.body.skin.triangles),
-                                  shaped(who.body.skin, who.shape), GiveWayOptions{.room = room});
+    who.flesh = std::make_shared<GiveWay>(who.surface, shaped(who.body.skin, who.shape), GiveWayOptions{.room = room});
   return who;
 }
 
@@ -132,6 +126,7 @@ void come_from(const Points& rotations, double begins, double seconds, Performan
   const Clip still{who.name, fps, who.body.joints, {pose_at(who, 0)}, {}};
   who.before = blended_in(still, seconds, rotations);
   who.begins = begins;
+  who.known->at.clear();
 }
 
 BodyPose pose_at(const Performance& who, double time) {
@@ -140,14 +135,21 @@ BodyPose pose_at(const Performance& who, double time) {
   return matched(pose_at(who.clip, time), who.clip.joints, who.body.joints);
 }
 
-Points body_at(const Performance& who, double time) {
-  const Points x = posed(who.body, who.shape, pose_at(who, time));
-  return in_scene(who, who.flesh ? (*who.flesh)(x) : x, time);
+const PosedBody& posed_at(const Performance& who, double time) {
+  constexpr std::size_t most = 4;  // moments that a step asks for
+  std::map<double, PosedBody>& at = who.known->at;
+  if (const auto found = at.find(time); found != at.end()) return found->second;
+  if (!who.known->keeps_all && at.size() >= most) at.clear();
+  PosedBody body{posed(who.body, who.shape, pose_at(who, time)), {}};
+  body.given = who.flesh ? (*who.flesh)(body.skinned) : body.skinned;
+  return at.emplace(time, std::move(body)).first->second;
 }
 
-Points worn_at(const Performance& who, const Garment& garment, double time) {
-  return in_scene(who, worn(garment, who.body, who.shape, pose_at(who, time)), time);
+Points in_scene(const Performance& who, const Points& x, double time) {
+  return moved(who.motion, placed(who.section, x), time);
 }
+
+Points body_at(const Performance& who, double time) { return in_scene(who, posed_at(who, time).given, time); }
 
 bool is_still(const Performance& who) {
   return who.clip.poses.size() < 2 && who.before.poses.size() < 2 && is_still(who.motion);
@@ -156,7 +158,7 @@ bool is_still(const Performance& who) {
 ObstaclePart obstacle_of(const std::shared_ptr<const Performance>& who) {
   ObstaclePart part;
   part.obstacle.name = who->name;
-  part.obstacle.surface = make_surface(static_cast<int>(who->body.skin.rest.rows()), who->body.skin.triangles);
+  part.obstacle.surface = who->surface;
   part.obstacle.moving = !is_still(*who);
   part.at = [who](double time) { return body_at(*who, time); };
   return part;

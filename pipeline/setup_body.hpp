@@ -1,20 +1,33 @@
 #pragma once
 
+#include <map>
 #include <memory>
 
 #include "collision/give_way.hpp"
+#include "pipeline/body.hpp"
 #include "pipeline/clip.hpp"
 #include "pipeline/config.hpp"
-#include "pipeline/garment.hpp"
 #include "pipeline/motion.hpp"
 #include "pipeline/setup_obstacle.hpp"
 
 namespace selvedge {
 
+// A body before it is placed: as skinned, and where it has given way to itself [m].
+struct PosedBody {
+  Points skinned, given;
+};
+
+// Of one body doing one thing. To give way takes time, and the obstacle and all garments ask for the same moments.
+struct PosedBodies {
+  std::map<double, PosedBody> at;
+  bool keeps_all = false;  // else those asked for last
+};
+
 // A body of a scene, what it does and where: the obstacle and the garments on it share it.
 struct Performance {
   std::string name;  // the obstacle's
   BodyModel body;
+  Surface surface;  // of its skin
   Eigen::VectorXd shape;
   Clip clip;                             // without poses: it stands in the zero pose
   std::shared_ptr<const GiveWay> flesh;  // null: it passes through itself
@@ -22,6 +35,7 @@ struct Performance {
   Motion motion;                         // of what is placed
   Clip before;                           // up to time 0, where the scene's time begins before it
   double begins = 0;                     // when it does [s]
+  std::shared_ptr<PosedBodies> known = std::make_shared<PosedBodies>();
 };
 
 // The bodies of a scene's obstacles, one an obstacle, null for what is none. `folder` is the scene file's.
@@ -37,9 +51,14 @@ void come_from(const Points& rotations, double begins, double seconds, Performan
 
 BodyPose pose_at(const Performance&, double time);
 
-// The body, giving way where it has flesh, and a garment on it, where the scene has them at a time [s].
+// Before it is placed; kept in what the performance knows.
+const PosedBody& posed_at(const Performance&, double time);
+
+// The body, giving way where it has flesh, where the scene has it at a time [s].
 Points body_at(const Performance&, double time);
-Points worn_at(const Performance&, const Garment&, double time);
+
+// Scaled, turned and moved as the body is.
+Points in_scene(const Performance&, const Points&, double time);
 
 bool is_still(const Performance&);
 

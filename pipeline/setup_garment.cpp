@@ -10,6 +10,8 @@
 namespace selvedge {
 namespace {
 
+constexpr double skin_width = 0.02;  // of the skin that a garment's vertex goes along with [m]
+
 // A garment's place comes from its body, and copies could not wear it.
 void check_placed_by_body(const Config& cloth) {
   const auto refuse = [&](const char* key, bool differs) {
@@ -109,7 +111,9 @@ std::vector<std::shared_ptr<const Wearing>> read_wearings(const Config& cloth, c
   std::vector<std::shared_ptr<const Wearing>> worn;
   for (Garment& garment : garments) {
     if (!section["pins"].flag()) garment.pins.clear();
-    worn.push_back(std::make_shared<Wearing>(Wearing{std::move(garment), who}));
+    SkinWeights skin;
+    if (who->flesh) skin = shares_of_body(garment.skin.rest, who->body, skin_width);
+    worn.push_back(std::make_shared<Wearing>(Wearing{std::move(garment), who, std::move(skin)}));
   }
   return worn;
 }
@@ -122,7 +126,18 @@ Mesh rest_mesh(const Wearing& wearing) {
   return mesh;
 }
 
-Points worn_at(const Wearing& wearing, double time) { return worn_at(*wearing.by, wearing.garment, time); }
+Points worn_at(const Wearing& wearing, double time) {
+  const Performance& who = *wearing.by;
+  return in_scene(who, worn(wearing.garment, who.body, who.shape, pose_at(who, time)), time);
+}
+
+Points held_at(const Wearing& wearing, double time) {
+  if (wearing.skin.rows() == 0) return worn_at(wearing, time);
+  const Performance& who = *wearing.by;
+  const PosedBody& body = posed_at(who, time);
+  const Points x = worn(wearing.garment, who.body, who.shape, pose_at(who, time));
+  return in_scene(who, x + wearing.skin * (body.given - body.skinned), time);
+}
 
 Points worn_velocity(const Wearing& wearing, double time) {
   const double fps = wearing.by->clip.fps;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "pipeline/garment.hpp"
 #include "pipeline/mesh_io.hpp"
 #include "pipeline/setup_body.hpp"
 
@@ -12,6 +13,7 @@ namespace selvedge {
 struct Wearing {
   Garment garment;
   std::shared_ptr<const Performance> by;
+  SkinWeights skin = {};  // in what shares each vertex goes along where the body gives way; none: nowhere
 };
 
 // The garment of a cloth's section, or those of its outfit; `folder` is the scene file's, warnings are added.
@@ -24,5 +26,8 @@ Mesh rest_mesh(const Wearing&);
 // As skinned, where the scene has it at a time [s], and how fast it moves there, by the clip's next frame.
 Points worn_at(const Wearing&, double time);
 Points worn_velocity(const Wearing&, double time);
+
+// The same, moved along with what of the body has given way to itself: where pins are, and where cloth is drawn to.
+Points held_at(const Wearing&, double time);
 
 }  // namespace selvedge

@@ -1,7 +1,6 @@
 #include "pipeline/wardrobe.hpp"
 
 #include <algorithm>
-#include <map>
 
 #include <fmt/format.h>
 
@@ -13,6 +12,7 @@
 #include "pipeline/make_stepper.hpp"
 #include "pipeline/outfit.hpp"
 #include "pipeline/run_scene.hpp"
+#include "pipeline/setup_body.hpp"
 #include "pipeline/view.hpp"
 #include "pipeline/write_file.hpp"
 
@@ -67,24 +67,19 @@ Setup read_row(const WardrobeRequest& request, const Wear& wear, const ClipEntry
 // What all that is worn through a clip shares: where the body is, asked by the same times each, and in which frames it
 // passes through itself or did so a few frames before.
 struct ClipBody {
-  std::map<double, Points> at;
+  PosedBodies known{{}, true};
   std::vector<char> excused;
 };
 
-// Has the setup's body, its first obstacle, found once a clip.
-void share_body(const Setup& setup, ClipBody& body) {
-  std::function<Points(double)>& at = setup.obstacles_at->front();
-  at = [found = at, &body](double time) {
-    const auto [place, absent] = body.at.try_emplace(time);
-    if (absent) place->second = found(time);
-    return place->second;
-  };
+// In which frames of the setup its body, its first obstacle, passes through itself.
+void find_excused(const Setup& setup, ClipBody& body) {
   if (!body.excused.empty()) return;
   IntersectionCache cache;
   int left = 0;
   double time = setup.initial.time;
   for (int frame = 0; frame <= setup.run.frames; ++frame, time += 1 / setup.run.fps) {
-    if (!intersecting_pairs(setup.scene.obstacles[0].surface, at(time), cache).empty()) left = frames_after + 1;
+    if (!intersecting_pairs(setup.scene.obstacles[0].surface, setup.drive_at(time).obstacles[0], cache).empty())
+      left = frames_after + 1;
     body.excused.push_back(left > 0);
     left = std::max(0, left - 1);
   }
@@ -131,7 +126,9 @@ struct RowPlace {
 std::optional<WardrobeRow> run_row(const WardrobeRequest& request, const Wear& wear, const ClipEntry& clip,
                                    const RowPlace& place, ClipBody& body) {
   const Setup setup = read_row(request, wear, clip);
-  share_body(setup, body);
+  PosedBodies& known = *setup.bodies.front();
+  std::swap(known, body.known);
+  find_excused(setup, body);
   const std::vector<char>& excused = body.excused;
   WardrobeRow row;
   row.wear = wear.name;
@@ -144,6 +141,7 @@ std::optional<WardrobeRow> run_row(const WardrobeRequest& request, const Wear& w
   run.observe = Watch{excused, row};
   run.stop = request.stop;
   const RunSummary summary = run_scene(setup, *make_stepper(setup), run);
+  std::swap(known, body.known);
   if (summary.end == RunEnd::interrupted) return {};
   row.vertices = summary.vertices;
   row.frames = summary.frames;

@@ -60,6 +60,24 @@ TEST_CASE("A garment's pins go where its body goes, in its shape, clip, placemen
   }
 }
 
+TEST_CASE("Where a body gives way to itself, the garment's pins go along", "[setup_garment]") {
+  const Folder folder("garment_flesh");
+  const fake::Piece piece = write_band(folder);
+  const Setup plain = read(folder, "{garment: band.h5}", "{name: person, body: {clip: squat, room: 0}}");
+  const Setup setup = read(folder, "{garment: band.h5}", "{name: person, body: {clip: squat}}");
+  double given = 0, apart = 0;
+  for (const double time : {0.0, 1.0, 2.0, 2.5}) {
+    const Drive drive = setup.drive_at(time);
+    const Points skin = drive.obstacles.at(0)(piece.from, Eigen::all);
+    given = std::max(given, farthest(skin, plain.drive_at(time).pins));
+    apart = std::max(apart, farthest(skin, drive.pins));
+    CHECK(drive.worn == drive.pins);
+  }
+  CAPTURE(given, apart);
+  CHECK(given > 0.01);
+  CHECK(apart < 0.5 * given);
+}
+
 TEST_CASE("A garment rests as it was made, resized by the body's shape and scale", "[setup_garment]") {
   const Folder folder("garment_rest");
   const fake::Piece piece = write_band(folder);
