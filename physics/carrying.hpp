@@ -16,10 +16,10 @@ namespace selvedge {
 std::vector<char> carried_vertices(const ContactWorld&, const Exemption&, const Points& worn, const Points& nodes,
                                    double reach);
 
-// Springs from the carried vertices to where they are worn, or to `way` [m] from x0 towards it, as stiff as their
-// inertia over a step of h [s].
+// Springs from the carried vertices to where they are worn, or to `way` [m] from x0 towards it, `firmness` times as
+// stiff as their inertia over a step of h [s].
 AddedTerm carrying_term(const std::vector<char>& carried, const Eigen::VectorXd& masses, const Points& x0,
-                        const Points& worn, double way, double h);
+                        const Points& worn, double way, double h, double firmness = 1);
 
 // Both.
 AddedTerm sum_of(AddedTerm, AddedTerm);

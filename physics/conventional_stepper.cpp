@@ -28,11 +28,13 @@ constexpr double normal_change = 0.05;      // of what bounds friction, at most,
 constexpr int halvings = 2;                 // of a substep whose zones do not settle, before the last resort
 constexpr double recovery_speed = 1;        // at most, of a vertex that starts tangled [m/s]
 constexpr double carrying_speed = 3;        // at most, of one that is drawn to where it is worn [m/s]
-constexpr double rounding = 1e-14;          // of positions that are added up over substeps
-constexpr int squeezed_rounds = 4;          // of zones, where there is no room
-constexpr int hopeful_rounds = 12;          // of zones in a substep that may still be halved
-constexpr double tearing = 10;              // times the energy of the substep: more is not left in it by impulses
-constexpr double kept_way = 0.5;            // of that to the first impact, where everything stops short
+constexpr double astray = 1.5;      // from where it is worn, of tangled cloth that is drawn there, in mean edges
+constexpr double firm = 1000;       // times as stiffly, where the body is free: else it holds its own shape
+constexpr double rounding = 1e-14;  // of positions that are added up over substeps
+constexpr int squeezed_rounds = 4;  // of zones, where there is no room
+constexpr int hopeful_rounds = 12;  // of zones in a substep that may still be halved
+constexpr double tearing = 10;      // times the energy of the substep: more is not left in it by impulses
+constexpr double kept_way = 0.5;    // of that to the first impact, where everything stops short
 
 // Where a substep ends. The nodes come with obstacles where they are to end and the cloth at its first guess.
 struct Arrival {
@@ -260,7 +262,8 @@ ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const 
   AddedTerm added;
   if (!gained_.empty()) added = added_pushes(push_terms(gained_, inverse_mass_, 0.1 * scene_.contact.thickness, h));
   if (!carried_.empty())
-    added = sum_of(std::move(added), carrying_term(carried_, solver_.masses(), x0, drive.worn, carrying_speed * h, h));
+    added = sum_of(std::move(added), carrying_term(carried_, solver_.masses(), x0, drive.worn, carrying_speed * h, h,
+                                                   exemption_.off.empty() ? firm : 1));
   if (added.value) problem.added = &added;
   Contacts contacts = contact_terms(scene_, world_, proximities, inverse_mass_, nodes0, nodes1, h);
   // The load of a contact is what pulls at it where the cloth would go without any.
@@ -369,7 +372,8 @@ void ConventionalStepper::prepare_contact(const State& from, const Drive& drive,
   }
   self_crossings_.switch_off(nodes, wanted, exemption_);
   const std::vector<char> pierced =
-      untouched ? std::vector<char>() : pierced_vertices(world_, exemption_, nodes, wanted, drive.worn);
+      untouched ? std::vector<char>()
+                : pierced_vertices(world_, exemption_, nodes, wanted, drive.worn, astray * edge_length_);
   carried_ = either(carried_vertices(world_, exemption_, drive.worn, nodes, edge_length_), pierced);
   if (exemption_.cloth() && !untouched) {
     Recovery recovery = recover(world_, inverse_mass_, recovery_speed * dt, exemption_, carried_, nodes);

@@ -44,14 +44,17 @@ std::vector<char> pierced_components(const ContactWorld& world, const Points& no
 }  // namespace
 
 std::vector<char> pierced_vertices(const ContactWorld& world, const Exemption& exemption, const Points& nodes,
-                                   const Points& wanted, const Points& worn) {
+                                   const Points& wanted, const Points& worn, double astray) {
   if (exemption.body.empty() || !exemption.off.empty() || worn.rows() == 0) return {};
   std::vector<char> pierced = pierced_components(world, nodes);
   Points there = wanted;
   for (int v = 0; v < worn.rows(); ++v) {
     const bool is_worn = worn.row(v).allFinite();
-    if (!is_worn) pierced[world.cloth->component[v]] = 0;
     there.row(v) = is_worn ? worn.row(v) : nodes.row(v);
+    if (!is_worn)
+      pierced[world.cloth->component[v]] = 0;
+    else if (exemption.body[v] && (there.row(v) - nodes.row(v)).norm() > astray)
+      pierced[world.cloth->component[v]] = 1;
   }
   if (std::ranges::find(pierced, 1) == pierced.end()) return {};
   const std::vector<char> anyway = pierced_components(world, there);

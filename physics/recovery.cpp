@@ -11,9 +11,11 @@ namespace {
 
 constexpr int most_pairs = 10;         // of triangles that cross, each triangle of the cloth
 constexpr int most_parting = 150'000;  // pairs times iterations of untangling, a step: the next one goes on
-constexpr int most_halvings = 3;       // of a way that would have clean cloth cross itself
-constexpr int hasty_iterations = 5;    // of untangling from a body that crosses itself: some of it must wait anyway
-constexpr double negligible = 1e-6;    // way, in mean edge lengths
+constexpr double ample = 12;           // times the way that a step can go, of untangling: the rest would not be used
+constexpr int least_iterations = 30;
+constexpr int most_halvings = 3;     // of a way that would have clean cloth cross itself
+constexpr int hasty_iterations = 5;  // of untangling from a body that crosses itself: some of it must wait anyway
+constexpr double negligible = 1e-6;  // way, in mean edge lengths
 
 // The vertices that cross the cloth still, where `untangle` says that they should be: to push them towards it for ever
 // would keep the cloth from resting. Empty where there are none.
@@ -104,6 +106,18 @@ std::size_t pairs_within_cloth(const ContactWorld& world, const Points& nodes) {
   return intersecting_pairs(*world.cloth, cloth, cache).size();
 }
 
+// Of untangling, in a step in which vertices can go as far as `reach` [m]. What sits on a body goes straight out; where
+// cloth is tangled with itself the first steps may be the wrong ones.
+int iterations_for(const ContactWorld& world, const Points& nodes, double reach, const Exemption& before,
+                   const std::vector<char>& waits, const UntangleOptions& options) {
+  if (std::ranges::find(waits, 1) != waits.end()) return hasty_iterations;
+  if (!before.self.empty())
+    return std::min(options.iterations, most_parting / std::max(1, static_cast<int>(pairs_within_cloth(world, nodes))));
+  const double step = options.step * mean_edge(*world.cloth, nodes.topRows(world.cloth->vertex_count));
+  const double useful = std::max<double>(least_iterations, ample * reach / step);
+  return useful < options.iterations ? static_cast<int>(useful) : options.iterations;
+}
+
 // Vertices that would go through an obstacle anew stay: it holds them up. Returns what is tangled then.
 Exemption stop_at_obstacles(const ContactWorld& world, const Exemption& before, const Points& from, Points& nodes) {
   for (;;) {
@@ -140,10 +154,7 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
   const WorldSheets sheets(world, nodes);
   const Points& from = sheets.positions[0];
   UntangleOptions options;
-  options.iterations = std::ranges::find(waits, 1) != waits.end()
-                           ? hasty_iterations
-                           : std::min(options.iterations,
-                                      most_parting / std::max(1, static_cast<int>(pairs_within_cloth(world, nodes))));
+  options.iterations = iterations_for(world, nodes, reach, before, waits, options);
   const UntangleResult parted = untangle(*world.cloth, from, std::span(sheets.views).subspan(1), options);
   const std::vector<char> lost = either(tangled_at(world, nodes, parted), waits);
   const Points whole_way = parted.x - from;

@@ -49,8 +49,8 @@ struct Skewer {
     world = make_contact_world(w.scene.surface, {&w.scene.obstacles[0].surface}, true);
     nodes = gather_nodes(w.state.x, w.state.obstacles);
   }
-  std::vector<char> pierced() const {
-    return pierced_vertices(world, find_exemption(world, nodes), nodes, nodes, w.drive.worn);
+  std::vector<char> pierced(double astray = 1) const {
+    return pierced_vertices(world, find_exemption(world, nodes), nodes, nodes, w.drive.worn, astray);
   }
 };
 
@@ -76,7 +76,16 @@ TEST_CASE("pierced: nothing that can be pushed out, or is so where it is worn, o
   const Skewer crossing(spindle(0.05, 0.3));
   Exemption exemption = find_exemption(crossing.world, crossing.nodes);
   exemption.off.assign(static_cast<std::size_t>(crossing.world.node_count), 0);
-  CHECK(pierced_vertices(crossing.world, exemption, crossing.nodes, crossing.nodes, crossing.w.drive.worn).empty());
+  CHECK(pierced_vertices(crossing.world, exemption, crossing.nodes, crossing.nodes, crossing.w.drive.worn, 0).empty());
+}
+
+TEST_CASE("pierced: cloth that is tangled far from where it is worn, until it is near", "[pierced]") {
+  const Skewer bump(spindle(0.05, 0.06));  // the sheet is worn 0.5 m away
+  const std::vector<char> marked = bump.pierced(0.45);
+  REQUIRE(marked.size() == 17 * 17 + 25);
+  CHECK(std::count(marked.begin(), marked.begin() + 17 * 17, 1) == 17 * 17);
+  CHECK(std::count(marked.begin() + 17 * 17, marked.end(), 1) == 0);  // as far, and not tangled
+  CHECK(bump.pierced(0.55).empty());
 }
 
 TEST_CASE("pierced: the stepper takes the cloth off, through the body, and only to where it is worn", "[pierced]") {
