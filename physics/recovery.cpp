@@ -1,6 +1,7 @@
 #include "physics/recovery.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "collision/untangle.hpp"
 #include "collision/world_sheets.hpp"
@@ -195,8 +196,10 @@ bool SelfCrossings::crosses(int obstacle, const Points& nodes, Known& known) {
 void SelfCrossings::switch_off(const Points& from, const Points& to, Exemption& exemption) {
   for (std::size_t k = 0; k < known_.size(); ++k) {
     const int obstacle = static_cast<int>(k);
-    if (crosses(obstacle, from, known_[k][0])) selvedge::switch_off(world_, obstacle, from, exemption);
-    if (crosses(obstacle, to, known_[k][1])) selvedge::switch_off(world_, obstacle, to, exemption);
+    auto& [start, end] = known_[k];
+    std::swap(start, end);  // a step begins where the last one ended
+    if (crosses(obstacle, from, start)) selvedge::switch_off(world_, obstacle, from, exemption);
+    if (crosses(obstacle, to, end)) selvedge::switch_off(world_, obstacle, to, exemption);
   }
 }
 

@@ -87,11 +87,12 @@ const Section& pin_section() {
       "",
       {"vertices", "box", "group"},
       selection_keys() +
-          std::vector<Key>{section(motion_section(), "", "left out: at rest"),
-                           with_words(text("follow",
-                                           "`body`: of a garment, goes where the body takes it as skinned, in "
-                                           "place of `motion`"),
-                                      {"body"})}};
+          std::vector<Key>{
+              section(motion_section(), "", "left out: at rest"),
+              with_words(text("follow",
+                              "`body`: of a garment, goes where the body takes it, skinned and giving way, in "
+                              "place of `motion`"),
+                         {"body"})}};
   return table;
 }
 

@@ -22,7 +22,7 @@ const Section& garment_section() {
        text("outfit", "of configs/outfits.yaml"),
        word("form", {"small", "full"}, "small", "of the outfit: for quick runs, or with all its vertices"),
        text("on", "name of the obstacle that wears it; left out: the only body"),
-       flag("pins", true, "whether the garment's own pins stay with the body, as skinned")}};
+       flag("pins", true, "whether the garment's own pins stay with the body, skinned and giving way")}};
   return table;
 }
 
