@@ -8,7 +8,8 @@
 namespace selvedge {
 namespace {
 
-constexpr double long_limb = 2.5;  // beyond a contour round it, in radii of the contour
+constexpr double good_part = 0.03;  // of a component's vertices
+constexpr double long_limb = 2.5;   // beyond a contour round it, in radii of the contour
 
 // How far the vertices of a side's smaller part reach from the middle of its curve, in radii of the curve.
 double slenderness(const SheetView& sheet, const ContourSide& side) {
@@ -41,20 +42,34 @@ std::vector<char> pierced_components(const ContactWorld& world, const Points& no
   return pierced;
 }
 
+// Of which a good part is tangled with obstacles farther than that from where it is worn.
+std::vector<char> far_components(const ContactWorld& world, const Exemption& exemption, const Points& nodes,
+                                 const Points& worn, double astray) {
+  const auto components = static_cast<std::size_t>(world.cloth->component_count);
+  std::vector<int> size(components, 0), far(components, 0);
+  for (int v = 0; v < worn.rows(); ++v) {
+    const int component = world.cloth->component[v];
+    ++size[component];
+    far[component] += exemption.body[v] && (worn.row(v) - nodes.row(v)).norm() > astray;
+  }
+  std::vector<char> found(components, 0);
+  for (std::size_t c = 0; c < components; ++c) found[c] = far[c] > good_part * size[c];
+  return found;
+}
+
 }  // namespace
 
 std::vector<char> pierced_vertices(const ContactWorld& world, const Exemption& exemption, const Points& nodes,
                                    const Points& wanted, const Points& worn, double astray) {
   if (exemption.body.empty() || !exemption.off.empty() || worn.rows() == 0) return {};
-  std::vector<char> pierced = pierced_components(world, nodes);
+  const std::vector<char> through = pierced_components(world, nodes),
+                          on_its_way = far_components(world, exemption, nodes, worn, astray);
+  std::vector<char> pierced = either(through, on_its_way);
   Points there = wanted;
   for (int v = 0; v < worn.rows(); ++v) {
     const bool is_worn = worn.row(v).allFinite();
+    if (!is_worn) pierced[world.cloth->component[v]] = 0;
     there.row(v) = is_worn ? worn.row(v) : nodes.row(v);
-    if (!is_worn)
-      pierced[world.cloth->component[v]] = 0;
-    else if (exemption.body[v] && (there.row(v) - nodes.row(v)).norm() > astray)
-      pierced[world.cloth->component[v]] = 1;
   }
   if (std::ranges::find(pierced, 1) == pierced.end()) return {};
   const std::vector<char> anyway = pierced_components(world, there);

@@ -71,6 +71,7 @@ TEST_CASE("pierced: nothing that can be pushed out, or is so where it is worn, o
   Skewer unworn(spindle(0.05, 0.3));
   unworn.w.drive.worn.row(40).setConstant(std::numeric_limits<double>::quiet_NaN());
   CHECK(unworn.pierced().empty());
+  CHECK(unworn.pierced(0).empty());
   unworn.w.drive.worn.resize(0, 3);
   CHECK(unworn.pierced().empty());
   const Skewer crossing(spindle(0.05, 0.3));
@@ -86,6 +87,9 @@ TEST_CASE("pierced: cloth that is tangled far from where it is worn, until it is
   CHECK(std::count(marked.begin(), marked.begin() + 17 * 17, 1) == 17 * 17);
   CHECK(std::count(marked.begin() + 17 * 17, marked.end(), 1) == 0);  // as far, and not tangled
   CHECK(bump.pierced(0.55).empty());
+  const Skewer pinprick(spindle(0.02, 0.03));
+  CHECK(find_exemption(pinprick.world, pinprick.nodes).cloth_vertices() > 0);
+  CHECK(pinprick.pierced(0.1).empty());  // a few vertices: the rest of the cloth is where it should be
 }
 
 TEST_CASE("pierced: the stepper takes the cloth off, through the body, and only to where it is worn", "[pierced]") {
