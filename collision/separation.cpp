@@ -150,6 +150,7 @@ void part_crossings(const Setting& setting, int number, const PatchOf& patch_of,
                     std::vector<Separation>& separations) {
   const Contour& contour = setting.contours[number];
   const ContourTranslation translation = contour_translation(setting.sheets, setting.found, contour);
+  // Not clamped: steps that were shortened may be below the gap.
   const double step = std::min(std::max(0.25 * contour.length, setting.lengths.gap), setting.lengths.step);
   const bool body = meets_closed_obstacle(setting, contour);
   for (std::size_t i = 0; i < contour.points.size(); ++i) {

@@ -13,10 +13,10 @@ namespace {
 constexpr int most_pairs = 10;         // of triangles that cross, each triangle of the cloth
 constexpr int most_parting = 150'000;  // pairs times iterations of untangling, a step: the next one goes on
 constexpr double ample = 12;           // times the way that a step can go, of untangling: the rest would not be used
-constexpr int least_iterations = 30;
-constexpr int most_halvings = 3;     // of a way that would have clean cloth cross itself
-constexpr int hasty_iterations = 5;  // of untangling from a body that crosses itself: some of it must wait anyway
-constexpr double negligible = 1e-6;  // way, in mean edge lengths
+constexpr int least_iterations = 30;   // of it, however small the step
+constexpr int most_halvings = 3;       // of a way that would have clean cloth cross itself
+constexpr int hasty_iterations = 5;    // of untangling from a body that crosses itself: some of it must wait anyway
+constexpr double negligible = 1e-6;    // way, in mean edge lengths
 
 // The vertices that cross the cloth still, where `untangle` says that they should be: to push them towards it for ever
 // would keep the cloth from resting. Empty where there are none.

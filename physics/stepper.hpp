@@ -42,7 +42,7 @@ struct Drive {
   std::vector<Points> obstacles;     // wanted positions
   Vec3 wind = Vec3::Zero();          // [m/s]
   Vec3 acceleration = Vec3::Zero();  // gravity [m/s2]
-  Points worn;                       // one row a vertex: where the body that wears it has it by skinning alone, not a
+  Points worn;                       // one row a vertex: where the body that wears it takes it without forces, not a
                                      // number where none does; empty where nothing is worn
 };
 

@@ -35,7 +35,7 @@ struct Performance {
   Motion motion;                         // of what is placed
   Clip before;                           // up to time 0, where the scene's time begins before it
   double begins = 0;                     // when it does [s]
-  std::shared_ptr<PosedBodies> known = std::make_shared<PosedBodies>();
+  std::shared_ptr<PosedBodies> known = std::make_shared<PosedBodies>();  // where it was asked for, by time
 };
 
 // The bodies of a scene's obstacles, one an obstacle, null for what is none. `folder` is the scene file's.

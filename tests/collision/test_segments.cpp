@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <map>
 #include <random>
 #include <set>
@@ -118,7 +119,9 @@ int check_mesh(const WholeMesh& mesh) {
   const Segments by_tree = find_segments(std::array{SheetView{&surface, &x, &tree.bvh}});
   REQUIRE(by_tree.crossings == found.crossings);
   REQUIRE(by_tree.touching == found.touching);
-  REQUIRE(by_tree.segments.size() == found.segments.size());
+  REQUIRE(std::ranges::equal(by_tree.segments, found.segments, [](const Segment& a, const Segment& b) {
+    return a.sheet == b.sheet && a.triangle == b.triangle && a.end == b.end;
+  }));
 
   std::map<std::pair<int, int>, std::set<std::pair<int, int>>> expected;  // triangles -> (edge, face)
   std::set<std::pair<int, int>> touching;
