@@ -32,17 +32,20 @@ struct EndBoxes {
 
 // The way through one tree with itself (first and second the same) or through two. Below a node of one tree that is
 // marked in `quiet` no pair of its items with each other is visited; nor are nodes that are apart in order by the boxes
-// in `first_ends` and `second_ends`, where there are some.
+// in `first_ends` and `second_ends`, where there are some; nor pairs of nodes of which neither is marked in
+// `first_marks` or `second_marks`, where there are any: then a search is for what has items below the marked ones.
 struct BvhTraversal {
   const Bvh& first;
   const Bvh& second;
   bool within_one;
   const std::vector<char>* quiet = nullptr;
   const EndBoxes *first_ends = nullptr, *second_ends = nullptr;  // by node
+  const char *first_marks = nullptr, *second_marks = nullptr;
 
   bool is_self(NodeWork w) const { return within_one && w.a == w.b; }
   bool is_leaf(NodeWork w) const { return first.nodes[w.a].child < 0 && second.nodes[w.b].child < 0; }
   bool is_quiet(NodeWork w) const { return quiet && is_self(w) && (*quiet)[w.a]; }
+  bool is_marked(NodeWork w) const { return !first_marks || first_marks[w.a] || second_marks[w.b]; }
   const Bvh::Leaf& leaf_a(NodeWork w) const { return first.leaves[~first.nodes[w.a].child]; }
   const Bvh::Leaf& leaf_b(NodeWork w) const { return second.leaves[~second.nodes[w.b].child]; }
 
@@ -51,13 +54,13 @@ struct BvhTraversal {
     const Bvh::Node &a = first.nodes[w.a], &b = second.nodes[w.b];
     const auto add = [&](int i, int j) {
       if (overlap(first.nodes[i].box, second.nodes[j].box) &&
-          !(first_ends && apart_in_order(first_ends[i], second_ends[j])))
+          !(first_ends && apart_in_order(first_ends[i], second_ends[j])) && is_marked({i, j}))
         out.push_back({i, j});
     };
     if (is_self(w)) {
       if (is_quiet(w)) return;
-      out.push_back({a.child, a.child});
-      out.push_back({a.child + 1, a.child + 1});
+      for (const int child : {a.child, a.child + 1})
+        if (is_marked({child, child})) out.push_back({child, child});
       add(a.child, a.child + 1);
     } else if (b.child < 0) {
       add(a.child, w.b);

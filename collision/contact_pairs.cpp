@@ -24,7 +24,8 @@ struct Group {
 };
 
 // A surface that takes part in a search: its tree and, by leaf of the tree, the vertices and edges that the leaf's
-// triangles own, in groups like leaves. Without `node_ends` nothing has boxes at both ends.
+// triangles own, in groups like leaves. Without `node_ends` nothing has boxes at both ends, without `marks` every node
+// is looked at.
 struct Side {
   const Surface& surface;
   int first_node;
@@ -32,6 +33,7 @@ struct Side {
   const PrimitiveGroups &vertices, &edges;
   const EndLeaves &face_ends, &vertex_ends, &edge_ends;
   const EndBoxes* node_ends;
+  const char* marks;
 
   Group group(const Bvh::Leaf& leaf, const EndLeaves& ends, std::size_t at) const {
     return node_ends ? Group{leaf, &ends.start[at], &ends.end[at]} : Group{leaf};
@@ -220,26 +222,59 @@ void PairSearch::update_ends(Part& part) {
   part.has_ends = true;
 }
 
-void PairSearch::find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs) {
+void PairSearch::update_marks(Part& part, const std::vector<char>& marks) {
+  const Bvh& bvh = part.tree.bvh;
+  const auto holds_marked = [&](const Bvh::Leaf& leaf) {
+    return std::ranges::any_of(leaf.item, [&](int t) {
+      if (t < 0) return false;
+      const auto corners = part.surface->triangles.row(t);
+      return std::any_of(corners.begin(), corners.end(), [&](int v) { return marks[part.first_node + v] != 0; });
+    });
+  };
+  part.marks.resize(bvh.nodes.size());
+  for (std::size_t i = bvh.nodes.size(); i-- > 0;) {
+    const int child = bvh.nodes[i].child;
+    part.marks[i] = child < 0 ? holds_marked(bvh.leaves[~child]) : part.marks[child] || part.marks[child + 1];
+  }
+}
+
+void PairSearch::find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs,
+                      const std::vector<char>& marks) {
   pairs.clear();
   // Boxes at both ends tell more apart than those round whole motions only where these are the longer ones.
   const bool ends = !((x1 - x0).rowwise().squaredNorm().maxCoeff() <= radius * radius);
-  update(cloth_, x0, x1, radius, ends);
+  const auto prepare = [&](Part& part) {
+    update(part, x0, x1, radius, ends);
+    if (!marks.empty()) update_marks(part, marks);
+  };
+  prepare(cloth_);
   const auto side = [&](const Part& p) {
-    return Side{*p.surface,    p.first_node, p.tree.bvh,
-                p.vertices,    p.edges,      p.face_ends,
-                p.vertex_ends, p.edge_ends,  ends ? p.node_ends.data() : nullptr};
+    return Side{*p.surface,
+                p.first_node,
+                p.tree.bvh,
+                p.vertices,
+                p.edges,
+                p.face_ends,
+                p.vertex_ends,
+                p.edge_ends,
+                ends ? p.node_ends.data() : nullptr,
+                marks.empty() ? nullptr : p.marks.data()};
   };
   const Side cloth = side(cloth_);
   const auto gather_with = [&](const Side& other, bool same) {
-    gather(BvhTraversal{cloth.bvh, other.bvh, same, nullptr, cloth.node_ends, other.node_ends}, scratch_, pairs,
-           LeafPairs{cloth, other, same});
+    gather(
+        BvhTraversal{cloth.bvh, other.bvh, same, nullptr, cloth.node_ends, other.node_ends, cloth.marks, other.marks},
+        scratch_, pairs, LeafPairs{cloth, other, same});
   };
   if (world_.self) gather_with(cloth, true);
   for (Part& obstacle : obstacles_) {
-    update(obstacle, x0, x1, radius, ends);
+    prepare(obstacle);
     gather_with(side(obstacle), false);
   }
+  if (!marks.empty())
+    std::erase_if(pairs, [&](const NodePair& pair) {
+      return std::ranges::none_of(pair.nodes, [&](int node) { return marks[node] != 0; });
+    });
   if (left_out_)
     std::erase_if(pairs, [this](const NodePair& pair) { return left_out_->leaves_alone(world_, pair.nodes); });
 }

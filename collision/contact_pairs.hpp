@@ -67,8 +67,10 @@ struct PrimitiveBoxes {
 class PairSearch {
  public:
   explicit PairSearch(const ContactWorld&);  // keeps a reference
-  // In an order that depends on what the trees went through; the pairs themselves do not. `pairs` is overwritten.
-  void find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs);
+  // In an order that depends on what the trees went through; the pairs themselves do not. `pairs` is overwritten. With
+  // marks by node only the pairs are found that have a marked one.
+  void find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs,
+            const std::vector<char>& marks = {});
   // Pairs that are not to be found from here on; nothing ends it. Keeps the pointer.
   void leave_out(const Exemption* exemption) { left_out_ = exemption; }
   const ContactWorld& world() const { return world_; }
@@ -85,9 +87,11 @@ class PairSearch {
     bool has_ends = false;
     EndLeaves face_ends, vertex_ends, edge_ends;
     std::vector<EndBoxes> node_ends;
+    std::vector<char> marks;  // by node of the tree: it holds a marked one
   };
   static void update(Part&, const Points& x0, const Points& x1, double radius, bool ends);
   static void update_ends(Part&);
+  static void update_marks(Part&, const std::vector<char>& marks);
 
   const ContactWorld& world_;
   const Exemption* left_out_ = nullptr;

@@ -106,3 +106,27 @@ TEST_CASE("contact pairs: the same pairs whatever came before", "[contact_pairs]
   CHECK(fresh == used);
   CHECK(std::any_of(fresh.begin(), fresh.end(), [&](const NodePair& p) { return !world.is_cloth(p.nodes[3]); }));
 }
+
+TEST_CASE("contact pairs: a search for marked nodes finds what has one, and nothing else", "[contact_pairs]") {
+  const auto cloth = sheet(9, 1, 0.02), ground = sheet(5, 1.5, 0);
+  const Surface cloth_surface = make_surface(static_cast<int>(cloth.x.rows()), cloth.triangles);
+  const Surface ground_surface = make_surface(static_cast<int>(ground.x.rows()), ground.triangles);
+  const ContactWorld world = make_contact_world(cloth_surface, {&ground_surface}, true);
+  const Points from = gather_nodes(cloth.x, {ground.x});
+  // Still, and in a motion so long that boxes at both ends take part.
+  const int marked_node = GENERATE(0, 37, 99, 105);  // corners and the inside of the cloth, and the ground
+  const double way = GENERATE(0.0, 0.3);
+  const Points to = from.rowwise() + Eigen::RowVector3d(way, 0, 0.5 * way);
+  std::vector<char> marks(static_cast<std::size_t>(from.rows()), 0);
+  marks[marked_node] = 1;
+  PairSearch search(world);
+  std::vector<NodePair> all, some;
+  search.find(from, to, 0.04, all);
+  search.find(from, to, 0.04, some, marks);
+  std::erase_if(all,
+                [&](const NodePair& pair) { return std::ranges::find(pair.nodes, marked_node) == pair.nodes.end(); });
+  std::sort(all.begin(), all.end());
+  std::sort(some.begin(), some.end());
+  CHECK(all.size() > 3);
+  CHECK(some == all);
+}

@@ -79,3 +79,68 @@ TEST_CASE("path pairs: what is near is listed, from a kept list as from a new on
   CHECK(a.size() > 50);
   CHECK(a == b);
 }
+
+namespace {
+
+// Of the listed ones, in order: those that are seen to come within the distance on the way.
+std::vector<NodePair> coming_near(const PathPairs& path, const Points& x0, const Points& x1, double distance) {
+  std::vector<NodePair> near;
+  for (const NodePair& pair : path.pairs)
+    if (least_distance(pair, x0, x1) < distance) near.push_back(pair);
+  std::sort(near.begin(), near.end());
+  return near;
+}
+
+}  // namespace
+
+TEST_CASE("path pairs: where few nodes end elsewhere the list is mended, and lists what a new one does",
+          "[path_pairs]") {
+  const auto both = join(sheet(8, 0.2, 0), sheet(7, 0.2, 6e-3));
+  const Surface cloth = make_surface(static_cast<int>(both.x.rows()), both.triangles);
+  const ContactWorld world = make_contact_world(cloth, {}, true);
+  const double thickness = 2e-3;
+  PairSearch search(world);
+  PathPairs mended;
+  Points end = both.x.rowwise() + Eigen::RowVector3d(0.03, -0.01, 0.02);
+  REQUIRE(update_pairs(search, thickness, both.x, end, mended));
+  std::mt19937 random(5);
+  std::size_t gained = 0;
+  for (int turn = 0; turn < 6; ++turn) {
+    for (int k = 0; k < 10; ++k) end(static_cast<int>(random() % 145), 1) += k % 2 == 0 ? 8e-3 : -8e-3;
+    const std::size_t before = mended.pairs.size();
+    REQUIRE_FALSE(update_pairs(search, thickness, both.x, end, mended));
+    gained += mended.pairs.size() > before;
+    PairSearch other(world);
+    PathPairs fresh;
+    REQUIRE(update_pairs(other, thickness, both.x, end, fresh));
+    const auto near = coming_near(fresh, both.x, end, thickness);
+    CHECK(near.size() > 10);
+    CHECK(coming_near(mended, both.x, end, thickness) == near);
+    std::vector<NodePair> listed = mended.pairs;
+    std::sort(listed.begin(), listed.end());
+    CHECK(std::ranges::adjacent_find(listed) == listed.end());
+  }
+  CHECK(gained > 2);
+  // From another start, or where everything ends elsewhere, nothing of it is good any more.
+  CHECK(update_pairs(search, thickness, both.x, both.x, mended));
+  CHECK(update_pairs(search, thickness, end, end, mended));
+}
+
+TEST_CASE("path pairs: boxes of long motions overlap, and only what may come near is listed", "[path_pairs]") {
+  // Two sheets that turn together, a hand's breadth apart.
+  const auto both = join(sheet(8, 1, 0), sheet(8, 1, 0.08));
+  const Surface cloth = make_surface(static_cast<int>(both.x.rows()), both.triangles);
+  const ContactWorld world = make_contact_world(cloth, {}, true);
+  const Mat3 turn = Eigen::AngleAxisd(0.5, Vec3::UnitX()).toRotationMatrix();
+  const Points end = both.x * turn.transpose();
+  PairSearch search(world);
+  PathPairs path;
+  REQUIRE(update_pairs(search, 2e-3, both.x, end, path));
+  std::vector<NodePair> boxes;
+  search.find(both.x, end, 4e-3, boxes);
+  CHECK(path.pairs.size() < boxes.size());
+  for (const NodePair& pair : boxes) {
+    const bool listed = std::ranges::find(path.pairs, pair) != path.pairs.end();
+    CHECK((listed || least_distance(pair, both.x, end) > 2e-3));
+  }
+}
