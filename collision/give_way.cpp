@@ -23,9 +23,11 @@ constexpr double rest_room = 0.3;  // of that distance: the room asked for at mo
 constexpr double deepest = 0.7;    // of a part's thickness, that another is in it: beyond, it comes out behind
 constexpr int sweeps = 12, press_rings = 6;
 constexpr double smoothing = 0.5;
-constexpr int mend_rings = 1;        // round what crosses, that are mended together
-constexpr int few = 60, many = 250;  // pairs in one place: worth mending once pressed, as skinned
-constexpr double overshoot = 1.5;    // of the farthest way, by mending
+constexpr double pinched_part = 0.4;  // of the room: where less is left, cloth has no place to be
+constexpr int many_pinched = 20;      // vertices: from fewer it slips away
+constexpr int mend_rings = 1;         // round what crosses, that are mended together
+constexpr int few = 60, many = 250;   // pairs in one place: worth mending once pressed, as skinned
+constexpr double overshoot = 1.5;     // of the farthest way, by mending
 constexpr int mend_iterations = 40;
 constexpr double mend_gap = 0.1, mend_far = 0.5;  // in mean edge lengths
 
@@ -199,6 +201,36 @@ std::optional<Points> mended(const Flesh& flesh, const Place& place, const Point
   return parted.x;
 }
 
+// Where over some area next to no room is left between parts after all, cloth would be held by faces that touch, and
+// there is no place to put it. There what hangs together gives way less, so that the parts pass through each other.
+void let_through(const Flesh& flesh, const Points& x, Points& to) {
+  const double pinched = pinched_part * flesh.options.room;
+  const auto moves = [&](int v) { return to.row(v) != x.row(v); };
+  const auto gap = [](const Meeting& m, const Points& at) {
+    return m.apart.dot(row(at, m.vertex) - row(at, m.partner));
+  };
+  std::vector<Meeting> pinches = meetings(flesh, to);
+  std::erase_if(pinches, [&](const Meeting& m) {
+    return std::abs(gap(m, to)) > pinched || m.least < flesh.options.room / 2 || !(moves(m.vertex) || moves(m.partner));
+  });
+  if (static_cast<int>(pinches.size()) < many_pinched) return;
+  DisjointSets moved(flesh.body.vertex_count);
+  for (const auto& edge : flesh.body.edges.rowwise())
+    if (moves(edge[0]) && moves(edge[1])) moved.join(edge[0], edge[1]);
+  for (const Meeting& m : pinches) moved.join(m.vertex, m.partner);
+  std::vector<int> count(static_cast<std::size_t>(flesh.body.vertex_count), 0);  // by set
+  std::vector<double> share(count.size(), 1);                                    // of its ways
+  for (const Meeting& m : pinches) {
+    const double now = gap(m, to), skinned = gap(m, x);
+    const int set = moved.root(m.vertex);
+    ++count[set];
+    if (now > skinned) share[set] = std::min(share[set], std::clamp((-pinched - skinned) / (now - skinned), 0.0, 1.0));
+  }
+  for (int v = 0; v < flesh.body.vertex_count; ++v)
+    if (const int set = moved.root(v); count[set] >= many_pinched)
+      to.row(v) = (x.row(v) + share[set] * (to.row(v) - x.row(v))).eval();
+}
+
 }  // namespace
 
 GiveWay::GiveWay(Surface body, const Points& rest, const GiveWayOptions& options)
@@ -210,14 +242,15 @@ Points GiveWay::operator()(const Points& x) const {
   Points result = pressed(*flesh_, x);
   IntersectionCache cache;
   const Pairs left = intersecting_pairs(flesh_->body, result, cache);
-  if (left.empty()) return result;
-  for (const Place& place : places_of(*flesh_, intersecting_pairs(flesh_->body, x, cache), left)) {
-    std::optional<Points> better;
-    if (place.pressed <= few) better = mended(*flesh_, place, result, x);
-    if (!better && place.skinned <= many) better = mended(*flesh_, place, x, x);
-    if (!better && place.pressed > place.skinned) better = x(place.vertices, Eigen::all);
-    if (better) result(place.vertices, Eigen::all) = *better;
-  }
+  if (!left.empty())
+    for (const Place& place : places_of(*flesh_, intersecting_pairs(flesh_->body, x, cache), left)) {
+      std::optional<Points> better;
+      if (place.pressed <= few) better = mended(*flesh_, place, result, x);
+      if (!better && place.skinned <= many) better = mended(*flesh_, place, x, x);
+      if (!better && place.pressed > place.skinned) better = x(place.vertices, Eigen::all);
+      if (better) result(place.vertices, Eigen::all) = *better;
+    }
+  let_through(*flesh_, x, result);
   return result;
 }
 

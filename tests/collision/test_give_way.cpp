@@ -142,6 +142,28 @@ TEST_CASE("two parts that come together go half the way each, as far as they may
   CHECK(gap_between(y) == Approx(0.3 * 0.02).margin(1e-4));
 }
 
+TEST_CASE("parts leave room or pass through each other, and do not merely touch", "[give_way]") {
+  const Arm rod = arm();
+  const Surface both = twice(rod.surface);
+  const GiveWayOptions options{.room = 0.01, .most = 0.003};
+  const GiveWay give(both, beside(rod.straight, 0.5), options);
+  int through = 0;
+  double before = 1;
+  for (double gap = 0.004; gap > -0.014; gap -= 0.001) {
+    CAPTURE(gap);
+    const Points y = give(beside(rod.straight, 2 * radius + gap));
+    const double left = gap_between(y);
+    const double least = 0.39 * options.room;  // or all that the skin is through
+    CHECK((left > least || left < -least || left == Approx(gap)));
+    CHECK((crossings(both, y) > 0) == (left < 0));
+    CHECK(left < before + 1e-3);  // the deeper the skin, the deeper what gives way, but for rounds of smoothing
+    through += left < 0;
+    before = left;
+  }
+  CHECK(through > 5);
+  CHECK(through < 15);
+}
+
 TEST_CASE("what lies round a spot that gives way goes along", "[give_way]") {
   const Arm rod = arm();
   const Surface both = twice(rod.surface);
