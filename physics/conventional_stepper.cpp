@@ -418,6 +418,10 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
     return report;
   }
   report.status = StepStatus::accepted;
+  // The way that cloth was drawn firmly is no motion of its own: it would fly past where it is worn.
+  if (exemption_.off.empty())
+    for (std::size_t v = 0; v < carried_.size(); ++v)
+      if (carried_[v]) leg.v.row(static_cast<Eigen::Index>(v)).setZero();
   arrive(from, leg, dt, to);
   to.obstacles.resize(from.obstacles.size());
   for (std::size_t k = 0; k < from.obstacles.size(); ++k)

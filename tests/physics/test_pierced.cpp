@@ -99,6 +99,7 @@ TEST_CASE("pierced: the stepper takes the cloth off, through the body, and only 
   const testing::Run off = testing::run(skewer.w, 12);
   CHECK(off.state.clean);
   CHECK(off.state.x.topRows(17 * 17).col(1).maxCoeff() < -0.25);
+  CHECK(off.state.v.topRows(17 * 17).rowwise().norm().maxCoeff() < 0.5);  // it does not fly on as it was drawn
   skewer.w.drive.worn.resize(0, 3);
   CHECK(testing::run(skewer.w, 12).state.x.topRows(17 * 17).col(1).mean() > 0.01);
 }
