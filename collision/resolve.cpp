@@ -88,6 +88,7 @@ bool rigidify(Resolution& r, std::span<Impact* const> impacts) {
 
 std::vector<Impact> new_impacts(Resolution& r) {
   r.watch.lap();
+  // What a list gains by being mended has a node that strayed in this round, which is marked.
   if (update_pairs(r.search, r.options.thickness, r.x0, r.x1, r.path)) std::fill(r.moved.begin(), r.moved.end(), 1);
   r.report.broad_phase += r.watch.lap();
   auto impacts = impacts_of(r.path, r.inverse_mass, r.moved, {r.world, r.options}, r.x0, r.x1);
