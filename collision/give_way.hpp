@@ -13,8 +13,8 @@ struct GiveWayOptions {
 
 // A body's surface as it gives way, like flesh, where it would pass through itself: under the arms, between the thighs,
 // in the bends of limbs. Skinning knows nothing of that, and cloth between faces that have passed each other has no
-// place to be. Where more than `most` would be needed, a hand in the belly, the body still passes through itself: it
-// leaves room or crosses, and does not merely touch.
+// place to be. Where more than `most` would be needed, a hand in the belly, the body still passes through itself:
+// but for single spots it leaves room or crosses, and does not merely touch.
 class GiveWay {
  public:
   // rest: the body where its parts are apart, as in the zero pose [m].

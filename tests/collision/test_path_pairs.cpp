@@ -18,6 +18,22 @@ Points shaken(const Points& x, double size, unsigned seed) {
   return y;
 }
 
+// Two sheets as one cloth, and a search for its pairs.
+struct TwoSheets {
+  Points x;
+  Surface cloth;
+  ContactWorld world;
+  PairSearch search;
+
+  explicit TwoSheets(const testing::Sheet& both)
+      : x(both.x),
+        cloth(make_surface(static_cast<int>(x.rows()), both.triangles)),
+        world(make_contact_world(cloth, {}, true)),
+        search(world) {}
+  TwoSheets(const TwoSheets&) = delete;  // the world looks at the cloth
+  TwoSheets& operator=(const TwoSheets&) = delete;
+};
+
 double least_distance(const NodePair& pair, const Points& x0, const Points& x1) {
   double least = 1e30;
   for (int k = 0; k <= 40; ++k) {
@@ -30,14 +46,11 @@ double least_distance(const NodePair& pair, const Points& x0, const Points& x1) 
 }  // namespace
 
 TEST_CASE("path pairs: a pair is left out only if it stays away", "[path_pairs]") {
-  const auto both = join(sheet(5, 0.2, 0), sheet(5, 0.2, 3e-3));
-  const Surface cloth = make_surface(static_cast<int>(both.x.rows()), both.triangles);
-  const ContactWorld world = make_contact_world(cloth, {}, true);
+  TwoSheets both(join(sheet(5, 0.2, 0), sheet(5, 0.2, 3e-3)));
   const double thickness = 4e-3;
-  PairSearch search(world);
   PathPairs path;
   const Points start = shaken(both.x, 5e-4, 1);
-  REQUIRE(update_pairs(search, thickness, start, start, path));
+  REQUIRE(update_pairs(both.search, thickness, start, start, path));
   int out = 0, in = 0;
   for (unsigned seed = 2; seed < 8; ++seed) {
     // A common drift costs nothing; what differs from node to node does.
@@ -59,15 +72,13 @@ TEST_CASE("path pairs: a pair is left out only if it stays away", "[path_pairs]"
 }
 
 TEST_CASE("path pairs: what is near is listed, from a kept list as from a new one", "[path_pairs]") {
-  const auto both = join(sheet(6, 0.2, 0), sheet(5, 0.2, 3e-3));
-  const Surface cloth = make_surface(static_cast<int>(both.x.rows()), both.triangles);
-  const ContactWorld world = make_contact_world(cloth, {}, true);
+  TwoSheets both(join(sheet(6, 0.2, 0), sheet(5, 0.2, 3e-3)));
   const double thickness = 4e-3;
-  PairSearch search(world), other(world);
+  PairSearch other(both.world);
   PathPairs kept, fresh;
-  REQUIRE(update_pairs(search, thickness, both.x, both.x, kept));
+  REQUIRE(update_pairs(both.search, thickness, both.x, both.x, kept));
   const Points near = shaken(both.x, 4e-4, 3);
-  REQUIRE_FALSE(update_pairs(search, thickness, near, near, kept));
+  REQUIRE_FALSE(update_pairs(both.search, thickness, near, near, kept));
   REQUIRE(update_pairs(other, thickness, near, near, fresh));
   std::vector<NodePair> a, b;
   for (const NodePair& pair : pairs_within(kept, near, thickness))
@@ -95,22 +106,19 @@ std::vector<NodePair> coming_near(const PathPairs& path, const Points& x0, const
 
 TEST_CASE("path pairs: where few nodes end elsewhere the list is mended, and lists what a new one does",
           "[path_pairs]") {
-  const auto both = join(sheet(8, 0.2, 0), sheet(7, 0.2, 6e-3));
-  const Surface cloth = make_surface(static_cast<int>(both.x.rows()), both.triangles);
-  const ContactWorld world = make_contact_world(cloth, {}, true);
+  TwoSheets both(join(sheet(8, 0.2, 0), sheet(7, 0.2, 6e-3)));
   const double thickness = 2e-3;
-  PairSearch search(world);
   PathPairs mended;
   Points end = both.x.rowwise() + Eigen::RowVector3d(0.03, -0.01, 0.02);
-  REQUIRE(update_pairs(search, thickness, both.x, end, mended));
+  REQUIRE(update_pairs(both.search, thickness, both.x, end, mended));
   std::mt19937 random(5);
   std::size_t gained = 0;
   for (int turn = 0; turn < 6; ++turn) {
     for (int k = 0; k < 10; ++k) end(static_cast<int>(random() % 145), 1) += k % 2 == 0 ? 8e-3 : -8e-3;
     const std::size_t before = mended.pairs.size();
-    REQUIRE_FALSE(update_pairs(search, thickness, both.x, end, mended));
+    REQUIRE_FALSE(update_pairs(both.search, thickness, both.x, end, mended));
     gained += mended.pairs.size() > before;
-    PairSearch other(world);
+    PairSearch other(both.world);
     PathPairs fresh;
     REQUIRE(update_pairs(other, thickness, both.x, end, fresh));
     const auto near = coming_near(fresh, both.x, end, thickness);
@@ -122,22 +130,19 @@ TEST_CASE("path pairs: where few nodes end elsewhere the list is mended, and lis
   }
   CHECK(gained > 2);
   // From another start, or where everything ends elsewhere, nothing of it is good any more.
-  CHECK(update_pairs(search, thickness, both.x, both.x, mended));
-  CHECK(update_pairs(search, thickness, end, end, mended));
+  CHECK(update_pairs(both.search, thickness, both.x, both.x, mended));
+  CHECK(update_pairs(both.search, thickness, end, end, mended));
 }
 
 TEST_CASE("path pairs: boxes of long motions overlap, and only what may come near is listed", "[path_pairs]") {
   // Two sheets that turn together, a hand's breadth apart.
-  const auto both = join(sheet(8, 1, 0), sheet(8, 1, 0.08));
-  const Surface cloth = make_surface(static_cast<int>(both.x.rows()), both.triangles);
-  const ContactWorld world = make_contact_world(cloth, {}, true);
+  TwoSheets both(join(sheet(8, 1, 0), sheet(8, 1, 0.08)));
   const Mat3 turn = Eigen::AngleAxisd(0.5, Vec3::UnitX()).toRotationMatrix();
   const Points end = both.x * turn.transpose();
-  PairSearch search(world);
   PathPairs path;
-  REQUIRE(update_pairs(search, 2e-3, both.x, end, path));
+  REQUIRE(update_pairs(both.search, 2e-3, both.x, end, path));
   std::vector<NodePair> boxes;
-  search.find(both.x, end, 4e-3, boxes);
+  both.search.find(both.x, end, 4e-3, boxes);
   CHECK(path.pairs.size() < boxes.size());
   for (const NodePair& pair : boxes) {
     const bool listed = std::ranges::find(path.pairs, pair) != path.pairs.end();
