@@ -10,8 +10,8 @@ namespace {
 
 constexpr double obstacle_mass = 30;  // of a node that gives way, in mean cloth vertices: layers are pressed together
 constexpr int sweeps = 25;            // in a block
-constexpr int blocks = 3;             // after which what still grows is taken for a contradiction
-constexpr double growing = 0.1;       // of the separation, a sweep
+constexpr int blocks = 20;            // after which what still grows is taken for a contradiction
+constexpr double growing = 1;         // of the separation, a sweep: slower is what settles late
 constexpr int most_rounds = 6;
 constexpr double few = 0.01;      // of all demands: new ones that resolve can see to
 constexpr double steepest = 0.5;  // lag may change by this much of the distance between nodes

@@ -12,6 +12,7 @@
 #include "physics/contact_terms.hpp"
 #include "physics/features.hpp"
 #include "physics/pierced.hpp"
+#include "physics/put_on.hpp"
 #include "physics/recovery.hpp"
 #include "physics/step_audit.hpp"
 #include "physics/substeps.hpp"
@@ -28,6 +29,7 @@ constexpr double normal_change = 0.05;      // of what bounds friction, at most,
 constexpr int halvings = 2;                 // of a substep whose zones do not settle, before the last resort
 constexpr double recovery_speed = 1;        // at most, of a vertex that starts tangled [m/s]
 constexpr double carrying_speed = 3;        // at most, of one that is drawn to where it is worn [m/s]
+constexpr double putting_speed = 6;         // at most, of one that is put to where it is worn [m/s]
 constexpr double astray = 0.5;      // from where it is worn, of tangled cloth that is drawn there, in mean edges
 constexpr double firm = 1000;       // times as stiffly, where the body is free: else it holds its own shape
 constexpr double rounding = 1e-14;  // of positions that are added up over substeps
@@ -94,7 +96,7 @@ class ConventionalStepper final : public Stepper {
   bool advance_in_parts(Leg& leg, const Points& nodes, const Points& pins, const Drive& drive, double h, int parts,
                         Cuts left, StepReport& report);
   int planned_substeps(const State& from, const Drive& drive, double dt, const Points& nodes) const;
-  void prepare_contact(const State& from, const Drive& drive, double dt, const Points& wanted, Points& nodes,
+  void prepare_contact(const State& from, const Drive& drive, double dt, const Points& wanted, Leg& leg,
                        StepReport& report);
 
   const Scene& scene_;
@@ -359,8 +361,9 @@ NewtonReport ConventionalStepper::solve(const StepProblem& problem, Points& x, S
 
 // Recovery where the start is tangled, what contact is to leave alone, and the pairs near the start.
 void ConventionalStepper::prepare_contact(const State& from, const Drive& drive, double dt, const Points& wanted,
-                                          Points& nodes, StepReport& report) {
+                                          Leg& leg, StepReport& report) {
   Stopwatch watch;
+  Points& nodes = leg.nodes;
   const bool exempt = exemption_.any();
   look_for_room_ = from.pinched;
   exemption_ = {};
@@ -371,9 +374,13 @@ void ConventionalStepper::prepare_contact(const State& from, const Drive& drive,
     exemption_ = untouched ? *untouched : find_exemption(world_, nodes);
   }
   self_crossings_.switch_off(nodes, wanted, exemption_);
-  const std::vector<char> pierced =
+  std::vector<char> pierced =
       untouched ? std::vector<char>()
                 : pierced_vertices(world_, exemption_, nodes, wanted, drive.worn, astray * edge_length_);
+  if (put_on(world_, pierced, wanted, drive.worn, putting_speed * dt, dt, nodes, leg.v)) {
+    exemption_ = find_exemption(world_, nodes);
+    pierced.clear();
+  }
   carried_ = either(carried_vertices(world_, exemption_, drive.worn, nodes, edge_length_), pierced);
   if (exemption_.cloth() && !untouched) {
     Recovery recovery = recover(world_, inverse_mass_, recovery_speed * dt, exemption_, carried_, nodes);
@@ -407,7 +414,7 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
   const int n = scene_.surface.vertex_count;
   Leg leg{gather_nodes(from.x, from.obstacles), from.v, from.history};
   const Points wanted = gather_nodes(from.x, drive.obstacles);
-  if (has_contact()) prepare_contact(from, drive, dt, wanted, leg.nodes, report);
+  if (has_contact()) prepare_contact(from, drive, dt, wanted, leg, report);
   if (exemption_.any() || leg.nodes.topRows(n) != from.x) leg.history = {};
   const int planned = planned_substeps(from, drive, dt, leg.nodes);
   // Cloth that left an obstacle no room will hardly do so now.

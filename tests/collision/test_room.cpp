@@ -4,35 +4,34 @@
 #include "tests/collision/sheets.hpp"
 
 using namespace selvedge;
+using testing::Sheet;
 using testing::sheet;
 
 namespace {
 
 constexpr double thickness = 2e-3, separation = 2e-4;
 
-// Layers of cloth between two plates; the plates end where `to` says.
-struct Press {
+// Cloth and obstacles, which end where `wanted` says.
+struct Pushed {
   Surface cloth;
-  std::vector<Surface> plates;
+  std::vector<Surface> obstacles;
   ContactWorld world;
   Points x0, x1, wanted;
   Eigen::VectorXd inverse_mass;
   int cloth_nodes = 0;
 
-  Press(int layers, double cloth_size, double gap, double to, int plate_cells = 3) {
-    auto stack = sheet(6, cloth_size, 0);
-    for (int k = 1; k < layers; ++k) stack = testing::join(stack, sheet(6 + k, cloth_size, k * gap));
-    cloth_nodes = static_cast<int>(stack.x.rows());
-    cloth = make_surface(cloth_nodes, stack.triangles);
-    const auto low = sheet(plate_cells, 0.3, -gap), high = sheet(plate_cells, 0.3, layers * gap);
-    for (const auto& plate : {low, high})
-      plates.push_back(make_surface(static_cast<int>(plate.x.rows()), plate.triangles));
-    world = make_contact_world(cloth, {&plates[0], &plates[1]}, true);
-    x0 = gather_nodes(stack.x, {low.x, high.x});
-    x1 = x0;
-    const double middle = 0.5 * (layers - 1) * gap;
-    for (int v = cloth_nodes; v < x1.rows(); ++v) x1(v, 1) = middle + (x0(v, 1) < middle ? -0.5 : 0.5) * to;
-    wanted = x1;
+  Pushed(const Sheet& layers, const std::vector<Sheet>& others) {
+    cloth_nodes = static_cast<int>(layers.x.rows());
+    cloth = make_surface(cloth_nodes, layers.triangles);
+    std::vector<Points> positions;
+    for (const Sheet& other : others) {
+      obstacles.push_back(make_surface(static_cast<int>(other.x.rows()), other.triangles));
+      positions.push_back(other.x);
+    }
+    std::vector<const Surface*> surfaces;
+    for (const Surface& obstacle : obstacles) surfaces.push_back(&obstacle);
+    world = make_contact_world(cloth, surfaces, true);
+    wanted = x1 = x0 = gather_nodes(layers.x, positions);
     inverse_mass = Eigen::VectorXd::Zero(x0.rows());
     inverse_mass.head(cloth_nodes).setConstant(1e4);
   }
@@ -50,6 +49,22 @@ struct Press {
   double lag(int node) const { return (x1.row(node) - wanted.row(node)).norm(); }
 };
 
+Sheet stack(int layers, double size, double gap) {
+  Sheet all = sheet(6, size, 0);
+  for (int k = 1; k < layers; ++k) all = testing::join(all, sheet(6 + k, size, k * gap));
+  return all;
+}
+
+// Layers of cloth between two plates; the plates end where `to` says.
+struct Press : Pushed {
+  Press(int layers, double cloth_size, double gap, double to, int plate_cells = 3)
+      : Pushed(stack(layers, cloth_size, gap), {sheet(plate_cells, 0.3, -gap), sheet(plate_cells, 0.3, layers * gap)}) {
+    const double middle = 0.5 * (layers - 1) * gap;
+    for (int v = cloth_nodes; v < x1.rows(); ++v) x1(v, 1) = middle + (x0(v, 1) < middle ? -0.5 : 0.5) * to;
+    wanted = x1;
+  }
+};
+
 }  // namespace
 
 TEST_CASE("room: plates that would meet stop with room for every layer, and not much more", "[room]") {
@@ -58,7 +73,7 @@ TEST_CASE("room: plates that would meet stop with room for every layer, and not 
     REQUIRE(press.make_room());
     const double least = (layers + 1) * 2 * separation;
     CHECK(press.x1.topRows(press.cloth_nodes) == press.x0.topRows(press.cloth_nodes));
-    const int per_plate = press.plates[0].vertex_count;
+    const int per_plate = press.obstacles[0].vertex_count;
     for (int v = 0; v < per_plate; ++v) {
       const int low = press.cloth_nodes + v, high = low + per_plate;
       if (std::abs(press.x0(low, 0)) > 0.11 || std::abs(press.x0(low, 2)) > 0.11) continue;
@@ -81,7 +96,7 @@ TEST_CASE("room: plates that leave just enough room are where they are wanted", 
 
 TEST_CASE("room: a plate alone pushes cloth and does not give way", "[room]") {
   Press press(2, 0.2, 1.5e-3, -1e-3);
-  const int per_plate = press.plates[0].vertex_count;
+  const int per_plate = press.obstacles[0].vertex_count;
   press.x1.bottomRows(per_plate).col(1).array() += 0.1;
   press.wanted = press.x1;
   CHECK_FALSE(press.make_room());
@@ -93,7 +108,7 @@ TEST_CASE("room: plates wanted deep in each other do not fold round what is betw
   REQUIRE(press.make_room());
   double most = 0, steepest = 0;
   int node = press.cloth_nodes;
-  for (const Surface& plate : press.plates) {
+  for (const Surface& plate : press.obstacles) {
     for (int e = 0; e < plate.edges.rows(); ++e) {
       const int a = node + plate.edges(e, 0), b = node + plate.edges(e, 1);
       const Vec3 change = row(press.x1, a) - row(press.wanted, a) - row(press.x1, b) + row(press.wanted, b);
@@ -120,4 +135,32 @@ TEST_CASE("room: only what is near the cloth gives way", "[room]") {
     most = std::max(most, press.lag(v));
   }
   CHECK(most > 0.5 * (1e-3 + 2 * separation));
+}
+
+namespace {
+
+// Bends a flat sheet round an axis along z.
+Sheet arched(Sheet s, double radius) {
+  for (auto p : s.x.rowwise()) {
+    const double angle = p.x() / 0.06;
+    p << radius * std::sin(angle), radius * std::cos(angle), p.z();
+  }
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("room: a fine, round body pushes coarse layers before it and does not give way", "[room]") {
+  const Sheet body = arched(sheet(48, 0.24, 0), 0.06);
+  Sheet layers = arched(sheet(5, 0.16, 0), 0.065);
+  for (const int k : {1, 2}) layers = testing::join(layers, arched(sheet(5 + k, 0.16, 0), 0.065 + 2e-3 * k));
+  for (const double way : {0.01, 0.03}) {
+    Pushed pushed(layers, {body});
+    const Eigen::AngleAxisd turn(0.3, Vec3::UnitZ());
+    for (int v = pushed.cloth_nodes; v < pushed.x1.rows(); ++v)
+      pushed.x1.row(v) = (turn * row(pushed.x0, v) + Vec3(0, way, way)).transpose();
+    pushed.wanted = pushed.x1;
+    CHECK_FALSE(pushed.make_room());
+    CHECK((pushed.x1 - pushed.wanted).cwiseAbs().maxCoeff() == 0);
+  }
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "physics/pierced.hpp"
+#include "physics/put_on.hpp"
 #include "tests/physics/worlds.hpp"
 
 using namespace selvedge;
@@ -102,4 +103,38 @@ TEST_CASE("pierced: the stepper takes the cloth off, through the body, and only 
   CHECK(off.state.v.topRows(17 * 17).rowwise().norm().maxCoeff() < 0.5);  // it does not fly on as it was drawn
   skewer.w.drive.worn.resize(0, 3);
   CHECK(testing::run(skewer.w, 12).state.x.topRows(17 * 17).col(1).mean() > 0.01);
+}
+
+TEST_CASE("put on: cloth is where it is worn, clean, and moves along with what it is worn on", "[pierced]") {
+  Skewer skewer(spindle(0.05, 0.3));
+  const std::vector<char> marked = skewer.pierced();
+  const Vec3 way(0.01, 0.02, -0.01);
+  Points wanted = skewer.nodes;
+  wanted.bottomRows(wanted.rows() - skewer.w.state.x.rows()).rowwise() += way.transpose();
+  Points nodes = skewer.nodes, v = skewer.w.state.v;
+  const auto put = [&](double reach) {
+    return put_on(skewer.world, marked, wanted, skewer.w.drive.worn, reach, 0.1, nodes, v);
+  };
+  CHECK_FALSE(put(0.45));  // it is worn half a metre away
+  CHECK(nodes == skewer.nodes);
+  REQUIRE(put(0.6));
+  const int sheet = 17 * 17;
+  const Points place = skewer.w.drive.worn.topRows(sheet).rowwise() - way.transpose();
+  CHECK((nodes.topRows(sheet) - place).cwiseAbs().maxCoeff() < 1e-12);
+  CHECK((v.topRows(sheet).rowwise() - 10 * way.transpose()).cwiseAbs().maxCoeff() < 1e-12);
+  CHECK(nodes.bottomRows(nodes.rows() - sheet) == skewer.nodes.bottomRows(nodes.rows() - sheet));
+  CHECK(v.bottomRows(v.rows() - sheet) == skewer.w.state.v.bottomRows(v.rows() - sheet));
+}
+
+TEST_CASE("put on: a place that is in the body is untangled, and one that cannot be is left alone", "[pierced]") {
+  Skewer skewer(spindle(0.05, 0.3));
+  const std::vector<char> marked = skewer.pierced();
+  Points worn = skewer.w.drive.worn, nodes = skewer.nodes, v = skewer.w.state.v;
+  worn.col(1).array() -= 0.21;  // just in the spindle's tip
+  CHECK(put_on(skewer.world, marked, skewer.nodes, worn, 1, 0.1, nodes, v));
+  CHECK_FALSE(find_exemption(skewer.world, nodes).cloth());
+  worn.col(1).array() -= 0.31;  // about its middle
+  nodes = skewer.nodes;
+  CHECK_FALSE(put_on(skewer.world, marked, skewer.nodes, worn, 1, 0.1, nodes, v));
+  CHECK(nodes == skewer.nodes);
 }

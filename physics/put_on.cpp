@@ -1,0 +1,50 @@
+#include "physics/put_on.hpp"
+
+#include <algorithm>
+#include <span>
+
+#include "collision/exemption.hpp"
+#include "collision/untangle.hpp"
+#include "collision/world_sheets.hpp"
+
+namespace selvedge {
+namespace {
+
+// Over the step, of the obstacles' node that is nearest to a place at its end.
+Vec3 way_of_nearest(const ContactWorld& world, const Points& nodes, const Points& wanted, const Vec3& place) {
+  const Eigen::Index first = world.cloth->vertex_count;
+  Eigen::Index nearest = 0;
+  (wanted.bottomRows(wanted.rows() - first).rowwise() - place.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
+  return (wanted.row(first + nearest) - nodes.row(first + nearest)).transpose();
+}
+
+bool is_tangled(const Exemption& found, const std::vector<int>& vertices) {
+  return std::ranges::any_of(vertices, [&](int v) {
+    return (!found.body.empty() && found.body[v]) || (!found.self.empty() && found.self[v]);
+  });
+}
+
+}  // namespace
+
+bool put_on(const ContactWorld& world, const std::vector<char>& marked, const Points& wanted, const Points& worn,
+            double reach, double h, Points& nodes, Points& v) {
+  std::vector<int> vertices;
+  for (int i = 0; i < static_cast<int>(marked.size()); ++i)
+    if (marked[i]) vertices.push_back(i);
+  if (vertices.empty()) return false;
+  Points ways(static_cast<Eigen::Index>(vertices.size()), 3);
+  for (std::size_t k = 0; k < vertices.size(); ++k)
+    ways.row(static_cast<Eigen::Index>(k)) = way_of_nearest(world, nodes, wanted, row(worn, vertices[k])).transpose();
+  Points there = nodes;
+  there(vertices, Eigen::all) = worn(vertices, Eigen::all) - ways;
+  if (!((there - nodes).rowwise().squaredNorm().maxCoeff() <= reach * reach)) return false;
+  const WorldSheets sheets(world, there);
+  const UntangleResult parted = untangle(*world.cloth, sheets.positions[0], std::span(sheets.views).subspan(1));
+  there(vertices, Eigen::all) = parted.x(vertices, Eigen::all);
+  if (is_tangled(find_exemption(world, there), vertices)) return false;
+  nodes = there;
+  v(vertices, Eigen::all) = ways / h;
+  return true;
+}
+
+}  // namespace selvedge
