@@ -29,7 +29,6 @@ constexpr double normal_change = 0.05;      // of what bounds friction, at most,
 constexpr int halvings = 2;                 // of a substep whose zones do not settle, before the last resort
 constexpr double recovery_speed = 1;        // at most, of a vertex that starts tangled [m/s]
 constexpr double carrying_speed = 3;        // at most, of one that is drawn to where it is worn [m/s]
-constexpr double putting_speed = 6;         // at most, of one that is put to where it is worn [m/s]
 constexpr double astray = 0.5;      // from where it is worn, of tangled cloth that is drawn there, in mean edges
 constexpr double firm = 1000;       // times as stiffly, where the body is free: else it holds its own shape
 constexpr double rounding = 1e-14;  // of positions that are added up over substeps
@@ -374,10 +373,10 @@ void ConventionalStepper::prepare_contact(const State& from, const Drive& drive,
     exemption_ = untouched ? *untouched : find_exemption(world_, nodes);
   }
   self_crossings_.switch_off(nodes, wanted, exemption_);
-  std::vector<char> pierced =
-      untouched ? std::vector<char>()
-                : pierced_vertices(world_, exemption_, nodes, wanted, drive.worn, astray * edge_length_);
-  if (put_on(world_, pierced, wanted, drive.worn, putting_speed * dt, dt, nodes, leg.v)) {
+  std::vector<char> pierced, sunken;
+  if (!untouched) pierced = pierced_vertices(world_, exemption_, nodes, wanted, drive.worn, astray * edge_length_);
+  if (!untouched) sunken = sunken_vertices(world_, exemption_, drive.worn);
+  if (put_on(world_, either(std::move(sunken), pierced), wanted, drive.worn, dt, nodes, leg.v)) {
     exemption_ = find_exemption(world_, nodes);
     pierced.clear();
   }

@@ -9,7 +9,8 @@ namespace selvedge {
 namespace {
 
 constexpr double good_part = 0.03;  // of a component's vertices
-constexpr double long_limb = 2.5;   // beyond a contour round it, in radii of the contour
+constexpr double small_part = 0.01;
+constexpr double long_limb = 2.5;  // beyond a contour round it, in radii of the contour
 
 // How far the vertices of a side's smaller part reach from the middle of its curve, in radii of the curve.
 double slenderness(const SheetView& sheet, const ContourSide& side) {
@@ -42,9 +43,9 @@ std::vector<char> pierced_components(const ContactWorld& world, const Points& no
   return pierced;
 }
 
-// Of which a good part is tangled with obstacles farther than that from where it is worn.
+// Of which more than `part` is tangled with obstacles and farther than that from where it is worn.
 std::vector<char> far_components(const ContactWorld& world, const Exemption& exemption, const Points& nodes,
-                                 const Points& worn, double astray) {
+                                 const Points& worn, double part, double astray) {
   const auto components = static_cast<std::size_t>(world.cloth->component_count);
   std::vector<int> size(components, 0), far(components, 0);
   for (int v = 0; v < worn.rows(); ++v) {
@@ -53,32 +54,49 @@ std::vector<char> far_components(const ContactWorld& world, const Exemption& exe
     far[component] += exemption.body[v] && (worn.row(v) - nodes.row(v)).norm() > astray;
   }
   std::vector<char> found(components, 0);
-  for (std::size_t c = 0; c < components; ++c) found[c] = far[c] > good_part * size[c];
+  for (std::size_t c = 0; c < components; ++c) found[c] = far[c] > part * size[c];
   return found;
+}
+
+bool applies(const Exemption& exemption, const Points& worn) {
+  return !exemption.body.empty() && exemption.off.empty() && worn.rows() > 0;
+}
+
+// Components with a vertex that is not worn have no place to go to.
+void leave_unworn(const ContactWorld& world, const Points& worn, std::vector<char>& components) {
+  for (int v = 0; v < worn.rows(); ++v)
+    if (!worn.row(v).allFinite()) components[world.cloth->component[v]] = 0;
+}
+
+// Empty where there are none.
+std::vector<char> vertices_of(const ContactWorld& world, const std::vector<char>& components) {
+  if (std::ranges::find(components, 1) == components.end()) return {};
+  std::vector<char> vertices;
+  for (const int component : world.cloth->component) vertices.push_back(components[component]);
+  return vertices;
 }
 
 }  // namespace
 
+std::vector<char> sunken_vertices(const ContactWorld& world, const Exemption& exemption, const Points& worn) {
+  if (!applies(exemption, worn)) return {};
+  std::vector<char> sunken = far_components(world, exemption, Points::Zero(worn.rows(), 3), worn, small_part, -1);
+  leave_unworn(world, worn, sunken);
+  return vertices_of(world, sunken);
+}
+
 std::vector<char> pierced_vertices(const ContactWorld& world, const Exemption& exemption, const Points& nodes,
                                    const Points& wanted, const Points& worn, double astray) {
-  if (exemption.body.empty() || !exemption.off.empty() || worn.rows() == 0) return {};
-  const std::vector<char> through = pierced_components(world, nodes),
-                          on_its_way = far_components(world, exemption, nodes, worn, astray);
-  std::vector<char> pierced = either(through, on_its_way);
+  if (!applies(exemption, worn)) return {};
+  std::vector<char> pierced =
+      either(pierced_components(world, nodes), far_components(world, exemption, nodes, worn, good_part, astray));
+  if (pierced.empty()) return {};
+  leave_unworn(world, worn, pierced);
   Points there = wanted;
-  for (int v = 0; v < worn.rows(); ++v) {
-    const bool is_worn = worn.row(v).allFinite();
-    if (!is_worn) pierced[world.cloth->component[v]] = 0;
-    there.row(v) = is_worn ? worn.row(v) : nodes.row(v);
-  }
-  if (std::ranges::find(pierced, 1) == pierced.end()) return {};
+  for (int v = 0; v < worn.rows(); ++v) there.row(v) = worn.row(v).allFinite() ? worn.row(v) : nodes.row(v);
   const std::vector<char> anyway = pierced_components(world, there);
-  std::vector<char> vertices(static_cast<std::size_t>(worn.rows()), 0);
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
-    const int component = world.cloth->component[v];
-    vertices[v] = pierced[component] && !anyway[component];
-  }
-  return std::ranges::find(vertices, 1) == vertices.end() ? std::vector<char>() : vertices;
+  for (std::size_t c = 0; c < pierced.size(); ++c) pierced[c] = pierced[c] && !anyway[c];
+  return vertices_of(world, pierced);
 }
 
 }  // namespace selvedge

@@ -20,4 +20,9 @@ namespace selvedge {
 std::vector<char> pierced_vertices(const ContactWorld&, const Exemption& exemption, const Points& nodes,
                                    const Points& wanted, const Points& worn, double astray);
 
+// The worn vertices of the components of the cloth of which one vertex in a hundred is tangled with an obstacle that
+// does not cross itself: what is left of such a passage, once drawn near, is of no one kind. All of it may be put on
+// again where it is worn (put_on.hpp). 1 a vertex of the cloth; empty where there is none.
+std::vector<char> sunken_vertices(const ContactWorld&, const Exemption&, const Points& worn);
+
 }  // namespace selvedge

@@ -10,6 +10,9 @@
 namespace selvedge {
 namespace {
 
+constexpr double most_way = 0.3;        // [m]
+constexpr int enough_iterations = 100;  // of untangling: what is worn is shallow in the body, or not to be parted
+
 // Over the step, of the obstacles' node that is nearest to a place at its end.
 Vec3 way_of_nearest(const ContactWorld& world, const Points& nodes, const Points& wanted, const Vec3& place) {
   const Eigen::Index first = world.cloth->vertex_count;
@@ -27,7 +30,7 @@ bool is_tangled(const Exemption& found, const std::vector<int>& vertices) {
 }  // namespace
 
 bool put_on(const ContactWorld& world, const std::vector<char>& marked, const Points& wanted, const Points& worn,
-            double reach, double h, Points& nodes, Points& v) {
+            double h, Points& nodes, Points& v) {
   std::vector<int> vertices;
   for (int i = 0; i < static_cast<int>(marked.size()); ++i)
     if (marked[i]) vertices.push_back(i);
@@ -37,9 +40,12 @@ bool put_on(const ContactWorld& world, const std::vector<char>& marked, const Po
     ways.row(static_cast<Eigen::Index>(k)) = way_of_nearest(world, nodes, wanted, row(worn, vertices[k])).transpose();
   Points there = nodes;
   there(vertices, Eigen::all) = worn(vertices, Eigen::all) - ways;
-  if (!((there - nodes).rowwise().squaredNorm().maxCoeff() <= reach * reach)) return false;
+  if (!((there - nodes).rowwise().squaredNorm().maxCoeff() <= most_way * most_way)) return false;
   const WorldSheets sheets(world, there);
-  const UntangleResult parted = untangle(*world.cloth, sheets.positions[0], std::span(sheets.views).subspan(1));
+  UntangleOptions options;
+  options.iterations = enough_iterations;
+  const UntangleResult parted =
+      untangle(*world.cloth, sheets.positions[0], std::span(sheets.views).subspan(1), options);
   there(vertices, Eigen::all) = parted.x(vertices, Eigen::all);
   if (is_tangled(find_exemption(world, there), vertices)) return false;
   nodes = there;

@@ -12,9 +12,9 @@ namespace selvedge {
 // Puts the marked vertices of the cloth to where they are worn at the start of a step, untangled there, and has them
 // move along with the obstacle's node that is nearest. `wanted` has the obstacles at the step's end, h [s] later, and
 // `worn` is where the cloth is worn then; `nodes`, at the start, and the cloth's velocities v are overwritten. False,
-// with both as they were, if nothing is marked, if a marked vertex would go farther than `reach` [m], or if the place
-// cannot be untangled. All must be finite, `worn` where it is marked.
-bool put_on(const ContactWorld&, const std::vector<char>& marked, const Points& wanted, const Points& worn,
-            double reach, double h, Points& nodes, Points& v);
+// with both as they were, if nothing is marked, if a marked vertex would go farther than 0.3 m, or if the place
+// cannot be untangled in a hundred iterations. All must be finite, `worn` where it is marked.
+bool put_on(const ContactWorld&, const std::vector<char>& marked, const Points& wanted, const Points& worn, double h,
+            Points& nodes, Points& v);
 
 }  // namespace selvedge
