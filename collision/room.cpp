@@ -10,8 +10,9 @@ namespace {
 
 constexpr double obstacle_mass = 30;  // of a node that gives way, in mean cloth vertices: layers are pressed together
 constexpr int sweeps = 25;            // in a block
-constexpr int blocks = 20;            // after which what still grows is taken for a contradiction
-constexpr double growing = 1;         // of the separation, a sweep: slower is what settles late
+constexpr int least_blocks = 3, most_blocks = 20;
+constexpr double growing = 1;    // of the separation, a sweep: less is what settles late
+constexpr double steady = 0.98;  // of all growth is still there in the next block: a contradiction
 constexpr int most_rounds = 6;
 constexpr double few = 0.01;      // of all demands: new ones that resolve can see to
 constexpr double steepest = 0.5;  // lag may change by this much of the distance between nodes
@@ -54,14 +55,21 @@ std::vector<double> press(Squeeze& s, const Points& trial) {
     demand.multiplier = 0;
     all.push_back(&demand);
   }
-  const double tolerance = 0.1 * s.options.separation;
-  for (int b = 0; b < blocks; ++b) project_zone(all, s.inverse_mass, s.x0, s.x, sweeps, tolerance);
-  std::vector<double> growth;
-  for (const Impact& demand : s.demands) growth.push_back(-demand.multiplier);
-  project_zone(all, s.inverse_mass, s.x0, s.x, sweeps, tolerance);
-  for (std::size_t k = 0; k < growth.size(); ++k) {
-    growth[k] += s.demands[k].multiplier;
-    if (growth[k] * compliance(s.demands[k], s.inverse_mass) < growing * s.options.separation * sweeps) growth[k] = 0;
+  const double tolerance = 0.1 * s.options.separation, least = growing * s.options.separation * sweeps;
+  std::vector<double> growth(s.demands.size());
+  double sum = 0;
+  for (int b = 0; b < most_blocks; ++b) {
+    for (std::size_t k = 0; k < growth.size(); ++k) growth[k] = -s.demands[k].multiplier;
+    project_zone(all, s.inverse_mass, s.x0, s.x, sweeps, tolerance);
+    const double before = sum;
+    sum = 0;
+    for (std::size_t k = 0; k < growth.size(); ++k) {
+      growth[k] += s.demands[k].multiplier;
+      const double way = growth[k] * compliance(s.demands[k], s.inverse_mass);
+      if (way < least) growth[k] = 0;
+      sum += way < least ? 0 : way;
+    }
+    if (sum == 0 || (b >= least_blocks && sum > steady * before)) break;
   }
   return growth;
 }
