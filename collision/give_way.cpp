@@ -23,6 +23,8 @@ constexpr double rest_room = 0.3;  // of that distance: the room asked for at mo
 constexpr double deepest = 0.7;    // of a part's thickness, that another is in it: beyond, it comes out behind
 constexpr int sweeps = 12, press_rings = 6;
 constexpr double smoothing = 0.5;
+constexpr double tight_part = 0.7;    // of the room and of what may give way: where less is left, pressed once more
+constexpr int halvings = 2;           // of what that does where it goes wrong, before it is left
 constexpr double pinched_part = 0.4;  // of the room: where less is left, cloth has no place to be
 constexpr int many_pinched = 20;      // vertices: from fewer it slips away
 constexpr int mend_rings = 1;         // round what crosses, that are mended together
@@ -107,6 +109,8 @@ int facing(const Flesh& flesh, int v, const CellGrid& grid, const Points& x, con
   return found;
 }
 
+double gap_of(const Meeting& m, const Points& x) { return m.apart.dot(row(x, m.vertex) - row(x, m.partner)); }
+
 std::vector<Meeting> meetings(const Flesh& flesh, const Points& x) {
   const Points normals = vertex_normals(flesh.body, x);
   const Points& rest = flesh.shape.x0;
@@ -134,9 +138,9 @@ std::vector<int> with_surroundings(const KeptShape& shape, const std::vector<cha
   return vertices;
 }
 
-// Each vertex of a meeting goes its share, and what lies round it goes along, less and less.
-Points pressed(const Flesh& flesh, const Points& x) {
-  const std::vector<Meeting> found = meetings(flesh, x);
+// From x each vertex of a meeting goes its share, no farther from where it is skinned to than it may or is, and what
+// lies round it goes along, less and less.
+Points pressed(const Flesh& flesh, const Points& skinned, const Points& x, const std::vector<Meeting>& found) {
   if (found.empty()) return x;
   std::vector<char> meets(static_cast<std::size_t>(flesh.body.vertex_count), 0);
   for (const Meeting& m : found) meets[m.vertex] = 1;
@@ -146,10 +150,11 @@ Points pressed(const Flesh& flesh, const Points& x) {
     smooth_displacement(flesh.shape, x, moving, smoothing, to);
     const Points from = to;
     for (const Meeting& m : found) {
-      const double missing = m.least - m.apart.dot(row(from, m.vertex) - row(from, m.partner));
+      const double missing = m.least - gap_of(m, from);
       if (missing <= 0) continue;
-      const Vec3 way = row(from, m.vertex) + m.share * missing * m.apart - row(x, m.vertex);
-      to.row(m.vertex) = (row(x, m.vertex) + way * std::min(1.0, flesh.options.most / way.norm())).transpose();
+      const Vec3 at = row(skinned, m.vertex), way = row(from, m.vertex) + m.share * missing * m.apart - at;
+      const double most = std::max(flesh.options.most, (row(x, m.vertex) - at).norm());
+      to.row(m.vertex) = (at + way * std::min(1.0, most / way.norm())).transpose();
     }
   }
   return to;
@@ -201,27 +206,39 @@ std::optional<Points> mended(const Flesh& flesh, const Place& place, const Point
   return parted.x;
 }
 
+// Pressed once more where there is less room than there should be: mending leaves hardly any, and what came from deep
+// may meet others than it met at first. Where it would cross itself by that it is pressed less, or stays.
+Points opened(const Flesh& flesh, const Points& skinned, const Points& x, const std::vector<Meeting>& found,
+              const Pairs& left, IntersectionCache& cache) {
+  Points to = pressed(flesh, skinned, x, found);
+  for (int halving = 0; halving <= halvings; ++halving) {
+    const Pairs anew = intersecting_pairs(flesh.body, to, cache);
+    if (anew.size() <= left.size()) return to;
+    const double share = halving < halvings ? 0.5 : 0;
+    for (const Place& place : places_of(flesh, left, anew))
+      for (const int v : place.vertices) to.row(v) = (x.row(v) + share * (to.row(v) - x.row(v))).eval();
+  }
+  return intersecting_pairs(flesh.body, to, cache).size() <= left.size() ? to : x;
+}
+
 // Where over some area next to no room is left between parts after all, cloth would be held by faces that touch, and
 // there is no place to put it. There what hangs together gives way less, so that the parts pass through each other.
-void let_through(const Flesh& flesh, const Points& x, Points& to) {
+void let_through(const Flesh& flesh, std::vector<Meeting> pinches, const Points& x, Points& to) {
   const double pinched = pinched_part * flesh.options.room;
   const auto moves = [&](int v) { return to.row(v) != x.row(v); };
-  const auto gap = [](const Meeting& m, const Points& at) {
-    return m.apart.dot(row(at, m.vertex) - row(at, m.partner));
-  };
-  std::vector<Meeting> pinches = meetings(flesh, to);
   std::erase_if(pinches, [&](const Meeting& m) {
-    return std::abs(gap(m, to)) > pinched || m.least < flesh.options.room / 2 || !(moves(m.vertex) || moves(m.partner));
+    return std::abs(gap_of(m, to)) > pinched || m.least < flesh.options.room / 2 ||
+           !(moves(m.vertex) || moves(m.partner));
   });
   if (static_cast<int>(pinches.size()) < many_pinched) return;
   DisjointSets moved(flesh.body.vertex_count);
   for (const auto& edge : flesh.body.edges.rowwise())
     if (moves(edge[0]) && moves(edge[1])) moved.join(edge[0], edge[1]);
   for (const Meeting& m : pinches) moved.join(m.vertex, m.partner);
-  std::vector<int> count(static_cast<std::size_t>(flesh.body.vertex_count), 0);  // by set
-  std::vector<double> share(count.size(), 1);                                    // of its ways
+  Eigen::VectorXi count = Eigen::VectorXi::Zero(flesh.body.vertex_count);  // by set
+  Eigen::VectorXd share = Eigen::VectorXd::Ones(flesh.body.vertex_count);  // of its ways
   for (const Meeting& m : pinches) {
-    const double now = gap(m, to), skinned = gap(m, x);
+    const double now = gap_of(m, to), skinned = gap_of(m, x);
     const int set = moved.root(m.vertex);
     ++count[set];
     if (now > skinned) share[set] = std::min(share[set], std::clamp((-pinched - skinned) / (now - skinned), 0.0, 1.0));
@@ -239,10 +256,10 @@ GiveWay::GiveWay(Surface body, const Points& rest, const GiveWayOptions& options
 // Pressed apart where parts meet. Where that does not do, mended place by place: from there, or as skinned, or else
 // left as it crosses less.
 Points GiveWay::operator()(const Points& x) const {
-  Points result = pressed(*flesh_, x);
+  Points result = pressed(*flesh_, x, x, meetings(*flesh_, x));
   IntersectionCache cache;
-  const Pairs left = intersecting_pairs(flesh_->body, result, cache);
-  if (!left.empty())
+  Pairs left = intersecting_pairs(flesh_->body, result, cache);
+  if (!left.empty()) {
     for (const Place& place : places_of(*flesh_, intersecting_pairs(flesh_->body, x, cache), left)) {
       std::optional<Points> better;
       if (place.pressed <= few) better = mended(*flesh_, place, result, x);
@@ -250,7 +267,18 @@ Points GiveWay::operator()(const Points& x) const {
       if (!better && place.pressed > place.skinned) better = x(place.vertices, Eigen::all);
       if (better) result(place.vertices, Eigen::all) = *better;
     }
-  let_through(*flesh_, x, result);
+    left = intersecting_pairs(flesh_->body, result, cache);
+  }
+  std::vector<Meeting> close = meetings(*flesh_, result);
+  const auto is_tight = [&](const Meeting& m) {
+    return gap_of(m, result) < tight_part * m.least &&
+           (row(result, m.vertex) - row(x, m.vertex)).norm() < tight_part * flesh_->options.most;
+  };
+  if (std::ranges::any_of(close, is_tight)) {
+    result = opened(*flesh_, x, result, close, left, cache);
+    close = meetings(*flesh_, result);
+  }
+  let_through(*flesh_, std::move(close), x, result);
   return result;
 }
 

@@ -146,7 +146,7 @@ Movement strut(const Skeleton& k) {
                  .twist = 0.25,
                  .roll = 0.16,
                  .lean = -0.04,
-                 .width = 0.1},
+                 .width = 0.5},
                 7);
 }
 Movement march(const Skeleton& k) {

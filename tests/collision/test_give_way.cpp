@@ -121,6 +121,28 @@ TEST_CASE("parts that come together leave room for cloth", "[give_way]") {
   }
 }
 
+TEST_CASE("what has been mended leaves room as well", "[give_way]") {
+  const Arm rod = arm();
+  const Surface both = twice(rod.surface);
+  const GiveWayOptions options{.room = 0.01};
+  const GiveWay give(both, beside(rod.straight, 0.5, 0.4), options);
+  // A thin rod across a thick one, through its skin and all but through its middle.
+  for (const double deep : {0.01, 0.02, 0.036, 0.04}) {
+    CAPTURE(deep);
+    Points x = beside(rod.straight, 0, 0.4);
+    for (int v = rod.surface.vertex_count; v < x.rows(); ++v)
+      x.row(v) = Eigen::RowVector3d(x(v, 2), x(v, 1) + 1.4 * radius - deep, -x(v, 0));
+    const Points y = give(x);
+    REQUIRE(crossings(both, x) > 0);
+    CHECK(crossings(both, y) == 0);
+    double least = 1;
+    for (int v = 0; v < rod.surface.vertex_count; ++v)
+      least =
+          std::min(least, (y.bottomRows(rod.surface.vertex_count).rowwise() - y.row(v)).rowwise().norm().minCoeff());
+    CHECK(least > 0.7 * options.room);
+  }
+}
+
 TEST_CASE("two parts that come together go half the way each, as far as they may", "[give_way]") {
   const Arm rod = arm();
   const Surface both = twice(rod.surface);
