@@ -29,28 +29,28 @@ bool is_tangled(const Exemption& found, const std::vector<int>& vertices) {
 
 }  // namespace
 
-bool put_on(const ContactWorld& world, const std::vector<char>& marked, const Points& wanted, const Points& worn,
-            double h, Points& nodes, Points& v) {
+PutOn put_on(const ContactWorld& world, const std::vector<char>& marked, const Points& wanted, const Points& worn,
+             double h, Points& nodes, Points& v) {
   std::vector<int> vertices;
   for (int i = 0; i < static_cast<int>(marked.size()); ++i)
     if (marked[i]) vertices.push_back(i);
-  if (vertices.empty()) return false;
+  if (vertices.empty()) return PutOn::nothing;
   Points ways(static_cast<Eigen::Index>(vertices.size()), 3);
   for (std::size_t k = 0; k < vertices.size(); ++k)
     ways.row(static_cast<Eigen::Index>(k)) = way_of_nearest(world, nodes, wanted, row(worn, vertices[k])).transpose();
   Points there = nodes;
   there(vertices, Eigen::all) = worn(vertices, Eigen::all) - ways;
-  if (!((there - nodes).rowwise().squaredNorm().maxCoeff() <= most_way * most_way)) return false;
+  if (!((there - nodes).rowwise().squaredNorm().maxCoeff() <= most_way * most_way)) return PutOn::too_far;
   const WorldSheets sheets(world, there);
   UntangleOptions options;
   options.iterations = enough_iterations;
   const UntangleResult parted =
       untangle(*world.cloth, sheets.positions[0], std::span(sheets.views).subspan(1), options);
   there(vertices, Eigen::all) = parted.x(vertices, Eigen::all);
-  if (is_tangled(find_exemption(world, there), vertices)) return false;
+  if (is_tangled(find_exemption(world, there), vertices)) return PutOn::no_place;
   nodes = there;
   v(vertices, Eigen::all) = ways / h;
-  return true;
+  return PutOn::done;
 }
 
 }  // namespace selvedge

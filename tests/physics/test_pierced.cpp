@@ -133,10 +133,10 @@ TEST_CASE("put on: cloth is where it is worn, clean, and moves along with what i
   Points nodes = skewer.nodes, v = skewer.w.state.v;
   const auto put = [&] { return put_on(skewer.world, marked, wanted, skewer.w.drive.worn, 0.1, nodes, v); };
   skewer.w.drive.worn.col(1).array() += 0.1;
-  CHECK_FALSE(put());  // half a metre away
+  CHECK(put() == PutOn::too_far);  // half a metre away
   CHECK(nodes == skewer.nodes);
   skewer.w.drive.worn.col(1).array() -= 0.3;
-  REQUIRE(put());
+  REQUIRE(put() == PutOn::done);
   const int sheet = 17 * 17;
   const Points place = skewer.w.drive.worn.topRows(sheet).rowwise() - way.transpose();
   CHECK((nodes.topRows(sheet) - place).cwiseAbs().maxCoeff() < 1e-12);
@@ -150,10 +150,12 @@ TEST_CASE("put on: a place that is in the body is untangled, and one that cannot
   const std::vector<char> marked = skewer.pierced();
   Points worn = skewer.w.drive.worn, nodes = skewer.nodes, v = skewer.w.state.v;
   worn.col(1).array() -= 0.21;  // just in the spindle's tip
-  CHECK(put_on(skewer.world, marked, skewer.nodes, worn, 0.1, nodes, v));
+  const auto put = [&] { return put_on(skewer.world, marked, skewer.nodes, worn, 0.1, nodes, v); };
+  CHECK(put() == PutOn::done);
   CHECK_FALSE(find_exemption(skewer.world, nodes).cloth());
   worn.col(1).array() -= 0.31;  // about its middle
   nodes = skewer.nodes;
-  CHECK_FALSE(put_on(skewer.world, marked, skewer.nodes, worn, 0.1, nodes, v));
+  CHECK(put() == PutOn::no_place);
   CHECK(nodes == skewer.nodes);
+  CHECK(put_on(skewer.world, {}, skewer.nodes, worn, 0.1, nodes, v) == PutOn::nothing);
 }
