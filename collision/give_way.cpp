@@ -221,15 +221,24 @@ Points opened(const Flesh& flesh, const Points& skinned, const Points& x, const 
   return intersecting_pairs(flesh.body, to, cache).size() <= left.size() ? to : x;
 }
 
-// Where over some area next to no room is left between parts after all, cloth would be held by faces that touch, and
-// there is no place to put it. There what hangs together gives way less, so that the parts pass through each other.
-void let_through(const Flesh& flesh, std::vector<Meeting> pinches, const Points& x, Points& to) {
+// Meetings that leave next to no room, or are next to none through.
+std::vector<Meeting> pinches_of(const Flesh& flesh, const std::vector<Meeting>& found, const Points& x,
+                                const Points& to) {
   const double pinched = pinched_part * flesh.options.room;
   const auto moves = [&](int v) { return to.row(v) != x.row(v); };
+  std::vector<Meeting> pinches = found;
   std::erase_if(pinches, [&](const Meeting& m) {
     return std::abs(gap_of(m, to)) > pinched || m.least < flesh.options.room / 2 ||
            !(moves(m.vertex) || moves(m.partner));
   });
+  return pinches;
+}
+
+// Where over some area next to no room is left between parts after all, cloth would be held by faces that touch, and
+// there is no place to put it. There what hangs together gives way less, so that the parts pass through each other.
+void let_through(const Flesh& flesh, const std::vector<Meeting>& pinches, const Points& x, Points& to) {
+  const double pinched = pinched_part * flesh.options.room;
+  const auto moves = [&](int v) { return to.row(v) != x.row(v); };
   if (static_cast<int>(pinches.size()) < many_pinched) return;
   DisjointSets moved(flesh.body.vertex_count);
   for (const auto& edge : flesh.body.edges.rowwise())
@@ -274,11 +283,18 @@ Points GiveWay::operator()(const Points& x) const {
     return gap_of(m, result) < tight_part * m.least &&
            (row(result, m.vertex) - row(x, m.vertex)).norm() < tight_part * flesh_->options.most;
   };
+  const auto pinches = [&](const std::vector<Meeting>& found, const Points& at) {
+    return pinches_of(*flesh_, found, x, at);
+  };
   if (std::ranges::any_of(close, is_tight)) {
-    result = opened(*flesh_, x, result, close, left, cache);
-    close = meetings(*flesh_, result);
+    const Points more = opened(*flesh_, x, result, close, left, cache);
+    const std::vector<Meeting> then = meetings(*flesh_, more);
+    if (pinches(then, more).size() <= pinches(close, result).size()) {
+      result = more;
+      close = then;
+    }
   }
-  let_through(*flesh_, std::move(close), x, result);
+  let_through(*flesh_, pinches(close, result), x, result);
   return result;
 }
 
