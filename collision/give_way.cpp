@@ -263,7 +263,7 @@ GiveWay::GiveWay(Surface body, const Points& rest, const GiveWayOptions& options
     : flesh_(std::make_shared<const Flesh>(std::move(body), rest, options)) {}
 
 // Pressed apart where parts meet. Where that does not do, mended place by place: from there, or as skinned, or else
-// left as it crosses less.
+// left as it crosses less. Then pressed once more for room, unless more of it would next to touch by that.
 Points GiveWay::operator()(const Points& x) const {
   Points result = pressed(*flesh_, x, x, meetings(*flesh_, x));
   IntersectionCache cache;
