@@ -171,4 +171,15 @@ bool make_room(PairSearch& search, const ContactWorld& world, const ResolveOptio
   return squeezed;
 }
 
+ResolveReport catch_up(PairSearch& search, const ResolveOptions& options, const Eigen::VectorXd& inverse_mass,
+                       const Points& wanted, Points& nodes, PathPairs& path) {
+  ResolveReport report;
+  const Eigen::Index obstacles = nodes.rows() - search.world().cloth->vertex_count;
+  Points there = nodes;
+  there.bottomRows(obstacles) = wanted.bottomRows(obstacles);
+  report.clean = there == nodes || find_impacts(search, inverse_mass, options, nodes, there, path, report).empty();
+  if (report.clean) nodes = std::move(there);
+  return report;
+}
+
 }  // namespace selvedge

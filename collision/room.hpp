@@ -18,4 +18,10 @@ namespace selvedge {
 bool make_room(PairSearch&, const ContactWorld&, const ResolveOptions&, std::span<const Proximity> near,
                const Points& x0, Points& x1, PathPairs&, Eigen::VectorXd& inverse_mass, ResolveReport&);
 
+// Where obstacles end a step short of where they are wanted, and the way there has come free meanwhile, takes all of
+// them there: what is linearised at the start may ask for more room than the cloth needed in the end. Not clean, with
+// `nodes` as they were, if something meets on that way.
+ResolveReport catch_up(PairSearch&, const ResolveOptions&, const Eigen::VectorXd& inverse_mass, const Points& wanted,
+                       Points& nodes, PathPairs&);
+
 }  // namespace selvedge

@@ -427,6 +427,7 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
   if (exemption_.off.empty())
     for (std::size_t v = 0; v < carried_.size(); ++v)
       if (carried_[v]) leg.v.row(static_cast<Eigen::Index>(v)).setZero();
+  if (has_contact()) add(catch_up(search_, contact_, inverse_mass_, wanted, leg.nodes, path_), report);
   arrive(from, leg, dt, to);
   to.obstacles.resize(from.obstacles.size());
   for (std::size_t k = 0; k < from.obstacles.size(); ++k)
