@@ -66,8 +66,10 @@ std::vector<double> press(Squeeze& s, const Points& trial) {
     for (std::size_t k = 0; k < growth.size(); ++k) {
       growth[k] += s.demands[k].multiplier;
       const double way = growth[k] * compliance(s.demands[k], s.inverse_mass);
-      if (way < least) growth[k] = 0;
-      sum += way < least ? 0 : way;
+      if (way < least)
+        growth[k] = 0;
+      else
+        sum += way;
     }
     if (sum == 0 || (b >= least_blocks && sum > steady * before)) break;
   }

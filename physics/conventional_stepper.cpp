@@ -358,7 +358,7 @@ NewtonReport ConventionalStepper::solve(const StepProblem& problem, Points& x, S
   return newton;
 }
 
-// Recovery where the start is tangled, what contact is to leave alone, and the pairs near the start.
+// Putting on and recovery where the start is tangled, what contact leaves alone, and the pairs near the start.
 void ConventionalStepper::prepare_contact(const State& from, const Drive& drive, double dt, const Points& wanted,
                                           Leg& leg, StepReport& report) {
   Stopwatch watch;
