@@ -23,12 +23,14 @@ constexpr double rest_room = 0.3;  // of that distance: the room asked for at mo
 constexpr double deepest = 0.7;    // of a part's thickness, that another is in it: beyond, it comes out behind
 constexpr int sweeps = 12, press_rings = 6;
 constexpr double smoothing = 0.5;
-constexpr double tight_part = 0.7;    // of the room and of what may give way: where less is left, pressed once more
+constexpr double tight_part = 0.7;    // of the room and of what may give way: where less is left, pressed more
 constexpr int halvings = 2;           // of what that does where it goes wrong, before it is left
 constexpr double pinched_part = 0.4;  // of the room: where less is left, cloth has no place to be
 constexpr int many_pinched = 20;      // vertices: from fewer it slips away
 constexpr int mend_rings = 1;         // round what crosses, that are mended together
 constexpr int few = 60, many = 250;   // pairs in one place: worth mending once pressed, as skinned
+constexpr int spot = 10;              // the same once pressed more: mending takes back room that is to be gained
+constexpr int presses = 3;            // for more room
 constexpr double overshoot = 1.5;     // of the farthest way, by mending
 constexpr int mend_iterations = 40;
 constexpr double mend_gap = 0.1, mend_far = 0.5;  // in mean edge lengths
@@ -206,8 +208,9 @@ std::optional<Points> mended(const Flesh& flesh, const Place& place, const Point
   return parted.x;
 }
 
-// Pressed once more where there is less room than there should be: mending leaves hardly any, and what came from deep
-// may meet others than it met at first. Where it would cross itself by that it is pressed less, or stays.
+// Pressed more where there is less room than there should be: mending leaves hardly any, and what came from deep may
+// meet others than it met at first. What crosses by that in a spot, as the bottom of a fold does, is mended; more of it
+// is pressed less, or stays.
 Points opened(const Flesh& flesh, const Points& skinned, const Points& x, const std::vector<Meeting>& found,
               const Pairs& left, IntersectionCache& cache) {
   Points to = pressed(flesh, skinned, x, found);
@@ -215,8 +218,15 @@ Points opened(const Flesh& flesh, const Points& skinned, const Points& x, const 
     const Pairs anew = intersecting_pairs(flesh.body, to, cache);
     if (anew.size() <= left.size()) return to;
     const double share = halving < halvings ? 0.5 : 0;
-    for (const Place& place : places_of(flesh, left, anew))
-      for (const int v : place.vertices) to.row(v) = (x.row(v) + share * (to.row(v) - x.row(v))).eval();
+    for (const Place& place : places_of(flesh, left, anew)) {
+      std::optional<Points> better;
+      if (place.pressed <= spot) better = mended(flesh, place, to, skinned);
+      if (!better) {
+        const Points from = x(place.vertices, Eigen::all);
+        better = from + share * (to(place.vertices, Eigen::all) - from);
+      }
+      to(place.vertices, Eigen::all) = *better;
+    }
   }
   return intersecting_pairs(flesh.body, to, cache).size() <= left.size() ? to : x;
 }
@@ -234,26 +244,49 @@ std::vector<Meeting> pinches_of(const Flesh& flesh, const std::vector<Meeting>& 
   return pinches;
 }
 
+// Vertices of a body that move together: those that do along edges, and what meets.
+DisjointSets moved_together(const Flesh& flesh, const Points& from, const Points& to,
+                            std::initializer_list<const std::vector<Meeting>*> meetings) {
+  const auto moves = [&](int v) { return to.row(v) != from.row(v); };
+  DisjointSets sets(flesh.body.vertex_count);
+  for (const auto& edge : flesh.body.edges.rowwise())
+    if (moves(edge[0]) && moves(edge[1])) sets.join(edge[0], edge[1]);
+  for (const std::vector<Meeting>* met : meetings)
+    for (const Meeting& m : *met) sets.join(m.vertex, m.partner);
+  return sets;
+}
+
+// The body pressed from `once` to `twice`, but for what moves together into more pinches than it had: that stays. What
+// is left crossing has `most_pairs`.
+Points where_it_opens(const Flesh& flesh, const Points& skinned, const Points& once, const Points& twice,
+                      const std::vector<Meeting>& met, std::size_t most_pairs, IntersectionCache& cache) {
+  const std::vector<Meeting> then = meetings(flesh, twice);
+  DisjointSets sets = moved_together(flesh, once, twice, {&met, &then});
+  Eigen::VectorXi more = Eigen::VectorXi::Zero(flesh.body.vertex_count);  // pinches, by set
+  for (const Meeting& m : pinches_of(flesh, met, skinned, once)) --more[sets.root(m.vertex)];
+  for (const Meeting& m : pinches_of(flesh, then, skinned, twice)) ++more[sets.root(m.vertex)];
+  Points to = twice;
+  for (int v = 0; v < flesh.body.vertex_count; ++v)
+    if (more[sets.root(v)] > 0) to.row(v) = once.row(v);
+  return intersecting_pairs(flesh.body, to, cache).size() <= most_pairs ? to : once;
+}
+
 // Where over some area next to no room is left between parts after all, cloth would be held by faces that touch, and
 // there is no place to put it. There what hangs together gives way less, so that the parts pass through each other.
 void let_through(const Flesh& flesh, const std::vector<Meeting>& pinches, const Points& x, Points& to) {
   const double pinched = pinched_part * flesh.options.room;
-  const auto moves = [&](int v) { return to.row(v) != x.row(v); };
   if (static_cast<int>(pinches.size()) < many_pinched) return;
-  DisjointSets moved(flesh.body.vertex_count);
-  for (const auto& edge : flesh.body.edges.rowwise())
-    if (moves(edge[0]) && moves(edge[1])) moved.join(edge[0], edge[1]);
-  for (const Meeting& m : pinches) moved.join(m.vertex, m.partner);
+  DisjointSets sets = moved_together(flesh, x, to, {&pinches});
   Eigen::VectorXi count = Eigen::VectorXi::Zero(flesh.body.vertex_count);  // by set
   Eigen::VectorXd share = Eigen::VectorXd::Ones(flesh.body.vertex_count);  // of its ways
   for (const Meeting& m : pinches) {
     const double now = gap_of(m, to), skinned = gap_of(m, x);
-    const int set = moved.root(m.vertex);
+    const int set = sets.root(m.vertex);
     ++count[set];
     if (now > skinned) share[set] = std::min(share[set], std::clamp((-pinched - skinned) / (now - skinned), 0.0, 1.0));
   }
   for (int v = 0; v < flesh.body.vertex_count; ++v)
-    if (const int set = moved.root(v); count[set] >= many_pinched)
+    if (const int set = sets.root(v); count[set] >= many_pinched)
       to.row(v) = (x.row(v) + share[set] * (to.row(v) - x.row(v))).eval();
 }
 
@@ -263,7 +296,7 @@ GiveWay::GiveWay(Surface body, const Points& rest, const GiveWayOptions& options
     : flesh_(std::make_shared<const Flesh>(std::move(body), rest, options)) {}
 
 // Pressed apart where parts meet. Where that does not do, mended place by place: from there, or as skinned, or else
-// left as it crosses less. Then pressed once more for room, unless more of it would next to touch by that.
+// left as it crosses less. Then pressed more for room, where no more of it would next to touch by that.
 Points GiveWay::operator()(const Points& x) const {
   Points result = pressed(*flesh_, x, x, meetings(*flesh_, x));
   IntersectionCache cache;
@@ -283,18 +316,14 @@ Points GiveWay::operator()(const Points& x) const {
     return gap_of(m, result) < tight_part * m.least &&
            (row(result, m.vertex) - row(x, m.vertex)).norm() < tight_part * flesh_->options.most;
   };
-  const auto pinches = [&](const std::vector<Meeting>& found, const Points& at) {
-    return pinches_of(*flesh_, found, x, at);
-  };
-  if (std::ranges::any_of(close, is_tight)) {
+  for (int press = 0; press < presses && std::ranges::any_of(close, is_tight); ++press) {
     const Points more = opened(*flesh_, x, result, close, left, cache);
-    const std::vector<Meeting> then = meetings(*flesh_, more);
-    if (pinches(then, more).size() <= pinches(close, result).size()) {
-      result = more;
-      close = then;
-    }
+    const Points next = where_it_opens(*flesh_, x, result, more, close, left.size(), cache);
+    if (next == result) break;
+    result = next;
+    close = meetings(*flesh_, result);
   }
-  let_through(*flesh_, pinches(close, result), x, result);
+  let_through(*flesh_, pinches_of(*flesh_, close, x, result), x, result);
   return result;
 }
 

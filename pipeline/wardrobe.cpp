@@ -64,8 +64,8 @@ Setup read_row(const WardrobeRequest& request, const Wear& wear, const ClipEntry
   return setup;
 }
 
-// What all that is worn through a clip shares: where the body is, asked by the same times each, and in which frames it
-// passes through itself or did so a few frames before.
+// What all garments, or all outfits, share in a clip (their bodies leave different room): where the body is, asked by
+// the same times each, and in which frames it passes through itself or did so a few frames before.
 struct ClipBody {
   PosedBodies known{{}, true};
   std::vector<char> excused;
@@ -182,13 +182,13 @@ std::vector<WardrobeRow> wardrobe(const WardrobeRequest& request) {
   for (std::size_t c = 0; c < all_clips.size(); ++c) {
     if (static_cast<int>(c) % request.share[1] != request.share[0] - 1) continue;
     const ClipEntry& clip = all_clips[c];
-    ClipBody body;
+    std::array<ClipBody, 2> bodies;  // of garments, of outfits
     for (const Wear& wear : wears) {
       const RowPlace place{request.out / wear.name / clip.name, request.out / wear.name / (clip.name + ".json"), key};
       make_folder(place.folder.parent_path());
       std::optional<WardrobeRow> row = read_wardrobe_row(whole_file(place.file), key);
       if (!row) {
-        row = run_row(request, wear, clip, place, body);
+        row = run_row(request, wear, clip, place, bodies[wear.outfit ? 1 : 0]);
         if (!row) return rows;
         keep_or_remove(place, !row->passed() || clip.name == all_clips.front().name);
         write_file(place.file, wardrobe_row_json(*row, key));

@@ -76,6 +76,24 @@ TEST_CASE("A body with a clip gives way where it would pass through itself, unle
   }
 }
 
+TEST_CASE("Parts that have come together keep their room from frame to frame", "[setup_body]") {
+  const Folder folder("body_room");
+  const double room = 0.01;
+  const Setup dance = with_body(folder, "{clip: dance_disco, room: 1 cm}");
+  const Points rest = make_mannequin().skin.rest;
+  // Thighs that nearly close; frame 167 pinched them where a shoulder was in the way of opening.
+  for (int frame = 164; frame <= 170; ++frame) {
+    CAPTURE(frame);
+    const Points x = body_at(dance, frame / 30.0);
+    double least = 1;
+    for (int v = 0; v < x.rows(); ++v)
+      for (int w = 0; w < v; ++w)
+        if ((x.row(v) - x.row(w)).cwiseAbs().maxCoeff() < room && (rest.row(v) - rest.row(w)).norm() > 0.25)
+          least = std::min(least, (x.row(v) - x.row(w)).norm());
+    CHECK(least > 0.85 * room);
+  }
+}
+
 TEST_CASE("A body walks as a BVH file has it", "[setup_body]") {
   const auto file = fake::open_data() / "makehuman" / "walk1.bvh";
   if (!std::filesystem::exists(file)) {

@@ -46,6 +46,19 @@ TEST_CASE("A garment comes down from the T-pose and walks clean; its row is kept
   CHECK_THAT(wardrobe_table(rows), Contains("tshirt"));
 }
 
+TEST_CASE("What an outfit goes through does not depend on the garments before it", "[wardrobe]") {
+  const Folder folder("wardrobe_shared");
+  WardrobeRequest request = short_form(folder);
+  request.most_frames = 1;
+  request.wear = {"training_layers"};
+  const WardrobeRow alone = wardrobe(request).at(0);
+  request.wear = {"shorts", "training_layers"};
+  request.out = folder.path / "after";
+  const WardrobeRow after = wardrobe(request).at(1);
+  CHECK(after.wear == "training_layers");
+  CHECK(after.max_stretch == alone.max_stretch);
+}
+
 TEST_CASE("Rows of the wardrobe survive being written, and fail for each thing that may not be", "[wardrobe]") {
   WardrobeRow row;
   row.wear = "skirt";
