@@ -256,19 +256,27 @@ DisjointSets moved_together(const Flesh& flesh, const Points& from, const Points
   return sets;
 }
 
-// The body pressed from `once` to `twice`, but for what moves together into more pinches than it had: that stays. What
-// is left crossing has `most_pairs`.
-Points where_it_opens(const Flesh& flesh, const Points& skinned, const Points& once, const Points& twice,
-                      const std::vector<Meeting>& met, std::size_t most_pairs, IntersectionCache& cache) {
-  const std::vector<Meeting> then = meetings(flesh, twice);
-  DisjointSets sets = moved_together(flesh, once, twice, {&met, &then});
+// A body and what of it has come together.
+struct Pressed {
+  Points x;
+  std::vector<Meeting> close;
+};
+
+// The body pressed from `once` to `twice`, but for what moves together into more pinches than it had: that stays, and
+// so does all if more than `most_pairs` would cross.
+Pressed where_it_opens(const Flesh& flesh, const Points& skinned, const Pressed& once, const Points& twice,
+                       std::size_t most_pairs, IntersectionCache& cache) {
+  Pressed next{twice, meetings(flesh, twice)};
+  DisjointSets sets = moved_together(flesh, once.x, twice, {&once.close, &next.close});
   Eigen::VectorXi more = Eigen::VectorXi::Zero(flesh.body.vertex_count);  // pinches, by set
-  for (const Meeting& m : pinches_of(flesh, met, skinned, once)) --more[sets.root(m.vertex)];
-  for (const Meeting& m : pinches_of(flesh, then, skinned, twice)) ++more[sets.root(m.vertex)];
-  Points to = twice;
+  for (const Meeting& m : pinches_of(flesh, once.close, skinned, once.x)) --more[sets.root(m.vertex)];
+  for (const Meeting& m : pinches_of(flesh, next.close, skinned, twice)) ++more[sets.root(m.vertex)];
+  if (more.maxCoeff() <= 0) return next;
   for (int v = 0; v < flesh.body.vertex_count; ++v)
-    if (more[sets.root(v)] > 0) to.row(v) = once.row(v);
-  return intersecting_pairs(flesh.body, to, cache).size() <= most_pairs ? to : once;
+    if (more[sets.root(v)] > 0) next.x.row(v) = once.x.row(v);
+  if (next.x == once.x || intersecting_pairs(flesh.body, next.x, cache).size() > most_pairs) return once;
+  next.close = meetings(flesh, next.x);
+  return next;
 }
 
 // Where over some area next to no room is left between parts after all, cloth would be held by faces that touch, and
@@ -298,33 +306,32 @@ GiveWay::GiveWay(Surface body, const Points& rest, const GiveWayOptions& options
 // Pressed apart where parts meet. Where that does not do, mended place by place: from there, or as skinned, or else
 // left as it crosses less. Then pressed more for room, where no more of it would next to touch by that.
 Points GiveWay::operator()(const Points& x) const {
-  Points result = pressed(*flesh_, x, x, meetings(*flesh_, x));
+  Pressed body{pressed(*flesh_, x, x, meetings(*flesh_, x)), {}};
   IntersectionCache cache;
-  Pairs left = intersecting_pairs(flesh_->body, result, cache);
+  Pairs left = intersecting_pairs(flesh_->body, body.x, cache);
   if (!left.empty()) {
     for (const Place& place : places_of(*flesh_, intersecting_pairs(flesh_->body, x, cache), left)) {
       std::optional<Points> better;
-      if (place.pressed <= few) better = mended(*flesh_, place, result, x);
+      if (place.pressed <= few) better = mended(*flesh_, place, body.x, x);
       if (!better && place.skinned <= many) better = mended(*flesh_, place, x, x);
       if (!better && place.pressed > place.skinned) better = x(place.vertices, Eigen::all);
-      if (better) result(place.vertices, Eigen::all) = *better;
+      if (better) body.x(place.vertices, Eigen::all) = *better;
     }
-    left = intersecting_pairs(flesh_->body, result, cache);
+    left = intersecting_pairs(flesh_->body, body.x, cache);
   }
-  std::vector<Meeting> close = meetings(*flesh_, result);
+  body.close = meetings(*flesh_, body.x);
   const auto is_tight = [&](const Meeting& m) {
-    return gap_of(m, result) < tight_part * m.least &&
-           (row(result, m.vertex) - row(x, m.vertex)).norm() < tight_part * flesh_->options.most;
+    return gap_of(m, body.x) < tight_part * m.least &&
+           (row(body.x, m.vertex) - row(x, m.vertex)).norm() < tight_part * flesh_->options.most;
   };
-  for (int press = 0; press < presses && std::ranges::any_of(close, is_tight); ++press) {
-    const Points more = opened(*flesh_, x, result, close, left, cache);
-    const Points next = where_it_opens(*flesh_, x, result, more, close, left.size(), cache);
-    if (next == result) break;
-    result = next;
-    close = meetings(*flesh_, result);
+  for (int press = 0; press < presses && std::ranges::any_of(body.close, is_tight); ++press) {
+    const Points more = opened(*flesh_, x, body.x, body.close, left, cache);
+    Pressed next = where_it_opens(*flesh_, x, body, more, left.size(), cache);
+    if (next.x == body.x) break;
+    body = std::move(next);
   }
-  let_through(*flesh_, pinches_of(*flesh_, close, x, result), x, result);
-  return result;
+  let_through(*flesh_, pinches_of(*flesh_, body.close, x, body.x), x, body.x);
+  return body.x;
 }
 
 }  // namespace selvedge
