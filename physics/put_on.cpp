@@ -21,10 +21,12 @@ Vec3 way_of_nearest(const ContactWorld& world, const Points& nodes, const Points
   return (wanted.row(first + nearest) - nodes.row(first + nearest)).transpose();
 }
 
-bool is_tangled(const Exemption& found, const std::vector<int>& vertices) {
-  return std::ranges::any_of(vertices, [&](int v) {
-    return (!found.body.empty() && found.body[v]) || (!found.self.empty() && found.self[v]);
-  });
+// Tangled there, of what is marked or was not tangled before.
+bool is_tangled(const Exemption& there, const Exemption& before, const std::vector<char>& marked) {
+  const std::vector<char> now = either(there.body, there.self), then = either(before.body, before.self);
+  for (std::size_t v = 0; v < now.size(); ++v)
+    if (now[v] && (marked[v] || then.empty() || !then[v])) return true;
+  return false;
 }
 
 }  // namespace
@@ -46,8 +48,8 @@ PutOn put_on(const ContactWorld& world, const std::vector<char>& marked, const P
   options.iterations = enough_iterations;
   const UntangleResult parted =
       untangle(*world.cloth, sheets.positions[0], std::span(sheets.views).subspan(1), options);
-  there(vertices, Eigen::all) = parted.x(vertices, Eigen::all);
-  if (is_tangled(find_exemption(world, there), vertices)) return PutOn::no_place;
+  there.topRows(parted.x.rows()) = parted.x;  // of other layers as well, which the place may go through
+  if (is_tangled(find_exemption(world, there), find_exemption(world, nodes), marked)) return PutOn::no_place;
   nodes = there;
   v(vertices, Eigen::all) = ways / h;
   return PutOn::done;

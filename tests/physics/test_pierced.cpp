@@ -159,3 +159,23 @@ TEST_CASE("put on: a place that is in the body is untangled, and one that cannot
   CHECK(nodes == skewer.nodes);
   CHECK(put_on(skewer.world, {}, skewer.nodes, worn, 0.1, nodes, v) == PutOn::nothing);
 }
+
+TEST_CASE("put on: another layer that is in the way makes way, and keeps its velocity", "[pierced]") {
+  const int sheet = 17 * 17;
+  Sheet upright = testing::tilted(testing::sheet(4, 0.2, 0), std::numbers::pi / 2);
+  upright.x.col(1).array() += 0.28;  // its lowest two centimetres reach through where the sheet is worn
+  testing::World w = testing::make_world(testing::join(testing::sheet(16, 0.6, 0), upright));
+  testing::add_obstacle(w, spindle(0.05, 0.06));
+  Points worn = w.state.x, nodes = gather_nodes(w.state.x, w.state.obstacles), v = w.state.v;
+  worn.col(1).array() += 0.2;
+  v.bottomRows(25).setConstant(0.3);
+  std::vector<char> marked(static_cast<std::size_t>(sheet) + 25, 0);
+  std::fill_n(marked.begin(), sheet, 1);
+  const ContactWorld world = make_contact_world(w.scene.surface, {&w.scene.obstacles[0].surface}, true);
+  const Points before = nodes;
+  REQUIRE(put_on(world, marked, nodes, worn, 0.1, nodes, v) == PutOn::done);
+  CHECK_FALSE(find_exemption(world, nodes).cloth());
+  CHECK((nodes - before).middleRows(sheet, 25).cwiseAbs().maxCoeff() > 1e-3);
+  CHECK((v.bottomRows(25).array() == 0.3).all());
+  CHECK(v.topRows(sheet).isZero());
+}
