@@ -19,7 +19,7 @@ const Section& garment_section() {
        with_words(text("cut", "a garment by code, see docs/garments.md"), garment_names()),
        texts("over", "of a `cut`: garments by code that are worn under it, from the body outward"),
        number("edge", Unit::length, positive, show(options.edge), "of a `cut`: length of its edges"),
-       text("outfit", "of configs/outfits.yaml"),
+       text("outfit", "of `outfits.yaml` beside the scene or in the folder above it, else of configs/outfits.yaml"),
        word("form", {"small", "full"}, "small", "of the outfit: for quick runs, or with all its vertices"),
        text("on", "name of the obstacle that wears it; left out: the only body"),
        flag("pins", true, "whether the garment's own pins stay with the body, skinned and giving way")}};

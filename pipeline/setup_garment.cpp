@@ -69,10 +69,10 @@ Garment read_cut(const Config& section, const Performance& who) {
   return kept_garment(cache_folder(), section["cut"].text(), who.body, options, section["over"].words);
 }
 
-std::vector<Garment> read_outfit(const Config& section, const Performance& who) {
+std::vector<Garment> read_outfit(const Config& section, const std::filesystem::path& folder, const Performance& who) {
   const Config& name = section["outfit"];
   check_mannequin(name, who);
-  const Wardrobe wardrobe = read_wardrobe(config_folder() / "outfits.yaml");
+  const Wardrobe wardrobe = read_wardrobe(config_near(folder, "outfits.yaml"));
   std::vector<std::string> known;
   for (const Outfit& outfit : wardrobe.outfits) {
     known.push_back(outfit.name);
@@ -104,7 +104,7 @@ std::vector<std::shared_ptr<const Wearing>> read_wearings(const Config& cloth, c
   const auto who = wearer(section, bodies);
   std::vector<Garment> garments;
   if (section["outfit"].given)
-    garments = read_outfit(section, *who);
+    garments = read_outfit(section, folder, *who);
   else
     garments.push_back(section["cut"].given ? read_cut(section, *who)
                                             : read_file(section["file"], folder, *who, warnings));

@@ -14,6 +14,13 @@ fs::path config_folder() {
   return fs::path(SELVEDGE_SOURCE_DIR) / "configs";
 }
 
+fs::path config_near(const fs::path& folder, const std::string& name) {
+  std::error_code ignored;
+  for (const fs::path& place : {folder, folder / ".."})
+    if (fs::exists(place / name, ignored)) return place / name;
+  return config_folder() / name;
+}
+
 fs::path cache_folder() {
   for (const auto& [name, below] : {std::pair{"XDG_CACHE_HOME", ""}, std::pair{"HOME", ".cache"}})
     if (const char* value = std::getenv(name); value && *value) return fs::path(value) / below / "selvedge";

@@ -9,6 +9,9 @@ namespace selvedge {
 // The folder `configs` of the program: share/selvedge/configs beside an installed program, else the source's.
 std::filesystem::path config_folder();
 
+// `name` in the scene file's folder, in the one above it, or else in the program's configs.
+std::filesystem::path config_near(const std::filesystem::path& folder, const std::string& name);
+
 // Where what is made once is kept: selvedge in XDG_CACHE_HOME, else in the user's .cache, else in the system's folder
 // for temporary files.
 std::filesystem::path cache_folder();

@@ -6,6 +6,7 @@
 
 #include "collision/error.hpp"
 #include "collision/intersections.hpp"
+#include "collision/stopwatch.hpp"
 #include "pipeline/clip_split.hpp"
 #include "pipeline/garment_make.hpp"
 #include "pipeline/kept_rows.hpp"
@@ -125,6 +126,7 @@ struct RowPlace {
 // Absent: stopped before its end.
 std::optional<WardrobeRow> run_row(const WardrobeRequest& request, const Wear& wear, const ClipEntry& clip,
                                    const RowPlace& place, ClipBody& body) {
+  Stopwatch watch;
   const Setup setup = read_row(request, wear, clip);
   PosedBodies& known = *setup.bodies.front();
   std::swap(known, body.known);
@@ -149,6 +151,7 @@ std::optional<WardrobeRow> run_row(const WardrobeRequest& request, const Wear& w
   row.milliseconds = median_milliseconds(summary);
   row.max_stretch = summary.max_stretch;
   row.failures = failures_of(row, summary, excused);
+  row.seconds = watch.lap();
   return row;
 }
 

@@ -32,6 +32,7 @@ struct WardrobeRow {
   double lag = 0;           // of the body, largest [m]
   double depth = 0;         // of a cloth vertex in the body where it was wanted, largest [m]
   double milliseconds = 0;  // median of a frame
+  double seconds = 0;       // of the whole row
   double max_stretch = 1;
   std::vector<std::string> failures;
   bool kept = false;  // from an earlier call
@@ -49,6 +50,6 @@ std::string wardrobe_row_json(const WardrobeRow&, const std::string& key);
 std::optional<WardrobeRow> read_wardrobe_row(const std::string& json, const std::string& key);
 std::string wardrobe_json(const std::vector<WardrobeRow>&);
 std::string wardrobe_csv(const std::vector<WardrobeRow>&);
-std::string wardrobe_table(const std::vector<WardrobeRow>&);  // a row for each thing worn, for people
+std::string wardrobe_table(const std::vector<WardrobeRow>&);  // a row for each thing worn, and the sum, for people
 
 }  // namespace selvedge

@@ -26,6 +26,7 @@ Json to_json(const WardrobeRow& r) {
           {"obstacle_lag", r.lag},
           {"depth", r.depth},
           {"milliseconds", r.milliseconds},
+          {"seconds", r.seconds},
           {"max_stretch", r.max_stretch},
           {"failures", r.failures}};
 }
@@ -44,6 +45,7 @@ WardrobeRow from_json(const Json& j) {
   j.at("obstacle_lag").get_to(r.lag);
   j.at("depth").get_to(r.depth);
   j.at("milliseconds").get_to(r.milliseconds);
+  j.at("seconds").get_to(r.seconds);
   j.at("max_stretch").get_to(r.max_stretch);
   j.at("failures").get_to(r.failures);
   r.kept = true;
@@ -107,6 +109,10 @@ std::string wardrobe_table(const std::vector<WardrobeRow>& rows) {
       for (const std::string& why : row->failures) text += fmt::format("    {}: {}\n", row->clip, why);
     first = last;
   }
+  double seconds = 0;
+  for (const WardrobeRow& row : rows) seconds += row.seconds;
+  text += fmt::format("{} of {} rows passed, {:.1f} h in all\n", std::ranges::count_if(rows, &WardrobeRow::passed),
+                      rows.size(), seconds / 3600);
   return text;
 }
 

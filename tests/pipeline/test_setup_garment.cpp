@@ -4,8 +4,10 @@
 
 #include "pipeline/clip_procedural.hpp"
 #include "pipeline/garment_hdf5.hpp"
+#include "pipeline/kept_rows.hpp"
 #include "pipeline/make_stepper.hpp"
 #include "pipeline/setup.hpp"
+#include "pipeline/setup_paths.hpp"
 #include "pipeline/simulate.hpp"
 #include "tests/pipeline/fake_garment.hpp"
 #include "tests/pipeline/files.hpp"
@@ -230,4 +232,13 @@ TEST_CASE("Pockets of a garment by code stay where they are stitched", "[setup_g
   for (const Spring& spring : setup.scene.springs)
     apart = std::max(apart, std::abs((row(state.x, spring.b) - row(state.x, spring.a)).norm() - spring.rest_length));
   CHECK(apart < 1e-3);
+}
+
+TEST_CASE("An outfit is looked up beside the scene before the program's own", "[setup_garment]") {
+  const Folder folder("garment_outfits");
+  std::string text = whole_file(config_folder() / "outfits.yaml");
+  text.replace(text.find("summer"), 6, "mine");
+  fake::write(folder, "outfits.yaml", text);
+  CHECK_THROWS_WITH(read(folder, "{garment: {outfit: summer}}", "{name: person, body: {clip: walk}}"),
+                    Contains("unknown outfit `summer`") && Contains("outfits: mine, office"));
 }
