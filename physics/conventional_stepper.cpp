@@ -378,7 +378,7 @@ void ConventionalStepper::prepare_contact(const State& from, const Drive& drive,
   if (!untouched) sunken = sunken_vertices(world_, exemption_, drive.worn);
   const PutOn put = put_on(world_, either(std::move(sunken), pierced), wanted, drive.worn, dt, nodes, leg.v);
   if (put == PutOn::done) exemption_ = find_exemption(world_, nodes);
-  if (put == PutOn::done || put == PutOn::no_place) pierced.clear();
+  if (put == PutOn::done) pierced.clear();
   carried_ = either(carried_vertices(world_, exemption_, drive.worn, nodes, edge_length_), pierced);
   if (exemption_.cloth() && !untouched) {
     Recovery recovery = recover(world_, inverse_mass_, recovery_speed * dt, exemption_, carried_, nodes);
