@@ -94,9 +94,12 @@ const Section& body_section() {
        text("clip", "a procedural clip, or a file: .bvh, or AMASS .npz; left out: it stands in the zero pose"),
        number("blend_in", Unit::time, not_negative, "0", "from the start pose into the clip; 0: starts at frame 0"),
        word("start_pose", {"zero", "arms_down"}, "zero", "what is blended in from"),
-       number("room", Unit::length, not_negative, show(GiveWayOptions{}.room),
-              "between parts of a moving body that come together, in the body's own metres, before `scale`: it gives "
-              "way like flesh; 0: it passes through itself")}};
+       with_words(
+           number("room", Unit::length, not_negative, "auto",
+                  "between parts of a moving body that come together, in the body's own metres, before `scale`: it "
+                  "gives way like flesh; `auto`: 1 cm, and 5 mm more for each garment that it wears beyond the first; "
+                  "0: it passes through itself"),
+           {"auto"})}};
   return table;
 }
 

@@ -88,15 +88,11 @@ void apply(const Config& section, Material& material) {
   apply_elastic(section, material);
 }
 
-std::vector<fs::path> material_folders(const fs::path& folder) {
-  return {folder / "materials", folder / ".." / "materials", config_folder() / "materials"};
-}
-
 std::vector<std::string> material_names(const fs::path& folder) {
   std::vector<std::string> names{Material{}.name};
-  for (const fs::path& place : material_folders(folder)) {
+  for (const fs::path& place : config_folders(folder)) {
     std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(place, ignored))
+    for (const auto& entry : fs::directory_iterator(place / "materials", ignored))
       if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
   }
   std::sort(names.begin(), names.end());
@@ -106,8 +102,8 @@ std::vector<std::string> material_names(const fs::path& folder) {
 
 void read_named(const Config& name, const fs::path& folder, Material& material) {
   material.name = name.text();
-  for (const fs::path& place : material_folders(folder)) {
-    const fs::path file = place / (name.text() + ".yaml");
+  for (const fs::path& place : config_folders(folder)) {
+    const fs::path file = place / "materials" / (name.text() + ".yaml");
     if (fs::exists(file)) return apply(read_config(file, material_file_section()), material);
   }
   if (name.text() == Material{}.name) return;

@@ -252,6 +252,11 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
   const auto world = std::make_shared<World>();
   const Performances bodies = read_performances(config["obstacles"], folder);
   std::vector<ClothPart> cloths = read_all_cloths(config["cloths"], folder, bodies, setup.warnings);
+  for (const auto& who : bodies) {
+    if (!who) continue;
+    const auto worn = [&](const ClothPart& part) { return part.worn && part.worn->by == who; };
+    leave_room_for(static_cast<int>(std::ranges::count_if(cloths, worn)), *who);
+  }
   setup.file = file;
   setup.scene.contact = read_contact(config["contact"]);
   setup.run = read_run(config);

@@ -84,6 +84,12 @@ Clip performed(const Config& section, const Performance& who, const std::filesys
   return blended(clip, StartPose::zero, from_zero);
 }
 
+void leave_room(double room, Performance& who) {
+  if (room > 0)
+    who.flesh = std::make_shared<GiveWay>(who.surface, shaped(who.body.skin, who.shape), GiveWayOptions{.room = room});
+  who.known->at.clear();
+}
+
 }  // namespace
 
 Performance read_performance(const Config& section, const std::filesystem::path& folder) {
@@ -102,9 +108,14 @@ Performance read_performance(const Config& section, const std::filesystem::path&
                "give at most " + std::to_string(who.body.skin.shape_directions.cols()));
   if (!clip.given) return who;
   who.clip = performed(section, who, folder);
-  if (const double room = section["room"].number(); room > 0)
-    who.flesh = std::make_shared<GiveWay>(who.surface, shaped(who.body.skin, who.shape), GiveWayOptions{.room = room});
+  who.fits_room = section["room"].numbers.empty();
+  leave_room(who.fits_room ? GiveWayOptions{}.room : section["room"].number(), who);
   return who;
+}
+
+void leave_room_for(int garments, Performance& who) {
+  constexpr double a_garment = 0.005;  // [m]
+  if (who.flesh && who.fits_room && garments > 1) leave_room(GiveWayOptions{}.room + (garments - 1) * a_garment, who);
 }
 
 Performances read_performances(const Config& obstacles, const std::filesystem::path& folder) {

@@ -112,8 +112,12 @@ std::vector<std::shared_ptr<const Wearing>> read_wearings(const Config& cloth, c
   for (Garment& garment : garments) {
     if (!section["pins"].flag()) garment.pins.clear();
     SkinWeights skin;
-    if (who->flesh) skin = shares_of_body(garment.skin.rest, who->body, skin_width);
-    worn.push_back(std::make_shared<Wearing>(Wearing{std::move(garment), who, std::move(skin)}));
+    Footing footing;
+    if (who->flesh) {
+      skin = shares_of_body(garment.skin.rest, who->body, skin_width);
+      footing = footing_of(garment.skin.rest, who->surface, who->body.skin.rest);
+    }
+    worn.push_back(std::make_shared<Wearing>(Wearing{std::move(garment), who, std::move(skin), std::move(footing)}));
   }
   return worn;
 }
@@ -136,7 +140,8 @@ Points held_at(const Wearing& wearing, double time) {
   const Performance& who = *wearing.by;
   const PosedBody& body = posed_at(who, time);
   const Points x = worn(wearing.garment, who.body, who.shape, pose_at(who, time));
-  return in_scene(who, x + wearing.skin * (body.given - body.skinned), time);
+  return in_scene(
+      who, squeezed(wearing.footing, who.surface, body.given, x + wearing.skin * (body.given - body.skinned)), time);
 }
 
 Points worn_velocity(const Wearing& wearing, double time) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "pipeline/footing.hpp"
 #include "pipeline/garment.hpp"
 #include "pipeline/mesh_io.hpp"
 #include "pipeline/setup_body.hpp"
@@ -14,6 +15,7 @@ struct Wearing {
   Garment garment;
   std::shared_ptr<const Performance> by;
   SkinWeights skin = {};  // in what shares each vertex goes along where the body gives way; none: nowhere
+  Footing footing = {};   // where it is squeezed between parts of the body; as above
 };
 
 // The garment of a cloth's section, or those of its outfit; `folder` is the scene file's, warnings are added.
@@ -27,7 +29,8 @@ Mesh rest_mesh(const Wearing&);
 Points worn_at(const Wearing&, double time);
 Points worn_velocity(const Wearing&, double time);
 
-// The same, moved along with what of the body has given way to itself: where pins are, and where cloth is drawn to.
+// The same, moved along with what of the body has given way to itself, and squeezed between parts of the body that have
+// come near each other: where pins are, and where cloth is drawn to.
 Points held_at(const Wearing&, double time);
 
 }  // namespace selvedge

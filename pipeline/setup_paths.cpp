@@ -14,9 +14,11 @@ fs::path config_folder() {
   return fs::path(SELVEDGE_SOURCE_DIR) / "configs";
 }
 
+std::vector<fs::path> config_folders(const fs::path& folder) { return {folder, folder / "..", config_folder()}; }
+
 fs::path config_near(const fs::path& folder, const std::string& name) {
   std::error_code ignored;
-  for (const fs::path& place : {folder, folder / ".."})
+  for (const fs::path& place : config_folders(folder))
     if (fs::exists(place / name, ignored)) return place / name;
   return config_folder() / name;
 }

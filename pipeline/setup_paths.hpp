@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "pipeline/config.hpp"
 
@@ -9,7 +11,11 @@ namespace selvedge {
 // The folder `configs` of the program: share/selvedge/configs beside an installed program, else the source's.
 std::filesystem::path config_folder();
 
-// `name` in the scene file's folder, in the one above it, or else in the program's configs.
+// Where what a scene names is looked for, in this order: the scene file's folder, the one above it, the program's
+// configs.
+std::vector<std::filesystem::path> config_folders(const std::filesystem::path& folder);
+
+// `name` in the first of these that has it, or else in the last.
 std::filesystem::path config_near(const std::filesystem::path& folder, const std::string& name);
 
 // Where what is made once is kept: selvedge in XDG_CACHE_HOME, else in the user's .cache, else in the system's folder

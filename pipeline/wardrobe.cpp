@@ -1,6 +1,7 @@
 #include "pipeline/wardrobe.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -65,12 +66,13 @@ Setup read_row(const WardrobeRequest& request, const Wear& wear, const ClipEntry
   return setup;
 }
 
-// What all garments, or all outfits, share in a clip (their bodies leave different room): where the body is, asked by
-// the same times each, and in which frames it passes through itself or did so a few frames before.
+// What is worn by as many garments shares in a clip (a body leaves room for as many as it wears): where the body is,
+// asked by the same times each, and in which frames it passes through itself or did so a few frames before.
 struct ClipBody {
   PosedBodies known{{}, true};
   std::vector<char> excused;
 };
+using ClipBodies = std::map<std::size_t, ClipBody>;  // by the number of garments
 
 // In which frames of the setup its body, its first obstacle, passes through itself.
 void find_excused(const Setup& setup, ClipBody& body) {
@@ -125,9 +127,10 @@ struct RowPlace {
 
 // Absent: stopped before its end.
 std::optional<WardrobeRow> run_row(const WardrobeRequest& request, const Wear& wear, const ClipEntry& clip,
-                                   const RowPlace& place, ClipBody& body) {
+                                   const RowPlace& place, ClipBodies& bodies) {
   Stopwatch watch;
   const Setup setup = read_row(request, wear, clip);
+  ClipBody& body = bodies[setup.scene.cloths.size()];
   PosedBodies& known = *setup.bodies.front();
   std::swap(known, body.known);
   find_excused(setup, body);
@@ -185,13 +188,13 @@ std::vector<WardrobeRow> wardrobe(const WardrobeRequest& request) {
   for (std::size_t c = 0; c < all_clips.size(); ++c) {
     if (static_cast<int>(c) % request.share[1] != request.share[0] - 1) continue;
     const ClipEntry& clip = all_clips[c];
-    std::array<ClipBody, 2> bodies;  // of garments, of outfits
+    ClipBodies bodies;
     for (const Wear& wear : wears) {
       const RowPlace place{request.out / wear.name / clip.name, request.out / wear.name / (clip.name + ".json"), key};
       make_folder(place.folder.parent_path());
       std::optional<WardrobeRow> row = read_wardrobe_row(whole_file(place.file), key);
       if (!row) {
-        row = run_row(request, wear, clip, place, bodies[wear.outfit ? 1 : 0]);
+        row = run_row(request, wear, clip, place, bodies);
         if (!row) return rows;
         keep_or_remove(place, !row->passed() || clip.name == all_clips.front().name);
         write_file(place.file, wardrobe_row_json(*row, key));

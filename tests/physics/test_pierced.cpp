@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -103,6 +104,19 @@ TEST_CASE("pierced: the stepper takes the cloth off, through the body, and only 
   CHECK(off.state.v.topRows(17 * 17).rowwise().norm().maxCoeff() < 0.5);  // it does not fly on as it was drawn
   skewer.w.drive.worn.resize(0, 3);
   CHECK(testing::run(skewer.w, 12).state.x.topRows(17 * 17).col(1).mean() > 0.01);
+}
+
+TEST_CASE("pierced: cloth is drawn to where it is worn also while it cannot be put there", "[pierced]") {
+  Skewer skewer(spindle(0.05, 0.3));
+  skewer.w.drive.acceleration.setZero();
+  Points& worn = skewer.w.drive.worn;
+  for (int v = 0; v < 17 * 17; ++v) worn.row(v) += 0.1 * Eigen::RowVector3d(std::sin(v * v), -3, std::cos(v * v));
+  const std::vector<char> marked = skewer.pierced();
+  REQUIRE_FALSE(marked.empty());
+  Points nodes = skewer.nodes, v = skewer.w.state.v;
+  REQUIRE(put_on(skewer.world, marked, nodes, worn, 1.0 / 30, nodes, v) == PutOn::no_place);  // it crosses itself there
+  const auto height = [](const Points& x) { return x.topRows(17 * 17).col(1).mean(); };
+  CHECK(height(testing::run(skewer.w, 1).state.x) > height(skewer.w.state.x) + 0.05);
 }
 
 TEST_CASE("sunken: all of a cloth of which one vertex in a hundred is tangled, however near", "[pierced]") {

@@ -1,7 +1,9 @@
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <numeric>
 
+#include "collision/inside.hpp"
 #include "pipeline/clip_procedural.hpp"
 #include "pipeline/garment_hdf5.hpp"
 #include "pipeline/kept_rows.hpp"
@@ -78,6 +80,36 @@ TEST_CASE("Where a body gives way to itself, the garment's pins go along", "[set
   CAPTURE(given, apart);
   CHECK(given > 0.01);
   CHECK(apart < 0.5 * given);
+}
+
+TEST_CASE("A body leaves room for as many garments as it wears", "[setup_garment]") {
+  const Folder folder("garment_room");
+  write_band(folder);
+  const auto body = [&](const std::string& cloths, const std::string& room) -> Points {
+    return read(folder, cloths, "{name: person, body: {clip: squat" + room + "}}").drive_at(2).obstacles.at(0);
+  };
+  const std::string one = "{name: a, garment: band.h5}", two = one + "\n  - {name: b, garment: band.h5}";
+  CHECK(body(two, "") == body(one, ", room: 1.5 cm"));
+  CHECK(body(one, "") == body(two, ", room: 1 cm"));
+  CHECK(body(two, "") != body(one, ""));
+}
+
+TEST_CASE("What is pinned to one part of a body is not run through by another that comes close", "[setup_garment]") {
+  const Folder folder("garment_squeezed");
+  const BodyModel& mannequin = fake::mannequin();
+  const fake::Piece belt = fake::trunk(mannequin, 0.0, 0.12, 0.028);
+  Garment garment{"belt", attached(belt.x, belt.triangles, mannequin, Fit::tight), {}, {}, {}, mannequin.name};
+  garment.pins.resize(belt.from.size());
+  std::iota(garment.pins.begin(), garment.pins.end(), 0);
+  write_garment(folder.path / "belt.h5", garment);
+  // Hands that come down on the hips, before they go through them.
+  const Setup setup = read(folder, "{garment: belt.h5}",
+                           "{name: person, body: {clip: arms_through_thighs, blend_in: 1 s, room: 1.5 cm}}");
+  for (const double frame : {0, 51, 52, 53}) {
+    const Drive drive = setup.drive_at(frame / 30);
+    const std::vector<char> in = inside(setup.scene.obstacles[0].surface, drive.obstacles[0], drive.pins);
+    CHECK(std::ranges::count(in, 1) == 0);
+  }
 }
 
 TEST_CASE("A garment rests as it was made, resized by the body's shape and scale", "[setup_garment]") {

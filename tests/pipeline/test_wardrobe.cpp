@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "collision/error.hpp"
+#include "collision/stopwatch.hpp"
 #include "pipeline/wardrobe.hpp"
 #include "tests/pipeline/files.hpp"
 
@@ -28,7 +29,9 @@ WardrobeRequest short_form(const Folder& folder) {
 TEST_CASE("A garment comes down from the T-pose and walks clean; its row is kept", "[wardrobe]") {
   const Folder folder("wardrobe");
   WardrobeRequest request = short_form(folder);
+  Stopwatch watch;
   const std::vector<WardrobeRow> rows = wardrobe(request);
+  const double all = watch.lap();
   REQUIRE(rows.size() == 1);
   const WardrobeRow& row = rows[0];
   CHECK(row.passed());
@@ -37,6 +40,7 @@ TEST_CASE("A garment comes down from the T-pose and walks clean; its row is kept
   CHECK(row.vertices > 700);
   CHECK_FALSE(row.kept);
   CHECK(row.seconds >= 1e-3 * row.milliseconds);
+  CHECK(row.seconds <= all);
   CHECK(std::filesystem::exists(request.out / "wardrobe.csv"));
   CHECK(std::filesystem::exists(request.out / "tshirt" / "walk" / "view.html"));
 
