@@ -255,7 +255,7 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
   for (const auto& who : bodies) {
     if (!who) continue;
     const auto worn = [&](const ClothPart& part) { return part.worn && part.worn->by == who; };
-    leave_room_for(static_cast<int>(std::ranges::count_if(cloths, worn)), *who);
+    wear(static_cast<int>(std::ranges::count_if(cloths, worn)), *who);
   }
   setup.file = file;
   setup.scene.contact = read_contact(config["contact"]);

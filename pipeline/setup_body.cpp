@@ -113,8 +113,9 @@ Performance read_performance(const Config& section, const std::filesystem::path&
   return who;
 }
 
-void leave_room_for(int garments, Performance& who) {
+void wear(int garments, Performance& who) {
   constexpr double a_garment = 0.005;  // [m]
+  who.garments = garments;
   if (who.flesh && who.fits_room && garments > 1) leave_room(GiveWayOptions{}.room + (garments - 1) * a_garment, who);
 }
 

@@ -32,6 +32,7 @@ struct Performance {
   Clip clip;                             // without poses: it stands in the zero pose
   std::shared_ptr<const GiveWay> flesh;  // null: it passes through itself
   bool fits_room = false;                // between its parts to what it wears
+  int garments = 0;                      // that it wears
   Config section;                        // the obstacle's: how it is placed
   Motion motion;                         // of what is placed
   Clip before;                           // up to time 0, where the scene's time begins before it
@@ -46,9 +47,9 @@ Performances read_performances(const Config& obstacles, const std::filesystem::p
 // A `body` section by itself: model, shape and clip.
 Performance read_performance(const Config& body, const std::filesystem::path& folder);
 
-// Leaves as much room between parts that come together as so many garments over each other ask for, unless the body's
-// section says how much.
-void leave_room_for(int garments, Performance&);
+// Has it wear that many, and leave as much room between parts that come together as they ask for over each other,
+// unless the body's section says how much.
+void wear(int garments, Performance&);
 
 // Makes the scene's time begin that early, with that many seconds of the body's way from these rotations of its joints
 // into its pose at time 0, which it holds from then on.

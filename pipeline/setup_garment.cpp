@@ -135,13 +135,32 @@ Points worn_at(const Wearing& wearing, double time) {
   return in_scene(who, worn(wearing.garment, who.body, who.shape, pose_at(who, time)), time);
 }
 
-Points held_at(const Wearing& wearing, double time) {
-  if (wearing.skin.rows() == 0) return worn_at(wearing, time);
+namespace {
+
+// Before it is placed.
+Points carried(const Wearing& wearing, double time) {
   const Performance& who = *wearing.by;
+  Points x = worn(wearing.garment, who.body, who.shape, pose_at(who, time));
+  if (!who.flesh) return x;
   const PosedBody& body = posed_at(who, time);
-  const Points x = worn(wearing.garment, who.body, who.shape, pose_at(who, time));
-  return in_scene(
-      who, squeezed(wearing.footing, who.surface, body.given, x + wearing.skin * (body.given - body.skinned)), time);
+  return x + wearing.skin * (body.given - body.skinned);
+}
+
+Points squeezed_at(const Wearing& wearing, double time, const Points& x) {
+  const Performance& who = *wearing.by;
+  return who.flesh ? squeezed(wearing.footing, who.surface, posed_at(who, time).given, x) : x;
+}
+
+}  // namespace
+
+Points held_at(const Wearing& wearing, double time) {
+  return in_scene(*wearing.by, squeezed_at(wearing, time, carried(wearing, time)), time);
+}
+
+Points drawn_at(const Wearing& wearing, double time) {
+  Points x = carried(wearing, time);
+  if (wearing.by->garments > 1) x = squeezed_at(wearing, time, x);
+  return in_scene(*wearing.by, x, time);
 }
 
 Points worn_velocity(const Wearing& wearing, double time) {

@@ -30,7 +30,11 @@ Points worn_at(const Wearing&, double time);
 Points worn_velocity(const Wearing&, double time);
 
 // The same, moved along with what of the body has given way to itself, and squeezed between parts of the body that have
-// come near each other: where pins are, and where cloth is drawn to.
+// come near each other: where pins are.
 Points held_at(const Wearing&, double time);
+
+// Where cloth is drawn to: as pins are, but not squeezed where it is all that the body wears. Layers need their share
+// of the gap; one alone is untangled from the skin, and what hangs over a raised knee would be drawn under it.
+Points drawn_at(const Wearing&, double time);
 
 }  // namespace selvedge

@@ -75,7 +75,7 @@ std::function<Points(double)> worn_in_scene(const std::vector<ClothPart>& parts,
   return [worn, vertices = scene.surface.vertex_count](double time) {
     Points all = Points::Constant(vertices, 3, std::numeric_limits<double>::quiet_NaN());
     for (const auto& [first, wearing] : worn)
-      all.middleRows(first, wearing->garment.skin.rest.rows()) = held_at(*wearing, time);
+      all.middleRows(first, wearing->garment.skin.rest.rows()) = drawn_at(*wearing, time);
     return all;
   };
 }
