@@ -40,17 +40,26 @@ std::vector<double> gaps(const std::vector<int>& foot, const Surface& body, cons
 
 Footing footing_of(const Points& x, const Surface& body, const Points& rest) {
   Footing footing;
-  for (const auto& at : x.rowwise()) {
-    Eigen::Index nearest = 0;
-    (rest.rowwise() - at).rowwise().squaredNorm().minCoeff(&nearest);
-    footing.foot.push_back(static_cast<int>(nearest));
-  }
+  footing.foot.resize(static_cast<std::size_t>(x.rows()));
+#pragma omp parallel for schedule(static)
+  for (Eigen::Index v = 0; v < x.rows(); ++v)
+    (rest.rowwise() - x.row(v)).rowwise().squaredNorm().minCoeff(&footing.foot[static_cast<std::size_t>(v)]);
   const std::vector<double> gap = gaps(footing.foot, body, rest, x);
   for (std::size_t v = 0; v < gap.size(); ++v) {
     const double out = (x.row(static_cast<Eigen::Index>(v)) - rest.row(footing.foot[v])).norm();
     footing.part.push_back(std::clamp(out / gap[v], first_part, 1.0));
   }
   return footing;
+}
+
+Footing footing_of(const Footing& all, const std::vector<int>& vertices) {
+  Footing some;
+  if (all.foot.empty()) return some;
+  for (const int v : vertices) {
+    some.foot.push_back(all.foot[static_cast<std::size_t>(v)]);
+    some.part.push_back(all.part[static_cast<std::size_t>(v)]);
+  }
+  return some;
 }
 
 Points squeezed(const Footing& footing, const Surface& body, const Points& posed, const Points& x) {

@@ -15,6 +15,9 @@ struct Footing {
 // x is worn by the body at rest [m]; the body's own parts are apart there.
 Footing footing_of(const Points& x, const Surface& body, const Points& rest);
 
+// That of some vertices; none of none.
+Footing footing_of(const Footing&, const std::vector<int>& vertices);
+
 // Where x, worn by the posed body, would reach into another part of the body that has come near, or past the middle of
 // the gap between, it is squeezed: drawn to its feet, as far as leaves the order of layers and both sides their half.
 // What is farther from the body than 6 cm stays, and so does all where no part is nearer than it was at rest.

@@ -109,7 +109,7 @@ std::vector<int> listed(const Config& list, const ClothPart& part) {
 
 // Pins that stay with the body.
 PinPart following(const std::shared_ptr<const Wearing>& worn, const std::vector<int>& vertices) {
-  return {vertices, [worn, vertices](double time) -> Points { return held_at(*worn, time)(vertices, Eigen::all); }};
+  return {vertices, [worn, vertices](double time) -> Points { return held_at(*worn, vertices, time); }};
 }
 
 PinPart read_pin(const Config& section, const ClothPart& part) {

@@ -146,20 +146,21 @@ Points carried(const Wearing& wearing, double time) {
   return x + wearing.skin * (body.given - body.skinned);
 }
 
-Points squeezed_at(const Wearing& wearing, double time, const Points& x) {
+Points squeezed_at(const Wearing& wearing, const Footing& footing, double time, const Points& x) {
   const Performance& who = *wearing.by;
-  return who.flesh ? squeezed(wearing.footing, who.surface, posed_at(who, time).given, x) : x;
+  return who.flesh ? squeezed(footing, who.surface, posed_at(who, time).given, x) : x;
 }
 
 }  // namespace
 
-Points held_at(const Wearing& wearing, double time) {
-  return in_scene(*wearing.by, squeezed_at(wearing, time, carried(wearing, time)), time);
+Points held_at(const Wearing& wearing, const std::vector<int>& vertices, double time) {
+  const Points x = carried(wearing, time)(vertices, Eigen::all);
+  return in_scene(*wearing.by, squeezed_at(wearing, footing_of(wearing.footing, vertices), time, x), time);
 }
 
 Points drawn_at(const Wearing& wearing, double time) {
   Points x = carried(wearing, time);
-  if (wearing.by->garments > 1) x = squeezed_at(wearing, time, x);
+  if (wearing.by->garments > 1) x = squeezed_at(wearing, wearing.footing, time, x);
   return in_scene(*wearing.by, x, time);
 }
 

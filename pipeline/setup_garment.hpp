@@ -15,7 +15,7 @@ struct Wearing {
   Garment garment;
   std::shared_ptr<const Performance> by;
   SkinWeights skin = {};  // in what shares each vertex goes along where the body gives way; none: nowhere
-  Footing footing = {};   // where it is squeezed between parts of the body; as above
+  Footing footing = {};   // what each vertex is squeezed towards where parts of the body close on it; none: nothing is
 };
 
 // The garment of a cloth's section, or those of its outfit; `folder` is the scene file's, warnings are added.
@@ -29,12 +29,12 @@ Mesh rest_mesh(const Wearing&);
 Points worn_at(const Wearing&, double time);
 Points worn_velocity(const Wearing&, double time);
 
-// The same, moved along with what of the body has given way to itself, and squeezed between parts of the body that have
-// come near each other: where pins are.
-Points held_at(const Wearing&, double time);
+// Some of its vertices moved along with what of the body has given way to itself, and squeezed between parts of the
+// body that have come near each other: where pins are.
+Points held_at(const Wearing&, const std::vector<int>& vertices, double time);
 
-// Where cloth is drawn to: as pins are, but not squeezed where it is all that the body wears. Layers need their share
-// of the gap; one alone is untangled from the skin, and what hangs over a raised knee would be drawn under it.
+// Where cloth is drawn to: all as pins are, but not squeezed where it is all that the body wears. Layers need their
+// share of the gap; one alone is untangled from the skin, and what hangs over a raised knee would be drawn under it.
 Points drawn_at(const Wearing&, double time);
 
 }  // namespace selvedge
