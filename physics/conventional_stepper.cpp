@@ -11,9 +11,7 @@
 #include "physics/carrying.hpp"
 #include "physics/contact_terms.hpp"
 #include "physics/features.hpp"
-#include "physics/pierced.hpp"
-#include "physics/put_on.hpp"
-#include "physics/recovery.hpp"
+#include "physics/parting.hpp"
 #include "physics/step_audit.hpp"
 #include "physics/substeps.hpp"
 
@@ -27,15 +25,13 @@ constexpr int most_passes = 6;              // solves after the first one, at mo
 constexpr int squeezed_passes = 3;          // where there is no room: no stiffness makes any
 constexpr double normal_change = 0.05;      // of what bounds friction, at most, from the last solve but one
 constexpr int halvings = 2;                 // of a substep whose zones do not settle, before the last resort
-constexpr double recovery_speed = 1;        // at most, of a vertex that starts tangled [m/s]
 constexpr double carrying_speed = 3;        // at most, of one that is drawn to where it is worn [m/s]
-constexpr double astray = 0.5;      // from where it is worn, of tangled cloth that is drawn there, in mean edges
-constexpr double firm = 1000;       // times as stiffly, where the body is free: else it holds its own shape
-constexpr double rounding = 1e-14;  // of positions that are added up over substeps
-constexpr int squeezed_rounds = 4;  // of zones, where there is no room
-constexpr int hopeful_rounds = 12;  // of zones in a substep that may still be halved
-constexpr double tearing = 10;      // times the energy of the substep: more is not left in it by impulses
-constexpr double kept_way = 0.5;    // of that to the first impact, where everything stops short
+constexpr double firm = 1000;               // times as stiffly, where the body is free: else it holds its own shape
+constexpr double rounding = 1e-14;          // of positions that are added up over substeps
+constexpr int squeezed_rounds = 4;          // of zones, where there is no room
+constexpr int hopeful_rounds = 12;          // of zones in a substep that may still be halved
+constexpr double tearing = 10;              // times the energy of the substep: more is not left in it by impulses
+constexpr double kept_way = 0.5;            // of that to the first impact, where everything stops short
 
 // Where a substep ends. The nodes come with obstacles where they are to end and the cloth at its first guess.
 struct Arrival {
@@ -111,10 +107,8 @@ class ConventionalStepper final : public Stepper {
   AuditMemory audited_;
   PathPairs path_;  // pairs near the current positions
   SelfCrossings self_crossings_;
-  bool look_for_room_ = false;      // this step started with obstacles that lag, or some did not have room in it
-  Exemption exemption_;             // of this step
-  std::vector<Separation> gained_;  // by its recovery
-  std::vector<char> carried_;       // in this step, to where they are worn
+  bool look_for_room_ = false;  // this step started with obstacles that lag, or some did not have room in it
+  Parting parting_;             // of this step
 };
 
 void add(const ResolveReport& resolved, StepReport& report) {
@@ -247,7 +241,7 @@ ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const 
       find_proximities(world_, pairs_within(path_, nodes0, scene_.contact.thickness), nodes0, scene_.contact.thickness);
   for (const Proximity& p : proximities) report.collision.min_gap = std::min(report.collision.min_gap, p.gap);
   report.seconds.response += watch.lap();
-  to.touched = !proximities.empty() || exemption_.any();
+  to.touched = !proximities.empty() || parting_.left.any();
   if (smooth && !to.touched && smooth_substep(leg, pins, drive, to, report)) return Outcome::clean;
   watch.lap();
   Eigen::VectorXd inverse_mass = inverse_mass_;
@@ -261,10 +255,11 @@ ConventionalStepper::Outcome ConventionalStepper::substep(const Leg& leg, const 
     watch.lap();
   }
   AddedTerm added;
-  if (!gained_.empty()) added = added_pushes(push_terms(gained_, inverse_mass_, 0.1 * scene_.contact.thickness, h));
-  if (!carried_.empty())
-    added = sum_of(std::move(added), carrying_term(carried_, solver_.masses(), x0, drive.worn, carrying_speed * h, h,
-                                                   exemption_.off.empty() ? firm : 1));
+  if (!parting_.gained.empty())
+    added = added_pushes(push_terms(parting_.gained, inverse_mass_, 0.1 * scene_.contact.thickness, h));
+  if (!parting_.carried.empty())
+    added = sum_of(std::move(added), carrying_term(parting_.carried, solver_.masses(), x0, drive.worn,
+                                                   carrying_speed * h, h, parting_.left.off.empty() ? firm : 1));
   if (added.value) problem.added = &added;
   Contacts contacts = contact_terms(scene_, world_, proximities, inverse_mass_, nodes0, nodes1, h);
   // The load of a contact is what pulls at it where the cloth would go without any.
@@ -338,7 +333,7 @@ bool ConventionalStepper::advance(Leg& leg, const Points& nodes, const Points& p
   ++report.substeps;
   if (has_contact()) {
     Stopwatch watch;
-    report.collision.passed_through += passed_through(world_, exemption_, leg.nodes, next.nodes, audited_);
+    report.collision.passed_through += passed_through(world_, parting_.left, leg.nodes, next.nodes, audited_);
     report.seconds.audit += watch.lap();
   }
   leg.history = {};
@@ -363,32 +358,13 @@ void ConventionalStepper::prepare_contact(const State& from, const Drive& drive,
                                           Leg& leg, StepReport& report) {
   Stopwatch watch;
   Points& nodes = leg.nodes;
-  const bool exempt = exemption_.any();
+  const bool exempt = parting_.left.any();
   look_for_room_ = from.pinched;
-  exemption_ = {};
-  gained_.clear();
-  std::optional<Exemption> untouched;
-  if (!from.clean && nodes.allFinite()) {
-    untouched = hopeless(world_, nodes);
-    exemption_ = untouched ? *untouched : find_exemption(world_, nodes);
-  }
-  self_crossings_.switch_off(nodes, wanted, exemption_);
-  std::vector<char> pierced, sunken;
-  if (!untouched) pierced = pierced_vertices(world_, exemption_, nodes, wanted, drive.worn, astray * edge_length_);
-  if (!untouched) sunken = sunken_vertices(world_, exemption_, drive.worn);
-  const PutOn put = put_on(world_, either(std::move(sunken), pierced), wanted, drive.worn, dt, nodes, leg.v);
-  if (put == PutOn::done) exemption_ = find_exemption(world_, nodes);
-  if (put == PutOn::done) pierced.clear();
-  carried_ = either(carried_vertices(world_, exemption_, drive.worn, nodes, edge_length_), pierced);
-  if (exemption_.cloth() && !untouched) {
-    Recovery recovery = recover(world_, inverse_mass_, recovery_speed * dt, exemption_, carried_, nodes);
-    exemption_ = std::move(recovery.left);
-    gained_ = std::move(recovery.gained);
-  }
-  exemption_.body = either(std::move(exemption_.body), pierced);
-  report.collision.left_alone = exemption_.cloth_vertices();
-  if (exempt || exemption_.any()) path_ = {};  // what was listed then is not what is to be listed now
-  search_.leave_out(exemption_.any() ? &exemption_ : nullptr);
+  parting_ =
+      part_at_start(world_, self_crossings_, inverse_mass_, edge_length_, from.clean, drive, wanted, dt, nodes, leg.v);
+  report.collision.left_alone = parting_.left.cloth_vertices();
+  if (exempt || parting_.left.any()) path_ = {};  // what was listed then is not what is to be listed now
+  search_.leave_out(parting_.left.any() ? &parting_.left : nullptr);
   report.seconds.response += watch.lap();
   update_pairs(search_, scene_.contact.thickness, nodes, nodes, path_);
   report.seconds.broad_phase += watch.lap();
@@ -413,7 +389,7 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
   Leg leg{gather_nodes(from.x, from.obstacles), from.v, from.history};
   const Points wanted = gather_nodes(from.x, drive.obstacles);
   if (has_contact()) prepare_contact(from, drive, dt, wanted, leg, report);
-  if (exemption_.any() || leg.nodes.topRows(n) != from.x) leg.history = {};
+  if (parting_.left.any() || leg.nodes.topRows(n) != from.x) leg.history = {};
   const int planned = planned_substeps(from, drive, dt, leg.nodes);
   // Cloth that left an obstacle no room will hardly do so now.
   const Cuts cuts{from.pinched ? 0 : halvings, options_.substeps ? 1 : options_.max_substeps / planned};
@@ -424,9 +400,9 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
   }
   report.status = StepStatus::accepted;
   // The way that cloth was drawn firmly is no motion of its own: it would fly past where it is worn.
-  if (exemption_.off.empty())
-    for (std::size_t v = 0; v < carried_.size(); ++v)
-      if (carried_[v]) leg.v.row(static_cast<Eigen::Index>(v)).setZero();
+  if (parting_.left.off.empty())
+    for (std::size_t v = 0; v < parting_.carried.size(); ++v)
+      if (parting_.carried[v]) leg.v.row(static_cast<Eigen::Index>(v)).setZero();
   if (has_contact()) add(catch_up(search_, contact_, inverse_mass_, wanted, leg.nodes, path_), report);
   arrive(from, leg, dt, to);
   to.obstacles.resize(from.obstacles.size());

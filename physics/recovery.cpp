@@ -169,7 +169,7 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
     Exemption left = stop_at_obstacles(world, before, from, moved);
     if (before.self.empty() && !left.self.empty()) continue;
     nodes = std::move(moved);
-    recovery = {std::move(left), std::move(gained)};
+    recovery = {std::move(left), std::move(gained), parted.moved == 0};
     recovery.left.off = before.off;
     break;
   }

@@ -23,6 +23,7 @@ std::optional<Exemption> hopeless(const ContactWorld&, const Points& nodes);
 struct Recovery {
   Exemption left;
   std::vector<Separation> gained;
+  bool stuck = false;  // untangling knows no way out of any of it: all is where it was
 };
 Recovery recover(const ContactWorld&, const Eigen::VectorXd& inverse_mass, double reach, const Exemption& before,
                  const std::vector<char>& carried, Points& nodes);

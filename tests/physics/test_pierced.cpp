@@ -7,6 +7,7 @@
 
 #include "physics/pierced.hpp"
 #include "physics/put_on.hpp"
+#include "physics/recovery.hpp"
 #include "tests/physics/worlds.hpp"
 
 using namespace selvedge;
@@ -117,6 +118,35 @@ TEST_CASE("pierced: cloth is drawn to where it is worn also while it cannot be p
   REQUIRE(put_on(skewer.world, marked, nodes, worn, 1.0 / 30, nodes, v) == PutOn::no_place);  // it crosses itself there
   const auto height = [](const Points& x) { return x.topRows(17 * 17).col(1).mean(); };
   CHECK(height(testing::run(skewer.w, 1).state.x) > height(skewer.w.state.x) + 0.05);
+}
+
+TEST_CASE("sunken: cloth that has no way out, and is too far to be put on, is drawn to where it is worn", "[pierced]") {
+  const int n = 16;
+  Sheet barbed = testing::sheet(n, 0.6, 0);
+  const auto first = barbed.x.rows();
+  barbed.x.conservativeResize(first + 2, 3);
+  barbed.x.row(first) << -0.7, -1, 0.3;  // wider than where it hangs on the sheet: it gets longer on the way out
+  barbed.x.row(first + 1) << 0.7, -1, 0.3;
+  barbed.triangles.conservativeResize(barbed.triangles.rows() + 2, 3);
+  const int a = n * (n + 1) + n / 2, b = a + 1, c = static_cast<int>(first), d = c + 1;
+  barbed.triangles.bottomRows(2) << a, c, b, b, c, d;
+  testing::World w = testing::make_world(barbed);
+  Sheet block = spindle(4, 4);
+  block.x.col(1).array() -= 4.03;
+  testing::add_obstacle(w, block);
+  w.state.clean = false;
+  w.drive.acceleration.setZero();
+  const ContactWorld world = make_contact_world(w.scene.surface, {&w.scene.obstacles[0].surface}, true);
+  Points nodes = gather_nodes(w.state.x, w.state.obstacles);
+  const Exemption exemption = find_exemption(world, nodes);
+  w.drive.worn = w.state.x.rowwise() + Eigen::RowVector3d(0, 1.5, 0);
+  CHECK(pierced_vertices(world, exemption, nodes, nodes, w.drive.worn, 0.02).empty());
+  REQUIRE_FALSE(sunken_vertices(world, exemption, w.drive.worn).empty());
+  REQUIRE(recover(world, inverse_masses(w.scene, world.node_count), 1.0 / 30, exemption, {}, nodes).stuck);
+  const auto height = [](const Points& x) { return x.col(1).mean(); };
+  CHECK(height(testing::run(w, 1).state.x) > height(w.state.x) + 0.05);
+  w.drive.worn.resize(0, 3);
+  CHECK(height(testing::run(w, 1).state.x) < height(w.state.x) + 0.01);
 }
 
 TEST_CASE("sunken: all of a cloth of which one vertex in a hundred is tangled, however near", "[pierced]") {
