@@ -313,7 +313,7 @@ UntangleResult untangle(const Surface& cloth, const Points& x, std::span<const S
   // Two opinions of what repulsion keeps apart near a contour: where the one gets stuck the other may not.
   Attempt best = attempt(shape, obstacles, input, freedom, false, repulsion, options);
   int iterations = best.iterations;
-  if (!best.tangle.clean()) {
+  if (!best.tangle.clean() && options.second_opinion) {
     Attempt other = attempt(shape, obstacles, input, freedom, true, repulsion, options);
     iterations += other.iterations;
     if (other.tangle.better_than(best.tangle)) best = std::move(other);

@@ -23,6 +23,7 @@ struct UntangleOptions {
   // Hint: a place for each component of the cloth, the innermost lowest; of two layers the higher one belongs on the
   // side that the other's normals point to. Empty: the smaller side of a contour is the wrong one.
   std::vector<int> layers;
+  bool second_opinion = true;  // of what repels near a contour, where the first gets stuck: as many iterations again
   std::function<void(const UntangleProgress&)> progress;
 };
 

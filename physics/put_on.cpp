@@ -10,9 +10,9 @@
 namespace selvedge {
 namespace {
 
-constexpr double most_way = 0.3;        // [m]
-constexpr int enough_iterations = 100;  // of untangling: what is worn is shallow in the body, or not to be parted
-constexpr int most_parting = 100'000;   // pairs times iterations of it
+constexpr double most_way = 0.3;       // [m]
+constexpr int enough_iterations = 60;  // of untangling: what is worn is shallow in the body, or not to be parted
+constexpr int most_parting = 100'000;  // pairs times iterations of it
 
 // Over the step, of the obstacles' node that is nearest to a place at its end.
 Vec3 way_of_nearest(const ContactWorld& world, const Points& nodes, const Points& wanted, const Vec3& place) {
@@ -48,6 +48,7 @@ PutOn put_on(const ContactWorld& world, const std::vector<char>& marked, const P
   UntangleOptions options;
   const int pairs = intersecting_pairs(find_segments(sheets.views));
   options.iterations = std::min(enough_iterations, most_parting / std::max(1, pairs));
+  options.second_opinion = false;  // a place that the first does not find is looked for again in the next step
   const UntangleResult parted =
       untangle(*world.cloth, sheets.positions[0], std::span(sheets.views).subspan(1), options);
   there.topRows(parted.x.rows()) = parted.x;  // of other layers as well, which the place may go through

@@ -23,7 +23,7 @@ Garment make_garment(const std::string& name, const BodyModel& mannequin, const 
                      std::span<const std::string> under = {});
 
 // To be raised with every change of what make_garment makes, so that no file of an older one is used.
-constexpr int garment_recipe = 2;
+constexpr int garment_recipe = 3;
 
 // The same from a file in the folder, which is made and written where there is none or none that can be read. Throws
 // Error as well if it cannot be written.

@@ -160,6 +160,12 @@ bool may_move(const Work& work, const RemeshTarget& target, int vertex, int othe
   return true;
 }
 
+// A corner stays, unless it becomes one of the same borders: where these meet there is one corner, whatever a cut
+// across them has left there.
+bool may_vanish(const Work& work, int gone, int kept) {
+  return !work.is_corner(gone) || (work.borders_of(gone) & ~work.borders_of(kept)) == 0;
+}
+
 bool collapse_round(Work& work, const RemeshTarget& target, double shortest, double longest) {
   std::vector<char> used(work.x.size(), 0);
   const auto chosen = edges_below(work, shortest, [&](int e) { return relative_length(work, target, e); });
@@ -169,8 +175,8 @@ bool collapse_round(Work& work, const RemeshTarget& target, double shortest, dou
     if (work.boundary[static_cast<std::size_t>(gone)]) std::swap(kept, gone);
     const bool both = work.boundary[static_cast<std::size_t>(gone)];
     if (both && !work.is_boundary(e)) continue;
-    if (work.is_corner(gone)) std::swap(kept, gone);
-    if (work.is_corner(gone)) continue;
+    if (!may_vanish(work, gone, kept)) std::swap(kept, gone);
+    if (!may_vanish(work, gone, kept)) continue;
     const auto is_used = [&](int v) { return used[static_cast<std::size_t>(v)] != 0; };
     if (is_used(kept) || is_used(gone)) continue;
     const auto around_gone = ring(work, gone), around_kept = ring(work, kept);

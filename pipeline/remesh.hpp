@@ -15,9 +15,9 @@ struct RemeshTarget {
 };
 
 // Even triangles of a surface, by splitting, collapsing and flipping edges and moving vertices along the surface
-// (Botsch and Kobbelt 2004). The boundary stays in its borders, corners between two of them stay where they are, and no
-// inner edge joins two boundary vertices, so that a half and its mirror image close each other. What is thinner than an
-// edge may lose its thickness. The same input gives the same bits.
+// (Botsch and Kobbelt 2004). The boundary stays in its borders, corners between two of them stay where they are (of two
+// beside each other one does), and no inner edge joins two boundary vertices, so that a half and its mirror image close
+// each other. What is thinner than an edge may lose its thickness. The same input gives the same bits.
 Shape remeshed(Shape, const RemeshTarget&, int rounds);
 
 }  // namespace selvedge

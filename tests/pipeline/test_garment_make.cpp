@@ -193,7 +193,10 @@ TEST_CASE("Small outfits are clean on any shape", "[garment]") {
     if (brief && outfit.garments.size() > 2) continue;
     const std::vector<Garment> garments = kept_outfit(cache_folder(), outfit, mannequin(), outfit.small_edge);
     Eigen::Index vertices = 0;
-    for (const Garment& garment : garments) vertices += garment.skin.rest.rows();
+    for (const Garment& garment : garments) {
+      vertices += garment.skin.rest.rows();
+      CHECK(least_angle(garment.skin) > (group_of(garment, "collar") ? 5 : 20));
+    }
     CHECK(vertices >= 2000);
     CHECK(vertices <= 6000);
     check_clean(audit_of(garments, {}));
