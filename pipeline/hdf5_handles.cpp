@@ -35,6 +35,26 @@ std::string cure_for(const std::string& reason) {
   return "check that the file is one of this program and that its disk works";
 }
 
+// Latest format (SWMR needs it), no file locks (network folders often have none; one writer a file is a rule of ours).
+Handle file_access() {
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_libver_bounds(access.id(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
+  H5Pset_file_locking(access.id(), false, true);
+  // SWMR readers read metadata again while its checksum is wrong, and wait twice as long each time. The default of 100
+  // times never ends where a killed writer left it so; this many take two seconds.
+  H5Pset_metadata_read_attempts(access.id(), 30);
+  return access;
+}
+
+// The system may end a killed writer's last write between two pages of memory. Metadata that lies within one page is
+// therefore whole or as it was.
+Handle file_creation() {
+  Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_file_space_strategy(creation.id(), H5F_FSPACE_STRATEGY_PAGE, false, 1);
+  H5Pset_file_space_page_size(creation.id(), 4096);
+  return creation;
+}
+
 }  // namespace
 
 hid_t checked(hid_t result, const std::filesystem::path& file, const std::string& doing) {
@@ -44,13 +64,6 @@ hid_t checked(hid_t result, const std::filesystem::path& file, const std::string
 }
 
 void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
-
-Handle file_access() {
-  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_libver_bounds(access.id(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
-  H5Pset_file_locking(access.id(), false, true);
-  return access;
-}
 
 Handle text_type(std::size_t length) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
@@ -62,8 +75,8 @@ Handle text_type(std::size_t length) {
 
 File File::create(const std::filesystem::path& path) {
   silence();
-  const Handle access = file_access();
-  const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id());
+  const Handle access = file_access(), creation = file_creation();
+  const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id());
   return {path, Handle(checked(id, path, "make the file"), H5Fclose)};
 }
 

@@ -38,10 +38,6 @@ hid_t checked(hid_t result, const std::filesystem::path& file, const std::string
 // Turns off HDF5's own printing of errors for the calling thread.
 void silence();
 
-// Access properties of every trajectory: latest format (SWMR needs it), no file locks (network folders often have
-// none; one writer a file is a rule of ours).
-Handle file_access();
-
 Handle text_type(std::size_t length);  // fixed length, padded with zeros; `length` > 0
 
 // A file and the calls on it that may fail, each turned into an Error that names the file.

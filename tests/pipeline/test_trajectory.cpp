@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "collision/error.hpp"
+#include "pipeline/hdf5_handles.hpp"
 #include "pipeline/trajectory_hdf5.hpp"
 #include "tests/pipeline/fake_run.hpp"
 
@@ -85,6 +86,45 @@ TEST_CASE("what is no trajectory is refused with a clear error") {
   REQUIRE_THROWS_AS(TrajectoryReader(folder.path / "empty.h5"), Error);
   const TrajectoryInfo info = trajectory_info(fake::scene(), "", "conventional", 30);
   REQUIRE_THROWS_AS(TrajectoryWriter(folder.path / "no" / "such" / "run.h5", info), Error);
+}
+
+// HDF5 reads metadata again while its checksum is wrong, for ever unless it is told how often.
+TEST_CASE("a torn trajectory is refused, not waited for") {
+  const fake::Folder folder("torn");
+  const Scene scene = fake::scene();
+  const std::filesystem::path path = folder.path / "run.h5";
+  TrajectoryWriter writer(path, trajectory_info(scene, "", "conventional", 30));
+  for (int i = 0; i < 40; ++i) writer.append(fake::frame(scene, i));
+  std::ifstream written(path, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(written), {}};
+  const std::string block = GENERATE("OHDR", "EAHD", "EADB");  // of a dataset, of its chunks' index and that one's data
+  CAPTURE(block);
+  const std::size_t at = bytes.rfind(block);
+  REQUIRE(at != std::string::npos);
+  bytes[at + 12] = static_cast<char>(bytes[at + 12] ^ 0x55);
+  std::ofstream(folder.path / "torn.h5", std::ios::binary) << bytes;
+  const auto read_all = [&] {
+    const TrajectoryReader reader(folder.path / "torn.h5");
+    for (int i = 0; i < reader.frame_count(); ++i) reader.frame(i);
+  };
+  REQUIRE_THROWS_AS(read_all(), Error);
+}
+
+// A writer that is killed may leave what it wrote last torn between two pages of memory. So no metadata lies in two.
+TEST_CASE("no metadata of a trajectory lies across a page's end") {
+  const fake::Folder folder("pages");
+  const Scene scene = fake::scene();
+  const std::filesystem::path path = folder.path / "run.h5";
+  TrajectoryWriter(path, trajectory_info(scene, "", "conventional", 30)).append(fake::frame(scene, 0));
+  const h5::File file = h5::File::open(path);
+  const h5::Handle creation(H5Fget_create_plist(file.id()), H5Pclose);
+  H5F_fspace_strategy_t strategy = H5F_FSPACE_STRATEGY_NTYPES;
+  hbool_t persist = true;
+  hsize_t threshold = 0, page = 0;
+  H5Pget_file_space_strategy(creation.id(), &strategy, &persist, &threshold);
+  H5Pget_file_space_page_size(creation.id(), &page);
+  REQUIRE(strategy == H5F_FSPACE_STRATEGY_PAGE);
+  REQUIRE(page == 4096);
 }
 
 // In a child, because the limit on the size of files cannot be lifted again.
