@@ -41,7 +41,7 @@ Handle file_access() {
   H5Pset_libver_bounds(access.id(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
   H5Pset_file_locking(access.id(), false, true);
   // SWMR readers read metadata again while its checksum is wrong, and wait twice as long each time. The default of 100
-  // times never ends where a killed writer left it so; this many take two seconds.
+  // times never ends where a killed writer left it so; this many take a second or two.
   H5Pset_metadata_read_attempts(access.id(), 30);
   return access;
 }

@@ -24,12 +24,14 @@ TEST_CASE("a trajectory opens after kill -9 at random moments") {
     const std::filesystem::path path = folder.path / ("run" + std::to_string(kill_number) + ".h5");
     const pid_t child = fork();
     REQUIRE(child >= 0);
-    if (child == 0) try {
+    if (child == 0) {
+      try {
         TrajectoryWriter writer(path, trajectory_info(scene, "run: {}\n", "conventional", 30));
         for (int i = 0;; ++i) writer.append(fake::frame(scene, i));
       } catch (...) {
-        _exit(1);  // what this process would do next is the parent's to do
+        _exit(1);  // or it would go on as a second parent
       }
+    }
     std::this_thread::sleep_for(std::chrono::microseconds(std::uniform_int_distribution(1000, 100000)(random)));
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
