@@ -360,8 +360,9 @@ void ConventionalStepper::prepare_contact(const State& from, const Drive& drive,
   Points& nodes = leg.nodes;
   const bool exempt = parting_.left.any();
   look_for_room_ = from.pinched;
-  parting_ =
-      part_at_start(world_, self_crossings_, inverse_mass_, edge_length_, from.clean, drive, wanted, dt, nodes, leg.v);
+  const Wearing wearing{&wanted, &drive.worn, gather_nodes(from.last_clean.x, from.last_clean.obstacles),
+                        scene_.contact.thickness, dt};
+  parting_ = part_at_start(world_, self_crossings_, inverse_mass_, edge_length_, from.clean, wearing, nodes, leg.v);
   report.collision.left_alone = parting_.left.cloth_vertices();
   if (exempt || parting_.left.any()) path_ = {};  // what was listed then is not what is to be listed now
   search_.leave_out(parting_.left.any() ? &parting_.left : nullptr);
@@ -413,6 +414,8 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
   to.pinched = report.collision.obstacle_lag > rounding * wanted.cwiseAbs().maxCoeff();
   if (!to.pinched) report.collision.obstacle_lag = 0;
   audit_state(scene_, drive, to, audited_, report);
+  if (!to.clean && drive.worn.rows() > 0)
+    to.last_clean = from.clean ? LastClean{from.x, from.obstacles} : from.last_clean;
   return report;
 }
 

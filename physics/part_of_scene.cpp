@@ -93,6 +93,8 @@ State state_of(const PartOfScene& part, const State& whole) {
   state.obstacles = whole.obstacles;
   state.pinched = whole.pinched;
   state.clean = whole.clean;
+  if (whole.last_clean.x.rows() > 0)
+    state.last_clean = {rows_of(whole.last_clean.x, part.vertices), whole.last_clean.obstacles};
   if (whole.history.h > 0)
     state.history = {whole.history.h, rows_of(whole.history.x, part.vertices), rows_of(whole.history.v, part.vertices)};
   return state;
@@ -109,6 +111,11 @@ void put(const PartOfScene& part, const State& state, State& whole) {
   whole.obstacles = state.obstacles;
   whole.pinched = state.pinched;
   whole.clean = state.clean;
+  whole.last_clean = {{}, state.last_clean.obstacles};
+  if (state.last_clean.x.rows() > 0) {
+    whole.last_clean.x = whole.x;
+    put_rows(state.last_clean.x, part.vertices, whole.last_clean.x);
+  }
   whole.history = {state.history.h, {}, {}};
   if (state.history.h > 0) {
     whole.history.x = whole.x;

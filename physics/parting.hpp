@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "physics/put_on.hpp"
 #include "physics/recovery.hpp"
-#include "physics/stepper.hpp"
 
 namespace selvedge {
 
@@ -14,12 +14,11 @@ struct Parting {
   std::vector<char> carried;       // 1 for vertices that are drawn to where they are worn (carrying.hpp), or empty
 };
 
-// In this order: what a limb has gone through, or has sunken in, is put on again where it is worn (put_on.hpp); where
-// that cannot be it is drawn there, and what else is tangled is parted (recovery.hpp); and where untangling knows no
-// way out, what has sunken in is drawn as well. `clean`: nothing is tangled at the start, for cloth at least. `wanted`
-// has the obstacles at the step's end, dt [s] later. Overwrites the cloth's rows of `nodes`, at the start, and
-// velocities v.
+// In this order: what a limb has gone through, or has sunken in, is put on again (put_on.hpp); where that cannot be it
+// is drawn to where it is worn, and what else is tangled is parted (recovery.hpp); and where untangling knows no way
+// out, what has sunken in is drawn as well. `clean`: nothing is tangled at the start, for cloth at least. Overwrites
+// the cloth's rows of `nodes`, at the start, and velocities v.
 Parting part_at_start(const ContactWorld&, SelfCrossings&, const Eigen::VectorXd& inverse_mass, double edge_length,
-                      bool clean, const Drive&, const Points& wanted, double dt, Points& nodes, Points& v);
+                      bool clean, const Wearing&, Points& nodes, Points& v);
 
 }  // namespace selvedge

@@ -6,6 +6,7 @@
 #include "collision/exemption.hpp"
 #include "collision/untangle.hpp"
 #include "collision/world_sheets.hpp"
+#include "physics/carried_along.hpp"
 
 namespace selvedge {
 namespace {
@@ -14,12 +15,50 @@ constexpr double most_way = 0.3;       // [m]
 constexpr int enough_iterations = 60;  // of untangling: what is worn is shallow in the body, or not to be parted
 constexpr int most_parting = 100'000;  // pairs times iterations of it
 
-// Over the step, of the obstacles' node that is nearest to a place at its end.
-Vec3 way_of_nearest(const ContactWorld& world, const Points& nodes, const Points& wanted, const Vec3& place) {
-  const Eigen::Index first = world.cloth->vertex_count;
-  Eigen::Index nearest = 0;
-  (wanted.bottomRows(wanted.rows() - first).rowwise() - place.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
-  return (wanted.row(first + nearest) - nodes.row(first + nearest)).transpose();
+struct Place {
+  Points nodes, ways;  // with what is marked put there, and how far that goes along in the step
+  int pairs;           // of triangles that cross there
+};
+
+// The ways over the step of the obstacles' nodes that are nearest to places, with obstacles as in `at`.
+Points ways_along(const ContactWorld& world, const Points& at, const Points& places, const Points& nodes,
+                  const Points& wanted) {
+  Points ways(places.rows(), 3);
+  for (Eigen::Index k = 0; k < places.rows(); ++k) {
+    const int nearest = nearest_obstacle_node(world, at, places.row(k).transpose());
+    ways.row(k) = wanted.row(nearest) - nodes.row(nearest);
+  }
+  return ways;
+}
+
+// Those within reach, the least tangled first: where it is worn, and where it was clean last, carried along since.
+std::vector<Place> places_for(const ContactWorld& world, const std::vector<int>& vertices, const Wearing& wearing,
+                              const Points& nodes) {
+  std::vector<Place> places;
+  const auto add = [&](const Points& there, Points ways) {
+    if (!((there - nodes(vertices, Eigen::all)).rowwise().squaredNorm().maxCoeff() <= most_way * most_way)) return;
+    Place place{nodes, std::move(ways), 0};
+    place.nodes(vertices, Eigen::all) = there;
+    place.pairs = intersecting_pairs(find_segments(WorldSheets(world, place.nodes).views));
+    places.push_back(std::move(place));
+  };
+  const Points &wanted = *wearing.wanted, worn = (*wearing.worn)(vertices, Eigen::all);
+  const Points ways = ways_along(world, wanted, worn, nodes, wanted);
+  add(worn - ways, ways);
+  if (wearing.last_clean.rows() > 0) {
+    const Points carried = carried_along(world, wearing.last_clean, nodes, wearing.thickness)(vertices, Eigen::all);
+    add(carried, ways_along(world, nodes, carried, nodes, wanted));
+  }
+  std::ranges::stable_sort(places, {}, &Place::pairs);
+  return places;
+}
+
+UntangleResult part(const ContactWorld& world, const Place& place) {
+  const WorldSheets sheets(world, place.nodes);
+  UntangleOptions options;
+  options.iterations = std::min(enough_iterations, most_parting / std::max(1, place.pairs));
+  options.second_opinion = false;  // a place that the first does not find is looked for again in the next step
+  return untangle(*world.cloth, sheets.positions[0], std::span(sheets.views).subspan(1), options);
 }
 
 // Tangled there, of what is marked or was not tangled before.
@@ -32,30 +71,24 @@ bool is_tangled(const Exemption& there, const Exemption& before, const std::vect
 
 }  // namespace
 
-PutOn put_on(const ContactWorld& world, const std::vector<char>& marked, const Points& wanted, const Points& worn,
-             double h, Points& nodes, Points& v) {
+PutOn put_on(const ContactWorld& world, const std::vector<char>& marked, const Wearing& wearing, Points& nodes,
+             Points& v) {
   std::vector<int> vertices;
   for (int i = 0; i < static_cast<int>(marked.size()); ++i)
     if (marked[i]) vertices.push_back(i);
   if (vertices.empty()) return PutOn::nothing;
-  Points ways(static_cast<Eigen::Index>(vertices.size()), 3);
-  for (std::size_t k = 0; k < vertices.size(); ++k)
-    ways.row(static_cast<Eigen::Index>(k)) = way_of_nearest(world, nodes, wanted, row(worn, vertices[k])).transpose();
-  Points there = nodes;
-  there(vertices, Eigen::all) = worn(vertices, Eigen::all) - ways;
-  if (!((there - nodes).rowwise().squaredNorm().maxCoeff() <= most_way * most_way)) return PutOn::too_far;
-  const WorldSheets sheets(world, there);
-  UntangleOptions options;
-  const int pairs = intersecting_pairs(find_segments(sheets.views));
-  options.iterations = std::min(enough_iterations, most_parting / std::max(1, pairs));
-  options.second_opinion = false;  // a place that the first does not find is looked for again in the next step
-  const UntangleResult parted =
-      untangle(*world.cloth, sheets.positions[0], std::span(sheets.views).subspan(1), options);
-  there.topRows(parted.x.rows()) = parted.x;  // of other layers as well, which the place may go through
-  if (is_tangled(find_exemption(world, there), find_exemption(world, nodes), marked)) return PutOn::no_place;
-  nodes = there;
-  v(vertices, Eigen::all) = ways / h;
-  return PutOn::done;
+  std::vector<Place> places = places_for(world, vertices, wearing, nodes);
+  if (places.empty()) return PutOn::too_far;
+  const Exemption before = find_exemption(world, nodes);
+  for (Place& place : places) {
+    const UntangleResult parted = part(world, place);
+    place.nodes.topRows(parted.x.rows()) = parted.x;  // of other layers as well, which the place may go through
+    if (is_tangled(find_exemption(world, place.nodes), before, marked)) continue;
+    nodes = std::move(place.nodes);
+    v(vertices, Eigen::all) = place.ways / wearing.h;
+    return PutOn::done;
+  }
+  return PutOn::no_place;
 }
 
 }  // namespace selvedge

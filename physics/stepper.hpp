@@ -23,6 +23,12 @@ struct Rest {
   Vec3 wind = Vec3::Zero(), acceleration = Vec3::Zero();
 };
 
+// Where everything was when cloth that is tangled now was clean last.
+struct LastClean {
+  Points x;
+  std::vector<Points> obstacles;
+};
+
 // All that the next step depends on: a copy is a checkpoint.
 struct State {
   double time = 0;  // [s]
@@ -31,6 +37,7 @@ struct State {
   std::vector<Points> obstacles;  // where they are; may lag behind Drive::obstacles
   bool pinched = false;           // they do: cloth left them no room in the step that ended here
   bool clean = false;             // known to be free of intersections, by the audit of the step that ended here
+  LastClean last_clean;           // of worn cloth that is not clean; empty: it is, or never was
   StepHistory history;
   Rest rest;
   std::vector<int> cut_out;  // triangles that are out of the simulation, ascending (cut_out.hpp)

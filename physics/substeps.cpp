@@ -86,6 +86,7 @@ std::optional<Restart> restart_of(const State& from, const Drive& drive, int max
     if (!restart) restart = Restart{from};
     restart->state.obstacles[k] = drive.obstacles[k];
     restart->state.clean = false;
+    restart->state.last_clean = {};
     restart->state.history = {};
     ++restart->jumped;
   }
@@ -97,6 +98,7 @@ void arrive(const State& from, const Leg& leg, double dt, State& to) {
   to.frame = from.frame + 1;
   to.x = leg.nodes.topRows(from.x.rows());
   to.v = leg.v;
+  to.last_clean = {};
   to.history = leg.history;
 }
 

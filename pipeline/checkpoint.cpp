@@ -16,6 +16,18 @@ Points read_points(const h5::File& file, const std::string& name) {
   return points;
 }
 
+std::string numbered(const std::string& name, std::size_t k) { return name + std::to_string(k); }
+
+std::vector<Points> read_all(const h5::File& file, const std::string& name) {
+  std::vector<Points> all;
+  while (file.has(numbered(name, all.size()))) all.push_back(read_points(file, numbered(name, all.size())));
+  return all;
+}
+
+void write_all(const h5::File& file, const std::string& name, const std::vector<Points>& all) {
+  for (std::size_t k = 0; k < all.size(); ++k) h5::write_points(file, numbered(name, k), all[k]);
+}
+
 void write_rest(const h5::File& file, const Rest& rest) {
   file.write_constant("rest_seconds", H5T_NATIVE_DOUBLE, {static_cast<hsize_t>(rest.seconds.size())},
                       rest.seconds.data());
@@ -51,8 +63,9 @@ void write_checkpoint(const std::filesystem::path& path, const State& state, con
     file.write_constant("clean", H5T_NATIVE_INT, {1}, &clean);
     h5::write_points(file, "x", state.x);
     h5::write_points(file, "v", state.v);
-    for (std::size_t k = 0; k < state.obstacles.size(); ++k)
-      h5::write_points(file, "obstacle_" + std::to_string(k), state.obstacles[k]);
+    write_all(file, "obstacle_", state.obstacles);
+    h5::write_points(file, "last_clean_x", state.last_clean.x);
+    write_all(file, "last_clean_obstacle_", state.last_clean.obstacles);
     file.write_constant("history_h", H5T_NATIVE_DOUBLE, {1}, &state.history.h);
     h5::write_points(file, "history_x", state.history.x);
     h5::write_points(file, "history_v", state.history.v);
@@ -86,8 +99,8 @@ State read_checkpoint(const std::filesystem::path& path, const std::string& conf
   state.clean = clean != 0;
   state.x = read_points(file, "x");
   state.v = read_points(file, "v");
-  for (int k = 0; file.has("obstacle_" + std::to_string(k)); ++k)
-    state.obstacles.push_back(read_points(file, "obstacle_" + std::to_string(k)));
+  state.obstacles = read_all(file, "obstacle_");
+  state.last_clean = {read_points(file, "last_clean_x"), read_all(file, "last_clean_obstacle_")};
   file.read_all("history_h", H5T_NATIVE_DOUBLE, &state.history.h);
   state.history.x = read_points(file, "history_x");
   state.history.v = read_points(file, "history_v");

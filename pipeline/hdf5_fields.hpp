@@ -51,7 +51,8 @@ void write_points(const File&, const std::string& name, const Points&);
 void write_sparse(const File&, const std::string& name, const SkinWeights&);
 void write_skin(const File&, const SkinnedSurface&);
 
-// A file of that form, written beside and renamed: `fields` writes what comes after `format`.
+// A file of that form, written beside and renamed: `fields` writes what comes after `format`. Several processes may
+// write the same file, as they do in the cache: it is the last one's.
 void write_form(const std::filesystem::path&, const FileForm&, const std::function<void(const File&)>& fields);
 
 }  // namespace selvedge::h5

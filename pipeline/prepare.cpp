@@ -31,6 +31,7 @@ bool prepare(Setup& setup, const std::function<bool()>& stop, Progress* progress
                                audit.inside_vertices, state.v.rowwise().norm().maxCoeff());
   state.time = 0;
   state.v = setup.velocity;
+  state.last_clean = {};
   state.history = {};
   state.rest = {};
   setup.initial = std::move(state);

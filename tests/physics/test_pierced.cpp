@@ -55,6 +55,9 @@ struct Skewer {
   std::vector<char> pierced(double astray = 1) const {
     return pierced_vertices(world, find_exemption(world, nodes), nodes, nodes, w.drive.worn, astray);
   }
+  Wearing wearing(const Points& wanted, const Points& worn, const Points& last_clean = {}) const {
+    return {&wanted, &worn, last_clean, w.scene.contact.thickness, 0.1};
+  }
 };
 
 }  // namespace
@@ -115,7 +118,8 @@ TEST_CASE("pierced: cloth is drawn to where it is worn also while it cannot be p
   const std::vector<char> marked = skewer.pierced();
   REQUIRE_FALSE(marked.empty());
   Points nodes = skewer.nodes, v = skewer.w.state.v;
-  REQUIRE(put_on(skewer.world, marked, nodes, worn, 1.0 / 30, nodes, v) == PutOn::no_place);  // it crosses itself there
+  REQUIRE(put_on(skewer.world, marked, skewer.wearing(nodes, worn), nodes, v) ==
+          PutOn::no_place);  // it crosses itself there
   const auto height = [](const Points& x) { return x.topRows(17 * 17).col(1).mean(); };
   CHECK(height(testing::run(skewer.w, 1).state.x) > height(skewer.w.state.x) + 0.05);
 }
@@ -175,7 +179,7 @@ TEST_CASE("put on: cloth is where it is worn, clean, and moves along with what i
   Points wanted = skewer.nodes;
   wanted.bottomRows(wanted.rows() - skewer.w.state.x.rows()).rowwise() += way.transpose();
   Points nodes = skewer.nodes, v = skewer.w.state.v;
-  const auto put = [&] { return put_on(skewer.world, marked, wanted, skewer.w.drive.worn, 0.1, nodes, v); };
+  const auto put = [&] { return put_on(skewer.world, marked, skewer.wearing(wanted, skewer.w.drive.worn), nodes, v); };
   skewer.w.drive.worn.col(1).array() += 0.1;
   CHECK(put() == PutOn::too_far);  // half a metre away
   CHECK(nodes == skewer.nodes);
@@ -194,14 +198,14 @@ TEST_CASE("put on: a place that is in the body is untangled, and one that cannot
   const std::vector<char> marked = skewer.pierced();
   Points worn = skewer.w.drive.worn, nodes = skewer.nodes, v = skewer.w.state.v;
   worn.col(1).array() -= 0.21;  // just in the spindle's tip
-  const auto put = [&] { return put_on(skewer.world, marked, skewer.nodes, worn, 0.1, nodes, v); };
+  const auto put = [&] { return put_on(skewer.world, marked, skewer.wearing(skewer.nodes, worn), nodes, v); };
   CHECK(put() == PutOn::done);
   CHECK_FALSE(find_exemption(skewer.world, nodes).cloth());
   worn.col(1).array() -= 0.31;  // about its middle
   nodes = skewer.nodes;
   CHECK(put() == PutOn::no_place);
   CHECK(nodes == skewer.nodes);
-  CHECK(put_on(skewer.world, {}, skewer.nodes, worn, 0.1, nodes, v) == PutOn::nothing);
+  CHECK(put_on(skewer.world, {}, skewer.wearing(skewer.nodes, worn), nodes, v) == PutOn::nothing);
 }
 
 TEST_CASE("put on: another layer that is in the way makes way, and keeps its velocity", "[pierced]") {
@@ -217,9 +221,69 @@ TEST_CASE("put on: another layer that is in the way makes way, and keeps its vel
   std::fill_n(marked.begin(), sheet, 1);
   const ContactWorld world = make_contact_world(w.scene.surface, {&w.scene.obstacles[0].surface}, true);
   const Points before = nodes;
-  REQUIRE(put_on(world, marked, nodes, worn, 0.1, nodes, v) == PutOn::done);
+  const Points wanted = nodes;
+  REQUIRE(put_on(world, marked, {&wanted, &worn, {}, 0.002, 0.1}, nodes, v) == PutOn::done);
   CHECK_FALSE(find_exemption(world, nodes).cloth());
   CHECK((nodes - before).middleRows(sheet, 25).cwiseAbs().maxCoeff() > 1e-3);
   CHECK((v.bottomRows(25).array() == 0.3).all());
   CHECK(v.topRows(sheet).isZero());
+}
+
+TEST_CASE("put on: where cloth was clean last is a place as well, carried to where obstacles are now", "[pierced]") {
+  const Skewer skewer(spindle(0.05, 0.25));
+  const int sheet = 17 * 17;
+  const std::vector<char> marked = skewer.pierced();
+  Points worn = skewer.w.drive.worn, wanted = skewer.nodes, nodes = skewer.nodes, v = skewer.w.state.v;
+  for (int i = 0; i < sheet; ++i)  // no place: it crosses itself there
+    worn.row(i) = skewer.nodes.row(i) + 0.1 * Eigen::RowVector3d(std::sin(i * i), 0, std::cos(i * i));
+  const Eigen::RowVector3d elsewhere(0.4, 1, -2), way(0.01, 0.02, -0.01);
+  wanted.bottomRows(wanted.rows() - skewer.w.state.x.rows()).rowwise() += way;
+  Points last_clean = skewer.nodes.rowwise() + elsewhere;
+  const auto put = [&] { return put_on(skewer.world, marked, skewer.wearing(wanted, worn, last_clean), nodes, v); };
+  CHECK(put() == PutOn::no_place);  // both
+  last_clean.topRows(sheet).col(1).array() += 0.4;
+  CHECK(put() == PutOn::no_place);  // that one is too far
+  CHECK(nodes == skewer.nodes);
+  last_clean.topRows(sheet).col(1).array() -= 0.13;  // above the spindle
+  REQUIRE(put() == PutOn::done);
+  CHECK_FALSE(find_exemption(skewer.world, nodes).cloth());
+  CHECK((nodes.topRows(sheet).rowwise() + elsewhere - last_clean.topRows(sheet)).cwiseAbs().maxCoeff() < 1e-12);
+  CHECK((v.topRows(sheet).rowwise() - 10 * way).cwiseAbs().maxCoeff() < 1e-12);
+  last_clean.resize(0, 3);
+  nodes = skewer.nodes;
+  CHECK(put() == PutOn::no_place);
+}
+
+TEST_CASE("put on: cloth that a body closed on, through itself, is back between its parts once these part",
+          "[pierced]") {
+  const auto lenses = [](double apart) {
+    Sheet above = spindle(0.15, 0.05), below = above;
+    above.x.col(1).array() += apart;
+    below.x.col(1).array() -= apart;
+    return testing::join(above, below);
+  };
+  testing::World w = testing::make_world(testing::sheet(16, 0.4, 0));
+  testing::add_obstacle(w, lenses(0.07));
+  w.drive.acceleration.setZero();
+  w.drive.worn = w.state.x;
+  w.state.clean = true;
+  const auto end = [&](int renew) {
+    auto stepper = testing::conventional(w.scene);
+    State at = w.state;
+    int frame = 0;
+    for (const double apart : {0.06, 0.02, 0.01, 0.02, 0.06, 0.06}) {
+      if (++frame == renew) stepper = testing::conventional(w.scene);
+      State to;
+      w.drive.obstacles = {lenses(apart).x};
+      w.drive.worn.col(1).setConstant(apart);  // in the upper one's middle
+      REQUIRE(stepper->step(at, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
+      CHECK(to.clean == (frame == 1 || frame == 6));
+      CHECK(to.last_clean.x.rows() == (to.clean ? 0 : to.x.rows()));
+      at = to;
+    }
+    return at;
+  };
+  const State whole = end(0);
+  CHECK(whole.x.col(1).cwiseAbs().maxCoeff() < 0.02);
+  CHECK(end(4).x == whole.x);  // a stepper that goes on from a checkpoint
 }

@@ -1,6 +1,8 @@
 #include "pipeline/body_hdf5.hpp"
 
 #include <hdf5.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <catch2/catch.hpp>
 
@@ -125,4 +127,30 @@ TEST_CASE("fields of a wrong shape or with wrong indices are refused") {
   wrong("weights/indices", whole, {9}, std::vector<int>(9));
   wrong("weights/data", real, {160}, std::vector<double>(160, 0.3));
   wrong("regressor/data", real, {15}, std::vector<double>(15, std::nan("")));
+}
+
+TEST_CASE("a body that several processes write at once is whole, and none of them fails") {
+  const fake::Folder folder("body_race");
+  const auto path = folder.path / "body.h5";
+  const BodyModel body = fake::body(24, 2000, 10, true);
+  std::vector<pid_t> children;
+  for (int k = 0; k < 4; ++k) {
+    children.push_back(fork());
+    REQUIRE(children.back() >= 0);
+    if (children.back() > 0) continue;
+    try {
+      for (int i = 0; i < 10; ++i) write_body(path, body);
+    } catch (...) {
+      _exit(1);
+    }
+    _exit(0);
+  }
+  for (const pid_t child : children) {
+    int status = -1;
+    waitpid(child, &status, 0);
+    CHECK(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 0);
+  }
+  check_same(read_body(path), body);
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.path), {}) == 1);
 }

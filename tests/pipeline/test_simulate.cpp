@@ -193,6 +193,7 @@ TEST_CASE("a checkpoint keeps every bit") {
   if (GENERATE(false, true)) {
     state.history = {1.0 / 60, 0.7 * state.x, 0.7 * state.v};
     state.rest = {{0.1, 1.0 / 3}, 0.9 * state.x, {1, 0, 0.3}, {0, -9.81, 0}};
+    state.last_clean = {0.6 * state.x, {0.5 * state.x, Points(), 0.4 * state.x}};
   }
   write_checkpoint(folder.path / "c.h5", state, "a: 1\n");
   const State read = read_checkpoint(folder.path / "c.h5", "a: 1\n");
@@ -201,6 +202,8 @@ TEST_CASE("a checkpoint keeps every bit") {
   REQUIRE(read.x == state.x);
   REQUIRE(read.v == state.v);
   REQUIRE(read.obstacles == state.obstacles);
+  REQUIRE(read.last_clean.x == state.last_clean.x);
+  REQUIRE(read.last_clean.obstacles == state.last_clean.obstacles);
   REQUIRE(read.history.h == state.history.h);
   REQUIRE(read.history.x == state.history.x);
   REQUIRE(read.history.v == state.history.v);
