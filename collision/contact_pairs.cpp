@@ -23,25 +23,23 @@ struct Group {
   }
 };
 
-// A surface that takes part in a search: its tree and, by leaf of the tree, the vertices and edges that the leaf's
-// triangles own, in groups like leaves. Without `node_ends` nothing has boxes at both ends, without `marks` every node
+// A surface that takes part in a search. Without `node_ends` nothing has boxes at both ends, without `marks` every node
 // is looked at.
 struct Side {
-  const Surface& surface;
-  int first_node;
-  const Bvh& bvh;
-  const PrimitiveGroups &vertices, &edges;
-  const EndLeaves &face_ends, &vertex_ends, &edge_ends;
+  const SearchPart& part;
   const EndBoxes* node_ends;
   const char* marks;
 
-  Group group(const Bvh::Leaf& leaf, const EndLeaves& ends, std::size_t at) const {
+  const Surface& surface() const { return *part.surface; }
+  int first_node() const { return part.first_node; }
+  const Bvh& bvh() const { return part.tree.bvh; }
+  Group group(const Bvh::Leaf& leaf, const EndLeaves& ends, int at) const {
     return node_ends ? Group{leaf, &ends.start[at], &ends.end[at]} : Group{leaf};
   }
-  Group faces(int leaf) const { return group(bvh.leaves[leaf], face_ends, leaf); }
+  Group faces(int leaf) const { return group(bvh().leaves[leaf], part.faces_ends, leaf); }
   template <class Visit>
-  void for_each_group(const PrimitiveGroups& all, const EndLeaves& ends, int first, int last, Visit&& visit) const {
-    for (int g = first; g < last; ++g) visit(group(all.groups[g], ends, g));
+  void for_each_group(const PrimitiveGroups& all, int first, int last, Visit&& visit) const {
+    for (int g = first; g < last; ++g) visit(group(all.groups[g], all.ends, g));
   }
 };
 
@@ -59,42 +57,42 @@ struct LeafPairs {
   bool same;  // one surface: primitives that share a vertex are no pair
 
   void vertex_face(const Side& p, int v, const Side& f, int face, std::vector<NodePair>& pairs) const {
-    const int* n = f.surface.triangles.data() + 3 * face;
+    const int* n = f.surface().triangles.data() + 3 * face;
     if (same && (v == n[0] || v == n[1] || v == n[2])) return;
-    pairs.push_back(
-        {PairKind::vertex_face, {v + p.first_node, n[0] + f.first_node, n[1] + f.first_node, n[2] + f.first_node}});
+    pairs.push_back({PairKind::vertex_face,
+                     {v + p.first_node(), n[0] + f.first_node(), n[1] + f.first_node(), n[2] + f.first_node()}});
   }
   void edge_edge(int ea, int eb, std::vector<NodePair>& pairs) const {
     if (same && eb < ea) std::swap(ea, eb);
-    const int *m = a.surface.edges.data() + 2 * ea, *n = b.surface.edges.data() + 2 * eb;
+    const int *m = a.surface().edges.data() + 2 * ea, *n = b.surface().edges.data() + 2 * eb;
     if (same && (m[0] == n[0] || m[0] == n[1] || m[1] == n[0] || m[1] == n[1])) return;
-    pairs.push_back(
-        {PairKind::edge_edge, {m[0] + a.first_node, m[1] + a.first_node, n[0] + b.first_node, n[1] + b.first_node}});
+    pairs.push_back({PairKind::edge_edge,
+                     {m[0] + a.first_node(), m[1] + a.first_node(), n[0] + b.first_node(), n[1] + b.first_node()}});
   }
   void vertices_with_faces(const Side& p, int leaf_p, const Side& f, int leaf_f, const Box& box_f,
                            std::vector<NodePair>& pairs) const {
     const Group faces = f.faces(leaf_f);
     p.for_each_group(
-        p.vertices, p.vertex_ends, p.vertices.begin[leaf_p], p.vertices.begin[leaf_p + 1], [&](const Group& group) {
+        p.part.vertices, p.part.vertices.begin[leaf_p], p.part.vertices.begin[leaf_p + 1], [&](const Group& group) {
           for_each_near(group, faces, box_f,
                         [&](int i, int j) { vertex_face(p, group.leaf.item[i], f, faces.leaf.item[j], pairs); });
         });
   }
   void edges_with_edges(const Group& first, int from, int to, const Box& box_b, std::vector<NodePair>& pairs) const {
-    b.for_each_group(b.edges, b.edge_ends, from, to, [&](const Group& second) {
+    b.for_each_group(b.part.edges, from, to, [&](const Group& second) {
       for_each_near(first, second, box_b,
                     [&](int i, int j) { edge_edge(first.leaf.item[i], second.leaf.item[j], pairs); });
     });
   }
   void edges_with_edges(int leaf_a, int leaf_b, const Box& box_b, std::vector<NodePair>& pairs) const {
-    a.for_each_group(a.edges, a.edge_ends, a.edges.begin[leaf_a], a.edges.begin[leaf_a + 1], [&](const Group& first) {
-      edges_with_edges(first, b.edges.begin[leaf_b], b.edges.begin[leaf_b + 1], box_b, pairs);
+    a.for_each_group(a.part.edges, a.part.edges.begin[leaf_a], a.part.edges.begin[leaf_a + 1], [&](const Group& first) {
+      edges_with_edges(first, b.part.edges.begin[leaf_b], b.part.edges.begin[leaf_b + 1], box_b, pairs);
     });
   }
   void edges_within(int leaf, const Box& box, std::vector<NodePair>& pairs) const {
-    int next = a.edges.begin[leaf];
-    const int last = a.edges.begin[leaf + 1];
-    a.for_each_group(a.edges, a.edge_ends, next, last, [&](const Group& own) {
+    int next = a.part.edges.begin[leaf];
+    const int last = a.part.edges.begin[leaf + 1];
+    a.for_each_group(a.part.edges, next, last, [&](const Group& own) {
       for (int i = 0; i < Bvh::leaf_size && own.leaf.item[i] >= 0; ++i)
         for (unsigned bits = own.near(i, own) & (~1u << i); bits != 0; bits &= bits - 1)
           edge_edge(own.leaf.item[i], own.leaf.item[std::countr_zero(bits)], pairs);
@@ -102,7 +100,7 @@ struct LeafPairs {
     });
   }
   void operator()(NodeWork w, std::vector<NodePair>& pairs) const {
-    const Bvh::Node &node_a = a.bvh.nodes[w.a], &node_b = b.bvh.nodes[w.b];
+    const Bvh::Node &node_a = a.bvh().nodes[w.a], &node_b = b.bvh().nodes[w.b];
     vertices_with_faces(a, ~node_a.child, b, ~node_b.child, node_b.box, pairs);
     if (same && w.a == w.b) {
       edges_within(~node_a.child, node_a.box, pairs);
@@ -114,32 +112,6 @@ struct LeafPairs {
 };
 
 }  // namespace
-
-// Fills groups with what the triangles of each leaf own: corner k of triangle t has the primitive primitives(t, k).
-void PrimitiveGroups::share_out(const Bvh& bvh, const Triangles& primitives, const std::vector<int>& owner) {
-  groups.clear();
-  begin.assign(1, 0);
-  for (const Bvh::Leaf& leaf : bvh.leaves) {
-    int used = Bvh::leaf_size;
-    for (const int t : leaf.item)
-      for (int k = 0; t >= 0 && k < 3; ++k) {
-        const int item = primitives(t, k);
-        if (owner[item] != t) continue;
-        if (used == Bvh::leaf_size) {
-          used = 0;
-          std::ranges::fill(groups.emplace_back().item, -1);
-        }
-        groups.back().item[used++] = item;
-      }
-    begin.push_back(static_cast<int>(groups.size()));
-  }
-}
-
-void PrimitiveGroups::set_boxes(std::span<const Box> boxes) {
-  const int count = static_cast<int>(groups.size());
-#pragma omp parallel for schedule(static)
-  for (int g = 0; g < count; ++g) set_leaf_boxes(groups[g], boxes);
-}
 
 int ContactWorld::obstacle_of(int node) const {
   if (is_cloth(node)) return -1;
@@ -178,64 +150,9 @@ Closest closest(PairKind kind, const std::array<Vec3, 4>& x) {
   return kind == PairKind::vertex_face ? point_triangle(x[0], x[1], x[2], x[3]) : edge_edge(x[0], x[1], x[2], x[3]);
 }
 
-PairSearch::PairSearch(const ContactWorld& world) : world_(world) {
-  cloth_.surface = world.cloth;
-  obstacles_.resize(world.obstacles.size());
-  for (std::size_t k = 0; k < world.obstacles.size(); ++k) {
-    obstacles_[k].surface = world.obstacles[k];
-    obstacles_[k].first_node = world.first_node[k];
-  }
-}
-
-void PrimitiveBoxes::set(const Surface& surface, const Points& x0, const Points& x1, double radius) {
-  vertex_boxes(x0, x1, radius, vertices);
-  edge_boxes(surface, vertices, edges);
-  triangle_boxes(surface, vertices, triangles);
-}
-
-void PairSearch::update(Part& part, const Points& x0, const Points& x1, double radius, bool ends) {
-  const auto from = x0.middleRows(part.first_node, part.surface->vertex_count);
-  const auto to = x1.middleRows(part.first_node, part.surface->vertex_count);
-  if (part.radius != radius || part.from != from || part.to != to) {
-    part.radius = radius;
-    part.from = from;
-    part.to = to;
-    part.boxes.set(*part.surface, part.from, part.to, radius / 2);
-    if (selvedge::update(part.tree, part.boxes.triangles)) {
-      part.vertices.share_out(part.tree.bvh, part.surface->triangles, part.surface->vertex_owner);
-      part.edges.share_out(part.tree.bvh, part.surface->triangle_edges, part.surface->edge_owner);
-    }
-    part.vertices.set_boxes(part.boxes.vertices);
-    part.edges.set_boxes(part.boxes.edges);
-    part.has_ends = false;
-  }
-  if (ends && !part.has_ends) update_ends(part);
-}
-
-void PairSearch::update_ends(Part& part) {
-  part.start.set(*part.surface, part.from, part.from, part.radius / 2);
-  part.end.set(*part.surface, part.to, part.to, part.radius / 2);
-  set_end_boxes(part.tree.bvh.leaves, part.start.triangles, part.end.triangles, part.face_ends);
-  set_end_boxes(part.vertices.groups, part.start.vertices, part.end.vertices, part.vertex_ends);
-  set_end_boxes(part.edges.groups, part.start.edges, part.end.edges, part.edge_ends);
-  set_end_boxes(part.tree.bvh, part.face_ends, part.node_ends);
-  part.has_ends = true;
-}
-
-void PairSearch::update_marks(Part& part, const std::vector<char>& marks) {
-  const Bvh& bvh = part.tree.bvh;
-  const auto holds_marked = [&](const Bvh::Leaf& leaf) {
-    return std::ranges::any_of(leaf.item, [&](int t) {
-      if (t < 0) return false;
-      const auto corners = part.surface->triangles.row(t);
-      return std::any_of(corners.begin(), corners.end(), [&](int v) { return marks[part.first_node + v] != 0; });
-    });
-  };
-  part.marks.resize(bvh.nodes.size());
-  for (std::size_t i = bvh.nodes.size(); i-- > 0;) {
-    const int child = bvh.nodes[i].child;
-    part.marks[i] = child < 0 ? holds_marked(bvh.leaves[~child]) : part.marks[child] || part.marks[child + 1];
-  }
+PairSearch::PairSearch(const ContactWorld& world) : world_(world), cloth_(*world.cloth, 0) {
+  for (std::size_t k = 0; k < world.obstacles.size(); ++k)
+    obstacles_.emplace_back(*world.obstacles[k], world.first_node[k]);
 }
 
 void PairSearch::find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs,
@@ -243,32 +160,24 @@ void PairSearch::find(const Points& x0, const Points& x1, double radius, std::ve
   pairs.clear();
   // Boxes at both ends tell more apart than those round whole motions only where these are the longer ones.
   const bool ends = !((x1 - x0).rowwise().squaredNorm().maxCoeff() <= radius * radius);
-  const auto prepare = [&](Part& part) {
-    update(part, x0, x1, radius, ends);
-    if (!marks.empty()) update_marks(part, marks);
+  const auto prepare = [&](SearchPart& part, const Bvh* other) {
+    part.move(x0, x1, radius);
+    part.fill(other, ends);
+    if (!marks.empty()) part.mark(marks);
   };
-  prepare(cloth_);
-  const auto side = [&](const Part& p) {
-    return Side{*p.surface,
-                p.first_node,
-                p.tree.bvh,
-                p.vertices,
-                p.edges,
-                p.face_ends,
-                p.vertex_ends,
-                p.edge_ends,
-                ends ? p.node_ends.data() : nullptr,
-                marks.empty() ? nullptr : p.marks.data()};
+  prepare(cloth_, nullptr);
+  const auto side = [&](const SearchPart& p) {
+    return Side{p, ends ? p.node_ends.data() : nullptr, marks.empty() ? nullptr : p.marks.data()};
   };
   const Side cloth = side(cloth_);
   const auto gather_with = [&](const Side& other, bool same) {
-    gather(
-        BvhTraversal{cloth.bvh, other.bvh, same, nullptr, cloth.node_ends, other.node_ends, cloth.marks, other.marks},
-        scratch_, pairs, LeafPairs{cloth, other, same});
+    gather(BvhTraversal{cloth.bvh(), other.bvh(), same, nullptr, cloth.node_ends, other.node_ends, cloth.marks,
+                        other.marks},
+           scratch_, pairs, LeafPairs{cloth, other, same});
   };
   if (world_.self) gather_with(cloth, true);
-  for (Part& obstacle : obstacles_) {
-    prepare(obstacle);
+  for (SearchPart& obstacle : obstacles_) {
+    prepare(obstacle, &cloth_.tree.bvh);
     gather_with(side(obstacle), false);
   }
   if (!marks.empty())

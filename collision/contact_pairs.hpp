@@ -7,7 +7,7 @@
 
 #include "collision/ccd.hpp"
 #include "collision/distance.hpp"
-#include "collision/end_boxes.hpp"
+#include "collision/search_part.hpp"
 
 namespace selvedge {
 
@@ -46,21 +46,6 @@ inline Closest closest(const NodePair& pair, const Points& x) { return closest(p
 // Distance in the rest shape of a pair of one cloth; infinite for any other, and where the world has no rest shape [m].
 double rest_distance(const ContactWorld&, const NodePair&);
 
-// Vertices or edges by the leaf of a tree of triangles that owns them, eight together.
-struct PrimitiveGroups {
-  std::vector<Bvh::Leaf> groups;
-  std::vector<int> begin;  // those of leaf l are groups[begin[l] .. begin[l + 1])
-
-  void share_out(const Bvh&, const Triangles& primitives, const std::vector<int>& owner);
-  void set_boxes(std::span<const Box>);
-};
-
-// Of a surface's vertices, edges and triangles.
-struct PrimitiveBoxes {
-  std::vector<Box> vertices, edges, triangles;
-  void set(const Surface&, const Points& x0, const Points& x1, double radius);
-};
-
 // Finds vertex-face and edge-edge pairs that may come within `radius` of each other while all nodes move straight from
 // x0 to x1; misses none. Every vertex and edge belongs to one triangle, so that each pair is found once (representative
 // triangles, Curtis, Tamstorf and Manocha 2008). Holds trees, which are caches.
@@ -76,27 +61,10 @@ class PairSearch {
   const ContactWorld& world() const { return world_; }
 
  private:
-  struct Part {  // a surface with its tree
-    const Surface* surface = nullptr;
-    int first_node = 0;
-    KeptBvh tree;
-    PrimitiveGroups vertices, edges;
-    Points from, to;  // what the boxes hold: a body that stands still is not refitted
-    double radius = -1;
-    PrimitiveBoxes boxes, start, end;
-    bool has_ends = false;
-    EndLeaves face_ends, vertex_ends, edge_ends;
-    std::vector<EndBoxes> node_ends;
-    std::vector<char> marks;  // by node of the tree: it holds a marked one
-  };
-  static void update(Part&, const Points& x0, const Points& x1, double radius, bool ends);
-  static void update_ends(Part&);
-  static void update_marks(Part&, const std::vector<char>& marks);
-
   const ContactWorld& world_;
   const Exemption* left_out_ = nullptr;
-  Part cloth_;
-  std::vector<Part> obstacles_;
+  SearchPart cloth_;
+  std::vector<SearchPart> obstacles_;
   PartLists<NodePair> scratch_;
 };
 

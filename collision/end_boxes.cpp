@@ -2,15 +2,16 @@
 
 namespace selvedge {
 
-void set_end_boxes(std::span<const Bvh::Leaf> leaves, std::span<const Box> start, std::span<const Box> end,
+void EndLeaves::resize(std::size_t leaves) {
+  start.resize(leaves);
+  end.resize(leaves);
+  bounds.resize(leaves);
+}
+
+void set_end_boxes(const Bvh::Leaf& leaf, std::span<const Box> start, std::span<const Box> end, int place,
                    EndLeaves& ends) {
-  ends.start.assign(leaves.begin(), leaves.end());
-  ends.end = ends.start;
-  ends.bounds.resize(leaves.size());
-  const int count = static_cast<int>(leaves.size());
-#pragma omp parallel for schedule(static)
-  for (int l = 0; l < count; ++l)
-    ends.bounds[l] = {set_leaf_boxes(ends.start[l], start), set_leaf_boxes(ends.end[l], end)};
+  ends.start[place] = ends.end[place] = leaf;
+  ends.bounds[place] = {set_leaf_boxes(ends.start[place], start), set_leaf_boxes(ends.end[place], end)};
 }
 
 void set_end_boxes(const Bvh& tree, const EndLeaves& leaves, std::vector<EndBoxes>& nodes) {

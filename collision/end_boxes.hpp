@@ -11,10 +11,12 @@ namespace selvedge {
 struct EndLeaves {
   std::vector<Bvh::Leaf> start, end;
   std::vector<EndBoxes> bounds;  // of each leaf
+
+  void resize(std::size_t leaves);
 };
 
-// Of the leaves' items, whose boxes at both ends are given.
-void set_end_boxes(std::span<const Bvh::Leaf> leaves, std::span<const Box> start, std::span<const Box> end, EndLeaves&);
+// Of a leaf's items, whose boxes at both ends are given; it is the one at that place of the EndLeaves.
+void set_end_boxes(const Bvh::Leaf&, std::span<const Box> start, std::span<const Box> end, int place, EndLeaves&);
 
 // Of a tree's nodes, from those of its leaves.
 void set_end_boxes(const Bvh&, const EndLeaves&, std::vector<EndBoxes>& nodes);

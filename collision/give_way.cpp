@@ -93,20 +93,40 @@ struct Meeting {
   double share;  // of what is missing that the vertex goes
 };
 
+// A posed body with its vertices also in the order of a grid: whoever looks round goes through memory in order.
+struct Posed {
+  const Points& x;
+  Points normals;
+  CellGrid grid;
+  Points x_near, normals_near;
+
+  Posed(const Flesh& flesh, const Points& posed)
+      : x(posed),
+        normals(vertex_normals(flesh.body, posed)),
+        grid(posed, flesh.reach / 2),
+        x_near(posed(grid.order(), Eigen::all)),
+        normals_near(normals(grid.order(), Eigen::all)) {}
+};
+
 // The nearest vertex of a part that faces v and that was farther at rest; -1: none.
-int facing(const Flesh& flesh, int v, const CellGrid& grid, const Points& x, const Points& normals) {
+int facing(const Flesh& flesh, int v, const Posed& body) {
   const Points& rest = flesh.shape.x0;
+  const Vec3 at = row(body.x, v), normal = row(body.normals, v);
   int found = -1;
   double nearest = flesh.reach * flesh.reach;
-  grid.for_each_near(row(x, v), flesh.reach, [&](int w) {
-    const Vec3 way = row(x, v) - row(x, w);
-    const double square = way.squaredNorm();
-    if (square >= nearest || row(normals, w).dot(row(normals, v)) > opposed) return;
-    const double thin = deepest * std::min(flesh.thickness[v], flesh.thickness[w]);
-    if (square >= thin * thin && way.dot(row(normals, w)) < 0) return;
-    if (square >= closer * closer * (rest.row(v) - rest.row(w)).squaredNorm()) return;
-    nearest = square;
-    found = w;
+  body.grid.for_each_run_near(at, flesh.reach, [&](int first, int last) {
+    for (int p = first; p < last; ++p) {
+      if (row(body.normals_near, p).dot(normal) > opposed) continue;
+      const Vec3 way = at - row(body.x_near, p);
+      const double square = way.squaredNorm();
+      if (square >= nearest) continue;
+      const int w = body.grid.order()[p];
+      const double thin = deepest * std::min(flesh.thickness[v], flesh.thickness[w]);
+      if (square >= thin * thin && way.dot(row(body.normals, w)) < 0) continue;
+      if (square >= closer * closer * (rest.row(v) - rest.row(w)).squaredNorm()) continue;
+      nearest = square;
+      found = w;
+    }
   });
   return found;
 }
@@ -114,12 +134,14 @@ int facing(const Flesh& flesh, int v, const CellGrid& grid, const Points& x, con
 double gap_of(const Meeting& m, const Points& x) { return m.apart.dot(row(x, m.vertex) - row(x, m.partner)); }
 
 std::vector<Meeting> meetings(const Flesh& flesh, const Points& x) {
-  const Points normals = vertex_normals(flesh.body, x);
-  const Points& rest = flesh.shape.x0;
-  const CellGrid grid(x, flesh.reach / 2);
+  const Posed body(flesh, x);
+  const Points &rest = flesh.shape.x0, &normals = body.normals;
+  std::vector<int> partner(static_cast<std::size_t>(flesh.body.vertex_count));
+#pragma omp parallel for schedule(dynamic, 64)
+  for (int v = 0; v < flesh.body.vertex_count; ++v) partner[v] = facing(flesh, v, body);
   std::vector<Meeting> found;
   for (int v = 0; v < flesh.body.vertex_count; ++v) {
-    const int w = facing(flesh, v, grid, x, normals);
+    const int w = partner[v];
     if (w < 0) continue;
     const Vec3 apart = (row(normals, w) - row(normals, v)).normalized(), way = row(x, v) - row(x, w);
     const double gap = way.dot(apart), aside = (way - gap * apart).norm();

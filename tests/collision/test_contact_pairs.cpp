@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <set>
 
@@ -9,6 +10,7 @@
 
 using namespace selvedge;
 using testing::join;
+using testing::Sheet;
 using testing::sheet;
 
 namespace {
@@ -129,4 +131,49 @@ TEST_CASE("contact pairs: a search for marked nodes finds what has one, and noth
   std::sort(some.begin(), some.end());
   CHECK(all.size() > 3);
   CHECK(some == all);
+}
+
+TEST_CASE("contact pairs: none with an obstacle is missed wherever the cloth goes over it", "[contact_pairs]") {
+  const auto cloth = sheet(3, 0.3, 0);
+  Sheet ground = sheet(30, 3, 0);  // a tree of many leaves, of which the cloth is near a few
+  for (Eigen::Index v = 0; v < ground.x.rows(); ++v) ground.x(v, 1) = 0.05 * std::sin(7.0 * static_cast<double>(v));
+  const Surface cloth_surface = make_surface(static_cast<int>(cloth.x.rows()), cloth.triangles);
+  const Surface ground_surface = make_surface(static_cast<int>(ground.x.rows()), ground.triangles);
+  const ContactWorld world = make_contact_world(cloth_surface, {&ground_surface}, true);
+  const auto n = cloth.x.rows();
+  const double radius = 0.04;
+  PairSearch kept(world);
+  const double ground_way = GENERATE(0.0, 0.2);  // it stands still, so that its boxes are kept, or not
+  std::vector<NodePair> away;
+  Points high = gather_nodes(cloth.x, {ground.x});
+  high.topRows(n).col(1).array() += 5;
+  const Points on = high.rowwise() + Eigen::RowVector3d(1, 0, 0);
+  kept.find(high, on, radius, away);
+  CHECK(std::ranges::all_of(away, [&](const NodePair& pair) { return world.is_cloth(pair.nodes[3]); }));
+  for (int place = 0; place < 6; ++place) {
+    Points from = gather_nodes(cloth.x, {ground.x}), to = from;
+    const double a = 0.3 * (place % 3) * place, b = place % 2 ? 0.35 : 0.0;  // boxes at both ends where it goes far
+    from.topRows(n).rowwise() += Eigen::RowVector3d(std::cos(a), 0.1, std::sin(a));
+    to.topRows(n) = from.topRows(n).rowwise() + Eigen::RowVector3d(b, -0.08, b);
+    to.bottomRows(ground.x.rows()).col(0).array() += ground_way;
+    std::vector<NodePair> found, fresh;
+    kept.find(from, to, radius, found);
+    PairSearch(world).find(from, to, radius, fresh);
+    std::ranges::sort(fresh);
+    std::ranges::sort(found);
+    CHECK(found == fresh);
+    int near = 0;
+    for (int v = 0; v < n; ++v)
+      for (const auto& f : ground_surface.triangles.rowwise()) {
+        const int first = world.first_node[0];
+        const NodePair pair{PairKind::vertex_face, {v, f[0] + first, f[1] + first, f[2] + first}};
+        for (int k = 0; k <= 8; ++k)
+          if (distance(pair, from + k / 8.0 * (to - from)) < radius) {
+            ++near;
+            CHECK(std::ranges::binary_search(found, pair));
+            break;
+          }
+      }
+    CHECK(near > 10);
+  }
 }

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/end_boxes.hpp"
+#include "collision/surface.hpp"
+
+namespace selvedge {
+
+// Vertices or edges by the leaf of a tree of triangles that owns them, eight together.
+struct PrimitiveGroups {
+  std::vector<Bvh::Leaf> groups;
+  std::vector<int> begin;  // those of leaf l are groups[begin[l] .. begin[l + 1])
+  EndLeaves ends;
+
+  // Corner k of triangle t has the primitive primitives(t, k).
+  void share_out(const Bvh&, const Triangles& primitives, const std::vector<int>& owner);
+};
+
+// A surface that takes part in a search, and the tree of its triangles. What a leaf's triangles own has boxes only once
+// something comes near to the leaf: of a body most is away from what it wears.
+class SearchPart {
+ public:
+  SearchPart() = default;
+  SearchPart(const Surface& s, int first) : surface(&s), first_node(first) {}
+
+  // Boxes round the straight motion x0 -> x1 of all nodes, grown by half the radius [m]. What stands still since the
+  // last time is not refitted.
+  void move(const Points& x0, const Points& x1, double radius);
+  // What overlaps something of the other tree, which is nothing of this one, or else all. With boxes at both ends where
+  // `ends`.
+  void fill(const Bvh* other, bool ends);
+  // By node of the tree: it holds a marked node.
+  void mark(const std::vector<char>& nodes);
+
+  const Surface* surface = nullptr;
+  int first_node = 0;
+  KeptBvh tree;
+  PrimitiveGroups vertices, edges;
+  EndLeaves faces_ends;
+  std::vector<EndBoxes> node_ends;
+  std::vector<char> marks;
+
+ private:
+  struct Boxes {
+    std::vector<Box> vertices, edges, triangles;
+  };
+  std::vector<int> to_fill(const Bvh* other, const std::vector<char>& filled) const;
+  void fill_leaf(int leaf);
+  void fill_ends(int leaf);
+  void set_edge_boxes(int leaf, Boxes&) const;
+
+  Points from_, to_;  // what the boxes hold
+  double radius_ = -1;
+  Boxes boxes_, start_, end_;
+  bool has_ends_ = false;  // of vertices
+  std::vector<char> filled_, filled_ends_;
+};
+
+}  // namespace selvedge
