@@ -360,9 +360,9 @@ void ConventionalStepper::prepare_contact(const State& from, const Drive& drive,
   Points& nodes = leg.nodes;
   const bool exempt = parting_.left.any();
   look_for_room_ = from.pinched;
-  const Wearing wearing{&wanted, &drive.worn, gather_nodes(from.last_clean.x, from.last_clean.obstacles),
-                        scene_.contact.thickness, dt};
-  parting_ = part_at_start(world_, self_crossings_, inverse_mass_, edge_length_, from.clean, wearing, nodes, leg.v);
+  const WornPlaces where{&wanted, &drive.worn, gather_nodes(from.last_clean.x, from.last_clean.obstacles),
+                         scene_.contact.thickness, dt};
+  parting_ = part_at_start(world_, self_crossings_, inverse_mass_, edge_length_, from.clean, where, nodes, leg.v);
   report.collision.left_alone = parting_.left.cloth_vertices();
   if (exempt || parting_.left.any()) path_ = {};  // what was listed then is not what is to be listed now
   search_.leave_out(parting_.left.any() ? &parting_.left : nullptr);

@@ -16,8 +16,8 @@ constexpr double astray = 0.5;        // from where it is worn, of tangled cloth
 }  // namespace
 
 Parting part_at_start(const ContactWorld& world, SelfCrossings& self_crossings, const Eigen::VectorXd& inverse_mass,
-                      double edge_length, bool clean, const Wearing& wearing, Points& nodes, Points& v) {
-  const Points &wanted = *wearing.wanted, &worn = *wearing.worn;
+                      double edge_length, bool clean, const WornPlaces& where, Points& nodes, Points& v) {
+  const Points &wanted = *where.wanted, &worn = *where.worn;
   Parting parting;
   std::optional<Exemption> untouched;
   if (!clean && nodes.allFinite()) {
@@ -28,12 +28,12 @@ Parting part_at_start(const ContactWorld& world, SelfCrossings& self_crossings, 
   std::vector<char> pierced, sunken;
   if (!untouched) pierced = pierced_vertices(world, parting.left, nodes, wanted, worn, astray * edge_length);
   if (!untouched) sunken = sunken_vertices(world, parting.left, worn);
-  const PutOn put = put_on(world, either(sunken, pierced), wearing, nodes, v);
+  const PutOn put = put_on(world, either(sunken, pierced), where, nodes, v);
   if (put == PutOn::done) parting.left = find_exemption(world, nodes);
   if (put == PutOn::done) pierced.clear();
   parting.carried = either(carried_vertices(world, parting.left, worn, nodes, edge_length), pierced);
   if (parting.left.cloth() && !untouched) {
-    const double reach = recovery_speed * wearing.h;
+    const double reach = recovery_speed * where.h;
     Recovery recovery = recover(world, inverse_mass, reach, parting.left, parting.carried, nodes);
     parting.left = std::move(recovery.left);
     parting.gained = std::move(recovery.gained);

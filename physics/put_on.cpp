@@ -32,7 +32,7 @@ Points ways_along(const ContactWorld& world, const Points& at, const Points& pla
 }
 
 // Those within reach, the least tangled first: where it is worn, and where it was clean last, carried along since.
-std::vector<Place> places_for(const ContactWorld& world, const std::vector<int>& vertices, const Wearing& wearing,
+std::vector<Place> places_for(const ContactWorld& world, const std::vector<int>& vertices, const WornPlaces& where,
                               const Points& nodes) {
   std::vector<Place> places;
   const auto add = [&](const Points& there, Points ways) {
@@ -42,11 +42,11 @@ std::vector<Place> places_for(const ContactWorld& world, const std::vector<int>&
     place.pairs = intersecting_pairs(find_segments(WorldSheets(world, place.nodes).views));
     places.push_back(std::move(place));
   };
-  const Points &wanted = *wearing.wanted, worn = (*wearing.worn)(vertices, Eigen::all);
+  const Points &wanted = *where.wanted, worn = (*where.worn)(vertices, Eigen::all);
   const Points ways = ways_along(world, wanted, worn, nodes, wanted);
   add(worn - ways, ways);
-  if (wearing.last_clean.rows() > 0) {
-    const Points carried = carried_along(world, wearing.last_clean, nodes, wearing.thickness)(vertices, Eigen::all);
+  if (where.last_clean.rows() > 0) {
+    const Points carried = carried_along(world, where.last_clean, nodes, where.thickness)(vertices, Eigen::all);
     add(carried, ways_along(world, nodes, carried, nodes, wanted));
   }
   std::ranges::stable_sort(places, {}, &Place::pairs);
@@ -71,13 +71,13 @@ bool is_tangled(const Exemption& there, const Exemption& before, const std::vect
 
 }  // namespace
 
-PutOn put_on(const ContactWorld& world, const std::vector<char>& marked, const Wearing& wearing, Points& nodes,
+PutOn put_on(const ContactWorld& world, const std::vector<char>& marked, const WornPlaces& where, Points& nodes,
              Points& v) {
   std::vector<int> vertices;
   for (int i = 0; i < static_cast<int>(marked.size()); ++i)
     if (marked[i]) vertices.push_back(i);
   if (vertices.empty()) return PutOn::nothing;
-  std::vector<Place> places = places_for(world, vertices, wearing, nodes);
+  std::vector<Place> places = places_for(world, vertices, where, nodes);
   if (places.empty()) return PutOn::too_far;
   const Exemption before = find_exemption(world, nodes);
   for (Place& place : places) {
@@ -85,7 +85,7 @@ PutOn put_on(const ContactWorld& world, const std::vector<char>& marked, const W
     place.nodes.topRows(parted.x.rows()) = parted.x;  // of other layers as well, which the place may go through
     if (is_tangled(find_exemption(world, place.nodes), before, marked)) continue;
     nodes = std::move(place.nodes);
-    v(vertices, Eigen::all) = place.ways / wearing.h;
+    v(vertices, Eigen::all) = place.ways / where.h;
     return PutOn::done;
   }
   return PutOn::no_place;

@@ -10,7 +10,7 @@ namespace selvedge {
 // wherever it is worn that close. The last of the way is not left to them.
 
 // Where cloth is taken in a step: by the body that wears it, or by obstacles that it was clean beside.
-struct Wearing {
+struct WornPlaces {
   const Points* wanted;  // all nodes, with obstacles at the step's end
   const Points* worn;    // where the cloth is worn then
   Points last_clean;     // all nodes when the cloth was clean last; empty: it never was
@@ -27,6 +27,6 @@ enum class PutOn { nothing, too_far, no_place, done };
 // stay as they were if nothing is marked, if a marked vertex would go farther than 0.3 m, or if there is no place:
 // sixty iterations do not untangle it, fewer from two thousand pairs on. Cloth without one is better off where it is.
 // All must be finite, what is worn where it is marked.
-PutOn put_on(const ContactWorld&, const std::vector<char>& marked, const Wearing&, Points& nodes, Points& v);
+PutOn put_on(const ContactWorld&, const std::vector<char>& marked, const WornPlaces&, Points& nodes, Points& v);
 
 }  // namespace selvedge

@@ -153,7 +153,7 @@ void write_skin(const File& file, const SkinnedSurface& skin) {
 void write_form(const std::filesystem::path& path, const FileForm& form,
                 const std::function<void(const File&)>& fields) {
   std::filesystem::path beside = path;
-  beside += "." + std::to_string(::getpid()) + ".part";
+  beside += fmt::format(".{}.part", ::getpid());
   try {
     File file = File::create(beside);
     file.write_text("format", form.format);

@@ -55,7 +55,7 @@ struct Skewer {
   std::vector<char> pierced(double astray = 1) const {
     return pierced_vertices(world, find_exemption(world, nodes), nodes, nodes, w.drive.worn, astray);
   }
-  Wearing wearing(const Points& wanted, const Points& worn, const Points& last_clean = {}) const {
+  WornPlaces where(const Points& wanted, const Points& worn, const Points& last_clean = {}) const {
     return {&wanted, &worn, last_clean, w.scene.contact.thickness, 0.1};
   }
 };
@@ -118,7 +118,7 @@ TEST_CASE("pierced: cloth is drawn to where it is worn also while it cannot be p
   const std::vector<char> marked = skewer.pierced();
   REQUIRE_FALSE(marked.empty());
   Points nodes = skewer.nodes, v = skewer.w.state.v;
-  REQUIRE(put_on(skewer.world, marked, skewer.wearing(nodes, worn), nodes, v) ==
+  REQUIRE(put_on(skewer.world, marked, skewer.where(nodes, worn), nodes, v) ==
           PutOn::no_place);  // it crosses itself there
   const auto height = [](const Points& x) { return x.topRows(17 * 17).col(1).mean(); };
   CHECK(height(testing::run(skewer.w, 1).state.x) > height(skewer.w.state.x) + 0.05);
@@ -179,7 +179,7 @@ TEST_CASE("put on: cloth is where it is worn, clean, and moves along with what i
   Points wanted = skewer.nodes;
   wanted.bottomRows(wanted.rows() - skewer.w.state.x.rows()).rowwise() += way.transpose();
   Points nodes = skewer.nodes, v = skewer.w.state.v;
-  const auto put = [&] { return put_on(skewer.world, marked, skewer.wearing(wanted, skewer.w.drive.worn), nodes, v); };
+  const auto put = [&] { return put_on(skewer.world, marked, skewer.where(wanted, skewer.w.drive.worn), nodes, v); };
   skewer.w.drive.worn.col(1).array() += 0.1;
   CHECK(put() == PutOn::too_far);  // half a metre away
   CHECK(nodes == skewer.nodes);
@@ -198,14 +198,14 @@ TEST_CASE("put on: a place that is in the body is untangled, and one that cannot
   const std::vector<char> marked = skewer.pierced();
   Points worn = skewer.w.drive.worn, nodes = skewer.nodes, v = skewer.w.state.v;
   worn.col(1).array() -= 0.21;  // just in the spindle's tip
-  const auto put = [&] { return put_on(skewer.world, marked, skewer.wearing(skewer.nodes, worn), nodes, v); };
+  const auto put = [&] { return put_on(skewer.world, marked, skewer.where(skewer.nodes, worn), nodes, v); };
   CHECK(put() == PutOn::done);
   CHECK_FALSE(find_exemption(skewer.world, nodes).cloth());
   worn.col(1).array() -= 0.31;  // about its middle
   nodes = skewer.nodes;
   CHECK(put() == PutOn::no_place);
   CHECK(nodes == skewer.nodes);
-  CHECK(put_on(skewer.world, {}, skewer.wearing(skewer.nodes, worn), nodes, v) == PutOn::nothing);
+  CHECK(put_on(skewer.world, {}, skewer.where(skewer.nodes, worn), nodes, v) == PutOn::nothing);
 }
 
 TEST_CASE("put on: another layer that is in the way makes way, and keeps its velocity", "[pierced]") {
@@ -239,7 +239,7 @@ TEST_CASE("put on: where cloth was clean last is a place as well, carried to whe
   const Eigen::RowVector3d elsewhere(0.4, 1, -2), way(0.01, 0.02, -0.01);
   wanted.bottomRows(wanted.rows() - skewer.w.state.x.rows()).rowwise() += way;
   Points last_clean = skewer.nodes.rowwise() + elsewhere;
-  const auto put = [&] { return put_on(skewer.world, marked, skewer.wearing(wanted, worn, last_clean), nodes, v); };
+  const auto put = [&] { return put_on(skewer.world, marked, skewer.where(wanted, worn, last_clean), nodes, v); };
   CHECK(put() == PutOn::no_place);  // both
   last_clean.topRows(sheet).col(1).array() += 0.4;
   CHECK(put() == PutOn::no_place);  // that one is too far
