@@ -131,13 +131,6 @@ void vertex_boxes(const Points& x0, const Points& x1, double radius, std::vector
   for (int v = 0; v < count; ++v) boxes[v] = moving_point_box(row(x0, v), row(x1, v), radius);
 }
 
-void edge_boxes(const Surface& surface, std::span<const Box> vertices, std::vector<Box>& boxes) {
-  const int count = static_cast<int>(surface.edges.rows());
-  boxes.resize(count);
-#pragma omp parallel for schedule(static)
-  for (int e = 0; e < count; ++e) boxes[e] = hull(vertices[surface.edges(e, 0)], vertices[surface.edges(e, 1)]);
-}
-
 void triangle_boxes(const Surface& surface, std::span<const Box> vertices, std::vector<Box>& boxes) {
   const int count = static_cast<int>(surface.triangles.rows());
   boxes.resize(count);

@@ -12,7 +12,6 @@ namespace selvedge {
 // Boxes of the vertices over the straight motion x0 -> x1, grown by `radius` [m] on every side. x1 may be x0. A vertex
 // with an undefined coordinate has an empty box, and so has what is made of it.
 void vertex_boxes(const Points& x0, const Points& x1, double radius, std::vector<Box>& boxes);
-void edge_boxes(const Surface&, std::span<const Box> vertices, std::vector<Box>& boxes);
 void triangle_boxes(const Surface&, std::span<const Box> vertices, std::vector<Box>& boxes);
 // All in one.
 void triangle_boxes(const Surface&, const Points& x0, const Points& x1, double radius, std::vector<Box>& boxes);

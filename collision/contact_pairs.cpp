@@ -36,7 +36,7 @@ struct Side {
   Group group(const Bvh::Leaf& leaf, const EndLeaves& ends, int at) const {
     return node_ends ? Group{leaf, &ends.start[at], &ends.end[at]} : Group{leaf};
   }
-  Group faces(int leaf) const { return group(bvh().leaves[leaf], part.faces_ends, leaf); }
+  Group faces(int leaf) const { return group(bvh().leaves[leaf], part.face_ends, leaf); }
   template <class Visit>
   void for_each_group(const PrimitiveGroups& all, int first, int last, Visit&& visit) const {
     for (int g = first; g < last; ++g) visit(group(all.groups[g], all.ends, g));
@@ -161,8 +161,8 @@ void PairSearch::find(const Points& x0, const Points& x1, double radius, std::ve
   // Boxes at both ends tell more apart than those round whole motions only where these are the longer ones.
   const bool ends = !((x1 - x0).rowwise().squaredNorm().maxCoeff() <= radius * radius);
   const auto prepare = [&](SearchPart& part, const Bvh* other) {
-    part.move(x0, x1, radius);
-    part.fill(other, ends);
+    part.move(x0, x1, radius, ends);
+    part.fill(other);
     if (!marks.empty()) part.mark(marks);
   };
   prepare(cloth_, nullptr);

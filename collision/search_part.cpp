@@ -42,11 +42,12 @@ void PrimitiveGroups::share_out(const Bvh& bvh, const Triangles& primitives, con
   ends.resize(groups.size());
 }
 
-void SearchPart::move(const Points& x0, const Points& x1, double radius) {
+void SearchPart::move(const Points& x0, const Points& x1, double radius, bool ends) {
   const auto from = x0.middleRows(first_node, surface->vertex_count);
   const auto to = x1.middleRows(first_node, surface->vertex_count);
-  if (radius_ == radius && from_ == from && to_ == to) return;
+  if (radius_ == radius && ends_ == ends && from_ == from && to_ == to) return;
   radius_ = radius;
+  ends_ = ends;
   from_ = from;
   to_ = to;
   vertex_boxes(from_, to_, radius / 2, boxes_.vertices);
@@ -54,20 +55,18 @@ void SearchPart::move(const Points& x0, const Points& x1, double radius) {
   if (update(tree, boxes_.triangles)) {
     vertices.share_out(tree.bvh, surface->triangles, surface->vertex_owner);
     edges.share_out(tree.bvh, surface->triangle_edges, surface->edge_owner);
-    faces_ends.resize(tree.bvh.leaves.size());
+    face_ends.resize(tree.bvh.leaves.size());
   }
-  has_ends_ = false;
+  for (Boxes* boxes : {&boxes_, &start_, &end_}) {
+    boxes->edges.resize(surface->edges.rows());
+    boxes->triangles.resize(surface->triangles.rows());
+  }
   filled_.assign(tree.bvh.leaves.size(), 0);
-  filled_ends_ = filled_;
-}
-
-std::vector<int> SearchPart::to_fill(const Bvh* other, const std::vector<char>& filled) const {
-  std::vector<int> leaves;
-  for (const Bvh::Node& node : tree.bvh.nodes) {
-    if (node.child >= 0 || filled[~node.child]) continue;
-    if (!other || tree.bvh.leaves.size() == 1 || meets(*other, node.box)) leaves.push_back(~node.child);
-  }
-  return leaves;
+  node_ends.clear();
+  if (!ends) return;
+  vertex_boxes(from_, from_, radius / 2, start_.vertices);
+  vertex_boxes(to_, to_, radius / 2, end_.vertices);
+  std::ranges::fill(face_ends.bounds, EndBoxes{empty_box, empty_box});
 }
 
 void SearchPart::set_edge_boxes(int leaf, Boxes& boxes) const {
@@ -77,10 +76,11 @@ void SearchPart::set_edge_boxes(int leaf, Boxes& boxes) const {
 }
 
 void SearchPart::fill_leaf(int leaf) {
+  set_edge_boxes(leaf, boxes_);
   for (int g = vertices.begin[leaf]; g < vertices.begin[leaf + 1]; ++g)
     set_leaf_boxes(vertices.groups[g], boxes_.vertices);
-  set_edge_boxes(leaf, boxes_);
   for (int g = edges.begin[leaf]; g < edges.begin[leaf + 1]; ++g) set_leaf_boxes(edges.groups[g], boxes_.edges);
+  if (ends_) fill_ends(leaf);
   filled_[leaf] = 1;
 }
 
@@ -93,37 +93,24 @@ void SearchPart::fill_ends(int leaf) {
     }
     set_edge_boxes(leaf, *at);
   }
-  set_end_boxes(tree.bvh.leaves[leaf], start_.triangles, end_.triangles, leaf, faces_ends);
+  set_end_boxes(tree.bvh.leaves[leaf], start_.triangles, end_.triangles, leaf, face_ends);
   for (int g = vertices.begin[leaf]; g < vertices.begin[leaf + 1]; ++g)
     set_end_boxes(vertices.groups[g], start_.vertices, end_.vertices, g, vertices.ends);
   for (int g = edges.begin[leaf]; g < edges.begin[leaf + 1]; ++g)
     set_end_boxes(edges.groups[g], start_.edges, end_.edges, g, edges.ends);
-  filled_ends_[leaf] = 1;
 }
 
-void SearchPart::fill(const Bvh* other, bool ends) {
-  boxes_.edges.resize(surface->edges.rows());
-  const std::vector<int> leaves = to_fill(other, filled_);
+void SearchPart::fill(const Bvh* other) {
+  std::vector<int> leaves;
+  for (const Bvh::Node& node : tree.bvh.nodes) {
+    if (node.child >= 0 || filled_[~node.child]) continue;
+    // A traversal looks at two trees of one leaf each without asking their boxes.
+    if (!other || tree.bvh.leaves.size() == 1 || meets(*other, node.box)) leaves.push_back(~node.child);
+  }
   const int count = static_cast<int>(leaves.size());
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < count; ++i) fill_leaf(leaves[i]);
-  if (!ends) return;
-  const bool fresh = !has_ends_;
-  if (fresh) {
-    vertex_boxes(from_, from_, radius_ / 2, start_.vertices);
-    vertex_boxes(to_, to_, radius_ / 2, end_.vertices);
-    for (Boxes* at : {&start_, &end_}) {
-      at->triangles.resize(surface->triangles.rows());
-      at->edges.resize(surface->edges.rows());
-    }
-    std::ranges::fill(faces_ends.bounds, EndBoxes{empty_box, empty_box});
-    has_ends_ = true;
-  }
-  const std::vector<int> without = to_fill(other, filled_ends_);
-  const int more = static_cast<int>(without.size());
-#pragma omp parallel for schedule(static)
-  for (int i = 0; i < more; ++i) fill_ends(without[i]);
-  if (fresh || more > 0) set_end_boxes(tree.bvh, faces_ends, node_ends);
+  if (ends_ && (count > 0 || node_ends.empty())) set_end_boxes(tree.bvh, face_ends, node_ends);
 }
 
 void SearchPart::mark(const std::vector<char>& nodes) {

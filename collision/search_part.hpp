@@ -21,23 +21,21 @@ struct PrimitiveGroups {
 // something comes near to the leaf: of a body most is away from what it wears.
 class SearchPart {
  public:
-  SearchPart() = default;
   SearchPart(const Surface& s, int first) : surface(&s), first_node(first) {}
 
-  // Boxes round the straight motion x0 -> x1 of all nodes, grown by half the radius [m]. What stands still since the
-  // last time is not refitted.
-  void move(const Points& x0, const Points& x1, double radius);
-  // What overlaps something of the other tree, which is nothing of this one, or else all. With boxes at both ends where
-  // `ends`.
-  void fill(const Bvh* other, bool ends);
+  // Boxes round the straight motion x0 -> x1 of all nodes, grown by half the radius [m], and with `ends` at both ends
+  // of it too. What moves as it did the last time keeps what it has.
+  void move(const Points& x0, const Points& x1, double radius, bool ends);
+  // Of the leaves that overlap something of the other tree, which is that of another surface, or of all without one.
+  void fill(const Bvh* other);
   // By node of the tree: it holds a marked node.
   void mark(const std::vector<char>& nodes);
 
-  const Surface* surface = nullptr;
-  int first_node = 0;
+  const Surface* surface;
+  int first_node;
   KeptBvh tree;
   PrimitiveGroups vertices, edges;
-  EndLeaves faces_ends;
+  EndLeaves face_ends;
   std::vector<EndBoxes> node_ends;
   std::vector<char> marks;
 
@@ -45,16 +43,15 @@ class SearchPart {
   struct Boxes {
     std::vector<Box> vertices, edges, triangles;
   };
-  std::vector<int> to_fill(const Bvh* other, const std::vector<char>& filled) const;
   void fill_leaf(int leaf);
   void fill_ends(int leaf);
   void set_edge_boxes(int leaf, Boxes&) const;
 
   Points from_, to_;  // what the boxes hold
   double radius_ = -1;
+  bool ends_ = false;
   Boxes boxes_, start_, end_;
-  bool has_ends_ = false;  // of vertices
-  std::vector<char> filled_, filled_ends_;
+  std::vector<char> filled_;  // by leaf
 };
 
 }  // namespace selvedge

@@ -118,8 +118,8 @@ TEST_CASE("pierced: cloth is drawn to where it is worn also while it cannot be p
   const std::vector<char> marked = skewer.pierced();
   REQUIRE_FALSE(marked.empty());
   Points nodes = skewer.nodes, v = skewer.w.state.v;
-  REQUIRE(put_on(skewer.world, marked, skewer.where(nodes, worn), nodes, v) ==
-          PutOn::no_place);  // it crosses itself there
+  const PutOn put = put_on(skewer.world, marked, skewer.where(skewer.nodes, worn), nodes, v);
+  REQUIRE(put == PutOn::no_place);  // it crosses itself there
   const auto height = [](const Points& x) { return x.topRows(17 * 17).col(1).mean(); };
   CHECK(height(testing::run(skewer.w, 1).state.x) > height(skewer.w.state.x) + 0.05);
 }

@@ -77,15 +77,26 @@ TEST_CASE("resting stepper: part of a scene is the scene without the others", "[
   CHECK(lumped_masses(part.scene).sum() == Approx(0.4 * 0.09));
   w.state.x.setRandom();
   w.state.v.setRandom();
+  w.state.last_clean = {2 * w.state.x, {3 * w.state.obstacles[0]}};
   const State of_part = state_of(part, w.state);
   CHECK(of_part.x == w.state.x.bottomRows(49));
+  CHECK(of_part.last_clean.x == w.state.last_clean.x.bottomRows(49));
+  CHECK(of_part.last_clean.obstacles == w.state.last_clean.obstacles);
   CHECK(drive_of(part, w.drive).pins == w.drive.pins);
   State back = w.state;
   back.x.bottomRows(49).setZero();
   back.v.bottomRows(49).setZero();
+  back.last_clean = {};
   put(part, of_part, back);
   CHECK(back.x == w.state.x);
   CHECK(back.v == w.state.v);
+  CHECK(back.last_clean.x.topRows(36) == w.state.x.topRows(36));  // what is left out has not moved
+  CHECK(back.last_clean.x.bottomRows(49) == w.state.last_clean.x.bottomRows(49));
+  CHECK(back.last_clean.obstacles == w.state.last_clean.obstacles);
+  State clean = of_part;
+  clean.last_clean = {};
+  put(part, clean, back);
+  CHECK(back.last_clean.x.rows() == 0);
   const Audit audit = whole_audit(part, Audit{{{0, 3}}, {{1, 2}}, {{4, 5}}, 0, 0});
   CHECK(audit.self_pairs[0] == std::pair(50, 53));
   CHECK(audit.vertex_pairs[0] == std::pair(51, 52));
