@@ -4,12 +4,14 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/QR>
+#include <Eigen/Eigenvalues>
 
 #include "collision/distance.hpp"
 
 namespace selvedge {
 namespace {
+
+constexpr double no_inertia = 1e-14;  // of a principal axis, over the largest: nodes on a line have none about it
 
 Vec3 weighted(const Eigen::Vector4d& w, const std::array<Vec3, 4>& p) {
   return w[0] * p[0] + w[1] * p[1] + w[2] * p[2] + w[3] * p[3];
@@ -117,6 +119,17 @@ double project_zone(std::span<Impact*> impacts, const Eigen::VectorXd& inverse_m
   return violation;
 }
 
+Vec3 angular_velocity(const Mat3& inertia, const Vec3& momentum) {
+  const Eigen::SelfAdjointEigenSolver<Mat3> spectrum(inertia);
+  Vec3 turn = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 axis = spectrum.eigenvectors().col(k);
+    if (spectrum.eigenvalues()[k] > no_inertia * spectrum.eigenvalues()[2])
+      turn += axis.dot(momentum) / spectrum.eigenvalues()[k] * axis;
+  }
+  return turn;
+}
+
 void rigidify_zone(std::span<const int> nodes, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1) {
   double mass = 0;
   Vec3 centre = Vec3::Zero(), moved = Vec3::Zero();
@@ -134,8 +147,7 @@ void rigidify_zone(std::span<const int> nodes, const Eigen::VectorXd& inverse_ma
     momentum += arm.cross(row(x1, node) - row(x0, node) - moved) / inverse_mass[node];
     inertia += (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose()) / inverse_mass[node];
   }
-  // Nodes on a line have no inertia about it, and no momentum either.
-  const Vec3 turn = inertia.completeOrthogonalDecomposition().solve(momentum);
+  const Vec3 turn = angular_velocity(inertia, momentum);
   const double angle = turn.norm();
   const Mat3 rotation = angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Mat3(Mat3::Identity());
   for (const int node : nodes) x1.row(node) = (centre + moved + rotation * (row(x0, node) - centre)).transpose();

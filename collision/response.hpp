@@ -42,6 +42,10 @@ void apply_impulse(Impact&, const Eigen::VectorXd& inverse_mass, const Points& x
 double project_zone(std::span<Impact*> impacts, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1,
                     int max_sweeps, double tolerance);
 
+// The angular velocity with that angular momentum [kg m2 / s over kg m2]. Nodes on a line have no inertia about it, and
+// turn about it at no speed.
+Vec3 angular_velocity(const Mat3& inertia, const Vec3& momentum);
+
 // Rigid impact zone (Provot 1997; Bridson et al. 2002, section 7.4): the nodes go on from x0 as one rigid body with the
 // linear and angular momentum of their paths x0 -> x1, turned by the whole angle of the step, so that no distance among
 // them changes. Prescribed nodes may not be among them.

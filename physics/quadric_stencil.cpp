@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include "physics/nearest.hpp"
@@ -14,6 +15,9 @@ namespace {
 // Least eigenvalue of the fit's normal matrix over the largest, points scaled to a mean distance of 1: below, the
 // points are too close to a conic.
 constexpr double least_determined = 5e-3;
+
+using Mat5 = Eigen::Matrix<double, 5, 5>;
+using Vec5 = Eigen::Vector<double, 5>;
 
 struct RestShape {
   const Scene& scene;
@@ -128,31 +132,41 @@ bool fit_quadric(const RestShape& shape, const Chart& chart, QuadricStencil& ste
   double size = 0;
   for (const Vec2& p : chart.points) size += p.norm() / static_cast<double>(count - 1);
   if (!(size > 0)) return false;
-  Eigen::MatrixXd quadric = Eigen::MatrixXd::Zero(count, 5);  // a row a point, times its weight
+  // The normal equations, weighted by 1 / |p|: `right` has a column a node's u, the centre's is minus the others' sum.
+  Mat5 normal = Mat5::Zero();
+  Eigen::Matrix<double, 5, Eigen::Dynamic> weighted = decltype(weighted)::Zero(5, count), right = weighted;
   Eigen::VectorXd weight = Eigen::VectorXd::Zero(count);
   for (Eigen::Index i = 1; i < count; ++i) {
     const Vec2 p = chart.points[static_cast<std::size_t>(i)] / size;
     if (!(p.norm() > 1e-6)) return false;
     weight[i] = 1 / p.norm();
-    quadric.row(i) << p.x(), p.y(), 0.5 * p.x() * p.x(), p.x() * p.y(), 0.5 * p.y() * p.y();
-    quadric.row(i) *= weight[i];
+    const Vec5 terms = Vec5(p.x(), p.y(), 0.5 * p.x() * p.x(), p.x() * p.y(), 0.5 * p.y() * p.y()) * weight[i];
+    normal += terms * terms.transpose();
+    weighted.col(i) = terms;
+    right.col(i) = terms * weight[i];
+    right.col(0) -= right.col(i);
   }
-  const Eigen::MatrixXd normal = quadric.transpose() * quadric;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(normal);
-  if (!(spectrum.eigenvalues()[0] > least_determined * spectrum.eigenvalues()[4])) return false;
-  Eigen::MatrixXd data = Eigen::MatrixXd(weight.asDiagonal());  // of u(p) - u(0)
-  data.col(0) = -weight;
-  const double denser = density(shape, stencil.vertex);
-  const Eigen::MatrixXd solution = normal.ldlt().solve(quadric.transpose() * data) / (size * size);
+  const Vec5 spectrum = Eigen::SelfAdjointEigenSolver<Mat5>(normal, Eigen::EigenvaluesOnly).eigenvalues();
+  if (!(spectrum[0] > least_determined * spectrum[4])) return false;
+  const Eigen::LDLT<Mat5> factor(normal);
+  const double denser = density(shape, stencil.vertex), scale = denser / (size * size);
   stencil.nodes = chart.nodes;
-  stencil.trace = denser * (solution.row(2) + solution.row(4));
-  stencil.a = denser * 0.5 * (solution.row(2) - solution.row(4));
-  stencil.b = denser * solution.row(3);
+  stencil.trace.resize(count);
+  stencil.a.resize(count);
+  stencil.b.resize(count);
   // A clamp's kink is no quadric and must not be held for a misfit.
-  if (denser > 1)
-    stencil.misfit.resize(0, count);
-  else
-    stencil.misfit = (data / (size * size) - quadric * solution) / weight.norm();
+  stencil.misfit.resize(denser > 1 ? 0 : count, count);
+  const double misfit_scale = 1 / (size * size * weight.norm());
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Vec5 solution = factor.solve(Vec5(right.col(i)));
+    stencil.trace[i] = scale * (solution[2] + solution[4]);
+    stencil.a[i] = scale * 0.5 * (solution[2] - solution[4]);
+    stencil.b[i] = scale * solution[3];
+    for (Eigen::Index k = 0; k < stencil.misfit.rows(); ++k) {
+      const double u = i == 0 ? -weight[k] : i == k ? weight[k] : 0;
+      stencil.misfit(k, i) = misfit_scale * (u - weighted.col(k).dot(solution));
+    }
+  }
   return true;
 }
 

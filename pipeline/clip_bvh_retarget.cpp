@@ -43,7 +43,7 @@ Mat3 upright_axes(const BvhFile& bvh, const Source& s) {
   if (legs.dot(up) < 0.7 * legs.norm() || trunk.dot(up) < 0.7 * trunk.norm())
     throw Error("does not stand upright in its rest pose", bvh.file,
                 "give rest_frame, the number of a frame in which it does");
-  return Eigen::Quaterniond::FromTwoVectors(up, Vec3::UnitY()).toRotationMatrix();
+  return rotation_between(up, Vec3::UnitY());
 }
 
 double limb(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).norm() + (c - b).norm(); }

@@ -144,9 +144,7 @@ BodyPose solve(const Skeleton& k, Figure& f, const std::array<FootPose, 2>& feet
     local[foot + s] = about(0, -stand.heel_up);  // toes stay flat
     const Mat3 arm = middle(side) * rotation_matrix(f.arm(side));
     const Vec3 x = k.mirror[side] * Vec3::UnitX();
-    const auto onto_x = [&](int from, int to) {
-      return Eigen::Quaterniond::FromTwoVectors(joint(k, to) - joint(k, from), x).toRotationMatrix();
-    };
+    const auto onto_x = [&](int from, int to) { return rotation_between(joint(k, to) - joint(k, from), x); };
     const Mat3 upper = onto_x(shoulder + side, elbow + side), fore = onto_x(elbow + side, wrist + side);
     local[collar + s] = collar_rotation(side, arm * x, f.shrug(side));
     local[shoulder + s] = local[collar + s].transpose() * arm * upper;

@@ -21,14 +21,19 @@ Eigen::VectorXd bends_at(const Eigen::MatrixXd& weights, const std::vector<int>&
 }  // namespace
 
 void meet(const Points& x, const std::vector<int>& vertices, const Vec3& point, Eigen::VectorXd& weights) {
-  Eigen::MatrixXd conditions(4, weights.size());
+  Eigen::Matrix4Xd conditions(4, weights.size());
   for (std::size_t k = 0; k < vertices.size(); ++k)
     conditions.col(static_cast<Eigen::Index>(k)) << 1, row(x, vertices[k]) - point;
   for (int round = 0; round < 20; ++round) {
-    const Eigen::MatrixXd scaled = conditions * weights.asDiagonal();
-    const Eigen::Vector4d missing = Eigen::Vector4d(1, 0, 0, 0) - conditions * weights;
-    const Eigen::Matrix4d system = scaled * conditions.transpose();
-    weights += scaled.transpose() * system.ldlt().solve(missing);
+    Eigen::Vector4d missing(1, 0, 0, 0);
+    Eigen::Matrix4d system = Eigen::Matrix4d::Zero();
+    for (Eigen::Index k = 0; k < weights.size(); ++k) {
+      const Eigen::Vector4d condition = conditions.col(k);
+      missing -= weights[k] * condition;
+      system += weights[k] * condition * condition.transpose();
+    }
+    const Eigen::Vector4d multipliers = system.ldlt().solve(missing);
+    for (Eigen::Index k = 0; k < weights.size(); ++k) weights[k] += weights[k] * conditions.col(k).dot(multipliers);
     if (weights.minCoeff() >= 0) return;
     weights = weights.cwiseMax(0);
   }

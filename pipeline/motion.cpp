@@ -6,6 +6,16 @@
 namespace selvedge {
 namespace {
 
+constexpr double opposite = 1e-12;  // directions whose cosine is nearer to -1 have no axis of their own
+
+// A unit vector perpendicular to both, which may be parallel.
+Vec3 perpendicular(const Vec3& a, const Vec3& b) {
+  Eigen::Matrix<double, 3, 2> both;
+  both << a, b;
+  const Eigen::ColPivHouseholderQR<decltype(both)> factors(both / both.cwiseAbs().maxCoeff());
+  return factors.householderQ() * Vec3::UnitZ();
+}
+
 double between(const std::vector<double>& times, const std::vector<Vec3>& values, std::size_t k, int axis) {
   return (values[k + 1][axis] - values[k][axis]) / (times[k + 1] - times[k]);
 }
@@ -67,6 +77,23 @@ Mat3 rotation_matrix(const Vec3& rotation_vector) {
 Vec3 rotation_vector(const Mat3& rotation) {
   const Eigen::AngleAxisd turn(rotation);  // by way of a quaternion: exact near 0 and pi
   return turn.angle() * turn.axis();
+}
+
+Mat3 rotation_between(const Vec3& a, const Vec3& b) {
+  const Vec3 from = a.normalized(), to = b.normalized();
+  const double cosine = std::max(to.dot(from), -1.0);
+  if (cosine < -1 + opposite) {
+    const double half = (1 + cosine) / 2;  // the square of the cosine of half the angle
+    Eigen::Quaterniond turn;
+    turn.w() = std::sqrt(half);
+    turn.vec() = std::sqrt(1 - half) * perpendicular(from, to);
+    return turn.toRotationMatrix();
+  }
+  const double twice = std::sqrt(2 * (1 + cosine));
+  Eigen::Quaterniond turn;
+  turn.w() = twice / 2;
+  turn.vec() = from.cross(to) / twice;
+  return turn.toRotationMatrix();
 }
 
 Points moved(const Motion& motion, const Points& x, double time) {

@@ -39,4 +39,8 @@ Mat3 rotation_matrix(const Vec3& rotation_vector);
 // The rotation vector of a rotation, no longer than pi.
 Vec3 rotation_vector(const Mat3&);
 
+// The shortest rotation that takes the direction of a to that of b; neither may be 0. Where they are opposite, its axis
+// is some direction perpendicular to a.
+Mat3 rotation_between(const Vec3& a, const Vec3& b);
+
 }  // namespace selvedge

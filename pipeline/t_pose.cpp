@@ -44,8 +44,7 @@ std::vector<Mat3> turned_limbs(const Points& joints, const Mat3& trunk,
     const Mat3& before = turned[static_cast<std::size_t>(above)];
     const Vec3 bone = before * (row(joints, child) - row(joints, joint)), to = wanted(joint, child);
     const bool turns = bone.norm() > 0 && to.norm() > 0;
-    turned[static_cast<std::size_t>(joint)] =
-        turns ? Mat3(Eigen::Quaterniond::FromTwoVectors(bone, to).toRotationMatrix() * before) : before;
+    turned[static_cast<std::size_t>(joint)] = turns ? Mat3(rotation_between(bone, to) * before) : before;
   };
   for (const int side : {0, 1}) {
     along(smpl::pelvis, smpl::hip + side, smpl::knee + side);

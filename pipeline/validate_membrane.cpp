@@ -1,4 +1,4 @@
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <cmath>
 
 #include "pipeline/known_answers.hpp"
@@ -50,9 +50,16 @@ std::vector<Measured> hanging(const ValidationValues& values) {
       make_strip_scene(strip_shape(values, length, values.number("width") * length),
                        membrane(stretch, values.number("nu"), 1e-5), -Vec3::UnitY(), Vec3::UnitX(), "root");
   const Points x = settled(strip.scene, strip.start, Vec3(0, -g, 0));
-  Eigen::MatrixXd basis(x.rows(), 2);
-  basis << -strip.start.col(1), strip.start.col(1).cwiseAbs2();
-  const Eigen::VectorXd fit = basis.colPivHouseholderQr().solve(strip.start.col(1) - x.col(1));
+  // Least squares of u = fit[0] s + fit[1] s^2.
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  Vec2 right = Vec2::Zero();
+  for (Eigen::Index v = 0; v < x.rows(); ++v) {
+    const double y = strip.start(v, 1);
+    const Vec2 terms(-y, y * y);
+    normal += terms * terms.transpose();
+    right += (y - x(v, 1)) * terms;
+  }
+  const Vec2 fit = normal.inverse() * right;
   const double tip = mean_of(strip.start, strip.tip).y() - mean_of(x, strip.tip).y();
   return {{"tip elongation / L", tip / length, density * g * length / (2 * stretch), Judged::relative, 0.02},
           {"top strain", fit[0], density * g * length / stretch, Judged::relative, 0.02}};

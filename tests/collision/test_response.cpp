@@ -137,3 +137,13 @@ TEST_CASE("response: a rigid zone keeps distances and both momenta", "[response]
   rigidify_zone(two, inverse_mass, line, line_end);
   CHECK((line_end.row(1) - line_end.row(0)).norm() == Approx(1));
 }
+
+TEST_CASE("response: what has no inertia about an axis does not turn about it", "[response]") {
+  const Mat3 inertia = Vec3(2, 3, 4).asDiagonal();
+  CHECK((angular_velocity(inertia, Vec3(2, 6, 1)) - Vec3(1, 2, 0.25)).norm() < 1e-15);
+  const Vec3 line = Vec3(1, 2, -2) / 3.0;
+  const Mat3 rod = 0.7 * (Mat3::Identity() - line * line.transpose());
+  const Vec3 across = line.cross(Vec3::UnitX());
+  CHECK((angular_velocity(rod, 0.7 * across) - across).norm() < 1e-14);
+  CHECK(angular_velocity(Mat3::Zero(), Vec3(0, 0, 0)) == Vec3(0, 0, 0));
+}

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/LU>
+
 #include "pipeline/motion.hpp"
 
 using namespace selvedge;
@@ -61,4 +63,19 @@ TEST_CASE("Only a change of pose is motion", "[motion]") {
   CHECK(is_still({}));
   CHECK(is_still({{{0, Vec3(1, 0, 0), Vec3(0, 0, 0)}, {1, Vec3(1, 0, 0), Vec3(0, 0, 0)}}, {}, {}}));
   CHECK_FALSE(is_still(two_keys(Interpolation::smooth)));
+}
+
+TEST_CASE("The rotation between two directions is the shortest, and defined where they are opposite", "[motion]") {
+  const Vec3 a(1, -2, 0.5), b(0.3, 1, 4);
+  const auto check = [](const Vec3& from, const Vec3& to, double angle) {
+    const Mat3 turn = rotation_between(from, to);
+    CHECK((turn * turn.transpose() - Mat3::Identity()).norm() < 1e-12);
+    CHECK(turn.determinant() == Approx(1));
+    CHECK((turn * from.normalized() - to.normalized()).norm() < 1e-12);
+    CHECK(rotation_vector(turn).norm() == Approx(angle).margin(1e-12));
+  };
+  check(a, b, std::acos(a.normalized().dot(b.normalized())));
+  check(a, 3 * a, 0);
+  check(a, -2 * a, std::numbers::pi);
+  for (int axis = 0; axis < 3; ++axis) check(Vec3::Unit(axis), -Vec3::Unit(axis), std::numbers::pi);
 }
