@@ -89,7 +89,6 @@ function clothMaterials(run, side) {
                       roughness: 0.78,
                       metalness: 0,
                       side,
-                      polygonOffset: true,
                       polygonOffsetFactor: 1,
                       polygonOffsetUnits: 1,
                     })));
@@ -212,6 +211,9 @@ function makeFigure(run) {
         material.vertexColors = mode;
         material.needsUpdate = true;
       }
+      // Lines need to lie before the cloth; without them it stays where it is, or what is seen at a slant goes behind
+      // what it is worn over.
+      material.polygonOffset = look.wire;
       material.color.copy(base[s][c]);
       if (look.strain) material.color.setScalar(1);
     }));
