@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/find_exemption.hpp"
 #include "collision/floating_point.hpp"
 #include "collision/proximity.hpp"
 #include "collision/separation.hpp"

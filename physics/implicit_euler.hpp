@@ -11,8 +11,6 @@
 
 namespace selvedge {
 
-enum class LinearSolver { automatic, cholmod, pcg, multigrid };  // pcg: block Jacobi; multigrid: PCG with a V-cycle
-
 struct ImplicitEulerOptions {
   double velocity_tolerance = 1.7e-3;  // Newton ends when the RMS of its displacement is below this times the time
                                        // step [m/s],

@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "physics/coarsening.hpp"
-#include "physics/implicit_euler.hpp"
 #include "physics/linear_system.hpp"
 
 namespace selvedge {

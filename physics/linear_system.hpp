@@ -9,6 +9,8 @@
 
 namespace selvedge {
 
+enum class LinearSolver { automatic, cholmod, pcg, multigrid };  // pcg: block Jacobi; multigrid: PCG with a V-cycle
+
 // Row i of a scalar matrix whose rows sum to zero, times the coordinates u.
 Vec3 multiply_flat_row(const SparseMatrix& flat, const Points& u, int i);
 

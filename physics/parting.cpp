@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "collision/find_exemption.hpp"
 #include "physics/carrying.hpp"
 #include "physics/pierced.hpp"
 #include "physics/put_on.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "collision/exemption.hpp"
+#include "collision/find_exemption.hpp"
 #include "collision/untangle.hpp"
 #include "collision/world_sheets.hpp"
 #include "physics/carried_along.hpp"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "collision/find_exemption.hpp"
 #include "collision/untangle.hpp"
 #include "collision/world_sheets.hpp"
 #include "physics/balanced_motion.hpp"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "collision/exemption.hpp"
+#include "collision/find_exemption.hpp"
 #include "collision/proximity.hpp"
 #include "physics/external.hpp"
 #include "physics/features.hpp"

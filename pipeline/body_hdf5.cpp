@@ -1,6 +1,6 @@
 #include "pipeline/body_hdf5.hpp"
 
-#include "pipeline/hdf5_fields.hpp"
+#include "pipeline/skin_hdf5.hpp"
 
 namespace selvedge {
 namespace {
@@ -27,7 +27,7 @@ BodyModel read_body(const std::filesystem::path& path) {
   body.joints = fields.texts("joints");
   body.parents = fields.integers("parents");
   const auto joints = static_cast<Eigen::Index>(body.parents.size());
-  body.skin = fields.skin(joints);
+  body.skin = h5::read_skin(fields, joints);
   body.regressor = fields.sparse("regressor", joints, body.skin.rest.rows());
   check_body(body, path.string());
   return body;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "pipeline/hdf5_fields.hpp"
+#include "pipeline/skin_hdf5.hpp"
 
 namespace selvedge {
 namespace {
@@ -112,7 +112,7 @@ Garment read_garment(const std::filesystem::path& path) {
   Garment garment;
   garment.name = fields.has("name") ? fields.text("name") : path.stem().string();
   if (fields.has("made_for")) garment.made_for = fields.text("made_for");
-  garment.skin = fields.skin(read_joint_count(fields));
+  garment.skin = h5::read_skin(fields, read_joint_count(fields));
   garment.made_in = read_made_in(fields);
   read_groups(fields, garment);
   if (fields.has("pins")) garment.pins = fields.integers("pins");

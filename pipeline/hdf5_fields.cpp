@@ -16,11 +16,6 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 std::vector<hsize_t> extents(const std::vector<Eigen::Index>& shape) { return {shape.begin(), shape.end()}; }
 
-void write_directions(const File& file, const std::string& name, const Eigen::MatrixXd& directions) {
-  const RowMajor rows = directions;
-  file.write_constant(name, H5T_NATIVE_DOUBLE, extents({rows.rows() / 3, 3, rows.cols()}), rows.data());
-}
-
 }  // namespace
 
 Fields::Fields(const std::filesystem::path& path, FileForm form) : form_(std::move(form)), file_(File::open(path)) {
@@ -88,7 +83,7 @@ Triangles Fields::triangles(const std::string& field) const {
   return rows_of_three<Triangles>(field, H5T_NATIVE_INT32);
 }
 
-SkinWeights Fields::sparse(const std::string& field, Eigen::Index rows, Eigen::Index cols) const {
+SparseRows Fields::sparse(const std::string& field, Eigen::Index rows, Eigen::Index cols) const {
   const auto begins = integers(field + "/indptr"), indices = integers(field + "/indices");
   const auto data = numbers(field + "/data");
   if (static_cast<Eigen::Index>(begins.size()) != rows + 1)
@@ -106,19 +101,9 @@ SkinWeights Fields::sparse(const std::string& field, Eigen::Index rows, Eigen::I
         fail(field + "/indices", fmt::format("has the index {}, out of range for {}", column, cols));
       entries.emplace_back(static_cast<int>(r), column, data[static_cast<std::size_t>(k)]);
     }
-  SkinWeights matrix(rows, cols);
+  SparseRows matrix(rows, cols);
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;
-}
-
-SkinnedSurface Fields::skin(Eigen::Index joints) const {
-  SkinnedSurface skin;
-  skin.rest = points("rest");
-  skin.triangles = triangles("triangles");
-  skin.weights = sparse("weights", skin.rest.rows(), joints);
-  skin.shape_directions = directions("shape_directions", skin.rest.rows());
-  skin.pose_directions = directions("pose_directions", skin.rest.rows());
-  return skin;
 }
 
 void write_integers(const File& file, const std::string& name, const std::vector<int>& values) {
@@ -133,8 +118,8 @@ void write_points(const File& file, const std::string& name, const Points& point
   file.write_constant(name, H5T_NATIVE_DOUBLE, extents({points.rows(), 3}), points.data());
 }
 
-void write_sparse(const File& file, const std::string& name, const SkinWeights& matrix) {
-  SkinWeights rows = matrix;
+void write_sparse(const File& file, const std::string& name, const SparseRows& matrix) {
+  SparseRows rows = matrix;
   rows.makeCompressed();
   const Handle group = file.make_group(name);
   file.write_constant(name + "/indptr", H5T_NATIVE_INT32, extents({rows.rows() + 1}), rows.outerIndexPtr());
@@ -142,12 +127,9 @@ void write_sparse(const File& file, const std::string& name, const SkinWeights& 
   file.write_constant(name + "/data", H5T_NATIVE_DOUBLE, extents({rows.nonZeros()}), rows.valuePtr());
 }
 
-void write_skin(const File& file, const SkinnedSurface& skin) {
-  write_points(file, "rest", skin.rest);
-  file.write_constant("triangles", H5T_NATIVE_INT32, extents({skin.triangles.rows(), 3}), skin.triangles.data());
-  write_sparse(file, "weights", skin.weights);
-  write_directions(file, "shape_directions", skin.shape_directions);
-  write_directions(file, "pose_directions", skin.pose_directions);
+void write_directions(const File& file, const std::string& name, const Eigen::MatrixXd& directions) {
+  const RowMajor rows = directions;
+  file.write_constant(name, H5T_NATIVE_DOUBLE, extents({rows.rows() / 3, 3, rows.cols()}), rows.data());
 }
 
 void write_form(const std::filesystem::path& path, const FileForm& form,

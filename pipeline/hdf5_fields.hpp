@@ -5,10 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/body.hpp"
+#include <Eigen/SparseCore>
+
+#include "collision/points.hpp"
 #include "pipeline/hdf5_handles.hpp"
 
 namespace selvedge::h5 {
+
+using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 // What a form of ours is called in its files, and the page that describes it.
 struct FileForm {
@@ -31,8 +35,9 @@ class Fields {
   std::vector<double> numbers(const std::string& field) const;
   Points points(const std::string& field) const;
   Triangles triangles(const std::string& field) const;
-  SkinWeights sparse(const std::string& field, Eigen::Index rows, Eigen::Index cols) const;
-  SkinnedSurface skin(Eigen::Index joints) const;
+  SparseRows sparse(const std::string& field, Eigen::Index rows, Eigen::Index cols) const;
+  // An array vertices x 3 x k as a matrix of 3 rows a vertex; of no columns where the field is missing.
+  Eigen::MatrixXd directions(const std::string& field, Eigen::Index vertices) const;
 
  private:
   std::vector<Eigen::Index> shape_of(const std::string& field, std::size_t rank) const;
@@ -40,7 +45,6 @@ class Fields {
   std::vector<T> list(const std::string& field, hid_t type) const;
   template <class Matrix>
   Matrix rows_of_three(const std::string& field, hid_t type) const;
-  Eigen::MatrixXd directions(const std::string& field, Eigen::Index vertices) const;
   FileForm form_;
   File file_;
 };
@@ -48,8 +52,8 @@ class Fields {
 void write_integers(const File&, const std::string& name, const std::vector<int>&);
 void write_numbers(const File&, const std::string& name, const std::vector<double>&);
 void write_points(const File&, const std::string& name, const Points&);
-void write_sparse(const File&, const std::string& name, const SkinWeights&);
-void write_skin(const File&, const SkinnedSurface&);
+void write_sparse(const File&, const std::string& name, const SparseRows&);
+void write_directions(const File&, const std::string& name, const Eigen::MatrixXd&);
 
 // A file of that form, written beside and renamed: `fields` writes what comes after `format`. Several processes may
 // write the same file, as they do in the cache: it is the last one's.

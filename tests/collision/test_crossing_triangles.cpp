@@ -5,7 +5,7 @@
 #include <set>
 
 #include "collision/audit.hpp"
-#include "collision/exemption.hpp"
+#include "collision/find_exemption.hpp"
 #include "tests/collision/sheets.hpp"
 
 using namespace selvedge;

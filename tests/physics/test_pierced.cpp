@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "collision/find_exemption.hpp"
 #include "physics/pierced.hpp"
 #include "physics/put_on.hpp"
 #include "physics/recovery.hpp"

@@ -1,6 +1,7 @@
 #include <random>
 
 #include "collision/audit.hpp"
+#include "collision/find_exemption.hpp"
 #include "collision/untangle.hpp"
 #include "physics/measures.hpp"
 #include "physics/recovery.hpp"
