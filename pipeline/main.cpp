@@ -3,12 +3,12 @@
 #include <iostream>
 #include <memory>
 
-#include "collision/error.hpp"
-#include "pipeline/commands.hpp"
-#include "pipeline/config.hpp"
-#include "pipeline/make_stepper.hpp"
-#include "pipeline/process_threads.hpp"
-#include "pipeline/version.hpp"
+#include "collision/geometry/error.hpp"
+#include "pipeline/commands/commands.hpp"
+#include "pipeline/config/config.hpp"
+#include "pipeline/host/process_threads.hpp"
+#include "pipeline/host/version.hpp"
+#include "pipeline/scene/make_stepper.hpp"
 
 using namespace selvedge;
 

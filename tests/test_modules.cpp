@@ -26,7 +26,7 @@ struct Heavy {
   std::string package, header, files;
 };
 const std::vector<Heavy> heavy_packages = {
-    {"HDF5", "(hdf5|H5.*)\\.h(pp)?", "(learned|pipeline)/.*hdf5.*|pipeline/info.cpp"},
+    {"HDF5", "(hdf5|H5.*)\\.h(pp)?", "(learned|pipeline)/.*hdf5.*|pipeline/tools/info.cpp"},
     {"CHOLMOD", "(.*/)?cholmod\\.h", ".*_cholmod\\.cpp"},
     {"libtorch", "(torch|ATen|c10)/.*", "learned/.*_torch\\.(cpp|hpp)"},
     {"FCL", "fcl/.*", ".*_fcl\\.cpp"},
@@ -34,7 +34,7 @@ const std::vector<Heavy> heavy_packages = {
     {"CLI11", "CLI/.*", "pipeline/.*\\.cpp"},
     {"nlohmann-json", "nlohmann/.*", "pipeline/.*\\.cpp"},
     {"fmt", "fmt/.*", "pipeline/.*"},
-    {"libzip", "zip\\.h", "pipeline/npz\\.cpp"},
+    {"libzip", "zip\\.h", "pipeline/formats/npz\\.cpp"},
     {"Catch2", "catch2/.*", "tests/.*"},
 };
 
@@ -178,9 +178,9 @@ TEST_CASE("modules: includes go left along the chain", "[modules]") {
 
   CHECK(wrong_directions("physics/a.cpp", "#include \"physics/a.hpp\"\n#include <vector>\n").empty());
   CHECK(wrong_directions("pipeline/a.cpp", "#include \"collision/a.hpp\"\n").empty());
-  CHECK(listed(wrong_directions("collision/a.cpp", "\n#include \"physics/scene.hpp\"\n")) ==
-        "\ncollision/a.cpp:2: collision must not include physics/scene.hpp");
-  CHECK(wrong_directions("collision/a.cpp", "#include <physics/scene.hpp>\n").size() == 2);
+  CHECK(listed(wrong_directions("collision/a.cpp", "\n#include \"physics/scene/scene.hpp\"\n")) ==
+        "\ncollision/a.cpp:2: collision must not include physics/scene/scene.hpp");
+  CHECK(wrong_directions("collision/a.cpp", "#include <physics/scene/scene.hpp>\n").size() == 2);
   CHECK(wrong_directions("physics/a.cpp", "#include \"scene.hpp\"\n").size() == 1);
   CHECK(wrong_directions("physics/a.cpp", "#include \"../collision/bvh.hpp\"\n").size() == 1);
   CHECK(wrong_directions("physics/a.cpp", "  #  include \"tests/grid.hpp\"\n").size() == 1);
@@ -189,26 +189,26 @@ TEST_CASE("modules: includes go left along the chain", "[modules]") {
 TEST_CASE("modules: heavy packages stay in the files named for them", "[modules]") {
   CHECK(listed(over_all_sources(misplaced_packages)) == "");
 
-  CHECK(misplaced_packages("pipeline/trajectory_hdf5.cpp", "#include <hdf5.h>\n").empty());
-  CHECK(misplaced_packages("pipeline/check.cpp", "#include <hdf5.h>\n").size() == 1);
+  CHECK(misplaced_packages("pipeline/formats/trajectory_hdf5.cpp", "#include <hdf5.h>\n").empty());
+  CHECK(misplaced_packages("pipeline/tools/check.cpp", "#include <hdf5.h>\n").size() == 1);
   CHECK(misplaced_packages("collision/sdf_hdf5.cpp", "#include <hdf5.h>\n").size() == 1);
   CHECK(misplaced_packages("physics/solver.cpp", "#include <cholmod.h>\n").size() == 1);
   CHECK(misplaced_packages("physics/solver.cpp", "#include <suitesparse/cholmod.h>\n").size() == 1);
   CHECK(misplaced_packages("learned/engine.cpp", "#include <torch/torch.h>\n").size() == 1);
-  CHECK(misplaced_packages("physics/scene.cpp", "#include <yaml-cpp/yaml.h>\n").size() == 1);
-  CHECK(misplaced_packages("pipeline/setup.hpp", "#include <nlohmann/json.hpp>\n").size() == 1);
+  CHECK(misplaced_packages("physics/scene/scene.cpp", "#include <yaml-cpp/yaml.h>\n").size() == 1);
+  CHECK(misplaced_packages("pipeline/scene/setup.hpp", "#include <nlohmann/json.hpp>\n").size() == 1);
 }
 
 TEST_CASE("modules: files are short and say in their names what they hold", "[modules]") {
   CHECK(sources().size() > 20);
   CHECK(listed(over_all_sources(bad_shape)) == "");
 
-  CHECK(bad_shape("physics/scene.cpp", std::string(longest_file, '\n')).empty());
-  CHECK(bad_shape("physics/scene.cpp", std::string(longest_file + 1, '\n')).size() == 1);
+  CHECK(bad_shape("physics/scene/scene.cpp", std::string(longest_file, '\n')).empty());
+  CHECK(bad_shape("physics/scene/scene.cpp", std::string(longest_file + 1, '\n')).size() == 1);
   CHECK(bad_shape("physics/mesh_utils.cpp", "").size() == 1);
   CHECK(bad_shape("pipeline/util/a.cpp", "").size() == 1);
   CHECK(bad_shape("pipeline/utility_of_wool.cpp", "").empty());
-  CHECK(bad_shape("physics/scene.hpp", "int a;\n").size() == 1);
+  CHECK(bad_shape("physics/scene/scene.hpp", "int a;\n").size() == 1);
 }
 
 TEST_CASE("modules: test files have names of their own", "[modules]") {
@@ -237,21 +237,23 @@ TEST_CASE("modules: what the documents name exists", "[modules]") {
 
 TEST_CASE("modules: what the audit has in common with the response", "[modules]") {
   const auto ours = sources();
-  const auto audit = parts_of({"collision/audit", "collision/audit_motion"}, ours);
-  const auto response = parts_of({"collision/resolve", "collision/untangle", "collision/intersections",
-                                  "physics/recovery", "physics/contact_terms"},
-                                 ours);
+  const auto audit = parts_of({"collision/audit/audit", "collision/audit/audit_motion"}, ours);
+  const auto response =
+      parts_of({"collision/contact/resolve", "collision/untangle/untangle", "collision/search/intersections",
+                "physics/recovery/recovery", "physics/solve/contact_terms"},
+               ours);
   std::set<std::string> common;
   std::ranges::set_intersection(audit, response, std::inserter(common, common.end()));
   // The surface, with the sets that number its components, and exact signs; and distances, for min_gap, which is no
   // part of the audit.
-  CHECK(common == std::set<std::string>{"collision/disjoint_sets", "collision/distance", "collision/exact_integer",
-                                        "collision/floating_point", "collision/orientation", "collision/points",
-                                        "collision/surface"});
+  CHECK(common == std::set<std::string>{"collision/geometry/disjoint_sets", "collision/geometry/distance",
+                                        "collision/exact/exact_integer", "collision/geometry/floating_point",
+                                        "collision/exact/orientation", "collision/geometry/points",
+                                        "collision/geometry/surface"});
   auto without_surface = ours;
-  without_surface.erase("collision/surface.cpp");
-  CHECK_FALSE(
-      parts_of({"collision/audit", "collision/audit_motion"}, without_surface).contains("collision/disjoint_sets"));
+  without_surface.erase("collision/geometry/surface.cpp");
+  CHECK_FALSE(parts_of({"collision/audit/audit", "collision/audit/audit_motion"}, without_surface)
+                  .contains("collision/geometry/disjoint_sets"));
   CHECK(response.size() > 30);
   CHECK(parts_of({"a"}, {{"a.cpp", "#include \"b.hpp\"\n#include <c.hpp>\n"},
                          {"b.cpp", "#include \"d.hpp\"\n#include \"b.hpp\"\n"}}) ==

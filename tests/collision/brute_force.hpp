@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "collision/audit_pair.hpp"
-#include "collision/surface.hpp"
+#include "collision/audit/audit_pair.hpp"
+#include "collision/geometry/surface.hpp"
 
 namespace selvedge::testing {
 

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "collision/exact_integer.hpp"
-#include "collision/moving_polygon.hpp"
-#include "collision/points.hpp"
+#include "collision/exact/exact_integer.hpp"
+#include "collision/exact/moving_polygon.hpp"
+#include "collision/geometry/points.hpp"
 
 // Continuous detection decided by algebra, for coordinates that are small whole numbers. Every time at which a contact
 // can begin is 0 or a root of one of a few polynomials; there the signs of all others are found with Sturm's chains and

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "collision/surface.hpp"
+#include "collision/geometry/surface.hpp"
 
 namespace selvedge::testing {
 

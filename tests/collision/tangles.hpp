@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "collision/surface.hpp"
+#include "collision/geometry/surface.hpp"
 
 namespace selvedge::testing {
 

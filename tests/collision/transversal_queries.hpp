@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "collision/moving_polygon.hpp"
-#include "collision/points.hpp"
+#include "collision/exact/moving_polygon.hpp"
+#include "collision/geometry/points.hpp"
 
 namespace selvedge::transversal {
 

@@ -2,8 +2,8 @@
 
 #include <tuple>
 
-#include "physics/coarsening.hpp"
-#include "physics/linear_system.hpp"
+#include "physics/linear/coarsening.hpp"
+#include "physics/linear/linear_system.hpp"
 
 namespace selvedge::testing {
 

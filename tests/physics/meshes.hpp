@@ -3,7 +3,7 @@
 #include <random>
 #include <vector>
 
-#include "physics/scene.hpp"
+#include "physics/scene/scene.hpp"
 
 // Small cloths for the tests of physics.
 namespace selvedge::meshes {

@@ -6,7 +6,7 @@
 #include <omp.h>
 #endif
 
-#include "collision/points.hpp"
+#include "collision/geometry/points.hpp"
 
 namespace selvedge {
 

@@ -2,8 +2,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "physics/conventional_stepper.hpp"
-#include "physics/resting_stepper.hpp"
+#include "physics/steppers/conventional_stepper.hpp"
+#include "physics/steppers/resting_stepper.hpp"
 #include "tests/collision/sheets.hpp"
 
 // Small scenes for the tests of steppers.

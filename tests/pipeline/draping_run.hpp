@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/view.hpp"
+#include "pipeline/view/view.hpp"
 
 namespace selvedge::fake {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/body.hpp"
+#include "pipeline/bodies/body.hpp"
 
 namespace selvedge::fake {
 

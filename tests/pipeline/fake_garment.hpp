@@ -4,10 +4,10 @@
 #include <numbers>
 #include <numeric>
 
-#include "collision/surface.hpp"
-#include "pipeline/garment_hdf5.hpp"
-#include "pipeline/mannequin.hpp"
-#include "pipeline/setup_paths.hpp"
+#include "collision/geometry/surface.hpp"
+#include "pipeline/bodies/mannequin.hpp"
+#include "pipeline/garments/garment_hdf5.hpp"
+#include "pipeline/scene/setup_paths.hpp"
 #include "tests/pipeline/fake_run.hpp"
 
 namespace selvedge::fake {

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "pipeline/body_smpl.hpp"
-#include "pipeline/smpl_joints.hpp"
+#include "pipeline/bodies/body_smpl.hpp"
+#include "pipeline/bodies/smpl_joints.hpp"
 #include "tests/pipeline/files.hpp"
 
 namespace selvedge::fake {

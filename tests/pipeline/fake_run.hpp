@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "pipeline/run_scene.hpp"
-#include "pipeline/trajectory_hdf5.hpp"
+#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/run/run_scene.hpp"
 
 namespace selvedge::fake {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "pipeline/body.hpp"
-#include "pipeline/smpl_joints.hpp"
+#include "pipeline/bodies/body.hpp"
+#include "pipeline/bodies/smpl_joints.hpp"
 
 namespace selvedge::fake {
 

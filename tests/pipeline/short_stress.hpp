@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "pipeline/stress.hpp"
+#include "pipeline/suites/stress.hpp"
 #include "tests/pipeline/files.hpp"
 
 namespace selvedge::fake {

@@ -1,0 +1,260 @@
+#include "collision/audit/audit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "collision/audit/audit_inside.hpp"
+#include "collision/audit/audit_memory.hpp"
+#include "collision/audit/audit_pair.hpp"
+#include "collision/audit/bisection.hpp"
+#include "collision/audit/moving_pair.hpp"
+#include "collision/geometry/distance.hpp"
+#include "collision/geometry/floating_point.hpp"
+
+namespace selvedge {
+namespace {
+
+using Pairs = std::vector<std::pair<int, int>>;
+
+// Triangles with their corners beside them, for what is left after the vertices with undefined coordinates are out.
+struct Soup {
+  std::vector<std::array<Vec3, 3>> corners;
+  std::vector<std::array<int, 3>> vertices;
+  std::vector<int> number;  // of the triangle in the mesh; of obstacles, numbered on end
+  std::vector<ExactBox> boxes;
+};
+
+// If its box comes within the bounds.
+void add_triangle(const Surface& surface, const Points& x, int t, int first_number, double margin,
+                  const ExactBox& bounds, Soup& soup) {
+  const std::array<int, 3> v{surface.triangles(t, 0), surface.triangles(t, 1), surface.triangles(t, 2)};
+  const std::array<Vec3, 3> p{row(x, v[0]), row(x, v[1]), row(x, v[2])};
+  if (!(p[0].allFinite() && p[1].allFinite() && p[2].allFinite())) return;
+  ExactBox box;
+  for (int k = 0; k < 3; ++k) {
+    const auto [lo, hi] = std::minmax({p[0][k], p[1][k], p[2][k]});
+    box.lo[k] = lo - margin;
+    box.hi[k] = hi + margin;
+  }
+  if (!overlap(box, bounds)) return;
+  soup.corners.push_back(p);
+  soup.vertices.push_back(v);
+  soup.number.push_back(first_number + t);
+  soup.boxes.push_back(box);
+}
+
+void add_triangles(const Surface& surface, const Points& x, int first_number, double margin, const ExactBox& bounds,
+                   Soup& soup) {
+  for (int t = 0; t < surface.triangles.rows(); ++t) add_triangle(surface, x, t, first_number, margin, bounds, soup);
+}
+
+Soup soup_of(const Surface& surface, const Points& x, double margin) {
+  Soup soup;
+  add_triangles(surface, x, 0, margin, everywhere, soup);
+  return soup;
+}
+
+// What of the bodies may meet that of the cloth.
+Soup soup_near(const Soup& cloth, std::span<const AuditBody> bodies, double margin) {
+  const ExactBox bounds = hull_of(cloth.boxes);
+  Soup soup;
+  int first_number = 0;
+  for (const AuditBody& body : bodies) {
+    add_triangles(*body.surface, *body.points, first_number, margin, bounds, soup);
+    first_number += static_cast<int>(body.surface->triangles.rows());
+  }
+  return soup;
+}
+
+int shared_vertices(const std::array<int, 3>& a, const std::array<int, 3>& b) {
+  int shared = 0;
+  for (int v : a) shared += v == b[0] || v == b[1] || v == b[2];
+  return shared;
+}
+
+bool intersect(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  return triangles_intersect(a[0], a[1], a[2], b[0], b[1], b[2]);
+}
+
+// Triangles s, a1, a2 and s, b1, b2: nearly always some plane through s has them on its two sides, beyond doubt.
+bool surely_beside(const Vec3& s, const Vec3& a1, const Vec3& a2, const Vec3& b1, const Vec3& b2) {
+  const std::array<Vec3, 2> a{a1 - s, a2 - s}, b{b1 - s, b2 - s};
+  return stay_apart_beside({a, a}, {b, b});
+}
+
+// a and b share one vertex.
+bool cross_at_vertex(const Soup& cloth, int a, int b) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (cloth.vertices[a][i] == cloth.vertices[b][j]) {
+        const auto &p = cloth.corners[a], &q = cloth.corners[b];
+        if (surely_beside(p[i], p[(i + 1) % 3], p[(i + 2) % 3], q[(j + 1) % 3], q[(j + 2) % 3])) return false;
+        return triangles_cross_at_vertex(p[i], p[(i + 1) % 3], p[(i + 2) % 3], q[(j + 1) % 3], q[(j + 2) % 3]);
+      }
+  return false;
+}
+
+// Of two triangles of the cloth.
+void judge_pair(const Soup& cloth, int a, int b, Audit& found) {
+  const int shared = shared_vertices(cloth.vertices[a], cloth.vertices[b]);
+  const std::pair numbers = std::minmax({cloth.number[a], cloth.number[b]});
+  if (shared == 0 && intersect(cloth.corners[a], cloth.corners[b])) found.self_pairs.push_back(numbers);
+  if (shared == 1 && cross_at_vertex(cloth, a, b)) found.vertex_pairs.push_back(numbers);
+}
+
+void audit_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, bool with_self, Audit& found) {
+  visit_pairs(
+      cell, cloth.boxes, bodies.boxes, with_self, [&](int a, int b) { judge_pair(cloth, a, b, found); },
+      [&](int a, int c) {
+        if (intersect(cloth.corners[a], bodies.corners[c]))
+          found.obstacle_pairs.emplace_back(cloth.number[a], bodies.number[c]);
+      });
+}
+
+void append(Pairs& all, const Pairs& part) { all.insert(all.end(), part.begin(), part.end()); }
+
+int count_nonfinite(const Points& x) {
+  int count = 0;
+  for (int v = 0; v < x.rows(); ++v) count += !x.row(v).allFinite();
+  return count;
+}
+
+// pairs: those of the cloth's triangles with obstacles'.
+int count_inside(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, const Pairs& pairs) {
+  std::vector<char> is_inside(cloth.vertex_count, 0), undefined(cloth.triangles.rows(), 0);
+  for (int t = 0; t < cloth.triangles.rows(); ++t)
+    for (int v : cloth.triangles.row(t)) undefined[t] |= !x.row(v).allFinite();
+  int first = 0;
+  for (const AuditBody& body : obstacles) {
+    const int end = first + static_cast<int>(body.surface->triangles.rows());
+    if (is_closed(*body.surface) && count_nonfinite(*body.points) == 0) {
+      std::vector<char> meets = undefined;
+      for (const auto& [a, c] : pairs)
+        if (c >= first && c < end) meets[a] = 1;
+      const std::vector<char> here = inside_body(cloth, x, meets, *body.surface, *body.points);
+      for (int v = 0; v < cloth.vertex_count; ++v) is_inside[v] |= here[v];
+    }
+    first = end;
+  }
+  return static_cast<int>(std::count(is_inside.begin(), is_inside.end(), 1));
+}
+
+// Squared distance of triangles that do not intersect: between a vertex and a face or between two edges.
+double squared_gap(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    least = std::min(least, point_triangle(a[i], b[0], b[1], b[2]).squared_distance);
+    least = std::min(least, point_triangle(b[i], a[0], a[1], a[2]).squared_distance);
+    for (int j = 0; j < 3; ++j)
+      least = std::min(least, edge_edge(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]).squared_distance);
+  }
+  return least;
+}
+
+double squared_box_gap(const ExactBox& a, const ExactBox& b, double margin) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double apart = std::max(a.lo[k] - b.hi[k], b.lo[k] - a.hi[k]) + 2 * margin;
+    if (apart > 0) sum += apart * apart;
+  }
+  return sum;
+}
+
+// Least squared gap of the pairs in a cell, or `bound` if none is nearer.
+double gap_in_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, double margin, double bound) {
+  double least = bound;
+  const auto take = [&](const Soup& second, int a, int b) {
+    // A little slack for the rounding of the margins: passing over a pair must never change the result.
+    if (squared_box_gap(cloth.boxes[a], second.boxes[b], margin) > least * (1 + 1e-9) + 1e-300) return;
+    const auto &p = cloth.corners[a], &q = second.corners[b];
+    least = std::min(least, intersect(p, q) ? 0.0 : squared_gap(p, q));
+  };
+  visit_pairs(
+      cell, cloth.boxes, bodies.boxes, true,
+      [&](int a, int b) {
+        if (shared_vertices(cloth.vertices[a], cloth.vertices[b]) == 0) take(cloth, a, b);
+      },
+      [&](int a, int c) { take(bodies, a, c); });
+  return least;
+}
+
+void sort_pairs(Audit& result) {
+  for (Pairs* pairs : {&result.self_pairs, &result.vertex_pairs, &result.obstacle_pairs})
+    std::sort(pairs->begin(), pairs->end());
+}
+
+// Looks at what the memory leaves open. Where no triangle has come to an obstacle since the reference, none of its
+// vertices has come into it or out of it.
+Audit answer(const AuditQuestions& questions, const Surface& cloth, const Points& x,
+             std::span<const AuditBody> obstacles, AuditMemory& memory) {
+  Audit result;
+  for (const AuditMemory::Pair& pair : questions.self_pairs) {
+    Soup two;
+    for (const int t : {pair.a, pair.b}) add_triangle(cloth, x, t, 0, 0, everywhere, two);
+    judge_pair(two, 0, 1, result);
+  }
+  for (const AuditMemory::Pair& pair : questions.body_pairs) {
+    const AuditBody* body = obstacles.data();
+    int t = pair.b;
+    for (; t >= body->surface->triangles.rows(); ++body) t -= static_cast<int>(body->surface->triangles.rows());
+    Soup mine, other;
+    add_triangle(cloth, x, pair.a, 0, 0, everywhere, mine);
+    add_triangle(*body->surface, *body->points, t, pair.b - t, 0, everywhere, other);
+    if (intersect(mine.corners[0], other.corners[0])) result.obstacle_pairs.emplace_back(pair.a, pair.b);
+  }
+  sort_pairs(result);
+  if (questions.body_pairs.empty() && memory.inside >= 0) {
+    result.inside_vertices = memory.inside;
+  } else {
+    result.inside_vertices = count_inside(cloth, x, obstacles, result.obstacle_pairs);
+    if (questions.body_pairs.empty()) memory.inside = result.inside_vertices;
+  }
+  return result;
+}
+
+}  // namespace
+
+Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, bool self,
+            AuditMemory* memory) {
+  restore_standard_arithmetic();
+  if (memory) {
+    std::vector<MovingBody> bodies;
+    for (const AuditBody& body : obstacles) bodies.push_back({body.surface, body.points, body.points});
+    const AuditQuestions questions = open_questions(*memory, {&cloth, &x, &x}, bodies, self);
+    if (!questions.all) return answer(questions, cloth, x, obstacles, *memory);
+  }
+  const Soup mine = soup_of(cloth, x, 0), others = soup_near(mine, obstacles, 0);
+  const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, self);
+  const int count = static_cast<int>(cells.size());
+  std::vector<Audit> found(cells.size());
+#pragma omp parallel for schedule(dynamic, 4)
+  for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, found[r]);
+
+  Audit result;
+  for (const Audit& part : found) {
+    append(result.self_pairs, part.self_pairs);
+    append(result.vertex_pairs, part.vertex_pairs);
+    append(result.obstacle_pairs, part.obstacle_pairs);
+  }
+  sort_pairs(result);
+  result.inside_vertices = count_inside(cloth, x, obstacles, result.obstacle_pairs);
+  result.nonfinite = count_nonfinite(x);
+  for (const AuditBody& body : obstacles) result.nonfinite += count_nonfinite(*body.points);
+  return result;
+}
+
+double min_gap(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, double horizon) {
+  // A box grows by half the horizon on each side, and a little more for rounding.
+  const double margin = 0.5 * horizon * (1 + 1e-9);
+  const Soup mine = soup_of(cloth, x, margin), others = soup_near(mine, obstacles, margin);
+  const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, true);
+  const int count = static_cast<int>(cells.size());
+  std::vector<double> least(cells.size());
+#pragma omp parallel for schedule(dynamic, 4)
+  for (int r = 0; r < count; ++r) least[r] = gap_in_cell(cells[r], mine, others, margin, horizon * horizon);
+  const double nearest = least.empty() ? horizon * horizon : *std::min_element(least.begin(), least.end());
+  return nearest < horizon * horizon ? std::sqrt(nearest) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace selvedge

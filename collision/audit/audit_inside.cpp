@@ -1,0 +1,119 @@
+#include "collision/audit/audit_inside.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "collision/audit/audit_pair.hpp"
+#include "collision/audit/bisection.hpp"
+#include "collision/exact/orientation.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr int most_rounds = 24;
+
+// Vertices that triangles beside the body join, by their lowest one. The response's
+// DisjointSets are not for the audit.
+std::vector<int> one_sided_groups(const Surface& cloth, const std::vector<char>& meets) {
+  std::vector<int> up(cloth.vertex_count);
+  std::iota(up.begin(), up.end(), 0);
+  const auto top = [&up](int v) {
+    while (up[v] != v) v = up[v] = up[up[v]];
+    return v;
+  };
+  for (int t = 0; t < cloth.triangles.rows(); ++t)
+    for (int k = 1; k < 3 && !meets[t]; ++k) {
+      const int a = top(cloth.triangles(t, 0)), b = top(cloth.triangles(t, k));
+      up[std::max(a, b)] = std::min(a, b);
+    }
+  for (int v = 0; v < cloth.vertex_count; ++v) up[v] = top(v);
+  return up;
+}
+
+ExactBox box_of(std::initializer_list<Vec3> points) {
+  ExactBox box;
+  for (int k = 0; k < 3; ++k) {
+    const auto order = [k](const Vec3& a, const Vec3& b) { return a[k] < b[k]; };
+    box.lo[k] = std::min(points, order)[k];
+    box.hi[k] = std::max(points, order)[k];
+  }
+  return box;
+}
+
+enum class Passage { beside, through, on_face, unclear };
+
+// Of the segment from p out of the body to q, past a face. Unclear: through an edge or along the face.
+Passage passage(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const int from = orient3d(a, b, c, p), to = orient3d(a, b, c, q);
+  if (from != 0 && from == to) return Passage::beside;
+  if (from == 0 && triangles_intersect(p, p, p, a, b, c)) return Passage::on_face;
+  const auto [least, most] = std::minmax({orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)});
+  if (least < 0 && most > 0) return Passage::beside;
+  if (from * to < 0 && (least > 0 || most < 0)) return Passage::through;
+  const bool has_area = orient2d(a, b, c, 0) != 0 || orient2d(a, b, c, 1) != 0 || orient2d(a, b, c, 2) != 0;
+  return has_area ? Passage::unclear : Passage::beside;
+}
+
+struct Ray {
+  int vertex;
+  Vec3 from, to;
+  bool odd = false, on_face = false, unclear = false;
+};
+
+void trace(std::vector<Ray>& rays, std::span<const ExactBox> faces, const Surface& body, const Points& y) {
+  std::vector<ExactBox> boxes;
+  for (const Ray& ray : rays) boxes.push_back(box_of({ray.from, ray.to}));
+  for (const Cell& cell : bisect(boxes, faces, false))
+    visit_pairs(
+        cell, boxes, faces, false, [](int, int) {},
+        [&](int i, int t) {
+          Ray& ray = rays[i];
+          const int* v = body.triangles.data() + 3 * t;
+          const Passage found = passage(ray.from, ray.to, row(y, v[0]), row(y, v[1]), row(y, v[2]));
+          ray.odd ^= found == Passage::through;
+          ray.on_face |= found == Passage::on_face;
+          ray.unclear |= found == Passage::unclear;
+        });
+}
+
+}  // namespace
+
+std::vector<char> inside_body(const Surface& cloth, const Points& x, const std::vector<char>& meets,
+                              const Surface& body, const Points& y) {
+  std::vector<char> inside(cloth.vertex_count, 0);
+  if (body.triangles.rows() == 0) return inside;
+  std::vector<ExactBox> faces;
+  Vec3 lo = row(y, body.triangles(0, 0)), hi = lo;
+  for (int t = 0; t < body.triangles.rows(); ++t) {
+    faces.push_back(box_of({row(y, body.triangles(t, 0)), row(y, body.triangles(t, 1)), row(y, body.triangles(t, 2))}));
+    lo = lo.cwiseMin(Vec3::Map(faces.back().lo.data()));
+    hi = hi.cwiseMax(Vec3::Map(faces.back().hi.data()));
+  }
+  int axis = 0;
+  (hi - lo).minCoeff(&axis);
+
+  const std::vector<int> group = one_sided_groups(cloth, meets);
+  std::vector<Ray> open;
+  for (int v = 0; v < cloth.vertex_count; ++v)
+    if (const Vec3 p = row(x, v);
+        group[v] == v && cloth.vertex_owner[v] >= 0 && (p.array() > lo.array()).all() && (p.array() < hi.array()).all())
+      open.push_back({v, p, p});
+  for (int round = 0; !open.empty(); ++round) {
+    // Beyond the body along its shortest side; straight at first, then leaning a little more each time that edges are
+    // met.
+    for (Ray& ray : open) {
+      ray = {ray.vertex, ray.from, ray.from};
+      ray.to[axis] = hi[axis] + (hi - lo)[axis];
+      ray.to[(axis + 1) % 3] += 0.0031 * round * (hi - lo)[axis];
+      ray.to[(axis + 2) % 3] += 0.0019 * round * (hi - lo)[axis];
+    }
+    trace(open, faces, body, y);
+    // What stays unclear, far from the origin where leaning is lost in rounding, counts rather than hides.
+    for (const Ray& ray : open) inside[ray.vertex] = !ray.on_face && (ray.unclear ? round + 1 == most_rounds : ray.odd);
+    std::erase_if(open, [&](const Ray& ray) { return ray.on_face || !ray.unclear || round + 1 == most_rounds; });
+  }
+  for (int v = 0; v < cloth.vertex_count; ++v) inside[v] = inside[group[v]];
+  return inside;
+}
+
+}  // namespace selvedge

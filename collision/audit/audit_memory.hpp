@@ -1,0 +1,41 @@
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "collision/audit/audit_motion.hpp"
+
+namespace selvedge {
+
+// What the audit remembers of a scene, so that what rests need not be proven again: which pairs of triangles were near
+// each other at some reference positions, and how far apart they were proven to be. A displacement budget of the
+// audit's own: two triangles stay apart while the largest displacements of their vertices from there sum to less than
+// their gap, on any path. A cache: an audit has the same result with it or without, and with any of its states.
+struct AuditMemory {
+  struct Pair {
+    int a, b;        // triangles of the cloth; or of the cloth, and of obstacles, numbered on end
+    double gap = 0;  // [m], a lower bound in exact arithmetic; 0: none is known
+    int shared = 0;  // vertices
+  };
+  std::vector<Points> reference;  // cloth, then obstacles; empty: nothing is remembered
+  std::vector<Points> last;       // where the last audit was
+  bool moving = false;            // it was of a motion
+  bool slow = false;              // and there was little of that
+  double reach = 0;               // pairs farther apart than this are not listed [m]
+  std::vector<Pair> self_pairs, body_pairs;
+  int inside = -1;  // cloth vertices inside obstacles at the reference; -1: not known
+};
+
+// Pairs that an audit has to look at: all others are apart the whole way.
+struct AuditQuestions {
+  bool all = true;  // nothing is known
+  std::vector<AuditMemory::Pair> self_pairs, body_pairs;
+};
+
+// For the straight motion of the cloth and the bodies, or for a state, where both ends are the same. Remembers anew
+// where the last reference is too far away, if little has moved since the last audit. One memory serves one scene, with
+// one value of `self` (the cloth's pairs with itself).
+AuditQuestions open_questions(AuditMemory&, const MovingBody& cloth, std::span<const MovingBody> bodies, bool self);
+
+}  // namespace selvedge

@@ -1,0 +1,239 @@
+#include "collision/audit/audit_motion.hpp"
+
+#include <algorithm>
+
+#include "collision/audit/audit_memory.hpp"
+#include "collision/audit/bisection.hpp"
+#include "collision/audit/moving_pair.hpp"
+#include "collision/geometry/floating_point.hpp"
+
+namespace selvedge {
+namespace {
+
+// Triangles of one side, each with its place among the surfaces; only those whose corners are all finite.
+struct Side {
+  struct Face {
+    const Surface* surface;
+    const Points *x0, *x1;
+    int triangle, first_node;
+  };
+  std::vector<Face> faces;
+  std::vector<ExactBox> start, end, boxes;  // at both ends, and round both
+};
+
+bool finite(const Points& x0, const Points& x1, int v) { return x0.row(v).allFinite() && x1.row(v).allFinite(); }
+
+ExactBox box_of(const Side::Face& face, const Points& x) {
+  const int* v = face.surface->triangles.data() + 3 * face.triangle;
+  ExactBox box;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = std::min({x(v[0], k), x(v[1], k), x(v[2], k)});
+    box.hi[k] = std::max({x(v[0], k), x(v[1], k), x(v[2], k)});
+  }
+  return box;
+}
+
+ExactBox round_both(const ExactBox& a, const ExactBox& b) {
+  ExactBox box;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = std::min(a.lo[k], b.lo[k]);
+    box.hi[k] = std::max(a.hi[k], b.hi[k]);
+  }
+  return box;
+}
+
+// Is one of the faces above the other along an axis, at both ends and so all the way? What moves along together is told
+// apart so, without rounding, however far it moves.
+bool stay_apart_along_an_axis(const Side& a, int i, const Side& b, int j) {
+  const ExactBox &a0 = a.start[i], &a1 = a.end[i], &b0 = b.start[j], &b1 = b.end[j];
+  bool apart = false;
+  for (int k = 0; k < 3; ++k)
+    apart |= ((a0.hi[k] < b0.lo[k]) & (a1.hi[k] < b1.lo[k])) | ((b0.hi[k] < a0.lo[k]) & (b1.hi[k] < a1.lo[k]));
+  return apart;
+}
+
+// The faces that come within the bounds. Returns the number of vertices that are not finite.
+int add(const MovingBody& body, int first_node, const ExactBox& bounds, Side& side) {
+  const Surface& s = *body.surface;
+  std::vector<char> good(s.vertex_count);
+  for (int v = 0; v < s.vertex_count; ++v) good[v] = finite(*body.x0, *body.x1, v);
+  for (int t = 0; t < s.triangles.rows(); ++t) {
+    if (!good[s.triangles(t, 0)] || !good[s.triangles(t, 1)] || !good[s.triangles(t, 2)]) continue;
+    const Side::Face face{&s, body.x0, body.x1, t, first_node};
+    const ExactBox start = box_of(face, *body.x0), end = box_of(face, *body.x1), both = round_both(start, end);
+    if (!overlap(both, bounds)) continue;
+    side.faces.push_back(face);
+    side.start.push_back(start);
+    side.end.push_back(end);
+    side.boxes.push_back(both);
+  }
+  return static_cast<int>(std::count(good.begin(), good.end(), 0));
+}
+
+// A node of either face, and where it is relative to the first corner of the first.
+struct Node {
+  const Side::Face* face;
+  int vertex;
+
+  int number() const { return face->first_node + vertex; }
+  Vec3 start() const { return row(*face->x0, vertex); }
+  Vec3 end() const { return row(*face->x1, vertex); }
+};
+
+Node corner(const Side::Face& face, int k) { return {&face, face.surface->triangles(face.triangle, k % 3)}; }
+
+template <std::size_t Count>
+MovingPoints<Count> relative_to(const Node& origin, const std::array<Node, Count>& nodes) {
+  MovingPoints<Count> points;
+  const Vec3 start = origin.start(), end = origin.end();
+  for (std::size_t i = 0; i < Count; ++i) {
+    points.start[i] = nodes[i].start() - start;
+    points.end[i] = nodes[i].end() - end;
+  }
+  return points;
+}
+
+struct PairAudit {
+  const Side::Face &a, &b;
+  int max_halvings;
+  std::vector<PassedPair>& passed;
+
+  bool same(int i, int j) const { return corner(a, i).number() == corner(b, j).number(); }
+
+  void take(bool edges, const std::array<Node, 4>& n) const {
+    const MovingPoints<4> points = relative_to(n[0], n);
+    if (edges ? edges_stay_apart(points, max_halvings) : vertex_and_face_stay_apart(points, max_halvings)) return;
+    passed.push_back({edges, {n[0].number(), n[1].number(), n[2].number(), n[3].number()}});
+  }
+
+  // Of the vertices that the face p owns, with the face f.
+  void vertices(const Side::Face& p, const Side::Face& f) const {
+    for (int k = 0; k < 3; ++k) {
+      const Node v = corner(p, k);
+      if (p.surface->vertex_owner[v.vertex] != p.triangle) continue;
+      const std::array<Node, 4> nodes{v, corner(f, 0), corner(f, 1), corner(f, 2)};
+      if (std::none_of(nodes.begin() + 1, nodes.end(), [&](const Node& n) { return n.number() == v.number(); }))
+        take(false, nodes);
+    }
+  }
+
+  void edges() const {
+    for (int i = 0; i < 3; ++i) {
+      if (a.surface->edge_owner[a.surface->triangle_edges(a.triangle, i)] != a.triangle) continue;
+      for (int j = 0; j < 3; ++j) {
+        if (b.surface->edge_owner[b.surface->triangle_edges(b.triangle, j)] != b.triangle) continue;
+        if (same(i, j) || same(i, (j + 1) % 3) || same((i + 1) % 3, j) || same((i + 1) % 3, (j + 1) % 3)) continue;
+        take(true, {corner(a, i), corner(a, i + 1), corner(b, j), corner(b, j + 1)});
+      }
+    }
+  }
+
+  // Both ends of the edge that the faces share, then the corners opposite.
+  MovingPoints<4> at_common_edge() const {
+    std::array<int, 2> alone{};  // the corner of a that b does not have, and the other way round
+    for (int k = 0; k < 3; ++k) {
+      if (!same(k, 0) && !same(k, 1) && !same(k, 2)) alone[0] = k;
+      if (!same(0, k) && !same(1, k) && !same(2, k)) alone[1] = k;
+    }
+    const Node s = corner(a, alone[0] + 1);
+    return relative_to<4>(s, {s, corner(a, alone[0] + 2), corner(a, alone[0]), corner(b, alone[1])});
+  }
+
+  bool triangles_stay_apart() const {
+    int shared = 0, at_a = 0, at_b = 0;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        if (same(i, j)) {
+          ++shared;
+          at_a = i;
+          at_b = j;
+        }
+    if (shared > 2) return false;
+    if (shared == 2) return stay_apart_at_edge(at_common_edge());
+    const Node origin = corner(a, at_a);
+    if (shared == 1)
+      return stay_apart_beside(relative_to<2>(origin, {corner(a, at_a + 1), corner(a, at_a + 2)}),
+                               relative_to<2>(origin, {corner(b, at_b + 1), corner(b, at_b + 2)}));
+    return stay_apart(relative_to<3>(origin, {corner(a, 0), corner(a, 1), corner(a, 2)}),
+                      relative_to<3>(origin, {corner(b, 0), corner(b, 1), corner(b, 2)}));
+  }
+
+  // Every vertex and edge is looked at with one of its faces, so that each pair is met once.
+  void operator()() const {
+    if (triangles_stay_apart()) return;
+    vertices(a, b);
+    vertices(b, a);
+    edges();
+  }
+};
+
+void audit_cell(const Cell& cell, const Side& cloth, const Side& bodies, bool self, int max_halvings,
+                std::vector<PassedPair>& passed) {
+  visit_pairs(
+      cell, cloth.boxes, bodies.boxes, self,
+      [&](int a, int b) {
+        if (stay_apart_along_an_axis(cloth, a, cloth, b)) return;
+        PairAudit{cloth.faces[std::min(a, b)], cloth.faces[std::max(a, b)], max_halvings, passed}();
+      },
+      [&](int a, int c) {
+        if (stay_apart_along_an_axis(cloth, a, bodies, c)) return;
+        PairAudit{cloth.faces[a], bodies.faces[c], max_halvings, passed}();
+      });
+}
+
+// Of the pairs that the memory leaves open; all are finite.
+std::vector<PassedPair> passed_of(const AuditQuestions& questions, const MovingBody& cloth,
+                                  std::span<const MovingBody> bodies, int max_halvings) {
+  std::vector<PassedPair> passed;
+  const auto face = [](const MovingBody& body, int t, int first_node) {
+    return Side::Face{body.surface, body.x0, body.x1, t, first_node};
+  };
+  for (const AuditMemory::Pair& pair : questions.self_pairs)
+    PairAudit{face(cloth, std::min(pair.a, pair.b), 0), face(cloth, std::max(pair.a, pair.b), 0), max_halvings,
+              passed}();
+  for (const AuditMemory::Pair& pair : questions.body_pairs) {
+    const MovingBody* body = bodies.data();
+    int t = pair.b, first_node = cloth.surface->vertex_count;
+    for (; t >= body->surface->triangles.rows(); ++body) {
+      t -= static_cast<int>(body->surface->triangles.rows());
+      first_node += body->surface->vertex_count;
+    }
+    PairAudit{face(cloth, pair.a, 0), face(*body, t, first_node), max_halvings, passed}();
+  }
+  std::sort(passed.begin(), passed.end());
+  return passed;
+}
+
+}  // namespace
+
+MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x1, std::span<const MovingBody> bodies,
+                         bool self, AuditMemory* memory, int max_halvings) {
+  restore_standard_arithmetic();
+  MotionAudit result;
+  if (memory) {
+    const MovingBody moving{&cloth, &x0, &x1};
+    const AuditQuestions questions = open_questions(*memory, moving, bodies, self);
+    if (!questions.all) {
+      result.passed = passed_of(questions, moving, bodies, max_halvings);
+      return result;
+    }
+  }
+  Side mine, others;
+  result.nonfinite = add({&cloth, &x0, &x1}, 0, everywhere, mine);
+  const ExactBox round_cloth = hull_of(mine.boxes);
+  int first_node = cloth.vertex_count;
+  for (const MovingBody& body : bodies) {
+    result.nonfinite += add(body, first_node, round_cloth, others);
+    first_node += body.surface->vertex_count;
+  }
+  const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, self);
+  const int count = static_cast<int>(cells.size());
+  std::vector<std::vector<PassedPair>> found(cells.size());
+#pragma omp parallel for schedule(dynamic, 4)
+  for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, max_halvings, found[r]);
+  for (const auto& part : found) result.passed.insert(result.passed.end(), part.begin(), part.end());
+  std::sort(result.passed.begin(), result.passed.end());
+  return result;
+}
+
+}  // namespace selvedge

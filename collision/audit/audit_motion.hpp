@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <compare>
+#include <span>
+#include <vector>
+
+#include "collision/geometry/surface.hpp"
+
+namespace selvedge {
+
+// A body whose vertices move straight from x0 to x1.
+struct MovingBody {
+  const Surface* surface = nullptr;
+  const Points *x0 = nullptr, *x1 = nullptr;
+};
+
+// Two primitives that meet on their way. Nodes v, f0, f1, f2 or a0, a1, b0, b1; the cloth's come first in the
+// numbering, then each body's, on end.
+struct PassedPair {
+  bool edges = false;
+  std::array<int, 4> nodes;
+  auto operator<=>(const PassedPair&) const = default;
+};
+
+struct MotionAudit {
+  std::vector<PassedPair> passed;  // sorted
+  int nonfinite = 0;               // vertices with an undefined coordinate at either end (their triangles are left out)
+  int passed_through() const { return static_cast<int>(passed.size()); }
+};
+
+struct AuditMemory;
+
+// Independent proof that a motion is clean: vertex-face and edge-edge pairs that share no vertex, of the cloth with
+// itself (where `self`) and with the bodies, that are not proven to stay apart while all vertices move straight. Shares
+// no code with the solver's tree, distances or continuous detection.
+//
+// A pair is apart over an interval of time if one fixed direction separates it at both ends: along a fixed direction
+// every gap of two nodes is linear in time. Where no direction among those of the closest features does, the interval
+// is halved; what is not apart after `max_halvings` counts as passed. So a pair that meets is always found, and one
+// that is found came within about its motion times 2^-max_halvings, or the rounding of its size.
+// memory: saves time, and changes nothing else.
+MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x1, std::span<const MovingBody> bodies,
+                         bool self = true, AuditMemory* memory = nullptr, int max_halvings = 30);
+
+}  // namespace selvedge

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+
+#include "collision/geometry/points.hpp"
+
+namespace selvedge {
+
+// For the audit of motion. Points at the beginning and end of a straight motion, relative to a node that both sides
+// know, so that they round with the size of the pair and not of the world.
+template <int Count>
+struct MovingPoints {
+  std::array<Vec3, Count> start, end;
+
+  Vec3 middle(int i) const { return 0.5 * (start[i] + end[i]); }
+};
+
+// All of these are proofs: true only if the two sides stay apart from beginning to end, as exact points would. False
+// says nothing.
+
+// Triangles without a common vertex: some direction of their faces separates them all the time.
+bool stay_apart(const MovingPoints<3>& a, const MovingPoints<3>& b);
+
+// Triangles s, a0, a1 and s, b0, b1 with the common vertex s as origin: they share no more than s at any time.
+bool stay_apart_beside(const MovingPoints<2>& a, const MovingPoints<2>& b);
+
+// Triangles s, t, a and s, t, b with the common edge p = s, t and then a, b: the vertex and the edges of one that the
+// other does not share stay apart from it.
+bool stay_apart_at_edge(const MovingPoints<4>& p);
+
+// Vertex p[0] and face p[1], p[2], p[3], or edges p[0] p[1] and p[2] p[3]; time is halved at most `max_halvings` times.
+bool vertex_and_face_stay_apart(const MovingPoints<4>& p, int max_halvings);
+bool edges_stay_apart(const MovingPoints<4>& p, int max_halvings);
+
+}  // namespace selvedge

@@ -1,0 +1,199 @@
+#include "collision/contact/contact_pairs.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "collision/contact/exemption.hpp"
+
+namespace selvedge {
+namespace {
+
+// Primitives that a leaf of a tree owns, side by side; where things move fast with their boxes at both ends.
+struct Group {
+  const Bvh::Leaf& leaf;
+  const Bvh::Leaf *start = nullptr, *end = nullptr;
+
+  // Of the items of the other group, one bit each: those that item i may come near.
+  unsigned near(int i, const Group& other) const {
+    const unsigned bits = overlaps(other.leaf, box_of(leaf, i));
+    return bits == 0 || !start ? bits
+                               : bits & ~apart_in_order(*other.start, *other.end, {box_of(*start, i), box_of(*end, i)});
+  }
+};
+
+// A surface that takes part in a search. Without `node_ends` nothing has boxes at both ends, without `marks` every node
+// is looked at.
+struct Side {
+  const SearchPart& part;
+  const EndBoxes* node_ends;
+  const char* marks;
+
+  const Surface& surface() const { return *part.surface; }
+  int first_node() const { return part.first_node; }
+  const Bvh& bvh() const { return part.tree.bvh; }
+  Group group(const Bvh::Leaf& leaf, const EndLeaves& ends, int at) const {
+    return node_ends ? Group{leaf, &ends.start[at], &ends.end[at]} : Group{leaf};
+  }
+  Group faces(int leaf) const { return group(bvh().leaves[leaf], part.face_ends, leaf); }
+  template <class Visit>
+  void for_each_group(const PrimitiveGroups& all, int first, int last, Visit&& visit) const {
+    for (int g = first; g < last; ++g) visit(group(all.groups[g], all.ends, g));
+  }
+};
+
+// Calls visit(i, j) for the places i in a and j in b of what may come near. box_b holds all of b.
+template <class Visit>
+[[gnu::always_inline]] inline void for_each_near(const Group& a, const Group& b, const Box& box_b, Visit&& visit) {
+  for (unsigned from = overlaps(a.leaf, box_b); from != 0; from &= from - 1) {
+    const int i = std::countr_zero(from);
+    for (unsigned bits = a.near(i, b); bits != 0; bits &= bits - 1) visit(i, std::countr_zero(bits));
+  }
+}
+
+struct LeafPairs {
+  const Side &a, &b;
+  bool same;  // one surface: primitives that share a vertex are no pair
+
+  void vertex_face(const Side& p, int v, const Side& f, int face, std::vector<NodePair>& pairs) const {
+    const int* n = f.surface().triangles.data() + 3 * face;
+    if (same && (v == n[0] || v == n[1] || v == n[2])) return;
+    pairs.push_back({PairKind::vertex_face,
+                     {v + p.first_node(), n[0] + f.first_node(), n[1] + f.first_node(), n[2] + f.first_node()}});
+  }
+  void edge_edge(int ea, int eb, std::vector<NodePair>& pairs) const {
+    if (same && eb < ea) std::swap(ea, eb);
+    const int *m = a.surface().edges.data() + 2 * ea, *n = b.surface().edges.data() + 2 * eb;
+    if (same && (m[0] == n[0] || m[0] == n[1] || m[1] == n[0] || m[1] == n[1])) return;
+    pairs.push_back({PairKind::edge_edge,
+                     {m[0] + a.first_node(), m[1] + a.first_node(), n[0] + b.first_node(), n[1] + b.first_node()}});
+  }
+  void vertices_with_faces(const Side& p, int leaf_p, const Side& f, int leaf_f, const Box& box_f,
+                           std::vector<NodePair>& pairs) const {
+    const Group faces = f.faces(leaf_f);
+    p.for_each_group(
+        p.part.vertices, p.part.vertices.begin[leaf_p], p.part.vertices.begin[leaf_p + 1], [&](const Group& group) {
+          for_each_near(group, faces, box_f,
+                        [&](int i, int j) { vertex_face(p, group.leaf.item[i], f, faces.leaf.item[j], pairs); });
+        });
+  }
+  void edges_with_edges(const Group& first, int from, int to, const Box& box_b, std::vector<NodePair>& pairs) const {
+    b.for_each_group(b.part.edges, from, to, [&](const Group& second) {
+      for_each_near(first, second, box_b,
+                    [&](int i, int j) { edge_edge(first.leaf.item[i], second.leaf.item[j], pairs); });
+    });
+  }
+  void edges_with_edges(int leaf_a, int leaf_b, const Box& box_b, std::vector<NodePair>& pairs) const {
+    a.for_each_group(a.part.edges, a.part.edges.begin[leaf_a], a.part.edges.begin[leaf_a + 1], [&](const Group& first) {
+      edges_with_edges(first, b.part.edges.begin[leaf_b], b.part.edges.begin[leaf_b + 1], box_b, pairs);
+    });
+  }
+  void edges_within(int leaf, const Box& box, std::vector<NodePair>& pairs) const {
+    int next = a.part.edges.begin[leaf];
+    const int last = a.part.edges.begin[leaf + 1];
+    a.for_each_group(a.part.edges, next, last, [&](const Group& own) {
+      for (int i = 0; i < Bvh::leaf_size && own.leaf.item[i] >= 0; ++i)
+        for (unsigned bits = own.near(i, own) & (~1u << i); bits != 0; bits &= bits - 1)
+          edge_edge(own.leaf.item[i], own.leaf.item[std::countr_zero(bits)], pairs);
+      edges_with_edges(own, ++next, last, box, pairs);
+    });
+  }
+  void operator()(NodeWork w, std::vector<NodePair>& pairs) const {
+    const Bvh::Node &node_a = a.bvh().nodes[w.a], &node_b = b.bvh().nodes[w.b];
+    vertices_with_faces(a, ~node_a.child, b, ~node_b.child, node_b.box, pairs);
+    if (same && w.a == w.b) {
+      edges_within(~node_a.child, node_a.box, pairs);
+    } else {
+      vertices_with_faces(b, ~node_b.child, a, ~node_a.child, node_a.box, pairs);
+      edges_with_edges(~node_a.child, ~node_b.child, node_b.box, pairs);
+    }
+  }
+};
+
+}  // namespace
+
+int ContactWorld::obstacle_of(int node) const {
+  if (is_cloth(node)) return -1;
+  const auto above = std::upper_bound(first_node.begin(), first_node.end(), node);
+  return static_cast<int>(above - first_node.begin()) - 1;
+}
+
+ContactWorld make_contact_world(const Surface& cloth, std::vector<const Surface*> obstacles, bool self,
+                                const Points* rest) {
+  ContactWorld world{&cloth, std::move(obstacles), {}, self, cloth.vertex_count, rest};
+  for (const Surface* obstacle : world.obstacles) {
+    world.first_node.push_back(world.node_count);
+    world.node_count += obstacle->vertex_count;
+  }
+  return world;
+}
+
+Points gather_nodes(const Points& cloth, const std::vector<Points>& obstacles) {
+  Eigen::Index count = cloth.rows();
+  for (const Points& obstacle : obstacles) count += obstacle.rows();
+  Points nodes(count, 3);
+  nodes.topRows(cloth.rows()) = cloth;
+  Eigen::Index first = cloth.rows();
+  for (const Points& obstacle : obstacles) {
+    nodes.middleRows(first, obstacle.rows()) = obstacle;
+    first += obstacle.rows();
+  }
+  return nodes;
+}
+
+std::array<Vec3, 4> corners(const NodePair& pair, const Points& x) {
+  return {row(x, pair.nodes[0]), row(x, pair.nodes[1]), row(x, pair.nodes[2]), row(x, pair.nodes[3])};
+}
+
+Closest closest(PairKind kind, const std::array<Vec3, 4>& x) {
+  return kind == PairKind::vertex_face ? point_triangle(x[0], x[1], x[2], x[3]) : edge_edge(x[0], x[1], x[2], x[3]);
+}
+
+PairSearch::PairSearch(const ContactWorld& world) : world_(world), cloth_(*world.cloth, 0) {
+  for (std::size_t k = 0; k < world.obstacles.size(); ++k)
+    obstacles_.emplace_back(*world.obstacles[k], world.first_node[k]);
+}
+
+void PairSearch::find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs,
+                      const std::vector<char>& marks) {
+  pairs.clear();
+  // Boxes at both ends tell more apart than those round whole motions only where these are the longer ones.
+  const bool ends = !((x1 - x0).rowwise().squaredNorm().maxCoeff() <= radius * radius);
+  const auto prepare = [&](SearchPart& part, const Bvh* other) {
+    part.move(x0, x1, radius, ends);
+    part.fill(other);
+    if (!marks.empty()) part.mark(marks);
+  };
+  prepare(cloth_, nullptr);
+  const auto side = [&](const SearchPart& p) {
+    return Side{p, ends ? p.node_ends.data() : nullptr, marks.empty() ? nullptr : p.marks.data()};
+  };
+  const Side cloth = side(cloth_);
+  const auto gather_with = [&](const Side& other, bool same) {
+    gather(BvhTraversal{cloth.bvh(), other.bvh(), same, nullptr, cloth.node_ends, other.node_ends, cloth.marks,
+                        other.marks},
+           scratch_, pairs, LeafPairs{cloth, other, same});
+  };
+  if (world_.self) gather_with(cloth, true);
+  for (SearchPart& obstacle : obstacles_) {
+    prepare(obstacle, &cloth_.tree.bvh);
+    gather_with(side(obstacle), false);
+  }
+  if (!marks.empty())
+    std::erase_if(pairs, [&](const NodePair& pair) {
+      return std::ranges::none_of(pair.nodes, [&](int node) { return marks[node] != 0; });
+    });
+  if (left_out_)
+    std::erase_if(pairs, [this](const NodePair& pair) { return left_out_->leaves_alone(world_, pair.nodes); });
+}
+
+double rest_distance(const ContactWorld& world, const NodePair& pair) {
+  const auto in_cloth = [&](int node) { return world.is_cloth(node); };
+  if (!world.rest || !std::all_of(pair.nodes.begin(), pair.nodes.end(), in_cloth) ||
+      world.cloth->component[pair.nodes[0]] != world.cloth->component[pair.nodes[3]])
+    return std::numeric_limits<double>::infinity();
+  return std::sqrt(closest(pair, *world.rest).squared_distance);
+}
+
+}  // namespace selvedge

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "collision/contact/ccd.hpp"
+#include "collision/contact/search_part.hpp"
+#include "collision/geometry/distance.hpp"
+
+namespace selvedge {
+
+struct Exemption;
+
+// Cloth and obstacles under one numbering of nodes: cloth vertices first, then each obstacle's. Constant topology.
+struct ContactWorld {
+  const Surface* cloth = nullptr;
+  std::vector<const Surface*> obstacles;
+  std::vector<int> first_node;  // of each obstacle
+  bool self = true;             // cloth against itself
+  int node_count = 0;
+  const Points* rest = nullptr;  // of the cloth [m]; without it nothing counts as resting close
+
+  bool is_cloth(int node) const { return node < cloth->vertex_count; }
+  int obstacle_of(int node) const;  // -1: cloth
+};
+
+ContactWorld make_contact_world(const Surface& cloth, std::vector<const Surface*> obstacles, bool self,
+                                const Points* rest = nullptr);
+
+// Positions of all nodes in that numbering.
+Points gather_nodes(const Points& cloth, const std::vector<Points>& obstacles);
+
+// Two primitives that share no vertex. Of two edges of the cloth the one with the lower nodes comes first.
+struct NodePair {
+  PairKind kind;
+  std::array<int, 4> nodes;  // v, f0, f1, f2 | a0, a1, b0, b1
+  auto operator<=>(const NodePair&) const = default;
+};
+
+std::array<Vec3, 4> corners(const NodePair&, const Points& x);
+Closest closest(PairKind, const std::array<Vec3, 4>& corners);
+inline Closest closest(const NodePair& pair, const Points& x) { return closest(pair.kind, corners(pair, x)); }
+
+// Distance in the rest shape of a pair of one cloth; infinite for any other, and where the world has no rest shape [m].
+double rest_distance(const ContactWorld&, const NodePair&);
+
+// Finds vertex-face and edge-edge pairs that may come within `radius` of each other while all nodes move straight from
+// x0 to x1; misses none. Every vertex and edge belongs to one triangle, so that each pair is found once (representative
+// triangles, Curtis, Tamstorf and Manocha 2008). Holds trees, which are caches.
+class PairSearch {
+ public:
+  explicit PairSearch(const ContactWorld&);  // keeps a reference
+  // In an order that depends on what the trees went through; the pairs themselves do not. `pairs` is overwritten. With
+  // marks by node only the pairs are found that have a marked one.
+  void find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs,
+            const std::vector<char>& marks = {});
+  // Pairs that are not to be found from here on; nothing ends it. Keeps the pointer.
+  void leave_out(const Exemption* exemption) { left_out_ = exemption; }
+  const ContactWorld& world() const { return world_; }
+
+ private:
+  const ContactWorld& world_;
+  const Exemption* left_out_ = nullptr;
+  SearchPart cloth_;
+  std::vector<SearchPart> obstacles_;
+  PartLists<NodePair> scratch_;
+};
+
+}  // namespace selvedge

@@ -1,0 +1,34 @@
+#include "collision/contact/exemption.hpp"
+
+#include <algorithm>
+
+namespace selvedge {
+
+int Exemption::cloth_vertices() const {
+  int count = 0;
+  for (std::size_t v = 0; v < std::max(self.size(), body.size()); ++v)
+    count += (!self.empty() && self[v]) || (!body.empty() && body[v]);
+  return count;
+}
+
+bool Exemption::leaves_alone(const ContactWorld& world, const std::array<int, 4>& nodes) const {
+  bool self_alone = false, body_alone = false, all_cloth = true, all_off = !off.empty();
+  for (const int node : nodes) {
+    if (!world.is_cloth(node)) {
+      all_cloth = false;
+      all_off = all_off && off[node];
+      continue;
+    }
+    self_alone = self_alone || (!self.empty() && self[node]);
+    body_alone = body_alone || (!body.empty() && body[node]);
+  }
+  return all_cloth ? self_alone : body_alone || all_off;
+}
+
+std::vector<char> either(std::vector<char> a, const std::vector<char>& b) {
+  if (a.empty()) return b;
+  for (std::size_t v = 0; v < b.size(); ++v) a[v] = a[v] || b[v];
+  return a;
+}
+
+}  // namespace selvedge

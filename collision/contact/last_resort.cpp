@@ -1,0 +1,86 @@
+#include <algorithm>
+
+#include "collision/contact/resolution.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double first_obstacle_mass = 1e3;  // of a yielding obstacle's node, in mean cloth vertices; then halved
+constexpr int halvings = 4;                  // before a motion is held still
+
+void join_nodes(DisjointSets& sets, const Impact& impact, const auto& belongs) {
+  int first = -1;
+  for (const int node : impact.pair.nodes)
+    if (belongs(node)) sets.join(first < 0 ? first = node : first, node);
+}
+
+}  // namespace
+
+std::vector<Impact> yield_rounds(Resolution& r, std::vector<Impact> impacts) {
+  double inverse = mean_inverse_mass(r.inverse_mass) / first_obstacle_mass;
+  for (int round = 0; !impacts.empty() && round < r.options.yield_rounds; ++round, inverse *= 2) {
+    std::vector<char> stuck(r.world.node_count, 0);
+    for (const Impact& impact : impacts)
+      for (const int node : impact.pair.nodes)
+        if (r.is_free(node)) stuck[r.zones.root(node)] = 1;
+    const auto is_stuck = [&](const Impact& impact) {
+      return std::any_of(impact.pair.nodes.begin(), impact.pair.nodes.end(),
+                         [&](int node) { return r.is_free(node) && stuck[r.zones.root(node)]; });
+    };
+    std::vector<int> yielding;
+    const auto collect = [&](const Impact& impact) {
+      for (const int node : impact.pair.nodes)
+        if (!r.world.is_cloth(node)) yielding.push_back(node);
+    };
+    for (const Impact& impact : impacts) collect(impact);
+    for (const Impact& impact : r.impacts)
+      if (is_stuck(impact)) collect(impact);
+    for (const int node : yielding) r.inverse_mass[node] = std::max(r.inverse_mass[node], inverse);
+    for (const Impact& impact : r.impacts) join_nodes(r.zones, impact, [&](int node) { return r.is_free(node); });
+    zone_round(r, impacts);
+    impacts = new_impacts(r);
+  }
+  return impacts;
+}
+
+bool shorten_rounds(Resolution& r, std::vector<Impact> impacts) {
+  DisjointSets sets(r.world.node_count);
+  impacts.insert(impacts.end(), r.impacts.begin(), r.impacts.end());
+  std::vector<int> halved(r.world.node_count, 0);
+  bool clean = true;
+  const auto moves = [&r](int node) { return r.x0.row(node) != r.x1.row(node); };
+  const auto belongs = [&](int node) { return r.is_free(node) || moves(node); };
+  while (!impacts.empty()) {
+    std::vector<char> hit(r.world.node_count, 0);
+    for (const Impact& impact : impacts) join_nodes(sets, impact, belongs);
+    for (const Impact& impact : impacts)
+      for (const int node : impact.pair.nodes)
+        if (belongs(node)) hit[sets.root(node)] = 1;
+    std::vector<int> most(r.world.node_count, 0);  // halvings of any member: a set that grows goes on from there
+    for (int node = 0; node < r.world.node_count; ++node) {
+      int& of_set = most[sets.root(node)];
+      of_set = std::max(of_set, halved[node]);
+    }
+    for (int node = 0; node < r.world.node_count; ++node) {
+      const int root = sets.root(node);
+      if (!hit[root]) continue;
+      halved[node] = most[root] + 1;
+      const double kept = halved[node] > halvings ? 0 : 0.5;
+      r.x1.row(node) = r.x0.row(node) + kept * (r.x1.row(node) - r.x0.row(node)).eval();
+      r.moved[node] = 1;
+      if (node == root) ++r.report.shortened;
+    }
+    r.report.response += r.watch.lap();
+    impacts = new_impacts(r);
+    const auto found = impacts.size();
+    std::erase_if(impacts, [&](const Impact& impact) {
+      return std::none_of(impact.pair.nodes.begin(), impact.pair.nodes.end(), moves);
+    });
+    clean = clean && impacts.size() == found;
+  }
+  for (int node = 0; node < r.world.node_count; ++node)
+    if (halved[node] > 0 && r.world.is_cloth(node)) ++r.report.held;
+  return clean;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,162 @@
+#include "collision/contact/resolve.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "collision/contact/resolution.hpp"
+
+namespace selvedge {
+namespace {
+
+// How near pairs may come. Those of one cloth that rest within the thickness are to each other what layers are at it:
+// elements smaller than that would else be forced apart by every motion of their own.
+class Separations {
+ public:
+  Separations(const ContactWorld& world, const ResolveOptions& options)
+      : world_(world), most_(options.separation), part_(options.separation / options.thickness) {}
+  double most() const { return most_; }
+  double operator()(const NodePair& pair) const { return std::min(most_, part_ * rest_distance(world_, pair)); }
+
+ private:
+  const ContactWorld& world_;
+  double most_, part_;
+};
+
+// Impacts of the pairs that have a free node and a node in `moved` (empty: every node), sorted by pair.
+std::vector<Impact> impacts_of(const PathPairs& path, const Eigen::VectorXd& inverse_mass,
+                               const std::vector<char>& moved, const Separations& separation, const Points& x0,
+                               const Points& x1) {
+  constexpr int chunk = 4096;
+  const PathMotion motion(path, x0, x1);
+  const int count = static_cast<int>(path.pairs.size()), chunks = (count + chunk - 1) / chunk;
+  std::vector<std::vector<Impact>> found(chunks);
+#pragma omp parallel for schedule(dynamic)
+  for (int c = 0; c < chunks; ++c)
+    for (int i = c * chunk; i < std::min((c + 1) * chunk, count); ++i) {
+      const NodePair& pair = path.pairs[i];
+      const auto any = [&](auto&& test) { return std::any_of(pair.nodes.begin(), pair.nodes.end(), test); };
+      if (!moved.empty() && !any([&](int n) { return moved[n] != 0; })) continue;
+      if (!motion.may_come_within(i, separation.most()) || !any([&](int n) { return inverse_mass[n] > 0; })) continue;
+      auto impact = find_impact(pair, x0, x1, separation.most());
+      if (!impact) continue;
+      if (const double own = separation(pair); own < separation.most()) impact = find_impact(pair, x0, x1, own);
+      if (impact) found[c].push_back(*impact);
+    }
+  std::vector<Impact> all;
+  for (const auto& list : found) all.insert(all.end(), list.begin(), list.end());
+  std::sort(all.begin(), all.end(), [](const Impact& a, const Impact& b) { return a.pair < b.pair; });
+  return all;
+}
+
+double friction_of(const Resolution& r, const NodePair& pair) {
+  const bool obstacle = std::any_of(pair.nodes.begin(), pair.nodes.end(), [&](int n) { return !r.world.is_cloth(n); });
+  return obstacle ? r.options.friction : r.options.self_friction;
+}
+
+void mark_free(Resolution& r, const Impact& impact) {
+  for (const int node : impact.pair.nodes)
+    if (r.is_free(node)) r.moved[node] = 1;
+}
+
+void impulse_round(Resolution& r, std::vector<Impact> impacts) {
+  std::stable_sort(impacts.begin(), impacts.end(), [](const Impact& a, const Impact& b) { return a.time < b.time; });
+  for (Impact& impact : impacts) {
+    apply_impulse(impact, r.inverse_mass, r.x0, r.x1);
+    mark_free(r, impact);
+  }
+  r.report.impulses += static_cast<int>(impacts.size());
+  r.report.response += r.watch.lap();
+}
+
+int zone_of(Resolution& r, const Impact& impact) {
+  const auto& nodes = impact.pair.nodes;
+  return r.zones.root(*std::find_if(nodes.begin(), nodes.end(), [&](int n) { return r.is_free(n); }));
+}
+
+// A zone whose nodes are all free may go on as one rigid body; one that leans on something prescribed may not.
+bool rigidify(Resolution& r, std::span<Impact* const> impacts) {
+  std::vector<int> nodes;
+  for (const Impact* impact : impacts) nodes.insert(nodes.end(), impact->pair.nodes.begin(), impact->pair.nodes.end());
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  if (!std::all_of(nodes.begin(), nodes.end(), [&r](int node) { return r.is_free(node); })) return false;
+  rigidify_zone(nodes, r.inverse_mass, r.x0, r.x1);
+  return true;
+}
+
+}  // namespace
+
+std::vector<Impact> new_impacts(Resolution& r) {
+  r.watch.lap();
+  // What a list gains by being mended has a node that strayed in this round, which is marked.
+  if (update_pairs(r.search, r.options.thickness, r.x0, r.x1, r.path)) std::fill(r.moved.begin(), r.moved.end(), 1);
+  r.report.broad_phase += r.watch.lap();
+  auto impacts = impacts_of(r.path, r.inverse_mass, r.moved, {r.world, r.options}, r.x0, r.x1);
+  for (Impact& impact : impacts) impact.friction = friction_of(r, impact.pair);
+  std::fill(r.moved.begin(), r.moved.end(), 0);
+  r.report.ccd += r.watch.lap();
+  return impacts;
+}
+
+void zone_round(Resolution& r, const std::vector<Impact>& fresh) {
+  for (const Impact& impact : fresh) {
+    int first = -1;
+    for (const int node : impact.pair.nodes)
+      if (r.is_free(node)) r.zones.join(first < 0 ? first = node : first, node);
+    r.impacts.push_back(impact);
+  }
+  std::map<int, std::vector<Impact*>> touched;
+  for (const Impact& impact : fresh) touched[zone_of(r, impact)];
+  for (Impact& impact : r.impacts)
+    if (const auto zone = touched.find(zone_of(r, impact)); zone != touched.end()) zone->second.push_back(&impact);
+  r.violation = 0;
+  for (auto& [root, impacts] : touched) {
+    if (!r.options.rigid_zones || !rigidify(r, impacts))
+      r.violation = std::max(r.violation, project_zone(impacts, r.inverse_mass, r.x0, r.x1, r.options.zone_sweeps,
+                                                       0.1 * r.options.separation));
+    for (const Impact* impact : impacts) mark_free(r, *impact);
+  }
+  r.report.zones += static_cast<int>(touched.size());
+  r.report.response += r.watch.lap();
+}
+
+std::vector<Impact> find_impacts(PairSearch& search, const Eigen::VectorXd& inverse_mass, const ResolveOptions& options,
+                                 const Points& x0, const Points& x1, PathPairs& path, ResolveReport& times) {
+  Stopwatch watch;
+  update_pairs(search, options.thickness, x0, x1, path);
+  times.broad_phase += watch.lap();
+  auto impacts = impacts_of(path, inverse_mass, {}, {search.world(), options}, x0, x1);
+  times.ccd += watch.lap();
+  return impacts;
+}
+
+ResolveReport resolve(PairSearch& search, const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
+                      const ResolveOptions& options, const Points& x0, Points& x1, PathPairs& path) {
+  Resolution r{search,       world,
+               inverse_mass, options,
+               x0,           x1,
+               path,         {},
+               {},           std::vector<char>(world.node_count, 1),
+               {},           DisjointSets(world.node_count)};
+  std::vector<Impact> impacts = new_impacts(r);
+  bool contradictory = false;  // zones ask for what cannot be, and more rounds do not change that
+  for (int round = 0; !impacts.empty() && !contradictory && round < options.impulse_rounds + options.zone_rounds;
+       ++round) {
+    const double before = r.violation;
+    if (round < options.impulse_rounds)
+      impulse_round(r, std::move(impacts));
+    else
+      zone_round(r, impacts);
+    contradictory =
+        !options.last_resort && r.violation > options.separation && r.violation > 0.9 * before && before > 0;
+    impacts = new_impacts(r);
+  }
+  if (!impacts.empty() && options.last_resort) {
+    impacts = yield_rounds(r, std::move(impacts));
+    if (!impacts.empty() && shorten_rounds(r, std::move(impacts))) impacts.clear();
+  }
+  r.report.clean = impacts.empty();
+  return r.report;
+}
+
+}  // namespace selvedge

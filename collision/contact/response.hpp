@@ -1,0 +1,54 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "collision/contact/contact_pairs.hpp"
+
+namespace selvedge {
+
+// A pair that meets during a step, linearised where it meets: it must end with normal . sum w_i x_i >= target.
+struct Impact {
+  NodePair pair;
+  Eigen::Vector4d weights;
+  Vec3 normal;                     // from the second primitive toward the first, at the time of impact
+  double time = 0;                 // in [0, 1] of the step
+  double target = 0;               // [m]
+  double friction = 0;             // Coulomb's coefficient
+  double multiplier = 0;           // accumulated normal impulse times the time step [kg m]
+  Vec3 tangential = Vec3::Zero();  // accumulated friction impulse times the time step [kg m]
+};
+
+// The impact of a pair on the straight paths x0 -> x1, if it comes within `separation` [m].
+std::optional<Impact> find_impact(const NodePair&, const Points& x0, const Points& x1, double separation);
+
+double impact_gap(const Impact&, const Points& x);
+
+// Inverse of the mass that the pair feels along any direction [1/kg].
+double compliance(const Impact&, const Eigen::VectorXd& inverse_mass);
+
+double mean_inverse_mass(const Eigen::VectorXd&);  // of the nodes that are free; 0 if none is [1/kg]
+
+// Inelastic impulse of Bridson, Fedkiw and Anderson 2002 (section 7.3) in positions: moves the ends x1 of the four
+// nodes, by their inverse masses [1/kg] (0: prescribed), so that the gap reaches its target, and takes from the pair's
+// slip over the step what Coulomb friction allows (all of it where it sticks).
+void apply_impulse(Impact&, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1);
+
+// Inelastic impact zone (Harmon et al. 2008, with inequalities): the smallest mass-weighted change of x1 that brings
+// every impact to its target, by projected Gauss-Seidel on the multipliers, which start from their last values. Sliding
+// is kept but for Coulomb friction: no more than the normal impulse of the same pair allows. Returns the largest
+// remaining violation [m].
+double project_zone(std::span<Impact*> impacts, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1,
+                    int max_sweeps, double tolerance);
+
+// The angular velocity with that angular momentum [kg m2 / s over kg m2]. Nodes on a line have no inertia about it, and
+// turn about it at no speed.
+Vec3 angular_velocity(const Mat3& inertia, const Vec3& momentum);
+
+// Rigid impact zone (Provot 1997; Bridson et al. 2002, section 7.4): the nodes go on from x0 as one rigid body with the
+// linear and angular momentum of their paths x0 -> x1, turned by the whole angle of the step, so that no distance among
+// them changes. Prescribed nodes may not be among them.
+void rigidify_zone(std::span<const int> nodes, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1);
+
+}  // namespace selvedge

@@ -1,0 +1,187 @@
+#include "collision/contact/room.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/geometry/stopwatch.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double obstacle_mass = 30;  // of a node that gives way, in mean cloth vertices: layers are pressed together
+constexpr int sweeps = 25;            // in a block
+constexpr int least_blocks = 3, most_blocks = 20;
+constexpr double growing = 1;    // of the separation, a sweep: less is what settles late
+constexpr double steady = 0.98;  // of all growth is still there in the next block: a contradiction
+constexpr int most_rounds = 6;
+constexpr double few = 0.01;      // of all demands: new ones that resolve can see to
+constexpr double steepest = 0.5;  // lag may change by this much of the distance between nodes
+
+struct Squeeze {
+  PairSearch& search;
+  const ContactWorld& world;
+  const ResolveOptions& options;
+  const Points& x0;
+  PathPairs& path;
+  Eigen::VectorXd& inverse_mass;
+  ResolveReport& report;
+  double light = 0;               // inverse mass of a node that gives way
+  std::vector<char> yields;       // by node
+  std::vector<Impact> demands{};  // first those of pairs near the start
+  std::size_t near = 0;
+  Points x{};  // after the last press
+  Stopwatch watch{};
+
+  double distance() const { return 2 * options.separation; }
+  double start_gap(const NodePair& pair) const { return std::sqrt(closest(pair, x0).squared_distance); }
+};
+
+void add_meetings(Squeeze& s, const Points& x1) {
+  s.report.response += s.watch.lap();
+  std::vector<Impact> impacts = find_impacts(s.search, s.inverse_mass, s.options, s.x0, x1, s.path, s.report);
+  s.watch.lap();
+  for (Impact& impact : impacts) {
+    impact.target = std::min(s.distance(), s.start_gap(impact.pair));
+    s.demands.push_back(impact);
+  }
+}
+
+// Moves s.x from `trial` to meet the demands as far as that can be. Returns what each of them was still pushed by in
+// the last block of sweeps, as a multiplier, and zero where that was settling.
+std::vector<double> press(Squeeze& s, const Points& trial) {
+  s.x = trial;
+  std::vector<Impact*> all;
+  for (Impact& demand : s.demands) {
+    demand.multiplier = 0;
+    all.push_back(&demand);
+  }
+  const double tolerance = 0.1 * s.options.separation, least = growing * s.options.separation * sweeps;
+  std::vector<double> growth(s.demands.size());
+  double sum = 0;
+  for (int b = 0; b < most_blocks; ++b) {
+    for (std::size_t k = 0; k < growth.size(); ++k) growth[k] = -s.demands[k].multiplier;
+    project_zone(all, s.inverse_mass, s.x0, s.x, sweeps, tolerance);
+    const double before = sum;
+    sum = 0;
+    for (std::size_t k = 0; k < growth.size(); ++k) {
+      growth[k] += s.demands[k].multiplier;
+      const double way = growth[k] * compliance(s.demands[k], s.inverse_mass);
+      if (way < least)
+        growth[k] = 0;
+      else
+        sum += way;
+    }
+    if (sum == 0 || (b >= least_blocks && sum > steady * before)) break;
+  }
+  return growth;
+}
+
+// Lets the obstacle nodes of demands that grow give way. They need not try to go farther, either: in `trial` they come
+// at most half as much nearer to the cloth as it is away. False: there is none.
+bool give_way(Squeeze& s, const std::vector<double>& growth, Points& trial) {
+  Points away = Points::Zero(trial.rows(), 3);
+  Eigen::VectorXd gap = Eigen::VectorXd::Zero(trial.rows()), share = gap;
+  bool any = false;
+  for (std::size_t k = 0; k < growth.size(); ++k) {
+    if (growth[k] <= 0) continue;
+    const Impact& demand = s.demands[k];
+    const double spare = std::max(0.0, s.start_gap(demand.pair) - s.distance());
+    for (int i = 0; i < 4; ++i) {
+      const int node = demand.pair.nodes[i];
+      if (s.world.is_cloth(node)) continue;
+      any = any || !s.yields[node];
+      s.yields[node] = 1;
+      s.inverse_mass[node] = s.light;
+      away.row(node) += demand.weights[i] * growth[k] * demand.normal.transpose();
+      gap[node] += std::abs(demand.weights[i]) * growth[k] * spare;
+      share[node] += std::abs(demand.weights[i]) * growth[k];
+    }
+  }
+  for (int node = s.world.cloth->vertex_count; node < trial.rows(); ++node) {
+    const double length = away.row(node).norm();
+    if (length == 0) continue;
+    const Vec3 out = row(away, node) / length;
+    const double nearer = out.dot(row(s.x0, node) - row(trial, node)), most = 0.5 * gap[node] / share[node];
+    if (nearer > most) trial.row(node) += (nearer - most) * out.transpose();
+  }
+  return any;
+}
+
+// A body that gives way far at one place alone would fold into itself: nodes nearby lag with it, so that lag changes by
+// less than distance does and no two points of the body can meet. Small lags stay where they are.
+void spread_lag(const Squeeze& s, const Points& wanted, Points& x1) {
+  const int nodes = static_cast<int>(x1.rows());
+  std::vector<std::pair<double, int>> lagging;
+  for (int node = s.world.cloth->vertex_count; node < nodes; ++node)
+    if (const double lag = (x1.row(node) - wanted.row(node)).norm(); lag > 0) lagging.emplace_back(-lag, node);
+  std::sort(lagging.begin(), lagging.end());
+  const Points lags = x1 - wanted;
+#pragma omp parallel for schedule(static)
+  for (int node = s.world.cloth->vertex_count; node < nodes; ++node) {
+    const int body = s.world.obstacle_of(node);
+    Vec3 lag = row(lags, node);
+    for (const auto& [minus_size, from] : lagging) {
+      const double least = -minus_size - lag.norm();
+      if (least <= 0) break;  // it lags more than all that follow
+      const double near = steepest * (row(wanted, from) - row(wanted, node)).norm();
+      const Vec3 more = row(lags, from) - lag;
+      if (from != node && more.norm() > near && s.world.obstacle_of(from) == body)
+        lag += (1 - near / more.norm()) * more;
+    }
+    x1.row(node) = wanted.row(node) + lag.transpose();
+  }
+}
+
+}  // namespace
+
+bool make_room(PairSearch& search, const ContactWorld& world, const ResolveOptions& options,
+               std::span<const Proximity> near, const Points& x0, Points& x1, PathPairs& path,
+               Eigen::VectorXd& inverse_mass, ResolveReport& report) {
+  Squeeze s{search,
+            world,
+            options,
+            x0,
+            path,
+            inverse_mass,
+            report,
+            mean_inverse_mass(inverse_mass) / obstacle_mass,
+            std::vector<char>(world.node_count, 0)};
+  for (const Proximity& p : near) s.demands.push_back({p.pair, p.weights, p.normal, 0, std::min(s.distance(), p.gap)});
+  s.near = s.demands.size();
+  Points trial = x1;
+  add_meetings(s, trial);
+  bool squeezed = false;
+  for (int round = 0; round < most_rounds; ++round) {
+    if (give_way(s, press(s, trial), trial)) {
+      squeezed = true;
+      s.demands.resize(s.near);  // those met on the way there were as deep as what is not there
+      add_meetings(s, trial);
+      continue;
+    }
+    if (!squeezed) break;
+    const std::size_t known = s.demands.size();
+    add_meetings(s, s.x);
+    if (static_cast<double>(s.demands.size()) <= (1 + few) * static_cast<double>(known)) break;
+  }
+  const Eigen::Index obstacles = x1.rows() - world.cloth->vertex_count;
+  if (squeezed) {
+    const Points wanted = x1;
+    x1.bottomRows(obstacles) = s.x.bottomRows(obstacles);
+    spread_lag(s, wanted, x1);
+  }
+  report.response += s.watch.lap();
+  return squeezed;
+}
+
+ResolveReport catch_up(PairSearch& search, const ResolveOptions& options, const Eigen::VectorXd& inverse_mass,
+                       const Points& wanted, Points& nodes, PathPairs& path) {
+  ResolveReport report;
+  const Eigen::Index obstacles = nodes.rows() - search.world().cloth->vertex_count;
+  Points there = nodes;
+  there.bottomRows(obstacles) = wanted.bottomRows(obstacles);
+  report.clean = there == nodes || find_impacts(search, inverse_mass, options, nodes, there, path, report).empty();
+  if (report.clean) nodes = std::move(there);
+  return report;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,132 @@
+#include "collision/contact/search_part.hpp"
+
+#include <algorithm>
+
+namespace selvedge {
+namespace {
+
+// Does the box overlap that of a leaf?
+bool meets(const Bvh& tree, const Box& box) {
+  if (tree.item_count == 0) return false;
+  int stack[64], size = 0;  // a tree of 2^31 leaves is 31 deep
+  stack[size++] = 0;
+  while (size > 0) {
+    const Bvh::Node& node = tree.nodes[stack[--size]];
+    if (!overlap(node.box, box)) continue;
+    if (node.child < 0) return true;
+    stack[size++] = node.child;
+    stack[size++] = node.child + 1;
+  }
+  return false;
+}
+
+}  // namespace
+
+void PrimitiveGroups::share_out(const Bvh& bvh, const Triangles& primitives, const std::vector<int>& owner) {
+  groups.clear();
+  begin.assign(1, 0);
+  for (const Bvh::Leaf& leaf : bvh.leaves) {
+    int used = Bvh::leaf_size;
+    for (const int t : leaf.item)
+      for (int k = 0; t >= 0 && k < 3; ++k) {
+        const int item = primitives(t, k);
+        if (owner[item] != t) continue;
+        if (used == Bvh::leaf_size) {
+          used = 0;
+          std::ranges::fill(groups.emplace_back().item, -1);
+        }
+        groups.back().item[used++] = item;
+      }
+    begin.push_back(static_cast<int>(groups.size()));
+  }
+  ends.resize(groups.size());
+}
+
+void SearchPart::move(const Points& x0, const Points& x1, double radius, bool ends) {
+  const auto from = x0.middleRows(first_node, surface->vertex_count);
+  const auto to = x1.middleRows(first_node, surface->vertex_count);
+  if (radius_ == radius && ends_ == ends && from_ == from && to_ == to) return;
+  radius_ = radius;
+  ends_ = ends;
+  from_ = from;
+  to_ = to;
+  vertex_boxes(from_, to_, radius / 2, boxes_.vertices);
+  triangle_boxes(*surface, boxes_.vertices, boxes_.triangles);
+  if (update(tree, boxes_.triangles)) {
+    vertices.share_out(tree.bvh, surface->triangles, surface->vertex_owner);
+    edges.share_out(tree.bvh, surface->triangle_edges, surface->edge_owner);
+    face_ends.resize(tree.bvh.leaves.size());
+  }
+  for (Boxes* boxes : {&boxes_, &start_, &end_}) {
+    boxes->edges.resize(surface->edges.rows());
+    boxes->triangles.resize(surface->triangles.rows());
+  }
+  filled_.assign(tree.bvh.leaves.size(), 0);
+  node_ends.clear();
+  if (!ends) return;
+  vertex_boxes(from_, from_, radius / 2, start_.vertices);
+  vertex_boxes(to_, to_, radius / 2, end_.vertices);
+  std::ranges::fill(face_ends.bounds, EndBoxes{empty_box, empty_box});
+}
+
+void SearchPart::set_edge_boxes(int leaf, Boxes& boxes) const {
+  for (int g = edges.begin[leaf]; g < edges.begin[leaf + 1]; ++g)
+    for (const int e : edges.groups[g].item)
+      if (e >= 0) boxes.edges[e] = hull(boxes.vertices[surface->edges(e, 0)], boxes.vertices[surface->edges(e, 1)]);
+}
+
+void SearchPart::fill_leaf(int leaf) {
+  set_edge_boxes(leaf, boxes_);
+  for (int g = vertices.begin[leaf]; g < vertices.begin[leaf + 1]; ++g)
+    set_leaf_boxes(vertices.groups[g], boxes_.vertices);
+  for (int g = edges.begin[leaf]; g < edges.begin[leaf + 1]; ++g) set_leaf_boxes(edges.groups[g], boxes_.edges);
+  if (ends_) fill_ends(leaf);
+  filled_[leaf] = 1;
+}
+
+void SearchPart::fill_ends(int leaf) {
+  for (Boxes* at : {&start_, &end_}) {
+    for (const int t : tree.bvh.leaves[leaf].item) {
+      if (t < 0) continue;
+      const auto corners = surface->triangles.row(t);
+      at->triangles[t] = hull(at->vertices[corners[0]], at->vertices[corners[1]], at->vertices[corners[2]]);
+    }
+    set_edge_boxes(leaf, *at);
+  }
+  set_end_boxes(tree.bvh.leaves[leaf], start_.triangles, end_.triangles, leaf, face_ends);
+  for (int g = vertices.begin[leaf]; g < vertices.begin[leaf + 1]; ++g)
+    set_end_boxes(vertices.groups[g], start_.vertices, end_.vertices, g, vertices.ends);
+  for (int g = edges.begin[leaf]; g < edges.begin[leaf + 1]; ++g)
+    set_end_boxes(edges.groups[g], start_.edges, end_.edges, g, edges.ends);
+}
+
+void SearchPart::fill(const Bvh* other) {
+  std::vector<int> leaves;
+  for (const Bvh::Node& node : tree.bvh.nodes) {
+    if (node.child >= 0 || filled_[~node.child]) continue;
+    // A traversal looks at two trees of one leaf each without asking their boxes.
+    if (!other || tree.bvh.leaves.size() == 1 || meets(*other, node.box)) leaves.push_back(~node.child);
+  }
+  const int count = static_cast<int>(leaves.size());
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < count; ++i) fill_leaf(leaves[i]);
+  if (ends_ && (count > 0 || node_ends.empty())) set_end_boxes(tree.bvh, face_ends, node_ends);
+}
+
+void SearchPart::mark(const std::vector<char>& nodes) {
+  const Bvh& bvh = tree.bvh;
+  const auto holds_marked = [&](const Bvh::Leaf& leaf) {
+    return std::ranges::any_of(leaf.item, [&](int t) {
+      if (t < 0) return false;
+      const auto corners = surface->triangles.row(t);
+      return std::any_of(corners.begin(), corners.end(), [&](int v) { return nodes[first_node + v] != 0; });
+    });
+  };
+  marks.resize(bvh.nodes.size());
+  for (std::size_t i = bvh.nodes.size(); i-- > 0;) {
+    const int child = bvh.nodes[i].child;
+    marks[i] = child < 0 ? holds_marked(bvh.leaves[~child]) : marks[child] || marks[child + 1];
+  }
+}
+
+}  // namespace selvedge

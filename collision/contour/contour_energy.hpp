@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "collision/contour/segments.hpp"
+
+namespace selvedge {
+
+// translational: the part that moves the crossings along the edges, which are held where they are, as moving the face
+// along its normal does; full: the derivative of the value.
+enum class ContourGradient { translational, full };
+
+// What the energy sums over the segments: the squares of their lengths (Grigorev et al. 2024, equation 11), or the
+// lengths (Volino and Magnenat-Thalmann 2006).
+enum class ContourMeasure { squared_length, length };
+
+// Sum over the segments, [m^2] or [m]. A crossing of edge AB and a face with the corners D_i and normal n is A + s (B -
+// A) with
+//   s = n.(D - A) / n.(B - A),  ds/dA = -(1 - s) n / n.(B - A),  ds/dB = -s n / n.(B - A),  ds/dD_i = w_i n / n.(B - A)
+// where D is the point w.D of the face that the edge crosses (the appendix of the paper has another factor in its
+// equation 20, a misprint). Loop vertices are held in the translational gradient and follow their vertex in the full
+// one. Segments with an end without a value (the edge in the plane of the face) are left out.
+// If `gradient` is given it gets one matrix a sheet, n x 3: the derivative of the value [m or 1], by the vertices'
+// positions. Positions may have moved since the segments were found, as long as these stay what they were
+// combinatorially: the crossings are computed anew.
+double contour_energy(std::span<const SheetView> sheets, const Segments& segments,
+                      ContourMeasure measure = ContourMeasure::squared_length, std::vector<Points>* gradient = nullptr,
+                      ContourGradient kind = ContourGradient::translational);
+
+}  // namespace selvedge

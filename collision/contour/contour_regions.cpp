@@ -1,0 +1,112 @@
+#include "collision/contour/contour_regions.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "collision/contour/edge_parity.hpp"
+#include "collision/exact/inside.hpp"
+
+namespace selvedge {
+
+bool ends_outside(const Contour& contour, int side) {
+  if (contour.closed) return true;
+  for (int end = 0; end < 2; ++end) {
+    if (contour.ends[end] == ContourEnd::branch) return false;
+    if (contour.ends[end] == ContourEnd::boundary && contour.end_side[end] != side) return false;
+  }
+  return true;
+}
+
+namespace {
+
+struct Key {
+  int sheet, component, partner_sheet, partner_component;
+  auto operator<=>(const Key&) const = default;
+};
+
+Key key_of(const Contour& contour, int side) {
+  const ContourSide &own = contour.sides[side], &other = contour.sides[1 - side];
+  return {own.sheet, own.component, other.sheet, other.component};
+}
+
+// A contour on one of its sides, or on both where both lie on the same component and belong together.
+struct Trace {
+  const Contour* contour;
+  std::array<bool, 2> sides;
+};
+
+bool ends_at_vertex(const Contour& contour) {
+  return contour.ends[0] == ContourEnd::vertex || contour.ends[1] == ContourEnd::vertex;
+}
+
+void add_traces(const Contour& contour, const Key& key, std::vector<Trace>& traces) {
+  const bool together = ends_at_vertex(contour) || contour.one_trace;
+  std::array<bool, 2> here{};
+  for (int side = 0; side < 2; ++side) here[side] = key_of(contour, side) == key;
+  if (here[0] && here[1] && together) {
+    traces.push_back({&contour, {true, true}});
+    return;
+  }
+  for (int side = 0; side < 2; ++side)
+    if (here[side]) traces.push_back({&contour, {side == 0, side == 1}});
+}
+
+bool is_cycle(const Trace& trace) {
+  return (!trace.sides[0] || ends_outside(*trace.contour, 0)) && (!trace.sides[1] || ends_outside(*trace.contour, 1));
+}
+
+void add(EdgeParity& parity, const Trace& trace) {
+  for (int side = 0; side < 2; ++side)
+    if (trace.sides[side]) parity.add(*trace.contour, side);
+}
+
+// All cycles together, or those that part the component on their own.
+std::vector<char> colour_together(const Surface& surface, int component, const std::vector<Trace>& traces, bool& cut) {
+  std::vector<char> colours;
+  EdgeParity all(surface);
+  for (const Trace& trace : traces)
+    if (is_cycle(trace))
+      add(all, trace);
+    else
+      cut = false;
+  if (all.colour(component, colours)) return colours;
+  cut = false;
+  EdgeParity some(surface);
+  for (const Trace& trace : traces) {
+    EdgeParity alone(surface);
+    add(alone, trace);
+    if (is_cycle(trace) && alone.colour(component, colours)) add(some, trace);
+  }
+  some.colour(component, colours);
+  return colours;
+}
+
+}  // namespace
+
+std::vector<Region> enclosed_regions(std::span<const SheetView> sheets, std::span<const Contour> contours) {
+  std::map<Key, std::vector<int>> groups;
+  for (int c = 0; c < static_cast<int>(contours.size()); ++c)
+    for (int side = 0; side < 2; ++side) {
+      std::vector<int>& group = groups[key_of(contours[c], side)];
+      if (group.empty() || group.back() != c) group.push_back(c);
+    }
+  std::vector<Region> regions;
+  for (const auto& [key, group] : groups) {
+    Region region{key.sheet, key.component, key.partner_sheet, key.partner_component, group, {}, true};
+    std::vector<Trace> traces;
+    for (int c : group) add_traces(contours[c], key, traces);
+    const Surface& surface = *sheets[key.sheet].surface;
+    const std::vector<char> colours = colour_together(surface, key.component, traces, region.cut);
+    const bool closed_partner =
+        key.sheet == 0 && key.partner_sheet > 0 && is_closed(*sheets[key.partner_sheet].surface);
+    const std::vector<char> in =
+        closed_partner ? inside(*sheets[key.partner_sheet].surface, *sheets[key.partner_sheet].x, *sheets[0].x)
+                       : std::vector<char>();
+    for (int v = 0; v < surface.vertex_count; ++v)
+      if (closed_partner ? colours[v] >= 0 && in[v] : colours[v] == 1) region.vertices.push_back(v);
+    regions.push_back(std::move(region));
+  }
+  return regions;
+}
+
+}  // namespace selvedge

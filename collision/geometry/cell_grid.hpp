@@ -1,0 +1,50 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "collision/geometry/points.hpp"
+
+namespace selvedge {
+
+// Points by the cubes of a grid that they lie in.
+class CellGrid {
+ public:
+  // All points finite; `cell` is the cubes' edge [m].
+  CellGrid(const Points& x, double cell);
+
+  // The points by the cubes that they lie in, those of a cube side by side.
+  const std::vector<int>& order() const { return point_; }
+
+  // Visits the points of all cubes that the ball's box meets, the ball's own among them, in a fixed order.
+  template <class Visit>
+  void for_each_near(const Vec3& at, double radius, Visit visit) const {
+    for_each_run_near(at, radius, [&](int first, int last) {
+      for (int p = first; p < last; ++p) visit(point_[p]);
+    });
+  }
+  // The same as runs [first, last) of places in `order`, for who keeps what it asks of points in that order.
+  template <class Visit>
+  void for_each_run_near(const Vec3& at, double radius, Visit visit) const {
+    std::array<int, 3> from, to;
+    for (int k = 0; k < 3; ++k) {
+      from[k] = std::max(0, coordinate(at[k] - radius, k));
+      to[k] = std::min(size_[k] - 1, coordinate(at[k] + radius, k));
+    }
+    if (from[2] > to[2]) return;
+    for (int i = from[0]; i <= to[0]; ++i)
+      for (int j = from[1]; j <= to[1]; ++j) visit(begin_[cell(i, j, from[2])], begin_[cell(i, j, to[2]) + 1]);
+  }
+
+ private:
+  int coordinate(double at, int axis) const;
+  int cell(int i, int j, int k) const { return (i * size_[1] + j) * size_[2] + k; }
+
+  Vec3 lo_ = Vec3::Zero();
+  double cell_;
+  std::array<int, 3> size_{1, 1, 1};
+  std::vector<int> begin_, point_;  // of each cell: where its points begin; the points
+};
+
+}  // namespace selvedge

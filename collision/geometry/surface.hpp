@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "collision/geometry/points.hpp"
+
+namespace selvedge {
+
+// Topology of a triangle surface; positions live outside. Built once, constant afterwards.
+struct Surface {
+  int vertex_count = 0;
+  Triangles triangles;
+  Edges edges;  // unique, sorted lexicographically
+  std::vector<std::array<int, 2>>
+      edge_triangles;        // the two triangles of an edge, -1 at a boundary; the first two where non-manifold
+  Triangles triangle_edges;  // edge k of a triangle joins its corners k and (k + 1) % 3
+  std::vector<int> vertex_triangle_begin;  // size n + 1: the triangles round vertex v are
+  std::vector<int> vertex_triangle;  //   vertex_triangle[vertex_triangle_begin[v] .. vertex_triangle_begin[v + 1])
+  std::vector<int> vertex_owner;     // the lowest triangle that has the vertex, -1 for an isolated one
+  std::vector<int> edge_owner;       // the lowest triangle that has the edge
+  std::vector<int> component;        // connected component of each vertex (isolated vertices: their own)
+  int component_count = 0;
+  int nonmanifold_edges = 0;  // edges with more than two triangles
+  int isolated_vertices = 0;
+
+  std::span<const int> triangles_of(int vertex) const {
+    const int begin = vertex_triangle_begin[vertex];
+    return {vertex_triangle.data() + begin, static_cast<std::size_t>(vertex_triangle_begin[vertex + 1] - begin)};
+  }
+};
+
+// Indices must lie in [0, vertex_count) and differ within a triangle (assert; readers check and throw).
+Surface make_surface(int vertex_count, const Triangles& triangles);
+
+bool is_closed(const Surface&);  // every edge has exactly two triangles
+
+// Closed loops of boundary vertices, each in the direction of its triangles' edges and each vertex at most once in a
+// loop. Edges that do not close, which only triangles of clashing orientation have, are left out.
+std::vector<std::vector<int>> boundary_loops(const Surface&);
+
+double mean_edge(const Surface&, const Points&);  // length [m]; 0 without edges
+
+// Area-weighted unit vertex normals, n x 3; zero at isolated vertices.
+Points vertex_normals(const Surface&, const Points&);
+
+}  // namespace selvedge

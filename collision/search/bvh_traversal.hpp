@@ -1,0 +1,159 @@
+#pragma once
+
+#include <bit>
+#include <utility>
+#include <vector>
+
+#include "collision/search/bvh.hpp"
+
+namespace selvedge {
+
+// All pairs of an item below node a of the first tree with one below node b of the second; within one tree a == b
+// stands for the pairs below that node.
+struct NodeWork {
+  int a, b;
+};
+
+// Boxes at both ends of a motion round what boxes of whole motions are round.
+struct EndBoxes {
+  Box start, end;
+};
+
+// Boxes round whole motions overlap where things move by many of their own sizes. What moves along together is told
+// apart by an axis along which the boxes at the start are apart and those at the end, in the same order: on straight
+// motions so they are all the way.
+[[gnu::always_inline]] inline bool apart_in_order(const EndBoxes& a, const EndBoxes& b) {
+  bool apart = false;
+  for (int k = 0; k < 3; ++k)
+    apart |= ((a.start.hi[k] < b.start.lo[k]) & (a.end.hi[k] < b.end.lo[k])) |
+             ((b.start.hi[k] < a.start.lo[k]) & (b.end.hi[k] < a.end.lo[k]));
+  return apart;
+}
+
+// The way through one tree with itself (first and second the same) or through two. Below a node of one tree that is
+// marked in `quiet` no pair of its items with each other is visited; nor are nodes that are apart in order by the boxes
+// in `first_ends` and `second_ends`, where there are some; nor pairs of nodes of which neither is marked in
+// `first_marks` or `second_marks`, where there are any: then a search is for what has items below the marked ones.
+struct BvhTraversal {
+  const Bvh& first;
+  const Bvh& second;
+  bool within_one;
+  const std::vector<char>* quiet = nullptr;
+  const EndBoxes *first_ends = nullptr, *second_ends = nullptr;  // by node
+  const char *first_marks = nullptr, *second_marks = nullptr;
+
+  bool is_self(NodeWork w) const { return within_one && w.a == w.b; }
+  bool is_leaf(NodeWork w) const { return first.nodes[w.a].child < 0 && second.nodes[w.b].child < 0; }
+  bool is_quiet(NodeWork w) const { return quiet && is_self(w) && (*quiet)[w.a]; }
+  bool is_marked(NodeWork w) const { return !first_marks || first_marks[w.a] || second_marks[w.b]; }
+  const Bvh::Leaf& leaf_a(NodeWork w) const { return first.leaves[~first.nodes[w.a].child]; }
+  const Bvh::Leaf& leaf_b(NodeWork w) const { return second.leaves[~second.nodes[w.b].child]; }
+
+  // The one rule of descent. Appends the parts of w, which is no leaf, that may hold overlapping pairs.
+  void split(NodeWork w, std::vector<NodeWork>& out) const {
+    const Bvh::Node &a = first.nodes[w.a], &b = second.nodes[w.b];
+    const auto add = [&](int i, int j) {
+      if (overlap(first.nodes[i].box, second.nodes[j].box) &&
+          !(first_ends && apart_in_order(first_ends[i], second_ends[j])) && is_marked({i, j}))
+        out.push_back({i, j});
+    };
+    if (is_self(w)) {
+      if (is_quiet(w)) return;
+      for (const int child : {a.child, a.child + 1})
+        if (is_marked({child, child})) out.push_back({child, child});
+      add(a.child, a.child + 1);
+    } else if (b.child < 0) {
+      add(a.child, w.b);
+      add(a.child + 1, w.b);
+    } else if (a.child < 0) {
+      add(w.a, b.child);
+      add(w.a, b.child + 1);
+    } else {
+      add(a.child, b.child);
+      add(a.child, b.child + 1);
+      add(a.child + 1, b.child);
+      add(a.child + 1, b.child + 1);
+    }
+  }
+
+  // Enough parts to share out evenly, found by a rule that knows nothing of threads.
+  std::vector<NodeWork> frontier() const;
+};
+
+// One bit a lane, of comparisons of both halves of a leaf.
+using LaneFlags [[gnu::vector_size(16)]] = int;
+[[gnu::always_inline]] inline unsigned bits_of(LaneFlags first, LaneFlags second) {
+  constexpr LaneFlags low{1, 2, 4, 8}, high{16, 32, 64, 128};
+  const LaneFlags bits = (first & low) | (second & high);
+  return static_cast<unsigned>(bits[0] | bits[1] | bits[2] | bits[3]);
+}
+
+// One bit an item of the leaf: does its box overlap the box?
+[[gnu::always_inline]] inline unsigned overlaps(const Bvh::Leaf& leaf, const Box& box) {
+  const auto half = [&](int h) {
+    return (leaf.lo[0][h] <= box.hi[0]) & (leaf.hi[0][h] >= box.lo[0]) & (leaf.lo[1][h] <= box.hi[1]) &
+           (leaf.hi[1][h] >= box.lo[1]) & (leaf.lo[2][h] <= box.hi[2]) & (leaf.hi[2][h] >= box.lo[2]);
+  };
+  return bits_of(half(0), half(1));
+}
+
+inline Box box_of(const Bvh::Leaf& leaf, int i) {
+  Box box;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = leaf.lo[k][i / 4][i % 4];
+    box.hi[k] = leaf.hi[k][i / 4][i % 4];
+  }
+  return box;
+}
+
+// Calls visit(i, j) for the places i in a and j in b whose boxes overlap. box_b holds all of b.
+template <class Visit>
+[[gnu::always_inline]] inline void for_each_overlap(const Bvh::Leaf& a, const Bvh::Leaf& b, const Box& box_b,
+                                                    Visit&& visit) {
+  for (unsigned from = overlaps(a, box_b); from != 0; from &= from - 1) {
+    const int i = std::countr_zero(from);
+    for (unsigned bits = overlaps(b, box_of(a, i)); bits != 0; bits &= bits - 1) visit(i, std::countr_zero(bits));
+  }
+}
+
+// The same within one leaf, i < j.
+template <class Visit>
+[[gnu::always_inline]] inline void for_each_overlap(const Bvh::Leaf& a, Visit&& visit) {
+  for (int i = 0; i < Bvh::leaf_size && a.item[i] >= 0; ++i)
+    for (unsigned bits = overlaps(a, box_of(a, i)) & (~1u << i); bits != 0; bits &= bits - 1)
+      visit(i, std::countr_zero(bits));
+}
+
+// Lists that parts of a traversal fill; keeping them between calls spares their allocation.
+template <class Item>
+using PartLists = std::vector<std::vector<Item>>;
+
+// Calls visit(w, list) for every pair of leaves whose boxes overlap (and every leaf with itself, within one tree), on
+// all threads; what the calls append to their lists is appended to `out` in an order that depends on the trees alone.
+template <class Item, class Visit>
+void gather(const BvhTraversal& traversal, PartLists<Item>& parts, std::vector<Item>& out, Visit&& visit) {
+  if (traversal.first.item_count == 0 || traversal.second.item_count == 0) return;
+  const std::vector<NodeWork> front = traversal.frontier();
+  const int count = static_cast<int>(front.size());
+  if (parts.size() < front.size()) parts.resize(front.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int i = 0; i < count; ++i) {
+    parts[i].clear();
+    std::vector<NodeWork> stack{front[i]};
+    while (!stack.empty()) {
+      const NodeWork w = stack.back();
+      stack.pop_back();
+      if (!traversal.is_leaf(w))
+        traversal.split(w, stack);
+      else if (!traversal.is_quiet(w))
+        visit(w, parts[i]);
+    }
+  }
+  std::vector<std::size_t> begin(count + 1, out.size());
+  for (int i = 0; i < count; ++i) begin[i + 1] = begin[i] + parts[i].size();
+  out.resize(begin[count]);
+#pragma omp parallel for schedule(dynamic, 8)
+  for (int i = 0; i < count; ++i) std::copy(parts[i].begin(), parts[i].end(), out.data() + begin[i]);
+}
+
+}  // namespace selvedge

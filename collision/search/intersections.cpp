@@ -1,0 +1,132 @@
+#include "collision/search/intersections.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/exact/triangle_pair.hpp"
+
+namespace selvedge {
+namespace {
+
+using Pairs = std::vector<std::pair<int, int>>;
+using Corners = std::array<Vec3, 3>;
+
+Corners corners_of(const Surface& surface, const Points& x, int triangle) {
+  const int* v = surface.triangles.data() + 3 * triangle;
+  return {row(x, v[0]), row(x, v[1]), row(x, v[2])};
+}
+
+bool share_vertex(const Triangles& triangles, int s, int t) {
+  const int *a = triangles.data() + 3 * s, *b = triangles.data() + 3 * t;
+  bool share = false;
+  for (int i = 0; i < 3; ++i) share |= (a[i] == b[0]) | (a[i] == b[1]) | (a[i] == b[2]);
+  return share;
+}
+
+bool all_finite(const Corners& c) { return c[0].allFinite() && c[1].allFinite() && c[2].allFinite(); }
+
+bool intersect(const Corners& a, const Corners& b) {
+  return !surely_apart(a, b) && all_finite(a) && all_finite(b) && triangles_meet(a, b);
+}
+
+struct Range {
+  double low, high;
+};
+
+Range range_along(const Vec3& m, const Corners& c) {
+  const double p = m.dot(c[0]), q = m.dot(c[1]), r = m.dot(c[2]);
+  return {std::min(std::min(p, q), r), std::max(std::max(p, q), r)};
+}
+
+// A bound of what rounding does to a difference of two products m . p. Points are relative to one of them, each
+// coordinate wrong by at most u = 2^-53 of itself, and at most `reach` in the sum of their coordinates. With the
+// rounding of three products and two sums m . p is wrong by less than 5 u max |m_k| reach, on both sides together by 10
+// u; 2e-15 is 18 u. What underflows is less than 1e-300.
+double slack_along(const Vec3& m, double reach) { return 2e-15 * m.cwiseAbs().maxCoeff() * reach + 1e-300; }
+
+// Does a plane across the direction m lie between them?
+bool apart_along(const Vec3& m, const Corners& a, const Corners& b, double reach) {
+  const Range of_a = range_along(m, a), of_b = range_along(m, b);
+  return std::max(of_b.low - of_a.high, of_a.low - of_b.high) > slack_along(m, reach);
+}
+
+// Does the face's plane, through its corner `on`, have the other triangle on one side? With R for `reach`, the computed
+// normal is wrong by less than 3 u 4 R^2 in each coordinate, along an edge (2 R) of the face by 24 u R^3; that the
+// edges are wrong by 4 u R in the sum of their coordinates adds 16 u R^3. So far the face's other corners may be off
+// the plane; 1e-14 is 90 u.
+bool apart_by_plane(const Vec3& normal, const Vec3& on, const Corners& other, double reach) {
+  const Range beyond = range_along(normal, other);
+  const double height = normal.dot(on), slack = slack_along(normal, reach) + 1e-14 * reach * reach * reach;
+  return std::max(beyond.low - height, height - beyond.high) > slack;
+}
+
+bool apart_beside(const Vec3& normal, const Corners& face, const Corners& other, double reach) {
+  for (int k = 0; k < 3; ++k)
+    if (apart_along((face[(k + 1) % 3] - face[k]).cross(normal), face, other, reach)) return true;
+  return false;
+}
+
+// True if the tree was built anew.
+bool refresh(const Surface& surface, const Points& x, IntersectionCache& cache) {
+  triangle_boxes(surface, x, x, 0, cache.boxes);
+  return update(cache.tree, cache.boxes);
+}
+
+}  // namespace
+
+bool surely_apart(const Corners& first, const Corners& second) {
+  Corners a, b;
+  double reach = 0;
+  for (int k = 0; k < 3; ++k) {
+    a[k] = first[k] - first[0];
+    b[k] = second[k] - first[0];
+    reach = std::max({reach, a[k].cwiseAbs().sum(), b[k].cwiseAbs().sum()});
+  }
+  const Vec3 normal_a = a[1].cross(a[2]);
+  if (apart_by_plane(normal_a, a[0], b, reach)) return true;
+  const Vec3 normal_b = (b[1] - b[0]).cross(b[2] - b[0]);
+  if (apart_by_plane(normal_b, b[0], a, reach)) return true;
+  return apart_beside(normal_a, a, b, reach) || apart_beside(normal_b, b, a, reach);
+}
+
+Pairs intersecting_pairs(const Surface& surface, const Points& x, IntersectionCache& cache) {
+  const bool rebuilt = refresh(surface, x, cache);
+  const Bvh& tree = cache.tree.bvh;
+  if (cache.cull) {
+    if (rebuilt || cache.parts.part_of.size() != tree.nodes.size()) find_parts(surface, tree, cache.parts);
+    mark_quiet(surface, x, tree, cache.parts);
+  }
+  const BvhTraversal traversal{tree, tree, true, cache.cull ? &cache.parts.quiet : nullptr};
+  Pairs pairs;
+  gather(traversal, cache.lists, pairs, [&](NodeWork w, Pairs& found) {
+    const Bvh::Leaf &a = traversal.leaf_a(w), &b = traversal.leaf_b(w);
+    const auto test = [&](int i, int j) {
+      const int s = a.item[i], t = b.item[j];
+      if (!share_vertex(surface.triangles, s, t) && intersect(corners_of(surface, x, s), corners_of(surface, x, t)))
+        found.emplace_back(std::min(s, t), std::max(s, t));
+    };
+    w.a == w.b ? for_each_overlap(a, test) : for_each_overlap(a, b, tree.nodes[w.b].box, test);
+  });
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+Pairs intersecting_pairs(const Surface& first, const Points& x_first, IntersectionCache& cache_first,
+                         const Surface& second, const Points& x_second, IntersectionCache& cache_second) {
+  refresh(first, x_first, cache_first);
+  refresh(second, x_second, cache_second);
+  const Bvh& other = cache_second.tree.bvh;
+  const BvhTraversal traversal{cache_first.tree.bvh, other, false};
+  Pairs pairs;
+  gather(traversal, cache_first.lists, pairs, [&](NodeWork w, Pairs& found) {
+    const Bvh::Leaf &a = traversal.leaf_a(w), &b = traversal.leaf_b(w);
+    for_each_overlap(a, b, other.nodes[w.b].box, [&](int i, int j) {
+      if (intersect(corners_of(first, x_first, a.item[i]), corners_of(second, x_second, b.item[j])))
+        found.emplace_back(a.item[i], b.item[j]);
+    });
+  });
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+}  // namespace selvedge

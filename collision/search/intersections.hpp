@@ -1,0 +1,33 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "collision/search/bvh_traversal.hpp"
+#include "collision/search/quiet.hpp"
+
+namespace selvedge {
+
+// What is kept of one surface between calls: a tree that is refitted, and its flat parts. It changes the time that a
+// call takes, and nothing else.
+struct IntersectionCache {
+  bool cull = true;  // leave out what cannot intersect itself (quiet.hpp)
+  KeptBvh tree;
+  QuietParts parts;
+  std::vector<Box> boxes;
+  PartLists<std::pair<int, int>> lists;
+};
+
+// Discrete detection for the solver's side: triangles of a surface that intersect and share no vertex, exact signs
+// (triangles_meet), each pair once with i < j, sorted. A triangle with an undefined coordinate intersects nothing.
+std::vector<std::pair<int, int>> intersecting_pairs(const Surface&, const Points& x, IntersectionCache&);
+
+// Of a surface with another: (triangle of a, triangle of b), sorted. Each surface has a cache of its own.
+std::vector<std::pair<int, int>> intersecting_pairs(const Surface& a, const Points& xa, IntersectionCache& cache_a,
+                                                    const Surface& b, const Points& xb, IntersectionCache& cache_b);
+
+// True only if a plane lies strictly between the two triangles: a quick floating-point test with a bound on its
+// rounding, which decides most pairs. False says nothing.
+bool surely_apart(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
+
+}  // namespace selvedge

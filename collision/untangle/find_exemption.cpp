@@ -1,0 +1,59 @@
+#include "collision/untangle/find_exemption.hpp"
+
+#include "collision/contour/buried.hpp"
+#include "collision/contour/contour_regions.hpp"
+#include "collision/untangle/separation.hpp"
+#include "collision/untangle/world_sheets.hpp"
+
+namespace selvedge {
+namespace {
+
+void mark(std::vector<char>& marks, int size, int node) {
+  if (marks.empty()) marks.assign(size, 0);
+  marks[node] = 1;
+}
+
+void mark_triangle(std::vector<char>& marks, int size, const Surface& surface, int triangle, int first = 0) {
+  for (int k = 0; k < 3; ++k) mark(marks, size, first + surface.triangles(triangle, k));
+}
+
+}  // namespace
+
+Exemption find_exemption(const ContactWorld& world, const Points& nodes) {
+  const WorldSheets sheets(world, nodes);
+  const int n = world.cloth->vertex_count;
+  Exemption exemption;
+  const auto marks_for = [&](int partner_sheet) -> std::vector<char>& {
+    return partner_sheet == 0 ? exemption.self : exemption.body;
+  };
+  const Segments found = find_segments(sheets.views);
+  for_each_meeting(world, found, [&](int triangle, int partner_sheet) {
+    mark_triangle(marks_for(partner_sheet), n, *world.cloth, triangle);
+  });
+  if (exemption.cloth())
+    for (const Region& region : enclosed_regions(sheets.views, find_contours(sheets.views, found)))
+      if (region.sheet == 0 && (region.partner_sheet != 0 || world.self))
+        for (const int v : region.vertices) mark(marks_for(region.partner_sheet), n, v);
+  const std::vector<char> inside = inside_obstacles(sheets.views);
+  for (int v = 0; v < n; ++v)
+    if (inside[v]) mark(exemption.body, n, v);
+  return exemption;
+}
+
+void switch_off(const ContactWorld& world, int obstacle, const Points& nodes, Exemption& exemption) {
+  const Surface& body = *world.obstacles[obstacle];
+  const int first = world.first_node[obstacle];
+  const Points x = nodes.middleRows(first, body.vertex_count);
+  const std::vector<SheetView> view{{&body, &x}};
+  const Segments found = find_segments(view);
+  if (found.segments.empty()) return;
+  const std::vector<char> crossed = buried_vertices(body, x, found);
+  // The margin: every triangle at a crossed vertex.
+  for (int t = 0; t < body.triangles.rows(); ++t) {
+    const auto corners = body.triangles.row(t);
+    if (crossed[corners(0)] || crossed[corners(1)] || crossed[corners(2)])
+      mark_triangle(exemption.off, world.node_count, body, t, first);
+  }
+}
+
+}  // namespace selvedge

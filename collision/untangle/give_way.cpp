@@ -1,0 +1,359 @@
+#include "collision/untangle/give_way.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "collision/geometry/cell_grid.hpp"
+#include "collision/geometry/disjoint_sets.hpp"
+#include "collision/search/intersections.hpp"
+#include "collision/untangle/kept_shape.hpp"
+#include "collision/untangle/untangle.hpp"
+
+namespace selvedge {
+namespace {
+
+using Pairs = std::vector<std::pair<int, int>>;  // of triangles that cross
+
+constexpr double opposed = -0.3;  // cosine of two normals, at most, of surfaces that face each other
+constexpr double straight =
+    0.7;                        // cosine, at least, of a normal with the way through the body; aside, skin curves round
+constexpr double closer = 0.5;  // of their distance at rest: what is nearer has come together
+constexpr double rest_room = 0.3;  // of that distance: the room asked for at most, for a fold has a bottom
+constexpr double deepest = 0.7;    // of a part's thickness, that another is in it: beyond, it comes out behind
+constexpr int sweeps = 12, press_rings = 6;
+constexpr double smoothing = 0.5;
+constexpr double tight_part = 0.7;    // of the room and of what may give way: where less is left, pressed more
+constexpr int halvings = 2;           // of what that does where it goes wrong, before it is left
+constexpr double pinched_part = 0.4;  // of the room: where less is left, cloth has no place to be
+constexpr int many_pinched = 20;      // vertices: from fewer it slips away
+constexpr int mend_rings = 1;         // round what crosses, that are mended together
+constexpr int few = 60, many = 250;   // pairs in one place: worth mending once pressed, as skinned
+constexpr int spot = 10;              // the same once pressed more: mending takes back room that is to be gained
+constexpr int presses = 3;            // for more room
+constexpr double overshoot = 1.5;     // of the farthest way, by mending
+constexpr int mend_iterations = 40;
+constexpr double mend_gap = 0.1, mend_far = 0.5;  // in mean edge lengths
+
+// How thick the body is under each vertex: to the nearest one behind it that looks the other way, at most `most` [m].
+std::vector<double> thicknesses(const Surface& body, const Points& x, double most) {
+  const Points normals = vertex_normals(body, x);
+  const CellGrid grid(x, most / 2);
+  std::vector<double> thickness(static_cast<std::size_t>(body.vertex_count), most);
+  for (int v = 0; v < body.vertex_count; ++v)
+    grid.for_each_near(row(x, v), most, [&](int w) {
+      const Vec3 way = row(x, v) - row(x, w);
+      const double distance = way.norm(), deep = way.dot(row(normals, v));
+      if (distance < thickness[v] && deep > straight * distance && row(normals, w).dot(row(normals, v)) < opposed)
+        thickness[v] = distance;
+    });
+  return thickness;
+}
+
+// The triangles among some vertices.
+Surface part_of(const Surface& body, const std::vector<int>& vertices) {
+  std::vector<int> number(body.vertex_count, -1);
+  for (std::size_t i = 0; i < vertices.size(); ++i) number[vertices[i]] = static_cast<int>(i);
+  Triangles triangles(body.triangles.rows(), 3);
+  int count = 0;
+  for (const auto& corners : body.triangles.rowwise()) {
+    const Eigen::RowVector3i t(number[corners[0]], number[corners[1]], number[corners[2]]);
+    if (t.minCoeff() >= 0) triangles.row(count++) = t;
+  }
+  return make_surface(static_cast<int>(vertices.size()), triangles.topRows(count));
+}
+
+}  // namespace
+
+// A body before it is posed.
+struct Flesh {
+  Flesh(Surface surface, const Points& rest, const GiveWayOptions& o)
+      : body(std::move(surface)),
+        shape(keep_shape(body, rest)),
+        options(o),
+        reach(2 * o.most + o.room),
+        thickness(thicknesses(body, rest, reach)) {}
+  Flesh(const Flesh&) = delete;  // the shape looks at the body
+  Flesh& operator=(const Flesh&) = delete;
+
+  Surface body;
+  KeptShape shape;
+  GiveWayOptions options;
+  double reach;                   // within which vertices meet: both go as far as they can, and leave room [m]
+  std::vector<double> thickness;  // under each vertex [m]
+};
+
+namespace {
+
+// A vertex and the one that it meets, on another part of the body.
+struct Meeting {
+  int vertex, partner;
+  Vec3 apart;    // the way to go [unit]
+  double least;  // distance along it [m]
+  double share;  // of what is missing that the vertex goes
+};
+
+// A posed body with its vertices also in the order of a grid: whoever looks round goes through memory in order.
+struct Posed {
+  const Points& x;
+  Points normals;
+  CellGrid grid;
+  Points x_near, normals_near;
+
+  Posed(const Flesh& flesh, const Points& posed)
+      : x(posed),
+        normals(vertex_normals(flesh.body, posed)),
+        grid(posed, flesh.reach / 2),
+        x_near(posed(grid.order(), Eigen::all)),
+        normals_near(normals(grid.order(), Eigen::all)) {}
+};
+
+// The nearest vertex of a part that faces v and that was farther at rest; -1: none.
+int facing(const Flesh& flesh, int v, const Posed& body) {
+  const Points& rest = flesh.shape.x0;
+  const Vec3 at = row(body.x, v), normal = row(body.normals, v);
+  int found = -1;
+  double nearest = flesh.reach * flesh.reach;
+  body.grid.for_each_run_near(at, flesh.reach, [&](int first, int last) {
+    for (int p = first; p < last; ++p) {
+      if (row(body.normals_near, p).dot(normal) > opposed) continue;
+      const Vec3 way = at - row(body.x_near, p);
+      const double square = way.squaredNorm();
+      if (square >= nearest) continue;
+      const int w = body.grid.order()[p];
+      const double thin = deepest * std::min(flesh.thickness[v], flesh.thickness[w]);
+      if (square >= thin * thin && way.dot(row(body.normals, w)) < 0) continue;
+      if (square >= closer * closer * (rest.row(v) - rest.row(w)).squaredNorm()) continue;
+      nearest = square;
+      found = w;
+    }
+  });
+  return found;
+}
+
+double gap_of(const Meeting& m, const Points& x) { return m.apart.dot(row(x, m.vertex) - row(x, m.partner)); }
+
+std::vector<Meeting> meetings(const Flesh& flesh, const Points& x) {
+  const Posed body(flesh, x);
+  const Points &rest = flesh.shape.x0, &normals = body.normals;
+  std::vector<int> partner(static_cast<std::size_t>(flesh.body.vertex_count));
+#pragma omp parallel for schedule(dynamic, 64)
+  for (int v = 0; v < flesh.body.vertex_count; ++v) partner[v] = facing(flesh, v, body);
+  std::vector<Meeting> found;
+  for (int v = 0; v < flesh.body.vertex_count; ++v) {
+    const int w = partner[v];
+    if (w < 0) continue;
+    const Vec3 apart = (row(normals, w) - row(normals, v)).normalized(), way = row(x, v) - row(x, w);
+    const double gap = way.dot(apart), aside = (way - gap * apart).norm();
+    const double least = std::min(flesh.options.room, rest_room * (rest.row(v) - rest.row(w)).norm());
+    // What passes it by, an edge or more aside, is not over it; either goes half the way.
+    const double share = 0.5 * std::clamp(2 - aside / flesh.shape.edge_length[v], 0.0, 1.0);
+    if (gap < least && share > 0) found.push_back({v, w, apart, least, share});
+  }
+  return found;
+}
+
+// The marked vertices and what goes along with them, listed.
+std::vector<int> with_surroundings(const KeptShape& shape, const std::vector<char>& marked) {
+  const std::vector<char> near = within_rings(shape, marked, press_rings);
+  std::vector<int> vertices;
+  for (std::size_t v = 0; v < near.size(); ++v)
+    if (near[v]) vertices.push_back(static_cast<int>(v));
+  return vertices;
+}
+
+// From x each vertex of a meeting goes its share, no farther from where it is skinned to than it may or is, and what
+// lies round it goes along, less and less.
+Points pressed(const Flesh& flesh, const Points& skinned, const Points& x, const std::vector<Meeting>& found) {
+  if (found.empty()) return x;
+  std::vector<char> meets(static_cast<std::size_t>(flesh.body.vertex_count), 0);
+  for (const Meeting& m : found) meets[m.vertex] = 1;
+  const std::vector<int> moving = with_surroundings(flesh.shape, meets);
+  Points to = x;
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    smooth_displacement(flesh.shape, x, moving, smoothing, to);
+    const Points from = to;
+    for (const Meeting& m : found) {
+      const double missing = m.least - gap_of(m, from);
+      if (missing <= 0) continue;
+      const Vec3 at = row(skinned, m.vertex), way = row(from, m.vertex) + m.share * missing * m.apart - at;
+      const double most = std::max(flesh.options.most, (row(x, m.vertex) - at).norm());
+      to.row(m.vertex) = (at + way * std::min(1.0, most / way.norm())).transpose();
+    }
+  }
+  return to;
+}
+
+// Where a pressed body crosses itself still.
+struct Place {
+  std::vector<int> vertices;        // what crosses, skinned or pressed, and what lies round it
+  std::ptrdiff_t skinned, pressed;  // how many pairs of triangles cross there
+};
+
+// What crosses and hangs together, along edges or by a pair, is one place.
+std::vector<Place> places_of(const Flesh& flesh, const Pairs& skinned, const Pairs& pressed) {
+  const Surface& body = flesh.body;
+  DisjointSets sets(body.vertex_count);
+  std::vector<char> crosses(static_cast<std::size_t>(body.vertex_count), 0);
+  for (const Pairs* pairs : {&skinned, &pressed})
+    for (const auto& [a, b] : *pairs) {
+      sets.join(body.triangles(a, 0), body.triangles(b, 0));
+      for (const int t : {a, b})
+        for (const int v : body.triangles.row(t)) crosses[v] = 1;
+    }
+  const std::vector<char> near = within_rings(flesh.shape, crosses, mend_rings);
+  for (const auto& edge : body.edges.rowwise())
+    if (near[edge[0]] && near[edge[1]]) sets.join(edge[0], edge[1]);
+  std::vector<Place> places;
+  for (int root = 0; root < body.vertex_count; ++root) {
+    if (!near[root] || sets.root(root) != root) continue;
+    const auto is_here = [&](const auto& pair) { return sets.root(body.triangles(pair.first, 0)) == root; };
+    std::vector<char> core(near.size());
+    for (int v = 0; v < body.vertex_count; ++v) core[v] = sets.root(v) == root;
+    const auto left = std::ranges::count_if(pressed, is_here);
+    if (left > 0)
+      places.push_back({with_surroundings(flesh.shape, core), std::ranges::count_if(skinned, is_here), left});
+  }
+  return places;
+}
+
+// A place untangled by itself, from where its vertices are now; none where it stays tangled or goes too far from x.
+std::optional<Points> mended(const Flesh& flesh, const Place& place, const Points& from, const Points& x) {
+  UntangleOptions mending;
+  mending.iterations = mend_iterations;
+  mending.gap = mend_gap;
+  mending.far_limit = mend_far;
+  const UntangleResult parted =
+      untangle(part_of(flesh.body, place.vertices), from(place.vertices, Eigen::all), {}, mending);
+  const double way = (parted.x - x(place.vertices, Eigen::all)).rowwise().norm().maxCoeff();
+  if (parted.pairs_after > 0 || way > overshoot * flesh.options.most) return {};
+  return parted.x;
+}
+
+// Pressed more where there is less room than there should be: mending leaves hardly any, and what came from deep may
+// meet others than it met at first. What crosses by that in a spot, as the bottom of a fold does, is mended; more of it
+// is pressed less, or stays.
+Points opened(const Flesh& flesh, const Points& skinned, const Points& x, const std::vector<Meeting>& found,
+              const Pairs& left, IntersectionCache& cache) {
+  Points to = pressed(flesh, skinned, x, found);
+  for (int halving = 0; halving <= halvings; ++halving) {
+    const Pairs anew = intersecting_pairs(flesh.body, to, cache);
+    if (anew.size() <= left.size()) return to;
+    const double share = halving < halvings ? 0.5 : 0;
+    for (const Place& place : places_of(flesh, left, anew)) {
+      std::optional<Points> better;
+      if (place.pressed <= spot) better = mended(flesh, place, to, skinned);
+      if (!better) {
+        const Points from = x(place.vertices, Eigen::all);
+        better = from + share * (to(place.vertices, Eigen::all) - from);
+      }
+      to(place.vertices, Eigen::all) = *better;
+    }
+  }
+  return intersecting_pairs(flesh.body, to, cache).size() <= left.size() ? to : x;
+}
+
+// Meetings that leave next to no room, or are next to none through.
+std::vector<Meeting> pinches_of(const Flesh& flesh, const std::vector<Meeting>& found, const Points& x,
+                                const Points& to) {
+  const double pinched = pinched_part * flesh.options.room;
+  const auto moves = [&](int v) { return to.row(v) != x.row(v); };
+  std::vector<Meeting> pinches = found;
+  std::erase_if(pinches, [&](const Meeting& m) {
+    return std::abs(gap_of(m, to)) > pinched || m.least < flesh.options.room / 2 ||
+           !(moves(m.vertex) || moves(m.partner));
+  });
+  return pinches;
+}
+
+// Vertices of a body that move together: those that do along edges, and what meets.
+DisjointSets moved_together(const Flesh& flesh, const Points& from, const Points& to,
+                            std::initializer_list<const std::vector<Meeting>*> meetings) {
+  const auto moves = [&](int v) { return to.row(v) != from.row(v); };
+  DisjointSets sets(flesh.body.vertex_count);
+  for (const auto& edge : flesh.body.edges.rowwise())
+    if (moves(edge[0]) && moves(edge[1])) sets.join(edge[0], edge[1]);
+  for (const std::vector<Meeting>* met : meetings)
+    for (const Meeting& m : *met) sets.join(m.vertex, m.partner);
+  return sets;
+}
+
+// A body and what of it has come together.
+struct Pressed {
+  Points x;
+  std::vector<Meeting> close;
+};
+
+// The body pressed from `once` to `twice`, but for what moves together into more pinches than it had: that stays, and
+// so does all if more than `most_pairs` would cross.
+Pressed where_it_opens(const Flesh& flesh, const Points& skinned, const Pressed& once, const Points& twice,
+                       std::size_t most_pairs, IntersectionCache& cache) {
+  Pressed next{twice, meetings(flesh, twice)};
+  DisjointSets sets = moved_together(flesh, once.x, twice, {&once.close, &next.close});
+  Eigen::VectorXi more = Eigen::VectorXi::Zero(flesh.body.vertex_count);  // pinches, by set
+  for (const Meeting& m : pinches_of(flesh, once.close, skinned, once.x)) --more[sets.root(m.vertex)];
+  for (const Meeting& m : pinches_of(flesh, next.close, skinned, twice)) ++more[sets.root(m.vertex)];
+  if (more.maxCoeff() <= 0) return next;
+  for (int v = 0; v < flesh.body.vertex_count; ++v)
+    if (more[sets.root(v)] > 0) next.x.row(v) = once.x.row(v);
+  if (next.x == once.x || intersecting_pairs(flesh.body, next.x, cache).size() > most_pairs) return once;
+  next.close = meetings(flesh, next.x);
+  return next;
+}
+
+// Where over some area next to no room is left between parts after all, cloth would be held by faces that touch, and
+// there is no place to put it. There what hangs together gives way less, so that the parts pass through each other.
+void let_through(const Flesh& flesh, const std::vector<Meeting>& pinches, const Points& x, Points& to) {
+  const double pinched = pinched_part * flesh.options.room;
+  if (static_cast<int>(pinches.size()) < many_pinched) return;
+  DisjointSets sets = moved_together(flesh, x, to, {&pinches});
+  Eigen::VectorXi count = Eigen::VectorXi::Zero(flesh.body.vertex_count);  // by set
+  Eigen::VectorXd share = Eigen::VectorXd::Ones(flesh.body.vertex_count);  // of its ways
+  for (const Meeting& m : pinches) {
+    const double now = gap_of(m, to), skinned = gap_of(m, x);
+    const int set = sets.root(m.vertex);
+    ++count[set];
+    if (now > skinned) share[set] = std::min(share[set], std::clamp((-pinched - skinned) / (now - skinned), 0.0, 1.0));
+  }
+  for (int v = 0; v < flesh.body.vertex_count; ++v)
+    if (const int set = sets.root(v); count[set] >= many_pinched)
+      to.row(v) = (x.row(v) + share[set] * (to.row(v) - x.row(v))).eval();
+}
+
+}  // namespace
+
+GiveWay::GiveWay(Surface body, const Points& rest, const GiveWayOptions& options)
+    : flesh_(std::make_shared<const Flesh>(std::move(body), rest, options)) {}
+
+// Pressed apart where parts meet. Where that does not do, mended place by place: from there, or as skinned, or else
+// left as it crosses less. Then pressed more for room, where no more of it would next to touch by that.
+Points GiveWay::operator()(const Points& x) const {
+  Pressed body{pressed(*flesh_, x, x, meetings(*flesh_, x)), {}};
+  IntersectionCache cache;
+  Pairs left = intersecting_pairs(flesh_->body, body.x, cache);
+  if (!left.empty()) {
+    for (const Place& place : places_of(*flesh_, intersecting_pairs(flesh_->body, x, cache), left)) {
+      std::optional<Points> better;
+      if (place.pressed <= few) better = mended(*flesh_, place, body.x, x);
+      if (!better && place.skinned <= many) better = mended(*flesh_, place, x, x);
+      if (!better && place.pressed > place.skinned) better = x(place.vertices, Eigen::all);
+      if (better) body.x(place.vertices, Eigen::all) = *better;
+    }
+    left = intersecting_pairs(flesh_->body, body.x, cache);
+  }
+  body.close = meetings(*flesh_, body.x);
+  const auto is_tight = [&](const Meeting& m) {
+    return gap_of(m, body.x) < tight_part * m.least &&
+           (row(body.x, m.vertex) - row(x, m.vertex)).norm() < tight_part * flesh_->options.most;
+  };
+  for (int press = 0; press < presses && std::ranges::any_of(body.close, is_tight); ++press) {
+    const Points more = opened(*flesh_, x, body.x, body.close, left, cache);
+    Pressed next = where_it_opens(*flesh_, x, body, more, left.size(), cache);
+    if (next.x == body.x) break;
+    body = std::move(next);
+  }
+  let_through(*flesh_, pinches_of(*flesh_, body.close, x, body.x), x, body.x);
+  return body.x;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "collision/geometry/surface.hpp"
+
+namespace selvedge {
+
+// The input that a repaired cloth is compared with.
+struct KeptShape {
+  const Surface* surface = nullptr;
+  Points x0;
+  std::vector<int> neighbour_begin, neighbour;  // of each vertex, along edges
+  std::vector<double> edge_length;              // mean over each vertex' edges [m]
+  std::vector<Eigen::Matrix2d> rest_inverse;    // of each triangle's two edges in its plane
+  std::vector<char> measured;                   // 0: the input triangle has no area, its stretches are not defined
+  double mean_edge = 0;                         // [m]
+};
+
+KeptShape keep_shape(const Surface&, const Points& x0);
+
+// Vertices within `rings` edges of the marked ones, these included.
+std::vector<char> within_rings(const KeptShape&, const std::vector<char>& marked, int rings);
+
+struct StretchRange {
+  double least = 1, largest = 1;
+};
+
+// Singular values of the deformation of a triangle from the input to x.
+StretchRange stretch_of(const KeptShape&, const Points& x, int triangle);
+StretchRange extreme_stretch(const KeptShape&, const Points& x);
+
+// Moves the displacement x - from of each listed vertex toward the mean of its neighbours' by `share`.
+void smooth_displacement(const KeptShape&, const Points& from, std::span<const int> vertices, double share, Points& x);
+
+// One pass over the triangles: those stretched out of the range are brought back to it. reach: how far each vertex may
+// be from x0 [m], zero: it stays.
+void limit_stretch(const KeptShape&, std::span<const int> triangles, const std::vector<double>& reach,
+                   const StretchRange& range, Points& x);
+
+// Brings each vertex back to within its reach of x0.
+void limit_displacement(const KeptShape&, std::span<const int> vertices, const std::vector<double>& reach, Points& x);
+
+// Takes the vertices that offend part of the way back to `before`, in late rounds all of it, and forgets the offence.
+void take_back(std::vector<char>& offends, int round, const Points& before, Points& x);
+
+// Takes vertices back toward `before`, where every triangle was in the range, until every triangle is in it again.
+void hold_back(const KeptShape&, std::span<const int> triangles, const StretchRange& range, const Points& before,
+               Points& x);
+
+}  // namespace selvedge

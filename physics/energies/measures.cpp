@@ -1,0 +1,66 @@
+#include "physics/energies/measures.hpp"
+
+#include <cmath>
+
+#include "physics/energies/springs.hpp"
+
+namespace selvedge {
+
+EnergyTerms energy_terms(const Scene& scene) {
+  EnergyTerms terms{lumped_masses(scene), {}, membrane_elements(scene), curvature_bending(scene), hinges(scene)};
+  for (const Cloth& cloth : scene.cloths) terms.materials.push_back(cloth.material);
+  return terms;
+}
+
+Energies energies(const Scene& scene, const EnergyTerms& terms, const Points& x, const Points& v,
+                  const Vec3& acceleration) {
+  Energies energy;
+  energy.kinetic = 0.5 * terms.masses.dot(v.rowwise().squaredNorm());
+  energy.gravity = -terms.masses.dot(x * acceleration);
+  energy.membrane = membrane_energy(terms.materials, terms.membrane, x);
+  if (terms.curvature.flat.nonZeros() > 0) {
+    const Points forces = terms.curvature.flat * x;
+    energy.bending += 0.5 * forces.cwiseProduct(x).sum();
+  }
+  for (const CurvedVertex& vertex : terms.curvature.curved) energy.bending += curved_energy(vertex, x);
+  for (const Hinge& hinge : terms.hinges) energy.bending += hinge_energy(hinge, x);
+  for (const Spring& spring : scene.springs) energy.springs += spring_energy(spring, x);
+  return energy;
+}
+
+Energies energies(const Scene& scene, const Points& x, const Points& v, const Vec3& acceleration) {
+  return energies(scene, energy_terms(scene), x, v, acceleration);
+}
+
+double largest_row(const Points& points) {
+  return points.rows() > 0 ? std::sqrt(points.rowwise().squaredNorm().maxCoeff()) : 0.0;
+}
+
+double root_mean_square(const Points& points) {
+  return points.rows() > 0 ? std::sqrt(points.squaredNorm() / static_cast<double>(points.rows())) : 0.0;
+}
+
+Eigen::Matrix<double, Eigen::Dynamic, 2> principal_stretches(const Scene& scene, const Points& x) {
+  Eigen::Matrix<double, Eigen::Dynamic, 2> stretches;
+  stretches.setOnes(scene.surface.triangles.rows(), 2);
+  for (const MembraneElement& element : membrane_elements(scene)) {
+    const Mat32 F = deformation_gradient(element, x);
+    const double p = F.col(0).squaredNorm(), q = F.col(1).squaredNorm(), r = F.col(0).dot(F.col(1));
+    const double largest = std::sqrt(0.5 * (p + q) + std::sqrt(0.25 * (p - q) * (p - q) + r * r));
+    // The smallest by the area ratio: the difference under its own root would cancel.
+    const double smallest = largest > 0 ? F.col(0).cross(F.col(1)).norm() / largest : 0;
+    stretches.row(element.triangle) << smallest, largest;
+  }
+  return stretches;
+}
+
+Vec3 linear_momentum(const Scene& scene, const Points& v) { return v.transpose() * lumped_masses(scene); }
+
+Vec3 angular_momentum(const Scene& scene, const Points& x, const Points& v) {
+  const Eigen::VectorXd masses = lumped_masses(scene);
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < masses.size(); ++i) sum += masses[i] * row(x, i).cross(row(v, i));
+  return sum;
+}
+
+}  // namespace selvedge

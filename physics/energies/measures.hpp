@@ -1,0 +1,38 @@
+#pragma once
+
+#include "physics/energies/bending.hpp"
+#include "physics/energies/membrane.hpp"
+
+namespace selvedge {
+
+// Everything of a scene that its energies need and positions do not change. Build it once for a run.
+struct EnergyTerms {
+  Eigen::VectorXd masses;           // [kg]
+  std::vector<Material> materials;  // of the cloths
+  std::vector<MembraneElement> membrane;
+  CurvatureBending curvature;
+  std::vector<Hinge> hinges;
+};
+EnergyTerms energy_terms(const Scene&);
+
+struct Energies {  // [J]; gravity is -sum m acceleration . x
+  double kinetic = 0, gravity = 0, membrane = 0, bending = 0, springs = 0;
+  double total() const { return kinetic + gravity + membrane + bending + springs; }
+};
+Energies energies(const Scene&, const EnergyTerms&, const Points& x, const Points& v, const Vec3& acceleration);
+Energies energies(const Scene&, const Points& x, const Points& v, const Vec3& acceleration);
+
+// Of the rows' lengths; 0 without rows.
+double root_mean_square(const Points&);
+double largest_row(const Points&);
+
+// Principal stretches of every triangle: columns smallest, largest. 1 is rest, and stands for a triangle
+// without rest area.
+Eigen::Matrix<double, Eigen::Dynamic, 2> principal_stretches(const Scene&, const Points& x);
+
+// [kg m/s]
+Vec3 linear_momentum(const Scene&, const Points& v);
+// About the origin [kg m2/s].
+Vec3 angular_momentum(const Scene&, const Points& x, const Points& v);
+
+}  // namespace selvedge

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "physics/scene/scene.hpp"
+
+namespace selvedge {
+
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+
+// k (l - L)^2 / 2 [J], l the distance of the two vertices and L the rest length.
+double spring_energy(const Spring&, const Points& x);
+
+// Gradient in the order xa ya za xb yb zb [N] and the Hessian projected to PSD in closed form [N/m]: where the spring
+// is compressed, it has no stiffness across its direction. Exact Hessian with psd = false. At zero length there is no
+// direction: no force, and the stiffness is the same all round, which for L = 0 is exact. Returns the energy.
+double spring_derivatives(const Spring&, const Points& x, Vec6& gradient, Mat6* hessian, bool psd = true);
+
+// What springs make of parts 0 .. parts - 1, of which every vertex belongs to one: for each part the lowest one that
+// springs join it to, over others perhaps; itself where they join it to none.
+std::vector<int> joined_by_springs(std::span<const Spring>, std::span<const int> part_of_vertex, int parts);
+
+}  // namespace selvedge

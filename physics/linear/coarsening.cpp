@@ -1,0 +1,217 @@
+#include "physics/linear/coarsening.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include <Eigen/Eigenvalues>
+
+namespace selvedge {
+namespace {
+
+constexpr int most_candidates = 12;    // kept vertices among which a vertex is interpolated
+constexpr double straight = 0.766;     // cosine of the largest turn of a border without a corner
+constexpr double least_weight = 1e-3;  // below it a weight is zero
+constexpr double aside = 1e-9;         // of a triangle's sides squared: a smaller area is none
+
+// Not free ones count as kept, for what is interpolated from them is known to be zero.
+std::vector<char> choose(const Vertices& fine, std::span<const char> free) {
+  const int n = fine.graph.size();
+  std::vector<char> kept(n, false), covered(n, false);
+  const auto keep = [&](int i) {
+    kept[i] = true;
+    for (int k = fine.graph.begin[i]; k < fine.graph.begin[i + 1]; ++k) covered[fine.graph.neighbour[k]] = true;
+  };
+  for (int i = 0; i < n; ++i)
+    if (!free[i]) keep(i);
+  for (const Rim rim : {Rim::corner, Rim::border, Rim::inside})
+    for (int i = 0; i < n; ++i)
+      if (fine.rim[i] == rim && !kept[i] && !covered[i]) keep(i);
+  return kept;
+}
+
+struct Candidate {
+  int vertex;
+  double distance;
+  Vec2 place;  // in the tangent plane, the vertex itself at the origin
+};
+
+// Kept vertices within two steps, the nearest first.
+std::vector<Candidate> candidates(const Vertices& fine, const std::vector<char>& kept, int i) {
+  std::vector<int> ring{i};
+  for (int step = 0, first = 0; step < 2; ++step) {
+    const int last = static_cast<int>(ring.size());
+    for (; first < last; ++first)
+      for (int k = fine.graph.begin[ring[first]]; k < fine.graph.begin[ring[first] + 1]; ++k)
+        ring.push_back(fine.graph.neighbour[k]);
+  }
+  std::sort(ring.begin(), ring.end());
+  ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+  std::vector<Candidate> found;
+  for (int j : ring)
+    if (kept[j] && j != i) found.push_back({j, (row(fine.rest, j) - row(fine.rest, i)).norm(), Vec2::Zero()});
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
+  if (found.size() > most_candidates) found.resize(most_candidates);
+  return found;
+}
+
+void flatten(const Points& rest, int i, std::vector<Candidate>& around) {
+  Mat3 spread = Mat3::Zero();
+  for (const Candidate& c : around) {
+    const Vec3 offset = row(rest, c.vertex) - row(rest, i);
+    spread += offset * offset.transpose();
+  }
+  const Mat3 axes = Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors();
+  for (Candidate& c : around) {
+    const Vec3 offset = row(rest, c.vertex) - row(rest, i);
+    c.place = {axes.col(2).dot(offset), axes.col(1).dot(offset)};
+  }
+}
+
+struct Weights {
+  std::array<int, 3> candidate{0, 0, 0};
+  std::array<double, 3> weight{1, 0, 0};
+};
+
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+// The triangle of the nearest candidates that the origin lies in. False: in none.
+bool triangle_weights(const std::vector<Candidate>& c, Weights& found) {
+  for (int k = 2; k < static_cast<int>(c.size()); ++k)
+    for (int j = 1; j < k; ++j)
+      for (int i = 0; i < j; ++i) {
+        const double whole = cross(c[j].place - c[i].place, c[k].place - c[i].place);
+        if (std::abs(whole) < aside * c[k].place.squaredNorm()) continue;
+        const std::array weight = {cross(c[j].place, c[k].place) / whole, cross(c[k].place, c[i].place) / whole,
+                                   cross(c[i].place, c[j].place) / whole};
+        if (*std::min_element(weight.begin(), weight.end()) < -least_weight) continue;
+        found = {{i, j, k}, weight};
+        return true;
+      }
+  return false;
+}
+
+// The point nearest to the origin on the segments between candidates, of those the shortest.
+Weights segment_weights(const std::vector<Candidate>& c) {
+  Weights best;
+  double least = 1.01 * c[0].distance;
+  for (int j = 1; j < static_cast<int>(c.size()); ++j)
+    for (int i = 0; i < j; ++i) {
+      const Vec2 along = c[j].place - c[i].place;
+      const double t = -c[i].place.dot(along) / along.squaredNorm();
+      if (!(t > 0 && t < 1)) continue;
+      const double cost = (c[i].place + t * along).norm() + 0.01 * along.norm();
+      if (cost >= least) continue;
+      least = cost;
+      best = {{i, j, 0}, {1 - t, t, 0}};
+    }
+  return best;
+}
+
+Weights interpolate(const Vertices& fine, int i, std::vector<Candidate>& around) {
+  flatten(fine.rest, i, around);
+  if (fine.rim[i] != Rim::inside) {  // a border is interpolated along itself where it can be
+    std::vector<Candidate> border;
+    for (const Candidate& c : around)
+      if (fine.rim[c.vertex] != Rim::inside) border.push_back(c);
+    if (border.size() >= 2) {
+      around = border;
+      return segment_weights(around);
+    }
+  }
+  Weights weights;
+  return triangle_weights(around, weights) ? weights : segment_weights(around);
+}
+
+Graph graph_of_pairs(int vertices, std::vector<std::array<int, 2>>& pairs) {
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  Graph graph;
+  graph.begin.assign(vertices + 1, 0);
+  for (const auto& [from, to] : pairs) ++graph.begin[from + 1];
+  std::partial_sum(graph.begin.begin(), graph.begin.end(), graph.begin.begin());
+  for (const auto& [from, to] : pairs) graph.neighbour.push_back(to);
+  return graph;
+}
+
+}  // namespace
+
+Graph make_graph(int vertices, const Edges& edges) {
+  std::vector<std::array<int, 2>> pairs;
+  for (int e = 0; e < edges.rows(); ++e) {
+    pairs.push_back({edges(e, 0), edges(e, 1)});
+    pairs.push_back({edges(e, 1), edges(e, 0)});
+  }
+  return graph_of_pairs(vertices, pairs);
+}
+
+std::vector<Rim> rims(const Points& rest, const Edges& border) {
+  std::vector<Rim> rim(rest.rows(), Rim::inside);
+  const Graph graph = make_graph(static_cast<int>(rest.rows()), border);
+  for (int i = 0; i < graph.size(); ++i) {
+    const int ends = graph.begin[i + 1] - graph.begin[i];
+    if (ends == 0) continue;
+    rim[i] = Rim::corner;
+    if (ends != 2) continue;
+    const Vec3 in = row(rest, i) - row(rest, graph.neighbour[graph.begin[i]]);
+    const Vec3 out = row(rest, graph.neighbour[graph.begin[i] + 1]) - row(rest, i);
+    if (in.dot(out) > straight * in.norm() * out.norm()) rim[i] = Rim::border;
+  }
+  return rim;
+}
+
+Prolongation coarsen(const Vertices& fine, std::span<const char> free) {
+  const std::vector<char> kept = choose(fine, free);
+  const int n = fine.graph.size();
+  std::vector<int> index(n, -1);
+  Prolongation result;
+  for (int i = 0; i < n; ++i)
+    if (kept[i] && free[i]) {
+      index[i] = result.coarse_count();
+      result.chosen.push_back(i);
+    }
+  result.begin.push_back(0);
+  for (int i = 0; i < n; ++i) {
+    const auto add = [&](int vertex, double weight) {
+      if (index[vertex] < 0 || weight < least_weight) return;
+      result.coarse.push_back(index[vertex]);
+      result.weight.push_back(weight);
+    };
+    if (kept[i]) {
+      add(i, 1);
+    } else if (free[i]) {
+      std::vector<Candidate> around = candidates(fine, kept, i);
+      const Weights found = interpolate(fine, i, around);
+      double sum = 0;
+      for (double weight : found.weight) sum += weight < least_weight ? 0 : weight;
+      for (int k = 0; k < 3; ++k) add(around[found.candidate[k]].vertex, found.weight[k] / sum);
+    }
+    result.begin.push_back(static_cast<int>(result.coarse.size()));
+  }
+  return result;
+}
+
+Vertices coarse_vertices(const Vertices& fine, const Prolongation& p) {
+  Vertices coarse;
+  coarse.rest.resize(p.coarse_count(), 3);
+  for (int a = 0; a < p.coarse_count(); ++a) {
+    coarse.rest.row(a) = fine.rest.row(p.chosen[a]);
+    coarse.rim.push_back(fine.rim[p.chosen[a]]);
+  }
+  std::vector<std::array<int, 2>> pairs;
+  const auto join = [&](int i, int j) {
+    for (int k = p.begin[i]; k < p.begin[i + 1]; ++k)
+      for (int l = p.begin[j]; l < p.begin[j + 1]; ++l)
+        if (p.coarse[k] != p.coarse[l]) pairs.push_back({p.coarse[k], p.coarse[l]});
+  };
+  for (int i = 0; i < fine.graph.size(); ++i) {
+    join(i, i);
+    for (int k = fine.graph.begin[i]; k < fine.graph.begin[i + 1]; ++k) join(i, fine.graph.neighbour[k]);
+  }
+  coarse.graph = graph_of_pairs(p.coarse_count(), pairs);
+  return coarse;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,225 @@
+#include "physics/linear/galerkin.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace selvedge {
+namespace {
+
+constexpr double rounding = 1e-12;
+
+// Collects the terms of one coarse row after the other, right of the diagonal and on it, and gives columns their slots.
+class RowCollector {
+ public:
+  explicit RowCollector(int columns) : slot_(columns, -1) { product_.begin = {0}; }
+  void start(int row) { row_ = row; }
+  void add(int source, int column, double weight) {
+    if (weight == 0 || column < row_) return;
+    product_.term.push_back({source, column == row_ ? -1 : slot(column), static_cast<float>(weight)});
+  }
+  void finish() {
+    for (std::size_t k = begin_.back(); k < column_.size(); ++k) slot_[column_[k]] = -1;
+    begin_.push_back(static_cast<int>(column_.size()));
+    product_.begin.push_back(static_cast<int>(product_.term.size()));
+  }
+  Product with_mirrored(RowPattern& whole);
+
+ private:
+  int slot(int column) {
+    if (slot_[column] < 0) {
+      slot_[column] = static_cast<int>(column_.size());
+      column_.push_back(column);
+    }
+    return slot_[column];
+  }
+  int row_ = 0;
+  std::vector<int> slot_, begin_{0}, column_;  // slots are positions in column_
+  Product product_;
+};
+
+// The product with what was collected and its mirror image in one pattern: each row's left part first.
+Product RowCollector::with_mirrored(RowPattern& whole) {
+  const int rows = static_cast<int>(begin_.size()) - 1;
+  std::vector<int> left_begin(rows + 1, 0), left_slot(column_.size()), left_row(column_.size());
+  for (const int b : column_) ++left_begin[b + 1];
+  std::partial_sum(left_begin.begin(), left_begin.end(), left_begin.begin());
+  std::vector<int> next(left_begin.begin(), left_begin.end() - 1);
+  for (int a = 0; a < rows; ++a)
+    for (int k = begin_[a]; k < begin_[a + 1]; ++k) {
+      const int at = next[column_[k]]++;
+      left_slot[at] = k;
+      left_row[at] = a;
+    }
+  std::vector<int> entry(column_.size());  // of each slot in the whole pattern
+  whole.begin = {0};
+  whole.column.clear();
+  product_.mirror.clear();
+  for (int a = 0; a < rows; ++a) {
+    for (int at = left_begin[a]; at < left_begin[a + 1]; ++at) {
+      whole.column.push_back(left_row[at]);
+      product_.mirror.push_back(entry[left_slot[at]]);
+    }
+    for (int k = begin_[a]; k < begin_[a + 1]; ++k) {
+      entry[k] = static_cast<int>(whole.column.size());
+      whole.column.push_back(column_[k]);
+    }
+    whole.end_row(a);
+    product_.mirror.resize(whole.column.size(), -1);
+  }
+  for (ProductTerm& term : product_.term)
+    if (term.target >= 0) term.target = entry[term.target];
+  return std::move(product_);
+}
+
+// A sum that is meant to be zero or one is.
+double without_rounding(double sum) {
+  if (std::abs(sum) < rounding) return 0;
+  return std::abs(sum - 1) < rounding ? 1 : sum;
+}
+
+double weight_sum(const Prolongation& p, int i) {
+  double sum = 0;
+  for (int k = p.begin[i]; k < p.begin[i + 1]; ++k) sum += p.weight[k];
+  return without_rounding(sum);
+}
+
+double weight_of(const Prolongation& p, int i, int coarse) {
+  for (int k = p.begin[i]; k < p.begin[i + 1]; ++k)
+    if (p.coarse[k] == coarse) return p.weight[k];
+  return 0;
+}
+
+struct CoarseContacts {
+  std::vector<int> begin{0}, node;
+  std::vector<double> weight, sum;
+};
+
+CoarseContacts interpolate(std::span<const ContactBlock> contacts, const Prolongation& p) {
+  CoarseContacts coarse;
+  for (const ContactBlock& contact : contacts) {
+    const std::size_t first = coarse.node.size();
+    double sum = 0;
+    for (int k = 0; k < 4; ++k) {
+      const int i = contact.nodes[k];
+      if (i < 0) continue;
+      for (int l = p.begin[i]; l < p.begin[i + 1]; ++l) {
+        const double weight = contact.weights[k] * p.weight[l];
+        sum += weight;
+        const auto known = std::find(coarse.node.begin() + first, coarse.node.end(), p.coarse[l]);
+        if (known != coarse.node.end()) {
+          coarse.weight[known - coarse.node.begin()] += weight;
+        } else {
+          coarse.node.push_back(p.coarse[l]);
+          coarse.weight.push_back(weight);
+        }
+      }
+    }
+    coarse.begin.push_back(static_cast<int>(coarse.node.size()));
+    coarse.sum.push_back(without_rounding(sum));
+  }
+  return coarse;
+}
+
+}  // namespace
+
+Restriction transpose(const Prolongation& p) {
+  Restriction result;
+  result.begin.assign(p.coarse_count() + 1, 0);
+  for (int a : p.coarse) ++result.begin[a + 1];
+  std::partial_sum(result.begin.begin(), result.begin.end(), result.begin.begin());
+  result.fine.resize(p.coarse.size());
+  result.weight.resize(p.coarse.size());
+  std::vector<int> next(result.begin.begin(), result.begin.end() - 1);
+  for (int i = 0; i < p.fine_count(); ++i)
+    for (int k = p.begin[i]; k < p.begin[i + 1]; ++k) {
+      const int place = next[p.coarse[k]]++;
+      result.fine[place] = i;
+      result.weight[place] = p.weight[k];
+    }
+  return result;
+}
+
+// With s_i the sum of row i of P, row a of P^T A P in the form that sees differences only:
+//   sum_i P_ia [ D_i (s_i u_a + sum_b P_ib (u_b - u_a)) + sum_j B_ij ((s_j - s_i) u_a + sum_b (P_jb - P_ib) (u_b -
+//   u_a)) ].
+Product make_product(const RowPattern& fine, bool diagonal, const Prolongation& p, const Restriction& restriction,
+                     RowPattern& coarse) {
+  RowCollector rows(p.coarse_count());
+  std::vector<double> sum(p.fine_count());
+  for (int i = 0; i < p.fine_count(); ++i) sum[i] = weight_sum(p, i);
+  for (int a = 0; a < p.coarse_count(); ++a) {
+    rows.start(a);
+    for (int k = restriction.begin[a]; k < restriction.begin[a + 1]; ++k) {
+      const int i = restriction.fine[k];
+      const double own = restriction.weight[k];
+      if (diagonal) {
+        rows.add(~i, a, own * sum[i]);
+        for (int l = p.begin[i]; l < p.begin[i + 1]; ++l)
+          if (p.coarse[l] != a) rows.add(~i, p.coarse[l], own * p.weight[l]);
+      }
+      for (int entry = fine.begin[i]; entry < fine.begin[i + 1]; ++entry) {
+        const int j = fine.column[entry];
+        rows.add(entry, a, own * (sum[j] - sum[i]));
+        for (int l = p.begin[j]; l < p.begin[j + 1]; ++l)
+          if (p.coarse[l] != a) rows.add(entry, p.coarse[l], own * (p.weight[l] - weight_of(p, i, p.coarse[l])));
+        for (int l = p.begin[i]; l < p.begin[i + 1]; ++l)
+          if (p.coarse[l] != a && weight_of(p, j, p.coarse[l]) == 0) rows.add(entry, p.coarse[l], -own * p.weight[l]);
+      }
+    }
+    rows.finish();
+  }
+  return rows.with_mirrored(coarse);
+}
+
+Product make_product(std::span<const ContactBlock> contacts, const Prolongation& p, RowPattern& coarse) {
+  const CoarseContacts all = interpolate(contacts, p);
+  std::vector<int> begin(p.coarse_count() + 1, 0), contact(all.node.size()), place(all.node.size());
+  for (int a : all.node) ++begin[a + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<int> next(begin.begin(), begin.end() - 1);
+  for (int c = 0; c < static_cast<int>(contacts.size()); ++c)
+    for (int k = all.begin[c]; k < all.begin[c + 1]; ++k) {
+      const int at = next[all.node[k]]++;
+      contact[at] = c;
+      place[at] = k;
+    }
+  RowCollector rows(p.coarse_count());
+  for (int a = 0; a < p.coarse_count(); ++a) {
+    rows.start(a);
+    for (int at = begin[a]; at < begin[a + 1]; ++at) {
+      const int c = contact[at];
+      const double own = all.weight[place[at]];
+      rows.add(c, a, own * all.sum[c]);
+      for (int k = all.begin[c]; k < all.begin[c + 1]; ++k)
+        if (all.node[k] != a) rows.add(c, all.node[k], own * all.weight[k]);
+    }
+    rows.finish();
+  }
+  return rows.with_mirrored(coarse);
+}
+
+void accumulate(const Product& product, const BlockPair<float>* source, const BlockColumns<float>* source_diagonal,
+                BlockPair<float>* target, BlockColumns<float>* target_diagonal, int begin, int end) {
+  for (int a = begin; a < end; ++a)
+    for (int t = product.begin[a]; t < product.begin[a + 1]; ++t) {
+      const ProductTerm term = product.term[t];
+      for (int k = 0; k < 3; ++k) {
+        const Quad<float>& from =
+            term.source < 0 ? source_diagonal[~term.source].column[k] : column_of(source, term.source, k);
+        Quad<float>& to = term.target < 0 ? target_diagonal[a].column[k] : column_of(target, term.target, k);
+        to.lanes += from.lanes * term.weight;
+      }
+    }
+}
+
+void reflect(const Product& product, const RowPattern& pattern, BlockPair<float>* target, int begin, int end) {
+  for (int entry = pattern.begin[begin]; entry < pattern.begin[end]; ++entry) {
+    const int of = product.mirror[entry];
+    if (of < 0) continue;
+    for (int k = 0; k < 3; ++k)
+      for (int r = 0; r < 3; ++r) column_of(target, entry, k).lanes[r] = column_of(target, of, r).lanes[k];
+  }
+}
+
+}  // namespace selvedge

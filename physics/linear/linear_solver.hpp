@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+
+#include "physics/linear/coarsening.hpp"
+#include "physics/linear/linear_system.hpp"
+
+namespace selvedge {
+
+enum class Definite { yes, perhaps };
+
+struct LinearReport {
+  bool converged = false;
+  int iterations = 0;  // of PCG; a direct solve counts as one
+};
+
+// `automatic` takes CHOLMOD, where the build has it, for scenes of few free vertices, and multigrid for larger ones; in
+// systems so stiff that multigrid needs very many iterations CHOLMOD takes over for a while.
+// Asking for CHOLMOD in a build without it is an Error.
+LinearSolver chosen_solver(LinearSolver wanted, int free_vertices);
+
+// CHOLMOD and PCG behind one call. Holds caches: patterns, hierarchies, factors, vectors.
+class LinearSystemSolver {
+ public:
+  // The hierarchy is made from the vertices when first needed.
+  LinearSystemSolver(LinearSolver wanted, Vertices, std::span<const char> free);
+  ~LinearSystemSolver();
+  LinearSolver chosen() const;
+
+  // The systems from here on are one family: of one step, with the same contacts. Their preconditioner is made for the
+  // first of them and serves the others as well as it does.
+  void start_family();
+
+  // Solves A x = right; `diagonal` are the blocks of diagonal_blocks(). x is zero on rows that are not free. PCG stops
+  // when the residual's preconditioner norm has fallen by `tolerance`; it works in float, refined in double where the
+  // tolerance asks for that, and hands over to CHOLMOD (or to double PCG) where it does not get there. Where nothing
+  // gets there, x is the best direction found: finite, and zero if there was none. A matrix that is only perhaps
+  // positive definite gets one attempt.
+  LinearReport solve(const LinearSystem&, std::span<const Mat3> diagonal, const Points& right, double tolerance,
+                     int max_iterations, Points& x, Definite = Definite::yes);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace selvedge

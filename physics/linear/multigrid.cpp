@@ -1,0 +1,397 @@
+#include "physics/linear/multigrid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include "physics/linear/galerkin.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr int chunk = 64;           // rows of one task
+constexpr int one_thread = 128;     // rows below which a level costs more in a team than alone
+constexpr int coarsest = 48;        // vertices that Cholesky takes
+constexpr int smoothing_steps = 2;  // before and after the coarse correction
+// Of the eigenvalues of the inverse diagonal blocks times the matrix. For triangles it is at most 3, for contacts 4;
+// flat bending has 3.3 on regular meshes, and the polynomial does no harm up to 5. Estimating it by the power method
+// took longer than it saved.
+constexpr float longest = 4;
+constexpr int most_levels = 12;
+constexpr double least_coarsening = 0.7;  // of the vertices; a level that keeps more is not worth having
+
+int chunks_of(int rows) { return (rows + chunk - 1) / chunk; }
+
+// f(begin, end) over the chunks of `rows`, shared among the calling team or by one thread alone.
+template <class F>
+void for_chunks(bool team, int rows, const F& f) {
+  if (team) {
+#pragma omp for schedule(static)
+    for (int c = 0; c < chunks_of(rows); ++c) f(c * chunk, std::min(rows, (c + 1) * chunk));
+  } else {
+    f(0, rows);
+  }
+}
+
+// f(row) over all rows, shared among a team of its own where there are many: rows differ in what they cost.
+template <class F>
+void for_rows(int rows, const F& f) {
+#pragma omp parallel for schedule(dynamic, 8) if (rows > 32)
+  for (int row = 0; row < rows; ++row) f(row);
+}
+
+using Blocks = std::vector<BlockColumns<float>>;
+using PairedBlocks = std::vector<BlockPair<float>>;
+
+Mat3 block_at(const PairedBlocks& blocks, int entry) {
+  return block_of(BlockColumns<float>{column_of(blocks.data(), entry, 0), column_of(blocks.data(), entry, 1),
+                                      column_of(blocks.data(), entry, 2)});
+}
+
+// A level of the hierarchy. The finest has no matrix of its own.
+struct Level {
+  int rows = 0;
+  // To the next coarser level, if there is one.
+  Prolongation prolongation;
+  Restriction restriction;
+  std::vector<float> prolongation_weight, restriction_weight;
+  // The matrix, a product of the finer level's; `touching`: of its contacts.
+  RowPattern pattern, touching;
+  Product product, touching_product;
+  PairedBlocks block, touching_block;
+  Blocks diagonal;
+  // Of the smoother.
+  Blocks inverse;
+  Quads<float> right, x, step, product_of_step, residual;
+
+  LevelView view() const {
+    return {diagonal.data(),
+            {pattern.begin.data(), touching.begin.data()},
+            {pattern.column.data(), touching.column.data()},
+            {block.data(), touching_block.data()}};
+  }
+  WeightView up() const { return {prolongation.begin.data(), prolongation.coarse.data(), prolongation_weight.data()}; }
+  WeightView down() const { return {restriction.begin.data(), restriction.fine.data(), restriction_weight.data()}; }
+};
+
+void take_away(const PairedBlocks& blocks, const RowPattern& pattern, int row, BlockColumns<float>& sum) {
+  for (int entry = pattern.begin[row]; entry < pattern.begin[row + 1]; ++entry)
+    for (int k = 0; k < 3; ++k) sum.column[k].lanes -= column_of(blocks.data(), entry, k).lanes;
+}
+
+void clear(PairedBlocks& blocks, const RowPattern& pattern, int row) {
+  std::fill(blocks.begin() + pattern.begin[row] / 2, blocks.begin() + pattern.begin[row + 1] / 2, BlockPair<float>{});
+}
+
+void reflect(Level& level) {
+  for_rows(level.rows, [&](int a) {
+    reflect(level.product, level.pattern, level.block.data(), a, a + 1);
+    reflect(level.touching_product, level.touching, level.touching_block.data(), a, a + 1);
+  });
+}
+
+bool same(std::span<const ContactBlock> contacts, const std::vector<ContactBlock>& known) {
+  return std::equal(
+      contacts.begin(), contacts.end(), known.begin(), known.end(),
+      [](const ContactBlock& a, const ContactBlock& b) { return a.nodes == b.nodes && a.weights == b.weights; });
+}
+
+}  // namespace
+
+struct Multigrid::Impl {
+  std::vector<Level> levels;
+  PcgMatrix<float>* fine = nullptr;
+  bool patterns = false;                 // of the coarse matrices are made
+  std::vector<float> far, far_diagonal;  // of the second level: the product of the flat entries in no block
+  std::vector<ContactBlock> contacts;    // that the patterns were made for
+  PairedBlocks contact_factor;
+  Blocks fine_diagonal;
+  Eigen::LLT<Eigen::MatrixXd> cholesky;
+  Eigen::VectorXd coarse_right;
+  bool direct = false;  // the coarsest level is solved by Cholesky
+  std::vector<double> partial;
+
+  void make_patterns(const LinearSystem&);
+  void make_contact_patterns(std::span<const ContactBlock>);
+  void fill_second(const LinearSystem&, Level&);
+  void fill_coarser(const Level& finer, Level&);
+  bool invert_diagonal(Level&);
+  bool factor_coarsest();
+  void solve_coarsest();
+  void multiply(int l, bool team, const Quads<float>& u, Quads<float>& y);
+  void smooth(int l, bool team, Quads<float>& x, bool further);
+  void cycle(int l, bool team, const Quads<float>& right, Quads<float>& x);
+};
+
+Multigrid::Multigrid(const Vertices& vertices, std::span<const char> free) : impl_(std::make_unique<Impl>()) {
+  Vertices here = vertices;
+  std::vector<char> here_free(free.begin(), free.end());
+  for (;;) {
+    Level& level = impl_->levels.emplace_back();
+    level.rows = here.graph.size();
+    if (level.rows <= coarsest || impl_->levels.size() == most_levels) break;
+    Prolongation prolongation = coarsen(here, here_free);
+    if (prolongation.coarse_count() == 0 || prolongation.coarse_count() > least_coarsening * level.rows) break;
+    level.restriction = transpose(prolongation);
+    level.prolongation_weight.assign(prolongation.weight.begin(), prolongation.weight.end());
+    level.restriction_weight.assign(level.restriction.weight.begin(), level.restriction.weight.end());
+    here = coarse_vertices(here, prolongation);
+    here_free.assign(here.graph.size(), true);
+    level.prolongation = std::move(prolongation);
+  }
+  for (Level& level : impl_->levels)
+    for (Quads<float>* vector : {&level.right, &level.x, &level.step, &level.product_of_step, &level.residual})
+      vector->assign(level.rows, Quad<float>{});
+}
+Multigrid::~Multigrid() = default;
+
+// The first product takes the blocks and the flat entries that are in none together; the latter are constant and scalar
+// and are worked out here.
+void Multigrid::Impl::make_patterns(const LinearSystem& system) {
+  patterns = true;
+  if (levels.size() < 2) return;
+  const RowPattern &near = fine->pattern(), &beyond = fine->far();
+  const int blocks = static_cast<int>(near.column.size());
+  RowPattern joint{{0}, {}};
+  std::vector<int> entry;  // of the blocks, or behind those the place of a flat value
+  for (int i = 0; i < near.rows(); ++i) {
+    for (int k = near.begin[i]; k < near.begin[i + 1]; ++k) {
+      joint.column.push_back(near.column[k]);
+      entry.push_back(k);
+    }
+    for (int k = beyond.begin[i]; k < beyond.begin[i + 1]; ++k) {
+      joint.column.push_back(beyond.column[k]);
+      entry.push_back(blocks + fine->far_place()[k]);
+    }
+    joint.end_row(i);
+  }
+  Level& second = levels[1];
+  Product both = make_product(joint, true, levels[0].prolongation, levels[0].restriction, second.pattern);
+  std::vector<double> sums(second.pattern.column.size(), 0.0), diagonal_sums(second.rows, 0.0);
+  second.product.begin = {0};
+  for (int a = 0; a < second.rows; ++a) {
+    for (int k = both.begin[a]; k < both.begin[a + 1]; ++k) {
+      ProductTerm term = both.term[k];
+      if (term.source >= 0) term.source = entry[term.source];
+      if (term.source < blocks)
+        second.product.term.push_back(term);
+      else
+        (term.target < 0 ? diagonal_sums[a] : sums[term.target]) +=
+            static_cast<double>(term.weight) * system.flat.valuePtr()[term.source - blocks];
+    }
+    second.product.begin.push_back(static_cast<int>(second.product.term.size()));
+  }
+  second.product.mirror = std::move(both.mirror);
+  if (!beyond.column.empty()) {
+    far.assign(sums.begin(), sums.end());
+    far_diagonal.assign(diagonal_sums.begin(), diagonal_sums.end());
+  }
+  for (std::size_t l = 2; l < levels.size(); ++l)
+    levels[l].product = make_product(levels[l - 1].pattern, true, levels[l - 1].prolongation, levels[l - 1].restriction,
+                                     levels[l].pattern);
+  for (std::size_t l = 1; l < levels.size(); ++l) {
+    levels[l].block.assign(levels[l].pattern.column.size() / 2, {});
+    levels[l].diagonal.resize(levels[l].rows);
+  }
+}
+
+void Multigrid::Impl::make_contact_patterns(std::span<const ContactBlock> wanted) {
+  contacts.assign(wanted.begin(), wanted.end());
+  for (std::size_t l = 1; l < levels.size(); ++l) {
+    const Level& finer = levels[l - 1];
+    Level& level = levels[l];
+    level.touching_product =
+        l == 1 ? make_product(wanted, finer.prolongation, level.touching)
+               : make_product(finer.touching, false, finer.prolongation, finer.restriction, level.touching);
+    level.touching_block.assign(level.touching.column.size() / 2, {});
+  }
+}
+
+void Multigrid::Impl::fill_second(const LinearSystem& system, Level& level) {
+  const int touching = static_cast<int>(contacts.size());
+  contact_factor.resize((touching + 1) / 2);
+  fine_diagonal.resize(fine->rows());
+#pragma omp parallel if (chunks_of(levels[0].rows) > 2)
+  {
+#pragma omp for schedule(static) nowait
+    for (int p = 0; p < static_cast<int>(contact_factor.size()); ++p)
+      for (int c = 2 * p; c < std::min(touching, 2 * p + 2); ++c)
+        for (int k = 0; k < 3; ++k)
+          column_of(contact_factor.data(), c, k) = columns_of<float>(contact_matrix(fine->contacts()[c])).column[k];
+#pragma omp for schedule(static)
+    for (int i = 0; i < fine->rows(); ++i) fine_diagonal[i] = fine->diagonal(i);
+  }
+  for_rows(level.rows, [&](int a) {
+    const float scale = far.empty() ? 0.f : static_cast<float>(system.flat_scale[levels[0].prolongation.chosen[a]]);
+    level.diagonal[a] = BlockColumns<float>{};
+    clear(level.block, level.pattern, a);
+    clear(level.touching_block, level.touching, a);
+    for (int k = 0; k < 3 && !far.empty(); ++k) {
+      level.diagonal[a].column[k].lanes[k] = scale * far_diagonal[a];
+      for (int e = level.pattern.begin[a]; e < level.pattern.begin[a + 1]; ++e)
+        column_of(level.block.data(), e, k).lanes[k] = scale * far[e];
+    }
+    accumulate(level.product, fine->blocks(), fine_diagonal.data(), level.block.data(), level.diagonal.data(), a,
+               a + 1);
+    accumulate(level.touching_product, contact_factor.data(), nullptr, level.touching_block.data(),
+               level.diagonal.data(), a, a + 1);
+  });
+  reflect(level);
+}
+
+void Multigrid::Impl::fill_coarser(const Level& finer, Level& level) {
+  for_rows(level.rows, [&](int a) {
+    level.diagonal[a] = BlockColumns<float>{};
+    clear(level.block, level.pattern, a);
+    clear(level.touching_block, level.touching, a);
+    accumulate(level.product, finer.block.data(), finer.diagonal.data(), level.block.data(), level.diagonal.data(), a,
+               a + 1);
+    accumulate(level.touching_product, finer.touching_block.data(), nullptr, level.touching_block.data(),
+               level.diagonal.data(), a, a + 1);
+  });
+  reflect(level);
+}
+
+// False where a block is not one of a positive definite matrix.
+bool Multigrid::Impl::invert_diagonal(Level& level) {
+  level.inverse.resize(level.rows);
+  std::vector<char> positive(level.rows);
+  for_rows(level.rows, [&](int a) {
+    BlockColumns<float> sum = level.diagonal[a];
+    take_away(level.block, level.pattern, a, sum);
+    take_away(level.touching_block, level.touching, a, sum);
+    const Mat3 whole = block_of(sum);
+    const Mat3 inverse = (0.5 * (whole + whole.transpose())).inverse();
+    positive[a] = inverse.allFinite() && inverse.trace() > 0;
+    level.inverse[a] = columns_of<float>(inverse);
+  });
+  return std::ranges::all_of(positive, [](char yes) { return yes != 0; });
+}
+
+bool Multigrid::Impl::factor_coarsest() {
+  const Level& level = levels.back();
+  direct = level.rows <= 4 * coarsest;
+  if (!direct) return true;
+  const int n = level.rows;
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+  const auto add = [&](int a, const RowPattern& pattern, const PairedBlocks& block) {
+    for (int k = pattern.begin[a]; k < pattern.begin[a + 1]; ++k) {
+      const Mat3 entry = block_at(block, k);
+      whole.block<3, 3>(3 * a, 3 * pattern.column[k]) += entry;
+      whole.block<3, 3>(3 * a, 3 * a) -= entry;
+    }
+  };
+  for (int a = 0; a < n; ++a) {
+    whole.block<3, 3>(3 * a, 3 * a) += block_of(level.diagonal[a]);
+    add(a, level.pattern, level.block);
+    add(a, level.touching, level.touching_block);
+  }
+  cholesky.compute(0.5 * (whole + whole.transpose()));
+  coarse_right.resize(3 * n);
+  return cholesky.info() == Eigen::Success;
+}
+
+void Multigrid::Impl::solve_coarsest() {
+  Level& level = levels.back();
+  for (int a = 0; a < level.rows; ++a)
+    for (int k = 0; k < 3; ++k) coarse_right[3 * a + k] = level.right[a].lanes[k];
+  cholesky.solveInPlace(coarse_right);
+  for (int a = 0; a < level.rows; ++a)
+    for (int k = 0; k < 3; ++k) level.x[a].lanes[k] = static_cast<float>(coarse_right[3 * a + k]);
+}
+
+void Multigrid::Impl::multiply(int l, bool team, const Quads<float>& u, Quads<float>& y) {
+  if (l == 0) {
+    fine->multiply(u, y, partial);
+    return;
+  }
+  const LevelView view = levels[l].view();
+  for_chunks(team, levels[l].rows, [&](int begin, int end) { multiply_level(view, u.data(), y.data(), begin, end); });
+}
+
+void Multigrid::fill_finest(const LinearSystem& system, std::span<const Mat3> diagonal, PcgMatrix<float>& fine) {
+  Impl& impl = *impl_;
+  impl.fine = &fine;
+  impl.partial.resize(fine.chunks());
+  Level& finest = impl.levels[0];
+  finest.inverse.resize(finest.rows);
+#pragma omp parallel for schedule(static) if (chunks_of(finest.rows) > 2)
+  for (int i = 0; i < finest.rows; ++i)
+    finest.inverse[i] = columns_of<float>(system.free[i] ? Mat3(diagonal[i].inverse()) : Mat3(Mat3::Zero()));
+}
+
+bool Multigrid::fill(const LinearSystem& system, std::span<const Mat3> diagonal, PcgMatrix<float>& fine) {
+  Impl& impl = *impl_;
+  if (impl.levels.size() < 2) return false;
+  impl.fine = &fine;
+  const bool first = !impl.patterns;
+  if (first) impl.make_patterns(system);
+  if (first || !same(fine.contacts(), impl.contacts)) impl.make_contact_patterns(fine.contacts());
+  fill_finest(system, diagonal, fine);
+  for (std::size_t l = 1; l < impl.levels.size(); ++l) {
+    if (l == 1)
+      impl.fill_second(system, impl.levels[1]);
+    else
+      impl.fill_coarser(impl.levels[l - 1], impl.levels[l]);
+    if (!impl.invert_diagonal(impl.levels[l])) return false;
+  }
+  if (!impl.factor_coarsest()) return false;
+  return true;
+}
+
+// Steps of the iteration with its residual in `residual` but for `product_of_step`, which is still to be taken from it;
+// x += what they add. `further`: leaves the product of the last step too.
+void Multigrid::Impl::smooth(int l, bool team, Quads<float>& x, bool further) {
+  Level& level = levels[l];
+  for (int k = 1; k <= smoothing_steps; ++k) {
+    const float keep = static_cast<float>(2 * k - 3) / static_cast<float>(2 * k + 1);
+    const float factor = static_cast<float>(8 * k - 4) / (static_cast<float>(2 * k + 1) * longest);
+    for_chunks(team, level.rows, [&](int begin, int end) {
+      chebyshev(k == 1 ? 0.f : keep, factor, level.inverse.data(), level.product_of_step.data(), level.residual.data(),
+                level.step.data(), x.data(), begin, end);
+    });
+    if (k < smoothing_steps || further) multiply(l, team, level.step, level.product_of_step);
+  }
+}
+
+void Multigrid::Impl::cycle(int l, bool team, const Quads<float>& right, Quads<float>& x) {
+  Level& level = levels[l];
+  const bool last = l + 1 == static_cast<int>(levels.size());
+  if (last && direct) {
+    solve_coarsest();
+    return;
+  }
+  for_chunks(team, level.rows, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      level.residual[i] = right[i];
+      level.product_of_step[i] = level.step[i] = x[i] = Quad<float>{};
+    }
+  });
+  smooth(l, team, x, true);
+  if (!last) {
+    Level& coarser = levels[l + 1];
+    for_chunks(team, level.rows, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) level.residual[i].lanes -= level.product_of_step[i].lanes;
+    });
+    for_chunks(team, coarser.rows, [&](int begin, int end) {
+      gather(level.down(), level.residual.data(), coarser.right.data(), begin, end);
+    });
+    if (team && coarser.rows < one_thread) {
+#pragma omp single
+      cycle(l + 1, false, coarser.right, coarser.x);
+    } else {
+      cycle(l + 1, team, coarser.right, coarser.x);
+    }
+    for_chunks(team, level.rows, [&](int begin, int end) {
+      add_gathered(level.up(), coarser.x.data(), level.step.data(), x.data(), begin, end);
+    });
+    multiply(l, team, level.step, level.product_of_step);
+  }
+  smooth(l, team, x, false);
+}
+
+void Multigrid::apply(const Quads<float>& r, Quads<float>& z) { impl_->cycle(0, true, r, z); }
+
+}  // namespace selvedge

@@ -1,0 +1,94 @@
+#include "physics/recovery/balanced_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/geometry/disjoint_sets.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr int sweeps = 10;
+
+bool leans_on_prescribed(const Separation& push, const Eigen::VectorXd& inverse_mass) {
+  double sum = 0;
+  bool prescribed = false;
+  for (int i = 0; i < push.count; ++i) {
+    sum += push.weight[i];
+    prescribed = prescribed || inverse_mass[push.vertex[i]] == 0;
+  }
+  return prescribed || std::abs(sum) > 0.5;  // 0 within the cloth, 1 or -1 against an obstacle
+}
+
+Points cut_to(double reach, const Eigen::VectorXd& inverse_mass, const Points& way) {
+  Points move = way;
+  for (int v = 0; v < way.rows(); ++v) {
+    const double length = way.row(v).norm();
+    if (inverse_mass[v] == 0) move.row(v).setZero();
+    if (length > reach) move.row(v) *= reach / length;
+  }
+  return move;
+}
+
+DisjointSets moving_together(const Surface& cloth, std::span<const Separation> pushes, const Points& move) {
+  DisjointSets sets(cloth.vertex_count);
+  for (int e = 0; e < cloth.edges.rows(); ++e) {
+    const int a = cloth.edges(e, 0), b = cloth.edges(e, 1);
+    if (!move.row(a).isZero(0) && !move.row(b).isZero(0)) sets.join(a, b);
+  }
+  for (const Separation& push : pushes)
+    for (int i = 1; i < push.count; ++i) sets.join(push.vertex[0], push.vertex[i]);
+  return sets;
+}
+
+void take_means(const Eigen::VectorXd& inverse_mass, const std::vector<char>& leans, DisjointSets& sets, Points& move) {
+  std::vector<double> mass(leans.size(), 0.0);
+  std::vector<Vec3> momentum(leans.size(), Vec3::Zero());
+  for (int v = 0; v < move.rows(); ++v) {
+    if (move.row(v).isZero(0)) continue;
+    mass[sets.root(v)] += 1 / inverse_mass[v];
+    momentum[sets.root(v)] += row(move, v) / inverse_mass[v];
+  }
+  for (int v = 0; v < move.rows(); ++v)
+    if (const int set = sets.root(v); !leans[set] && !move.row(v).isZero(0))
+      move.row(v) -= (momentum[set] / mass[set]).transpose();
+}
+
+void meet(std::span<const Separation> pushes, const Eigen::VectorXd& inverse_mass, Points& move) {
+  for (int sweep = 0; sweep < sweeps; ++sweep)
+    for (const Separation& push : pushes) {
+      double value = 0, compliance = 0;
+      for (int i = 0; i < push.count; ++i) {
+        value += push.weight[i] * push.direction.dot(row(move, push.vertex[i]));
+        compliance += push.weight[i] * push.weight[i] * inverse_mass[push.vertex[i]];
+      }
+      if (value >= push.least || compliance == 0) continue;
+      const Vec3 impulse = (push.least - value) / compliance * push.direction;
+      for (int i = 0; i < push.count; ++i)
+        move.row(push.vertex[i]) += push.weight[i] * inverse_mass[push.vertex[i]] * impulse.transpose();
+    }
+}
+
+void shorten_sets(double reach, DisjointSets& sets, Points& move) {
+  std::vector<double> most(move.rows(), 0.0);
+  for (int v = 0; v < move.rows(); ++v) most[sets.root(v)] = std::max(most[sets.root(v)], move.row(v).norm());
+  for (int v = 0; v < move.rows(); ++v)
+    if (const double length = most[sets.root(v)]; length > reach) move.row(v) *= reach / length;
+}
+
+}  // namespace
+
+Points balanced_motion(const Surface& cloth, const Eigen::VectorXd& inverse_mass, std::span<const Separation> pushes,
+                       const Points& way, double reach) {
+  Points move = cut_to(reach, inverse_mass, way);
+  DisjointSets sets = moving_together(cloth, pushes, move);
+  std::vector<char> leans(cloth.vertex_count, 0);
+  for (const Separation& push : pushes)
+    if (leans_on_prescribed(push, inverse_mass)) leans[sets.root(push.vertex[0])] = 1;
+  take_means(inverse_mass, leans, sets, move);
+  meet(pushes, inverse_mass, move);
+  shorten_sets(reach, sets, move);
+  return move;
+}
+
+}  // namespace selvedge

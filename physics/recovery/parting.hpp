@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "physics/recovery/put_on.hpp"
+#include "physics/recovery/recovery.hpp"
+
+namespace selvedge {
+
+// Where a step begins, of cloth that starts tangled.
+struct Parting {
+  Exemption left;                  // what is tangled still, and what is switched off: contact leaves it alone
+  std::vector<Separation> gained;  // what the solve must not lose again
+  std::vector<char> carried;       // 1 for vertices that are drawn to where they are worn (carrying.hpp), or empty
+};
+
+// In this order: what a limb has gone through, or has sunken in, is put on again (put_on.hpp); where that cannot be it
+// is drawn to where it is worn, and what else is tangled is parted (recovery.hpp); and where untangling knows no way
+// out, what has sunken in is drawn as well. `clean`: nothing is tangled at the start, for cloth at least. Overwrites
+// the cloth's rows of `nodes`, at the start, and velocities v.
+Parting part_at_start(const ContactWorld&, SelfCrossings&, const Eigen::VectorXd& inverse_mass, double edge_length,
+                      bool clean, const WornPlaces&, Points& nodes, Points& v);
+
+}  // namespace selvedge

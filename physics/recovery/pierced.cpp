@@ -1,0 +1,102 @@
+#include "physics/recovery/pierced.hpp"
+
+#include <algorithm>
+
+#include "collision/untangle/separation.hpp"
+#include "collision/untangle/world_sheets.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double good_part = 0.03;  // of a component's vertices
+constexpr double small_part = 0.01;
+constexpr double long_limb = 2.5;  // beyond a contour round it, in radii of the contour
+
+// How far the vertices of a side's smaller part reach from the middle of its curve, in radii of the curve.
+double slenderness(const SheetView& sheet, const ContourSide& side) {
+  const Points& x = *sheet.x;
+  const auto from = [&](int e) { return row(x, sheet.surface->edges(e, 0)); };
+  Vec3 middle = Vec3::Zero();
+  for (const int e : side.edges) middle += from(e) / static_cast<double>(side.edges.size());
+  double radius = 0, reach = 0;
+  for (const int e : side.edges) radius = std::max(radius, (from(e) - middle).norm());
+  for (const int v : side.inside) reach = std::max(reach, (row(x, v) - middle).norm());
+  return radius > 0 ? reach / radius : 0;
+}
+
+bool goes_through(const WorldSheets& sheets, const Contour& contour, const std::vector<char>& inside) {
+  const ContourSide &first = contour.sides[0], &second = contour.sides[1];
+  if (!contour.closed || (first.sheet == 0) == (second.sheet == 0)) return false;
+  const ContourSide &cloth = first.sheet == 0 ? first : second, &body = first.sheet == 0 ? second : first;
+  return body.cuts && std::ranges::all_of(cloth.inside, [&](int v) { return inside[v] != 0; }) &&
+         slenderness(sheets.views[body.sheet], body) > long_limb;
+}
+
+std::vector<char> pierced_components(const ContactWorld& world, const Points& nodes) {
+  std::vector<char> pierced(static_cast<std::size_t>(world.cloth->component_count), 0);
+  const WorldSheets sheets(world, nodes);
+  const std::vector<char> inside = inside_obstacles(sheets.views);
+  for (const Contour& contour : find_contours(sheets.views, find_segments(sheets.views)))
+    if (goes_through(sheets, contour, inside))
+      for (const ContourSide& side : contour.sides)
+        if (side.sheet == 0) pierced[side.component] = 1;
+  return pierced;
+}
+
+// Of which more than `part` is tangled with obstacles and farther than that from where it is worn.
+std::vector<char> far_components(const ContactWorld& world, const Exemption& exemption, const Points& nodes,
+                                 const Points& worn, double part, double astray) {
+  const auto components = static_cast<std::size_t>(world.cloth->component_count);
+  std::vector<int> size(components, 0), far(components, 0);
+  for (int v = 0; v < worn.rows(); ++v) {
+    const int component = world.cloth->component[v];
+    ++size[component];
+    far[component] += exemption.body[v] && (worn.row(v) - nodes.row(v)).norm() > astray;
+  }
+  std::vector<char> found(components, 0);
+  for (std::size_t c = 0; c < components; ++c) found[c] = far[c] > part * size[c];
+  return found;
+}
+
+bool applies(const Exemption& exemption, const Points& worn) {
+  return !exemption.body.empty() && exemption.off.empty() && worn.rows() > 0;
+}
+
+// Components with a vertex that is not worn have no place to go to.
+void leave_unworn(const ContactWorld& world, const Points& worn, std::vector<char>& components) {
+  for (int v = 0; v < worn.rows(); ++v)
+    if (!worn.row(v).allFinite()) components[world.cloth->component[v]] = 0;
+}
+
+// Empty where there are none.
+std::vector<char> vertices_of(const ContactWorld& world, const std::vector<char>& components) {
+  if (std::ranges::find(components, 1) == components.end()) return {};
+  std::vector<char> vertices;
+  for (const int component : world.cloth->component) vertices.push_back(components[component]);
+  return vertices;
+}
+
+}  // namespace
+
+std::vector<char> sunken_vertices(const ContactWorld& world, const Exemption& exemption, const Points& worn) {
+  if (!applies(exemption, worn)) return {};
+  std::vector<char> sunken = far_components(world, exemption, Points::Zero(worn.rows(), 3), worn, small_part, -1);
+  leave_unworn(world, worn, sunken);
+  return vertices_of(world, sunken);
+}
+
+std::vector<char> pierced_vertices(const ContactWorld& world, const Exemption& exemption, const Points& nodes,
+                                   const Points& wanted, const Points& worn, double astray) {
+  if (!applies(exemption, worn)) return {};
+  std::vector<char> pierced =
+      either(pierced_components(world, nodes), far_components(world, exemption, nodes, worn, good_part, astray));
+  if (pierced.empty()) return {};
+  leave_unworn(world, worn, pierced);
+  Points there = wanted;
+  for (int v = 0; v < worn.rows(); ++v) there.row(v) = worn.row(v).allFinite() ? worn.row(v) : nodes.row(v);
+  const std::vector<char> anyway = pierced_components(world, there);
+  for (std::size_t c = 0; c < pierced.size(); ++c) pierced[c] = pierced[c] && !anyway[c];
+  return vertices_of(world, pierced);
+}
+
+}  // namespace selvedge

@@ -1,0 +1,94 @@
+#include "physics/recovery/put_on.hpp"
+
+#include <algorithm>
+#include <span>
+
+#include "collision/untangle/find_exemption.hpp"
+#include "collision/untangle/untangle.hpp"
+#include "collision/untangle/world_sheets.hpp"
+#include "physics/recovery/carried_along.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double most_way = 0.3;       // [m]
+constexpr int enough_iterations = 60;  // of untangling: what is worn is shallow in the body, or not to be parted
+constexpr int most_parting = 100'000;  // pairs times iterations of it
+
+struct Place {
+  Points nodes, ways;  // with what is marked put there, and how far that goes along in the step
+  int pairs;           // of triangles that cross there
+};
+
+// The ways over the step of the obstacles' nodes that are nearest to places, with obstacles as in `at`.
+Points ways_along(const ContactWorld& world, const Points& at, const Points& places, const Points& nodes,
+                  const Points& wanted) {
+  Points ways(places.rows(), 3);
+  for (Eigen::Index k = 0; k < places.rows(); ++k) {
+    const int nearest = nearest_obstacle_node(world, at, places.row(k).transpose());
+    ways.row(k) = wanted.row(nearest) - nodes.row(nearest);
+  }
+  return ways;
+}
+
+// Those within reach, the least tangled first: where it is worn, and where it was clean last, carried along since.
+std::vector<Place> places_for(const ContactWorld& world, const std::vector<int>& vertices, const WornPlaces& where,
+                              const Points& nodes) {
+  std::vector<Place> places;
+  const auto add = [&](const Points& there, Points ways) {
+    if (!((there - nodes(vertices, Eigen::all)).rowwise().squaredNorm().maxCoeff() <= most_way * most_way)) return;
+    Place place{nodes, std::move(ways), 0};
+    place.nodes(vertices, Eigen::all) = there;
+    place.pairs = intersecting_pairs(find_segments(WorldSheets(world, place.nodes).views));
+    places.push_back(std::move(place));
+  };
+  const Points &wanted = *where.wanted, worn = (*where.worn)(vertices, Eigen::all);
+  const Points ways = ways_along(world, wanted, worn, nodes, wanted);
+  add(worn - ways, ways);
+  if (where.last_clean.rows() > 0) {
+    const Points carried = carried_along(world, where.last_clean, nodes, where.thickness)(vertices, Eigen::all);
+    add(carried, ways_along(world, nodes, carried, nodes, wanted));
+  }
+  std::ranges::stable_sort(places, {}, &Place::pairs);
+  return places;
+}
+
+UntangleResult part(const ContactWorld& world, const Place& place) {
+  const WorldSheets sheets(world, place.nodes);
+  UntangleOptions options;
+  options.iterations = std::min(enough_iterations, most_parting / std::max(1, place.pairs));
+  options.second_opinion = false;  // a place that the first does not find is looked for again in the next step
+  return untangle(*world.cloth, sheets.positions[0], std::span(sheets.views).subspan(1), options);
+}
+
+// Tangled there, of what is marked or was not tangled before.
+bool is_tangled(const Exemption& there, const Exemption& before, const std::vector<char>& marked) {
+  const std::vector<char> now = either(there.body, there.self), then = either(before.body, before.self);
+  for (std::size_t v = 0; v < now.size(); ++v)
+    if (now[v] && (marked[v] || then.empty() || !then[v])) return true;
+  return false;
+}
+
+}  // namespace
+
+PutOn put_on(const ContactWorld& world, const std::vector<char>& marked, const WornPlaces& where, Points& nodes,
+             Points& v) {
+  std::vector<int> vertices;
+  for (int i = 0; i < static_cast<int>(marked.size()); ++i)
+    if (marked[i]) vertices.push_back(i);
+  if (vertices.empty()) return PutOn::nothing;
+  std::vector<Place> places = places_for(world, vertices, where, nodes);
+  if (places.empty()) return PutOn::too_far;
+  const Exemption before = find_exemption(world, nodes);
+  for (Place& place : places) {
+    const UntangleResult parted = part(world, place);
+    place.nodes.topRows(parted.x.rows()) = parted.x;  // of other layers as well, which the place may go through
+    if (is_tangled(find_exemption(world, place.nodes), before, marked)) continue;
+    nodes = std::move(place.nodes);
+    v(vertices, Eigen::all) = place.ways / where.h;
+    return PutOn::done;
+  }
+  return PutOn::no_place;
+}
+
+}  // namespace selvedge

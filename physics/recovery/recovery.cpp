@@ -1,0 +1,207 @@
+#include "physics/recovery/recovery.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "collision/untangle/find_exemption.hpp"
+#include "collision/untangle/untangle.hpp"
+#include "collision/untangle/world_sheets.hpp"
+#include "physics/recovery/balanced_motion.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr int most_pairs = 10;         // of triangles that cross, each triangle of the cloth
+constexpr int most_parting = 150'000;  // pairs times iterations of untangling, a step: the next one goes on
+constexpr double ample = 12;           // times the way that a step can go, of untangling: the rest would not be used
+constexpr int least_iterations = 30;   // of it, however small the step
+constexpr int most_halvings = 3;       // of a way that would have clean cloth cross itself
+constexpr int hasty_iterations = 5;    // of untangling from a body that crosses itself: some of it must wait anyway
+constexpr double negligible = 1e-6;    // way, in mean edge lengths
+
+// The vertices that cross the cloth still, where `untangle` says that they should be: to push them towards it for ever
+// would keep the cloth from resting. Empty where there are none.
+std::vector<char> tangled_at(const ContactWorld& world, const Points& nodes, const UntangleResult& parted) {
+  if (!world.self || parted.pairs_after + parted.vertex_pairs_after == 0) return {};
+  Points goal = nodes;
+  goal.topRows(parted.x.rows()) = parted.x;
+  return find_exemption(world, goal).self;
+}
+
+// Tangled cloth that hangs together with what is carried, or with a crossing of a part of a body that is switched off;
+// empty where there is none.
+std::vector<char> waiting(const ContactWorld& world, const Points& nodes, const std::vector<char>& tangled,
+                          const std::vector<char>& off, const std::vector<char>& carried) {
+  if ((off.empty() && carried.empty()) || tangled.empty()) return {};
+  const WorldSheets sheets(world, nodes);
+  std::vector<char> waits(tangled.size(), 0);
+  std::vector<int> front;
+  const auto add = [&](int v) {
+    if (!tangled[v] || waits[v]) return;
+    waits[v] = 1;
+    front.push_back(v);
+  };
+  for (int v = 0; v < static_cast<int>(carried.size()); ++v)
+    if (carried[v]) add(v);
+  for (const Segment& segment : find_segments(sheets.views).segments) {
+    if (off.empty()) break;
+    if ((segment.sheet[0] == 0) == (segment.sheet[1] == 0)) continue;
+    const int side = segment.sheet[0] == 0 ? 0 : 1, obstacle = segment.sheet[1 - side] - 1;
+    const auto body = world.obstacles[obstacle]->triangles.row(segment.triangle[1 - side]);
+    if (std::any_of(body.begin(), body.end(), [&](int v) { return off[world.first_node[obstacle] + v] != 0; }))
+      for (const int v : world.cloth->triangles.row(segment.triangle[side])) add(v);
+  }
+  while (!front.empty()) {
+    const int v = front.back();
+    front.pop_back();
+    for (const int t : world.cloth->triangles_of(v))
+      for (const int other : world.cloth->triangles.row(t)) add(other);
+  }
+  return waits;
+}
+
+bool none_is_left(const Exemption& found, const std::vector<char>& waits) {
+  return found.self.empty() && (found.body.empty() || found.body == waits);
+}
+
+// A contact term has four vertices. Where an edge has gone through a face that is one too few: its nearer end stands
+// for it.
+Separation on_four(Separation s) {
+  if (s.count <= 4) return s;
+  const int near = s.weight[0] > s.weight[1] ? 0 : 1;
+  s.vertex = {s.vertex[near], s.vertex[2], s.vertex[3], s.vertex[4], -1};
+  s.weight = {1, s.weight[2], s.weight[3], s.weight[4], 0};
+  s.count = 4;
+  return s;
+}
+
+// What the way to where the cloth should be asks of all that is to be parted: its two sides go against each other, or
+// vertices against an obstacle, in the direction that the way takes them apart, `least` far and at most by `reach` [m].
+// Where all vertices are lost nothing is asked.
+std::vector<Separation> pushes_along(const Points& way, const std::vector<char>& lost, const WorldSheets& sheets,
+                                     double shortest, double reach) {
+  const Segments found = find_segments(sheets.views);
+  const std::vector<Contour> contours = find_contours(sheets.views, found);
+  std::vector<Separation> pushes;
+  for (const Separation& s :
+       part_contours(sheets.views, found, contours, enclosed_regions(sheets.views, contours), {})) {
+    Separation push = on_four(s);
+    Vec3 apart = Vec3::Zero();
+    bool hopeful = false;
+    for (int i = 0; i < push.count; ++i) {
+      apart += push.weight[i] * row(way, push.vertex[i]);
+      hopeful = hopeful || lost.empty() || !lost[push.vertex[i]];
+    }
+    const double length = apart.norm();
+    if (!hopeful || length <= shortest) continue;
+    push.direction = apart / length;
+    push.least = std::min(length, reach);
+    pushes.push_back(push);
+  }
+  return pushes;
+}
+
+// Pairs of triangles of the cloth that cross each other.
+std::size_t pairs_within_cloth(const ContactWorld& world, const Points& nodes) {
+  IntersectionCache cache;
+  const Points cloth = nodes.topRows(world.cloth->vertex_count);
+  return intersecting_pairs(*world.cloth, cloth, cache).size();
+}
+
+// Of untangling, in a step in which vertices can go as far as `reach` [m]. What sits on a body goes straight out; where
+// cloth is tangled with itself the first steps may be the wrong ones.
+int iterations_for(const ContactWorld& world, const Points& nodes, double reach, const Exemption& before,
+                   const std::vector<char>& waits, const UntangleOptions& options) {
+  if (std::ranges::find(waits, 1) != waits.end()) return hasty_iterations;
+  if (!before.self.empty())
+    return std::min(options.iterations, most_parting / std::max(1, static_cast<int>(pairs_within_cloth(world, nodes))));
+  const double step = options.step * mean_edge(*world.cloth, nodes.topRows(world.cloth->vertex_count));
+  const double useful = std::max<double>(least_iterations, ample * reach / step);
+  return useful < options.iterations ? static_cast<int>(useful) : options.iterations;
+}
+
+// Vertices that would go through an obstacle anew stay: it holds them up. Returns what is tangled then.
+Exemption stop_at_obstacles(const ContactWorld& world, const Exemption& before, const Points& from, Points& nodes) {
+  for (;;) {
+    Exemption left = find_exemption(world, nodes);
+    bool stopped = false;
+    for (std::size_t v = 0; v < left.body.size(); ++v) {
+      const auto at = static_cast<Eigen::Index>(v);
+      if (!left.body[v] || (!before.body.empty() && before.body[v]) || nodes.row(at) == from.row(at)) continue;
+      nodes.row(at) = from.row(at);
+      stopped = true;
+    }
+    if (!stopped) return left;
+  }
+}
+
+}  // namespace
+
+std::optional<Exemption> hopeless(const ContactWorld& world, const Points& nodes) {
+  if (!world.self) return {};
+  if (pairs_within_cloth(world, nodes) <= most_pairs * std::size_t(world.cloth->triangles.rows())) return {};
+  ContactWorld bodies = world;
+  bodies.self = false;
+  Exemption exemption = find_exemption(bodies, nodes);
+  exemption.self.assign(static_cast<std::size_t>(world.cloth->vertex_count), 1);
+  return exemption;
+}
+
+Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass, double reach, const Exemption& before,
+                 const std::vector<char>& carried, Points& nodes) {
+  const int n = world.cloth->vertex_count;
+  Recovery recovery{before, {}};
+  const std::vector<char> waits = waiting(world, nodes, before.body, before.off, carried);
+  if (!before.cloth() || none_is_left(before, waits)) return recovery;
+  const WorldSheets sheets(world, nodes);
+  const Points& from = sheets.positions[0];
+  UntangleOptions options;
+  options.iterations = iterations_for(world, nodes, reach, before, waits, options);
+  const UntangleResult parted = untangle(*world.cloth, from, std::span(sheets.views).subspan(1), options);
+  const std::vector<char> lost = either(tangled_at(world, nodes, parted), waits);
+  const Points whole_way = parted.x - from;
+  Points way = whole_way;
+  for (int v = 0; v < n; ++v)
+    if (!lost.empty() && lost[v]) way.row(v).setZero();
+  for (int halving = 0; halving <= most_halvings; ++halving, reach /= 2) {
+    std::vector<Separation> gained = pushes_along(whole_way, lost, sheets, negligible * parted.mean_edge, reach);
+    Points moved = nodes;
+    moved.topRows(n) += balanced_motion(*world.cloth, inverse_mass, gained, way, reach);
+    Exemption left = stop_at_obstacles(world, before, from, moved);
+    if (before.self.empty() && !left.self.empty()) continue;
+    nodes = std::move(moved);
+    recovery = {std::move(left), std::move(gained), parted.moved == 0};
+    recovery.left.off = before.off;
+    break;
+  }
+  for (Separation& gained : recovery.gained) {
+    gained.least = 0;
+    for (int i = 0; i < gained.count; ++i)
+      gained.least += gained.weight[i] * gained.direction.dot(row(nodes, gained.vertex[i]));
+  }
+  return recovery;
+}
+
+SelfCrossings::SelfCrossings(const ContactWorld& world) : world_(world), known_(world.obstacles.size()) {}
+
+bool SelfCrossings::crosses(int obstacle, const Points& nodes, Known& known) {
+  const Surface& surface = *world_.obstacles[obstacle];
+  const Points x = nodes.middleRows(world_.first_node[obstacle], surface.vertex_count);
+  if (x.rows() != known.x.rows() || x != known.x) {
+    known.x = x;
+    known.crosses = !intersecting_pairs(surface, x, known.cache).empty();
+  }
+  return known.crosses;
+}
+
+void SelfCrossings::switch_off(const Points& from, const Points& to, Exemption& exemption) {
+  for (std::size_t k = 0; k < known_.size(); ++k) {
+    const int obstacle = static_cast<int>(k);
+    auto& [start, end] = known_[k];
+    std::swap(start, end);  // a step begins where the last one ended
+    if (crosses(obstacle, from, start)) selvedge::switch_off(world_, obstacle, from, exemption);
+    if (crosses(obstacle, to, end)) selvedge::switch_off(world_, obstacle, to, exemption);
+  }
+}
+
+}  // namespace selvedge

@@ -1,0 +1,138 @@
+#include "physics/scene/part_of_scene.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace selvedge {
+namespace {
+
+Points rows_of(const Points& whole, const std::vector<int>& rows) {
+  Points part(static_cast<Eigen::Index>(rows.size()), 3);
+  for (std::size_t i = 0; i < rows.size(); ++i) part.row(static_cast<Eigen::Index>(i)) = whole.row(rows[i]);
+  return part;
+}
+
+void put_rows(const Points& part, const std::vector<int>& rows, Points& whole) {
+  for (std::size_t i = 0; i < rows.size(); ++i) whole.row(rows[i]) = part.row(static_cast<Eigen::Index>(i));
+}
+
+// What is marked of the vertices and triangles of a scene; a triangle needs its vertices.
+PartOfScene part_with(const Scene& whole, std::span<const char> has_vertex, std::span<const char> has_triangle) {
+  PartOfScene part;
+  Scene& scene = part.scene;
+  std::vector<int> renumbered(static_cast<std::size_t>(whole.surface.vertex_count), -1);
+  const auto take = [](int first, int count, std::span<const char> marks, std::vector<int>& numbers) {
+    const std::size_t before = numbers.size();
+    for (int i = first; i < first + count; ++i)
+      if (marks[static_cast<std::size_t>(i)]) numbers.push_back(i);
+    return static_cast<int>(numbers.size() - before);
+  };
+  for (const Cloth& cloth : whole.cloths) {
+    Cloth own = cloth;
+    own.first_vertex = static_cast<int>(part.vertices.size());
+    own.first_triangle = static_cast<int>(part.triangles.size());
+    own.vertex_count = take(cloth.first_vertex, cloth.vertex_count, has_vertex, part.vertices);
+    own.triangle_count = take(cloth.first_triangle, cloth.triangle_count, has_triangle, part.triangles);
+    if (own.vertex_count > 0) scene.cloths.push_back(own);
+  }
+  for (std::size_t i = 0; i < part.vertices.size(); ++i) renumbered[part.vertices[i]] = static_cast<int>(i);
+  Triangles triangles(static_cast<Eigen::Index>(part.triangles.size()), 3);
+  for (std::size_t t = 0; t < part.triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k)
+      triangles(static_cast<Eigen::Index>(t), k) = renumbered[whole.surface.triangles(part.triangles[t], k)];
+    scene.rest_triangle.push_back(whole.rest_triangle[part.triangles[t]]);
+  }
+  scene.surface = make_surface(static_cast<int>(part.vertices.size()), triangles);
+  scene.rest = rows_of(whole.rest, part.vertices);
+  scene.rest_is_flat = whole.rest_is_flat;
+  for (std::size_t p = 0; p < whole.pins.size(); ++p) {
+    const int pin = renumbered[whole.pins[p]];
+    if (pin < 0) continue;
+    scene.pins.push_back(pin);
+    part.pins.push_back(static_cast<int>(p));
+  }
+  for (const Spring& spring : whole.springs) {
+    const int a = renumbered[spring.a], b = renumbered[spring.b];
+    if (a >= 0 && b >= 0) scene.springs.push_back({a, b, spring.rest_length, spring.stiffness});
+  }
+  scene.obstacles = whole.obstacles;
+  scene.contact = whole.contact;
+  scene.wind = whole.wind;
+  return part;
+}
+
+}  // namespace
+
+PartOfScene part_of(const Scene& whole, std::span<const char> cloths) {
+  std::vector<char> vertices(static_cast<std::size_t>(whole.surface.vertex_count), 0);
+  std::vector<char> triangles(static_cast<std::size_t>(whole.surface.triangles.rows()), 0);
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    const Cloth& cloth = whole.cloths[c];
+    std::fill_n(vertices.begin() + cloth.first_vertex, cloth.vertex_count, cloths[c]);
+    std::fill_n(triangles.begin() + cloth.first_triangle, cloth.triangle_count, cloths[c]);
+  }
+  assert(std::ranges::all_of(whole.springs, [&](const Spring& s) { return vertices[s.a] == vertices[s.b]; }));
+  return part_with(whole, vertices, triangles);
+}
+
+PartOfScene part_of_triangles(const Scene& whole, std::span<const char> triangles) {
+  std::vector<char> vertices(static_cast<std::size_t>(whole.surface.vertex_count), 0);
+  for (int v = 0; v < whole.surface.vertex_count; ++v) {
+    const std::span<const int> round = whole.surface.triangles_of(v);
+    vertices[v] = round.empty() || std::ranges::any_of(round, [&](int t) { return triangles[t] != 0; });
+  }
+  return part_with(whole, vertices, triangles);
+}
+
+State state_of(const PartOfScene& part, const State& whole) {
+  State state;
+  state.time = whole.time;
+  state.frame = whole.frame;
+  state.x = rows_of(whole.x, part.vertices);
+  state.v = rows_of(whole.v, part.vertices);
+  state.obstacles = whole.obstacles;
+  state.pinched = whole.pinched;
+  state.clean = whole.clean;
+  if (whole.last_clean.x.rows() > 0)
+    state.last_clean = {rows_of(whole.last_clean.x, part.vertices), whole.last_clean.obstacles};
+  if (whole.history.h > 0)
+    state.history = {whole.history.h, rows_of(whole.history.x, part.vertices), rows_of(whole.history.v, part.vertices)};
+  return state;
+}
+
+Drive drive_of(const PartOfScene& part, const Drive& whole) {
+  return {rows_of(whole.pins, part.pins), whole.obstacles, whole.wind, whole.acceleration,
+          whole.worn.rows() == 0 ? Points() : rows_of(whole.worn, part.vertices)};
+}
+
+void put(const PartOfScene& part, const State& state, State& whole) {
+  put_rows(state.x, part.vertices, whole.x);
+  put_rows(state.v, part.vertices, whole.v);
+  whole.obstacles = state.obstacles;
+  whole.pinched = state.pinched;
+  whole.clean = state.clean;
+  whole.last_clean = {{}, state.last_clean.obstacles};
+  if (state.last_clean.x.rows() > 0) {
+    whole.last_clean.x = whole.x;
+    put_rows(state.last_clean.x, part.vertices, whole.last_clean.x);
+  }
+  whole.history = {state.history.h, {}, {}};
+  if (state.history.h > 0) {
+    whole.history.x = whole.x;
+    whole.history.v.setZero(whole.x.rows(), 3);
+    put_rows(state.history.x, part.vertices, whole.history.x);
+    put_rows(state.history.v, part.vertices, whole.history.v);
+  }
+}
+
+Audit whole_audit(const PartOfScene& part, Audit audit) {
+  for (auto* pairs : {&audit.self_pairs, &audit.vertex_pairs})
+    for (auto& [a, b] : *pairs) {
+      a = part.triangles[a];
+      b = part.triangles[b];
+    }
+  for (auto& [triangle, other] : audit.obstacle_pairs) triangle = part.triangles[triangle];
+  return audit;
+}
+
+}  // namespace selvedge

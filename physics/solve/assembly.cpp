@@ -1,0 +1,233 @@
+#include "physics/solve/assembly.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "physics/energies/membrane_lanes.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr int chunk = 128;  // elements of one task; fixed, so that sums do not depend on the number of threads
+
+int element_count(const Elastic& elastic) { return static_cast<int>(elastic.element_begin.size()) - 1; }
+int chunks_of(int count) { return (count + chunk - 1) / chunk; }
+
+template <class Nodes>
+void append_element(Elastic& elastic, const Nodes& nodes) {
+  const int count = static_cast<int>(nodes.size());
+  elastic.element_nodes.insert(elastic.element_nodes.end(), nodes.begin(), nodes.end());
+  elastic.element_begin.push_back(static_cast<int>(elastic.element_nodes.size()));
+  elastic.pair_begin.push_back(elastic.pair_begin.back() + count * (count - 1) / 2);
+}
+
+// Lists the positions of each value 0 .. count - 1 in `values`, ascending.
+void invert(const std::vector<int>& values, int count, std::vector<int>& begin, std::vector<int>& positions) {
+  begin.assign(count + 1, 0);
+  for (int value : values) ++begin[value + 1];
+  for (int i = 0; i < count; ++i) begin[i + 1] += begin[i];
+  positions.resize(values.size());
+  std::vector<int> next(begin.begin(), begin.end() - 1);
+  for (std::size_t i = 0; i < values.size(); ++i) positions[next[values[i]]++] = static_cast<int>(i);
+}
+
+void make_gather_lists(Elastic& elastic, int vertices) {
+  invert(elastic.element_nodes, vertices, elastic.force_gather_begin, elastic.force_gather);
+  std::vector<int> pair_of_slot;
+  pair_of_slot.reserve(elastic.pair_begin.back());
+  for (int e = 0; e < element_count(elastic); ++e)
+    for (int i = elastic.element_begin[e]; i < elastic.element_begin[e + 1]; ++i)
+      for (int j = i + 1; j < elastic.element_begin[e + 1]; ++j)
+        pair_of_slot.push_back(find_pair(elastic.pattern, elastic.element_nodes[i], elastic.element_nodes[j]));
+  invert(pair_of_slot, static_cast<int>(elastic.pattern.pairs.size()), elastic.pair_gather_begin, elastic.pair_gather);
+}
+
+template <class Gradient, class Hessian>
+void store(const Elastic& elastic, int e, const Gradient& gradient, const Hessian& hessian, double weight, bool forces,
+           bool pairs, AssemblyScratch& scratch) {
+  const int first = elastic.element_begin[e], count = elastic.element_begin[e + 1] - first;
+  if (forces)
+    for (int i = 0; i < count; ++i) scratch.forces.row(first + i) = gradient.template segment<3>(3 * i).transpose();
+  if (!pairs) return;
+  int slot = elastic.pair_begin[e];
+  for (int i = 0; i < count; ++i)
+    for (int j = i + 1; j < count; ++j, ++slot) {
+      const bool ascending = elastic.element_nodes[first + i] < elastic.element_nodes[first + j];
+      const int low = ascending ? i : j, high = ascending ? j : i;
+      scratch.pairs[slot] = weight * hessian.template block<3, 3>(3 * low, 3 * high);
+    }
+}
+
+void derivatives_of_membranes(const Elastic& elastic, const Points& x, int begin, int end, bool forces, bool pairs,
+                              HessianForm form, AssemblyScratch& scratch) {
+  MembraneLanes lanes;
+  for (int first = begin; first < end; first += lanes.count) {
+    std::span<const MembraneElement> elements(elastic.membrane.data() + first, end - first);
+    elements = elements.first(together(elastic.materials, elements));
+    membrane_derivatives(elastic.materials, elements, x, pairs, form != HessianForm::exact, lanes);
+    for (int l = 0; l < lanes.count; ++l) {
+      const int e = first + l, slot = elastic.element_begin[e];
+      const auto corner = [&](int k) {
+        return Vec3(lanes.force[3 * k][l], lanes.force[3 * k + 1][l], lanes.force[3 * k + 2][l]);
+      };
+      if (forces) {
+        scratch.forces.row(slot) = -(corner(0) + corner(1)).transpose();
+        for (int k = 0; k < 2; ++k) scratch.forces.row(slot + 1 + k) = corner(k).transpose();
+      }
+      if (!pairs) continue;
+      const double weight = form == HessianForm::damping ? elastic.element_damping[e] : 1;
+      const std::array<int, 3>& nodes = elements[l].nodes;
+      for (int i = 0, pair = 0; i < 3; ++i)
+        for (int j = i + 1; j < 3; ++j, ++pair) {
+          Mat3& block = scratch.pairs[elastic.pair_begin[e] + pair];
+          block = weight * block_of(lanes, pair, l);
+          if (nodes[i] > nodes[j]) block.transposeInPlace();
+        }
+    }
+  }
+}
+
+void derivatives_of_chunk(const Elastic& elastic, const Points& x, int begin, int end, bool forces, bool pairs,
+                          HessianForm form, AssemblyScratch& scratch) {
+  const int hinges_begin = static_cast<int>(elastic.membrane.size());
+  const int curved_begin = hinges_begin + static_cast<int>(elastic.hinges.size());
+  const int springs_begin = curved_begin + static_cast<int>(elastic.curved.size());
+  const bool psd = form != HessianForm::exact;
+  Vec6 gradient6;
+  Mat6 hessian6;
+  Vec12 gradient12;
+  Mat12 hessian12;
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd hessian;
+  if (begin < hinges_begin)
+    derivatives_of_membranes(elastic, x, begin, std::min(end, hinges_begin), forces, pairs, form, scratch);
+  for (int e = std::max(begin, hinges_begin); e < end; ++e) {
+    const double weight = form == HessianForm::damping ? elastic.element_damping[e] : 1;
+    if (e < curved_begin) {
+      hinge_derivatives(elastic.hinges[e - hinges_begin], x, gradient12, pairs ? &hessian12 : nullptr, psd);
+      store(elastic, e, gradient12, hessian12, weight, forces, pairs, scratch);
+    } else if (e < springs_begin) {
+      curved_derivatives(elastic.curved[e - curved_begin], x, gradient, pairs ? &hessian : nullptr);
+      store(elastic, e, gradient, hessian, weight, forces, pairs, scratch);
+    } else {
+      spring_derivatives(elastic.springs[e - springs_begin], x, gradient6, pairs ? &hessian6 : nullptr, psd);
+      store(elastic, e, gradient6, hessian6, weight, forces, pairs, scratch);
+    }
+  }
+}
+
+double energy_of_chunk(const Elastic& elastic, const Points& x, int begin, int end) {
+  const int hinges_begin = static_cast<int>(elastic.membrane.size());
+  const int curved_begin = hinges_begin + static_cast<int>(elastic.hinges.size());
+  const int springs_begin = curved_begin + static_cast<int>(elastic.curved.size());
+  double sum = 0;
+  if (begin < hinges_begin) {
+    const std::span<const MembraneElement> all = elastic.membrane;
+    sum = membrane_energy(elastic.materials, all.subspan(begin, std::min(end, hinges_begin) - begin), x);
+  }
+  for (int e = std::max(begin, hinges_begin); e < end; ++e) {
+    if (e < curved_begin)
+      sum += hinge_energy(elastic.hinges[e - hinges_begin], x);
+    else if (e < springs_begin)
+      sum += curved_energy(elastic.curved[e - curved_begin], x);
+    else
+      sum += spring_energy(elastic.springs[e - springs_begin], x);
+  }
+  return sum;
+}
+
+}  // namespace
+
+Elastic make_elastic(const Scene& scene) {
+  const int vertices = scene.surface.vertex_count;
+  Elastic elastic;
+  elastic.vertex_damping.assign(vertices, 0.0);
+  for (const Cloth& cloth : scene.cloths) {
+    elastic.materials.push_back(cloth.material);
+    std::fill_n(elastic.vertex_damping.begin() + cloth.first_vertex, cloth.vertex_count,
+                cloth.material.stiffness_damping);
+  }
+  elastic.membrane = membrane_elements(scene);
+  elastic.hinges = hinges(scene);
+  CurvatureBending bending = curvature_bending(scene);
+  elastic.curved = std::move(bending.curved);
+  elastic.springs = scene.springs;
+  if (bending.flat.nonZeros() > 0) elastic.flat = std::move(bending.flat);
+  elastic.flat.makeCompressed();
+
+  elastic.element_begin = elastic.pair_begin = {0};
+  for (const MembraneElement& element : elastic.membrane) append_element(elastic, element.nodes);
+  for (const Hinge& hinge : elastic.hinges) append_element(elastic, hinge.nodes);
+  for (const CurvedVertex& vertex : elastic.curved) append_element(elastic, vertex.nodes);
+  for (int e = 0; e < element_count(elastic); ++e)
+    elastic.element_damping.push_back(elastic.vertex_damping[elastic.element_nodes[elastic.element_begin[e]]]);
+  for (const Spring& spring : elastic.springs) {
+    assert(spring.a != spring.b);
+    append_element(elastic, std::array{spring.a, spring.b});
+    elastic.element_damping.push_back(0.5 * (elastic.vertex_damping[spring.a] + elastic.vertex_damping[spring.b]));
+  }
+
+  elastic.pattern = make_pair_pattern(vertices, elastic.element_begin, elastic.element_nodes);
+  make_gather_lists(elastic, vertices);
+  return elastic;
+}
+
+void append_elastic_energies(const Elastic& elastic, const Points& x, std::vector<double>& energies) {
+  const int count = element_count(elastic), rows = elastic.flat.rows() > 0 ? static_cast<int>(x.rows()) : 0;
+  const std::size_t first = energies.size();
+  const int element_chunks = chunks_of(count), tasks = element_chunks + chunks_of(rows);
+  energies.resize(first + tasks);
+#pragma omp parallel for schedule(static, 4) if (tasks > 8)
+  for (int c = 0; c < tasks; ++c) {
+    if (c < element_chunks) {
+      energies[first + c] = energy_of_chunk(elastic, x, c * chunk, std::min(count, (c + 1) * chunk));
+      continue;
+    }
+    double sum = 0;
+    const int begin = (c - element_chunks) * chunk;
+    for (int i = begin; i < std::min(rows, begin + chunk); ++i)
+      sum += 0.5 * row(x, i).dot(multiply_flat_row(elastic.flat, x, i));
+    energies[first + c] = sum;
+  }
+}
+
+void elastic_derivatives(const Elastic& elastic, const Points& x, AssemblyScratch& scratch, Points* gradient,
+                         PairBlocks* hessian, HessianForm form) {
+  const int count = element_count(elastic), tasks = chunks_of(count), vertices = static_cast<int>(x.rows());
+  const int pairs = static_cast<int>(elastic.pattern.pairs.size());
+  if (gradient) {
+    scratch.forces.resize(elastic.element_nodes.size(), 3);
+    gradient->resize(vertices, 3);
+  }
+  if (hessian) {
+    scratch.pairs.resize(elastic.pair_begin.back());
+    hessian->resize(pairs);
+  }
+#pragma omp parallel if (tasks > 8)
+  {
+#pragma omp for schedule(static)
+    for (int c = 0; c < tasks; ++c)
+      derivatives_of_chunk(elastic, x, c * chunk, std::min(count, (c + 1) * chunk), gradient, hessian, form, scratch);
+    if (gradient) {
+#pragma omp for schedule(static) nowait
+      for (int i = 0; i < vertices; ++i) {
+        Vec3 sum = Vec3::Zero();
+        for (int k = elastic.force_gather_begin[i]; k < elastic.force_gather_begin[i + 1]; ++k)
+          sum += row(scratch.forces, elastic.force_gather[k]);
+        if (elastic.flat.rows() > 0) sum += multiply_flat_row(elastic.flat, x, i);
+        gradient->row(i) = sum.transpose();
+      }
+    }
+    if (hessian) {
+#pragma omp for schedule(static)
+      for (int p = 0; p < pairs; ++p) {
+        Mat3 sum = scratch.pairs[elastic.pair_gather[elastic.pair_gather_begin[p]]];
+        for (int k = elastic.pair_gather_begin[p] + 1; k < elastic.pair_gather_begin[p + 1]; ++k)
+          sum += scratch.pairs[elastic.pair_gather[k]];
+        (*hessian)[p] = sum;
+      }
+    }
+  }
+}
+
+}  // namespace selvedge

@@ -1,0 +1,314 @@
+#include "physics/solve/implicit_euler.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include <Eigen/LU>
+
+#include "physics/energies/measures.hpp"
+#include "physics/energies/springs.hpp"
+#include "physics/linear/linear_solver.hpp"
+#include "physics/solve/step_potential.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double rounding = std::numeric_limits<double>::epsilon();
+constexpr double sufficient_decrease = 1e-4;  // Armijo
+constexpr int max_halvings = 40;
+constexpr double almost_linear = 0.7;  // change over slope; 0.5 where the quadratic model is exact
+constexpr double max_length = 16;
+constexpr double usual_stiffness = 1e5;  // of vertices, over their inertia: linear solves need not know of more
+constexpr double stiff_allowance = 4;    // energy of a last step, over that of its goal as plain motion
+constexpr double far_off = 0.1;          // of the potential: what is left of more, impulses would meet
+constexpr int most_more = 8;             // times the most iterations, of a solve that either of these keeps
+constexpr int first_exact = 3;           // Newton iterations with filtered Hessians before the exact one is tried
+
+struct EnergyChange {
+  double change = 0;  // [J]
+  double noise = 0;   // below which a change means nothing
+};
+
+double sum_of(const std::vector<double>& parts) { return std::accumulate(parts.begin(), parts.end(), 0.0); }
+
+EnergyChange energy_change(const std::vector<double>& from, const std::vector<double>& to) {
+  EnergyChange result;
+  double size = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    result.change += to[i] - from[i];
+    size += std::abs(from[i]) + std::abs(to[i]);
+  }
+  result.noise = 8 * rounding * size;
+  return result;
+}
+
+// Positions are known to a rounding error, so forces are known to that error times the stiffness.
+bool below_rounding(const Points& gradient, std::span<const Mat3> diagonal, const Points& x) {
+  const double error = 2 * rounding * x.cwiseAbs().maxCoeff();
+  for (int i = 0; i < gradient.rows(); ++i)
+    if (!(gradient.row(i).cwiseAbs().maxCoeff() <= error * diagonal[i].trace())) return false;
+  return true;
+}
+
+Vertices rest_vertices(const Scene& scene) {
+  std::vector<std::array<int, 2>> border;
+  for (int e = 0; e < scene.surface.edges.rows(); ++e)
+    if (scene.surface.edge_triangles[e][1] < 0)
+      border.push_back({scene.surface.edges(e, 0), scene.surface.edges(e, 1)});
+  Edges open(border.size(), 2);
+  for (std::size_t e = 0; e < border.size(); ++e) open.row(e) << border[e][0], border[e][1];
+  return {scene.rest, make_graph(scene.surface.vertex_count, scene.surface.edges), rims(scene.rest, open)};
+}
+
+// Of each vertex the connected component, those that springs join taken as one.
+std::vector<int> joined_components(const Scene& scene) {
+  const std::vector<int>& component = scene.surface.component;
+  const std::vector<int> joined = joined_by_springs(scene.springs, component, scene.surface.component_count);
+  std::vector<int> of_vertex;
+  for (const int c : component) of_vertex.push_back(joined[c]);
+  return of_vertex;
+}
+
+// Components that nothing holds or touches.
+std::vector<char> drifting_components(const Scene& scene, const std::vector<int>& component,
+                                      const StepPotential& step) {
+  std::vector<char> drifting(scene.surface.component_count, true);
+  for (int pin : scene.pins) drifting[component[pin]] = false;
+  for (const ContactBlock& contact : step.contacts)
+    for (int node : contact.nodes)
+      if (node >= 0) drifting[component[node]] = false;
+  return drifting;
+}
+
+// Elastic forces do not see a translation, so the best one of a drifting component is known exactly, whatever the
+// linear solver left of it. Keeps linear momentum to rounding and never raises the quadratic model.
+void correct_translations(const std::vector<int>& component, const StepPotential& step,
+                          const std::vector<char>& drifting, const Points& gradient, Points& motion) {
+  std::vector<double> weight(drifting.size(), 0.0);
+  std::vector<Vec3> missing(drifting.size(), Vec3::Zero());
+  for (int i = 0; i < motion.rows(); ++i) {
+    if (!step.free[i] || !drifting[component[i]]) continue;
+    weight[component[i]] += step.diagonal[i];
+    missing[component[i]] -= row(gradient, i) + step.diagonal[i] * row(motion, i);
+  }
+  for (int i = 0; i < motion.rows(); ++i)
+    if (step.free[i] && drifting[component[i]])
+      motion.row(i) += (missing[component[i]] / weight[component[i]]).transpose();
+}
+
+}  // namespace
+
+struct ImplicitEuler::Impl {
+  const Scene& scene;
+  ImplicitEulerOptions options;
+  Eigen::VectorXd masses;
+  Elastic elastic;
+  std::vector<int> component;  // of each vertex
+  StepPotential step;
+  StepScratch scratch;
+  LinearSystemSolver linear;
+  PairBlocks hessian;
+  std::vector<Mat3> diagonal;
+  Points gradient, motion, trial;
+  std::vector<double> energy, trial_energy;
+  std::vector<char> drifting;
+  double relative_stiffness = 0;       // mean_stiffness of the last system
+  int exact_from = 0, exact_wait = 0;  // Newton iterations until the exact Hessian is tried
+
+  Impl(const Scene& s, const ImplicitEulerOptions& o, const Eigen::VectorXd& m)
+      : scene(s),
+        options(o),
+        masses(m),
+        elastic(make_elastic(s)),
+        component(joined_components(s)),
+        linear(o.linear_solver, rest_vertices(s), free_vertices(s, m)) {}
+
+  void start(const StepProblem& problem) {
+    prepare(scene, elastic, masses, problem, options.slip_speed, scratch, step);
+    exact_from = exact_wait = first_exact;
+    linear.start_family();
+  }
+  LinearSystem system() const {
+    return {elastic.pattern, hessian,       step.diagonal, elastic.flat,
+            step.flat_scale, step.contacts, step.lists,    step.free};
+  }
+  double goal(const Points& x) const;
+  double energy_goal(const Points& x) const;
+  double mean_stiffness() const;
+  bool choose_first_guess(Points& x);
+  bool solve_linear(Definite, NewtonReport&);
+  enum class Direction { none, rough, accurate };  // none: x is the minimiser to rounding
+  Direction find_direction(const Points& x, NewtonReport&);
+  double line_search(Points& x);
+};
+
+ImplicitEuler::ImplicitEuler(const Scene& scene, const ImplicitEulerOptions& options)
+    : impl_(std::make_unique<Impl>(scene, options, lumped_masses(scene))) {}
+ImplicitEuler::~ImplicitEuler() = default;
+LinearSolver ImplicitEuler::chosen_solver() const { return impl_->linear.chosen(); }
+const Eigen::VectorXd& ImplicitEuler::masses() const { return impl_->masses; }
+
+double ImplicitEuler::potential(const StepProblem& problem, const Points& x) {
+  impl_->start(problem);
+  energies(impl_->step, x, impl_->scratch, impl_->energy);
+  return sum_of(impl_->energy);
+}
+
+Points ImplicitEuler::gradient(const StepProblem& problem, const Points& x) {
+  impl_->start(problem);
+  derivatives(impl_->step, x, impl_->scratch, impl_->gradient, nullptr);
+  return impl_->gradient;
+}
+
+double ImplicitEuler::imbalance(const StepProblem& problem, const Points& x) {
+  return largest_row(gradient(problem, x));
+}
+
+// The caller's guess or the ballistic positions, whichever has the lower potential (free fall is then exact). Pins are
+// put where they belong. False if neither potential is finite.
+bool ImplicitEuler::Impl::choose_first_guess(Points& x) {
+  if (step.problem->goes_on) {
+    energies(step, x, scratch, energy);
+    return std::isfinite(sum_of(energy)) && x.allFinite();
+  }
+  trial = x;
+  for (int i = 0; i < x.rows(); ++i)
+    if (step.free[i]) trial.row(i) = step.ballistic.row(i);
+  for (std::size_t p = 0; p < scene.pins.size(); ++p)
+    x.row(scene.pins[p]) = trial.row(scene.pins[p]) = step.problem->pins->row(p);
+  energies(step, x, scratch, energy);
+  energies(step, trial, scratch, trial_energy);
+  const double guess = sum_of(energy);
+  const double ballistic = sum_of(trial_energy);
+  if (ballistic < guess || (std::isfinite(ballistic) && !std::isfinite(guess))) {
+    x = trial;
+    energy = trial_energy;
+  }
+  return std::isfinite(std::min(guess, ballistic)) && x.allFinite();
+}
+
+// What a Newton step's RMS displacement has to fall below [m].
+double ImplicitEuler::Impl::goal(const Points& x) const {
+  const StepProblem& problem = *step.problem;
+  return std::max(options.velocity_tolerance * problem.h * problem.roughness,
+                  options.relative_tolerance * std::max(problem.roughness, 1.0) * root_mean_square(x - *problem.x0));
+}
+
+// What the energy that a Newton step can still gain has to fall below [J]: in stiff cloth small errors store much.
+double ImplicitEuler::Impl::energy_goal(const Points& x) const {
+  const double reach = stiff_allowance * goal(x);
+  return reach * reach * sum_of(step.inertia);
+}
+
+// Mean stiffness of the vertices over their inertia.
+double ImplicitEuler::Impl::mean_stiffness() const {
+  double stiffness = 0, inertia = 0;
+  for (std::size_t i = 0; i < diagonal.size(); ++i) {
+    if (!step.free[i]) continue;
+    stiffness += diagonal[i].trace() / 3;
+    inertia += step.inertia[i];
+  }
+  return inertia > 0 ? stiffness / inertia : 0;
+}
+
+// One linear solve for the Newton step; true if it is as accurate as asked for. The norm in which it converges weighs a
+// motion by its stiffness: the stiffer the cloth, the less of it are the soft modes, which carry the motion.
+bool ImplicitEuler::Impl::solve_linear(Definite definite, NewtonReport& report) {
+  relative_stiffness = mean_stiffness();
+  const double tolerance = options.linear_tolerance * std::min(1.0, std::sqrt(usual_stiffness / relative_stiffness));
+  const LinearReport solved =
+      linear.solve(system(), diagonal, -gradient, tolerance, options.max_linear, motion, definite);
+  report.linear_iterations += solved.iterations;
+  return solved.converged;
+}
+
+// Assembles at x and solves for the Newton step. Filtered Hessians always lead downhill but converge slowly where cloth
+// is compressed; the exact one converges quadratically where it is positive definite, so it is tried once Newton had
+// time to come near (projection on demand, after Longva et al. 2023), and ever less often where it fails.
+ImplicitEuler::Impl::Direction ImplicitEuler::Impl::find_direction(const Points& x, NewtonReport& report) {
+  for (const HessianForm form : {HessianForm::exact, HessianForm::filtered}) {
+    const bool exact = form == HessianForm::exact;
+    if (exact && report.iterations < exact_from) continue;
+    derivatives(step, x, scratch, gradient, &hessian, form);
+    diagonal_blocks(system(), diagonal);
+    if (below_rounding(gradient, diagonal, x)) return Direction::none;
+    drifting = drifting_components(scene, component, step);
+    const bool accurate = solve_linear(exact ? Definite::perhaps : Definite::yes, report);
+    correct_translations(component, step, drifting, gradient, motion);
+    const bool downhill = motion.allFinite() && gradient.cwiseProduct(motion).sum() < 0;
+    if (accurate && downhill) return Direction::accurate;
+    if (exact) {
+      exact_from = report.iterations + exact_wait;
+      exact_wait *= 2;
+    } else if (!downhill) {
+      for (int i = 0; i < motion.rows(); ++i)
+        motion.row(i) = step.free[i] ? Eigen::RowVector3d(-(diagonal[i].inverse() * row(gradient, i)).transpose())
+                                     : Eigen::RowVector3d::Zero();
+    }
+  }
+  return Direction::rough;
+}
+
+// Moves x along `motion` until the potential has sunk enough; the step length, or 0 if no step did. Filtered Hessians
+// overrate the stiffness of buckling cloth: where the potential sinks almost linearly, and by more than rounding,
+// longer steps are tried.
+double ImplicitEuler::Impl::line_search(Points& x) {
+  const double slope = gradient.cwiseProduct(motion).sum();
+  const auto try_length = [&](double length) {
+    trial = x + length * motion;
+    energies(step, trial, scratch, trial_energy);
+    return energy_change(energy, trial_energy);
+  };
+  double length = 1;
+  EnergyChange best = try_length(length);
+  const auto enough = [&] {
+    return std::isfinite(best.change) && best.change <= sufficient_decrease * length * slope + best.noise;
+  };
+  for (int halving = 0; halving < max_halvings && !enough(); ++halving) best = try_length(length *= 0.5);
+  if (!enough()) return 0;
+  std::vector<double> best_energy = trial_energy;
+  const bool measurable = -slope > best.noise;
+  while (measurable && length >= 1 && length < max_length &&
+         best.change < almost_linear * length * slope - best.noise) {
+    const EnergyChange longer = try_length(2 * length);
+    if (!(longer.change < best.change)) break;
+    best = longer;
+    length *= 2;
+    best_energy.swap(trial_energy);
+  }
+  x += length * motion;
+  energy.swap(best_energy);
+  return length;
+}
+
+NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
+  Impl& impl = *impl_;
+  assert(x.rows() == impl.masses.size());
+  assert(impl.scene.pins.empty() || problem.pins->rows() == static_cast<Eigen::Index>(impl.scene.pins.size()));
+  NewtonReport report;
+  impl.start(problem);
+  report.finite = impl.choose_first_guess(x);
+  if (!report.finite) return report;
+  const int most = std::max(1, static_cast<int>(std::lround(problem.patience * impl.options.max_newton)));
+  bool unfinished = false;  // the last step could gain more energy than its length says, or much of all there is
+  while (!report.converged && report.iterations < (unfinished ? most_more * most : most)) {
+    const auto direction = impl.find_direction(x, report);
+    if (direction == Impl::Direction::none) {
+      report.converged = true;
+      break;
+    }
+    const double gain = -impl.gradient.cwiseProduct(impl.motion).sum(), length = impl.line_search(x);
+    if (length == 0) break;
+    ++report.iterations;
+    const bool far = !problem.contacts.empty() && gain > far_off * std::abs(sum_of(impl.energy));
+    unfinished = far || (impl.relative_stiffness > usual_stiffness && gain > impl.energy_goal(x));
+    report.converged = !unfinished && direction == Impl::Direction::accurate &&
+                       std::max(length, 1.0) * root_mean_square(impl.motion) < impl.goal(x);
+  }
+  return report;
+}
+
+}  // namespace selvedge

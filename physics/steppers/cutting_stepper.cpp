@@ -1,0 +1,104 @@
+#include "physics/steppers/cutting_stepper.hpp"
+
+#include <utility>
+
+#include "collision/geometry/stopwatch.hpp"
+#include "physics/recovery/cut_out.hpp"
+#include "physics/scene/part_of_scene.hpp"
+#include "physics/steppers/step_audit.hpp"
+
+namespace selvedge {
+namespace {
+
+class CuttingStepper final : public Stepper {
+ public:
+  CuttingStepper(const Scene& scene, MakeStepper make, std::unique_ptr<Stepper> whole)
+      : scene_(scene), make_(std::move(make)), whole_(std::move(whole)) {}
+
+  const StepperTraits& traits() const override { return whole_->traits(); }
+  StepReport step(const State& from, const Drive& drive, double dt, State& to) override;
+
+ private:
+  void cut(const std::vector<int>& triangles);
+  StepReport step_rest(const State& from, const Drive& drive, double dt, State& to);
+
+  const Scene& scene_;
+  MakeStepper make_;
+  std::unique_ptr<Stepper> whole_;
+  std::vector<int> cut_out_;  // which the part below lacks
+  PartOfScene part_;
+  std::unique_ptr<Stepper> stepper_;
+};
+
+// Makes the part of the scene without these triangles, unless it is there.
+void CuttingStepper::cut(const std::vector<int>& triangles) {
+  if (triangles == cut_out_) return;
+  cut_out_ = triangles;
+  stepper_.reset();  // refers to the part that goes
+  part_ = part_of_triangles(scene_, all_but(scene_, triangles));
+  if (!part_.triangles.empty()) stepper_ = make_(part_.scene);
+}
+
+// A step of which all cloth is cut out: only obstacles move.
+StepReport step_nothing(const State& from, const Drive& drive, double dt, const std::string& by, State& end) {
+  end = from;
+  end.time = from.time + dt;
+  end.frame = from.frame + 1;
+  end.obstacles = drive.obstacles;
+  end.pinched = false;
+  end.clean = true;
+  StepReport report;
+  report.status = StepStatus::accepted;
+  report.by = by;
+  report.audit.emplace();
+  return report;
+}
+
+// A step of all but what is cut out, which goes where it is worn.
+StepReport CuttingStepper::step_rest(const State& from, const Drive& drive, double dt, State& to) {
+  cut(from.cut_out);
+  State end;
+  const State start = state_of(part_, from);
+  StepReport report = stepper_ ? stepper_->step(start, drive_of(part_, drive), dt, end)
+                               : step_nothing(start, drive, dt, traits().name, end);
+  if (report.status != StepStatus::accepted) return report;
+  to = from;
+  to.time = end.time;
+  to.frame = end.frame;
+  for (Eigen::Index v = 0; v < to.x.rows(); ++v)
+    if (drive.worn.row(v).allFinite()) to.x.row(v) = drive.worn.row(v);
+  for (std::size_t p = 0; p < scene_.pins.size(); ++p)
+    to.x.row(scene_.pins[p]) = drive.pins.row(static_cast<Eigen::Index>(p));
+  to.v = (to.x - from.x) / dt;
+  put(part_, end, to);
+  to.rest = {};
+  return report;
+}
+
+StepReport CuttingStepper::step(const State& from, const Drive& drive, double dt, State& to) {
+  if (from.cut_out.empty()) return whole_->step(from, drive, dt, to);
+  StepReport report = step_rest(from, drive, dt, to);
+  if (report.status != StepStatus::accepted) return report;
+  Stopwatch watch;
+  to.cut_out = still_cut_out(scene_, to);
+  report.seconds.response += watch.lap();
+  if (to.cut_out == from.cut_out) {
+    if (report.audit) report.audit = whole_audit(part_, *std::move(report.audit));
+  } else {
+    const int wanted = report.collision.pairs_wanted;
+    to.history = {};
+    take_audit(audit_uncut(scene_, to), to, report);
+    if (to.pinched) report.collision.pairs_wanted = wanted;
+  }
+  report.seconds.audit += watch.lap();
+  report.collision.cut_out = static_cast<int>(to.cut_out.size());
+  return report;
+}
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_cutting_stepper(const Scene& scene, MakeStepper make, std::unique_ptr<Stepper> whole) {
+  return std::make_unique<CuttingStepper>(scene, std::move(make), std::move(whole));
+}
+
+}  // namespace selvedge

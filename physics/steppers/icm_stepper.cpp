@@ -1,0 +1,213 @@
+#include "physics/steppers/icm_stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/contact/proximity.hpp"
+#include "collision/geometry/floating_point.hpp"
+#include "collision/geometry/stopwatch.hpp"
+#include "collision/untangle/find_exemption.hpp"
+#include "collision/untangle/separation.hpp"
+#include "physics/recovery/recovery.hpp"
+#include "physics/scene/features.hpp"
+#include "physics/solve/contact_terms.hpp"
+#include "physics/solve/contour_potential.hpp"
+#include "physics/steppers/step_audit.hpp"
+#include "physics/steppers/substeps.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double softness = 0.02;  // of a push's onset, of the thickness
+
+double mean_mass(const Eigen::VectorXd& inverse_mass) {
+  double sum = 0;
+  int count = 0;
+  for (const double inverse : inverse_mass)
+    if (inverse > 0) {
+      sum += 1 / inverse;
+      ++count;
+    }
+  return count > 0 ? sum / count : 0;
+}
+
+class IcmStepper final : public Stepper {
+ public:
+  IcmStepper(const Scene& scene, const IcmOptions& options)
+      : scene_(scene),
+        options_(options),
+        features_(features_of(scene)),
+        world_(make_contact_world(scene.surface, obstacle_surfaces(scene), features_.self_contact, &scene.rest)),
+        search_(world_),
+        inverse_mass_(inverse_masses(scene, world_.node_count)),
+        mean_mass_(mean_mass(inverse_mass_)),
+        edge_length_(mean_edge_length(scene)),
+        solver_(scene, options.implicit_euler),
+        self_crossings_(world_) {}
+
+  const StepperTraits& traits() const override { return traits_; }
+  StepReport step(const State& from, const Drive& drive, double dt, State& to) override;
+
+ private:
+  bool has_contact() const { return features_.self_contact || features_.obstacles; }
+  void find_pairs(const Points& nodes0, const Points& at, const Points& nodes1, double h, const Exemption&,
+                  StepReport&);
+  std::vector<ContactTerm> pushes(ContourPotential&, const Points& x, double h) const;
+  bool minimise(const StepProblem&, Points& x, StepReport&);
+  bool substep(const Leg&, const Points& pins, const Drive&, double h, Points& nodes1, StepReport&);
+
+  const Scene& scene_;
+  IcmOptions options_;
+  Features features_;
+  ContactWorld world_;
+  PairSearch search_;
+  Eigen::VectorXd inverse_mass_;
+  double mean_mass_, edge_length_;
+  ImplicitEuler solver_;
+  AuditMemory audited_;
+  SelfCrossings self_crossings_;
+  StepperTraits traits_{"icm"};
+  // Of this substep:
+  std::vector<NodePair> pairs_;         // scratch
+  std::vector<NodePair> held_;          // that have a term, sorted
+  std::vector<ContactTerm> repulsion_;  // their terms
+  Exemption exemption_;                 // at the start
+};
+
+// Adds terms for the pairs that are near at `at` and have none yet. A pair keeps the side on which it was first seen in
+// the substep, as in equation 5 of the paper.
+void IcmStepper::find_pairs(const Points& nodes0, const Points& at, const Points& nodes1, double h,
+                            const Exemption& exemption, StepReport& report) {
+  const double reach = std::max(options_.reach, scene_.contact.thickness);
+  search_.find(at, at, reach, pairs_);
+  std::erase_if(pairs_, [&](const NodePair& pair) {
+    return std::binary_search(held_.begin(), held_.end(), pair) || exemption.leaves_alone(world_, pair.nodes);
+  });
+  std::vector<Proximity> near = find_proximities(world_, pairs_, at, reach);
+  for (Proximity& p : near) {
+    p.rest_gap = std::min(p.rest_gap, scene_.contact.thickness);
+    report.collision.min_gap = std::min(report.collision.min_gap, p.gap);
+  }
+  const auto terms = contact_terms(scene_, world_, near, inverse_mass_, nodes0, nodes1, h).terms;
+  repulsion_.insert(repulsion_.end(), terms.begin(), terms.end());
+  for (const Proximity& p : near) held_.push_back(p.pair);
+  std::sort(held_.begin(), held_.end());
+}
+
+// What is enclosed by contours has no way out that shortens them all the time: it is asked back directly.
+std::vector<ContactTerm> IcmStepper::pushes(ContourPotential& contour, const Points& x, double h) const {
+  if (options_.push_speed == 0) return {};
+  const Segments& found = contour.segments(x);
+  const std::vector<Contour> contours = find_contours(contour.sheets(), found);
+  const auto separations =
+      part_contours(contour.sheets(), found, contours, enclosed_regions(contour.sheets(), contours),
+                    {scene_.contact.thickness, options_.push_speed * h});
+  return push_terms(separations, inverse_mass_, softness * scene_.contact.thickness, h);
+}
+
+bool IcmStepper::minimise(const StepProblem& problem, Points& x, StepReport& report) {
+  Stopwatch watch;
+  const NewtonReport newton = solver_.solve(problem, x);
+  report.iterations += newton.iterations;
+  report.linear_iterations += newton.linear_iterations;
+  report.residual = solver_.imbalance(problem, x);
+  if (!newton.converged) report.reason = Reason::not_converged;
+  report.seconds.solve += watch.lap();
+  return newton.finite && x.allFinite();
+}
+
+// nodes1 comes with obstacles where they are to end and the cloth at its first guess. False: not finite.
+bool IcmStepper::substep(const Leg& leg, const Points& pins, const Drive& drive, double h, Points& nodes1,
+                         StepReport& report) {
+  const int n = scene_.surface.vertex_count;
+  const Points x0 = leg.nodes.topRows(n);
+  Points x = nodes1.topRows(n);
+  StepProblem problem{h, &x0, &leg.v, &pins, drive.acceleration, drive.wind, {}, 1};
+  if (!has_contact()) {
+    const bool finite = minimise(problem, x, report);
+    nodes1.topRows(n) = x;
+    return finite;
+  }
+  ContourPotential contour(world_, nodes1, options_.contour_weight * mean_mass_ / (h * h), options_.contour_gradient);
+  const AddedTerm added{[&](const Points& at) { return contour.value(at); },
+                        [&](const Points& at, Points& gradient, std::vector<ContactBlock>& blocks) {
+                          contour.add_derivatives(at, gradient, blocks);
+                        }};
+  if (options_.contour_weight > 0) problem.added = &added;
+  held_.clear();
+  repulsion_.clear();
+  Points at = leg.nodes;
+  for (int k = 0; k < options_.outer_iterations; ++k) {
+    Stopwatch watch;
+    Exemption exemption = find_exemption(world_, at);
+    self_crossings_.switch_off(leg.nodes, nodes1, exemption);
+    if (k == 0) exemption_ = exemption;
+    find_pairs(leg.nodes, at, nodes1, h, exemption, report);
+    if (k == 0 && !repulsion_.empty()) bear(repulsion_, inverse_mass_, -solver_.gradient(problem, x));
+    std::vector<ContactTerm> terms = pushes(contour, at.topRows(n), h);
+    terms.insert(terms.end(), repulsion_.begin(), repulsion_.end());
+    report.seconds.response += watch.lap();
+    problem.contacts = terms;
+    if (!minimise(problem, x, report)) return false;
+    at = nodes1;
+    at.topRows(n) = x;
+    lag_normal_forces(repulsion_, x);
+    stiffen(repulsion_, x);
+  }
+  report.collision.contacts = static_cast<int>(repulsion_.size());
+  nodes1.topRows(n) = x;
+  return true;
+}
+
+StepReport IcmStepper::step(const State& from, const Drive& drive, double dt, State& to) {
+  restore_standard_arithmetic();
+  if (const auto restart = restart_of(from, drive, options_.substeps.value_or(options_.max_substeps))) {
+    StepReport report = step(restart->state, drive, dt, to);
+    report.collision.jumped = restart->jumped;
+    return report;
+  }
+  StepReport report;
+  report.by = traits_.name;
+  const int n = scene_.surface.vertex_count;
+  const int planned =
+      options_.substeps ? *options_.substeps : substeps_for_speed(from, drive, dt, edge_length_, options_.max_substeps);
+  Leg leg{gather_nodes(from.x, from.obstacles), from.v};
+  const Points wanted = gather_nodes(from.x, drive.obstacles);
+  if (has_contact() && !from.clean && leg.nodes.allFinite())
+    report.collision.pairs_before = audit_positions(scene_, from.x, from.obstacles).intersecting_pairs();
+  for (int s = 0; s < planned; ++s) {
+    const double part = 1.0 / (planned - s);  // of what is left of the frame
+    const double h = dt / planned;
+    Points next = leg.nodes + part * (wanted - leg.nodes);
+    next.topRows(n) = leg.nodes.topRows(n) + h * leg.v;
+    const Points held = pinned_rows(scene_, leg.nodes);
+    if (!leg.nodes.allFinite() || !substep(leg, held + part * (drive.pins - held), drive, h, next, report)) {
+      report.status = StepStatus::rejected;
+      report.reason = Reason::not_finite;
+      return report;
+    }
+    ++report.substeps;
+    leg.v = (next.topRows(n) - leg.nodes.topRows(n)) / h;
+    if (has_contact()) {
+      Stopwatch watch;
+      report.collision.passed_through += passed_through(world_, exemption_, leg.nodes, next, audited_);
+      report.seconds.audit += watch.lap();
+    }
+    if (s == 0) report.collision.left_alone = exemption_.cloth_vertices();
+    leg.nodes = std::move(next);
+  }
+  report.status = StepStatus::accepted;
+  arrive(from, leg, dt, to);
+  to.obstacles = drive.obstacles;
+  to.pinched = false;
+  audit_state(scene_, drive, to, audited_, report);
+  return report;
+}
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_icm_stepper(const Scene& scene, const IcmOptions& options) {
+  return std::make_unique<IcmStepper>(scene, options);
+}
+
+}  // namespace selvedge

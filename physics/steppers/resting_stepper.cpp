@@ -1,0 +1,219 @@
+#include "physics/steppers/resting_stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "collision/geometry/box.hpp"
+#include "physics/energies/measures.hpp"
+#include "physics/energies/springs.hpp"
+#include "physics/scene/part_of_scene.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double still_edges = 0.005;  // in mean edges: what moves by less
+constexpr double still_seconds = 0.5;  // in that time rests
+constexpr std::size_t most_kept = 4;   // scenes of part of the cloths; one is a cache, for what falls asleep may wake
+
+using Chosen = std::vector<char>;  // one a cloth
+
+bool any(const Chosen& cloths) { return std::ranges::count(cloths, true) > 0; }
+
+Box box_of_motion(const Points& x0, const Points& x1, double margin) {
+  Box box = empty_box;
+  for (int i = 0; i < x0.rows(); ++i) box = join(box, moving_point_box(row(x0, i), row(x1, i), margin));
+  return box;
+}
+
+// Round all that moves from x0 to x1 and strays from the way by no more than its length.
+Box box_of_motion(const Points& x0, const Points& x1) { return box_of_motion(x0, x1, largest_row(x1 - x0)); }
+
+// Of each cloth the lowest one that springs join it to.
+std::vector<int> joined_cloths(const Scene& scene) {
+  std::vector<int> cloth_of_vertex;
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
+    cloth_of_vertex.insert(cloth_of_vertex.end(), static_cast<std::size_t>(scene.cloths[c].vertex_count),
+                           static_cast<int>(c));
+  return joined_by_springs(scene.springs, cloth_of_vertex, static_cast<int>(scene.cloths.size()));
+}
+
+class RestingStepper final : public Stepper {
+ public:
+  RestingStepper(const Scene& scene, MakeStepper make)
+      : scene_(scene),
+        make_(std::move(make)),
+        whole_(make_(scene)),
+        still_(still_edges * mean_edge_length(scene)),
+        joined_(joined_cloths(scene)) {}
+
+  const StepperTraits& traits() const override { return whole_->traits(); }
+  StepReport step(const State& from, const Drive& drive, double dt, State& to) override;
+
+ private:
+  struct Part {
+    PartOfScene part;
+    std::unique_ptr<Stepper> stepper;
+  };
+  auto rows(const Points& x, int cloth) const {
+    return x.middleRows(scene_.cloths[cloth].first_vertex, scene_.cloths[cloth].vertex_count);
+  }
+  bool pins_move(const State& from, const Drive& drive, int cloth) const;
+  void keep_joined(Chosen& resting) const;
+  Chosen still_ones(const State& from, const Drive& drive) const;
+  bool wake(const State& from, const std::vector<Box>& moving, Chosen& resting) const;
+  std::vector<Box> moving_boxes(const State& from, const Drive& drive, double dt, const Chosen& resting) const;
+  StepReport step_others(const State& from, const Drive& drive, double dt, const Chosen& resting, State& to);
+  bool comes_near(const State& from, const State& to, Chosen& resting) const;
+  Rest rest_after(const State& from, const State& to, const Drive& drive, double dt) const;
+  Part& part(const Chosen& resting);
+
+  const Scene& scene_;
+  MakeStepper make_;
+  std::unique_ptr<Stepper> whole_;
+  double still_;             // [m]
+  std::vector<int> joined_;  // of each cloth the lowest one that springs join it to
+  std::map<Chosen, Part> parts_;
+};
+
+bool RestingStepper::pins_move(const State& from, const Drive& drive, int cloth) const {
+  const Cloth& c = scene_.cloths[cloth];
+  for (std::size_t p = 0; p < scene_.pins.size(); ++p) {
+    const int pin = scene_.pins[p];
+    if (pin >= c.first_vertex && pin < c.first_vertex + c.vertex_count &&
+        drive.pins.row(static_cast<Eigen::Index>(p)) != from.x.row(pin))
+      return true;
+  }
+  return false;
+}
+
+// Cloths that springs join rest only if all of them do.
+void RestingStepper::keep_joined(Chosen& resting) const {
+  Chosen all(resting.size(), true);
+  for (std::size_t c = 0; c < resting.size(); ++c) all[joined_[c]] = all[joined_[c]] && resting[c];
+  for (std::size_t c = 0; c < resting.size(); ++c) resting[c] = all[joined_[c]];
+}
+
+// Cloths that rest if nothing comes near them.
+Chosen RestingStepper::still_ones(const State& from, const Drive& drive) const {
+  Chosen still(scene_.cloths.size(), false);
+  if (!from.clean || from.pinched || from.rest.seconds.size() != still.size()) return still;
+  if (from.rest.wind != drive.wind || from.rest.acceleration != drive.acceleration) return still;
+  for (std::size_t c = 0; c < still.size(); ++c)
+    still[c] = from.rest.seconds[c] >= still_seconds && !pins_move(from, drive, static_cast<int>(c));
+  keep_joined(still);
+  return still;
+}
+
+// What moves in the step: obstacles, and the other cloths as far as they will probably go.
+std::vector<Box> RestingStepper::moving_boxes(const State& from, const Drive& drive, double dt,
+                                              const Chosen& resting) const {
+  std::vector<Box> boxes;
+  for (std::size_t k = 0; k < from.obstacles.size(); ++k)
+    if (from.obstacles[k] != drive.obstacles[k]) boxes.push_back(box_of_motion(from.obstacles[k], drive.obstacles[k]));
+  for (std::size_t c = 0; c < resting.size(); ++c) {
+    if (resting[c]) continue;
+    const Points x0 = rows(from.x, static_cast<int>(c));
+    Points x1 = x0 + dt * rows(from.v, static_cast<int>(c));
+    x1.rowwise() += dt * dt * drive.acceleration.transpose();
+    boxes.push_back(box_of_motion(x0, x1));
+  }
+  return boxes;
+}
+
+// True if one of the resting cloths is near one of the boxes: it rests no more.
+bool RestingStepper::wake(const State& from, const std::vector<Box>& moving, Chosen& resting) const {
+  bool woken = false;
+  for (std::size_t c = 0; c < resting.size(); ++c) {
+    if (!resting[c]) continue;
+    const Points x = rows(from.x, static_cast<int>(c));
+    const Box own = box_of_motion(x, x, scene_.contact.thickness);
+    if (std::ranges::none_of(moving, [&](const Box& other) { return overlap(own, other); })) continue;
+    resting[c] = false;
+    woken = true;
+  }
+  if (woken) keep_joined(resting);
+  return woken;
+}
+
+RestingStepper::Part& RestingStepper::part(const Chosen& resting) {
+  if (const auto found = parts_.find(resting); found != parts_.end()) return found->second;
+  if (parts_.size() == most_kept) parts_.clear();
+  Chosen chosen = resting;
+  for (char& c : chosen) c = !c;
+  Part& made = parts_[resting];
+  made.part = part_of(scene_, chosen);
+  made.stepper = make_(made.part.scene);
+  return made;
+}
+
+StepReport RestingStepper::step_others(const State& from, const Drive& drive, double dt, const Chosen& resting,
+                                       State& to) {
+  const int count = static_cast<int>(std::ranges::count(resting, true));
+  if (count == 0) return whole_->step(from, drive, dt, to);
+  to = from;
+  to.time = from.time + dt;
+  to.frame = from.frame + 1;
+  to.v.setZero();
+  if (count == static_cast<int>(resting.size())) {
+    to.obstacles = drive.obstacles;
+    to.history = {};
+    StepReport report;
+    report.status = StepStatus::accepted;
+    report.by = traits().name;
+    report.resting = count;
+    report.audit.emplace();
+    return report;
+  }
+  Part& others = part(resting);
+  State end;
+  StepReport report = others.stepper->step(state_of(others.part, from), drive_of(others.part, drive), dt, end);
+  report.resting = count;
+  if (report.status != StepStatus::accepted) return report;
+  put(others.part, end, to);
+  if (report.audit) report.audit = whole_audit(others.part, *std::move(report.audit));
+  return report;
+}
+
+// True if what moved came nearer to a resting cloth than was foreseen; that one rests no more.
+bool RestingStepper::comes_near(const State& from, const State& to, Chosen& resting) const {
+  std::vector<Box> boxes;
+  for (std::size_t k = 0; k < from.obstacles.size(); ++k)
+    if (from.obstacles[k] != to.obstacles[k]) boxes.push_back(box_of_motion(from.obstacles[k], to.obstacles[k]));
+  for (std::size_t c = 0; c < resting.size(); ++c)
+    if (!resting[c]) boxes.push_back(box_of_motion(rows(from.x, static_cast<int>(c)), rows(to.x, static_cast<int>(c))));
+  return wake(from, boxes, resting);
+}
+
+Rest RestingStepper::rest_after(const State& from, const State& to, const Drive& drive, double dt) const {
+  Rest rest = from.rest;
+  if (rest.seconds.size() != scene_.cloths.size() || rest.wind != drive.wind || rest.acceleration != drive.acceleration)
+    rest = {std::vector<double>(scene_.cloths.size(), 0.0), from.x, drive.wind, drive.acceleration};
+  for (std::size_t c = 0; c < rest.seconds.size(); ++c) {
+    const int cloth = static_cast<int>(c);
+    rest.seconds[c] += dt;
+    if (largest_row(rows(to.x, cloth) - rows(rest.place, cloth)) <= still_) continue;
+    rest.seconds[c] = 0;
+    rest.place.middleRows(scene_.cloths[c].first_vertex, scene_.cloths[c].vertex_count) = rows(to.x, cloth);
+  }
+  return rest;
+}
+
+StepReport RestingStepper::step(const State& from, const Drive& drive, double dt, State& to) {
+  Chosen resting = still_ones(from, drive);
+  while (any(resting) && wake(from, moving_boxes(from, drive, dt, resting), resting)) {
+  }
+  StepReport report = step_others(from, drive, dt, resting, to);
+  while (report.status == StepStatus::accepted && any(resting) && comes_near(from, to, resting))
+    report = step_others(from, drive, dt, resting, to);
+  if (report.status == StepStatus::accepted) to.rest = rest_after(from, to, drive, dt);
+  return report;
+}
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_resting_stepper(const Scene& scene, MakeStepper make) {
+  return std::make_unique<RestingStepper>(scene, std::move(make));
+}
+
+}  // namespace selvedge

@@ -1,0 +1,66 @@
+#include "physics/steppers/step_audit.hpp"
+
+#include <algorithm>
+
+#include "collision/audit/audit_motion.hpp"
+#include "collision/exact/penetration_depth.hpp"
+#include "collision/geometry/stopwatch.hpp"
+#include "collision/untangle/world_sheets.hpp"
+#include "physics/recovery/cut_out.hpp"
+#include "physics/scene/part_of_scene.hpp"
+
+namespace selvedge {
+namespace {
+
+Points rounded_to_float(const Points& x) { return x.cast<float>().cast<double>(); }
+
+}  // namespace
+
+Audit audit_positions(const Scene& scene, const Points& x, const std::vector<Points>& obstacles, AuditMemory* memory) {
+  std::vector<Points> positions;
+  for (const Points& obstacle : obstacles) positions.push_back(rounded_to_float(obstacle));
+  std::vector<AuditBody> bodies;
+  for (std::size_t k = 0; k < positions.size(); ++k) bodies.push_back({&scene.obstacles[k].surface, &positions[k]});
+  return audit(scene.surface, rounded_to_float(x), bodies, scene.contact.self, memory);
+}
+
+Audit audit_uncut(const Scene& scene, const State& state) {
+  if (state.cut_out.empty()) return audit_positions(scene, state.x, state.obstacles);
+  const PartOfScene part = part_of_triangles(scene, all_but(scene, state.cut_out));
+  return whole_audit(part, audit_positions(part.scene, state_of(part, state).x, state.obstacles));
+}
+
+void take_audit(Audit audit, State& state, StepReport& report) {
+  const int pairs = audit.intersecting_pairs();
+  report.collision.pairs_after = report.collision.pairs_wanted = pairs;
+  state.clean = pairs == 0 && audit.inside_vertices == 0;
+  if (pairs > 0) report.reason = Reason::penetrating;
+  report.audit = std::move(audit);
+}
+
+void audit_state(const Scene& scene, const Drive& drive, State& state, AuditMemory& memory, StepReport& report) {
+  Stopwatch watch;
+  take_audit(audit_positions(scene, state.x, state.obstacles, &memory), state, report);
+  CollisionReport& collision = report.collision;
+  if (state.pinched) {
+    collision.pairs_wanted = audit_positions(scene, state.x, drive.obstacles).intersecting_pairs();
+    for (std::size_t k = 0; k < drive.obstacles.size(); ++k)
+      collision.depth_wanted =
+          std::max(collision.depth_wanted, penetration_depth(scene.obstacles[k].surface, drive.obstacles[k], state.x));
+  }
+  report.seconds.audit += watch.lap();
+}
+
+int passed_through(const ContactWorld& world, const Exemption& exemption, const Points& nodes0, const Points& nodes1,
+                   AuditMemory& memory) {
+  const WorldSheets from(world, nodes0), to(world, nodes1);
+  std::vector<MovingBody> bodies;
+  for (std::size_t k = 1; k < from.views.size(); ++k)
+    bodies.push_back({from.views[k].surface, &from.positions[k], &to.positions[k]});
+  const MotionAudit motion =
+      audit_motion(*world.cloth, from.positions[0], to.positions[0], bodies, world.self, &memory);
+  return static_cast<int>(std::ranges::count_if(
+      motion.passed, [&](const PassedPair& pair) { return !exemption.leaves_alone(world, pair.nodes); }));
+}
+
+}  // namespace selvedge

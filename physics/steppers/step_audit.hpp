@@ -1,0 +1,29 @@
+#pragma once
+
+#include "collision/audit/audit.hpp"
+#include "collision/audit/audit_memory.hpp"
+#include "collision/contact/exemption.hpp"
+#include "physics/scene/scene.hpp"
+#include "physics/scene/stepper.hpp"
+
+namespace selvedge {
+
+// The audit that every stepper ends a step with. Positions are rounded to float, as a file stores them: what is audited
+// is what a reader will see. Cloth is held against itself where Scene::contact says so. Memories, where given, save
+// time where little moves.
+
+Audit audit_positions(const Scene&, const Points& x, const std::vector<Points>& obstacles, AuditMemory* = nullptr);
+
+// Of the state that a step made: sets `clean`, and in the report the audit, the intersecting pairs, those with
+// obstacles where the drive wanted them, the reason `penetrating` where any are left, and the seconds it took.
+void audit_state(const Scene&, const Drive&, State&, AuditMemory&, StepReport&);
+
+// Of the state without the triangles that are cut out of it, and as audit_state does without the drive: sets `clean`,
+// and in the report the audit, the intersecting pairs and the reason.
+Audit audit_uncut(const Scene&, const State&);
+void take_audit(Audit, State&, StepReport&);
+
+// Pairs that met while all nodes moved straight from nodes0 to nodes1, those that contact leaves alone not counted.
+int passed_through(const ContactWorld&, const Exemption&, const Points& nodes0, const Points& nodes1, AuditMemory&);
+
+}  // namespace selvedge

@@ -1,0 +1,111 @@
+#include "physics/steppers/substeps.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace selvedge {
+namespace {
+
+constexpr double edges_a_substep = 2.5;  // how far a vertex may move, in mean edge lengths
+constexpr double edges_past = 1;         // how far contact, linearised, may slide: more locks cloth pulled round a post
+constexpr double edges_deep = 0.05;      // that an impact may be for impulses alone
+
+constexpr double visibly_damped = 1.0 / 48;  // steps of implicit Euler that are longer are [s]
+
+int least_substeps(double dt) { return dt > visibly_damped ? 2 : 1; }
+
+// Of a way, each no longer than that.
+int parts(double way, double longest, int least, int most) {
+  return longest > 0 ? static_cast<int>(std::clamp<double>(std::ceil(way / longest), std::min(least, most), most))
+                     : least;
+}
+
+}  // namespace
+
+int substeps_for_speed(const State& from, const Drive& drive, double dt, double edge_length, int max_substeps) {
+  double speed = drive.acceleration.norm() * dt;
+  if (from.v.rows() > 0) speed += from.v.rowwise().norm().maxCoeff();
+  for (std::size_t k = 0; k < from.obstacles.size(); ++k)
+    speed = std::max(speed, (drive.obstacles[k] - from.obstacles[k]).rowwise().norm().maxCoeff() / dt);
+  return parts(dt * speed, edges_a_substep * edge_length, least_substeps(dt), max_substeps);
+}
+
+int substeps_for_contact(double contact_speed, double dt, double edge_length, int max_substeps) {
+  return parts(dt * contact_speed, edges_past * edge_length, least_substeps(dt), max_substeps);
+}
+
+int parts_for_way(double way, double edge_length, int most) {
+  return parts(way, edges_a_substep * edge_length, 1, most);
+}
+
+double fastest_past(std::span<const NodePair> pairs, const State& from, const Drive& drive, double dt) {
+  std::vector<Points> obstacles;
+  for (std::size_t k = 0; k < from.obstacles.size(); ++k)
+    obstacles.push_back((drive.obstacles[k] - from.obstacles[k]) / dt);
+  const Points v = gather_nodes(from.v, obstacles);
+  double fastest = 0;
+  for (const NodePair& pair : pairs) {
+    fastest = std::max(fastest, (v.row(pair.nodes[0]) - v.row(pair.nodes[3])).norm());
+  }
+  return fastest;
+}
+
+double farthest_past(std::span<const Impact> impacts, const Points& nodes0, const Points& nodes1) {
+  double farthest = 0;
+  for (const Impact& impact : impacts) {
+    const auto way = [&](int i) { return Vec3(row(nodes1, impact.pair.nodes[i]) - row(nodes0, impact.pair.nodes[i])); };
+    const int split = impact.pair.kind == PairKind::vertex_face ? 1 : 2;
+    for (int a = 0; a < split; ++a)
+      for (int b = split; b < 4; ++b) farthest = std::max(farthest, (way(a) - way(b)).norm());
+  }
+  return farthest;
+}
+
+double deepest(std::span<const Impact> impacts, const Points& nodes1) {
+  double depth = 0;
+  for (const Impact& impact : impacts) depth = std::max(depth, impact.target - impact_gap(impact, nodes1));
+  return depth;
+}
+
+double deep_impact(const Scene& scene) {
+  const double deep = edges_deep * mean_edge_length(scene), thickness = scene.contact.thickness;
+  const bool narrow = std::any_of(scene.rest_triangle.begin(), scene.rest_triangle.end(),
+                                  [&](const RestTriangle& t) { return smallest_altitude(t) < thickness; });
+  return narrow ? std::min(deep, thickness) : deep;
+}
+
+std::optional<Restart> restart_of(const State& from, const Drive& drive, int max_substeps) {
+  std::optional<Restart> restart;
+  if (from.pinched) return restart;
+  for (std::size_t k = 0; k < from.obstacles.size(); ++k) {
+    const Points& at = from.obstacles[k];
+    if (at.rows() == 0) continue;
+    const double size = (at.colwise().maxCoeff() - at.colwise().minCoeff()).norm();
+    const double way = (drive.obstacles[k] - at).colwise().mean().norm();
+    if (!(way > max_substeps * size)) continue;
+    if (!restart) restart = Restart{from};
+    restart->state.obstacles[k] = drive.obstacles[k];
+    restart->state.clean = false;
+    restart->state.last_clean = {};
+    restart->state.history = {};
+    ++restart->jumped;
+  }
+  return restart;
+}
+
+void arrive(const State& from, const Leg& leg, double dt, State& to) {
+  to.time = from.time + dt;
+  to.frame = from.frame + 1;
+  to.x = leg.nodes.topRows(from.x.rows());
+  to.v = leg.v;
+  to.last_clean = {};
+  to.history = leg.history;
+}
+
+Points pinned_rows(const Scene& scene, const Points& nodes) {
+  Points pins(scene.pins.size(), 3);
+  for (std::size_t k = 0; k < scene.pins.size(); ++k) pins.row(static_cast<Eigen::Index>(k)) = nodes.row(scene.pins[k]);
+  return pins;
+}
+
+}  // namespace selvedge

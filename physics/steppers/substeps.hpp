@@ -1,0 +1,55 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "collision/contact/contact_pairs.hpp"
+#include "collision/contact/response.hpp"
+#include "physics/scene/scene.hpp"
+#include "physics/scene/stepper.hpp"
+
+namespace selvedge {
+
+// Where a step has come to: all nodes, the cloth's velocity, and what an integrator of two steps goes on from.
+struct Leg {
+  Points nodes, v;
+  StepHistory history = {};
+};
+
+// How many parts a step of dt [s] is cut into. At least two of one longer than 1/48 s: implicit Euler at 1/30 s damps
+// visibly. edge_length: the mean one [m]; speeds in m/s.
+// As many as keep every vertex's motion in a substep within a few mesh edges.
+int substeps_for_speed(const State& from, const Drive&, double dt, double edge_length, int max_substeps);
+// As many as keep the motion of touching pairs past each other within one edge.
+int substeps_for_contact(double contact_speed, double dt, double edge_length, int max_substeps);
+// Of a substep in which something meets after moving `way` [m] past each other: more than a few edges are too many to
+// linearise contact over.
+int parts_for_way(double way, double edge_length, int most);
+
+// The largest speed of a pair's one primitive past the other, of one vertex each [m/s].
+double fastest_past(std::span<const NodePair>, const State& from, const Drive&, double dt);
+
+// The farthest that nodes of one primitive of an impact move past those of the other, of all [m].
+double farthest_past(std::span<const Impact>, const Points& nodes0, const Points& nodes1);
+
+// How far impacts are from their targets at the end, at most [m].
+double deepest(std::span<const Impact>, const Points& nodes1);
+// How deep an impact may be for impulses alone to meet it: part of an edge, and where triangles are narrower than
+// contact is thick, no more than that [m].
+double deep_impact(const Scene&);
+
+// A start with every obstacle where it is wanted that would have to move farther than its own size (the diagonal of its
+// box) in a substep: that is no motion to sweep along but a new start, and a tangled one it may be.
+struct Restart {
+  State state;
+  int jumped = 0;  // obstacles
+};
+// Absent where no obstacle jumps, and where the state's obstacles lag: those are on their way.
+std::optional<Restart> restart_of(const State& from, const Drive&, int max_substeps);
+
+// Writes where and when a step of dt [s] from `from` has come to, all but the obstacles.
+void arrive(const State& from, const Leg&, double dt, State& to);
+
+Points pinned_rows(const Scene&, const Points& nodes);  // one row a Scene::pins entry
+
+}  // namespace selvedge

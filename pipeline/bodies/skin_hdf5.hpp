@@ -1,0 +1,12 @@
+#pragma once
+
+#include "pipeline/bodies/body.hpp"
+#include "pipeline/formats/hdf5_fields.hpp"
+
+namespace selvedge::h5 {
+
+// The fields that bodies and garments have in common: rest, triangles, weights, shape_directions, pose_directions.
+SkinnedSurface read_skin(const Fields&, Eigen::Index joints);
+void write_skin(const File&, const SkinnedSurface&);
+
+}  // namespace selvedge::h5

@@ -1,0 +1,230 @@
+#include "pipeline/compare/compare.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/compare/compare_parts.hpp"
+#include "pipeline/host/kept_rows.hpp"
+#include "pipeline/host/write_file.hpp"
+#include "pipeline/run/prepare.hpp"
+#include "pipeline/run/progress.hpp"
+#include "pipeline/run/summary.hpp"
+#include "pipeline/scene/make_stepper.hpp"
+
+namespace selvedge {
+namespace {
+
+// All that a part's result depends on.
+struct Keys {
+  std::string program, reference;
+  std::vector<std::string> settings;
+};
+
+struct SceneWork {
+  const CompareScene* scene = nullptr;
+  std::filesystem::path folder;
+  Keys keys;
+  std::vector<std::optional<Setup>> setups;  // absent: this build cannot, and `trouble` says why
+  std::vector<std::string> trouble;
+  CompareFloor floor;
+  std::vector<CompareErrors> errors;
+  std::vector<std::vector<CompareRun>> runs;  // of each setting
+};
+
+// Reads every setup and makes every stepper once, so that what is wrong is said before hours of work.
+SceneWork open_scene(const CompareRequest& request, const Comparison& comparison, const CompareScene& scene,
+                     const std::string& program) {
+  SceneWork work;
+  work.scene = &scene;
+  work.folder = request.out / "parts" / scene.name;
+  make_folder(work.folder);
+  const Setup reference = read_compared(scene, request.short_form, comparison.reference);
+  work.keys.program = program;
+  work.keys.reference = fmt::format("{} {:016x} {} {} {}", program, hash_of(reference.config), scene.states,
+                                    scene.horizon, comparison.jitter);
+  for (const CompareSetting& setting : comparison.settings) {
+    Setup setup = read_compared(scene, request.short_form, setting.overrides);
+    work.keys.settings.push_back(fmt::format("{} {:016x} {}", program, hash_of(setup.config), Eigen::nbThreads()));
+    std::string trouble;
+    try {
+      make_stepper(setup);
+    } catch (const Error& error) {
+      trouble = error.what();
+    }
+    work.trouble.push_back(trouble);
+    work.setups.push_back(trouble.empty() ? std::optional<Setup>(std::move(setup)) : std::nullopt);
+  }
+  work.runs.resize(comparison.settings.size());
+  return work;
+}
+
+void say(const CompareRequest& request, const std::string& line) {
+  if (request.log) *request.log << line << "\n" << std::flush;
+}
+
+// The floor and every setting's errors. The reference is made only if one of them is not there. False: stopped.
+bool find_errors(const CompareRequest& request, const Comparison& comparison, SceneWork& work) {
+  std::optional<CompareReference> reference;
+  const auto need_reference = [&] {
+    if (reference) return true;
+    const auto started = Clock::now();
+    reference = make_reference(comparison, *work.scene, request.short_form, request.stop);
+    if (!reference) return false;
+    work.floor = reference->floor;
+    write_file(work.folder / "floor.json", part_json(work.floor, work.keys.reference));
+    say(request, fmt::format("{}: reference, {}; floor {:.2g} m", work.scene->name,
+                             duration_text(seconds_since(started)), work.floor.floor()));
+    return true;
+  };
+  const auto floor = read_floor(whole_file(work.folder / "floor.json"), work.keys.reference);
+  if (floor)
+    work.floor = *floor;
+  else if (!need_reference())
+    return false;
+  for (std::size_t s = 0; s < work.setups.size(); ++s) {
+    const std::filesystem::path file = work.folder / fmt::format("errors_{}.json", s);
+    const std::string key = work.keys.reference + " " + work.keys.settings[s];
+    std::optional<CompareErrors> errors =
+        work.setups[s] ? read_errors(whole_file(file), key) : CompareErrors{work.trouble[s]};
+    if (!errors) {
+      if (!need_reference()) return false;
+      errors = errors_of(*work.setups[s], *reference, request.stop);
+      if (!errors) return false;
+      write_file(file, part_json(*errors, key));
+      say(request, fmt::format("{}: errors of {}: {:.2g} m from the reference{}{}", work.scene->name,
+                               comparison.settings[s].name, errors->temporal, errors->trouble.empty() ? "" : ", ",
+                               errors->trouble));
+    }
+    work.errors.push_back(*errors);
+  }
+  return true;
+}
+
+// All settings start alike: what one scene needs to be prepared is done once. False: stopped.
+bool prepare_settings(const CompareRequest& request, SceneWork& work) {
+  const Setup* first = nullptr;
+  for (std::optional<Setup>& setup : work.setups) {
+    if (!setup) continue;
+    if (first)
+      setup->initial = first->initial;
+    else if (!prepare(*setup, request.stop))
+      return false;
+    first = &*setup;
+  }
+  return true;
+}
+
+// Every setting once, in turn. False: stopped.
+bool time_settings(const CompareRequest& request, const Comparison& comparison, int repeat, SceneWork& work) {
+  for (std::size_t s = 0; s < work.setups.size(); ++s) {
+    if (!work.setups[s]) continue;
+    const std::filesystem::path file = work.folder / fmt::format("run_{}_{}.json", s, repeat);
+    std::optional<CompareRun> run = read_run(whole_file(file), work.keys.settings[s]);
+    const bool kept = run.has_value();
+    if (!run) {
+      run = timed_run(*work.setups[s], request.stop);
+      if (!run) return false;
+      write_file(file, part_json(*run, work.keys.settings[s]));
+    }
+    say(request, fmt::format("{} {} of {}: {}, {:.1f} ms a frame{}{}", work.scene->name, repeat + 1, comparison.repeats,
+                             comparison.settings[s].name, 1000 * median(run->seconds),
+                             kept ? " (kept from before)" : "", run->trouble.empty() ? "" : ", " + run->trouble));
+    work.runs[s].push_back(std::move(*run));
+  }
+  return true;
+}
+
+CompareRow row_of(const SceneWork& work, const std::string& setting, std::size_t s) {
+  CompareRow row;
+  row.scene = work.scene->name;
+  row.setting = setting;
+  row.trouble = work.trouble[s];
+  row.floor = work.floor.floor();
+  if (s < work.errors.size()) {
+    const CompareErrors& errors = work.errors[s];
+    if (row.trouble.empty()) row.trouble = errors.trouble;
+    row.algebraic = errors.algebraic;
+    row.algebraic_largest = errors.algebraic_largest;
+    row.temporal = errors.temporal;
+  }
+  if (work.runs[s].empty()) return row;
+  const CompareRun& first = work.runs[s].front();
+  std::vector<double> seconds, medians;
+  for (const CompareRun& run : work.runs[s]) {
+    seconds.insert(seconds.end(), run.seconds.begin(), run.seconds.end());
+    medians.push_back(1000 * median(run.seconds));
+    row.reproduced = row.reproduced && run.end == first.end;
+  }
+  const auto frames = static_cast<double>(first.seconds.size());
+  if (!first.trouble.empty()) row.trouble = first.trouble;
+  row.ms = 1000 * median(seconds);
+  row.ms_spread = *std::ranges::max_element(medians) - *std::ranges::min_element(medians);
+  row.dt = frames / work.setups[s]->run.fps / static_cast<double>(first.substeps);
+  if (work.floor.lost > 0) row.decay = first.lost / work.floor.lost;
+  row.newton = static_cast<double>(first.newton) / frames;
+  row.linear = static_cast<double>(first.linear) / frames;
+  row.pairs = first.pairs;
+  row.passed_through = first.passed_through;
+  return row;
+}
+
+bool is_clean(const CompareRow& row) { return row.pairs <= 0 && row.passed_through == 0; }
+
+// What may be said of a row's error: no less than the floor.
+double known_error(const CompareRow& row) { return std::max(row.temporal, row.floor); }
+
+void write_results(const CompareRequest& request, const Comparison& comparison, const std::vector<SceneWork>& all,
+                   CompareResult& result) {
+  result.floors.clear();
+  result.rows.clear();
+  for (const SceneWork& work : all) {
+    if (work.floor.scene.empty()) continue;
+    result.floors.push_back(work.floor);
+    for (std::size_t s = 0; s < comparison.settings.size(); ++s)
+      result.rows.push_back(row_of(work, comparison.settings[s].name, s));
+  }
+  rank(result.rows);
+  write_file(request.out / "compare.json", compare_json(result));
+  write_file(request.out / "compare.csv", compare_csv(result));
+  write_file(request.out / "compare.txt", compare_table(result));
+}
+
+}  // namespace
+
+double CompareFloor::floor() const { return std::max(steps, jittered); }
+
+void rank(std::vector<CompareRow>& rows) {
+  for (CompareRow& row : rows) {
+    const bool complete = std::isfinite(row.temporal) && std::isfinite(row.ms) && is_clean(row);
+    row.ranked = complete && row.temporal > row.floor;
+    row.front = complete && std::none_of(rows.begin(), rows.end(), [&](const CompareRow& other) {
+                  return other.scene == row.scene && std::isfinite(other.temporal) && is_clean(other) &&
+                         other.ms < row.ms && known_error(other) <= known_error(row) + row.floor;
+                });
+  }
+}
+
+CompareResult compare(const CompareRequest& request) {
+  const Comparison comparison = read_comparison(request.file, request.short_form);
+  const std::string program = program_key();
+  std::vector<SceneWork> all;
+  for (const CompareScene& scene : comparison.scenes) all.push_back(open_scene(request, comparison, scene, program));
+  CompareResult result;
+  for (SceneWork& work : all) {
+    result.finished = find_errors(request, comparison, work) && prepare_settings(request, work);
+    for (int repeat = 0; result.finished && repeat < comparison.repeats; ++repeat) {
+      result.finished = time_settings(request, comparison, repeat, work);
+      write_results(request, comparison, all, result);
+    }
+    if (!result.finished) break;
+  }
+  write_results(request, comparison, all, result);
+  write_compare_hdf5(request.out / "compare.h5", result);
+  result.plots = plot_comparison(result, request.out);
+  return result;
+}
+
+}  // namespace selvedge

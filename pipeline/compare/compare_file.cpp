@@ -1,0 +1,89 @@
+#include <algorithm>
+
+#include "pipeline/compare/compare.hpp"
+#include "pipeline/config/config_tables.hpp"
+
+namespace selvedge {
+namespace {
+
+using namespace table;
+
+const Section& compared_scene_section() {
+  const CompareScene s;
+  static const Section table{"compared_scene",
+                             "",
+                             "file",
+                             {},
+                             {needed(path("file", "scene file, from this file's folder")),
+                              text("name", "left out: the file's"), texts("set", "`key=value` overrides of the scene"),
+                              integer("states", at_least_one, show(s.states), "common states, spread over the run"),
+                              integer("horizon", at_least_one, show(s.horizon), "frames from each of them")}};
+  return table;
+}
+
+const Section& setting_section() {
+  static const Section table{
+      "setting",
+      "",
+      "",
+      {},
+      {needed(text("name", "")), texts("set", "`key=value` overrides of every scene; none: its defaults")}};
+  return table;
+}
+
+const Section& comparison_section() {
+  const Comparison c;
+  static const Section table{
+      "comparison",
+      "The whole file.",
+      "",
+      {},
+      {text("description", "for people"), needed(sections("scenes", compared_scene_section(), "", "at least one")),
+       needed(sections("settings", setting_section(), "", "at least one")),
+       texts("reference", "`key=value` overrides of the temporal reference, beside its time step"),
+       integer("repeats", at_least_one, show(c.repeats), "timed runs of each setting"),
+       number("jitter", Unit::none, not_negative, show(c.jitter), "of the floor's states, in mean edge lengths"),
+       texts("short_form", "`key=value` overrides of this file that make it shorter (`--short`)")}};
+  return table;
+}
+
+void check_names(const Config& list, const std::vector<std::string>& names) {
+  if (names.empty()) list.fail("is empty", "give at least one");
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(k), names[k]) !=
+        names.begin() + static_cast<std::ptrdiff_t>(k))
+      list.items[k].fail("has the name `" + names[k] + "` of another", "give every one its own name");
+}
+
+}  // namespace
+
+Comparison read_comparison(const std::filesystem::path& file, bool short_form) {
+  Config config = read_config(file, comparison_section());
+  if (short_form && !config["short_form"].words.empty())
+    config = read_config(file, comparison_section(), config["short_form"].words);
+  Comparison comparison;
+  comparison.file = file;
+  comparison.reference = config["reference"].words;
+  comparison.repeats = config["repeats"].integer();
+  comparison.jitter = config["jitter"].number();
+  std::vector<std::string> scenes, settings;
+  for (const Config& item : config["scenes"].items) {
+    CompareScene scene;
+    scene.file = file.parent_path() / item["file"].text();
+    scene.name = item["name"].given ? item["name"].text() : scene.file.stem().string();
+    scene.overrides = item["set"].words;
+    scene.states = item["states"].integer();
+    scene.horizon = item["horizon"].integer();
+    scenes.push_back(scene.name);
+    comparison.scenes.push_back(std::move(scene));
+  }
+  for (const Config& item : config["settings"].items) {
+    settings.push_back(item["name"].text());
+    comparison.settings.push_back({item["name"].text(), item["set"].words});
+  }
+  check_names(config["scenes"], scenes);
+  check_names(config["settings"], settings);
+  return comparison;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,141 @@
+#include "pipeline/compare/compare_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/host/kept_rows.hpp"
+#include "pipeline/run/simulate.hpp"
+#include "pipeline/scene/make_stepper.hpp"
+
+namespace selvedge {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+double number(const Json& value) { return value.is_number() ? value.get<double>() : unknown; }
+
+std::string with_key(const Json& part, const std::string& key) {
+  Json json = {{"key", key}};
+  json.update(part);
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+// What `read` makes of a text that has the key; nothing where another version has left it.
+template <class Part, class Read>
+std::optional<Part> parsed(const std::string& text, const std::string& key, Read read) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded() || !json.is_object() || json.value("key", "") != key) return {};
+  try {
+    Part part;
+    read(json, part);
+    return part;
+  } catch (const Json::exception&) {
+    return {};
+  }
+}
+
+std::uint64_t bits_of(const Points& x) {
+  return hash_of(std::string(reinterpret_cast<const char*>(x.data()), sizeof(double) * x.size()));
+}
+
+}  // namespace
+
+std::optional<CompareRun> timed_run(const Setup& setup, const Stop& stop) {
+  CompareRun run;
+  const std::unique_ptr<Stepper> stepper = make_stepper(setup);
+  State state = setup.initial;
+  bool stopped = false;
+  const StepReport last =
+      simulate(*stepper, setup.drive_at, 1 / setup.run.fps, setup.run.frames, state, [&](const FrameEvent& event) {
+        run.seconds.push_back(seconds_since(event.started));
+        run.substeps += event.report.substeps;
+        run.newton += event.report.iterations;
+        run.linear += event.report.linear_iterations;
+        run.pairs = std::max(run.pairs, event.report.collision.pairs_after);
+        run.passed_through += event.report.collision.passed_through;
+        stopped = stop && stop();
+        return !stopped;
+      });
+  if (stopped) return {};
+  if (last.status != StepStatus::accepted) run.trouble = fmt::format("rejects a step after frame {}", state.frame);
+  run.lost = energy_of(setup, setup.initial) - energy_of(setup, state);
+  run.end = bits_of(state.x);
+  return run;
+}
+
+std::string part_json(const CompareFloor& f, const std::string& key) {
+  return with_key({{"scene", f.scene},
+                   {"vertices", f.vertices},
+                   {"frames", f.frames},
+                   {"states", f.states},
+                   {"horizon", f.horizon},
+                   {"motion", f.motion},
+                   {"steps", f.steps},
+                   {"jittered", f.jittered},
+                   {"lost", f.lost}},
+                  key);
+}
+
+std::optional<CompareFloor> read_floor(const std::string& text, const std::string& key) {
+  return parsed<CompareFloor>(text, key, [](const Json& j, CompareFloor& f) {
+    j.at("scene").get_to(f.scene);
+    j.at("vertices").get_to(f.vertices);
+    j.at("frames").get_to(f.frames);
+    j.at("states").get_to(f.states);
+    j.at("horizon").get_to(f.horizon);
+    j.at("motion").get_to(f.motion);
+    j.at("steps").get_to(f.steps);
+    j.at("jittered").get_to(f.jittered);
+    j.at("lost").get_to(f.lost);
+  });
+}
+
+std::string part_json(const CompareErrors& e, const std::string& key) {
+  return with_key({{"trouble", e.trouble},
+                   {"algebraic", number(e.algebraic)},
+                   {"algebraic_largest", number(e.algebraic_largest)},
+                   {"temporal", number(e.temporal)}},
+                  key);
+}
+
+std::optional<CompareErrors> read_errors(const std::string& text, const std::string& key) {
+  return parsed<CompareErrors>(text, key, [](const Json& j, CompareErrors& e) {
+    j.at("trouble").get_to(e.trouble);
+    e.algebraic = number(j.at("algebraic"));
+    e.algebraic_largest = number(j.at("algebraic_largest"));
+    e.temporal = number(j.at("temporal"));
+  });
+}
+
+std::string part_json(const CompareRun& r, const std::string& key) {
+  return with_key({{"trouble", r.trouble},
+                   {"seconds", r.seconds},
+                   {"substeps", r.substeps},
+                   {"newton", r.newton},
+                   {"linear", r.linear},
+                   {"passed_through", r.passed_through},
+                   {"pairs", r.pairs},
+                   {"lost", number(r.lost)},
+                   {"end", r.end}},
+                  key);
+}
+
+std::optional<CompareRun> read_run(const std::string& text, const std::string& key) {
+  return parsed<CompareRun>(text, key, [](const Json& j, CompareRun& r) {
+    j.at("trouble").get_to(r.trouble);
+    j.at("seconds").get_to(r.seconds);
+    j.at("substeps").get_to(r.substeps);
+    j.at("newton").get_to(r.newton);
+    j.at("linear").get_to(r.linear);
+    j.at("passed_through").get_to(r.passed_through);
+    j.at("pairs").get_to(r.pairs);
+    r.lost = number(j.at("lost"));
+    j.at("end").get_to(r.end);
+  });
+}
+
+}  // namespace selvedge

@@ -1,0 +1,172 @@
+#include "pipeline/compare/compare_reference.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/geometry/error.hpp"
+#include "physics/energies/measures.hpp"
+#include "pipeline/compare/algebraic_error.hpp"
+#include "pipeline/run/prepare.hpp"
+#include "pipeline/run/simulate.hpp"
+#include "pipeline/scene/jitter.hpp"
+#include "pipeline/scene/make_stepper.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr int fine = 16, half_as_fine = 8;  // steps a frame
+
+// Root mean square over states of equal weight.
+struct Mean {
+  double sum = 0;
+  int count = 0;
+  void add(double value) {
+    sum += value * value;
+    ++count;
+  }
+  double value() const { return count > 0 ? std::sqrt(sum / count) : 0; }
+};
+
+struct Flight {
+  State end;
+  StepReport first, last;
+  bool stopped = false;
+  bool arrived() const { return last.status == StepStatus::accepted && !stopped; }
+};
+
+Flight fly(const Setup& setup, State from, int frames, const Stop& stop,
+           const std::function<void(const State&)>& observe = {}) {
+  const std::unique_ptr<Stepper> stepper = make_stepper(setup);
+  Flight flight;
+  flight.end = std::move(from);
+  flight.last = simulate(*stepper, setup.drive_at, 1 / setup.run.fps, flight.end.frame + frames, flight.end,
+                         [&](const FrameEvent& event) {
+                           if (flight.first.status == StepStatus::not_run) flight.first = event.report;
+                           if (observe && event.report.status == StepStatus::accepted) observe(event.state);
+                           flight.stopped = stop && stop();
+                           return !flight.stopped;
+                         });
+  return flight;
+}
+
+Setup with_steps(const Comparison& comparison, const CompareScene& scene, bool short_form, int steps) {
+  std::vector<std::string> overrides = comparison.reference;
+  overrides.push_back(fmt::format("run.substeps={}", steps));
+  return read_compared(scene, short_form, overrides);
+}
+
+void check_arrived(const Flight& flight, const Setup& setup) {
+  if (!flight.stopped && !flight.arrived())
+    throw Error("the reference run fails: a step is rejected", setup.file.string(),
+                "choose another `reference`, or leave the scene out");
+}
+
+std::vector<int> chosen_frames(const CompareScene& scene, const Setup& setup) {
+  if (setup.run.frames <= scene.horizon)
+    throw Error(fmt::format("the scene has {} frames and the horizon is {}", setup.run.frames, scene.horizon),
+                setup.file.string(), "run more frames, or choose a shorter `horizon`");
+  std::vector<int> frames;
+  for (int k = 1; k <= scene.states; ++k) frames.push_back((setup.run.frames - scene.horizon) * k / scene.states);
+  return frames;
+}
+
+// The whole run: fills in states and what it loses. False: stopped.
+bool run_reference(const Setup& setup, const CompareScene& scene, const Stop& stop, CompareReference& reference) {
+  const std::vector<int> frames = chosen_frames(scene, setup);
+  reference.states.resize(frames.size());
+  const auto keep = [&](const State& state) {
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      if (state.frame == frames[k]) {
+        reference.states[k].from = state;
+        reference.states[k].from.history = {};
+      }
+      if (state.frame == frames[k] + scene.horizon) reference.states[k].target = state.x;
+    }
+  };
+  keep(setup.initial);
+  const Flight flight = fly(setup, setup.initial, setup.run.frames, stop, keep);
+  check_arrived(flight, setup);
+  reference.floor.lost = energy_of(setup, setup.initial) - energy_of(setup, flight.end);
+  return flight.arrived();
+}
+
+std::optional<Points> jittered_end(Setup setup, const State& from, double jitter, std::uint64_t seed, int horizon,
+                                   const Stop& stop) {
+  setup.initial = from;
+  jitter_start(setup, jitter, seed);
+  const Flight flight = fly(setup, setup.initial, horizon, stop);
+  check_arrived(flight, setup);
+  if (flight.stopped) return {};
+  return flight.end.x;
+}
+
+}  // namespace
+
+double energy_of(const Setup& setup, const State& state) {
+  return energies(setup.scene, state.x, state.v, setup.drive_at(state.time).acceleration).total();
+}
+
+Setup read_compared(const CompareScene& scene, bool short_form, const std::vector<std::string>& overrides) {
+  std::vector<std::string> all;
+  if (short_form) all = read_setup(scene.file).short_form;
+  all.insert(all.end(), scene.overrides.begin(), scene.overrides.end());
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  return read_setup(scene.file, all);
+}
+
+std::optional<CompareReference> make_reference(const Comparison& comparison, const CompareScene& scene, bool short_form,
+                                               const Stop& stop) {
+  Setup setup = with_steps(comparison, scene, short_form, fine);
+  if (!prepare(setup, stop)) return {};
+  const Setup coarser = with_steps(comparison, scene, short_form, half_as_fine);
+  CompareReference reference;
+  if (!run_reference(setup, scene, stop, reference)) return {};
+  Mean motion, steps, jittered;
+  for (const CommonState& state : reference.states) {
+    const Flight coarse = fly(coarser, state.from, scene.horizon, stop);
+    check_arrived(coarse, coarser);
+    if (coarse.stopped) return {};
+    const auto one = jittered_end(setup, state.from, comparison.jitter, 1, scene.horizon, stop);
+    const auto other = one ? jittered_end(setup, state.from, comparison.jitter, 2, scene.horizon, stop) : one;
+    if (!other) return {};
+    motion.add(root_mean_square(state.target - state.from.x));
+    steps.add(root_mean_square(coarse.end.x - state.target));
+    jittered.add(root_mean_square(*one - *other));
+  }
+  CompareFloor& floor = reference.floor;
+  floor.scene = scene.name;
+  floor.vertices = setup.scene.surface.vertex_count;
+  floor.frames = setup.run.frames;
+  floor.states = scene.states;
+  floor.horizon = scene.horizon;
+  floor.motion = motion.value();
+  floor.steps = steps.value();
+  floor.jittered = jittered.value();
+  return reference;
+}
+
+std::optional<CompareErrors> errors_of(const Setup& setup, const CompareReference& reference, const Stop& stop) {
+  CompareErrors errors;
+  Mean temporal;
+  for (const CommonState& state : reference.states) {
+    const Flight flight = fly(setup, state.from, reference.floor.horizon, stop);
+    if (flight.stopped) return {};
+    if (!flight.arrived()) {
+      errors.trouble = fmt::format("rejects a step after frame {}", flight.end.frame);
+      return errors;
+    }
+    temporal.add(root_mean_square(flight.end.x - state.target));
+    const double substep = 1 / setup.run.fps / std::max(1, flight.first.substeps);
+    const auto algebraic = algebraic_error(setup, state.from, substep);
+    if (!algebraic || algebraic->error < errors.algebraic) continue;
+    errors.algebraic = algebraic->error;
+    errors.algebraic_largest = algebraic->largest;
+    if (!algebraic->reference_converged) errors.trouble = "the algebraic reference did not converge";
+  }
+  errors.temporal = temporal.value();
+  return errors;
+}
+
+}  // namespace selvedge

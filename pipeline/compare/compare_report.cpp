@@ -1,0 +1,158 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/compare/compare.hpp"
+#include "pipeline/formats/hdf5_handles.hpp"
+#include "pipeline/host/version.hpp"
+
+namespace selvedge {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Column {
+  const char* name;    // in files
+  const char* title;   // in the table
+  const char* format;  // in the table
+  double (*value)(const CompareRow&);
+};
+
+const std::vector<Column>& columns() {
+  using R = const CompareRow&;
+  static const std::vector<Column> all{
+      {"dt", "dt [s]", "{:.2g}", [](R r) { return r.dt; }},
+      {"ms", "ms", "{:.1f}", [](R r) { return r.ms; }},
+      {"ms_spread", "+-", "{:.1f}", [](R r) { return r.ms_spread; }},
+      {"algebraic", "algebraic", "{:.2g}", [](R r) { return r.algebraic; }},
+      {"algebraic_largest", "largest", "{:.2g}", [](R r) { return r.algebraic_largest; }},
+      {"temporal", "temp. [m]", "{:.3g}", [](R r) { return r.temporal; }},
+      {"floor", "floor [m]", "{:.2g}", [](R r) { return r.floor; }},
+      {"ranked", "ranked", "{}", [](R r) { return double(r.ranked); }},
+      {"front", "front", "{}", [](R r) { return double(r.front); }},
+      {"decay", "decay", "{:.3f}", [](R r) { return r.decay; }},
+      {"newton", "Newton", "{:.1f}", [](R r) { return r.newton; }},
+      {"linear", "linear", "{:.1f}", [](R r) { return r.linear; }},
+      {"pairs", "pairs", "{:.0f}", [](R r) { return double(r.pairs); }},
+      {"passed_through", "through", "{:.0f}", [](R r) { return double(r.passed_through); }},
+      {"reproduced", "same bits", "{}", [](R r) { return double(r.reproduced); }}};
+  return all;
+}
+
+std::string table_cell(const Column& column, const CompareRow& row) {
+  const double value = column.value(row);
+  if (std::isnan(value)) return "";
+  const std::string format = column.format;
+  return format == "{}" ? (value != 0 ? "yes" : "no") : fmt::format(fmt::runtime(format), value);
+}
+
+Json floor_json(const CompareFloor& f) {
+  return {{"scene", f.scene},     {"vertices", f.vertices}, {"frames", f.frames}, {"states", f.states},
+          {"horizon", f.horizon}, {"motion", f.motion},     {"steps", f.steps},   {"jittered", f.jittered},
+          {"floor", f.floor()},   {"lost", f.lost}};
+}
+
+Json row_json(const CompareRow& row) {
+  Json json = {{"scene", row.scene}, {"setting", row.setting}};
+  for (const Column& column : columns()) {
+    const double value = column.value(row);
+    json[column.name] = std::isfinite(value) ? Json(value) : Json(nullptr);
+  }
+  json["trouble"] = row.trouble;
+  return json;
+}
+
+// As a field of RFC 4180.
+std::string quoted(const std::string& text) {
+  std::string field(1, '"');
+  for (const char c : text) field.append(c == '"' ? 2 : 1, c);
+  field.push_back('"');
+  return field;
+}
+
+}  // namespace
+
+std::string compare_table(const CompareResult& result) {
+  std::string text;
+  for (const CompareFloor& f : result.floors) {
+    text += fmt::format(
+        "{}: {} vertices, {} frames; {} common states, {} frames from each\n"
+        "  the reference moves {:.3g} m in that; floor {:.2g} m (dt/8 against dt/16 {:.2g}, jittered {:.2g}); it loses "
+        "{:.3g} J in all\n",
+        f.scene, f.vertices, f.frames, f.states, f.horizon, f.motion, f.floor(), f.steps, f.jittered, f.lost);
+    text += fmt::format("  {:<24}", "setting");
+    for (const Column& column : columns()) text += fmt::format(" {:>10}", column.title);
+    text += "\n";
+    for (const CompareRow& row : result.rows) {
+      if (row.scene != f.scene) continue;
+      text += fmt::format("  {:<24}", row.setting);
+      for (const Column& column : columns()) text += fmt::format(" {:>10}", table_cell(column, row));
+      text += fmt::format("  {}\n", row.trouble);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string compare_csv(const CompareResult& result) {
+  std::string text = "scene,setting";
+  for (const Column& column : columns()) text += std::string(",") + column.name;
+  text += ",trouble\n";
+  for (const CompareRow& row : result.rows) {
+    text += fmt::format("{},{}", quoted(row.scene), quoted(row.setting));
+    for (const Column& column : columns()) {
+      const double value = column.value(row);
+      text += std::isfinite(value) ? fmt::format(",{:.9g}", value) : ",";
+    }
+    text += fmt::format(",{}\n", quoted(row.trouble));
+  }
+  return text;
+}
+
+std::string compare_json(const CompareResult& result) {
+  Json scenes = Json::array(), rows = Json::array();
+  for (const CompareFloor& floor : result.floors) scenes.push_back(floor_json(floor));
+  for (const CompareRow& row : result.rows) rows.push_back(row_json(row));
+  const Json json = {
+      {"program_version", program_version()}, {"finished", result.finished}, {"scenes", scenes}, {"rows", rows}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_compare_hdf5(const std::filesystem::path& path, const CompareResult& result) {
+  std::filesystem::path beside = path;
+  beside += ".part";
+  h5::File file = h5::File::create(beside);
+  const h5::Handle rows = file.make_group("rows"), scenes = file.make_group("scenes");
+  std::vector<std::string> scene, setting, trouble, names;
+  for (const CompareRow& row : result.rows) {
+    scene.push_back(row.scene);
+    setting.push_back(row.setting);
+    trouble.push_back(row.trouble);
+  }
+  file.write_text("program_version", program_version());
+  file.write_texts("rows/scene", scene);
+  file.write_texts("rows/setting", setting);
+  file.write_texts("rows/trouble", trouble);
+  for (const Column& column : columns()) {
+    std::vector<double> values;
+    for (const CompareRow& row : result.rows) values.push_back(column.value(row));
+    file.write_constant(std::string("rows/") + column.name, H5T_NATIVE_DOUBLE, {values.size()}, values.data());
+  }
+  std::vector<double> motion, steps, jittered, lost;
+  for (const CompareFloor& f : result.floors) {
+    names.push_back(f.scene);
+    motion.push_back(f.motion);
+    steps.push_back(f.steps);
+    jittered.push_back(f.jittered);
+    lost.push_back(f.lost);
+  }
+  file.write_texts("scenes/scene", names);
+  for (const auto& [name, values] :
+       {std::pair{"motion", &motion}, {"steps", &steps}, {"jittered", &jittered}, {"lost", &lost}})
+    file.write_constant(std::string("scenes/") + name, H5T_NATIVE_DOUBLE, {values->size()}, values->data());
+  file.close();
+  std::filesystem::rename(beside, path);
+}
+
+}  // namespace selvedge

@@ -1,0 +1,142 @@
+#include "pipeline/config/config.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+#include "collision/geometry/error.hpp"
+
+namespace selvedge {
+namespace {
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+std::string kind_text(const Key& key) {
+  const std::string words = key.choices.empty() ? "" : joined(key.choices);
+  switch (key.kind) {
+    case Kind::number:
+      return words.empty() ? "number" : "number or " + words;
+    case Kind::integer:
+      return words.empty() ? "integer" : "integer or " + words;
+    case Kind::boolean:
+      return "true or false";
+    case Kind::text:
+      return words.empty() ? "text" : words;
+    case Kind::path:
+      return "path";
+    case Kind::vector:
+      return "[x, y, z]";
+    case Kind::pair:
+      return "number or [a, b]";
+    case Kind::numbers:
+      return "number or list of numbers";
+    case Kind::integers:
+      return "integer or list of integers";
+    case Kind::texts:
+      return "text or list of texts";
+    case Kind::section:
+      return "see [" + key.section->name + "](#" + key.section->name + ")";
+    case Kind::sections:
+      return "list of [" + key.section->name + "](#" + key.section->name + ")";
+  }
+  return {};
+}
+
+}  // namespace
+
+bool Range::has(double value) const {
+  return (low_in ? value >= low : value > low) && (high_in ? value <= high : value < high);
+}
+
+std::string Range::text() const {
+  const Range none;
+  const bool below = low != none.low, above = high != none.high;
+  if (below && above)
+    return fmt::format("{} {} to {}{}", low_in ? "from" : "above", low, high_in ? "" : "below ", high);
+  if (below) return fmt::format("{} {}", low_in ? "at least" : "above", low);
+  if (above) return fmt::format("{} {}", high_in ? "at most" : "below", high);
+  return {};
+}
+
+const Config& Config::operator[](std::string_view name) const {
+  assert(section);
+  for (const Config& entry : entries)
+    if (entry.key->name == name) return entry;
+  assert(!"the key is not in the section's table");
+  std::abort();
+}
+
+Config& Config::operator[](std::string_view name) {
+  return const_cast<Config&>(static_cast<const Config&>(*this)[name]);
+}
+
+double Config::number() const {
+  assert(!numbers.empty());
+  return numbers[0];
+}
+
+int Config::integer() const { return static_cast<int>(number()); }
+
+bool Config::flag() const { return number() != 0; }
+
+const std::string& Config::text() const {
+  assert(!words.empty());
+  return words[0];
+}
+
+Vec3 Config::vector() const {
+  assert(numbers.size() == 3);
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+void Config::fail(const std::string& what, const std::string& cure) const {
+  throw Error(path.empty() ? what : "`" + path + "` " + what, where, cure);
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+  return list;
+}
+
+std::string nearest_word(std::string_view word, const std::vector<std::string>& known) {
+  std::string best;
+  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 2) + 1;
+  for (const std::string& candidate : known)
+    if (const std::size_t distance = edit_distance(word, candidate); distance < best_distance) {
+      best = candidate;
+      best_distance = distance;
+    }
+  return best;
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
+  const std::string near = nearest_word(word, known);
+  return near.empty() ? "" : "; did you mean `" + near + "`?";
+}
+
+std::string section_markdown(const Section& section) {
+  std::string page = "| key | value | unit | allowed | default | meaning |\n|---|---|---|---|---|---|\n";
+  for (const Key& key : section.keys)
+    page += fmt::format(
+        "| `{}` | {} | {} | {} | {} | {} |\n", key.name, kind_text(key), unit_symbol(key.unit), key.range.text(),
+        key.required ? "required" : (key.otherwise.empty() ? "" : "`" + key.otherwise + "`"), key.about);
+  return page;
+}
+
+}  // namespace selvedge

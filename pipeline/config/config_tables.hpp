@@ -1,0 +1,132 @@
+#pragma once
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pipeline/config/config.hpp"
+
+// What the tables of the scene file are written with, and the sections that several of them use.
+namespace selvedge::table {
+
+inline constexpr Range any{};
+inline constexpr Range positive{.low = 0, .low_in = false};
+inline constexpr Range not_negative{.low = 0};
+inline constexpr Range at_least_one{.low = 1};
+
+template <class T>
+std::string show(const T& value) {
+  return fmt::format("{}", value);
+}
+
+inline Key number(std::string name, Unit unit, Range range, std::string otherwise, std::string about) {
+  return {.name = std::move(name),
+          .kind = Kind::number,
+          .about = std::move(about),
+          .unit = unit,
+          .range = range,
+          .otherwise = std::move(otherwise)};
+}
+inline Key integer(std::string name, Range range, std::string otherwise, std::string about) {
+  return {.name = std::move(name),
+          .kind = Kind::integer,
+          .about = std::move(about),
+          .range = range,
+          .otherwise = std::move(otherwise)};
+}
+inline Key flag(std::string name, bool otherwise, std::string about) {
+  return {.name = std::move(name), .kind = Kind::boolean, .about = std::move(about), .otherwise = show(otherwise)};
+}
+inline Key word(std::string name, std::vector<std::string> choices, std::string otherwise, std::string about) {
+  return {.name = std::move(name),
+          .kind = Kind::text,
+          .about = std::move(about),
+          .otherwise = std::move(otherwise),
+          .choices = std::move(choices)};
+}
+inline Key text(std::string name, std::string about) {
+  return {.name = std::move(name), .kind = Kind::text, .about = std::move(about)};
+}
+inline Key named(std::string name, std::string otherwise, std::string about) {
+  return {.name = std::move(name), .kind = Kind::text, .about = std::move(about), .otherwise = std::move(otherwise)};
+}
+inline Key path(std::string name, std::string about) {
+  return {.name = std::move(name), .kind = Kind::path, .about = std::move(about)};
+}
+inline Key vector(std::string name, Unit unit, std::string otherwise, std::string about) {
+  return {.name = std::move(name),
+          .kind = Kind::vector,
+          .about = std::move(about),
+          .unit = unit,
+          .otherwise = std::move(otherwise)};
+}
+inline Key pair(std::string name, Unit unit, std::string otherwise, std::string about, Range range = positive) {
+  return {.name = std::move(name),
+          .kind = Kind::pair,
+          .about = std::move(about),
+          .unit = unit,
+          .range = range,
+          .otherwise = std::move(otherwise)};
+}
+inline Key numbers(std::string name, Range range, std::string about) {
+  return {.name = std::move(name), .kind = Kind::numbers, .about = std::move(about), .range = range};
+}
+inline Key integers(std::string name, Range range, int most, std::string about) {
+  return {.name = std::move(name), .kind = Kind::integers, .about = std::move(about), .range = range, .most = most};
+}
+inline Key texts(std::string name, std::string about) {
+  return {.name = std::move(name), .kind = Kind::texts, .about = std::move(about)};
+}
+inline Key section(const Section& table, std::string otherwise, std::string about) {
+  return {.name = table.name,
+          .kind = Kind::section,
+          .about = std::move(about),
+          .otherwise = std::move(otherwise),
+          .section = &table};
+}
+inline Key sections(std::string name, const Section& table, std::string otherwise, std::string about) {
+  return {.name = std::move(name),
+          .kind = Kind::sections,
+          .about = std::move(about),
+          .otherwise = std::move(otherwise),
+          .section = &table};
+}
+inline Key needed(Key key) {
+  key.required = true;
+  return key;
+}
+inline Key with_words(Key key, std::vector<std::string> choices) {
+  key.choices = std::move(choices);
+  return key;
+}
+
+inline Key renamed(Key key, std::string name) {
+  key.name = std::move(name);
+  return key;
+}
+
+inline std::vector<Key> operator+(std::vector<Key> a, const std::vector<Key>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+Key unit_key();  // of a file
+std::vector<Key> placement_keys();
+Key edge_key(const std::string& otherwise);
+Key interpolation_key();
+const Section& motion_section();
+const Section& mesh_section();
+const Section& cloth_section();
+std::vector<Key> sheet_keys();       // rectangle, disc, tube, ribbon, tshirt
+std::vector<Key> selection_keys();   // vertices, box, group
+const Section& selection_section();  // vertices of a named cloth
+const Section& garment_section();
+const Section& start_section();
+const Section& outcome_section();
+const Section& obstacle_section();
+const Section& body_section();
+const Section& seam_section();
+const Section& spring_section();
+std::vector<Key> material_values();  // what may be said of a material by value
+
+}  // namespace selvedge::table

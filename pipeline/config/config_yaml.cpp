@@ -1,0 +1,193 @@
+#include "pipeline/config/config_yaml.hpp"
+
+#include <charconv>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "collision/geometry/error.hpp"
+
+namespace selvedge {
+namespace {
+
+std::string file_text(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    throw Error("is a folder", path.string(), "name the configuration file in it");
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw Error("cannot be opened", path.string(), "check the path");
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+YAML::Node loaded(const std::string& text, const std::string& where) {
+  try {
+    return YAML::Load(text);
+  } catch (const YAML::Exception& e) {
+    throw Error("is not YAML: " + e.msg, e.mark.is_null() ? where : fmt::format("{}:{}", where, e.mark.line + 1), "");
+  }
+}
+
+// The item of a list that a path names by index or by the item's `name`.
+std::size_t item_index(const YAML::Node& list, const std::string& word, const std::string& path,
+                       const std::string& where) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    names.push_back(std::to_string(i));
+    if (!list[i].IsMap() || !list[i]["name"] || !list[i]["name"].IsScalar()) continue;
+    if (list[i]["name"].Scalar() == word) return i;
+    names.back() += " (" + list[i]["name"].Scalar() + ")";
+  }
+  std::size_t index = 0;
+  const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), index);
+  if (problem == std::errc() && end == word.data() + word.size() && index < list.size()) return index;
+  throw Error("`" + path + "` has no item `" + word + "`", where,
+              list.size() ? "items: " + joined(names) : "the list is empty or absent");
+}
+
+void assign(YAML::Node node, const Section& section, const std::vector<std::string>& words, std::size_t depth,
+            const YAML::Node& value, const std::string& where) {
+  std::string path;
+  for (std::size_t i = 0; i < depth; ++i) path += (i ? "." : "") + words[i];
+  const Key* key = find_key(section, words[depth]);
+  if (!key)
+    throw Error("`" + words[depth] + "` is not a key of " + (path.empty() ? "the file" : "`" + path + "`"), where,
+                "allowed: " + joined(key_names(section)) + suggestion(words[depth], key_names(section)));
+  if (depth + 1 == words.size()) {
+    node[key->name] = value;
+    return;
+  }
+  YAML::Node child = node[key->name];
+  std::size_t next = depth + 1;
+  if (key->kind == Kind::sections) {
+    if (!child.IsSequence()) child = YAML::Node(YAML::NodeType::Sequence);
+    child.reset(child[item_index(child, words[next], path.empty() ? key->name : path + "." + key->name, where)]);
+    if (++next == words.size()) {
+      child = value;
+      return;
+    }
+  } else if (key->kind != Kind::section) {
+    throw Error("`" + words[depth] + "` has no keys in it", where, "end the key there");
+  }
+  if (child.IsScalar() && !key->section->shorthand.empty()) {
+    const YAML::Node plain = YAML::Clone(child);
+    child = YAML::Node(YAML::NodeType::Map);
+    child[key->section->shorthand] = plain;
+  }
+  if (!child.IsMap()) child = YAML::Node(YAML::NodeType::Map);
+  assign(child, *key->section, words, next, value, where);
+}
+
+void emit(YAML::Emitter& out, const Config& config);
+
+void emit_value(YAML::Emitter& out, const Config& entry) {
+  if (entry.section && entry.key->kind == Kind::section) return emit(out, entry);
+  if (entry.key->kind == Kind::sections) {
+    out << YAML::BeginSeq;
+    for (const Config& item : entry.items) emit(out, item);
+    out << YAML::EndSeq;
+    return;
+  }
+  const bool list = entry.key->kind == Kind::vector || entry.key->kind == Kind::pair ||
+                    entry.key->kind == Kind::numbers || entry.key->kind == Kind::integers ||
+                    entry.key->kind == Kind::texts;
+  if (list) out << YAML::Flow << YAML::BeginSeq;
+  for (const double number : entry.numbers) {
+    if (entry.key->kind == Kind::boolean)
+      out << (number != 0);
+    else
+      out << fmt::format("{}", number);
+  }
+  for (const std::string& word : entry.words) {
+    // Text that would read back as a number or a boolean is quoted.
+    if (entry.key->kind != Kind::number && entry.key->kind != Kind::integer) out << YAML::DoubleQuoted;
+    out << word;
+  }
+  if (list) out << YAML::EndSeq;
+}
+
+void emit(YAML::Emitter& out, const Config& config) {
+  out << YAML::BeginMap;
+  for (const Config& entry : config.entries) {
+    if (!entry.present()) continue;
+    out << YAML::Key << entry.key->name << YAML::Value;
+    emit_value(out, entry);
+  }
+  out << YAML::EndMap;
+}
+
+}  // namespace
+
+std::string Origin::of(const YAML::Node& node, const std::string& path, const std::string& parent) const {
+  for (auto o = overrides.rbegin(); o != overrides.rend(); ++o)
+    if (path == o->path || path.starts_with(o->path + ".")) return o->where;
+  const YAML::Mark mark = node.Mark();
+  return mark.is_null() ? parent : fmt::format("{}:{}", file, mark.line + 1);
+}
+
+const Key* find_key(const Section& section, std::string_view name) {
+  for (const Key& key : section.keys)
+    if (key.name == name) return &key;
+  return nullptr;
+}
+
+std::vector<std::string> key_names(const Section& section) {
+  std::vector<std::string> names;
+  for (const Key& key : section.keys) names.push_back(key.name);
+  return names;
+}
+
+void apply_override(const std::string& assignment, YAML::Node root, const Section& section, Origin& origin) {
+  const std::string where = "--set " + assignment;
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw Error("is not key=value", where, "write for example --set run.frames=10");
+  std::vector<std::string> words{""};
+  for (const char c : assignment.substr(0, equals)) {
+    if (c == '.')
+      words.emplace_back();
+    else
+      words.back() += c;
+  }
+  const YAML::Node value = loaded(assignment.substr(equals + 1), where);
+  assign(root, section, words, 0, value, where);
+  origin.overrides.push_back({assignment.substr(0, equals), where});
+}
+
+Config read_config(const std::filesystem::path& path, const Section& section,
+                   const std::vector<std::string>& overrides) {
+  Origin origin{path.string(), {}};
+  try {
+    YAML::Node root = loaded(file_text(path), origin.file);
+    if (root.IsNull()) throw Error("is empty", origin.file, "docs/scene.md shows what belongs into a scene");
+    if (!root.IsMap())
+      throw Error("is not a list of `key: value`", origin.file, "allowed keys: " + joined(key_names(section)));
+    for (const std::string& assignment : overrides) apply_override(assignment, root, section, origin);
+    return checked_section(root, section, "", origin.file, origin);
+  } catch (const YAML::Exception& e) {
+    throw Error("cannot be read: " + e.msg, origin.file, "");
+  }
+}
+
+Config read_values(const Section& section, const std::vector<GivenValue>& values) {
+  Origin origin{"the command line", {}};
+  YAML::Node root(YAML::NodeType::Map);
+  for (const GivenValue& given : values) {
+    if (given.words.size() == 1)
+      root[given.key] = given.words[0];
+    else
+      root[given.key] = given.words;
+    origin.overrides.push_back({given.key, given.where});
+  }
+  return checked_section(root, section, "", origin.file, origin);
+}
+
+std::string to_yaml(const Config& config) {
+  YAML::Emitter out;
+  emit(out, config);
+  return std::string(out.c_str()) + "\n";
+}
+
+}  // namespace selvedge

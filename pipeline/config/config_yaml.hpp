@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <yaml-cpp/yaml.h>
+
+#include "pipeline/config/config.hpp"
+
+namespace selvedge {
+
+// A value of the command line, put into the file's tree: `where` it was given.
+struct Override {
+  std::string path, where;
+};
+
+// Where a node of a file was written, for messages.
+struct Origin {
+  std::string file;
+  std::vector<Override> overrides;
+  std::string of(const YAML::Node&, const std::string& path, const std::string& parent) const;
+};
+
+// Writes one key=value into the tree; plain values that stand for sections become sections on the way.
+void apply_override(const std::string& assignment, YAML::Node root, const Section&, Origin&);
+
+// Checks a tree against the table of its section.
+Config checked_section(const YAML::Node&, const Section&, const std::string& path, const std::string& parent,
+                       const Origin&);
+
+std::vector<std::string> key_names(const Section&);
+const Key* find_key(const Section&, std::string_view name);
+
+}  // namespace selvedge

@@ -1,0 +1,242 @@
+#include "pipeline/formats/hdf5_handles.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "collision/geometry/error.hpp"
+
+namespace selvedge::h5 {
+namespace {
+
+// The deepest entry of the error stack names the system's own reason ("... error message = 'No space left on device'").
+std::string reason_of_failure() {
+  std::string deepest;
+  const auto keep_last = [](unsigned, const H5E_error2_t* entry, void* text) -> herr_t {
+    if (entry->desc) *static_cast<std::string*>(text) = entry->desc;
+    return 0;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, keep_last, &deepest);
+  const std::string key = "error message = '";
+  const std::size_t begin = deepest.find(key);
+  if (begin == std::string::npos) return deepest;
+  const std::size_t end = deepest.find('\'', begin + key.size());
+  return deepest.substr(begin + key.size(), end - begin - key.size());
+}
+
+std::string cure_for(const std::string& reason) {
+  if (reason.find("No space") != std::string::npos || reason.find("File too large") != std::string::npos ||
+      reason.find("quota") != std::string::npos)
+    return "free some space or choose another folder; what was written is readable up to the last full frame";
+  if (reason.find("No such file") != std::string::npos) return "check the path";
+  if (reason.find("ermission") != std::string::npos) return "check who may write there, or choose another folder";
+  return "check that the file is one of this program and that its disk works";
+}
+
+// Latest format (SWMR needs it), no file locks (network folders often have none; one writer a file is a rule of ours).
+Handle file_access() {
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_libver_bounds(access.id(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
+  H5Pset_file_locking(access.id(), false, true);
+  // SWMR readers read metadata again while its checksum is wrong, and wait twice as long each time. The default of 100
+  // times never ends where a killed writer left it so; this many take a second or two.
+  H5Pset_metadata_read_attempts(access.id(), 30);
+  return access;
+}
+
+// The system may end a killed writer's last write between two pages of memory. Metadata that lies within one page is
+// therefore whole or as it was.
+Handle file_creation() {
+  Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_file_space_strategy(creation.id(), H5F_FSPACE_STRATEGY_PAGE, false, 1);
+  H5Pset_file_space_page_size(creation.id(), 4096);
+  return creation;
+}
+
+}  // namespace
+
+hid_t checked(hid_t result, const std::filesystem::path& file, const std::string& doing) {
+  if (result >= 0) return result;
+  const std::string reason = reason_of_failure();
+  throw Error("cannot " + doing + (reason.empty() ? "" : " (" + reason + ")"), file.string(), cure_for(reason));
+}
+
+void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+Handle text_type(std::size_t length) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.id(), length);
+  H5Tset_cset(type.id(), H5T_CSET_UTF8);
+  H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
+  return type;
+}
+
+File File::create(const std::filesystem::path& path) {
+  silence();
+  const Handle access = file_access(), creation = file_creation();
+  const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id());
+  return {path, Handle(checked(id, path, "make the file"), H5Fclose)};
+}
+
+File File::open(const std::filesystem::path& path) {
+  silence();
+  const Handle access = file_access();
+  const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access.id());
+  return {path, Handle(checked(id, path, "open as HDF5"), H5Fclose)};
+}
+
+void File::move_to(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::rename(path_, path, error);
+  if (error) throw Error("cannot rename to it (" + error.message() + ")", path.string(), "check the folder");
+  path_ = path;
+}
+
+void File::flush() const { check(H5Fflush(id(), H5F_SCOPE_LOCAL), "write"); }
+
+void File::start_swmr() const { check(H5Fstart_swmr_write(id()), "start writing"); }
+
+void File::close() {
+  if (id() < 0) return;
+  flush();
+  handle_.reset();
+}
+
+void File::abandon() {
+  void* descriptor = nullptr;
+  if (id() < 0 || H5Fget_vfd_handle(id(), H5P_DEFAULT, &descriptor) < 0) return;
+  const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+  if (nowhere >= 0) {
+    ::dup2(nowhere, *static_cast<int*>(descriptor));
+    ::close(nowhere);
+  }
+  handle_.reset();
+}
+
+Handle File::make_group(const std::string& name) const {
+  return {check(H5Gcreate2(id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), "make group " + name), H5Gclose};
+}
+
+void File::write_constant(const std::string& name, hid_t type, const std::vector<hsize_t>& shape,
+                          const void* data) const {
+  const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
+  const Handle dataset(
+      check(H5Dcreate2(id(), name.c_str(), type, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), "make " + name),
+      H5Dclose);
+  if (std::find(shape.begin(), shape.end(), hsize_t{0}) != shape.end()) return;
+  check(H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "write " + name);
+}
+
+void File::write_text(const std::string& name, const std::string& text) const {
+  const std::string padded = text.empty() ? std::string(1, '\0') : text;
+  const Handle type = text_type(padded.size());
+  write_constant(name, type.id(), {1}, padded.data());
+}
+
+void File::write_texts(const std::string& name, const std::vector<std::string>& texts) const {
+  std::size_t width = 1;
+  for (const std::string& text : texts) width = std::max(width, text.size());
+  std::vector<char> padded(width * texts.size(), '\0');
+  for (std::size_t i = 0; i < texts.size(); ++i) std::memcpy(&padded[i * width], texts[i].data(), texts[i].size());
+  const Handle type = text_type(width);
+  write_constant(name, type.id(), {texts.size()}, padded.data());
+}
+
+Handle File::make_growing(const std::string& name, hid_t type, const std::vector<hsize_t>& row_shape,
+                          hsize_t chunk_rows, hsize_t first_rows) const {
+  std::vector<hsize_t> now{first_rows}, most{H5S_UNLIMITED}, chunk{chunk_rows};
+  for (const hsize_t extent : row_shape) now.push_back(extent), most.push_back(extent), chunk.push_back(extent);
+  const int rank = static_cast<int>(now.size());
+  const Handle space(H5Screate_simple(rank, now.data(), most.data()), H5Sclose);
+  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  check(H5Pset_chunk(creation.id(), rank, chunk.data()), "set the chunks of " + name);
+  return {
+      check(H5Dcreate2(id(), name.c_str(), type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), "make " + name),
+      H5Dclose};
+}
+
+Handle File::open_dataset(const std::string& name) const {
+  return {check(H5Dopen2(id(), name.c_str(), H5P_DEFAULT), "find " + name), H5Dclose};
+}
+
+bool File::has(const std::string& name) const { return H5Lexists(id(), name.c_str(), H5P_DEFAULT) > 0; }
+
+std::vector<hsize_t> File::shape(hid_t dataset) const {
+  const Handle space(H5Dget_space(dataset), H5Sclose);
+  const int rank = H5Sget_simple_extent_ndims(space.id());
+  check(rank, "read a shape");
+  std::vector<hsize_t> shape(rank);
+  H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr);
+  return shape;
+}
+
+std::vector<std::string> File::read_text_rows(hid_t dataset) const {
+  const Handle type(H5Dget_type(dataset), H5Tclose);
+  if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) > 0)
+    throw Error("a text is stored in a form this program does not write", path_.string(),
+                "is it a file of this program? Texts must have a fixed length");
+  const std::size_t width = H5Tget_size(type.id());
+  const std::vector<hsize_t> rows = shape(dataset);
+  std::vector<char> padded(width * (rows.empty() ? 1 : rows[0]));
+  if (!padded.empty()) check(H5Dread(dataset, type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()), "read a text");
+  std::vector<std::string> texts;
+  for (std::size_t begin = 0; begin < padded.size(); begin += width)
+    texts.emplace_back(&padded[begin], strnlen(&padded[begin], width));
+  return texts;
+}
+
+std::string File::read_text(const std::string& name) const {
+  const std::vector<std::string> texts = read_texts(name);
+  return texts.empty() ? "" : texts.front();
+}
+
+std::vector<std::string> File::read_texts(const std::string& name) const {
+  return read_text_rows(open_dataset(name).id());
+}
+
+void File::read_all(const std::string& name, hid_t type, void* data) const {
+  check(H5Dread(open_dataset(name).id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "read " + name);
+}
+
+namespace {
+
+// File and memory selections of whole rows.
+struct Rows {
+  Handle file, memory;
+};
+
+Rows select_rows(hid_t dataset, const std::vector<hsize_t>& shape, hsize_t first, hsize_t count) {
+  std::vector<hsize_t> start(shape.size(), 0), extent = shape;
+  start[0] = first;
+  extent[0] = count;
+  Rows rows{Handle(H5Dget_space(dataset), H5Sclose),
+            Handle(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose)};
+  H5Sselect_hyperslab(rows.file.id(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr);
+  return rows;
+}
+
+}  // namespace
+
+void File::write_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t count, const void* data) const {
+  if (count == 0) return;
+  std::vector<hsize_t> extent = shape(dataset);
+  if (extent[0] < first + count) {
+    extent[0] = first + count;
+    check(H5Dset_extent(dataset, extent.data()), "grow");
+  }
+  const Rows rows = select_rows(dataset, extent, first, count);
+  check(H5Dwrite(dataset, type, rows.memory.id(), rows.file.id(), H5P_DEFAULT, data), "write");
+}
+
+void File::read_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t count, void* data) const {
+  if (count == 0) return;
+  const std::vector<hsize_t> extent = shape(dataset);
+  if (extent.empty() || extent[0] < first + count)
+    throw Error("the file ends before row " + std::to_string(first + count), path_.string(), "write it again");
+  const Rows rows = select_rows(dataset, extent, first, count);
+  check(H5Dread(dataset, type, rows.memory.id(), rows.file.id(), H5P_DEFAULT, data), "read");
+}
+
+}  // namespace selvedge::h5

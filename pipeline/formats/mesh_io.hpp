@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "collision/geometry/points.hpp"
+
+namespace selvedge {
+
+struct Mesh {
+  Points x;
+  Triangles triangles;  // polygons fanned from their first corner; degenerate and duplicate triangles removed, counted
+                        // in warnings
+  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> uv;  // texture vertices (OBJ vt), may be empty
+  Triangles uv_triangles;                                        // corner -> row of uv; empty where a face has none
+  std::vector<std::pair<std::string, std::vector<int>>> groups;  // OBJ g / o: name and its vertices
+  std::vector<std::string> warnings;
+};
+
+// OBJ (polygons, negative indices, vt, groups) and PLY (ascii, binary little and big endian), by extension.
+// Throws Error with file and line for what cannot be read: empty, NaN, index out of range, no faces.
+Mesh read_mesh(const std::filesystem::path&);
+
+// The same triangles in the same order; the numbers of triangles may differ.
+bool same_triangles(const Triangles& a, const Triangles& b);
+
+// Written beside and renamed: a reader never sees half a file.
+void write_mesh(const std::filesystem::path&, const Points& x, const Triangles&);  // by extension
+// The mesh of `from`, which was read as `mesh`, with other positions. OBJ to OBJ keeps every other line; what else is
+// left out, and normals that stay behind, are named in the warnings.
+void write_moved(const std::filesystem::path& from, const std::filesystem::path& to, const Points& x, const Mesh& mesh,
+                 std::vector<std::string>& warnings);
+void write_obj(const std::filesystem::path&, const Points& x, const Triangles&);
+void write_ply(const std::filesystem::path&, const Points& x, const Triangles&);
+
+}  // namespace selvedge

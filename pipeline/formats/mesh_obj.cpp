@@ -1,0 +1,216 @@
+#include "pipeline/formats/mesh_obj.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/config/config_units.hpp"
+
+namespace selvedge {
+namespace {
+
+struct Corner {
+  int vertex = 0, texture = -1;  // rows; texture -1: none
+};
+
+struct Face {
+  std::array<Corner, 3> corners;
+  int line = 0;
+};
+
+struct Parser {
+  std::string name;
+  int line = 0;
+  std::vector<double> x, uv;
+  std::vector<Face> faces;
+  std::vector<std::string> open_groups;
+  std::string object;
+  std::vector<std::pair<std::string, std::vector<int>>> groups;
+  std::map<std::string, std::size_t> group_index;
+
+  [[noreturn]] void fail(const std::string& what, const std::string& cure) const {
+    throw Error(what, fmt::format("{}:{}", name, line), cure);
+  }
+  int vertex_count() const { return static_cast<int>(x.size() / 3); }
+  int uv_count() const { return static_cast<int>(uv.size() / 2); }
+};
+
+std::vector<std::string_view> split_words(std::string_view text) {
+  std::vector<std::string_view> words;
+  const auto space = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; };
+  for (std::size_t i = 0; i < text.size();) {
+    while (i < text.size() && space(text[i])) ++i;
+    const std::size_t begin = i;
+    while (i < text.size() && !space(text[i])) ++i;
+    if (i > begin) words.push_back(text.substr(begin, i - begin));
+  }
+  return words;
+}
+
+void read_coordinates(Parser& p, const std::vector<std::string_view>& words, std::size_t count,
+                      std::vector<double>& into) {
+  for (std::size_t k = 1; k <= count; ++k) {
+    const std::optional<double> value = k < words.size() ? read_number(words[k]) : std::nullopt;
+    if (!value && k < words.size()) p.fail(fmt::format("`{}` is not a number", words[k]), "give plain numbers");
+    if (!value) p.fail(fmt::format("has {} coordinates", words.size() - 1), fmt::format("give {}", count));
+    if (!std::isfinite(*value))
+      p.fail(fmt::format("has a coordinate that is not finite ({})", words[k]), "repair the file where it was made");
+    into.push_back(*value);
+  }
+}
+
+// An index of the file, from 1, or from the end where negative, as a row. Rows to come are checked at the end.
+int read_index(const Parser& p, std::string_view word, int count) {
+  int index = 0;
+  const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), index);
+  if (problem != std::errc() || end != word.data() + word.size())
+    p.fail(fmt::format("`{}` is not an index", word), "faces are written `f 1 2 3`, `f 1/1 2/2 3/3` or `f 1//1 ...`");
+  if (index == 0 || (index < 0 && count + index < 0))
+    p.fail(fmt::format("index {} is out of range, {} so far", index, count), "indices count from 1, or from -1 back");
+  return index > 0 ? index - 1 : count + index;
+}
+
+Corner read_corner(const Parser& p, std::string_view word) {
+  const std::size_t slash = word.find('/');
+  Corner corner{read_index(p, word.substr(0, slash), p.vertex_count()), -1};
+  if (slash == std::string_view::npos) return corner;
+  const std::string_view rest = word.substr(slash + 1), texture = rest.substr(0, rest.find('/'));
+  if (!texture.empty()) corner.texture = read_index(p, texture, p.uv_count());
+  return corner;
+}
+
+void read_face(Parser& p, const std::vector<std::string_view>& words) {
+  if (words.size() < 4) p.fail(fmt::format("a face has {} corners", words.size() - 1), "give at least 3");
+  std::vector<Corner> corners;
+  for (std::size_t k = 1; k < words.size(); ++k) corners.push_back(read_corner(p, words[k]));
+  for (std::size_t k = 2; k < corners.size(); ++k)
+    p.faces.push_back({{corners[0], corners[k - 1], corners[k]}, p.line});
+  for (const std::string& name : p.open_groups) {
+    const auto [entry, fresh] = p.group_index.emplace(name, p.groups.size());
+    if (fresh) p.groups.push_back({name, {}});
+    for (const Corner& corner : corners) p.groups[entry->second].second.push_back(corner.vertex);
+  }
+}
+
+void read_line(Parser& p, std::string_view text) {
+  const std::vector<std::string_view> words = split_words(text.substr(0, text.find('#')));
+  if (words.empty()) return;
+  if (words[0] == "v") {
+    read_coordinates(p, words, 3, p.x);
+  } else if (words[0] == "vt") {
+    read_coordinates(p, words, 2, p.uv);
+  } else if (words[0] == "f") {
+    read_face(p, words);
+  } else if (words[0] == "o" || words[0] == "g") {
+    std::vector<std::string>& open = p.open_groups;
+    if (words[0] == "o") p.object = words.size() > 1 ? std::string(words[1]) : "";
+    open.clear();
+    if (!p.object.empty()) open.push_back(p.object);
+    for (std::size_t k = 1; k < words.size(); ++k)
+      if (std::find(open.begin(), open.end(), words[k]) == open.end()) open.emplace_back(words[k]);
+  }
+}
+
+// Lines that end in a backslash go on in the next.
+void read_lines(Parser& p, std::string_view text) {
+  std::string continued;
+  int number = 0;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view one = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    ++number;
+    if (!one.empty() && one.back() == '\r') one.remove_suffix(1);
+    if (continued.empty()) p.line = number;
+    if (!one.empty() && one.back() == '\\') {
+      continued += std::string(one.substr(0, one.size() - 1)) + " ";
+    } else if (continued.empty()) {
+      read_line(p, one);
+    } else {
+      read_line(p, continued + std::string(one));
+      continued.clear();
+    }
+  }
+  if (!continued.empty()) read_line(p, continued);
+}
+
+void check_ranges(Parser& p) {
+  for (const Face& face : p.faces) {
+    p.line = face.line;
+    for (const Corner& corner : face.corners) {
+      if (corner.vertex >= p.vertex_count())
+        p.fail(fmt::format("vertex {} does not exist, the file has {}", corner.vertex + 1, p.vertex_count()),
+               "repair the face, or look for a missing piece of the file");
+      if (corner.texture >= p.uv_count())
+        p.fail(fmt::format("texture vertex {} does not exist, the file has {}", corner.texture + 1, p.uv_count()),
+               "repair the face, or look for a missing piece of the file");
+    }
+  }
+}
+
+}  // namespace
+
+Mesh parse_obj(std::string_view text, const std::string& name) {
+  Parser p;
+  p.name = name;
+  read_lines(p, text);
+  check_ranges(p);
+  Mesh mesh;
+  mesh.x = Eigen::Map<const Points>(p.x.data(), p.vertex_count(), 3);
+  mesh.uv = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>>(p.uv.data(), p.uv_count(), 2);
+  mesh.triangles.resize(static_cast<Eigen::Index>(p.faces.size()), 3);
+  if (p.uv_count() > 0) mesh.uv_triangles.resize(mesh.triangles.rows(), 3);
+  for (std::size_t t = 0; t < p.faces.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Corner& corner = p.faces[t].corners[static_cast<std::size_t>(k)];
+      mesh.triangles(static_cast<Eigen::Index>(t), k) = corner.vertex;
+      if (p.uv_count() > 0) mesh.uv_triangles(static_cast<Eigen::Index>(t), k) = corner.texture;
+    }
+  mesh.groups = std::move(p.groups);
+  for (auto& [group, vertices] : mesh.groups) {
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  }
+  return mesh;
+}
+
+std::string moved_obj_text(std::string_view text, const Points& x) {
+  std::string moved;
+  Eigen::Index next = 0;
+  bool continues = false, in_position = false;  // the line before ended in a backslash, and was of a position
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    const bool follows = continues;
+    std::string_view content = line;
+    while (!content.empty() && content.back() == '\r') content.remove_suffix(1);
+    continues = !content.empty() && content.back() == '\\';
+    const std::vector<std::string_view> words = split_words(content.substr(0, content.find('#')));
+    if (!follows) in_position = !words.empty() && words[0] == "v";
+    if (!in_position) {
+      moved += fmt::format("{}\n", line);
+    } else if (!follows) {
+      moved += fmt::format("v {} {} {}", x(next, 0), x(next, 1), x(next, 2));
+      for (std::size_t k = 4; k < words.size() && !continues; ++k) moved += fmt::format(" {}", words[k]);
+      moved += '\n';
+      ++next;
+    }
+  }
+  return moved;
+}
+
+std::string obj_text(const Points& x, const Triangles& triangles) {
+  std::string text;
+  for (Eigen::Index v = 0; v < x.rows(); ++v) text += fmt::format("v {} {} {}\n", x(v, 0), x(v, 1), x(v, 2));
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+    text += fmt::format("f {} {} {}\n", triangles(t, 0) + 1, triangles(t, 1) + 1, triangles(t, 2) + 1);
+  return text;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pipeline/formats/npy.hpp"
+
+namespace selvedge {
+
+// An .npz file as numpy.savez and numpy.savez_compressed write it: arrays by name. Only what is asked for is read, so
+// that what else is in the file, pickled objects among it, does not matter.
+class Npz {
+ public:
+  explicit Npz(const std::filesystem::path&);  // throws Error for what cannot be opened or is no .npz
+  Npz(Npz&&) noexcept;
+  ~Npz();
+
+  bool has(const std::string& name) const;
+  std::vector<std::string> names() const;  // in the order of the file
+  NpyPlace place(const std::string& name) const;
+
+  // See npy.hpp. Throw Error, naming the file and the array, also for one that is missing or damaged.
+  NpyArray<double> numbers(const std::string& name) const;
+  NpyArray<std::int64_t> integers(const std::string& name) const;
+  NpyArray<std::string> texts(const std::string& name) const;
+
+ private:
+  struct Archive;
+  std::string bytes(const std::string& name) const;
+
+  std::filesystem::path path_;
+  std::unique_ptr<Archive> archive_;
+};
+
+}  // namespace selvedge

@@ -1,0 +1,197 @@
+#include "pipeline/formats/trajectory_hdf5.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/formats/trajectory_row.hpp"
+#include "pipeline/host/version.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr hsize_t report_chunk = 64, bad_chunk = 4096;
+
+void write_triangles(const h5::File& file, const std::string& name, const Triangles& triangles) {
+  file.write_constant(name, H5T_NATIVE_INT32, {static_cast<hsize_t>(triangles.rows()), 3}, triangles.data());
+}
+
+void write_ints(const h5::File& file, const std::string& name, const std::vector<int>& values) {
+  file.write_constant(name, H5T_NATIVE_INT32, {values.size()}, values.data());
+}
+
+void write_constants(const h5::File& file, const TrajectoryInfo& info) {
+  file.write_text("format", "selvedge trajectory 1");
+  file.write_text("program_version", info.program_version);
+  file.write_text("config", info.config);
+  file.write_text("stepper", info.stepper);
+  file.write_constant("fps", H5T_NATIVE_DOUBLE, {1}, &info.fps);
+  file.write_text("self", info.self_audited ? "audited" : "not audited");
+
+  const h5::Handle cloth = file.make_group("cloth");
+  file.write_texts("cloth/names", info.cloth_names);
+  write_ints(file, "cloth/first_vertex", info.cloth_first_vertex);
+  write_ints(file, "cloth/first_triangle", info.cloth_first_triangle);
+  write_triangles(file, "cloth/triangles", info.triangles);
+  file.write_constant("cloth/rest", H5T_NATIVE_DOUBLE, {static_cast<hsize_t>(info.rest.rows()), 3}, info.rest.data());
+  // RestTriangle is column-major 2 x 3, so a triangle's corners lie one after the other: rows of 3 x (u, v).
+  static_assert(sizeof(RestTriangle) == 6 * sizeof(double));
+  file.write_constant("cloth/rest_triangles", H5T_NATIVE_DOUBLE, {info.rest_triangle.size(), 3, 2},
+                      info.rest_triangle.data());
+  write_ints(file, "cloth/pins", info.pins);
+
+  const h5::Handle codes = file.make_group("codes");
+  file.write_texts("codes/reason", reason_names());
+  file.write_texts("codes/status", status_names());
+}
+
+}  // namespace
+
+TrajectoryInfo trajectory_info(const Scene& scene, const std::string& config, const std::string& stepper, double fps) {
+  TrajectoryInfo info;
+  info.program_version = program_version();
+  info.config = config;
+  info.stepper = stepper;
+  info.fps = fps;
+  info.self_audited = scene.contact.self;
+  for (const Cloth& cloth : scene.cloths) {
+    info.cloth_names.push_back(cloth.name);
+    info.cloth_first_vertex.push_back(cloth.first_vertex);
+    info.cloth_first_triangle.push_back(cloth.first_triangle);
+  }
+  info.cloth_first_vertex.push_back(scene.surface.vertex_count);
+  info.cloth_first_triangle.push_back(static_cast<int>(scene.surface.triangles.rows()));
+  info.triangles = scene.surface.triangles;
+  info.rest = scene.rest;
+  info.rest_triangle = scene.rest_triangle;
+  info.pins = scene.pins;
+  for (const Obstacle& obstacle : scene.obstacles)
+    info.obstacles.push_back(
+        {obstacle.name, obstacle.surface.triangles, obstacle.surface.vertex_count, obstacle.moving});
+  return info;
+}
+
+struct TrajectoryWriter::Impl {
+  h5::File file;
+  TrajectoryInfo info;
+  h5::Handle row_type = row_memory_type(), by_type = h5::text_type(by_name_bytes);
+  h5::Handle complete, closed, report, by, x, bad;
+  std::vector<h5::Handle> obstacles;
+  std::vector<std::string> by_names;
+  std::int64_t frames = 0, bad_length = 0;
+
+  Impl(const std::filesystem::path& path, const TrajectoryInfo& constant)
+      : file(h5::File::create(path)), info(constant) {}
+
+  void make_datasets();
+  int code_of(const std::string& by_name);
+  void set(const h5::Handle& flag, std::int64_t value);
+  void append(const Frame&);
+  void close();
+};
+
+void TrajectoryWriter::Impl::make_datasets() {
+  write_constants(file, info);
+  const std::int64_t zero = 0;
+  file.write_constant("frames_complete", H5T_NATIVE_INT64, {1}, &zero);
+  file.write_constant("closed", H5T_NATIVE_INT64, {1}, &zero);
+  complete = file.open_dataset("frames_complete");
+  closed = file.open_dataset("closed");
+  by = file.make_growing("codes/by", by_type.id(), {}, 16);
+
+  const h5::Handle frames_group = file.make_group("frames");
+  report = file.make_growing("frames/report", row_file_type().id(), {}, report_chunk);
+  x = file.make_growing("frames/x", H5T_NATIVE_FLOAT, {static_cast<hsize_t>(info.rest.rows()), 3}, 1);
+  bad = file.make_growing("frames/bad_triangles", H5T_NATIVE_INT32, {}, bad_chunk);
+
+  const h5::Handle obstacles_group = file.make_group("obstacles");
+  for (std::size_t k = 0; k < info.obstacles.size(); ++k) {
+    const TrajectoryInfo::Body& body = info.obstacles[k];
+    const std::string name = "obstacles/" + std::to_string(k);
+    const h5::Handle group = file.make_group(name);
+    file.write_text(name + "/name", body.name);
+    file.write_text(name + "/motion", body.moving ? "moving" : "still");
+    write_triangles(file, name + "/triangles", body.triangles);
+    obstacles.push_back(
+        file.make_growing(name + "/x", H5T_NATIVE_FLOAT, {static_cast<hsize_t>(body.vertex_count), 3}, 1));
+  }
+}
+
+int TrajectoryWriter::Impl::code_of(const std::string& by_name) {
+  const auto known = std::find(by_names.begin(), by_names.end(), by_name);
+  if (known == by_names.end()) {
+    std::string padded = by_name;
+    padded.resize(by_name_bytes, '\0');
+    file.write_rows(by.id(), by_type.id(), by_names.size(), 1, padded.data());
+    by_names.push_back(by_name);
+    return static_cast<int>(by_names.size()) - 1;
+  }
+  return static_cast<int>(known - by_names.begin());
+}
+
+void TrajectoryWriter::Impl::set(const h5::Handle& flag, std::int64_t value) {
+  file.write_rows(flag.id(), H5T_NATIVE_INT64, 0, 1, &value);
+  file.flush();
+}
+
+// The file takes its name only once it is open for SWMR, so that a file of that name can always be opened.
+TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const TrajectoryInfo& info) {
+  std::filesystem::path beside = path;
+  beside += ".part";
+  try {
+    impl_ = std::make_unique<Impl>(beside, info);
+    impl_->make_datasets();
+    impl_->file.start_swmr();
+    impl_->file.flush();
+    impl_->file.move_to(path);
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(beside, ignored);
+    throw;
+  }
+}
+
+TrajectoryWriter::~TrajectoryWriter() = default;
+
+// The count of full frames is raised after everything else has reached the file: readers count by it alone.
+void TrajectoryWriter::Impl::append(const Frame& frame) {
+  file.write_rows(x.id(), H5T_NATIVE_FLOAT, frames, 1, frame.x.data());
+  for (std::size_t k = 0; k < obstacles.size(); ++k)
+    if (info.obstacles[k].moving || frames == 0)
+      file.write_rows(obstacles[k].id(), H5T_NATIVE_FLOAT, frames, 1, frame.obstacles[k].data());
+  file.write_rows(bad.id(), H5T_NATIVE_INT32, bad_length, frame.bad_triangles.size(), frame.bad_triangles.data());
+  const TrajectoryRow row = row_of(frame, code_of(frame.report.by), bad_length);
+  file.write_rows(report.id(), row_type.id(), frames, 1, &row);
+  file.flush();
+  bad_length += row.bad_count;
+  set(complete, ++frames);
+}
+
+void TrajectoryWriter::Impl::close() {
+  set(closed, 1);
+  for (h5::Handle* handle : {&complete, &closed, &report, &by, &x, &bad}) handle->reset();
+  obstacles.clear();
+  file.close();
+}
+
+void TrajectoryWriter::append(const Frame& frame) {
+  assert(frame.x.rows() == impl_->info.rest.rows() && frame.obstacles.size() == impl_->info.obstacles.size());
+  try {
+    impl_->append(frame);
+  } catch (const Error&) {
+    impl_->file.abandon();
+    throw;
+  }
+}
+
+void TrajectoryWriter::close() {
+  if (impl_->file.id() < 0) return;
+  try {
+    impl_->close();
+  } catch (const Error&) {
+    impl_->file.abandon();
+    throw;
+  }
+}
+
+}  // namespace selvedge

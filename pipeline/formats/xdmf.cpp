@@ -1,0 +1,79 @@
+#include "pipeline/formats/xdmf.hpp"
+
+#include <fmt/format.h>
+
+#include "pipeline/host/write_file.hpp"
+
+namespace selvedge {
+namespace {
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '&')
+      result += "&amp;";
+    else if (c == '<')
+      result += "&lt;";
+    else if (c == '"')
+      result += "&quot;";
+    else
+      result += c;
+  }
+  return result;
+}
+
+// One mesh at one time: row `row` of the array `points`, which has `rows` of them.
+std::string grid(const std::string& name, const std::string& h5, const std::string& triangles,
+                 Eigen::Index triangle_count, const std::string& points, Eigen::Index vertices, std::size_t row,
+                 std::size_t rows) {
+  return fmt::format(R"(    <Grid Name="{name}">
+     <Topology TopologyType="Triangle" NumberOfElements="{m}">
+      <DataItem Format="HDF" NumberType="Int" Dimensions="{m} 3">{h5}:/{triangles}</DataItem>
+     </Topology>
+     <Geometry GeometryType="XYZ">
+      <DataItem ItemType="HyperSlab" Dimensions="1 {n} 3">
+       <DataItem Format="XML" Dimensions="3 3">{row} 0 0  1 1 1  1 {n} 3</DataItem>
+       <DataItem Format="HDF" NumberType="Float" Precision="4" Dimensions="{rows} {n} 3">{h5}:/{points}</DataItem>
+      </DataItem>
+     </Geometry>
+    </Grid>
+)",
+                     fmt::arg("name", escaped(name)), fmt::arg("h5", escaped(h5)), fmt::arg("triangles", triangles),
+                     fmt::arg("m", triangle_count), fmt::arg("points", points), fmt::arg("n", vertices),
+                     fmt::arg("row", row), fmt::arg("rows", rows));
+}
+
+}  // namespace
+
+std::string xdmf_text(const TrajectoryInfo& info, const std::vector<double>& times, const std::string& h5_name) {
+  std::string text = R"(<?xml version="1.0"?>
+<Xdmf Version="3.0">
+ <Domain>
+  <Grid Name="run" GridType="Collection" CollectionType="Temporal">
+)";
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    text += fmt::format("   <Grid Name=\"frame {}\" GridType=\"Collection\">\n    <Time Value=\"{}\"/>\n", i, times[i]);
+    text +=
+        grid("cloth", h5_name, "cloth/triangles", info.triangles.rows(), "frames/x", info.rest.rows(), i, times.size());
+    for (std::size_t k = 0; k < info.obstacles.size(); ++k) {
+      const TrajectoryInfo::Body& body = info.obstacles[k];
+      const std::string place = "obstacles/" + std::to_string(k);
+      text += grid(body.name, h5_name, place + "/triangles", body.triangles.rows(), place + "/x", body.vertex_count,
+                   body.moving ? i : 0, body.moving ? times.size() : 1);
+    }
+    text += "   </Grid>\n";
+  }
+  return text + "  </Grid>\n </Domain>\n</Xdmf>\n";
+}
+
+std::filesystem::path write_xdmf(const std::filesystem::path& trajectory) {
+  const TrajectoryReader reader(trajectory);
+  std::vector<double> times;
+  for (int i = 0; i < reader.frame_count(); ++i) times.push_back(reader.frame(i).time);
+  std::filesystem::path path = trajectory;
+  path.replace_extension(".xdmf");
+  write_file(path, xdmf_text(reader.info(), times, trajectory.filename().string()));
+  return path;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "pipeline/formats/trajectory_hdf5.hpp"
+
+namespace selvedge {
+
+// XDMF text that lets ParaView play a trajectory: a temporal collection over `h5_name`, which must lie beside it.
+std::string xdmf_text(const TrajectoryInfo&, const std::vector<double>& times, const std::string& h5_name);
+
+// Beside the trajectory, with its name and the ending .xdmf.
+std::filesystem::path write_xdmf(const std::filesystem::path& trajectory);
+
+}  // namespace selvedge

@@ -1,0 +1,81 @@
+#include "pipeline/garments/footing.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "collision/geometry/cell_grid.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double first_part = 0.25, last_part = 0.5;  // of a gap: squeezed from the one, towards the other
+constexpr double near = 0.03, far = 0.06;             // of its foot: squeezed in full, and not at all [m]
+constexpr double beside = 0.01;                       // of the way out from the foot: as good as on it [m]
+constexpr double facing = -0.3;                       // cosine, at most, of its normal with the way out
+
+// How far it is from each foot, on its way out to x, to where another part of the body begins [m]; what that way would
+// pass by counts as farther by the distance. Endless where it is farther than squeezing asks for.
+std::vector<double> gaps(const std::vector<int>& foot, const Surface& body, const Points& posed, const Points& x) {
+  std::vector<double> gap(foot.size(), std::numeric_limits<double>::infinity());
+  const Points normals = vertex_normals(body, posed);
+  const CellGrid grid(posed, far);
+#pragma omp parallel for schedule(dynamic, 64)
+  for (int v = 0; v < static_cast<int>(foot.size()); ++v) {
+    const Vec3 from = row(posed, foot[v]), way = row(x, v) - from;
+    const double out = way.norm(), most = out / first_part;
+    if (!(out > 0 && out < far)) continue;
+    const Vec3 along = way / out;
+    grid.for_each_near(from, most + beside, [&](int w) {
+      const Vec3 to = row(posed, w) - from;
+      const double height = to.dot(along);
+      if (!(height > 0 && height < std::min(gap[v], most)) || row(normals, w).dot(along) > facing) return;
+      const double there = height + std::max(0.0, (to - height * along).norm() - beside);
+      if (there < most) gap[v] = std::min(gap[v], there);
+    });
+  }
+  return gap;
+}
+
+}  // namespace
+
+Footing footing_of(const Points& x, const Surface& body, const Points& rest) {
+  Footing footing;
+  footing.foot.resize(static_cast<std::size_t>(x.rows()));
+#pragma omp parallel for schedule(static)
+  for (Eigen::Index v = 0; v < x.rows(); ++v)
+    (rest.rowwise() - x.row(v)).rowwise().squaredNorm().minCoeff(&footing.foot[static_cast<std::size_t>(v)]);
+  const std::vector<double> gap = gaps(footing.foot, body, rest, x);
+  for (std::size_t v = 0; v < gap.size(); ++v) {
+    const double out = (x.row(static_cast<Eigen::Index>(v)) - rest.row(footing.foot[v])).norm();
+    footing.part.push_back(std::clamp(out / gap[v], first_part, 1.0));
+  }
+  return footing;
+}
+
+Footing footing_of(const Footing& all, const std::vector<int>& vertices) {
+  Footing some;
+  if (all.foot.empty()) return some;
+  for (const int v : vertices) {
+    some.foot.push_back(all.foot[static_cast<std::size_t>(v)]);
+    some.part.push_back(all.part[static_cast<std::size_t>(v)]);
+  }
+  return some;
+}
+
+Points squeezed(const Footing& footing, const Surface& body, const Points& posed, const Points& x) {
+  const std::vector<double> gap = gaps(footing.foot, body, posed, x);
+  Points to = x;
+  for (std::size_t v = 0; v < gap.size(); ++v) {
+    const Vec3 foot = row(posed, footing.foot[v]), way = row(x, static_cast<int>(v)) - foot;
+    const double out = way.norm(), free = footing.part[v] * gap[v],
+                 left = last_part * gap[v] - free;  // none where it was so near at rest
+    if (!(out > free)) continue;
+    // Smooth, rising, and never as much as the last part of the gap.
+    const double less = left > 0 ? free + left * (out - free) / (out - free + left) : free;
+    const double share = std::clamp((far - out) / (far - near), 0.0, 1.0);
+    to.row(static_cast<Eigen::Index>(v)) += share * (less / out - 1) * way.transpose();
+  }
+  return to;
+}
+
+}  // namespace selvedge

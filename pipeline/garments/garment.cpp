@@ -1,0 +1,115 @@
+#include "pipeline/garments/garment.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "collision/geometry/error.hpp"
+
+namespace selvedge {
+namespace {
+
+// What a garment vertex is made of: body vertices and their shares, which sum to 1.
+using Shares = std::vector<std::pair<int, double>>;
+
+// A third of the area of the triangles round each vertex [m2].
+Eigen::VectorXd vertex_areas(const SkinnedSurface& skin) {
+  Eigen::VectorXd areas = Eigen::VectorXd::Zero(skin.rest.rows());
+  for (Eigen::Index t = 0; t < skin.triangles.rows(); ++t) {
+    const auto corner = [&](int k) { return row(skin.rest, skin.triangles(t, k)); };
+    const double area = (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 2;
+    for (int k = 0; k < 3; ++k) areas[skin.triangles(t, k)] += area / 3;
+  }
+  return areas;
+}
+
+// width: of the Gaussian [m]; none: as wide as p is far from the body.
+Shares shares_of(const Vec3& p, const SkinnedSurface& body, const Eigen::VectorXd& areas, Fit fit,
+                 std::optional<double> width = {}) {
+  constexpr double reach = 3;  // standard deviations
+  const Eigen::VectorXd squared = (body.rest.rowwise() - p.transpose()).rowwise().squaredNorm();
+  Eigen::Index nearest = 0;
+  const double least = squared.minCoeff(&nearest), variance = width ? *width * *width : least;
+  if (fit == Fit::tight || !(variance > 0)) return {{static_cast<int>(nearest), 1.0}};
+  Shares shares;
+  double sum = 0;
+  for (Eigen::Index v = 0; v < squared.size(); ++v) {
+    const double beyond = (squared[v] - least) / variance;
+    if (beyond > reach * reach) continue;
+    shares.emplace_back(static_cast<int>(v), areas[v] * std::exp(-beyond / 2));
+    sum += shares.back().second;
+  }
+  if (!(sum > 0)) return {{static_cast<int>(nearest), 1.0}};
+  for (auto& [vertex, share] : shares) share /= sum;
+  return shares;
+}
+
+std::vector<Shares> all_shares(const Points& x, const SkinnedSurface& body, Fit fit, std::optional<double> width = {}) {
+  const Eigen::VectorXd areas = vertex_areas(body);
+  std::vector<Shares> shares(static_cast<std::size_t>(x.rows()));
+#pragma omp parallel for schedule(static)
+  for (Eigen::Index v = 0; v < x.rows(); ++v)
+    shares[static_cast<std::size_t>(v)] = shares_of(x.row(v).transpose(), body, areas, fit, width);
+  return shares;
+}
+
+// Rows of `from`, 3 a vertex, in these shares.
+void mix(const Eigen::MatrixXd& from, const std::vector<Shares>& shares, Eigen::MatrixXd& to) {
+  const auto count = static_cast<Eigen::Index>(shares.size());
+  to.setZero(3 * count, from.cols());
+  if (from.cols() == 0) return;
+#pragma omp parallel for schedule(static)
+  for (Eigen::Index v = 0; v < count; ++v)
+    for (const auto& [source, share] : shares[static_cast<std::size_t>(v)])
+      to.middleRows(3 * v, 3) += share * from.middleRows(3 * static_cast<Eigen::Index>(source), 3);
+}
+
+SkinWeights mixed_weights(const SkinWeights& from, const std::vector<Shares>& shares) {
+  constexpr double least = 1e-4;  // what is less is left out
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t v = 0; v < shares.size(); ++v) {
+    Eigen::VectorXd weights = Eigen::VectorXd::Zero(from.cols());
+    for (const auto& [source, share] : shares[v])
+      for (SkinWeights::InnerIterator entry(from, source); entry; ++entry)
+        weights[entry.col()] += share * entry.value();
+    weights = (weights.array() < least).select(0, weights).eval();
+    weights /= weights.sum();
+    for (Eigen::Index j = 0; j < weights.size(); ++j)
+      if (weights[j] > 0) entries.emplace_back(static_cast<int>(v), static_cast<int>(j), weights[j]);
+  }
+  SkinWeights to(static_cast<Eigen::Index>(shares.size()), from.cols());
+  to.setFromTriplets(entries.begin(), entries.end());
+  return to;
+}
+
+}  // namespace
+
+SkinnedSurface attached(const Points& x, const Triangles& triangles, const BodyModel& body, Fit fit) {
+  if (x.rows() == 0) throw Error("has no vertices", "garment", "give a mesh with vertices and faces");
+  const std::vector<Shares> shares = all_shares(x, body.skin, fit);
+  SkinnedSurface skin{x, triangles, mixed_weights(body.skin.weights, shares), {}, {}};
+  mix(body.skin.shape_directions, shares, skin.shape_directions);
+  mix(body.skin.pose_directions, shares, skin.pose_directions);
+  return skin;
+}
+
+SkinWeights shares_of_body(const Points& x, const BodyModel& body, double width) {
+  std::vector<Eigen::Triplet<double>> entries;
+  const std::vector<Shares> shares = all_shares(x, body.skin, Fit::loose, width);
+  for (std::size_t v = 0; v < shares.size(); ++v)
+    for (const auto& [vertex, share] : shares[v]) entries.emplace_back(static_cast<int>(v), vertex, share);
+  SkinWeights all(x.rows(), body.skin.rest.rows());
+  all.setFromTriplets(entries.begin(), entries.end());
+  return all;
+}
+
+Points worn(const Garment& garment, const BodyModel& body, const Eigen::VectorXd& shape, const BodyPose& pose) {
+  return posed(garment.skin, shape, pose, joint_transforms(body, joint_positions(body, shape), pose));
+}
+
+Points rest_shape(const Garment& garment, const BodyModel& body, const Eigen::VectorXd& shape) {
+  return garment.made_in.rotations.rows() == 0 ? shaped(garment.skin, shape)
+                                               : worn(garment, body, shape, garment.made_in);
+}
+
+}  // namespace selvedge

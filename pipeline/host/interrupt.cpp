@@ -1,0 +1,32 @@
+#include "pipeline/host/interrupt.hpp"
+
+#include <csignal>
+#include <initializer_list>
+
+namespace selvedge {
+namespace {
+
+// A signal handler can reach nothing but static storage.
+volatile std::sig_atomic_t noted = 0;
+
+void note(int) { noted = 1; }
+
+void handle(void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESETHAND | SA_RESTART;
+  for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
+}
+
+}  // namespace
+
+InterruptWatch::InterruptWatch() {
+  noted = 0;
+  handle(note);
+}
+
+InterruptWatch::~InterruptWatch() { handle(SIG_DFL); }
+
+bool InterruptWatch::interrupted() { return noted != 0; }
+
+}  // namespace selvedge

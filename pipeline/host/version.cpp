@@ -1,0 +1,7 @@
+#include "pipeline/host/version.hpp"
+
+namespace selvedge {
+
+const char* program_version() { return SELVEDGE_VERSION; }
+
+}  // namespace selvedge

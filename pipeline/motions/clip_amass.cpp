@@ -1,0 +1,112 @@
+#include "pipeline/motions/clip_amass.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/bodies/body_smpl.hpp"
+#include "pipeline/formats/npz.hpp"
+#include "pipeline/shapes/motion.hpp"
+
+namespace selvedge {
+namespace {
+
+using Eigen::Index;
+
+[[noreturn]] void fail(const Npz& npz, const std::string& field, const std::string& what, const std::string& cure) {
+  throw Error(what, npz.place(field).text(), cure);
+}
+
+// frames x columns; -1: any number.
+NpyArray<double> table(const Npz& npz, const std::string& field, Index frames, Index columns) {
+  NpyArray<double> array = npz.numbers(field);
+  const std::vector<Index>& shape = array.shape;
+  if (shape.size() != 2 || (frames >= 0 && shape[0] != frames) || (columns >= 0 && shape[1] != columns))
+    fail(npz, field, fmt::format("has the shape ({})", fmt::join(shape, ", ")),
+         fmt::format("a row a frame{}{}", frames >= 0 ? fmt::format(", {} of them", frames) : "",
+                     columns >= 0 ? fmt::format(", with {} columns", columns) : ""));
+  if (!std::all_of(array.values.begin(), array.values.end(), [](double value) { return std::isfinite(value); }))
+    fail(npz, field, "is not finite", "repair the motion where it was made");
+  return array;
+}
+
+struct Part {
+  std::string field;
+  Index joints;
+};
+
+// Where the rotations are, in the order of the joints' names.
+std::vector<Part> rotation_parts(const Npz& npz) {
+  if (!npz.has("root_orient") && npz.has("poses")) {
+    const NpyArray<double> poses = table(npz, "poses", -1, -1);
+    const Index columns = poses.shape[1];
+    if (columns != 72 && columns != 156 && columns != 165)
+      fail(npz, "poses", fmt::format("has {} columns", columns), "known are SMPL (72), SMPL+H (156) and SMPL-X (165)");
+    return {{"poses", columns / 3}};
+  }
+  std::vector<Part> parts = {{"root_orient", 1}, {"pose_body", 21}};
+  if (npz.has("pose_jaw") && npz.has("pose_eye") && npz.has("pose_hand"))
+    parts.insert(parts.end(), {{"pose_jaw", 1}, {"pose_eye", 2}, {"pose_hand", 30}});
+  return parts;
+}
+
+double frame_rate(const Npz& npz) {
+  // SMPL+H files spell it without the second stroke.
+  const std::string field = npz.has("mocap_framerate") ? "mocap_framerate" : "mocap_frame_rate";
+  const NpyArray<double> rate = npz.numbers(field);
+  if (rate.values.size() != 1 || !(rate.values[0] > 0) || !std::isfinite(rate.values[0]))
+    fail(npz, field, "is no frame rate", "one number above 0, frames a second");
+  return rate.values[0];
+}
+
+Eigen::VectorXd shape_of(const Npz& npz, int most) {
+  if (!npz.has("betas")) return {};
+  const NpyArray<double> betas = npz.numbers("betas");
+  const Eigen::VectorXd all =
+      Eigen::Map<const Eigen::VectorXd>(betas.values.data(), static_cast<Index>(betas.values.size()));
+  const bool one_row = betas.shape.size() == 1 || (betas.shape.size() == 2 && betas.shape[0] == 1);
+  if (!one_row || !all.allFinite()) fail(npz, "betas", "is no row of finite numbers", "the shape of one body");
+  return all.head(std::min<Index>(most, all.size()));
+}
+
+}  // namespace
+
+Eigen::VectorXd read_amass_shape(const std::filesystem::path& path, int most) { return shape_of(Npz(path), most); }
+
+Clip read_amass(const std::filesystem::path& path, double fps, const Vec3& pelvis, int shapes) {
+  const Npz npz(path);
+  const std::vector<Part> parts = rotation_parts(npz);
+  const NpyArray<double> trans = table(npz, "trans", -1, 3);
+  const Index frames = trans.shape[0];
+  if (frames == 0) fail(npz, "trans", "has no frames", "");
+
+  Index joints = 0;
+  for (const Part& part : parts) joints += part.joints;
+  Points rotations(frames * joints, 3);
+  Index first = 0;
+  for (const Part& part : parts) {
+    const NpyArray<double> values = table(npz, part.field, frames, 3 * part.joints);
+    for (Index f = 0; f < frames; ++f)
+      rotations.middleRows(f * joints + first, part.joints) =
+          Eigen::Map<const Points>(values.values.data() + f * 3 * part.joints, part.joints, 3);
+    first += part.joints;
+  }
+
+  std::vector<std::string> names = smpl_joint_names(static_cast<int>(joints == 22 ? 24 : joints));
+  names.resize(static_cast<std::size_t>(joints));
+  Clip clip{path.stem().string(), frame_rate(npz), std::move(names), {}, shape_of(npz, shapes)};
+  Mat3 y_up;
+  y_up << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  for (Index f = 0; f < frames; ++f) {
+    BodyPose pose{rotations.middleRows(f * joints, joints), Vec3::Zero()};
+    const Vec3 at = Eigen::Map<const Vec3>(trans.values.data() + 3 * f);
+    pose.rotations.row(0) = rotation_vector(y_up * rotation_matrix(row(pose.rotations, 0))).transpose();
+    pose.translation = y_up * (pelvis + at) - pelvis;
+    clip.poses.push_back(std::move(pose));
+  }
+  return resampled(clip, fps);
+}
+
+}  // namespace selvedge

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <vector>
+
+#include "pipeline/motions/clip_procedural_figure.hpp"
+
+namespace selvedge {
+
+struct FigureKey {
+  double time = 0;
+  Figure figure;
+};
+
+// A foot is lifted, carried to another place and put down; in between it stands still.
+struct Footstep {
+  int side = 0;
+  double from = 0, to = 0;  // [s]
+  Vec3 place = Vec3::Zero();
+  double yaw = 0;
+  double lift = 0.05;              // [m]
+  double toe_off = 0, strike = 0;  // how far the heel is up as it leaves, and the toes as it comes down
+};
+
+// Both feet in the air: the body flies a parabola.
+struct Flight {
+  double from = 0, to = 0;  // [s]
+};
+
+// A foot swings up, on top of its step.
+struct Swing {
+  int side = 0;
+  double from = 0, to = 0;  // [s]
+  double height = 0;        // [m]
+};
+
+// A procedural motion before inverse kinematics.
+struct Movement {
+  double seconds = 0;
+  double smoothing = 0.12;          // [s]
+  std::vector<FigureKey> keys;      // ascending times
+  std::array<FootPose, 2> start{};  // of the feet
+  std::vector<Footstep> steps;      // ascending times for each foot, without overlap
+  std::vector<Swing> swings;
+  std::vector<Flight> flights;
+};
+
+// A ramp max(t, 0) averaged three times over `width` [s]: three times differentiable, itself from 1.5 widths on.
+double smooth_ramp(double t, double width);
+
+// Linear between keys, averaged three times over `width`: no overshoot, and holds stay holds.
+double smooth_between(const std::vector<double>& times, const std::vector<double>& values, double width, double t);
+Figure figure_at(const Movement&, double time);
+std::array<FootPose, 2> feet_at(const Movement&, double time);
+
+// At 30 frames a second.
+std::vector<BodyPose> performed(const Movement&, const Skeleton&);
+
+}  // namespace selvedge

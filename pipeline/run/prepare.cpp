@@ -1,0 +1,41 @@
+#include "pipeline/run/prepare.hpp"
+
+#include <fmt/format.h>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/run/simulate.hpp"
+
+namespace selvedge {
+
+bool prepare(Setup& setup, const std::function<bool()>& stop, Progress* progress) {
+  const int frames = -setup.initial.frame;
+  if (frames <= 0) return true;
+  const Clock::time_point started = Clock::now();
+  const auto stepper = make_conventional_stepper(setup.scene, {});
+  State state = setup.initial;
+  bool stopped = false;
+  if (progress) progress->begin(0, frames, "draping, frame");
+  const StepReport last = simulate(*stepper, setup.drive_at, 1 / setup.run.fps, 0, state, [&](const FrameEvent& event) {
+    if (progress) progress->frame(event.state.frame + frames);
+    stopped = stop && stop();
+    return !stopped;
+  });
+  if (progress) progress->end();
+  if (stopped) return false;
+  if (last.status != StepStatus::accepted)
+    throw Error(fmt::format("cannot be draped: a step is rejected {} frames before time 0", -state.frame),
+                setup.file.string(), "let the body come more slowly (start.seconds), or start from: skinned");
+  const Audit audit = last.audit.value_or(Audit{});
+  setup.prepared = fmt::format("draped in {} frames, {}; {} pairs, {} vertices inside, fastest vertex {:.2g} m/s",
+                               frames, duration_text(seconds_since(started)), audit.intersecting_pairs(),
+                               audit.inside_vertices, state.v.rowwise().norm().maxCoeff());
+  state.time = 0;
+  state.v = setup.velocity;
+  state.last_clean = {};
+  state.history = {};
+  state.rest = {};
+  setup.initial = std::move(state);
+  return true;
+}
+
+}  // namespace selvedge

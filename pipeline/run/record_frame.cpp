@@ -1,0 +1,56 @@
+#include "pipeline/run/record_frame.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "physics/steppers/step_audit.hpp"
+
+namespace selvedge {
+namespace {
+
+void record_audit(const Audit& result, Frame& frame) {
+  frame.self_pairs = static_cast<int>(result.self_pairs.size());
+  frame.vertex_pairs = static_cast<int>(result.vertex_pairs.size());
+  frame.obstacle_pairs = static_cast<int>(result.obstacle_pairs.size());
+  frame.inside_vertices = result.inside_vertices;
+  frame.nonfinite = result.nonfinite;
+  std::set<int> bad;
+  for (const auto* pairs : {&result.self_pairs, &result.vertex_pairs})
+    for (const auto& [a, b] : *pairs) bad.insert({a, b});
+  for (const auto& [triangle, other] : result.obstacle_pairs) bad.insert(triangle);
+  frame.bad_triangles.assign(bad.begin(), bad.end());
+}
+
+}  // namespace
+
+Frame record_frame(const Scene& scene, const EnergyTerms& terms, const FrameEvent& event) {
+  Frame frame;
+  frame.time = event.state.time;
+  frame.x = event.state.x.cast<float>();
+  const Points x = frame.x.cast<double>();
+  for (const Points& obstacle : event.state.obstacles) frame.obstacles.push_back(obstacle.cast<float>());
+  frame.report = event.report;
+  const Clock::time_point before_audit = Clock::now();
+  record_audit(event.report.audit ? *event.report.audit : audit_uncut(scene, event.state), frame);
+  frame.report.seconds.audit += seconds_since(before_audit);
+  auto stretches = principal_stretches(scene, x);
+  // What is cut out is stretched by nothing: it follows the body.
+  for (const int t : event.state.cut_out) stretches.row(t).setOnes();
+  if (stretches.rows() > 0) {
+    frame.min_stretch = stretches.col(0).minCoeff();
+    frame.max_stretch = stretches.col(1).maxCoeff();
+  }
+  frame.energy = energies(scene, terms, x, event.state.v, event.drive.acceleration);
+  frame.seconds = seconds_since(event.started);
+  return frame;
+}
+
+Frame record_initial(const Scene& scene, const EnergyTerms& terms, const State& state, const Drive& drive) {
+  StepReport report;
+  report.status = StepStatus::accepted;
+  report.by = "initial";
+  report.collision.cut_out = static_cast<int>(state.cut_out.size());
+  return record_frame(scene, terms, {state, drive, report, Clock::now()});
+}
+
+}  // namespace selvedge

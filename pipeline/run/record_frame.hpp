@@ -1,0 +1,17 @@
+#pragma once
+
+#include "physics/energies/measures.hpp"
+#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/run/simulate.hpp"
+
+namespace selvedge {
+
+// What a trajectory keeps of a frame. Positions are rounded to float first; the audit, the stretches and the energies
+// are those of the rounded positions, because these are what a reader gets.
+// What the stepper has audited is not audited again.
+Frame record_frame(const Scene&, const EnergyTerms&, const FrameEvent&);
+
+// Frame 0: the state before any step.
+Frame record_initial(const Scene&, const EnergyTerms&, const State&, const Drive&);
+
+}  // namespace selvedge

@@ -1,0 +1,121 @@
+#include "pipeline/run/run_scene.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/formats/checkpoint.hpp"
+#include "pipeline/formats/trajectory_row.hpp"
+#include "pipeline/formats/xdmf.hpp"
+#include "pipeline/host/peak_memory.hpp"
+#include "pipeline/host/version.hpp"
+#include "pipeline/host/write_file.hpp"
+#include "pipeline/run/record_frame.hpp"
+
+namespace selvedge {
+namespace {
+
+RunSummary empty_summary(const Setup& setup, const Stepper& stepper) {
+  RunSummary summary;
+  summary.program_version = program_version();
+  summary.scene = setup.file.string();
+  summary.stepper = stepper.traits().name;
+  summary.prepared = setup.prepared;
+  summary.vertices = setup.scene.surface.vertex_count;
+  summary.triangles = static_cast<int>(setup.scene.surface.triangles.rows());
+  summary.frames_wanted = setup.run.frames;
+  summary.self_audited = setup.scene.contact.self;
+  for (const PlanLine& line : plan_lines(setup.scene))
+    if (!line.in) summary.left_out.push_back(line);
+  summary.warnings = setup.warnings;
+  return summary;
+}
+
+// The sink of a run: trajectory, summary, checkpoints.
+struct Recorder {
+  const Setup& setup;
+  const RunRequest& request;
+  RunSummary& summary;
+  TrajectoryWriter writer;
+  int next = 0;
+  EnergyTerms terms = energy_terms(setup.scene);
+  Clock::time_point last_checkpoint = Clock::now();
+
+  void add(const Frame& frame) {
+    writer.append(frame);
+    add_frame(summary, next++, frame);
+  }
+
+  void checkpoint(const State& state) {
+    write_checkpoint(request.out / "checkpoint.h5", state, setup.config);
+    last_checkpoint = Clock::now();
+  }
+
+  bool operator()(const FrameEvent& event) {
+    add(record_frame(setup.scene, terms, event));
+    if (request.observe) request.observe(event);
+    if (request.progress) request.progress->frame(event.state.frame);
+    const bool stop = request.stop && request.stop();
+    if (stop || seconds_since(last_checkpoint) > request.checkpoint_seconds) checkpoint(event.state);
+    return !stop;
+  }
+};
+
+// Frames up to the checkpoint's, from the file that the interrupted run has left.
+void copy_frames(const std::filesystem::path& old_file, int last_frame, Recorder& recorder) {
+  const TrajectoryReader reader(old_file);
+  if (reader.frame_count() <= last_frame)
+    throw Error("the trajectory ends before the checkpoint", old_file.string(), "run without --resume");
+  for (int i = 0; i <= last_frame; ++i) recorder.add(reader.frame(i));
+}
+
+// What an earlier run left must not pass for this one's if it fails.
+void remove_results(const RunRequest& request) {
+  for (const char* name : {"summary.json", "run.xdmf", "view.html"}) std::filesystem::remove(request.out / name);
+  if (request.resume) return;
+  for (const char* name : {"run.h5", "checkpoint.h5"}) std::filesystem::remove(request.out / name);
+}
+
+void finish(RunSummary& summary, const StepReport& last, int frame) {
+  const bool rejected = last.status == StepStatus::rejected;
+  summary.end = rejected ? RunEnd::rejected : frame < summary.frames_wanted ? RunEnd::interrupted : RunEnd::finished;
+  if (rejected) summary.reason = reason_names().at(static_cast<std::size_t>(last.reason));
+  summary.peak_memory = peak_memory();
+}
+
+}  // namespace
+
+RunSummary run_scene(const Setup& setup, Stepper& stepper, const RunRequest& request) {
+  assert(request.resume || setup.initial.frame >= 0);
+  make_folder(request.out);
+  const std::filesystem::path file = request.out / "run.h5", saved = request.out / "checkpoint.h5";
+  State state = request.resume ? read_checkpoint(saved, setup.config) : setup.initial;
+  remove_results(request);
+  write_file(request.out / "config.yaml", setup.config);
+
+  // A resumed run writes beside the old file until all that is kept of it has been copied.
+  const std::filesystem::path first_file = request.resume ? request.out / "resumed.h5" : file;
+  RunSummary summary = empty_summary(setup, stepper);
+  const TrajectoryInfo info = trajectory_info(setup.scene, setup.config, stepper.traits().name, setup.run.fps);
+  Recorder recorder{setup, request, summary, TrajectoryWriter(first_file, info)};
+  if (request.resume) {
+    copy_frames(file, state.frame, recorder);
+    std::filesystem::rename(first_file, file);
+  } else {
+    recorder.add(record_initial(setup.scene, recorder.terms, state, setup.drive_at(state.time)));
+  }
+
+  if (request.progress) request.progress->begin(state.frame, setup.run.frames);
+  const StepReport last =
+      simulate(stepper, setup.drive_at, 1 / setup.run.fps, setup.run.frames, state, std::ref(recorder));
+  if (request.progress) request.progress->end();
+
+  recorder.writer.close();
+  finish(summary, last, state.frame);
+  if (summary.end == RunEnd::finished) std::filesystem::remove(saved);
+  write_xdmf(file);
+  write_file(request.out / "summary.json", summary_json(summary));
+  return summary;
+}
+
+}  // namespace selvedge

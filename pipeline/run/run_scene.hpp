@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "pipeline/run/progress.hpp"
+#include "pipeline/run/summary.hpp"
+#include "pipeline/scene/setup.hpp"
+
+namespace selvedge {
+
+struct RunRequest {
+  std::filesystem::path out;       // folder, made if it is not there
+  bool resume = false;             // go on from the checkpoint that an interrupted run left in `out`
+  double checkpoint_seconds = 30;  // between checkpoints
+  Progress* progress = nullptr;
+  std::function<bool()> stop;                      // asked after every frame; true ends the run cleanly
+  std::function<void(const FrameEvent&)> observe;  // shown every frame, outside the measured time
+};
+
+// Simulates a scene, prepared (prepare.hpp) unless it is resumed, into a folder: run.h5 (trajectory), run.xdmf,
+// summary.json, config.yaml, and checkpoint.h5 until the run has finished. A rejected step is recorded as a frame with
+// the last accepted positions and ends the run. Throws Error where files cannot be written or there is nothing to
+// resume.
+RunSummary run_scene(const Setup&, Stepper&, const RunRequest&);
+
+}  // namespace selvedge

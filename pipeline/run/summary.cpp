@@ -1,0 +1,209 @@
+#include "pipeline/run/summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+namespace selvedge {
+namespace {
+
+const char* end_name(RunEnd end) {
+  switch (end) {
+    case RunEnd::running:
+      return "running";
+    case RunEnd::finished:
+      return "finished";
+    case RunEnd::interrupted:
+      return "interrupted";
+    case RunEnd::rejected:
+      return "rejected";
+  }
+  return "";
+}
+
+std::vector<std::pair<const char*, double>> phases_in_milliseconds(const RunSummary& summary) {
+  const double factor = summary.frame_seconds.empty() ? 0 : 1000.0 / static_cast<double>(summary.frame_seconds.size());
+  const PhaseTimes& s = summary.seconds;
+  const double all = std::accumulate(summary.frame_seconds.begin(), summary.frame_seconds.end(), 0.0);
+  return {{"solve", factor * s.solve}, {"broad_phase", factor * s.broad_phase},
+          {"ccd", factor * s.ccd},     {"response", factor * s.response},
+          {"audit", factor * s.audit}, {"other", factor * std::max(0.0, all - s.total())}};
+}
+
+// JSON has no infinity.
+nlohmann::ordered_json finite_or_null(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+}  // namespace
+
+void add_frame(RunSummary& summary, int index, const Frame& frame) {
+  const StepReport& report = frame.report;
+  const CollisionReport& collision = report.collision;
+  if (index > 0) {
+    if (report.status == StepStatus::accepted) ++summary.frames;
+    summary.frame_seconds.push_back(frame.seconds);
+    PhaseTimes& sum = summary.seconds;
+    sum.solve += report.seconds.solve;
+    sum.broad_phase += report.seconds.broad_phase;
+    sum.ccd += report.seconds.ccd;
+    sum.response += report.seconds.response;
+    sum.audit += report.seconds.audit;
+  }
+  summary.substeps += report.substeps;
+  summary.iterations += report.iterations;
+  summary.linear_iterations += report.linear_iterations;
+  if (frame.max_stretch > summary.max_stretch) {
+    summary.max_stretch = frame.max_stretch;
+    summary.max_stretch_frame = index;
+  }
+  summary.min_stretch = std::min(summary.min_stretch, frame.min_stretch);
+  const int pairs = frame.self_pairs + frame.obstacle_pairs;
+  summary.pairs += pairs;
+  summary.vertex_pairs += frame.vertex_pairs;
+  if (pairs > summary.worst_pairs) {
+    summary.worst_pairs = pairs;
+    summary.worst_frame = index;
+  }
+  summary.worst_inside = std::max(summary.worst_inside, frame.inside_vertices);
+  summary.nonfinite += frame.nonfinite;
+  if (index == 0) summary.cut_out_at_start = collision.cut_out;
+  summary.cut_out_at_end = collision.cut_out;
+  if (collision.cut_out > 0) summary.last_cut_frame = index;
+  summary.max_contacts = std::max(summary.max_contacts, collision.contacts);
+  summary.impulses += collision.impulses;
+  summary.zones += collision.zones;
+  summary.halved_substeps += collision.halved_substeps;
+  summary.shortened += collision.shortened;
+  summary.held_vertices += collision.held_vertices;
+  summary.passed_through += collision.passed_through;
+  summary.worst_pairs_wanted = std::max(summary.worst_pairs_wanted, collision.pairs_wanted);
+  summary.max_depth_wanted = std::max(summary.max_depth_wanted, collision.depth_wanted);
+  summary.max_obstacle_lag = std::max(summary.max_obstacle_lag, collision.obstacle_lag);
+  summary.max_residual = std::max(summary.max_residual, report.residual);
+  summary.min_contact_gap = std::min(summary.min_contact_gap, collision.min_gap);
+}
+
+double held_fraction(const RunSummary& summary) {
+  const double vertex_steps = static_cast<double>(summary.vertices) * summary.substeps;
+  return vertex_steps > 0 ? static_cast<double>(summary.held_vertices) / vertex_steps : 0;
+}
+
+double mean_milliseconds(const RunSummary& summary) {
+  const std::vector<double>& all = summary.frame_seconds;
+  return all.empty() ? 0 : 1000 * std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size());
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+double median_milliseconds(const RunSummary& summary) { return 1000 * median(summary.frame_seconds); }
+
+bool is_clean(const RunSummary& summary) {
+  return summary.end == RunEnd::finished && summary.pairs == 0 && summary.worst_inside == 0 && summary.nonfinite == 0 &&
+         summary.passed_through == 0 && summary.cut_out_at_end == 0;
+}
+
+std::string summary_json(const RunSummary& s) {
+  nlohmann::ordered_json phases, left_out = nlohmann::ordered_json::array();
+  for (const auto& [name, milliseconds] : phases_in_milliseconds(s)) phases[name] = milliseconds;
+  for (const PlanLine& line : s.left_out) left_out.push_back({{"feature", line.feature}, {"why", line.why}});
+  const nlohmann::ordered_json json = {
+      {"program_version", s.program_version},
+      {"scene", s.scene},
+      {"stepper", s.stepper},
+      {"prepared", s.prepared},
+      {"vertices", s.vertices},
+      {"triangles", s.triangles},
+      {"end", end_name(s.end)},
+      {"reason", s.reason},
+      {"clean", is_clean(s)},
+      {"frames_wanted", s.frames_wanted},
+      {"frames", s.frames},
+      {"ms_per_frame", {{"mean", mean_milliseconds(s)}, {"median", median_milliseconds(s)}, {"by_phase", phases}}},
+      {"peak_memory_bytes", s.peak_memory},
+      {"substeps", s.substeps},
+      {"iterations", s.iterations},
+      {"linear_iterations", s.linear_iterations},
+      {"max_residual", finite_or_null(s.max_residual)},
+      {"max_stretch", finite_or_null(s.max_stretch)},
+      {"max_stretch_frame", s.max_stretch_frame},
+      {"min_stretch", finite_or_null(s.min_stretch)},
+      {"self", s.self_audited ? "audited" : "not audited"},
+      {"intersecting_pairs", s.worst_pairs},
+      {"intersecting_pairs_worst_frame", s.worst_frame},
+      {"intersecting_pairs_all_frames", s.pairs},
+      {"vertex_sharing_pairs_all_frames", s.vertex_pairs},
+      {"inside_vertices", s.worst_inside},
+      {"nonfinite", s.nonfinite},
+      {"cut_out_triangles", s.cut_out_at_start},
+      {"cut_out_triangles_at_end", s.cut_out_at_end},
+      {"cut_out_last_frame", s.last_cut_frame},
+      {"max_contacts", s.max_contacts},
+      {"impulses", s.impulses},
+      {"zones", s.zones},
+      {"halved_substeps", s.halved_substeps},
+      {"shortened_zones", s.shortened},
+      {"held_fraction", held_fraction(s)},
+      {"passed_through", s.passed_through},
+      {"min_contact_gap", finite_or_null(s.min_contact_gap)},
+      {"max_obstacle_lag", s.max_obstacle_lag},
+      {"intersecting_pairs_wanted", s.worst_pairs_wanted},
+      {"max_depth_wanted", s.max_depth_wanted},
+      {"left_out", left_out},
+      {"warnings", s.warnings}};
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string summary_text(const RunSummary& s) {
+  std::string phases, out;
+  for (const auto& [name, milliseconds] : phases_in_milliseconds(s))
+    if (milliseconds >= 0.05) phases += fmt::format("{}{} {:.1f}", phases.empty() ? "" : ", ", name, milliseconds);
+  for (const PlanLine& line : s.left_out) out += (out.empty() ? "" : ", ") + line.feature;
+
+  std::string text;
+  const auto add = [&](const char* label, const std::string& value) {
+    text += fmt::format("{:<20}{}\n", label, value);
+  };
+  const std::string end = s.end == RunEnd::finished ? "" : fmt::format(", {} {}", end_name(s.end), s.reason);
+  if (!s.prepared.empty()) add("start", s.prepared);
+  add("frames", fmt::format("{} of {}{}", s.frames, s.frames_wanted, end));
+  add("cloth", fmt::format("{} vertices, {} triangles", s.vertices, s.triangles));
+  add("time a frame", fmt::format("{:.1f} ms (median {:.1f})", mean_milliseconds(s), median_milliseconds(s)));
+  if (!phases.empty()) add("  by phase [ms]", phases);
+  if (s.peak_memory > 0) add("peak memory", fmt::format("{:.0f} MB", static_cast<double>(s.peak_memory) / 1e6));
+  add("worst stretch", fmt::format("{:.3f} in frame {}", s.max_stretch, s.max_stretch_frame));
+  add("intersecting pairs",
+      s.pairs == 0 ? "0 in every frame"
+                   : fmt::format("{} in frame {} ({} over all frames)", s.worst_pairs, s.worst_frame, s.pairs));
+  if (s.cut_out_at_start > 0)
+    add("cut out",
+        s.cut_out_at_end > 0
+            ? fmt::format("{} triangles at the start, {} at the end: no pair is counted of them", s.cut_out_at_start,
+                          s.cut_out_at_end)
+            : fmt::format("{} triangles at the start, none after frame {}", s.cut_out_at_start, s.last_cut_frame));
+  if (!s.self_audited) add("self", "not audited");
+  if (s.vertex_pairs > 0) add("crossing at a vertex", fmt::format("{} pairs over all frames", s.vertex_pairs));
+  if (s.worst_inside > 0) add("inside obstacles", fmt::format("{} vertices in the worst frame", s.worst_inside));
+  if (s.nonfinite > 0) add("not finite", fmt::format("{} vertices over all frames", s.nonfinite));
+  add("contacts", fmt::format("{} at most; {} impulses, {} zones", s.max_contacts, s.impulses, s.zones));
+  if (s.halved_substeps > 0) add("substeps halved", std::to_string(s.halved_substeps));
+  if (s.held_vertices > 0)
+    add("held back", fmt::format("{:.2g} % of all vertices and substeps", 100 * held_fraction(s)));
+  if (s.passed_through > 0) add("passed through", fmt::format("{} pairs over all frames", s.passed_through));
+  if (s.max_obstacle_lag > 0)
+    add("obstacles lag", fmt::format("{:.2g} m at most; where they were wanted {} pairs and {:.2g} m deep at worst",
+                                     s.max_obstacle_lag, s.worst_pairs_wanted, s.max_depth_wanted));
+  add("left out", out.empty() ? "nothing" : out);
+  for (const std::string& warning : s.warnings) add("warning", warning);
+  return text;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,142 @@
+#include "pipeline/scene/materials.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "pipeline/scene/config_scene.hpp"
+#include "pipeline/scene/setup_paths.hpp"
+
+namespace selvedge {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Field {
+  const char* name;
+  double Material::*value;
+};
+
+constexpr std::array fields = {
+    Field{"density", &Material::density},
+    Field{"lame_mu", &Material::lame_mu},
+    Field{"lame_lambda", &Material::lame_lambda},
+    Field{"warp", &Material::warp},
+    Field{"weft", &Material::weft},
+    Field{"shear", &Material::shear},
+    Field{"bending", &Material::bending},
+    Field{"stiffness_damping", &Material::stiffness_damping},
+    Field{"mass_damping", &Material::mass_damping},
+};
+
+constexpr std::array membrane_models = {MembraneModel::stvk, MembraneModel::stable_neo_hookean,
+                                        MembraneModel::baraff_witkin};
+constexpr std::array bending_models = {BendingModel::curvature, BendingModel::hinge};
+
+// The value whose word is the entry's, in the order of the table's choices.
+template <class Values>
+auto chosen(const Config& entry, const Values& values) {
+  const auto& choices = entry.key->choices;
+  return values[static_cast<std::size_t>(std::find(choices.begin(), choices.end(), entry.text()) - choices.begin())];
+}
+
+template <class Values, class Value>
+std::string word_of(const Config& entry, const Values& values, Value value) {
+  return entry.key->choices[static_cast<std::size_t>(std::find(values.begin(), values.end(), value) - values.begin())];
+}
+
+void apply_hinge(const Config& section, Material& material) {
+  const Config& hinge = section["hinge_bending"];
+  if (!hinge.given) return;
+  if (section["bending"].given) hinge.fail("is given beside bending", "give one of them");
+  if (section["bending_model"].given && section["bending_model"].text() != "hinge")
+    hinge.fail("is given beside bending_model: " + section["bending_model"].text(), "leave bending_model out");
+  material.bending_model = BendingModel::hinge;
+  material.bending = hinge.number();
+}
+
+// Young's modulus, with or without a thickness, and Poisson's ratio, in place of the Lame coefficients.
+void apply_elastic(const Config& section, Material& material) {
+  const Config &young = section["youngs_modulus"], &poisson = section["poisson"], &modulus = section["modulus"],
+               &thickness = section["thickness"];
+  if (modulus.given != thickness.given)
+    (modulus.given ? modulus : thickness).fail("stands alone", "give modulus, thickness and poisson");
+  if (modulus.given && young.given) modulus.fail("is given beside youngs_modulus", "give one of them");
+  const bool given = young.given || modulus.given;
+  if (given != poisson.given)
+    (young.given     ? young
+     : modulus.given ? modulus
+                     : poisson)
+        .fail("stands alone", "give both youngs_modulus and poisson, or modulus, thickness and poisson");
+  if (!given) return;
+  for (const char* lame : {"lame_mu", "lame_lambda"})
+    if (section[lame].given)
+      section[lame].fail("is given beside youngs_modulus or modulus, and poisson", "give one pair or the other");
+  const double nu = poisson.number(), h = modulus.given ? thickness.number() : 0;
+  const double e = modulus.given ? modulus.number() * h : young.number();
+  material.lame_mu = e / (2 * (1 + nu));
+  material.lame_lambda = e * nu / (1 - nu * nu);
+  if (modulus.given && !section["bending"].given && !section["hinge_bending"].given)
+    material.bending = e * h * h / (12 * (1 - nu * nu));
+}
+
+void apply(const Config& section, Material& material) {
+  for (const Field& field : fields)
+    if (section[field.name].given) material.*field.value = section[field.name].number();
+  if (section["membrane"].given) material.membrane = chosen(section["membrane"], membrane_models);
+  if (section["bending_model"].given) material.bending_model = chosen(section["bending_model"], bending_models);
+  apply_hinge(section, material);
+  apply_elastic(section, material);
+}
+
+std::vector<std::string> material_names(const fs::path& folder) {
+  std::vector<std::string> names{Material{}.name};
+  for (const fs::path& place : config_folders(folder)) {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(place / "materials", ignored))
+      if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+void read_named(const Config& name, const fs::path& folder, Material& material) {
+  material.name = name.text();
+  for (const fs::path& place : config_folders(folder)) {
+    const fs::path file = place / "materials" / (name.text() + ".yaml");
+    if (fs::exists(file)) return apply(read_config(file, material_file_section()), material);
+  }
+  if (name.text() == Material{}.name) return;
+  const std::vector<std::string> known = material_names(folder);
+  name.fail("names the unknown material `" + name.text() + "`",
+            "known: " + joined(known) + suggestion(name.text(), known));
+}
+
+void write_back(const Material& material, Config& section) {
+  for (const Field& field : fields) section[field.name].numbers = {material.*field.value};
+  section["membrane"].words = {word_of(section["membrane"], membrane_models, material.membrane)};
+  section["bending_model"].words = {word_of(section["bending_model"], bending_models, material.bending_model)};
+  for (const char* replaced : {"youngs_modulus", "modulus", "thickness", "poisson", "hinge_bending"}) {
+    section[replaced].numbers.clear();
+    section[replaced].given = false;
+  }
+}
+
+}  // namespace
+
+Material read_material(Config& section, const fs::path& folder) {
+  const Config &name = section["name"], &file = section["file"];
+  if (name.given && file.given) file.fail("is given beside a name", "give one of them");
+  Material material;
+  if (name.given) read_named(name, folder, material);
+  if (file.given) {
+    const fs::path place = existing_path(file, folder);
+    apply(read_config(place, material_file_section()), material);
+    material.name = place.stem().string();
+  }
+  apply(section, material);
+  write_back(material, section);
+  return material;
+}
+
+}  // namespace selvedge

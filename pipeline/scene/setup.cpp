@@ -1,0 +1,294 @@
+#include "pipeline/scene/setup.hpp"
+
+#include <algorithm>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "pipeline/scene/config_scene.hpp"
+#include "pipeline/scene/setup_cloth.hpp"
+#include "pipeline/scene/setup_motion.hpp"
+#include "pipeline/scene/setup_obstacle.hpp"
+#include "pipeline/scene/setup_outcome.hpp"
+#include "pipeline/scene/setup_seams.hpp"
+#include "pipeline/scene/setup_springs.hpp"
+
+namespace selvedge {
+namespace {
+
+struct PinnedVertex {
+  int vertex;  // of the scene
+  const PinPart* by = nullptr;
+  int place = 0;  // among the part's vertices
+};
+
+// The world over time, kept by Setup::drive_at.
+struct World {
+  struct PinGroup {                 // pins that move together
+    std::vector<int> rows, places;  // of them all; among what `at` gives
+    std::function<Points(double time)> at;
+  };
+  int pin_count = 0;
+  std::vector<PinGroup> pins;
+  std::vector<std::function<Points(double time)>> obstacles;
+  std::function<Points(double)> worn;  // empty: nothing is worn
+  Vec3 gravity = Vec3::Zero();
+  std::vector<double> wind_times;
+  std::vector<Vec3> wind;
+  Interpolation wind_interpolation = Interpolation::linear;
+};
+
+Drive drive(const World& world, double time) {
+  Drive d;
+  d.pins.resize(world.pin_count, 3);
+  for (const World::PinGroup& group : world.pins)
+    d.pins(group.rows, Eigen::all) = group.at(time)(group.places, Eigen::all);
+  for (const auto& at : world.obstacles) d.obstacles.push_back(at(time));
+  if (!world.wind.empty()) d.wind = keyed_vector(world.wind_times, world.wind, world.wind_interpolation, time);
+  d.acceleration = world.gravity;
+  if (world.worn) d.worn = world.worn(time);
+  return d;
+}
+
+void join(const std::vector<ClothPart>& parts, Scene& scene, State& initial) {
+  Eigen::Index vertices = 0, triangles = 0;
+  for (const ClothPart& part : parts) {
+    vertices += part.mesh.x.rows();
+    triangles += part.mesh.triangles.rows();
+  }
+  initial.x.resize(vertices, 3);
+  initial.v.resize(vertices, 3);
+  scene.rest.resize(vertices, 3);
+  Triangles all(triangles, 3);
+  Eigen::Index v = 0, t = 0;
+  for (const ClothPart& part : parts) {
+    const Eigen::Index nv = part.mesh.x.rows(), nt = part.mesh.triangles.rows();
+    scene.cloths.push_back({part.name, part.material, static_cast<int>(v), static_cast<int>(nv), static_cast<int>(t),
+                            static_cast<int>(nt)});
+    initial.x.middleRows(v, nv) = part.first;
+    initial.v.middleRows(v, nv) = part.velocity;
+    scene.rest.middleRows(v, nv) = part.rest;
+    all.middleRows(t, nt) = part.mesh.triangles.array() + static_cast<int>(v);
+    scene.rest_triangle.insert(scene.rest_triangle.end(), part.rest_triangle.begin(), part.rest_triangle.end());
+    scene.rest_is_flat = part.rest_is_flat;
+    v += nv;
+    t += nt;
+  }
+  scene.surface = make_surface(static_cast<int>(vertices), all);
+}
+
+// Vertices without mass cannot move freely: they stay where they are.
+PinPart massless(const Scene& scene, const Points& x, std::vector<std::string>& warnings) {
+  const Eigen::VectorXd masses = lumped_masses(scene);
+  PinPart held;
+  for (int v = 0; v < masses.size(); ++v)
+    if (!(masses[v] > 0)) held.vertices.push_back(v);
+  if (!held.vertices.empty())
+    warnings.push_back(fmt::format("{} vertices without mass are held in place", held.vertices.size()));
+  held.at = [place = Points(x(held.vertices, Eigen::all))](double) { return place; };
+  return held;
+}
+
+void add_pins(const std::vector<ClothPart>& parts, const PinPart& held, Scene& scene, World& world) {
+  std::vector<PinnedVertex> all;
+  const auto add = [&all](const PinPart& pin, int first) {
+    for (std::size_t k = 0; k < pin.vertices.size(); ++k)
+      all.push_back({first + pin.vertices[k], &pin, static_cast<int>(k)});
+  };
+  for (std::size_t c = 0; c < parts.size(); ++c)
+    for (const PinPart& pin : parts[c].pins) add(pin, scene.cloths[c].first_vertex);
+  add(held, 0);
+  // The first pin that names a vertex keeps it.
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.vertex < b.vertex; });
+  all.erase(std::unique(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.vertex == b.vertex; }),
+            all.end());
+  for (const PinnedVertex& pin : all) scene.pins.push_back(pin.vertex);
+  world.pin_count = static_cast<int>(all.size());
+  std::vector<const PinPart*> owners;
+  for (std::size_t r = 0; r < all.size(); ++r) {
+    const auto owner = std::find(owners.begin(), owners.end(), all[r].by);
+    if (owner == owners.end()) world.pins.emplace_back().at = all[r].by->at;
+    World::PinGroup& group = world.pins[static_cast<std::size_t>(owner - owners.begin())];
+    if (owner == owners.end()) owners.push_back(all[r].by);
+    group.rows.push_back(static_cast<int>(r));
+    group.places.push_back(all[r].place);
+  }
+}
+
+void read_wind(const Config& section, Wind& wind, World& world) {
+  if (!section.given) return;
+  wind.drag = section["drag"].number();
+  wind.lift = section["lift"].number();
+  wind.air_density = section["air_density"].number();
+  wind.on = wind.air_density > 0 && (wind.drag > 0 || wind.lift > 0);
+  world.wind_interpolation = read_interpolation(section["interpolation"]);
+  const Config& keyframes = section["keyframes"];
+  if (!keyframes.items.empty() && section["velocity"].given)
+    section["velocity"].fail("is given beside keyframes", "give one of them");
+  check_ascending_times(keyframes);
+  for (const Config& key : keyframes.items) {
+    world.wind_times.push_back(key["time"].number());
+    world.wind.push_back(key["velocity"].vector());
+  }
+  if (keyframes.items.empty()) {
+    world.wind_times = {0};
+    world.wind = {section["velocity"].vector()};
+  }
+}
+
+ContactSettings read_contact(const Config& section) {
+  return {section["thickness"].number(), section["friction"].number(), section["self_friction"].number(),
+          section["self"].flag(), section["rigid_zones"].flag()};
+}
+
+ImplicitEulerOptions read_solver(const Config& section) {
+  ImplicitEulerOptions o;
+  o.velocity_tolerance = section["velocity_tolerance"].number();
+  o.relative_tolerance = section["relative_tolerance"].number();
+  o.max_newton = section["max_newton"].integer();
+  const std::string& solver = section["linear_solver"].text();
+  o.linear_solver = solver == "cholmod"     ? LinearSolver::cholmod
+                    : solver == "pcg"       ? LinearSolver::pcg
+                    : solver == "multigrid" ? LinearSolver::multigrid
+                                            : LinearSolver::automatic;
+  o.linear_tolerance = section["linear_tolerance"].number();
+  o.max_linear = section["max_linear"].integer();
+  o.slip_speed = section["slip_speed"].number();
+  return o;
+}
+
+IcmOptions read_icm(const Config& section) {
+  IcmOptions o;
+  o.outer_iterations = section["outer_iterations"].integer();
+  o.contour_weight = section["contour_weight"].number();
+  o.contour_gradient =
+      section["contour_gradient"].text() == "full" ? ContourGradient::full : ContourGradient::translational;
+  o.push_speed = section["push_speed"].number();
+  o.reach = section["reach"].number();
+  return o;
+}
+
+RunOptions read_run(const Config& scene) {
+  const Config& section = scene["run"];
+  RunOptions run;
+  run.frames = section["frames"].integer();
+  run.fps = section["fps"].number();
+  run.stepper = section["stepper"].text();
+  run.rest = section["rest"].flag();
+  if (scene["output"]["folder"].given) run.output = scene["output"]["folder"].text();
+  if (!section["substeps"].numbers.empty()) run.conventional.substeps = section["substeps"].integer();
+  run.conventional.max_substeps = section["max_substeps"].integer();
+  const Config& integrator = scene["solver"]["integrator"];
+  run.conventional.integrator = integrator.text() == "bdf2" ? Integrator::bdf2 : Integrator::implicit_euler;
+  if (run.conventional.integrator == Integrator::bdf2 && run.stepper == "icm")
+    integrator.fail("is not one of the stepper `icm`", "leave it out, or take the stepper `conventional`");
+  run.conventional.implicit_euler = read_solver(scene["solver"]);
+  run.icm = read_icm(section["icm"]);
+  run.icm.substeps = run.conventional.substeps;
+  run.icm.max_substeps = run.conventional.max_substeps;
+  run.icm.implicit_euler = run.conventional.implicit_euler;
+  return run;
+}
+
+// Adds the name of an item of a list to those that are taken.
+void take_name(const Config& item, const std::string& name, std::vector<std::string>& taken) {
+  if (std::find(taken.begin(), taken.end(), name) != taken.end())
+    item.fail("has the name `" + name + "` of another", "give every one its own name");
+  taken.push_back(name);
+}
+
+std::vector<ClothPart> read_all_cloths(Config& list, const std::filesystem::path& folder, const Performances& bodies,
+                                       std::vector<std::string>& warnings) {
+  if (list.items.empty()) list.fail("is empty", "give at least one cloth");
+  std::vector<ClothPart> parts;
+  std::vector<std::string> names;
+  for (std::size_t c = 0; c < list.items.size(); ++c) {
+    for (ClothPart& part : read_cloths(list.items[c], fmt::format("cloth{}", c), folder, bodies, warnings)) {
+      take_name(list.items[c], part.name, names);
+      parts.push_back(std::move(part));
+    }
+    const auto garment = std::ranges::find_if(parts, [](const ClothPart& part) { return part.worn != nullptr; });
+    if (parts.back().worn && (parts.back().draping != garment->draping || parts.back().cut != garment->cut))
+      list.items[c].fail("starts otherwise than the first garment", "give all garments of a scene the same `start`");
+    if (parts.back().rest_is_flat != parts.front().rest_is_flat)
+      list.items[c]["rest"]["flat"].fail("differs from the first cloth's", "all cloths of a scene rest alike");
+  }
+  return parts;
+}
+
+void read_obstacles(const Config& list, const std::filesystem::path& folder, const Performances& bodies, Setup& setup,
+                    World& world) {
+  std::vector<std::string> names;
+  for (std::size_t o = 0; o < list.items.size(); ++o) {
+    ObstaclePart part = bodies[o] ? obstacle_of(bodies[o]) : read_obstacle(list.items[o], o, folder, setup.warnings);
+    take_name(list.items[o], part.obstacle.name, names);
+    setup.scene.obstacles.push_back(std::move(part.obstacle));
+    world.obstacles.push_back(std::move(part.at));
+  }
+}
+
+// Neighbours of a triangle lie within its smallest altitude: a thicker cloth pushes them apart at rest.
+void warn_of_thickness(const Scene& scene, std::vector<std::string>& warnings) {
+  int thin = 0, flat = 0;
+  for (const RestTriangle& triangle : scene.rest_triangle) {
+    const double altitude = smallest_altitude(triangle);
+    if (altitude * altitude <= 2e-9 * area(triangle))  // a billionth of the longest edge
+      ++flat;
+    else if (altitude < scene.contact.thickness)
+      ++thin;
+  }
+  if (flat > 0) warnings.push_back(fmt::format("{} triangles of zero rest area, which resist no stretch", flat));
+  if (thin > 0 && scene.contact.self)
+    warnings.push_back(fmt::format("contact.thickness {} m is larger than the smallest altitude of {} triangles",
+                                   scene.contact.thickness, thin));
+}
+
+}  // namespace
+
+Setup read_setup(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  Config config = read_config(file, scene_section(), overrides);
+  const std::filesystem::path folder = file.parent_path();
+  Setup setup;
+  const auto world = std::make_shared<World>();
+  const Performances bodies = read_performances(config["obstacles"], folder);
+  std::vector<ClothPart> cloths = read_all_cloths(config["cloths"], folder, bodies, setup.warnings);
+  for (const auto& who : bodies) {
+    if (!who) continue;
+    const auto worn = [&](const ClothPart& part) { return part.worn && part.worn->by == who; };
+    wear(static_cast<int>(std::ranges::count_if(cloths, worn)), *who);
+  }
+  setup.file = file;
+  setup.scene.contact = read_contact(config["contact"]);
+  setup.run = read_run(config);
+  setup.initial.frame = -begin_draped(bodies, setup.run.fps, cloths);
+  setup.initial.time = setup.initial.frame / setup.run.fps;
+  world->gravity = config["gravity"].vector();
+  join(cloths, setup.scene, setup.initial);
+  add_pins(cloths, massless(setup.scene, setup.initial.x, setup.warnings), setup.scene, *world);
+  read_obstacles(config["obstacles"], folder, bodies, setup, *world);
+  read_wind(config["wind"], setup.scene.wind, *world);
+  warn_of_thickness(setup.scene, setup.warnings);
+  for (const auto& who : bodies) setup.bodies.push_back(who ? who->known : nullptr);
+  setup.drive_at = [world](double time) { return drive(*world, time); };
+  const Drive start = setup.drive_at(setup.initial.time);
+  setup.initial.obstacles = start.obstacles;
+  for (std::size_t p = 0; p < setup.scene.pins.size(); ++p) {
+    setup.initial.x.row(setup.scene.pins[p]) = start.pins.row(static_cast<Eigen::Index>(p));
+    setup.initial.v.row(setup.scene.pins[p]).setZero();
+  }
+  warn_of_stretched_seams(cloths, setup.scene, setup.initial.x, setup.warnings);
+  setup.scene.springs = read_springs(config["springs"], cloths, setup.scene, setup.initial.x, setup.warnings);
+  world->worn = worn_in_scene(cloths, setup.scene);
+  begin_cut(cloths, setup.scene, setup.initial);
+  if (std::ranges::any_of(cloths, &ClothPart::cut))
+    setup.prepared =
+        fmt::format("cut: {} of {} triangles out", setup.initial.cut_out.size(), setup.scene.surface.triangles.rows());
+  setup.velocity = setup.initial.v;
+  if (setup.initial.frame < 0) setup.initial.v.setZero();
+  setup.outcomes = read_outcomes(config["outcome"], cloths, setup.scene);
+  setup.short_form = config["short_form"].words;
+  setup.config = to_yaml(config);
+  return setup;
+}
+
+}  // namespace selvedge

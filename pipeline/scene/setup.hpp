@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "physics/scene/scene.hpp"
+#include "physics/scene/stepper.hpp"
+#include "physics/steppers/conventional_stepper.hpp"
+#include "physics/steppers/icm_stepper.hpp"
+#include "pipeline/scene/outcome.hpp"
+
+namespace selvedge {
+
+// What a scene file says beside the Scene itself.
+struct RunOptions {
+  int frames = 60;
+  double fps = 30;
+  std::string stepper = "conventional";
+  bool rest = true;    // cloths that rest are left out
+  std::string output;  // folder for the results; empty: chosen by the command
+  ConventionalOptions conventional;
+  IcmOptions icm;
+};
+
+struct PosedBodies;
+
+// A scene file, read: everything a run needs.
+struct Setup {
+  std::filesystem::path file;
+  std::string config;  // the full configuration as YAML, overrides applied
+  Scene scene;
+  State initial;         // before time 0 where the start is still to be made, which `prepare` does
+  Points velocity;       // at time 0
+  std::string prepared;  // what was done for the start; empty: nothing
+  RunOptions run;
+  std::function<Drive(double time)> drive_at;        // the world at a time [s]
+  std::vector<std::shared_ptr<PosedBodies>> bodies;  // of each obstacle, null for what is no body: what drive_at knows
+  std::vector<Outcome> outcomes;                     // what must come true
+  std::vector<std::string> short_form;               // overrides that make a shorter run of the scene
+  std::vector<std::string> warnings;  // named and counted: degenerate triangles left out, isolated vertices, ...
+};
+
+// Reads a scene file. `overrides` are key=value with dotted keys (run.frames=10). Throws Error with file, line, key,
+// what is allowed and the nearest known key.
+Setup read_setup(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+}  // namespace selvedge

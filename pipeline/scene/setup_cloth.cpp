@@ -1,0 +1,239 @@
+#include "pipeline/scene/setup_cloth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "pipeline/scene/materials.hpp"
+#include "pipeline/scene/setup_motion.hpp"
+#include "pipeline/scene/setup_paths.hpp"
+#include "pipeline/scene/setup_seams.hpp"
+#include "pipeline/scene/setup_sheet.hpp"
+
+namespace selvedge {
+namespace {
+
+// The flat pattern in the texture coordinates. Mirrored triangles are mirrored back, which keeps warp and weft.
+std::vector<RestTriangle> pattern(const Config& at, const Mesh& mesh, double unit) {
+  const bool whole = mesh.uv_triangles.rows() == mesh.triangles.rows() && mesh.uv_triangles.size() > 0;
+  if (!whole || mesh.uv_triangles.minCoeff() < 0)
+    at.fail("asks for texture coordinates, which " + std::string(whole ? "some faces" : "the cloth") + " lack",
+            "give `vt` for every corner of a face, or rest: initial");
+  std::vector<RestTriangle> rest(static_cast<std::size_t>(mesh.triangles.rows()));
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    RestTriangle& triangle = rest[static_cast<std::size_t>(t)];
+    for (int k = 0; k < 3; ++k) triangle.col(k) = unit * mesh.uv.row(mesh.uv_triangles(t, k)).transpose();
+    if (area(triangle) < 0) triangle.row(0) *= -1;
+  }
+  return rest;
+}
+
+// Weft of a shape without texture coordinates: up, or away from the viewer where the shape lies flat.
+Vec3 weft_axis(const Points& x) {
+  const Vec3 extent = (x.colwise().maxCoeff() - x.colwise().minCoeff()).transpose();
+  return extent.y() > 1e-3 * extent.maxCoeff() ? Vec3(0, 1, 0) : Vec3(0, 0, -1);
+}
+
+void read_rest(const Config& section, const Mesh& made, bool generated, double scale,
+               const std::filesystem::path& folder, ClothPart& part) {
+  const Config& from = section["from"];
+  part.rest_is_flat = section["flat"].flag();
+  part.rest = scale * made.x;
+  if (from.text() == "uv") {
+    part.rest_triangle = pattern(from, made, section["uv_unit"].number());
+    return;
+  }
+  if (from.text() == "mesh") {
+    if (!section["file"].given) from.fail("needs a `file`", "name the mesh of the rest shape");
+    const Mesh rest = read_mesh(existing_path(section["file"], folder));
+    if (rest.x.rows() != made.x.rows() || !same_triangles(rest.triangles, made.triangles))
+      section["file"].fail("has other vertices or faces than the cloth",
+                           "the rest shape needs the same numbering as the cloth");
+    part.rest = scale * read_unit(section["unit"]) * rest.x;
+  } else if (section["file"].given) {
+    section["file"].fail("is not used, since `from` is " + from.text(), "write from: mesh, or leave the file out");
+  }
+  part.rest_triangle = from.text() == "initial" && generated && made.uv.rows() > 0
+                           ? pattern(from, made, scale)
+                           : flattened(part.rest, made.triangles, weft_axis(part.rest));
+}
+
+std::vector<int> in_box(const Config& box, const Points& x) {
+  const Vec3 low = box["min"].vector(), high = box["max"].vector();
+  if ((low.array() > high.array()).any()) box.fail("has a `min` above its `max`", "swap them");
+  std::vector<int> found;
+  for (int v = 0; v < x.rows(); ++v)
+    if ((row(x, v).array() >= low.array()).all() && (row(x, v).array() <= high.array()).all()) found.push_back(v);
+  if (found.empty()) {
+    const Vec3 least = x.colwise().minCoeff(), most = x.colwise().maxCoeff();
+    box.fail("holds no vertex of the cloth",
+             fmt::format("the cloth spans [{:.4g}, {:.4g}, {:.4g}] to [{:.4g}, {:.4g}, {:.4g}] m", least.x(), least.y(),
+                         least.z(), most.x(), most.y(), most.z()));
+  }
+  return found;
+}
+
+void sort_unique(std::vector<int>& numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
+std::vector<int> in_groups(const Config& group, const Mesh& mesh) {
+  std::vector<std::string> known;
+  for (const auto& [name, vertices] : mesh.groups) known.push_back(name);
+  std::vector<int> found;
+  for (const std::string& word : group.words) {
+    const auto match = std::find(known.begin(), known.end(), word);
+    if (match == known.end())
+      group.fail("names the unknown group `" + word + "`",
+                 known.empty() ? "the cloth has no groups" : "groups: " + joined(known) + suggestion(word, known));
+    const std::vector<int>& vertices = mesh.groups[static_cast<std::size_t>(match - known.begin())].second;
+    found.insert(found.end(), vertices.begin(), vertices.end());
+  }
+  sort_unique(found);
+  return found;
+}
+
+std::vector<int> listed(const Config& list, const ClothPart& part) {
+  const std::size_t count = part.sewn.empty() ? static_cast<std::size_t>(part.mesh.x.rows()) : part.sewn.size();
+  std::vector<int> found;
+  for (const double v : list.numbers) {
+    if (v >= static_cast<double>(count))
+      list.fail(fmt::format("names vertex {}, which does not exist", v), fmt::format("allowed: 0 to {}", count - 1));
+    found.push_back(part.sewn.empty() ? static_cast<int>(v) : part.sewn[static_cast<std::size_t>(v)]);
+  }
+  return found;
+}
+
+// Pins that stay with the body.
+PinPart following(const std::shared_ptr<const Wearing>& worn, const std::vector<int>& vertices) {
+  return {vertices, [worn, vertices](double time) -> Points { return held_at(*worn, vertices, time); }};
+}
+
+PinPart read_pin(const Config& section, const ClothPart& part) {
+  const std::vector<int> vertices = read_selection(section, part);
+  if (const Config& follow = section["follow"]; follow.given) {
+    if (!part.worn)
+      follow.fail("is given for a cloth that no body wears", "make the cloth a `garment`, or leave it out");
+    if (section["motion"].given) section["motion"].fail("is given beside `follow`", "give one of them");
+    return following(part.worn, vertices);
+  }
+  const Points start = part.mesh.x(vertices, Eigen::all);
+  const Motion motion = read_motion(section["motion"], start);
+  if (!part.worn) return {vertices, [start, motion](double time) { return moved(motion, start, time); }};
+  // A garment that is draped goes with the body until its pins begin to move.
+  return {vertices, [start, motion, before = following(part.worn, vertices).at](double time) {
+            return time < 0 ? before(time) : moved(motion, start, time);
+          }};
+}
+
+// A sheet, placed, or a garment, worn: mesh, rest shape and velocity.
+void read_shape(const Config& section, const std::filesystem::path& folder, std::vector<std::string>& warnings,
+                ClothPart& part) {
+  const bool worn = part.worn != nullptr;
+  part.mesh = worn ? rest_mesh(*part.worn) : read_sheet(section, folder);
+  warnings.insert(warnings.end(), part.mesh.warnings.begin(), part.mesh.warnings.end());
+  const Config& placement = worn ? part.worn->by->section : section;
+  read_rest(section["rest"], part.mesh, !section["mesh"].given, placement["scale"].number(), folder, part);
+  part.mesh.x = worn ? worn_at(*part.worn, 0) : placed(section, part.mesh.x);
+  if (!worn) sew(section["seams"], folder, part, warnings);
+  if (worn && section["start"]["moving"].flag())
+    part.velocity = worn_velocity(*part.worn, 0);
+  else
+    part.velocity = section["velocity"].vector().transpose().replicate(part.mesh.x.rows(), 1);
+}
+
+// Turned about the middle of its box and moved, `times` times over.
+Points copied(const Config& copies, const Points& x, int times) {
+  if (times == 0) return x;
+  const Mat3 turn = rotation_matrix(times * copies["rotate"].vector());
+  const Eigen::RowVector3d middle = 0.5 * (x.colwise().minCoeff() + x.colwise().maxCoeff());
+  const Eigen::RowVector3d move = times * copies["translate"].vector().transpose();
+  return ((x.rowwise() - middle) * turn.transpose()).rowwise() + (middle + move);
+}
+
+std::vector<ClothPart> read_copies(const Config& section, const std::filesystem::path& folder,
+                                   std::vector<std::string>& warnings, ClothPart part) {
+  read_shape(section, folder, warnings, part);
+  const Config& copies = section["copies"];
+  if (!copies.given) return {part};
+  std::vector<ClothPart> parts(static_cast<std::size_t>(copies["count"].integer()), part);
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    parts[k].name = fmt::format("{}_{}", part.name, k);
+    parts[k].mesh.x = copied(copies, part.mesh.x, static_cast<int>(k));
+  }
+  return parts;
+}
+
+// The garments of an outfit are named after themselves.
+std::vector<ClothPart> read_worn(const Config& section, const std::filesystem::path& folder, const Performances& bodies,
+                                 std::vector<std::string>& warnings, const ClothPart& plain) {
+  const bool is_outfit = section["garment"]["outfit"].given;
+  std::vector<ClothPart> parts;
+  for (auto& worn : read_wearings(section, folder, bodies, warnings)) {
+    ClothPart& part = parts.emplace_back(plain);
+    if (is_outfit) part.name = (section["name"].given ? plain.name + "_" : "") + worn->garment.name;
+    part.worn = worn;
+    read_shape(section, folder, warnings, part);
+  }
+  return parts;
+}
+
+}  // namespace
+
+std::vector<int> read_vertices(const Config& section, const ClothPart& part) {
+  if (section["vertices"].given) return listed(section["vertices"], part);
+  if (section["box"].given) return in_box(section["box"], part.mesh.x);
+  if (section["group"].given) return in_groups(section["group"], part.mesh);
+  std::vector<int> all(static_cast<std::size_t>(part.mesh.x.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+std::vector<int> read_selection(const Config& section, const ClothPart& part) {
+  std::vector<int> found = read_vertices(section, part);
+  sort_unique(found);
+  return found;
+}
+
+std::vector<RestTriangle> flattened(const Points& x, const Triangles& triangles, const Vec3& weft) {
+  std::vector<RestTriangle> rest(static_cast<std::size_t>(triangles.rows()));
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    const Vec3 a = row(x, triangles(t, 0)), b = row(x, triangles(t, 1)), c = row(x, triangles(t, 2));
+    RestTriangle& triangle = rest[static_cast<std::size_t>(t)];
+    triangle = flatten(a, b, c);
+    const Vec3 normal = (b - a).cross(c - a).normalized();
+    const Vec3 v_axis = weft - weft.dot(normal) * normal;
+    // A triangle square to the weft direction keeps u along its first edge.
+    if (!(v_axis.norm() > 1e-6) || (b - a).norm() == 0) continue;
+    const Vec3 first = (b - a).normalized(), v = v_axis.normalized();
+    const double cosine = v.dot(normal.cross(first)), sine = v.dot(first);
+    // Turns the triangle in its plane until v is the second axis; `first` was the u axis.
+    triangle = (Eigen::Matrix2d() << cosine, -sine, sine, cosine).finished() * triangle;
+  }
+  return rest;
+}
+
+std::vector<ClothPart> read_cloths(Config& section, const std::string& default_name,
+                                   const std::filesystem::path& folder, const Performances& bodies,
+                                   std::vector<std::string>& warnings) {
+  ClothPart part;
+  part.name = section["name"].given ? section["name"].text() : default_name;
+  part.material = read_material(section["material"], folder);
+  std::vector<ClothPart> parts;
+  if (section["garment"].given)
+    parts = read_worn(section, folder, bodies, warnings, part);
+  else
+    parts = read_copies(section, folder, warnings, part);
+  for (ClothPart& one : parts) {
+    apply_start(section["start"], one, warnings);
+    one.first = one.mesh.x;
+    for (const Config& pin : section["pins"].items) one.pins.push_back(read_pin(pin, one));
+    if (one.worn && !one.worn->garment.pins.empty()) one.pins.push_back(following(one.worn, one.worn->garment.pins));
+  }
+  return parts;
+}
+
+}  // namespace selvedge

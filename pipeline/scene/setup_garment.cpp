@@ -1,0 +1,172 @@
+#include "pipeline/scene/setup_garment.hpp"
+
+#include <fmt/format.h>
+
+#include "pipeline/garments/garment_hdf5.hpp"
+#include "pipeline/garments/garment_make.hpp"
+#include "pipeline/garments/outfit.hpp"
+#include "pipeline/scene/setup_paths.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double skin_width = 0.02;  // of the skin that a garment's vertex goes along with [m]
+
+// A garment's place comes from its body, and copies could not wear it.
+void check_placed_by_body(const Config& cloth) {
+  const auto refuse = [&](const char* key, bool differs) {
+    if (differs)
+      cloth[key].fail("is given for a garment", "leave it out: a garment is where its body is; place the body instead");
+  };
+  refuse("scale", cloth["scale"].number() != 1);
+  for (const char* key : {"rotate", "translate", "velocity"}) refuse(key, cloth[key].vector() != Vec3(0, 0, 0));
+  refuse("copies", cloth["copies"].given);
+  if (!cloth["seams"].items.empty())
+    cloth["seams"].fail("is given for a garment", "sew the mesh first, then make the garment of it");
+}
+
+std::shared_ptr<const Performance> wearer(const Config& garment, const Performances& bodies) {
+  std::vector<std::string> names;
+  std::shared_ptr<const Performance> found;
+  const Config& on = garment["on"];
+  for (const auto& body : bodies) {
+    if (!body) continue;
+    names.push_back(body->name);
+    if (!on.given || body->name == on.text()) found = body;
+  }
+  if (names.empty()) garment.fail("has no body to be worn by", "add an obstacle with a `body`");
+  if (on.given && !found)
+    on.fail("names `" + on.text() + "`, which is no body of the scene",
+            "bodies: " + joined(names) + suggestion(on.text(), names));
+  if (!on.given && names.size() > 1)
+    garment.fail("does not say who wears it", "name one of the bodies " + joined(names) + " with `on`");
+  return found;
+}
+
+void check_fits(const Config& file, const Garment& garment, const Performance& who) {
+  const auto joints = static_cast<Eigen::Index>(who.body.joints.size());
+  const std::string cure = "take the body that the garment was made for, or make it anew with `selvedge dress`";
+  if (garment.skin.weights.cols() != joints)
+    file.fail(fmt::format("is a garment for a body with {} joints, `{}` has {}", garment.skin.weights.cols(), who.name,
+                          joints),
+              cure);
+  if (garment.skin.shape_directions.cols() < who.shape.size())
+    file.fail(fmt::format("is a garment with {} shapes, `{}` is given {}", garment.skin.shape_directions.cols(),
+                          who.name, who.shape.size()),
+              cure);
+}
+
+void check_mannequin(const Config& garment, const Performance& who) {
+  if (who.body.name.starts_with("mannequin")) return;
+  garment.fail("is for the mannequin, and `" + who.name + "` is `" + who.body.name + "`",
+               "make it for that body with `selvedge dress`, and name its file");
+}
+
+Garment read_cut(const Config& section, const Performance& who) {
+  check_mannequin(section["cut"], who);
+  GarmentOptions options;
+  options.edge = section["edge"].number();
+  return kept_garment(cache_folder(), section["cut"].text(), who.body, options, section["over"].words);
+}
+
+std::vector<Garment> read_outfit(const Config& section, const std::filesystem::path& folder, const Performance& who) {
+  const Config& name = section["outfit"];
+  check_mannequin(name, who);
+  const Wardrobe wardrobe = read_wardrobe(config_near(folder, "outfits.yaml"));
+  std::vector<std::string> known;
+  for (const Outfit& outfit : wardrobe.outfits) {
+    known.push_back(outfit.name);
+    if (outfit.name == name.text())
+      return kept_outfit(cache_folder(), outfit, who.body,
+                         section["form"].text() == "full" ? outfit.edge : outfit.small_edge);
+  }
+  name.fail("is the unknown outfit `" + name.text() + "`",
+            "outfits: " + joined(known) + suggestion(name.text(), known));
+}
+
+Garment read_file(const Config& file, const std::filesystem::path& folder, const Performance& who,
+                  std::vector<std::string>& warnings) {
+  Garment garment = read_garment(existing_path(file, folder));
+  check_fits(file, garment, who);
+  if (!garment.made_for.empty() && garment.made_for != who.body.name)
+    warnings.push_back(fmt::format("garment `{}` was made for the body `{}`, and `{}` is `{}`", garment.name,
+                                   garment.made_for, who.name, who.body.name));
+  return garment;
+}
+
+}  // namespace
+
+std::vector<std::shared_ptr<const Wearing>> read_wearings(const Config& cloth, const std::filesystem::path& folder,
+                                                          const Performances& bodies,
+                                                          std::vector<std::string>& warnings) {
+  const Config& section = cloth["garment"];
+  check_placed_by_body(cloth);
+  const auto who = wearer(section, bodies);
+  std::vector<Garment> garments;
+  if (section["outfit"].given)
+    garments = read_outfit(section, folder, *who);
+  else
+    garments.push_back(section["cut"].given ? read_cut(section, *who)
+                                            : read_file(section["file"], folder, *who, warnings));
+  std::vector<std::shared_ptr<const Wearing>> worn;
+  for (Garment& garment : garments) {
+    if (!section["pins"].flag()) garment.pins.clear();
+    SkinWeights skin;
+    Footing footing;
+    if (who->flesh) {
+      skin = shares_of_body(garment.skin.rest, who->body, skin_width);
+      footing = footing_of(garment.skin.rest, who->surface, who->body.skin.rest);
+    }
+    worn.push_back(std::make_shared<Wearing>(Wearing{std::move(garment), who, std::move(skin), std::move(footing)}));
+  }
+  return worn;
+}
+
+Mesh rest_mesh(const Wearing& wearing) {
+  Mesh mesh;
+  mesh.x = rest_shape(wearing.garment, wearing.by->body, wearing.by->shape);
+  mesh.triangles = wearing.garment.skin.triangles;
+  mesh.groups = wearing.garment.groups;
+  return mesh;
+}
+
+Points worn_at(const Wearing& wearing, double time) {
+  const Performance& who = *wearing.by;
+  return in_scene(who, worn(wearing.garment, who.body, who.shape, pose_at(who, time)), time);
+}
+
+namespace {
+
+// Before it is placed.
+Points carried(const Wearing& wearing, double time) {
+  const Performance& who = *wearing.by;
+  Points x = worn(wearing.garment, who.body, who.shape, pose_at(who, time));
+  if (!who.flesh) return x;
+  const PosedBody& body = posed_at(who, time);
+  return x + wearing.skin * (body.given - body.skinned);
+}
+
+Points squeezed_at(const Wearing& wearing, const Footing& footing, double time, const Points& x) {
+  const Performance& who = *wearing.by;
+  return who.flesh ? squeezed(footing, who.surface, posed_at(who, time).given, x) : x;
+}
+
+}  // namespace
+
+Points held_at(const Wearing& wearing, const std::vector<int>& vertices, double time) {
+  const Points x = carried(wearing, time)(vertices, Eigen::all);
+  return in_scene(*wearing.by, squeezed_at(wearing, footing_of(wearing.footing, vertices), time, x), time);
+}
+
+Points drawn_at(const Wearing& wearing, double time) {
+  Points x = carried(wearing, time);
+  if (wearing.by->garments > 1) x = squeezed_at(wearing, wearing.footing, time, x);
+  return in_scene(*wearing.by, x, time);
+}
+
+Points worn_velocity(const Wearing& wearing, double time) {
+  const double fps = wearing.by->clip.fps;
+  return fps * (worn_at(wearing, time + 1 / fps) - worn_at(wearing, time));
+}
+
+}  // namespace selvedge

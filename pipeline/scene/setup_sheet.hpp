@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+
+#include "pipeline/config/config.hpp"
+#include "pipeline/formats/mesh_io.hpp"
+
+namespace selvedge {
+
+// The mesh that a `cloth` section makes or reads, before it is placed; `folder` is the scene file's.
+Mesh read_sheet(const Config& section, const std::filesystem::path& folder);
+
+}  // namespace selvedge

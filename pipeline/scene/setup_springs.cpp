@@ -1,0 +1,69 @@
+#include "pipeline/scene/setup_springs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+
+#include "pipeline/config/config.hpp"
+#include "pipeline/scene/setup_names.hpp"
+#include "pipeline/scene/setup_pairs.hpp"
+
+namespace selvedge {
+namespace {
+
+// Vertices of the scene, in the order in which they are listed.
+std::vector<int> read_side(const Config& section, const std::vector<ClothPart>& parts, const Scene& scene) {
+  if (!section["cloth"].given && parts.size() > 1) section.fail("does not say of which cloth", "name the `cloth`");
+  const auto c = static_cast<std::size_t>(section["cloth"].given ? index_of(section["cloth"], parts) : 0);
+  std::vector<int> vertices = read_vertices(section, parts[c]);
+  for (int& v : vertices) v += scene.cloths[c].first_vertex;
+  return vertices;
+}
+
+void warn_of_short(std::span<const Spring> springs, const std::string& what, const ContactSettings& contact,
+                   std::vector<std::string>& warnings) {
+  const auto shorter =
+      std::ranges::count_if(springs, [&](const Spring& spring) { return spring.rest_length < contact.thickness; });
+  if (shorter > 0 && contact.self)
+    warnings.push_back(
+        fmt::format("{}: {} springs are shorter at rest than contact.thickness {} m, to which contact "
+                    "pushes their ends apart",
+                    what, shorter, contact.thickness));
+}
+
+std::vector<Spring> stitches_of(const Wearing& worn, int first_vertex) {
+  const double scale = worn.by->section["scale"].number();
+  std::vector<Spring> springs;
+  for (const auto& [a, b, rest_length] : worn.garment.stitches)
+    springs.push_back({first_vertex + a, first_vertex + b, scale * rest_length});
+  return springs;
+}
+
+}  // namespace
+
+std::vector<Spring> read_springs(const Config& list, const std::vector<ClothPart>& parts, const Scene& scene,
+                                 const Points& x, std::vector<std::string>& warnings) {
+  std::vector<Spring> all;
+  const auto add = [&](std::span<const Spring> springs, const std::string& what) {
+    warn_of_short(springs, what, scene.contact, warnings);
+    all.insert(all.end(), springs.begin(), springs.end());
+  };
+  for (std::size_t c = 0; c < parts.size(); ++c)
+    if (parts[c].worn) add(stitches_of(*parts[c].worn, scene.cloths[c].first_vertex), "stitches of " + parts[c].name);
+  for (const Config& section : list.items) {
+    const bool listed = section["pair"].text() == "listed", given = section["rest_length"].given;
+    std::vector<Spring> springs;
+    for (const auto& [a, b] :
+         read_pairs(section, read_side(section["from"], parts, scene), read_side(section["to"], parts, scene), x)) {
+      const double rest = given    ? section["rest_length"].number()
+                          : listed ? scene.contact.thickness
+                                   : (row(x, b) - row(x, a)).norm();
+      springs.push_back({a, b, rest, section["stiffness"].number()});
+    }
+    add(springs, section.path);
+  }
+  return all;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+
+#include "physics/scene/scene.hpp"
+#include "physics/scene/stepper.hpp"
+#include "pipeline/scene/setup_body.hpp"
+
+namespace selvedge {
+
+struct ClothPart;
+
+// How a clean start is grown: bodies come from the pose that their garments were made in, and hold still [s].
+struct Draping {
+  double seconds = 1, hold = 0.5;
+  bool operator==(const Draping&) const = default;
+};
+
+// Puts a placed cloth where its `start` section has it. One that then starts in one point, an exact equilibrium of any
+// membrane, is opened by random displacements of a thousandth of its mean edge; a warning says so.
+void apply_start(const Config& section, ClothPart&, std::vector<std::string>& warnings);
+
+// Where the scene's garments are to be draped, lets its time begin before 0 and puts them on their bodies as they are
+// then. Returns how many frames before.
+int begin_draped(const Performances&, double fps, std::vector<ClothPart>&);
+
+// Where garments are to start by cutting, cuts what of them is tangled out of the scene's state at time 0.
+void begin_cut(const std::vector<ClothPart>&, const Scene&, State&);
+
+// Where the scene's garments are worn at a time, as Drive::worn has it; nothing where there is no garment.
+std::function<Points(double time)> worn_in_scene(const std::vector<ClothPart>&, const Scene&);
+
+}  // namespace selvedge

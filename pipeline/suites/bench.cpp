@@ -1,0 +1,99 @@
+#include "pipeline/suites/bench.hpp"
+
+#include <fmt/format.h>
+
+#include "pipeline/compare/compare_parts.hpp"
+#include "pipeline/host/peak_memory.hpp"
+#include "pipeline/host/write_file.hpp"
+#include "pipeline/run/prepare.hpp"
+#include "pipeline/run/run_scene.hpp"
+#include "pipeline/scene/make_stepper.hpp"
+
+namespace selvedge {
+namespace {
+
+// Keeps the states before a few steps that met no contact, early and late in the run.
+struct StateSampler {
+  int every = 1;
+  State before;
+  std::vector<std::pair<State, double>> samples;  // state and the substep that the stepper took from it [s]
+  double dt = 0;
+
+  void operator()(const FrameEvent& event) {
+    const CollisionReport& collision = event.report.collision;
+    const bool free = collision.contacts + collision.impulses + collision.zones == 0;
+    if (free && event.state.frame % every == 0 && event.report.substeps > 0)
+      samples.emplace_back(before, dt / event.report.substeps);
+    before = event.state;
+  }
+};
+
+std::optional<AlgebraicError> worst_error(const Setup& setup, const StateSampler& sampler) {
+  std::optional<AlgebraicError> worst;
+  for (const auto& [state, dt] : sampler.samples)
+    if (const auto found = algebraic_error(setup, state, dt); found && (!worst || found->error > worst->error))
+      worst = found;
+  return worst;
+}
+
+// Energy lost in a run to `end` over what the same steps, each solved to its minimiser, lose.
+std::optional<double> energy_decay(const Setup& setup, const State& end, const Setup& converged) {
+  const auto reference = timed_run(converged, {});
+  if (!reference || !reference->trouble.empty() || !(reference->lost > 0)) return {};
+  return (energy_of(setup, setup.initial) - energy_of(setup, end)) / reference->lost;
+}
+
+BenchMember run_member(const BenchRequest& request, const std::string& scene, int size) {
+  std::vector<std::string> overrides{
+      fmt::format("cloths.0.{}.resolution={}", scene == "tube" ? "tube" : "rectangle", size)};
+  if (request.frames) overrides.push_back(fmt::format("run.frames={}", *request.frames));
+  const std::filesystem::path file = request.configs / (scene + ".yaml");
+  Setup setup = read_setup(file, overrides);
+  prepare(setup);
+  const std::unique_ptr<Stepper> stepper = make_stepper(setup);
+
+  StateSampler sampler;
+  sampler.before = setup.initial;
+  sampler.dt = 1 / setup.run.fps;
+  sampler.every = std::max(1, setup.run.frames / 4);
+  RunRequest run;
+  run.out = request.out / fmt::format("{}_{}", scene, size);
+  run.checkpoint_seconds = 1e9;
+  if (scene == "hang") run.observe = std::ref(sampler);
+  reset_peak_memory();
+  BenchMember member{scene, size, run_scene(setup, *stepper, run), {}, {}};
+  member.algebraic = worst_error(setup, sampler);
+  if (scene == "hang") {
+    overrides.insert(overrides.end(), {"solver.relative_tolerance=0", "solver.velocity_tolerance=1e-5",
+                                       "solver.max_newton=40", "solver.linear_tolerance=0.01"});
+    Setup converged = read_setup(file, overrides);
+    prepare(converged);
+    member.decay = energy_decay(setup, sampler.before, converged);
+  }
+  return member;
+}
+
+}  // namespace
+
+BenchResult bench(const BenchRequest& request) {
+  make_folder(request.out);
+  BenchResult result;
+  result.detection = time_detection();
+  if (request.log) *request.log << detection_table(result.detection) << std::flush;
+  std::vector<BenchMember>& members = result.members;
+  for (const std::string& scene : request.scenes)
+    for (const int size : request.sizes) {
+      members.push_back(run_member(request, scene, size));
+      const RunSummary& summary = members.back().summary;
+      if (request.log)
+        *request.log << fmt::format("{} {}: {:.1f} ms a frame, {} pairs in the worst frame\n", scene, size,
+                                    mean_milliseconds(summary), summary.worst_pairs)
+                     << std::flush;
+      write_file(request.out / "bench.json", bench_json(result));
+      write_file(request.out / "bench.csv", bench_csv(members));
+      write_file(request.out / "bench.txt", bench_table(result));
+    }
+  return result;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/host/version.hpp"
+#include "pipeline/suites/bench.hpp"
+
+namespace selvedge {
+namespace {
+
+struct Column {
+  const char* name;   // in the CSV file
+  const char* title;  // in the table
+  int digits;         // 0: whole numbers
+  double (*value)(const BenchMember&);
+};
+
+double per_frame(const BenchMember& member, double seconds) {
+  const auto frames = static_cast<double>(member.summary.frame_seconds.size());
+  return frames > 0 ? 1000 * seconds / frames : 0;
+}
+
+const std::vector<Column>& columns() {
+  using M = const BenchMember&;
+  static const std::vector<Column> all{
+      {"frames", "frames", 0, [](M m) { return double(m.summary.frames); }},
+      {"ms_median", "median ms", 1, [](M m) { return median_milliseconds(m.summary); }},
+      {"ms_mean", "mean ms", 1, [](M m) { return mean_milliseconds(m.summary); }},
+      {"ms_solve", "solve", 1, [](M m) { return per_frame(m, m.summary.seconds.solve); }},
+      {"ms_broad_phase", "broad", 1, [](M m) { return per_frame(m, m.summary.seconds.broad_phase); }},
+      {"ms_ccd", "ccd", 1, [](M m) { return per_frame(m, m.summary.seconds.ccd); }},
+      {"ms_response", "response", 1, [](M m) { return per_frame(m, m.summary.seconds.response); }},
+      {"ms_audit", "audit", 1, [](M m) { return per_frame(m, m.summary.seconds.audit); }},
+      {"peak_mb", "peak MB", 1, [](M m) { return double(m.summary.peak_memory) / 1e6; }},
+      {"max_contacts", "contacts", 0, [](M m) { return double(m.summary.max_contacts); }},
+      {"impulses", "impulses", 0, [](M m) { return double(m.summary.impulses); }},
+      {"intersecting_pairs", "pairs", 0, [](M m) { return double(m.summary.worst_pairs); }},
+      {"pairs_wanted", "wanted", 0, [](M m) { return double(m.summary.worst_pairs_wanted); }},
+      {"depth_wanted", "depth", 4, [](M m) { return m.summary.max_depth_wanted; }},
+      {"inside_vertices", "inside", 0, [](M m) { return double(m.summary.worst_inside); }},
+      {"nonfinite", "nonfinite", 0, [](M m) { return double(m.summary.nonfinite); }},
+      {"max_stretch", "stretch", 3, [](M m) { return m.summary.max_stretch; }},
+      {"algebraic_error", "alg. error", 6,
+       [](M m) { return m.algebraic ? m.algebraic->error : std::numeric_limits<double>::quiet_NaN(); }},
+      {"energy_decay", "decay", 3, [](M m) { return m.decay.value_or(std::numeric_limits<double>::quiet_NaN()); }}};
+  return all;
+}
+
+std::string number(double value, int digits) { return std::isnan(value) ? "" : fmt::format("{:.{}f}", value, digits); }
+
+nlohmann::ordered_json detection_json(const std::vector<DetectionTiming>& timings) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const DetectionTiming& t : timings) {
+    nlohmann::ordered_json entry = {
+        {"shape", t.shape}, {"triangles", t.triangles}, {"pairs", t.pairs}, {"ms", 1e3 * t.ours}};
+    entry["fcl_ms"] = t.fcl ? nlohmann::ordered_json(1e3 * *t.fcl) : nlohmann::ordered_json(nullptr);
+    if (t.fcl) entry["pairs_found_by_one_alone"] = t.other_pairs;
+    list.push_back(entry);
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string bench_json(const BenchResult& result) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const BenchMember& member : result.members) {
+    nlohmann::ordered_json entry = {{"scene", member.scene}, {"size", member.size}};
+    for (const Column& column : columns()) {
+      const double value = column.value(member);
+      if (std::isnan(value))
+        entry[column.name] = nullptr;
+      else if (column.digits == 0)
+        entry[column.name] = std::llround(value);
+      else
+        entry[column.name] = value;
+    }
+    if (member.algebraic) entry["algebraic_reference_converged"] = member.algebraic->reference_converged;
+    entry["run"] = nlohmann::ordered_json::parse(summary_json(member.summary));
+    list.push_back(entry);
+  }
+  const nlohmann::ordered_json json = {
+      {"program_version", program_version()}, {"detection", detection_json(result.detection)}, {"members", list}};
+  return json.dump(2) + "\n";
+}
+
+std::string bench_csv(const std::vector<BenchMember>& members) {
+  std::string text = "scene,size";
+  for (const Column& column : columns()) text += std::string(",") + column.name;
+  text += "\n";
+  for (const BenchMember& member : members) {
+    text += fmt::format("{},{}", member.scene, member.size);
+    for (const Column& column : columns())
+      text += fmt::format(",{}", number(column.value(member), column.digits > 0 ? column.digits + 3 : 0));
+    text += "\n";
+  }
+  return text;
+}
+
+std::string bench_table(const BenchResult& result) {
+  std::string text = fmt::format("{:<6} {:>4}", "scene", "N");
+  for (const Column& column : columns()) text += fmt::format(" {:>10}", column.title);
+  text += "\n";
+  for (const BenchMember& member : result.members) {
+    text += fmt::format("{:<6} {:>4}", member.scene, member.size);
+    for (const Column& column : columns()) text += fmt::format(" {:>10}", number(column.value(member), column.digits));
+    text += "\n";
+  }
+  return text + "\n" + detection_table(result.detection);
+}
+
+}  // namespace selvedge

@@ -1,0 +1,155 @@
+#include "pipeline/suites/stability.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "collision/geometry/error.hpp"
+#include "physics/steppers/step_audit.hpp"
+#include "pipeline/host/write_file.hpp"
+#include "pipeline/run/prepare.hpp"
+#include "pipeline/run/run_scene.hpp"
+#include "pipeline/scene/make_stepper.hpp"
+#include "pipeline/suites/stability_suite.hpp"
+#include "pipeline/suites/stability_watch.hpp"
+#include "pipeline/view/view.hpp"
+
+namespace selvedge {
+namespace {
+
+std::vector<StabilityCase> chosen_cases(const StabilitySuite& suite, const StabilityRequest& request) {
+  if (request.cases.empty()) return suite.cases;
+  std::vector<std::string> known;
+  for (const StabilityCase& one : suite.cases) known.push_back(one.name);
+  std::vector<StabilityCase> chosen;
+  for (const std::string& name : request.cases) {
+    const auto place = std::find(known.begin(), known.end(), name);
+    if (place == known.end())
+      throw Error("there is no case `" + name + "`", request.suite.string(),
+                  "cases: " + joined(known) + suggestion(name, known));
+    chosen.push_back(suite.cases[static_cast<std::size_t>(place - known.begin())]);
+  }
+  return chosen;
+}
+
+Setup read_run(const StabilityRequest& request, const StabilityCase& one, const StabilityRun& run) {
+  std::vector<std::string> overrides = run.overrides;
+  if (request.stepper) overrides.push_back("run.stepper=" + *request.stepper);
+  return read_setup(one.scene, overrides);
+}
+
+std::vector<std::string> failures_of(const StabilityRow& row, const RunSummary& summary,
+                                     const StabilityLimits& limits) {
+  std::vector<std::string> all;
+  const auto fail_if = [&](bool bad, std::string why) {
+    if (bad) all.push_back(std::move(why));
+  };
+  fail_if(summary.end != RunEnd::finished, fmt::format("ended in frame {} {}", summary.frames, summary.reason));
+  fail_if(row.nonfinite > 0, fmt::format("{} numbers not finite", row.nonfinite));
+  fail_if(!(row.unaccounted <= limits.growth * row.energy),
+          fmt::format("energy grew by {:.3g} J from nowhere, {:.2g} % of the most there was", row.unaccounted,
+                      100 * row.unaccounted / row.energy));
+  fail_if(!(row.end_speed <= limits.speed),
+          fmt::format("does not rest: {:.2g} % of the speed of a fall in the end", 100 * row.end_speed));
+  fail_if(row.newton > limits.newton, fmt::format("{:.0f} Newton iterations a substep", row.newton));
+  fail_if(row.linear > limits.linear, fmt::format("{:.0f} linear iterations a Newton iteration", row.linear));
+  fail_if(row.clean_start && row.jumped == 0 && row.pairs > 0,
+          fmt::format("{} intersecting pairs after a clean start", row.pairs));
+  fail_if(row.clean_start && row.jumped > 0 && row.end_pairs + row.end_inside > 0,
+          fmt::format("still {} pairs and {} vertices inside what jumped", row.end_pairs, row.end_inside));
+  fail_if(row.clean_start && row.jumped == 0 && summary.passed_through > 0,
+          fmt::format("{} passed through", summary.passed_through));
+  return all;
+}
+
+// A page for those that failed; nothing is kept of the others.
+void keep_or_remove(const std::filesystem::path& folder, bool keep, std::ostream* log) {
+  if (!keep) {
+    std::filesystem::remove_all(folder);
+    return;
+  }
+  if (const auto trouble = write_page(folder); trouble && log) *log << "no page: " << *trouble << "\n";
+}
+
+// Absent: stopped before its end.
+std::optional<StabilityRow> run_one(const StabilityRequest& request, const StabilityLimits& limits,
+                                    const StabilityCase& one, const StabilityRun& run,
+                                    const std::filesystem::path& folder) {
+  const Clock::time_point started = Clock::now();
+  Setup setup = read_run(request, one, run);
+  if (!prepare(setup, request.stop)) return {};
+  const std::unique_ptr<Stepper> stepper = make_stepper(setup);
+  StabilityWatch watch(setup);
+  StabilityRow row;
+  RunRequest to_run;
+  to_run.out = folder;
+  to_run.checkpoint_seconds = 1e9;
+  to_run.stop = request.stop;
+  to_run.observe = [&](const FrameEvent& event) {
+    watch(event);
+    if (event.state.frame < setup.run.frames) return;
+    const Audit end = audit_positions(setup.scene, event.state.x, event.state.obstacles);
+    row.end_pairs = end.intersecting_pairs();
+    row.end_inside = end.inside_vertices;
+  };
+  const RunSummary summary = run_scene(setup, *stepper, to_run);
+  if (summary.end == RunEnd::interrupted) return {};
+  row.name = one.name;
+  row.run = run.name;
+  row.stepper = stepper->traits().name;
+  row.vertices = summary.vertices;
+  row.frames = summary.frames;
+  row.frames_wanted = summary.frames_wanted;
+  const Audit start = audit_positions(setup.scene, setup.initial.x, setup.initial.obstacles);
+  row.clean_start = start.intersecting_pairs() == 0 && start.inside_vertices == 0;
+  row.pairs = summary.pairs;
+  row.max_stretch = summary.max_stretch;
+  row.notes = setup.warnings;
+  watch.write(row);
+  row.failures = failures_of(row, summary, limits);
+  row.seconds = seconds_since(started);
+  keep_or_remove(folder, !row.passed(), request.log);
+  return row;
+}
+
+std::string log_line(const StabilityRow& row) {
+  std::string line =
+      fmt::format("{} {}: {}, {:.1f} s\n", row.name, row.run, row.passed() ? "passed" : "FAILED", row.seconds);
+  for (const std::string& why : row.failures) line += "  " + why + "\n";
+  return line;
+}
+
+void write_tables(const std::filesystem::path& out, const std::vector<StabilityRow>& rows) {
+  write_file(out / "stability.txt", stability_table(rows));
+  write_file(out / "stability.csv", stability_csv(rows));
+  write_file(out / "stability.json", stability_json(rows));
+  write_file(out / "stability.md", stability_markdown(rows));
+}
+
+}  // namespace
+
+std::vector<StabilityRow> stability(const StabilityRequest& request) {
+  const StabilitySuite suite = read_stability_suite(request.suite);
+  const std::vector<StabilityCase> cases = chosen_cases(suite, request);
+  for (const StabilityCase& one : cases)
+    for (const StabilityRun& run : one.runs) read_run(request, one, run);  // errors before minutes of work
+  make_folder(request.out);
+  std::vector<StabilityRow> rows;
+  for (const StabilityCase& one : cases)
+    for (std::size_t k = 0; k < one.runs.size(); ++k) {
+      if (request.short_form && !one.runs[k].brief) continue;
+      const auto row =
+          run_one(request, suite.limits, one, one.runs[k], request.out / fmt::format("{}_{}", one.name, k));
+      if (!row) return rows;
+      rows.push_back(*row);
+      write_tables(request.out, rows);
+      if (request.log) *request.log << log_line(*row) << std::flush;
+    }
+  return rows;
+}
+
+bool passed(const std::vector<StabilityRow>& rows) {
+  return std::all_of(rows.begin(), rows.end(), [](const StabilityRow& row) { return row.passed(); });
+}
+
+}  // namespace selvedge

@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/host/json_csv.hpp"
+#include "pipeline/host/version.hpp"
+#include "pipeline/suites/stability.hpp"
+
+namespace selvedge {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const StabilityRow& r) {
+  return {{"case", r.name},
+          {"run", r.run},
+          {"passed", r.passed()},
+          {"stepper", r.stepper},
+          {"vertices", r.vertices},
+          {"frames", r.frames},
+          {"frames_wanted", r.frames_wanted},
+          {"seconds", r.seconds},
+          {"nonfinite", r.nonfinite},
+          {"largest_energy", r.energy},
+          {"work_of_pins", r.work.pins},
+          {"work_of_obstacles", r.work.obstacles},
+          {"work_of_wind", r.work.wind},
+          {"work_of_response", r.work.response},
+          {"unaccounted_energy", r.unaccounted},
+          {"end_speed", r.end_speed},
+          {"newton_iterations", r.newton},
+          {"linear_iterations", r.linear},
+          {"clean_start", r.clean_start},
+          {"jumped", r.jumped},
+          {"intersecting_pairs", r.pairs},
+          {"end_pairs", r.end_pairs},
+          {"max_stretch", r.max_stretch},
+          {"notes", r.notes},
+          {"failures", r.failures}};
+}
+
+double grown(const StabilityRow& row) { return row.energy > 0 ? 100 * row.unaccounted / row.energy : 0; }
+
+long failed(const std::vector<StabilityRow>& rows) {
+  return std::count_if(rows.begin(), rows.end(), [](const StabilityRow& row) { return !row.passed(); });
+}
+
+double seconds(const std::vector<StabilityRow>& rows) {
+  double sum = 0;
+  for (const StabilityRow& row : rows) sum += row.seconds;
+  return sum;
+}
+
+}  // namespace
+
+std::string stability_table(const std::vector<StabilityRow>& rows) {
+  std::string text =
+      fmt::format("{:<12} {:<28} {:<5} {:>8} {:>6} {:>9} {:>9} {:>9} {:>8} {:>8} {:>6} {:>6} {:>7} {:>7}\n", "case",
+                  "run", "", "vertices", "frames", "most J", "worked J", "growth %", "rest %", "Newton", "linear",
+                  "pairs", "stretch", "seconds");
+  for (const StabilityRow& row : rows) {
+    text += fmt::format(
+        "{:<12} {:<28} {:<5} {:>8} {:>6} {:>9.2g} {:>9.2g} {:>9.2g} {:>8.2g} {:>8.1f} {:>6.1f} {:>6} {:>7.3g} "
+        "{:>7.1f}\n",
+        row.name, row.run, row.passed() ? "pass" : "FAIL", row.vertices, row.frames, row.energy, row.work.total(),
+        grown(row), 100 * row.end_speed, row.newton, row.linear, row.end_pairs, row.max_stretch, row.seconds);
+    for (const std::string& why : row.failures) text += "    " + why + "\n";
+  }
+  return text + fmt::format("{} of {} pass, {:.0f} s\n", static_cast<long>(rows.size()) - failed(rows), rows.size(),
+                            seconds(rows));
+}
+
+std::string stability_markdown(const std::vector<StabilityRow>& rows) {
+  std::string text =
+      "| case | run | | vertices | frames | most energy [J] | work at most [J] | growth % | rest % | Newton | linear "
+      "| pairs at the end | stretch | s |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+  for (const StabilityRow& row : rows)
+    text += fmt::format(
+        "| {} | {} | {} | {} | {} | {:.2g} | {:.2g} | {:.2g} | {:.2g} | {:.1f} | {:.1f} | {} | {:.3g} | {:.1f} |\n",
+        row.name, row.run, row.passed() ? "pass" : "FAIL: " + fmt::format("{}", fmt::join(row.failures, "; ")),
+        row.vertices, row.frames, row.energy, row.work.total(), grown(row), 100 * row.end_speed, row.newton, row.linear,
+        row.end_pairs, row.max_stretch, row.seconds);
+  return text;
+}
+
+std::string stability_csv(const std::vector<StabilityRow>& rows) {
+  Json table = Json::array();
+  for (const StabilityRow& row : rows) table.push_back(to_json(row));
+  return csv_of_json(table.dump());
+}
+
+std::string stability_json(const std::vector<StabilityRow>& rows) {
+  Json runs = Json::array();
+  for (const StabilityRow& row : rows) runs.push_back(to_json(row));
+  const Json json = {{"program_version", program_version()},
+                     {"passed", failed(rows) == 0},
+                     {"seconds", seconds(rows)},
+                     {"runs", runs}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace selvedge

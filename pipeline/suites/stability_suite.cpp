@@ -1,0 +1,93 @@
+#include "pipeline/suites/stability_suite.hpp"
+
+#include "pipeline/config/config_tables.hpp"
+
+namespace selvedge {
+namespace {
+
+using namespace table;
+
+const Section& limits_section() {
+  const StabilityLimits l;
+  static const Section table{
+      "limits",
+      "What every run must keep.",
+      "",
+      {},
+      {number("growth", Unit::none, positive, show(l.growth),
+              "energy that nothing accounts for, of the largest kinetic and elastic energy of the run"),
+       number("speed", Unit::none, positive, show(l.speed),
+              "RMS speed in the last tenth of the run, of that of a fall by the cloth's extent"),
+       integer("newton", at_least_one, show(l.newton), "iterations a substep"),
+       integer("linear", at_least_one, show(l.linear), "iterations a Newton iteration")}};
+  return table;
+}
+
+const Section& run_section() {
+  static const Section table{
+      "run",
+      "",
+      "name",
+      {},
+      {needed(text("name", "what differs, for people")), texts("set", "overrides of the scene, key=value"),
+       flag("short", false, "whether it is in the short form too")}};
+  return table;
+}
+
+const Section& case_section() {
+  static const Section table{
+      "case",
+      "",
+      "",
+      {},
+      {needed(text("name", "short")), text("about", "one line, for people"),
+       needed(path("scene", "scene file, seen from the suite's folder")), texts("set", "overrides for all its runs"),
+       needed(sections("runs", run_section(), "", "at least one"))}};
+  return table;
+}
+
+const Section& suite_section() {
+  static const Section table{"suite",
+                             "The whole file.",
+                             "",
+                             {},
+                             {text("description", "for people"), section(limits_section(), "{}", ""),
+                              needed(sections("cases", case_section(), "", "at least one"))}};
+  return table;
+}
+
+StabilityCase read_case(const Config& section, const std::filesystem::path& folder) {
+  StabilityCase one{section["name"].text(),
+                    section["about"].given ? section["about"].text() : "",
+                    folder / section["scene"].text(),
+                    {}};
+  if (!std::filesystem::exists(one.scene)) section["scene"].fail("does not exist", "looked for " + one.scene.string());
+  for (const Config& run : section["runs"].items) {
+    std::vector<std::string> overrides = section["set"].words;
+    overrides.insert(overrides.end(), run["set"].words.begin(), run["set"].words.end());
+    one.runs.push_back({run["name"].text(), overrides, run["short"].flag()});
+  }
+  if (one.runs.empty()) section["runs"].fail("is empty", "give at least one run");
+  return one;
+}
+
+}  // namespace
+
+StabilitySuite read_stability_suite(const std::filesystem::path& file) {
+  const Config config = read_config(file, suite_section());
+  const Config& limits = config["limits"];
+  StabilitySuite suite;
+  suite.limits = {limits["growth"].number(), limits["speed"].number(), limits["newton"].integer(),
+                  limits["linear"].integer()};
+  for (const Config& one : config["cases"].items) suite.cases.push_back(read_case(one, file.parent_path()));
+  return suite;
+}
+
+std::string stability_reference() {
+  std::string text;
+  for (const Section* one : {&suite_section(), &limits_section(), &case_section(), &run_section()})
+    text += section_markdown(*one);
+  return text;
+}
+
+}  // namespace selvedge

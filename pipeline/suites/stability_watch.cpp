@@ -1,0 +1,75 @@
+#include "pipeline/suites/stability_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/scene/setup.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double end_part = 0.1;  // of the run, in which it must rest
+
+long count_nonfinite(const Points& points) { return points.size() - points.array().isFinite().count(); }
+
+}  // namespace
+
+StabilityWatch::StabilityWatch(const Setup& setup)
+    : setup_(setup), bound_(setup.scene), terms_(energy_terms(setup.scene)), before_(setup.initial) {
+  const Vec3 gravity = setup.drive_at(0).acceleration;
+  lowest_ = energy(before_, gravity);
+}
+
+// Total energy; notes the largest without gravity.
+double StabilityWatch::energy(const State& state, const Vec3& acceleration) {
+  const Energies e = energies(setup_.scene, terms_, state.x, state.v, acceleration);
+  largest_ = std::max(largest_, e.kinetic + e.membrane + e.bending);
+  return e.total();
+}
+
+void StabilityWatch::count_iterations(const StepReport& report) {
+  newton_ = std::max(newton_, report.iterations / std::max(1.0, static_cast<double>(report.substeps)));
+  linear_ = std::max(linear_, report.linear_iterations / std::max(1.0, static_cast<double>(report.iterations)));
+}
+
+void StabilityWatch::operator()(const FrameEvent& event) {
+  count_iterations(event.report);
+  if (event.report.status != StepStatus::accepted) return;
+  const State& state = event.state;
+  nonfinite_ += count_nonfinite(state.x) + count_nonfinite(state.v) + !std::isfinite(event.report.residual);
+  for (const Points& obstacle : state.obstacles) nonfinite_ += count_nonfinite(obstacle);
+  if (nonfinite_ > 0) return;
+  State from = before_;
+  if (event.report.collision.jumped > 0) {  // a new start: what jumped did no work, it left cloth inside
+    from.obstacles = state.obstacles;
+    from.clean = false;
+    jumped_ += event.report.collision.jumped;
+  }
+  work_ += bound_(from, state, event.drive);
+  const double left = energy(state, event.drive.acceleration) - work_.total();
+  unaccounted_ = std::max(unaccounted_, left - lowest_);
+  lowest_ = std::min(lowest_, left);
+  if (state.frame > (1 - end_part) * setup_.run.frames) {
+    end_sum_ += terms_.masses.dot(state.v.rowwise().squaredNorm()) / terms_.masses.sum();
+    ++end_frames_;
+  }
+  before_ = state;
+}
+
+void StabilityWatch::write(StabilityRow& row) const {
+  constexpr double earth = 9.81;  // where nothing falls [m/s2]
+  const double gravity = setup_.drive_at(0).acceleration.norm();
+  const Points& rest = setup_.scene.rest;
+  const double extent = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
+  const double fall = std::sqrt(2 * (gravity > 0 ? gravity : earth) * extent);
+  row.nonfinite = nonfinite_;
+  row.energy = largest_;
+  row.work = work_;
+  row.unaccounted = unaccounted_;
+  row.end_speed = end_frames_ > 0 ? std::sqrt(end_sum_ / end_frames_) / fall : 0;
+  row.newton = newton_;
+  row.linear = linear_;
+  row.jumped = jumped_;
+}
+
+}  // namespace selvedge

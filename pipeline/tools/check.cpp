@@ -1,0 +1,188 @@
+#include "pipeline/tools/check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/audit/audit.hpp"
+#include "collision/geometry/error.hpp"
+#include "collision/search/obstacle.hpp"
+#include "physics/energies/measures.hpp"
+#include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/formats/trajectory_hdf5.hpp"
+
+namespace selvedge {
+namespace {
+
+struct Bodies {
+  std::vector<Surface> surfaces;
+  std::vector<Points> points;
+
+  void add(int vertex_count, const Triangles& triangles, Points x) {
+    surfaces.push_back(make_surface(vertex_count, triangles));
+    points.push_back(std::move(x));
+  }
+  std::vector<AuditBody> for_audit() const {
+    std::vector<AuditBody> bodies;
+    for (std::size_t k = 0; k < surfaces.size(); ++k) bodies.push_back({&surfaces[k], &points[k]});
+    return bodies;
+  }
+};
+
+void add_body_files(const CheckRequest& request, Bodies& bodies, CheckReport& report) {
+  for (const std::filesystem::path& file : request.bodies) {
+    Mesh mesh = read_mesh(file);
+    for (const std::string& warning : mesh.warnings) report.warnings.push_back(file.string() + ": " + warning);
+    const int vertex_count = static_cast<int>(mesh.x.rows());
+    bodies.add(vertex_count, mesh.triangles, std::move(mesh.x));
+  }
+}
+
+// A triangle without a plane: its height is lost in the rounding of its coordinates.
+bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+  return !((b - a).cross(c - a).norm() > 1e-10 * longest);
+}
+
+// The search widens until it finds something, since its cost grows with the square of the distance.
+double smallest_gap(const Surface& surface, const Points& x, const std::vector<AuditBody>& bodies, double horizon) {
+  for (double distance = horizon / 64;; distance = std::min(4 * distance, horizon)) {
+    const double gap = min_gap(surface, x, bodies, distance);
+    if (std::isfinite(gap) || distance >= horizon) return gap;
+  }
+}
+
+// `rest` holds what principal_stretches needs; without a rest shape it has no rest triangles.
+void check_frame(const Scene& rest, const Points& x, const Bodies& bodies, double horizon, CheckReport& report) {
+  const std::vector<AuditBody> audited = bodies.for_audit();
+  const Audit found = audit(rest.surface, x, audited);
+  const int frame = report.frames(), pairs = found.intersecting_pairs();
+  const int vertex_pairs = static_cast<int>(found.vertex_pairs.size());
+  report.pairs_by_frame.push_back(pairs);
+  report.vertex_pairs_by_frame.push_back(vertex_pairs);
+  if (pairs > report.worst_pairs) {
+    report.worst_pairs = pairs;
+    report.worst_frame = frame;
+  }
+  report.worst_vertex_pairs = std::max(report.worst_vertex_pairs, vertex_pairs);
+  report.nonfinite += found.nonfinite;
+  report.inside_vertices = std::max(report.inside_vertices, found.inside_vertices);
+  report.degenerate_triangles = std::max(report.degenerate_triangles, count_degenerate(rest.surface, x));
+  if (found.nonfinite > 0) {  // FCL and distances need all of it
+    if (report.fcl) report.fcl->pairs_by_frame.push_back(0);
+    return;
+  }
+  if (report.fcl) add_opinion(rest.surface, x, audited, found, frame, *report.fcl);
+  const double reach = std::min(horizon, report.min_gap);
+  if (reach > 0)
+    report.min_gap = std::min(report.min_gap, pairs > 0 ? 0.0 : smallest_gap(rest.surface, x, audited, reach));
+  if (rest.rest_triangle.empty()) return;
+  const auto stretches = principal_stretches(rest, x);
+  report.min_stretch = std::min(report.min_stretch.value_or(stretches.col(0).minCoeff()), stretches.col(0).minCoeff());
+  report.max_stretch = std::max(report.max_stretch.value_or(stretches.col(1).maxCoeff()), stretches.col(1).maxCoeff());
+}
+
+std::vector<RestTriangle> flatten_all(const Points& rest, const Triangles& triangles) {
+  std::vector<RestTriangle> flat;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+    flat.push_back(flatten(row(rest, triangles(t, 0)), row(rest, triangles(t, 1)), row(rest, triangles(t, 2))));
+  return flat;
+}
+
+std::vector<RestTriangle> read_rest(const std::filesystem::path& file, const Triangles& triangles) {
+  const Mesh mesh = read_mesh(file);
+  if (!same_triangles(mesh.triangles, triangles))
+    throw Error("the rest mesh has other triangles than what is checked", file.string(),
+                "give the mesh that the cloth was made from, with the same faces in the same order");
+  return flatten_all(mesh.x, triangles);
+}
+
+Scene rest_scene(int vertex_count, const Triangles& triangles, std::vector<RestTriangle> rest) {
+  Scene scene;
+  scene.surface = make_surface(vertex_count, triangles);
+  scene.rest_triangle = std::move(rest);
+  Cloth cloth;
+  cloth.vertex_count = vertex_count;
+  cloth.triangle_count = static_cast<int>(triangles.rows());
+  scene.cloths.push_back(cloth);
+  return scene;
+}
+
+void check_trajectory(const CheckRequest& request, CheckReport& report) {
+  const TrajectoryReader reader(request.file);
+  const TrajectoryInfo& info = reader.info();
+  const Scene scene = rest_scene(static_cast<int>(info.rest.rows()), info.triangles,
+                                 request.rest ? read_rest(*request.rest, info.triangles) : info.rest_triangle);
+  report.trajectory = true;
+  report.closed = reader.closed();
+  if (!info.self_audited) report.warnings.push_back("the run left cloth-cloth contact out; it is checked all the same");
+  if (!report.closed) report.warnings.push_back("the trajectory was not closed: its writer was stopped or is at work");
+  Bodies bodies;
+  for (const TrajectoryInfo::Body& body : info.obstacles) bodies.add(body.vertex_count, body.triangles, Points());
+  add_body_files(request, bodies, report);
+  int last_cut = -1;
+  for (int i = 0; i < reader.frame_count(); ++i) {
+    const Frame frame = reader.frame(i);
+    for (std::size_t k = 0; k < frame.obstacles.size(); ++k) bodies.points[k] = frame.obstacles[k].cast<double>();
+    check_frame(scene, frame.x.cast<double>(), bodies, request.horizon, report);
+    if (frame.report.collision.cut_out > 0) last_cut = i;
+  }
+  if (last_cut >= 0)
+    report.warnings.push_back(
+        fmt::format("the run had cut triangles out up to frame {}; they are checked all the same", last_cut));
+  report.vertices = scene.surface.vertex_count;
+  report.triangles = static_cast<int>(info.triangles.rows());
+  report.bodies = static_cast<int>(bodies.surfaces.size());
+}
+
+void check_mesh(const CheckRequest& request, CheckReport& report) {
+  const Mesh mesh = read_mesh(request.file);
+  report.warnings.insert(report.warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
+  Bodies bodies;
+  add_body_files(request, bodies, report);
+  const Scene scene = rest_scene(static_cast<int>(mesh.x.rows()), mesh.triangles,
+                                 request.rest ? read_rest(*request.rest, mesh.triangles) : std::vector<RestTriangle>());
+  check_frame(scene, mesh.x, bodies, request.horizon, report);
+  report.vertices = scene.surface.vertex_count;
+  report.triangles = static_cast<int>(mesh.triangles.rows());
+  report.bodies = static_cast<int>(bodies.surfaces.size());
+}
+
+bool is_hdf5(const std::filesystem::path& file) {
+  const std::string ending = file.extension().string();
+  return ending == ".h5" || ending == ".hdf5";
+}
+
+}  // namespace
+
+int count_degenerate(const Surface& surface, const Points& x) {
+  int count = 0;
+  for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) {
+    const auto corner = [&](int k) { return row(x, surface.triangles(t, k)); };
+    count += corner(0).allFinite() && corner(1).allFinite() && corner(2).allFinite() &&
+             is_degenerate(corner(0), corner(1), corner(2));
+  }
+  return count;
+}
+
+CheckReport check(const CheckRequest& request) {
+  CheckReport report;
+  if (request.audit == "fcl") {
+    if (!obstacle_available())
+      throw Error("this build has no FCL", "--audit fcl", "install libfcl-dev and configure with -DSELVEDGE_FCL=ON");
+    report.fcl.emplace();
+  }
+  if (is_hdf5(request.file))
+    check_trajectory(request, report);
+  else
+    check_mesh(request, report);
+  return report;
+}
+
+bool is_clean(const CheckReport& report) {
+  return report.worst_pairs == 0 && report.nonfinite == 0 && report.inside_vertices == 0 &&
+         (!report.fcl || report.fcl->beyond_rounding == 0);
+}
+
+}  // namespace selvedge

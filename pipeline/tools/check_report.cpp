@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/tools/check.hpp"
+
+namespace selvedge {
+namespace {
+
+nlohmann::ordered_json finite_or_null(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json value_or_null(const std::optional<double>& value) {
+  return value ? finite_or_null(*value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json opinion_json(const Opinion& opinion) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Disagreement& d : opinion.disagreements)
+    list.push_back({{"frame", d.frame},
+                    {"triangle", d.first},
+                    {"other", d.second},
+                    {"other_is_body", d.with_body},
+                    {"intersect", d.ours},
+                    {"margin", finite_or_null(d.margin)},
+                    {"beyond_rounding", d.beyond}});
+  return {{"intersecting_pairs_by_frame", opinion.pairs_by_frame},
+          {"frames_not_free_of_bodies", opinion.frames_against_body},
+          {"beyond_rounding", opinion.beyond_rounding},
+          {"disagreements", list}};
+}
+
+}  // namespace
+
+std::string check_json(const CheckReport& r) {
+  nlohmann::ordered_json json = {{"kind", r.trajectory ? "trajectory" : "mesh"},
+                                 {"clean", is_clean(r)},
+                                 {"closed", r.closed},
+                                 {"frames", r.frames()},
+                                 {"vertices", r.vertices},
+                                 {"triangles", r.triangles},
+                                 {"bodies", r.bodies},
+                                 {"intersecting_pairs", r.worst_pairs},
+                                 {"worst_frame", r.worst_frame},
+                                 {"intersecting_pairs_by_frame", r.pairs_by_frame},
+                                 {"vertex_sharing_pairs", r.worst_vertex_pairs},
+                                 {"vertex_sharing_pairs_by_frame", r.vertex_pairs_by_frame},
+                                 {"min_gap", finite_or_null(r.min_gap)},
+                                 {"max_stretch", value_or_null(r.max_stretch)},
+                                 {"min_stretch", value_or_null(r.min_stretch)},
+                                 {"nonfinite", r.nonfinite},
+                                 {"degenerate_triangles", r.degenerate_triangles},
+                                 {"inside_vertices", r.inside_vertices},
+                                 {"warnings", r.warnings}};
+  if (r.fcl) json["fcl"] = opinion_json(*r.fcl);
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string check_text(const CheckReport& r) {
+  std::string text;
+  const auto add = [&](const char* label, const std::string& value) {
+    text += fmt::format("{:<22}{}\n", label, value);
+  };
+  add(r.trajectory ? "trajectory" : "mesh",
+      fmt::format("{} frames, {} vertices, {} triangles, {} bodies", r.frames(), r.vertices, r.triangles, r.bodies));
+  add("intersecting pairs",
+      r.worst_pairs == 0 ? "0 in every frame" : fmt::format("{} in frame {}", r.worst_pairs, r.worst_frame));
+  add("crossing at a vertex", fmt::format("{} pairs in the worst frame", r.worst_vertex_pairs));
+  add("inside bodies", fmt::format("{} vertices in the worst frame", r.inside_vertices));
+  add("smallest gap", std::isfinite(r.min_gap) ? fmt::format("{:.3g} m", r.min_gap) : "above the horizon");
+  if (r.max_stretch) add("stretch", fmt::format("{:.4f} to {:.4f}", *r.min_stretch, *r.max_stretch));
+  add("not finite", fmt::format("{} vertices", r.nonfinite));
+  add("degenerate triangles", fmt::format("{}", r.degenerate_triangles));
+  if (r.fcl) add("FCL's opinion", opinion_text(*r.fcl));
+  for (const std::string& warning : r.warnings) add("warning", warning);
+  return text;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,83 @@
+#include "pipeline/tools/convert_body.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "collision/geometry/error.hpp"
+#include "collision/geometry/surface.hpp"
+#include "pipeline/bodies/body_hdf5.hpp"
+#include "pipeline/bodies/body_jointed.hpp"
+#include "pipeline/bodies/body_makehuman.hpp"
+#include "pipeline/bodies/body_smpl.hpp"
+#include "pipeline/config/config_units.hpp"
+#include "pipeline/motions/t_pose.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+BodyModel read(const BodyRequest& request) {
+  const std::string extension = request.file.extension().string();
+  if (extension == ".npz") return read_smpl(request.file);
+  if (extension != ".obj" && extension != ".ply")
+    throw Error("is neither a mesh (.obj, .ply) nor a model of the SMPL family (.npz)", request.file.string(),
+                "write other bodies in HDF5 yourself, see docs/bodies.md");
+  const double metres = metres_per_unit(request.unit);
+  const bool rigged = !request.skeleton.empty() || !request.weights.empty();
+  if (!request.joints.empty() && rigged)
+    throw Error("has its joints twice", request.file.string(), "give --joints, or --skeleton and --weights");
+  if (!request.joints.empty()) return read_jointed(request.file, request.joints, metres);
+  if (request.skeleton.empty() || request.weights.empty())
+    throw Error("is a mesh without a skeleton or weights", request.file.string(),
+                "give --skeleton and --weights, or --joints");
+  return read_makehuman(request.file, request.skeleton, request.weights, metres);
+}
+
+}  // namespace
+
+BodyReport convert_body(const BodyRequest& request) {
+  if (request.out.extension() != ".h5")
+    throw Error("is no .h5 file", "--out " + request.out.string(), "bodies are written in HDF5");
+  const BodyModel body = read(request);
+  const Points& rest = body.skin.rest;
+  const Points joints = joint_positions(body, {});
+  BodyReport report;
+  report.out = request.out;
+  report.vertices = static_cast<int>(rest.rows());
+  report.triangles = static_cast<int>(body.skin.triangles.rows());
+  report.joints = static_cast<int>(body.joints.size());
+  report.shapes = static_cast<int>(body.skin.shape_directions.cols());
+  report.closed = is_closed(make_surface(report.vertices, body.skin.triangles));
+  report.height = rest.col(1).maxCoeff() - rest.col(1).minCoeff();
+  report.arms_off = arms_off_t_pose(smpl_joints(body, joints));
+  report.t_pose = !t_pose(body, joints);
+  write_body(request.out, body);
+  return report;
+}
+
+std::string body_json(const BodyReport& r) {
+  const nlohmann::ordered_json json = {{"body", r.out.string()}, {"vertices", r.vertices}, {"triangles", r.triangles},
+                                       {"closed", r.closed},     {"joints", r.joints},     {"shapes", r.shapes},
+                                       {"height", r.height},     {"arms_off", r.arms_off}, {"t_pose", r.t_pose}};
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string body_text(const BodyReport& r) {
+  std::string text;
+  const auto add = [&](const char* label, const std::string& value) {
+    text += fmt::format("{:<20}{}\n", label, value);
+  };
+  add("surface",
+      fmt::format("{} vertices, {} triangles, {}", r.vertices, r.triangles, r.closed ? "closed" : "not closed"));
+  add("joints", fmt::format("{}, {} shapes", r.joints, r.shapes));
+  add("height", fmt::format("{:.3f} m", r.height));
+  add("zero pose", fmt::format("arms {:.0f} degrees from SMPL's, {}", r.arms_off / degree,
+                               r.t_pose ? "taken as the same" : "clips are carried over"));
+  add("body", r.out.string());
+  return text;
+}
+
+}  // namespace selvedge

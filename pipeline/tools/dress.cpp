@@ -1,0 +1,169 @@
+#include "pipeline/tools/dress.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "collision/audit/audit.hpp"
+#include "collision/geometry/distance.hpp"
+#include "collision/geometry/error.hpp"
+#include "pipeline/config/config_tables.hpp"
+#include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/garments/garment_hdf5.hpp"
+#include "pipeline/garments/garment_places.hpp"
+#include "pipeline/scene/setup_body.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double far_away = 0.3;  // on average, from the body: more is a mistake [m]
+
+// The body with its shape and clip, read as a scene reads them.
+Performance read_wearer(const DressRequest& request) {
+  std::vector<GivenValue> values{{"model", "--body " + request.body, {request.body}}};
+  std::vector<std::string> shape;
+  for (const double value : request.shape) shape.push_back(fmt::format("{}", value));
+  if (!shape.empty()) values.push_back({"shape", "--shape", shape});
+  if (request.pose) values.push_back({"clip", "--pose " + *request.pose, {*request.pose}});
+  return read_performance(read_values(table::body_section(), values), {});
+}
+
+Vec3 read_rotation(const std::string& text, const std::string& where) {
+  Vec3 rotation;
+  std::size_t begin = 0;
+  for (int k = 0; k < 3; ++k) {
+    const std::size_t end = k < 2 ? text.find(',', begin) : text.size();
+    if (end == std::string::npos) throw Error("has fewer than three numbers", where, "write JOINT=x,y,z");
+    const Quantity value = read_quantity(text.substr(begin, end - begin), Unit::angle);
+    if (!value.problem.empty()) throw Error(value.problem, where, "write JOINT=x,y,z, in rad or as `45 deg`");
+    rotation[k] = value.value;
+    begin = end + 1;
+  }
+  return rotation;
+}
+
+// No rows: the zero pose.
+BodyPose read_pose(const DressRequest& request, const Performance& who) {
+  if (!request.pose && request.rotations.empty()) return {};
+  BodyPose pose = pose_at(who, request.time);
+  for (const std::string& text : request.rotations) {
+    const std::string where = "--rotate " + text;
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) throw Error("is not JOINT=x,y,z", where, "for example left_shoulder=0,0,-45 deg");
+    const std::string name = text.substr(0, equals);
+    const auto joint = std::ranges::find(who.body.joints, name);
+    if (joint == who.body.joints.end())
+      throw Error("names the unknown joint `" + name + "`", where,
+                  "joints: " + joined(who.body.joints) + suggestion(name, who.body.joints));
+    pose.rotations.row(joint - who.body.joints.begin()) = read_rotation(text.substr(equals + 1), where).transpose();
+  }
+  return pose;
+}
+
+Points body_in(const Performance& who, const BodyPose& pose) {
+  return pose.rotations.rows() == 0 ? shaped(who.body.skin, who.shape) : posed(who.body, who.shape, pose);
+}
+
+// The garment that is `x` on the body as it stands there: attached to the body's surface in that pose, then put into
+// the zero pose and shape.
+SkinnedSurface attached_in(const BodyPose& pose, const Points& x, const Triangles& triangles, const Performance& who,
+                           Fit fit) {
+  BodyModel there = who.body;
+  there.skin.rest = body_in(who, pose);
+  SkinnedSurface skin = attached(x, triangles, there, fit);
+  const BodyPose zero{Points::Zero(static_cast<Eigen::Index>(who.body.joints.size()), 3)};
+  const BodyPose& stands = pose.rotations.rows() == 0 ? zero : pose;
+  skin.rest =
+      unposed(skin, who.shape, stands, joint_transforms(who.body, joint_positions(who.body, who.shape), stands));
+  return skin;
+}
+
+std::vector<int> pins_of(const Garment& garment, const std::vector<std::string>& groups) {
+  std::vector<int> pins;
+  std::vector<std::string> known;
+  for (const auto& [name, vertices] : garment.groups) known.push_back(name);
+  for (const std::string& group : groups) {
+    const auto found = std::ranges::find(known, group);
+    if (found == known.end())
+      throw Error("names the unknown group `" + group + "`", "--pin",
+                  "groups: " + joined(known) + suggestion(group, known));
+    const std::vector<int>& vertices = garment.groups[static_cast<std::size_t>(found - known.begin())].second;
+    pins.insert(pins.end(), vertices.begin(), vertices.end());
+  }
+  std::ranges::sort(pins);
+  pins.erase(std::unique(pins.begin(), pins.end()), pins.end());
+  return pins;
+}
+
+// The mesh's groups, those of its boundaries, and pins.
+void add_groups(const DressRequest& request, const BodyModel& body, const Mesh& mesh, DressReport& report) {
+  Garment& garment = report.garment;
+  garment.groups = mesh.groups;
+  std::vector<std::string> taken;
+  for (const auto& [name, vertices] : mesh.groups) taken.push_back(name);
+  for (NamedLoop& loop : named_loops(garment.skin, body, taken)) {
+    if (loop.holds_up && request.pins.empty()) report.pinned.push_back(loop.name);
+    garment.groups.emplace_back(loop.name, std::move(loop.vertices));
+  }
+  if (request.pins != std::vector<std::string>{"none"} && !request.pins.empty()) report.pinned = request.pins;
+  garment.pins = pins_of(garment, report.pinned);
+}
+
+double distance_to(const Points& x, const Triangles& triangles, const Vec3& p) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& t : triangles.rowwise()) {
+    const Vec3 a = row(x, t(0)), b = row(x, t(1)), c = row(x, t(2));
+    const double reach = std::sqrt(std::max((b - a).squaredNorm(), (c - a).squaredNorm()));
+    if ((p - a).norm() - reach >= least) continue;
+    least = std::min(least, std::sqrt(point_triangle(p, a, b, c).squared_distance));
+  }
+  return least;
+}
+
+void look_at(const Points& x, const Points& body, const BodyModel& model, DressReport& report) {
+  const Triangles& triangles = report.garment.skin.triangles;
+  const Surface cloth = make_surface(static_cast<int>(x.rows()), triangles);
+  const Surface surface = make_surface(static_cast<int>(body.rows()), model.skin.triangles);
+  report.components = cloth.component_count;
+  Eigen::VectorXd distance(x.rows());
+#pragma omp parallel for schedule(static)
+  for (Eigen::Index v = 0; v < x.rows(); ++v)
+    distance[v] = distance_to(body, model.skin.triangles, x.row(v).transpose());
+  report.least_distance = distance.minCoeff();
+  report.mean_distance = distance.mean();
+  const std::vector<AuditBody> bodies{{&surface, &body}};
+  const Audit found = audit(cloth, x, bodies);
+  report.inside_vertices = found.inside_vertices;
+  report.self_pairs = static_cast<int>(found.self_pairs.size() + found.vertex_pairs.size());
+  report.body_pairs = static_cast<int>(found.obstacle_pairs.size());
+  if (cloth.nonmanifold_edges > 0)
+    report.warnings.push_back(fmt::format("{} edges of more than two triangles", cloth.nonmanifold_edges));
+  if (report.mean_distance > far_away)
+    report.warnings.push_back(
+        fmt::format("lies {:.2g} m from the body on average: are unit, pose and body right?", report.mean_distance));
+}
+
+}  // namespace
+
+DressReport dress(const DressRequest& request) {
+  const Mesh mesh = read_mesh(request.mesh);
+  const Points x = metres_per_unit(request.unit) * mesh.x;
+  const Performance who = read_wearer(request);
+  DressReport report;
+  report.warnings = mesh.warnings;
+  Garment& garment = report.garment;
+  garment.name = request.mesh.stem().string();
+  garment.made_for = who.body.name;
+  garment.made_in = read_pose(request, who);
+  garment.skin = attached_in(garment.made_in, x, mesh.triangles, who, request.fit == "tight" ? Fit::tight : Fit::loose);
+  add_groups(request, who.body, mesh, report);
+  report.reposed = (rest_shape(garment, who.body, who.shape) - x).rowwise().norm().maxCoeff();
+  look_at(x, body_in(who, garment.made_in), who.body, report);
+  write_garment(request.out, garment);
+  return report;
+}
+
+bool is_clean(const DressReport& report) { return report.self_pairs + report.body_pairs + report.inside_vertices == 0; }
+
+}  // namespace selvedge

@@ -1,0 +1,54 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "pipeline/config/config.hpp"
+#include "pipeline/tools/dress.hpp"
+
+namespace selvedge {
+
+std::string dress_json(const DressReport& report) {
+  const Garment& garment = report.garment;
+  nlohmann::ordered_json groups = nlohmann::ordered_json::object();
+  for (const auto& [name, vertices] : garment.groups) groups[name] = vertices.size();
+  const nlohmann::ordered_json json = {{"clean", is_clean(report)},
+                                       {"name", garment.name},
+                                       {"made_for", garment.made_for},
+                                       {"vertices", garment.skin.rest.rows()},
+                                       {"triangles", garment.skin.triangles.rows()},
+                                       {"components", report.components},
+                                       {"groups", groups},
+                                       {"pinned_groups", report.pinned},
+                                       {"pins", garment.pins.size()},
+                                       {"least_distance", report.least_distance},
+                                       {"mean_distance", report.mean_distance},
+                                       {"inside_vertices", report.inside_vertices},
+                                       {"self_pairs", report.self_pairs},
+                                       {"body_pairs", report.body_pairs},
+                                       {"reposed", report.reposed},
+                                       {"warnings", report.warnings}};
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string dress_text(const DressReport& report) {
+  const Garment& garment = report.garment;
+  std::string text;
+  const auto add = [&](const std::string& label, const std::string& value) {
+    text += fmt::format("{:<24}{}\n", label, value);
+  };
+  add("garment",
+      fmt::format("{}: {} vertices, {} triangles, pieces: {}, for the body {}", garment.name, garment.skin.rest.rows(),
+                  garment.skin.triangles.rows(), report.components, garment.made_for));
+  for (const auto& [name, vertices] : garment.groups) add("group " + name, fmt::format("{} vertices", vertices.size()));
+  add("pins",
+      garment.pins.empty() ? "none" : fmt::format("{} vertices: {}", garment.pins.size(), joined(report.pinned)));
+  add("distance to the body",
+      fmt::format("{:.4g} m at least, {:.4g} m on average", report.least_distance, report.mean_distance));
+  add("inside the body", fmt::format("{} vertices", report.inside_vertices));
+  add("intersecting pairs", fmt::format("{} with itself, {} with the body", report.self_pairs, report.body_pairs));
+  add("put back into its pose", fmt::format("within {:.2g} m", report.reposed));
+  for (const std::string& warning : report.warnings) add("warning", warning);
+  return text;
+}
+
+}  // namespace selvedge

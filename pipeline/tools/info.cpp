@@ -1,0 +1,93 @@
+#include "pipeline/tools/info.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+#include <hdf5.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#include <Eigen/Core>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "collision/search/obstacle.hpp"
+#include "physics/linear/cholesky.hpp"
+#include "pipeline/config/config.hpp"
+#include "pipeline/host/version.hpp"
+#include "pipeline/scene/make_stepper.hpp"
+
+namespace selvedge {
+namespace {
+
+std::string hdf5_version() {
+  unsigned major = 0, minor = 0, release = 0;
+  H5get_libversion(&major, &minor, &release);
+  return fmt::format("{}.{}.{}", major, minor, release);
+}
+
+// Asked at run time: which BLAS is behind CHOLMOD is decided by the system's alternatives.
+std::string blas() {
+  if (!Cholesky::available()) return "not used";
+  using Config = char* (*)();
+  if (void* config = dlsym(RTLD_DEFAULT, "openblas_get_config")) return reinterpret_cast<Config>(config)();
+  return dlsym(RTLD_DEFAULT, "dgemm_") ? "unknown (not OpenBLAS)" : "none found";
+}
+
+int threads() {
+#ifdef _OPENMP
+  return omp_get_max_threads();
+#else
+  return 1;
+#endif
+}
+
+// How threads wait for work; see process_threads.cpp.
+std::string waiting() {
+  for (const char* name : {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT"})
+    if (const char* value = std::getenv(name)) return fmt::format("{}={}", name, value);
+  return "as the OpenMP library does by itself";
+}
+
+bool has_openmp() {
+#ifdef _OPENMP
+  return true;
+#else
+  return false;
+#endif
+}
+
+std::vector<std::pair<std::string, std::string>> facts() {
+  return {{"version", program_version()},
+          {"compiler", __VERSION__},
+          {"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
+          {"hdf5", hdf5_version()},
+          {"json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
+                               NLOHMANN_JSON_VERSION_PATCH)},
+          {"cholmod", Cholesky::available() ? "in" : "left out (SELVEDGE_SUITESPARSE=OFF)"},
+          {"blas", blas()},
+          {"fcl", obstacle_available() ? "in" : "left out (SELVEDGE_FCL=OFF)"},
+          {"openmp", has_openmp() ? "in" : "left out (SELVEDGE_OPENMP=OFF)"},
+          {"threads", std::to_string(threads())},
+          {"waiting", waiting()},
+          {"steppers", joined(known_steppers())}};
+}
+
+}  // namespace
+
+std::string info_json() {
+  nlohmann::ordered_json json;
+  for (const auto& [name, value] : facts()) json[name] = value;
+  json["threads"] = threads();
+  return json.dump(2) + "\n";
+}
+
+std::string info_text() {
+  std::string text;
+  for (const auto& [name, value] : facts()) text += fmt::format("{:<10}{}\n", name, value);
+  return text;
+}
+
+}  // namespace selvedge

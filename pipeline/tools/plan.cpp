@@ -1,0 +1,81 @@
+#include "pipeline/tools/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "physics/linear/linear_solver.hpp"
+#include "physics/scene/features.hpp"
+#include "physics/solve/step_potential.hpp"
+
+namespace selvedge {
+
+namespace {
+
+std::string linear_solver_of(const Setup& setup) {
+  const std::vector<char> free = free_vertices(setup.scene, lumped_masses(setup.scene));
+  const int count = static_cast<int>(std::ranges::count(free, 1));
+  const LinearSolver wanted = setup.run.conventional.implicit_euler.linear_solver;
+  const LinearSolver chosen = chosen_solver(wanted, count);
+  const char* name = chosen == LinearSolver::cholmod ? "CHOLMOD"
+                     : chosen == LinearSolver::pcg   ? "PCG with block Jacobi"
+                                                     : "PCG with a multigrid V-cycle";
+  return fmt::format("{}, {}{} free vertices", name, wanted == LinearSolver::automatic ? "for " : "as asked for, ",
+                     count);
+}
+
+// What the scene needs, and what the stepper does without.
+std::vector<PlanLine> lines_of(const Setup& setup) {
+  std::vector<PlanLine> lines = plan_lines(setup.scene);
+  lines.push_back({"linear solver", true, linear_solver_of(setup)});
+  lines.push_back({"cloths at rest", !setup.run.rest,
+                   setup.run.rest ? "left out of a step as long as nothing that moves comes near them"
+                                  : "stepped like others, as run.rest asks"});
+  if (setup.initial.frame < 0)
+    lines.push_back({"draped start", true, fmt::format("{} frames before time 0, not recorded", -setup.initial.frame)});
+  if (!setup.initial.cut_out.empty()) lines.push_back({"cut start", true, setup.prepared + " until they are free"});
+  if (setup.run.stepper != "icm") return lines;
+  const std::string untouched = "left out by the stepper icm";
+  lines.push_back({"contour energy", true, "weight " + fmt::format("{}", setup.run.icm.contour_weight)});
+  lines.push_back(
+      {"continuous detection", false, untouched + ": what passes through on the way is found by the audit"});
+  lines.push_back({"impulses and impact zones", false, untouched + ": nothing undoes a motion"});
+  lines.push_back({"recovery before a step", false, untouched + ": the contour energy does it within"});
+  lines.push_back({"obstacles that give way", false, untouched + ": they are where they are wanted"});
+  return lines;
+}
+
+}  // namespace
+
+std::string plan_json(const Setup& setup) {
+  nlohmann::ordered_json lines = nlohmann::ordered_json::array();
+  for (const PlanLine& line : lines_of(setup))
+    lines.push_back({{"feature", line.feature}, {"in", line.in}, {"why", line.why}});
+  const nlohmann::ordered_json json = {{"scene", setup.file.string()},
+                                       {"stepper", setup.run.stepper},
+                                       {"frames", setup.run.frames},
+                                       {"fps", setup.run.fps},
+                                       {"vertices", setup.scene.surface.vertex_count},
+                                       {"triangles", setup.scene.surface.triangles.rows()},
+                                       {"self", setup.scene.contact.self ? "audited" : "not audited"},
+                                       {"plan", lines},
+                                       {"warnings", setup.warnings}};
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string plan_text(const Setup& setup) {
+  const std::vector<PlanLine> lines = lines_of(setup);
+  std::size_t width = 0;
+  for (const PlanLine& line : lines) width = std::max(width, line.feature.size());
+  std::string text =
+      fmt::format("{}: {} vertices, {} triangles, {} frames at {} a second, stepper {}\n", setup.file.string(),
+                  setup.scene.surface.vertex_count, setup.scene.surface.triangles.rows(), setup.run.frames,
+                  setup.run.fps, setup.run.stepper);
+  for (const PlanLine& line : lines)
+    text += fmt::format("  {:<3}  {:<{}}  {}\n", line.in ? "in" : "out", line.feature, width, line.why);
+  for (const std::string& warning : setup.warnings) text += "  warning: " + warning + "\n";
+  return text;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,66 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "pipeline/tools/untangle_mesh.hpp"
+
+namespace selvedge {
+
+std::string untangle_json(const UntangleReport& report) {
+  const UntangleResult& r = report.result;
+  nlohmann::ordered_json left = nlohmann::ordered_json::array();
+  for (const Remainder& one : r.left)
+    left.push_back({{"pairs", one.pairs}, {"length", one.length}, {"reason", one.reason}});
+  const nlohmann::ordered_json json = {{"clean", is_clean(report)},
+                                       {"vertices", report.vertices},
+                                       {"triangles", report.triangles},
+                                       {"bodies", report.bodies},
+                                       {"pairs_before", r.pairs_before},
+                                       {"pairs_after", r.pairs_after},
+                                       {"audited_pairs", report.audited_pairs},
+                                       {"vertex_sharing_pairs_before", r.vertex_pairs_before},
+                                       {"vertex_sharing_pairs_after", r.vertex_pairs_after},
+                                       {"inside_before", report.inside_before},
+                                       {"inside_after", report.inside_after},
+                                       {"contour_length_before", r.length_before},
+                                       {"contour_length_after", r.length_after},
+                                       {"left", left},
+                                       {"iterations", r.iterations},
+                                       {"mean_edge", report.mean_edge},
+                                       {"moved", r.moved},
+                                       {"mean_move", r.mean_move},
+                                       {"max_move", r.max_move},
+                                       {"far_move", r.far_move},
+                                       {"min_stretch", r.least_stretch},
+                                       {"max_stretch", r.largest_stretch},
+                                       {"degenerate_before", report.degenerate_before},
+                                       {"degenerate_after", report.degenerate_after},
+                                       {"seconds", report.seconds},
+                                       {"warnings", report.warnings}};
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string untangle_text(const UntangleReport& report) {
+  const UntangleResult& r = report.result;
+  std::string text;
+  const auto add = [&](const char* label, const std::string& value) {
+    text += fmt::format("{:<22}{}\n", label, value);
+  };
+  add("mesh", fmt::format("{} vertices, {} triangles, {} bodies", report.vertices, report.triangles, report.bodies));
+  add("intersecting pairs", fmt::format("{} before, {} after", r.pairs_before, r.pairs_after));
+  add("crossing at a vertex", fmt::format("{} before, {} after", r.vertex_pairs_before, r.vertex_pairs_after));
+  add("inside bodies", fmt::format("{} before, {} after", report.inside_before, report.inside_after));
+  add("length of contours", fmt::format("{:.4g} m before, {:.4g} m after", r.length_before, r.length_after));
+  add("audit", fmt::format("{} pairs", report.audited_pairs));
+  add("moved",
+      fmt::format("{} vertices, by {:.3g} mean edges on average and {:.3g} at most", r.moved, r.mean_move, r.max_move));
+  add("stretch", fmt::format("{:.4f} to {:.4f} of the input", r.least_stretch, r.largest_stretch));
+  add("degenerate triangles", fmt::format("{} before, {} after", report.degenerate_before, report.degenerate_after));
+  add("time", fmt::format("{} iterations, {:.2f} s", r.iterations, report.seconds));
+  for (const Remainder& left : r.left)
+    add("left", fmt::format("{} pairs, {:.3g} m: {}", left.pairs, left.length, left.reason));
+  for (const std::string& warning : report.warnings) add("warning", warning);
+  return text;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,161 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "collision/geometry/error.hpp"
+#include "physics/solve/assembly.hpp"
+#include "physics/steppers/conventional_stepper.hpp"
+#include "pipeline/validate/validate_strip.hpp"
+
+// Coulomb's law, by the conventional stepper with all that it does about contact.
+namespace selvedge {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double g = 9.81, frame = 1.0 / 30;  // [m/s2], [s]
+
+void add_obstacle(Scene& scene, const std::string& name, const Points& x, const Triangles& triangles, State& state) {
+  scene.obstacles.push_back({name, make_surface(static_cast<int>(x.rows()), triangles), false});
+  state.obstacles.push_back(x);
+}
+
+void advance(Stepper& stepper, const Drive& drive, State& state) {
+  State next;
+  if (stepper.step(state, drive, frame, next).status != StepStatus::accepted)
+    throw Error(fmt::format("the step to {:.3f} s was rejected", state.time + frame), "validate", "report it");
+  std::swap(state, next);
+}
+
+// A sheet laid on a slope along x at the distance that contact keeps.
+std::vector<Measured> incline(const ValidationValues& values) {
+  const double slope = values.number("slope") * pi / 180, mu = values.number("mu");
+  const Vec3 down(std::cos(slope), -std::sin(slope), 0), normal(std::sin(slope), std::cos(slope), 0);
+  StripShape shape = strip_shape(values, 0.2, 0.2);
+  Strip sheet = make_strip_scene(shape, Material{}, down, Vec3(0, 0, -1), "");
+  sheet.scene.contact.friction = mu;
+  State state;
+  state.x = sheet.start.rowwise() + sheet.scene.contact.thickness * normal.transpose();
+  state.v = Points::Zero(state.x.rows(), 3);
+  Points plane(4, 3);
+  Triangles faces(2, 3);
+  for (int k = 0; k < 4; ++k)
+    plane.row(k) = ((k == 1 || k == 2 ? 12.0 : -1.0) * down + Vec3(0, 0, k < 2 ? 1.0 : -1.2)).transpose();
+  faces << 0, 1, 2, 0, 2, 3;
+  add_obstacle(sheet.scene, "slope", plane, faces, state);
+  Drive drive;
+  drive.pins.resize(0, 3);
+  drive.obstacles = {plane};
+  drive.acceleration = Vec3(0, -g, 0);
+  const auto stepper = make_conventional_stepper(sheet.scene, {});
+  const Vec3 start = state.x.colwise().mean();
+  constexpr int settle = 10, frames = 40;
+  double before = 0;
+  for (int n = 1; n <= frames; ++n) {
+    advance(*stepper, drive, state);
+    if (n == settle) before = Vec3(state.v.colwise().mean()).dot(down);
+  }
+  if (mu >= std::tan(slope))
+    return {{"slid [m] (sticks)", (Vec3(state.x.colwise().mean()) - start).dot(down), 0, Judged::at_most, 1e-3}};
+  const double acceleration = (Vec3(state.v.colwise().mean()).dot(down) - before) / ((frames - settle) * frame);
+  return {{"acceleration [m/s2]", acceleration, g * (std::sin(slope) - mu * std::cos(slope)), Judged::relative, 0.02}};
+}
+
+constexpr double bar_radius = 0.05, leg = 0.1;  // [m]
+
+// Where arc length a of a belt lies that comes up a leg, goes round the bar by `wrap` and down another.
+Vec3 on_belt(double a, double wrap, double r, double across) {
+  const double along = std::clamp(a / r, 0.0, wrap), beyond = a < 0 ? a : std::max(0.0, a - wrap * r);
+  const double angle = pi / 2 + wrap / 2 - along;
+  const Vec3 out(std::cos(angle), std::sin(angle), 0), tangent(std::sin(angle), -std::cos(angle), 0);
+  return r * out + beyond * tangent + Vec3(0, 0, across);
+}
+
+// Pull of the cloth on some pinned vertices along a direction, by the forces of membrane and bending [N].
+double pull(const Elastic& elastic, const Points& x, const std::vector<int>& vertices, const Vec3& direction) {
+  AssemblyScratch scratch;
+  Points gradient;
+  elastic_derivatives(elastic, x, scratch, &gradient, nullptr);
+  double sum = 0;
+  for (const int v : vertices) sum += row(gradient, v).dot(direction);
+  return sum;
+}
+
+std::vector<Measured> capstan(const ValidationValues& values) {
+  const double mu = values.number("mu"), wrap = values.number("wrap") * pi / 180;
+  const double r = bar_radius + Scene{}.contact.thickness, length = 2 * leg + wrap * r, width = 0.02;
+  StripShape shape = strip_shape(values, length, width);
+  Strip belt = make_strip_scene(shape, Material{}, Vec3::UnitX(), -Vec3::UnitZ(), "root");
+  Scene& scene = belt.scene;
+  scene.pins.insert(scene.pins.end(), belt.tip.begin(), belt.tip.end());
+  std::sort(scene.pins.begin(), scene.pins.end());
+  scene.contact.friction = mu;
+  State state;
+  state.x.resize(belt.start.rows(), 3);
+  for (int v = 0; v < state.x.rows(); ++v)
+    state.x.row(v) = on_belt(belt.start(v, 0) - leg, wrap, r, belt.start(v, 2) + width / 2).transpose();
+  state.v = Points::Zero(state.x.rows(), 3);
+  constexpr int sides = 90;
+  Points bar(2 * sides, 3);
+  Triangles faces(2 * sides, 3);
+  for (int i = 0; i < sides; ++i) {
+    const double angle = 2 * pi * i / sides;
+    for (const int end : {0, 1})
+      bar.row(2 * i + end) << bar_radius * std::cos(angle), bar_radius * std::sin(angle), end - 0.5;
+    const int a = 2 * i, b = 2 * ((i + 1) % sides);
+    faces.row(2 * i) << a, b, a + 1;
+    faces.row(2 * i + 1) << a + 1, b, b + 1;
+  }
+  add_obstacle(scene, "bar", bar, faces, state);
+  // Both ends tighten the belt for ten frames, then the far end pulls it round.
+  const Vec3 near = (on_belt(-leg, wrap, r, 0) - on_belt(0, wrap, r, 0)).normalized(),
+             far = (on_belt(wrap * r + leg, wrap, r, 0) - on_belt(wrap * r, wrap, r, 0)).normalized();
+  const Elastic elastic = make_elastic(scene);
+  const auto stepper = make_conventional_stepper(scene, {});
+  const Points start = state.x;
+  Drive drive;
+  drive.obstacles = {bar};
+  constexpr int tighten = 10, frames = 45, last = 10;
+  double slack = 0, tight = 0;
+  for (int n = 1; n <= frames; ++n) {
+    const double tightened = 0.008 * std::min(1.0, n / double(tighten)), slid = 0.3e-3 * std::max(0, n - tighten);
+    drive.pins.resize(static_cast<Eigen::Index>(scene.pins.size()), 3);
+    for (std::size_t p = 0; p < scene.pins.size(); ++p) {
+      const int v = scene.pins[p];
+      const bool at_root = std::find(belt.root.begin(), belt.root.end(), v) != belt.root.end();
+      const Vec3 moved = at_root ? Vec3((tightened - slid) * near) : Vec3((tightened + slid) * far);
+      drive.pins.row(static_cast<Eigen::Index>(p)) = start.row(v) + moved.transpose();
+    }
+    advance(*stepper, drive, state);
+    if (n <= frames - last) continue;
+    slack += pull(elastic, state.x, belt.root, near) / last;
+    tight += pull(elastic, state.x, belt.tip, far) / last;
+  }
+  return {{"T2 / T1", tight / slack, std::exp(mu * wrap), Judged::relative, 0.02}};
+}
+
+}  // namespace
+
+std::vector<ValidationCase> friction_cases() {
+  const Range not_negative{.low = 0};
+  const auto with = [](std::vector<ValidationParameter> first, const std::string& resolution) {
+    for (const ValidationParameter& parameter : strip_parameters(
+             {"resolution", resolution, resolution, "elements along the cloth", {.low = 4, .high = 400}, {}},
+             "one_diagonal", "0"))
+      first.push_back(parameter);
+    return first;
+  };
+  return {{"incline", "a sheet on a slope sticks or slides",
+           with({{"slope", "15,30", "15,30", "of the plane [degrees]", {.low = 0, .high = 80}, {}},
+                 {"mu", "0.3", "0.3", "coefficient of friction", not_negative, {}}},
+                "8"),
+           incline},
+          {"capstan", "a belt is pulled round a bar",
+           with({{"mu", "0.1,0.3,0.5", "0.3", "coefficient of friction", not_negative, {}},
+                 {"wrap", "90,180", "180", "angle round the bar [degrees]", {.low = 10, .high = 180}, {}}},
+                "80"),
+           capstan}};
+}
+
+}  // namespace selvedge

@@ -1,0 +1,131 @@
+#include "pipeline/validate/validate_strip.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "collision/geometry/error.hpp"
+
+namespace selvedge {
+namespace {
+
+const std::vector<int>& group(const Mesh& mesh, const std::string& name) {
+  return std::find_if(mesh.groups.begin(), mesh.groups.end(), [&name](const auto& g) { return g.first == name; })
+      ->second;
+}
+
+Points settled(const Scene& scene, const Points& start, const StaticLoad& load) {
+  const Equilibrium found = settle(scene, start, load);
+  if (!found.converged)
+    throw Error(fmt::format("no equilibrium within {} steps: the last one still moved by {:.2g} of the extent",
+                            found.steps, found.moved),
+                "validate", "report it; another resolution or thickness may do");
+  return found.x;
+}
+
+}  // namespace
+
+std::vector<ValidationParameter> strip_parameters(const ValidationParameter& resolution, const std::string& meshes,
+                                                  const std::string& angles) {
+  const auto first = [](const std::string& list) { return list.substr(0, list.find(',')); };
+  return {{"mesh", meshes, first(meshes), "how the cloth is cut", {}, {"one_diagonal", "alternating", "unstructured"}},
+          {"angle", angles, first(angles), "of the strip to the mesh [degrees]", {}, {}},
+          resolution};
+}
+
+Triangulation read_triangulation(const std::string& word) {
+  return word == "one_diagonal"  ? Triangulation::one_diagonal
+         : word == "alternating" ? Triangulation::alternating
+                                 : Triangulation::unstructured;
+}
+
+Material plate_material(double density, double bending, double thickness, double nu) {
+  Material material;
+  material.density = density;
+  material.bending = bending;
+  const double stretch = 12 * (1 - nu * nu) * bending / (thickness * thickness);  // E h
+  material.lame_mu = stretch / (2 * (1 + nu));
+  material.lame_lambda = stretch * nu / (1 - nu * nu);
+  return material;
+}
+
+StripShape strip_shape(const ValidationValues& values, double length, double width) {
+  StripShape shape;
+  shape.length = length;
+  shape.width = width;
+  shape.along = values.integer("resolution");
+  shape.angle = values.number("angle") * std::numbers::pi / 180;
+  shape.sheet.triangulation = read_triangulation(values.word("mesh"));
+  return shape;
+}
+
+Scene flat_cloth(const std::string& name, const Mesh& mesh, const Points& rest, const Material& material) {
+  Scene scene;
+  scene.surface = make_surface(static_cast<int>(rest.rows()), mesh.triangles);
+  scene.rest = rest;
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    RestTriangle triangle;
+    for (int k = 0; k < 3; ++k) triangle.col(k) = mesh.uv.row(mesh.triangles(t, k)).transpose();
+    scene.rest_triangle.push_back(triangle);
+  }
+  scene.cloths.push_back(
+      {name, material, 0, static_cast<int>(rest.rows()), 0, static_cast<int>(mesh.triangles.rows())});
+  scene.contact.self = false;
+  return scene;
+}
+
+Strip make_strip_scene(const StripShape& shape, const Material& material, const Vec3& along, const Vec3& across,
+                       const std::string& pinned) {
+  const Mesh mesh = make_strip(shape);
+  Strip strip;
+  Eigen::Matrix<double, 2, 3> frame;
+  frame << along.transpose(), across.transpose();
+  strip.start = mesh.uv * frame;
+  strip.scene = flat_cloth("strip", mesh, strip.start, material);
+  if (!pinned.empty()) strip.scene.pins = group(mesh, pinned);
+  strip.root = group(mesh, "root");
+  strip.tip = group(mesh, "tip");
+  strip.grip = group(mesh, "grip");
+  strip.side = group(mesh, "side");
+  return strip;
+}
+
+Vec3 mean_of(const Points& x, const std::vector<int>& vertices) {
+  Vec3 sum = Vec3::Zero();
+  for (const int v : vertices) sum += row(x, v);
+  return sum / static_cast<double>(vertices.size());
+}
+
+Points settled(const Scene& scene, const Points& start, const Vec3& gravity) {
+  return settled(scene, start, StaticLoad{gravity, nullptr, weight_norm(scene, gravity)});
+}
+
+Points settled(const Scene& scene, const Points& start, const AddedTerm& added, double size) {
+  return settled(scene, start, StaticLoad{Vec3::Zero(), &added, size});
+}
+
+std::vector<double> line_shares(const Points& x, const std::vector<int>& vertices) {
+  const std::size_t count = vertices.size();
+  const Vec3 origin = row(x, vertices[0]);
+  Vec3 far = origin;
+  for (const int v : vertices)
+    if ((row(x, v) - origin).norm() > (far - origin).norm()) far = row(x, v);
+  const Vec3 axis = (far - origin).normalized();
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  const auto place = [&](std::size_t i) { return (row(x, vertices[i]) - origin).dot(axis); };
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
+  const double length = place(order.back()) - place(order.front());
+  std::vector<double> shares(count, 0.0);
+  for (std::size_t k = 0; k + 1 < count; ++k) {
+    const double half = 0.5 * (place(order[k + 1]) - place(order[k])) / length;
+    shares[order[k]] += half;
+    shares[order[k + 1]] += half;
+  }
+  return shares;
+}
+
+}  // namespace selvedge

@@ -1,7 +1,0 @@
-#include "pipeline/version.hpp"
-
-namespace selvedge {
-
-const char* program_version() { return SELVEDGE_VERSION; }
-
-}  // namespace selvedge

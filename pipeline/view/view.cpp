@@ -1,0 +1,58 @@
+#include "pipeline/view/view.hpp"
+
+#include <fstream>
+#include <memory>
+
+#include "collision/geometry/error.hpp"
+
+namespace selvedge {
+namespace {
+
+std::string run_name(const std::filesystem::path& file) {
+  const std::string stem = file.stem().string();
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path().filename();
+  return stem == "run" && !folder.empty() ? folder.string() : stem;
+}
+
+ViewRun open_run(const std::filesystem::path& path) {
+  const std::filesystem::path file = std::filesystem::is_directory(path) ? path / "run.h5" : path;
+  const auto reader = std::make_shared<TrajectoryReader>(file);
+  return {run_name(file), reader->info(), reader->frame_count(), [reader](int index) { return reader->frame(index); }};
+}
+
+}  // namespace
+
+void write_view(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& html,
+                const ViewOptions& options) {
+  std::vector<ViewRun> opened;
+  for (const auto& run : runs) opened.push_back(open_run(run));
+  const std::string page = view_page(opened, options);
+
+  std::filesystem::path beside = html;
+  beside += ".part";
+  std::ofstream out(beside, std::ios::binary);
+  out.write(page.data(), static_cast<std::streamsize>(page.size()));
+  out.close();
+  std::error_code failed;
+  if (out) std::filesystem::rename(beside, html, failed);
+  if (!out || failed) {
+    std::error_code ignored;
+    std::filesystem::remove(beside, ignored);
+    throw Error("the page could not be written", html.string(), "give a folder that exists and has room");
+  }
+}
+
+void write_view(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& html) {
+  write_view(runs, html, ViewOptions{});
+}
+
+std::optional<std::string> write_page(const std::filesystem::path& folder) {
+  try {
+    write_view({folder / "run.h5"}, folder / "view.html");
+    return {};
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+}  // namespace selvedge

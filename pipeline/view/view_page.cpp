@@ -1,0 +1,54 @@
+#include <fstream>
+#include <sstream>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/view/page_sources.hpp"
+#include "pipeline/view/view.hpp"
+#include "pipeline/view/view_data.hpp"
+
+namespace selvedge {
+namespace {
+
+std::string read_package_file(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  if (in) text << in.rdbuf();
+  if (text.str().empty())
+    throw Error("three.js is absent, and the page is drawn with it", file.string(),
+                "install the package libjs-three (apt install libjs-three), or configure with "
+                "-DSELVEDGE_THREE_DIR=FOLDER");
+  return text.str();
+}
+
+// Parts go where the template says {{name}}; what a part holds is not looked at again.
+std::string fill(std::string_view page, const std::vector<std::pair<std::string_view, std::string_view>>& parts) {
+  std::string html;
+  for (std::size_t at = 0; at < page.size();) {
+    const std::size_t open = page.find("{{", at);
+    html += page.substr(at, open - at);
+    if (open == std::string_view::npos) break;
+    const std::size_t close = page.find("}}", open);
+    const std::string_view name = page.substr(open + 2, close - open - 2);
+    for (const auto& [key, text] : parts)
+      if (key == name) html += text;
+    at = close + 2;
+  }
+  return html;
+}
+
+}  // namespace
+
+std::string view_page(const std::vector<ViewRun>& runs, const ViewOptions& options) {
+  if (runs.empty()) throw Error("no run to show", "view", "name at least one trajectory");
+  for (const ViewRun& run : runs)
+    if (run.frame_count <= 0) throw Error("the run has no full frame", run.name, "wait for its first frame");
+  const std::filesystem::path folder = options.three.empty() ? SELVEDGE_THREE_DIR : options.three;
+  const std::string three = read_package_file(folder / "three.min.js");
+  const std::string orbit = read_package_file(folder / "examples/js/controls/OrbitControls.js");
+  const std::string data = view_data(runs, options.limit);
+  const PageSources page = page_sources();
+  return fill(page.html,
+              {{"style", page.style}, {"three", three}, {"orbit", orbit}, {"data", data}, {"script", page.script}});
+}
+
+}  // namespace selvedge

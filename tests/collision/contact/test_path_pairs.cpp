@@ -1,0 +1,151 @@
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "collision/contact/path_pairs.hpp"
+#include "tests/collision/sheets.hpp"
+
+using namespace selvedge;
+using testing::join;
+using testing::sheet;
+
+namespace {
+
+Points shaken(const Points& x, double size, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0, size);
+  Points y = x;
+  for (Eigen::Index i = 0; i < y.size(); ++i) y.data()[i] += normal(random);
+  return y;
+}
+
+// Two sheets as one cloth, and a search for its pairs.
+struct TwoSheets {
+  Points x;
+  Surface cloth;
+  ContactWorld world;
+  PairSearch search;
+
+  explicit TwoSheets(const testing::Sheet& both)
+      : x(both.x),
+        cloth(make_surface(static_cast<int>(x.rows()), both.triangles)),
+        world(make_contact_world(cloth, {}, true)),
+        search(world) {}
+  TwoSheets(const TwoSheets&) = delete;  // the world looks at the cloth
+  TwoSheets& operator=(const TwoSheets&) = delete;
+};
+
+double least_distance(const NodePair& pair, const Points& x0, const Points& x1) {
+  double least = 1e30;
+  for (int k = 0; k <= 40; ++k) {
+    const Points x = x0 + k / 40.0 * (x1 - x0);
+    least = std::min(least, std::sqrt(closest(pair, x).squared_distance));
+  }
+  return least;
+}
+
+}  // namespace
+
+TEST_CASE("path pairs: a pair is left out only if it stays away", "[path_pairs]") {
+  TwoSheets both(join(sheet(5, 0.2, 0), sheet(5, 0.2, 3e-3)));
+  const double thickness = 4e-3;
+  PathPairs path;
+  const Points start = shaken(both.x, 5e-4, 1);
+  REQUIRE(update_pairs(both.search, thickness, start, start, path));
+  int out = 0, in = 0;
+  for (unsigned seed = 2; seed < 8; ++seed) {
+    // A common drift costs nothing; what differs from node to node does.
+    Points x0 = shaken(start, 3e-4, seed), x1 = shaken(start, 3e-4, 10 * seed);
+    x0.array() += 1e-4 * seed;
+    const PathMotion motion(path, x0, x1);
+    for (std::size_t i = 0; i < path.pairs.size(); ++i)
+      for (const double distance : {2e-4, 2e-3}) {
+        const bool may = motion.may_come_within(i, distance);
+        (may ? in : out)++;
+        if (!may) CHECK(least_distance(path.pairs[i], x0, x1) > distance);
+      }
+  }
+  CHECK(in > 100);
+  CHECK(out > 100);
+  Points far = start;
+  far.array() += 100;
+  CHECK_FALSE(PathMotion(path, far, far).may_come_within(0, 0.9 * path.gap[0]));
+}
+
+TEST_CASE("path pairs: what is near is listed, from a kept list as from a new one", "[path_pairs]") {
+  TwoSheets both(join(sheet(6, 0.2, 0), sheet(5, 0.2, 3e-3)));
+  const double thickness = 4e-3;
+  PairSearch other(both.world);
+  PathPairs kept, fresh;
+  REQUIRE(update_pairs(both.search, thickness, both.x, both.x, kept));
+  const Points near = shaken(both.x, 4e-4, 3);
+  REQUIRE_FALSE(update_pairs(both.search, thickness, near, near, kept));
+  REQUIRE(update_pairs(other, thickness, near, near, fresh));
+  std::vector<NodePair> a, b;
+  for (const NodePair& pair : pairs_within(kept, near, thickness))
+    if (closest(pair, near).squared_distance < thickness * thickness) a.push_back(pair);
+  for (const NodePair& pair : pairs_within(fresh, near, thickness))
+    if (closest(pair, near).squared_distance < thickness * thickness) b.push_back(pair);
+  std::sort(a.begin(), a.end());
+  std::sort(b.begin(), b.end());
+  CHECK(a.size() > 50);
+  CHECK(a == b);
+}
+
+namespace {
+
+// Of the listed ones, in order: those that are seen to come within the distance on the way.
+std::vector<NodePair> coming_near(const PathPairs& path, const Points& x0, const Points& x1, double distance) {
+  std::vector<NodePair> near;
+  for (const NodePair& pair : path.pairs)
+    if (least_distance(pair, x0, x1) < distance) near.push_back(pair);
+  std::sort(near.begin(), near.end());
+  return near;
+}
+
+}  // namespace
+
+TEST_CASE("path pairs: where few nodes end elsewhere the list is mended, and lists what a new one does",
+          "[path_pairs]") {
+  TwoSheets both(join(sheet(8, 0.2, 0), sheet(7, 0.2, 6e-3)));
+  const double thickness = 2e-3;
+  PathPairs mended;
+  Points end = both.x.rowwise() + Eigen::RowVector3d(0.03, -0.01, 0.02);
+  REQUIRE(update_pairs(both.search, thickness, both.x, end, mended));
+  std::mt19937 random(5);
+  std::size_t gained = 0;
+  for (int turn = 0; turn < 6; ++turn) {
+    for (int k = 0; k < 10; ++k) end(static_cast<int>(random() % 145), 1) += k % 2 == 0 ? 8e-3 : -8e-3;
+    const std::size_t before = mended.pairs.size();
+    REQUIRE_FALSE(update_pairs(both.search, thickness, both.x, end, mended));
+    gained += mended.pairs.size() > before;
+    PairSearch other(both.world);
+    PathPairs fresh;
+    REQUIRE(update_pairs(other, thickness, both.x, end, fresh));
+    const auto near = coming_near(fresh, both.x, end, thickness);
+    CHECK(near.size() > 10);
+    CHECK(coming_near(mended, both.x, end, thickness) == near);
+    std::vector<NodePair> listed = mended.pairs;
+    std::sort(listed.begin(), listed.end());
+    CHECK(std::ranges::adjacent_find(listed) == listed.end());
+  }
+  CHECK(gained > 2);
+  // From another start, or where everything ends elsewhere, nothing of it is good any more.
+  CHECK(update_pairs(both.search, thickness, both.x, both.x, mended));
+  CHECK(update_pairs(both.search, thickness, end, end, mended));
+}
+
+TEST_CASE("path pairs: boxes of long motions overlap, and only what may come near is listed", "[path_pairs]") {
+  // Two sheets that turn together, a hand's breadth apart.
+  TwoSheets both(join(sheet(8, 1, 0), sheet(8, 1, 0.08)));
+  const Mat3 turn = Eigen::AngleAxisd(0.5, Vec3::UnitX()).toRotationMatrix();
+  const Points end = both.x * turn.transpose();
+  PathPairs path;
+  REQUIRE(update_pairs(both.search, 2e-3, both.x, end, path));
+  std::vector<NodePair> boxes;
+  both.search.find(both.x, end, 4e-3, boxes);
+  CHECK(path.pairs.size() < boxes.size());
+  for (const NodePair& pair : boxes) {
+    const bool listed = std::ranges::find(path.pairs, pair) != path.pairs.end();
+    CHECK((listed || least_distance(pair, both.x, end) > 2e-3));
+  }
+}

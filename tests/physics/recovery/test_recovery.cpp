@@ -1,0 +1,268 @@
+#include <random>
+
+#include "collision/audit/audit.hpp"
+#include "collision/untangle/find_exemption.hpp"
+#include "collision/untangle/untangle.hpp"
+#include "physics/energies/measures.hpp"
+#include "physics/recovery/recovery.hpp"
+#include "tests/physics/worlds.hpp"
+
+using namespace selvedge;
+using testing::add_obstacle;
+using testing::make_world;
+using testing::sheet;
+using testing::World;
+
+namespace {
+
+// A closed block round `centre`, its faces cut in two.
+testing::Sheet block(const Vec3& centre, double half) {
+  testing::Sheet body;
+  body.x.resize(8, 3);
+  for (int v = 0; v < 8; ++v)
+    body.x.row(v) = (centre + half * Vec3(v & 1 ? 1 : -1, v & 2 ? 1 : -1, v & 4 ? 1 : -1)).transpose();
+  body.triangles.resize(12, 3);
+  body.triangles << 0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5,
+      3, 7, 5;
+  return body;
+}
+
+// Without gravity, within 20 frames, and no vertex faster than 0.1 m a frame that started tangled.
+void check_recovers(World w) {
+  w.drive.acceleration.setZero();
+  State state = w.state;
+  double fastest = 0;
+  const auto stepper = make_conventional_stepper(w.scene, {});
+  for (int frame = 0; frame < 20 && !(frame > 0 && state.clean); ++frame) {
+    State to;
+    REQUIRE(stepper->step(state, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
+    fastest = std::max(fastest, (to.x - state.x).rowwise().norm().maxCoeff());
+    state = to;
+  }
+  CHECK(state.clean);
+  CHECK(fastest < 0.1);
+}
+
+// A sheet of 4 x 4 quads, all vertices of which lie anywhere within `size` of `centre`.
+World lump(unsigned seed, double size, const Vec3& centre) {
+  World w = make_world(sheet(4, 0.2, 0));
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> within(-size, size);
+  for (int v = 0; v < w.state.x.rows(); ++v)
+    for (int k = 0; k < 3; ++k) w.state.x(v, k) = centre[k] + within(random);
+  return w;
+}
+
+Vec3 mass_mean(const Scene& scene, const Points& rows) {
+  return linear_momentum(scene, rows) / lumped_masses(scene).sum();
+}
+
+ContactWorld with_its_obstacle(const World& w) {
+  return make_contact_world(w.scene.surface, {&w.scene.obstacles[0].surface}, true);
+}
+
+}  // namespace
+
+TEST_CASE("recovery: two sheets that start through each other get clean and stay so", "[recovery]") {
+  const auto level = sheet(10, 0.4, 0);
+  testing::Sheet upright = testing::tilted(sheet(9, 0.2, 0), 1.5);
+  upright.x.col(0).array() += 0.013;
+  upright.x.col(1).array() += 0.06;
+  World w = make_world(testing::join(level, upright));
+  REQUIRE(audit(w.scene.surface, w.state.x, {}).intersecting_pairs() > 0);
+  check_recovers(w);
+}
+
+TEST_CASE("recovery: cloth that starts inside a closed body comes out at a bounded speed", "[recovery]") {
+  World w = make_world(sheet(12, 0.4, 0.04));
+  add_obstacle(w, block({0.01, 0, 0.02}, 0.06));
+  std::vector<AuditBody> bodies{{&w.scene.obstacles[0].surface, &w.state.obstacles[0]}};
+  REQUIRE(audit(w.scene.surface, w.state.x, bodies).inside_vertices > 0);
+  check_recovers(w);
+}
+
+TEST_CASE("recovery: a clean start is left as it is", "[recovery]") {
+  World w = make_world(sheet(6, 0.4, 0.1));
+  add_obstacle(w, block({0, 0, 0}, 0.06));
+  const ContactWorld world = with_its_obstacle(w);
+  Points nodes = gather_nodes(w.state.x, w.state.obstacles);
+  const Points before = nodes;
+  CHECK_FALSE(
+      recover(world, Eigen::VectorXd::Ones(nodes.rows()), 1, find_exemption(world, nodes), {}, nodes).left.any());
+  CHECK(nodes == before);
+}
+
+TEST_CASE("recovery: a body that crosses itself is switched off there and nowhere else", "[recovery]") {
+  World w = make_world(sheet(12, 0.5, 0.12));
+  // Two blocks that overlap at their corners: one obstacle of two closed parts.
+  add_obstacle(w, testing::join(block({-0.05, 0, 0}, 0.06), block({0.05, 0.011, 0.013}, 0.06)));
+  const ContactWorld world = with_its_obstacle(w);
+  const Points nodes = gather_nodes(w.state.x, w.state.obstacles);
+  SelfCrossings crossings(world);
+  Exemption exemption;
+  crossings.switch_off(nodes, nodes, exemption);
+  REQUIRE_FALSE(exemption.off.empty());
+  CHECK_FALSE(exemption.cloth());
+  CHECK(std::count(exemption.off.begin(), exemption.off.begin() + w.scene.surface.vertex_count, 1) == 0);
+  const testing::Run r = testing::run(w, 30);
+  CHECK(r.state.x.allFinite());
+  CHECK(r.held == 0);
+  CHECK(r.passed_through == 0);
+}
+
+TEST_CASE("recovery: nothing is asked of what cannot be parted, the rest goes without momentum", "[recovery]") {
+  const World w = lump(7, 0.04, Vec3::Zero());
+  const ContactWorld world = make_contact_world(w.scene.surface, {}, true);
+  const UntangleResult parted = untangle(w.scene.surface, w.state.x, {});
+  REQUIRE(parted.pairs_after > 0);
+  const Exemption there = find_exemption(world, parted.x);
+  const Eigen::VectorXd inverse_mass = inverse_masses(w.scene, world.node_count);
+  Points nodes = w.state.x;
+  const Recovery recovery = recover(world, inverse_mass, 0.01, find_exemption(world, nodes), {}, nodes);
+  REQUIRE_FALSE(recovery.gained.empty());
+  for (const Separation& gained : recovery.gained) {
+    bool hopeful = false;
+    double sum = 0, value = 0;
+    for (int i = 0; i < gained.count; ++i) {
+      hopeful = hopeful || !there.self[gained.vertex[i]];
+      sum += gained.weight[i];
+      value += gained.weight[i] * gained.direction.dot(row(nodes, gained.vertex[i]));
+    }
+    CHECK(hopeful);
+    CHECK(gained.count <= 4);
+    CHECK(std::abs(sum) < 1e-12);
+    CHECK(gained.least == Approx(value));
+  }
+  const Points moved = nodes - w.state.x;
+  CHECK(moved.rowwise().norm().maxCoeff() > 0.005);
+  CHECK(moved.rowwise().norm().maxCoeff() < 0.010001);
+  CHECK(mass_mean(w.scene, moved).norm() < 1e-15);
+}
+
+TEST_CASE("recovery: cloth tangled with itself gets out of it without momentum", "[recovery]") {
+  for (const unsigned seed : {7u, 8u}) {
+    World w = lump(seed, 0.04, Vec3::Zero());
+    w.drive.acceleration.setZero();
+    ConventionalOptions options;  // iterated solves would leave momentum of their own, with and without recovery
+    options.implicit_euler.linear_tolerance = 1e-10;
+    const auto stepper = make_conventional_stepper(w.scene, options);
+    State state = w.state, to;
+    int frame = 0;
+    for (; frame < 20 && !(frame > 0 && state.clean); ++frame) {
+      REQUIRE(stepper->step(state, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
+      CHECK(mass_mean(w.scene, to.v).norm() < 2e-3);  // of 1 to 3 m/s
+      state = to;
+    }
+    CHECK(state.clean);
+    CHECK((mass_mean(w.scene, state.x) - mass_mean(w.scene, w.state.x)).norm() < 1e-3);
+  }
+}
+
+TEST_CASE("recovery: a light cloth gives way to a heavy one, and both to pins", "[recovery]") {
+  testing::Sheet upright = testing::tilted(sheet(9, 0.2, 0), 1.5);
+  upright.x.col(0).array() += 0.013;
+  upright.x.col(1).array() += 0.06;
+  const auto level = sheet(10, 0.4, 0);
+  World w = make_world(testing::join(level, upright));
+  const int n = static_cast<int>(level.x.rows()), faces = static_cast<int>(level.triangles.rows());
+  w.scene.cloths[0].vertex_count = n;
+  w.scene.cloths[0].triangle_count = faces;
+  w.scene.cloths.push_back(
+      {"heavy", {}, n, static_cast<int>(upright.x.rows()), faces, static_cast<int>(upright.triangles.rows())});
+  w.scene.cloths[1].material.density = 20;
+  const ContactWorld world = make_contact_world(w.scene.surface, {}, true);
+  const auto moved_by_recovery = [&] {
+    Points nodes = w.state.x;
+    recover(world, inverse_masses(w.scene, world.node_count), 0.03, find_exemption(world, nodes), {}, nodes);
+    return Points(nodes - w.state.x);
+  };
+  Points moved = moved_by_recovery();
+  CHECK(mass_mean(w.scene, moved).norm() < 1e-15);
+  CHECK(moved.bottomRows(upright.x.rows()).norm() < 0.5 * moved.topRows(n).norm());
+  for (int v = 0; v < n; ++v) w.scene.pins.push_back(v);
+  moved = moved_by_recovery();
+  CHECK(moved.topRows(n).norm() == 0);
+  w.drive.pins = w.state.x.topRows(n);
+  check_recovers(w);
+}
+
+TEST_CASE("recovery: cloth that comes out of a body leaves its momentum there", "[recovery]") {
+  World w = make_world(sheet(12, 0.4, 0.04));
+  add_obstacle(w, block({0.01, 0, 0.02}, 0.06));
+  const ContactWorld world = with_its_obstacle(w);
+  Points nodes = gather_nodes(w.state.x, w.state.obstacles);
+  recover(world, inverse_masses(w.scene, world.node_count), 0.01, find_exemption(world, nodes), {}, nodes);
+  const Points moved = nodes.topRows(w.state.x.rows()) - w.state.x;
+  for (int v = 0; v < moved.rows(); ++v) CHECK(moved(v, 1) >= -1e-3);
+  CHECK(mass_mean(w.scene, moved).y() > 1e-4);
+}
+
+TEST_CASE("recovery: a tangled cloth is put through no floor", "[recovery]") {
+  for (const unsigned seed : {7u, 8u, 9u}) {
+    World w = lump(seed, 0.04, {0, 0.041, 0});
+    add_obstacle(w, sheet(6, 1, 0));
+    const ContactWorld world = with_its_obstacle(w);
+    const Eigen::VectorXd inverse_mass = inverse_masses(w.scene, world.node_count);
+    Points nodes = gather_nodes(w.state.x, w.state.obstacles);
+    REQUIRE(find_exemption(world, nodes).body.empty());
+    const Recovery recovery = recover(world, inverse_mass, 0.03, find_exemption(world, nodes), {}, nodes);
+    CHECK(recovery.left.body.empty());
+    CHECK(nodes.topRows(w.state.x.rows()).col(1).minCoeff() > 0);
+  }
+}
+
+TEST_CASE("recovery: what is left alone is every pair with a tangled vertex", "[recovery]") {
+  World w = make_world(sheet(2, 0.4, 0));
+  add_obstacle(w, block({0, -0.2, 0}, 0.06));
+  const ContactWorld world = with_its_obstacle(w);
+  Exemption exemption;
+  CHECK_FALSE(exemption.leaves_alone(world, {0, 1, 4, 5}));
+  exemption.self.assign(9, 0);
+  exemption.self[4] = 1;
+  CHECK(exemption.leaves_alone(world, {0, 1, 4, 5}));
+  CHECK_FALSE(exemption.leaves_alone(world, {0, 1, 2, 5}));
+  CHECK_FALSE(exemption.leaves_alone(world, {4, 9, 10, 11}));
+  exemption.body.assign(9, 0);
+  exemption.body[4] = 1;
+  CHECK(exemption.leaves_alone(world, {4, 9, 10, 11}));
+  exemption.off.assign(world.node_count, 0);
+  exemption.off[9] = exemption.off[10] = 1;
+  CHECK_FALSE(exemption.leaves_alone(world, {0, 9, 10, 11}));
+  exemption.off[11] = 1;
+  CHECK(exemption.leaves_alone(world, {0, 9, 10, 11}));
+}
+
+TEST_CASE("recovery: a body that jumps farther than its size is not swept along, and what it lands on gets clean",
+          "[recovery]") {
+  World w = make_world(sheet(12, 0.4, 0));
+  add_obstacle(w, block({3, 0, 0}, 0.03));
+  w.drive.acceleration.setZero();
+  const Points there = block({0.01, 0, 0.02}, 0.03).x;
+  const auto stepper = make_conventional_stepper(w.scene, {});
+  State state = w.state, to;
+  w.drive.obstacles = {there};
+  StepReport report = stepper->step(state, w.drive, 1.0 / 30, to);
+  REQUIRE(report.status == StepStatus::accepted);
+  CHECK(report.collision.jumped == 1);
+  CHECK(to.obstacles[0] == there);
+  CHECK((to.x - state.x).rowwise().norm().maxCoeff() < 0.1);  // a sweep at 90 m/s would carry it off
+  for (int frame = 0; frame < 20; ++frame) {
+    state = to;
+    report = stepper->step(state, w.drive, 1.0 / 30, to);
+    CHECK(report.collision.jumped == 0);
+  }
+  CHECK(to.clean);
+}
+
+TEST_CASE("recovery: a fast body that does not jump sweeps the cloth along", "[recovery]") {
+  World w = make_world(sheet(12, 0.4, 0));
+  add_obstacle(w, block({0, -0.3, 0}, 0.06));
+  w.drive.acceleration.setZero();
+  w.drive.obstacles = {block({0, 1, 0}, 0.06).x};
+  State to;
+  const StepReport report = make_conventional_stepper(w.scene, {})->step(w.state, w.drive, 1.0 / 30, to);
+  REQUIRE(report.status == StepStatus::accepted);
+  CHECK(report.collision.jumped == 0);
+  CHECK(to.clean);
+  CHECK(to.x.col(1).maxCoeff() > 1);
+}

@@ -1,0 +1,238 @@
+#include "physics/solve/bdf2.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "physics/energies/measures.hpp"
+#include "physics/steppers/conventional_stepper.hpp"
+#include "tests/physics/threads.hpp"
+#include "tests/physics/worlds.hpp"
+
+using namespace selvedge;
+using testing::make_world;
+using testing::World;
+
+namespace {
+
+// A sheet that lies level, held at the edge x = least, and is let go. Stiffness soft enough for time steps to matter.
+World swinging_world(int n, double damping = 0) {
+  World w = make_world(testing::sheet(n, 0.3, 0));
+  Material& material = w.scene.cloths[0].material;
+  material.lame_mu = 20;
+  material.lame_lambda = 10;
+  material.bending = 1e-4;
+  material.stiffness_damping = damping;
+  const double edge = w.state.x.col(0).minCoeff();
+  for (int i = 0; i < w.state.x.rows(); ++i)
+    if (w.state.x(i, 0) < edge + 1e-9) w.scene.pins.push_back(i);
+  w.drive.pins.resize(static_cast<Eigen::Index>(w.scene.pins.size()), 3);
+  for (std::size_t k = 0; k < w.scene.pins.size(); ++k)
+    w.drive.pins.row(static_cast<Eigen::Index>(k)) = w.state.x.row(w.scene.pins[k]);
+  w.scene.contact.self = false;
+  return w;
+}
+
+ConventionalOptions exact(Integrator integrator) {
+  ConventionalOptions options;
+  options.substeps = 1;
+  options.integrator = integrator;
+  options.implicit_euler.velocity_tolerance = 1e-11;
+  options.implicit_euler.relative_tolerance = 0;
+  options.implicit_euler.max_newton = 100;
+  options.implicit_euler.linear_tolerance = 1e-6;
+  return options;
+}
+
+ConventionalOptions with(Integrator integrator) {
+  ConventionalOptions options;
+  options.integrator = integrator;
+  return options;
+}
+
+State run(const World& w, const ConventionalOptions& options, double time, int steps) {
+  const auto stepper = make_conventional_stepper(w.scene, options);
+  State state = w.state;
+  for (int s = 0; s < steps; ++s) {
+    State to;
+    REQUIRE(stepper->step(state, w.drive, time / steps, to).status == StepStatus::accepted);
+    state = to;
+  }
+  return state;
+}
+
+State one_step(const World& w, const ConventionalOptions& options, const State& from, double dt) {
+  State to;
+  REQUIRE(make_conventional_stepper(w.scene, options)->step(from, w.drive, dt, to).status == StepStatus::accepted);
+  return to;
+}
+
+void check_same(const State& a, const State& b) {
+  CHECK(same_bits(a.x, b.x));
+  CHECK(same_bits(a.v, b.v));
+}
+
+double energy(const World& w, const State& state) {
+  return energies(w.scene, state.x, state.v, w.drive.acceleration).total();
+}
+
+}  // namespace
+
+TEST_CASE("BDF2: free fall from a true history is exact", "[bdf2]") {
+  World w = make_world(testing::sheet(3, 0.3, 0));
+  w.scene.contact.self = false;
+  const double h = 1.0 / 60;
+  const Vec3 g = w.drive.acceleration, v0(1, 2, 3);
+  const auto at = [&](double t, State& state) {
+    state.x = w.state.x;
+    state.x.rowwise() += (t * v0 + 0.5 * t * t * g).transpose();
+    state.v = Points::Zero(state.x.rows(), 3);
+    state.v.rowwise() += (v0 + t * g).transpose();
+  };
+  State state, before, end;
+  at(-h, before);
+  at(0, state);
+  at(10 * h, end);
+  state.history = {h, before.x, before.v};
+  for (int s = 0; s < 10; ++s) state = one_step(w, exact(Integrator::bdf2), state, h);
+  CHECK((state.x - end.x).cwiseAbs().maxCoeff() < 1e-13);
+  CHECK((state.v - end.v).cwiseAbs().maxCoeff() < 1e-12);
+}
+
+TEST_CASE("BDF2: what rests gives its own positions", "[bdf2]") {
+  const World w = make_world(testing::sheet(4, 0.3, 0.1));
+  const StepStart start = bdf2_start({0.01, w.state.x, w.state.v}, w.state.x, w.state.v);
+  CHECK(start.h == Approx(0.02 / 3));
+  CHECK(same_bits(start.x, w.state.x));
+  CHECK(same_bits(start.v, w.state.v));
+}
+
+TEST_CASE("BDF2: of second order on a swinging sheet where implicit Euler is of first", "[bdf2]") {
+  const World w = swinging_world(4);
+  const double time = 0.2;
+  const Points truth = run(w, exact(Integrator::bdf2), time, 1600).x;
+  const auto ratio = [&](Integrator integrator, int steps) {
+    const double coarse = (run(w, exact(integrator), time, steps).x - truth).norm();
+    const double fine = (run(w, exact(integrator), time, 2 * steps).x - truth).norm();
+    return coarse / fine;
+  };
+  const double first = ratio(Integrator::implicit_euler, 80), second = ratio(Integrator::bdf2, 80);
+  INFO("implicit Euler " << first << ", BDF2 " << second);
+  CHECK(first == Approx(2).epsilon(0.15));
+  CHECK(second > 3.4);
+  CHECK(second < 4.6);
+}
+
+TEST_CASE("BDF2: a swinging sheet keeps more of its energy, and damping takes as much of it", "[bdf2]") {
+  const double time = 0.5, fine = 5e-4;
+  const auto lost = [&](const World& w, Integrator integrator, double dt) {
+    return energy(w, w.state) - energy(w, run(w, exact(integrator), time, static_cast<int>(std::lround(time / dt))));
+  };
+  const World w = swinging_world(5);
+  const double euler = lost(w, Integrator::implicit_euler, 1.0 / 60), bdf2 = lost(w, Integrator::bdf2, 1.0 / 60);
+  INFO("lost [J]: implicit Euler " << euler << ", BDF2 " << bdf2);
+  CHECK(bdf2 > 0);
+  CHECK(bdf2 < 0.5 * euler);
+
+  // With Rayleigh damping that is most of the loss both take the same at small steps.
+  const World damped = swinging_world(5, 0.02);
+  const double both = lost(damped, Integrator::implicit_euler, fine);
+  CHECK(lost(damped, Integrator::bdf2, fine) == Approx(both).epsilon(0.03));
+}
+
+TEST_CASE("BDF2: a copy of the state goes on with the same bits in another stepper", "[bdf2]") {
+  const World w = swinging_world(5);
+  const ConventionalOptions options = with(Integrator::bdf2);
+  const double dt = 1.0 / 30;
+  const State middle = run(w, options, 5 * dt, 5);
+  REQUIRE(middle.history.h == Approx(dt / 2));
+  World later = w;
+  later.state = middle;
+  check_same(run(later, options, 5 * dt, 5), run(w, options, 10 * dt, 10));
+  World forgetful = later;  // the history matters
+  forgetful.state.history = {};
+  CHECK(run(forgetful, options, 5 * dt, 5).x != run(later, options, 5 * dt, 5).x);
+}
+
+TEST_CASE("BDF2: one and two threads give the same bits", "[bdf2][threads]") {
+  const World w = swinging_world(40);
+  State one, two;
+  with_threads(1, [&] { one = run(w, with(Integrator::bdf2), 0.3, 9); });
+  with_threads(2, [&] { two = run(w, with(Integrator::bdf2), 0.3, 9); });
+  check_same(one, two);
+  CHECK(same_bits(one.history.v, two.history.v));
+}
+
+TEST_CASE("BDF2: the first substep, one of another length and one before which pins jump are implicit Euler",
+          "[bdf2]") {
+  World w = swinging_world(5);
+  const ConventionalOptions euler = exact(Integrator::implicit_euler), bdf2 = exact(Integrator::bdf2);
+  const double dt = 1.0 / 60;
+  const State first = one_step(w, bdf2, w.state, dt);
+  check_same(first, one_step(w, euler, w.state, dt));
+  CHECK(first.history.h == dt);
+  CHECK(one_step(w, euler, w.state, dt).history.h == 0);
+  const State second = one_step(w, bdf2, first, dt);
+  CHECK(second.x != one_step(w, euler, first, dt).x);
+  check_same(one_step(w, bdf2, second, dt / 2), one_step(w, euler, second, dt / 2));
+  w.drive.pins.col(1).array() += 0.4 * mean_edge_length(w.scene);  // less than a jump
+  CHECK(one_step(w, bdf2, second, dt).x != one_step(w, euler, second, dt).x);
+  w.drive.pins.col(1).array() += 0.8 * mean_edge_length(w.scene);
+  check_same(one_step(w, bdf2, second, dt), one_step(w, euler, second, dt));
+}
+
+TEST_CASE("BDF2: an obstacle that jumps far makes the substep implicit Euler's", "[bdf2]") {
+  World w = make_world(testing::sheet(5, 0.3, 0.5));
+  testing::add_obstacle(w, testing::sheet(3, 0.05, 0));
+  const ConventionalOptions euler = exact(Integrator::implicit_euler), bdf2 = exact(Integrator::bdf2);
+  const double dt = 1.0 / 60;
+  const State from = one_step(w, bdf2, w.state, dt);
+  REQUIRE(from.history.h == dt);
+  w.drive.obstacles[0].col(0).array() += 0.01;
+  CHECK(one_step(w, bdf2, from, dt).x != one_step(w, euler, from, dt).x);
+  w.drive.obstacles[0].col(0).array() += 10;
+  check_same(one_step(w, bdf2, from, dt), one_step(w, euler, from, dt));
+}
+
+TEST_CASE("BDF2: a substep that touches is implicit Euler's and leaves no history; cloth stays clean", "[bdf2]") {
+  World w = make_world(testing::sheet(12, 0.3, 0.1));
+  testing::add_obstacle(w, testing::sheet(3, 0.2, 0));
+  const double dt = 1.0 / 30;
+  const ConventionalOptions euler = with(Integrator::implicit_euler), bdf2 = with(Integrator::bdf2);
+  State state = w.state;
+  int smooth = 0, touching = 0;
+  for (int f = 0; f < 30; ++f) {
+    State to;
+    const StepReport report = make_conventional_stepper(w.scene, bdf2)->step(state, w.drive, dt, to);
+    REQUIRE(report.status == StepStatus::accepted);
+    CHECK(report.collision.pairs_after == 0);
+    CHECK(report.collision.passed_through == 0);
+    smooth += to.history.h > 0;
+    if (report.collision.contacts > 0) {
+      ++touching;
+      CHECK(to.history.h == 0);
+      State from = state;
+      if (from.history.h == 0) check_same(one_step(w, euler, from, dt), to);  // touching all along
+    }
+    state = to;
+  }
+  CHECK(smooth > 2);
+  CHECK(touching > 10);
+}
+
+TEST_CASE("BDF2: an impact that is met only on the way makes the substep implicit Euler's", "[bdf2]") {
+  World w = make_world(testing::sheet(6, 0.2, 0.05));
+  testing::add_obstacle(w, testing::sheet(3, 0.5, 0));
+  w.state.v.col(1).setConstant(-6);
+  State from = w.state;
+  const double dt = 1.0 / 60;
+  from.history = {dt, (w.state.x - dt * w.state.v).eval(), w.state.v};
+  ConventionalOptions euler = with(Integrator::implicit_euler), bdf2 = with(Integrator::bdf2);
+  euler.substeps = bdf2.substeps = 1;
+  State plain = from;
+  plain.history = {};
+  const State to = one_step(w, bdf2, from, dt);
+  check_same(to, one_step(w, euler, plain, dt));
+  CHECK(to.history.h == 0);
+  CHECK(to.x.col(1).minCoeff() > 0);
+}

@@ -1,0 +1,125 @@
+#include "physics/solve/work.hpp"
+#include "tests/physics/worlds.hpp"
+
+using namespace selvedge;
+using testing::add_obstacle;
+using testing::make_world;
+using testing::sheet;
+using testing::World;
+
+namespace {
+
+struct Books {
+  double gain = 0;  // of energy [J]
+  Work work;
+};
+
+// The conventional stepper's energy and the bound on its work over some frames.
+Books books(const World& w, int frames, const std::function<Drive(int frame)>& drive) {
+  const auto stepper = make_conventional_stepper(w.scene, {});
+  WorkBound bound(w.scene);
+  State state = w.state, to;
+  const auto energy = [&](const State& s) { return energies(w.scene, s.x, s.v, w.drive.acceleration).total(); };
+  Books result;
+  result.gain = -energy(state);
+  for (int f = 1; f <= frames; ++f) {
+    const Drive d = drive(f);
+    REQUIRE(stepper->step(state, d, 1.0 / 60, to).status == StepStatus::accepted);
+    result.work += bound(state, to, d);
+    std::swap(state, to);
+  }
+  result.gain += energy(state);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("work: a fall takes none, and gains none", "[work]") {
+  const World w = make_world(sheet(6, 0.4, 0));
+  const Books fall = books(w, 10, [&](int) { return w.drive; });
+  CHECK(fall.work.total() == 0);
+  CHECK(fall.gain < 1e-9);  // implicit Euler falls a little deep
+}
+
+TEST_CASE("work: a stretched spring that lets go gives what it held, and no more", "[work]") {
+  World w = make_world(testing::join(sheet(4, 0.2, 0), sheet(4, 0.2, 0.5)));
+  w.drive.acceleration.setZero();
+  w.scene.contact.self = false;
+  w.scene.springs = {{12, 25 + 12, 0.3, 0.5}};  // the middles
+  const double held = energies(w.scene, w.state.x, w.state.v, w.drive.acceleration).total();
+  REQUIRE(held == Approx(0.5 * 0.5 * 0.04));
+  const Books pull = books(w, 10, [&](int) { return w.drive; });
+  CHECK(pull.work.total() == 0);
+  CHECK(pull.gain < 0);
+  CHECK(pull.gain > -0.9 * held);
+}
+
+TEST_CASE("work: what hangs on a spring is lifted by the work of its other end's pins", "[work]") {
+  World w = make_world(testing::join(sheet(2, 0.1, 0), sheet(2, 0.1, -0.2)));
+  for (int i = 0; i < 9; ++i) w.scene.pins.push_back(i);
+  w.scene.contact.self = false;
+  w.scene.springs = {{4, 9 + 4, 0.1, 2}};
+  w.scene.cloths[0].material.stiffness_damping = 0.01;
+  const auto lifted = [&](double speed) {
+    return [&w, speed](int frame) {
+      Drive d = w.drive;
+      d.pins = w.state.x.topRows(9);
+      d.pins.col(1).array() += speed * frame / 60;
+      return d;
+    };
+  };
+  const Books hang = books(w, 60, lifted(0)), lift = books(w, 60, lifted(1));
+  CHECK(hang.work.total() == 0);
+  CHECK(hang.gain < 0);
+  const double weight = 9.81 * lumped_masses(w.scene).sum();  // both are lifted by a metre
+  CHECK(lift.gain > 0.8 * weight);
+  CHECK(lift.gain < lift.work.total());
+  CHECK(lift.work.total() < 4 * weight);
+}
+
+TEST_CASE("work: what lifts a sheet by its pins is bounded, and not by much more than the lift", "[work]") {
+  World w = make_world(sheet(6, 0.4, 0));
+  w.scene.pins = {0, 1, 2, 3, 4, 5, 6};
+  const auto lifted = [&](int frame) {
+    Drive d = w.drive;
+    d.pins.resize(static_cast<Eigen::Index>(w.scene.pins.size()), 3);
+    for (std::size_t p = 0; p < w.scene.pins.size(); ++p)
+      d.pins.row(static_cast<Eigen::Index>(p)) =
+          w.state.x.row(w.scene.pins[p]) + Eigen::RowVector3d(0, 1.0 * frame / 60, 0);
+    return d;
+  };
+  const Books lift = books(w, 60, lifted);
+  const double weight = 9.81 * lumped_masses(w.scene).sum();  // lifted by a metre, less what hangs below
+  CHECK(lift.gain > 0.5 * weight);
+  CHECK(lift.gain < lift.work.total());
+  CHECK(lift.work.total() == lift.work.pins);
+  CHECK(lift.work.pins < 4 * weight);
+}
+
+TEST_CASE("work: a plate that lifts a sheet does it, a plate at rest none", "[work]") {
+  World w = make_world(sheet(6, 0.4, 0.0021));
+  add_obstacle(w, testing::sheet(2, 1, 0));
+  const auto raised = [&](double speed) {
+    return [&w, speed](int frame) {
+      Drive d = w.drive;
+      d.obstacles[0].col(1).array() += speed * frame / 60;
+      return d;
+    };
+  };
+  const Books rest = books(w, 30, raised(0)), lift = books(w, 30, raised(0.5));
+  CHECK(rest.work.obstacles == 0);
+  CHECK(rest.gain < rest.work.response + 1e-6);
+  CHECK(lift.gain > 0.2 * 9.81 * lumped_masses(w.scene).sum() * 0.5);
+  CHECK(lift.gain < lift.work.total());
+  CHECK(lift.work.obstacles > 0.9 * lift.work.total());
+}
+
+TEST_CASE("work: velocity from nowhere is not covered", "[work]") {
+  const World w = make_world(sheet(6, 0.4, 0));
+  WorkBound bound(w.scene);
+  State to = w.state;
+  to.time = 1.0 / 60;
+  to.v.col(1).setConstant(3);
+  to.x += to.v / 60;
+  CHECK(bound(w.state, to, w.drive).total() == 0);
+}

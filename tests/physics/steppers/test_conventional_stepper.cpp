@@ -1,0 +1,196 @@
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#include "physics/energies/measures.hpp"
+#include "tests/physics/worlds.hpp"
+
+using namespace selvedge;
+using testing::add_obstacle;
+using testing::make_world;
+using testing::Run;
+using testing::run;
+using testing::World;
+
+namespace {
+
+// A small sheet that falls on a peaked block and folds over it.
+World folding_world(int n) {
+  World w = make_world(testing::sheet(n, 0.4, 0.08));
+  testing::Sheet peak;
+  peak.x.resize(5, 3);
+  peak.x << -0.1, 0, -0.1, 0.1, 0, -0.1, 0.1, 0, 0.1, -0.1, 0, 0.1, 0.01, 0.06, 0.02;
+  peak.triangles.resize(6, 3);
+  peak.triangles << 0, 1, 2, 0, 2, 3, 0, 4, 1, 1, 4, 2, 2, 4, 3, 3, 4, 0;
+  add_obstacle(w, peak);
+  add_obstacle(w, testing::sheet(2, 3, -0.05));
+  return w;
+}
+
+void same_bits(const State& a, const State& b) {
+  CHECK(a.x == b.x);
+  CHECK(a.v == b.v);
+}
+
+}  // namespace
+
+TEST_CASE("conventional stepper: free fall is implicit Euler's, to rounding", "[conventional_stepper]") {
+  World w = make_world(testing::sheet(3, 0.3, 0));
+  w.scene.contact.self = false;
+  w.state.v.rowwise() = Eigen::RowVector3d(1, 2, 3);
+  ConventionalOptions options;
+  options.substeps = 4;
+  auto stepper = make_conventional_stepper(w.scene, options);
+  State state = w.state;
+  const int frames = 10;
+  for (int f = 0; f < frames; ++f) {
+    State to;
+    REQUIRE(stepper->step(state, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
+    state = to;
+  }
+  const int n = 4 * frames;
+  const double h = 1.0 / 120;
+  Points expected = w.state.x + n * h * w.state.v;
+  expected.col(1).array() -= 9.81 * h * h * n * (n + 1) / 2;
+  CHECK((state.x - expected).cwiseAbs().maxCoeff() < 1e-10);
+  CHECK(state.frame == frames);
+  CHECK(state.time == Approx(frames / 30.0));
+}
+
+TEST_CASE("conventional stepper: a sheet folds over a peak and stays clean", "[conventional_stepper]") {
+  const World w = folding_world(14);
+  const Run r = run(w, 45);
+  CHECK(r.contacts > 0);
+  CHECK(r.pairs == 0);
+  CHECK(r.passed_through == 0);
+  CHECK(r.lag == 0);
+  CHECK(r.state.x.col(1).minCoeff() > -0.05);
+  CHECK(principal_stretches(w.scene, r.state.x).maxCoeff() < 1.2);
+}
+
+// Two plates that close on a sheet to nothing, stay, and open again.
+TEST_CASE("conventional stepper: plates that close on cloth lag, leave it clean, and are where they belong again soon",
+          "[conventional_stepper]") {
+  World w = make_world(testing::sheet(8, 0.2, 0));
+  for (const double side : {-1.0, 1.0}) add_obstacle(w, testing::sheet(2, 0.5, side * 0.02));
+  State state = w.state;
+  ConventionalOptions options;
+  options.implicit_euler.max_newton = 3;  // enough for what is kept, not for an attempt without room
+  auto stepper = make_conventional_stepper(w.scene, options);
+  double worst_lag = 0;
+  for (int f = 1; f <= 30; ++f) {
+    const double half = f < 10 ? 0.02 * (1 - f / 10.0) : f < 15 ? 0 : std::min(0.02, 0.02 * (f - 15) / 5.0);
+    for (int k = 0; k < 2; ++k) w.drive.obstacles[k].col(1).setConstant((k == 0 ? -1 : 1) * half);
+    State to;
+    const StepReport report = stepper->step(state, w.drive, 1.0 / 30, to);
+    REQUIRE(report.status == StepStatus::accepted);
+    CHECK(report.collision.pairs_after == 0);
+    CHECK(report.collision.passed_through == 0);
+    worst_lag = std::max(worst_lag, report.collision.obstacle_lag);
+    CHECK(report.collision.held_vertices == 0);
+    CHECK(report.reason == Reason::none);
+    if (f > 11 && f <= 15) CHECK(report.collision.impulses < 20);  // plates wait where there is room
+    if (f < 8 || f > 25) CHECK(report.collision.obstacle_lag == 0);
+    if (f > 25) CHECK(report.collision.pairs_wanted == 0);
+    state = to;
+  }
+  CHECK(worst_lag > 0);
+  CHECK(worst_lag < 0.01);
+}
+
+TEST_CASE("conventional stepper: caches carry no state", "[conventional_stepper]") {
+  const World w = folding_world(10);
+  const Run kept = run(w, 20), dropped = run(w, 20, 3);
+  same_bits(kept.state, dropped.state);
+  CHECK(kept.contacts == dropped.contacts);
+}
+
+// Two small sheets on a plate, which have come to rest.
+World resting_world() {
+  World w = make_world(testing::join(testing::sheet(5, 0.1, 2e-3), testing::sheet(6, 0.08, 5e-3)));
+  add_obstacle(w, testing::sheet(4, 0.4, 0));
+  w.state = run(w, 45).state;
+  return w;
+}
+
+TEST_CASE("conventional stepper: caches carry no state at rest either", "[conventional_stepper]") {
+  const World w = resting_world();
+  same_bits(run(w, 20).state, run(w, 20, 3).state);
+}
+
+TEST_CASE("conventional stepper: cloth at rest is solved once a substep, and stays", "[conventional_stepper]") {
+  const World w = resting_world();
+  auto stepper = make_conventional_stepper(w.scene, {});
+  State state = w.state, to;
+  int iterations = 0, substeps = 0;
+  for (int f = 0; f < 60; ++f) {
+    const StepReport report = stepper->step(state, w.drive, 1.0 / 30, to);
+    iterations += report.iterations;
+    substeps += report.substeps;
+    CHECK(report.collision.contacts > 20);
+    CHECK(report.collision.pairs_after == 0);
+    state = to;
+  }
+  CHECK(substeps == 120);
+  CHECK(iterations < 2 * substeps);
+  CHECK((state.x - w.state.x).rowwise().norm().maxCoeff() < 1e-4);
+}
+
+#ifdef _OPENMP
+TEST_CASE("conventional stepper: one and two threads give the same bits in 100 frames with contact",
+          "[conventional_stepper]") {
+  const World w = folding_world(10);
+  const int threads = omp_get_max_threads();
+  omp_set_num_threads(1);
+  const Run one = run(w, 100);
+  omp_set_num_threads(2);
+  const Run two = run(w, 100);
+  omp_set_num_threads(threads);
+  CHECK(one.contacts > 0);
+  same_bits(one.state, two.state);
+}
+#endif
+
+TEST_CASE("conventional stepper: friction holds a sheet on a slope below its angle and lets it slide above",
+          "[conventional_stepper]") {
+  const double angle = 0.3;  // tan = 0.309
+  World w = make_world(testing::tilted(testing::sheet(5, 0.1, 2e-3), angle));
+  add_obstacle(w, testing::tilted(testing::sheet(4, 4, 0), angle));
+  w.scene.contact.self = false;
+  const Vec3 down(-std::cos(angle), -std::sin(angle), 0);
+  w.scene.contact.friction = 0.4;
+  const Run settled = run(w, 15);  // lands, from the thickness to where its weight puts it
+  w.state = settled.state;
+  const Run held = run(w, 60);
+  CHECK(std::abs(((held.state.x - w.state.x) * down).mean()) < 1e-4);
+  w.scene.contact.friction = 0.2;
+  const Run sliding = run(w, 30);
+  const double expected = 0.5 * 9.81 * (std::sin(angle) - 0.2 * std::cos(angle));  // after 1 s
+  CHECK(((sliding.state.x - w.state.x) * down).mean() == Approx(expected).epsilon(0.05));
+}
+
+TEST_CASE("conventional stepper: a sheet that slides or hits is stepped finer than one that flies as fast",
+          "[conventional_stepper]") {
+  const auto substeps = [](double height, const Vec3& velocity, double dt = 1.0 / 30) {
+    World w = make_world(testing::sheet(8, 0.2, height));
+    add_obstacle(w, testing::sheet(2, 4, 0));
+    w.drive.acceleration.setZero();
+    w.state.v.rowwise() = velocity.transpose();
+    State to;
+    const StepReport report = make_conventional_stepper(w.scene, {})->step(w.state, w.drive, dt, to);
+    CHECK(to.clean);
+    CHECK(report.collision.passed_through == 0);
+    return report.substeps;
+  };
+  const double edge = 0.2 * (2 + std::sqrt(2.0)) / (3 * 8);
+  CHECK(substeps(0.1, {10, 0, 0}) == 2);
+  CHECK(substeps(0.1, {10, 0, 0}, 1.0 / 60) == 1);  // short enough to damp little
+  CHECK(substeps(1.5e-3, {4, 0, 0}) == std::ceil(4.0 / 30 / edge));
+  // It meets the floor in the first of two substeps, or in the second.
+  const double parts = std::ceil(10.0 / 60 / (2.5 * edge));
+  CHECK(substeps(0.1, {0, -10, 0}) == parts + 1);
+  CHECK(substeps(0.25, {0, -10, 0}) == 1 + parts);
+}

@@ -1,0 +1,235 @@
+#include <catch2/catch.hpp>
+
+#include <cstring>
+
+#include "collision/geometry/error.hpp"
+#include "collision/geometry/surface.hpp"
+#include "pipeline/formats/mesh_obj.hpp"
+#include "pipeline/formats/mesh_ply.hpp"
+#include "tests/pipeline/files.hpp"
+
+using namespace selvedge;
+using Catch::Matchers::Contains;
+using fake::Folder;
+
+namespace {
+
+Mesh read(const std::string& name, const std::string& text) {
+  const Folder folder("mesh");
+  return read_mesh(fake::write(folder, name, text));
+}
+
+std::string refusal(const std::string& name, const std::string& text) {
+  try {
+    read(name, text);
+    return {};
+  } catch (const Error& e) {
+    return e.what();
+  }
+}
+
+template <class T>
+std::string bytes(T value, bool big) {
+  std::string text(sizeof value, 0);
+  std::memcpy(text.data(), &value, sizeof value);
+  return big ? std::string(text.rbegin(), text.rend()) : text;
+}
+
+// A square of two vertex orders and types, with an element and properties that mean nothing here.
+std::string binary_ply(bool big) {
+  std::string text =
+      "ply\nformat binary_" + std::string(big ? "big" : "little") +
+      "_endian 1.0\ncomment by hand\nelement marker 1\nproperty list uchar short note\nelement vertex 4\n"
+      "property uchar red\nproperty float z\nproperty double x\nproperty float32 y\n"
+      "element face 1\nproperty int flags\nproperty list ushort uint vertex_index\nend_header\n";
+  text += bytes<std::uint8_t>(2, big) + bytes<std::int16_t>(7, big) + bytes<std::int16_t>(-7, big);
+  const double corners[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0.5}};
+  for (const auto& p : corners)
+    text += bytes<std::uint8_t>(200, big) + bytes<float>(static_cast<float>(p[2]), big) + bytes<double>(p[0], big) +
+            bytes<float>(static_cast<float>(p[1]), big);
+  text += bytes<std::int32_t>(-1, big) + bytes<std::uint16_t>(4, big);
+  for (std::uint32_t v = 0; v < 4; ++v) text += bytes<std::uint32_t>(v, big);
+  return text;
+}
+
+const std::string ascii_ply =
+    "ply\r\nformat ascii 1.0\r\nelement vertex 4\r\nproperty float x\r\nproperty float y\r\nproperty float z\r\n"
+    "property float s\r\nproperty float t\r\nelement face 1\r\nproperty list uchar int vertex_indices\r\nend_header\r\n"
+    "0 0 0 0 0\r\n1 0 0 1 0\r\n1 1 0 1 1\r\n0 1 0.5 0 1\r\n4 0 1 2 3\r\n";
+
+const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+}  // namespace
+
+TEST_CASE("OBJ: every form of an index, polygons, groups, continued lines", "[mesh_io]") {
+  const Mesh mesh =
+      read("a.obj",
+           "# a comment\r\nmtllib x.mtl\r\no body\r\nv 0 0 0 1.0\r\nv 1 0 0\r\n  v\t1 1 0 # trailing\r\n"
+           "v 0 1 \\\r\n 0\r\nv 0.5 2 1e-1\r\nvt 0 0\r\nvt 1 0 0\r\nvt 1 1\r\nvt 0 1\r\nvn 0 0 1\r\n"
+           "g lower\r\nusemtl m\r\ns 1\r\nf 1/1/1 2/2/1 3/3/1 4/4/1\r\ng upper top\r\nf -3//1 -1//1 -2//1\r\n"
+           "l 1 2\r\n");
+  CHECK(mesh.x.rows() == 5);
+  CHECK(mesh.x.row(3) == Eigen::RowVector3d(0, 1, 0));
+  CHECK(mesh.x(4, 2) == 0.1);
+  Triangles expected(3, 3);
+  expected << 0, 1, 2, 0, 2, 3, 2, 4, 3;
+  CHECK(mesh.triangles == expected);
+  expected.row(2).setConstant(-1);
+  CHECK(mesh.uv.rows() == 4);
+  CHECK(mesh.uv_triangles == expected);
+  REQUIRE(mesh.groups.size() == 4);
+  CHECK(mesh.groups[0] == std::pair<std::string, std::vector<int>>("body", {0, 1, 2, 3, 4}));
+  CHECK(mesh.groups[1] == std::pair<std::string, std::vector<int>>("lower", {0, 1, 2, 3}));
+  CHECK(mesh.groups[3] == std::pair<std::string, std::vector<int>>("top", {2, 3, 4}));
+  CHECK(mesh.warnings.empty());
+}
+
+TEST_CASE("PLY: text and both byte orders give the same mesh", "[mesh_io]") {
+  const Mesh text = read("a.ply", ascii_ply), little = read("a.ply", binary_ply(false)),
+             big = read("a.PLY", binary_ply(true));
+  Triangles expected(2, 3);
+  expected << 0, 1, 2, 0, 2, 3;
+  for (const Mesh* mesh : {&text, &little, &big}) {
+    CHECK(mesh->triangles == expected);
+    CHECK(mesh->x == text.x);
+    CHECK(mesh->x(3, 2) == 0.5);
+  }
+  CHECK(text.uv.rows() == 4);
+  CHECK(text.uv_triangles == expected);
+}
+
+TEST_CASE("Meshes written are read back bit for bit", "[mesh_io]") {
+  const Folder folder("mesh");
+  Points x(4, 3);
+  x << 0.1, 1.0 / 3, -1e-300, 1e17, -0.0, 3, 1, 1, 1, 2, 5, 7;
+  Triangles triangles(2, 3);
+  triangles << 0, 1, 2, 2, 1, 3;
+  write_obj(folder.path / "a.obj", x, triangles);
+  write_ply(folder.path / "a.ply", x, triangles);
+  for (const char* name : {"a.obj", "a.ply"}) {
+    const Mesh mesh = read_mesh(folder.path / name);
+    CHECK(mesh.x == x);
+    CHECK(mesh.triangles == triangles);
+  }
+  CHECK_THROWS_AS(write_obj(folder.path / "no" / "such" / "a.obj", x, triangles), Error);
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path)) files += entry.exists();
+  CHECK(files == 2);  // nothing half written is left
+}
+
+TEST_CASE("Triangles that repeat are left out and counted, the rest of a mesh's faults are counted", "[mesh_io]") {
+  const Mesh mesh =
+      read("a.obj", triangle + "v 0 0 1\nv 0 0 -1\nv 9 9 9\nf 1 2 3\nf 1 1 2\nf 3 1 2\nf 1 3 2\nf 1 2 4\nf 1 2 5\n");
+  CHECK(mesh.triangles.rows() == 3);
+  REQUIRE(mesh.warnings.size() == 4);
+  CHECK_THAT(mesh.warnings[0], Contains("1 degenerate triangles"));
+  CHECK_THAT(mesh.warnings[1], Contains("2 duplicate triangles"));
+  CHECK_THAT(mesh.warnings[2], Contains("1 non-manifold edges"));
+  CHECK_THAT(mesh.warnings[3], Contains("1 isolated vertices"));
+}
+
+TEST_CASE("Bad OBJ files are refused with file and line", "[mesh_io]") {
+  const auto [text, words] = GENERATE_COPY(table<std::string, std::vector<std::string>>({
+      {"", {"a.obj", "empty"}},
+      {"# nothing\n", {"no vertices"}},
+      {triangle, {"no faces"}},
+      {triangle + "f 1 1 2\n", {"no faces"}},
+      {"v 0 0 nan\n", {"a.obj:1", "not finite"}},
+      {triangle + "v 0 inf 0\nf 1 2 3\n", {"a.obj:4", "not finite"}},
+      {"v 0 0 1e999\n", {"a.obj:1", "not finite"}},
+      {"v 0 0\n", {"a.obj:1", "2 coordinates"}},
+      {"v 0 0 x\n", {"a.obj:1", "`x`"}},
+      {triangle + "f 1 2 4\n", {"a.obj:4", "vertex 4", "has 3"}},
+      {triangle + "f 1 2 0\n", {"a.obj:4", "out of range"}},
+      {triangle + "f 1 2 -4\n", {"a.obj:4", "out of range"}},
+      {triangle + "f 1 2 99999999999\n", {"a.obj:4", "not an index"}},
+      {triangle + "f 1 2 3.5\n", {"a.obj:4", "not an index"}},
+      {triangle + "f 1 2\n", {"a.obj:4", "2 corners"}},
+      {triangle + "vt 0 0\nf 1/1 2/2 3/1\n", {"a.obj:5", "texture vertex 2"}},
+      {triangle + "f 1/a 2/2 3/1\n", {"a.obj:4", "`a`"}},
+  }));
+  const std::string message = refusal("a.obj", text);
+  INFO(text << " -> " << message);
+  for (const std::string& word : words) CHECK_THAT(message, Contains(word));
+}
+
+TEST_CASE("Bad PLY files are refused with file and place", "[mesh_io]") {
+  const auto replaced = [](const std::string& what, const std::string& by) {
+    std::string text = ascii_ply;
+    return text.replace(text.find(what), what.size(), by);
+  };
+  const auto [text, words] = GENERATE_COPY(table<std::string, std::vector<std::string>>({
+      {"", {"empty"}},
+      {"plx\n", {"a.ply:1", "not a PLY"}},
+      {"ply\n", {"ends too early"}},
+      {replaced("ascii", "morse"), {"a.ply:2", "morse"}},
+      {replaced("float x", "real x"), {"a.ply:4", "real"}},
+      {replaced("float x", "float w"), {"no x, y and z"}},
+      {replaced("vertex_indices", "corners"), {"vertex_indices"}},
+      {replaced("vertex 4", "vertex 400000000"), {"do not fit"}},
+      {replaced("vertex 4", "vertex -4"), {"a.ply:3"}},
+      {replaced("\r\n1 0 0 1 0", "\r\n1 nan 0 1 0"), {"a.ply:13", "not finite"}},
+      {replaced("\r\n1 0 0 1 0", "\r\n1 q 0 1 0"), {"a.ply:13", "`q`"}},
+      {replaced("4 0 1 2 3", "4 0 1 2 7"), {"face 0", "vertex 7"}},
+      {replaced("4 0 1 2 3", "4 0 1 2 -1"), {"-1"}},
+      {replaced("4 0 1 2 3", "2 0 1"), {"2 corners"}},
+      {replaced("4 0 1 2 3", "4 0 1 2"), {"ends too early"}},
+      {replaced("4 0 1 2 3", "1e9 0 1 2 3"), {"does not fit"}},
+      {replaced("face 1", "face 0"), {"no faces"}},
+  }));
+  const std::string message = refusal("a.ply", text);
+  INFO(message);
+  for (const std::string& word : words) CHECK_THAT(message, Contains(word));
+}
+
+TEST_CASE("Files that are not there or of unknown kind are refused", "[mesh_io]") {
+  CHECK_THROWS_WITH(read_mesh("nowhere.obj"), Contains("nowhere.obj") && Contains("cannot be opened"));
+  CHECK_THROWS_WITH(read_mesh("mesh.stl"), Contains(".obj, .ply"));
+  CHECK_THROWS_AS(read_mesh(std::filesystem::temp_directory_path()), Error);
+  const Folder folder("mesh");
+  std::filesystem::create_directory(folder.path / "a.obj");
+  CHECK_THROWS_WITH(read_mesh(folder.path / "a.obj"), Contains("folder"));
+}
+
+TEST_CASE("No part of a mesh file crashes the readers", "[mesh_io]") {
+  const auto attempt = [](const std::string& name, const std::string& text) {
+    try {
+      const Mesh mesh = name == "a.obj" ? parse_obj(text, name) : parse_ply(text, name);
+      CHECK((mesh.triangles.size() == 0 || mesh.triangles.minCoeff() >= 0));
+      CHECK((mesh.triangles.size() == 0 || mesh.triangles.maxCoeff() < mesh.x.rows()));
+      CHECK(mesh.x.allFinite());
+    } catch (const Error&) {
+    }
+  };
+  const std::string obj =
+      triangle + "vt 0 0\nvt 1 0\nvt 0 1\nf 1/1/1 2/2/2 3/3/3\ng a b\nf -1//2 -2 -3/1\nf 1 \\\n2 3\n";
+  for (const auto& [name, text] : {std::pair<std::string, std::string>("a.obj", obj),
+                                   {"a.ply", ascii_ply},
+                                   {"a.ply", binary_ply(false)},
+                                   {"a.ply", binary_ply(true)}})
+    for (std::size_t at = 0; at < text.size(); ++at) {
+      attempt(name, text.substr(0, at));
+      std::string torn = text;
+      torn[at] = static_cast<char>(torn[at] ^ (1 << (at % 8)));
+      attempt(name, torn);
+      torn[at] = '\xFF';
+      attempt(name, torn);
+    }
+}
+
+TEST_CASE("Meshes made by others are read", "[mesh_io]") {
+  const std::filesystem::path data = fake::open_data();
+  if (!std::filesystem::exists(data / "makehuman")) {
+    WARN("skipped: the open data is absent");
+    return;
+  }
+  const Mesh shirt = read_mesh(data / "diffcloth/tshirt1900.obj");
+  CHECK(shirt.x.rows() == 1921);
+  CHECK(shirt.uv_triangles.rows() == shirt.triangles.rows());
+  CHECK(shirt.warnings.empty());
+  const Mesh body = read_mesh(data / "makehuman/body.obj");
+  CHECK(body.x.rows() == 13380);
+  CHECK(body.triangles.rows() == 26756);
+  CHECK(is_closed(make_surface(static_cast<int>(body.x.rows()), body.triangles)));
+  CHECK(read_mesh(data / "meshes/two-cubes-far.ply").triangles.rows() == 480);
+}

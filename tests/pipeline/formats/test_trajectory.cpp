@@ -1,0 +1,164 @@
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <fstream>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/formats/hdf5_handles.hpp"
+#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "tests/pipeline/fake_run.hpp"
+
+using namespace selvedge;
+
+namespace {
+
+void require_same(const Frame& a, const Frame& b) {
+  REQUIRE(a.time == b.time);
+  REQUIRE(a.x == b.x);
+  REQUIRE(a.obstacles.size() == b.obstacles.size());
+  for (std::size_t k = 0; k < a.obstacles.size(); ++k) REQUIRE(a.obstacles[k] == b.obstacles[k]);
+  REQUIRE(a.report.by == b.report.by);
+  REQUIRE(a.report.status == b.report.status);
+  REQUIRE(a.report.iterations == b.report.iterations);
+  REQUIRE(a.report.residual == b.report.residual);
+  REQUIRE(a.report.seconds.audit == b.report.seconds.audit);
+  REQUIRE(a.report.collision.contacts == b.report.collision.contacts);
+  REQUIRE(a.report.collision.min_gap == b.report.collision.min_gap);
+  REQUIRE(a.self_pairs == b.self_pairs);
+  REQUIRE(a.max_stretch == b.max_stretch);
+  REQUIRE(a.energy.kinetic == b.energy.kinetic);
+  REQUIRE(a.energy.springs == b.energy.springs);
+  REQUIRE(a.bad_triangles == b.bad_triangles);
+}
+
+}  // namespace
+
+TEST_CASE("a trajectory read back is what was written") {
+  const fake::Folder folder("trajectory");
+  const Scene scene = fake::scene();
+  const TrajectoryInfo info = trajectory_info(scene, "run:\n  frames: 5\n", "conventional", 24);
+  {
+    TrajectoryWriter writer(folder.path / "run.h5", info);
+    for (int i = 0; i < 100; ++i) writer.append(fake::frame(scene, i));
+    writer.close();
+  }
+  const TrajectoryReader reader(folder.path / "run.h5");
+  REQUIRE(reader.frame_count() == 100);
+  REQUIRE(reader.closed());
+  REQUIRE(reader.info().config == info.config);
+  REQUIRE(reader.info().fps == 24);
+  REQUIRE(reader.info().stepper == "conventional");
+  REQUIRE(reader.info().program_version == info.program_version);
+  REQUIRE(reader.info().self_audited);
+  REQUIRE(reader.info().triangles == scene.surface.triangles);
+  REQUIRE(reader.info().rest == scene.rest);
+  REQUIRE(reader.info().rest_triangle == scene.rest_triangle);
+  REQUIRE(reader.info().cloth_names == std::vector<std::string>{"sheet"});
+  REQUIRE(reader.info().cloth_first_vertex == std::vector<int>{0, 25});
+  REQUIRE(reader.info().obstacles.size() == 2);
+  REQUIRE(reader.info().obstacles[1].name == "mover");
+  REQUIRE(reader.info().obstacles[1].moving);
+  for (int i : {0, 1, 2, 50, 99}) require_same(reader.frame(i), fake::frame(scene, i));
+}
+
+TEST_CASE("a file that is being written can be read up to its last full frame") {
+  const fake::Folder folder("growing");
+  const Scene scene = fake::scene();
+  TrajectoryWriter writer(folder.path / "run.h5", trajectory_info(scene, "", "conventional", 30));
+  REQUIRE(TrajectoryReader(folder.path / "run.h5").frame_count() == 0);
+  for (int i = 0; i < 3; ++i) {
+    writer.append(fake::frame(scene, i));
+    const TrajectoryReader reader(folder.path / "run.h5");
+    REQUIRE(reader.frame_count() == i + 1);
+    REQUIRE_FALSE(reader.closed());
+    require_same(reader.frame(i), fake::frame(scene, i));
+  }
+}
+
+TEST_CASE("what is no trajectory is refused with a clear error") {
+  const fake::Folder folder("refused");
+  REQUIRE_THROWS_AS(TrajectoryReader(folder.path / "absent.h5"), Error);
+  std::ofstream(folder.path / "text.h5") << "hello";
+  REQUIRE_THROWS_AS(TrajectoryReader(folder.path / "text.h5"), Error);
+  std::ofstream(folder.path / "empty.h5").close();
+  REQUIRE_THROWS_AS(TrajectoryReader(folder.path / "empty.h5"), Error);
+  const TrajectoryInfo info = trajectory_info(fake::scene(), "", "conventional", 30);
+  REQUIRE_THROWS_AS(TrajectoryWriter(folder.path / "no" / "such" / "run.h5", info), Error);
+}
+
+// HDF5 reads metadata again while its checksum is wrong, for ever unless it is told how often.
+TEST_CASE("a torn trajectory is refused, not waited for") {
+  const fake::Folder folder("torn");
+  const Scene scene = fake::scene();
+  const std::filesystem::path path = folder.path / "run.h5";
+  TrajectoryWriter writer(path, trajectory_info(scene, "", "conventional", 30));
+  for (int i = 0; i < 40; ++i) writer.append(fake::frame(scene, i));
+  std::ifstream written(path, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(written), {}};
+  const std::string block = GENERATE("OHDR", "EAHD", "EADB");  // of a dataset, of its chunks' index and that one's data
+  CAPTURE(block);
+  const std::size_t at = bytes.rfind(block);
+  REQUIRE(at != std::string::npos);
+  bytes[at + 12] = static_cast<char>(bytes[at + 12] ^ 0x55);
+  std::ofstream(folder.path / "torn.h5", std::ios::binary) << bytes;
+  const auto read_all = [&] {
+    const TrajectoryReader reader(folder.path / "torn.h5");
+    for (int i = 0; i < reader.frame_count(); ++i) reader.frame(i);
+  };
+  REQUIRE_THROWS_AS(read_all(), Error);
+}
+
+// A writer that is killed may leave what it wrote last torn between two pages of memory. So no metadata lies in two.
+TEST_CASE("no metadata of a trajectory lies across a page's end") {
+  const fake::Folder folder("pages");
+  const Scene scene = fake::scene();
+  const std::filesystem::path path = folder.path / "run.h5";
+  TrajectoryWriter(path, trajectory_info(scene, "", "conventional", 30)).append(fake::frame(scene, 0));
+  const h5::File file = h5::File::open(path);
+  const h5::Handle creation(H5Fget_create_plist(file.id()), H5Pclose);
+  H5F_fspace_strategy_t strategy = H5F_FSPACE_STRATEGY_NTYPES;
+  hbool_t persist = true;
+  hsize_t threshold = 0, page = 0;
+  H5Pget_file_space_strategy(creation.id(), &strategy, &persist, &threshold);
+  H5Pget_file_space_page_size(creation.id(), &page);
+  REQUIRE(strategy == H5F_FSPACE_STRATEGY_PAGE);
+  REQUIRE(page == 4096);
+}
+
+// In a child, because the limit on the size of files cannot be lifted again.
+TEST_CASE("a full disk ends in an error and leaves the full frames readable") {
+  const fake::Folder folder("full_disk");
+  const Scene scene = fake::scene(40);
+  const pid_t child = fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{1000000, 1000000};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      TrajectoryWriter writer(folder.path / "run.h5", trajectory_info(scene, "", "conventional", 30));
+      for (int i = 0; i < 100; ++i) writer.append(fake::frame(scene, i));
+      writer.close();
+    } catch (const Error& error) {
+      std::ofstream(folder.path / "note", std::ios::binary) << error.what();
+      _exit(7);
+    }
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  REQUIRE(WIFEXITED(status));
+  REQUIRE(WEXITSTATUS(status) == 7);
+  std::ifstream note(folder.path / "note");
+  const std::string text{std::istreambuf_iterator<char>(note), {}};
+  INFO(text);
+  REQUIRE(text.find("run.h5") != std::string::npos);
+  REQUIRE(text.find("File too large") != std::string::npos);
+  REQUIRE(text.find("cure") != std::string::npos);
+  const TrajectoryReader reader(folder.path / "run.h5");
+  REQUIRE_FALSE(reader.closed());
+  REQUIRE(reader.frame_count() > 0);
+  REQUIRE(reader.frame_count() < 100);
+  require_same(reader.frame(reader.frame_count() - 1), fake::frame(scene, reader.frame_count() - 1));
+}

@@ -1,0 +1,82 @@
+#include <catch2/catch.hpp>
+
+#include "pipeline/garments/footing.hpp"
+
+using namespace selvedge;
+
+namespace {
+
+// Two plates that face each other, the one at y = 0 and the other `gap` above it, 0.4 m wide, `aside` along x.
+struct Plates {
+  static constexpr int n = 20;
+  Surface surface;
+
+  Plates() {
+    Triangles triangles(4 * n * n, 3);
+    int t = 0;
+    for (int plate = 0; plate < 2; ++plate)
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+          const int a = plate * (n + 1) * (n + 1) + i * (n + 1) + j, b = a + n + 1, c = b + 1, d = a + 1;
+          triangles.row(t++) << a, plate ? b : c, plate ? c : b;
+          triangles.row(t++) << a, plate ? c : d, plate ? d : c;
+        }
+    surface = make_surface(2 * (n + 1) * (n + 1), triangles);
+  }
+  Points at(double gap, double aside = 0) const {
+    Points x(surface.vertex_count, 3);
+    for (int v = 0; v < surface.vertex_count; ++v) {
+      const int plate = v / ((n + 1) * (n + 1)), k = v % ((n + 1) * (n + 1));
+      x.row(v) << 0.02 * (k / (n + 1)) - 0.2 + plate * aside, plate * gap, 0.02 * (k % (n + 1)) - 0.2;
+    }
+    return x;
+  }
+};
+
+// Layers over the middle of the lower plate.
+Points layers(std::initializer_list<double> heights) {
+  Points x(static_cast<Eigen::Index>(heights.size()), 3);
+  Eigen::Index v = 0;
+  for (const double height : heights) x.row(v++) << 0, height, 0;
+  return x;
+}
+
+}  // namespace
+
+TEST_CASE("footing: what comes near squeezes layers into its half of the gap, in their order", "[footing]") {
+  const Plates body;
+  const Points x = layers({0.002, 0.005, 0.01, 0.015, 0.02, 0.03});
+  const Footing footing = footing_of(x, body.surface, body.at(1));
+  Points before = x;
+  for (double gap = 0.2; gap > 0.004; gap *= 0.9) {
+    CAPTURE(gap);
+    const Points to = squeezed(footing, body.surface, body.at(gap), x);
+    CHECK(to.col(0).isZero());
+    CHECK((to.col(1).array() <= before.col(1).array()).all());  // nearer parts squeeze more, without a jump
+    CHECK((to - before).rowwise().norm().maxCoeff() < 0.006);
+    for (int k = 0; k + 1 < to.rows(); ++k) CHECK(to(k, 1) < to(k + 1, 1));
+    CHECK(to.col(1).maxCoeff() < gap / 2);
+    before = to;
+  }
+  CHECK(squeezed(footing, body.surface, body.at(0.15), x) == x);
+}
+
+TEST_CASE("footing: nothing moves for what was as near at rest, behind, far, or all of it worn far out", "[footing]") {
+  const Plates body;
+  const Points x = layers({0.002, 0.015, 0.019});
+  const Footing near = footing_of(x, body.surface, body.at(0.04));
+  CHECK(squeezed(near, body.surface, body.at(0.04), x) == x);
+  CHECK(squeezed(near, body.surface, body.at(0.03), x) != x);
+  const Footing footing = footing_of(x, body.surface, body.at(1));
+  CHECK(squeezed(footing, body.surface, body.at(-0.01), x) == x);       // gone through
+  CHECK(squeezed(footing, body.surface, body.at(0.01, 0.5), x) == x);   // passes by
+  CHECK(squeezed(footing, body.surface, body.at(0.01, 0.23), x) != x);  // not quite
+  const Points out = layers({0.07});
+  CHECK(squeezed(footing_of(out, body.surface, body.at(1)), body.surface, body.at(0.05), out) == out);
+}
+
+TEST_CASE("footing: what lies on the body stays on it", "[footing]") {
+  const Plates body;
+  const Points x = layers({0});
+  CHECK(squeezed(footing_of(x, body.surface, body.at(1)), body.surface, body.at(0.001), x) == x);
+}

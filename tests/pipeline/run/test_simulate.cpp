@@ -1,0 +1,255 @@
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/formats/checkpoint.hpp"
+#include "pipeline/run/record_frame.hpp"
+#include "pipeline/run/simulate.hpp"
+#include "tests/pipeline/fake_run.hpp"
+
+using namespace selvedge;
+
+namespace {
+
+nlohmann::json read_json(const std::filesystem::path& path) {
+  std::ifstream stream(path);
+  return nlohmann::json::parse(stream);
+}
+
+RunSummary run(const Setup& setup, const std::filesystem::path& out, int stop_after = 1 << 30, bool resume = false,
+               int fails_at = 1 << 30) {
+  fake::FallingStepper stepper(fails_at);
+  return fake::run(setup, stepper, out, resume, stop_after);
+}
+
+}  // namespace
+
+TEST_CASE("simulate steps to the last frame and asks the world for the end of each step") {
+  const Setup setup = fake::setup(4);
+  fake::FallingStepper stepper;
+  State state = setup.initial;
+  std::vector<double> asked;
+  std::vector<int> seen;
+  const auto drive_at = [&](double time) {
+    asked.push_back(time);
+    return setup.drive_at(time);
+  };
+  const StepReport last = simulate(stepper, drive_at, 0.5, 4, state, [&](const FrameEvent& event) {
+    seen.push_back(event.state.frame);
+    return true;
+  });
+  REQUIRE(last.status == StepStatus::accepted);
+  REQUIRE(seen == std::vector<int>{1, 2, 3, 4});
+  REQUIRE(asked == std::vector<double>{0.5, 1, 1.5, 2});
+  REQUIRE(state.time == 2);
+}
+
+TEST_CASE("a rejected step ends the run and leaves the last accepted state") {
+  const Setup setup = fake::setup();
+  fake::FallingStepper stepper(3);
+  State state = setup.initial;
+  int events = 0;
+  const StepReport last =
+      simulate(stepper, setup.drive_at, 0.1, 10, state, [&](const FrameEvent&) { return ++events; });
+  REQUIRE(last.status == StepStatus::rejected);
+  REQUIRE(events == 3);
+  REQUIRE(state.frame == 2);
+  REQUIRE(state.x.allFinite());
+}
+
+TEST_CASE("a run leaves a trajectory, its sidecar, the configuration and a summary") {
+  const fake::Folder folder("run");
+  const Setup setup = fake::setup();
+  const RunSummary summary = run(setup, folder.path);
+  REQUIRE(summary.end == RunEnd::finished);
+  REQUIRE(is_clean(summary));
+  REQUIRE(summary.frames == 12);
+  REQUIRE(summary.frame_seconds.size() == 12);
+
+  const TrajectoryReader reader(folder.path / "run.h5");
+  REQUIRE(reader.closed());
+  REQUIRE(reader.frame_count() == 13);
+  REQUIRE(reader.frame(0).report.by == "initial");
+  REQUIRE(reader.frame(0).x == setup.initial.x.cast<float>());
+  REQUIRE(reader.frame(5).report.by == "falling");
+  REQUIRE(reader.frame(12).time == Approx(12 / 30.0));
+  REQUIRE(reader.frame(12).max_stretch == Approx(1).margin(1e-5));
+
+  for (const char* name : {"run.xdmf", "config.yaml", "summary.json"})
+    REQUIRE(std::filesystem::exists(folder.path / name));
+  REQUIRE_FALSE(std::filesystem::exists(folder.path / "checkpoint.h5"));
+  const nlohmann::json json = read_json(folder.path / "summary.json");
+  REQUIRE(json["frames"] == 12);
+  REQUIRE(json["end"] == "finished");
+  REQUIRE(json["clean"] == true);
+  REQUIRE(json["intersecting_pairs"] == 0);
+  REQUIRE(json["ms_per_frame"]["by_phase"].contains("solve"));
+  REQUIRE(json.contains("left_out"));
+}
+
+TEST_CASE("what is recorded is measured on the positions as written") {
+  Setup setup = fake::setup();
+  const Frame plain = record_initial(setup.scene, energy_terms(setup.scene), setup.initial, setup.drive_at(0));
+  setup.initial.x *= 1 + 1e-9;  // lost in the rounding to float
+  REQUIRE(principal_stretches(setup.scene, setup.initial.x).maxCoeff() != plain.max_stretch);
+  const Frame frame = record_initial(setup.scene, energy_terms(setup.scene), setup.initial, setup.drive_at(0));
+  REQUIRE(frame.max_stretch == plain.max_stretch);
+  REQUIRE(frame.min_stretch == plain.min_stretch);
+}
+
+TEST_CASE("a frame that the stepper has audited is recorded as an audit of the file would have it") {
+  for (const double height : {-0.05, -0.5}) {  // through the sheet, and below it
+    Setup setup = fake::setup();
+    setup.initial.obstacles[0] = fake::tetrahedron_points(0.5, height);
+    const auto stepper = make_conventional_stepper(setup.scene, {});
+    Drive drive = setup.drive_at(0);
+    drive.obstacles = setup.initial.obstacles;
+    State state;
+    StepReport report = stepper->step(setup.initial, drive, 1e-4, state);
+    REQUIRE(report.audit);
+    const EnergyTerms terms = energy_terms(setup.scene);
+    const Frame told = record_frame(setup.scene, terms, {state, drive, report, Clock::now()});
+    report.audit.reset();
+    const Frame audited = record_frame(setup.scene, terms, {state, drive, report, Clock::now()});
+    CHECK(told.bad_triangles == audited.bad_triangles);
+    CHECK(told.obstacle_pairs == audited.obstacle_pairs);
+    CHECK(told.inside_vertices == audited.inside_vertices);
+    CHECK((told.obstacle_pairs > 0) == (height > -0.1));
+  }
+}
+
+TEST_CASE("an intersection is found, marked and makes the run unclean") {
+  const fake::Folder folder("dirty");
+  Setup setup = fake::setup(2);
+  setup.initial.obstacles[0] = fake::tetrahedron_points(0.5, -0.05);
+  const auto far_drive = setup.drive_at;
+  setup.drive_at = [=, held = setup.initial.obstacles[0]](double time) {
+    Drive drive = far_drive(time);
+    drive.acceleration.setZero();
+    drive.obstacles[0] = held;
+    return drive;
+  };
+  const RunSummary summary = run(setup, folder.path);
+  REQUIRE_FALSE(is_clean(summary));
+  REQUIRE(summary.worst_pairs > 0);
+  const Frame frame = TrajectoryReader(folder.path / "run.h5").frame(1);
+  REQUIRE(frame.obstacle_pairs == summary.worst_pairs);
+  REQUIRE_FALSE(frame.bad_triangles.empty());
+}
+
+TEST_CASE("a rejected step is recorded and makes the run unclean") {
+  const fake::Folder folder("rejected");
+  const RunSummary summary = run(fake::setup(), folder.path, 1 << 30, false, 5);
+  REQUIRE(summary.end == RunEnd::rejected);
+  REQUIRE_FALSE(is_clean(summary));
+  REQUIRE(summary.frames == 4);
+  const TrajectoryReader reader(folder.path / "run.h5");
+  REQUIRE(reader.frame_count() == 6);
+  const Frame last = reader.frame(5);
+  REQUIRE(last.report.status == StepStatus::rejected);
+  REQUIRE(last.report.reason == Reason::not_converged);
+  REQUIRE(last.x == reader.frame(4).x);
+  REQUIRE(last.nonfinite == 0);
+  REQUIRE(read_json(folder.path / "summary.json")["reason"] == "not_converged");
+}
+
+TEST_CASE("an interrupted run that is resumed gives the same bits") {
+  const fake::Folder folder("resume");
+  const Setup setup = fake::setup();
+  REQUIRE(run(setup, folder.path / "whole").end == RunEnd::finished);
+  REQUIRE(run(setup, folder.path / "parts", 5).end == RunEnd::interrupted);
+  REQUIRE(TrajectoryReader(folder.path / "parts" / "run.h5").frame_count() == 6);
+  const RunSummary resumed = run(setup, folder.path / "parts", 1 << 30, true);
+  REQUIRE(resumed.end == RunEnd::finished);
+  REQUIRE(resumed.frames == 12);
+  const TrajectoryReader whole(folder.path / "whole" / "run.h5"), parts(folder.path / "parts" / "run.h5");
+  REQUIRE(parts.frame_count() == whole.frame_count());
+  for (int i = 0; i < whole.frame_count(); ++i) {
+    const Frame a = whole.frame(i), b = parts.frame(i);
+    REQUIRE(a.x == b.x);
+    REQUIRE(a.time == b.time);
+    REQUIRE(a.obstacles[1] == b.obstacles[1]);
+    REQUIRE(a.energy.kinetic == b.energy.kinetic);
+  }
+  REQUIRE_THROWS_AS(run(setup, folder.path / "parts", 1 << 30, true), Error);
+}
+
+TEST_CASE("a run is resumed only under its own configuration") {
+  const fake::Folder folder("other_config");
+  Setup setup = fake::setup();
+  run(setup, folder.path, 5);
+  setup.config += "# other\n";
+  REQUIRE_THROWS_AS(run(setup, folder.path, 1 << 30, true), Error);
+}
+
+TEST_CASE("a checkpoint keeps every bit") {
+  const fake::Folder folder("checkpoint");
+  State state = fake::setup().initial;
+  state.frame = 7;
+  state.time = 0.1 + 0.2;
+  state.v.setConstant(1.0 / 3);
+  if (GENERATE(false, true)) {
+    state.history = {1.0 / 60, 0.7 * state.x, 0.7 * state.v};
+    state.rest = {{0.1, 1.0 / 3}, 0.9 * state.x, {1, 0, 0.3}, {0, -9.81, 0}};
+    state.last_clean = {0.6 * state.x, {0.5 * state.x, Points(), 0.4 * state.x}};
+  }
+  write_checkpoint(folder.path / "c.h5", state, "a: 1\n");
+  const State read = read_checkpoint(folder.path / "c.h5", "a: 1\n");
+  REQUIRE(read.frame == state.frame);
+  REQUIRE(read.time == state.time);
+  REQUIRE(read.x == state.x);
+  REQUIRE(read.v == state.v);
+  REQUIRE(read.obstacles == state.obstacles);
+  REQUIRE(read.last_clean.x == state.last_clean.x);
+  REQUIRE(read.last_clean.obstacles == state.last_clean.obstacles);
+  REQUIRE(read.history.h == state.history.h);
+  REQUIRE(read.history.x == state.history.x);
+  REQUIRE(read.history.v == state.history.v);
+  REQUIRE(read.rest.seconds == state.rest.seconds);
+  REQUIRE(read.rest.place == state.rest.place);
+  REQUIRE(read.rest.wind == state.rest.wind);
+  REQUIRE(read.rest.acceleration == state.rest.acceleration);
+}
+
+TEST_CASE("a run that fails leaves no results of the run before it") {
+  const fake::Folder folder("stale");
+  const Setup setup = fake::setup();
+  run(setup, folder.path);
+  Setup broken = setup;
+  broken.drive_at = [](double) -> Drive { throw Error("a frame is missing", "body.obj", "add it"); };
+  REQUIRE_THROWS_AS(run(broken, folder.path), Error);
+  REQUIRE_FALSE(std::filesystem::exists(folder.path / "summary.json"));
+  REQUIRE_FALSE(std::filesystem::exists(folder.path / "run.xdmf"));
+}
+
+TEST_CASE("progress is plain lines without a terminal and names the time left on one") {
+  std::ostringstream plain, terminal;
+  Progress quiet(plain, false), lively(terminal, true);
+  quiet.begin(0, 100);
+  quiet.frame(1);
+  REQUIRE(plain.str().empty());
+  lively.begin(0, 100);
+  const auto start = Clock::now();
+  while (seconds_since(start) < 0.12) continue;
+  lively.frame(50);
+  REQUIRE(terminal.str().find("frame 50 of 100") != std::string::npos);
+  REQUIRE(terminal.str().find("left") != std::string::npos);
+  REQUIRE(duration_text(59) == "59 s");
+  REQUIRE(duration_text(200) == "3 min 20 s");
+  REQUIRE(duration_text(7500) == "2 h 5 min");
+}
+
+TEST_CASE("times are summed up by frame") {
+  RunSummary summary;
+  Frame frame = fake::frame(fake::scene(), 0);
+  add_frame(summary, 0, frame);
+  REQUIRE(summary.frame_seconds.empty());
+  for (const double seconds : {0.1, 0.2, 0.6, 0.4}) {
+    frame.seconds = seconds;
+    add_frame(summary, 1, frame);
+  }
+  REQUIRE(mean_milliseconds(summary) == Approx(325));
+  REQUIRE(median_milliseconds(summary) == Approx(300));
+}

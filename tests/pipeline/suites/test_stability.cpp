@@ -1,0 +1,108 @@
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <limits>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/scene/setup.hpp"
+#include "pipeline/suites/stability.hpp"
+#include "pipeline/suites/stability_suite.hpp"
+#include "pipeline/suites/stability_watch.hpp"
+#include "tests/pipeline/files.hpp"
+
+using namespace selvedge;
+using Catch::Matchers::Contains;
+using fake::Folder;
+
+namespace {
+
+const std::filesystem::path suite_file = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs/stability.yaml";
+
+const char* falling_sheet = "cloths: [{name: sheet, rectangle: {size: [0.3, 0.3], resolution: 4}}]\nrun: {frames: 4}";
+
+// What the watch makes of two frames of a sheet whose velocity is set by hand.
+StabilityRow watched(const Folder& folder, const Vec3& velocity) {
+  const Setup setup = read_setup(fake::write(folder, "scene.yaml", falling_sheet));
+  StabilityWatch watch(setup);
+  State state = setup.initial;
+  StepReport report;
+  report.status = StepStatus::accepted;
+  report.substeps = 2;
+  report.iterations = 6;
+  report.linear_iterations = 30;
+  for (int frame = 1; frame <= 4; ++frame) {
+    state.frame = frame;
+    state.time = frame / setup.run.fps;
+    if (frame == 2) state.v.rowwise() = velocity.transpose();
+    watch({state, setup.drive_at(state.time), report, Clock::now()});
+  }
+  StabilityRow row;
+  watch.write(row);
+  return row;
+}
+
+}  // namespace
+
+// Sanitized, a few cases alone: they take ten times as long.
+TEST_CASE("stability: the short form of the suite passes", "[stability]") {
+  const Folder folder("stability");
+  StabilityRequest request;
+  request.suite = suite_file;
+  request.short_form = true;
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  request.cases = {"membrane", "bending", "teleport", "pins"};
+#endif
+  request.out = folder.path / "out";
+  const std::vector<StabilityRow> rows = stability(request);
+  std::size_t brief = 0;
+  for (const StabilityCase& each : read_stability_suite(suite_file).cases)
+    if (request.cases.empty() || std::ranges::count(request.cases, each.name))
+      brief += std::ranges::count_if(each.runs, &StabilityRun::brief);
+  CHECK(rows.size() == brief);
+  INFO(stability_table(rows));
+  CHECK(passed(rows));
+  for (const char* name : {"stability.txt", "stability.csv", "stability.json", "stability.md"})
+    CHECK(std::filesystem::file_size(request.out / name) > 0);
+}
+
+TEST_CASE("stability: energy from nowhere, numbers that are none and lasting motion are seen", "[stability]") {
+  const Folder folder("watch");
+  const StabilityRow calm = watched(folder, Vec3::Zero());
+  CHECK(calm.unaccounted <= 1e-12);
+  CHECK(calm.end_speed == 0);
+  CHECK(calm.newton == 3);
+  CHECK(calm.linear == 5);
+  const StabilityRow fast = watched(folder, Vec3(2, 0, 0));
+  CHECK(fast.unaccounted == Approx(0.5 * 0.2 * 0.09 * 4));
+  CHECK(fast.end_speed > 0.5);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  CHECK(watched(folder, Vec3(0, none, 0)).nonfinite > 0);
+}
+
+TEST_CASE("stability: a run that moves to its end or meets its limit fails, with the reason and a page",
+          "[stability]") {
+  const Folder folder("failing");
+  fake::write(folder, "scene.yaml", falling_sheet);
+  StabilityRequest request;
+  request.suite = fake::write(folder, "suite.yaml",
+                              "limits: {newton: 1}\ncases: [{name: fall, scene: scene.yaml, runs: [free, {name: "
+                              "thrown, set: \"cloths.0.velocity=[5, 0, 0]\"}]}]");
+  request.out = folder.path / "out";
+  const std::vector<StabilityRow> rows = stability(request);
+  REQUIRE(rows.size() == 2);
+  CHECK_FALSE(passed(rows));
+  CHECK_THAT(rows[0].failures.at(0), Contains("does not rest"));
+  CHECK(std::filesystem::exists(request.out / "fall_0" / "view.html"));
+  CHECK_THAT(stability_table(rows), Contains("0 of 2 pass"));
+}
+
+TEST_CASE("stability: a faulty suite is named by file and line", "[stability]") {
+  const Folder folder("faulty");
+  CHECK_THROWS_WITH(
+      read_stability_suite(fake::write(folder, "a.yaml", "cases:\n  - {name: a, scene: no.yaml, runs: [b]}")),
+      Contains("a.yaml:2") && Contains("does not exist"));
+  StabilityRequest request;
+  request.suite = suite_file;
+  request.cases = {"gravitas"};
+  CHECK_THROWS_WITH(stability(request), Contains("there is no case") && Contains("gravity"));
+}

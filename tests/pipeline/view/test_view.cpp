@@ -1,0 +1,144 @@
+#include "pipeline/view/view.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/view/view_data.hpp"
+#include "tests/pipeline/draping_run.hpp"
+#include "tests/pipeline/fake_run.hpp"
+
+using namespace selvedge;
+
+namespace {
+
+std::string read(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+// Stands in for the package, so that these tests need none.
+ViewOptions with_three_in(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder / "examples/js/controls");
+  std::ofstream(folder / "three.min.js") << "three-stands-here";
+  std::ofstream(folder / "examples/js/controls/OrbitControls.js") << "orbit-stands-here";
+  ViewOptions options;
+  options.three = folder;
+  return options;
+}
+
+ViewRun falling_grid(int n, int frames) {
+  ViewRun run{"grid", {}, frames, {}};
+  const Scene scene = fake::scene(n);
+  run.info = trajectory_info(scene, "", "conventional", 30);
+  run.frame = [scene](int index) {
+    Frame f = fake::frame(scene, index);
+    f.bad_triangles.clear();
+    return f;
+  };
+  return run;
+}
+
+}  // namespace
+
+TEST_CASE("view: positions come back to half a level of their box, and what is not finite is named", "[view]") {
+  PointsF x(4, 3);
+  x << -1, 0.5f, 2, 3, 0.5f, -7, 0.25f, 0.5f, 1, 9, std::numeric_limits<float>::quiet_NaN(), 9;
+  const QuantisedPoints q = quantise(x);
+  REQUIRE(q.levels.size() == 12);
+  for (int v = 0; v < 3; ++v)
+    for (int k = 0; k < 3; ++k)
+      CHECK(std::abs(q.origin[k] + q.step[k] * q.levels[3 * v + k] - x(v, k)) <= 0.51 * q.step[k]);
+  CHECK(q.step.x() == Approx(4.0 / 65534));
+  for (int k = 0; k < 3; ++k) CHECK(q.levels[9 + k] == 65535);
+  CHECK(quantise(PointsF::Constant(2, 3, INFINITY)).levels == std::vector<std::uint16_t>(6, 65535));
+}
+
+TEST_CASE("view: the embedded metric gives the principal stretches", "[view]") {
+  const RestTriangle rest = flatten({0, 0, 0}, {0.02, 0, 0.001}, {0.005, 0, 0.03});
+  const std::vector<float> h = inverse_rest_metric({rest, RestTriangle::Zero()});
+  REQUIRE(h.size() == 6);
+  Eigen::Matrix2d stretch;
+  stretch << 1.3, 0.1, 0.1, 0.9;
+  const Vec2 e = stretch * (rest.col(1) - rest.col(0)), f = stretch * (rest.col(2) - rest.col(0));
+  Eigen::Matrix2d inverse, gram;
+  inverse << h[0], h[1], h[1], h[2];
+  gram << e.dot(e), e.dot(f), e.dot(f), f.dot(f);
+  const double largest = std::sqrt((inverse * gram).eigenvalues().real().maxCoeff());
+  CHECK(largest == Approx(stretch.eigenvalues().real().maxCoeff()).epsilon(1e-6));
+  CHECK(h[3] == 0);
+}
+
+TEST_CASE("view: base64", "[view]") {
+  CHECK(base64("") == "");
+  CHECK(base64("f") == "Zg==");
+  CHECK(base64("fo") == "Zm8=");
+  CHECK(base64("foo") == "Zm9v");
+  CHECK(base64(std::string_view("\xff\x00\xfe\x80", 4)) == "/wD+gA==");
+}
+
+TEST_CASE("view: frames are left out evenly when a run is too large, never the first or the last", "[view]") {
+  CHECK(drawn_frames(5, 10, 1000) == std::vector<int>{0, 1, 2, 3, 4});
+  CHECK(drawn_frames(10, 10, 60) == std::vector<int>{0, 2, 4, 6, 8, 9});
+  CHECK(drawn_frames(10, 10, 59) == std::vector<int>{0, 3, 6, 9});
+  CHECK(drawn_frames(10, 10, 1) == std::vector<int>{0, 9});
+  CHECK(drawn_frames(1, 10, 1) == std::vector<int>{0});
+}
+
+TEST_CASE("view: the page is whole, small and refers to nothing outside", "[view]") {
+  const fake::Folder folder("view_page");
+  const ViewOptions options = with_three_in(folder.path);
+  ViewRun run = falling_grid(64, 90);
+  run.name = "</script><b>&\"";
+  const std::string page = view_page({run, falling_grid(3, 4)}, options);
+  for (const char* part : {"three-stands-here", "orbit-stands-here", "function makeStage", "#stage {"})
+    CHECK(page.find(part) != std::string::npos);
+  for (const char* part : {"{{", "</script><b>", "src=", "@import", "href=\"http"})
+    CHECK(page.find(part) == std::string::npos);
+  CHECK(page.size() < 3'500'000);
+  ViewOptions tight = options;
+  tight.limit = 400'000;
+  CHECK(view_page({run}, tight).size() < 900'000);
+}
+
+TEST_CASE("view: what cannot be shown is an error with a cure", "[view]") {
+  const fake::Folder folder("view_errors");
+  CHECK_THROWS_AS(view_page({}, with_three_in(folder.path / "three")), Error);
+  CHECK_THROWS_AS(view_page({falling_grid(3, 0)}, with_three_in(folder.path / "three")), Error);
+  ViewOptions absent;
+  absent.three = folder.path / "none";
+  CHECK_THROWS_WITH(view_page({falling_grid(3, 2)}, absent), Catch::Contains("libjs-three"));
+}
+
+TEST_CASE("view: a trajectory file becomes a page named after its folder", "[view]") {
+  const fake::Folder folder("view_file");
+  const ViewOptions options = with_three_in(folder.path / "three");
+  const Scene scene = fake::scene();
+  std::filesystem::create_directories(folder.path / "silk-dress");
+  const std::filesystem::path file = folder.path / "silk-dress/run.h5";
+  TrajectoryWriter writer(file, trajectory_info(scene, "", "hybrid-of-two", 30));
+  for (int index = 0; index < 3; ++index) writer.append(fake::frame(scene, index));
+  writer.close();
+  write_view({file.parent_path()}, folder.path / "page.html", options);
+  const std::string page = read(folder.path / "page.html");
+  for (const char* part : {"\"name\":\"silk-dress\"", "\"stepper\":\"hybrid-of-two\"", "\"self\":[0,1,2]",
+                           "\"marked\":[[],[1],[0,1]]", "\"selfAudited\":true"})
+    CHECK(page.find(part) != std::string::npos);
+  CHECK_THROWS_AS(write_view({file}, folder.path / "no/such/folder.html", options), Error);
+  std::filesystem::create_directories(folder.path / "taken.html/inside");
+  CHECK_THROWS_AS(write_view({file}, folder.path / "taken.html", options), Error);
+  CHECK_FALSE(std::filesystem::exists(folder.path / "taken.html.part"));
+}
+
+TEST_CASE("view: a page that cannot be made says why, and is no error", "[view]") {
+  const fake::Folder folder("view_extra");
+  const std::optional<std::string> trouble = write_page(folder.path);
+  REQUIRE(trouble);
+  CHECK(trouble->find("run.h5") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(folder.path / "view.html"));
+}

@@ -1,0 +1,139 @@
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/view/view.hpp"
+#include "tests/pipeline/draping_run.hpp"
+#include "tests/pipeline/fake_run.hpp"
+
+using namespace selvedge;
+using nlohmann::json;
+
+namespace {
+
+std::string read(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+std::string find_chromium() {
+  std::istringstream folders(std::getenv("PATH") ? std::getenv("PATH") : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    for (const char* name : {"chromium", "chromium-browser", "google-chrome"})
+      if (std::filesystem::exists(std::filesystem::path(folder) / name)) return fmt::format("{}/{}", folder, name);
+  return {};
+}
+
+struct Shot {
+  std::string dom, log, png;
+};
+
+// Opens page#options in a fresh headless browser; what it wrote, printed and saw.
+Shot open(const std::string& chromium, const std::filesystem::path& page, const std::string& options) {
+  const std::filesystem::path folder = page.parent_path();
+  const auto at = [&](const char* name) { return fmt::format("'{}'", (folder / name).string()); };
+  std::filesystem::remove(folder / "shot.png");
+  const std::string command = fmt::format(
+      "timeout 120 '{}' --headless --no-sandbox --use-angle=swiftshader-webgl --disable-background-networking "
+      "--disable-component-update --disable-sync --no-first-run --hide-scrollbars --window-size=640,480 "
+      "--enable-logging=stderr --user-data-dir={} --screenshot={} --dump-dom 'file://{}#{}' > {} 2> {}",
+      chromium, at("profile"), at("shot.png"), page.string(), options, at("dom.html"), at("log.txt"));
+  REQUIRE(std::system(command.c_str()) == 0);
+  return {read(folder / "dom.html"), read(folder / "log.txt"), read(folder / "shot.png")};
+}
+
+std::string between(const std::string& text, const std::string& begin, const std::string& end) {
+  const std::size_t at = text.rfind(begin);
+  REQUIRE(at != std::string::npos);
+  return text.substr(at + begin.size(), text.find(end, at + begin.size()) - at - begin.size());
+}
+
+void check_quiet(const Shot& shot) {
+  INFO(shot.log);
+  CHECK(shot.dom.find("data-errors=\"[]\"") != std::string::npos);
+  CHECK(shot.dom.find("data-ready=\"1\"") != std::string::npos);
+  CHECK(shot.log.find("Uncaught") == std::string::npos);
+  CHECK(shot.log.find("ERROR:CONSOLE") == std::string::npos);
+  CHECK(shot.log.find("THREE.") == std::string::npos);
+}
+
+// A user's hands: every button and key, each followed by the frame that is then current.
+constexpr const char* hands = R"(<script>
+const seen = [];
+const note = () => seen.push(window.selvedge.frame);
+const key = (name, shiftKey) => { document.body.dispatchEvent(
+    new KeyboardEvent("keydown", {key: name, shiftKey, bubbles: true})); note(); };
+const click = (id) => { document.getElementById(id).click(); note(); };
+["forward", "forward", "back", "strain", "wire", "marks", "plots", "theme", "reset"].forEach(click);
+key("ArrowRight"); key("ArrowRight", true); key("ArrowLeft"); key("End"); key("Home"); key(" "); key(" ");
+document.querySelector(".chart button").click();
+window.selvedge.setFrame(24); note();
+document.documentElement.dataset.hands = seen.join(" ");
+</script></body>)";
+
+std::string with_hands(std::string page) {
+  const std::string end = "</body>";
+  return page.replace(page.rfind(end), end.size(), hands);
+}
+
+}  // namespace
+
+TEST_CASE("view: the page draws in a browser, and the slider changes the drawing", "[view][browser]") {
+  const std::string chromium = find_chromium();
+  if (chromium.empty()) {
+    WARN("skipped: no chromium on the path");
+    return;
+  }
+  const fake::Folder folder("view_browser");
+  const std::filesystem::path page = folder.path / "page.html", handled = folder.path / "handled.html";
+  ViewRun marked = fake::draping_run("marked", 16, 30);
+  marked.info.self_audited = false;
+  marked.frame = [frame = marked.frame](int index) {
+    Frame f = frame(index);
+    if (index == 24) f.bad_triangles = {10, 11, 200, 201, 230, 231};
+    f.obstacle_pairs = static_cast<int>(f.bad_triangles.size());
+    if (index == 25) f.x.row(7).setConstant(std::numeric_limits<float>::quiet_NaN());
+    return f;
+  };
+  try {
+    const std::string text = view_page({fake::draping_run("first", 20, 30), marked});
+    std::ofstream(page) << text;
+    std::ofstream(handled) << with_hands(text);
+  } catch (const Error& absent) {
+    WARN("skipped: " << absent.what());
+    return;
+  }
+
+  const Shot early = open(chromium, page, "theme=light&marks=1&probe=0,12,23,24,25");
+  check_quiet(early);
+  const json drawn = json::parse(between(early.dom, "id=\"probe\">", "</script>"));
+  REQUIRE(drawn.size() == 5);
+  for (const json& frame : drawn) {
+    INFO(frame);
+    CHECK(frame["shown"] == frame["asked"]);
+    CHECK(frame["covered"] > 0.02);
+    CHECK(frame["spread"] > 8.0);
+  }
+  for (std::size_t k = 1; k < drawn.size(); ++k) CHECK(drawn[k]["hash"] != drawn[k - 1]["hash"]);
+  CHECK(drawn[2]["red"] == 0);
+  CHECK(drawn[3]["red"] > 0);
+
+  const Shot late = open(chromium, handled, "theme=light&frame=0");
+  check_quiet(late);
+  CHECK(late.dom.find("data-hands=\"1 2 1 1 1 1 1 1 1 2 12 11 29 0 0 0 24\"") != std::string::npos);
+  CHECK(late.dom.find("data-theme=\"dark\"") != std::string::npos);
+  CHECK(late.dom.find("data-frame=\"24\"") != std::string::npos);
+  CHECK(late.dom.find(">self: not audited<") != std::string::npos);
+  CHECK(late.dom.find(">6 intersecting pairs, 6 triangles marked<") != std::string::npos);
+  // A page without a drawing is a PNG of about 20 kB.
+  CHECK(early.png.size() > 40'000);
+  CHECK(late.png.size() > 40'000);
+  CHECK(early.png != late.png);
+}
