@@ -14,6 +14,9 @@ target_link_libraries(selvedge_libzip INTERFACE ${LIBZIP_LIBRARY})
 
 if(SELVEDGE_OPENMP)
   find_package(OpenMP REQUIRED COMPONENTS CXX)
+  # The libraries alone: the flags go to the files with a pragma.
+  add_library(selvedge_openmp INTERFACE)
+  target_link_libraries(selvedge_openmp INTERFACE ${OpenMP_CXX_LIBRARIES})
 endif()
 
 if(SELVEDGE_FCL)

@@ -1,2 +1,2 @@
 add_library(selvedge_warnings INTERFACE)
-target_compile_options(selvedge_warnings INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor $<$<BOOL:${SELVEDGE_WERROR}>:-Werror>)
+target_compile_options(selvedge_warnings INTERFACE -Wall -Wextra -Wno-unknown-pragmas -Wshadow -Wnon-virtual-dtor $<$<BOOL:${SELVEDGE_WERROR}>:-Werror>)

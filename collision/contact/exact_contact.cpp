@@ -14,7 +14,7 @@ using Exact = ExactInteger;
 
 constexpr std::uint64_t whole = std::uint64_t{1} << 40;  // finest intervals in a window
 constexpr double fine = 0x1p-30;                         // a certain contact is placed this well in time
-constexpr double u = 0x1p-53;
+constexpr double unit_roundoff = 0x1p-53;
 
 // Corners at both ends of the times searched, on a power of two of each axis' own, which keeps all signs: every product
 // has each axis at most once, and every sum is of products of the same axes.
@@ -76,7 +76,7 @@ PolygonSigns exact_signs(const Window& w, std::uint64_t first, std::uint64_t las
 // added, by less than 420 u. A product of such a one, below 16, and a coordinate is lost by 2 x 420 u + 16 x 24 u + 32
 // u, and a coefficient of the volume, six of them added, by less than 8400 u.
 PolygonSigns rounded_signs(const MovingPolygon& polygon, double first, double last) {
-  constexpr std::array<double, 4> lost{0, 32 * u, 512 * u, 16384 * u};
+  constexpr std::array<double, 4> lost{0, 32 * unit_roundoff, 512 * unit_roundoff, 16384 * unit_roundoff};
   Corners<double> p, q;
   for (int k = 0; k < polygon.corners; ++k) {
     const Vec3 at_first = polygon.at(k, first), at_last = polygon.at(k, last);

@@ -9,10 +9,10 @@
 namespace selvedge {
 namespace {
 
-using Corners = std::array<Vec3, 3>;
+using TriangleCorners = std::array<Vec3, 3>;
 using Sides = std::array<int, 3>;
 
-Sides sides(const Corners& plane, const Corners& of) {
+Sides sides(const TriangleCorners& plane, const TriangleCorners& of) {
   Sides side;
   for (int k = 0; k < 3; ++k) side[k] = orient3d(plane[0], plane[1], plane[2], of[k]);
   return side;
@@ -28,7 +28,7 @@ struct Wedge {
   bool above;
 };
 
-Wedge wedge(const Corners& t, const Sides& side) {
+Wedge wedge(const TriangleCorners& t, const Sides& side) {
   for (int k = 0;; ++k) {
     assert(k < 3);  // the sides are not all the same
     const int next = (k + 1) % 3, last = (k + 2) % 3;
@@ -47,7 +47,7 @@ bool intervals_overlap(Wedge a, Wedge b) {
 }
 
 // A degenerate triangle across the plane of a true one: its line goes through the face, seen along it, or not.
-bool segment_meets(const Corners& segment, const Sides& side, const Corners& face) {
+bool segment_meets(const TriangleCorners& segment, const Sides& side, const TriangleCorners& face) {
   const auto [low, high] = std::minmax_element(side.begin(), side.end());
   const Vec3 &p = segment[low - side.begin()], &q = segment[high - side.begin()];
   const auto [least, most] = std::minmax(
@@ -55,10 +55,10 @@ bool segment_meets(const Corners& segment, const Sides& side, const Corners& fac
   return least >= 0 || most <= 0;
 }
 
-int area_sign(const Corners& t, int axis) { return orient2d(t[0], t[1], t[2], axis); }
+int area_sign(const TriangleCorners& t, int axis) { return orient2d(t[0], t[1], t[2], axis); }
 
 // Seen along the axis: is b strictly beyond an edge of a?
-bool edge_parts(const Corners& a, int area_a, const Corners& b, int axis) {
+bool edge_parts(const TriangleCorners& a, int area_a, const TriangleCorners& b, int axis) {
   for (int k = 0; k < 3; ++k) {
     const Vec3 &p = a[k], &q = a[(k + 1) % 3];
     const int side = orient2d(p, q, b[0], axis);
@@ -68,7 +68,7 @@ bool edge_parts(const Corners& a, int area_a, const Corners& b, int axis) {
   return false;
 }
 
-bool boxes_meet(const Corners& a, const Corners& b) {
+bool boxes_meet(const TriangleCorners& a, const TriangleCorners& b) {
   for (int k = 0; k < 3; ++k) {
     const auto [a_lo, a_hi] = std::minmax({a[0][k], a[1][k], a[2][k]});
     const auto [b_lo, b_hi] = std::minmax({b[0][k], b[1][k], b[2][k]});
@@ -77,7 +77,7 @@ bool boxes_meet(const Corners& a, const Corners& b) {
   return true;
 }
 
-bool edges_are_skew(const Corners& a, const Corners& b) {
+bool edges_are_skew(const TriangleCorners& a, const TriangleCorners& b) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       if (orient3d(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]) != 0) return true;
@@ -87,7 +87,7 @@ bool edges_are_skew(const Corners& a, const Corners& b) {
 // Triangles in one plane, or two degenerate ones. Convex sets in a plane that are apart lie on both sides of an edge's
 // line or, all on one line, in separate boxes. An axis along which one of the triangles has an area shows their plane.
 // Of two segments one view of the three shows all there is to see, and those that meet do so in each.
-bool flat_meet(const Corners& a, const Corners& b) {
+bool flat_meet(const TriangleCorners& a, const TriangleCorners& b) {
   if (!boxes_meet(a, b)) return false;
   for (int axis = 0; axis < 3; ++axis) {
     const int area_a = area_sign(a, axis), area_b = area_sign(b, axis);
@@ -99,7 +99,7 @@ bool flat_meet(const Corners& a, const Corners& b) {
 
 }  // namespace
 
-bool triangles_meet(const Corners& a, const Corners& b) {
+bool triangles_meet(const TriangleCorners& a, const TriangleCorners& b) {
   const Sides side_b = sides(a, b);
   if (on_one_side(side_b)) return false;
   const Sides side_a = sides(b, a);

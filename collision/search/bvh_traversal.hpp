@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "collision/geometry/parallel.hpp"
 #include "collision/search/bvh.hpp"
 
 namespace selvedge {
@@ -136,8 +137,7 @@ void gather(const BvhTraversal& traversal, PartLists<Item>& parts, std::vector<I
   const std::vector<NodeWork> front = traversal.frontier();
   const int count = static_cast<int>(front.size());
   if (parts.size() < front.size()) parts.resize(front.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int i = 0; i < count; ++i) {
+  parallel_for(count, 1, [&](int i) {
     parts[i].clear();
     std::vector<NodeWork> stack{front[i]};
     while (!stack.empty()) {
@@ -148,12 +148,11 @@ void gather(const BvhTraversal& traversal, PartLists<Item>& parts, std::vector<I
       else if (!traversal.is_quiet(w))
         visit(w, parts[i]);
     }
-  }
+  });
   std::vector<std::size_t> begin(count + 1, out.size());
   for (int i = 0; i < count; ++i) begin[i + 1] = begin[i] + parts[i].size();
   out.resize(begin[count]);
-#pragma omp parallel for schedule(dynamic, 8)
-  for (int i = 0; i < count; ++i) std::copy(parts[i].begin(), parts[i].end(), out.data() + begin[i]);
+  parallel_for(count, 8, [&](int i) { std::copy(parts[i].begin(), parts[i].end(), out.data() + begin[i]); });
 }
 
 }  // namespace selvedge

@@ -12,7 +12,7 @@ namespace selvedge {
 namespace {
 
 constexpr double recovery_speed = 1;  // at most, of a vertex that starts tangled [m/s]
-constexpr double astray = 0.5;        // from where it is worn, of tangled cloth that is drawn there, in mean edges
+constexpr double far_astray = 0.5;        // from where it is worn, of tangled cloth that is drawn there, in mean edges
 
 }  // namespace
 
@@ -27,7 +27,7 @@ Parting part_at_start(const ContactWorld& world, SelfCrossings& self_crossings, 
   }
   self_crossings.switch_off(nodes, wanted, parting.left);
   std::vector<char> pierced, sunken;
-  if (!untouched) pierced = pierced_vertices(world, parting.left, nodes, wanted, worn, astray * edge_length);
+  if (!untouched) pierced = pierced_vertices(world, parting.left, nodes, wanted, worn, far_astray * edge_length);
   if (!untouched) sunken = sunken_vertices(world, parting.left, worn);
   const PutOn put = put_on(world, either(sunken, pierced), where, nodes, v);
   if (put == PutOn::done) parting.left = find_exemption(world, nodes);

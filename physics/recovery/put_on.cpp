@@ -13,7 +13,7 @@ namespace {
 
 constexpr double most_way = 0.3;       // [m]
 constexpr int enough_iterations = 60;  // of untangling: what is worn is shallow in the body, or not to be parted
-constexpr int most_parting = 100'000;  // pairs times iterations of it
+constexpr int most_placing = 100'000;  // pairs times iterations of it
 
 struct Place {
   Points nodes, ways;  // with what is marked put there, and how far that goes along in the step
@@ -56,7 +56,7 @@ std::vector<Place> places_for(const ContactWorld& world, const std::vector<int>&
 UntangleResult part(const ContactWorld& world, const Place& place) {
   const WorldSheets sheets(world, place.nodes);
   UntangleOptions options;
-  options.iterations = std::min(enough_iterations, most_parting / std::max(1, place.pairs));
+  options.iterations = std::min(enough_iterations, most_placing / std::max(1, place.pairs));
   options.second_opinion = false;  // a place that the first does not find is looked for again in the next step
   return untangle(*world.cloth, sheets.positions[0], std::span(sheets.views).subspan(1), options);
 }

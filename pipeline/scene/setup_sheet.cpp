@@ -12,7 +12,7 @@
 namespace selvedge {
 namespace {
 
-constexpr double most_vertices = 2e7;
+constexpr double most_sheet_vertices = 2e7;
 
 SheetOptions sheet_options(const Config& shape) {
   const std::string& word = shape["triangulation"].text();
@@ -23,7 +23,7 @@ SheetOptions sheet_options(const Config& shape) {
 }
 
 void check_count(const Config& shape, double vertices) {
-  if (vertices > most_vertices)
+  if (vertices > most_sheet_vertices)
     shape.fail(fmt::format("would have {:.3g} vertices", vertices), "choose a lower resolution or a longer edge");
 }
 

@@ -11,7 +11,7 @@ namespace selvedge {
 namespace {
 
 constexpr double snap = 0.35;    // of an element: vertices nearer to an edge of the strip are moved onto it
-constexpr double jitter = 0.25;  // of an element, of unstructured strips
+constexpr double strip_jitter = 0.25;  // of an element, of unstructured strips
 
 struct Flat {
   std::vector<Vec2> uv;
@@ -158,7 +158,7 @@ Mesh make_strip(const StripShape& shape) {
       const double u = mesh.uv(v, 0), w = mesh.uv(v, 1);
       fixed.push_back(std::min({u, shape.length - u, w, shape.width - w}) <= rounding);
     }
-    make_unstructured(mesh.uv, mesh.triangles, fixed, jitter * edge, shape.sheet.seed);
+    make_unstructured(mesh.uv, mesh.triangles, fixed, strip_jitter * edge, shape.sheet.seed);
   }
   const std::vector<int> root = column(mesh.uv, 0, rounding), tip = column(mesh.uv, shape.length, rounding);
   std::vector<int> clamp = root, grip, side;

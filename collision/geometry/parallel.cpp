@@ -1,0 +1,10 @@
+#include "collision/geometry/parallel.hpp"
+
+namespace selvedge {
+
+void parallel_for(int count, int grain, const std::function<void(int)>& body) {
+#pragma omp parallel for schedule(dynamic, grain)
+  for (int i = 0; i < count; ++i) body(i);
+}
+
+}  // namespace selvedge
