@@ -1,6 +1,9 @@
 # Every package is found here, once. What is absent is named by `selvedge info`.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(HDF5 REQUIRED COMPONENTS C)
+add_library(selvedge_hdf5 INTERFACE)
+target_include_directories(selvedge_hdf5 SYSTEM INTERFACE ${HDF5_INCLUDE_DIRS})
+target_link_libraries(selvedge_hdf5 INTERFACE ${HDF5_LIBRARIES})
 find_package(yaml-cpp REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
@@ -14,9 +17,6 @@ target_link_libraries(selvedge_libzip INTERFACE ${LIBZIP_LIBRARY})
 
 if(SELVEDGE_OPENMP)
   find_package(OpenMP REQUIRED COMPONENTS CXX)
-  # The libraries alone: the flags go to the files with a pragma.
-  add_library(selvedge_openmp INTERFACE)
-  target_link_libraries(selvedge_openmp INTERFACE ${OpenMP_CXX_LIBRARIES})
 endif()
 
 if(SELVEDGE_FCL)

@@ -11,6 +11,19 @@
 #include "physics/linear/pcg.hpp"
 
 namespace selvedge {
+namespace {
+
+// Free vertices up to which CHOLMOD is taken. Measured on hanging N x N sheets, one thread, steps of 1/60 s: 1.7
+// against 0.5 ms a frame with block Jacobi for 81 vertices and 53 against 10 for 625.
+constexpr int direct_limit = 60;
+
+constexpr int stiff_iterations = 150;  // of an automatic PCG solve, beyond which CHOLMOD takes the next ones
+constexpr int stiff_turns = 1000;      // that many, then PCG is tried again
+
+constexpr double jacobi_share = 0.4;           // of a tolerance: block Jacobi's norm hardly sees smooth errors
+constexpr double float_tolerance = 1e-3;       // what one pass in float surely reaches
+constexpr double refinement_tolerance = 1e-4;  // of each pass where several are needed
+constexpr int max_passes = 12;
 
 // Everything of a PCG solve in one precision.
 template <class Real>
@@ -42,20 +55,6 @@ struct Iterative {
     return report;
   }
 };
-
-namespace {
-
-// Free vertices up to which CHOLMOD is taken. Measured on hanging N x N sheets, one thread, steps of 1/60 s: 1.7
-// against 0.5 ms a frame with block Jacobi for 81 vertices and 53 against 10 for 625.
-constexpr int direct_limit = 60;
-
-constexpr int stiff_iterations = 150;  // of an automatic PCG solve, beyond which CHOLMOD takes the next ones
-constexpr int stiff_turns = 1000;      // that many, then PCG is tried again
-
-constexpr double jacobi_share = 0.4;           // of a tolerance: block Jacobi's norm hardly sees smooth errors
-constexpr double float_tolerance = 1e-3;       // what one pass in float surely reaches
-constexpr double refinement_tolerance = 1e-4;  // of each pass where several are needed
-constexpr int max_passes = 12;
 
 double preconditioner_norm(const Points& r, std::span<const Mat3> diagonal, std::span<const char> free) {
   double sum = 0;

@@ -6,12 +6,13 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "collision/geometry/parallel.hpp"
 #include "physics/linear/galerkin.hpp"
 
 namespace selvedge {
 namespace {
 
-constexpr int chunk = 64;           // rows of one task
+constexpr int level_chunk = 64;     // rows of one task
 constexpr int one_thread = 128;     // rows below which a level costs more in a team than alone
 constexpr int coarsest = 48;        // vertices that Cholesky takes
 constexpr int smoothing_steps = 2;  // before and after the coarse correction
@@ -22,14 +23,12 @@ constexpr float longest = 4;
 constexpr int most_levels = 12;
 constexpr double least_coarsening = 0.7;  // of the vertices; a level that keeps more is not worth having
 
-int chunks_of(int rows) { return (rows + chunk - 1) / chunk; }
-
 // f(begin, end) over the chunks of `rows`, shared among the calling team or by one thread alone.
 template <class F>
 void for_chunks(bool team, int rows, const F& f) {
   if (team) {
 #pragma omp for schedule(static)
-    for (int c = 0; c < chunks_of(rows); ++c) f(c * chunk, std::min(rows, (c + 1) * chunk));
+    for (int c = 0; c < chunks_of(rows, level_chunk); ++c) f(c * level_chunk, std::min(rows, (c + 1) * level_chunk));
   } else {
     f(0, rows);
   }
@@ -213,7 +212,7 @@ void Multigrid::Impl::fill_second(const LinearSystem& system, Level& level) {
   const int touching = static_cast<int>(contacts.size());
   contact_factor.resize((touching + 1) / 2);
   fine_diagonal.resize(fine->rows());
-#pragma omp parallel if (chunks_of(levels[0].rows) > 2)
+#pragma omp parallel if (chunks_of(levels[0].rows, level_chunk) > 2)
   {
 #pragma omp for schedule(static) nowait
     for (int p = 0; p < static_cast<int>(contact_factor.size()); ++p)
@@ -317,7 +316,7 @@ void Multigrid::fill_finest(const LinearSystem& system, std::span<const Mat3> di
   impl.partial.resize(fine.chunks());
   Level& finest = impl.levels[0];
   finest.inverse.resize(finest.rows);
-#pragma omp parallel for schedule(static) if (chunks_of(finest.rows) > 2)
+#pragma omp parallel for schedule(static) if (chunks_of(finest.rows, level_chunk) > 2)
   for (int i = 0; i < finest.rows; ++i)
     finest.inverse[i] = columns_of<float>(system.free[i] ? Mat3(diagonal[i].inverse()) : Mat3(Mat3::Zero()));
 }

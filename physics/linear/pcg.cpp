@@ -6,14 +6,14 @@
 
 #include <Eigen/LU>
 
+#include "collision/geometry/parallel.hpp"
+
 namespace selvedge {
 namespace {
 
-constexpr int chunk = 64;       // rows of one partial sum; fixed, so that sums do not depend on the number of threads
+constexpr int pcg_chunk = 64;   // rows of one partial sum; fixed, so that sums do not depend on the number of threads
 constexpr double foreseen = 4;  // times what the square of the norm is expected to be
 constexpr int small = 8;        // chunks below which a team of threads costs more than it saves
-
-int chunks_of(int rows) { return (rows + chunk - 1) / chunk; }
 
 double sum(const std::vector<double>& partial) {
   double total = 0;
@@ -40,8 +40,8 @@ bool share_an_element(const PairPattern& pattern, int i, int j) {
 template <class Real>
 void product(const Quads<Real>& a, const Quads<Real>& b, int rows, std::vector<double>& partial) {
 #pragma omp for schedule(static)
-  for (int c = 0; c < chunks_of(rows); ++c)
-    partial[c] = dot(a.data(), b.data(), c * chunk, std::min(rows, (c + 1) * chunk));
+  for (int c = 0; c < chunks_of(rows, pcg_chunk); ++c)
+    partial[c] = dot(a.data(), b.data(), c * pcg_chunk, std::min(rows, (c + 1) * pcg_chunk));
 }
 
 }  // namespace
@@ -171,7 +171,7 @@ void PcgMatrix<Real>::fill(const LinearSystem& system) {
   sort_contacts(system);
   fill_contacts();
   const bool touched = !system.lists.begin.empty();
-#pragma omp parallel for schedule(static) if (chunks_of(rows()) > small)
+#pragma omp parallel for schedule(static) if (chunks_of(rows(), pcg_chunk) > small)
   for (int i = 0; i < rows(); ++i) fill_row(system, i);
   if (!touched) std::ranges::fill(is_held_, false);
 
@@ -209,7 +209,7 @@ BlockColumns<Real> PcgMatrix<Real>::diagonal(int i) const {
 
 template <class Real>
 int PcgMatrix<Real>::chunks() const {
-  return chunks_of(rows());
+  return chunks_of(rows(), pcg_chunk);
 }
 
 template <class Real>
@@ -217,19 +217,20 @@ void PcgMatrix<Real>::multiply(const Quads<Real>& p, Quads<Real>& q, std::vector
   const int contacts = static_cast<int>(contacts_.size());
   if (contacts > 0) {
 #pragma omp for schedule(static)
-    for (int c = 0; c < chunks_of(contacts); ++c)
-      contact_responses(contact_view_, p.data(), response_.data(), c * chunk, std::min(contacts, (c + 1) * chunk));
+    for (int c = 0; c < chunks_of(contacts, pcg_chunk); ++c)
+      contact_responses(contact_view_, p.data(), response_.data(), c * pcg_chunk,
+                        std::min(contacts, (c + 1) * pcg_chunk));
   }
 #pragma omp for schedule(static)
-  for (int c = 0; c < chunks_of(rows()); ++c)
-    partial[c] = multiply_rows(view_, p.data(), q.data(), c * chunk, std::min(rows(), (c + 1) * chunk));
+  for (int c = 0; c < chunks_of(rows(), pcg_chunk); ++c)
+    partial[c] = multiply_rows(view_, p.data(), q.data(), c * pcg_chunk, std::min(rows(), (c + 1) * pcg_chunk));
 }
 
 template <class Real>
 void BlockJacobi<Real>::fill(std::span<const Mat3> diagonal, std::span<const char> free) {
   const int rows = static_cast<int>(diagonal.size());
   inverse_.resize(rows);
-#pragma omp parallel for schedule(static) if (chunks_of(rows) > small)
+#pragma omp parallel for schedule(static) if (chunks_of(rows, pcg_chunk) > small)
   for (int i = 0; i < rows; ++i)
     inverse_[i] = columns_of<Real>(free[i] ? Mat3(diagonal[i].inverse()) : Mat3(Mat3::Zero()));
 }
@@ -238,14 +239,14 @@ template <class Real>
 void BlockJacobi<Real>::apply(const Quads<Real>& r, Quads<Real>& z) const {
   const int rows = static_cast<int>(inverse_.size());
 #pragma omp for schedule(static)
-  for (int c = 0; c < chunks_of(rows); ++c)
-    multiply_diagonal(inverse_.data(), r.data(), z.data(), c * chunk, std::min(rows, (c + 1) * chunk));
+  for (int c = 0; c < chunks_of(rows, pcg_chunk); ++c)
+    multiply_diagonal(inverse_.data(), r.data(), z.data(), c * pcg_chunk, std::min(rows, (c + 1) * pcg_chunk));
 }
 
 template <class Real>
 PcgReport pcg(PcgMatrix<Real>& a, const Preconditioner<Real>& precondition, double tolerance, int max_iterations,
               PcgVectors<Real>& v) {
-  const int rows = a.rows(), chunks = chunks_of(rows);
+  const int rows = a.rows(), chunks = chunks_of(rows, pcg_chunk);
   v.x.assign(rows, Quad<Real>{});
   v.p.assign(rows, Quad<Real>{});
   v.z.resize(rows);
@@ -270,7 +271,7 @@ PcgReport pcg(PcgMatrix<Real>& a, const Preconditioner<Real>& precondition, doub
       if (rz <= goal || own.iterations == max_iterations) break;
 #pragma omp for schedule(static)
       for (int c = 0; c < chunks; ++c)
-        turn(static_cast<Real>(keep), v.z.data(), v.p.data(), c * chunk, std::min(rows, (c + 1) * chunk));
+        turn(static_cast<Real>(keep), v.z.data(), v.p.data(), c * pcg_chunk, std::min(rows, (c + 1) * pcg_chunk));
       a.multiply(v.p, v.q, v.partial_pq);
       const double pq = sum(v.partial_pq);
       if (!(pq > 0) || !std::isfinite(pq)) {
@@ -279,8 +280,8 @@ PcgReport pcg(PcgMatrix<Real>& a, const Preconditioner<Real>& precondition, doub
       }
 #pragma omp for schedule(static)
       for (int c = 0; c < chunks; ++c)
-        advance(static_cast<Real>(rz / pq), v.p.data(), v.q.data(), v.x.data(), v.r.data(), c * chunk,
-                std::min(rows, (c + 1) * chunk));
+        advance(static_cast<Real>(rz / pq), v.p.data(), v.q.data(), v.x.data(), v.r.data(), c * pcg_chunk,
+                std::min(rows, (c + 1) * pcg_chunk));
       // At the mean rate so far this step was the last one needed, and more: the preconditioner need not confirm it.
       if (own.iterations > 0 && foreseen * rz * std::pow(rz / first, 1.0 / own.iterations) < goal) {
         own.end = PcgEnd::converged;

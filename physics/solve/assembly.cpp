@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <cassert>
 
+#include "collision/geometry/parallel.hpp"
 #include "physics/energies/membrane_lanes.hpp"
 
 namespace selvedge {
 namespace {
 
-constexpr int chunk = 128;  // elements of one task; fixed, so that sums do not depend on the number of threads
+constexpr int assembly_chunk = 128;  // elements of one task; fixed, so that sums do not depend on the number of threads
 
 int element_count(const Elastic& elastic) { return static_cast<int>(elastic.element_begin.size()) - 1; }
-int chunks_of(int count) { return (count + chunk - 1) / chunk; }
-
 template <class Nodes>
 void append_element(Elastic& elastic, const Nodes& nodes) {
   const int count = static_cast<int>(nodes.size());
@@ -175,17 +174,17 @@ Elastic make_elastic(const Scene& scene) {
 void append_elastic_energies(const Elastic& elastic, const Points& x, std::vector<double>& energies) {
   const int count = element_count(elastic), rows = elastic.flat.rows() > 0 ? static_cast<int>(x.rows()) : 0;
   const std::size_t first = energies.size();
-  const int element_chunks = chunks_of(count), tasks = element_chunks + chunks_of(rows);
+  const int element_chunks = chunks_of(count, assembly_chunk), tasks = element_chunks + chunks_of(rows, assembly_chunk);
   energies.resize(first + tasks);
 #pragma omp parallel for schedule(static, 4) if (tasks > 8)
   for (int c = 0; c < tasks; ++c) {
     if (c < element_chunks) {
-      energies[first + c] = energy_of_chunk(elastic, x, c * chunk, std::min(count, (c + 1) * chunk));
+      energies[first + c] = energy_of_chunk(elastic, x, c * assembly_chunk, std::min(count, (c + 1) * assembly_chunk));
       continue;
     }
     double sum = 0;
-    const int begin = (c - element_chunks) * chunk;
-    for (int i = begin; i < std::min(rows, begin + chunk); ++i)
+    const int begin = (c - element_chunks) * assembly_chunk;
+    for (int i = begin; i < std::min(rows, begin + assembly_chunk); ++i)
       sum += 0.5 * row(x, i).dot(multiply_flat_row(elastic.flat, x, i));
     energies[first + c] = sum;
   }
@@ -193,7 +192,8 @@ void append_elastic_energies(const Elastic& elastic, const Points& x, std::vecto
 
 void elastic_derivatives(const Elastic& elastic, const Points& x, AssemblyScratch& scratch, Points* gradient,
                          PairBlocks* hessian, HessianForm form) {
-  const int count = element_count(elastic), tasks = chunks_of(count), vertices = static_cast<int>(x.rows());
+  const int count = element_count(elastic), tasks = chunks_of(count, assembly_chunk),
+            vertices = static_cast<int>(x.rows());
   const int pairs = static_cast<int>(elastic.pattern.pairs.size());
   if (gradient) {
     scratch.forces.resize(elastic.element_nodes.size(), 3);
@@ -207,7 +207,8 @@ void elastic_derivatives(const Elastic& elastic, const Points& x, AssemblyScratc
   {
 #pragma omp for schedule(static)
     for (int c = 0; c < tasks; ++c)
-      derivatives_of_chunk(elastic, x, c * chunk, std::min(count, (c + 1) * chunk), gradient, hessian, form, scratch);
+      derivatives_of_chunk(elastic, x, c * assembly_chunk, std::min(count, (c + 1) * assembly_chunk), gradient, hessian,
+                           form, scratch);
     if (gradient) {
 #pragma omp for schedule(static) nowait
       for (int i = 0; i < vertices; ++i) {

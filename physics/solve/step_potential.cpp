@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cassert>
 
+#include "collision/geometry/parallel.hpp"
+
 namespace selvedge {
 namespace {
 
-constexpr int chunk = 128;  // of vertices or contacts
-
-int chunks_of(int count) { return (count + chunk - 1) / chunk; }
+constexpr int potential_chunk = 128;  // of vertices or contacts
 
 void prepare_inertia(const Scene& scene, const Eigen::VectorXd& masses, StepPotential& step) {
   const StepProblem& problem = *step.problem;
@@ -153,18 +153,19 @@ void energies(const StepPotential& step, const Points& x, StepScratch& scratch, 
   if (!step.damping.empty()) scratch.motion = x - *step.problem->x0;
   const int vertices = static_cast<int>(x.rows()), contacts = static_cast<int>(step.problem->contacts.size()),
             pushes = contacts + static_cast<int>(step.wind.size());
-  const int vertex_chunks = chunks_of(vertices), tasks = vertex_chunks + chunks_of(pushes);
+  const int vertex_chunks = chunks_of(vertices, potential_chunk),
+            tasks = vertex_chunks + chunks_of(pushes, potential_chunk);
   const std::size_t first = energies.size();
   energies.resize(first + tasks);
 #pragma omp parallel for schedule(static, 4) if (tasks > 8)
   for (int c = 0; c < tasks; ++c) {
     double sum = 0;
     if (c < vertex_chunks) {
-      for (int i = c * chunk; i < std::min(vertices, (c + 1) * chunk); ++i)
+      for (int i = c * potential_chunk; i < std::min(vertices, (c + 1) * potential_chunk); ++i)
         sum += vertex_energy(step, x, scratch.motion, i);
     } else {
-      const int begin = (c - vertex_chunks) * chunk;
-      for (int k = begin; k < std::min(pushes, begin + chunk); ++k)
+      const int begin = (c - vertex_chunks) * potential_chunk;
+      for (int k = begin; k < std::min(pushes, begin + potential_chunk); ++k)
         sum += k < contacts ? contact_energy(step, x, step.problem->contacts[k])
                             : wind_energy(step, step.wind[k - contacts], x);
     }

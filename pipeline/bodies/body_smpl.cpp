@@ -14,7 +14,7 @@ namespace selvedge {
 namespace {
 
 using Index = Eigen::Index;
-constexpr Index any = -1;
+constexpr Index any_extent = -1;
 
 [[noreturn]] void fail(const NpyPlace& place, const std::string& what, const std::string& cure) {
   throw Error(what, place.text(), cure);
@@ -22,14 +22,14 @@ constexpr Index any = -1;
 
 std::string shape_text(const std::vector<Index>& shape) {
   std::vector<std::string> parts;
-  for (const Index extent : shape) parts.push_back(extent == any ? "any" : std::to_string(extent));
+  for (const Index extent : shape) parts.push_back(extent == any_extent ? "any" : std::to_string(extent));
   return fmt::format("({})", fmt::join(parts, ", "));
 }
 
 template <class T>
 NpyArray<T> with_shape(NpyArray<T> array, const std::vector<Index>& wanted, const NpyPlace& place) {
   bool fits = array.shape.size() == wanted.size();
-  for (std::size_t k = 0; fits && k < wanted.size(); ++k) fits = wanted[k] == any || wanted[k] == array.shape[k];
+  for (std::size_t k = 0; fits && k < wanted.size(); ++k) fits = wanted[k] == any_extent || wanted[k] == array.shape[k];
   if (!fits)
     fail(place, fmt::format("has the shape {}, not {}", shape_text(array.shape), shape_text(wanted)),
          "is it a model of the SMPL family as published, and are all its fields of one model?");
@@ -54,7 +54,7 @@ int index_of(std::int64_t value, Index count, const NpyPlace& place) {
 // Parents by column; the root's is -1, or the same in 32 bits without sign. The second row says which id a column has.
 std::vector<int> read_parents(const Npz& npz) {
   const NpyPlace place = npz.place("kintree_table");
-  const NpyArray<std::int64_t> table = integers(npz, "kintree_table", {2, any});
+  const NpyArray<std::int64_t> table = integers(npz, "kintree_table", {2, any_extent});
   const auto joints = static_cast<std::size_t>(table.shape[1]);
   std::map<std::int64_t, int> column_of;
   for (std::size_t j = 0; j < joints; ++j) column_of[table.values[joints + j]] = static_cast<int>(j);
@@ -72,7 +72,7 @@ std::vector<int> read_parents(const Npz& npz) {
 }
 
 Triangles read_triangles(const Npz& npz, Index vertices) {
-  const NpyArray<std::int64_t> f = integers(npz, "f", {any, 3});
+  const NpyArray<std::int64_t> f = integers(npz, "f", {any_extent, 3});
   Triangles triangles(f.shape[0], 3);
   for (std::size_t k = 0; k < f.values.size(); ++k)
     triangles.data()[k] = index_of(f.values[k], vertices, npz.place("f"));
@@ -93,7 +93,7 @@ Index shape_columns(Index columns, std::size_t joints) {
 }
 
 Eigen::MatrixXd read_shape_directions(const Npz& npz, Index vertices, std::size_t joints, int shapes) {
-  const NpyArray<double> array = numbers(npz, "shapedirs", {vertices, 3, any});
+  const NpyArray<double> array = numbers(npz, "shapedirs", {vertices, 3, any_extent});
   const Index present = shape_columns(array.shape[2], joints);
   if (shapes < 0 || shapes > present)
     fail(npz.place("shapedirs"), fmt::format("has {} shapes, {} are asked for", present, shapes),
@@ -122,9 +122,9 @@ SkinWeights without_zeros(const NpyArray<double>& dense) {
 
 // The parts that scipy calls data, indices and indptr, of rows (csr) or of columns (csc), as the length of indptr says.
 SkinWeights sparse_parts(const Npz& npz, const std::string& field, Index rows, Index cols) {
-  const NpyArray<double> data = numbers(npz, field + "_data", {any});
+  const NpyArray<double> data = numbers(npz, field + "_data", {any_extent});
   const NpyArray<std::int64_t> indices = integers(npz, field + "_indices", {data.shape[0]});
-  const NpyArray<std::int64_t> begins = integers(npz, field + "_indptr", {any});
+  const NpyArray<std::int64_t> begins = integers(npz, field + "_indptr", {any_extent});
   const NpyPlace place = npz.place(field + "_indptr");
   const bool by_rows = begins.shape[0] == rows + 1;
   if (!by_rows && begins.shape[0] != cols + 1)
@@ -188,7 +188,7 @@ BodyModel read_smpl(const std::filesystem::path& path, int shapes) {
     fail(npz.place("kintree_table"), fmt::format("has {} joints", joints),
          "known are SMPL (24), SMPL-H (52) and SMPL-X (55)");
 
-  const NpyArray<double> rest = numbers(npz, "v_template", {any, 3});
+  const NpyArray<double> rest = numbers(npz, "v_template", {any_extent, 3});
   const Index vertices = rest.shape[0], columns = static_cast<Index>(joints);
   body.skin.rest = Eigen::Map<const Points>(rest.values.data(), vertices, 3);
   body.skin.triangles = read_triangles(npz, vertices);

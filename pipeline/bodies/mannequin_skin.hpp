@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "pipeline/bodies/body.hpp"
 
 namespace selvedge {
@@ -24,5 +26,11 @@ SkinWeights mannequin_regressor(const MannequinMesh&);
 
 // Displacements for one unit of each shape, 3n x 10.
 Eigen::MatrixXd mannequin_directions(const MannequinMesh&, const Eigen::MatrixXd& weights);
+
+// From 0 at `from` to 1 at `to`, at rest at both (Hermite).
+inline double smooth_step(double value, double from, double to) {
+  const double t = std::clamp((value - from) / (to - from), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
 
 }  // namespace selvedge

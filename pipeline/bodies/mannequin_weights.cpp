@@ -8,42 +8,38 @@
 namespace selvedge {
 namespace {
 
-double step(double value, double from, double to) {  // smooth, 0 at `from` and 1 at `to`
-  const double t = std::clamp((value - from) / (to - from), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
-
 // How much of what is at p moves with the joint instead of its parent, for joints in the middle and on the left; p may
 // lie on the right, where it is the other side's.
 double share(const std::string& joint, const Vec3& at, const Vec3& p) {
   const Vec3 q = p - at;
-  if (joint == "spine1") return step(q.y(), -0.07, 0.05);
-  if (joint == "spine2") return step(q.y(), -0.06, 0.06);
-  if (joint == "spine3") return step(q.y(), -0.05, 0.05);
+  if (joint == "spine1") return smooth_step(q.y(), -0.07, 0.05);
+  if (joint == "spine2") return smooth_step(q.y(), -0.06, 0.06);
+  if (joint == "spine3") return smooth_step(q.y(), -0.05, 0.05);
   if (joint == "neck") {  // the slopes towards the shoulders are the trunk's, however wide the head
     const double width = std::abs(p.x()) - 2 * std::max(0.0, p.y() - 1.46);
-    return step(q.y() + 0.3 * q.z(), -0.04, 0.04) * (1 - step(width, 0.07, 0.12));
+    return smooth_step(q.y() + 0.3 * q.z(), -0.04, 0.04) * (1 - smooth_step(width, 0.07, 0.12));
   }
-  if (joint == "head") return step(0.95 * q.y() + 0.3 * q.z(), -0.03, 0.03);
+  if (joint == "head") return smooth_step(0.95 * q.y() + 0.3 * q.z(), -0.03, 0.03);
   if (joint == "left_hip") {
     // The crease rises outward and to the front; between the legs left and right share what is close to the middle.
     const double crease = at.y() - 0.015 + 0.25 * q.x() + 0.25 * q.z();
     const double middle = 0.001 + 0.03 * std::clamp((p.y() - 0.70) / 0.08, 0.0, 1.0);
-    return step(crease - p.y(), -0.085, 0.085) * step(p.x(), -middle, middle);
+    return smooth_step(crease - p.y(), -0.085, 0.085) * smooth_step(p.x(), -middle, middle);
   }
-  if (joint == "left_knee") return step(-q.y(), -0.07, 0.07);
-  if (joint == "left_ankle") return step(0.3 * q.z() - 0.95 * q.y(), -0.04, 0.04);
-  if (joint == "left_foot") return step(q.z(), -0.035, 0.035);
+  if (joint == "left_knee") return smooth_step(-q.y(), -0.07, 0.07);
+  if (joint == "left_ankle") return smooth_step(0.3 * q.z() - 0.95 * q.y(), -0.04, 0.04);
+  if (joint == "left_foot") return smooth_step(q.z(), -0.035, 0.035);
   if (joint == "left_collar")
-    return step(p.x(), 0.02, 0.13) * step(p.y() + std::max(0.0, p.x() - 0.15), 1.25, 1.38) *
-           (1 - step(p.y(), 1.44, 1.50));
+    return smooth_step(p.x(), 0.02, 0.13) * smooth_step(p.y() + std::max(0.0, p.x() - 0.15), 1.25, 1.38) *
+           (1 - smooth_step(p.y(), 1.44, 1.50));
   if (joint == "left_shoulder") {  // the flank below the arm is the trunk's
     const double inner = 0.163 + 0.6 * std::max(0.0, 1.37 - p.y());
-    return step(p.x(), inner - 0.07, inner + 0.07);
+    return smooth_step(p.x(), inner - 0.07, inner + 0.07);
   }
-  if (joint == "left_elbow") return step(q.x(), -0.055, 0.055);
-  if (joint == "left_wrist") return step(q.x(), -0.03, 0.03);
-  if (joint == "left_hand") return step(q.x(), -0.03, 0.03) * (1 - step(p.z(), 0.022, 0.04));  // without the thumb
+  if (joint == "left_elbow") return smooth_step(q.x(), -0.055, 0.055);
+  if (joint == "left_wrist") return smooth_step(q.x(), -0.03, 0.03);
+  if (joint == "left_hand")
+    return smooth_step(q.x(), -0.03, 0.03) * (1 - smooth_step(p.z(), 0.022, 0.04));  // without the thumb
   return 1;
 }
 

@@ -9,7 +9,7 @@
 namespace selvedge {
 namespace {
 
-const h5::FileForm form{"selvedge garment 1", "garment", "docs/garments.md"};
+const h5::FileForm file_form{"selvedge garment 1", "garment", "docs/garments.md"};
 
 // Names, where each one's vertices begin in the list of all, and that list.
 void write_groups(const h5::File& file, const Garment& garment) {
@@ -95,7 +95,7 @@ Eigen::Index read_joint_count(const h5::Fields& fields) {
 
 void write_garment(const std::filesystem::path& path, const Garment& garment) {
   check_garment(garment, path.string());
-  h5::write_form(path, form, [&](const h5::File& file) {
+  h5::write_form(path, file_form, [&](const h5::File& file) {
     file.write_text("name", garment.name);
     file.write_text("made_for", garment.made_for);
     h5::write_integers(file, "joint_count", {static_cast<int>(garment.skin.weights.cols())});
@@ -108,7 +108,7 @@ void write_garment(const std::filesystem::path& path, const Garment& garment) {
 }
 
 Garment read_garment(const std::filesystem::path& path) {
-  const h5::Fields fields(path, form);
+  const h5::Fields fields(path, file_form);
   Garment garment;
   garment.name = fields.has("name") ? fields.text("name") : path.stem().string();
   if (fields.has("made_for")) garment.made_for = fields.text("made_for");
