@@ -13,14 +13,14 @@ using testing::sheet;
 namespace {
 
 // A small sheet on a large one, and a box below that moves on its own.
-struct Rest {
+struct AtRest {
   testing::Sheet cloths = join(sheet(6, 0.2, 0.01), sheet(8, 0.3, 0.0));
   Surface cloth = make_surface(static_cast<int>(cloths.x.rows()), cloths.triangles);
   Points x = cloths.x;
   Surface body;
   Points y;
 
-  Rest() {
+  AtRest() {
     y.resize(8, 3);
     for (int v = 0; v < 8; ++v) y.row(v) << (v & 1 ? 0.1 : -0.1), (v & 2 ? -0.01 : -0.2), (v & 4 ? 0.1 : -0.1);
     Triangles faces(12, 3);
@@ -44,7 +44,7 @@ void same(const Audit& a, const Audit& b) {
 }  // namespace
 
 TEST_CASE("audit memory: nothing is asked again of what rests", "[audit_memory]") {
-  Rest rest;
+  AtRest rest;
   AuditMemory memory;
   const MovingBody cloth{&rest.cloth, &rest.x, &rest.x};
   const std::vector<MovingBody> bodies{{&rest.body, &rest.y, &rest.y}};
@@ -61,7 +61,7 @@ TEST_CASE("audit memory: nothing is asked again of what rests", "[audit_memory]"
 }
 
 TEST_CASE("audit memory: an audit with it finds what one without it finds", "[audit_memory]") {
-  Rest rest;
+  AtRest rest;
   AuditMemory memory;
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
@@ -94,7 +94,7 @@ TEST_CASE("audit memory: an audit with it finds what one without it finds", "[au
 
 TEST_CASE("audit memory: a state at the end of a fast motion is not remembered, one after a slow motion is",
           "[audit_memory]") {
-  Rest rest;
+  AtRest rest;
   const auto remembers = [&](double way) {
     AuditMemory memory;
     const std::vector<MovingBody> bodies{{&rest.body, &rest.y, &rest.y}};
@@ -111,7 +111,7 @@ TEST_CASE("audit memory: a state at the end of a fast motion is not remembered, 
 }
 
 TEST_CASE("audit memory: what sinks into a body is seen inside it", "[audit_memory]") {
-  Rest rest;
+  AtRest rest;
   AuditMemory memory;
   int inside = 0;
   for (int step = 0; step < 60; ++step) {
@@ -124,7 +124,7 @@ TEST_CASE("audit memory: what sinks into a body is seen inside it", "[audit_memo
 }
 
 TEST_CASE("audit memory: undefined coordinates are not remembered", "[audit_memory]") {
-  Rest rest;
+  AtRest rest;
   AuditMemory memory;
   rest.state(&memory);
   rest.state(&memory);
