@@ -5,6 +5,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/commands/commands.hpp"
+#include "pipeline/commands/weights_commands.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/host/process_threads.hpp"
 #include "pipeline/host/version.hpp"
@@ -155,6 +156,32 @@ void wardrobe_options(CLI::App& command, WardrobeRequest& request) {
   command.add_option("--out", request.out, "folder for the results");
 }
 
+void weights_import_options(CLI::App& command, WeightsImportArguments& arguments) {
+  command.add_option("checkpoint", arguments.checkpoint, "published by the authors of HOOD or ContourCraft (.pth)")
+      ->required();
+  command.add_option("--out", arguments.out, "where the weight file goes (.h5)")->required();
+}
+
+void weights_info_options(CLI::App& command, WeightsInfoArguments& arguments) {
+  command.add_option("file", arguments.file, "weight file (.h5)")->required();
+}
+
+void weights_parity_options(CLI::App& command, WeightsParityArguments& arguments) {
+  command.add_option("file", arguments.file, "weight file (.h5) or published checkpoint (.pth)")->required();
+  command.add_option("dump", arguments.dump, "a step that the authors' code took (.npz)")->required();
+}
+
+void add_weights_commands(CLI::App& app, Chosen& chosen) {
+  CLI::App& weights = *app.add_subcommand("weights", "weight files of learned steppers");
+  weights.require_subcommand(1);
+  add_command<WeightsImportArguments>(weights, chosen, "import", "a weight file from a published checkpoint",
+                                      weights_import_options, weights_import_command);
+  add_command<WeightsInfoArguments>(weights, chosen, "info", "what is in a weight file", weights_info_options,
+                                    weights_info_command);
+  add_command<WeightsParityArguments>(weights, chosen, "parity", "our step beside one that the authors' code took",
+                                      weights_parity_options, weights_parity_command);
+}
+
 void add_commands(CLI::App& app, Chosen& chosen) {
   struct Nothing {};
   add_command<SimulateArguments>(app, chosen, "simulate", "a scene in, an audited trajectory out", simulate_options,
@@ -185,6 +212,7 @@ void add_commands(CLI::App& app, Chosen& chosen) {
                                 stability_options, stability_command);
   add_command<WardrobeRequest>(app, chosen, "wardrobe", "every garment by code through every procedural clip",
                                wardrobe_options, wardrobe_command);
+  add_weights_commands(app, chosen);
   add_command<Nothing>(
       app, chosen, "info", "versions, packages, threads", [](CLI::App&, Nothing&) {},
       [](const Nothing&, bool json) { return info_command(json); });

@@ -6,7 +6,8 @@
 
 #include "collision/exact/symbolic_orientation.hpp"
 #include "collision/exact/triangle_pair.hpp"
-#include "collision/search/bvh.hpp"
+#include "collision/search/bvh_traversal.hpp"
+#include "collision/search/intersections.hpp"
 
 namespace selvedge {
 namespace {
@@ -134,9 +135,80 @@ struct Candidate {
   int sheet, a, b;  // triangle a of sheet 0, b of `sheet`
 };
 
+bool have_common_corner(const int* a, const int* b) {
+  bool common = false;
+  for (int i = 0; i < 3; ++i) common |= (a[i] == b[0]) | (a[i] == b[1]) | (a[i] == b[2]);
+  return common;
+}
+
+std::array<Vec3, 3> corners_of(const SheetView& sheet, int triangle) {
+  const int* v = sheet.surface->triangles.data() + 3 * triangle;
+  return {row(*sheet.x, v[0]), row(*sheet.x, v[1]), row(*sheet.x, v[2])};
+}
+
+std::vector<FacePlane> face_planes(const SheetView& sheet) {
+  std::vector<FacePlane> planes(static_cast<std::size_t>(sheet.surface->triangles.rows()));
+  const int count = static_cast<int>(planes.size());
+#pragma omp parallel for schedule(static)
+  for (int t = 0; t < count; ++t) planes[t] = face_plane(corners_of(sheet, t));
+  return planes;
+}
+
+// False only where a pair without a common corner surely has no segment and does not touch: most pairs, decided without
+// exact signs.
+bool may_meet(const SheetView& of_a, const FacePlane& plane_a, int a, const SheetView& of_b, const FacePlane& plane_b,
+              int b) {
+  const std::array<Vec3, 3> at_a = corners_of(of_a, a), at_b = corners_of(of_b, b);
+  return !surely_on_one_side(plane_a, at_b) && !surely_on_one_side(plane_b, at_a) && !surely_apart(at_a, at_b);
+}
+
+// The other two corners of a triangle round a vertex.
+struct RoundVertex {
+  int triangle;
+  std::array<int, 2> vertex;
+  std::array<Vec3, 2> at;
+};
+
+void list_round_vertex(const SheetView& sheet, int vertex, std::vector<RoundVertex>& round) {
+  round.clear();
+  for (const int t : sheet.surface->triangles_of(vertex)) {
+    const int* v = sheet.surface->triangles.data() + 3 * t;
+    const int k = v[0] == vertex ? 0 : v[1] == vertex ? 1 : 2, first = v[(k + 1) % 3], second = v[(k + 2) % 3];
+    round.push_back({t, {first, second}, {row(*sheet.x, first), row(*sheet.x, second)}});
+  }
+}
+
+// Pairs of triangles that have one vertex in common, and may have more.
+void add_round_vertex(const std::vector<RoundVertex>& round, const std::vector<FacePlane>& planes,
+                      std::vector<Candidate>& found) {
+  for (std::size_t i = 0; i < round.size(); ++i)
+    for (std::size_t j = i + 1; j < round.size(); ++j) {
+      const RoundVertex &a = round[i], &b = round[j];
+      const bool common_edge = (a.vertex[0] == b.vertex[0]) | (a.vertex[0] == b.vertex[1]) |
+                               (a.vertex[1] == b.vertex[0]) | (a.vertex[1] == b.vertex[1]);
+      if (common_edge || surely_on_one_side(planes[a.triangle], b.at) || surely_on_one_side(planes[b.triangle], a.at))
+        continue;
+      found.push_back({0, std::min(a.triangle, b.triangle), std::max(a.triangle, b.triangle)});
+    }
+}
+
+void add_round_vertices(const SheetView& sheet, const std::vector<FacePlane>& planes, std::vector<Candidate>& result) {
+  constexpr int chunk = 256;
+  const int vertices = sheet.surface->vertex_count, chunks = (vertices + chunk - 1) / chunk;
+  PartLists<Candidate> lists(static_cast<std::size_t>(chunks));
+#pragma omp parallel for schedule(dynamic)
+  for (int i = 0; i < chunks; ++i) {
+    std::vector<RoundVertex> round;
+    for (int v = i * chunk; v < std::min(vertices, (i + 1) * chunk); ++v) {
+      list_round_vertex(sheet, v, round);
+      add_round_vertex(round, planes, lists[static_cast<std::size_t>(i)]);
+    }
+  }
+  for (const auto& list : lists) result.insert(result.end(), list.begin(), list.end());
+}
+
 std::vector<Candidate> candidates(std::span<const SheetView> sheets) {
   std::vector<Candidate> result;
-  std::vector<std::pair<int, int>> pairs;
   std::vector<Box> boxes;
   Bvh built, other_built;
   const auto tree_of = [&](const SheetView& sheet, Bvh& place) -> const Bvh& {
@@ -144,12 +216,27 @@ std::vector<Candidate> candidates(std::span<const SheetView> sheets) {
     triangle_boxes(*sheet.surface, *sheet.x, *sheet.x, 0, boxes);
     return place = build_bvh(boxes);
   };
+  PartLists<Candidate> lists;
   const Bvh& own = tree_of(sheets[0], built);
-  self_pairs(own, pairs);
-  for (const auto& [a, b] : pairs) result.push_back({0, std::min(a, b), std::max(a, b)});
-  for (int k = 1; k < static_cast<int>(sheets.size()); ++k) {
-    cross_pairs(own, tree_of(sheets[k], other_built), pairs);
-    for (const auto& [a, b] : pairs) result.push_back({k, a, b});
+  const std::vector<FacePlane> planes = face_planes(sheets[0]);
+  const int* corners = sheets[0].surface->triangles.data();
+  add_round_vertices(sheets[0], planes, result);
+  for (int k = 0; k < static_cast<int>(sheets.size()); ++k) {
+    const Bvh& other = k == 0 ? own : tree_of(sheets[k], other_built);
+    const std::vector<FacePlane> other_planes = k == 0 ? std::vector<FacePlane>() : face_planes(sheets[k]);
+    const std::vector<FacePlane>& planes_b = k == 0 ? planes : other_planes;
+    const bool knows_quiet = k == 0 && sheets[0].tree && sheets[0].quiet;
+    const BvhTraversal traversal{own, other, k == 0, knows_quiet ? sheets[0].quiet : nullptr};
+    gather(traversal, lists, result, [&](NodeWork w, std::vector<Candidate>& found) {
+      const Bvh::Leaf &of_a = traversal.leaf_a(w), &of_b = traversal.leaf_b(w);
+      const auto test = [&](int i, int j) {
+        const int a = of_a.item[i], b = of_b.item[j];
+        if (k == 0 && have_common_corner(corners + 3 * a, corners + 3 * b)) return;  // add_round_vertices
+        if (!may_meet(sheets[0], planes[a], a, sheets[k], planes_b[b], b)) return;
+        found.push_back(k == 0 ? Candidate{0, std::min(a, b), std::max(a, b)} : Candidate{k, a, b});
+      };
+      traversal.is_self(w) ? for_each_overlap(of_a, test) : for_each_overlap(of_a, of_b, other.nodes[w.b].box, test);
+    });
   }
   return result;
 }

@@ -16,6 +16,7 @@ struct SheetView {
   const Surface* surface = nullptr;
   const Points* x = nullptr;
   const Bvh* tree = nullptr;  // of its triangles' boxes there, if whoever asks has one: saves building it
+  const std::vector<char>* quiet = nullptr;  // by node of that tree: nothing below crosses itself (quiet.hpp)
 };
 
 // Where an edge of one surface passes through a face of another or of its own. `sheet` numbers the surfaces of a query.

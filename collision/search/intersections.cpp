@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "collision/exact/triangle_pair.hpp"
 
@@ -50,13 +51,18 @@ bool apart_along(const Vec3& m, const Corners& a, const Corners& b, double reach
   return std::max(of_b.low - of_a.high, of_a.low - of_b.high) > slack_along(m, reach);
 }
 
-// Does the face's plane, through its corner `on`, have the other triangle on one side? With R for `reach`, the computed
+// Room for the rounding of a height over a face's plane. With R for `reach`, the computed
 // normal is wrong by less than 3 u 4 R^2 in each coordinate, along an edge (2 R) of the face by 24 u R^3; that the
 // edges are wrong by 4 u R in the sum of their coordinates adds 16 u R^3. So far the face's other corners may be off
 // the plane; 1e-14 is 90 u.
+double slack_by_plane(const Vec3& normal, double reach) {
+  return slack_along(normal, reach) + 1e-14 * reach * reach * reach;
+}
+
+// Does the face's plane, through its corner `on`, have the other triangle on one side?
 bool apart_by_plane(const Vec3& normal, const Vec3& on, const Corners& other, double reach) {
   const Range beyond = range_along(normal, other);
-  const double height = normal.dot(on), slack = slack_along(normal, reach) + 1e-14 * reach * reach * reach;
+  const double height = normal.dot(on), slack = slack_by_plane(normal, reach);
   return std::max(beyond.low - height, height - beyond.high) > slack;
 }
 
@@ -87,6 +93,23 @@ bool surely_apart(const Corners& first, const Corners& second) {
   const Vec3 normal_b = (b[1] - b[0]).cross(b[2] - b[0]);
   if (apart_by_plane(normal_b, b[0], a, reach)) return true;
   return apart_beside(normal_a, a, b, reach) || apart_beside(normal_b, b, a, reach);
+}
+
+FacePlane face_plane(const Corners& face) {
+  const Vec3 p = face[1] - face[0], q = face[2] - face[0];
+  return {face[0], p.cross(q), std::max(p.cwiseAbs().sum(), q.cwiseAbs().sum())};
+}
+
+bool surely_on_one_side(const FacePlane& plane, std::span<const Vec3> points) {
+  double reach = plane.reach, low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Vec3& point : points) {
+    const Vec3 p = point - plane.on;
+    reach = std::max(reach, p.cwiseAbs().sum());
+    const double height = plane.normal.dot(p);
+    low = std::min(low, height);
+    high = std::max(high, height);
+  }
+  return std::max(low, -high) > slack_by_plane(plane.normal, reach);
 }
 
 Pairs intersecting_pairs(const Surface& surface, const Points& x, IntersectionCache& cache) {

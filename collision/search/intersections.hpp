@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -29,5 +30,15 @@ std::vector<std::pair<int, int>> intersecting_pairs(const Surface& a, const Poin
 // True only if a plane lies strictly between the two triangles: a quick floating-point test with a bound on its
 // rounding, which decides most pairs. False says nothing.
 bool surely_apart(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
+
+// A face's plane through its first corner, kept where many pairs ask for it.
+struct FacePlane {
+  Vec3 on, normal;   // normal: as long as twice the face's area
+  double reach = 0;  // largest sum of coordinates of the other corners, seen from the first
+};
+FacePlane face_plane(const std::array<Vec3, 3>& face);
+
+// True only if the points, one at least, are strictly on one side of the face's plane. False says nothing.
+bool surely_on_one_side(const FacePlane&, std::span<const Vec3> points);
 
 }  // namespace selvedge

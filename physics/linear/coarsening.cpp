@@ -125,10 +125,10 @@ Weights interpolate(const Vertices& fine, int i, std::vector<Candidate>& around)
   return triangle_weights(around, weights) ? weights : segment_weights(around);
 }
 
-Graph graph_of_pairs(int vertices, std::vector<std::array<int, 2>>& pairs) {
+NeighbourGraph graph_of_pairs(int vertices, std::vector<std::array<int, 2>>& pairs) {
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  Graph graph;
+  NeighbourGraph graph;
   graph.begin.assign(vertices + 1, 0);
   for (const auto& [from, to] : pairs) ++graph.begin[from + 1];
   std::partial_sum(graph.begin.begin(), graph.begin.end(), graph.begin.begin());
@@ -138,7 +138,7 @@ Graph graph_of_pairs(int vertices, std::vector<std::array<int, 2>>& pairs) {
 
 }  // namespace
 
-Graph make_graph(int vertices, const Edges& edges) {
+NeighbourGraph neighbour_graph(int vertices, const Edges& edges) {
   std::vector<std::array<int, 2>> pairs;
   for (int e = 0; e < edges.rows(); ++e) {
     pairs.push_back({edges(e, 0), edges(e, 1)});
@@ -149,7 +149,7 @@ Graph make_graph(int vertices, const Edges& edges) {
 
 std::vector<Rim> rims(const Points& rest, const Edges& border) {
   std::vector<Rim> rim(rest.rows(), Rim::inside);
-  const Graph graph = make_graph(static_cast<int>(rest.rows()), border);
+  const NeighbourGraph graph = neighbour_graph(static_cast<int>(rest.rows()), border);
   for (int i = 0; i < graph.size(); ++i) {
     const int ends = graph.begin[i + 1] - graph.begin[i];
     if (ends == 0) continue;

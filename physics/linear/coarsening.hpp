@@ -8,17 +8,17 @@
 namespace selvedge {
 
 // Who neighbours whom, by rows, ascending, nobody their own neighbour.
-struct Graph {
+struct NeighbourGraph {
   std::vector<int> begin, neighbour;
   int size() const { return static_cast<int>(begin.size()) - 1; }
 };
-Graph make_graph(int vertices, const Edges&);
+NeighbourGraph neighbour_graph(int vertices, const Edges&);
 
 // A level of a hierarchy of vertices: where they rest, who neighbours whom, and which edge of the cloth they lie on.
 enum class Rim : char { inside, border, corner };
 struct Vertices {
   Points rest;
-  Graph graph;
+  NeighbourGraph graph;
   std::vector<Rim> rim;
 };
 

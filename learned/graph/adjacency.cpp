@@ -1,0 +1,61 @@
+#include "learned/graph/adjacency.hpp"
+
+#include <algorithm>
+
+namespace selvedge {
+
+Adjacency adjacency_of(int vertex_count, const Edges& edges) {
+  Adjacency result{std::vector<int>(static_cast<std::size_t>(vertex_count) + 1, 0), {}};
+  for (const auto& edge : edges.rowwise()) {
+    ++result.begin[edge[0] + 1];
+    ++result.begin[edge[1] + 1];
+  }
+  for (int v = 0; v < vertex_count; ++v) result.begin[v + 1] += result.begin[v];
+  result.neighbour.resize(static_cast<std::size_t>(result.begin.back()));
+  std::vector<int> at(result.begin.begin(), result.begin.end() - 1);
+  for (const auto& edge : edges.rowwise()) {
+    result.neighbour[at[edge[0]]++] = edge[1];
+    result.neighbour[at[edge[1]]++] = edge[0];
+  }
+  for (int v = 0; v < vertex_count; ++v)
+    std::sort(result.neighbour.begin() + result.begin[v], result.neighbour.begin() + result.begin[v + 1]);
+  return result;
+}
+
+bool within_two_edges(const Adjacency& graph, int a, int b) {
+  if (a == b) return true;
+  const std::span<const int> of_a = graph.of(a), of_b = graph.of(b);
+  if (std::binary_search(of_a.begin(), of_a.end(), b)) return true;
+  for (auto i = of_a.begin(), j = of_b.begin(); i != of_a.end() && j != of_b.end();) {
+    if (*i == *j) return true;
+    *i < *j ? ++i : ++j;
+  }
+  return false;
+}
+
+std::vector<int> breadth_first(const Adjacency& graph, std::span<const int> sources, std::vector<int>& depth) {
+  depth.assign(static_cast<std::size_t>(graph.vertex_count()), -1);
+  std::vector<int> order(sources.begin(), sources.end());
+  order.reserve(depth.size());
+  for (const int source : sources) depth[source] = 0;
+  for (std::size_t i = 0; i < order.size(); ++i)
+    for (const int next : graph.of(order[i]))
+      if (depth[next] < 0) {
+        depth[next] = depth[order[i]] + 1;
+        order.push_back(next);
+      }
+  return order;
+}
+
+Edges unique_edges(std::vector<std::pair<int, int>> pairs) {
+  for (auto& [a, b] : pairs)
+    if (b < a) std::swap(a, b);
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  Edges edges(static_cast<Eigen::Index>(pairs.size()), 2);
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    edges.row(static_cast<Eigen::Index>(i)) << pairs[i].first, pairs[i].second;
+  return edges;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,82 @@
+#include "learned/graph/body_pairs.hpp"
+
+#include "collision/geometry/distance.hpp"
+#include "learned/graph/nearest_item.hpp"
+
+namespace selvedge {
+namespace {
+
+double squared_to_face(const Surface& body, const Points& x, const Vec3& p, int face) {
+  const int* v = body.triangles.data() + 3 * face;
+  return point_triangle(p, row(x, v[0]), row(x, v[1]), row(x, v[2])).squared_distance;
+}
+
+// Of the face's vertices the nearest, the first of several.
+int nearest_corner(const Surface& body, const Points& x, const Vec3& p, int face) {
+  int best = body.triangles(face, 0);
+  for (int k = 1; k < 3; ++k) {
+    const int v = body.triangles(face, k);
+    if ((row(x, v) - p).squaredNorm() < (row(x, best) - p).squaredNorm()) best = v;
+  }
+  return best;
+}
+
+void refresh_trees(const GraphScene& scene, BodyPartner partner, const Points& cloth, const Points& body,
+                   BodySearch& search) {
+  if (partner == BodyPartner::nearest_vertex)
+    vertex_boxes(body, body, 0, search.boxes);
+  else
+    triangle_boxes(scene.body, body, body, 0, search.boxes);
+  update(search.body, search.boxes);
+  vertex_boxes(cloth, cloth, 0, search.boxes);
+  update(search.cloth, search.boxes);
+}
+
+// Nearest items of all cloth vertices; -1 where none is within the radius. Vertices that lie together search together.
+template <class SquaredOf>
+void search_all(const Points& cloth, double radius, BodySearch& search, SquaredOf&& squared_of) {
+  const Bvh& groups = search.cloth.bvh;
+  const int count = static_cast<int>(groups.leaves.size());
+  search.last.resize(static_cast<std::size_t>(cloth.rows()), -1);
+#pragma omp parallel for schedule(dynamic, 16)
+  for (int leaf = 0; leaf < count; ++leaf) {
+    NearGroup group;
+    for (const int v : groups.leaves[static_cast<std::size_t>(leaf)].item) {
+      if (v < 0) break;
+      NearestItem best{radius * radius, -1};
+      if (const int guess = search.last[v]; guess >= 0 && guess < search.body.bvh.item_count) {
+        const double squared = squared_of(row(cloth, v), guess);
+        if (squared <= best.squared) best = {squared, guess};
+      }
+      group.add(row(cloth, v), best);
+    }
+    find_nearest(search.body.bvh, group, squared_of);
+    for (int i = 0; i < group.size; ++i)
+      search.last[groups.leaves[static_cast<std::size_t>(leaf)].item[i]] = group.best[i].item;
+  }
+}
+
+}  // namespace
+
+std::vector<BodyPair> find_body_pairs(const GraphScene& scene, const FeatureOptions& options, const Points& cloth,
+                                      const Points& body, BodySearch& search) {
+  std::vector<BodyPair> pairs;
+  if (body.rows() == 0) return pairs;
+  const bool vertices = options.body_partner == BodyPartner::nearest_vertex;
+  refresh_trees(scene, options.body_partner, cloth, body, search);
+  if (vertices)
+    search_all(cloth, options.body_radius, search,
+               [&](const Vec3& p, int v) { return (row(body, v) - p).squaredNorm(); });
+  else
+    search_all(cloth, options.body_radius, search,
+               [&](const Vec3& p, int face) { return squared_to_face(scene.body, body, p, face); });
+  for (int v = 0; v < static_cast<int>(search.last.size()); ++v) {
+    const int item = search.last[static_cast<std::size_t>(v)];
+    if (item < 0) continue;
+    pairs.push_back(vertices ? BodyPair{v, -1, item}
+                             : BodyPair{v, item, nearest_corner(scene.body, body, row(cloth, v), item)});
+  }
+  return pairs;
+}
+
+}  // namespace selvedge

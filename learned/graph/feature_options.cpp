@@ -1,0 +1,90 @@
+#include "learned/graph/feature_options.hpp"
+
+namespace selvedge {
+
+FeatureOptions hood_features() { return {}; }
+
+FeatureOptions hood_cvpr_features() {
+  FeatureOptions options;
+  options.cloth_velocity = ClothVelocity::difference;
+  options.body_velocity = BodyVelocity::next;
+  options.next_body_first = true;
+  return options;
+}
+
+FeatureOptions fine_features() {
+  FeatureOptions options = hood_cvpr_features();
+  options.level_columns = 0;
+  options.coarse_levels = 0;
+  options.coarse_sets.clear();
+  return options;
+}
+
+FeatureOptions contourcraft_features() {
+  FeatureOptions options;
+  options.highest_level = 4;
+  options.log_mass = false;
+  options.time = TimeFeature::is_init;
+  options.body_velocity = BodyVelocity::next;
+  options.pinned = PinnedForm::moved_for_mesh_edges;
+  options.mesh_order = MeshOrder::smaller_sends;
+  options.rest = RestFeature::length;
+  options.coarse_levels = 4;
+  options.coarse_sets = {0, 1, 2, 3};
+  options.shared_mesh_statistics = false;
+  options.body_key = "body_edge";
+  options.body_partner = BodyPartner::nearest_face;
+  options.body_edge_velocity = true;
+  options.cloth_edges = true;
+  return options;
+}
+
+FeatureOptions contourcraft_paper_features() {
+  FeatureOptions options = contourcraft_features();
+  options.highest_level = 2;
+  options.coarse_levels = 2;
+  options.coarse_sets = {0, 1};
+  options.contours = ContourRule::all_vertices;
+  return options;
+}
+
+namespace {
+
+constexpr int materials = 3;
+
+// A time column is among the normalised ones, or the first behind them.
+FeatureWidths with_time(const FeatureOptions& options, int normalised, int behind) {
+  const bool dt = options.time == TimeFeature::timestep;
+  return {normalised + 1 + behind, normalised + (dt ? 1 : 0)};
+}
+
+}  // namespace
+
+FeatureWidths node_widths(const FeatureOptions& options) {
+  return with_time(options, 3 + options.type_columns + options.level_columns + 3 + 1, materials);
+}
+
+FeatureWidths mesh_edge_widths(const FeatureOptions& options) {
+  return with_time(options, 4 + (options.rest == RestFeature::vector ? 4 : 1), materials);
+}
+
+FeatureWidths body_edge_widths(const FeatureOptions& options) {
+  return with_time(options, options.body_edge_velocity ? 12 : 8, 0);
+}
+
+FeatureWidths cloth_edge_widths(const FeatureOptions& options) {
+  return with_time(options, 12 + options.label_columns, materials);
+}
+
+std::vector<std::string> edge_set_keys(const FeatureOptions& options) {
+  std::vector<std::string> keys{"mesh_edge"};
+  for (const int level : options.coarse_sets) keys.push_back("coarse_edge" + std::to_string(level));
+  if (!options.body_key.empty()) keys.push_back(options.body_key);
+  if (options.cloth_edges) {
+    keys.push_back("repulsion_edge");
+    keys.push_back("attraction_edge");
+  }
+  return keys;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace selvedge {
+
+// How a model was shown time: HOOD as a normalised column with the time step [s], ContourCraft as a flag that is not
+// normalised.
+enum class TimeFeature { timestep, is_init };
+
+// What a mesh or coarse edge knows of the rest shape: the relative position with its norm (HOOD), or the length alone.
+enum class RestFeature { vector, length };
+
+// The obstacle vertex that a cloth vertex gets an edge to, if the distance is at most body_radius: the nearest vertex
+// (HOOD), or of the face that is nearest the vertex that is nearest, which may be farther away (ContourCraft).
+enum class BodyPartner { nearest_vertex, nearest_face };
+
+// The velocity feature of obstacle vertices: pos - previous (HOOD), or target - pos.
+enum class BodyVelocity { current, next };
+
+// The velocity feature of cloth vertices: what the state carries, or pos - previous (hood_cvpr).
+enum class ClothVelocity { carried, difference };
+
+// Pinned vertices (parity README, 1): HOOD moves them to their target before anything else; ContourCraft sees them
+// there in mesh and coarse edges only.
+enum class PinnedForm { moved, moved_for_mesh_edges };
+
+// Which end of a mesh edge is the sender in the first half of its set; the second half is the reverse of the first.
+enum class MeshOrder { larger_sends, smaller_sends };
+
+// Whether cloth-cloth pairs repel or attract: all repel; by the vertex of a pair (released code); by all vertices of a
+// pair (Grigorev et al. 2024, algorithm 2).
+enum class ContourRule { all_repel, vertex, all_vertices };
+
+// What a model was trained to see. A plain value, part of a model's architecture. The defaults are HOOD's.
+struct FeatureOptions {
+  // Nodes: velocity 3, type embedding, level embedding, normal 3, (dt,) mass | (is_init,) bending, mu, lambda.
+  // What stands behind | is not normalised.
+  int type_columns = 9;
+  int level_columns = 4;  // 0: no level embedding (fine15, fine48)
+  int highest_level = 3;  // levels above are seen as this one
+  bool log_mass = true;
+  TimeFeature time = TimeFeature::timestep;
+  ClothVelocity cloth_velocity = ClothVelocity::carried;
+  BodyVelocity body_velocity = BodyVelocity::current;
+  PinnedForm pinned = PinnedForm::moved;
+
+  // Mesh and coarse edges: x_s - x_r 3 + 1, rest 3 + 1 or 1, (dt) | (is_init,) bending, mu, lambda.
+  MeshOrder mesh_order = MeshOrder::larger_sends;
+  RestFeature rest = RestFeature::vector;
+  int coarse_levels = 3;                  // that are built; they give the vertex levels
+  std::vector<int> coarse_sets{0, 1, 2};  // levels whose edges are sets of the graph
+  bool shared_mesh_statistics = true;     // mesh and coarse edges are normalised alike
+  bool approximate_centre = false;        // of a component: the middle of a long path in place of the exact centre
+
+  // Edges between cloth and obstacle, both ways: now 3 + 1, next 3 + 1, (velocity 3 + 1, no dt | is_init), or dt.
+  std::string body_key = "world_edge";  // empty: none
+  BodyPartner body_partner = BodyPartner::nearest_vertex;
+  double body_radius = 0.03;     // [m]
+  bool next_body_first = false;  // hood_cvpr: the columns of the next pose come first
+  bool body_edge_velocity = false;
+
+  // Cloth-cloth edges from a vertex to the nearest vertex of a face: pos 3 + 1, previous 3 + 1, velocity 3 + 1, label
+  // embedding | is_init, bending, mu, lambda. Sets repulsion_edge and attraction_edge.
+  bool cloth_edges = false;
+  double cloth_radius = 0.03;       // [m]
+  int cloth_pairs_per_vertex = 32;  // on average; pairs beyond are left out and counted
+  bool future_pinned = true;        // pairs with pinned vertices where they will be (label 1)
+  int label_columns = 4;
+  ContourRule contours = ContourRule::vertex;
+};
+
+FeatureOptions hood_features();  // hood_final: 24 node, 12 mesh, 9 body columns
+FeatureOptions hood_cvpr_features();
+FeatureOptions fine_features();                // fine15, fine48: 20 node columns, no coarse levels
+FeatureOptions contourcraft_features();        // released: 24, 9, 20 and 13 columns, four coarse levels
+FeatureOptions contourcraft_paper_features();  // two coarse levels, contours judged by all vertices of a pair
+
+// Columns of each kind of row, and how many of them, the first, are normalised.
+struct FeatureWidths {
+  int all = 0, normalised = 0;
+};
+FeatureWidths node_widths(const FeatureOptions&);
+FeatureWidths mesh_edge_widths(const FeatureOptions&);  // coarse edges too
+FeatureWidths body_edge_widths(const FeatureOptions&);
+FeatureWidths cloth_edge_widths(const FeatureOptions&);
+
+// Keys of the edge sets of a graph, in its order: mesh_edge, coarse_edge.., body_key, repulsion_edge, attraction_edge.
+std::vector<std::string> edge_set_keys(const FeatureOptions&);
+
+}  // namespace selvedge

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/geometry/surface.hpp"
+#include "learned/graph/graph.hpp"
+
+namespace selvedge {
+
+// Vertex types, as rows of the authors' type embedding.
+enum VertexType : int { free_vertex = 0, body_vertex = 1, omitted_body_vertex = 2, pinned_vertex = 3 };
+
+// What stays the same while a scene is simulated. All cloths are one surface, and so are all obstacles.
+struct GraphScene {
+  Surface cloth;
+  Points rest;                  // [m]
+  std::vector<double> mass;     // of each cloth vertex [kg]
+  std::vector<int> types;       // of each cloth vertex: free_vertex or pinned_vertex
+  FeatureRows materials;        // V x 3: bending, mu, lambda as numbers between 0 and 1
+  Surface body;                 // without vertices where there is none
+  std::vector<int> body_types;  // body_vertex, or omitted_body_vertex: it gets no edges
+};
+
+// What a step starts from. Velocities are per frame [m/frame]. For pinned vertices `target` is where they will be.
+struct GraphState {
+  Points x, previous, target, velocity;     // of the cloth, V x 3
+  Points body, body_previous, body_target;  // W x 3
+  double timestep = 1.0 / 30;               // [s]
+  bool is_init = false;                     // the cloth is to fall to rest (ContourCraft's flag)
+  bool no_cloth_edges = false;              // first steps of the authors' training samples have none
+};
+
+}  // namespace selvedge

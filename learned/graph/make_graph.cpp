@@ -1,0 +1,132 @@
+#include "learned/graph/make_graph.hpp"
+
+#include <algorithm>
+
+#include "collision/geometry/error.hpp"
+#include "learned/graph/node_features.hpp"
+
+namespace selvedge {
+namespace {
+
+void check_sizes(const GraphScene& scene, const RestGraph& rest, const GraphState& state) {
+  const Eigen::Index cloth = scene.cloth.vertex_count, body = scene.body.vertex_count;
+  const auto wrong = [](std::initializer_list<Eigen::Index> rows, Eigen::Index wanted) {
+    return std::ranges::any_of(rows, [wanted](Eigen::Index n) { return n != wanted; });
+  };
+  if (wrong({state.x.rows(), state.previous.rows(), state.target.rows(), state.velocity.rows(),
+             static_cast<Eigen::Index>(rest.vertex_levels.size())},
+            cloth) ||
+      wrong({state.body.rows(), state.body_previous.rows(), state.body_target.rows()}, body))
+    throw Error("a state has another number of vertices than its scene", "graph of a learned stepper", "");
+}
+
+// Far beyond any scene; squares and products of three fit into float.
+constexpr double largest = 1e12;
+
+bool is_usable(const Points& points) { return (points.array().abs() < largest).all(); }  // NaN is not below anything
+
+std::string complaint(const GraphState& state) {
+  if (!is_usable(state.x) || !is_usable(state.previous) || !is_usable(state.velocity) || !is_usable(state.target))
+    return "a position or velocity of the cloth is not finite or far too large";
+  if (!is_usable(state.body) || !is_usable(state.body_previous) || !is_usable(state.body_target))
+    return "a position of the body is not finite or far too large";
+  return {};
+}
+
+// Drops pairs with omitted vertices, and lists those that are left, each once.
+std::vector<int> active_vertices(const GraphScene& scene, GraphReport& report) {
+  report.omitted_body_pairs = static_cast<int>(std::erase_if(report.body_pairs, [&](const BodyPair& pair) {
+    return scene.body_types[static_cast<std::size_t>(pair.vertex)] == omitted_body_vertex;
+  }));
+  std::vector<char> has_edge(scene.body_types.size(), 0);
+  for (const BodyPair& pair : report.body_pairs) has_edge[static_cast<std::size_t>(pair.vertex)] = 1;
+  std::vector<int> vertices;
+  for (std::size_t v = 0; v < has_edge.size(); ++v)
+    if (has_edge[v]) vertices.push_back(static_cast<int>(v));
+  return vertices;
+}
+
+void keep_within(const FeatureOptions& options, std::size_t queries, std::vector<ClothPair>& pairs,
+                 GraphReport& report) {
+  const auto most = static_cast<std::size_t>(std::max(options.cloth_pairs_per_vertex, 0)) * queries;
+  report.cloth_pairs_beyond += keep_nearest_pairs(pairs, most);
+}
+
+// Pinned vertices against the cloth, all where their velocity takes them.
+std::vector<ClothPair> future_pairs(const GraphScene& scene, const RestGraph& rest, const GraphState& state,
+                                    const SeenPositions& seen, const FeatureOptions& options, ClothSearch& search) {
+  if (!options.future_pinned || rest.pinned.empty()) return {};
+  const Points x = seen.mesh + state.velocity;
+  std::vector<ClothPair> pairs = find_cloth_pairs(scene.cloth, x, rest.pinned, options.cloth_radius, search);
+  for (ClothPair& pair : pairs) pair.label = 1;
+  return pairs;
+}
+
+void find_classes(const GraphScene& scene, const RestGraph& rest, const GraphState& state, const SeenPositions& seen,
+                  const FeatureOptions& options, GraphSearch& search, GraphReport& report) {
+  if (!options.cloth_edges || state.no_cloth_edges) return;
+  std::vector<int> all(static_cast<std::size_t>(scene.cloth.vertex_count));
+  for (std::size_t v = 0; v < all.size(); ++v) all[v] = static_cast<int>(v);
+  std::vector<ClothPair> pairs = find_cloth_pairs(scene.cloth, seen.x, all, options.cloth_radius, search.cloth);
+  keep_within(options, all.size(), pairs, report);
+  std::vector<ClothPair> future = future_pairs(scene, rest, state, seen, options, search.future);
+  keep_within(options, rest.pinned.size(), future, report);
+  pairs.insert(pairs.end(), future.begin(), future.end());
+  if (options.contours == ContourRule::all_repel) {
+    report.cloth_pairs.repulsion = std::move(pairs);
+    return;
+  }
+  const SheetView cloth = refreshed_sheet(scene.cloth, seen.x, search.cloth);
+  const Segments segments = find_segments(std::span(&cloth, 1));
+  report.cloth_pairs =
+      classify_pairs(pairs, cloth, segments, find_contours(std::span(&cloth, 1), segments), options.contours);
+}
+
+}  // namespace
+
+void make_raw_graph(const GraphScene& scene, const RestGraph& rest, const GraphState& state,
+                    const FeatureOptions& options, const FeatureTables& tables, GraphSearch& search, Graph& graph,
+                    GraphReport& report) {
+  check_sizes(scene, rest, state);
+  report = {};
+  report.refused = complaint(state);
+  if (!report.refused.empty()) {
+    graph = {};
+    return;
+  }
+  const SeenPositions seen = seen_positions(rest, state, options);
+  const bool with_body = !options.body_key.empty();
+  if (with_body) report.body_pairs = find_body_pairs(scene, options, seen.x, state.body, search.body);
+  graph.body_vertices = active_vertices(scene, report);
+  find_classes(scene, rest, state, seen, options, search, report);
+  fill_node_rows(scene, rest, state, seen, options, tables, graph);
+
+  const std::vector<std::string> keys = edge_set_keys(options);
+  graph.edge_sets.resize(keys.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    EdgeSet& set = graph.edge_sets[i];
+    set.key = keys[i];
+    if (i < rest.sets.size())
+      fill_mesh_edges(rest.sets[i], state, seen, options, set);
+    else if (with_body && i == rest.sets.size())
+      fill_body_edges(report.body_pairs, graph.body_vertices, state, seen, options, set);
+    else
+      fill_cloth_edges(keys[i] == "repulsion_edge" ? report.cloth_pairs.repulsion : report.cloth_pairs.attraction,
+                       scene, state, seen, options, tables, set);
+  }
+}
+
+void make_graph(const GraphScene& scene, const RestGraph& rest, const GraphState& state, const FeatureOptions& options,
+                const FeatureTables& tables, GraphSearch& search, Graph& graph, GraphReport& report) {
+  make_raw_graph(scene, rest, state, options, tables, search, graph, report);
+  if (report.refused.empty()) normalise(options, tables, graph);
+}
+
+Graph make_graph(const GraphScene& scene, const RestGraph& rest, const GraphState& state, const FeatureOptions& options,
+                 const FeatureTables& tables, GraphSearch& search, GraphReport& report) {
+  Graph graph;
+  make_graph(scene, rest, state, options, tables, search, graph, report);
+  return graph;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,81 @@
+#include "learned/graph/node_features.hpp"
+
+#include <algorithm>
+
+#include "learned/graph/embedding.hpp"
+
+namespace selvedge {
+namespace {
+
+// Sum of the face normals round a vertex, each as long as twice its area, made one long; zero where there is none.
+Eigen::RowVector3f vertex_normal(const Surface& surface, const Points& x, int vertex) {
+  Vec3 sum = Vec3::Zero();
+  for (const int t : surface.triangles_of(vertex)) {
+    const int* v = surface.triangles.data() + 3 * t;
+    const Vec3 a = row(x, v[0]);
+    sum += (row(x, v[1]) - a).cross(row(x, v[2]) - a);
+  }
+  const double length = sum.norm();
+  return (length > 0 ? Vec3(sum / length) : Vec3(Vec3::Zero())).transpose().cast<float>();
+}
+
+// Columns: velocity, type, level, normal, (dt,) mass, (is_init,) bending, mu, lambda.
+struct NodeColumns {
+  int type = 3, level, normal, mass, time, materials;
+
+  explicit NodeColumns(const FeatureOptions& options)
+      : level(type + options.type_columns), normal(level + options.level_columns) {
+    const bool dt = options.time == TimeFeature::timestep;
+    time = dt ? normal + 3 : normal + 4;
+    mass = dt ? normal + 4 : normal + 3;
+    materials = normal + 5;
+  }
+};
+
+void fill_cloth(const GraphScene& scene, const RestGraph& rest, const GraphState& state, const SeenPositions& seen,
+                const FeatureOptions& options, const NodeColumns& at, FeatureRows& rows) {
+  const bool carried = options.cloth_velocity == ClothVelocity::carried;
+#pragma omp parallel for schedule(static, 256)
+  for (int v = 0; v < scene.cloth.vertex_count; ++v) {
+    const Eigen::RowVector3d velocity =
+        carried ? Eigen::RowVector3d(state.velocity.row(v)) : Eigen::RowVector3d(seen.x.row(v) - seen.previous.row(v));
+    rows.row(v).head<3>() = velocity.cast<float>();
+    rows.row(v).segment<3>(at.normal) = vertex_normal(scene.cloth, seen.x, v);
+    rows(v, at.mass) = rest.mass[static_cast<std::size_t>(v)];
+    rows.row(v).segment<3>(at.materials) = scene.materials.row(v);
+  }
+}
+
+void fill_body(const GraphScene& scene, const GraphState& state, const FeatureOptions& options, const NodeColumns& at,
+               const std::vector<int>& vertices, FeatureRows& rows) {
+  const bool next = options.body_velocity == BodyVelocity::next;
+  const Points &to = next ? state.body_target : state.body, &from = next ? state.body : state.body_previous;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    auto features = rows.row(scene.cloth.vertex_count + static_cast<Eigen::Index>(i));
+    features.head<3>() = (to.row(vertices[i]) - from.row(vertices[i])).cast<float>();
+    features.segment<3>(at.normal) = vertex_normal(scene.body, state.body, vertices[i]);
+    features(at.mass) = -1;
+    features.segment<3>(at.materials).setConstant(-1);
+  }
+}
+
+}  // namespace
+
+void fill_node_rows(const GraphScene& scene, const RestGraph& rest, const GraphState& state, const SeenPositions& seen,
+                    const FeatureOptions& options, const FeatureTables& tables, Graph& graph) {
+  graph.cloth_nodes = scene.cloth.vertex_count;
+  graph.node_types = scene.types;
+  graph.node_levels = rest.vertex_levels;
+  for (const int v : graph.body_vertices) graph.node_types.push_back(scene.body_types[static_cast<std::size_t>(v)]);
+  graph.node_levels.resize(graph.node_types.size(), 0);
+  const NodeColumns at(options);
+  graph.nodes.resize(static_cast<Eigen::Index>(graph.node_types.size()), node_widths(options).all);
+  fill_cloth(scene, rest, state, seen, options, at, graph.nodes);
+  fill_body(scene, state, options, at, graph.body_vertices, graph.nodes);
+  graph.nodes.col(at.time).setConstant(options.time == TimeFeature::timestep ? static_cast<float>(state.timestep)
+                                                                             : (state.is_init ? 1.0f : 0.0f));
+  embed(tables.node_type, graph.node_types, at.type, options.type_columns, graph.nodes);
+  embed(tables.vertex_level, graph.node_levels, at.level, options.level_columns, graph.nodes);
+}
+
+}  // namespace selvedge

@@ -1,0 +1,75 @@
+#include "collision/geometry/error.hpp"
+#include "learned/graph/make_graph.hpp"
+
+namespace selvedge {
+namespace {
+
+// The member of tables or sums that is for a set of edges.
+template <class Tables>
+auto& part_for(const std::string& key, const FeatureOptions& options, Tables& tables) {
+  if (key == options.body_key) return key == "body_edge" ? tables.body_edge : tables.world_edge;
+  if (key == "mesh_edge" || (key.starts_with("coarse_edge") && options.shared_mesh_statistics)) return tables.mesh_edge;
+  if (key.starts_with("coarse_edge")) return tables.coarse_edge;
+  return tables.world_edge;
+}
+
+int width_for(const std::string& key, const FeatureOptions& options) {
+  if (key == options.body_key) return body_edge_widths(options).normalised;
+  return key == "repulsion_edge" || key == "attraction_edge" ? cloth_edge_widths(options).normalised
+                                                             : mesh_edge_widths(options).normalised;
+}
+
+void check_width(const std::string& what, std::size_t columns, int wanted) {
+  if (columns != static_cast<std::size_t>(wanted))
+    throw Error(
+        "statistics of " + what + " have " + std::to_string(columns) + " columns in place of " + std::to_string(wanted),
+        "weights of a learned stepper", "");
+}
+
+}  // namespace
+
+const Statistics& statistics_for(const std::string& key, const FeatureOptions& options, const FeatureTables& tables) {
+  return part_for(key, options, tables);
+}
+
+void normalise(const FeatureOptions& options, const FeatureTables& tables, Graph& graph) {
+  for (EdgeSet& set : graph.edge_sets) {
+    const Statistics& statistics = statistics_for(set.key, options, tables);
+    check_width(set.key, statistics.mean.size(), width_for(set.key, options));
+    normalise(statistics, set.features);
+  }
+  check_width("nodes", tables.node.mean.size(), node_widths(options).normalised);
+  normalise(tables.node, graph.nodes);
+}
+
+template <class Real>
+FeatureSums<Real> empty_sums(const FeatureOptions& options) {
+  FeatureSums<Real> sums;
+  sums.node = BasicAccumulators<Real>(node_widths(options).normalised);
+  sums.output = BasicAccumulators<Real>(3);
+  for (const std::string& key : edge_set_keys(options))
+    part_for(key, options, sums) = BasicAccumulators<Real>(width_for(key, options));
+  return sums;
+}
+
+template <class Real>
+void gather_and_normalise(const FeatureOptions& options, FeatureSums<Real>& sums, FeatureTables& tables, Graph& graph) {
+  for (EdgeSet& set : graph.edge_sets) {
+    BasicAccumulators<Real>& of_set = part_for(set.key, options, sums);
+    check_width(set.key, of_set.sum.size(), width_for(set.key, options));
+    accumulate(of_set, set.features);
+    Statistics& statistics = part_for(set.key, options, tables);
+    statistics = statistics_of(of_set);
+    normalise(statistics, set.features);
+  }
+  accumulate(sums.node, graph.nodes);
+  tables.node = statistics_of(sums.node);
+  normalise(tables.node, graph.nodes);
+}
+
+template FeatureSums<float> empty_sums(const FeatureOptions&);
+template FeatureSums<double> empty_sums(const FeatureOptions&);
+template void gather_and_normalise(const FeatureOptions&, FeatureSums<float>&, FeatureTables&, Graph&);
+template void gather_and_normalise(const FeatureOptions&, FeatureSums<double>&, FeatureTables&, Graph&);
+
+}  // namespace selvedge

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "learned/graph/feature_options.hpp"
+#include "learned/graph/graph.hpp"
+
+namespace selvedge {
+
+// A network that turns the features of one kind of edges into latents. Kinds may share one.
+struct EdgeEncoder {
+  std::string name;  // as the published checkpoints call it: mesh, world, body, coarse0..
+  int inputs = 0;
+};
+
+// Edges of one key, which encoder reads their features, and how many of its columns are normalised.
+struct EdgeKind {
+  std::string key;
+  int encoder = 0;     // index into Architecture::encoders
+  int normalised = 0;  // the first columns of the features
+};
+
+// Edges of one key take part in a step only where every cloth end of theirs has an edge in one of the sets `near`.
+struct EdgeFilter {
+  std::string key;
+  std::vector<std::string> near;
+};
+
+// One step of message passing with weights of its own. The sums enter the node network in the order of `edge_keys`,
+// which is alphabetical (row 3 of the parity README). Latents of edges that a filter drops stay as they are; an edge
+// must pass every filter of its key (row 5).
+struct MessageStep {
+  std::vector<std::string> edge_keys;
+  std::vector<EdgeFilter> filters;
+};
+
+// Rows and columns of a learned embedding; none where rows are zero.
+struct TableSize {
+  int rows = 0, columns = 0;
+};
+
+// Columns that each set of statistics covers; zero where a model lacks it. Kinds of edges name theirs by key: the
+// published HOOD calls its edges to the body `world_edge`, and so do its statistics.
+struct StatisticsSizes {
+  int node = 0, mesh_edge = 0, coarse_edge = 0, world_edge = 0, body_edge = 0, output = 3;
+};
+
+// How a roll-out starts and how a frame is integrated.
+enum class Integration {
+  relaxation_frame,  // HOOD: frame 0 takes 1/3 s and is pushed out of the body (row 18)
+  start_flag,        // ContourCraft: a flag among the features says that a sample starts (is_init)
+};
+
+// A network as a value: what it reads, how it passes messages, what it writes. Weights stand beside it.
+struct Architecture {
+  std::string name;
+  int width = 128;         // of every latent
+  int hidden_layers = 2;   // of every multi-layer perceptron; each is as wide as a latent
+  bool layer_norm = true;  // on the output of every perceptron but the decoder
+  int node_inputs = 0;
+  FeatureOptions features;  // what the inputs are
+  std::vector<EdgeEncoder> encoders;
+  std::vector<EdgeKind> edge_kinds;
+  std::vector<MessageStep> steps;
+  int outputs = 3;
+  TableSize node_type, vertex_level, edge_type;
+  StatisticsSizes statistics;
+  Integration integration = Integration::relaxation_frame;
+  int passes = 1;  // runs of the network a frame, all with the same weights
+};
+
+// hood, hood_cvpr, fine15, fine48, contourcraft, contourcraft_paper, small (`preset_names`). Sizes of the published
+// ones: reference/weights.md; `small` is ours (reference/training.md). Throws Error at any other name.
+Architecture architecture_preset(const std::string& name);
+std::vector<std::string> preset_names();
+
+// Throws Error, with `where` as its place, unless the value can be built: counts within bounds (width at most 4096, at
+// most 1024 steps, ...), every key known, keys of a step in alphabetical order, encoders in range.
+void check_architecture(const Architecture&, const std::string& where);
+
+// Trainable numbers: weights, biases, layer norms, embeddings. Statistics are not counted.
+long long parameter_count(const Architecture&);
+
+// Index of the kind with this key, or -1.
+int edge_kind(const Architecture&, const std::string& key);
+
+}  // namespace selvedge

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "learned/network/aligned_floats.hpp"
+#include "learned/network/engine.hpp"
+
+namespace selvedge {
+
+// Weights of one layer, or of those columns that one block of its inputs meets, in panels (LayerTile).
+struct PackedLayer {
+  int inputs = 0, outputs = 0;  // outputs: padded
+  AlignedFloats weight, bias;   // bias: zero where another block brings it
+};
+
+// A perceptron whose first layer reads several blocks of inputs: an edge network target, source and edge, a node
+// network its node and the sums of each kind of edges.
+struct PackedPerceptron {
+  std::vector<PackedLayer> blocks, layers;  // the first layer, and those behind it
+  AlignedFloats scale, shift;               // empty without layer norm
+  int outputs = 0;                          // not padded
+};
+
+struct PackedStep {
+  std::vector<PackedPerceptron> edges;
+  PackedPerceptron node;
+};
+
+struct PackedNetwork {
+  Architecture architecture;
+  InstructionSet set = InstructionSet::plain;
+  PackedPerceptron node_encoder;
+  std::vector<PackedPerceptron> encoders;
+  std::vector<PackedStep> steps;
+  PackedPerceptron decoder;
+};
+
+}  // namespace selvedge

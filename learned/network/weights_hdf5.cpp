@@ -1,0 +1,209 @@
+#include "learned/network/weights_hdf5.hpp"
+
+#include <hdf5.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <memory>
+
+#include "collision/geometry/error.hpp"
+#include "learned/network/architecture_text.hpp"
+#include "learned/network/weight_seal.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr const char* form_name = "selvedge weights 1";
+constexpr hsize_t most_text = 1 << 20, most_texts = 4096;
+
+// An HDF5 identifier that closes itself, of one kind.
+template <herr_t (*Close)(hid_t)>
+struct Hdf5Id {
+  hid_t id;
+  explicit Hdf5Id(hid_t opened) : id(opened) {}
+  Hdf5Id(const Hdf5Id&) = delete;
+  ~Hdf5Id() {
+    if (id >= 0) Close(id);
+  }
+};
+using FileId = Hdf5Id<H5Fclose>;
+using DatasetId = Hdf5Id<H5Dclose>;
+using SpaceId = Hdf5Id<H5Sclose>;
+using TypeId = Hdf5Id<H5Tclose>;
+using PropertyId = Hdf5Id<H5Pclose>;
+
+// An open file and its name, for errors.
+struct WeightStore {
+  FileId file;
+  std::string name;
+
+  [[noreturn]] void fail(const std::string& field, const std::string& what) const {
+    throw Error(what, name + ": " + field, "write or import the weights again");
+  }
+  hid_t good(hid_t result, const std::string& field, const char* what) const {
+    if (result < 0) fail(field, what);
+    return result;
+  }
+};
+
+std::vector<hsize_t> shape_of(const WeightStore& store, hid_t dataset, const std::string& field) {
+  const SpaceId space(store.good(H5Dget_space(dataset), field, "has no shape"));
+  const int rank = H5Sget_simple_extent_ndims(space.id);
+  if (rank < 0 || rank > 2) store.fail(field, "its rank is " + std::to_string(rank) + ", not 0 to 2");
+  std::vector<hsize_t> shape(static_cast<std::size_t>(rank));
+  H5Sget_simple_extent_dims(space.id, shape.data(), nullptr);
+  return shape;
+}
+
+// Its values lie in this file, one after the other: no link to another file, no external storage, nothing compressed.
+void check_storage(const WeightStore& store, hid_t dataset, const std::string& field) {
+  const PropertyId creation(store.good(H5Dget_create_plist(dataset), field, "cannot be read"));
+  if (H5Pget_layout(creation.id) != H5D_CONTIGUOUS || H5Pget_external_count(creation.id) != 0)
+    store.fail(field, "it is stored in a form that this program does not write");
+  std::vector<char> owner(store.name.size() + 2);
+  if (H5Fget_name(dataset, owner.data(), owner.size()) < 0 || store.name != owner.data())
+    store.fail(field, "it lies in another file");
+}
+
+hid_t open_dataset(const WeightStore& store, const std::string& field) {
+  return store.good(H5Dopen2(store.file.id, field.c_str(), H5P_DEFAULT), field, "is missing");
+}
+
+void write_dataset(const WeightStore& store, const std::string& field, hid_t type, const std::vector<hsize_t>& shape,
+                   const void* data) {
+  const PropertyId links(H5Pcreate(H5P_LINK_CREATE));
+  H5Pset_create_intermediate_group(links.id, 1);
+  const SpaceId space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr));
+  const DatasetId dataset(
+      store.good(H5Dcreate2(store.file.id, field.c_str(), type, space.id, links.id, H5P_DEFAULT, H5P_DEFAULT), field,
+                 "cannot be written"));
+  store.good(H5Dwrite(dataset.id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), field, "cannot be written");
+}
+
+void write_texts(const WeightStore& store, const std::string& field, const std::vector<std::string>& texts) {
+  std::size_t width = 1;
+  for (const std::string& text : texts) width = std::max(width, text.size());
+  const TypeId type(H5Tcopy(H5T_C_S1));
+  H5Tset_size(type.id, width);
+  H5Tset_strpad(type.id, H5T_STR_NULLPAD);
+  std::vector<char> padded(width * texts.size() + 1, '\0');
+  for (std::size_t i = 0; i < texts.size(); ++i) std::memcpy(&padded[i * width], texts[i].data(), texts[i].size());
+  write_dataset(store, field, type.id, {texts.size()}, padded.data());
+}
+
+std::vector<std::string> read_texts(const WeightStore& store, const std::string& field) {
+  const DatasetId dataset(open_dataset(store, field));
+  const std::vector<hsize_t> shape = shape_of(store, dataset.id, field);
+  const TypeId type(store.good(H5Dget_type(dataset.id), field, "has no type"));
+  if (H5Tget_class(type.id) != H5T_STRING || H5Tis_variable_str(type.id) != 0 || shape.size() != 1)
+    store.fail(field, "it is not a list of texts of fixed length");
+  const std::size_t width = H5Tget_size(type.id);
+  if (shape[0] > most_texts || width > most_text || width * shape[0] > most_text)
+    store.fail(field, "its texts are longer than " + std::to_string(most_text) + " bytes");
+  std::vector<char> padded(width * shape[0] + 1, '\0');
+  if (shape[0] > 0) {
+    check_storage(store, dataset.id, field);
+    store.good(H5Dread(dataset.id, type.id, H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()), field, "cannot be read");
+  }
+  std::vector<std::string> texts;
+  for (hsize_t i = 0; i < shape[0]; ++i) texts.emplace_back(&padded[i * width], strnlen(&padded[i * width], width));
+  return texts;
+}
+
+std::string read_text(const WeightStore& store, const std::string& field) {
+  const std::vector<std::string> texts = read_texts(store, field);
+  if (texts.size() != 1) store.fail(field, "it is not one text");
+  return texts.front();
+}
+
+std::vector<hsize_t> wanted_shape(const WeightArray& array, bool matrix) {
+  const auto rows = static_cast<hsize_t>(array.rows), columns = static_cast<hsize_t>(array.columns);
+  return matrix ? std::vector<hsize_t>{rows, columns} : std::vector<hsize_t>{rows};
+}
+
+bool is_matrix(const WeightArray& array) {
+  return array.name.ends_with("/weight") || array.name.starts_with("embeddings/");
+}
+
+void read_array(const WeightStore& store, const WeightArray& array) {
+  const std::string field = "weights/" + array.name;
+  const DatasetId dataset(open_dataset(store, field));
+  if (shape_of(store, dataset.id, field) != wanted_shape(array, is_matrix(array)))
+    store.fail(field, "its shape is not what the architecture asks for");
+  const TypeId type(store.good(H5Dget_type(dataset.id), field, "has no type"));
+  if (H5Tequal(type.id, H5T_IEEE_F32LE) <= 0) store.fail(field, "its values are no 32-bit floats");
+  check_storage(store, dataset.id, field);
+  store.good(H5Dread(dataset.id, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.data), field, "cannot be read");
+}
+
+void write_content(const std::filesystem::path& path, const WeightFile& content) {
+  const PropertyId creation(H5Pcreate(H5P_FILE_CREATE));
+  H5Pset_userblock(creation.id, seal_bytes);
+  const WeightStore store{FileId(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id, H5P_DEFAULT)), path.string()};
+  if (store.file.id < 0) throw Error("cannot make the file", path.string(), "check the folder and who may write there");
+  write_texts(store, "format", {form_name});
+  write_texts(store, "version", {content.version});
+  write_texts(store, "architecture", {architecture_text(content.architecture)});
+  write_texts(store, "training", {content.training});
+  std::vector<std::string> names, values;
+  for (const auto& [name, value] : content.origin) names.push_back(name), values.push_back(value);
+  write_texts(store, "origin_names", names);
+  write_texts(store, "origin_values", values);
+  NetworkWeights weights = content.weights;
+  for (const WeightArray& array : weight_arrays(content.architecture, weights))
+    write_dataset(store, "weights/" + array.name, H5T_IEEE_F32LE, wanted_shape(array, is_matrix(array)), array.data);
+  store.good(H5Fflush(store.file.id, H5F_SCOPE_LOCAL), "end of the file", "cannot be written");
+}
+
+// The file removes itself unless it was renamed.
+struct FileBeside {
+  std::filesystem::path path;
+  ~FileBeside() {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+  }
+};
+
+void require_fitting_architecture(const WeightStore& store, const Architecture& a, long long bytes) {
+  if (parameter_count(a) > bytes / static_cast<long long>(sizeof(float)))
+    store.fail("architecture",
+               "it asks for " + std::to_string(parameter_count(a)) + " numbers, which is more than the file can hold");
+}
+
+}  // namespace
+
+void write_weight_file(const std::filesystem::path& path, const WeightFile& content) {
+  check_architecture(content.architecture, path.string());
+  check_weights(content.architecture, content.weights, path.string());
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const FileBeside beside{path.string() + ".part" + std::to_string(getpid())};
+  write_content(beside.path, content);
+  write_seal(beside.path);
+  std::error_code error;
+  std::filesystem::rename(beside.path, path, error);
+  if (error) throw Error("cannot rename to it (" + error.message() + ")", path.string(), "check the folder");
+}
+
+WeightFile read_weight_file(const std::filesystem::path& path) {
+  const long long bytes = check_seal(path);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const WeightStore store{FileId(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)), path.string()};
+  if (store.file.id < 0)
+    throw Error("cannot open as HDF5", path.string(), "the file is damaged: copy or make it again");
+  if (read_text(store, "format") != form_name) store.fail("format", "it is not `" + std::string(form_name) + "`");
+  WeightFile content;
+  content.version = read_text(store, "version");
+  content.training = read_text(store, "training");
+  content.architecture = parse_architecture(read_text(store, "architecture"), path.string() + ": architecture");
+  require_fitting_architecture(store, content.architecture, bytes);
+  const std::vector<std::string> names = read_texts(store, "origin_names"), values = read_texts(store, "origin_values");
+  if (names.size() != values.size()) store.fail("origin_values", "they are not as many as the names");
+  for (std::size_t i = 0; i < names.size(); ++i) content.origin.emplace_back(names[i], values[i]);
+  content.weights = blank_weights(content.architecture);
+  for (const WeightArray& array : weight_arrays(content.architecture, content.weights)) read_array(store, array);
+  return content;
+}
+
+void seal_weight_file(const std::filesystem::path& path) { write_seal(path); }
+
+}  // namespace selvedge

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "learned/network/weights_hdf5.hpp"
+
+namespace selvedge {
+
+// What is in a weight file, for people and programs.
+struct WeightsInfo {
+  WeightFile file;                          // without its weights
+  long long parameters = 0, nonfinite = 0;  // trainable numbers; weights and statistics that are not finite
+  int constant_columns = 0;                 // of the statistics: their deviation is the floor of 1e-8
+};
+
+WeightsInfo weights_info(const WeightFile&);
+std::string weights_info_text(const WeightsInfo&);
+std::string weights_info_json(const WeightsInfo&);
+
+}  // namespace selvedge
