@@ -14,7 +14,7 @@ PACKAGES_asan := $(PACKAGES_release)
 PACKAGES_tsan := $(PACKAGES_release) tsan
 PACKAGES_minimal := build viewer test
 
-.PHONY: help program demo test validate bench stress stability wardrobe compare dev asan tsan minimal format check-format tidy clean
+.PHONY: help program demo test everything validate bench stress stability wardrobe compare dev asan tsan minimal format check-format tidy clean
 .DEFAULT_GOAL := help
 
 help:  ## This list
@@ -50,6 +50,7 @@ compare: program  ## Compare the conventional stepper's settings: tables and plo
 	@$(PROGRAM) compare configs/compare/conventional.yaml --out out/compare
 
 test: test-release  ## Build and run every test (FILTER=regular expression on test files)
+everything: test minimal asan  ## Every test in the builds release, minimal and asan; CI runs parts of the last two
 dev: test-dev  ## The same with assertions on and warnings as errors
 asan: test-asan  ## The same under the address and undefined-behaviour sanitizers
 tsan: test-tsan  ## The same under the thread sanitizer, with clang

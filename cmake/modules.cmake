@@ -3,16 +3,22 @@
 set(SELVEDGE_COMMON_HEADERS <algorithm> <array> <cassert> <cmath> <functional> <map> <optional> <set> <span> <string>
   <vector> <Eigen/Core> <Eigen/Geometry>)
 
-# selvedge_module(NAME LEFT_OUT stem... ALONE room... HEADERS header... PUBLIC library... PRIVATE library...): the sources of
-# this folder and of its rooms, but those left out, as the library selvedge_NAME. The files of the rooms ALONE are not
-# compiled together. Files with an OpenMP pragma are a target of their own, selvedge_NAME_parallel: all others have the same
-# flags in builds with OpenMP and without, so that a compile cache serves both.
+# selvedge_module(NAME LEFT_OUT stem... ALONE room... HEADERS header... PUBLIC library... PRIVATE library...
+#   [HEAVY source library]): the sources of this folder and of its rooms, but those left out, as the library selvedge_NAME.
+# The files of the rooms ALONE are not compiled together. Files with an OpenMP pragma are a target of their own,
+# selvedge_NAME_parallel, and so is the source that alone sees the heavy package, selvedge_NAME_heavy: all others have the
+# same flags in every build, so that a compile cache serves builds with these packages and without.
 function(selvedge_module name)
-  cmake_parse_arguments(module "" "" "LEFT_OUT;ALONE;HEADERS;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(module "" "" "LEFT_OUT;ALONE;HEADERS;PUBLIC;PRIVATE;HEAVY" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
   foreach(stem IN LISTS module_LEFT_OUT)
     list(FILTER sources EXCLUDE REGEX "(^|/)${stem}\\.cpp$")
   endforeach()
+  if(module_HEAVY)
+    list(GET module_HEAVY 0 heavy_source)
+    list(GET module_HEAVY 1 heavy_library)
+    list(REMOVE_ITEM sources ${heavy_source})
+  endif()
   set(parallel ${sources})
   foreach(source IN LISTS sources)
     file(READ ${source} text)
@@ -33,6 +39,13 @@ function(selvedge_module name)
     target_compile_options(${objects} PRIVATE ${OpenMP_CXX_FLAGS})
     target_link_libraries(selvedge_${name} PUBLIC ${OpenMP_CXX_LIBRARIES})
   endif()
+  if(module_HEAVY)
+    add_library(selvedge_${name}_heavy OBJECT ${heavy_source})
+    target_include_directories(selvedge_${name}_heavy PRIVATE ${PROJECT_SOURCE_DIR})
+    target_link_libraries(selvedge_${name}_heavy PRIVATE ${module_PUBLIC} ${heavy_library} selvedge_warnings)
+    target_sources(selvedge_${name} PRIVATE $<TARGET_OBJECTS:selvedge_${name}_heavy>)
+    target_link_libraries(selvedge_${name} PRIVATE $<LINK_ONLY:${heavy_library}>)
+  endif()
   selvedge_compile_together(selvedge_${name} "${module_ALONE}" "${module_HEADERS}" ${sources})
   selvedge_compile_together(${objects} "${module_ALONE}" "${module_HEADERS}" ${parallel})
 endfunction()
@@ -46,7 +59,7 @@ function(selvedge_compile_together target alone headers)
     cmake_path(GET source PARENT_PATH room)
     get_source_file_property(options ${source} COMPILE_OPTIONS)
     get_source_file_property(definitions ${source} COMPILE_DEFINITIONS)
-    if(options OR definitions OR source MATCHES "_(absent|fcl|cholmod)\\.cpp$")
+    if(options OR definitions OR source MATCHES "_absent\\.cpp$")
       set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
     elseif(NOT room IN_LIST alone)
       string(REPLACE "/" "_" room "${room}")
