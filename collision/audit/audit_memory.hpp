@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "collision/audit/audit_motion.hpp"
+#include "collision/audit/moving_body.hpp"
 
 namespace selvedge {
 

@@ -5,15 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "collision/geometry/surface.hpp"
+#include "collision/audit/moving_body.hpp"
 
 namespace selvedge {
-
-// A body whose vertices move straight from x0 to x1.
-struct MovingBody {
-  const Surface* surface = nullptr;
-  const Points *x0 = nullptr, *x1 = nullptr;
-};
 
 // Two primitives that meet on their way. Nodes v, f0, f1, f2 or a0, a1, b0, b1; the cloth's come first in the
 // numbering, then each body's, on end.

@@ -113,35 +113,6 @@ struct LeafPairs {
 
 }  // namespace
 
-int ContactWorld::obstacle_of(int node) const {
-  if (is_cloth(node)) return -1;
-  const auto above = std::upper_bound(first_node.begin(), first_node.end(), node);
-  return static_cast<int>(above - first_node.begin()) - 1;
-}
-
-ContactWorld make_contact_world(const Surface& cloth, std::vector<const Surface*> obstacles, bool self,
-                                const Points* rest) {
-  ContactWorld world{&cloth, std::move(obstacles), {}, self, cloth.vertex_count, rest};
-  for (const Surface* obstacle : world.obstacles) {
-    world.first_node.push_back(world.node_count);
-    world.node_count += obstacle->vertex_count;
-  }
-  return world;
-}
-
-Points gather_nodes(const Points& cloth, const std::vector<Points>& obstacles) {
-  Eigen::Index count = cloth.rows();
-  for (const Points& obstacle : obstacles) count += obstacle.rows();
-  Points nodes(count, 3);
-  nodes.topRows(cloth.rows()) = cloth;
-  Eigen::Index first = cloth.rows();
-  for (const Points& obstacle : obstacles) {
-    nodes.middleRows(first, obstacle.rows()) = obstacle;
-    first += obstacle.rows();
-  }
-  return nodes;
-}
-
 std::array<Vec3, 4> corners(const NodePair& pair, const Points& x) {
   return {row(x, pair.nodes[0]), row(x, pair.nodes[1]), row(x, pair.nodes[2]), row(x, pair.nodes[3])};
 }

@@ -6,31 +6,13 @@
 #include <vector>
 
 #include "collision/contact/ccd.hpp"
+#include "collision/contact/contact_world.hpp"
 #include "collision/contact/search_part.hpp"
 #include "collision/geometry/distance.hpp"
 
 namespace selvedge {
 
 struct Exemption;
-
-// Cloth and obstacles under one numbering of nodes: cloth vertices first, then each obstacle's. Constant topology.
-struct ContactWorld {
-  const Surface* cloth = nullptr;
-  std::vector<const Surface*> obstacles;
-  std::vector<int> first_node;  // of each obstacle
-  bool self = true;             // cloth against itself
-  int node_count = 0;
-  const Points* rest = nullptr;  // of the cloth [m]; without it nothing counts as resting close
-
-  bool is_cloth(int node) const { return node < cloth->vertex_count; }
-  int obstacle_of(int node) const;  // -1: cloth
-};
-
-ContactWorld make_contact_world(const Surface& cloth, std::vector<const Surface*> obstacles, bool self,
-                                const Points* rest = nullptr);
-
-// Positions of all nodes in that numbering.
-Points gather_nodes(const Points& cloth, const std::vector<Points>& obstacles);
 
 // Two primitives that share no vertex. Of two edges of the cloth the one with the lower nodes comes first.
 struct NodePair {

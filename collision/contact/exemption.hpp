@@ -1,6 +1,9 @@
 #pragma once
 
-#include "collision/contact/contact_pairs.hpp"
+#include <array>
+#include <vector>
+
+#include "collision/contact/contact_world.hpp"
 
 namespace selvedge {
 

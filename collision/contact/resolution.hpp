@@ -2,7 +2,9 @@
 
 #include <deque>
 
-#include "collision/contact/resolve.hpp"
+#include "collision/contact/path_pairs.hpp"
+#include "collision/contact/resolve_options.hpp"
+#include "collision/contact/response.hpp"
 #include "collision/geometry/disjoint_sets.hpp"
 #include "collision/geometry/stopwatch.hpp"
 

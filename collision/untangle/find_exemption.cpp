@@ -2,6 +2,7 @@
 
 #include "collision/contour/buried.hpp"
 #include "collision/contour/contour_regions.hpp"
+#include "collision/contour/find_contours.hpp"
 #include "collision/untangle/separation.hpp"
 #include "collision/untangle/world_sheets.hpp"
 

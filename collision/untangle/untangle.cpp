@@ -5,6 +5,7 @@
 #include <deque>
 #include <limits>
 
+#include "collision/contour/find_contours.hpp"
 #include "collision/geometry/floating_point.hpp"
 #include "collision/search/bvh.hpp"
 #include "collision/untangle/kept_shape.hpp"

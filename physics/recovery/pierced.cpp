@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "collision/contour/find_contours.hpp"
 #include "collision/untangle/separation.hpp"
 #include "collision/untangle/world_sheets.hpp"
 

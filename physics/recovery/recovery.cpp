@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "collision/contour/find_contours.hpp"
 #include "collision/untangle/find_exemption.hpp"
 #include "collision/untangle/untangle.hpp"
 #include "collision/untangle/world_sheets.hpp"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "collision/contact/proximity.hpp"
+#include "collision/contour/find_contours.hpp"
 #include "collision/geometry/floating_point.hpp"
 #include "collision/geometry/stopwatch.hpp"
 #include "collision/untangle/find_exemption.hpp"

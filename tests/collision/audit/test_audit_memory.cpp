@@ -4,6 +4,7 @@
 
 #include "collision/audit/audit.hpp"
 #include "collision/audit/audit_memory.hpp"
+#include "collision/audit/audit_motion.hpp"
 #include "tests/collision/sheets.hpp"
 
 using namespace selvedge;

@@ -6,9 +6,9 @@
 #include <random>
 #include <set>
 
-#include "collision/contour/contour.hpp"
 #include "collision/contour/contour_regions.hpp"
 #include "collision/contour/edge_parity.hpp"
+#include "collision/contour/find_contours.hpp"
 #include "tests/collision/sheets.hpp"
 
 using namespace selvedge;

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "collision/audit/audit.hpp"
+#include "collision/contour/find_contours.hpp"
 #include "collision/untangle/kept_shape.hpp"
 #include "collision/untangle/separation.hpp"
 #include "collision/untangle/untangle.hpp"

@@ -1,4 +1,4 @@
-#include "collision/contour/contour.hpp"
+#include "collision/contour/find_contours.hpp"
 
 #include <algorithm>
 
