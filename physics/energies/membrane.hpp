@@ -3,22 +3,10 @@
 #include <span>
 #include <vector>
 
+#include "physics/energies/membrane_element.hpp"
 #include "physics/scene/scene.hpp"
 
 namespace selvedge {
-
-using Vec9 = Eigen::Matrix<double, 9, 1>;
-using Mat9 = Eigen::Matrix<double, 9, 9>;
-using Mat32 = Eigen::Matrix<double, 3, 2>;
-
-// One constant-strain triangle: F = [x1 - x0, x2 - x0] * inverse maps its flat rest shape into space.
-struct MembraneElement {
-  std::array<int, 3> nodes;
-  Eigen::Matrix2d inverse;  // of the rest edge matrix [1/m]
-  double area = 0;          // rest area [m2]
-  int material = 0;         // index of the cloth
-  int triangle = 0;         // index in the scene's surface
-};
 
 // Triangles of zero rest area carry no membrane energy and are left out.
 std::vector<MembraneElement> membrane_elements(const Scene&);

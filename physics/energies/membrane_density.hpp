@@ -1,6 +1,7 @@
 #pragma once
 
-#include "physics/energies/membrane.hpp"
+#include "physics/energies/membrane_element.hpp"
+#include "physics/scene/scene.hpp"
 
 namespace selvedge {
 

@@ -2,7 +2,8 @@
 
 #include <span>
 
-#include "physics/energies/membrane.hpp"
+#include "physics/energies/membrane_element.hpp"
+#include "physics/scene/scene.hpp"
 
 namespace selvedge {
 

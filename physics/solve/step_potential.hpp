@@ -5,7 +5,7 @@
 #include "physics/energies/external.hpp"
 #include "physics/linear/linear_system.hpp"
 #include "physics/solve/assembly.hpp"
-#include "physics/solve/implicit_euler.hpp"
+#include "physics/solve/step_problem.hpp"
 
 namespace selvedge {
 

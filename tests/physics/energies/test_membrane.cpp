@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "physics/energies/membrane.hpp"
 #include "physics/energies/membrane_lanes.hpp"
 #include "tests/physics/meshes.hpp"
 

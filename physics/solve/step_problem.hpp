@@ -1,0 +1,36 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "collision/geometry/points.hpp"
+#include "physics/energies/contact_energy.hpp"
+#include "physics/linear/linear_system.hpp"
+
+namespace selvedge {
+
+// A term of the potential that implicit Euler knows nothing of. It may be anything that has a value; where it jumps or
+// has kinks the line search still holds Newton to what sinks.
+struct AddedTerm {
+  std::function<double(const Points& x)> value;  // [J]
+  // Adds a gradient [N], and blocks whose sum is a positive semidefinite stand-in for the second derivative.
+  std::function<void(const Points& x, Points& gradient, std::vector<ContactBlock>& blocks)> add_derivatives;
+};
+
+// One step's data. Everything is over the cloth's joint numbering.
+struct StepProblem {
+  double h = 0;                // [s]
+  const Points* x0 = nullptr;  // positions and velocities at the step's start
+  const Points* v0 = nullptr;
+  const Points* pins = nullptr;  // targets, one row a Scene::pins entry
+  Vec3 acceleration = Vec3::Zero();
+  Vec3 wind = Vec3::Zero();
+  std::span<const ContactTerm> contacts;
+  double roughness = 1;  // times the tolerance: for a solve that only feeds another one
+  const AddedTerm* added = nullptr;
+  double patience = 1;   // times the most iterations, for a solve that another one goes on from
+  bool goes_on = false;  // from where an earlier solve of the same step ended: no other first guess is weighed
+};
+
+}  // namespace selvedge
