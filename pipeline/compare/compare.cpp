@@ -7,6 +7,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/compare/compare_parts.hpp"
+#include "pipeline/compare/comparison.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/run/prepare.hpp"
@@ -193,8 +194,6 @@ void write_results(const CompareRequest& request, const Comparison& comparison, 
 }
 
 }  // namespace
-
-double CompareFloor::floor() const { return std::max(steps, jittered); }
 
 void rank(std::vector<CompareRow>& rows) {
   for (CompareRow& row : rows) {

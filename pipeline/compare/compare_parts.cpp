@@ -15,8 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-double number(const Json& value) { return value.is_number() ? value.get<double>() : unknown; }
+Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+double number_or_unknown(const Json& value) { return value.is_number() ? value.get<double>() : unknown; }
 
 std::string with_key(const Json& part, const std::string& key) {
   Json json = {{"key", key}};
@@ -96,18 +96,18 @@ std::optional<CompareFloor> read_floor(const std::string& text, const std::strin
 
 std::string part_json(const CompareErrors& e, const std::string& key) {
   return with_key({{"trouble", e.trouble},
-                   {"algebraic", number(e.algebraic)},
-                   {"algebraic_largest", number(e.algebraic_largest)},
-                   {"temporal", number(e.temporal)}},
+                   {"algebraic", finite_or_null(e.algebraic)},
+                   {"algebraic_largest", finite_or_null(e.algebraic_largest)},
+                   {"temporal", finite_or_null(e.temporal)}},
                   key);
 }
 
 std::optional<CompareErrors> read_errors(const std::string& text, const std::string& key) {
   return parsed<CompareErrors>(text, key, [](const Json& j, CompareErrors& e) {
     j.at("trouble").get_to(e.trouble);
-    e.algebraic = number(j.at("algebraic"));
-    e.algebraic_largest = number(j.at("algebraic_largest"));
-    e.temporal = number(j.at("temporal"));
+    e.algebraic = number_or_unknown(j.at("algebraic"));
+    e.algebraic_largest = number_or_unknown(j.at("algebraic_largest"));
+    e.temporal = number_or_unknown(j.at("temporal"));
   });
 }
 
@@ -119,7 +119,7 @@ std::string part_json(const CompareRun& r, const std::string& key) {
                    {"linear", r.linear},
                    {"passed_through", r.passed_through},
                    {"pairs", r.pairs},
-                   {"lost", number(r.lost)},
+                   {"lost", finite_or_null(r.lost)},
                    {"end", r.end}},
                   key);
 }
@@ -133,7 +133,7 @@ std::optional<CompareRun> read_run(const std::string& text, const std::string& k
     j.at("linear").get_to(r.linear);
     j.at("passed_through").get_to(r.passed_through);
     j.at("pairs").get_to(r.pairs);
-    r.lost = number(j.at("lost"));
+    r.lost = number_or_unknown(j.at("lost"));
     j.at("end").get_to(r.end);
   });
 }

@@ -4,7 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/compare/compare.hpp"
+#include "pipeline/compare/compare_result.hpp"
+#include "pipeline/compare/comparison.hpp"
 #include "pipeline/scene/setup.hpp"
 
 namespace selvedge {

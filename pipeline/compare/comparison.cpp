@@ -1,6 +1,7 @@
+#include "pipeline/compare/comparison.hpp"
+
 #include <algorithm>
 
-#include "pipeline/compare/compare.hpp"
 #include "pipeline/config/config_tables.hpp"
 
 namespace selvedge {

@@ -4,19 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "collision/geometry/points.hpp"
+#include "pipeline/formats/mesh.hpp"
 
 namespace selvedge {
-
-struct Mesh {
-  Points x;
-  Triangles triangles;  // polygons fanned from their first corner; degenerate and duplicate triangles removed, counted
-                        // in warnings
-  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> uv;  // texture vertices (OBJ vt), may be empty
-  Triangles uv_triangles;                                        // corner -> row of uv; empty where a face has none
-  std::vector<std::pair<std::string, std::vector<int>>> groups;  // OBJ g / o: name and its vertices
-  std::vector<std::string> warnings;
-};
 
 // OBJ (polygons, negative indices, vt, groups) and PLY (ascii, binary little and big endian), by extension.
 // Throws Error with file and line for what cannot be read: empty, NaN, index out of range, no faces.

@@ -1,6 +1,9 @@
 #pragma once
 
-#include "pipeline/formats/mesh_io.hpp"
+#include <string>
+#include <string_view>
+
+#include "pipeline/formats/mesh.hpp"
 
 namespace selvedge {
 

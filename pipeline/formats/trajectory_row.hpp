@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "pipeline/formats/hdf5_handles.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/formats/trajectory.hpp"
 
 namespace selvedge {
 

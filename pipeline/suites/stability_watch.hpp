@@ -1,7 +1,7 @@
 #pragma once
 
 #include "pipeline/run/simulate.hpp"
-#include "pipeline/suites/stability.hpp"
+#include "pipeline/suites/stability_row.hpp"
 
 namespace selvedge {
 

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/validate/judged.hpp"
+
 namespace selvedge {
 
 struct ValidateRequest {
@@ -16,15 +18,6 @@ struct ValidateRequest {
   std::filesystem::path out = "out/validate";
   bool short_form = false;      // the cases' short lists of parameters
   std::ostream* log = nullptr;  // a line as each run ends
-};
-
-// How a figure is judged.
-enum class Judged {
-  relative,  // |measured / expected - 1| at most the bound
-  absolute,  // |measured - expected| at most the bound
-  at_most,   // measured at most the bound
-  at_least,  // measured at least the bound
-  rises,     // measured above that of the run before by the bound
 };
 
 struct ValidationRow {

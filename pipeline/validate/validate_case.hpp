@@ -1,11 +1,12 @@
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "pipeline/config/config.hpp"
-#include "pipeline/validate/validate.hpp"
+#include "pipeline/validate/judged.hpp"
 
 namespace selvedge {
 

@@ -4,6 +4,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/surface.hpp"
+#include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_obj.hpp"
 #include "pipeline/formats/mesh_ply.hpp"
 #include "tests/pipeline/files.hpp"

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "physics/solve/work.hpp"
+
+namespace selvedge {
+
+// One run of the suite, and what came of it.
+struct StabilityRow {
+  std::string name, run;  // of the case and of the run in it
+  std::string stepper;
+  int vertices = 0, frames = 0, frames_wanted = 0;
+  double seconds = 0;
+  long nonfinite = 0;      // numbers in states and reports, over all frames
+  double energy = 0;       // largest kinetic and elastic energy [J]
+  Work work;               // sums over the run [J]
+  double unaccounted = 0;  // largest growth of energy beyond the work since any earlier frame [J]
+  double end_speed = 0;    // RMS over the last tenth of the run, of the speed of a fall by the cloth's extent
+  double newton = 0;       // iterations a substep, worst frame
+  double linear = 0;       // iterations a Newton iteration, worst frame
+  bool clean_start = false;
+  long jumped = 0;  // obstacles that jumped
+  long pairs = 0;   // intersecting pairs over all frames
+  int end_pairs = 0, end_inside = 0;
+  double max_stretch = 1;
+  std::vector<std::string> notes;     // warnings of the scene
+  std::vector<std::string> failures;  // why it failed, a line each; empty: passed
+  bool passed() const { return failures.empty(); }
+};
+
+}  // namespace selvedge
