@@ -1,24 +1,14 @@
 #include <catch2/catch.hpp>
 
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <regex>
-#include <set>
-#include <sstream>
-#include <string>
-#include <vector>
+#include "tests/sources.hpp"
 
-// The repository keeps to its own rules: who may include whom, where heavy packages may appear, how long a file may be.
-// Each rule is a function from a text to complaints "file:line: what", so that it is also tried on texts that break it.
+// The repository keeps to its own rules: which module may include which, where heavy packages may appear, how long a
+// file may be. Rooms inside modules: test_rooms.cpp.
+
+using namespace selvedge::sources;
 
 namespace {
 
-namespace fs = std::filesystem;
-using Complaints = std::vector<std::string>;
-
-const std::vector<std::string> chain = {"collision", "physics", "learned", "pipeline"};
 constexpr int longest_file = 450;
 
 // A heavy package: how its headers are spelt, and the files that may include them.
@@ -37,25 +27,6 @@ const std::vector<Heavy> heavy_packages = {
     {"libzip", "zip\\.h", "pipeline/formats/npz\\.cpp"},
     {"Catch2", "catch2/.*", "tests/.*"},
 };
-
-struct Include {
-  int line;
-  bool quoted;
-  std::string header;
-};
-
-std::vector<Include> includes(const std::string& text) {
-  static const std::regex directive(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"].*$)");
-  std::vector<Include> found;
-  std::istringstream lines(text);
-  std::string line;
-  std::smatch match;
-  for (int number = 1; std::getline(lines, line); ++number)
-    if (std::regex_match(line, match, directive)) found.push_back({number, match[1] == "\"", match[2]});
-  return found;
-}
-
-std::string at(const std::string& file, int line) { return file + ":" + std::to_string(line) + ": "; }
 
 // `file` is the path from the repository's root. A module includes itself and the modules to its left in the chain,
 // by path from the root; tests include every module, and beside them what the tests of their own folder share.
@@ -101,7 +72,7 @@ Complaints bad_shape(const std::string& file, const std::string& text) {
 
 // Links [text](path) of a Markdown page, and `folder/file` names in it, must lead to something; capitals stand for a
 // name of the reader's choice.
-Complaints dead_references(const fs::path& root, const std::string& file, const std::string& text) {
+Complaints dead_references(const fs::path& top, const std::string& file, const std::string& text) {
   static const std::regex reference(
       R"(\]\(([^)#:\s]+)(#[^)]*)?\)|`((collision|physics|pipeline|tests|configs|cmake|docs)/[a-z\d_/.-]+\.[a-z\d]+)`)");
   Complaints complaints;
@@ -111,64 +82,10 @@ Complaints dead_references(const fs::path& root, const std::string& file, const 
     for (std::sregex_iterator match(line.begin(), line.end(), reference), end; match != end; ++match) {
       const bool is_link = (*match)[1].matched;
       const std::string target = is_link ? (*match)[1] : (*match)[3];
-      if (!fs::exists(is_link ? (root / file).parent_path() / target : root / target))
+      if (!fs::exists(is_link ? (top / file).parent_path() / target : top / target))
         complaints.push_back(at(file, number) + "leads nowhere: " + target);
     }
   return complaints;
-}
-
-std::string read(const fs::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-const fs::path root = SELVEDGE_SOURCE_DIR;
-
-// Path from the root and text of each file below `folder` with one of the extensions.
-std::map<std::string, std::string> texts(const std::string& folder, const std::vector<std::string>& extensions) {
-  std::map<std::string, std::string> found;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder))
-    if (std::find(extensions.begin(), extensions.end(), entry.path().extension()) != extensions.end())
-      found[entry.path().lexically_relative(root).generic_string()] = read(entry.path());
-  return found;
-}
-
-std::map<std::string, std::string> sources() {
-  std::map<std::string, std::string> found;
-  for (const std::string folder : {"collision", "physics", "learned", "pipeline", "tests"})
-    found.merge(texts(folder, {".cpp", ".hpp"}));
-  return found;
-}
-
-std::string listed(const Complaints& complaints) {
-  std::string text;
-  for (const std::string& complaint : complaints) text += '\n' + complaint;
-  return text;
-}
-
-// What a file is made of, names without extension: what it includes of ours, with a header its source, and so on.
-void add_parts(const std::string& name, const std::map<std::string, std::string>& sources,
-               std::set<std::string>& parts) {
-  if (!parts.insert(name).second) return;
-  for (const std::string extension : {".hpp", ".cpp"})
-    if (const auto file = sources.find(name + extension); file != sources.end())
-      for (const Include& include : includes(file->second))
-        if (include.quoted) add_parts(include.header.substr(0, include.header.rfind('.')), sources, parts);
-}
-
-std::set<std::string> parts_of(const std::vector<std::string>& names,
-                               const std::map<std::string, std::string>& sources) {
-  std::set<std::string> parts;
-  for (const std::string& name : names) add_parts(name, sources, parts);
-  return parts;
-}
-
-template <class Rule>
-Complaints over_all_sources(const Rule& rule) {
-  Complaints all;
-  for (const auto& [file, text] : sources())
-    for (const std::string& complaint : rule(file, text)) all.push_back(complaint);
-  return all;
 }
 
 }  // namespace
@@ -200,7 +117,7 @@ TEST_CASE("modules: heavy packages stay in the files named for them", "[modules]
 }
 
 TEST_CASE("modules: files are short and say in their names what they hold", "[modules]") {
-  CHECK(sources().size() > 20);
+  CHECK(all_sources().size() > 20);
   CHECK(listed(over_all_sources(bad_shape)) == "");
 
   CHECK(bad_shape("physics/scene/scene.cpp", std::string(longest_file, '\n')).empty());
@@ -233,31 +150,6 @@ TEST_CASE("modules: what the documents name exists", "[modules]") {
   CHECK(dead_references(root, "docs/a.md", "\n[it](README.md)\n") ==
         Complaints{"docs/a.md:2: leads nowhere: README.md"});
   CHECK(dead_references(root, "README.md", "see `physics/nothing.cpp`\n").size() == 1);
-}
-
-TEST_CASE("modules: what the audit has in common with the response", "[modules]") {
-  const auto ours = sources();
-  const auto audit = parts_of({"collision/audit/audit", "collision/audit/audit_motion"}, ours);
-  const auto response =
-      parts_of({"collision/contact/resolve", "collision/untangle/untangle", "collision/search/intersections",
-                "physics/recovery/recovery", "physics/solve/contact_terms"},
-               ours);
-  std::set<std::string> common;
-  std::ranges::set_intersection(audit, response, std::inserter(common, common.end()));
-  // The surface, with the sets that number its components, and exact signs; and distances, for min_gap, which is no
-  // part of the audit.
-  CHECK(common == std::set<std::string>{"collision/geometry/disjoint_sets", "collision/geometry/distance",
-                                        "collision/exact/exact_integer", "collision/geometry/floating_point",
-                                        "collision/exact/orientation", "collision/geometry/points",
-                                        "collision/geometry/surface"});
-  auto without_surface = ours;
-  without_surface.erase("collision/geometry/surface.cpp");
-  CHECK_FALSE(parts_of({"collision/audit/audit", "collision/audit/audit_motion"}, without_surface)
-                  .contains("collision/geometry/disjoint_sets"));
-  CHECK(response.size() > 30);
-  CHECK(parts_of({"a"}, {{"a.cpp", "#include \"b.hpp\"\n#include <c.hpp>\n"},
-                         {"b.cpp", "#include \"d.hpp\"\n#include \"b.hpp\"\n"}}) ==
-        std::set<std::string>{"a", "b", "d"});
 }
 
 TEST_CASE("modules: headers do not define two types of one name", "[modules]") {
