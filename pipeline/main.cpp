@@ -9,7 +9,7 @@
 #include "pipeline/config/config.hpp"
 #include "pipeline/host/process_threads.hpp"
 #include "pipeline/host/version.hpp"
-#include "pipeline/scene/make_stepper.hpp"
+#include "pipeline/scene/run_options.hpp"
 
 using namespace selvedge;
 

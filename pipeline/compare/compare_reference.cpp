@@ -8,9 +8,9 @@
 #include "collision/geometry/error.hpp"
 #include "physics/energies/measures.hpp"
 #include "pipeline/compare/algebraic_error.hpp"
+#include "pipeline/run/jitter.hpp"
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/simulate.hpp"
-#include "pipeline/scene/jitter.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 
 namespace selvedge {

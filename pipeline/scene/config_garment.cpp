@@ -1,6 +1,6 @@
 #include "pipeline/config/config_tables.hpp"
 #include "pipeline/garments/garment_make.hpp"
-#include "pipeline/scene/setup_start.hpp"
+#include "pipeline/scene/cloth_part.hpp"
 
 // What a body of the scene wears, and how cloths start.
 namespace selvedge::table {

@@ -3,8 +3,7 @@
 #include <algorithm>
 
 #include "pipeline/config/config_tables.hpp"
-#include "pipeline/scene/make_stepper.hpp"
-#include "pipeline/scene/setup.hpp"
+#include "pipeline/scene/run_options.hpp"
 
 // Defaults are read from the structs that hold them; a default that is written here has its only place here.
 namespace selvedge {

@@ -6,12 +6,6 @@
 #include "pipeline/config/config.hpp"
 
 namespace selvedge {
-
-const std::vector<std::string>& known_steppers() {
-  static const std::vector<std::string> known{"conventional", "icm"};
-  return known;
-}
-
 namespace {
 
 MakeStepper maker_of(const Setup& setup) {

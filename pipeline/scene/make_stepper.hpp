@@ -6,8 +6,6 @@
 
 namespace selvedge {
 
-const std::vector<std::string>& known_steppers();
-
 // The only switch over kinds of steppers. Keeps a reference to the setup's scene. Throws Error for an unknown kind.
 std::unique_ptr<Stepper> make_stepper(const Setup&);
 

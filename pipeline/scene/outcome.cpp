@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/scene/outcome_measures.hpp"
-
 namespace selvedge {
 namespace {
 

@@ -12,6 +12,7 @@
 #include "pipeline/scene/setup_outcome.hpp"
 #include "pipeline/scene/setup_seams.hpp"
 #include "pipeline/scene/setup_springs.hpp"
+#include "pipeline/scene/setup_start.hpp"
 
 namespace selvedge {
 namespace {

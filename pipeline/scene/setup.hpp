@@ -9,22 +9,10 @@
 
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
-#include "physics/steppers/conventional_stepper.hpp"
-#include "physics/steppers/icm_stepper.hpp"
 #include "pipeline/scene/outcome.hpp"
+#include "pipeline/scene/run_options.hpp"
 
 namespace selvedge {
-
-// What a scene file says beside the Scene itself.
-struct RunOptions {
-  int frames = 60;
-  double fps = 30;
-  std::string stepper = "conventional";
-  bool rest = true;    // cloths that rest are left out
-  std::string output;  // folder for the results; empty: chosen by the command
-  ConventionalOptions conventional;
-  IcmOptions icm;
-};
 
 struct PosedBodies;
 

@@ -1,8 +1,6 @@
 #include "pipeline/scene/setup_cloth.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -10,7 +8,9 @@
 #include "pipeline/scene/setup_motion.hpp"
 #include "pipeline/scene/setup_paths.hpp"
 #include "pipeline/scene/setup_seams.hpp"
+#include "pipeline/scene/setup_selection.hpp"
 #include "pipeline/scene/setup_sheet.hpp"
+#include "pipeline/scene/setup_start.hpp"
 
 namespace selvedge {
 namespace {
@@ -58,53 +58,6 @@ void read_rest(const Config& section, const Mesh& made, bool generated, double s
   part.rest_triangle = from.text() == "initial" && generated && made.uv.rows() > 0
                            ? pattern(from, made, scale)
                            : flattened(part.rest, made.triangles, weft_axis(part.rest));
-}
-
-std::vector<int> in_box(const Config& box, const Points& x) {
-  const Vec3 low = box["min"].vector(), high = box["max"].vector();
-  if ((low.array() > high.array()).any()) box.fail("has a `min` above its `max`", "swap them");
-  std::vector<int> found;
-  for (int v = 0; v < x.rows(); ++v)
-    if ((row(x, v).array() >= low.array()).all() && (row(x, v).array() <= high.array()).all()) found.push_back(v);
-  if (found.empty()) {
-    const Vec3 least = x.colwise().minCoeff(), most = x.colwise().maxCoeff();
-    box.fail("holds no vertex of the cloth",
-             fmt::format("the cloth spans [{:.4g}, {:.4g}, {:.4g}] to [{:.4g}, {:.4g}, {:.4g}] m", least.x(), least.y(),
-                         least.z(), most.x(), most.y(), most.z()));
-  }
-  return found;
-}
-
-void sort_unique(std::vector<int>& numbers) {
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-}
-
-std::vector<int> in_groups(const Config& group, const Mesh& mesh) {
-  std::vector<std::string> known;
-  for (const auto& [name, vertices] : mesh.groups) known.push_back(name);
-  std::vector<int> found;
-  for (const std::string& word : group.words) {
-    const auto match = std::find(known.begin(), known.end(), word);
-    if (match == known.end())
-      group.fail("names the unknown group `" + word + "`",
-                 known.empty() ? "the cloth has no groups" : "groups: " + joined(known) + suggestion(word, known));
-    const std::vector<int>& vertices = mesh.groups[static_cast<std::size_t>(match - known.begin())].second;
-    found.insert(found.end(), vertices.begin(), vertices.end());
-  }
-  sort_unique(found);
-  return found;
-}
-
-std::vector<int> listed(const Config& list, const ClothPart& part) {
-  const std::size_t count = part.sewn.empty() ? static_cast<std::size_t>(part.mesh.x.rows()) : part.sewn.size();
-  std::vector<int> found;
-  for (const double v : list.numbers) {
-    if (v >= static_cast<double>(count))
-      list.fail(fmt::format("names vertex {}, which does not exist", v), fmt::format("allowed: 0 to {}", count - 1));
-    found.push_back(part.sewn.empty() ? static_cast<int>(v) : part.sewn[static_cast<std::size_t>(v)]);
-  }
-  return found;
 }
 
 // Pins that stay with the body.
@@ -182,21 +135,6 @@ std::vector<ClothPart> read_worn(const Config& section, const std::filesystem::p
 }
 
 }  // namespace
-
-std::vector<int> read_vertices(const Config& section, const ClothPart& part) {
-  if (section["vertices"].given) return listed(section["vertices"], part);
-  if (section["box"].given) return in_box(section["box"], part.mesh.x);
-  if (section["group"].given) return in_groups(section["group"], part.mesh);
-  std::vector<int> all(static_cast<std::size_t>(part.mesh.x.rows()));
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
-
-std::vector<int> read_selection(const Config& section, const ClothPart& part) {
-  std::vector<int> found = read_vertices(section, part);
-  sort_unique(found);
-  return found;
-}
 
 std::vector<RestTriangle> flattened(const Points& x, const Triangles& triangles, const Vec3& weft) {
   std::vector<RestTriangle> rest(static_cast<std::size_t>(triangles.rows()));

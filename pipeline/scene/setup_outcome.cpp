@@ -1,7 +1,6 @@
 #include "pipeline/scene/setup_outcome.hpp"
 
-#include "pipeline/config/config.hpp"
-#include "pipeline/scene/setup_names.hpp"
+#include "pipeline/scene/setup_selection.hpp"
 
 namespace selvedge {
 namespace {

@@ -1,7 +1,8 @@
 #pragma once
 
+#include "pipeline/config/config.hpp"
+#include "pipeline/scene/cloth_part.hpp"
 #include "pipeline/scene/outcome.hpp"
-#include "pipeline/scene/setup_cloth.hpp"
 
 namespace selvedge {
 

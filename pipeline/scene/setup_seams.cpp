@@ -9,9 +9,9 @@
 #include "collision/geometry/disjoint_sets.hpp"
 #include "collision/geometry/error.hpp"
 #include "physics/energies/measures.hpp"
-#include "pipeline/config/config.hpp"
 #include "pipeline/scene/setup_pairs.hpp"
 #include "pipeline/scene/setup_paths.hpp"
+#include "pipeline/scene/setup_selection.hpp"
 
 namespace selvedge {
 namespace {

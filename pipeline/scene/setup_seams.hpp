@@ -2,7 +2,8 @@
 
 #include <filesystem>
 
-#include "pipeline/scene/setup_cloth.hpp"
+#include "pipeline/config/config.hpp"
+#include "pipeline/scene/cloth_part.hpp"
 
 namespace selvedge {
 

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <span>
 
-#include "pipeline/config/config.hpp"
-#include "pipeline/scene/setup_names.hpp"
 #include "pipeline/scene/setup_pairs.hpp"
+#include "pipeline/scene/setup_selection.hpp"
 
 namespace selvedge {
 namespace {

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "pipeline/scene/setup_cloth.hpp"
+#include "pipeline/config/config.hpp"
+#include "pipeline/scene/cloth_part.hpp"
 
 namespace selvedge {
 

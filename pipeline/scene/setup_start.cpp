@@ -7,8 +7,7 @@
 #include <limits>
 
 #include "physics/recovery/cut_out.hpp"
-#include "pipeline/scene/jitter.hpp"
-#include "pipeline/scene/setup_cloth.hpp"
+#include "pipeline/shapes/random_shifts.hpp"
 
 namespace selvedge {
 namespace {

@@ -4,17 +4,9 @@
 
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
-#include "pipeline/scene/setup_body.hpp"
+#include "pipeline/scene/cloth_part.hpp"
 
 namespace selvedge {
-
-struct ClothPart;
-
-// How a clean start is grown: bodies come from the pose that their garments were made in, and hold still [s].
-struct Draping {
-  double seconds = 1, hold = 0.5;
-  bool operator==(const Draping&) const = default;
-};
 
 // Puts a placed cloth where its `start` section has it. One that then starts in one point, an exact equilibrium of any
 // membrane, is opened by random displacements of a thousandth of its mean edge; a warning says so.

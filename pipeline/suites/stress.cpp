@@ -7,9 +7,9 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/write_file.hpp"
+#include "pipeline/run/jitter.hpp"
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/run_scene.hpp"
-#include "pipeline/scene/jitter.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "pipeline/view/view.hpp"
 

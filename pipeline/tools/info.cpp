@@ -17,7 +17,7 @@
 #include "physics/linear/cholesky.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/host/version.hpp"
-#include "pipeline/scene/make_stepper.hpp"
+#include "pipeline/scene/run_options.hpp"
 
 namespace selvedge {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/scene/jitter.hpp"
+#include "pipeline/run/jitter.hpp"
 #include "pipeline/scene/outcome_measures.hpp"
 #include "pipeline/scene/setup.hpp"
 #include "pipeline/shapes/motion.hpp"

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "pipeline/config/config.hpp"
+#include "pipeline/scene/cloth_part.hpp"
 
+// What a section says of things that other sections made: one of a list by its name, vertices of a cloth.
 namespace selvedge {
 
 // Which of `all`, each of which has a name, a value names. Throws Error where it names none.
@@ -15,5 +17,10 @@ int index_of(const Config& name, const std::vector<Named>& all) {
   name.fail("names `" + name.text() + "`, which is not in the scene",
             known.empty() ? "there is none" : "known: " + joined(known) + suggestion(name.text(), known));
 }
+
+// The vertices that `vertices`, `box` or `group` of a section name; all where it names none. Vertices that are listed
+// keep their order and have the numbers that they were read or made with; those that come back have the part's own.
+std::vector<int> read_vertices(const Config& section, const ClothPart&);
+std::vector<int> read_selection(const Config& section, const ClothPart&);  // the same, ascending, each once
 
 }  // namespace selvedge

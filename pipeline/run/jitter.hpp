@@ -6,9 +6,6 @@
 
 namespace selvedge {
 
-// Rows of three numbers in [-1, 1), the same on every machine.
-Points random_shifts(Eigen::Index rows, std::uint64_t seed);
-
 // Moves every free vertex of the start by up to `amount` mean edge lengths of the rest shape along each axis, the same
 // seed the same way on every machine. A start that is clean stays clean: a jitter that makes triangles intersect is
 // halved until none do, and what was used is returned. Throws Error where the start itself is not clean.

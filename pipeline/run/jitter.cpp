@@ -1,22 +1,13 @@
-#include "pipeline/scene/jitter.hpp"
+#include "pipeline/run/jitter.hpp"
 
 #include "collision/geometry/error.hpp"
 #include "physics/steppers/step_audit.hpp"
+#include "pipeline/shapes/random_shifts.hpp"
 
 namespace selvedge {
 namespace {
 
 constexpr int most_halvings = 10;
-
-// The generator of Steele, Lea and Flood 2014 (SplitMix): the same numbers everywhere.
-double uniform(std::uint64_t& state) {  // in [-1, 1)
-  state += 0x9e3779b97f4a7c15u;
-  std::uint64_t z = state;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  z ^= z >> 31;
-  return static_cast<double>(z >> 11) * 0x1p-52 - 1;
-}
 
 bool is_clean_start(const Scene& scene, const State& start) {
   const Audit found = audit_positions(scene, start.x, start.obstacles);
@@ -25,12 +16,6 @@ bool is_clean_start(const Scene& scene, const State& start) {
 }
 
 }  // namespace
-
-Points random_shifts(Eigen::Index rows, std::uint64_t seed) {
-  Points shifts(rows, 3);
-  for (Eigen::Index i = 0; i < shifts.size(); ++i) shifts.data()[i] = uniform(seed);
-  return shifts;
-}
 
 double jitter_start(Setup& setup, double amount, std::uint64_t seed) {
   const Points start = setup.initial.x;

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "physics/scene/scene.hpp"
+#include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/scene/setup_garment.hpp"
+
+namespace selvedge {
+
+// How a clean start is grown: bodies come from the pose that their garments were made in, and hold still [s].
+struct Draping {
+  double seconds = 1, hold = 0.5;
+  bool operator==(const Draping&) const = default;
+};
+
+struct PinPart {
+  std::vector<int> vertices;              // of the cloth, ascending
+  std::function<Points(double time)> at;  // where they are, a row a vertex
+};
+
+// One cloth of a scene file, numbered by itself.
+struct ClothPart {
+  std::string name;
+  Material material;
+  Mesh mesh;     // x: as placed, at time 0
+  Points first;  // where it is when the scene's time begins
+  Points rest;
+  std::vector<RestTriangle> rest_triangle;
+  bool rest_is_flat = true;
+  Points velocity;  // at time 0
+  std::vector<PinPart> pins;
+  std::shared_ptr<const Wearing> worn;  // null for what is no garment
+  std::vector<int> sewn;                // of each vertex as read or made: its number here; empty where nothing is sewn
+  double sewn_apart = 0;                // how far vertices that are one now were apart [m]
+  std::optional<Draping> draping;
+  bool cut = false;  // what of it is tangled is cut out at the start
+};
+
+}  // namespace selvedge

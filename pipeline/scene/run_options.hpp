@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "physics/steppers/conventional_stepper.hpp"
+#include "physics/steppers/icm_stepper.hpp"
+
+namespace selvedge {
+
+// What a scene file says of the run beside the Scene itself.
+struct RunOptions {
+  int frames = 60;
+  double fps = 30;
+  std::string stepper = "conventional";
+  bool rest = true;    // cloths that rest are left out
+  std::string output;  // folder for the results; empty: chosen by the command
+  ConventionalOptions conventional;
+  IcmOptions icm;
+};
+
+const std::vector<std::string>& known_steppers();
+
+}  // namespace selvedge
