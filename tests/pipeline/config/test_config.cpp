@@ -81,7 +81,7 @@ TEST_CASE("A wrong key is named with file, line, what is allowed and the nearest
 }
 
 TEST_CASE("Wrong values are refused where they stand", "[config]") {
-  const auto [scene, words] = GENERATE(table<std::string, std::vector<std::string>>({
+  const auto [scene, words] = GENERATE(Catch::Generators::table<std::string, std::vector<std::string>>({
       {"run: {fps: 0}\n", {"run.fps", "`0`", "above 0", ":3"}},
       {"run: {fps: -30}\n", {"run.fps", "above 0"}},
       {"run: {frames: 2.5}\n", {"run.frames", "integer"}},
@@ -127,7 +127,7 @@ TEST_CASE("Wrong values are refused where they stand", "[config]") {
 }
 
 TEST_CASE("Wrong cloths are refused where they stand", "[config]") {
-  const auto [cloth, words] = GENERATE(table<std::string, std::vector<std::string>>({
+  const auto [cloth, words] = GENERATE(Catch::Generators::table<std::string, std::vector<std::string>>({
       {"material: {density: 0}", {"density", "above 0"}},
       {"material: {lame_mu: -1}", {"lame_mu", "at least 0"}},
       {"material: {bending: -1e-5}", {"bending", "at least 0"}},
@@ -154,7 +154,7 @@ TEST_CASE("Wrong cloths are refused where they stand", "[config]") {
 }
 
 TEST_CASE("Wrong ribbons and garments are refused where they stand", "[config]") {
-  const auto [cloth, words] = GENERATE(table<std::string, std::vector<std::string>>({
+  const auto [cloth, words] = GENERATE(Catch::Generators::table<std::string, std::vector<std::string>>({
       {"ribbon: {line: [[0, 0, 0]]}", {"ribbon.line", "two points"}},
       {"ribbon: {line: [[0, 0, 0], [0, 1, 0]]}", {"normal", "along the ribbon's line"}},
       {"ribbon: {line: [[0, 0, 0], [1, 0, 0], [1, 0, 0]]}", {"line.2", "repeats"}},
