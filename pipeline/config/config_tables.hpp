@@ -116,17 +116,5 @@ Key edge_key(const std::string& otherwise);
 Key interpolation_key();
 const Section& motion_section();
 const Section& mesh_section();
-const Section& cloth_section();
-std::vector<Key> sheet_keys();       // rectangle, disc, tube, ribbon, tshirt
-std::vector<Key> selection_keys();   // vertices, box, group
-const Section& selection_section();  // vertices of a named cloth
-const Section& garment_section();
-const Section& start_section();
-const Section& outcome_section();
-const Section& obstacle_section();
-const Section& body_section();
-const Section& seam_section();
-const Section& spring_section();
-std::vector<Key> material_values();  // what may be said of a material by value
 
 }  // namespace selvedge::table

@@ -12,12 +12,6 @@
 
 namespace selvedge {
 
-// How a clean start is grown: bodies come from the pose that their garments were made in, and hold still [s].
-struct Draping {
-  double seconds = 1, hold = 0.5;
-  bool operator==(const Draping&) const = default;
-};
-
 struct PinPart {
   std::vector<int> vertices;              // of the cloth, ascending
   std::function<Points(double time)> at;  // where they are, a row a vertex

@@ -1,16 +1,18 @@
-#include "pipeline/config/config_tables.hpp"
+#include "pipeline/scene/config_scene.hpp"
 
-#include "physics/scene/scene.hpp"
+namespace selvedge {
 
-// Defaults of materials are read from the struct that holds them; a default that is written here has its only place
-// here.
-namespace selvedge::table {
+using namespace table;
 
-std::vector<Key> material_values() {
-  const Material m;
-  return {
-      number("density", Unit::areal_density, positive, show(m.density), "mass per area"),
-      word("membrane", {"stvk", "stable_neo_hookean", "baraff_witkin"}, "stvk", "in-plane model"),
+const OptionRows<Material>& material_options() {
+  using O = Material;
+  static const OptionRows<O> rows{
+      number("density", &O::density, Unit::areal_density, positive, "mass per area"),
+      choice("membrane", &O::membrane,
+             {{"stvk", MembraneModel::stvk},
+              {"stable_neo_hookean", MembraneModel::stable_neo_hookean},
+              {"baraff_witkin", MembraneModel::baraff_witkin}},
+             "in-plane model"),
       number("youngs_modulus", Unit::stiffness, not_negative, "",
              "Young's modulus times thickness; with `poisson` in place of the Lame coefficients"),
       number(
@@ -20,25 +22,28 @@ std::vector<Key> material_values() {
       number("thickness", Unit::length, positive, "",
              "h of that plate: membrane E h, bending E h^3 / (12 (1 - nu^2)); it has no part in contact"),
       number("poisson", Unit::none, {.low = 0, .high = 1, .high_in = false}, "", "Poisson's ratio, plane stress"),
-      number("lame_mu", Unit::stiffness, not_negative, show(m.lame_mu), "membrane shear modulus, thickness included"),
-      number("lame_lambda", Unit::stiffness, not_negative, show(m.lame_lambda),
+      number("lame_mu", &O::lame_mu, Unit::stiffness, not_negative, "membrane shear modulus, thickness included"),
+      number("lame_lambda", &O::lame_lambda, Unit::stiffness, not_negative,
              "first Lame coefficient of the membrane, thickness included"),
-      number("warp", Unit::stiffness, not_negative, show(m.warp), "baraff_witkin: stretch stiffness along u"),
-      number("weft", Unit::stiffness, not_negative, show(m.weft), "baraff_witkin: stretch stiffness along v"),
-      number("shear", Unit::stiffness, not_negative, show(m.shear), "baraff_witkin: shear stiffness"),
-      word("bending_model", {"curvature", "hinge"}, "curvature",
-           "`curvature`: physical and independent of the mesh; `hinge`: dihedral angles, as in the papers"),
-      number("bending", Unit::bending, not_negative, show(m.bending), "bending stiffness per width, of a plate"),
+      number("warp", &O::warp, Unit::stiffness, not_negative, "baraff_witkin: stretch stiffness along u"),
+      number("weft", &O::weft, Unit::stiffness, not_negative, "baraff_witkin: stretch stiffness along v"),
+      number("shear", &O::shear, Unit::stiffness, not_negative, "baraff_witkin: shear stiffness"),
+      choice("bending_model", &O::bending_model,
+             {{"curvature", BendingModel::curvature}, {"hinge", BendingModel::hinge}},
+             "`curvature`: physical and independent of the mesh; `hinge`: dihedral angles, as in the papers"),
+      number("bending", &O::bending, Unit::bending, not_negative, "bending stiffness per width, of a plate"),
       number("hinge_bending", Unit::bending, not_negative, "",
              "the papers' coefficient k of k l^2 / (4 (A0 + A1)) angle^2 / 2; makes bending_model hinge, in place of "
              "`bending`"),
-      number("stiffness_damping", Unit::time, not_negative, show(m.stiffness_damping),
+      number("stiffness_damping", &O::stiffness_damping, Unit::time, not_negative,
              "Rayleigh: damping force is this times the stiffness times the velocity"),
-      number("mass_damping", Unit::rate, not_negative, show(m.mass_damping),
+      number("mass_damping", &O::mass_damping, Unit::rate, not_negative,
              "Rayleigh: damping force is this times the mass times the velocity"),
   };
+  return rows;
 }
 
+namespace table {
 namespace {
 
 const Section& material_section() {
@@ -51,7 +56,7 @@ const Section& material_section() {
                             "a material file without its extension, looked for in `materials/` beside the "
                             "scene file, beside its folder, and in the program's own"),
                        path("file", "a material file")} +
-          material_values()};
+          keys_of(material_options())};
   return table;
 }
 
@@ -125,9 +130,9 @@ const Section& cloth_section() {
       {"rectangle", "disc", "tube", "ribbon", "tshirt", "mesh", "garment"},
       std::vector<Key>{text("name", "left out: cloth0, cloth1, ...")} + sheet_keys() +
           std::vector<Key>{section(mesh_section(), "", "a file"),
-                           section(garment_section(), "", "what a body of the scene wears")} +
+                           section(garment_options().section, "", "what a body of the scene wears")} +
           placement_keys() +
-          std::vector<Key>{section(copies_section(), "", ""), section(start_section(), "{}", ""),
+          std::vector<Key>{section(copies_section(), "", ""), section(start_options().section, "{}", ""),
                            vector("velocity", Unit::speed, "[0, 0, 0]", "at the start"),
                            section(material_section(), "{}", ""), section(rest_section(), "{}", ""),
                            sections("seams", seam_section(), "[]", "sewn in themselves: panels that become a garment"),
@@ -135,4 +140,5 @@ const Section& cloth_section() {
   return table;
 }
 
-}  // namespace selvedge::table
+}  // namespace table
+}  // namespace selvedge

@@ -1,5 +1,5 @@
 #include "collision/untangle/give_way.hpp"
-#include "pipeline/config/config_tables.hpp"
+#include "pipeline/scene/config_scene.hpp"
 
 namespace selvedge::table {
 namespace {

@@ -1,4 +1,4 @@
-#include "pipeline/config/config_tables.hpp"
+#include "pipeline/scene/config_scene.hpp"
 
 // What a scene must come to.
 namespace selvedge::table {

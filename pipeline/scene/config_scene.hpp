@@ -1,6 +1,11 @@
 #pragma once
 
-#include "pipeline/config/config.hpp"
+#include "physics/scene/scene.hpp"
+#include "pipeline/config/options.hpp"
+#include "pipeline/garments/garment_make.hpp"
+#include "pipeline/scene/run_options.hpp"
+#include "pipeline/scene/setup_body.hpp"
+#include "pipeline/shapes/generate.hpp"
 
 namespace selvedge {
 
@@ -13,4 +18,29 @@ std::vector<const Section*> scene_sections();
 // All of them as Markdown: the second half of docs/scene.md.
 std::string scene_reference();
 
+// Sections that are bound to structs, in part or whole.
+const Options<RunOptions>& run_options();
+const Options<RunOptions>& output_options();
+const Options<ConventionalOptions>& solver_options();  // of `icm` too, but for the integrator
+const Options<ContactSettings>& contact_options();
+const Options<Wind>& wind_options();
+const Options<Spring>& spring_options();
+const Options<Draping>& start_options();
+const Options<GarmentOptions>& garment_options();
+const Options<TshirtShape>& tshirt_options();
+const OptionRows<SheetOptions>& sheet_options();  // of every sheet by code but the T-shirt
+const OptionRows<Material>& material_options();   // what may be said of a material by value
+
+namespace table {
+
+const Section& cloth_section();
+std::vector<Key> sheet_keys();       // rectangle, disc, tube, ribbon, tshirt
+std::vector<Key> selection_keys();   // vertices, box, group
+const Section& selection_section();  // vertices of a named cloth
+const Section& outcome_section();
+const Section& obstacle_section();
+const Section& body_section();
+const Section& seam_section();
+
+}  // namespace table
 }  // namespace selvedge

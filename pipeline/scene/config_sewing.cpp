@@ -1,9 +1,8 @@
-#include "pipeline/config/config_tables.hpp"
-
-#include "physics/scene/scene.hpp"
+#include "pipeline/scene/config_scene.hpp"
 
 // What joins vertices of cloths: seams within one, springs between any.
-namespace selvedge::table {
+namespace selvedge {
+namespace table {
 namespace {
 
 Key pair_key() {
@@ -38,21 +37,22 @@ const Section& seam_section() {
   return table;
 }
 
-const Section& spring_section() {
-  static const Section table{
+}  // namespace table
+
+const Options<Spring>& spring_options() {
+  using namespace table;
+  static const Options<Spring> table(
       "spring",
       "Buttons and stitches: vertices of cloths, in pairs, that springs join. The order of vertices is that in which "
       "they are listed; those of a box, a group or a whole cloth by ascending index.",
-      "",
-      {},
       {needed(renamed(section(selection_section(), "", ""), "from")),
        needed(renamed(section(selection_section(), "", ""), "to")), pair_key(),
        number("rest_length", Unit::length, not_negative, "",
               "left out: `contact.thickness` for listed pairs, their distance at the start for nearest ones"),
-       number("stiffness", Unit::stiffness, positive, show(Spring{}.stiffness),
+       number("stiffness", &Spring::stiffness, Unit::stiffness, positive,
               "of each; by default the 2 N of a shirt on one button stretch it by 0.2 mm, and cotton is ten times as "
-              "soft")}};
+              "soft")});
   return table;
 }
 
-}  // namespace selvedge::table
+}  // namespace selvedge

@@ -1,14 +1,39 @@
-#include "pipeline/config/config_tables.hpp"
-#include "pipeline/shapes/generate.hpp"
+#include "pipeline/scene/config_scene.hpp"
 
 // The cloths that the program makes itself.
-namespace selvedge::table {
-namespace {
+namespace selvedge {
 
-std::vector<Key> triangulation_keys() {
-  return {word("triangulation", {"one_diagonal", "alternating", "unstructured"}, "alternating", "how it is cut"),
-          integer("seed", not_negative, "1", "of the unstructured triangulation")};
+using namespace table;
+
+const OptionRows<SheetOptions>& sheet_options() {
+  static const OptionRows<SheetOptions> rows{
+      choice("triangulation", &SheetOptions::triangulation,
+             {{"one_diagonal", Triangulation::one_diagonal},
+              {"alternating", Triangulation::alternating},
+              {"unstructured", Triangulation::unstructured}},
+             "how it is cut"),
+      integer("seed", &SheetOptions::seed, not_negative, "of the unstructured triangulation")};
+  return rows;
 }
+
+const Options<TshirtShape>& tshirt_options() {
+  using O = TshirtShape;
+  static const Options<O> table(
+      "tshirt",
+      "A front and a back joined at the sides, the shoulders and along the sleeves; upright, front to +z, centred at "
+      "the origin. Groups: hem, neck, cuffs, seams, front, back.",
+      {number("width", &O::width, Unit::length, positive, "of the body"),
+       number("length", &O::length, Unit::length, positive, "of the body"),
+       number("sleeve_length", &O::sleeve_length, Unit::length, positive, "beyond the body"),
+       number("sleeve_width", &O::sleeve_width, Unit::length, positive, ""),
+       number("neck", &O::neck, Unit::length, positive, "width of the opening"),
+       number("depth", &O::depth, Unit::length, positive, "from front to back, away from the seams"),
+       bound(&O::edge, edge_key({}))});
+  return table;
+}
+
+namespace table {
+namespace {
 
 const Section& rectangle_section() {
   static const Section table{
@@ -22,7 +47,7 @@ const Section& rectangle_section() {
                        edge_key("0.02"),
                        pair("grading", Unit::none, "[1, 1]",
                             "last over first spacing of the vertices along x and z, in geometric steps")} +
-          triangulation_keys()};
+          keys_of(sheet_options())};
   return table;
 }
 
@@ -35,7 +60,7 @@ const Section& disc_section() {
       std::vector<Key>{number("radius", Unit::length, positive, "0.5", ""),
                        integers("resolution", {.low = 1}, 1, "rings of vertices round the centre; in place of `edge`"),
                        edge_key("0.02")} +
-          triangulation_keys()};
+          keys_of(sheet_options())};
   return table;
 }
 
@@ -49,7 +74,7 @@ const Section& tube_section() {
           number("radius", Unit::length, positive, "0.2", ""), number("height", Unit::length, positive, "1", "along y"),
           integers("resolution", {.low = 2}, 2, "vertices round (at least 6) and along; in place of `edge`"),
           edge_key("0.02")} +
-          triangulation_keys()};
+          keys_of(sheet_options())};
   return table;
 }
 
@@ -76,25 +101,7 @@ const Section& ribbon_section() {
                        vector("normal", Unit::none, "[0, 1, 0]", "way the ribbon faces"),
                        integers("resolution", {.low = 2}, 2, "vertices along and across; in place of `edge`"),
                        edge_key("0.005")} +
-          triangulation_keys()};
-  return table;
-}
-
-const Section& tshirt_section() {
-  const TshirtShape shape;
-  static const Section table{
-      "tshirt",
-      "A front and a back joined at the sides, the shoulders and along the sleeves; upright, front to +z, centred at "
-      "the origin. Groups: hem, neck, cuffs, seams, front, back.",
-      "",
-      {},
-      {number("width", Unit::length, positive, show(shape.width), "of the body"),
-       number("length", Unit::length, positive, show(shape.length), "of the body"),
-       number("sleeve_length", Unit::length, positive, show(shape.sleeve_length), "beyond the body"),
-       number("sleeve_width", Unit::length, positive, show(shape.sleeve_width), ""),
-       number("neck", Unit::length, positive, show(shape.neck), "width of the opening"),
-       number("depth", Unit::length, positive, show(shape.depth), "from front to back, away from the seams"),
-       edge_key(show(shape.edge))}};
+          keys_of(sheet_options())};
   return table;
 }
 
@@ -103,7 +110,8 @@ const Section& tshirt_section() {
 std::vector<Key> sheet_keys() {
   return {section(rectangle_section(), "", "a sheet"), section(disc_section(), "", "a round sheet"),
           section(tube_section(), "", "a sleeve"), section(ribbon_section(), "", "a strip along a line"),
-          section(tshirt_section(), "", "a garment")};
+          section(tshirt_options().section, "", "a garment")};
 }
 
-}  // namespace selvedge::table
+}  // namespace table
+}  // namespace selvedge

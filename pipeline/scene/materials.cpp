@@ -1,7 +1,6 @@
 #include "pipeline/scene/materials.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/setup_paths.hpp"
@@ -10,39 +9,6 @@ namespace selvedge {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Field {
-  const char* name;
-  double Material::*value;
-};
-
-constexpr std::array fields = {
-    Field{"density", &Material::density},
-    Field{"lame_mu", &Material::lame_mu},
-    Field{"lame_lambda", &Material::lame_lambda},
-    Field{"warp", &Material::warp},
-    Field{"weft", &Material::weft},
-    Field{"shear", &Material::shear},
-    Field{"bending", &Material::bending},
-    Field{"stiffness_damping", &Material::stiffness_damping},
-    Field{"mass_damping", &Material::mass_damping},
-};
-
-constexpr std::array membrane_models = {MembraneModel::stvk, MembraneModel::stable_neo_hookean,
-                                        MembraneModel::baraff_witkin};
-constexpr std::array bending_models = {BendingModel::curvature, BendingModel::hinge};
-
-// The value whose word is the entry's, in the order of the table's choices.
-template <class Values>
-auto chosen(const Config& entry, const Values& values) {
-  const auto& choices = entry.key->choices;
-  return values[static_cast<std::size_t>(std::find(choices.begin(), choices.end(), entry.text()) - choices.begin())];
-}
-
-template <class Values, class Value>
-std::string word_of(const Config& entry, const Values& values, Value value) {
-  return entry.key->choices[static_cast<std::size_t>(std::find(values.begin(), values.end(), value) - values.begin())];
-}
 
 void apply_hinge(const Config& section, Material& material) {
   const Config& hinge = section["hinge_bending"];
@@ -80,10 +46,7 @@ void apply_elastic(const Config& section, Material& material) {
 }
 
 void apply(const Config& section, Material& material) {
-  for (const Field& field : fields)
-    if (section[field.name].given) material.*field.value = section[field.name].number();
-  if (section["membrane"].given) material.membrane = chosen(section["membrane"], membrane_models);
-  if (section["bending_model"].given) material.bending_model = chosen(section["bending_model"], bending_models);
+  read_options(material_options(), section, material);
   apply_hinge(section, material);
   apply_elastic(section, material);
 }
@@ -113,9 +76,7 @@ void read_named(const Config& name, const fs::path& folder, Material& material) 
 }
 
 void write_back(const Material& material, Config& section) {
-  for (const Field& field : fields) section[field.name].numbers = {material.*field.value};
-  section["membrane"].words = {word_of(section["membrane"], membrane_models, material.membrane)};
-  section["bending_model"].words = {word_of(section["bending_model"], bending_models, material.bending_model)};
+  write_options(material_options(), material, section);
   for (const char* replaced : {"youngs_modulus", "modulus", "thickness", "poisson", "hinge_bending"}) {
     section[replaced].numbers.clear();
     section[replaced].given = false;

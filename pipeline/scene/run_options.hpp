@@ -19,6 +19,9 @@ struct RunOptions {
   IcmOptions icm;
 };
 
-const std::vector<std::string>& known_steppers();
+inline const std::vector<std::string>& known_steppers() {
+  static const std::vector<std::string> known{"conventional", "icm"};
+  return known;
+}
 
 }  // namespace selvedge

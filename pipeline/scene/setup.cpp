@@ -118,9 +118,7 @@ void add_pins(const std::vector<ClothPart>& parts, const PinPart& held, Scene& s
 
 void read_wind(const Config& section, Wind& wind, World& world) {
   if (!section.given) return;
-  wind.drag = section["drag"].number();
-  wind.lift = section["lift"].number();
-  wind.air_density = section["air_density"].number();
+  wind = wind_options().read(section);
   wind.on = wind.air_density > 0 && (wind.drag > 0 || wind.lift > 0);
   world.wind_interpolation = read_interpolation(section["interpolation"]);
   const Config& keyframes = section["keyframes"];
@@ -137,54 +135,14 @@ void read_wind(const Config& section, Wind& wind, World& world) {
   }
 }
 
-ContactSettings read_contact(const Config& section) {
-  return {section["thickness"].number(), section["friction"].number(), section["self_friction"].number(),
-          section["self"].flag(), section["rigid_zones"].flag()};
-}
-
-ImplicitEulerOptions read_solver(const Config& section) {
-  ImplicitEulerOptions o;
-  o.velocity_tolerance = section["velocity_tolerance"].number();
-  o.relative_tolerance = section["relative_tolerance"].number();
-  o.max_newton = section["max_newton"].integer();
-  const std::string& solver = section["linear_solver"].text();
-  o.linear_solver = solver == "cholmod"     ? LinearSolver::cholmod
-                    : solver == "pcg"       ? LinearSolver::pcg
-                    : solver == "multigrid" ? LinearSolver::multigrid
-                                            : LinearSolver::automatic;
-  o.linear_tolerance = section["linear_tolerance"].number();
-  o.max_linear = section["max_linear"].integer();
-  o.slip_speed = section["slip_speed"].number();
-  return o;
-}
-
-IcmOptions read_icm(const Config& section) {
-  IcmOptions o;
-  o.outer_iterations = section["outer_iterations"].integer();
-  o.contour_weight = section["contour_weight"].number();
-  o.contour_gradient =
-      section["contour_gradient"].text() == "full" ? ContourGradient::full : ContourGradient::translational;
-  o.push_speed = section["push_speed"].number();
-  o.reach = section["reach"].number();
-  return o;
-}
-
+// What the scene file gives, over the defaults.
 RunOptions read_run(const Config& scene) {
-  const Config& section = scene["run"];
-  RunOptions run;
-  run.frames = section["frames"].integer();
-  run.fps = section["fps"].number();
-  run.stepper = section["stepper"].text();
-  run.rest = section["rest"].flag();
-  if (scene["output"]["folder"].given) run.output = scene["output"]["folder"].text();
-  if (!section["substeps"].numbers.empty()) run.conventional.substeps = section["substeps"].integer();
-  run.conventional.max_substeps = section["max_substeps"].integer();
-  const Config& integrator = scene["solver"]["integrator"];
-  run.conventional.integrator = integrator.text() == "bdf2" ? Integrator::bdf2 : Integrator::implicit_euler;
+  RunOptions run = run_options().read(scene["run"]);
+  read_options(output_options().rows, scene["output"], run);
+  read_options(solver_options().rows, scene["solver"], run.conventional);
   if (run.conventional.integrator == Integrator::bdf2 && run.stepper == "icm")
-    integrator.fail("is not one of the stepper `icm`", "leave it out, or take the stepper `conventional`");
-  run.conventional.implicit_euler = read_solver(scene["solver"]);
-  run.icm = read_icm(section["icm"]);
+    scene["solver"]["integrator"].fail("is not one of the stepper `icm`",
+                                       "leave it out, or take the stepper `conventional`");
   run.icm.substeps = run.conventional.substeps;
   run.icm.max_substeps = run.conventional.max_substeps;
   run.icm.implicit_euler = run.conventional.implicit_euler;
@@ -259,7 +217,7 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
     wear(static_cast<int>(std::ranges::count_if(cloths, worn)), *who);
   }
   setup.file = file;
-  setup.scene.contact = read_contact(config["contact"]);
+  setup.scene.contact = contact_options().read(config["contact"]);
   setup.run = read_run(config);
   setup.initial.frame = -begin_draped(bodies, setup.run.fps, cloths);
   setup.initial.time = setup.initial.frame / setup.run.fps;

@@ -12,6 +12,12 @@
 
 namespace selvedge {
 
+// How a clean start is grown: bodies come from the pose that their garments were made in, and hold still [s].
+struct Draping {
+  double seconds = 1, hold = 0.5;
+  bool operator==(const Draping&) const = default;
+};
+
 // A body before it is placed: as skinned, and where it has given way to itself [m].
 struct PosedBody {
   Points skinned, given;

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "pipeline/garments/garment_hdf5.hpp"
-#include "pipeline/garments/garment_make.hpp"
 #include "pipeline/garments/outfit.hpp"
+#include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/setup_paths.hpp"
 
 namespace selvedge {
@@ -64,9 +64,8 @@ void check_mannequin(const Config& garment, const Performance& who) {
 
 Garment read_cut(const Config& section, const Performance& who) {
   check_mannequin(section["cut"], who);
-  GarmentOptions options;
-  options.edge = section["edge"].number();
-  return kept_garment(cache_folder(), section["cut"].text(), who.body, options, section["over"].words);
+  return kept_garment(cache_folder(), section["cut"].text(), who.body, garment_options().read(section),
+                      section["over"].words);
 }
 
 std::vector<Garment> read_outfit(const Config& section, const std::filesystem::path& folder, const Performance& who) {

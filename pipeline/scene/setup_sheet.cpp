@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/setup_motion.hpp"
 #include "pipeline/scene/setup_paths.hpp"
 #include "pipeline/shapes/generate.hpp"
@@ -14,12 +15,10 @@ namespace {
 
 constexpr double most_sheet_vertices = 2e7;
 
-SheetOptions sheet_options(const Config& shape) {
-  const std::string& word = shape["triangulation"].text();
-  const Triangulation triangulation = word == "unstructured"  ? Triangulation::unstructured
-                                      : word == "alternating" ? Triangulation::alternating
-                                                              : Triangulation::one_diagonal;
-  return {triangulation, static_cast<std::uint64_t>(shape["seed"].number())};
+SheetOptions options_of(const Config& shape) {
+  SheetOptions options;
+  read_options(sheet_options(), shape, options);
+  return options;
 }
 
 void check_count(const Config& shape, double vertices) {
@@ -56,13 +55,11 @@ Mesh read_ribbon(const Config& shape) {
     shape["normal"].fail("is along the ribbon's line somewhere", "give the points there a `normal` across the line");
   const double length = line_length(line), width = shape["width"].number();
   const auto [along, across] = counts(shape, length, width, 2);
-  return make_ribbon(line, width, along, across, sheet_options(shape));
+  return make_ribbon(line, width, along, across, options_of(shape));
 }
 
 Mesh read_tshirt(const Config& shape) {
-  const TshirtShape cut{shape["width"].number(),        shape["length"].number(), shape["sleeve_length"].number(),
-                        shape["sleeve_width"].number(), shape["neck"].number(),   shape["depth"].number(),
-                        shape["edge"].number()};
+  const TshirtShape cut = tshirt_options().read(shape);
   if (cut.neck >= cut.width) shape["neck"].fail("is as wide as the body", "leave room for the shoulders");
   if (cut.sleeve_width >= cut.length) shape["sleeve_width"].fail("is as long as the body", "leave room for the sides");
   check_count(shape, 2 * (cut.width * cut.length + 2 * cut.sleeve_length * cut.sleeve_width) / (cut.edge * cut.edge));
@@ -75,7 +72,7 @@ Mesh read_sheet(const Config& section, const std::filesystem::path& folder) {
   if (const Config& shape = section["rectangle"]; shape.given) {
     const Vec2 size(shape["size"].numbers[0], shape["size"].numbers[1]);
     const auto [columns, rows] = counts(shape, size.x(), size.y(), 2);
-    const SheetOptions options = sheet_options(shape);
+    const SheetOptions options = options_of(shape);
     Mesh mesh = make_rectangle(size, columns, rows, options);
     const Vec2 grading(shape["grading"].numbers[0], shape["grading"].numbers[1]);
     if (grading == Vec2(1, 1)) return mesh;
@@ -89,12 +86,12 @@ Mesh read_sheet(const Config& section, const std::filesystem::path& folder) {
     const double rings = shape["resolution"].given ? shape["resolution"].number()
                                                    : std::max(1.0, std::ceil(radius / shape["edge"].number() - 1e-9));
     check_count(shape, 3 * rings * rings);
-    return make_disc(radius, static_cast<int>(rings), sheet_options(shape));
+    return make_disc(radius, static_cast<int>(rings), options_of(shape));
   }
   if (const Config& shape = section["tube"]; shape.given) {
     const double radius = shape["radius"].number(), height = shape["height"].number();
     const auto [around, rows] = counts(shape, 2 * std::numbers::pi * radius, height, 6);
-    return make_tube(radius, height, around, rows, sheet_options(shape));
+    return make_tube(radius, height, around, rows, options_of(shape));
   }
   if (const Config& shape = section["ribbon"]; shape.given) return read_ribbon(shape);
   if (const Config& shape = section["tshirt"]; shape.given) return read_tshirt(shape);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <span>
 
+#include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/setup_pairs.hpp"
 #include "pipeline/scene/setup_selection.hpp"
 
@@ -52,13 +53,14 @@ std::vector<Spring> read_springs(const Config& list, const std::vector<ClothPart
     if (parts[c].worn) add(stitches_of(*parts[c].worn, scene.cloths[c].first_vertex), "stitches of " + parts[c].name);
   for (const Config& section : list.items) {
     const bool listed = section["pair"].text() == "listed", given = section["rest_length"].given;
+    const double stiffness = spring_options().read(section).stiffness;
     std::vector<Spring> springs;
     for (const auto& [a, b] :
          read_pairs(section, read_side(section["from"], parts, scene), read_side(section["to"], parts, scene), x)) {
       const double rest = given    ? section["rest_length"].number()
                           : listed ? scene.contact.thickness
                                    : (row(x, b) - row(x, a)).norm();
-      springs.push_back({a, b, rest, section["stiffness"].number()});
+      springs.push_back({a, b, rest, stiffness});
     }
     add(springs, section.path);
   }

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "physics/recovery/cut_out.hpp"
+#include "pipeline/scene/config_scene.hpp"
 #include "pipeline/shapes/random_shifts.hpp"
 
 namespace selvedge {
@@ -24,7 +25,7 @@ void read_from(const Config& section, ClothPart& part) {
     from.fail("is given beside `stretch` or `crumple`",
               "a draped start is grown clean, a cut one goes on from the skinned garment: leave these out");
   part.cut = from.text() == "cut";
-  if (!part.cut) part.draping = Draping{section["seconds"].number(), section["hold"].number()};
+  if (!part.cut) part.draping = start_options().read(section);
 }
 
 // The pose that all garments on the body were made in; the zero pose where they differ.

@@ -1,25 +1,22 @@
 #include "pipeline/suites/stability_suite.hpp"
 
-#include "pipeline/config/config_tables.hpp"
+#include "pipeline/config/options.hpp"
 
 namespace selvedge {
 namespace {
 
 using namespace table;
 
-const Section& limits_section() {
-  const StabilityLimits l;
-  static const Section table{
-      "limits",
-      "What every run must keep.",
-      "",
-      {},
-      {number("growth", Unit::none, positive, show(l.growth),
+const Options<StabilityLimits>& limits_options() {
+  using O = StabilityLimits;
+  static const Options<O> table(
+      "limits", "What every run must keep.",
+      {number("growth", &O::growth, Unit::none, positive,
               "energy that nothing accounts for, of the largest kinetic and elastic energy of the run"),
-       number("speed", Unit::none, positive, show(l.speed),
+       number("speed", &O::speed, Unit::none, positive,
               "RMS speed in the last tenth of the run, of that of a fall by the cloth's extent"),
-       integer("newton", at_least_one, show(l.newton), "iterations a substep"),
-       integer("linear", at_least_one, show(l.linear), "iterations a Newton iteration")}};
+       integer("newton", &O::newton, at_least_one, "iterations a substep"),
+       integer("linear", &O::linear, at_least_one, "iterations a Newton iteration")});
   return table;
 }
 
@@ -51,7 +48,7 @@ const Section& suite_section() {
                              "The whole file.",
                              "",
                              {},
-                             {text("description", "for people"), section(limits_section(), "{}", ""),
+                             {text("description", "for people"), section(limits_options().section, "{}", ""),
                               needed(sections("cases", case_section(), "", "at least one"))}};
   return table;
 }
@@ -75,17 +72,15 @@ StabilityCase read_case(const Config& section, const std::filesystem::path& fold
 
 StabilitySuite read_stability_suite(const std::filesystem::path& file) {
   const Config config = read_config(file, suite_section());
-  const Config& limits = config["limits"];
   StabilitySuite suite;
-  suite.limits = {limits["growth"].number(), limits["speed"].number(), limits["newton"].integer(),
-                  limits["linear"].integer()};
+  suite.limits = limits_options().read(config["limits"]);
   for (const Config& one : config["cases"].items) suite.cases.push_back(read_case(one, file.parent_path()));
   return suite;
 }
 
 std::string stability_reference() {
   std::string text;
-  for (const Section* one : {&suite_section(), &limits_section(), &case_section(), &run_section()})
+  for (const Section* one : {&suite_section(), &limits_options().section, &case_section(), &run_section()})
     text += section_markdown(*one);
   return text;
 }

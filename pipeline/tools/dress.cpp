@@ -8,10 +8,10 @@
 #include "collision/audit/audit.hpp"
 #include "collision/geometry/distance.hpp"
 #include "collision/geometry/error.hpp"
-#include "pipeline/config/config_tables.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/garments/garment_places.hpp"
+#include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/setup_body.hpp"
 
 namespace selvedge {

@@ -1,0 +1,92 @@
+#include "pipeline/scene/config_scene.hpp"
+
+// What a scene file says of the run.
+namespace selvedge {
+namespace {
+
+using namespace table;
+
+const Options<IcmOptions>& icm_options() {
+  using O = IcmOptions;
+  static const Options<O> table(
+      "icm", "Contours minimised together with the cloth's energy, without continuous detection and without learning.",
+      {integer("outer_iterations", &O::outer_iterations, at_least_one,
+               "a substep: pairs found anew, then a minimisation"),
+       number("contour_weight", &O::contour_weight, Unit::none, not_negative,
+              "of the contours' squared segment lengths, in mean vertex masses over the time step squared"),
+       choice("contour_gradient", &O::contour_gradient,
+              {{"translational", ContourGradient::translational}, {"full", ContourGradient::full}},
+              "`translational`: edges are moved, not shortened"),
+       number("push_speed", &O::push_speed, Unit::speed, not_negative,
+              "at which what contours enclose is asked back; 0: the contour energy alone"),
+       number("reach", &O::reach, Unit::length, not_negative,
+              "how far apart pairs may be that are kept from passing each other; the thickness at least")});
+  return table;
+}
+
+const OptionRows<ConventionalOptions>& substep_options() {
+  using O = ConventionalOptions;
+  static const OptionRows<O> rows{or_word(integer("substeps", &O::substeps, at_least_one,
+                                                  "time steps a frame; `auto`: from the speed of what touches"),
+                                          "auto"),
+                                  integer("max_substeps", &O::max_substeps, at_least_one, "most that `auto` takes")};
+  return rows;
+}
+
+const OptionRows<ImplicitEulerOptions>& implicit_euler_options() {
+  using O = ImplicitEulerOptions;
+  static const OptionRows<O> rows{
+      number("velocity_tolerance", &O::velocity_tolerance, Unit::speed, positive,
+             "Newton ends when the RMS of its displacement is below this times the time step,"),
+      number("relative_tolerance", &O::relative_tolerance, Unit::none, not_negative,
+             "or below this part of the RMS motion in the step"),
+      integer("max_newton", &O::max_newton, at_least_one, "iterations a step"),
+      choice("linear_solver", &O::linear_solver,
+             {{"automatic", LinearSolver::automatic},
+              {"cholmod", LinearSolver::cholmod},
+              {"pcg", LinearSolver::pcg},
+              {"multigrid", LinearSolver::multigrid}},
+             "`automatic`: cholmod for the smallest scenes, otherwise multigrid"),
+      number("linear_tolerance", &O::linear_tolerance, Unit::none,
+             {.low = 0, .high = 1, .low_in = false, .high_in = false},
+             "residual of PCG in a Newton iteration, relative, in its preconditioner's norm"),
+      integer("max_linear", &O::max_linear, at_least_one, "PCG iterations"),
+      number("slip_speed", &O::slip_speed, Unit::speed, positive, "below it friction is viscous")};
+  return rows;
+}
+
+}  // namespace
+
+const Options<RunOptions>& run_options() {
+  using O = RunOptions;
+  static const Options<O> table(
+      "run", "",
+      OptionRows<O>{integer("frames", &O::frames, at_least_one, "how many"),
+                    number("fps", &O::fps, Unit::rate, positive, "frames a second")} +
+          inside(&O::conventional, substep_options()) +
+          OptionRows<O>{
+              word("stepper", &O::stepper, known_steppers(), "who makes the frames"),
+              flag("rest", &O::rest, "cloths that rest, with nothing moving near them, are left out of the work"),
+              section(&O::icm, icm_options(), "of the stepper `icm`")});
+  return table;
+}
+
+const Options<ConventionalOptions>& solver_options() {
+  using O = ConventionalOptions;
+  static const Options<O> table(
+      "solver", "",
+      OptionRows<O>{choice(
+          "integrator", &O::integrator, {{"implicit_euler", Integrator::implicit_euler}, {"bdf2", Integrator::bdf2}},
+          "`bdf2`: of second order in time where nothing touches, with less damping; implicit Euler elsewhere. "
+          "Not of the stepper `icm`")} +
+          inside(&O::implicit_euler, implicit_euler_options()));
+  return table;
+}
+
+const Options<RunOptions>& output_options() {
+  static const Options<RunOptions> table(
+      "output", "", {path("folder", &RunOptions::output, "for the results; left out: chosen by the command")});
+  return table;
+}
+
+}  // namespace selvedge
