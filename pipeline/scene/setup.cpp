@@ -51,31 +51,36 @@ Drive drive(const World& world, double time) {
   return d;
 }
 
-void join(const std::vector<ClothPart>& parts, Scene& scene, State& initial) {
-  Eigen::Index vertices = 0, triangles = 0;
+// A member of every cloth, one below the other.
+Points stacked(const std::vector<ClothPart>& parts, Points ClothPart::*rows) {
+  Eigen::Index count = 0;
+  for (const ClothPart& part : parts) count += (part.*rows).rows();
+  Points all(count, 3);
+  Eigen::Index first = 0;
   for (const ClothPart& part : parts) {
-    vertices += part.mesh.x.rows();
-    triangles += part.mesh.triangles.rows();
+    all.middleRows(first, (part.*rows).rows()) = part.*rows;
+    first += (part.*rows).rows();
   }
-  initial.x.resize(vertices, 3);
-  initial.v.resize(vertices, 3);
-  scene.rest.resize(vertices, 3);
+  return all;
+}
+
+void add_cloths(const std::vector<ClothPart>& parts, Scene& scene) {
+  Eigen::Index triangles = 0;
+  for (const ClothPart& part : parts) triangles += part.mesh.triangles.rows();
   Triangles all(triangles, 3);
   Eigen::Index v = 0, t = 0;
   for (const ClothPart& part : parts) {
     const Eigen::Index nv = part.mesh.x.rows(), nt = part.mesh.triangles.rows();
     scene.cloths.push_back({part.name, part.material, static_cast<int>(v), static_cast<int>(nv), static_cast<int>(t),
                             static_cast<int>(nt)});
-    initial.x.middleRows(v, nv) = part.first;
-    initial.v.middleRows(v, nv) = part.velocity;
-    scene.rest.middleRows(v, nv) = part.rest;
     all.middleRows(t, nt) = part.mesh.triangles.array() + static_cast<int>(v);
     scene.rest_triangle.insert(scene.rest_triangle.end(), part.rest_triangle.begin(), part.rest_triangle.end());
     scene.rest_is_flat = part.rest_is_flat;
     v += nv;
     t += nt;
   }
-  scene.surface = make_surface(static_cast<int>(vertices), all);
+  scene.rest = stacked(parts, &ClothPart::rest);
+  scene.surface = make_surface(static_cast<int>(v), all);
 }
 
 // Vertices without mass cannot move freely: they stay where they are.
@@ -175,15 +180,15 @@ std::vector<ClothPart> read_all_cloths(Config& list, const std::filesystem::path
   return parts;
 }
 
-void read_obstacles(const Config& list, const std::filesystem::path& folder, const Performances& bodies, Setup& setup,
-                    World& world) {
+std::vector<ObstaclePart> read_all_obstacles(const Config& list, const std::filesystem::path& folder,
+                                             const Performances& bodies, std::vector<std::string>& warnings) {
+  std::vector<ObstaclePart> parts;
   std::vector<std::string> names;
   for (std::size_t o = 0; o < list.items.size(); ++o) {
-    ObstaclePart part = bodies[o] ? obstacle_of(bodies[o]) : read_obstacle(list.items[o], o, folder, setup.warnings);
-    take_name(list.items[o], part.obstacle.name, names);
-    setup.scene.obstacles.push_back(std::move(part.obstacle));
-    world.obstacles.push_back(std::move(part.at));
+    parts.push_back(bodies[o] ? obstacle_of(bodies[o]) : read_obstacle(list.items[o], o, folder, warnings));
+    take_name(list.items[o], parts.back().obstacle.name, names);
   }
+  return parts;
 }
 
 // Neighbours of a triangle lie within its smallest altitude: a thicker cloth pushes them apart at rest.
@@ -202,49 +207,100 @@ void warn_of_thickness(const Scene& scene, std::vector<std::string>& warnings) {
                                    scene.contact.thickness, thin));
 }
 
+// What the file puts into the world, each part by itself.
+struct SceneParts {
+  Performances bodies;
+  std::vector<ClothPart> cloths;
+  std::vector<ObstaclePart> obstacles;
+  int begin_frame = 0;  // the scene's time begins here, before 0 where garments are to be draped
+  std::vector<std::string> cloth_warnings, obstacle_warnings;
+};
+
+// The values of materials are written back into the configuration.
+SceneParts read_parts(Config& config, const std::filesystem::path& folder, double fps) {
+  SceneParts parts;
+  parts.bodies = read_performances(config["obstacles"], folder);
+  parts.cloths = read_all_cloths(config["cloths"], folder, parts.bodies, parts.cloth_warnings);
+  for (const auto& who : parts.bodies) {
+    if (!who) continue;
+    const auto worn = [&](const ClothPart& part) { return part.worn && part.worn->by == who; };
+    wear(static_cast<int>(std::ranges::count_if(parts.cloths, worn)), *who);
+  }
+  parts.begin_frame = -begin_draped(parts.bodies, fps, parts.cloths);
+  parts.obstacles = read_all_obstacles(config["obstacles"], folder, parts.bodies, parts.obstacle_warnings);
+  return parts;
+}
+
+// The parts as one scene, numbered on end, and the world over time.
+struct JoinedScene {
+  Scene scene;
+  std::function<Drive(double time)> drive_at;
+  Drive start;  // the world when the scene's time begins
+  Points x;     // the cloths then, pins where they are held
+  std::vector<std::string> warnings;
+};
+
+JoinedScene join_scene(const Config& config, const SceneParts& parts, double begin_time) {
+  JoinedScene joined;
+  Scene& scene = joined.scene;
+  const auto world = std::make_shared<World>();
+  joined.warnings = parts.cloth_warnings;
+  scene.contact = contact_options().read(config["contact"]);
+  add_cloths(parts.cloths, scene);
+  joined.x = stacked(parts.cloths, &ClothPart::first);
+  add_pins(parts.cloths, massless(scene, joined.x, joined.warnings), scene, *world);
+  joined.warnings.insert(joined.warnings.end(), parts.obstacle_warnings.begin(), parts.obstacle_warnings.end());
+  for (const ObstaclePart& part : parts.obstacles) {
+    scene.obstacles.push_back(part.obstacle);
+    world->obstacles.push_back(part.at);
+  }
+  world->gravity = config["gravity"].vector();
+  read_wind(config["wind"], scene.wind, *world);
+  warn_of_thickness(scene, joined.warnings);
+  joined.start = drive(*world, begin_time);
+  for (std::size_t p = 0; p < scene.pins.size(); ++p)
+    joined.x.row(scene.pins[p]) = joined.start.pins.row(static_cast<Eigen::Index>(p));
+  warn_of_stretched_seams(parts.cloths, scene, joined.x, joined.warnings);
+  scene.springs = read_springs(config["springs"], parts.cloths, scene, joined.x, joined.warnings);
+  world->worn = worn_in_scene(parts.cloths, scene);
+  joined.drive_at = [world](double time) { return drive(*world, time); };
+  return joined;
+}
+
+// The state when the scene's time begins, with the velocity of time 0.
+State first_state(const SceneParts& parts, const JoinedScene& joined, double begin_time) {
+  State state;
+  state.frame = parts.begin_frame;
+  state.time = begin_time;
+  state.x = joined.x;
+  state.v = stacked(parts.cloths, &ClothPart::velocity);
+  state.obstacles = joined.start.obstacles;
+  for (const int pin : joined.scene.pins) state.v.row(pin).setZero();
+  begin_cut(parts.cloths, joined.scene, state);
+  return state;
+}
+
 }  // namespace
 
 Setup read_setup(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   Config config = read_config(file, scene_section(), overrides);
-  const std::filesystem::path folder = file.parent_path();
   Setup setup;
-  const auto world = std::make_shared<World>();
-  const Performances bodies = read_performances(config["obstacles"], folder);
-  std::vector<ClothPart> cloths = read_all_cloths(config["cloths"], folder, bodies, setup.warnings);
-  for (const auto& who : bodies) {
-    if (!who) continue;
-    const auto worn = [&](const ClothPart& part) { return part.worn && part.worn->by == who; };
-    wear(static_cast<int>(std::ranges::count_if(cloths, worn)), *who);
-  }
   setup.file = file;
-  setup.scene.contact = contact_options().read(config["contact"]);
   setup.run = read_run(config);
-  setup.initial.frame = -begin_draped(bodies, setup.run.fps, cloths);
-  setup.initial.time = setup.initial.frame / setup.run.fps;
-  world->gravity = config["gravity"].vector();
-  join(cloths, setup.scene, setup.initial);
-  add_pins(cloths, massless(setup.scene, setup.initial.x, setup.warnings), setup.scene, *world);
-  read_obstacles(config["obstacles"], folder, bodies, setup, *world);
-  read_wind(config["wind"], setup.scene.wind, *world);
-  warn_of_thickness(setup.scene, setup.warnings);
-  for (const auto& who : bodies) setup.bodies.push_back(who ? who->known : nullptr);
-  setup.drive_at = [world](double time) { return drive(*world, time); };
-  const Drive start = setup.drive_at(setup.initial.time);
-  setup.initial.obstacles = start.obstacles;
-  for (std::size_t p = 0; p < setup.scene.pins.size(); ++p) {
-    setup.initial.x.row(setup.scene.pins[p]) = start.pins.row(static_cast<Eigen::Index>(p));
-    setup.initial.v.row(setup.scene.pins[p]).setZero();
-  }
-  warn_of_stretched_seams(cloths, setup.scene, setup.initial.x, setup.warnings);
-  setup.scene.springs = read_springs(config["springs"], cloths, setup.scene, setup.initial.x, setup.warnings);
-  world->worn = worn_in_scene(cloths, setup.scene);
-  begin_cut(cloths, setup.scene, setup.initial);
-  if (std::ranges::any_of(cloths, &ClothPart::cut))
+  const SceneParts parts = read_parts(config, file.parent_path(), setup.run.fps);
+  const double begin_time = parts.begin_frame / setup.run.fps;
+  JoinedScene joined = join_scene(config, parts, begin_time);
+  setup.initial = first_state(parts, joined, begin_time);
+  setup.velocity = setup.initial.v;
+  if (parts.begin_frame < 0) setup.initial.v.setZero();
+  setup.scene = std::move(joined.scene);
+  setup.drive_at = std::move(joined.drive_at);
+  setup.warnings = std::move(joined.warnings);
+  if (std::ranges::any_of(parts.cloths, &ClothPart::cut))
     setup.prepared =
         fmt::format("cut: {} of {} triangles out", setup.initial.cut_out.size(), setup.scene.surface.triangles.rows());
-  setup.velocity = setup.initial.v;
-  if (setup.initial.frame < 0) setup.initial.v.setZero();
-  setup.outcomes = read_outcomes(config["outcome"], cloths, setup.scene);
+  for (const auto& who : parts.bodies) setup.bodies.push_back(who ? who->known : nullptr);
+  setup.outcomes = read_outcomes(config["outcome"], parts.cloths, setup.scene);
   setup.short_form = config["short_form"].words;
   setup.config = to_yaml(config);
   return setup;
