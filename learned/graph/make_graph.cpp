@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "collision/contour/find_contours.hpp"
 #include "collision/geometry/error.hpp"
 #include "learned/graph/node_features.hpp"
 

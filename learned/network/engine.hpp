@@ -1,20 +1,10 @@
 #pragma once
 
-#include <memory>
-#include <string>
 #include <vector>
 
 #include "learned/network/weights.hpp"
 
 namespace selvedge {
-
-// What the kernels are compiled for: plain x86-64 (or whatever the machine is), AVX2 with FMA, AVX-512. Results differ
-// between them by rounding.
-enum class InstructionSet { plain, avx2, avx512 };
-
-bool is_supported(InstructionSet);      // by this machine
-InstructionSet best_instruction_set();  // of those that are supported
-std::string name_of(InstructionSet);
 
 // Latents on the way, for comparison with others. Rows of nodes and edges are in the order of the graph.
 struct LatentTrace {
@@ -22,12 +12,7 @@ struct LatentTrace {
   std::vector<FeatureRows> edges_first, edges_last;  // one a set of the graph: after its encoder, and at the end
 };
 
-// Weights laid out for the kernels of one instruction set. It is read only; threads may share it.
 struct PackedNetwork;
-
-// Throws Error unless the weights have the architecture's shapes (`check_weights`) and the machine has the set.
-std::shared_ptr<const PackedNetwork> pack_network(const Architecture&, const NetworkWeights&,
-                                                  InstructionSet = best_instruction_set());
 
 // Output of the network for each cloth node: cloth_nodes x outputs, normalised, in float. The graph's feature rows are
 // what the encoders see. A set whose key the architecture lacks, an index outside of the nodes or a wrong number of

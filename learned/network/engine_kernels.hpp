@@ -1,6 +1,6 @@
 #pragma once
 
-#include "learned/network/engine.hpp"
+#include "learned/network/instruction_set.hpp"
 
 namespace selvedge {
 

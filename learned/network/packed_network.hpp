@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "learned/network/aligned_floats.hpp"
-#include "learned/network/engine.hpp"
+#include "learned/network/instruction_set.hpp"
+#include "learned/network/weights.hpp"
 
 namespace selvedge {
 
@@ -26,6 +28,7 @@ struct PackedStep {
   PackedPerceptron node;
 };
 
+// Weights laid out for the kernels of one instruction set. It is read only; threads may share it.
 struct PackedNetwork {
   Architecture architecture;
   InstructionSet set = InstructionSet::plain;
@@ -34,5 +37,9 @@ struct PackedNetwork {
   std::vector<PackedStep> steps;
   PackedPerceptron decoder;
 };
+
+// Throws Error unless the weights have the architecture's shapes (`check_weights`) and the machine has the set.
+std::shared_ptr<const PackedNetwork> pack_network(const Architecture&, const NetworkWeights&,
+                                                  InstructionSet = best_instruction_set());
 
 }  // namespace selvedge

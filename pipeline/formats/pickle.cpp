@@ -346,11 +346,4 @@ const PickleValue* find(const Pickle& pickle, const PickleValue& value, std::str
   return nullptr;
 }
 
-std::string shown(std::string_view text) {
-  constexpr std::size_t longest = 120;
-  std::string line;
-  for (const char c : text.substr(0, longest)) line += c >= ' ' && c <= '~' ? std::string(1, c) : "?";
-  return text.size() > longest ? line + ".." : line;
-}
-
 }  // namespace selvedge

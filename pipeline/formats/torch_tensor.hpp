@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/formats/pickle.hpp"
+#include "pipeline/formats/pickle_value.hpp"
 
 namespace selvedge {
 

@@ -11,6 +11,7 @@
 #include "learned/graph/integration.hpp"
 #include "learned/graph/make_graph.hpp"
 #include "learned/network/engine.hpp"
+#include "learned/network/packed_network.hpp"
 
 namespace selvedge {
 namespace {
@@ -117,7 +118,8 @@ ParityReport weights_parity(const Architecture& architecture, const NetworkWeigh
   const RestGraph rest = make_rest_graph(dump.scene, options, dump.centres);
   GraphSearch search;
   GraphReport found;
-  Graph graph = make_raw_graph(dump.scene, rest, dump.state, options, weights.tables, search, found);
+  Graph graph;
+  make_raw_graph(dump.scene, rest, dump.state, options, weights.tables, search, graph, found);
   if (!found.refused.empty()) throw Error(found.refused, dump.file.place("cloth_pos").text(), "record another step");
   FeatureSums<float> after;
   FeatureTables tables = weights.tables;

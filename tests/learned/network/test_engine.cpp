@@ -9,6 +9,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "learned/network/engine_bench.hpp"
+#include "learned/network/packed_network.hpp"
 
 using namespace selvedge;
 

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "learned/network/engine.hpp"
+#include "learned/network/packed_network.hpp"
 #include "tests/learned/recorded_network.hpp"
 
 using namespace selvedge;
