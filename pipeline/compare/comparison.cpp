@@ -2,23 +2,22 @@
 
 #include <algorithm>
 
-#include "pipeline/config/config_tables.hpp"
+#include "pipeline/config/options.hpp"
 
 namespace selvedge {
 namespace {
 
 using namespace table;
 
-const Section& compared_scene_section() {
-  const CompareScene s;
-  static const Section table{"compared_scene",
-                             "",
-                             "file",
-                             {},
-                             {needed(path("file", "scene file, from this file's folder")),
-                              text("name", "left out: the file's"), texts("set", "`key=value` overrides of the scene"),
-                              integer("states", at_least_one, show(s.states), "common states, spread over the run"),
-                              integer("horizon", at_least_one, show(s.horizon), "frames from each of them")}};
+const Options<CompareScene>& compared_scene_options() {
+  using O = CompareScene;
+  static const Options<O> table(
+      "compared_scene", "",
+      {needed(path("file", "scene file, from this file's folder")), text("name", "left out: the file's"),
+       texts("set", &O::overrides, "`key=value` overrides of the scene"),
+       integer("states", &O::states, at_least_one, "common states, spread over the run"),
+       integer("horizon", &O::horizon, at_least_one, "frames from each of them")},
+      "file");
   return table;
 }
 
@@ -32,19 +31,17 @@ const Section& setting_section() {
   return table;
 }
 
-const Section& comparison_section() {
-  const Comparison c;
-  static const Section table{
-      "comparison",
-      "The whole file.",
-      "",
-      {},
-      {text("description", "for people"), needed(sections("scenes", compared_scene_section(), "", "at least one")),
+const Options<Comparison>& comparison_options() {
+  using O = Comparison;
+  static const Options<O> table(
+      "comparison", "The whole file.",
+      {text("description", "for people"),
+       needed(sections("scenes", compared_scene_options().section, "", "at least one")),
        needed(sections("settings", setting_section(), "", "at least one")),
-       texts("reference", "`key=value` overrides of the temporal reference, beside its time step"),
-       integer("repeats", at_least_one, show(c.repeats), "timed runs of each setting"),
-       number("jitter", Unit::none, not_negative, show(c.jitter), "of the floor's states, in mean edge lengths"),
-       texts("short_form", "`key=value` overrides of this file that make it shorter (`--short`)")}};
+       texts("reference", &O::reference, "`key=value` overrides of the temporal reference, beside its time step"),
+       integer("repeats", &O::repeats, at_least_one, "timed runs of each setting"),
+       number("jitter", &O::jitter, Unit::none, not_negative, "of the floor's states, in mean edge lengths"),
+       texts("short_form", "`key=value` overrides of this file that make it shorter (`--short`)")});
   return table;
 }
 
@@ -59,22 +56,16 @@ void check_names(const Config& list, const std::vector<std::string>& names) {
 }  // namespace
 
 Comparison read_comparison(const std::filesystem::path& file, bool short_form) {
-  Config config = read_config(file, comparison_section());
+  Config config = read_config(file, comparison_options().section);
   if (short_form && !config["short_form"].words.empty())
-    config = read_config(file, comparison_section(), config["short_form"].words);
-  Comparison comparison;
+    config = read_config(file, comparison_options().section, config["short_form"].words);
+  Comparison comparison = comparison_options().read(config);
   comparison.file = file;
-  comparison.reference = config["reference"].words;
-  comparison.repeats = config["repeats"].integer();
-  comparison.jitter = config["jitter"].number();
   std::vector<std::string> scenes, settings;
   for (const Config& item : config["scenes"].items) {
-    CompareScene scene;
+    CompareScene scene = compared_scene_options().read(item);
     scene.file = file.parent_path() / item["file"].text();
     scene.name = item["name"].given ? item["name"].text() : scene.file.stem().string();
-    scene.overrides = item["set"].words;
-    scene.states = item["states"].integer();
-    scene.horizon = item["horizon"].integer();
     scenes.push_back(scene.name);
     comparison.scenes.push_back(std::move(scene));
   }
