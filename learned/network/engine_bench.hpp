@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "learned/network/engine.hpp"
+#include "learned/network/instruction_set.hpp"
 
 namespace selvedge {
 

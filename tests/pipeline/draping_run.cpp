@@ -9,7 +9,7 @@ namespace {
 constexpr double radius = 0.3;
 const Vec3 centre(0, 0.3, 0);
 
-Triangles grid_triangles(int n) {
+Triangles sheet_triangles(int n) {
   Triangles t(2 * (n - 1) * (n - 1), 3);
   for (int i = 0, k = 0; i + 1 < n; ++i)
     for (int j = 0; j + 1 < n; ++j) {
@@ -91,7 +91,7 @@ ViewRun draping_run(const std::string& name, int n, int frames) {
   info.program_version = "0.1.0";
   info.stepper = "conventional";
   info.cloth_names = {"cloth"};
-  info.triangles = grid_triangles(n);
+  info.triangles = sheet_triangles(n);
   info.cloth_first_vertex = {0, n * n};
   info.cloth_first_triangle = {0, static_cast<int>(info.triangles.rows())};
   info.rest = rest;

@@ -59,15 +59,15 @@ double area_outside(const testing::Sheet& mesh, double radius) {
   return outside / all;
 }
 
-struct Outcome {
+struct UntangleOutcome {
   Surface surface;
   UntangleResult result;
   Audit audited;
 };
 
 // What every untangled cloth must keep to.
-Outcome untangled(const testing::Sheet& mesh, const UntangleOptions& options = {}) {
-  Outcome out{make_surface(static_cast<int>(mesh.x.rows()), mesh.triangles), {}, {}};
+UntangleOutcome untangled(const testing::Sheet& mesh, const UntangleOptions& options = {}) {
+  UntangleOutcome out{make_surface(static_cast<int>(mesh.x.rows()), mesh.triangles), {}, {}};
   out.result = untangle(out.surface, mesh.x, {}, options);
   out.audited = audit(out.surface, out.result.x, {});
   CHECK(out.audited.intersecting_pairs() == out.result.pairs_after);
@@ -82,7 +82,7 @@ Outcome untangled(const testing::Sheet& mesh, const UntangleOptions& options = {
   return out;
 }
 
-void check_clean(const Outcome& out) {
+void check_clean(const UntangleOutcome& out) {
   CHECK(out.result.pairs_before > 0);
   CHECK(out.result.pairs_after == 0);
   CHECK(out.result.vertex_pairs_after == 0);
@@ -94,7 +94,7 @@ void check_clean(const Outcome& out) {
 TEST_CASE("untangle: a clean cloth is left alone", "[untangle]") {
   const testing::Sheet two =
       testing::join(flat(8, jitter), bent(8, jitter, [](double a, double b) { return Vec3(a, 1e-6, b); }));
-  const Outcome out = untangled(two);
+  const UntangleOutcome out = untangled(two);
   CHECK(out.result.x == two.x);
   CHECK(out.result.iterations == 0);
 }
@@ -102,7 +102,7 @@ TEST_CASE("untangle: a clean cloth is left alone", "[untangle]") {
 TEST_CASE("untangle: a bump through a sheet goes back through", "[untangle]") {
   const auto bump = [](double a, double b) { return Vec3(a, 0.3 * std::exp(-12 * (a * a + b * b)) - 0.1, b); };
   const testing::Sheet mesh = testing::join(flat(18, jitter), bent(20, jitter, bump));
-  const Outcome out = untangled(mesh);
+  const UntangleOutcome out = untangled(mesh);
   check_clean(out);
   // On the right side: the whole of the bump's sheet below the other one where both are level.
   for (int v = 0; v < mesh.x.rows(); ++v)
@@ -113,7 +113,7 @@ TEST_CASE("untangle: a layer pushed through another over 30 % of its area", "[un
   for (double depth : {0.04, 0.05}) {
     const testing::Sheet mesh = outfit(depth);
     CHECK(area_outside(mesh, 0.32) > 0.29);
-    const Outcome out = untangled(mesh);
+    const UntangleOutcome out = untangled(mesh);
     check_clean(out);
     // The inner layer is inside again.
     const int half = static_cast<int>(mesh.x.rows()) / 2;
@@ -179,12 +179,12 @@ TEST_CASE("untangle: the order of layers decides where most of a layer is throug
     return sum;
   };
   const int half = static_cast<int>(mesh.x.rows()) / 2;
-  const Outcome plain = untangled(mesh);
+  const UntangleOutcome plain = untangled(mesh);
   check_clean(plain);
   CHECK(mean_radius(plain.result.x, 0) > mean_radius(plain.result.x, half));
   UntangleOptions options;
   options.layers = {0, 1};
-  const Outcome ordered = untangled(mesh, options);
+  const UntangleOutcome ordered = untangled(mesh, options);
   check_clean(ordered);
   CHECK(mean_radius(ordered.result.x, 0) < mean_radius(ordered.result.x, half));
 }
@@ -238,7 +238,7 @@ TEST_CASE("untangle: what cannot be parted is named, and the rest is kept in sha
   }
   UntangleOptions options;
   options.iterations = 20;
-  const Outcome out = untangled(testing::join(tube(30, 40, 0, [](double, double) { return 0.3; }), across), options);
+  const UntangleOutcome out = untangled(testing::join(tube(30, 40, 0, [](double, double) { return 0.3; }), across), options);
   CHECK(out.result.pairs_after > 0);
   REQUIRE_FALSE(out.result.left.empty());
   int pairs = 0;
@@ -251,10 +251,10 @@ TEST_CASE("untangle: what cannot be parted is named, and the rest is kept in sha
 
 TEST_CASE("untangle: the same at another scale, and twice the same bits", "[untangle]") {
   testing::Sheet mesh = outfit(0.04);
-  const Outcome one = untangled(mesh), two = untangled(mesh);
+  const UntangleOutcome one = untangled(mesh), two = untangled(mesh);
   CHECK(one.result.x == two.result.x);
   mesh.x *= 1024;
-  const Outcome large = untangled(mesh);
+  const UntangleOutcome large = untangled(mesh);
   check_clean(large);
   CHECK((large.result.x / 1024 - one.result.x).cwiseAbs().maxCoeff() < 1e-9);
 }
