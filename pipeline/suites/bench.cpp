@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "pipeline/compare/compare_parts.hpp"
 #include "pipeline/host/peak_memory.hpp"
 #include "pipeline/host/write_file.hpp"
@@ -73,25 +75,37 @@ BenchMember run_member(const BenchRequest& request, const std::string& scene, in
   return member;
 }
 
+bool has_part(const BenchRequest& request, const std::string& part) {
+  return std::ranges::find(request.only, part) != request.only.end();
+}
+
+void write_results(const BenchRequest& request, const BenchResult& result, const std::string& news) {
+  if (request.log) *request.log << news << std::flush;
+  write_file(request.out / "bench.json", bench_json(result));
+  write_file(request.out / "bench.csv", bench_csv(result.members));
+  write_file(request.out / "bench.txt", bench_table(result));
+}
+
 }  // namespace
 
 BenchResult bench(const BenchRequest& request) {
   make_folder(request.out);
   BenchResult result;
-  result.detection = time_detection();
-  if (request.log) *request.log << detection_table(result.detection) << std::flush;
-  std::vector<BenchMember>& members = result.members;
+  if (has_part(request, "detection")) {
+    result.detection = time_detection();
+    write_results(request, result, detection_table(result.detection));
+  }
+  if (has_part(request, "engine")) {
+    result.engine = time_engine();
+    write_results(request, result, engine_table(*result.engine));
+  }
+  if (!has_part(request, "scenes")) return result;
   for (const std::string& scene : request.scenes)
     for (const int size : request.sizes) {
-      members.push_back(run_member(request, scene, size));
-      const RunSummary& summary = members.back().summary;
-      if (request.log)
-        *request.log << fmt::format("{} {}: {:.1f} ms a frame, {} pairs in the worst frame\n", scene, size,
-                                    mean_milliseconds(summary), summary.worst_pairs)
-                     << std::flush;
-      write_file(request.out / "bench.json", bench_json(result));
-      write_file(request.out / "bench.csv", bench_csv(members));
-      write_file(request.out / "bench.txt", bench_table(result));
+      const BenchMember& member = result.members.emplace_back(run_member(request, scene, size));
+      write_results(request, result,
+                    fmt::format("{} {}: {:.1f} ms a frame, {} pairs in the worst frame\n", scene, size,
+                                mean_milliseconds(member.summary), member.summary.worst_pairs));
     }
   return result;
 }

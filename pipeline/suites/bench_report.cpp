@@ -61,6 +61,33 @@ nlohmann::ordered_json detection_json(const std::vector<DetectionTiming>& timing
   return list;
 }
 
+nlohmann::ordered_json engine_json(const EngineTimings& timings) {
+  const PeakMeasurement& peak = timings.peak;
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const EngineTiming& row : timings.rows)
+    rows.push_back({{"network", row.network},
+                    {"width", row.width},
+                    {"steps", row.steps},
+                    {"nodes", row.run.nodes},
+                    {"edges", row.run.edges},
+                    {"operations", row.run.operations},
+                    {"ms", 1e3 * row.run.seconds},
+                    {"busy_ms", 1e3 * row.run.busy_seconds},
+                    {"share_of_peak", share_of_peak(timings, row)},
+                    {"busy_share_of_peak", busy_share_of_peak(timings, row)},
+                    {"bytes", row.run.bytes},
+                    {"runs_a_frame", row.passes}});
+  return {{"instruction_set", name_of(peak.set)},
+          {"threads", peak.threads},
+          {"floats_in_a_vector", peak.lanes},
+          {"clock_hz", peak.clock},
+          {"peak_flops", peak.flops},
+          {"busy_peak_flops", peak.flops_busy},
+          {"share_of_ports", peak.share_of_ports},
+          {"void", is_void(peak)},
+          {"rows", rows}};
+}
+
 }  // namespace
 
 std::string bench_json(const BenchResult& result) {
@@ -80,8 +107,10 @@ std::string bench_json(const BenchResult& result) {
     entry["run"] = nlohmann::ordered_json::parse(summary_json(member.summary));
     list.push_back(entry);
   }
-  const nlohmann::ordered_json json = {
-      {"program_version", program_version()}, {"detection", detection_json(result.detection)}, {"members", list}};
+  nlohmann::ordered_json json = {{"program_version", program_version()},
+                                 {"detection", detection_json(result.detection)}};
+  if (result.engine) json["engine"] = engine_json(*result.engine);
+  json["members"] = list;
   return json.dump(2) + "\n";
 }
 
@@ -99,15 +128,20 @@ std::string bench_csv(const std::vector<BenchMember>& members) {
 }
 
 std::string bench_table(const BenchResult& result) {
-  std::string text = fmt::format("{:<6} {:>4}", "scene", "N");
-  for (const Column& column : columns()) text += fmt::format(" {:>10}", column.title);
-  text += "\n";
+  std::string text;
+  if (!result.members.empty()) {
+    text = fmt::format("{:<6} {:>4}", "scene", "N");
+    for (const Column& column : columns()) text += fmt::format(" {:>10}", column.title);
+    text += "\n";
+  }
   for (const BenchMember& member : result.members) {
     text += fmt::format("{:<6} {:>4}", member.scene, member.size);
     for (const Column& column : columns()) text += fmt::format(" {:>10}", number(column.value(member), column.digits));
     text += "\n";
   }
-  return text + "\n" + detection_table(result.detection);
+  if (!result.detection.empty()) text += (text.empty() ? "" : "\n") + detection_table(result.detection);
+  if (result.engine) text += (text.empty() ? "" : "\n") + engine_table(*result.engine);
+  return text;
 }
 
 }  // namespace selvedge
