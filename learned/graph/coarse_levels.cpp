@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "learned/graph/adjacency.hpp"
+#include "collision/geometry/adjacency.hpp"
 #include "learned/graph/graph_centre.hpp"
 
 namespace selvedge {

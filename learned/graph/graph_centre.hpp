@@ -1,6 +1,6 @@
 #pragma once
 
-#include "learned/graph/adjacency.hpp"
+#include "collision/geometry/adjacency.hpp"
 
 namespace selvedge {
 

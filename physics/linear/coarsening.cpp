@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include <Eigen/Eigenvalues>
 
@@ -17,11 +16,11 @@ constexpr double aside = 1e-9;         // of a triangle's sides squared: a small
 
 // Not free ones count as kept, for what is interpolated from them is known to be zero.
 std::vector<char> choose(const Vertices& fine, std::span<const char> free) {
-  const int n = fine.graph.size();
+  const int n = fine.graph.vertex_count();
   std::vector<char> kept(n, false), covered(n, false);
   const auto keep = [&](int i) {
     kept[i] = true;
-    for (int k = fine.graph.begin[i]; k < fine.graph.begin[i + 1]; ++k) covered[fine.graph.neighbour[k]] = true;
+    for (const int neighbour : fine.graph.of(i)) covered[neighbour] = true;
   };
   for (int i = 0; i < n; ++i)
     if (!free[i]) keep(i);
@@ -43,8 +42,7 @@ std::vector<Candidate> candidates(const Vertices& fine, const std::vector<char>&
   for (int step = 0, first = 0; step < 2; ++step) {
     const int last = static_cast<int>(ring.size());
     for (; first < last; ++first)
-      for (int k = fine.graph.begin[ring[first]]; k < fine.graph.begin[ring[first] + 1]; ++k)
-        ring.push_back(fine.graph.neighbour[k]);
+      for (const int neighbour : fine.graph.of(ring[first])) ring.push_back(neighbour);
   }
   std::sort(ring.begin(), ring.end());
   ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
@@ -125,38 +123,18 @@ Weights interpolate(const Vertices& fine, int i, std::vector<Candidate>& around)
   return triangle_weights(around, weights) ? weights : segment_weights(around);
 }
 
-NeighbourGraph graph_of_pairs(int vertices, std::vector<std::array<int, 2>>& pairs) {
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  NeighbourGraph graph;
-  graph.begin.assign(vertices + 1, 0);
-  for (const auto& [from, to] : pairs) ++graph.begin[from + 1];
-  std::partial_sum(graph.begin.begin(), graph.begin.end(), graph.begin.begin());
-  for (const auto& [from, to] : pairs) graph.neighbour.push_back(to);
-  return graph;
-}
-
 }  // namespace
-
-NeighbourGraph neighbour_graph(int vertices, const Edges& edges) {
-  std::vector<std::array<int, 2>> pairs;
-  for (int e = 0; e < edges.rows(); ++e) {
-    pairs.push_back({edges(e, 0), edges(e, 1)});
-    pairs.push_back({edges(e, 1), edges(e, 0)});
-  }
-  return graph_of_pairs(vertices, pairs);
-}
 
 std::vector<Rim> rims(const Points& rest, const Edges& border) {
   std::vector<Rim> rim(rest.rows(), Rim::inside);
-  const NeighbourGraph graph = neighbour_graph(static_cast<int>(rest.rows()), border);
-  for (int i = 0; i < graph.size(); ++i) {
-    const int ends = graph.begin[i + 1] - graph.begin[i];
-    if (ends == 0) continue;
+  const Adjacency graph = adjacency_of(static_cast<int>(rest.rows()), border);
+  for (int i = 0; i < graph.vertex_count(); ++i) {
+    const std::span<const int> ends = graph.of(i);
+    if (ends.empty()) continue;
     rim[i] = Rim::corner;
-    if (ends != 2) continue;
-    const Vec3 in = row(rest, i) - row(rest, graph.neighbour[graph.begin[i]]);
-    const Vec3 out = row(rest, graph.neighbour[graph.begin[i] + 1]) - row(rest, i);
+    if (ends.size() != 2) continue;
+    const Vec3 in = row(rest, i) - row(rest, ends[0]);
+    const Vec3 out = row(rest, ends[1]) - row(rest, i);
     if (in.dot(out) > straight * in.norm() * out.norm()) rim[i] = Rim::border;
   }
   return rim;
@@ -164,7 +142,7 @@ std::vector<Rim> rims(const Points& rest, const Edges& border) {
 
 Prolongation coarsen(const Vertices& fine, std::span<const char> free) {
   const std::vector<char> kept = choose(fine, free);
-  const int n = fine.graph.size();
+  const int n = fine.graph.vertex_count();
   std::vector<int> index(n, -1);
   Prolongation result;
   for (int i = 0; i < n; ++i)
@@ -200,17 +178,17 @@ Vertices coarse_vertices(const Vertices& fine, const Prolongation& p) {
     coarse.rest.row(a) = fine.rest.row(p.chosen[a]);
     coarse.rim.push_back(fine.rim[p.chosen[a]]);
   }
-  std::vector<std::array<int, 2>> pairs;
+  std::vector<std::pair<int, int>> pairs;
   const auto join = [&](int i, int j) {
     for (int k = p.begin[i]; k < p.begin[i + 1]; ++k)
       for (int l = p.begin[j]; l < p.begin[j + 1]; ++l)
-        if (p.coarse[k] != p.coarse[l]) pairs.push_back({p.coarse[k], p.coarse[l]});
+        if (p.coarse[k] < p.coarse[l]) pairs.emplace_back(p.coarse[k], p.coarse[l]);  // the reverse comes too
   };
-  for (int i = 0; i < fine.graph.size(); ++i) {
+  for (int i = 0; i < fine.graph.vertex_count(); ++i) {
     join(i, i);
-    for (int k = fine.graph.begin[i]; k < fine.graph.begin[i + 1]; ++k) join(i, fine.graph.neighbour[k]);
+    for (const int neighbour : fine.graph.of(i)) join(i, neighbour);
   }
-  coarse.graph = graph_of_pairs(p.coarse_count(), pairs);
+  coarse.graph = adjacency_of(p.coarse_count(), unique_edges(std::move(pairs)));
   return coarse;
 }
 

@@ -3,22 +3,15 @@
 #include <span>
 #include <vector>
 
-#include "collision/geometry/points.hpp"
+#include "collision/geometry/adjacency.hpp"
 
 namespace selvedge {
-
-// Who neighbours whom, by rows, ascending, nobody their own neighbour.
-struct NeighbourGraph {
-  std::vector<int> begin, neighbour;
-  int size() const { return static_cast<int>(begin.size()) - 1; }
-};
-NeighbourGraph neighbour_graph(int vertices, const Edges&);
 
 // A level of a hierarchy of vertices: where they rest, who neighbours whom, and which edge of the cloth they lie on.
 enum class Rim : char { inside, border, corner };
 struct Vertices {
   Points rest;
-  NeighbourGraph graph;
+  Adjacency graph;
   std::vector<Rim> rim;
 };
 

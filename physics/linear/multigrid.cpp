@@ -129,7 +129,7 @@ Multigrid::Multigrid(const Vertices& vertices, std::span<const char> free) : imp
   std::vector<char> here_free(free.begin(), free.end());
   for (;;) {
     Level& level = impl_->levels.emplace_back();
-    level.rows = here.graph.size();
+    level.rows = here.graph.vertex_count();
     if (level.rows <= coarsest || impl_->levels.size() == most_levels) break;
     Prolongation prolongation = coarsen(here, here_free);
     if (prolongation.coarse_count() == 0 || prolongation.coarse_count() > least_coarsening * level.rows) break;
@@ -137,7 +137,7 @@ Multigrid::Multigrid(const Vertices& vertices, std::span<const char> free) : imp
     level.prolongation_weight.assign(prolongation.weight.begin(), prolongation.weight.end());
     level.restriction_weight.assign(level.restriction.weight.begin(), level.restriction.weight.end());
     here = coarse_vertices(here, prolongation);
-    here_free.assign(here.graph.size(), true);
+    here_free.assign(here.graph.vertex_count(), true);
     level.prolongation = std::move(prolongation);
   }
   for (Level& level : impl_->levels)

@@ -60,7 +60,7 @@ Vertices rest_vertices(const Scene& scene) {
       border.push_back({scene.surface.edges(e, 0), scene.surface.edges(e, 1)});
   Edges open(border.size(), 2);
   for (std::size_t e = 0; e < border.size(); ++e) open.row(e) << border[e][0], border[e][1];
-  return {scene.rest, neighbour_graph(scene.surface.vertex_count, scene.surface.edges), rims(scene.rest, open)};
+  return {scene.rest, adjacency_of(scene.surface.vertex_count, scene.surface.edges), rims(scene.rest, open)};
 }
 
 // Of each vertex the connected component, those that springs join taken as one.

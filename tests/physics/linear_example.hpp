@@ -52,10 +52,10 @@ inline SparseMatrix squared_laplacian(const PairPattern& pattern) {
   return laplacian * laplacian;
 }
 
-inline NeighbourGraph graph_of(const PairPattern& pattern) {
+inline Adjacency graph_of(const PairPattern& pattern) {
   Edges edges(pattern.pairs.size(), 2);
   for (std::size_t e = 0; e < pattern.pairs.size(); ++e) edges.row(e) << pattern.pairs[e][0], pattern.pairs[e][1];
-  return neighbour_graph(pattern.rows, edges);
+  return adjacency_of(pattern.rows, edges);
 }
 
 }  // namespace selvedge::testing

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "learned/graph/adjacency.hpp"
+#include "collision/geometry/adjacency.hpp"
 #include "learned/graph/coarse_levels.hpp"
 #include "learned/graph/graph_centre.hpp"
 #include "tests/learned/graph_scenes.hpp"

@@ -178,7 +178,7 @@ DenseCycle dense_cycle(const Example& e, Multigrid& multigrid) {
 TEST_CASE("Coarse vertices: a quarter, no two neighbours; linear functions are kept up to the corners", "[multigrid]") {
   const double jitter = GENERATE(0.0, 0.3);
   const Vertices fine = make_sheet(24, jitter).vertices;
-  const std::vector<char> free(fine.graph.size(), 1);
+  const std::vector<char> free(fine.graph.vertex_count(), 1);
   const Prolongation p = coarsen(fine, free);
   CHECK(p.coarse_count() > 0.18 * p.fine_count());
   CHECK(p.coarse_count() < 0.34 * p.fine_count());
@@ -193,12 +193,12 @@ TEST_CASE("Coarse vertices: a quarter, no two neighbours; linear functions are k
   const Vertices coarse = coarse_vertices(fine, p);
   // Weights under a thousandth are dropped.
   CHECK((weights * coarse.rest - fine.rest).rowwise().norm().maxCoeff() < (jitter > 0 ? 5e-3 / 23 : 1e-12));
-  for (int a = 0; a < coarse.graph.size(); ++a) CHECK(coarse.graph.begin[a + 1] - coarse.graph.begin[a] >= 2);
+  for (int a = 0; a < coarse.graph.vertex_count(); ++a) CHECK(coarse.graph.begin[a + 1] - coarse.graph.begin[a] >= 2);
 }
 
 TEST_CASE("What comes from held vertices is left out, and they are on no coarse level", "[multigrid]") {
   const Vertices fine = make_sheet(12, 0.2).vertices;
-  std::vector<char> free(fine.graph.size(), 1);
+  std::vector<char> free(fine.graph.vertex_count(), 1);
   for (int i = 0; i < 12; ++i) free[i] = 0;
   const Prolongation p = coarsen(fine, free);
   for (int i : p.chosen) CHECK(free[i]);

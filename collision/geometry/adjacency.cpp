@@ -1,4 +1,4 @@
-#include "learned/graph/adjacency.hpp"
+#include "collision/geometry/adjacency.hpp"
 
 #include <algorithm>
 
