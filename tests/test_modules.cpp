@@ -139,7 +139,7 @@ TEST_CASE("modules: test files have names of their own", "[modules]") {
 
 TEST_CASE("modules: what the documents name exists", "[modules]") {
   auto pages = texts("docs", {".md"});
-  for (const std::string page : {"README.md", "CHANGELOG.md", "learned/README.md"}) pages[page] = read(root / page);
+  for (const std::string page : {"README.md", "CHANGELOG.md"}) pages[page] = read(root / page);
   Complaints all;
   for (const auto& [file, text] : pages)
     for (const std::string& complaint : dead_references(root, file, text)) all.push_back(complaint);
