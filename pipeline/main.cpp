@@ -34,6 +34,7 @@ void scene_options(CLI::App& command, SceneArguments& arguments) {
   command.add_option("--set", arguments.overrides, "key=value instead of the scene's, dotted keys")
       ->allow_extra_args(false);
   command.add_option("--stepper", arguments.stepper, joined(known_steppers()));
+  command.add_option("--weights", arguments.weights, "weight file of the stepper `learned`");
 }
 
 void simulate_options(CLI::App& command, SimulateArguments& arguments) {

@@ -29,6 +29,13 @@ struct LastClean {
   std::vector<Points> obstacles;
 };
 
+// Something that one stepper alone reads in its next step. A checkpoint writes it without knowing it. A step of another
+// stepper ends without it.
+struct MemoryBlock {
+  std::string name;  // "stepper.quantity"
+  Points rows;
+};
+
 // All that the next step depends on: a copy is a checkpoint.
 struct State {
   double time = 0;  // [s]
@@ -41,6 +48,7 @@ struct State {
   StepHistory history;
   Rest rest;
   std::vector<int> cut_out;  // triangles that are out of the simulation, ascending (cut_out.hpp)
+  std::vector<MemoryBlock> memory;
 };
 
 // What the world imposes on a step, given at the step's END.
@@ -58,7 +66,8 @@ enum class Reason { none, not_converged, not_finite, penetrating, energy_gain, o
 
 struct PhaseTimes {  // [s]
   double solve = 0, broad_phase = 0, ccd = 0, response = 0, audit = 0;
-  double total() const { return solve + broad_phase + ccd + response + audit; }
+  double graph = 0, network = 0;  // of a learned stepper
+  double total() const { return solve + broad_phase + ccd + response + audit + graph + network; }
 };
 
 struct CollisionReport {
@@ -96,6 +105,8 @@ struct StepReport {  // starts as failure
 
 struct StepperTraits {
   std::string name;
+  std::optional<double> only_dt = {};  // the only time step that it takes [s]
+  bool may_leave_out_cloths = true;    // a step of some of the cloths is what a step of all of them does with these
 };
 
 class Stepper {

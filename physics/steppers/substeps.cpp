@@ -100,6 +100,7 @@ void arrive(const State& from, const Leg& leg, double dt, State& to) {
   to.v = leg.v;
   to.last_clean = {};
   to.history = leg.history;
+  to.memory.clear();
 }
 
 Points pinned_rows(const Scene& scene, const Points& nodes) {

@@ -24,6 +24,8 @@ std::ostream& people(bool json) { return json ? std::cerr : std::cout; }
 Setup read_scene(const SceneArguments& arguments) {
   std::vector<std::string> overrides = arguments.overrides;
   if (arguments.stepper) overrides.push_back("run.stepper=" + *arguments.stepper);
+  if (arguments.weights)
+    overrides.push_back("run.learned.weights=" + std::filesystem::absolute(*arguments.weights).string());
   return read_setup(arguments.scene, overrides);
 }
 

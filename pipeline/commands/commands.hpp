@@ -27,6 +27,7 @@ struct SceneArguments {
   std::filesystem::path scene;
   std::vector<std::string> overrides;  // key=value
   std::optional<std::string> stepper;
+  std::optional<std::filesystem::path> weights;  // of the stepper `learned`
 };
 
 struct SimulateArguments {

@@ -48,6 +48,29 @@ Rest read_rest(const h5::File& file) {
   return rest;
 }
 
+void write_memory(const h5::File& file, const std::vector<MemoryBlock>& memory) {
+  if (memory.empty()) return;
+  std::vector<std::string> names;
+  std::vector<Points> blocks;
+  for (const MemoryBlock& block : memory) {
+    names.push_back(block.name);
+    blocks.push_back(block.rows);
+  }
+  file.write_texts("memory_names", names);
+  write_all(file, "memory_", blocks);
+}
+
+std::vector<MemoryBlock> read_memory(const h5::File& file) {
+  if (!file.has("memory_names")) return {};
+  const std::vector<std::string> names = file.read_texts("memory_names");
+  const std::vector<Points> blocks = read_all(file, "memory_");
+  if (names.size() != blocks.size())
+    throw Error("memory_names has an unexpected shape", file.path().string(), "run without --resume");
+  std::vector<MemoryBlock> memory;
+  for (std::size_t k = 0; k < names.size(); ++k) memory.push_back({names[k], blocks[k]});
+  return memory;
+}
+
 }  // namespace
 
 void write_checkpoint(const std::filesystem::path& path, const State& state, const std::string& config) {
@@ -71,6 +94,7 @@ void write_checkpoint(const std::filesystem::path& path, const State& state, con
     h5::write_points(file, "history_v", state.history.v);
     write_rest(file, state.rest);
     h5::write_integers(file, "cut_out", state.cut_out);
+    write_memory(file, state.memory);
     file.close();
   } catch (const Error&) {
     file.abandon();
@@ -105,6 +129,7 @@ State read_checkpoint(const std::filesystem::path& path, const std::string& conf
   state.history.x = read_points(file, "history_x");
   state.history.v = read_points(file, "history_v");
   state.rest = read_rest(file);
+  state.memory = read_memory(file);
   state.cut_out.resize(file.shape(file.open_dataset("cut_out").id()).at(0));
   if (!state.cut_out.empty()) file.read_all("cut_out", H5T_NATIVE_INT32, state.cut_out.data());
   return state;

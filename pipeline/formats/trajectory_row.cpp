@@ -31,6 +31,8 @@ std::vector<Column> columns() {
           {"ccd_seconds", offsetof(Row, phase.ccd), real},
           {"response_seconds", offsetof(Row, phase.response), real},
           {"audit_seconds", offsetof(Row, phase.audit), real},
+          {"graph_seconds", offsetof(Row, phase.graph), real},
+          {"network_seconds", offsetof(Row, phase.network), real},
           {"contacts", offsetof(Row, collision.contacts), whole},
           {"impulses", offsetof(Row, collision.impulses), whole},
           {"zones", offsetof(Row, collision.zones), whole},

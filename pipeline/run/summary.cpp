@@ -28,9 +28,13 @@ std::vector<std::pair<const char*, double>> phases_in_milliseconds(const RunSumm
   const double factor = summary.frame_seconds.empty() ? 0 : 1000.0 / static_cast<double>(summary.frame_seconds.size());
   const PhaseTimes& s = summary.seconds;
   const double all = std::accumulate(summary.frame_seconds.begin(), summary.frame_seconds.end(), 0.0);
-  return {{"solve", factor * s.solve}, {"broad_phase", factor * s.broad_phase},
-          {"ccd", factor * s.ccd},     {"response", factor * s.response},
-          {"audit", factor * s.audit}, {"other", factor * std::max(0.0, all - s.total())}};
+  std::vector<std::pair<const char*, double>> phases{{"solve", factor * s.solve},
+                                                     {"broad_phase", factor * s.broad_phase},
+                                                     {"ccd", factor * s.ccd},
+                                                     {"response", factor * s.response}};
+  if (s.network > 0) phases.insert(phases.end(), {{"graph", factor * s.graph}, {"network", factor * s.network}});
+  phases.insert(phases.end(), {{"audit", factor * s.audit}, {"other", factor * std::max(0.0, all - s.total())}});
+  return phases;
 }
 
 // JSON has no infinity.
@@ -52,6 +56,8 @@ void add_frame(RunSummary& summary, int index, const Frame& frame) {
     sum.ccd += report.seconds.ccd;
     sum.response += report.seconds.response;
     sum.audit += report.seconds.audit;
+    sum.graph += report.seconds.graph;
+    sum.network += report.seconds.network;
   }
   summary.substeps += report.substeps;
   summary.iterations += report.iterations;

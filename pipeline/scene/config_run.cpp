@@ -24,6 +24,17 @@ const Options<IcmOptions>& icm_options() {
   return table;
 }
 
+const Options<LearnedRun>& learned_options() {
+  using O = LearnedRun;
+  static const Options<O> table(
+      "learned", "A network makes the frames, at 30 a second. What passes through on the way stays and is reported.",
+      {path("weights", &O::weights, "weight file (`selvedge weights import`); seen from the scene file"),
+       flag("settle", &O::settle,
+            "the first frame begins with a pass in which the cloth falls to rest, as ContourCraft's training does; "
+            "HOOD always has one")});
+  return table;
+}
+
 const OptionRows<ConventionalOptions>& substep_options() {
   using O = ConventionalOptions;
   static const OptionRows<O> rows{or_word(integer("substeps", &O::substeps, at_least_one,
@@ -67,7 +78,8 @@ const Options<RunOptions>& run_options() {
           OptionRows<O>{
               word("stepper", &O::stepper, known_steppers(), "who makes the frames"),
               flag("rest", &O::rest, "cloths that rest, with nothing moving near them, are left out of the work"),
-              section(&O::icm, icm_options(), "of the stepper `icm`")});
+              section(&O::icm, icm_options(), "of the stepper `icm`"),
+              section(&O::learned, learned_options(), "of the stepper `learned`")});
   return table;
 }
 

@@ -8,6 +8,12 @@
 
 namespace selvedge {
 
+// Of the stepper `learned`.
+struct LearnedRun {
+  std::string weights;  // weight file, seen from the scene file's folder
+  bool settle = false;
+};
+
 // What a scene file says of the run beside the Scene itself.
 struct RunOptions {
   int frames = 60;
@@ -17,10 +23,11 @@ struct RunOptions {
   std::string output;  // folder for the results; empty: chosen by the command
   ConventionalOptions conventional;
   IcmOptions icm;
+  LearnedRun learned;
 };
 
 inline const std::vector<std::string>& known_steppers() {
-  static const std::vector<std::string> known{"conventional", "icm"};
+  static const std::vector<std::string> known{"conventional", "icm", "learned"};
   return known;
 }
 

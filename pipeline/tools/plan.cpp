@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "learned/steppers/learned_plan.hpp"
 #include "physics/linear/linear_solver.hpp"
 #include "physics/scene/features.hpp"
 #include "physics/solve/step_potential.hpp"
+#include "pipeline/scene/make_stepper.hpp"
 
 namespace selvedge {
 
@@ -27,6 +29,8 @@ std::string linear_solver_of(const Setup& setup) {
 
 // What the scene needs, and what the stepper does without.
 std::vector<PlanLine> lines_of(const Setup& setup) {
+  if (setup.run.stepper == "learned")
+    return learned_plan_lines(setup.scene, read_learned_weights(setup).architecture, setup.run.learned.settle);
   std::vector<PlanLine> lines = plan_lines(setup.scene);
   lines.push_back({"linear solver", true, linear_solver_of(setup)});
   lines.push_back({"cloths at rest", !setup.run.rest,

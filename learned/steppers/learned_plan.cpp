@@ -1,0 +1,50 @@
+#include "learned/steppers/learned_plan.hpp"
+
+#include "learned/steppers/learned_scene.hpp"
+#include "learned/steppers/learned_state.hpp"
+
+namespace selvedge {
+namespace {
+
+PlanLine body_edges_line(const Scene& scene, const FeatureOptions& options) {
+  if (options.body_key.empty()) return {"body edges", false, "the network has none"};
+  if (scene.obstacles.empty()) return {"body edges", false, "there is no obstacle"};
+  return {"body edges", true, "obstacles are one body of " + std::to_string(scene.obstacles.size()) + " parts"};
+}
+
+PlanLine cloth_edges_line(const Scene& scene, const FeatureOptions& options) {
+  if (!options.cloth_edges) return {"world edges", false, "the network has none: cloth does not see cloth"};
+  if (!sees_cloth_edges(scene)) return {"world edges", false, "no second garment, and contact.self is off"};
+  return {"world edges", true, "between cloth and cloth, repelling and attracting by contours"};
+}
+
+PlanLine settling_line(const Architecture& architecture, bool settle) {
+  if (architecture.integration == Integration::relaxation_frame)
+    return {"settling pass", true, "first, out of the body and 1/3 s long, as HOOD starts"};
+  return {"settling pass", settle, settle ? "first, as learned.settle asks" : "not asked for by learned.settle"};
+}
+
+}  // namespace
+
+std::vector<PlanLine> learned_plan_lines(const Scene& scene, const Architecture& architecture, bool settle) {
+  const FeatureOptions& options = architecture.features;
+  std::vector<PlanLine> lines;
+  lines.push_back({"network", true,
+                   architecture.name + ", " + std::to_string(parameter_count(architecture)) + " parameters, " +
+                       std::to_string(architecture.steps.size()) + " message-passing steps"});
+  lines.push_back(settling_line(architecture, settle));
+  lines.push_back({"coarse edges", !options.coarse_sets.empty(),
+                   std::to_string(options.coarse_sets.size()) + " of " + std::to_string(options.coarse_levels) +
+                       " levels; a piece too small for one has none"});
+  lines.push_back(body_edges_line(scene, options));
+  lines.push_back(cloth_edges_line(scene, options));
+  for (const std::string& text : learned_scene(scene).clamped) lines.push_back({"material", false, text});
+  const Features features = features_of(scene);
+  if (features.wind) lines.push_back({"wind", false, "the network knows none"});
+  if (features.springs) lines.push_back({"springs", false, "the network knows none"});
+  lines.push_back({"gravity", false, "as the network was trained in it, whatever the scene says"});
+  lines.push_back({"detection and response", false, "what passes through is found by the audits"});
+  return lines;
+}
+
+}  // namespace selvedge

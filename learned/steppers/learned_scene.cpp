@@ -1,0 +1,124 @@
+#include "learned/steppers/learned_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "collision/geometry/error.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double published_thickness = 4.7e-4;  // [m]
+constexpr double hinge_per_curvature = 4;
+
+// What networks were trained with.
+struct TrainedRange {
+  const char* quantity;
+  const char* unit;
+  double low, high;
+  bool logarithmic;
+};
+constexpr TrainedRange trained_bending{"bending (as hinge coefficient)", "N m", 6.3708e-8, 1.31397e-3, true};
+constexpr TrainedRange trained_mu{"mu", "N/m", 15909 * published_thickness, 63636 * published_thickness, true};
+constexpr TrainedRange trained_lambda{"lambda", "N/m", 3535.41 * published_thickness, 93333.74 * published_thickness,
+                                      false};
+constexpr TrainedRange trained_density{"density", "kg/m2", 0.0434, 0.7, false};
+
+// Where the value lies between the ends, 0 to 1; one outside adds a sentence.
+float input_of(const TrainedRange& range, double value, const std::string& cloth, std::vector<std::string>& clamped) {
+  const double counted = std::isfinite(value) ? std::clamp(value, range.low, range.high) : range.low;
+  if (counted != value) {
+    std::ostringstream text;
+    text << cloth << ": " << range.quantity << " " << value << " " << range.unit << " counts as " << counted;
+    clamped.push_back(text.str());
+  }
+  const auto scaled = [&](double v) { return range.logarithmic ? std::log(v) : v; };
+  return static_cast<float>((scaled(counted) - scaled(range.low)) / (scaled(range.high) - scaled(range.low)));
+}
+
+Eigen::RowVector3f material_row(const Cloth& cloth, std::vector<std::string>& clamped) {
+  const Material& m = cloth.material;
+  const bool woven = m.membrane == MembraneModel::baraff_witkin;
+  const double mu = woven ? (m.warp + m.weft) / 4 : m.lame_mu, lambda = woven ? 0 : m.lame_lambda;
+  const double bending = (m.bending_model == BendingModel::hinge ? 1 : hinge_per_curvature) * m.bending;
+  const Eigen::RowVector3f row(input_of(trained_bending, bending, cloth.name, clamped),
+                               input_of(trained_mu, mu, cloth.name, clamped),
+                               input_of(trained_lambda, lambda, cloth.name, clamped));
+  if (m.density < trained_density.low || m.density > trained_density.high) {
+    std::ostringstream text;
+    text << cloth.name << ": density " << m.density << " kg/m2 is outside of " << trained_density.low << " to "
+         << trained_density.high << " and stays as it is";
+    clamped.push_back(text.str());
+  }
+  return row;
+}
+
+Surface joined_surface(const std::vector<Obstacle>& obstacles) {
+  int vertices = 0;
+  Eigen::Index triangles = 0;
+  for (const Obstacle& obstacle : obstacles) triangles += obstacle.surface.triangles.rows();
+  Triangles all(triangles, 3);
+  triangles = 0;
+  for (const Obstacle& obstacle : obstacles) {
+    const Triangles& own = obstacle.surface.triangles;
+    all.middleRows(triangles, own.rows()) = own.array() + vertices;
+    triangles += own.rows();
+    vertices += obstacle.surface.vertex_count;
+  }
+  return make_surface(vertices, all);
+}
+
+}  // namespace
+
+LearnedScene learned_scene(const Scene& scene) {
+  LearnedScene result;
+  GraphScene& graph = result.graph;
+  const int vertices = scene.surface.vertex_count;
+  graph.cloth = scene.surface;
+  graph.rest = scene.rest;
+  const Eigen::VectorXd mass = lumped_masses(scene);
+  graph.mass.assign(mass.begin(), mass.end());
+  graph.types.assign(static_cast<std::size_t>(vertices), free_vertex);
+  for (const int pin : scene.pins) graph.types[static_cast<std::size_t>(pin)] = pinned_vertex;
+  graph.materials = FeatureRows::Zero(vertices, 3);
+  for (const Cloth& cloth : scene.cloths)
+    graph.materials.middleRows(cloth.first_vertex, cloth.vertex_count).rowwise() = material_row(cloth, result.clamped);
+  graph.body = joined_surface(scene.obstacles);
+  graph.body_types.assign(static_cast<std::size_t>(graph.body.vertex_count), body_vertex);
+  return result;
+}
+
+Points joined_obstacles(const std::vector<Points>& obstacles) {
+  Eigen::Index count = 0;
+  for (const Points& obstacle : obstacles) count += obstacle.rows();
+  Points all(count, 3);
+  count = 0;
+  for (const Points& obstacle : obstacles) {
+    all.middleRows(count, obstacle.rows()) = obstacle;
+    count += obstacle.rows();
+  }
+  return all;
+}
+
+void check_runnable(const Architecture& architecture) {
+  const FeatureOptions& options = architecture.features;
+  const auto inputs_of = [&](const std::string& key) {
+    if (key == "mesh_edge" || key.starts_with("coarse_edge")) return mesh_edge_widths(options).all;
+    return key == options.body_key ? body_edge_widths(options).all : cloth_edge_widths(options).all;
+  };
+  bool fits =
+      node_widths(options).all == architecture.node_inputs && architecture.outputs == 3 && architecture.passes == 1;
+  for (const std::string& key : edge_set_keys(options)) {
+    const int kind = edge_kind(architecture, key);
+    fits =
+        fits && kind >= 0 &&
+        architecture.encoders[static_cast<std::size_t>(architecture.edge_kinds[static_cast<std::size_t>(kind)].encoder)]
+                .inputs == inputs_of(key);
+  }
+  if (!fits)
+    throw Error("the network `" + architecture.name + "` has inputs that the learned stepper does not make",
+                "weights of a learned stepper", "give weights of HOOD or ContourCraft");
+}
+
+}  // namespace selvedge

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "learned/graph/graph_state.hpp"
+#include "learned/graph/integration.hpp"
+#include "physics/scene/scene.hpp"
+#include "physics/scene/stepper.hpp"
+
+namespace selvedge {
+
+constexpr double learned_dt = 1.0 / 30;    // of a frame [s]; networks are trained with it
+constexpr double settling_time = 1.0 / 3;  // that the pass counts in which cloth falls to rest [s]
+
+// Whether cloth is to see cloth: there are several, or contact of a cloth with itself is asked for.
+bool sees_cloth_edges(const Scene&);
+
+// Whether a network has not made the state, so that its roll-out begins here: the state's memory is not a learned
+// stepper's, or of another scene.
+bool begins_rollout(const State&);
+
+// What a network starts a frame from. This is the only place where velocities in m/s become displacements per frame:
+// a state that a network made keeps its own in State::memory, with where cloth and body were before; another state's
+// are v dt, and its cloth comes from x - v dt. The body goes from the state's obstacles to the drive's. Pinned vertices
+// have their target at the drive's pins, others where they are.
+GraphState graph_state(const Scene&, const State& from, const Drive&);
+
+// Writes the frame that a network made of `state`; `seen` is where the network saw the cloth (seen_positions.hpp). The
+// audit is still to come. Velocities in m/s are what the network carries, and those of pinned vertices what they did.
+void learned_arrival(const Scene&, const State& from, const Drive&, const GraphState&, const Points& seen,
+                     const NextCloth&, State& to);
+
+}  // namespace selvedge
