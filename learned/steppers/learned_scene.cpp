@@ -89,6 +89,17 @@ LearnedScene learned_scene(const Scene& scene) {
   return result;
 }
 
+LearnedScene learned_scene(const Scene& scene, const std::vector<int>& omitted_body_vertices) {
+  LearnedScene result = learned_scene(scene);
+  for (const int vertex : omitted_body_vertices) {
+    if (vertex < 0 || vertex >= result.graph.body.vertex_count)
+      throw Error("the obstacles have no vertex " + std::to_string(vertex), "omitted vertices of a learned stepper",
+                  "");
+    result.graph.body_types[static_cast<std::size_t>(vertex)] = omitted_body_vertex;
+  }
+  return result;
+}
+
 Points joined_obstacles(const std::vector<Points>& obstacles) {
   Eigen::Index count = 0;
   for (const Points& obstacle : obstacles) count += obstacle.rows();

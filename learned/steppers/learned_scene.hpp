@@ -22,6 +22,9 @@ struct LearnedScene {
 // (Baraff-Witkin) counts as isotropic, with the mean of warp and weft and without lateral contraction.
 LearnedScene learned_scene(const Scene&);
 
+// The same, with body vertices that get no edges. Throws Error for one that is not there.
+LearnedScene learned_scene(const Scene&, const std::vector<int>& omitted_body_vertices);
+
 // Positions of all obstacles, one behind the other.
 Points joined_obstacles(const std::vector<Points>&);
 

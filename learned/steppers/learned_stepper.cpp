@@ -30,8 +30,8 @@ class LearnedStepper final : public Stepper {
         settles_(options.settle || architecture.integration == Integration::relaxation_frame),
         tables_(weights.tables),
         network_(pack_network(architecture, weights)),
-        graph_scene_(learned_scene(scene).graph),
-        rest_(make_rest_graph(graph_scene_, features_)),
+        graph_scene_(learned_scene(scene, options.omitted_body_vertices).graph),
+        rest_(make_rest_graph(graph_scene_, features_, options.centres)),
         world_(make_contact_world(scene.surface, obstacle_surfaces(scene), features_of(scene).self_contact,
                                   &scene.rest)) {}
 
