@@ -8,6 +8,7 @@
 #include "collision/untangle/find_exemption.hpp"
 #include "learned/graph/make_graph.hpp"
 #include "learned/network/engine.hpp"
+#include "learned/network/packed_network.hpp"
 #include "learned/steppers/learned_scene.hpp"
 #include "learned/steppers/learned_state.hpp"
 #include "physics/scene/features.hpp"

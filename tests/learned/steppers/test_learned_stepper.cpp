@@ -4,6 +4,7 @@
 #include "collision/geometry/error.hpp"
 #include "learned/graph/integration.hpp"
 #include "learned/network/engine.hpp"
+#include "learned/network/packed_network.hpp"
 #include "learned/steppers/learned_plan.hpp"
 #include "tests/learned/learned_scenes.hpp"
 #include "tests/learned/with_threads.hpp"
