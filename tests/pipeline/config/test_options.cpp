@@ -40,7 +40,7 @@ const OptionRows<Lamp>& lamp_rows() {
 }
 
 const Options<Lamp>& lamp_options() {
-  static const Options<Lamp> table("lamp", "One lamp.", lamp_rows());
+  static const Options<Lamp> table("flood", "One lamp.", lamp_rows());
   return table;
 }
 
@@ -191,7 +191,7 @@ TEST_CASE("Options document themselves", "[options]") {
         "| `players` | text or list of texts |  |  | `[a, b]` | on it |\n"
         "| `by_hand` | integer |  | at least 0 | `4` | read elsewhere |\n"
         "| `power` | number |  | at least 0 | `2` | how bright |\n"
-        "| `flood` | see [lamp](#lamp) |  |  | `{}` | of the back |\n");
+        "| `flood` | see [flood](#flood) |  |  | `{}` | of the back |\n");
 }
 
 TEST_CASE("Options print what reads back to them", "[options]") {
