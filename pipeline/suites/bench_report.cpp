@@ -139,8 +139,12 @@ std::string bench_table(const BenchResult& result) {
     for (const Column& column : columns()) text += fmt::format(" {:>10}", number(column.value(member), column.digits));
     text += "\n";
   }
-  if (!result.detection.empty()) text += (text.empty() ? "" : "\n") + detection_table(result.detection);
-  if (result.engine) text += (text.empty() ? "" : "\n") + engine_table(*result.engine);
+  const auto add = [&text](const std::string& table) {
+    if (!text.empty()) text += '\n';
+    text += table;
+  };
+  if (!result.detection.empty()) add(detection_table(result.detection));
+  if (result.engine) add(engine_table(*result.engine));
   return text;
 }
 
