@@ -12,7 +12,7 @@ namespace selvedge {
 namespace {
 
 constexpr double recovery_speed = 1;  // at most, of a vertex that starts tangled [m/s]
-constexpr double far_astray = 0.5;        // from where it is worn, of tangled cloth that is drawn there, in mean edges
+constexpr double far_astray = 0.5;    // from where it is worn, of tangled cloth that is drawn there, in mean edges
 
 }  // namespace
 

@@ -10,7 +10,7 @@
 namespace selvedge {
 namespace {
 
-constexpr double snap = 0.35;    // of an element: vertices nearer to an edge of the strip are moved onto it
+constexpr double snap = 0.35;          // of an element: vertices nearer to an edge of the strip are moved onto it
 constexpr double strip_jitter = 0.25;  // of an element, of unstructured strips
 
 struct Flat {

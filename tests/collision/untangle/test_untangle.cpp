@@ -238,7 +238,8 @@ TEST_CASE("untangle: what cannot be parted is named, and the rest is kept in sha
   }
   UntangleOptions options;
   options.iterations = 20;
-  const UntangleOutcome out = untangled(testing::join(tube(30, 40, 0, [](double, double) { return 0.3; }), across), options);
+  const UntangleOutcome out =
+      untangled(testing::join(tube(30, 40, 0, [](double, double) { return 0.3; }), across), options);
   CHECK(out.result.pairs_after > 0);
   REQUIRE_FALSE(out.result.left.empty());
   int pairs = 0;
