@@ -11,10 +11,11 @@ PROGRAM := build/release/selvedge
 PACKAGES_release := build suitesparse fcl viewer plots test
 PACKAGES_dev := $(PACKAGES_release)
 PACKAGES_asan := $(PACKAGES_release)
+PACKAGES_asan-core := $(PACKAGES_release)
 PACKAGES_tsan := $(PACKAGES_release) tsan
 PACKAGES_minimal := build viewer test
 
-.PHONY: help program demo test everything validate bench stress stability wardrobe compare dev asan tsan minimal format check-format tidy clean
+.PHONY: help program demo test everything validate bench stress stability wardrobe compare dev long asan asan-core tsan minimal format check-format tidy clean
 .DEFAULT_GOAL := help
 
 help:  ## This list
@@ -50,9 +51,12 @@ compare: program  ## Compare the conventional stepper's settings: tables and plo
 	@$(PROGRAM) compare configs/compare/conventional.yaml --out out/compare
 
 test: test-release  ## Build and run every test (FILTER=regular expression on test files)
-everything: test minimal asan  ## Every test in the builds release, minimal and asan; CI runs parts of the last two
+everything: test long minimal asan  ## Every test in the builds release, minimal and asan, long ones too; CI runs a part
 dev: test-dev  ## The same with assertions on and warnings as errors
 asan: test-asan  ## The same under the address and undefined-behaviour sanitizers
+asan-core: test-asan-core  ## Kernels and readers under these sanitizers
+long: test  ## The tests that are too long for every change, after all others
+	@build/release/selvedge_tests '[.long]'
 tsan: test-tsan  ## The same under the thread sanitizer, with clang
 minimal: test-minimal  ## The same without SuiteSparse, FCL and OpenMP
 

@@ -1,16 +1,34 @@
-# How a module is compiled: the files of a room together, one precompiled header, OpenMP only where there is a pragma.
+# How a module is compiled: the files of a room together, a precompiled header, OpenMP only where there is a pragma.
 
 set(SELVEDGE_COMMON_HEADERS <algorithm> <array> <cassert> <cmath> <functional> <map> <optional> <set> <span> <string>
   <vector> <Eigen/Core> <Eigen/Geometry>)
 
-# selvedge_module(NAME LEFT_OUT stem... ALONE room... HEADERS header... PUBLIC library... PRIVATE library...
-#   [HEAVY source library]): the sources of this folder and of its rooms, but those left out, as the library selvedge_NAME.
-# The files of the rooms ALONE are not compiled together. Files with an OpenMP pragma are a target of their own,
+# The precompiled headers that modules share, one for each set of compiler flags.
+foreach(flags IN ITEMS plain parallel)
+  set(headers selvedge_headers_${flags})
+  file(CONFIGURE OUTPUT ${headers}.cpp CONTENT "")
+  add_library(${headers} OBJECT ${CMAKE_CURRENT_BINARY_DIR}/${headers}.cpp)
+  target_link_libraries(${headers} PRIVATE Eigen3::Eigen selvedge_warnings)
+  target_precompile_headers(${headers} PRIVATE ${SELVEDGE_COMMON_HEADERS} <Eigen/SparseCore>)
+endforeach()
+if(SELVEDGE_OPENMP)
+  target_compile_options(selvedge_headers_parallel PRIVATE ${OpenMP_CXX_FLAGS})
+endif()
+
+# selvedge_module(NAME [ROOMS room...] LEFT_OUT stem... ALONE room... HEADERS header... OPTIONS option...
+#   PUBLIC library... PRIVATE library... [HEAVY source library]): the sources of this folder and of its rooms, but those
+# left out, as the library selvedge_NAME; with ROOMS, of these rooms only. The files of the rooms ALONE are not compiled
+# together. HEADERS are precompiled beside the common ones. Files with an OpenMP pragma are a target of their own,
 # selvedge_NAME_parallel, and so is the source that alone sees the heavy package, selvedge_NAME_heavy: all others have the
-# same flags in every build, so that a compile cache serves builds with these packages and without.
+# same flags in every build, so that a compile cache serves builds with these packages and without. OPTIONS are for
+# these others.
 function(selvedge_module name)
-  cmake_parse_arguments(module "" "" "LEFT_OUT;ALONE;HEADERS;PUBLIC;PRIVATE;HEAVY" ${ARGN})
+  cmake_parse_arguments(module "" "" "ROOMS;LEFT_OUT;ALONE;HEADERS;OPTIONS;PUBLIC;PRIVATE;HEAVY" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
+  if(module_ROOMS)
+    list(JOIN module_ROOMS "|" rooms)
+    list(FILTER sources INCLUDE REGEX "^(${rooms})/")
+  endif()
   foreach(stem IN LISTS module_LEFT_OUT)
     list(FILTER sources EXCLUDE REGEX "(^|/)${stem}\\.cpp$")
   endforeach()
@@ -28,32 +46,46 @@ function(selvedge_module name)
   endforeach()
   list(REMOVE_ITEM sources ${parallel})
 
-  set(objects selvedge_${name}_parallel)
-  add_library(${objects} OBJECT ${parallel})
-  add_library(selvedge_${name} STATIC ${sources} $<TARGET_OBJECTS:${objects}>)
+  add_library(selvedge_${name} STATIC ${sources})
   target_include_directories(selvedge_${name} PUBLIC ${PROJECT_SOURCE_DIR})
   target_link_libraries(selvedge_${name} PUBLIC ${module_PUBLIC} PRIVATE ${module_PRIVATE} selvedge_warnings)
-  target_include_directories(${objects} PRIVATE ${PROJECT_SOURCE_DIR})
-  target_link_libraries(${objects} PRIVATE ${module_PUBLIC} ${module_PRIVATE} selvedge_warnings)
-  if(SELVEDGE_OPENMP)
-    target_compile_options(${objects} PRIVATE ${OpenMP_CXX_FLAGS})
-    target_link_libraries(selvedge_${name} PUBLIC ${OpenMP_CXX_LIBRARIES})
+  target_compile_options(selvedge_${name} PRIVATE ${module_OPTIONS})
+  if(module_HEADERS OR module_OPTIONS)
+    target_precompile_headers(selvedge_${name} PRIVATE ${SELVEDGE_COMMON_HEADERS} ${module_HEADERS})
+  else()
+    target_precompile_headers(selvedge_${name} REUSE_FROM selvedge_headers_plain)
+  endif()
+  selvedge_compile_together(selvedge_${name} "${module_ALONE}" ${sources})
+
+  if(parallel)
+    set(objects selvedge_${name}_parallel)
+    selvedge_objects(${name} ${objects} ${parallel})
+    target_link_libraries(${objects} PRIVATE ${module_PUBLIC} ${module_PRIVATE})
+    target_precompile_headers(${objects} REUSE_FROM selvedge_headers_parallel)
+    selvedge_compile_together(${objects} "${module_ALONE}" ${parallel})
+    if(SELVEDGE_OPENMP)
+      target_compile_options(${objects} PRIVATE ${OpenMP_CXX_FLAGS})
+      target_link_libraries(selvedge_${name} PUBLIC ${OpenMP_CXX_LIBRARIES})
+    endif()
   endif()
   if(module_HEAVY)
-    add_library(selvedge_${name}_heavy OBJECT ${heavy_source})
-    target_include_directories(selvedge_${name}_heavy PRIVATE ${PROJECT_SOURCE_DIR})
-    target_link_libraries(selvedge_${name}_heavy PRIVATE ${module_PUBLIC} ${heavy_library} selvedge_warnings)
-    target_sources(selvedge_${name} PRIVATE $<TARGET_OBJECTS:selvedge_${name}_heavy>)
+    selvedge_objects(${name} selvedge_${name}_heavy ${heavy_source})
+    target_link_libraries(selvedge_${name}_heavy PRIVATE ${module_PUBLIC} ${heavy_library})
     target_link_libraries(selvedge_${name} PRIVATE $<LINK_ONLY:${heavy_library}>)
   endif()
-  selvedge_compile_together(selvedge_${name} "${module_ALONE}" "${module_HEADERS}" ${sources})
-  selvedge_compile_together(${objects} "${module_ALONE}" "${module_HEADERS}" ${parallel})
 endfunction()
 
-# selvedge_compile_together(TARGET ALONE HEADERS source...): the sources of a folder are compiled a few at a time, with a
-# precompiled header. Sources with flags of their own are compiled alone.
-function(selvedge_compile_together target alone headers)
-  target_precompile_headers(${target} PRIVATE ${headers})
+# selvedge_objects(NAME TARGET source...): sources with flags of their own, part of the library selvedge_NAME.
+function(selvedge_objects name target)
+  add_library(${target} OBJECT ${ARGN})
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${target} PRIVATE selvedge_warnings)
+  target_sources(selvedge_${name} PRIVATE $<TARGET_OBJECTS:${target}>)
+endfunction()
+
+# selvedge_compile_together(TARGET ALONE source...): the sources of a folder are compiled a few at a time. Sources with flags
+# of their own are compiled alone.
+function(selvedge_compile_together target alone)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${SELVEDGE_UNITY} UNITY_BUILD_MODE GROUP)
   foreach(source IN LISTS ARGN)
     cmake_path(GET source PARENT_PATH room)

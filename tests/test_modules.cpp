@@ -2,6 +2,8 @@
 
 #include "tests/sources.hpp"
 
+namespace selvedge::test_modules {
+
 // The repository keeps to its own rules: which module may include which, where heavy packages may appear, how long a
 // file may be. Rooms inside modules: test_rooms.cpp.
 
@@ -165,3 +167,5 @@ TEST_CASE("modules: headers do not define two types of one name", "[modules]") {
       }
   CHECK(where.size() > 50);
 }
+
+}  // namespace selvedge::test_modules

@@ -2,6 +2,8 @@
 
 #include "tests/sources.hpp"
 
+namespace selvedge::test_rooms {
+
 // Rooms are the sub-folders of a module, in one chain as the modules are: who may include whom inside a module, that
 // no two files lean on each other, and that no folder grows beyond what a reader can take in.
 
@@ -265,3 +267,5 @@ TEST_CASE("rooms: the audit leans on geometry and exact signs alone", "[modules]
                          {"b.cpp", "#include \"d.hpp\"\n#include \"b.hpp\"\n"}}) ==
         std::set<std::string>{"a", "b", "d"});
 }
+
+}  // namespace selvedge::test_rooms

@@ -5,8 +5,8 @@
 #include <map>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
+#include "collision/geometry/eigenvalues.hpp"
 #include "physics/energies/nearest.hpp"
 
 namespace selvedge {
@@ -146,7 +146,7 @@ bool fit_quadric(const RestShape& shape, const Chart& chart, QuadricStencil& ste
     right.col(i) = terms * weight[i];
     right.col(0) -= right.col(i);
   }
-  const Vec5 spectrum = Eigen::SelfAdjointEigenSolver<Mat5>(normal, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::VectorXd spectrum = symmetric_eigenvalues(normal);
   if (!(spectrum[0] > least_determined * spectrum[4])) return false;
   const Eigen::LDLT<Mat5> factor(normal);
   const double denser = density(shape, stencil.vertex), scale = denser / (size * size);

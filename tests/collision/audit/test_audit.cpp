@@ -5,17 +5,15 @@
 #include <limits>
 #include <random>
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 #include "collision/audit/audit.hpp"
 #include "collision/audit/audit_inside.hpp"
 #include "collision/exact/inside.hpp"
 #include "collision/exact/triangle_pair.hpp"
 #include "tests/collision/brute_force.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_audit {
+
 using testing::Pairs;
 
 namespace {
@@ -329,20 +327,18 @@ TEST_CASE("audit: nothing to audit", "[audit]") {
   CHECK(min_gap(nothing, {}, 1) == std::numeric_limits<double>::infinity());
 }
 
-#ifdef _OPENMP
 TEST_CASE("audit: the same for any number of threads", "[audit][threads]") {
   Mesh cloth = grid(30, Vec3::Zero(), ex, ez), body = ball(8, 6);
   crumple(cloth.x, 0.6, 5);
-  const int threads = omp_get_max_threads();
   std::vector<Audit> found;
   std::vector<double> gaps;
   const Mesh apart = grid(30, {0.1, 0.31, 0.2}, ex, ez);
   for (int n : {1, 2, 3}) {
-    omp_set_num_threads(n);
-    found.push_back(audit(cloth, {&body}));
-    gaps.push_back(min_gap(apart, {&body}, 1));
+    with_threads(n, [&] {
+      found.push_back(audit(cloth, {&body}));
+      gaps.push_back(min_gap(apart, {&body}, 1));
+    });
   }
-  omp_set_num_threads(threads);
   for (int i : {1, 2}) {
     CHECK(found[i].self_pairs == found[0].self_pairs);
     CHECK(found[i].vertex_pairs == found[0].vertex_pairs);
@@ -352,4 +348,5 @@ TEST_CASE("audit: the same for any number of threads", "[audit][threads]") {
   }
   CHECK(found[0].inside_vertices > 0);
 }
-#endif
+
+}  // namespace selvedge::test_audit

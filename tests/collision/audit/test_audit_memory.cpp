@@ -7,7 +7,8 @@
 #include "collision/audit/audit_motion.hpp"
 #include "tests/collision/sheets.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_audit_memory {
+
 using testing::join;
 using testing::sheet;
 
@@ -138,3 +139,5 @@ TEST_CASE("audit memory: undefined coordinates are not remembered", "[audit_memo
     same(rest.state(&memory), rest.state(nullptr));
   }
 }
+
+}  // namespace selvedge::test_audit_memory

@@ -4,14 +4,12 @@
 #include <limits>
 #include <set>
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 #include "collision/audit/audit_motion.hpp"
 #include "tests/collision/tangles.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_audit_motion {
+
 using testing::grid_surface;
 using testing::Tangle;
 using testing::tangles;
@@ -281,20 +279,17 @@ TEST_CASE("audit of motion: undefined coordinates are counted and left out", "[a
   CHECK(audit_motion(make_surface(0, Triangles(0, 3)), Points(0, 3), Points(0, 3), {}).passed_through() == 0);
 }
 
-#ifdef _OPENMP
 TEST_CASE("audit of motion: the same for any number of threads", "[audit_motion][threads]") {
   const Tangle m = tangles(12)[3];
   Points x1 = m.x;
   testing::shake(x1, 0.1, 9);
-  const int threads = omp_get_max_threads();
   std::vector<MotionAudit> found;
   for (int n : {1, 2, 3}) {
-    omp_set_num_threads(n);
-    found.push_back(audit_of(m, x1));
+    with_threads(n, [&] { found.push_back(audit_of(m, x1)); });
   }
-  omp_set_num_threads(threads);
   CHECK(found[0].passed_through() > 0);
   CHECK(found[1].passed == found[0].passed);
   CHECK(found[2].passed == found[0].passed);
 }
-#endif
+
+}  // namespace selvedge::test_audit_motion

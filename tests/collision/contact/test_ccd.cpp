@@ -7,7 +7,8 @@
 #include "collision/contact/ccd.hpp"
 #include "collision/geometry/distance.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_ccd {
+
 using Four = std::array<Vec3, 4>;
 
 namespace {
@@ -142,3 +143,5 @@ TEST_CASE("ccd: an undefined position counts as contact at once", "[ccd]") {
         CHECK(time_of_contact(kind, x0, x1, 1e-3) == std::optional(0.0));
       }
 }
+
+}  // namespace selvedge::test_ccd

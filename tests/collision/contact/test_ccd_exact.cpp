@@ -9,7 +9,8 @@
 #include "tests/collision/ccd_reference.hpp"
 #include "tests/collision/transversal_queries.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_ccd_exact {
+
 using reference::Four;
 
 namespace {
@@ -343,3 +344,5 @@ TEST_CASE("ccd: coordinates beyond what differences can hold", "[ccd]") {
   x1[0].y() = huge / 2;
   CHECK_FALSE(time_of_contact(PairKind::vertex_face, x0, x1, 0));
 }
+
+}  // namespace selvedge::test_ccd_exact

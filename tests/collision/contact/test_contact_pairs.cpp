@@ -8,7 +8,8 @@
 #include "collision/contact/contact_pairs.hpp"
 #include "tests/collision/sheets.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_contact_pairs {
+
 using testing::join;
 using testing::Sheet;
 using testing::sheet;
@@ -182,3 +183,5 @@ TEST_CASE("contact pairs: none with an obstacle is missed wherever the cloth goe
     CHECK(near > 10);
   }
 }
+
+}  // namespace selvedge::test_contact_pairs

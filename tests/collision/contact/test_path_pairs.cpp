@@ -4,7 +4,8 @@
 #include "collision/contact/path_pairs.hpp"
 #include "tests/collision/sheets.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_path_pairs {
+
 using testing::join;
 using testing::sheet;
 
@@ -149,3 +150,5 @@ TEST_CASE("path pairs: boxes of long motions overlap, and only what may come nea
     CHECK((listed || least_distance(pair, both.x, end) > 2e-3));
   }
 }
+
+}  // namespace selvedge::test_path_pairs

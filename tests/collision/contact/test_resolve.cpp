@@ -7,7 +7,8 @@
 #include "collision/contact/resolve.hpp"
 #include "tests/collision/sheets.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_resolve {
+
 using testing::join;
 using testing::sheet;
 
@@ -240,3 +241,5 @@ TEST_CASE("proximity: a sheet between two others meets one partner on each side"
   CHECK(below == 1);
   CHECK(above == 1);
 }
+
+}  // namespace selvedge::test_resolve

@@ -2,7 +2,7 @@
 
 #include "collision/contact/response.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_response {
 
 namespace {
 
@@ -147,3 +147,5 @@ TEST_CASE("response: what has no inertia about an axis does not turn about it", 
   CHECK((angular_velocity(rod, 0.7 * across) - across).norm() < 1e-14);
   CHECK(angular_velocity(Mat3::Zero(), Vec3(0, 0, 0)) == Vec3(0, 0, 0));
 }
+
+}  // namespace selvedge::test_response

@@ -3,7 +3,8 @@
 #include "collision/contact/room.hpp"
 #include "tests/collision/sheets.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_room {
+
 using testing::Sheet;
 using testing::sheet;
 
@@ -184,3 +185,5 @@ TEST_CASE("room: a fine, round body pushes coarse layers before it and does not 
     CHECK((pushed.x1 - pushed.wanted).cwiseAbs().maxCoeff() == 0);
   }
 }
+
+}  // namespace selvedge::test_room

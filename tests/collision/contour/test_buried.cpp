@@ -8,7 +8,8 @@
 #include "collision/exact/inside.hpp"
 #include "tests/collision/sheets.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_buried {
+
 using testing::join;
 using testing::Sheet;
 
@@ -94,3 +95,5 @@ TEST_CASE("winding numbers: how many parts a point is in, with their orientation
   both.triangles.col(0).swap(both.triangles.col(1));
   CHECK(winding() == std::vector<int>{0, -1, -2, -1});
 }
+
+}  // namespace selvedge::test_buried

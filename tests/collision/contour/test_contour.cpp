@@ -11,7 +11,8 @@
 #include "collision/contour/find_contours.hpp"
 #include "tests/collision/sheets.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_contour {
+
 using testing::bent;
 using testing::flat;
 
@@ -360,3 +361,5 @@ TEST_CASE("contour: the smaller part, grown from its curve, is the rarer colour 
   CHECK(parted > 20);
   CHECK(neither > 20);
 }
+
+}  // namespace selvedge::test_contour

@@ -5,7 +5,7 @@
 #include "collision/contour/contour_energy.hpp"
 #include "tests/collision/sheets.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_contour_energy {
 
 namespace {
 
@@ -181,3 +181,5 @@ TEST_CASE("contour energy: translation alone moves along the faces' normals", "[
   contour_energy(sheets, found, ContourMeasure::squared_length, &gradient, ContourGradient::full);
   CHECK(gradient[0].col(0).cwiseAbs().maxCoeff() > 0.1);
 }
+
+}  // namespace selvedge::test_contour_energy

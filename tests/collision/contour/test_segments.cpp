@@ -11,7 +11,7 @@
 #include "collision/search/bvh.hpp"
 #include "tests/collision/sheets.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_segments {
 
 namespace {
 
@@ -293,3 +293,5 @@ TEST_CASE("segments: one and two runs give the same", "[segments]") {
   }
   for (std::size_t i = 0; i < a.segments.size(); ++i) REQUIRE(a.segments[i].end == b.segments[i].end);
 }
+
+}  // namespace selvedge::test_segments

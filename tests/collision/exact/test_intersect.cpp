@@ -12,7 +12,7 @@
 #include "tests/collision/brute_force.hpp"
 #include "tests/collision/tangles.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_intersect {
 
 namespace {
 
@@ -291,3 +291,5 @@ TEST_CASE("intersect: the two tests agree on every pair of surfaces that make tr
   CHECK(meeting > 10000);
   CHECK(pairs > 200000);
 }
+
+}  // namespace selvedge::test_intersect

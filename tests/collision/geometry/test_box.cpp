@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-using namespace selvedge;
+namespace selvedge::test_box {
 
 TEST_CASE("box: a value is rounded to the nearest float on its side, and to none beyond", "[box]") {
   std::mt19937 random(5);
@@ -23,3 +23,5 @@ TEST_CASE("box: a value is rounded to the nearest float on its side, and to none
     if (up > -INFINITY) REQUIRE_FALSE(static_cast<double>(std::nextafterf(up, -INFINITY)) >= value);
   }
 }
+
+}  // namespace selvedge::test_box

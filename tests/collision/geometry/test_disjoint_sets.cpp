@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <random>
 
-using namespace selvedge;
+namespace selvedge::test_disjoint_sets {
 
 TEST_CASE("disjoint sets go by their lowest member and are numbered in that order", "[disjoint_sets]") {
   DisjointSets sets(7);
@@ -52,3 +52,5 @@ TEST_CASE("disjoint sets are the same whatever the order of the joins", "[disjoi
     std::ranges::shuffle(joins, random);
   }
 }
+
+}  // namespace selvedge::test_disjoint_sets

@@ -6,7 +6,8 @@
 
 #include "collision/geometry/distance.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_distance {
+
 using Four = std::array<Vec3, 4>;
 
 namespace {
@@ -155,3 +156,5 @@ TEST_CASE("distance: independent of the order of the arguments", "[distance]") {
     CHECK(selvedge::edge_edge(x[1], x[0], x[2], x[3]).squared_distance == Approx(edge));
   }
 }
+
+}  // namespace selvedge::test_distance

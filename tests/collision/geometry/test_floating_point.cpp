@@ -16,7 +16,7 @@
 #include "collision/exact/orientation.hpp"
 #include "collision/geometry/floating_point.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_floating_point {
 
 namespace {
 
@@ -89,3 +89,5 @@ TEST_CASE("floating point: no file is compiled with fast-math, and geometry with
   }
   CHECK(geometry > 10);
 }
+
+}  // namespace selvedge::test_floating_point

@@ -4,7 +4,7 @@
 
 #include "collision/geometry/surface.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_surface {
 
 TEST_CASE("surface: two triangles share one edge", "[surface]") {
   Triangles triangles(2, 3);
@@ -95,3 +95,5 @@ TEST_CASE("surface: vertex normals weigh by area and point to the counter-clockw
   CHECK(row(normals, 0).isApprox(Vec3(0, 3, 1).normalized()));
   CHECK(row(normals, 4).isZero());
 }
+
+}  // namespace selvedge::test_surface

@@ -5,13 +5,11 @@
 #include <limits>
 #include <random>
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 #include "collision/search/bvh.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_bvh {
+
 using Pairs = std::vector<std::pair<int, int>>;
 
 namespace {
@@ -182,7 +180,6 @@ TEST_CASE("bvh: boxes round outward", "[bvh]") {
   }
 }
 
-#ifdef _OPENMP
 TEST_CASE("bvh: the order of pairs does not depend on the number of threads", "[bvh][threads]") {
   std::mt19937 random(6);
   const Mesh mesh = folded_grid(40), other = soup(500, random);
@@ -190,14 +187,13 @@ TEST_CASE("bvh: the order of pairs does not depend on the number of threads", "[
   triangle_boxes(mesh.surface, mesh.x, mesh.x, 0.01, boxes);
   triangle_boxes(other.surface, other.x, other.x, 0.01, other_boxes);
   const Bvh tree = build_bvh(boxes), other_tree = build_bvh(other_boxes);
-  const int threads = omp_get_max_threads();
   std::vector<Pairs> self(3), cross(3);
   for (int n = 1; n <= 3; ++n) {
-    omp_set_num_threads(n);
-    self_pairs(tree, self[n - 1]);
-    cross_pairs(tree, other_tree, cross[n - 1]);
+    with_threads(n, [&] {
+      self_pairs(tree, self[n - 1]);
+      cross_pairs(tree, other_tree, cross[n - 1]);
+    });
   }
-  omp_set_num_threads(threads);
   CHECK(!self[0].empty());
   CHECK(!cross[0].empty());
   CHECK(self[0] == self[1]);
@@ -205,4 +201,5 @@ TEST_CASE("bvh: the order of pairs does not depend on the number of threads", "[
   CHECK(cross[0] == cross[1]);
   CHECK(cross[0] == cross[2]);
 }
-#endif
+
+}  // namespace selvedge::test_bvh

@@ -2,15 +2,13 @@
 
 #include <limits>
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 #include "collision/search/intersections.hpp"
 #include "tests/collision/brute_force.hpp"
 #include "tests/collision/tangles.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_intersections {
+
 using testing::Pairs;
 using testing::Tangle;
 using testing::tangles;
@@ -130,18 +128,15 @@ TEST_CASE("intersections: the quick test never parts a sliver from what touches 
   CHECK(apart > 1000);
 }
 
-#ifdef _OPENMP
 TEST_CASE("intersections: the same for any number of threads", "[intersections][threads]") {
   const Tangle m = tangles(30)[3];
-  const int threads = omp_get_max_threads();
   std::vector<Pairs> found;
   for (int n : {1, 2, 3}) {
-    omp_set_num_threads(n);
-    found.push_back(tree_self(m));
+    with_threads(n, [&] { found.push_back(tree_self(m)); });
   }
-  omp_set_num_threads(threads);
   CHECK(!found[0].empty());
   CHECK(found[1] == found[0]);
   CHECK(found[2] == found[0]);
 }
-#endif
+
+}  // namespace selvedge::test_intersections

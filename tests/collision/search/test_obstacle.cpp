@@ -5,7 +5,8 @@
 #include "collision/search/obstacle.hpp"
 #include "tests/collision/tangles.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_obstacle {
+
 using testing::Tangle;
 using testing::tangles;
 
@@ -51,3 +52,5 @@ TEST_CASE("obstacle: garment against body", "[obstacle]") {
   const ObstacleModel nothing(Triangles(0, 3), Points(0, 3));
   CHECK(collision_free(nothing, body_model));
 }
+
+}  // namespace selvedge::test_obstacle

@@ -10,7 +10,8 @@
 #include "collision/search/quiet.hpp"
 #include "tests/collision/tangles.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_quiet {
+
 using testing::Tangle;
 using testing::tangles;
 
@@ -228,3 +229,5 @@ TEST_CASE("quiet: a polygon that is called simple is", "[quiet]") {
   CHECK(simple > 10000);
   CHECK(called > 0.99 * simple);
 }
+
+}  // namespace selvedge::test_quiet

@@ -8,7 +8,8 @@
 #include "collision/untangle/find_exemption.hpp"
 #include "tests/collision/sheets.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_crossing_triangles {
+
 using testing::Sheet;
 
 namespace {
@@ -95,3 +96,5 @@ TEST_CASE("crossing triangles: vertices in no triangle are inside nothing", "[cr
   cloth.x.col(1).setZero();
   CHECK(find_exemption(world, gather_nodes(cloth.x, {tetrahedron.x})).cloth_vertices() == count);
 }
+
+}  // namespace selvedge::test_crossing_triangles

@@ -7,7 +7,7 @@
 #include "collision/geometry/cell_grid.hpp"
 #include "collision/untangle/give_way.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_give_way {
 
 namespace {
 
@@ -259,3 +259,5 @@ TEST_CASE("a grid of cells misses no neighbour", "[give_way]") {
   }
   CHECK_NOTHROW(CellGrid(Points(0, 3), 1).for_each_near(Vec3::Zero(), 1, [](int) { FAIL("none is there"); }));
 }
+
+}  // namespace selvedge::test_give_way

@@ -10,7 +10,8 @@
 #include "collision/untangle/untangle.hpp"
 #include "tests/collision/sheets.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_untangle {
+
 using testing::bent;
 using testing::flat;
 
@@ -285,3 +286,5 @@ TEST_CASE("untangle: separations move the wrong side and keep to their step", "[
       if (s.vertex[i] >= 19 * 19 && s.weight[i] == 1) CHECK(s.direction.y() < 0);
   }
 }
+
+}  // namespace selvedge::test_untangle

@@ -8,7 +8,7 @@
 #include "tests/learned/graph_scenes.hpp"
 #include "tests/learned/parity_pack.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_coarse_levels {
 
 namespace {
 
@@ -110,3 +110,5 @@ TEST_CASE("coarse levels: one component at a time, none where it is too small", 
     }
   }
 }
+
+}  // namespace selvedge::test_coarse_levels

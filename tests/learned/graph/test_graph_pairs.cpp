@@ -3,7 +3,8 @@
 #include "collision/geometry/distance.hpp"
 #include "tests/learned/graph_scenes.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_graph_pairs {
+
 using namespace selvedge::fake;
 
 namespace {
@@ -167,3 +168,5 @@ TEST_CASE("graph pairs: inside a contour they attract, and one that is nested co
   CHECK(paper.attraction.size() + paper.repulsion.size() == plain.repulsion.size());
   CHECK(paper.without_contour == 0);
 }
+
+}  // namespace selvedge::test_graph_pairs

@@ -3,7 +3,8 @@
 #include "pipeline/tools/import_weights.hpp"
 #include "tests/learned/parity_edges.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_graph_parity {
+
 using namespace selvedge::parity;
 
 namespace {
@@ -154,3 +155,5 @@ TEST_CASE("graph parity: normalised features", "[graph][parity]") {
     }
   }
 }
+
+}  // namespace selvedge::test_graph_parity

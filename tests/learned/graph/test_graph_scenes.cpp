@@ -1,9 +1,10 @@
 #include <catch2/catch.hpp>
 
 #include "tests/learned/graph_scenes.hpp"
-#include "tests/learned/with_threads.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_graph_scenes {
+
 using namespace selvedge::fake;
 
 namespace {
@@ -105,8 +106,8 @@ TEST_CASE("graph: the same bits on one and two threads, with and without what wa
       jitter(moving.state.x, 0.004 * frame, 7 + frame);
       jitter(moving.state.body, 0.002 * frame, 11 + frame);
       MadeGraph two;
-      with_some_threads(1, [&] { make_again(moving, options, kept, one); });
-      with_some_threads(2, [&] { two = made_graph(moving, options); });
+      with_threads(1, [&] { make_again(moving, options, kept, one); });
+      with_threads(2, [&] { two = made_graph(moving, options); });
       CHECK(same_graph(one.graph, two.graph));
       if (options.cloth_edges) CHECK(one.report.cloth_pairs.repulsion.size() > 500);
     }
@@ -162,3 +163,5 @@ TEST_CASE("graph: materials are of each vertex, and of an edge the mean of its e
             Approx(0.005 * (edges.senders[e] + edges.receivers[e])));
   }
 }
+
+}  // namespace selvedge::test_graph_scenes

@@ -4,7 +4,8 @@
 #include "pipeline/tools/import_weights.hpp"
 #include "tests/learned/parity_edges.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_graph_statistics {
+
 using namespace selvedge::parity;
 
 namespace {
@@ -143,3 +144,5 @@ TEST_CASE("graph statistics: sums of no rows, of some, and of enough", "[graph]"
   CHECK(empty.body_edge.sum.size() == 12);
   CHECK(empty_sums<double>(hood_features()).world_edge.sum.size() == 9);
 }
+
+}  // namespace selvedge::test_graph_statistics

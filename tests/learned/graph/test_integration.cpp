@@ -5,7 +5,8 @@
 #include "tests/learned/graph_scenes.hpp"
 #include "tests/learned/parity_pack.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_integration {
+
 using namespace selvedge::parity;
 
 namespace {
@@ -67,3 +68,5 @@ TEST_CASE("integration: pushing out leaves what is outside, and does nothing wit
   push_out(make_surface(0, Triangles(0, 3)), Points(0, 3), 0.002, moved);
   CHECK(moved == x);
 }
+
+}  // namespace selvedge::test_integration

@@ -5,7 +5,7 @@
 #include "collision/geometry/error.hpp"
 #include "learned/network/weights.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_architecture {
 
 TEST_CASE("architecture: the presets have the published numbers of parameters", "[learned]") {
   // Counted from the shapes in reference/checkpoints; `small` is ours.
@@ -113,3 +113,5 @@ TEST_CASE("weights: random ones follow from the seed", "[learned]") {
   CHECK(first.decoder.layers[0].weight != other.decoder.layers[0].weight);
   CHECK(first.decoder.layers[0].weight != first.steps[0].node.layers[1].weight);
 }
+
+}  // namespace selvedge::test_architecture

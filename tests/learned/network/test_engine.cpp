@@ -1,7 +1,3 @@
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -10,8 +6,9 @@
 #include "collision/geometry/error.hpp"
 #include "learned/network/engine_bench.hpp"
 #include "learned/network/packed_network.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_engine {
 
 namespace {
 
@@ -79,16 +76,9 @@ void check_same(const Architecture& a, const Graph& graph, InstructionSet set) {
 }
 
 FeatureRows infer_on(int threads, const PackedNetwork& network, const Graph& graph) {
-#ifdef _OPENMP
-  const int before = omp_get_max_threads();
-  omp_set_num_threads(threads);
-  FeatureRows output = infer(network, graph);
-  omp_set_num_threads(before);
+  FeatureRows output;
+  with_threads(threads, [&] { output = infer(network, graph); });
   return output;
-#else
-  static_cast<void>(threads);
-  return infer(network, graph);
-#endif
 }
 
 }  // namespace
@@ -237,3 +227,5 @@ TEST_CASE("engine: what is measured is what was run", "[learned]") {
   CHECK(one.seconds > 0);
   CHECK(one.operations == count_operations(a, grid_graph(a, 100)));
 }
+
+}  // namespace selvedge::test_engine

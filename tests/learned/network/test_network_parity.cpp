@@ -4,7 +4,7 @@
 #include "learned/network/packed_network.hpp"
 #include "tests/learned/recorded_network.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_network_parity {
 
 namespace {
 
@@ -116,3 +116,5 @@ TEST_CASE("network parity: the engine has the authors' output and latents with e
     }
   }
 }
+
+}  // namespace selvedge::test_network_parity

@@ -11,7 +11,7 @@
 #include "learned/network/weights_hdf5.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_weight_file {
 
 namespace {
 
@@ -230,3 +230,5 @@ TEST_CASE("weight file: values that lie elsewhere are refused", "[learned]") {
   seal_weight_file(path);
   CHECK_THAT(problem(path), Catch::Matchers::Contains("does not write"));
 }
+
+}  // namespace selvedge::test_weight_file

@@ -7,7 +7,7 @@
 #include "tests/learned/parity_pack.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_learned_parity {
 
 namespace {
 
@@ -127,3 +127,5 @@ TEST_CASE("A process that steps with a network maps no libtorch", "[learned]") {
     CHECK(line.find("libtorch") == std::string::npos);
   CHECK(lines > 0);
 }
+
+}  // namespace selvedge::test_learned_parity

@@ -7,9 +7,9 @@
 #include "learned/network/packed_network.hpp"
 #include "learned/steppers/learned_plan.hpp"
 #include "tests/learned/learned_scenes.hpp"
-#include "tests/learned/with_threads.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_learned_stepper {
 
 namespace {
 
@@ -138,8 +138,8 @@ TEST_CASE("A learned step depends on the state alone and leaves it untouched", "
   const fake::LearnedCase run = above_a_plate(4);
   const fake::NarrowNetwork network = fake::narrow_network(GENERATE("hood", "contourcraft", "hood_cvpr", "fine15"));
   std::vector<State> once, twice;
-  fake::with_some_threads(1, [&] { once = rollout(run, *stepper_of(run.scene, network)); });
-  fake::with_some_threads(2, [&] { twice = rollout(run, *stepper_of(run.scene, network)); });
+  with_threads(1, [&] { once = rollout(run, *stepper_of(run.scene, network)); });
+  with_threads(2, [&] { twice = rollout(run, *stepper_of(run.scene, network)); });
   REQUIRE(once.size() == twice.size());
   for (std::size_t k = 0; k < once.size(); ++k) CHECK(fake::same_state(once[k], twice[k]));
 
@@ -262,3 +262,5 @@ TEST_CASE("The plan says what of the network a scene leaves out", "[learned]") {
   run.scene.obstacles.clear();
   CHECK_FALSE(is_in(run.scene, "hood", "body edges"));
 }
+
+}  // namespace selvedge::test_learned_stepper

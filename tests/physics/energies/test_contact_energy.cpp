@@ -3,7 +3,7 @@
 
 #include "physics/energies/contact_energy.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_contact_energy {
 
 namespace {
 
@@ -89,3 +89,5 @@ TEST_CASE("friction: gradient, bound and the joint at the slip width", "[contact
   CHECK(friction_force(term, Vec3::Zero(), width).factor == Approx(2 * 0.8 / width));
   CHECK(friction_force(term, Vec3::Zero(), 0).factor == 0);
 }
+
+}  // namespace selvedge::test_contact_energy

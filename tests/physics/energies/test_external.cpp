@@ -4,7 +4,7 @@
 #include "physics/solve/implicit_euler.hpp"
 #include "tests/physics/meshes.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_external {
 
 namespace {
 
@@ -82,3 +82,5 @@ TEST_CASE("wind: a storm carries a loose light sheet up to its own speed and not
   CHECK(before > 95);
   CHECK(v.rowwise().norm().maxCoeff() < 110);
 }
+
+}  // namespace selvedge::test_external

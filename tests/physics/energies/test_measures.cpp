@@ -3,7 +3,8 @@
 #include "physics/energies/measures.hpp"
 #include "tests/physics/meshes.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_measures {
+
 using meshes::grid;
 
 namespace {
@@ -107,3 +108,5 @@ TEST_CASE("measures: principal stretches, smallest first", "[measures]") {
   CHECK(line.col(1)[0] == Approx(1.4));
   CHECK(principal_stretches(scene, Points::Zero(x.rows(), 3)).row(0).norm() == 0);
 }
+
+}  // namespace selvedge::test_measures

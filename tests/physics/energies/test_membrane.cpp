@@ -1,12 +1,12 @@
-#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "collision/geometry/eigenvalues.hpp"
 #include "physics/energies/membrane.hpp"
 #include "physics/energies/membrane_lanes.hpp"
 #include "tests/physics/meshes.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_membrane {
 
 namespace {
 
@@ -106,8 +106,8 @@ Mat9 numeric_hessian(const Material& material, const MembraneElement& element, c
 }
 
 Mat9 clamped(const Mat9& matrix) {
-  const Eigen::SelfAdjointEigenSolver<Mat9> solver(matrix);
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0).asDiagonal() * solver.eigenvectors().transpose();
+  const Spectrum spectrum = symmetric_spectrum(matrix);
+  return spectrum.vectors * spectrum.values.cwiseMax(0).asDiagonal() * spectrum.vectors.transpose();
 }
 
 // Stretch pairs that meet every case: rest, equal, compressed, nearly and fully degenerate.
@@ -145,7 +145,7 @@ TEST_CASE("membrane: projected Hessians are PSD and finite for any F", "[membran
         membrane_derivatives(material, element, x, gradient, &raw, false);
         const bool finite = std::isfinite(membrane_energy(material, element, x)) && gradient.allFinite() &&
                             hessian.allFinite() && raw.allFinite();
-        const auto values = Eigen::SelfAdjointEigenSolver<Mat9>(hessian, Eigen::EigenvaluesOnly).eigenvalues();
+        const Eigen::VectorXd values = symmetric_eigenvalues(hessian);
         return finite && values[0] >= -1e-9 * std::max(values[8], 1e-12) &&
                (hessian - hessian.transpose()).norm() <= 1e-14 * hessian.norm();
       };
@@ -294,3 +294,5 @@ TEST_CASE("membrane: elements of a scene leave out triangles without area", "[me
     CHECK((deformation_gradient(element, scene.rest) - (Mat32() << 1, 0, 0, 0, 0, -1).finished()).norm() < 1e-13);
   }
 }
+
+}  // namespace selvedge::test_membrane

@@ -1,6 +1,6 @@
+#include "collision/geometry/eigenvalues.hpp"
 #include "physics/energies/springs.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -8,10 +8,11 @@
 #include "physics/linear/cholesky.hpp"
 #include "physics/solve/equilibrium.hpp"
 #include "physics/steppers/icm_stepper.hpp"
-#include "tests/physics/threads.hpp"
 #include "tests/physics/worlds.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_springs {
+
 using testing::make_world;
 using testing::World;
 
@@ -48,7 +49,7 @@ Mat6 numeric_hessian(const Spring& spring, const Points& x, double h) {
   return hessian;
 }
 
-double least_eigenvalue(const Mat6& hessian) { return Eigen::SelfAdjointEigenSolver<Mat6>(hessian).eigenvalues()[0]; }
+double least_eigenvalue(const Mat6& hessian) { return symmetric_eigenvalues(hessian)[0]; }
 
 // Two sheets of n x n quads, `gap` apart, as two cloths; the upper one, which comes first, is pinned if asked for.
 World two_sheets(int n, double size, double gap, bool pinned) {
@@ -241,3 +242,5 @@ TEST_CASE("springs: one and two threads give the same bits, and dropped caches t
   for (int k = 0; k < 2; ++k) with_threads(k + 1, [&] { ends[k] = testing::run(w, 2, k == 0 ? 1 << 30 : 2).state.x; });
   CHECK(same_bits(ends[0], ends[1]));
 }
+
+}  // namespace selvedge::test_springs

@@ -11,9 +11,9 @@
 #include "physics/linear/linear_solver.hpp"
 #include "physics/linear/pcg.hpp"
 #include "tests/physics/linear_example.hpp"
-#include "tests/physics/threads.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_linear_solver {
 
 namespace {
 
@@ -277,3 +277,5 @@ TEST_CASE("CHOLMOD starts no threads of its own", "[linear_solver]") {
     CHECK(threads() <= before);
   });
 }
+
+}  // namespace selvedge::test_linear_solver

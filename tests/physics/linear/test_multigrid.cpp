@@ -7,9 +7,9 @@
 #include "physics/linear/galerkin.hpp"
 #include "physics/linear/multigrid.hpp"
 #include "tests/physics/linear_example.hpp"
-#include "tests/physics/threads.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_multigrid {
 
 namespace {
 
@@ -323,3 +323,5 @@ TEST_CASE("Contacts that come and go change the coarse matrices", "[multigrid]")
     CHECK(same_bits(z, apply(anew, r)));
   }
 }
+
+}  // namespace selvedge::test_multigrid

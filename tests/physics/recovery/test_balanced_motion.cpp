@@ -3,7 +3,7 @@
 #include "physics/recovery/balanced_motion.hpp"
 #include "tests/collision/sheets.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_balanced_motion {
 
 namespace {
 
@@ -108,3 +108,5 @@ TEST_CASE("balanced motion: no farther than the reach, and still without momentu
   CHECK(two.momentum(move).norm() < 1e-14);
   CHECK(move.norm() > 0.5 * reach);
 }
+
+}  // namespace selvedge::test_balanced_motion

@@ -5,7 +5,8 @@
 #include "physics/recovery/carried_along.hpp"
 #include "tests/physics/worlds.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_carried_along {
+
 using testing::Sheet;
 
 namespace {
@@ -63,3 +64,5 @@ TEST_CASE("carried along: the node nearest to a place, the lowest on a tie") {
   CHECK(nearest_obstacle_node(b.world, b.before, {-0.3, 0, -0.3}) == b.world.first_node[0]);
   CHECK(nearest_obstacle_node(b.world, b.before, {-0.3, 0.01, -0.3}) == b.world.first_node[1]);
 }
+
+}  // namespace selvedge::test_carried_along

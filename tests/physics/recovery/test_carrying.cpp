@@ -6,7 +6,8 @@
 #include "physics/recovery/carrying.hpp"
 #include "tests/physics/worlds.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_carrying {
+
 using testing::sheet;
 
 namespace {
@@ -114,3 +115,5 @@ TEST_CASE("carrying: cloth over a place where a body crosses itself goes along w
   CHECK(way_of_middle(true) > 0.04);
   CHECK(std::abs(way_of_middle(false)) < 1e-6);
 }
+
+}  // namespace selvedge::test_carrying

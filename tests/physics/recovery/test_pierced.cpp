@@ -11,7 +11,8 @@
 #include "physics/recovery/recovery.hpp"
 #include "tests/physics/worlds.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_pierced {
+
 using testing::Sheet;
 
 namespace {
@@ -288,3 +289,5 @@ TEST_CASE("put on: cloth that a body closed on, through itself, is back between 
   CHECK(whole.x.col(1).cwiseAbs().maxCoeff() < 0.02);
   CHECK(end(4).x == whole.x);  // a stepper that goes on from a checkpoint
 }
+
+}  // namespace selvedge::test_pierced

@@ -7,7 +7,8 @@
 #include "physics/recovery/recovery.hpp"
 #include "tests/physics/worlds.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_recovery {
+
 using testing::add_obstacle;
 using testing::make_world;
 using testing::sheet;
@@ -266,3 +267,5 @@ TEST_CASE("recovery: a fast body that does not jump sweeps the cloth along", "[r
   CHECK(to.clean);
   CHECK(to.x.col(1).maxCoeff() > 1);
 }
+
+}  // namespace selvedge::test_recovery

@@ -4,7 +4,8 @@
 #include "physics/scene/features.hpp"
 #include "tests/physics/meshes.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_features {
+
 using meshes::grid;
 
 namespace {
@@ -101,3 +102,5 @@ TEST_CASE("plan: springs have a line where there are any", "[features]") {
   CHECK(features_of(scene).springs);
   CHECK(line(scene, "springs").why == "1 pair of vertices joined");
 }
+
+}  // namespace selvedge::test_features

@@ -4,9 +4,9 @@
 
 #include "physics/solve/assembly.hpp"
 #include "tests/physics/meshes.hpp"
-#include "tests/physics/threads.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_assembly {
 
 namespace {
 
@@ -164,3 +164,5 @@ TEST_CASE("One and two threads assemble the same bits", "[assembly][threads]") {
   CHECK(sums[0] == sums[1]);
   CHECK(pairs[0] == pairs[1]);
 }
+
+}  // namespace selvedge::test_assembly

@@ -6,10 +6,11 @@
 
 #include "physics/energies/measures.hpp"
 #include "physics/steppers/conventional_stepper.hpp"
-#include "tests/physics/threads.hpp"
 #include "tests/physics/worlds.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_bdf2 {
+
 using testing::make_world;
 using testing::World;
 
@@ -236,3 +237,5 @@ TEST_CASE("BDF2: an impact that is met only on the way makes the substep implici
   CHECK(to.history.h == 0);
   CHECK(to.x.col(1).minCoeff() > 0);
 }
+
+}  // namespace selvedge::test_bdf2

@@ -2,7 +2,7 @@
 
 #include "physics/solve/contact_terms.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_contact_terms {
 
 namespace {
 
@@ -192,3 +192,5 @@ TEST_CASE("contact terms: an impact makes a term; a deep one of a pair that has 
   CHECK(contacts.terms[0].normal == impact.normal);
   CHECK(contacts.terms[0].stiffness == 1e6);
 }
+
+}  // namespace selvedge::test_contact_terms

@@ -3,7 +3,8 @@
 #include "physics/solve/contour_potential.hpp"
 #include "tests/physics/worlds.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_contour_potential {
+
 using testing::make_world;
 using testing::World;
 
@@ -122,3 +123,5 @@ TEST_CASE("contour potential: the blocks bound the Gauss-Newton Hessian", "[cont
     CHECK(gauss_newton > 0);
   }
 }
+
+}  // namespace selvedge::test_contour_potential

@@ -10,9 +10,9 @@
 #include "physics/linear/cholesky.hpp"
 #include "physics/solve/step_potential.hpp"
 #include "tests/physics/meshes.hpp"
-#include "tests/physics/threads.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_implicit_euler {
 
 namespace {
 
@@ -431,3 +431,5 @@ TEST_CASE("The smallest and emptiest problems work", "[implicit_euler]") {
     CHECK_FALSE(run.report.converged);
   }
 }
+
+}  // namespace selvedge::test_implicit_euler

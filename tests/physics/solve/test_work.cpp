@@ -1,7 +1,8 @@
 #include "physics/solve/work.hpp"
 #include "tests/physics/worlds.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_work {
+
 using testing::add_obstacle;
 using testing::make_world;
 using testing::sheet;
@@ -123,3 +124,5 @@ TEST_CASE("work: velocity from nowhere is not covered", "[work]") {
   to.x += to.v / 60;
   CHECK(bound(w.state, to, w.drive).total() == 0);
 }
+
+}  // namespace selvedge::test_work

@@ -1,14 +1,12 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 #include "physics/energies/measures.hpp"
 #include "tests/physics/worlds.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_conventional_stepper {
+
 using testing::add_obstacle;
 using testing::make_world;
 using testing::Run;
@@ -139,20 +137,15 @@ TEST_CASE("conventional stepper: cloth at rest is solved once a substep, and sta
   CHECK((state.x - w.state.x).rowwise().norm().maxCoeff() < 1e-4);
 }
 
-#ifdef _OPENMP
 TEST_CASE("conventional stepper: one and two threads give the same bits in 100 frames with contact",
           "[conventional_stepper]") {
   const World w = folding_world(10);
-  const int threads = omp_get_max_threads();
-  omp_set_num_threads(1);
-  const Run one = run(w, 100);
-  omp_set_num_threads(2);
-  const Run two = run(w, 100);
-  omp_set_num_threads(threads);
+  Run one, two;
+  with_threads(1, [&] { one = run(w, 100); });
+  with_threads(2, [&] { two = run(w, 100); });
   CHECK(one.contacts > 0);
   same_bits(one.state, two.state);
 }
-#endif
 
 TEST_CASE("conventional stepper: friction holds a sheet on a slope below its angle and lets it slide above",
           "[conventional_stepper]") {
@@ -194,3 +187,5 @@ TEST_CASE("conventional stepper: a sheet that slides or hits is stepped finer th
   CHECK(substeps(0.1, {0, -10, 0}) == parts + 1);
   CHECK(substeps(0.25, {0, -10, 0}) == 1 + parts);
 }
+
+}  // namespace selvedge::test_conventional_stepper

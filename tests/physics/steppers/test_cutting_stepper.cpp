@@ -8,10 +8,11 @@
 #include "physics/recovery/cut_out.hpp"
 #include "physics/steppers/cutting_stepper.hpp"
 #include "physics/steppers/step_audit.hpp"
-#include "tests/physics/threads.hpp"
 #include "tests/physics/worlds.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_cutting_stepper {
+
 using testing::World;
 
 namespace {
@@ -212,3 +213,5 @@ TEST_CASE("cutting stepper: the same bits in two threads as in one, and from any
     CHECK(runs[k][3].cut_out == runs[0][3].cut_out);
   }
 }
+
+}  // namespace selvedge::test_cutting_stepper

@@ -3,10 +3,11 @@
 #include "collision/contour/segments.hpp"
 #include "physics/energies/measures.hpp"
 #include "physics/steppers/icm_stepper.hpp"
-#include "tests/physics/threads.hpp"
 #include "tests/physics/worlds.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_icm_stepper {
+
 using testing::add_obstacle;
 using testing::make_world;
 using testing::Run;
@@ -137,3 +138,5 @@ TEST_CASE("icm stepper: one and two threads give the same bits", "[icm_stepper]"
     CHECK(same_bits(one.v, two.v));
   }
 }
+
+}  // namespace selvedge::test_icm_stepper

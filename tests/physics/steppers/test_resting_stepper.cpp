@@ -5,7 +5,8 @@
 #include "physics/steppers/resting_stepper.hpp"
 #include "tests/physics/worlds.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_resting_stepper {
+
 using testing::Run;
 using testing::World;
 
@@ -253,3 +254,5 @@ TEST_CASE("resting stepper: a sheet that falls on a resting one wakes it and bot
   CHECK(at_rest > 0);
   CHECK(state.x.bottomRows(36).col(1).minCoeff() > 0);
 }
+
+}  // namespace selvedge::test_resting_stepper

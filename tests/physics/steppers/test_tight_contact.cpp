@@ -5,7 +5,8 @@
 #include "physics/energies/measures.hpp"
 #include "tests/physics/worlds.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_tight_contact {
+
 using testing::add_obstacle;
 using testing::make_world;
 using testing::Sheet;
@@ -118,3 +119,5 @@ TEST_CASE("a belt on a bar holds by its capstan ratio", "[tight_contact]") {
   CAPTURE(mu);
   CHECK(pulled.ratio == Approx(std::exp(mu * pi)).epsilon(0.03));
 }
+
+}  // namespace selvedge::test_tight_contact

@@ -7,11 +7,9 @@
 
 #include "collision/geometry/error.hpp"
 #include "tests/pipeline/fake_body.hpp"
-#ifdef _OPENMP
-#include <omp.h>
-#endif
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_body {
 
 namespace {
 
@@ -171,15 +169,11 @@ TEST_CASE("any number of threads poses with the same bits") {
   const Eigen::VectorXd shape = Eigen::VectorXd::LinSpaced(10, -2, 2);
   const Points once = posed(body, shape, pose);
   CHECK(posed(body, shape, pose) == once);
-#ifdef _OPENMP
-  const int threads = omp_get_max_threads();
-  for (const int n : {1, 2, 3, 4}) {
-    omp_set_num_threads(n);
-    CHECK(posed(body, shape, pose) == once);
-    CHECK(shaped(body.skin, shape) == shaped(body.skin, shape));
-  }
-  omp_set_num_threads(threads);
-#endif
+  for (const int n : {1, 2, 3, 4})
+    with_threads(n, [&] {
+      CHECK(posed(body, shape, pose) == once);
+      CHECK(shaped(body.skin, shape) == shaped(body.skin, shape));
+    });
 }
 
 TEST_CASE("what does not fit a body is refused") {
@@ -238,3 +232,5 @@ TEST_CASE("a body that is not sound is refused, with the name of the field") {
   CHECK(complaint([&](BodyModel& b) { b.regressor.valuePtr()[0] = nan; }) == "file: regressor");
   CHECK(complaint([](BodyModel& b) { b.regressor.setZero(); }) == "file: regressor");
 }
+
+}  // namespace selvedge::test_body

@@ -11,7 +11,7 @@
 #include "tests/pipeline/fake_body.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_body_hdf5 {
 
 namespace {
 
@@ -154,3 +154,5 @@ TEST_CASE("a body that several processes write at once is whole, and none of the
   check_same(read_body(path), body);
   CHECK(std::distance(std::filesystem::directory_iterator(folder.path), {}) == 1);
 }
+
+}  // namespace selvedge::test_body_hdf5

@@ -18,7 +18,8 @@
 #include "tests/pipeline/fake_garment.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_body_jointed {
+
 using Catch::Matchers::Contains;
 using fake::Folder;
 
@@ -202,3 +203,5 @@ TEST_CASE("jointed body: MakeHuman's body wears its helpers' skirt and tights an
     CHECK((run.pairs > 0) == (pairs > 0));
   }
 }
+
+}  // namespace selvedge::test_body_jointed

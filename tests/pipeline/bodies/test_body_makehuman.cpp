@@ -18,7 +18,8 @@
 #include "tests/pipeline/fake_makehuman.hpp"
 #include "tests/pipeline/fake_skeleton.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_body_makehuman {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -332,3 +333,5 @@ TEST_CASE("makehuman: the real body does as the mannequin does in the same clip"
     CHECK((low > -0.03 && high < (name.ends_with(".bvh") ? 0.05 : 0.01)));
   }
 }
+
+}  // namespace selvedge::test_body_makehuman

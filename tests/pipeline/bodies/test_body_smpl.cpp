@@ -10,7 +10,7 @@
 #include "tests/pipeline/fake_npz.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_body_smpl {
 
 namespace {
 
@@ -285,3 +285,5 @@ TEST_CASE("indices out of range, trees that are none and numbers that are not fi
   const auto hand = [](fake::NpzEntries& e) { e["kintree_table"] = fake::npy({2, 16}, std::vector<int>(32)); };
   CHECK(has(complaint(folder, hand), "kintree_table: has 16 joints"));
 }
+
+}  // namespace selvedge::test_body_smpl

@@ -15,7 +15,7 @@
 #include "pipeline/bodies/mannequin_form.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_mannequin {
 
 namespace {
 
@@ -334,3 +334,5 @@ TEST_CASE("mannequin: bends at its joints and nowhere else") {
     for (const auto& edge : surface().edges.rowwise())
       if ((row(*pose, edge[1]) - row(*pose, edge[0])).norm() > 0.06) FAIL_CHECK("torn at " << x.row(edge[0]));
 }
+
+}  // namespace selvedge::test_mannequin

@@ -9,7 +9,7 @@
 
 #include "tests/pipeline/fake_run.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_main {
 
 namespace {
 
@@ -198,3 +198,5 @@ TEST_CASE("a run that is interrupted ends with whole files and is resumed to the
   REQUIRE(resumed.frame_count() == 401);
   for (const int i : {10, 200, 400}) REQUIRE(resumed.frame(i).x == whole.frame(i).x);
 }
+
+}  // namespace selvedge::test_main

@@ -10,7 +10,8 @@
 #include "pipeline/compare/compare_reference.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_compare {
+
 using Catch::Matchers::Contains;
 using fake::Folder;
 
@@ -236,3 +237,5 @@ TEST_CASE("The comparison of the conventional stepper is of small scenes, and ru
                       [&](const CompareRow& r) { return r.scene == floor.scene && r.front; }));
 #endif
 }
+
+}  // namespace selvedge::test_compare

@@ -7,7 +7,8 @@
 #include "pipeline/scene/setup.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_config {
+
 using Catch::Matchers::Contains;
 using fake::Folder;
 using fake::whole;
@@ -289,3 +290,5 @@ TEST_CASE("docs/scene.md is written anew", "[.][write-docs]") {
   const std::string text = whole(page);
   std::ofstream(page) << text.substr(0, text.find(marker) + marker.size()) << "\n" << scene_reference();
 }
+
+}  // namespace selvedge::test_config

@@ -4,7 +4,8 @@
 #include "pipeline/config/options.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_options {
+
 using namespace selvedge::table;
 using Catch::Matchers::Contains;
 using fake::Folder;
@@ -208,3 +209,5 @@ TEST_CASE("Options print what reads back to them", "[options]") {
   CHECK_THAT(plain, !Contains("fog"));
   CHECK_FALSE(stage_options().read(stage(plain)).seats);
 }
+
+}  // namespace selvedge::test_options

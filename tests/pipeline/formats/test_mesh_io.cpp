@@ -9,7 +9,8 @@
 #include "pipeline/formats/mesh_ply.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_mesh_io {
+
 using Catch::Matchers::Contains;
 using fake::Folder;
 
@@ -234,3 +235,5 @@ TEST_CASE("Meshes made by others are read", "[mesh_io]") {
   CHECK(is_closed(make_surface(static_cast<int>(body.x.rows()), body.triangles)));
   CHECK(read_mesh(data / "meshes/two-cubes-far.ply").triangles.rows() == 480);
 }
+
+}  // namespace selvedge::test_mesh_io

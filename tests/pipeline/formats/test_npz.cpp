@@ -7,7 +7,7 @@
 #include "tests/pipeline/fake_npz.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_npz {
 
 namespace {
 
@@ -207,3 +207,5 @@ TEST_CASE("an array that is not asked for is never looked at") {
   CHECK(npz.numbers("x").values == std::vector<double>{4});
   CHECK_THROWS_AS(npz.numbers("broken"), Error);
 }
+
+}  // namespace selvedge::test_npz

@@ -5,7 +5,8 @@
 #include "collision/geometry/error.hpp"
 #include "tests/pipeline/fake_checkpoint.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_pickle {
+
 using fake::PickleText;
 
 namespace {
@@ -214,3 +215,5 @@ TEST_CASE("pickle: bombs of nested and shared values are refused", "[pickle]") {
   CHECK(pickle_complaint(opcodes("]q\1h\1a")) == "has a value that contains itself");
   CHECK(pickle_complaint(opcodes("}q\1K\1]h\1as")) == "has a value that contains itself");
 }
+
+}  // namespace selvedge::test_pickle

@@ -8,7 +8,8 @@
 #include "tests/pipeline/fake_npz.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_torch_archive {
+
 using fake::PickleText;
 
 namespace {
@@ -177,3 +178,5 @@ TEST_CASE("torch archive: what is no checkpoint is one error that names it", "[t
   }
   CHECK(says(archive_complaint([&] { TorchArchive{folder.path / "nothing.pth"}; }), "is no file"));
 }
+
+}  // namespace selvedge::test_torch_archive

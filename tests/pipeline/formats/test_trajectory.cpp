@@ -10,7 +10,7 @@
 #include "pipeline/formats/trajectory_hdf5.hpp"
 #include "tests/pipeline/fake_run.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_trajectory {
 
 namespace {
 
@@ -162,3 +162,5 @@ TEST_CASE("a full disk ends in an error and leaves the full frames readable") {
   REQUIRE(reader.frame_count() < 100);
   require_same(reader.frame(reader.frame_count() - 1), fake::frame(scene, reader.frame_count() - 1));
 }
+
+}  // namespace selvedge::test_trajectory

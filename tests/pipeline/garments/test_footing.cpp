@@ -2,7 +2,7 @@
 
 #include "pipeline/garments/footing.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_footing {
 
 namespace {
 
@@ -80,3 +80,5 @@ TEST_CASE("footing: what lies on the body stays on it", "[footing]") {
   const Points x = layers({0});
   CHECK(squeezed(footing_of(x, body.surface, body.at(1)), body.surface, body.at(0.001), x) == x);
 }
+
+}  // namespace selvedge::test_footing

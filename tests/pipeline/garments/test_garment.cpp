@@ -5,11 +5,9 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/bodies/mannequin.hpp"
 #include "pipeline/scene/setup_paths.hpp"
-#ifdef _OPENMP
-#include <omp.h>
-#endif
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_garment {
 
 namespace {
 
@@ -80,13 +78,12 @@ TEST_CASE("Attaching gives the same bits with any number of threads", "[garment]
   const BodyModel& body = mannequin();
   const Points x = around(body, 1.2);
   const SkinnedSurface two = attached(x, body.skin.triangles, body, Fit::loose);
-#ifdef _OPENMP
-  const int threads = omp_get_max_threads();
-  omp_set_num_threads(1);
-  const SkinnedSurface one = attached(x, body.skin.triangles, body, Fit::loose);
-  omp_set_num_threads(threads);
-  CHECK(one.shape_directions == two.shape_directions);
-  CHECK((one.weights - two.weights).norm() == 0);
-#endif
+  with_threads(1, [&] {
+    const SkinnedSurface one = attached(x, body.skin.triangles, body, Fit::loose);
+    CHECK(one.shape_directions == two.shape_directions);
+    CHECK((one.weights - two.weights).norm() == 0);
+  });
   CHECK_THROWS_AS(attached(Points(0, 3), Triangles(0, 3), body, Fit::tight), Error);
 }
+
+}  // namespace selvedge::test_garment

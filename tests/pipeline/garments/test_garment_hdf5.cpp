@@ -9,7 +9,8 @@
 #include "tests/pipeline/fake_body.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_garment_hdf5 {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -146,3 +147,5 @@ TEST_CASE("a garment's fields with wrong indices are refused, by field") {
   CHECK_THAT(complaint("groups/begin", {0, 4, 3, 5}), Contains("groups/begin"));
   CHECK_THAT(complaint("groups/vertices", {0, 3, 40, 3, 39}), Contains("hem"));
 }
+
+}  // namespace selvedge::test_garment_hdf5

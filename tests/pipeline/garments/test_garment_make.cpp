@@ -16,7 +16,7 @@
 #include "tests/pipeline/fake_body.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_garment_make {
 
 namespace {
 
@@ -222,3 +222,5 @@ TEST_CASE("Wrong garments and wardrobes are refused", "[garment]") {
   refused("garments: [{name: tshirt, split: training}, {name: tshirt, split: validation}]\noutfits: []\n");
   refused("garments: [{name: tshirt, split: training}]\noutfits: []\n");
 }
+
+}  // namespace selvedge::test_garment_make

@@ -4,7 +4,7 @@
 
 #include "tests/pipeline/fake_garment.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_garment_places {
 
 namespace {
 
@@ -113,3 +113,5 @@ TEST_CASE("Joints of other names belong to the region of their parents", "[garme
   const fake::Piece skirt = fake::skirt(body, -0.4, 0.1, 0.02, 48, 16);
   CHECK(names(named_loops(attached(skirt.x, skirt.triangles, body, Fit::loose), body, {})) == Names{"hem", "waist*"});
 }
+
+}  // namespace selvedge::test_garment_places

@@ -7,7 +7,7 @@
 #include "pipeline/motions/clip.hpp"
 #include "pipeline/shapes/motion.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_clip {
 
 namespace {
 
@@ -111,3 +111,5 @@ TEST_CASE("clip: blending in starts at rest and passes frame 0 as the clip does"
   CHECK(blended_in(clip, 0, StartPose::zero).poses.size() == clip.poses.size());
   CHECK_THROWS_AS(blended_in(clip, -1, StartPose::zero), Error);
 }
+
+}  // namespace selvedge::test_clip

@@ -11,7 +11,7 @@
 #include "tests/pipeline/fake_skeleton.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_clip_amass {
 
 namespace {
 
@@ -162,3 +162,5 @@ TEST_CASE("clip_amass: what is missing or wrong is named", "[clip]") {
   fails(with(h, "poses", fake::npy_of("'|O'", false, "(5, 156)", "pickle")), "poses");
   CHECK_THROWS_AS(read_amass(folder.path / "none.npz", 30, pelvis), Error);
 }
+
+}  // namespace selvedge::test_clip_amass

@@ -12,7 +12,7 @@
 #include "tests/pipeline/fake_skeleton.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_clip_bvh {
 
 namespace {
 
@@ -366,3 +366,5 @@ TEST_CASE("clip_bvh: MakeHuman's walk and dance", "[clip]") {
     }
   }
 }
+
+}  // namespace selvedge::test_clip_bvh

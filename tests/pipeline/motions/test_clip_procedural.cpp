@@ -13,7 +13,7 @@
 #include "tests/pipeline/fake_skeleton.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_clip_procedural {
 
 namespace {
 
@@ -237,3 +237,5 @@ TEST_CASE("clip_procedural: the split names every clip once, eight of them for v
   CHECK_THROWS_WITH(split("clips: [{name: walk, frames: 180, split: test}]"), Catch::Contains("validation"));
   CHECK_THROWS_AS(split("clips: [{name: walk, split: training}]"), Error);
 }
+
+}  // namespace selvedge::test_clip_procedural

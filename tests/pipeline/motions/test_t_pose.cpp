@@ -11,7 +11,7 @@
 #include "tests/pipeline/fake_makehuman.hpp"
 #include "tests/pipeline/fake_skeleton.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_t_pose {
 
 namespace {
 
@@ -94,3 +94,5 @@ TEST_CASE("t_pose: a clip moves every joint as it moves a body that was modelled
     for (int j = 0; j < 26; ++j) CHECK((turn_of(a, j) - turn_of(b, j) * turn_of(to_t, j)).norm() < 1e-9);
   }
 }
+
+}  // namespace selvedge::test_t_pose

@@ -9,7 +9,7 @@
 #include "pipeline/formats/trajectory_hdf5.hpp"
 #include "tests/pipeline/fake_run.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_kill {
 
 // A file is there only once it can be opened, and each frame it counts is whole, wherever its writer is killed: from
 // before the file is made to hundreds of frames later.
@@ -54,3 +54,5 @@ TEST_CASE("a trajectory opens after kill -9 at random moments") {
   REQUIRE(opened >= 10);
   REQUIRE(frames > 20);
 }
+
+}  // namespace selvedge::test_kill

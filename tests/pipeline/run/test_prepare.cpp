@@ -7,11 +7,10 @@
 #include "pipeline/tools/plan.hpp"
 #include "tests/pipeline/fake_garment.hpp"
 #include "tests/pipeline/files.hpp"
-#ifdef _OPENMP
-#include <omp.h>
-#endif
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_prepare {
+
 using Catch::Matchers::Contains;
 using fake::Folder;
 
@@ -111,14 +110,7 @@ TEST_CASE("A draped start has the same bits whoever steps the scene, with any nu
   Setup one = read(folder, draped),
         two = read(folder, draped, "", {"run.stepper=icm", "run.substeps=1", "run.frames=9"});
   prepare(one);
-#ifdef _OPENMP
-  const int threads = omp_get_max_threads();
-  omp_set_num_threads(threads == 1 ? 2 : 1);
-#endif
-  prepare(two);
-#ifdef _OPENMP
-  omp_set_num_threads(threads);
-#endif
+  with_threads(most_threads() == 1 ? 2 : 1, [&] { prepare(two); });
   CHECK(one.initial.x == two.initial.x);
   Setup stopped = read(folder, draped);
   CHECK_FALSE(prepare(stopped, [] { return true; }));
@@ -169,3 +161,5 @@ TEST_CASE("What is wrong with a draped start is named", "[prepare]") {
                     Contains("scene.yaml:3") && Contains("starts otherwise"));
   CHECK_THROWS_WITH(read(folder, "{garment: skirt.h5, start: {from: drapd}}"), Contains("did you mean `draped`"));
 }
+
+}  // namespace selvedge::test_prepare

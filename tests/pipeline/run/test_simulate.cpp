@@ -9,7 +9,7 @@
 #include "pipeline/run/simulate.hpp"
 #include "tests/pipeline/fake_run.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_simulate {
 
 namespace {
 
@@ -253,3 +253,5 @@ TEST_CASE("times are summed up by frame") {
   REQUIRE(mean_milliseconds(summary) == Approx(325));
   REQUIRE(median_milliseconds(summary) == Approx(300));
 }
+
+}  // namespace selvedge::test_simulate

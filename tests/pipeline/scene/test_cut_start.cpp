@@ -8,7 +8,8 @@
 #include "tests/pipeline/fake_garment.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_cut_start {
+
 using Catch::Matchers::Contains;
 using fake::Folder;
 
@@ -109,3 +110,5 @@ TEST_CASE("A cut start of what is clean cuts nothing; one that cannot be is name
   CHECK_THROWS_WITH(read(folder, "{garment: skirt.h5, start: {from: cut, crumple: 1 mm}}"), Contains("crumple"));
   CHECK_THROWS_WITH(read(folder, cut, "  - {name: inner, garment: skirt.h5}\n"), Contains("starts otherwise"));
 }
+
+}  // namespace selvedge::test_cut_start

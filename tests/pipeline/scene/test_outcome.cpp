@@ -9,7 +9,8 @@
 #include "pipeline/shapes/motion.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_outcome {
+
 using fake::Folder;
 
 namespace {
@@ -190,3 +191,5 @@ TEST_CASE("A jittered start is clean, the same for the same seed, and leaves pin
   CHECK(used < 0.8);
   CHECK(used > 0.01);
 }
+
+}  // namespace selvedge::test_outcome

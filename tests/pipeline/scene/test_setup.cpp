@@ -10,7 +10,8 @@
 #include "pipeline/scene/setup_cloth.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_setup {
+
 using Catch::Matchers::Contains;
 using fake::Folder;
 
@@ -387,3 +388,5 @@ TEST_CASE("A cloth that starts in one point is opened, and a warning says so", "
   CHECK((x.colwise().maxCoeff() - x.colwise().minCoeff()).maxCoeff() > 1e-4);
   CHECK(x.cwiseAbs().maxCoeff() < 3e-4);
 }
+
+}  // namespace selvedge::test_setup

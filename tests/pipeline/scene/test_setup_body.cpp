@@ -9,7 +9,8 @@
 #include "tests/pipeline/fake_skeleton.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_setup_body {
+
 using Catch::Matchers::Contains;
 using fake::Folder;
 
@@ -167,3 +168,5 @@ TEST_CASE("What is wrong with a body is named by file, line and cure", "[setup_b
   fake::write(folder, "person.h5", "no hdf5");
   CHECK_THROWS_WITH(with_body(folder, "{model: person.h5}"), Contains("person.h5"));
 }
+
+}  // namespace selvedge::test_setup_body

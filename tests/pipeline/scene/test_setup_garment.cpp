@@ -14,7 +14,8 @@
 #include "tests/pipeline/fake_garment.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_setup_garment {
+
 using Catch::Matchers::Contains;
 using fake::Folder;
 
@@ -281,3 +282,5 @@ TEST_CASE("An outfit is looked up beside the scene before the program's own", "[
   CHECK_THROWS_WITH(read(folder, "{garment: {outfit: summer}}", "{name: person, body: {clip: walk}}"),
                     Contains("unknown outfit `summer`") && Contains("outfits: mine, office"));
 }
+
+}  // namespace selvedge::test_setup_garment

@@ -9,10 +9,11 @@
 #include "physics/scene/features.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "pipeline/scene/setup.hpp"
-#include "tests/physics/threads.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_sewing {
+
 using Catch::Matchers::Contains;
 using fake::Folder;
 
@@ -357,3 +358,5 @@ TEST_CASE("sewing: panels that face opposite ways are warned of", "[sewing]") {
   CHECK(warned(read(folder, tube_scene()),
                fmt::format("`tube`: panels face opposite ways along {} sewn edges", 2 * rows)));
 }
+
+}  // namespace selvedge::test_sewing

@@ -9,7 +9,7 @@
 #include "pipeline/shapes/generate.hpp"
 #include "pipeline/shapes/primitives.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_generate {
 
 namespace {
 
@@ -276,3 +276,5 @@ TEST_CASE("rectangle: graded spacings grow geometrically and keep the size and t
   const auto z = [&](int row) { return mesh.x(9 * row, 2); };  // rows go from the bottom, +z, to the top
   CHECK((z(0) - z(1)) / (z(3) - z(4)) == Approx(10));
 }
+
+}  // namespace selvedge::test_generate

@@ -7,7 +7,7 @@
 
 #include "pipeline/shapes/motion.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_motion {
 
 namespace {
 
@@ -79,3 +79,5 @@ TEST_CASE("The rotation between two directions is the shortest, and defined wher
   check(a, -2 * a, std::numbers::pi);
   for (int axis = 0; axis < 3; ++axis) check(Vec3::Unit(axis), -Vec3::Unit(axis), std::numbers::pi);
 }
+
+}  // namespace selvedge::test_motion

@@ -8,7 +8,7 @@
 #include "pipeline/shapes/isosurface.hpp"
 #include "pipeline/shapes/remesh.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_remesh {
 
 namespace {
 
@@ -140,3 +140,5 @@ TEST_CASE("implicit form: distances of balls and cones, blends, cuts and mirror 
   for (const Vec3& p : {Vec3(0.05, 0.02, 0.03), Vec3(0.02, 0.05, 0.01), Vec3(0.1, -0.02, 0.03)})
     CHECK(signed_value(dumbbell, p) == signed_value(dumbbell, Vec3(-p.x(), p.y(), p.z())));
 }
+
+}  // namespace selvedge::test_remesh

@@ -5,7 +5,7 @@
 
 #include "pipeline/suites/bench.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_bench_engine {
 
 TEST_CASE("bench: the network engine has rows beside the peak of the same run", "[bench]") {
   const EngineTimings timings = time_engine(1, 300, 150);
@@ -51,3 +51,5 @@ TEST_CASE("bench: shares of a peak that other work has lowered are void", "[benc
   timings.peak.share_of_ports = std::numeric_limits<double>::quiet_NaN();
   CHECK(is_void(timings.peak));
 }
+
+}  // namespace selvedge::test_bench_engine

@@ -10,7 +10,8 @@
 #include "pipeline/suites/stability_watch.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_stability {
+
 using Catch::Matchers::Contains;
 using fake::Folder;
 
@@ -106,3 +107,5 @@ TEST_CASE("stability: a faulty suite is named by file and line", "[stability]") 
   request.cases = {"gravitas"};
   CHECK_THROWS_WITH(stability(request), Contains("there is no case") && Contains("gravity"));
 }
+
+}  // namespace selvedge::test_stability

@@ -9,7 +9,8 @@
 #include "tests/pipeline/files.hpp"
 #include "tests/pipeline/short_stress.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_stress {
+
 using Catch::Matchers::Contains;
 using fake::Folder;
 
@@ -122,3 +123,5 @@ TEST_CASE("A stress suite that cannot be run says why", "[stress]") {
       "outcome: [{name: it, stretch: {}}]\n");
   CHECK_THROWS_WITH(stress(request), Contains("the start is not clean"));
 }
+
+}  // namespace selvedge::test_stress

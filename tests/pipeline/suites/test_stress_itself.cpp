@@ -1,7 +1,9 @@
 #include "tests/pipeline/short_stress.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_stress_itself {
 
 TEST_CASE("The stress scenes of cloth against itself pass in their short form", "[stress][short]") {
   fake::check_short_forms(fake::stress_against_itself);
 }
+
+}  // namespace selvedge::test_stress_itself

@@ -1,7 +1,9 @@
 #include "tests/pipeline/short_stress.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_stress_obstacles {
 
 TEST_CASE("The stress scenes against obstacles pass in their short form", "[stress][short]") {
   fake::check_short_forms(fake::stress_against_obstacles);
 }
+
+}  // namespace selvedge::test_stress_obstacles

@@ -7,7 +7,8 @@
 #include "pipeline/suites/wardrobe.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_wardrobe {
+
 using Catch::Matchers::Contains;
 using fake::Folder;
 
@@ -86,3 +87,5 @@ TEST_CASE("Names that nothing has are refused", "[wardrobe]") {
   request.clips = {"walking"};
   CHECK_THROWS_WITH(wardrobe(request), Contains("walking") && Contains("walk_slow"));
 }
+
+}  // namespace selvedge::test_wardrobe

@@ -7,7 +7,7 @@
 #include "pipeline/tools/ccd_report.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_ccd_queries {
 
 namespace {
 
@@ -161,3 +161,5 @@ TEST_CASE("ccd report: queries with exact truth", "[data]") {
   CHECK(report.all.false_negatives == 0);
   CHECK(report.all.false_positives == 0);
 }
+
+}  // namespace selvedge::test_ccd_queries

@@ -7,7 +7,7 @@
 #include "pipeline/tools/check.hpp"
 #include "tests/pipeline/fake_run.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_check {
 
 namespace {
 
@@ -178,3 +178,5 @@ TEST_CASE("a pair on which FCL and exact signs differ is named, with how near it
   CHECK(separation({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {Vec3(3, 0, 0), Vec3(4, 0, 0), Vec3(3, 1, 0)}) ==
         Approx(2));
 }
+
+}  // namespace selvedge::test_check

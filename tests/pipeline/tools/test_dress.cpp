@@ -8,7 +8,8 @@
 #include "tests/pipeline/fake_garment.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_dress {
+
 using Catch::Matchers::Contains;
 using fake::Folder;
 
@@ -194,3 +195,5 @@ TEST_CASE("What is wrong with a request is named", "[dress]") {
   CHECK_THAT(complaint([](auto& r) { r.mesh = "absent.obj"; }), Contains("absent.obj"));
   CHECK_FALSE(std::filesystem::exists(request.out));
 }
+
+}  // namespace selvedge::test_dress

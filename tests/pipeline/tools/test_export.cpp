@@ -8,7 +8,7 @@
 #include "pipeline/tools/export.hpp"
 #include "tests/pipeline/fake_run.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_export {
 
 namespace {
 
@@ -82,3 +82,5 @@ TEST_CASE("the XDMF sidecar names the arrays and rows of every frame") {
   REQUIRE(opened == 1 + 3 * 4);
   REQUIRE(opened == closed);
 }
+
+}  // namespace selvedge::test_export

@@ -14,7 +14,8 @@
 #include "tests/pipeline/fake_checkpoint.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_import_weights {
+
 using fake::CheckpointTensor;
 
 namespace {
@@ -326,3 +327,5 @@ TEST_CASE("import: 2,000 mutated checkpoints are errors within bounded memory", 
   const MemoryBound bound(std::uint64_t{2} << 30);
   CHECK(refused_mutations(2000, 2) > 1600);
 }
+
+}  // namespace selvedge::test_import_weights

@@ -9,7 +9,7 @@
 #include "pipeline/tools/untangle_mesh.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_untangle_mesh {
 
 namespace {
 
@@ -122,3 +122,5 @@ TEST_CASE("untangle: the open data", "[data]") {
     CHECK(same_triangles(read_mesh(request.file).triangles, read_mesh(request.out).triangles));
   }
 }
+
+}  // namespace selvedge::test_untangle_mesh

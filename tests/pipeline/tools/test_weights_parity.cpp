@@ -12,7 +12,7 @@
 #include "tests/pipeline/fake_npz.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_weights_parity {
 
 namespace {
 
@@ -174,3 +174,5 @@ TEST_CASE("weights: an imported checkpoint goes through its file unchanged, and 
   file.weights.decoder.layers[0].bias[0] = std::numeric_limits<float>::infinity();
   CHECK(weights_info(file).nonfinite == 1);
 }
+
+}  // namespace selvedge::test_weights_parity

@@ -10,7 +10,7 @@
 #include "pipeline/validate/validate.hpp"
 #include "tests/pipeline/fake_run.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_validate {
 
 TEST_CASE("the elastica has the master curve of the literature") {
   const std::vector<std::pair<double, double>> curve{{0.1, 0.012500}, {1, 0.124562}, {2, 0.246673}, {5, 0.585721},
@@ -122,3 +122,5 @@ TEST_CASE("validation: order of convergence, and a case that is too coarse to co
   CHECK(*rows[1].order > 1);
   CHECK(passed(rows));
 }
+
+}  // namespace selvedge::test_validate

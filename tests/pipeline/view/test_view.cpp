@@ -11,7 +11,7 @@
 #include "tests/pipeline/draping_run.hpp"
 #include "tests/pipeline/fake_run.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_view {
 
 namespace {
 
@@ -142,3 +142,5 @@ TEST_CASE("view: a page that cannot be made says why, and is no error", "[view]"
   CHECK(trouble->find("run.h5") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(folder.path / "view.html"));
 }
+
+}  // namespace selvedge::test_view

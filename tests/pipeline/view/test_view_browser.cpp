@@ -11,7 +11,8 @@
 #include "tests/pipeline/draping_run.hpp"
 #include "tests/pipeline/fake_run.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_view_browser {
+
 using nlohmann::json;
 
 namespace {
@@ -137,3 +138,5 @@ TEST_CASE("view: the page draws in a browser, and the slider changes the drawing
   CHECK(late.png.size() > 40'000);
   CHECK(early.png != late.png);
 }
+
+}  // namespace selvedge::test_view_browser

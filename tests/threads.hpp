@@ -1,27 +1,17 @@
 #pragma once
 
 #include <cstring>
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
+#include <functional>
 
 #include "collision/geometry/points.hpp"
 
 namespace selvedge {
 
+// How many threads OpenMP may use: one where the build has no OpenMP.
+int most_threads();
+
 // Runs `work` with that many threads (one where the build has no OpenMP).
-template <class Work>
-void with_threads([[maybe_unused]] int threads, Work work) {
-#ifdef _OPENMP
-  const int before = omp_get_max_threads();
-  omp_set_num_threads(threads);
-  work();
-  omp_set_num_threads(before);
-#else
-  work();
-#endif
-}
+void with_threads(int threads, const std::function<void()>& work);
 
 inline bool same_bits(const Points& a, const Points& b) {
   return a.rows() == b.rows() && std::memcmp(a.data(), b.data(), sizeof(double) * a.size()) == 0;
