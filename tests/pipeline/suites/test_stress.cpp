@@ -52,8 +52,8 @@ TEST_CASE("Stress scenes are large enough and state what must come true", "[stre
 }
 
 TEST_CASE("Every stress scene is tested in its short form", "[stress]") {
-  std::vector<std::string> tested = fake::stress_against_obstacles;
-  tested.insert(tested.end(), fake::stress_against_itself.begin(), fake::stress_against_itself.end());
+  std::vector<std::string> tested = fake::stress_each_time;
+  tested.insert(tested.end(), fake::stress_at_length.begin(), fake::stress_at_length.end());
   std::sort(tested.begin(), tested.end());
   CHECK(tested == scene_names());
 }

@@ -52,7 +52,7 @@ TEST_CASE("A garment comes down from the T-pose and walks clean; its row is kept
   CHECK_THAT(wardrobe_table(rows), Contains("tshirt") && Contains("1 of 1 rows passed"));
 }
 
-TEST_CASE("What an outfit goes through does not depend on the garments before it", "[wardrobe]") {
+TEST_CASE("What an outfit goes through does not depend on the garments before it", "[wardrobe][.long]") {
   const Folder folder("wardrobe_shared");
   WardrobeRequest request = short_form(folder);
   request.most_frames = 1;
