@@ -23,11 +23,15 @@ Key interpolation_key() {
 }
 
 const Section& mesh_section() {
-  static const Section table{"mesh",
-                             "An OBJ or PLY file. The names of its `o` and `g` lines are groups.",
-                             "file",
-                             {},
-                             {needed(path("file", "")), unit_key()}};
+  static const Section table{
+      "mesh",
+      "An OBJ or PLY file. The names of its `o` and `g` lines are groups.",
+      "file",
+      {},
+      {needed(path("file", "")), unit_key(),
+       flag("weld", false,
+            "joins vertices that lie at one place, within a millionth of the mesh's size; they are numbered anew in "
+            "their order")}};
   return table;
 }
 

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "collision/geometry/error.hpp"
 
 namespace selvedge {
@@ -48,6 +50,32 @@ constexpr std::array symbols = {
     Symbol{"MPa", Unit::pressure, 1e6},
     Symbol{"GPa", Unit::pressure, 1e9},
 };
+
+// Beyond what any scene can mean, and far from where doubles lose what matters [SI].
+double largest_sensible(Unit unit) {
+  switch (unit) {
+    case Unit::length:
+    case Unit::speed:
+    case Unit::acceleration:
+      return 1e6;
+    case Unit::angle:
+      return 1e7;
+    case Unit::time:
+    case Unit::rate:
+      return 1e9;
+    case Unit::areal_density:
+      return 1e9;
+    case Unit::density:
+      return 1e12;
+    case Unit::stiffness:
+    case Unit::bending:
+    case Unit::pressure:
+      return 1e18;
+    case Unit::none:
+      break;
+  }
+  return HUGE_VAL;
+}
 
 // "N m", "kg/m^2" and "kg/m²" are written as in the table.
 std::string plain_symbol(std::string_view text) {
@@ -123,6 +151,8 @@ Quantity read_quantity(std::string_view text, Unit unit) {
     factor = known->factor;
   }
   if (!std::isfinite(*value)) return {0, "is not finite"};
+  if (std::abs(*value * factor) > largest_sensible(unit))
+    return {0, fmt::format("is absurd, beyond {:g} {}", largest_sensible(unit), unit_symbol(unit))};
   return {*value * factor, {}};
 }
 

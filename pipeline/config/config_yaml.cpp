@@ -1,26 +1,14 @@
 #include "pipeline/config/config_yaml.hpp"
 
 #include <charconv>
-#include <fstream>
-#include <sstream>
 
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/host/read_file.hpp"
 
 namespace selvedge {
 namespace {
-
-std::string file_text(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored))
-    throw Error("is a folder", path.string(), "name the configuration file in it");
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw Error("cannot be opened", path.string(), "check the path");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 YAML::Node loaded(const std::string& text, const std::string& where) {
   try {
@@ -160,7 +148,7 @@ Config read_config(const std::filesystem::path& path, const Section& section,
                    const std::vector<std::string>& overrides) {
   Origin origin{path.string(), {}};
   try {
-    YAML::Node root = loaded(file_text(path), origin.file);
+    YAML::Node root = loaded(read_text_file(path, "configuration"), origin.file);
     if (root.IsNull()) throw Error("is empty", origin.file, "docs/scene.md shows what belongs into a scene");
     if (!root.IsMap())
       throw Error("is not a list of `key: value`", origin.file, "allowed keys: " + joined(key_names(section)));

@@ -1,8 +1,6 @@
 #include "pipeline/formats/mesh_io.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 #include <fmt/format.h>
 
@@ -10,6 +8,7 @@
 #include "collision/geometry/surface.hpp"
 #include "pipeline/formats/mesh_obj.hpp"
 #include "pipeline/formats/mesh_ply.hpp"
+#include "pipeline/host/read_file.hpp"
 #include "pipeline/host/write_file.hpp"
 
 namespace selvedge {
@@ -23,16 +22,6 @@ std::string lower_extension(const fs::path& path) {
   return extension;
 }
 
-std::string whole_file(const fs::path& path) {
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) throw Error("is a folder", path.string(), "name the mesh file in it");
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw Error("cannot be opened", path.string(), "check the path");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 void keep_rows(Triangles& triangles, const std::vector<int>& kept) {
   if (triangles.rows() == 0) return;
   Triangles result(static_cast<Eigen::Index>(kept.size()), 3);
@@ -40,8 +29,18 @@ void keep_rows(Triangles& triangles, const std::vector<int>& kept) {
   triangles = std::move(result);
 }
 
-// Leaves out triangles that name a vertex twice and triangles that come again, in whatever order of corners.
-void remove_repeated(Mesh& mesh, const std::string& name) {
+void note_topology(Mesh& mesh, const std::string& name) {
+  const Surface surface = make_surface(static_cast<int>(mesh.x.rows()), mesh.triangles);
+  if (surface.nonmanifold_edges > 0)
+    mesh.warnings.push_back(
+        fmt::format("{}: {} non-manifold edges (more than two triangles)", name, surface.nonmanifold_edges));
+  if (surface.isolated_vertices > 0)
+    mesh.warnings.push_back(fmt::format("{}: {} isolated vertices (in no triangle)", name, surface.isolated_vertices));
+}
+
+}  // namespace
+
+void leave_out_repeated(Mesh& mesh, const std::string& name) {
   std::vector<std::pair<std::array<int, 3>, int>> sorted;
   int degenerate = 0;
   for (int t = 0; t < mesh.triangles.rows(); ++t) {
@@ -64,28 +63,23 @@ void remove_repeated(Mesh& mesh, const std::string& name) {
   if (duplicate > 0) mesh.warnings.push_back(fmt::format("{}: {} duplicate triangles left out", name, duplicate));
 }
 
-void note_topology(Mesh& mesh, const std::string& name) {
-  const Surface surface = make_surface(static_cast<int>(mesh.x.rows()), mesh.triangles);
-  if (surface.nonmanifold_edges > 0)
-    mesh.warnings.push_back(
-        fmt::format("{}: {} non-manifold edges (more than two triangles)", name, surface.nonmanifold_edges));
-  if (surface.isolated_vertices > 0)
-    mesh.warnings.push_back(fmt::format("{}: {} isolated vertices (in no triangle)", name, surface.isolated_vertices));
-}
-
-}  // namespace
-
 bool same_triangles(const Triangles& a, const Triangles& b) { return a.rows() == b.rows() && a == b; }
+
+bool same_faces(const Mesh& a, const Mesh& b) {
+  if (a.x.rows() != b.x.rows()) return false;
+  if (!a.corners.empty() && a.corners == b.corners && a.corner_begin == b.corner_begin) return true;
+  return same_triangles(a.triangles, b.triangles);
+}
 
 Mesh read_mesh(const fs::path& path) {
   const std::string extension = lower_extension(path), name = path.string();
   if (extension != ".obj" && extension != ".ply")
     throw Error("has an extension that no mesh reader knows", name, "known: .obj, .ply");
-  const std::string text = whole_file(path);
+  const std::string text = read_text_file(path, "mesh");
   if (text.empty()) throw Error("is empty", name, "name a mesh file with vertices and faces");
   Mesh mesh = extension == ".obj" ? parse_obj(text, name) : parse_ply(text, name);
   if (mesh.x.rows() == 0) throw Error("has no vertices", name, "name a mesh file with vertices and faces");
-  remove_repeated(mesh, name);
+  leave_out_repeated(mesh, name);
   if (mesh.triangles.rows() == 0) throw Error("has no faces", name, "name a mesh file with vertices and faces");
   note_topology(mesh, name);
   return mesh;
@@ -106,7 +100,7 @@ void write_moved(const fs::path& from, const fs::path& to, const Points& x, cons
       warnings.push_back(to.string() + ": texture coordinates, groups and polygons are not written to this format");
     return;
   }
-  const std::string text = whole_file(from);
+  const std::string text = read_text_file(from, "mesh");
   write_file(to, moved_obj_text(text, x));
   if (text.find("\nvn ") != std::string::npos)
     warnings.push_back(to.string() + ": the normals (vn) are still those of the input");

@@ -14,6 +14,13 @@ Mesh read_mesh(const std::filesystem::path&);
 
 // The same triangles in the same order; the numbers of triangles may differ.
 bool same_triangles(const Triangles& a, const Triangles& b);
+// As many vertices and the same faces in the same order: polygons, however they are cut into triangles, where both were
+// read; else triangles.
+bool same_faces(const Mesh& a, const Mesh& b);
+
+// Leaves out triangles that name a vertex twice and triangles that come again, in whatever order of corners, and counts
+// them in warnings; `name` is the mesh's.
+void leave_out_repeated(Mesh&, const std::string& name);
 
 // Written beside and renamed: a reader never sees half a file.
 void write_mesh(const std::filesystem::path&, const Points& x, const Triangles&);  // by extension

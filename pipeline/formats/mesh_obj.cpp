@@ -10,6 +10,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/config/config_units.hpp"
+#include "pipeline/formats/polygon.hpp"
 
 namespace selvedge {
 namespace {
@@ -19,7 +20,7 @@ struct Corner {
 };
 
 struct Face {
-  std::array<Corner, 3> corners;
+  std::size_t begin = 0, end = 0;  // of its corners, among all
   int line = 0;
 };
 
@@ -27,7 +28,9 @@ struct Parser {
   std::string name;
   int line = 0;
   std::vector<double> x, uv;
+  std::vector<Corner> corners;
   std::vector<Face> faces;
+  std::map<std::string, int> unknown;  // first words of lines that are passed over, and how often
   std::vector<std::string> open_groups;
   std::string object;
   std::vector<std::pair<std::string, std::vector<int>>> groups;
@@ -60,6 +63,8 @@ void read_coordinates(Parser& p, const std::vector<std::string_view>& words, std
     if (!value) p.fail(fmt::format("has {} coordinates", words.size() - 1), fmt::format("give {}", count));
     if (!std::isfinite(*value))
       p.fail(fmt::format("has a coordinate that is not finite ({})", words[k]), "repair the file where it was made");
+    if (std::abs(*value) > farthest_coordinate)
+      p.fail(fmt::format("has the absurd coordinate {}", words[k]), "repair the file where it was made");
     into.push_back(*value);
   }
 }
@@ -86,15 +91,31 @@ Corner read_corner(const Parser& p, std::string_view word) {
 
 void read_face(Parser& p, const std::vector<std::string_view>& words) {
   if (words.size() < 4) p.fail(fmt::format("a face has {} corners", words.size() - 1), "give at least 3");
-  std::vector<Corner> corners;
-  for (std::size_t k = 1; k < words.size(); ++k) corners.push_back(read_corner(p, words[k]));
-  for (std::size_t k = 2; k < corners.size(); ++k)
-    p.faces.push_back({{corners[0], corners[k - 1], corners[k]}, p.line});
+  const std::size_t begin = p.corners.size();
+  for (std::size_t k = 1; k < words.size(); ++k) p.corners.push_back(read_corner(p, words[k]));
+  p.faces.push_back({begin, p.corners.size(), p.line});
   for (const std::string& name : p.open_groups) {
     const auto [entry, fresh] = p.group_index.emplace(name, p.groups.size());
     if (fresh) p.groups.push_back({name, {}});
-    for (const Corner& corner : corners) p.groups[entry->second].second.push_back(corner.vertex);
+    for (std::size_t k = begin; k < p.corners.size(); ++k)
+      p.groups[entry->second].second.push_back(p.corners[k].vertex);
   }
+}
+
+// What a cloth has no use for: normals, lines and points, smoothing, materials, curves and surfaces, display.
+constexpr std::array<std::string_view, 36> passed_over = {
+    "vn",       "vp",         "l",         "p",     "s",     "mg",   "usemtl", "mtllib", "usemap",
+    "maplib",   "cstype",     "deg",       "bmat",  "step",  "curv", "curv2",  "surf",   "parm",
+    "trim",     "hole",       "scrv",      "sp",    "end",   "con",  "lod",    "bevel",  "c_interp",
+    "d_interp", "shadow_obj", "trace_obj", "ctech", "stech", "call", "csh",    "fo",     "bzp"};
+
+// A word that no OBJ file has. One that ends in a known word hides a line that was meant.
+void note_unknown(Parser& p, std::string_view word) {
+  const bool printable = std::all_of(word.begin(), word.end(), [](char c) { return c > ' ' && c <= '~'; });
+  if (!printable)
+    p.fail("does not begin with a word of OBJ", "is it an OBJ file? Remove what stands before its first letter");
+  constexpr std::size_t most_words = 100, most_length = 40;
+  if (p.unknown.size() < most_words) ++p.unknown[std::string(word.substr(0, most_length))];
 }
 
 void read_line(Parser& p, std::string_view text) {
@@ -113,6 +134,8 @@ void read_line(Parser& p, std::string_view text) {
     if (!p.object.empty()) open.push_back(p.object);
     for (std::size_t k = 1; k < words.size(); ++k)
       if (std::find(open.begin(), open.end(), words[k]) == open.end()) open.emplace_back(words[k]);
+  } else if (std::find(passed_over.begin(), passed_over.end(), words[0]) == passed_over.end()) {
+    note_unknown(p, words[0]);
   }
 }
 
@@ -142,13 +165,39 @@ void read_lines(Parser& p, std::string_view text) {
 void check_ranges(Parser& p) {
   for (const Face& face : p.faces) {
     p.line = face.line;
-    for (const Corner& corner : face.corners) {
+    for (std::size_t k = face.begin; k < face.end; ++k) {
+      const Corner& corner = p.corners[k];
       if (corner.vertex >= p.vertex_count())
         p.fail(fmt::format("vertex {} does not exist, the file has {}", corner.vertex + 1, p.vertex_count()),
                "repair the face, or look for a missing piece of the file");
       if (corner.texture >= p.uv_count())
         p.fail(fmt::format("texture vertex {} does not exist, the file has {}", corner.texture + 1, p.uv_count()),
                "repair the face, or look for a missing piece of the file");
+    }
+  }
+}
+
+void cut_faces(const Parser& p, Mesh& mesh) {
+  Eigen::Index count = 0;
+  for (const Face& face : p.faces) count += static_cast<Eigen::Index>(face.end - face.begin) - 2;
+  mesh.triangles.resize(count, 3);
+  if (p.uv_count() > 0) mesh.uv_triangles.resize(count, 3);
+  std::vector<Vec3> places;
+  Eigen::Index t = 0;
+  for (const Face& face : p.faces) {
+    places.clear();
+    mesh.corner_begin.push_back(static_cast<int>(mesh.corners.size()));
+    for (std::size_t k = face.begin; k < face.end; ++k) {
+      places.push_back(row(mesh.x, p.corners[k].vertex));
+      mesh.corners.push_back(p.corners[k].vertex);
+    }
+    for (const std::array<int, 3>& triangle : polygon_triangles(places)) {
+      for (int k = 0; k < 3; ++k) {
+        const Corner& corner = p.corners[face.begin + static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])];
+        mesh.triangles(t, k) = corner.vertex;
+        if (p.uv_count() > 0) mesh.uv_triangles(t, k) = corner.texture;
+      }
+      ++t;
     }
   }
 }
@@ -163,19 +212,15 @@ Mesh parse_obj(std::string_view text, const std::string& name) {
   Mesh mesh;
   mesh.x = Eigen::Map<const Points>(p.x.data(), p.vertex_count(), 3);
   mesh.uv = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>>(p.uv.data(), p.uv_count(), 2);
-  mesh.triangles.resize(static_cast<Eigen::Index>(p.faces.size()), 3);
-  if (p.uv_count() > 0) mesh.uv_triangles.resize(mesh.triangles.rows(), 3);
-  for (std::size_t t = 0; t < p.faces.size(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const Corner& corner = p.faces[t].corners[static_cast<std::size_t>(k)];
-      mesh.triangles(static_cast<Eigen::Index>(t), k) = corner.vertex;
-      if (p.uv_count() > 0) mesh.uv_triangles(static_cast<Eigen::Index>(t), k) = corner.texture;
-    }
+  cut_faces(p, mesh);
   mesh.groups = std::move(p.groups);
   for (auto& [group, vertices] : mesh.groups) {
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   }
+  for (const auto& [word, count] : p.unknown)
+    mesh.warnings.push_back(
+        fmt::format("{}: {} lines begin with the unknown word `{}` and are left out", name, count, word));
   return mesh;
 }
 

@@ -10,6 +10,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/config/config_units.hpp"
+#include "pipeline/formats/polygon.hpp"
 
 namespace selvedge {
 namespace {
@@ -213,11 +214,14 @@ void read_vertices(Reader& r, const Element& element, Mesh& mesh) {
     if (mesh.uv.rows() > 0) mesh.uv.row(i) << values[static_cast<std::size_t>(u)], values[static_cast<std::size_t>(v)];
     if (!mesh.x.row(i).allFinite() || (mesh.uv.rows() > 0 && !mesh.uv.row(i).allFinite()))
       r.fail(fmt::format("vertex {} is not finite", i), "repair the file where it was made");
+    if (mesh.x.row(i).cwiseAbs().maxCoeff() > farthest_coordinate ||
+        (mesh.uv.rows() > 0 && mesh.uv.row(i).cwiseAbs().maxCoeff() > farthest_coordinate))
+      r.fail(fmt::format("vertex {} has an absurd coordinate: {}", i, fmt::join(values, " ")),
+             "repair the file where it was made");
   }
 }
 
-void read_faces(Reader& r, const Element& element, std::vector<std::array<int, 3>>& triangles,
-                std::vector<double>& largest) {
+void read_faces(Reader& r, const Element& element, Mesh& mesh) {
   const int list = element.find({"vertex_indices", "vertex_index"});
   if (list < 0 || !element.properties[static_cast<std::size_t>(list)].count)
     r.fail("the faces have no list `vertex_indices`");
@@ -229,10 +233,34 @@ void read_faces(Reader& r, const Element& element, std::vector<std::array<int, 3
     for (const double item : items)
       if (!(item >= 0) || item > 2e9 || item != std::floor(item))
         r.fail(fmt::format("face {} has the vertex index {}", f, item));
-    largest.push_back(*std::max_element(items.begin(), items.end()));
-    for (std::size_t k = 2; k < items.size(); ++k)
-      triangles.push_back({static_cast<int>(items[0]), static_cast<int>(items[k - 1]), static_cast<int>(items[k])});
+    mesh.corner_begin.push_back(static_cast<int>(mesh.corners.size()));
+    for (const double item : items) mesh.corners.push_back(static_cast<int>(item));
   }
+}
+
+// The faces may stand before the vertices: they are checked and cut once all is read.
+void cut_ply_faces(const std::string& name, Mesh& mesh) {
+  std::vector<Vec3> places;
+  std::vector<std::array<int, 3>> triangles;
+  for (std::size_t f = 0; f < mesh.corner_begin.size(); ++f) {
+    const auto begin = static_cast<std::size_t>(mesh.corner_begin[f]);
+    const std::size_t end =
+        f + 1 < mesh.corner_begin.size() ? static_cast<std::size_t>(mesh.corner_begin[f + 1]) : mesh.corners.size();
+    places.clear();
+    for (std::size_t k = begin; k < end; ++k) {
+      if (mesh.corners[k] >= mesh.x.rows())
+        throw Error(fmt::format("vertex {} does not exist, the file has {}", mesh.corners[k], mesh.x.rows()),
+                    fmt::format("{}, face {}", name, f), "repair the face, or look for a missing piece of the file");
+      places.push_back(row(mesh.x, mesh.corners[k]));
+    }
+    for (const std::array<int, 3>& t : polygon_triangles(places))
+      triangles.push_back({mesh.corners[begin + static_cast<std::size_t>(t[0])],
+                           mesh.corners[begin + static_cast<std::size_t>(t[1])],
+                           mesh.corners[begin + static_cast<std::size_t>(t[2])]});
+  }
+  mesh.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    mesh.triangles.row(static_cast<Eigen::Index>(t)) << triangles[t][0], triangles[t][1], triangles[t][2];
 }
 
 template <class T>
@@ -252,26 +280,18 @@ Mesh parse_ply(std::string_view text, const std::string& name) {
   const std::vector<Element> elements = read_header(r);
   ++r.line;  // values of a text file are read from here on
   Mesh mesh;
-  std::vector<std::array<int, 3>> triangles;
-  std::vector<double> largest;
   for (const Element& element : elements) {
     check_size(r, element);
     if (element.name == "vertex") {
       read_vertices(r, element, mesh);
     } else if (element.name == "face") {
-      read_faces(r, element, triangles, largest);
+      read_faces(r, element, mesh);
     } else {
       std::vector<double> values, items;
       for (std::size_t i = 0; i < element.count; ++i) read_row(r, element, -1, values, items);
     }
   }
-  for (std::size_t f = 0; f < largest.size(); ++f)
-    if (largest[f] >= static_cast<double>(mesh.x.rows()))
-      throw Error(fmt::format("vertex {} does not exist, the file has {}", largest[f], mesh.x.rows()),
-                  fmt::format("{}, face {}", name, f), "repair the face, or look for a missing piece of the file");
-  mesh.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    mesh.triangles.row(static_cast<Eigen::Index>(t)) << triangles[t][0], triangles[t][1], triangles[t][2];
+  cut_ply_faces(name, mesh);
   if (mesh.uv.rows() > 0) mesh.uv_triangles = mesh.triangles;
   return mesh;
 }

@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <numbers>
 #include <set>
-#include <sstream>
 
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/config/config.hpp"
+#include "pipeline/host/read_file.hpp"
 #include "pipeline/shapes/motion.hpp"
 
 namespace selvedge {
@@ -177,13 +176,7 @@ BvhFile parse_bvh(std::string_view text, const std::string& name) {
   return bvh;
 }
 
-BvhFile read_bvh(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  if (in) text << in.rdbuf();
-  if (!in || !text) throw Error("cannot be read", path.string(), "check the path");
-  return parse_bvh(text.str(), path.string());
-}
+BvhFile read_bvh(const std::filesystem::path& path) { return parse_bvh(read_text_file(path, "BVH"), path.string()); }
 
 BvhPose bvh_pose(const BvhFile& bvh, int frame) {
   BvhPose pose;

@@ -4,6 +4,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/run/simulate.hpp"
+#include "pipeline/scene/massless.hpp"
 
 namespace selvedge {
 
@@ -11,7 +12,8 @@ bool prepare(Setup& setup, const std::function<bool()>& stop, Progress* progress
   const int frames = -setup.initial.frame;
   if (frames <= 0) return true;
   const Clock::time_point started = Clock::now();
-  const auto stepper = make_conventional_stepper(setup.scene, {});
+  auto stepper = make_conventional_stepper(setup.scene, {});
+  if (!setup.followers.empty()) stepper = make_following_stepper(setup.scene, setup.followers, std::move(stepper));
   State state = setup.initial;
   bool stopped = false;
   if (progress) progress->begin(0, frames, "draping, frame");

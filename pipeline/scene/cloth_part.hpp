@@ -8,11 +8,13 @@
 
 #include "physics/scene/scene.hpp"
 #include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/scene/follower.hpp"
 #include "pipeline/scene/setup_garment.hpp"
 
 namespace selvedge {
 
 struct PinPart {
+  std::string name;                       // what the scene says of them: "of group top"
   std::vector<int> vertices;              // of the cloth, ascending
   std::function<Points(double time)> at;  // where they are, a row a vertex
 };
@@ -28,6 +30,7 @@ struct ClothPart {
   bool rest_is_flat = true;
   Points velocity;  // at time 0
   std::vector<PinPart> pins;
+  std::vector<Follower> followers;
   std::shared_ptr<const Wearing> worn;  // null for what is no garment
   std::vector<int> sewn;                // of each vertex as read or made: its number here; empty where nothing is sewn
   double sewn_apart = 0;                // how far vertices that are one now were apart [m]

@@ -9,6 +9,7 @@
 #include "physics/steppers/cutting_stepper.hpp"
 #include "physics/steppers/resting_stepper.hpp"
 #include "pipeline/config/config.hpp"
+#include "pipeline/scene/massless.hpp"
 
 namespace selvedge {
 
@@ -52,8 +53,9 @@ std::unique_ptr<Stepper> make_stepper(const Setup& setup) {
   const StepperTraits traits = whole->traits();
   check_accepted(setup, traits);
   if (setup.run.rest && traits.may_leave_out_cloths) whole = make_resting_stepper(setup.scene, make);
-  if (setup.initial.cut_out.empty()) return whole;
-  return make_cutting_stepper(setup.scene, make, std::move(whole));
+  if (!setup.initial.cut_out.empty()) whole = make_cutting_stepper(setup.scene, make, std::move(whole));
+  if (setup.followers.empty()) return whole;
+  return make_following_stepper(setup.scene, setup.followers, std::move(whole));
 }
 
 }  // namespace selvedge

@@ -7,12 +7,14 @@
 
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/setup_cloth.hpp"
+#include "pipeline/scene/setup_mesh.hpp"
 #include "pipeline/scene/setup_motion.hpp"
 #include "pipeline/scene/setup_obstacle.hpp"
 #include "pipeline/scene/setup_outcome.hpp"
 #include "pipeline/scene/setup_seams.hpp"
 #include "pipeline/scene/setup_springs.hpp"
 #include "pipeline/scene/setup_start.hpp"
+#include "pipeline/scene/setup_warnings.hpp"
 
 namespace selvedge {
 namespace {
@@ -83,14 +85,18 @@ void add_cloths(const std::vector<ClothPart>& parts, Scene& scene) {
   scene.surface = make_surface(static_cast<int>(v), all);
 }
 
-// Vertices without mass cannot move freely: they stay where they are.
-PinPart massless(const Scene& scene, const Points& x, std::vector<std::string>& warnings) {
+// Vertices without mass cannot move freely: they stay where they are, unless they follow others.
+PinPart massless(const Scene& scene, const Points& x, const std::vector<ClothPart>& parts,
+                 std::vector<std::string>& warnings) {
   const Eigen::VectorXd masses = lumped_masses(scene);
-  PinPart held;
+  std::size_t followers = 0;
+  for (const ClothPart& part : parts) followers += part.followers.size();
+  PinPart held{"without mass", {}, {}};
   for (int v = 0; v < masses.size(); ++v)
     if (!(masses[v] > 0)) held.vertices.push_back(v);
-  if (!held.vertices.empty())
-    warnings.push_back(fmt::format("{} vertices without mass are held in place", held.vertices.size()));
+  if (held.vertices.size() > followers)
+    warnings.push_back(
+        fmt::format("{} vertices without mass are held in place, and hold nothing", held.vertices.size() - followers));
   held.at = [place = Points(x(held.vertices, Eigen::all))](double) { return place; };
   return held;
 }
@@ -191,22 +197,6 @@ std::vector<ObstaclePart> read_all_obstacles(const Config& list, const std::file
   return parts;
 }
 
-// Neighbours of a triangle lie within its smallest altitude: a thicker cloth pushes them apart at rest.
-void warn_of_thickness(const Scene& scene, std::vector<std::string>& warnings) {
-  int thin = 0, flat = 0;
-  for (const RestTriangle& triangle : scene.rest_triangle) {
-    const double altitude = smallest_altitude(triangle);
-    if (altitude * altitude <= 2e-9 * area(triangle))  // a billionth of the longest edge
-      ++flat;
-    else if (altitude < scene.contact.thickness)
-      ++thin;
-  }
-  if (flat > 0) warnings.push_back(fmt::format("{} triangles of zero rest area, which resist no stretch", flat));
-  if (thin > 0 && scene.contact.self)
-    warnings.push_back(fmt::format("contact.thickness {} m is larger than the smallest altitude of {} triangles",
-                                   scene.contact.thickness, thin));
-}
-
 // What the file puts into the world, each part by itself.
 struct SceneParts {
   Performances bodies;
@@ -237,8 +227,24 @@ struct JoinedScene {
   std::function<Drive(double time)> drive_at;
   Drive start;  // the world when the scene's time begins
   Points x;     // the cloths then, pins where they are held
+  std::vector<Follower> followers;
   std::vector<std::string> warnings;
 };
+
+// Those of all cloths, by the scene's numbers, but what the scene file itself pins.
+std::vector<Follower> followers_of(const std::vector<ClothPart>& parts, const Scene& scene) {
+  std::vector<Follower> all;
+  for (std::size_t c = 0; c < parts.size(); ++c)
+    for (Follower one : parts[c].followers) {
+      const bool pinned = std::ranges::any_of(
+          parts[c].pins, [&](const PinPart& pin) { return std::ranges::binary_search(pin.vertices, one.vertex); });
+      if (pinned) continue;
+      one.vertex += scene.cloths[c].first_vertex;
+      for (int& v : one.of) v += scene.cloths[c].first_vertex;
+      all.push_back(one);
+    }
+  return all;
+}
 
 JoinedScene join_scene(const Config& config, const SceneParts& parts, double begin_time) {
   JoinedScene joined;
@@ -248,7 +254,8 @@ JoinedScene join_scene(const Config& config, const SceneParts& parts, double beg
   scene.contact = contact_options().read(config["contact"]);
   add_cloths(parts.cloths, scene);
   joined.x = stacked(parts.cloths, &ClothPart::first);
-  add_pins(parts.cloths, massless(scene, joined.x, joined.warnings), scene, *world);
+  add_pins(parts.cloths, massless(scene, joined.x, parts.cloths, joined.warnings), scene, *world);
+  joined.followers = followers_of(parts.cloths, scene);
   joined.warnings.insert(joined.warnings.end(), parts.obstacle_warnings.begin(), parts.obstacle_warnings.end());
   for (const ObstaclePart& part : parts.obstacles) {
     scene.obstacles.push_back(part.obstacle);
@@ -258,8 +265,12 @@ JoinedScene join_scene(const Config& config, const SceneParts& parts, double beg
   read_wind(config["wind"], scene.wind, *world);
   warn_of_thickness(scene, joined.warnings);
   joined.start = drive(*world, begin_time);
+  for (std::size_t k = 0; k < joined.start.obstacles.size(); ++k)
+    refuse_far(config["obstacles"].items[k], "obstacle `" + scene.obstacles[k].name + "`", joined.start.obstacles[k]);
+  warn_of_rounding(scene, joined.x, joined.start.obstacles, joined.warnings);
   for (std::size_t p = 0; p < scene.pins.size(); ++p)
     joined.x.row(scene.pins[p]) = joined.start.pins.row(static_cast<Eigen::Index>(p));
+  warn_of_pins_inside(parts.cloths, scene, joined.x, joined.start.obstacles, joined.warnings);
   warn_of_stretched_seams(parts.cloths, scene, joined.x, joined.warnings);
   scene.springs = read_springs(config["springs"], parts.cloths, scene, joined.x, joined.warnings);
   world->worn = worn_in_scene(parts.cloths, scene);
@@ -295,6 +306,7 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
   if (parts.begin_frame < 0) setup.initial.v.setZero();
   setup.scene = std::move(joined.scene);
   setup.drive_at = std::move(joined.drive_at);
+  setup.followers = std::move(joined.followers);
   setup.warnings = std::move(joined.warnings);
   if (std::ranges::any_of(parts.cloths, &ClothPart::cut))
     setup.prepared =

@@ -9,6 +9,7 @@
 
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
+#include "pipeline/scene/follower.hpp"
 #include "pipeline/scene/outcome.hpp"
 #include "pipeline/scene/run_options.hpp"
 
@@ -27,6 +28,7 @@ struct Setup {
   RunOptions run;
   std::function<Drive(double time)> drive_at;        // the world at a time [s]
   std::vector<std::shared_ptr<PosedBodies>> bodies;  // of each obstacle, null for what is no body: what drive_at knows
+  std::vector<Follower> followers;                   // vertices without mass that go with others, all of them pins
   std::vector<Outcome> outcomes;                     // what must come true
   std::vector<std::string> short_form;               // overrides that make a shorter run of the scene
   std::vector<std::string> warnings;  // named and counted: degenerate triangles left out, isolated vertices, ...

@@ -4,7 +4,10 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/formats/mesh_weld.hpp"
+#include "pipeline/scene/massless.hpp"
 #include "pipeline/scene/materials.hpp"
+#include "pipeline/scene/setup_mesh.hpp"
 #include "pipeline/scene/setup_motion.hpp"
 #include "pipeline/scene/setup_paths.hpp"
 #include "pipeline/scene/setup_seams.hpp"
@@ -47,8 +50,9 @@ void read_rest(const Config& section, const Mesh& made, bool generated, double s
   }
   if (from.text() == "mesh") {
     if (!section["file"].given) from.fail("needs a `file`", "name the mesh of the rest shape");
-    const Mesh rest = read_mesh(existing_path(section["file"], folder));
-    if (rest.x.rows() != made.x.rows() || !same_triangles(rest.triangles, made.triangles))
+    Mesh rest = read_mesh(existing_path(section["file"], folder));
+    if (made.welded.size() == static_cast<std::size_t>(rest.x.rows())) weld_as(made, rest);
+    if (!same_faces(rest, made))
       section["file"].fail("has other vertices or faces than the cloth",
                            "the rest shape needs the same numbering as the cloth");
     part.rest = scale * read_unit(section["unit"]) * rest.x;
@@ -61,25 +65,36 @@ void read_rest(const Config& section, const Mesh& made, bool generated, double s
 }
 
 // Pins that stay with the body.
-PinPart following(const std::shared_ptr<const Wearing>& worn, const std::vector<int>& vertices) {
-  return {vertices, [worn, vertices](double time) -> Points { return held_at(*worn, vertices, time); }};
+PinPart following(const std::shared_ptr<const Wearing>& worn, const std::vector<int>& vertices,
+                  const std::string& name) {
+  return {name, vertices, [worn, vertices](double time) -> Points { return held_at(*worn, vertices, time); }};
 }
 
 PinPart read_pin(const Config& section, const ClothPart& part) {
   const std::vector<int> vertices = read_selection(section, part);
+  const std::string name = selection_text(section);
   if (const Config& follow = section["follow"]; follow.given) {
     if (!part.worn)
       follow.fail("is given for a cloth that no body wears", "make the cloth a `garment`, or leave it out");
     if (section["motion"].given) section["motion"].fail("is given beside `follow`", "give one of them");
-    return following(part.worn, vertices);
+    return following(part.worn, vertices, name);
   }
   const Points start = part.mesh.x(vertices, Eigen::all);
   const Motion motion = read_motion(section["motion"], start);
-  if (!part.worn) return {vertices, [start, motion](double time) { return moved(motion, start, time); }};
+  if (!part.worn) return {name, vertices, [start, motion](double time) { return moved(motion, start, time); }};
   // A garment that is draped goes with the body until its pins begin to move.
-  return {vertices, [start, motion, before = following(part.worn, vertices).at](double time) {
+  return {name, vertices, [start, motion, before = following(part.worn, vertices, name).at](double time) {
             return time < 0 ? before(time) : moved(motion, start, time);
           }};
+}
+
+// Pieces that touch in single vertices, or lie edge to edge, fall apart, and their contact takes long.
+void warn_of_coincident(const ClothPart& part, std::vector<std::string>& warnings) {
+  if (const int count = coincident_vertices(part.rest); count > 0)
+    warnings.push_back(
+        fmt::format("cloth `{}`: {} vertices lie where others do and are not joined to them; `weld: true` under "
+                    "`mesh` joins them, `seams` join chosen ones",
+                    part.name, count));
 }
 
 // A sheet, placed, or a garment, worn: mesh, rest shape and velocity.
@@ -91,7 +106,12 @@ void read_shape(const Config& section, const std::filesystem::path& folder, std:
   const Config& placement = worn ? part.worn->by->section : section;
   read_rest(section["rest"], part.mesh, !section["mesh"].given, placement["scale"].number(), folder, part);
   part.mesh.x = worn ? worn_at(*part.worn, 0) : placed(section, part.mesh.x);
+  refuse_far(section, "cloth `" + part.name + "`", part.mesh.x);
+  if (section["mesh"].given)
+    warn_of_extent(section["mesh"], "cloth `" + part.name + "`", largest_cloth, part.mesh.x, warnings);
   if (!worn) sew(section["seams"], folder, part, warnings);
+  if (section["mesh"].given) warn_of_coincident(part, warnings);
+  leave_out_massless(part, warnings);
   if (worn && section["start"]["moving"].flag())
     part.velocity = worn_velocity(*part.worn, 0);
   else
@@ -116,6 +136,7 @@ std::vector<ClothPart> read_copies(const Config& section, const std::filesystem:
   for (std::size_t k = 0; k < parts.size(); ++k) {
     parts[k].name = fmt::format("{}_{}", part.name, k);
     parts[k].mesh.x = copied(copies, part.mesh.x, static_cast<int>(k));
+    refuse_far(copies, "cloth `" + parts[k].name + "`", parts[k].mesh.x);
   }
   return parts;
 }
@@ -169,7 +190,8 @@ std::vector<ClothPart> read_cloths(Config& section, const std::string& default_n
     apply_start(section["start"], one, warnings);
     one.first = one.mesh.x;
     for (const Config& pin : section["pins"].items) one.pins.push_back(read_pin(pin, one));
-    if (one.worn && !one.worn->garment.pins.empty()) one.pins.push_back(following(one.worn, one.worn->garment.pins));
+    if (one.worn && !one.worn->garment.pins.empty())
+      one.pins.push_back(following(one.worn, one.worn->garment.pins, "of the garment"));
   }
   return parts;
 }

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/scene/setup_mesh.hpp"
 #include "pipeline/scene/setup_motion.hpp"
 #include "pipeline/scene/setup_paths.hpp"
 #include "pipeline/shapes/primitives.hpp"
@@ -70,9 +70,9 @@ Sequence read_body(const Config& section, const std::filesystem::path& folder, s
   if (section["sequence"].given) return read_sequence(section["sequence"], folder, warnings);
   if (section["trajectory"].given) return read_recorded(section["trajectory"], folder);
   if (const Config& file = section["mesh"]; file.given) {
-    const Mesh mesh = read_mesh(existing_path(file["file"], folder));
+    const Mesh mesh = read_mesh_section(file, folder);
     warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
-    return one_frame(read_unit(file["unit"]) * mesh.x, mesh.triangles);
+    return one_frame(mesh.x, mesh.triangles);
   }
   Shape shape = read_primitive(section);
   return one_frame(std::move(shape.x), std::move(shape.triangles));
@@ -87,7 +87,13 @@ std::string obstacle_name(const Config& section, std::size_t index) {
 ObstaclePart read_obstacle(const Config& section, std::size_t index, const std::filesystem::path& folder,
                            std::vector<std::string>& warnings) {
   const auto body = std::make_shared<Sequence>(read_body(section, folder, warnings));
-  for (Points& frame : body->frames) frame = placed(section, frame);
+  const std::string noun = "obstacle `" + obstacle_name(section, index) + "`";
+  for (Points& frame : body->frames) {
+    frame = placed(section, frame);
+    refuse_far(section, noun, frame);
+  }
+  for (const std::string kind : {"mesh", "sequence", "trajectory"})
+    if (section[kind].given) warn_of_extent(section[kind], noun, largest_obstacle, body->frames[0], warnings);
   const Motion motion = read_motion(section["motion"], body->frames[0]);
   ObstaclePart part;
   part.obstacle.name = obstacle_name(section, index);

@@ -72,4 +72,11 @@ std::vector<int> read_selection(const Config& section, const ClothPart& part) {
   return found;
 }
 
+std::string selection_text(const Config& section) {
+  if (section["vertices"].given) return "of `vertices`";
+  if (section["box"].given) return "of a box";
+  if (section["group"].given) return "of group " + joined(section["group"].words);
+  return "of all vertices";
+}
+
 }  // namespace selvedge

@@ -23,4 +23,7 @@ int index_of(const Config& name, const std::vector<Named>& all) {
 std::vector<int> read_vertices(const Config& section, const ClothPart&);
 std::vector<int> read_selection(const Config& section, const ClothPart&);  // the same, ascending, each once
 
+// What the section names, for people: "of group top", "of a box".
+std::string selection_text(const Config& section);
+
 }  // namespace selvedge

@@ -58,12 +58,14 @@ Sequence read_sequence(const Config& section, const std::filesystem::path& folde
   Sequence sequence;
   sequence.fps = section["fps"].number();
   const double unit = read_unit(section["unit"]);
+  Mesh first;
   for (const std::filesystem::path& file : sequence_files(section, folder)) {
     const Mesh mesh = read_mesh(file);
     if (sequence.frames.empty()) {
+      first = mesh;
       sequence.triangles = mesh.triangles;
       warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
-    } else if (mesh.x.rows() != sequence.frames[0].rows() || !same_triangles(mesh.triangles, sequence.triangles)) {
+    } else if (!same_faces(mesh, first)) {
       throw Error(
           fmt::format("has other faces than the first mesh of the sequence ({} vertices and {} triangles, the "
                       "first has {} and {})",

@@ -6,8 +6,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/scene/config_scene.hpp"
-#include "pipeline/scene/setup_motion.hpp"
-#include "pipeline/scene/setup_paths.hpp"
+#include "pipeline/scene/setup_mesh.hpp"
 #include "pipeline/shapes/generate.hpp"
 
 namespace selvedge {
@@ -95,9 +94,7 @@ Mesh read_sheet(const Config& section, const std::filesystem::path& folder) {
   }
   if (const Config& shape = section["ribbon"]; shape.given) return read_ribbon(shape);
   if (const Config& shape = section["tshirt"]; shape.given) return read_tshirt(shape);
-  Mesh mesh = read_mesh(existing_path(section["mesh"]["file"], folder));
-  mesh.x *= read_unit(section["mesh"]["unit"]);
-  return mesh;
+  return read_mesh_section(section["mesh"], folder);
 }
 
 }  // namespace selvedge

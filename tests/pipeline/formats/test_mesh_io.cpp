@@ -7,6 +7,7 @@
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_obj.hpp"
 #include "pipeline/formats/mesh_ply.hpp"
+#include "pipeline/formats/mesh_weld.hpp"
 #include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_mesh_io {
@@ -86,6 +87,47 @@ TEST_CASE("OBJ: every form of an index, polygons, groups, continued lines", "[me
   CHECK(mesh.warnings.empty());
 }
 
+TEST_CASE("Byte order marks are read over, unknown words counted, and what no OBJ file begins with is refused",
+          "[mesh_io]") {
+  const std::string faces = triangle + "v 1 1 0\nf 1 2 3\nf 2 4 3\n";
+  const Mesh plain = read("a.obj", faces);
+  const Mesh marked = read("a.obj", "\xEF\xBB\xBF" + faces);
+  CHECK(marked.x == plain.x);
+  CHECK(marked.triangles == plain.triangles);
+  CHECK(marked.warnings.empty());
+  CHECK(read("a.ply", "\xEF\xBB\xBF" + ascii_ply).x == read("a.ply", ascii_ply).x);
+  CHECK_THAT(refusal("a.obj", std::string("\xFF\xFEv\0 \0", 6)), Contains("UTF-16") && Contains("UTF-8"));
+  // A mark in the middle of a file, as files that were put together have it, hides a line.
+  CHECK_THAT(refusal("a.obj", triangle + "\xEF\xBB\xBFv 1 1 0\nf 1 2 3\n"),
+             Contains("a.obj:4") && Contains("word of OBJ"));
+  const Mesh odd = read("a.obj", faces + "vertex 1 2 3\nF 1 2 3\nF 2 3 4\n");
+  REQUIRE(odd.warnings.size() == 2);
+  CHECK_THAT(odd.warnings[0], Contains("2 lines") && Contains("`F`"));
+  CHECK_THAT(odd.warnings[1], Contains("1 lines") && Contains("`vertex`"));
+}
+
+TEST_CASE("Vertices at one place are counted, and joined on request", "[mesh_io]") {
+  // Two triangles that share an edge in space alone, with a rounding between them, and one that loses its area.
+  Mesh mesh = read("a.obj", triangle +
+                                "v 1 0 1e-8\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\ng left\nf 1/1 2/2 3/3\n"
+                                "g right\nf 4/1 5/2 6/3\nf 2/1 4/2 5/3\n");
+  CHECK(coincident_vertices(mesh.x) == 2);
+  weld(mesh, "a.obj");
+  CHECK(mesh.welded == std::vector<int>{0, 1, 2, 1, 3, 2});
+  CHECK(mesh.x.rows() == 4);
+  Triangles expected(2, 3);
+  expected << 0, 1, 2, 1, 3, 2;
+  CHECK(mesh.triangles == expected);
+  CHECK(mesh.uv_triangles.rows() == 2);
+  CHECK(mesh.groups[1].second == std::vector<int>{1, 2, 3});
+  CHECK_THAT(mesh.warnings.back(), Contains("1 degenerate"));
+  CHECK(coincident_vertices(mesh.x) == 0);
+  // Cubes of the search and their neighbours: chains across their faces, and the same answer as comparing all.
+  Points line(300, 3);
+  for (int k = 0; k < 300; ++k) line.row(k) << (k % 100) * 0.01, (k / 100) * 0.4e-6, k == 299 ? 1 : 0;
+  CHECK(coincident_vertices(line) == 199);
+}
+
 TEST_CASE("PLY: text and both byte orders give the same mesh", "[mesh_io]") {
   const Mesh text = read("a.ply", ascii_ply), little = read("a.ply", binary_ply(false)),
              big = read("a.PLY", binary_ply(true));
@@ -139,6 +181,7 @@ TEST_CASE("Bad OBJ files are refused with file and line", "[mesh_io]") {
       {"v 0 0 nan\n", {"a.obj:1", "not finite"}},
       {triangle + "v 0 inf 0\nf 1 2 3\n", {"a.obj:4", "not finite"}},
       {"v 0 0 1e999\n", {"a.obj:1", "not finite"}},
+      {"v 0 0 -1e308\n", {"a.obj:1", "absurd", "-1e308"}},
       {"v 0 0\n", {"a.obj:1", "2 coordinates"}},
       {"v 0 0 x\n", {"a.obj:1", "`x`"}},
       {triangle + "f 1 2 4\n", {"a.obj:4", "vertex 4", "has 3"}},
@@ -172,6 +215,7 @@ TEST_CASE("Bad PLY files are refused with file and place", "[mesh_io]") {
       {replaced("vertex 4", "vertex -4"), {"a.ply:3"}},
       {replaced("\r\n1 0 0 1 0", "\r\n1 nan 0 1 0"), {"a.ply:13", "not finite"}},
       {replaced("\r\n1 0 0 1 0", "\r\n1 q 0 1 0"), {"a.ply:13", "`q`"}},
+      {replaced("\r\n1 0 0 1 0", "\r\n1 1e300 0 1 0"), {"a.ply:13", "absurd", "1e+300"}},
       {replaced("4 0 1 2 3", "4 0 1 2 7"), {"face 0", "vertex 7"}},
       {replaced("4 0 1 2 3", "4 0 1 2 -1"), {"-1"}},
       {replaced("4 0 1 2 3", "2 0 1"), {"2 corners"}},

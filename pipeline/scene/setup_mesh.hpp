@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+
+#include "pipeline/config/config.hpp"
+#include "pipeline/formats/mesh.hpp"
+
+namespace selvedge {
+
+// The mesh that a `mesh` section names, in metres, welded where it says so. `folder` is the scene file's.
+Mesh read_mesh_section(const Config& section, const std::filesystem::path& folder);
+
+// Throws Error, naming the vertex and where it is, for a position that is not finite or farther than `farthest` from
+// the origin. `at` is what the positions were read by, `noun` what they are of.
+inline constexpr double farthest = 1e6;  // [m]
+void refuse_far(const Config& at, const std::string& noun, const Points& x);
+
+// A warning where something read from a file, as placed, is larger than `largest` or smaller than a centimetre: files
+// have units of their own. `at` is the section with the key `unit`.
+inline constexpr double largest_cloth = 10, largest_obstacle = 50;  // diagonals of boxes [m]
+void warn_of_extent(const Config& at, const std::string& noun, double largest, const Points& x,
+                    std::vector<std::string>& warnings);
+
+}  // namespace selvedge

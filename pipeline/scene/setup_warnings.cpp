@@ -1,0 +1,72 @@
+#include "pipeline/scene/setup_warnings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "collision/exact/inside.hpp"
+
+namespace selvedge {
+namespace {
+
+// How many of the points have a coordinate that a float misses by more than half of `step` [m].
+int coarser_than(double step, const Points& x) {
+  int count = 0;
+  for (Eigen::Index v = 0; v < x.rows(); ++v) {
+    const auto largest = static_cast<float>(x.row(v).cwiseAbs().maxCoeff());
+    count += std::nextafter(largest, std::numeric_limits<float>::infinity()) - largest > step;
+  }
+  return count;
+}
+
+}  // namespace
+
+void warn_of_thickness(const Scene& scene, std::vector<std::string>& warnings) {
+  int thin = 0, flat = 0;
+  for (const RestTriangle& triangle : scene.rest_triangle) {
+    const double altitude = smallest_altitude(triangle);
+    if (altitude * altitude <= 2e-9 * area(triangle))  // a billionth of the longest edge
+      ++flat;
+    else if (altitude < scene.contact.thickness)
+      ++thin;
+  }
+  if (flat > 0) warnings.push_back(fmt::format("{} triangles of zero rest area, which resist no stretch", flat));
+  if (thin > 0 && scene.contact.self)
+    warnings.push_back(fmt::format("contact.thickness {} m is larger than the smallest altitude of {} triangles",
+                                   scene.contact.thickness, thin));
+}
+
+void warn_of_rounding(const Scene& scene, const Points& x, const std::vector<Points>& obstacles,
+                      std::vector<std::string>& warnings) {
+  const double step = 0.1 * scene.contact.thickness;
+  int count = coarser_than(step, x);
+  for (const Points& obstacle : obstacles) count += coarser_than(step, obstacle);
+  if (count > 0)
+    warnings.push_back(
+        fmt::format("{} vertices are so far from the origin that stored positions are rounded by more than a tenth of "
+                    "contact.thickness; move the scene to the origin by `translate`",
+                    count));
+}
+
+void warn_of_pins_inside(const std::vector<ClothPart>& parts, const Scene& scene, const Points& x,
+                         const std::vector<Points>& obstacles, std::vector<std::string>& warnings) {
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    const Surface& surface = scene.obstacles[k].surface;
+    if (!is_closed(surface) || !obstacles[k].allFinite()) continue;
+    for (std::size_t c = 0; c < parts.size(); ++c)
+      for (const PinPart& pin : parts[c].pins) {
+        const Points at =
+            Points(x.middleRows(scene.cloths[c].first_vertex, scene.cloths[c].vertex_count))(pin.vertices, Eigen::all);
+        const std::vector<char> in = inside(surface, obstacles[k], at);
+        if (const auto count = std::ranges::count(in, 1); count > 0)
+          warnings.push_back(
+              fmt::format("{} pins {} of cloth `{}` are inside the obstacle `{}`: where it does not move "
+                          "away, they stay there",
+                          count, pin.name, parts[c].name, scene.obstacles[k].name));
+      }
+  }
+}
+
+}  // namespace selvedge

@@ -1,0 +1,93 @@
+#include <catch2/catch.hpp>
+
+#include <numbers>
+
+#include "pipeline/formats/mesh_obj.hpp"
+#include "pipeline/formats/mesh_ply.hpp"
+#include "pipeline/formats/polygon.hpp"
+
+using namespace selvedge;
+
+namespace {
+
+double signed_area(const std::vector<Vec3>& x, const std::array<int, 3>& t) {
+  const auto at = [&](int k) { return x[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])]; };
+  return 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).z();
+}
+
+double smallest_area(const std::vector<Vec3>& x) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const auto& t : polygon_triangles(x)) smallest = std::min(smallest, signed_area(x, t));
+  return smallest;
+}
+
+double whole_area(const std::vector<Vec3>& x) {
+  double sum = 0;
+  for (const auto& t : polygon_triangles(x)) sum += signed_area(x, t);
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("Convex polygons are fanned from their first corner", "[polygon]") {
+  const std::vector<std::array<int, 3>> fan{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}};
+  std::vector<Vec3> pentagon;
+  for (int k = 0; k < 5; ++k) {
+    const double angle = 2 * std::numbers::pi * k / 5;
+    pentagon.emplace_back(std::cos(angle), std::sin(angle), 0.01 * k);
+  }
+  CHECK(polygon_triangles(pentagon) == fan);
+}
+
+TEST_CASE("Points on straight edges make no triangle without area", "[polygon]") {
+  // From a point within an edge, from its end, all round, and three in a row.
+  for (const std::vector<Vec3>& x : std::vector<std::vector<Vec3>>{
+           {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 2, 0}},
+           {{1, 0, 0}, {2, 0, 0}, {1, 2, 0}, {0, 0, 0}},
+           {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}},
+           {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}, {2, 9, 0}}}) {
+    CHECK(polygon_triangles(x).size() == x.size() - 2);
+    CHECK(smallest_area(x) > 0.1);
+  }
+}
+
+TEST_CASE("Polygons that are not convex are cut inside", "[polygon]") {
+  // An L, a star of ten corners and a comb, whose fans turn over.
+  std::vector<Vec3> star, comb{{0, 0, 0}, {7, 0, 0}};
+  for (int k = 0; k < 10; ++k) {
+    const double angle = 2 * std::numbers::pi * k / 10, radius = k % 2 == 0 ? 0.3 : 1;
+    star.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
+  }
+  for (int k = 7; k >= 0; --k) comb.emplace_back(k, k % 2 == 0 ? 1 : 5, 0);
+  const std::vector<Vec3> corner{{1, 1, 0}, {1, 2, 0}, {0, 2, 0}, {0, 0, 0}, {2, 0, 0}, {2, 1, 0}};
+  for (const auto& [x, area] : std::vector<std::pair<std::vector<Vec3>, double>>{
+           {corner, 3}, {star, 10 * 0.5 * 0.3 * std::sin(std::numbers::pi / 5)}, {comb, 21}}) {
+    CHECK(smallest_area(x) > 0);
+    CHECK(whole_area(x) == Approx(area));
+  }
+}
+
+TEST_CASE("A polygon without area, or of very many corners, still ends", "[polygon]") {
+  const std::vector<Vec3> line{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {1, 0, 0}};
+  CHECK(polygon_triangles(line).size() == 3);
+  CHECK(polygon_triangles(std::vector<Vec3>(7, Vec3(1, 2, 3))).size() == 5);
+  std::vector<Vec3> zigzag;
+  for (int k = 0; k < 5000; ++k) zigzag.emplace_back(k, k % 2, 0);
+  CHECK(polygon_triangles(zigzag).size() == 4998);
+}
+
+TEST_CASE("Both mesh readers cut polygons so, with their texture vertices", "[polygon]") {
+  const std::string obj =
+      "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nvt 0 0\nvt 0.5 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4 5/5\n";
+  const Mesh a = parse_obj(obj, "a.obj");
+  CHECK(a.triangles == a.uv_triangles);
+  const Mesh b = parse_ply(
+      "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+      "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n2 0 0\n2 2 0\n0 2 0\n5 0 1 2 3 4\n",
+      "a.ply");
+  CHECK(a.triangles == b.triangles);
+  for (Eigen::Index t = 0; t < 3; ++t) {
+    const auto at = [&](int k) { return row(a.x, a.triangles(t, k)); };
+    CHECK((at(1) - at(0)).cross(at(2) - at(0)).z() > 0.5);
+  }
+}

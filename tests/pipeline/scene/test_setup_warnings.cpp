@@ -1,0 +1,102 @@
+#include <catch2/catch.hpp>
+
+#include <sstream>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/scene/setup.hpp"
+#include "tests/pipeline/files.hpp"
+
+using namespace selvedge;
+using Catch::Matchers::Contains;
+
+namespace {
+
+// A square of that side and its two triangles.
+std::string square(double side, double at = 0) {
+  std::ostringstream text;
+  for (const double z : {0., side})
+    for (const double x : {0., side}) text << "v " << at + x << " " << at << " " << at + z << "\n";
+  return text.str() + "f 1 3 2\nf 2 3 4\n";
+}
+
+std::string all(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
+}
+
+struct Scenes {
+  fake::Folder folder{"setup_warnings"};
+  Setup read(const std::string& yaml) const { return read_setup(fake::write(folder, "scene.yaml", yaml)); }
+  std::string warnings(const std::string& yaml) const { return all(read(yaml).warnings); }
+  std::string refusal(const std::string& yaml) const {
+    try {
+      read(yaml);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  }
+};
+
+}  // namespace
+
+TEST_CASE("A file in centimetres that is read as metres is told by its extent", "[setup_warnings]") {
+  const Scenes scenes;
+  fake::write(scenes.folder, "big.obj", square(60));
+  fake::write(scenes.folder, "small.obj", square(0.001));
+  CHECK_THAT(scenes.warnings("cloths: [{name: shirt, mesh: big.obj}]\n"),
+             Contains("`shirt` spans 84.9 m") && Contains("`unit`"));
+  CHECK_THAT(scenes.warnings("cloths: [{name: shirt, mesh: small.obj}]\n"), Contains("`shirt` spans 0.00141 m"));
+  CHECK(scenes.warnings("cloths: [{mesh: {file: big.obj, unit: cm}}]\n").empty());
+  CHECK(scenes.warnings("cloths: [{mesh: big.obj, scale: 0.01}]\n").empty());
+  CHECK_THAT(scenes.warnings("cloths: [{rectangle: {size: [1, 1], resolution: 3}, translate: [0, 5, 0]}]\n"
+                             "obstacles: [{name: floor, mesh: big.obj}]\n"),
+             Contains("obstacle `floor` spans 84.9 m"));
+}
+
+TEST_CASE("Vertices at one place are counted, with the key that joins them", "[setup_warnings]") {
+  const Scenes scenes;
+  fake::write(scenes.folder, "panels.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 3 2\nf 4 6 5\n");
+  CHECK_THAT(scenes.warnings("cloths: [{mesh: panels.obj}]\n"), Contains("2 vertices") && Contains("`weld: true`"));
+  const Setup joined = scenes.read("cloths: [{mesh: {file: panels.obj, weld: true}}]\n");
+  CHECK(joined.warnings.empty());
+  CHECK(joined.scene.surface.vertex_count == 4);
+  CHECK(joined.scene.surface.component_count == 1);
+}
+
+TEST_CASE("A scene too far from the origin for 32-bit floats is told and counted", "[setup_warnings]") {
+  const Scenes scenes;
+  fake::write(scenes.folder, "far.obj", square(1, 50000));
+  CHECK_THAT(scenes.warnings("cloths: [{mesh: far.obj}]\n"), Contains("4 vertices") && Contains("`translate`"));
+  CHECK(scenes.warnings("cloths: [{mesh: far.obj, translate: [-50000, -50000, -50000]}]\n").empty());
+}
+
+TEST_CASE("Pins inside a collider are named", "[setup_warnings]") {
+  const Scenes scenes;
+  const std::string cape = "cloths: [{name: cape, rectangle: {size: [0.6, 0.6], resolution: 21}, translate: [0, 0.5, ";
+  const std::string rest =
+      "], pins: [{group: top}]}]\nobstacles:\n  - name: shoulder\n    capsule: {radius: 6 cm, length: 0.7}\n"
+      "    rotate: [0, 0, 90 deg]\n    translate: [0, 0.5, 0]\n";
+  CHECK_THAT(scenes.warnings(cape + "0.3" + rest),
+             Contains("21 pins of group top of cloth `cape` are inside the obstacle `shoulder`"));
+  CHECK(scenes.warnings(cape + "0.4" + rest).empty());
+}
+
+TEST_CASE("Finite but absurd numbers are refused with their place and value", "[setup_warnings]") {
+  const Scenes scenes;
+  fake::write(scenes.folder, "x.obj", "v 0 0 0\nv 1 0 0\nv 0 0 -2147483648\nf 1 2 3\n");
+  CHECK_THAT(scenes.refusal("cloths: [{mesh: x.obj}]\n"), Contains("x.obj") && Contains("-2.147e+09"));
+  CHECK_THAT(scenes.refusal("cloths:\n  - rectangle: {size: [1, 1], resolution: 3}\n"
+                            "    pins: [{vertices: [0], motion: {keyframes: [{time: 0}, {time: 1, translate: "
+                            "[9223372036854775807, 0, 0]}]}}]\n"),
+             Contains("scene.yaml:3") && Contains("9223372036854775807") && Contains("absurd"));
+  CHECK_THAT(scenes.refusal("cloths: [{rectangle: {size: [1, 1], resolution: 3}, scale: 1e30}]\n"),
+             Contains("scene.yaml:1") && Contains("e+2"));
+  CHECK_THAT(scenes.refusal("cloths: [{rectangle: {size: [1, 1], resolution: 3}}]\n"
+                            "obstacles: [{sphere: {radius: 0.1}, scale: 1e200}]\n"),
+             Contains("scene.yaml:2"));
+  CHECK_THAT(scenes.refusal("cloths: [{rectangle: {size: [1, 1], resolution: 3}, copies: {count: 3, translate: "
+                            "[900000, 0, 0]}}]\n"),
+             Contains("cloth0_2"));
+}
