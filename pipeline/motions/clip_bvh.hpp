@@ -44,13 +44,14 @@ BvhPose bvh_pose(const BvhFile&, int frame);
 struct BvhOptions {
   std::map<std::string, std::string> joints;  // joints of the file by SMPL's names; the rest go by common names
   double scale = 0;                           // metres a unit; 0: so that the legs are as long as the body's
-  int rest_frame = -1;                        // in which it stands upright; -1: the zero pose of the file
-  std::optional<double> floor;                // y of the soles in the body's zero pose, as in make_clip
+  int rest_frame = -1;  // in which it stands upright; -1: the zero pose of the file, or frame 0 where that does not
+  std::optional<double> floor;  // y of the soles in the body's zero pose, as in make_clip
 };
 
 // Index of the file's joint for each of SMPL's 24, -1 for none: by the options, else by the naming of the rig that fits
-// best (CMU, Mixamo, LAFAN, MakeHuman, Biped, Blender, Poser, SMPL, Unreal). Throws Error for an unknown name in the
-// options and where hips, knees, ankles, shoulders or elbows are missing.
+// best (CMU, Mixamo, LAFAN, MakeHuman, Biped, Blender, Rigify, Poser, Daz, SMPL, Unreal, Unity, VRM, Reallusion, Xsens,
+// MotionBuilder, Motive, Kinect, Bandai Namco), whatever words stand before all names. Throws Error for an unknown name
+// in the options and where hips, knees, ankles, shoulders or elbows are missing.
 std::vector<int> matched_joints(const BvhFile&, const std::map<std::string, std::string>& joints);
 
 // The motion for a body whose 24 joints in the zero pose are given. The rest poses of file and body differ, so

@@ -19,18 +19,31 @@ struct Chain {
 const std::vector<Chain>& chains() {
   static const std::vector<Chain> table = {
       {{"spine1", "spine2", "spine3"},
-       {{"spine1", "spine2", "spine3"},     // SMPL, MakeHuman's BVH
-        {"spine05", "spine03", "spine01"},  // MakeHuman
-        {"lowerback", "spine", "spine1"},   // CMU
-        {"spine", "spine1", "spine2"},      // Mixamo, LAFAN, Biped
-        {"spine01", "spine02", "spine03"},  // Unreal
-        {"spine", "chest", "upperchest"},   // Blender, Unity
-        {"abdomenlower", "abdomenupper", "chestlower"},
-        {"abdomen", "chest", ""},  // Poser
+       {{"spine1", "spine2", "spine3"},        // SMPL, MakeHuman's BVH
+        {"spine05", "spine03", "spine01"},     // MakeHuman
+        {"lowerback", "spine", "spine1"},      // CMU
+        {"spine", "spine1", "spine2"},         // Mixamo, LAFAN, Biped
+        {"spine01", "spine02", "spine03"},     // Unreal
+        {"waist", "spine01", "spine02"},       // Reallusion
+        {"spine001", "spine002", "spine003"},  // Rigify
+        {"l5", "t12", "t8"},                   // Xsens
+        {"l5", "l3", "t8"},
+        {"spine", "chest", "upperchest"},                // Blender, Unity
+        {"abdomenlower", "abdomenupper", "chestlower"},  // Daz
+        {"spinebase", "spinemid", "spineshoulder"},      // Kinect
+        {"abdomen", "chest", ""},                        // Poser
         {"spine", "", "spine1"},
+        {"ab", "chest", ""},  // Motive
         {"chest", "chest2", "chest3"}}},
       {{"neck", "head"},
-       {{"neck", "head"}, {"neck1", "head"}, {"neck01", "head"}, {"neck02", "head"}, {"necklower", "head"}}},
+       {{"neck", "head"},
+        {"neck1", "head"},
+        {"neck01", "head"},
+        {"neck02", "head"},
+        {"necklower", "head"},
+        {"necktwist01", "head"},
+        {"spine004", "spine006"},
+        {"spine005", "spine006"}}},
       {{"#_collar", "#_shoulder", "#_elbow", "#_wrist", "#_hand"},
        {{"#collar", "#shoulder", "#elbow", "#wrist", "#hand"},      // SMPL
         {"#shoulder", "#arm", "#forearm", "#hand", ""},             // CMU, Mixamo, LAFAN
@@ -42,6 +55,14 @@ const std::vector<Chain>& chains() {
         {"$clavicle", "$humerus", "$radius", "$wrist", "$hand"},    // Acclaim
         {"$collar", "$shldr", "$forearm", "$hand", ""},             // Poser
         {"$collar", "$shoulder", "$elbow", "$wrist", "$hand"},
+        {"shoulder$", "upperarm$", "lowerarm$", "hand$", ""},  // Bandai Namco
+        {"$shoulder", "$upperarm", "$lowerarm", "$hand", ""},  // VRM
+        {"$shoulder", "$upperarm", "$forearm", "$hand", ""},   // Daz
+        {"$collar", "$shldrbend", "$forearmbend", "$hand", ""},
+        {"#shoulder", "#upperarm", "#forearm", "#hand", ""},  // Xsens
+        {"$shoulder", "$uarm", "$farm", "$hand", ""},         // Motive
+        {"#shoulder", "#arm", "#elbow", "#wrist", ""},        // VRChat
+        {"", "shoulder#", "elbow#", "wrist#", "hand#"},       // Kinect
         {"#collar", "#uparm", "#lowarm", "#hand", ""},
         {"#shoulder", "#upperarm", "#lowerarm", "#hand", ""}}},
       {{"#_hip", "#_knee", "#_ankle", "#_foot"},
@@ -55,23 +76,76 @@ const std::vector<Chain>& chains() {
         {"$thigh", "$calf", "$foot", "$toe0"},              // Biped
         {"$femur", "$tibia", "$foot", "$toes"},             // Acclaim
         {"$thigh", "$shin", "$foot", "$toe"},               // Poser
+        {"upperleg$", "lowerleg$", "foot$", "toes$"},       // Bandai Namco
+        {"$upperleg", "$lowerleg", "$foot", "$toebase"},    // VRM
+        {"$thigh", "$calf", "$foot", "$toebase"},           // Reallusion
+        {"$thigh", "$shin", "$foot", "$toes"},              // Daz
+        {"$thighbend", "$shin", "$foot", "$toe"},
+        {"#leg", "#knee", "#ankle", "#toe"},   // VRChat
+        {"hip#", "knee#", "ankle#", "foot#"},  // Kinect
         {"$hip", "$knee", "$ankle", "$foot"},
         {"#upperleg", "#lowerleg", "#foot", "#toe"},
+        {"#upperleg", "#lowerleg", "#foot", "#toes"},  // Unity
         {"#hip", "#knee", "#ankle", "#toe"},
         {"#thigh", "#shin", "#foot", "#toe"}}},
-      {{"pelvis"}, {{"pelvis"}, {"hips"}, {"hip"}, {"root"}}}};
+      // Rigify's pelvis is the lowest of its spine, which elsewhere is above the pelvis: then it is taken already.
+      {{"pelvis"}, {{"pelvis"}, {"hips"}, {"hip"}, {"spine"}, {"root"}}}};
   return table;
 }
 
-// "mixamorig:LeftUpLeg", "Bip01 L Thigh" and "upper_arm.L" as leftupleg, lthigh and upperarml.
-std::string plain(const std::string& name) {
-  std::string text;
-  for (const char c : name.substr(name.rfind(':') + 1))
-    if (std::isalnum(static_cast<unsigned char>(c)))
-      text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  for (const std::string prefix : {"mixamorig", "bip01", "bip001"})
-    if (text.starts_with(prefix)) text.erase(0, prefix.size());
+std::string lower_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
+}
+
+// "CC_Base_L_Thigh" as cc, base, l and thigh; what stands before a colon is left out.
+std::vector<std::string> words_of_name(const std::string& name) {
+  std::vector<std::string> words(1);
+  for (const char c : lower_case(name.substr(name.rfind(':') + 1))) {
+    if (std::isalnum(static_cast<unsigned char>(c)))
+      words.back() += c;
+    else if (!words.back().empty())
+      words.emplace_back();
+  }
+  if (words.back().empty()) words.pop_back();
+  return words;
+}
+
+// Drops the first words that most names of a rig begin with, as "Character1_", "CC_Base_" and "J_Bip_" are. A name
+// keeps its last word.
+void drop_common_words(std::vector<std::vector<std::string>>& names) {
+  constexpr double most = 0.75;
+  for (;;) {
+    std::map<std::string, std::size_t> firsts;
+    for (const auto& words : names)
+      if (words.size() > 1) ++firsts[words.front()];
+    const auto common = std::ranges::find_if(firsts, [&](const auto& first) {
+      return static_cast<double>(first.second) > most * static_cast<double>(names.size());
+    });
+    if (common == firsts.end()) return;
+    for (auto& words : names)
+      if (words.size() > 1 && words.front() == common->first) words.erase(words.begin());
+  }
+}
+
+// The names of a rig in lower case, without signs and without what stands before all of them: "mixamorig:LeftUpLeg",
+// "Bip01 L Thigh", "upper_arm.L" and "J_Bip_C_Hips" as leftupleg, lthigh, upperarml and hips.
+std::vector<std::string> plain_names(const std::vector<std::string>& names) {
+  std::vector<std::vector<std::string>> words;
+  for (const std::string& name : names) words.push_back(words_of_name(name));
+  drop_common_words(words);
+  const bool centred = std::ranges::count_if(words, [](const auto& w) {
+                         return w.size() > 1 && (w.front() == "l" || w.front() == "r");
+                       }) > 0;
+  std::vector<std::string> plain;
+  for (auto& name : words) {
+    if (centred && name.size() > 1 && name.front() == "c") name.erase(name.begin());
+    std::string& text = plain.emplace_back();
+    for (const std::string& word : name) text += word;
+    for (const std::string prefix : {"mixamorig", "bip01", "bip001"})
+      if (text.starts_with(prefix)) text.erase(0, prefix.size());
+  }
+  return plain;
 }
 
 std::string of_side(std::string pattern, bool left) {
@@ -105,16 +179,22 @@ std::vector<int> matched_joints(const BvhFile& bvh, const std::map<std::string, 
   const std::vector<std::string> smpl = smpl_joint_names(24);
   std::vector<std::string> theirs;
   std::map<std::string, int> by_plain;
-  for (std::size_t j = 0; j < bvh.joints.size(); ++j) {
-    theirs.push_back(bvh.joints[j].name);
+  for (const BvhJoint& joint : bvh.joints) theirs.push_back(joint.name);
+  const std::vector<std::string> plain = plain_names(theirs);
+  for (std::size_t j = 0; j < theirs.size(); ++j) {
     // MakeHuman puts a joint `__UpLeg_L` where UpLeg_L hangs on the hips.
-    const auto [entry, fresh] = by_plain.emplace(plain(theirs[j]), static_cast<int>(j));
+    const auto [entry, fresh] = by_plain.emplace(plain[j], static_cast<int>(j));
     if (!fresh && theirs[static_cast<std::size_t>(entry->second)].starts_with("_")) entry->second = static_cast<int>(j);
   }
   std::map<std::string, int> found;
-  for (const Chain& chain : chains())
-    for (const bool left : {true, false})
-      for (const auto& [name, joint] : best(chain, by_plain, left)) found[name] = joint;
+  for (const Chain& chain : chains()) {
+    Found both = best(chain, by_plain, true);
+    for (const auto& one : best(chain, by_plain, false)) both.push_back(one);
+    for (const auto& [name, joint] : both) {
+      found[name] = joint;
+      by_plain.erase(plain[static_cast<std::size_t>(joint)]);
+    }
+  }
   for (const auto& [name, joint] : options) {
     if (std::find(smpl.begin(), smpl.end(), name) == smpl.end())
       throw Error("`" + name + "` is no joint of SMPL", bvh.file, "joints: " + joined(smpl) + suggestion(name, smpl));
@@ -129,7 +209,8 @@ std::vector<int> matched_joints(const BvhFile& bvh, const std::map<std::string, 
     for (std::size_t j = 0; j < smpl.size(); ++j)
       if (smpl[j].ends_with(needed) && result[j] < 0)
         throw Error("has no joint that is known as " + smpl[j], bvh.file,
-                    "say which one it is: " + smpl[j] + ": one of " + joined(theirs));
+                    "say which one it is beside the clip in the scene, joints: {" + smpl[j] + ": NAME}, one of " +
+                        joined(theirs));
   return result;
 }
 

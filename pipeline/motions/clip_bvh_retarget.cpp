@@ -30,8 +30,9 @@ struct Source {
   }
 };
 
-// The rotation that takes the axis along which the file stands to Y, in quarter turns.
-Mat3 upright_axes(const BvhFile& bvh, const Source& s) {
+// The rotation that takes the axis along which the file stands in its rest pose to Y, in quarter turns; nothing where
+// it does not stand upright.
+std::optional<Mat3> upright_axes(const Source& s) {
   const auto middle = [&](int left) -> Vec3 {
     return 0.5 * (row(s.rest.positions, s.joint[static_cast<std::size_t>(left)]) +
                   row(s.rest.positions, s.joint[static_cast<std::size_t>(left + 1)]));
@@ -40,10 +41,26 @@ Mat3 upright_axes(const BvhFile& bvh, const Source& s) {
   int axis = 0;
   (legs + trunk).cwiseAbs().maxCoeff(&axis);
   const Vec3 up = std::copysign(1, (legs + trunk)[axis]) * Vec3::Unit(axis);
-  if (legs.dot(up) < 0.7 * legs.norm() || trunk.dot(up) < 0.7 * trunk.norm())
-    throw Error("does not stand upright in its rest pose", bvh.file,
-                "give rest_frame, the number of a frame in which it does");
+  if (!(legs.dot(up) >= 0.7 * legs.norm() && trunk.dot(up) >= 0.7 * trunk.norm())) return {};
   return rotation_between(up, Vec3::UnitY());
+}
+
+// Where the zero pose is to be the rest pose and does not stand, as that of much motion capture, the first frame
+// serves: recordings mostly begin in a T- or an A-pose.
+Source upright_source(const BvhFile& bvh, const BvhOptions& options) {
+  Source s{matched_joints(bvh, options.joints), Mat3::Identity(), bvh_pose(bvh, options.rest_frame)};
+  std::optional<Mat3> upright = upright_axes(s);
+  if (!upright && options.rest_frame < 0) {
+    s.rest = bvh_pose(bvh, 0);
+    upright = upright_axes(s);
+  }
+  if (!upright)
+    throw Error(options.rest_frame < 0 ? std::string("stands upright neither in its zero pose nor in its first frame")
+                                       : fmt::format("does not stand upright in frame {}", options.rest_frame),
+                bvh.file,
+                "give the number of a frame in which it does beside the clip in the scene, rest_frame: NUMBER");
+  s.upright = *upright;
+  return s;
 }
 
 double limb(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).norm() + (c - b).norm(); }
@@ -89,11 +106,10 @@ BodyPose pose_of(const Source& s, const BvhPose& pose, const std::vector<Mat3>& 
 Clip retargeted(const BvhFile& bvh, const Points& joints, const BvhOptions& options) {
   if (options.rest_frame < -1 || options.rest_frame >= bvh.motion.rows())
     throw Error(fmt::format("has no frame {} to rest in, it has {}", options.rest_frame, bvh.motion.rows()), bvh.file,
-                "");
+                "frames count from 0; -1 is the zero pose");
   if (options.scale < 0) throw Error(fmt::format("has scale {}", options.scale), bvh.file, "metres a unit, above 0");
   const Skeleton k = measured(joints, options.floor);
-  Source s{matched_joints(bvh, options.joints), Mat3::Identity(), bvh_pose(bvh, options.rest_frame)};
-  s.upright = upright_axes(bvh, s);
+  const Source s = upright_source(bvh, options);
   const double scale = options.scale > 0 ? options.scale : leg_ratio(bvh, s, k);
   const std::vector<Mat3> align = alignment(s, k);
   BodyModel body;

@@ -1,4 +1,6 @@
 #include "collision/untangle/give_way.hpp"
+#include "pipeline/bodies/body_smpl.hpp"
+#include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/scene/config_scene.hpp"
 
 namespace selvedge::table {
@@ -80,6 +82,16 @@ const Section& trajectory_section() {
   return table;
 }
 
+const Section& bvh_joints_section() {
+  static const Section table = [] {
+    Section joints{
+        "joints", "The file's names of SMPL's joints. What is left out goes by the names of common rigs.", "", {}, {}};
+    for (const std::string& name : smpl_joint_names(smpl::joints)) joints.keys.push_back(text(name, ""));
+    return joints;
+  }();
+  return table;
+}
+
 }  // namespace
 
 const Section& body_section() {
@@ -92,6 +104,10 @@ const Section& body_section() {
              "`mannequin`, made by code, or a file: SMPL, SMPL-H or SMPL-X as .npz, any rigged body as .h5"),
        numbers("shape", any, "coefficients of its shapes; left out: what an AMASS clip gives an SMPL body, else zero"),
        text("clip", "a procedural clip, or a file: .bvh, or AMASS .npz; left out: it stands in the zero pose"),
+       section(bvh_joints_section(), "", "of a .bvh clip whose names are not known, or known wrongly"),
+       integer("rest_frame", not_negative, "",
+               "of a .bvh clip: a frame in which the figure stands upright with its feet flat; left out: the file's "
+               "zero pose, or where nobody stands in that, its first frame"),
        number("blend_in", Unit::time, not_negative, "0", "from the start pose into the clip; 0: starts at frame 0"),
        word("start_pose", {"zero", "arms_down"}, "zero", "what is blended in from"),
        with_words(

@@ -5,6 +5,8 @@
 #include <memory>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "pipeline/bodies/body_hdf5.hpp"
 #include "pipeline/bodies/body_smpl.hpp"
 #include "pipeline/bodies/mannequin.hpp"
@@ -13,6 +15,7 @@
 #include "pipeline/motions/clip_bvh.hpp"
 #include "pipeline/motions/clip_procedural.hpp"
 #include "pipeline/motions/t_pose.hpp"
+#include "pipeline/scene/setup_mesh.hpp"
 #include "pipeline/scene/setup_motion.hpp"
 #include "pipeline/scene/setup_paths.hpp"
 
@@ -51,13 +54,20 @@ void check_joints(const BodyModel& body, const Config& clip) {
 }
 
 // Rotations from SMPL's zero pose.
-Clip read_clip(const Config& clip, const Measures& who, const std::filesystem::path& folder) {
+Clip read_clip(const Config& section, const Measures& who, const std::filesystem::path& folder) {
+  const Config& clip = section["clip"];
   const std::filesystem::path name(clip.text());
+  for (const std::string key : {"joints", "rest_frame"})
+    if (section[key].given && name.extension() != ".bvh")
+      section[key].fail("is given for a clip that is no .bvh file", "leave it out");
   if (name.extension() == ".npz")
     return read_amass(existing_path(clip, folder), amass_fps, row(who.joints, smpl::pelvis));
   if (name.extension() == ".bvh") {
     BvhOptions options;
     options.floor = who.floor;
+    for (const std::string& joint : smpl_joint_names(smpl::joints))
+      if (const Config& named = section["joints"][joint]; named.given) options.joints[joint] = named.text();
+    if (section["rest_frame"].given) options.rest_frame = section["rest_frame"].integer();
     return retargeted(read_bvh(existing_path(clip, folder)), who.joints, options);
   }
   const std::vector<std::string> known = procedural_clip_names();
@@ -78,7 +88,7 @@ Clip performed(const Config& section, const Performance& who, const std::filesys
   check_joints(who.body, section["clip"]);
   const Points joints = joint_positions(who.body, who.shape);
   const std::optional<BodyPose> t = t_pose(who.body, joints);
-  Clip clip = read_clip(section["clip"], measured(who, joints, t), folder);
+  Clip clip = read_clip(section, measured(who, joints, t), folder);
   clip = blended(clip, StartPose::arms_down, !from_zero);
   if (t) clip = from_own_zero_pose(clip, who.body, joints, *t);
   return blended(clip, StartPose::zero, from_zero);
@@ -106,8 +116,15 @@ Performance read_performance(const Config& section, const std::filesystem::path&
   if (who.shape.size() > who.body.skin.shape_directions.cols())
     shape.fail("has more coefficients than the body has shapes",
                "give at most " + std::to_string(who.body.skin.shape_directions.cols()));
+  for (const std::string key : {"joints", "rest_frame"})
+    if (section[key].given && !clip.given) section[key].fail("is given without a clip", "name a .bvh file as `clip`");
   if (!clip.given) return who;
   who.clip = performed(section, who, folder);
+  for (std::size_t f = 0; f < who.clip.poses.size(); ++f)
+    if (const BodyPose& pose = who.clip.poses[f];
+        !pose.rotations.allFinite() || !(pose.translation.cwiseAbs().maxCoeff() <= farthest))
+      clip.fail(fmt::format("moves the body absurdly far in frame {}", f),
+                fmt::format("repair it where it was made; up to {:g} m are allowed", farthest));
   who.fits_room = section["room"].numbers.empty();
   leave_room(who.fits_room ? GiveWayOptions{}.room : section["room"].number(), who);
   return who;
