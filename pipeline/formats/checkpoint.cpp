@@ -1,5 +1,8 @@
 #include "pipeline/formats/checkpoint.hpp"
 
+#include <cmath>
+#include <limits>
+
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
 #include "pipeline/formats/hdf5_handles.hpp"
@@ -7,13 +10,30 @@
 namespace selvedge {
 namespace {
 
+[[noreturn]] void throw_unfit(const h5::File& file, const std::string& what) {
+  throw Error(what, file.path().string(), "the checkpoint is damaged; run without --resume");
+}
+
 Points read_points(const h5::File& file, const std::string& name) {
-  const std::vector<hsize_t> shape = file.shape(file.open_dataset(name).id());
-  if (shape.size() != 2 || shape[1] != 3)
-    throw Error(name + " has an unexpected shape", file.path().string(), "run without --resume");
+  const std::vector<hsize_t> shape = file.shape_of(name, 2);
+  if (shape[1] != 3 || shape[0] > std::numeric_limits<std::int32_t>::max())
+    throw_unfit(file, name + " has an unexpected shape");
   Points points(static_cast<Eigen::Index>(shape[0]), 3);
-  if (points.size() > 0) file.read_all(name, H5T_NATIVE_DOUBLE, points.data());
+  file.read_all(name, H5T_NATIVE_DOUBLE, shape, points.data());
   return points;
+}
+
+double read_value(const h5::File& file, const std::string& name) {
+  double value = 0;
+  file.read_all(name, H5T_NATIVE_DOUBLE, {1}, &value);
+  if (!std::isfinite(value)) throw_unfit(file, name + " is not finite");
+  return value;
+}
+
+int read_whole(const h5::File& file, const std::string& name) {
+  int value = 0;
+  file.read_all(name, H5T_NATIVE_INT, {1}, &value);
+  return value;
 }
 
 std::string numbered(const std::string& name, std::size_t k) { return name + std::to_string(k); }
@@ -39,9 +59,11 @@ void write_rest(const h5::File& file, const Rest& rest) {
 
 Rest read_rest(const h5::File& file) {
   Rest rest;
-  rest.seconds.resize(file.shape(file.open_dataset("rest_seconds").id()).at(0));
-  if (!rest.seconds.empty()) file.read_all("rest_seconds", H5T_NATIVE_DOUBLE, rest.seconds.data());
+  const std::vector<hsize_t> shape = file.shape_of("rest_seconds", 1);
+  rest.seconds.resize(shape[0]);
+  file.read_all("rest_seconds", H5T_NATIVE_DOUBLE, shape, rest.seconds.data());
   const Points air = read_points(file, "rest_air");
+  if (air.rows() != 2) throw_unfit(file, "rest_air has an unexpected shape");
   rest.place = read_points(file, "rest_place");
   rest.wind = row(air, 0);
   rest.acceleration = row(air, 1);
@@ -64,11 +86,27 @@ std::vector<MemoryBlock> read_memory(const h5::File& file) {
   if (!file.has("memory_names")) return {};
   const std::vector<std::string> names = file.read_texts("memory_names");
   const std::vector<Points> blocks = read_all(file, "memory_");
-  if (names.size() != blocks.size())
-    throw Error("memory_names has an unexpected shape", file.path().string(), "run without --resume");
+  if (names.size() != blocks.size()) throw_unfit(file, "memory_names has an unexpected shape");
   std::vector<MemoryBlock> memory;
   for (std::size_t k = 0; k < names.size(); ++k) memory.push_back({names[k], blocks[k]});
   return memory;
+}
+
+// All arrays of the cloth are of as many vertices or empty, and what a step goes on from is finite.
+void check_whole(const h5::File& file, const State& state) {
+  const Eigen::Index n = state.x.rows();
+  const auto of_cloth = [n](const Points& rows) { return rows.rows() == n || rows.rows() == 0; };
+  if (state.v.rows() != n || !of_cloth(state.last_clean.x) || !of_cloth(state.history.x) ||
+      state.history.v.rows() != state.history.x.rows() || !of_cloth(state.rest.place))
+    throw_unfit(file, "has arrays of different numbers of vertices");
+  if (state.history.h < 0 || (state.history.h > 0 && state.history.x.rows() != n))
+    throw_unfit(file, "history_h is given without a history");
+  bool finite = state.x.allFinite() && state.v.allFinite() && state.last_clean.x.allFinite();
+  for (const Points& x : state.obstacles) finite = finite && x.allFinite();
+  if (!finite) throw_unfit(file, "has positions or velocities that are not finite");
+  for (std::size_t k = 0; k < state.cut_out.size(); ++k)
+    if (state.cut_out[k] < 0 || (k > 0 && state.cut_out[k] <= state.cut_out[k - 1]))
+      throw_unfit(file, "cut_out does not ascend");
 }
 
 }  // namespace
@@ -114,25 +152,40 @@ State read_checkpoint(const std::filesystem::path& path, const std::string& conf
     throw Error("the checkpoint was made under another configuration", path.string(),
                 "resume with the same scene file and --set, or run without --resume");
   State state;
-  file.read_all("time", H5T_NATIVE_DOUBLE, &state.time);
-  file.read_all("frame", H5T_NATIVE_INT, &state.frame);
-  int pinched = 0, clean = 0;
-  file.read_all("pinched", H5T_NATIVE_INT, &pinched);
-  file.read_all("clean", H5T_NATIVE_INT, &clean);
-  state.pinched = pinched != 0;
-  state.clean = clean != 0;
+  state.time = read_value(file, "time");
+  state.frame = read_whole(file, "frame");
+  state.pinched = read_whole(file, "pinched") != 0;
+  state.clean = read_whole(file, "clean") != 0;
   state.x = read_points(file, "x");
   state.v = read_points(file, "v");
   state.obstacles = read_all(file, "obstacle_");
   state.last_clean = {read_points(file, "last_clean_x"), read_all(file, "last_clean_obstacle_")};
-  file.read_all("history_h", H5T_NATIVE_DOUBLE, &state.history.h);
+  state.history.h = read_value(file, "history_h");
   state.history.x = read_points(file, "history_x");
   state.history.v = read_points(file, "history_v");
   state.rest = read_rest(file);
   state.memory = read_memory(file);
-  state.cut_out.resize(file.shape(file.open_dataset("cut_out").id()).at(0));
-  if (!state.cut_out.empty()) file.read_all("cut_out", H5T_NATIVE_INT32, state.cut_out.data());
+  const std::vector<hsize_t> cut = file.shape_of("cut_out", 1);
+  state.cut_out.resize(cut[0]);
+  file.read_all("cut_out", H5T_NATIVE_INT32, cut, state.cut_out.data());
+  check_whole(file, state);
   return state;
+}
+
+void check_fits(const std::filesystem::path& path, const State& state, const Scene& scene) {
+  const Eigen::Index n = scene.surface.vertex_count;
+  bool fits = state.x.rows() == n && state.obstacles.size() == scene.obstacles.size() &&
+              (state.rest.seconds.empty() || state.rest.seconds.size() == scene.cloths.size()) &&
+              (state.last_clean.x.rows() == 0 || state.last_clean.obstacles.size() == scene.obstacles.size());
+  for (std::size_t k = 0; fits && k < scene.obstacles.size(); ++k) {
+    const Eigen::Index rows = scene.obstacles[k].surface.vertex_count;
+    fits = state.obstacles[k].rows() == rows &&
+           (state.last_clean.x.rows() == 0 || state.last_clean.obstacles[k].rows() == rows);
+  }
+  if (!state.cut_out.empty()) fits = fits && state.cut_out.back() < scene.surface.triangles.rows();
+  if (!fits)
+    throw Error("the checkpoint is of another scene", path.string(),
+                "a mesh or body that the scene names has changed: run without --resume");
 }
 
 }  // namespace selvedge

@@ -31,9 +31,7 @@ void Fields::fail(const std::string& field, const std::string& what) const {
 // The shape of a field with `rank` extents, small enough to be one of ours.
 std::vector<Eigen::Index> Fields::shape_of(const std::string& field, std::size_t rank) const {
   if (!file_.has(field)) fail(field, "is missing");
-  const Handle dataset = file_.open_dataset(field);
-  const std::vector<hsize_t> shape = file_.shape(dataset.id());
-  if (shape.size() != rank) fail(field, fmt::format("has {} dimensions, not {}", shape.size(), rank));
+  const std::vector<hsize_t> shape = file_.shape_of(field, rank);
   hsize_t count = 1;
   for (const hsize_t extent : shape)
     if (__builtin_mul_overflow(count, extent, &count) || count > std::numeric_limits<std::int32_t>::max())
@@ -44,7 +42,7 @@ std::vector<Eigen::Index> Fields::shape_of(const std::string& field, std::size_t
 template <class T>
 std::vector<T> Fields::list(const std::string& field, hid_t type) const {
   std::vector<T> values(static_cast<std::size_t>(shape_of(field, 1)[0]));
-  if (!values.empty()) file_.read_all(field, type, values.data());
+  if (!values.empty()) file_.read_all(field, type, {values.size()}, values.data());
   return values;
 }
 
@@ -53,16 +51,17 @@ Matrix Fields::rows_of_three(const std::string& field, hid_t type) const {
   const std::vector<Eigen::Index> shape = shape_of(field, 2);
   if (shape[1] != 3) fail(field, fmt::format("has {} columns, not 3", shape[1]));
   Matrix matrix(shape[0], 3);
-  if (matrix.size() > 0) file_.read_all(field, type, matrix.data());
+  if (matrix.size() > 0) file_.read_all(field, type, extents(shape), matrix.data());
   return matrix;
 }
 
 Eigen::MatrixXd Fields::directions(const std::string& field, Eigen::Index vertices) const {
   if (!file_.has(field)) return Eigen::MatrixXd(3 * vertices, 0);
   const std::vector<Eigen::Index> shape = shape_of(field, 3);
-  if (shape[1] != 3) fail(field, fmt::format("has {} coordinates by vertex, not 3", shape[1]));
+  if (shape[0] != vertices || shape[1] != 3)
+    fail(field, fmt::format("has {} vertices of {} coordinates, not {} of 3", shape[0], shape[1], vertices));
   RowMajor rows(3 * shape[0], shape[2]);
-  if (rows.size() > 0) file_.read_all(field, H5T_NATIVE_DOUBLE, rows.data());
+  if (rows.size() > 0) file_.read_all(field, H5T_NATIVE_DOUBLE, extents(shape), rows.data());
   return rows;
 }
 

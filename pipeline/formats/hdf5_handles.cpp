@@ -164,27 +164,40 @@ Handle File::open_dataset(const std::string& name) const {
 bool File::has(const std::string& name) const { return H5Lexists(id(), name.c_str(), H5P_DEFAULT) > 0; }
 
 std::vector<hsize_t> File::shape(hid_t dataset) const {
-  const Handle space(H5Dget_space(dataset), H5Sclose);
+  const Handle space(check(H5Dget_space(dataset), "read a shape"), H5Sclose);
   const int rank = H5Sget_simple_extent_ndims(space.id());
   check(rank, "read a shape");
-  std::vector<hsize_t> shape(rank);
+  std::vector<hsize_t> shape(static_cast<std::size_t>(rank));
   H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr);
   return shape;
 }
 
-std::vector<std::string> File::read_text_rows(hid_t dataset) const {
-  const Handle type(H5Dget_type(dataset), H5Tclose);
-  if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) > 0)
-    throw Error("a text is stored in a form this program does not write", path_.string(),
-                "is it a file of this program? Texts must have a fixed length");
-  const std::size_t width = H5Tget_size(type.id());
-  const std::vector<hsize_t> rows = shape(dataset);
-  std::vector<char> padded(width * (rows.empty() ? 1 : rows[0]));
-  if (!padded.empty()) check(H5Dread(dataset, type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()), "read a text");
-  std::vector<std::string> texts;
-  for (std::size_t begin = 0; begin < padded.size(); begin += width)
-    texts.emplace_back(&padded[begin], strnlen(&padded[begin], width));
-  return texts;
+void File::fail(const std::string& name, const std::string& what) const {
+  throw Error(what, path_.string() + ": " + name, "the file is damaged or is none of this program; write it again");
+}
+
+// An attacker or a damaged file may declare any number of values: as many must be stored as the best packed ones make.
+void File::check_stored(hid_t dataset, const std::string& name) const {
+  constexpr hsize_t most_packed = 1032;  // bytes that deflate makes of one
+  const Handle type(check(H5Dget_type(dataset), "read the type of " + name), H5Tclose);
+  const Handle creation(check(H5Dget_create_plist(dataset), "read how " + name + " is stored"), H5Pclose);
+  if (H5Pget_external_count(creation.id()) != 0 || H5Pget_layout(creation.id()) == H5D_VIRTUAL)
+    fail(name, "lies in other files");
+  hsize_t wanted = H5Tget_size(type.id());
+  for (const hsize_t extent : shape(dataset))
+    if (__builtin_mul_overflow(wanted, extent, &wanted)) fail(name, "is larger than anything that can be stored");
+  const hsize_t stored = H5Dget_storage_size(dataset);
+  if (wanted / most_packed > stored || (wanted > 0 && stored == 0))
+    fail(name, "declares " + std::to_string(wanted) + " bytes, of which " + std::to_string(stored) + " are stored");
+}
+
+std::vector<hsize_t> File::shape_of(const std::string& name, std::size_t rank, bool growing) const {
+  const Handle dataset = open_dataset(name);
+  const std::vector<hsize_t> found = shape(dataset.id());
+  if (found.size() != rank)
+    fail(name, "has " + std::to_string(found.size()) + " dimensions, not " + std::to_string(rank));
+  if (!growing) check_stored(dataset.id(), name);
+  return found;
 }
 
 std::string File::read_text(const std::string& name) const {
@@ -192,12 +205,45 @@ std::string File::read_text(const std::string& name) const {
   return texts.empty() ? "" : texts.front();
 }
 
+// Texts that other programs write may be a single value without extents.
 std::vector<std::string> File::read_texts(const std::string& name) const {
-  return read_text_rows(open_dataset(name).id());
+  const Handle dataset = open_dataset(name);
+  const Handle type(check(H5Dget_type(dataset.id()), "read the type of " + name), H5Tclose);
+  if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) > 0)
+    throw Error("a text is stored in a form this program does not write", path_.string() + ": " + name,
+                "is it a file of this program? Texts must have a fixed length");
+  const std::vector<hsize_t> rows = shape(dataset.id());
+  if (rows.size() > 1) fail(name, "has " + std::to_string(rows.size()) + " dimensions, not 1");
+  const Handle space(check(H5Dget_space(dataset.id()), "read the shape of " + name), H5Sclose);
+  if (H5Sget_simple_extent_type(space.id()) == H5S_NULL) return {};
+  check_stored(dataset.id(), name);
+  const std::size_t width = H5Tget_size(type.id());
+  std::vector<char> padded(width * (rows.empty() ? 1 : rows[0]));
+  if (!padded.empty())
+    check(H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()), "read " + name);
+  std::vector<std::string> texts;
+  for (std::size_t begin = 0; begin < padded.size(); begin += width)
+    texts.emplace_back(&padded[begin], strnlen(&padded[begin], width));
+  return texts;
 }
 
-void File::read_all(const std::string& name, hid_t type, void* data) const {
-  check(H5Dread(open_dataset(name).id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "read " + name);
+namespace {
+
+std::string shape_text(const std::vector<hsize_t>& shape) {
+  std::string text;
+  for (const hsize_t extent : shape) text += (text.empty() ? "" : " x ") + std::to_string(extent);
+  return shape.empty() ? "a single value" : text;
+}
+
+}  // namespace
+
+void File::read_all(const std::string& name, hid_t type, const std::vector<hsize_t>& wanted, void* data) const {
+  const Handle dataset = open_dataset(name);
+  const std::vector<hsize_t> found = shape(dataset.id());
+  if (found != wanted) fail(name, "is " + shape_text(found) + ", not " + shape_text(wanted));
+  if (std::find(wanted.begin(), wanted.end(), hsize_t{0}) != wanted.end()) return;
+  check_stored(dataset.id(), name);
+  check(H5Dread(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "read " + name);
 }
 
 namespace {
@@ -230,11 +276,16 @@ void File::write_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t count, c
   check(H5Dwrite(dataset, type, rows.memory.id(), rows.file.id(), H5P_DEFAULT, data), "write");
 }
 
-void File::read_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t count, void* data) const {
+void File::read_rows(hid_t dataset, hid_t type, const std::vector<hsize_t>& row_shape, hsize_t first, hsize_t count,
+                     void* data) const {
   if (count == 0) return;
   const std::vector<hsize_t> extent = shape(dataset);
-  if (extent.empty() || extent[0] < first + count)
-    throw Error("the file ends before row " + std::to_string(first + count), path_.string(), "write it again");
+  if (extent.empty() || !std::equal(extent.begin() + 1, extent.end(), row_shape.begin(), row_shape.end()))
+    throw Error("has rows of another shape than " + shape_text(row_shape), path_.string(),
+                "the file is damaged or is none of this program; write it again");
+  if (extent[0] < count || first > extent[0] - count)
+    throw Error("the file ends before row " + std::to_string(first) + " + " + std::to_string(count), path_.string(),
+                "write it again");
   const Rows rows = select_rows(dataset, extent, first, count);
   check(H5Dread(dataset, type, rows.memory.id(), rows.file.id(), H5P_DEFAULT, data), "read");
 }

@@ -68,17 +68,26 @@ class File {
   Handle open_dataset(const std::string& name) const;
   bool has(const std::string& name) const;
   std::vector<hsize_t> shape(hid_t dataset) const;
-  std::string read_text(const std::string& name) const;
-  std::vector<std::string> read_texts(const std::string& name) const;
-  void read_all(const std::string& name, hid_t type, void* data) const;
 
-  // Rows [first, first + count) of a dataset; writing grows it to that length.
+  // What is read may have been written by anyone: shapes are checked before anything is, and values must be in the
+  // file. Throws Error with file, field and sizes for another shape, for more values than what is stored can hold, for
+  // values that lie in other files, and for what HDF5 cannot read.
+  // The shape of a dataset with `rank` extents; `growing` ones may be ahead of what is stored.
+  std::vector<hsize_t> shape_of(const std::string& name, std::size_t rank, bool growing = false) const;
+  std::string read_text(const std::string& name) const;  // the only one, or the first
+  std::vector<std::string> read_texts(const std::string& name) const;
+  // The whole dataset, which must have exactly this shape.
+  void read_all(const std::string& name, hid_t type, const std::vector<hsize_t>& shape, void* data) const;
+
+  // Rows [first, first + count) of a dataset; writing grows it to that length, reading wants rows of this shape.
   void write_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t count, const void* data) const;
-  void read_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t count, void* data) const;
+  void read_rows(hid_t dataset, hid_t type, const std::vector<hsize_t>& row_shape, hsize_t first, hsize_t count,
+                 void* data) const;
 
  private:
   File(std::filesystem::path path, Handle handle) : path_(std::move(path)), handle_(std::move(handle)) {}
-  std::vector<std::string> read_text_rows(hid_t dataset) const;
+  [[noreturn]] void fail(const std::string& name, const std::string& what) const;
+  void check_stored(hid_t dataset, const std::string& name) const;
   std::filesystem::path path_;
   Handle handle_;
 };

@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
 #include "pipeline/formats/trajectory_row.hpp"
@@ -9,71 +13,98 @@ namespace {
   throw Error(what, file.path().string(), "the file is damaged or not a trajectory of this program; write it again");
 }
 
-// Shape of a dataset whose dimensions after the first must be `row_shape`.
-hsize_t rows_of(const h5::File& file, const std::string& name, const std::vector<hsize_t>& row_shape) {
-  std::vector<hsize_t> shape = file.shape(file.open_dataset(name).id());
-  const hsize_t rows = shape.empty() ? 0 : shape.front();
-  if (!shape.empty()) shape.erase(shape.begin());
-  if (shape != row_shape) throw_damaged(file, name + " has an unexpected shape");
-  return rows;
+constexpr hsize_t most_rows = std::numeric_limits<std::int32_t>::max();
+
+// Rows of a dataset whose dimensions after the first must be `row_shape`.
+hsize_t rows_of(const h5::File& file, const std::string& name, const std::vector<hsize_t>& row_shape,
+                bool growing = false) {
+  const std::vector<hsize_t> shape = file.shape_of(name, row_shape.size() + 1, growing);
+  if (!std::equal(shape.begin() + 1, shape.end(), row_shape.begin()) || shape[0] > most_rows)
+    throw_damaged(file, name + " has an unexpected shape");
+  return shape[0];
 }
 
 Triangles read_triangles(const h5::File& file, const std::string& name, int vertex_count) {
-  Triangles triangles(static_cast<Eigen::Index>(rows_of(file, name, {3})), 3);
-  if (triangles.size() > 0) file.read_all(name, H5T_NATIVE_INT32, triangles.data());
-  if (triangles.size() > 0 && (triangles.minCoeff() < 0 || triangles.maxCoeff() >= vertex_count))
-    throw_damaged(file, name + " names a vertex that is not there");
+  const hsize_t count = rows_of(file, name, {3});
+  Triangles triangles(static_cast<Eigen::Index>(count), 3);
+  file.read_all(name, H5T_NATIVE_INT32, {count, 3}, triangles.data());
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    const auto corners = triangles.row(t);
+    if (corners.minCoeff() < 0 || corners.maxCoeff() >= vertex_count)
+      throw_damaged(file, name + " names a vertex that is not there");
+    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
+      throw_damaged(file, name + " has a triangle with a vertex twice");
+  }
   return triangles;
 }
 
 std::vector<int> read_ints(const h5::File& file, const std::string& name) {
   std::vector<int> values(rows_of(file, name, {}));
-  if (!values.empty()) file.read_all(name, H5T_NATIVE_INT32, values.data());
+  file.read_all(name, H5T_NATIVE_INT32, {values.size()}, values.data());
   return values;
+}
+
+// Where the cloths begin, and the end of the last one.
+std::vector<int> read_begins(const h5::File& file, const std::string& name, std::size_t cloths, Eigen::Index end) {
+  const std::vector<int> begins = read_ints(file, name);
+  if (begins.size() != cloths + 1 || begins.front() != 0 || begins.back() != end ||
+      !std::is_sorted(begins.begin(), begins.end()))
+    throw_damaged(file, name + " does not run from 0 to " + std::to_string(end) + ", one number a cloth");
+  return begins;
 }
 
 std::int64_t read_number(const h5::File& file, const std::string& name) {
   std::int64_t number = 0;
-  if (rows_of(file, name, {}) != 1) throw_damaged(file, name + " is not one number");
-  file.read_all(name, H5T_NATIVE_INT64, &number);
+  file.read_all(name, H5T_NATIVE_INT64, {1}, &number);
   return number;
 }
 
 void read_cloth(const h5::File& file, TrajectoryInfo& info) {
   info.cloth_names = file.read_texts("cloth/names");
-  info.cloth_first_vertex = read_ints(file, "cloth/first_vertex");
-  info.cloth_first_triangle = read_ints(file, "cloth/first_triangle");
-  info.rest.resize(static_cast<Eigen::Index>(rows_of(file, "cloth/rest", {3})), 3);
-  file.read_all("cloth/rest", H5T_NATIVE_DOUBLE, info.rest.data());
+  const hsize_t vertices = rows_of(file, "cloth/rest", {3});
+  info.rest.resize(static_cast<Eigen::Index>(vertices), 3);
+  file.read_all("cloth/rest", H5T_NATIVE_DOUBLE, {vertices, 3}, info.rest.data());
   info.triangles = read_triangles(file, "cloth/triangles", static_cast<int>(info.rest.rows()));
+  info.cloth_first_vertex = read_begins(file, "cloth/first_vertex", info.cloth_names.size(), info.rest.rows());
+  info.cloth_first_triangle = read_begins(file, "cloth/first_triangle", info.cloth_names.size(), info.triangles.rows());
   info.rest_triangle.resize(rows_of(file, "cloth/rest_triangles", {3, 2}));
   if (info.rest_triangle.size() != static_cast<std::size_t>(info.triangles.rows()))
     throw_damaged(file, "cloth/rest_triangles has an unexpected shape");
-  if (!info.rest_triangle.empty()) file.read_all("cloth/rest_triangles", H5T_NATIVE_DOUBLE, info.rest_triangle.data());
+  file.read_all("cloth/rest_triangles", H5T_NATIVE_DOUBLE, {info.rest_triangle.size(), 3, 2},
+                info.rest_triangle.data());
   info.pins = read_ints(file, "cloth/pins");
+  for (const int pin : info.pins)
+    if (pin < 0 || pin >= info.rest.rows()) throw_damaged(file, "cloth/pins names a vertex that is not there");
 }
 
-TrajectoryInfo read_info(const h5::File& file) {
+TrajectoryInfo::Body read_body(const h5::File& file, const std::string& name, hsize_t frames) {
+  constexpr hsize_t many = 1u << 20;  // vertices: of more it is asked whether they are in the file
+  TrajectoryInfo::Body body;
+  body.name = file.read_text(name + "/name");
+  body.moving = file.read_text(name + "/motion") == "moving";
+  const std::vector<hsize_t> shape = file.shape_of(name + "/x", 3, true);
+  if (shape[2] != 3 || shape[1] > most_rows || (shape[1] > many && shape[0] == 0))
+    throw_damaged(file, name + "/x has an unexpected shape");
+  if (shape[1] > many) file.shape_of(name + "/x", 3);
+  body.vertex_count = static_cast<int>(shape[1]);
+  body.moving = body.moving || shape[0] >= std::max<hsize_t>(frames, 2);
+  body.triangles = read_triangles(file, name + "/triangles", body.vertex_count);
+  return body;
+}
+
+TrajectoryInfo read_info(const h5::File& file, hsize_t frames) {
   if (!file.has("format") || file.read_text("format") != "selvedge trajectory 1")
     throw_damaged(file, "this HDF5 file is not a trajectory of this program");
   TrajectoryInfo info;
   info.program_version = file.read_text("program_version");
   info.config = file.read_text("config");
   info.stepper = file.read_text("stepper");
-  file.read_all("fps", H5T_NATIVE_DOUBLE, &info.fps);
+  file.read_all("fps", H5T_NATIVE_DOUBLE, {1}, &info.fps);
+  if (!(info.fps > 0) || !std::isfinite(info.fps)) throw_damaged(file, "fps is " + std::to_string(info.fps));
   info.self_audited = file.read_text("self") == "audited";
   read_cloth(file, info);
-  for (int k = 0; file.has("obstacles/" + std::to_string(k)); ++k) {
-    const std::string name = "obstacles/" + std::to_string(k);
-    TrajectoryInfo::Body body;
-    body.name = file.read_text(name + "/name");
-    body.moving = file.read_text(name + "/motion") == "moving";
-    const std::vector<hsize_t> shape = file.shape(file.open_dataset(name + "/x").id());
-    if (shape.size() != 3 || shape[2] != 3) throw_damaged(file, name + "/x has an unexpected shape");
-    body.vertex_count = static_cast<int>(shape[1]);
-    body.triangles = read_triangles(file, name + "/triangles", body.vertex_count);
-    info.obstacles.push_back(std::move(body));
-  }
+  for (int k = 0; file.has("obstacles/" + std::to_string(k)); ++k)
+    info.obstacles.push_back(read_body(file, "obstacles/" + std::to_string(k), frames));
   return info;
 }
 
@@ -91,7 +122,8 @@ struct TrajectoryReader::Impl {
   explicit Impl(const std::filesystem::path& path) : file(h5::File::open(path)) {}
   PointsF read_points(const h5::Handle& dataset, int row, Eigen::Index count) const {
     PointsF points(count, 3);
-    file.read_rows(dataset.id(), H5T_NATIVE_FLOAT, row, 1, points.data());
+    file.read_rows(dataset.id(), H5T_NATIVE_FLOAT, {static_cast<hsize_t>(count), 3}, static_cast<hsize_t>(row), 1,
+                   points.data());
     return points;
   }
 };
@@ -102,11 +134,15 @@ TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) {
   Impl& r = *impl_;
   // The count comes first: a file that is being written may grow while the rest is read.
   if (!r.file.has("frames_complete")) throw_damaged(r.file, "this HDF5 file is not a trajectory of this program");
-  r.frames = static_cast<int>(read_number(r.file, "frames_complete"));
+  const std::int64_t frames = read_number(r.file, "frames_complete");
   r.closed = read_number(r.file, "closed") != 0;
-  r.info = read_info(r.file);
+  r.info = read_info(r.file, frames < 0 ? 0 : static_cast<hsize_t>(frames));
   r.by_names = r.file.read_texts("codes/by");
-  rows_of(r.file, "frames/x", {static_cast<hsize_t>(r.info.rest.rows()), 3});
+  const hsize_t stored = std::min(rows_of(r.file, "frames/x", {static_cast<hsize_t>(r.info.rest.rows()), 3}, true),
+                                  rows_of(r.file, "frames/report", {}, true));
+  if (frames < 0 || static_cast<hsize_t>(frames) > stored)
+    throw_damaged(r.file, "counts " + std::to_string(frames) + " frames and has " + std::to_string(stored));
+  r.frames = static_cast<int>(frames);
   r.report = r.file.open_dataset("frames/report");
   r.x = r.file.open_dataset("frames/x");
   r.bad = r.file.open_dataset("frames/bad_triangles");
@@ -127,16 +163,23 @@ Frame TrajectoryReader::frame(int index) const {
                 "it has " + std::to_string(r.frames) + " frames, counted from 0");
   Frame frame;
   TrajectoryRow row{};
-  r.file.read_rows(r.report.id(), r.row_type.id(), index, 1, &row);
+  r.file.read_rows(r.report.id(), r.row_type.id(), {}, static_cast<hsize_t>(index), 1, &row);
+  if (row.reason < 0 || row.reason >= static_cast<int>(reason_names().size()) || row.status < 0 ||
+      row.status >= static_cast<int>(status_names().size()))
+    throw_damaged(r.file, "frame " + std::to_string(index) + " has an unknown reason or status");
   fill_from_row(row, r.by_names, frame);
   frame.x = r.read_points(r.x, index, r.info.rest.rows());
   for (std::size_t k = 0; k < r.obstacles.size(); ++k)
     frame.obstacles.push_back(
         r.read_points(r.obstacles[k], r.info.obstacles[k].moving ? index : 0, r.info.obstacles[k].vertex_count));
-  if (row.bad_count < 0 || row.bad_count > r.info.triangles.rows())
+  if (row.bad_count < 0 || row.bad_count > r.info.triangles.rows() || row.bad_begin < 0)
     throw_damaged(r.file, "frame " + std::to_string(index) + " marks more triangles than there are");
   frame.bad_triangles.resize(row.bad_count);
-  r.file.read_rows(r.bad.id(), H5T_NATIVE_INT32, row.bad_begin, row.bad_count, frame.bad_triangles.data());
+  r.file.read_rows(r.bad.id(), H5T_NATIVE_INT32, {}, static_cast<hsize_t>(row.bad_begin),
+                   static_cast<hsize_t>(row.bad_count), frame.bad_triangles.data());
+  for (const int t : frame.bad_triangles)
+    if (t < 0 || t >= r.info.triangles.rows())
+      throw_damaged(r.file, "frame " + std::to_string(index) + " marks a triangle that is not there");
   return frame;
 }
 
