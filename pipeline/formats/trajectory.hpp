@@ -26,7 +26,7 @@ struct TrajectoryInfo {
     std::string name;
     Triangles triangles;
     int vertex_count = 0;
-    bool moving = false;  // still ones are stored once
+    bool moving = false;  // still ones are stored once; read: also those that cloth has moved all the same
   };
   std::vector<Body> obstacles;
 };

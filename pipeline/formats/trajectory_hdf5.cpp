@@ -77,15 +77,17 @@ struct TrajectoryWriter::Impl {
   h5::Handle row_type = row_memory_type(), by_type = h5::text_type(by_name_bytes);
   h5::Handle complete, closed, report, by, x, bad;
   std::vector<h5::Handle> obstacles;
+  std::vector<PointsF> still;  // of each obstacle where the first frame has it; empty once it has been elsewhere
   std::vector<std::string> by_names;
   std::int64_t frames = 0, bad_length = 0;
 
   Impl(const std::filesystem::path& path, const TrajectoryInfo& constant)
-      : file(h5::File::create(path)), info(constant) {}
+      : file(h5::File::create(path)), info(constant), still(constant.obstacles.size()) {}
 
   void make_datasets();
   int code_of(const std::string& by_name);
   void set(const h5::Handle& flag, std::int64_t value);
+  void append_obstacle(std::size_t k, const PointsF& at);
   void append(const Frame&);
   void close();
 };
@@ -153,12 +155,23 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const Traj
 
 TrajectoryWriter::~TrajectoryWriter() = default;
 
+// A still obstacle is stored once. Cloth that leaves it no room moves it all the same: from then on it is stored in
+// every frame, and in those before, in their order: a reader takes it as still until all are there.
+void TrajectoryWriter::Impl::append_obstacle(std::size_t k, const PointsF& at) {
+  if (frames == 0 && !info.obstacles[k].moving) still[k] = at;
+  if (frames > 0 && still[k].rows() > 0) {
+    if (at == still[k]) return;
+    for (std::int64_t f = 1; f < frames; ++f)
+      file.write_rows(obstacles[k].id(), H5T_NATIVE_FLOAT, static_cast<hsize_t>(f), 1, still[k].data());
+    still[k].resize(0, 3);
+  }
+  file.write_rows(obstacles[k].id(), H5T_NATIVE_FLOAT, static_cast<hsize_t>(frames), 1, at.data());
+}
+
 // The count of full frames is raised after everything else has reached the file: readers count by it alone.
 void TrajectoryWriter::Impl::append(const Frame& frame) {
   file.write_rows(x.id(), H5T_NATIVE_FLOAT, frames, 1, frame.x.data());
-  for (std::size_t k = 0; k < obstacles.size(); ++k)
-    if (info.obstacles[k].moving || frames == 0)
-      file.write_rows(obstacles[k].id(), H5T_NATIVE_FLOAT, frames, 1, frame.obstacles[k].data());
+  for (std::size_t k = 0; k < obstacles.size(); ++k) append_obstacle(k, frame.obstacles[k]);
   file.write_rows(bad.id(), H5T_NATIVE_INT32, bad_length, frame.bad_triangles.size(), frame.bad_triangles.data());
   const TrajectoryRow row = row_of(frame, code_of(frame.report.by), bad_length);
   file.write_rows(report.id(), row_type.id(), frames, 1, &row);

@@ -12,8 +12,9 @@ namespace selvedge {
 TrajectoryInfo trajectory_info(const Scene&, const std::string& config, const std::string& stepper, double fps);
 
 // HDF5 in SWMR mode: all datasets are made before the first frame, one flush a frame, so that a file whose writer was
-// killed opens and is complete up to its last full frame. Still obstacles are taken from the first frame alone. Throws
-// Error when the disk is full or the path cannot be written. Without close() the file is not marked closed.
+// killed opens and is complete up to its last full frame. Still obstacles are stored once, as long as all frames have
+// them where the first one has. Throws Error when the disk is full or the path cannot be written. Without close() the
+// file is not marked closed.
 class TrajectoryWriter {
  public:
   TrajectoryWriter(const std::filesystem::path&, const TrajectoryInfo&);

@@ -2,7 +2,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "pipeline/formats/trajectory_hdf5.hpp"
 #include "pipeline/suites/stress.hpp"
+#include "pipeline/tools/check.hpp"
 #include "tests/pipeline/files.hpp"
 
 namespace selvedge::fake {
@@ -11,6 +13,23 @@ namespace selvedge::fake {
 // long`.
 inline const std::vector<std::string> stress_each_time{"spike", "impact", "tshirt", "layers", "knot"};
 inline const std::vector<std::string> stress_at_length{"pinch", "spin", "funnel", "tablecloth", "hold", "twist"};
+
+// What the run found in a frame is in the frame that it stored.
+inline void check_audits_agree(const std::filesystem::path& file) {
+  CheckRequest request;
+  request.file = file;
+  request.horizon = 0;
+  const CheckReport report = check(request);
+  const TrajectoryReader reader(file);
+  REQUIRE(report.frames() == reader.frame_count());
+  for (int i = 0; i < reader.frame_count(); ++i) {
+    const Frame frame = reader.frame(i);
+    if (frame.report.collision.cut_out > 0) continue;  // of which the run counts no pairs
+    INFO(file << " frame " << i);
+    CHECK(report.pairs_by_frame[static_cast<std::size_t>(i)] == frame.self_pairs + frame.obstacle_pairs);
+    CHECK(report.vertex_pairs_by_frame[static_cast<std::size_t>(i)] == frame.vertex_pairs);
+  }
+}
 
 // Each of the scenes comes true once in its short form. Sanitized, the first alone: they take ten times as long.
 inline void check_short_forms(std::vector<std::string> scenes) {
@@ -30,6 +49,13 @@ inline void check_short_forms(std::vector<std::string> scenes) {
     INFO(row.scene << why);
     CHECK(row.passed());
   }
+  std::size_t runs = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path)) {
+    if (entry.path().filename() != "run.h5") continue;
+    check_audits_agree(entry.path());
+    ++runs;
+  }
+  CHECK(runs == scenes.size());
 }
 
 }  // namespace selvedge::fake

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <fstream>
+#include <limits>
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/hdf5_handles.hpp"
@@ -75,6 +76,78 @@ TEST_CASE("a file that is being written can be read up to its last full frame") 
     REQUIRE_FALSE(reader.closed());
     require_same(reader.frame(i), fake::frame(scene, i));
   }
+}
+
+// Cloth that leaves a still obstacle no room moves it.
+TEST_CASE("a still obstacle is stored where it was in every frame") {
+  const fake::Folder folder("pushed");
+  const Scene scene = fake::scene();
+  const auto pushed = [&](int i) {
+    Frame frame = fake::frame(scene, i);
+    if (i == 3 || i == 4) frame.obstacles[0] = fake::tetrahedron_points(0.01 * i, -5).cast<float>();
+    return frame;
+  };
+  TrajectoryWriter writer(folder.path / "run.h5", trajectory_info(scene, "", "conventional", 30));
+  for (int i = 0; i < 6; ++i) {
+    writer.append(pushed(i));
+    const TrajectoryReader reader(folder.path / "run.h5");
+    CHECK(reader.info().obstacles[0].moving == (i >= 3));
+    for (int k = 0; k <= i; ++k) require_same(reader.frame(k), pushed(k));
+  }
+  CHECK(h5::File::open(folder.path / "run.h5").shape_of("obstacles/0/x", 3)[0] == 6);
+}
+
+// Files that HDF5 has no objection to, with one field of another shape or of absurd values.
+TEST_CASE("every field of a trajectory is checked before it is read") {
+  const fake::Folder folder("hostile");
+  const Scene scene = fake::scene();
+  const std::filesystem::path path = folder.path / "run.h5";
+  const auto refusal = [&](const std::string& field, hid_t type, const std::vector<hsize_t>& shape,
+                           const void* data) -> std::string {
+    {
+      TrajectoryWriter writer(path, trajectory_info(scene, "", "conventional", 30));
+      for (int i = 0; i < 3; ++i) writer.append(fake::frame(scene, i));
+      writer.close();
+    }
+    const h5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+    H5Ldelete(file.id(), field.c_str(), H5P_DEFAULT);
+    const h5::Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
+    const h5::Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    if (!data) {  // only declared
+      const std::vector<hsize_t> chunk(shape.size(), 1);
+      H5Pset_chunk(creation.id(), static_cast<int>(shape.size()), chunk.data());
+    }
+    {
+      const h5::Handle dataset(
+          H5Dcreate2(file.id(), field.c_str(), type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose);
+      REQUIRE(dataset.id() >= 0);
+      if (data) H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
+    }
+    H5Fflush(file.id(), H5F_SCOPE_GLOBAL);
+    try {
+      const TrajectoryReader reader(path);
+      for (int i = 0; i < reader.frame_count(); ++i) reader.frame(i);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  const std::vector<double> many(64, 30.0);
+  const std::vector<int> whole(64, 1000000);
+  const std::string fps = refusal("fps", H5T_NATIVE_DOUBLE, {8}, many.data());
+  CHECK_THAT(fps, Catch::Contains("run.h5: fps") && Catch::Contains("is 8, not 1"));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THAT(refusal("fps", H5T_NATIVE_DOUBLE, {1}, &nan), Catch::Contains("fps is"));
+  CHECK_THAT(refusal("closed", H5T_NATIVE_DOUBLE, {4, 4}, many.data()), Catch::Contains("4 x 4"));
+  CHECK_THAT(refusal("cloth/rest", H5T_NATIVE_DOUBLE, {hsize_t{1} << 60, 3}, nullptr), Catch::Contains("cloth/rest"));
+  CHECK_THAT(refusal("cloth/pins", H5T_NATIVE_INT32, {hsize_t{1} << 40}, nullptr), Catch::Contains("are stored"));
+  CHECK_THAT(refusal("cloth/pins", H5T_NATIVE_INT32, {3}, whole.data()), Catch::Contains("cloth/pins"));
+  CHECK_THAT(refusal("cloth/first_vertex", H5T_NATIVE_INT32, {2}, whole.data()), Catch::Contains("first_vertex"));
+  CHECK_THAT(refusal("cloth/names", h5::text_type(4).id(), {4, 4}, whole.data()), Catch::Contains("2 dimensions"));
+  CHECK_THAT(refusal("frames/bad_triangles", H5T_NATIVE_INT32, {8, 8}, whole.data()), Catch::Contains("shape"));
+  CHECK_THAT(refusal("frames/report", H5T_NATIVE_INT32, {3, 3}, whole.data()), Catch::Contains("frames/report"));
+  CHECK_THAT(refusal("obstacles/0/x", H5T_NATIVE_FLOAT, {0, 2000000000, 3}, nullptr), Catch::Contains("obstacles/0/x"));
+  CHECK_THAT(refusal("frames_complete", H5T_NATIVE_INT32, {1}, whole.data()), Catch::Contains("1000000 frames"));
 }
 
 TEST_CASE("what is no trajectory is refused with a clear error") {
