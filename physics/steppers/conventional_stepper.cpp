@@ -373,7 +373,11 @@ void ConventionalStepper::prepare_contact(const State& from, const Drive& drive,
 
 int ConventionalStepper::planned_substeps(const State& from, const Drive& drive, double dt, const Points& nodes) const {
   if (options_.substeps) return *options_.substeps;
-  const auto touching = has_contact() ? pairs_within(path_, nodes, scene_.contact.thickness) : std::vector<NodePair>{};
+  // The list may hold more than what touches, by what was asked before, which no checkpoint knows.
+  const double thickness = scene_.contact.thickness;
+  auto touching = has_contact() ? pairs_within(path_, nodes, thickness) : std::vector<NodePair>{};
+  std::erase_if(touching,
+                [&](const NodePair& pair) { return !(closest(pair, nodes).squared_distance < thickness * thickness); });
   return substeps_for_contact(fastest_past(touching, from, drive, dt), dt, edge_length_, options_.max_substeps);
 }
 
