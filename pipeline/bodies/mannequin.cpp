@@ -41,9 +41,8 @@ BodyModel kept_mannequin(const std::filesystem::path& folder) {
     } catch (const Error&) {  // a file of something else, or half of one: made anew below
     }
   }
-  make_folder(folder);
   BodyModel body = make_mannequin();
-  write_body(file, body);
+  write_cached(file, [&] { write_body(file, body); });
   return body;
 }
 

@@ -7,7 +7,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/host/folder_lock.hpp"
 #include "pipeline/host/interrupt.hpp"
+#include "pipeline/host/write_file.hpp"
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/run_scene.hpp"
 #include "pipeline/scene/make_stepper.hpp"
@@ -64,12 +66,16 @@ int simulate_command(const SimulateArguments& arguments, bool json) {
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
   Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
   const InterruptWatch watch;
+  const std::filesystem::path out = folder_for(arguments, setup);
+  make_folder(out);
+  const FolderLock lock(out);
   if (!arguments.resume && !prepare(setup, InterruptWatch::interrupted, &progress)) {
     people(json) << "stopped before the first frame\n";
     return 1;
   }
   RunRequest request;
-  request.out = folder_for(arguments, setup);
+  request.out = out;
+  request.locked = true;
   request.resume = arguments.resume;
   request.progress = &progress;
   request.stop = InterruptWatch::interrupted;

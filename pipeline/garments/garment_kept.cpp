@@ -22,8 +22,7 @@ Garment kept_garment(const std::filesystem::path& folder, const std::string& nam
     }
   }
   Garment garment = make_garment(name, mannequin, options, under);
-  make_folder(file.parent_path());
-  write_garment(file, garment);
+  write_cached(file, [&] { write_garment(file, garment); });
   return garment;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 namespace selvedge {
@@ -8,7 +9,10 @@ namespace selvedge {
 // Written beside and renamed: a reader sees the old file or the new one, never half of it. Throws Error.
 void write_file(const std::filesystem::path&, const std::string& content);
 
-// Throws Error when the folder cannot be made.
-void make_folder(const std::filesystem::path&);
+// Throws Error, with that cure, when the folder cannot be made.
+void make_folder(const std::filesystem::path&, const std::string& cure = "choose another --out");
+
+// Writes a file into a folder that is made for it and that the environment chooses. Throws Error that says how.
+void write_cached(const std::filesystem::path& file, const std::function<void()>& write);
 
 }  // namespace selvedge

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cassert>
+#include <optional>
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/checkpoint.hpp"
 #include "pipeline/formats/trajectory_row.hpp"
 #include "pipeline/formats/xdmf.hpp"
+#include "pipeline/host/folder_lock.hpp"
 #include "pipeline/host/peak_memory.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/host/write_file.hpp"
@@ -88,8 +90,11 @@ void finish(RunSummary& summary, const StepReport& last, int frame) {
 RunSummary run_scene(const Setup& setup, Stepper& stepper, const RunRequest& request) {
   assert(request.resume || setup.initial.frame >= 0);
   make_folder(request.out);
+  std::optional<FolderLock> lock;
+  if (!request.locked) lock.emplace(request.out);
   const std::filesystem::path file = request.out / "run.h5", saved = request.out / "checkpoint.h5";
   State state = request.resume ? read_checkpoint(saved, setup.config) : setup.initial;
+  if (request.resume) check_fits(saved, state, setup.scene);
   remove_results(request);
   write_file(request.out / "config.yaml", setup.config);
 

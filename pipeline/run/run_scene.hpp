@@ -11,6 +11,7 @@ namespace selvedge {
 
 struct RunRequest {
   std::filesystem::path out;       // folder, made if it is not there
+  bool locked = false;             // whoever calls holds the folder (folder_lock.hpp); false: run_scene does
   bool resume = false;             // go on from the checkpoint that an interrupted run left in `out`
   double checkpoint_seconds = 30;  // between checkpoints
   Progress* progress = nullptr;
@@ -20,8 +21,8 @@ struct RunRequest {
 
 // Simulates a scene, prepared (prepare.hpp) unless it is resumed, into a folder: run.h5 (trajectory), run.xdmf,
 // summary.json, config.yaml, and checkpoint.h5 until the run has finished. A rejected step is recorded as a frame with
-// the last accepted positions and ends the run. Throws Error where files cannot be written or there is nothing to
-// resume.
+// the last accepted positions and ends the run. Throws Error where files cannot be written, there is nothing to resume,
+// or another process is running into the folder.
 RunSummary run_scene(const Setup&, Stepper&, const RunRequest&);
 
 }  // namespace selvedge

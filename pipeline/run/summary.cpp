@@ -86,6 +86,8 @@ void add_frame(RunSummary& summary, int index, const Frame& frame) {
   summary.shortened += collision.shortened;
   summary.held_vertices += collision.held_vertices;
   summary.passed_through += collision.passed_through;
+  summary.jumped += collision.jumped;
+  if (collision.jumped > 0 && summary.first_jump_frame < 0) summary.first_jump_frame = index;
   summary.worst_pairs_wanted = std::max(summary.worst_pairs_wanted, collision.pairs_wanted);
   summary.max_depth_wanted = std::max(summary.max_depth_wanted, collision.depth_wanted);
   summary.max_obstacle_lag = std::max(summary.max_obstacle_lag, collision.obstacle_lag);
@@ -114,7 +116,7 @@ double median_milliseconds(const RunSummary& summary) { return 1000 * median(sum
 
 bool is_clean(const RunSummary& summary) {
   return summary.end == RunEnd::finished && summary.pairs == 0 && summary.worst_inside == 0 && summary.nonfinite == 0 &&
-         summary.passed_through == 0 && summary.cut_out_at_end == 0;
+         summary.passed_through == 0 && summary.jumped == 0 && summary.cut_out_at_end == 0;
 }
 
 std::string summary_json(const RunSummary& s) {
@@ -159,6 +161,8 @@ std::string summary_json(const RunSummary& s) {
       {"shortened_zones", s.shortened},
       {"held_fraction", held_fraction(s)},
       {"passed_through", s.passed_through},
+      {"jumped", s.jumped},
+      {"jumped_first_frame", s.first_jump_frame},
       {"min_contact_gap", finite_or_null(s.min_contact_gap)},
       {"max_obstacle_lag", s.max_obstacle_lag},
       {"intersecting_pairs_wanted", s.worst_pairs_wanted},
@@ -204,6 +208,11 @@ std::string summary_text(const RunSummary& s) {
   if (s.held_vertices > 0)
     add("held back", fmt::format("{:.2g} % of all vertices and substeps", 100 * held_fraction(s)));
   if (s.passed_through > 0) add("passed through", fmt::format("{} pairs over all frames", s.passed_through));
+  if (s.jumped > 0)
+    add("jumped",
+        fmt::format("{} obstacles, first in frame {}: too fast for a sweep, so what they passed is not known; "
+                    "give more frames a second or substeps",
+                    s.jumped, s.first_jump_frame));
   if (s.max_obstacle_lag > 0)
     add("obstacles lag", fmt::format("{:.2g} m at most; where they were wanted {} pairs and {:.2g} m deep at worst",
                                      s.max_obstacle_lag, s.worst_pairs_wanted, s.max_depth_wanted));

@@ -33,6 +33,8 @@ struct RunSummary {
   long nonfinite = 0;
   int max_contacts = 0;
   long impulses = 0, zones = 0, halved_substeps = 0, shortened = 0, held_vertices = 0, passed_through = 0;
+  long jumped = 0;            // obstacles that were put where they were wanted without a sweep, over all frames
+  int first_jump_frame = -1;  // -1: none ever was
   double max_obstacle_lag = 0, max_depth_wanted = 0, max_residual = 0;
   int worst_pairs_wanted = 0;  // against obstacles where they were wanted
   double min_contact_gap = std::numeric_limits<double>::infinity();
@@ -50,7 +52,7 @@ double mean_milliseconds(const RunSummary&);
 double median_milliseconds(const RunSummary&);
 
 // Ran to its end, and every frame finite, without intersecting pairs, without vertices inside obstacles, reached by a
-// motion in which nothing passed through, with nothing left that is cut out.
+// motion in which nothing passed through and no obstacle jumped, with nothing left that is cut out.
 bool is_clean(const RunSummary&);
 
 std::string summary_json(const RunSummary&);

@@ -212,7 +212,8 @@ std::vector<ValidationRow> validate(const ValidateRequest& request) {
 }
 
 bool passed(const std::vector<ValidationRow>& rows) {
-  return std::all_of(rows.begin(), rows.end(), [](const ValidationRow& row) { return row.passed || !row.counts; });
+  return std::ranges::all_of(rows, [](const ValidationRow& row) { return row.passed || !row.counts; }) &&
+         std::ranges::any_of(rows, &ValidationRow::counts);
 }
 
 }  // namespace selvedge

@@ -40,7 +40,7 @@ struct ValidationRow {
 // value. Leaves validate.txt, validate.csv, validate.json in the folder, and plots where gnuplot is there.
 std::vector<ValidationRow> validate(const ValidateRequest&);
 
-bool passed(const std::vector<ValidationRow>&);
+bool passed(const std::vector<ValidationRow>&);  // of those that count every one, and there is one
 
 std::string validate_table(const std::vector<ValidationRow>&);
 std::string validate_markdown(const std::vector<ValidationRow>&);

@@ -69,6 +69,7 @@ std::string validate_table(const std::vector<ValidationRow>& rows) {
     if (!before || before->parameters != row.parameters || before->name != row.name) seconds += row.seconds;
     before = &row;
   }
+  if (counted == 0) return text + "nothing was judged: no value that was asked for has a bound\n";
   return text + fmt::format("{} of {} within their bounds, {:.0f} s\n", counted - failed, counted, seconds);
 }
 
