@@ -3,6 +3,7 @@
 SHELL := /bin/bash
 JOBS ?= $(shell nproc)
 FILTER ?= .
+FUZZ_SECONDS ?= 60
 # A server that sets CI gets warnings as errors in every build.
 CONFIGURE := $(if $(CI),-DSELVEDGE_WERROR=ON)
 SOURCES = git ls-files '*.cpp' '*.hpp'
@@ -15,7 +16,7 @@ PACKAGES_asan-core := $(PACKAGES_release)
 PACKAGES_tsan := $(PACKAGES_release) tsan
 PACKAGES_minimal := build viewer test
 
-.PHONY: help program demo test everything validate bench stress stability wardrobe compare dev long asan asan-core tsan minimal format check-format tidy clean
+.PHONY: help program demo test everything validate bench stress stability wardrobe compare fuzz dev long asan asan-core tsan minimal format check-format tidy clean
 .DEFAULT_GOAL := help
 
 help:  ## This list
@@ -51,7 +52,12 @@ compare: program  ## Compare the conventional stepper's settings: tables and plo
 	@$(PROGRAM) compare configs/compare/conventional.yaml --out out/compare
 
 test: test-release  ## Build and run every test (FILTER=regular expression on test files)
-everything: test long minimal asan  ## Every test in the builds release, minimal and asan, long ones too; CI runs a part
+everything: test long minimal asan fuzz  ## Every test in the builds release, minimal and asan, long ones too, and fuzz; CI runs a part
+fuzz:  ## Readers of files given what a fuzzer makes of files, FUZZ_SECONDS each, with clang (FORMATS="obj ply": only these)
+	@cmake/install-packages.sh build fuzz
+	@$(MAKE) --no-print-directory build/fuzz/configured
+	@cmake --build --preset fuzz --parallel $(JOBS)
+	@tests/fuzz/run-fuzzers.sh $(FUZZ_SECONDS) $(FORMATS)
 dev: test-dev  ## The same with assertions on and warnings as errors
 asan: test-asan  ## The same under the address and undefined-behaviour sanitizers
 asan-core: test-asan-core  ## Kernels and readers under these sanitizers
