@@ -69,6 +69,7 @@ const std::vector<Chain>& chains() {
        {{"#hip", "#knee", "#ankle", "#foot"},               // SMPL
         {"#upleg", "#leg", "#foot", "#toebase"},            // CMU, Mixamo
         {"#upleg", "#leg", "#foot", "#toe"},                // LAFAN
+        {"#upleg", "#leg", "#foot", "#footend"},            // Perception Neuron
         {"upleg$", "loleg$", "foot$", "toe$"},              // MakeHuman's BVH
         {"upperleg01$", "lowerleg01$", "foot$", "toe11$"},  // MakeHuman
         {"thigh$", "calf$", "foot$", "ball$"},              // Unreal

@@ -65,8 +65,9 @@ Clip read_clip(const Config& section, const Measures& who, const std::filesystem
   if (name.extension() == ".bvh") {
     BvhOptions options;
     options.floor = who.floor;
-    for (const std::string& joint : smpl_joint_names(smpl::joints))
-      if (const Config& named = section["joints"][joint]; named.given) options.joints[joint] = named.text();
+    if (const Config& names = section["joints"]; names.given)
+      for (const std::string& joint : smpl_joint_names(smpl::joints))
+        if (names[joint].given) options.joints[joint] = names[joint].text();
     if (section["rest_frame"].given) options.rest_frame = section["rest_frame"].integer();
     return retargeted(read_bvh(existing_path(clip, folder)), who.joints, options);
   }
