@@ -184,6 +184,7 @@ void AlteredHdf5::write(const std::uint8_t* bytes, std::size_t size, const std::
             std::memcpy(raw.data(), &value, sizeof value);
             H5Tconvert(H5T_NATIVE_DOUBLE, field.type, 1, raw.data(), nullptr, H5P_DEFAULT);
             const std::size_t width = H5Tget_size(field.type), count = field.values.size() / width;
+            if (count == 0) break;  // the type has become another one
             std::memcpy(&field.values[a.where % count * width], raw.data(), width);
           } else if (!field.values.empty()) {
             field.values[(a.where * 7) % field.values.size()] = static_cast<char>(a.to);

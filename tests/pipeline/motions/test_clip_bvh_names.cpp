@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include <functional>
 #include <sstream>
 
 #include "collision/geometry/error.hpp"

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "collision/geometry/error.hpp"
 #include "pipeline/formats/checkpoint.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "tests/pipeline/files.hpp"
