@@ -6,7 +6,7 @@
 #include "pipeline/formats/mesh_ply.hpp"
 #include "pipeline/formats/polygon.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_polygon {
 
 namespace {
 
@@ -91,3 +91,5 @@ TEST_CASE("Both mesh readers cut polygons so, with their texture vertices", "[po
     CHECK((at(1) - at(0)).cross(at(2) - at(0)).z() > 0.5);
   }
 }
+
+}  // namespace selvedge::test_polygon

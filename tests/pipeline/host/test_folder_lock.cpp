@@ -9,7 +9,7 @@
 #include "pipeline/host/write_file.hpp"
 #include "tests/pipeline/fake_run.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_folder_lock {
 using Catch::Matchers::Contains;
 
 TEST_CASE("One run at a time writes into a folder; a finished or killed one leaves it free", "[folder_lock]") {
@@ -54,3 +54,5 @@ TEST_CASE("A cache that cannot be written says which variable to set", "[folder_
   CHECK_THROWS_WITH(write_cached(folder.path / "body.h5", [&] { write_file(file / "x", ""); }),
                     Contains("XDG_CACHE_HOME"));
 }
+
+}  // namespace selvedge::test_folder_lock

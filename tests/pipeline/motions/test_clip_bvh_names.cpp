@@ -9,7 +9,7 @@
 #include "pipeline/scene/setup.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_clip_bvh_names {
 using Catch::Matchers::Contains;
 
 namespace {
@@ -175,3 +175,5 @@ TEST_CASE("clip_bvh_names: a scene says what a rig calls its joints, and in whic
   CHECK(with_clip(folder, "clip: flat.bvh, rest_frame: 0").drive_at(0).obstacles.at(0) == flat);
   CHECK_THROWS_WITH(with_clip(folder, "clip: flat.bvh, rest_frame: 2"), Contains("has no frame 2"));
 }
+
+}  // namespace selvedge::test_clip_bvh_names

@@ -5,7 +5,7 @@
 #include "pipeline/scene/make_stepper.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_resume {
 
 namespace {
 
@@ -71,3 +71,5 @@ TEST_CASE("Checkpoints that are damaged or of another scene are refused", "[resu
   CHECK_THAT(refusal([](State& s) { s.obstacles.pop_back(); }), Catch::Contains("another scene"));
   CHECK_THAT(refusal([](State& s) { s.history.h = 1; }), Catch::Contains("history"));
 }
+
+}  // namespace selvedge::test_resume

@@ -4,7 +4,7 @@
 #include "pipeline/tools/check.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_silent_outcomes {
 
 namespace {
 
@@ -63,3 +63,5 @@ TEST_CASE("Where pins drive cloth into a still wall the file shows what was simu
   CHECK(ran.found.inside_vertices == ran.summary.worst_inside);
   CHECK(ran.summary.max_obstacle_lag > 0);  // or the scene shows nothing
 }
+
+}  // namespace selvedge::test_silent_outcomes

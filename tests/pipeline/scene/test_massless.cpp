@@ -5,7 +5,7 @@
 #include "pipeline/scene/make_stepper.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_massless {
 using Catch::Matchers::Contains;
 
 namespace {
@@ -87,3 +87,5 @@ TEST_CASE("Polygons with points on straight edges have no vertices without mass"
   CHECK(setup.warnings.empty());
   CHECK(after(setup, 10).col(1).maxCoeff() < 0.1);
 }
+
+}  // namespace selvedge::test_massless

@@ -6,7 +6,7 @@
 #include "pipeline/scene/setup.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_setup_warnings {
 using Catch::Matchers::Contains;
 
 namespace {
@@ -100,3 +100,5 @@ TEST_CASE("Finite but absurd numbers are refused with their place and value", "[
                             "[900000, 0, 0]}}]\n"),
              Contains("cloth0_2"));
 }
+
+}  // namespace selvedge::test_setup_warnings
