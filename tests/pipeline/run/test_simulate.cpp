@@ -227,9 +227,11 @@ TEST_CASE("a run that fails leaves no results of the run before it") {
 TEST_CASE("progress is plain lines without a terminal and names the time left on one") {
   std::ostringstream plain, terminal;
   Progress quiet(plain, false), lively(terminal, true);
+  const auto begun = Clock::now();
   quiet.begin(0, 100);
   quiet.frame(1);
-  REQUIRE(plain.str().empty());
+  const bool soon = seconds_since(begun) < 5;  // a line every five seconds, and a busy machine may take as long
+  REQUIRE((plain.str().empty() || !soon));
   lively.begin(0, 100);
   const auto start = Clock::now();
   while (seconds_since(start) < 0.12) continue;
