@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "collision/contact/proximity.hpp"
 #include "collision/contour/find_contours.hpp"
@@ -13,7 +14,7 @@
 #include "physics/scene/features.hpp"
 #include "physics/solve/contact_terms.hpp"
 #include "physics/solve/contour_potential.hpp"
-#include "physics/steppers/step_audit.hpp"
+#include "physics/steppers/finish_step.hpp"
 #include "physics/steppers/substeps.hpp"
 
 namespace selvedge {
@@ -47,7 +48,7 @@ class IcmStepper final : public Stepper {
         self_crossings_(world_) {}
 
   const StepperTraits& traits() const override { return traits_; }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to) override;
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override;
 
  private:
   bool has_contact() const { return features_.self_contact || features_.obstacles; }
@@ -55,7 +56,7 @@ class IcmStepper final : public Stepper {
                   StepReport&);
   std::vector<ContactTerm> pushes(ContourPotential&, const Points& x, double h) const;
   bool minimise(const StepProblem&, Points& x, StepReport&);
-  bool substep(const Leg&, const Points& pins, const Drive&, double h, Points& nodes1, StepReport&);
+  bool substep(const SubstepState&, const Points& pins, const Drive&, double h, Points& nodes1, StepReport&);
 
   const Scene& scene_;
   IcmOptions options_;
@@ -118,12 +119,12 @@ bool IcmStepper::minimise(const StepProblem& problem, Points& x, StepReport& rep
 }
 
 // nodes1 comes with obstacles where they are to end and the cloth at its first guess. False: not finite.
-bool IcmStepper::substep(const Leg& leg, const Points& pins, const Drive& drive, double h, Points& nodes1,
+bool IcmStepper::substep(const SubstepState& now, const Points& pins, const Drive& drive, double h, Points& nodes1,
                          StepReport& report) {
   const int n = scene_.surface.vertex_count;
-  const Points x0 = leg.nodes.topRows(n);
+  const Points x0 = now.nodes.topRows(n);
   Points x = nodes1.topRows(n);
-  StepProblem problem{h, &x0, &leg.v, &pins, drive.acceleration, drive.wind, {}, 1};
+  StepProblem problem{h, &x0, &now.v, &pins, drive.acceleration, drive.wind, {}, 1};
   if (!has_contact()) {
     const bool finite = minimise(problem, x, report);
     nodes1.topRows(n) = x;
@@ -137,14 +138,14 @@ bool IcmStepper::substep(const Leg& leg, const Points& pins, const Drive& drive,
   if (options_.contour_weight > 0) problem.added = &added;
   held_.clear();
   repulsion_.clear();
-  Points at = leg.nodes;
+  Points at = now.nodes;
   for (int k = 0; k < options_.outer_iterations; ++k) {
     Stopwatch watch;
     Exemption exemption = find_exemption(world_, at);
-    self_crossings_.switch_off(leg.nodes, nodes1, exemption);
+    self_crossings_.switch_off(now.nodes, nodes1, exemption);
     if (k == 0) exemption_ = exemption;
-    find_pairs(leg.nodes, at, nodes1, h, exemption, report);
-    if (k == 0 && !repulsion_.empty()) bear(repulsion_, inverse_mass_, -solver_.gradient(problem, x));
+    find_pairs(now.nodes, at, nodes1, h, exemption, report);
+    if (k == 0 && !repulsion_.empty()) set_load_stiffness(repulsion_, inverse_mass_, -solver_.gradient(problem, x));
     std::vector<ContactTerm> terms = pushes(contour, at.topRows(n), h);
     terms.insert(terms.end(), repulsion_.begin(), repulsion_.end());
     report.seconds.response += watch.lap();
@@ -153,17 +154,17 @@ bool IcmStepper::substep(const Leg& leg, const Points& pins, const Drive& drive,
     at = nodes1;
     at.topRows(n) = x;
     lag_normal_forces(repulsion_, x);
-    stiffen(repulsion_, x);
+    raise_stiffness(repulsion_, x);
   }
   report.collision.contacts = static_cast<int>(repulsion_.size());
   nodes1.topRows(n) = x;
   return true;
 }
 
-StepReport IcmStepper::step(const State& from, const Drive& drive, double dt, State& to) {
+StepReport IcmStepper::step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) {
   restore_standard_arithmetic();
   if (const auto restart = restart_of(from, drive, options_.substeps.value_or(options_.max_substeps))) {
-    StepReport report = step(restart->state, drive, dt, to);
+    StepReport report = step(restart->state, drive, dt, to, extras);
     report.collision.jumped = restart->jumped;
     return report;
   }
@@ -172,36 +173,32 @@ StepReport IcmStepper::step(const State& from, const Drive& drive, double dt, St
   const int n = scene_.surface.vertex_count;
   const int planned =
       options_.substeps ? *options_.substeps : substeps_for_speed(from, drive, dt, edge_length_, options_.max_substeps);
-  Leg leg{gather_nodes(from.x, from.obstacles), from.v};
+  SubstepState now{gather_nodes(from.x, from.obstacles), from.v};
   const Points wanted = gather_nodes(from.x, drive.obstacles);
-  if (has_contact() && !from.clean && leg.nodes.allFinite())
+  if (has_contact() && !from.clean && now.nodes.allFinite())
     report.collision.pairs_before = audit_positions(scene_, from.x, from.obstacles).intersecting_pairs();
   for (int s = 0; s < planned; ++s) {
     const double part = 1.0 / (planned - s);  // of what is left of the frame
     const double h = dt / planned;
-    Points next = leg.nodes + part * (wanted - leg.nodes);
-    next.topRows(n) = leg.nodes.topRows(n) + h * leg.v;
-    const Points held = pinned_rows(scene_, leg.nodes);
-    if (!leg.nodes.allFinite() || !substep(leg, held + part * (drive.pins - held), drive, h, next, report)) {
+    Points next = now.nodes + part * (wanted - now.nodes);
+    next.topRows(n) = now.nodes.topRows(n) + h * now.v;
+    const Points held = pinned_rows(scene_, now.nodes);
+    if (!now.nodes.allFinite() || !substep(now, held + part * (drive.pins - held), drive, h, next, report)) {
       report.status = StepStatus::rejected;
       report.reason = Reason::not_finite;
       return report;
     }
     ++report.substeps;
-    leg.v = (next.topRows(n) - leg.nodes.topRows(n)) / h;
+    now.v = (next.topRows(n) - now.nodes.topRows(n)) / h;
     if (has_contact()) {
       Stopwatch watch;
-      report.collision.passed_through += passed_through(world_, exemption_, leg.nodes, next, audited_);
+      report.collision.passed_through += passed_through(world_, exemption_, now.nodes, next, audited_);
       report.seconds.audit += watch.lap();
     }
     if (s == 0) report.collision.left_alone = exemption_.cloth_vertices();
-    leg.nodes = std::move(next);
+    now.nodes = std::move(next);
   }
-  report.status = StepStatus::accepted;
-  arrive(from, leg, dt, to);
-  to.obstacles = drive.obstacles;
-  to.pinched = false;
-  audit_state(scene_, drive, to, audited_, report);
+  finish_step(scene_, from, drive, dt, {now.nodes.topRows(n), std::move(now.v), drive.obstacles}, audited_, to, report);
   return report;
 }
 

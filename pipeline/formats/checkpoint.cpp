@@ -28,46 +28,50 @@ void write_all(const h5::File& file, const std::string& name, const std::vector<
   for (std::size_t k = 0; k < all.size(); ++k) h5::write_points(file, numbered(name, k), all[k]);
 }
 
-void write_rest(const h5::File& file, const Rest& rest) {
-  file.write_constant("rest_seconds", H5T_NATIVE_DOUBLE, {static_cast<hsize_t>(rest.seconds.size())},
-                      rest.seconds.data());
-  Points air(2, 3);
-  air << rest.wind.transpose(), rest.acceleration.transpose();
-  h5::write_points(file, "rest_air", air);
-  h5::write_points(file, "rest_place", rest.place);
-}
-
-Rest read_rest(const h5::File& file) {
-  Rest rest;
-  rest.seconds.resize(file.shape(file.open_dataset("rest_seconds").id()).at(0));
-  if (!rest.seconds.empty()) file.read_all("rest_seconds", H5T_NATIVE_DOUBLE, rest.seconds.data());
-  const Points air = read_points(file, "rest_air");
-  rest.place = read_points(file, "rest_place");
-  rest.wind = row(air, 0);
-  rest.acceleration = row(air, 1);
-  return rest;
-}
-
-void write_memory(const h5::File& file, const std::vector<MemoryBlock>& memory) {
-  if (memory.empty()) return;
+void write_memory(const h5::File& file, const Memory& memory) {
   std::vector<std::string> names;
-  std::vector<Points> blocks;
+  std::vector<int> rows_of, positions;
   for (const MemoryBlock& block : memory) {
+    file.write_constant(numbered("memory_", names.size()), H5T_NATIVE_DOUBLE,
+                        {static_cast<hsize_t>(block.rows.rows()), static_cast<hsize_t>(block.rows.cols())},
+                        block.rows.data());
     names.push_back(block.name);
-    blocks.push_back(block.rows);
+    rows_of.push_back(static_cast<int>(block.rows_of));
+    positions.push_back(block.positions);
   }
-  file.write_texts("memory_names", names);
-  write_all(file, "memory_", blocks);
+  if (!names.empty()) file.write_texts("memory_names", names);
+  h5::write_integers(file, "memory_rows_of", rows_of);
+  h5::write_integers(file, "memory_positions", positions);
 }
 
-std::vector<MemoryBlock> read_memory(const h5::File& file) {
-  if (!file.has("memory_names")) return {};
+std::vector<int> read_integers(const h5::File& file, const std::string& name) {
+  std::vector<int> values(file.shape(file.open_dataset(name).id()).at(0));
+  if (!values.empty()) file.read_all(name, H5T_NATIVE_INT32, values.data());
+  return values;
+}
+
+MemoryRows read_rows(const h5::File& file, const std::string& name) {
+  const std::vector<hsize_t> shape = file.shape(file.open_dataset(name).id());
+  if (shape.size() != 2) throw Error(name + " has an unexpected shape", file.path().string(), "run without --resume");
+  MemoryRows rows(static_cast<Eigen::Index>(shape[0]), static_cast<Eigen::Index>(shape[1]));
+  if (rows.size() > 0) file.read_all(name, H5T_NATIVE_DOUBLE, rows.data());
+  return rows;
+}
+
+Memory read_memory(const h5::File& file) {
+  if (!file.has("memory_rows_of"))
+    throw Error("the checkpoint is of an earlier version of this program", file.path().string(),
+                "run without --resume");
+  const std::vector<int> rows_of = read_integers(file, "memory_rows_of");
+  if (rows_of.empty()) return {};
   const std::vector<std::string> names = file.read_texts("memory_names");
-  const std::vector<Points> blocks = read_all(file, "memory_");
-  if (names.size() != blocks.size())
+  const std::vector<int> positions = read_integers(file, "memory_positions");
+  if (names.size() != rows_of.size() || names.size() != positions.size())
     throw Error("memory_names has an unexpected shape", file.path().string(), "run without --resume");
-  std::vector<MemoryBlock> memory;
-  for (std::size_t k = 0; k < names.size(); ++k) memory.push_back({names[k], blocks[k]});
+  Memory memory;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    memory.push_back(
+        {names[k], read_rows(file, numbered("memory_", k)), static_cast<RowsOf>(rows_of[k]), positions[k] != 0});
   return memory;
 }
 
@@ -87,12 +91,6 @@ void write_checkpoint(const std::filesystem::path& path, const State& state, con
     h5::write_points(file, "x", state.x);
     h5::write_points(file, "v", state.v);
     write_all(file, "obstacle_", state.obstacles);
-    h5::write_points(file, "last_clean_x", state.last_clean.x);
-    write_all(file, "last_clean_obstacle_", state.last_clean.obstacles);
-    file.write_constant("history_h", H5T_NATIVE_DOUBLE, {1}, &state.history.h);
-    h5::write_points(file, "history_x", state.history.x);
-    h5::write_points(file, "history_v", state.history.v);
-    write_rest(file, state.rest);
     h5::write_integers(file, "cut_out", state.cut_out);
     write_memory(file, state.memory);
     file.close();
@@ -124,14 +122,8 @@ State read_checkpoint(const std::filesystem::path& path, const std::string& conf
   state.x = read_points(file, "x");
   state.v = read_points(file, "v");
   state.obstacles = read_all(file, "obstacle_");
-  state.last_clean = {read_points(file, "last_clean_x"), read_all(file, "last_clean_obstacle_")};
-  file.read_all("history_h", H5T_NATIVE_DOUBLE, &state.history.h);
-  state.history.x = read_points(file, "history_x");
-  state.history.v = read_points(file, "history_v");
-  state.rest = read_rest(file);
   state.memory = read_memory(file);
-  state.cut_out.resize(file.shape(file.open_dataset("cut_out").id()).at(0));
-  if (!state.cut_out.empty()) file.read_all("cut_out", H5T_NATIVE_INT32, state.cut_out.data());
+  state.cut_out = read_integers(file, "cut_out");
   return state;
 }
 

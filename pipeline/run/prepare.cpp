@@ -11,7 +11,7 @@ bool prepare(Setup& setup, const std::function<bool()>& stop, Progress* progress
   const int frames = -setup.initial.frame;
   if (frames <= 0) return true;
   const Clock::time_point started = Clock::now();
-  const auto stepper = make_conventional_stepper(setup.scene, {});
+  const auto stepper = make_recovering_conventional_stepper(setup.scene);
   State state = setup.initial;
   bool stopped = false;
   if (progress) progress->begin(0, frames, "draping, frame");
@@ -31,9 +31,7 @@ bool prepare(Setup& setup, const std::function<bool()>& stop, Progress* progress
                                audit.inside_vertices, state.v.rowwise().norm().maxCoeff());
   state.time = 0;
   state.v = setup.velocity;
-  state.last_clean = {};
-  state.history = {};
-  state.rest = {};
+  state.memory.clear();
   setup.initial = std::move(state);
   return true;
 }

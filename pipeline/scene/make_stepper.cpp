@@ -6,8 +6,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "learned/steppers/learned_stepper.hpp"
-#include "physics/steppers/cutting_stepper.hpp"
-#include "physics/steppers/resting_stepper.hpp"
+#include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/config/config.hpp"
 
 namespace selvedge {
@@ -24,8 +23,7 @@ namespace {
 
 MakeStepper maker_of(const Setup& setup) {
   const RunOptions& run = setup.run;
-  if (run.stepper == "conventional")
-    return [options = run.conventional](const Scene& scene) { return make_conventional_stepper(scene, options); };
+  if (run.stepper == "conventional") return conventional_maker(run.conventional);
   if (run.stepper == "icm") return [options = run.icm](const Scene& scene) { return make_icm_stepper(scene, options); };
   if (run.stepper == "learned")
     return [file = std::make_shared<const WeightFile>(read_learned_weights(setup)),
@@ -36,7 +34,7 @@ MakeStepper maker_of(const Setup& setup) {
 }
 
 void check_accepted(const Setup& setup, const StepperTraits& traits) {
-  if (traits.only_dt && std::abs(1 / setup.run.fps - *traits.only_dt) > 1e-9)
+  if (!traits.accepts(1 / setup.run.fps))
     throw Error(fmt::format("the stepper `{}` does not make {} frames a second", traits.name, setup.run.fps),
                 setup.file.string() + ": run.fps", fmt::format("give fps: {:.0f}", 1 / *traits.only_dt));
   if (!traits.may_leave_out_cloths && !setup.initial.cut_out.empty())
@@ -47,13 +45,10 @@ void check_accepted(const Setup& setup, const StepperTraits& traits) {
 }  // namespace
 
 std::unique_ptr<Stepper> make_stepper(const Setup& setup) {
-  const MakeStepper make = maker_of(setup);
-  std::unique_ptr<Stepper> whole = make(setup.scene);
-  const StepperTraits traits = whole->traits();
-  check_accepted(setup, traits);
-  if (setup.run.rest && traits.may_leave_out_cloths) whole = make_resting_stepper(setup.scene, make);
-  if (setup.initial.cut_out.empty()) return whole;
-  return make_cutting_stepper(setup.scene, make, std::move(whole));
+  std::unique_ptr<Stepper> stepper =
+      decorated(setup.scene, maker_of(setup), {setup.run.rest, !setup.initial.cut_out.empty()});
+  check_accepted(setup, stepper->traits());
+  return stepper;
 }
 
 }  // namespace selvedge

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "physics/steppers/conventional_stepper.hpp"
+#include "physics/steppers/decorated_stepper.hpp"
 #include "physics/steppers/resting_stepper.hpp"
 #include "tests/collision/sheets.hpp"
 
@@ -49,7 +49,7 @@ struct Run {
   double lag = 0;
 };
 
-inline std::unique_ptr<Stepper> conventional(const Scene& scene) { return make_conventional_stepper(scene, {}); }
+inline std::unique_ptr<Stepper> conventional(const Scene& scene) { return make_recovering_conventional_stepper(scene, {}); }
 
 // Drops the stepper, and with it all caches, every `renew` frames.
 inline Run run(const World& w, int frames, int renew = 1 << 30, const MakeStepper& make = conventional) {

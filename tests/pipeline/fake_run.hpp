@@ -96,7 +96,7 @@ class FallingStepper : public Stepper {
  public:
   explicit FallingStepper(int fails_at = 1 << 30) : fails_at_(fails_at) {}
   const StepperTraits& traits() const override { return traits_; }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to) override {
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override {
     StepReport report;
     report.by = "falling";
     report.iterations = 1;
