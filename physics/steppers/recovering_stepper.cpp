@@ -62,7 +62,7 @@ AddedTerm RecoveringStepper::added_term(const Parting& parting, const Drive& dri
   return added;
 }
 
-Exemption either(Exemption a, const Exemption& b) {
+Exemption both_of(Exemption a, const Exemption& b) {
   return {either(std::move(a.self), b.self), either(std::move(a.body), b.body), either(std::move(a.off), b.off)};
 }
 
@@ -85,7 +85,7 @@ StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive,
   start.x = nodes.topRows(v.rows());
   start.v = v;
   if (start.x != from.x) forget_motion(start.memory);
-  const Exemption left_alone = extras.left_alone ? either(parting.left, *extras.left_alone) : parting.left;
+  const Exemption left_alone = extras.left_alone ? both_of(parting.left, *extras.left_alone) : parting.left;
   StepExtras all = extras;
   all.left_alone = &left_alone;
   if (!parting.gained.empty() || !parting.carried.empty())
