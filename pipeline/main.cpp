@@ -9,7 +9,7 @@
 #include "pipeline/config/config.hpp"
 #include "pipeline/host/process_threads.hpp"
 #include "pipeline/host/version.hpp"
-#include "pipeline/scene/run_options.hpp"
+#include "pipeline/scene/kinds.hpp"
 
 using namespace selvedge;
 
@@ -33,7 +33,7 @@ void scene_options(CLI::App& command, SceneArguments& arguments) {
   command.add_option("scene", arguments.scene, "scene file (YAML)")->required();
   command.add_option("--set", arguments.overrides, "key=value instead of the scene's, dotted keys")
       ->allow_extra_args(false);
-  command.add_option("--stepper", arguments.stepper, joined(known_steppers()));
+  command.add_option("--stepper", arguments.stepper, joined(known_kinds().names()));
   command.add_option("--weights", arguments.weights, "weight file of the stepper `learned`");
 }
 

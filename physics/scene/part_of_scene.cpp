@@ -143,8 +143,12 @@ State state_of(const PartOfScene& part, const State& whole) {
 }
 
 Drive drive_of(const PartOfScene& part, const Drive& whole) {
-  return {rows_of(whole.pins, part.pins), whole.obstacles, whole.wind, whole.acceleration,
-          whole.worn.rows() == 0 ? Points() : rows_of(whole.worn, part.vertices)};
+  return {rows_of(whole.pins, part.pins),
+          whole.obstacles,
+          whole.wind,
+          whole.acceleration,
+          whole.worn.rows() == 0 ? Points() : rows_of(whole.worn, part.vertices),
+          whole.bodies};
 }
 
 void put(const PartOfScene& part, const State& state, State& whole) {

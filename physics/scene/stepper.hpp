@@ -25,6 +25,15 @@ struct State {
   Memory memory;                  // each block is read by its owner alone
 };
 
+// A body at the end of a step, as the scene has it.
+struct BodyFrame {
+  Eigen::VectorXd shape;            // coefficients of its model
+  Points rotations;                 // one row a joint: axis times angle [rad], relative to the parent
+  Vec3 translation = Vec3::Zero();  // of the pose [m]
+  Points joints;                    // where they are [m]
+  bool is_body() const { return joints.rows() > 0; }
+};
+
 // What the world imposes on a step, given at the step's END.
 struct Drive {
   Points pins;                       // one row a Scene::pins entry
@@ -33,6 +42,7 @@ struct Drive {
   Vec3 acceleration = Vec3::Zero();  // gravity [m/s2]
   Points worn;                       // one row a vertex: where the body that wears it takes it without forces, not a
                                      // number where none does; empty where nothing is worn
+  std::vector<BodyFrame> bodies;     // one an obstacle, without joints where it is no body; empty: there is none
 };
 
 enum class StepStatus { not_run, accepted, rejected };
