@@ -1,8 +1,8 @@
 #include "collision/contact/resolve.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <map>
+#include <set>
 
 #include "collision/contact/resolution.hpp"
 
@@ -54,6 +54,14 @@ double friction_of(const Resolution& r, const NodePair& pair) {
   return obstacle ? r.options.friction : r.options.self_friction;
 }
 
+int free_nodes(const Resolution& r, std::span<Impact* const> impacts) {
+  std::set<int> nodes;
+  for (const Impact* impact : impacts)
+    for (const int node : impact->pair.nodes)
+      if (r.is_free(node)) nodes.insert(node);
+  return static_cast<int>(nodes.size());
+}
+
 void mark_free(Resolution& r, const Impact& impact) {
   for (const int node : impact.pair.nodes)
     if (r.is_free(node)) r.moved[node] = 1;
@@ -62,11 +70,7 @@ void mark_free(Resolution& r, const Impact& impact) {
 void impulse_round(Resolution& r, std::vector<Impact> impacts) {
   std::stable_sort(impacts.begin(), impacts.end(), [](const Impact& a, const Impact& b) { return a.time < b.time; });
   for (Impact& impact : impacts) {
-    const std::array<Vec3, 4> before = corners(impact.pair, r.x1);
     apply_impulse(impact, r.inverse_mass, r.x0, r.x1);
-    for (std::size_t i = 0; i < 4; ++i)
-      r.report.largest_impulse =
-          std::max(r.report.largest_impulse, (row(r.x1, impact.pair.nodes[i]) - before[i]).norm());
     mark_free(r, impact);
   }
   r.report.impulses += static_cast<int>(impacts.size());
@@ -76,14 +80,6 @@ void impulse_round(Resolution& r, std::vector<Impact> impacts) {
 int zone_of(Resolution& r, const Impact& impact) {
   const auto& nodes = impact.pair.nodes;
   return r.zones.root(*std::find_if(nodes.begin(), nodes.end(), [&](int n) { return r.is_free(n); }));
-}
-
-int free_nodes(const Resolution& r, std::span<Impact* const> impacts) {
-  std::vector<int> nodes;
-  for (const Impact* impact : impacts)
-    std::ranges::copy_if(impact->pair.nodes, std::back_inserter(nodes), [&r](int node) { return r.is_free(node); });
-  std::ranges::sort(nodes);
-  return static_cast<int>(std::unique(nodes.begin(), nodes.end()) - nodes.begin());
 }
 
 // A zone whose nodes are all free may go on as one rigid body; one that leans on something prescribed may not.
@@ -124,11 +120,11 @@ void zone_round(Resolution& r, const std::vector<Impact>& fresh) {
     if (const auto zone = touched.find(zone_of(r, impact)); zone != touched.end()) zone->second.push_back(&impact);
   r.violation = 0;
   for (auto& [root, impacts] : touched) {
+    r.report.largest_zone = std::max(r.report.largest_zone, free_nodes(r, impacts));
     if (!r.options.rigid_zones || !rigidify(r, impacts))
       r.violation = std::max(r.violation, project_zone(impacts, r.inverse_mass, r.x0, r.x1, r.options.zone_sweeps,
                                                        0.1 * r.options.separation));
     for (const Impact* impact : impacts) mark_free(r, *impact);
-    r.report.largest_zone = std::max(r.report.largest_zone, free_nodes(r, impacts));
   }
   r.report.zones += static_cast<int>(touched.size());
   r.report.response += r.watch.lap();
@@ -153,7 +149,7 @@ ResolveReport resolve(PairSearch& search, const ContactWorld& world, const Eigen
                {},           std::vector<char>(world.node_count, 1),
                {},           DisjointSets(world.node_count)};
   std::vector<Impact> impacts = new_impacts(r);
-  r.report.first_impacts = static_cast<int>(impacts.size());
+  r.report.found = static_cast<int>(impacts.size());
   bool contradictory = false;  // zones ask for what cannot be, and more rounds do not change that
   for (int round = 0; !impacts.empty() && !contradictory && round < options.impulse_rounds + options.zone_rounds;
        ++round) {

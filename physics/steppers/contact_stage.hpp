@@ -31,8 +31,8 @@ void add(const ResolveReport&, StepReport&);
 
 // Bridson's response by itself, to the straight motion of a proposal: the cloth goes from the state to x, obstacles to
 // `obstacles`, and both are overwritten with where they end. With `last_resort` in the options the motion is then free
-// of impacts but for what is left alone; without it the report says whether it is. Its counts, the largest impulse and
-// the largest zone are what training gives up by (reference/learned.md, 1.6). `left_alone` may be null.
+// of impacts but for what is left alone; without it the report says whether it is. Its counts and
+// the largest zone say how hard that was. `left_alone` may be null.
 ResolveReport resolve_proposal(ContactStage&, const ResolveOptions&, const State& from, const Exemption* left_alone,
                                Points& x, std::vector<Points>& obstacles);
 
