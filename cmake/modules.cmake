@@ -47,8 +47,13 @@ function(selvedge_module name)
   list(REMOVE_ITEM sources ${parallel})
 
   add_library(selvedge_${name} STATIC ${sources})
-  target_include_directories(selvedge_${name} PUBLIC ${PROJECT_SOURCE_DIR})
-  target_link_libraries(selvedge_${name} PUBLIC ${module_PUBLIC} PRIVATE ${module_PRIVATE} selvedge_warnings)
+  add_library(selvedge::${name} ALIAS selvedge_${name})
+  # `<selvedge/...>` for those who build on it, as where it is installed.
+  target_include_directories(selvedge_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+    $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include> $<INSTALL_INTERFACE:include>)
+  target_compile_features(selvedge_${name} PUBLIC cxx_std_20)
+  target_link_libraries(selvedge_${name} PUBLIC ${module_PUBLIC}
+    PRIVATE ${module_PRIVATE} $<BUILD_INTERFACE:selvedge_warnings>)
   target_compile_options(selvedge_${name} PRIVATE ${module_OPTIONS})
   if(module_HEADERS OR module_OPTIONS)
     target_precompile_headers(selvedge_${name} PRIVATE ${SELVEDGE_COMMON_HEADERS} ${module_HEADERS})
