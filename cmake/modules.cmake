@@ -47,10 +47,13 @@ function(selvedge_module name)
   list(REMOVE_ITEM sources ${parallel})
 
   add_library(selvedge_${name} STATIC ${sources})
-  add_library(selvedge::${name} ALIAS selvedge_${name})
-  # `<selvedge/...>` for those who build on it, as where it is installed.
   target_include_directories(selvedge_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-    $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include> $<INSTALL_INTERFACE:include>)
+    $<INSTALL_INTERFACE:include>)
+  # Who builds on it names headers as where it is installed: <selvedge/...>.
+  add_library(selvedge_${name}_user INTERFACE)
+  target_include_directories(selvedge_${name}_user INTERFACE ${PROJECT_BINARY_DIR}/include)
+  target_link_libraries(selvedge_${name}_user INTERFACE selvedge_${name})
+  add_library(selvedge::${name} ALIAS selvedge_${name}_user)
   target_compile_features(selvedge_${name} PUBLIC cxx_std_20)
   target_link_libraries(selvedge_${name} PUBLIC ${module_PUBLIC}
     PRIVATE ${module_PRIVATE} $<BUILD_INTERFACE:selvedge_warnings>)
