@@ -18,7 +18,7 @@ struct StepperKind {
   // name and must outlive every setup that is read with it.
   const Section* options = nullptr;
   // The maker of bare steppers (decorated_stepper.hpp) of a scene; `given` is the section as the file has it.
-  std::function<MakeStepper(const Setup&, const Config& given)> maker;
+  std::function<MakeStepper(const Setup&, const Config& given)> maker = {};
 };
 
 // The kinds that scene files may name.

@@ -118,6 +118,7 @@ TEST_CASE("conventional stepper: a good guess ends where its own does, in fewer 
   w.scene.pins = {0, 8};
   w.drive.pins = w.state.x({0, 8}, Eigen::all);
   ConventionalOptions options;
+  options.substeps = 1;
   options.implicit_euler.velocity_tolerance = 1e-7;
   options.implicit_euler.relative_tolerance = 0;
   options.implicit_euler.max_newton = 50;
@@ -133,7 +134,7 @@ TEST_CASE("conventional stepper: a good guess ends where its own does, in fewer 
   const StepReport warm = stepper->step(from, w.drive, dt, guessed, extras);
   CHECK(warm.iterations < plain.iterations);
   CHECK((guessed.x - own.x).rowwise().norm().maxCoeff() < 1e-5);
-  const Points far = own.x.array() + 1e3;  // its own guess is better
+  const Points far = (own.x.array() + 1e3).matrix();  // its own guess is better
   extras.guess = &far;
   stepper->step(from, w.drive, dt, guessed, extras);
   CHECK((guessed.x - own.x).rowwise().norm().maxCoeff() < 1e-5);

@@ -43,8 +43,8 @@ Setup scene_for(const std::string& kind, const Folder& folder, std::vector<std::
   overrides.push_back("run.stepper=" + kind);
   return read_setup(
       fake::write(folder, "scene.yaml",
-                  "cloths: [{name: sheet, rectangle: {size: [0.3, 0.3], resolution: 6}, rotate: [90, 0, 0], translate: "
-                  "[0, 0.14, 0], pins: [{corner: top_left}]}]\n"
+                  "cloths: [{name: sheet, rectangle: {size: [0.3, 0.3], resolution: 6}, translate: [0, 0.3, 0], pins: "
+                  "[{group: [top_left]}]}]\n"
                   "obstacles: [{name: ball, sphere: {radius: 0.1, edge: 0.04}, motion: {keyframes: [{time: 0}, {time: "
                   "1, translate: [0.3, 0, 0]}]}}]\ncontact: {thickness: 4 mm}\nrun: {fps: 30}\n"),
       overrides);
