@@ -5,7 +5,8 @@
 #include "collision/geometry/error.hpp"
 #include "tests/collision/sheets.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_make_scene {
+
 using Catch::Matchers::Contains;
 
 TEST_CASE("make_scene: cloths are numbered on end, with their own materials and metrics", "[make_scene]") {
@@ -60,3 +61,5 @@ TEST_CASE("make_scene: arrays that do not fit are refused, and the scene stays a
   CHECK_THROWS_AS(add_cloth(scene, broken, a.triangles), Error);
   CHECK((scene.cloths.empty() && scene.surface.vertex_count == 0 && scene.obstacles.empty()));
 }
+
+}  // namespace selvedge::test_make_scene

@@ -5,7 +5,7 @@
 #include "physics/scene/part_of_scene.hpp"
 #include "tests/physics/worlds.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_memory {
 
 namespace {
 
@@ -92,3 +92,5 @@ TEST_CASE("memory: blocks are found by name and size, replaced by owner, and los
   CHECK(joined_rows(bodies).bottomRows(2) == bodies[2]);
   CHECK(split_rows(joined_rows(bodies), bodies) == bodies);
 }
+
+}  // namespace selvedge::test_memory

@@ -3,7 +3,8 @@
 #include "physics/steppers/contact_stage.hpp"
 #include "tests/physics/worlds.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_finish_step {
+
 using testing::World;
 
 namespace {
@@ -134,3 +135,5 @@ TEST_CASE("resolve_proposal: zones are counted, and with impulses alone the rest
   CHECK(report.zones > 0);
   CHECK((report.largest_zone > 4 && report.largest_zone <= 50));
 }
+
+}  // namespace selvedge::test_finish_step

@@ -6,7 +6,8 @@
 #include "physics/steppers/icm_stepper.hpp"
 #include "tests/physics/worlds.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_recovering_stepper {
+
 using testing::World;
 
 namespace {
@@ -170,3 +171,5 @@ TEST_CASE("conventional stepper: what it is told to leave alone goes through, an
   stepper->step(w.state, w.drive, dt, pulled, extras);
   CHECK(pulled.x(0, 0) > held.x(0, 0) + 1e-3);
 }
+
+}  // namespace selvedge::test_recovering_stepper

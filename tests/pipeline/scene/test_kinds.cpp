@@ -9,7 +9,8 @@
 #include "pipeline/scene/make_stepper.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_kinds {
+
 using Catch::Matchers::Contains;
 using fake::Folder;
 
@@ -148,3 +149,5 @@ TEST_CASE("kinds: memory of a stepper rests with its cloth, goes into a checkpoi
   }
   CHECK(last(end.memory, "counting.steps") == 24);
 }
+
+}  // namespace selvedge::test_kinds

@@ -11,7 +11,8 @@
 #include "tests/pipeline/files.hpp"
 
 // What stepper.hpp asks of every stepper, of every kind that a scene file may name.
-using namespace selvedge;
+namespace selvedge::test_known_steppers {
+
 using Catch::Matchers::Contains;
 using fake::Folder;
 
@@ -19,17 +20,17 @@ namespace {
 
 constexpr double dt = 1.0 / 30;
 
-bool same_bits(const MemoryRows& a, const MemoryRows& b) {
+bool same_rows(const MemoryRows& a, const MemoryRows& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() &&
          (a.size() == 0 || std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0);
 }
 
 bool same(const State& a, const State& b) {
-  bool equal = a.time == b.time && a.frame == b.frame && same_bits(a.x, b.x) && same_bits(a.v, b.v) &&
-               same_bits(joined_rows(a.obstacles), joined_rows(b.obstacles)) && a.pinched == b.pinched &&
+  bool equal = a.time == b.time && a.frame == b.frame && same_rows(a.x, b.x) && same_rows(a.v, b.v) &&
+               same_rows(joined_rows(a.obstacles), joined_rows(b.obstacles)) && a.pinched == b.pinched &&
                a.clean == b.clean && a.cut_out == b.cut_out && a.memory.size() == b.memory.size();
   for (std::size_t k = 0; equal && k < a.memory.size(); ++k)
-    equal = a.memory[k].name == b.memory[k].name && same_bits(a.memory[k].rows, b.memory[k].rows);
+    equal = a.memory[k].name == b.memory[k].name && same_rows(a.memory[k].rows, b.memory[k].rows);
   return equal;
 }
 
@@ -184,3 +185,5 @@ TEST_CASE("known steppers: what the traits do not accept is refused", "[known_st
     CHECK_THROWS_AS(stepper->step(setup.initial, setup.drive_at(1.0 / 60), 1.0 / 60, to), Error);
   }
 }
+
+}  // namespace selvedge::test_known_steppers
