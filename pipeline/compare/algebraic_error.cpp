@@ -33,7 +33,7 @@ std::optional<AlgebraicError> algebraic_error(const Setup& setup, const State& s
   single.substeps = 1;
   const auto stepper = make_recovering_conventional_stepper(setup.scene, single);
   State from = start, to;
-  from.memory.clear();
+  forget_motion(from.memory);
   if (single.integrator == Integrator::bdf2) {
     if (!free_step(*stepper, from, setup.drive_at(from.time + dt), dt, to) || step_history(to).h != dt) return {};
     from = to;

@@ -80,7 +80,7 @@ bool run_reference(const Setup& setup, const CompareScene& scene, const Stop& st
     for (std::size_t k = 0; k < frames.size(); ++k) {
       if (state.frame == frames[k]) {
         reference.states[k].from = state;
-        reference.states[k].from.memory.clear();
+        forget_motion(reference.states[k].from.memory);
       }
       if (state.frame == frames[k] + scene.horizon) reference.states[k].target = state.x;
     }
