@@ -42,7 +42,7 @@ struct StepWork {
 };
 
 enum class Attempt { first, pinched, last_resort };  // pinched: zones did not converge, but perhaps obstacles yield
-enum class Outcome { clean, impact_too_deep, zones_not_converged, not_finite };
+enum class SubstepOutcome { clean, impact_too_deep, zones_not_converged, not_finite };
 
 // A substep under way.
 struct Substep {
@@ -99,8 +99,8 @@ class ConventionalStepper final : public Stepper {
                            const Points& x);
   bool torn(const StepProblem&, const Points& x, const Points& after);
   void stop_short(StepWork&, const Points& wanted, Substep&);
-  Outcome respond(StepWork&, Substep&, const StepProblem&, const NewtonReport&, const Contacts&, Points& x);
-  Outcome substep(StepWork&, Substep&);
+  SubstepOutcome respond(StepWork&, Substep&, const StepProblem&, const NewtonReport&, const Contacts&, Points& x);
+  SubstepOutcome substep(StepWork&, Substep&);
   Substep begin_substep(const StepWork&, const SubstepState&, const Stretch& target, Attempt, double time_left) const;
   void end_substep(StepWork&, Substep&&, SubstepState&);
   bool advance(StepWork&, SubstepState&, Stretch whole);
@@ -261,8 +261,8 @@ void ConventionalStepper::stop_short(StepWork& work, const Points& wanted, Subst
 }
 
 // Static friction, then Bridson's response, from the solved positions x.
-Outcome ConventionalStepper::respond(StepWork& work, Substep& s, const StepProblem& problem, const NewtonReport& newton,
-                                     const Contacts& contacts, Points& x) {
+SubstepOutcome ConventionalStepper::respond(StepWork& work, Substep& s, const StepProblem& problem,
+                                            const NewtonReport& newton, const Contacts& contacts, Points& x) {
   const int n = scene_.surface.vertex_count;
   {
     const Timed timed(work.report.seconds.response);
@@ -278,38 +278,39 @@ Outcome ConventionalStepper::respond(StepWork& work, Substep& s, const StepProbl
   const ResolveReport resolved =
       resolve(contact_.search, contact_.world, s.inverse_mass, options, s.start.nodes, s.nodes, contact_.path);
   add(resolved, work.report);
-  if (!s.nodes.allFinite()) return Outcome::not_finite;
-  if (!resolved.clean && !options.last_resort) return Outcome::zones_not_converged;
+  if (!s.nodes.allFinite()) return SubstepOutcome::not_finite;
+  if (!resolved.clean && !options.last_resort) return SubstepOutcome::zones_not_converged;
   if (resolved.impulses > 0 && torn(problem, x, s.nodes.topRows(n))) {
-    if (!options.last_resort) return Outcome::zones_not_converged;
+    if (!options.last_resort) return SubstepOutcome::zones_not_converged;
     stop_short(work, wanted, s);
   }
   if (!newton.converged) work.report.reason = Reason::not_converged;
   s.v = (s.nodes.topRows(n) - *problem.x0) / s.h;
   s.touched = s.touched || !contacts.terms.empty() || resolved.impulses + resolved.zones > 0;
-  return Outcome::clean;
+  return SubstepOutcome::clean;
 }
 
 // Bridson, Fedkiw and Anderson 2002: an implicit solve that sees what is near, then impulses and zones for what meets.
-Outcome ConventionalStepper::substep(StepWork& work, Substep& s) {
+SubstepOutcome ConventionalStepper::substep(StepWork& work, Substep& s) {
   const int n = scene_.surface.vertex_count;
   const bool smooth = continues_history(s) && !work.extras.added;
   const StepStart start{s.h, s.start.nodes.topRows(n), s.start.v};
   const auto solve_smoothly = [&] { return solve_freely(work, s, bdf2_start(s.start.history, start.x, start.v)); };
   if (!has_contact())
-    return (smooth && solve_smoothly()) || solve_freely(work, s, start) ? Outcome::clean : Outcome::not_finite;
+    return (smooth && solve_smoothly()) || solve_freely(work, s, start) ? SubstepOutcome::clean
+                                                                        : SubstepOutcome::not_finite;
 
   const std::vector<Proximity> near = find_near(work, s);
   s.touched = !near.empty() || work.left_alone.any();
-  if (smooth && !s.touched && solve_smoothly()) return Outcome::clean;
-  if (!yield_obstacles(work, near, s)) return Outcome::zones_not_converged;
+  if (smooth && !s.touched && solve_smoothly()) return SubstepOutcome::clean;
+  if (!yield_obstacles(work, near, s)) return SubstepOutcome::zones_not_converged;
   const AddedTerm added = added_term(work, start.x, s.h);
   StepProblem problem = problem_of(work, start, s.pins, added);
   Points x = s.nodes.topRows(n);
   Contacts contacts = loaded_contacts(work, s, near, problem, x);
   const NewtonReport newton = solve_with_contact(work, s, problem, x, contacts);
-  if (!newton.finite) return Outcome::not_finite;
-  if (s.parts > 1) return Outcome::impact_too_deep;
+  if (!newton.finite) return SubstepOutcome::not_finite;
+  if (s.parts > 1) return SubstepOutcome::impact_too_deep;
   work.report.collision.contacts = static_cast<int>(contacts.terms.size());
   {
     const Timed timed(work.report.seconds.solve);
@@ -370,18 +371,18 @@ bool ConventionalStepper::advance(StepWork& work, SubstepState& now, Stretch who
       s.emplace(begin_substep(work, now, target, kind, time_left));
       return substep(work, *s);
     };
-    Outcome outcome = attempt(target.halvings == 0 ? Attempt::last_resort : Attempt::first);
-    if (outcome == Outcome::zones_not_converged && !work.look_for_room && features_.obstacles) {
+    SubstepOutcome outcome = attempt(target.halvings == 0 ? Attempt::last_resort : Attempt::first);
+    if (outcome == SubstepOutcome::zones_not_converged && !work.look_for_room && features_.obstacles) {
       target.parts = 1;
       outcome = attempt(Attempt::pinched);
     }
-    if (outcome == Outcome::not_finite) return false;
-    if (outcome == Outcome::clean) {
+    if (outcome == SubstepOutcome::not_finite) return false;
+    if (outcome == SubstepOutcome::clean) {
       end_substep(work, *std::move(s), now);
       time_left -= target.h;
       continue;
     }
-    const bool halve = outcome == Outcome::zones_not_converged;
+    const bool halve = outcome == SubstepOutcome::zones_not_converged;
     if (halve) ++work.report.collision.halved_substeps;
     const int count = halve ? 2 : s->parts;
     to_do.push_back({target.nodes, target.pins, target.h / count, count, target.halvings - halve, 1});
