@@ -405,6 +405,12 @@ int ConventionalStepper::planned_substeps(const State& from, const Drive& drive,
   return substeps_for_contact(fastest_past(touching, from, drive, dt), dt, edge_length_, options_.max_substeps);
 }
 
+StepReport not_finite(StepReport report) {
+  report.status = StepStatus::rejected;
+  report.reason = Reason::not_finite;
+  return report;
+}
+
 StepReport ConventionalStepper::step(const State& from, const Drive& drive, double dt, State& to,
                                      const StepExtras& extras) {
   restore_standard_arithmetic();
@@ -418,16 +424,13 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
   StepWork work(from, drive, extras, report);
   SubstepState now{gather_nodes(from.x, from.obstacles), from.v, step_history(from)};
   const Points wanted = gather_nodes(from.x, drive.obstacles);
+  if (!now.nodes.allFinite() || !now.v.allFinite()) return not_finite(report);
   if (has_contact()) begin_contact(work, now.nodes);
   if (work.left_alone.any()) now.history = {};
   const int planned = planned_substeps(from, drive, dt, now.nodes);
   // Cloth that left an obstacle no room will hardly do so now.
   const int halvings = from.pinched ? 0 : max_halvings, parts = options_.substeps ? 1 : options_.max_substeps / planned;
-  if (!advance(work, now, {wanted, drive.pins, dt / planned, planned, halvings, parts})) {
-    report.status = StepStatus::rejected;
-    report.reason = Reason::not_finite;
-    return report;
-  }
+  if (!advance(work, now, {wanted, drive.pins, dt / planned, planned, halvings, parts})) return not_finite(report);
   if (has_contact())
     add(catch_up(contact_.search, contact_.options, contact_.inverse_mass, wanted, now.nodes, contact_.path), report);
   StepEnd end{now.nodes.topRows(from.x.rows()), std::move(now.v), {}, blocks_of(now.history)};

@@ -137,7 +137,7 @@ TEST_CASE("known steppers: a step is taken back by doing nothing, and one that i
     CHECK(same(first, again));
 
     State broken = from;
-    broken.v(2, 1) = std::numeric_limits<double>::quiet_NaN();
+    broken.x(2, 1) = broken.v(2, 1) = std::numeric_limits<double>::quiet_NaN();
     const State before = broken;
     const StepReport report = stepper->step(broken, drive, dt, further);
     CHECK(report.status == StepStatus::rejected);
