@@ -12,22 +12,17 @@
 #include "physics/solve/contact_terms.hpp"
 #include "physics/steppers/contact_stage.hpp"
 #include "physics/steppers/finish_step.hpp"
+#include "physics/steppers/substep_solve.hpp"
 #include "physics/steppers/substeps.hpp"
 
 namespace selvedge {
 namespace {
 
-constexpr double first_tolerance = 8;       // times that of a solve, where it only finds impacts and normal forces
-constexpr double friction_tolerance = 0.2;  // the same with friction: sticking shows in small velocities
-constexpr double contact_iterations = 0.5;  // times those of a solve that another one goes on from
-constexpr int max_passes = 6;               // solves after the first one
-constexpr int pinched_passes = 3;           // the same where there is no room: no stiffness makes any
-constexpr double normal_change = 0.05;      // solves go on while what bounds friction changes by more, relative
-constexpr int max_halvings = 2;             // of a substep whose zones do not converge, before the last resort
-constexpr int pinched_rounds = 4;           // of zones, where there is no room
-constexpr int hopeful_rounds = 12;          // of zones in a substep that may still be halved
-constexpr double tearing = 10;              // a response may raise the potential to so many times the energy there is
-constexpr double kept_motion = 0.5;         // of that to the first impact, where everything stops short
+constexpr int max_halvings = 2;      // of a substep whose zones do not converge, before the last resort
+constexpr int pinched_rounds = 4;    // of zones, where there is no room
+constexpr int hopeful_rounds = 12;   // of zones in a substep that may still be halved
+constexpr double tearing = 10;       // a response may raise the potential to so many times the energy there is
+constexpr double kept_motion = 0.5;  // of that to the first impact, where everything stops short
 
 // What belongs to one step.
 struct StepWork {
@@ -41,22 +36,7 @@ struct StepWork {
   const Exemption& left_alone = extras.left_alone ? *extras.left_alone : nothing;
 };
 
-enum class Attempt { first, pinched, last_resort };  // pinched: zones did not converge, but perhaps obstacles yield
 enum class SubstepOutcome { clean, impact_too_deep, zones_not_converged, not_finite };
-
-// A substep under way.
-struct Substep {
-  const SubstepState& start;
-  const Points& pins;  // at its end, one row a Scene::pins entry
-  double h;            // [s]
-  Attempt attempt;
-  int max_parts;                      // that it may be cut into
-  Points nodes, v = {};               // at its end; at first obstacles where they are to be, and the cloth at a guess
-  bool touched = false;               // something was near, met, or left alone
-  bool pinched = false;               // obstacles leave the cloth no room
-  int parts = 1;                      // that it should be cut into
-  Eigen::VectorXd inverse_mass = {};  // of all nodes, those that yield included
-};
 
 // Substeps still to be taken, of one length: to where `nodes` has the obstacles and to `pins`.
 struct Stretch {
@@ -74,9 +54,8 @@ class ConventionalStepper final : public Stepper {
         options_(options),
         features_(features_of(scene)),
         contact_(scene),
-        solver_(scene, options.implicit_euler),
+        solve_(scene, options.implicit_euler, contact_),
         edge_length_(mean_edge_length(scene)),
-        deep_(deep_impact(scene)),
         traits_{.name = "conventional",
                 .past_frames = options.integrator == Integrator::bdf2 ? 1 : 0,
                 .honours_extras = true,
@@ -88,20 +67,15 @@ class ConventionalStepper final : public Stepper {
  private:
   bool has_contact() const { return features_.self_contact || features_.obstacles; }
   StepProblem problem_of(const StepWork&, const StepStart&, const Points& pins, const AddedTerm&) const;
-  NewtonReport solve(const StepProblem&, Points& x, StepReport&);
-  std::vector<Impact> impacts(const Points& nodes0, const Points& nodes1, StepReport&);
-  NewtonReport solve_with_contact(StepWork&, Substep&, StepProblem&, Points& x, Contacts&);
   bool continues_history(const Substep&) const;
   bool solve_freely(StepWork&, Substep&, const StepStart&);
-  std::vector<Proximity> find_near(StepWork&, const Substep&);
   bool yield_obstacles(StepWork&, const std::vector<Proximity>&, Substep&);
-  Contacts loaded_contacts(StepWork&, const Substep&, const std::vector<Proximity>&, const StepProblem&,
-                           const Points& x);
   bool torn(const StepProblem&, const Points& x, const Points& after);
   void stop_short(StepWork&, const Points& wanted, Substep&);
   SubstepOutcome respond(StepWork&, Substep&, const StepProblem&, const NewtonReport&, const Contacts&, Points& x);
   SubstepOutcome substep(StepWork&, Substep&);
-  Substep begin_substep(const StepWork&, const SubstepState&, const Stretch& target, Attempt, double time_left) const;
+  Substep begin_substep(const StepWork&, const SubstepState&, const Stretch& target, SubstepAttempt,
+                        double time_left) const;
   void end_substep(StepWork&, Substep&&, SubstepState&);
   bool advance(StepWork&, SubstepState&, Stretch whole);
   int planned_substeps(const State& from, const Drive&, double dt, const Points& nodes) const;
@@ -111,8 +85,8 @@ class ConventionalStepper final : public Stepper {
   ConventionalOptions options_;
   Features features_;
   ContactStage contact_;
-  ImplicitEuler solver_;
-  double edge_length_, deep_;
+  SubstepSolve solve_;
+  double edge_length_;
   StepperTraits traits_;
   AuditMemory audited_;
 };
@@ -128,64 +102,10 @@ AddedTerm added_term(const StepWork& work, const Points& x0, double h) {
   return work.extras.added ? work.extras.added(x0, h) : AddedTerm{};
 }
 
-NewtonReport ConventionalStepper::solve(const StepProblem& problem, Points& x, StepReport& report) {
-  const Timed timed(report.seconds.solve);
-  const NewtonReport newton = solver_.solve(problem, x);
-  report.iterations += newton.iterations;
-  report.linear_iterations += newton.linear_iterations;
-  return newton;
-}
-
-std::vector<Impact> ConventionalStepper::impacts(const Points& nodes0, const Points& nodes1, StepReport& report) {
-  ResolveReport times;
-  auto found =
-      find_impacts(contact_.search, contact_.inverse_mass, contact_.options, nodes0, nodes1, contact_.path, times);
-  add(times, report);
-  return found;
-}
-
-// Solves the substep with its contacts, again and again until what it runs into besides them is shallow and friction is
-// bounded by the normal forces that there are. x is the cloth in s.nodes. Reports the last solve. Ends after the first
-// one where that shows that the substep should be cut into parts.
-NewtonReport ConventionalStepper::solve_with_contact(StepWork& work, Substep& s, StepProblem& problem, Points& x,
-                                                     Contacts& contacts) {
-  const Points& nodes0 = s.start.nodes;
-  const double creep = options_.implicit_euler.slip_speed * s.h;
-  // Where nothing touches, or nothing that does moves, the first solve is likely to be the last one.
-  const bool calm = !s.pinched && mean_touching(contacts.terms, s.h * *problem.v0) < creep;
-  for (int pass = 0;; ++pass) {
-    problem.contacts = contacts.terms;
-    problem.iteration_scale = contacts.terms.empty() ? 1 : contact_iterations;
-    problem.warm_start = pass > 0;
-    const bool friction = features_.friction && !contacts.terms.empty();
-    problem.tolerance_scale = pass > 1 || (calm && friction) ? friction_tolerance
-                              : pass == 0 && !calm           ? first_tolerance
-                                                             : 1;
-    const NewtonReport newton = solve(problem, x, work.report);
-    if (!newton.finite) return newton;
-    s.nodes.topRows(x.rows()) = x;
-    const std::vector<ContactTerm> solved = calm ? contacts.terms : std::vector<ContactTerm>{};
-    const double change = lag_normal_forces(contacts.terms, x);
-    if (pass == (s.pinched ? pinched_passes : max_passes)) return newton;
-    const auto found = impacts(nodes0, s.nodes, work.report);
-    if (pass == 0) s.parts = parts_for_way(farthest_past(found, nodes0, s.nodes), edge_length_, s.max_parts);
-    if (s.parts > 1) return newton;
-    if (calm && mean_touching(contacts.terms, x - *problem.x0) < creep && deepest(found, s.nodes) < deep_ &&
-        mistaken_friction(solved, contacts.terms, *problem.x0, x, creep) < normal_change)
-      return newton;
-    const int least = friction ? 2 : 1;
-    if (pass >= least && change < normal_change && deepest(found, s.nodes) < deep_) return newton;
-    const Timed timed(work.report.seconds.response);
-    add_impact_terms(scene_, contact_.world, found, contact_.inverse_mass, nodes0, s.nodes, s.h, deep_, contacts);
-    raise_stiffness(contacts.terms, x);
-    if (pass == least - 1) relinearise(scene_, contact_.world, contact_.inverse_mass, nodes0, s.nodes, s.h, contacts);
-  }
-}
-
 // Whether BDF2 goes on from the history: one of this length, and no pin changes its speed by an edge a substep.
 bool ConventionalStepper::continues_history(const Substep& s) const {
   const StepHistory& history = s.start.history;
-  if (options_.integrator != Integrator::bdf2 || s.attempt != Attempt::first || history.h != s.h) return false;
+  if (options_.integrator != Integrator::bdf2 || s.attempt != SubstepAttempt::first || history.h != s.h) return false;
   for (std::size_t k = 0; k < scene_.pins.size(); ++k) {
     const int pin = scene_.pins[k];
     const Vec3 now = row(s.pins, static_cast<int>(k)) - row(s.start.nodes, pin);
@@ -200,30 +120,21 @@ bool ConventionalStepper::solve_freely(StepWork& work, Substep& s, const StepSta
   const AddedTerm added = added_term(work, start.x, start.h);
   const StepProblem problem = problem_of(work, start, s.pins, added);
   Points nodes = s.nodes, x = nodes.topRows(n);
-  const NewtonReport newton = solve(problem, x, work.report);
+  const NewtonReport newton = solve_.once(problem, x, work.report);
   if (!newton.finite || !x.allFinite()) return false;
   nodes.topRows(n) = x;
-  if (has_contact() && !impacts(s.start.nodes, nodes, work.report).empty()) return false;
+  if (has_contact() && !solve_.impacts(s.start.nodes, nodes, work.report).empty()) return false;
   if (!newton.converged) work.report.reason = Reason::not_converged;
-  work.report.residual = solver_.imbalance(problem, x);
+  work.report.residual = solve_.solver().imbalance(problem, x);
   s.nodes = std::move(nodes);
   s.v = (x - start.x) / start.h;
   return true;
 }
 
-std::vector<Proximity> ConventionalStepper::find_near(StepWork& work, const Substep& s) {
-  const Timed timed(work.report.seconds.response);
-  const Points& nodes = s.start.nodes;
-  const double thickness = scene_.contact.thickness;
-  auto near = find_proximities(contact_.world, pairs_within(contact_.path, nodes, thickness), nodes, thickness);
-  for (const Proximity& p : near) work.report.collision.min_gap = std::min(work.report.collision.min_gap, p.gap);
-  return near;
-}
-
 // Obstacles that leave no room give way, where that is looked for. False: they were to, but there is room for all.
 bool ConventionalStepper::yield_obstacles(StepWork& work, const std::vector<Proximity>& near, Substep& s) {
   s.inverse_mass = contact_.inverse_mass;
-  const bool retried = s.attempt == Attempt::pinched;
+  const bool retried = s.attempt == SubstepAttempt::pinched;
   if (!work.look_for_room && !retried) return true;
   ResolveReport times;
   s.pinched = make_room(contact_.search, contact_.world, contact_.options, near, s.start.nodes, s.nodes, contact_.path,
@@ -234,26 +145,18 @@ bool ConventionalStepper::yield_obstacles(StepWork& work, const std::vector<Prox
   return true;
 }
 
-Contacts ConventionalStepper::loaded_contacts(StepWork& work, const Substep& s, const std::vector<Proximity>& near,
-                                              const StepProblem& problem, const Points& x) {
-  const Timed timed(work.report.seconds.response);
-  Contacts contacts = contact_terms(scene_, contact_.world, near, contact_.inverse_mass, s.start.nodes, s.nodes, s.h);
-  // The load of a contact is what pulls at it where the cloth would go without any.
-  if (!contacts.terms.empty()) set_load_stiffness(contacts.terms, contact_.inverse_mass, -solver_.gradient(problem, x));
-  return contacts;
-}
-
 // Whether the response has taken the cloth from x to where it stores far more than there is to be stored. Impulses
 // know nothing of the cloth: what is a small motion to them may be many times the width of a sliver.
 bool ConventionalStepper::torn(const StepProblem& problem, const Points& x, const Points& after) {
-  const double moving = 0.5 * solver_.masses().dot((x - *problem.x0).rowwise().squaredNorm()) / (problem.h * problem.h);
-  return solver_.potential(problem, after) > tearing * (solver_.potential(problem, x) + moving);
+  const double moving =
+      0.5 * solve_.solver().masses().dot((x - *problem.x0).rowwise().squaredNorm()) / (problem.h * problem.h);
+  return solve_.solver().potential(problem, after) > tearing * (solve_.solver().potential(problem, x) + moving);
 }
 
 // Takes everything together as far as nothing meets.
 void ConventionalStepper::stop_short(StepWork& work, const Points& wanted, Substep& s) {
   double first = 1;
-  for (const Impact& impact : impacts(s.start.nodes, wanted, work.report)) first = std::min(first, impact.time);
+  for (const Impact& impact : solve_.impacts(s.start.nodes, wanted, work.report)) first = std::min(first, impact.time);
   s.nodes = s.start.nodes + kept_motion * first * (wanted - s.start.nodes);
   update_pairs(contact_.search, contact_.options.thickness, s.start.nodes, s.nodes, contact_.path);
   ++work.report.collision.shortened;
@@ -271,7 +174,7 @@ SubstepOutcome ConventionalStepper::respond(StepWork& work, Substep& s, const St
   }
   s.nodes.topRows(n) = x;
   ResolveOptions options = contact_.options;
-  options.last_resort = s.attempt == Attempt::last_resort;
+  options.last_resort = s.attempt == SubstepAttempt::last_resort;
   if (!options.last_resort) options.zone_rounds = hopeful_rounds;
   if (s.pinched) options.zone_rounds = pinched_rounds;
   const Points wanted = s.nodes;
@@ -300,28 +203,28 @@ SubstepOutcome ConventionalStepper::substep(StepWork& work, Substep& s) {
     return (smooth && solve_smoothly()) || solve_freely(work, s, start) ? SubstepOutcome::clean
                                                                         : SubstepOutcome::not_finite;
 
-  const std::vector<Proximity> near = find_near(work, s);
+  const std::vector<Proximity> near = solve_.near(s, work.report);
   s.touched = !near.empty() || work.left_alone.any();
   if (smooth && !s.touched && solve_smoothly()) return SubstepOutcome::clean;
   if (!yield_obstacles(work, near, s)) return SubstepOutcome::zones_not_converged;
   const AddedTerm added = added_term(work, start.x, s.h);
   StepProblem problem = problem_of(work, start, s.pins, added);
   Points x = s.nodes.topRows(n);
-  Contacts contacts = loaded_contacts(work, s, near, problem, x);
-  const NewtonReport newton = solve_with_contact(work, s, problem, x, contacts);
+  Contacts contacts = solve_.loaded_contacts(s, near, problem, x, work.report);
+  const NewtonReport newton = solve_.with_contact(s, problem, x, contacts, work.report);
   if (!newton.finite) return SubstepOutcome::not_finite;
   if (s.parts > 1) return SubstepOutcome::impact_too_deep;
   work.report.collision.contacts = static_cast<int>(contacts.terms.size());
   {
     const Timed timed(work.report.seconds.solve);
-    work.report.residual = solver_.imbalance(problem, x);
+    work.report.residual = solve_.solver().imbalance(problem, x);
   }
   return respond(work, s, problem, newton, contacts, x);
 }
 
 // To where the target has obstacles and pins. The cloth goes on as it moves, or along a guess of the step's end.
 Substep ConventionalStepper::begin_substep(const StepWork& work, const SubstepState& start, const Stretch& target,
-                                           Attempt attempt, double time_left) const {
+                                           SubstepAttempt attempt, double time_left) const {
   const int n = scene_.surface.vertex_count;
   Substep s{start, target.pins, target.h, attempt, target.parts, target.nodes};
   s.nodes.topRows(n) = start.nodes.topRows(n) + s.h * start.v;
@@ -367,14 +270,14 @@ bool ConventionalStepper::advance(StepWork& work, SubstepState& now, Stretch who
                    stretch.halvings,
                    stretch.parts};
     std::optional<Substep> s;
-    const auto attempt = [&](Attempt kind) {
+    const auto attempt = [&](SubstepAttempt kind) {
       s.emplace(begin_substep(work, now, target, kind, time_left));
       return substep(work, *s);
     };
-    SubstepOutcome outcome = attempt(target.halvings == 0 ? Attempt::last_resort : Attempt::first);
+    SubstepOutcome outcome = attempt(target.halvings == 0 ? SubstepAttempt::last_resort : SubstepAttempt::first);
     if (outcome == SubstepOutcome::zones_not_converged && !work.look_for_room && features_.obstacles) {
       target.parts = 1;
-      outcome = attempt(Attempt::pinched);
+      outcome = attempt(SubstepAttempt::pinched);
     }
     if (outcome == SubstepOutcome::not_finite) return false;
     if (outcome == SubstepOutcome::clean) {
