@@ -47,8 +47,16 @@ function(selvedge_module name)
   list(REMOVE_ITEM sources ${parallel})
 
   add_library(selvedge_${name} STATIC ${sources})
-  target_include_directories(selvedge_${name} PUBLIC ${PROJECT_SOURCE_DIR})
-  target_link_libraries(selvedge_${name} PUBLIC ${module_PUBLIC} PRIVATE ${module_PRIVATE} selvedge_warnings)
+  target_include_directories(selvedge_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+    $<INSTALL_INTERFACE:include>)
+  # Who builds on it names headers as where it is installed: <selvedge/...>.
+  add_library(selvedge_${name}_user INTERFACE)
+  target_include_directories(selvedge_${name}_user INTERFACE ${PROJECT_BINARY_DIR}/include)
+  target_link_libraries(selvedge_${name}_user INTERFACE selvedge_${name})
+  add_library(selvedge::${name} ALIAS selvedge_${name}_user)
+  target_compile_features(selvedge_${name} PUBLIC cxx_std_20)
+  target_link_libraries(selvedge_${name} PUBLIC ${module_PUBLIC}
+    PRIVATE ${module_PRIVATE} $<BUILD_INTERFACE:selvedge_warnings>)
   target_compile_options(selvedge_${name} PRIVATE ${module_OPTIONS})
   if(module_HEADERS OR module_OPTIONS)
     target_precompile_headers(selvedge_${name} PRIVATE ${SELVEDGE_COMMON_HEADERS} ${module_HEADERS})

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <functional>
 #include <iostream>
 #include <memory>
@@ -9,7 +10,7 @@
 #include "pipeline/config/config.hpp"
 #include "pipeline/host/process_threads.hpp"
 #include "pipeline/host/version.hpp"
-#include "pipeline/scene/run_options.hpp"
+#include "pipeline/scene/kinds.hpp"
 
 using namespace selvedge;
 
@@ -33,7 +34,7 @@ void scene_options(CLI::App& command, SceneArguments& arguments) {
   command.add_option("scene", arguments.scene, "scene file (YAML)")->required();
   command.add_option("--set", arguments.overrides, "key=value instead of the scene's, dotted keys")
       ->allow_extra_args(false);
-  command.add_option("--stepper", arguments.stepper, joined(known_steppers()));
+  command.add_option("--stepper", arguments.stepper, joined(known_kinds().names()));
   command.add_option("--weights", arguments.weights, "weight file of the stepper `learned`");
 }
 
@@ -222,20 +223,40 @@ void add_commands(CLI::App& app, Chosen& chosen) {
       [](const Nothing&, bool json) { return info_command(json); });
 }
 
+// The headings of `selvedge --help`; a command that stands under none is one for use.
+void group_commands(CLI::App& app) {
+  const std::vector<std::string> prepared{"untangle", "dress", "body", "weights"};
+  const std::vector<std::string> measured{"ccd", "bench", "stress", "compare", "validate", "stability", "wardrobe"};
+  for (CLI::App* command : app.get_subcommands({})) {
+    const auto is_in = [&](const auto& names) { return std::ranges::find(names, command->get_name()) != names.end(); };
+    command->group(is_in(prepared) ? "Prepare" : is_in(measured) ? "Measure" : "Use");
+  }
+}
+
+// What to say of a first word that is no command: the nearest one. Empty where it is one.
+std::string command_suggestion(const CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> known;
+  for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
+  if (argc < 2 || argv[1][0] == '-' || std::ranges::find(known, argv[1]) != known.end()) return {};
+  return "selvedge: there is no command `" + std::string(argv[1]) + "`" + suggestion(argv[1], known) + "\n";
+}
+
 }  // namespace
 
 // Exit status: 0 well, 1 the result is not clean, 2 bad input or a missing package.
 int main(int argc, char** argv) {
   set_up_threads(argv);
-  CLI::App app{"selvedge: cloth that does not unravel", "selvedge"};
+  CLI::App app{"selvedge: a garment simulator with audited contact", "selvedge"};
   app.set_version_flag("--version", std::string(program_version()));
   app.require_subcommand(1);
   Chosen chosen;
   add_commands(app, chosen);
+  group_commands(app);
   try {
     app.parse(argc, argv);
     return chosen();
   } catch (const CLI::ParseError& error) {
+    std::cerr << command_suggestion(app, argc, argv);
     return app.exit(error) == 0 ? 0 : 2;
   } catch (const std::exception& error) {
     std::cerr << "selvedge: " << error.what() << "\n";

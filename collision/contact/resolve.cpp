@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "collision/contact/resolution.hpp"
 
@@ -51,6 +52,14 @@ std::vector<Impact> impacts_of(const PathPairs& path, const Eigen::VectorXd& inv
 double friction_of(const Resolution& r, const NodePair& pair) {
   const bool obstacle = std::any_of(pair.nodes.begin(), pair.nodes.end(), [&](int n) { return !r.world.is_cloth(n); });
   return obstacle ? r.options.friction : r.options.self_friction;
+}
+
+int free_nodes(const Resolution& r, std::span<Impact* const> impacts) {
+  std::set<int> nodes;
+  for (const Impact* impact : impacts)
+    for (const int node : impact->pair.nodes)
+      if (r.is_free(node)) nodes.insert(node);
+  return static_cast<int>(nodes.size());
 }
 
 void mark_free(Resolution& r, const Impact& impact) {
@@ -111,6 +120,7 @@ void zone_round(Resolution& r, const std::vector<Impact>& fresh) {
     if (const auto zone = touched.find(zone_of(r, impact)); zone != touched.end()) zone->second.push_back(&impact);
   r.violation = 0;
   for (auto& [root, impacts] : touched) {
+    r.report.largest_zone = std::max(r.report.largest_zone, free_nodes(r, impacts));
     if (!r.options.rigid_zones || !rigidify(r, impacts))
       r.violation = std::max(r.violation, project_zone(impacts, r.inverse_mass, r.x0, r.x1, r.options.zone_sweeps,
                                                        0.1 * r.options.separation));
@@ -139,6 +149,7 @@ ResolveReport resolve(PairSearch& search, const ContactWorld& world, const Eigen
                {},           std::vector<char>(world.node_count, 1),
                {},           DisjointSets(world.node_count)};
   std::vector<Impact> impacts = new_impacts(r);
+  r.report.found = static_cast<int>(impacts.size());
   bool contradictory = false;  // zones ask for what cannot be, and more rounds do not change that
   for (int round = 0; !impacts.empty() && !contradictory && round < options.impulse_rounds + options.zone_rounds;
        ++round) {

@@ -19,6 +19,8 @@ struct ResolveOptions {
 struct ResolveReport {
   bool clean = false;  // the last test of all pairs found no impact
   int impulses = 0, zones = 0;
+  int largest_zone = 0;                           // nodes of it that are free
+  int found = 0;                                  // impacts of the motion as it was asked for
   int shortened = 0;                              // zones whose motion was shortened, once a halving
   int held = 0;                                   // cloth vertices in them
   double broad_phase = 0, ccd = 0, response = 0;  // [s]

@@ -100,18 +100,6 @@ LearnedScene learned_scene(const Scene& scene, const std::vector<int>& omitted_b
   return result;
 }
 
-Points joined_obstacles(const std::vector<Points>& obstacles) {
-  Eigen::Index count = 0;
-  for (const Points& obstacle : obstacles) count += obstacle.rows();
-  Points all(count, 3);
-  count = 0;
-  for (const Points& obstacle : obstacles) {
-    all.middleRows(count, obstacle.rows()) = obstacle;
-    count += obstacle.rows();
-  }
-  return all;
-}
-
 void check_runnable(const Architecture& architecture) {
   const FeatureOptions& options = architecture.features;
   const auto inputs_of = [&](const std::string& key) {

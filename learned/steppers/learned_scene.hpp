@@ -25,9 +25,6 @@ LearnedScene learned_scene(const Scene&);
 // The same, with body vertices that get no edges. Throws Error for one that is not there.
 LearnedScene learned_scene(const Scene&, const std::vector<int>& omitted_body_vertices);
 
-// Positions of all obstacles, one behind the other.
-Points joined_obstacles(const std::vector<Points>&);
-
 // Throws Error for a network whose inputs, outputs or passes are not those that the stepper makes.
 void check_runnable(const Architecture&);
 

@@ -3,7 +3,7 @@
 #include "learned/graph/graph_state.hpp"
 #include "learned/graph/integration.hpp"
 #include "physics/scene/scene.hpp"
-#include "physics/scene/stepper.hpp"
+#include "physics/steppers/finish_step.hpp"
 
 namespace selvedge {
 
@@ -23,9 +23,9 @@ bool begins_rollout(const State&);
 // have their target at the drive's pins, others where they are.
 GraphState graph_state(const Scene&, const State& from, const Drive&);
 
-// Writes the frame that a network made of `state`; `seen` is where the network saw the cloth (seen_positions.hpp). The
-// audit is still to come. Velocities in m/s are what the network carries, and those of pinned vertices what they did.
-void learned_arrival(const Scene&, const State& from, const Drive&, const GraphState&, const Points& seen,
-                     const NextCloth&, State& to);
+// The frame that a network made of `state`; `seen` is where the network saw the cloth (seen_positions.hpp). Velocities
+// in m/s are what the network carries, and those of pinned vertices what they did.
+StepEnd learned_end(const Scene&, const State& from, const Drive&, const GraphState&, const Points& seen,
+                    const NextCloth&);
 
 }  // namespace selvedge

@@ -1,6 +1,7 @@
 #include "learned/steppers/learned_stepper.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/floating_point.hpp"
@@ -12,7 +13,6 @@
 #include "learned/steppers/learned_scene.hpp"
 #include "learned/steppers/learned_state.hpp"
 #include "physics/scene/features.hpp"
-#include "physics/steppers/step_audit.hpp"
 
 namespace selvedge {
 namespace {
@@ -37,12 +37,12 @@ class LearnedStepper final : public Stepper {
                                   &scene.rest)) {}
 
   const StepperTraits& traits() const override { return traits_; }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to) override;
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override;
 
  private:
   bool settle(GraphState&, StepReport&);
   bool predict(const GraphState&, NextCloth&, StepReport&);
-  void audit_way(const State& from, const State& to, StepReport&);
+  void audit_way(const State& from, const StepEnd& end, StepReport&);
 
   const Scene& scene_;
   FeatureOptions features_;
@@ -53,7 +53,7 @@ class LearnedStepper final : public Stepper {
   GraphScene graph_scene_;
   RestGraph rest_;
   ContactWorld world_;
-  StepperTraits traits_{"learned", learned_dt, false};
+  StepperTraits traits_{.name = "learned", .past_frames = 1, .only_dt = learned_dt, .may_leave_out_cloths = false};
   // Memory that is used again:
   GraphSearch search_;
   Graph graph_;
@@ -97,18 +97,18 @@ bool LearnedStepper::settle(GraphState& state, StepReport& report) {
   return true;
 }
 
-void LearnedStepper::audit_way(const State& from, const State& to, StepReport& report) {
+void LearnedStepper::audit_way(const State& from, const StepEnd& end, StepReport& report) {
   Stopwatch watch;
-  const Points before = gather_nodes(from.x, from.obstacles), after = gather_nodes(to.x, to.obstacles);
+  const Points before = gather_nodes(from.x, from.obstacles), after = gather_nodes(end.x, end.obstacles);
   const Exemption exemption = from.clean ? Exemption{} : find_exemption(world_, before);
   report.collision.left_alone = exemption.cloth_vertices();
   report.collision.passed_through = passed_through(world_, exemption, before, after, audited_);
   report.seconds.audit += watch.lap();
 }
 
-StepReport LearnedStepper::step(const State& from, const Drive& drive, double dt, State& to) {
+StepReport LearnedStepper::step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) {
   restore_standard_arithmetic();
-  if (std::abs(dt - learned_dt) > 1e-9)
+  if (!traits_.accepts(dt))
     throw Error("a learned stepper takes steps of 1/30 s only", "time step " + std::to_string(dt) + " s",
                 "run the scene with fps: 30");
   StepReport report;
@@ -125,11 +125,10 @@ StepReport LearnedStepper::step(const State& from, const Drive& drive, double dt
   NextCloth next;
   if (!predict(state, next, report)) return report;
 
-  report.status = StepStatus::accepted;
   report.reason = Reason::none;
-  learned_arrival(scene_, from, drive, state, seen_positions(rest_, state, features_).x, next, to);
-  audit_way(from, to, report);
-  audit_state(scene_, drive, to, audited_, report);
+  StepEnd end = learned_end(scene_, from, drive, state, seen_positions(rest_, state, features_).x, next);
+  audit_way(from, end, report);
+  finish_step(scene_, from, drive, dt, std::move(end), audited_, to, report);
   return report;
 }
 

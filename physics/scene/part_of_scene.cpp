@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace selvedge {
 namespace {
@@ -16,10 +17,51 @@ void put_rows(const Points& part, const std::vector<int>& rows, Points& whole) {
   for (std::size_t i = 0; i < rows.size(); ++i) whole.row(rows[i]) = part.row(static_cast<Eigen::Index>(i));
 }
 
+// The rows of a block that the part has; null: all.
+const std::vector<int>* numbers_of(const PartOfScene& part, RowsOf rows_of) {
+  switch (rows_of) {
+    case RowsOf::vertices:
+      return &part.vertices;
+    case RowsOf::triangles:
+      return &part.triangles;
+    case RowsOf::cloths:
+      return &part.cloths;
+    default:
+      return nullptr;
+  }
+}
+
+Memory memory_of_part(const PartOfScene& part, const Memory& whole) {
+  Memory memory;
+  for (const MemoryBlock& block : whole) {
+    memory.push_back(block);
+    if (const std::vector<int>* numbers = numbers_of(part, block.rows_of))
+      memory.back().rows = block.rows(*numbers, Eigen::all);
+  }
+  return memory;
+}
+
+Memory memory_of_whole(const PartOfScene& part, Memory memory, const Points& x) {
+  for (MemoryBlock& block : memory) {
+    const std::vector<int>* numbers = numbers_of(part, block.rows_of);
+    if (!numbers) continue;
+    const Eigen::Index count = block.rows_of == RowsOf::vertices    ? x.rows()
+                               : block.rows_of == RowsOf::triangles ? part.whole_triangles
+                                                                    : part.whole_cloths;
+    MemoryRows rows = MemoryRows::Zero(count, block.rows.cols());
+    if (block.positions && block.rows_of == RowsOf::vertices) rows = x;
+    rows(*numbers, Eigen::all) = block.rows;
+    block.rows = std::move(rows);
+  }
+  return memory;
+}
+
 // What is marked of the vertices and triangles of a scene; a triangle needs its vertices.
 PartOfScene part_with(const Scene& whole, std::span<const char> has_vertex, std::span<const char> has_triangle) {
   PartOfScene part;
   Scene& scene = part.scene;
+  part.whole_triangles = static_cast<int>(whole.surface.triangles.rows());
+  part.whole_cloths = static_cast<int>(whole.cloths.size());
   std::vector<int> renumbered(static_cast<std::size_t>(whole.surface.vertex_count), -1);
   const auto take = [](int first, int count, std::span<const char> marks, std::vector<int>& numbers) {
     const std::size_t before = numbers.size();
@@ -27,13 +69,16 @@ PartOfScene part_with(const Scene& whole, std::span<const char> has_vertex, std:
       if (marks[static_cast<std::size_t>(i)]) numbers.push_back(i);
     return static_cast<int>(numbers.size() - before);
   };
-  for (const Cloth& cloth : whole.cloths) {
+  for (int c = 0; c < part.whole_cloths; ++c) {
+    const Cloth& cloth = whole.cloths[static_cast<std::size_t>(c)];
     Cloth own = cloth;
     own.first_vertex = static_cast<int>(part.vertices.size());
     own.first_triangle = static_cast<int>(part.triangles.size());
     own.vertex_count = take(cloth.first_vertex, cloth.vertex_count, has_vertex, part.vertices);
     own.triangle_count = take(cloth.first_triangle, cloth.triangle_count, has_triangle, part.triangles);
-    if (own.vertex_count > 0) scene.cloths.push_back(own);
+    if (own.vertex_count == 0) continue;
+    scene.cloths.push_back(own);
+    part.cloths.push_back(c);
   }
   for (std::size_t i = 0; i < part.vertices.size(); ++i) renumbered[part.vertices[i]] = static_cast<int>(i);
   Triangles triangles(static_cast<Eigen::Index>(part.triangles.size()), 3);
@@ -93,16 +138,17 @@ State state_of(const PartOfScene& part, const State& whole) {
   state.obstacles = whole.obstacles;
   state.pinched = whole.pinched;
   state.clean = whole.clean;
-  if (whole.last_clean.x.rows() > 0)
-    state.last_clean = {rows_of(whole.last_clean.x, part.vertices), whole.last_clean.obstacles};
-  if (whole.history.h > 0)
-    state.history = {whole.history.h, rows_of(whole.history.x, part.vertices), rows_of(whole.history.v, part.vertices)};
+  state.memory = memory_of_part(part, whole.memory);
   return state;
 }
 
 Drive drive_of(const PartOfScene& part, const Drive& whole) {
-  return {rows_of(whole.pins, part.pins), whole.obstacles, whole.wind, whole.acceleration,
-          whole.worn.rows() == 0 ? Points() : rows_of(whole.worn, part.vertices)};
+  return {rows_of(whole.pins, part.pins),
+          whole.obstacles,
+          whole.wind,
+          whole.acceleration,
+          whole.worn.rows() == 0 ? Points() : rows_of(whole.worn, part.vertices),
+          whole.bodies};
 }
 
 void put(const PartOfScene& part, const State& state, State& whole) {
@@ -111,18 +157,7 @@ void put(const PartOfScene& part, const State& state, State& whole) {
   whole.obstacles = state.obstacles;
   whole.pinched = state.pinched;
   whole.clean = state.clean;
-  whole.last_clean = {{}, state.last_clean.obstacles};
-  if (state.last_clean.x.rows() > 0) {
-    whole.last_clean.x = whole.x;
-    put_rows(state.last_clean.x, part.vertices, whole.last_clean.x);
-  }
-  whole.history = {state.history.h, {}, {}};
-  if (state.history.h > 0) {
-    whole.history.x = whole.x;
-    whole.history.v.setZero(whole.x.rows(), 3);
-    put_rows(state.history.x, part.vertices, whole.history.x);
-    put_rows(state.history.v, part.vertices, whole.history.v);
-  }
+  whole.memory = memory_of_whole(part, state.memory, whole.x);
 }
 
 Audit whole_audit(const PartOfScene& part, Audit audit) {

@@ -1,40 +1,17 @@
 #pragma once
 
+#include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "collision/audit/audit.hpp"
-#include "collision/geometry/points.hpp"
+#include "collision/contact/exemption.hpp"
+#include "physics/scene/memory.hpp"
 
 namespace selvedge {
-
-// Where the last substep began, for an integrator of two steps that may go on from it.
-struct StepHistory {
-  double h = 0;  // its length [s]; 0: there is none
-  Points x, v;
-};
-
-// How long each cloth has been where it is, and in which wind and under which gravity.
-struct Rest {
-  std::vector<double> seconds;  // one a cloth; empty: not known
-  Points place;                 // about where, all cloths on end
-  Vec3 wind = Vec3::Zero(), acceleration = Vec3::Zero();
-};
-
-// Where everything was when cloth that is tangled now was clean last.
-struct LastClean {
-  Points x;
-  std::vector<Points> obstacles;
-};
-
-// Something that one stepper alone reads in its next step. A checkpoint writes it without knowing it. A step of another
-// stepper ends without it.
-struct MemoryBlock {
-  std::string name;  // "stepper.quantity"
-  Points rows;
-};
 
 // All that the next step depends on: a copy is a checkpoint.
 struct State {
@@ -44,11 +21,17 @@ struct State {
   std::vector<Points> obstacles;  // where they are; may lag behind Drive::obstacles
   bool pinched = false;           // they do: cloth left them no room in the step that ended here
   bool clean = false;             // known to be free of intersections, by the audit of the step that ended here
-  LastClean last_clean;           // of worn cloth that is not clean; empty: it is, or never was
-  StepHistory history;
-  Rest rest;
-  std::vector<int> cut_out;  // triangles that are out of the simulation, ascending (cut_out.hpp)
-  std::vector<MemoryBlock> memory;
+  std::vector<int> cut_out;       // triangles that are out of the simulation, ascending (cut_out.hpp)
+  Memory memory;                  // each block is read by its owner alone
+};
+
+// A body at the end of a step, as the scene has it.
+struct BodyFrame {
+  Eigen::VectorXd shape;            // coefficients of its model
+  Points rotations;                 // one row a joint: axis times angle [rad], relative to the parent
+  Vec3 translation = Vec3::Zero();  // of the pose [m]
+  Points joints;                    // where they are [m]
+  bool is_body() const { return joints.rows() > 0; }
 };
 
 // What the world imposes on a step, given at the step's END.
@@ -59,6 +42,7 @@ struct Drive {
   Vec3 acceleration = Vec3::Zero();  // gravity [m/s2]
   Points worn;                       // one row a vertex: where the body that wears it takes it without forces, not a
                                      // number where none does; empty where nothing is worn
+  std::vector<BodyFrame> bodies;     // one an obstacle, without joints where it is no body; empty: there is none
 };
 
 enum class StepStatus { not_run, accepted, rejected };
@@ -103,19 +87,55 @@ struct StepReport {  // starts as failure
   std::optional<Audit> audit;  // of the state that was made, rounded to float (step_audit.hpp); absent: not audited
 };
 
-struct StepperTraits {
-  std::string name;
-  std::optional<double> only_dt = {};  // the only time step that it takes [s]
-  bool may_leave_out_cloths = true;    // a step of some of the cloths is what a step of all of them does with these
+struct AddedTerm;  // physics/solve/step_problem.hpp
+
+// What another stepper may hand to a step beside the world. Traits say whether a stepper honours it.
+struct StepExtras {
+  // Where the cloth may be at the end, n x 3 [m]. The implicit solve starts there where its own guess is worse.
+  const Points* guess = nullptr;
+  const Exemption* left_alone = nullptr;  // what contact leaves alone; null: nothing
+  // A further term of the potential in a substep of h [s] from positions x0; empty: none.
+  std::function<AddedTerm(const Points& x0, double h)> added = {};
+  bool any() const { return guess || left_alone || added; }
 };
 
+// What a scene must have.
+struct StepperNeeds {
+  bool worn = false;       // Drive::worn
+  bool bodies = false;     // Drive::bodies
+  bool obstacles = false;  // one at least
+};
+
+struct StepperTraits {
+  std::string name;
+  int past_frames = 0;  // before `from` that it remembers in State::memory
+  StepperNeeds needs = {};
+  std::optional<double> only_dt = {};  // the only time step that it takes [s]
+  bool may_leave_out_cloths = true;    // a step of some of the cloths is what a step of all of them does with these
+  bool honours_extras = false;
+  int max_substeps = 1;  // obstacles that move by more than so many times their own size are put where they are wanted
+  bool accepts(double dt) const;  // [s]
+};
+
+// An accepted step leaves in `to`:
+//   time, frame  from.time + dt and from.frame + 1;
+//   x, v         finite, one row a vertex, pins at Drive::pins unless the report names motion that was shortened;
+//   obstacles    where they ended, and pinched, whether one of them is not where the drive wanted it;
+//   clean        whether the audit of positions rounded to float found nothing (step_audit.hpp);
+//   cut_out      what of from.cut_out is out still;
+//   memory       what the stepper and its decorators read in their next step, and nothing else.
+// finish_step (finish_step.hpp) does so for positions and velocities.
 class Stepper {
  public:
   virtual ~Stepper() = default;
   virtual const StepperTraits& traits() const = 0;
-  // Writes from.time + dt into `to`. If rejected, `to` is junk and `from` is untouched: going back is doing nothing.
-  // Never throws for numerical trouble.
-  virtual StepReport step(const State& from, const Drive&, double dt, State& to) = 0;
+  // Steps by dt [s]. If rejected, `to` is junk and `from` is untouched: going back is doing nothing. Holds caches only:
+  // a new stepper makes the same step. Never throws for numerical trouble; throws Error for a dt that it does not
+  // accept. Extras are ignored unless it honours them.
+  virtual StepReport step(const State& from, const Drive&, double dt, State& to, const StepExtras& = {}) = 0;
 };
+
+struct Scene;
+using MakeStepper = std::function<std::unique_ptr<Stepper>(const Scene&)>;
 
 }  // namespace selvedge

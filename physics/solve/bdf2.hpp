@@ -4,6 +4,16 @@
 
 namespace selvedge {
 
+// Where the last substep began, for an integrator of two steps that may go on from it.
+struct StepHistory {
+  double h = 0;  // its length [s]; 0: there is none
+  Points x, v;
+};
+
+// The history in a state's memory, and a history as blocks of memory, none for one without length.
+StepHistory step_history(const State&);
+Memory blocks_of(const StepHistory&);
+
 // Where a step of implicit Euler starts from, and how long it is [s].
 struct StepStart {
   double h = 0;

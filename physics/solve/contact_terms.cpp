@@ -171,8 +171,8 @@ double mistaken_friction(std::span<const ContactTerm> solved, std::span<const Co
   return wrong > 0 ? wrong / allowed : 0;
 }
 
-void follow(const Scene& scene, const ContactWorld& world, const Eigen::VectorXd& inverse_mass, const Points& nodes0,
-            const Points& nodes1, double h, Contacts& contacts) {
+void relinearise(const Scene& scene, const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
+                 const Points& nodes0, const Points& nodes1, double h, Contacts& contacts) {
   constexpr double same_side = 0.7;  // cosine
   for (std::size_t k = 0; k < contacts.terms.size(); ++k) {
     const NodePair& pair = contacts.pairs[k];
@@ -194,7 +194,7 @@ void follow(const Scene& scene, const ContactWorld& world, const Eigen::VectorXd
   }
 }
 
-void bear(std::vector<ContactTerm>& terms, const Eigen::VectorXd& inverse_mass, const Points& forces) {
+void set_load_stiffness(std::vector<ContactTerm>& terms, const Eigen::VectorXd& inverse_mass, const Points& forces) {
   std::vector<double> borne(forces.rows(), 0.0), held(borne);  // by how many terms, of each vertex; by what weight
   for (const ContactTerm& term : terms)
     for (int i = 0; i < 4; ++i)
@@ -220,15 +220,15 @@ void bear(std::vector<ContactTerm>& terms, const Eigen::VectorXd& inverse_mass, 
   }
 }
 
-void stiffen(std::vector<ContactTerm>& terms, const Points& x) {
+void raise_stiffness(std::vector<ContactTerm>& terms, const Points& x) {
   for (ContactTerm& term : terms) {
     const double sunk = term.target - contact_gap(term, x) - 0.5 * term.softness;
     if (sunk > term.sink) term.stiffness = std::min(term.stiffness * sunk / term.sink, term.stiffest);
   }
 }
 
-void stick(std::span<const ContactTerm> terms, const Eigen::VectorXd& inverse_mass, const Points& x0, double h,
-           double slip_width, Points& x) {
+void apply_static_friction(std::span<const ContactTerm> terms, const Eigen::VectorXd& inverse_mass, const Points& x0,
+                           double h, double slip_width, Points& x) {
   constexpr int sweeps = 4;
   std::vector<double> budget(terms.size(), 0.0);  // tangential impulse times h still allowed [kg m]
   for (std::size_t k = 0; k < terms.size(); ++k) {

@@ -55,20 +55,20 @@ double mistaken_friction(std::span<const ContactTerm> solved, std::span<const Co
 // Linearises terms anew at the ends nodes1 that a solve has found, so that forces act where the step ends, as implicit
 // Euler has it: with those of the start, sliding round a bend is braked. Pairs that have changed sides stay as they
 // are.
-void follow(const Scene&, const ContactWorld&, const Eigen::VectorXd& inverse_mass, const Points& nodes0,
-            const Points& nodes1, double h, Contacts&);
+void relinearise(const Scene&, const ContactWorld&, const Eigen::VectorXd& inverse_mass, const Points& nodes0,
+                 const Points& nodes1, double h, Contacts&);
 
 // Makes terms as stiff as they must be to bear the forces on the cloth's vertices [N] without sinking more than they
 // may.
-void bear(std::vector<ContactTerm>&, const Eigen::VectorXd& inverse_mass, const Points& forces);
+void set_load_stiffness(std::vector<ContactTerm>&, const Eigen::VectorXd& inverse_mass, const Points& forces);
 
 // Makes terms that their load has pressed deeper than they may sink as stiff as that load asks for, so that tight cloth
 // is held by the solve and not by impulses.
-void stiffen(std::vector<ContactTerm>&, const Points& x);
+void raise_stiffness(std::vector<ContactTerm>&, const Points& x);
 
 // Takes from the pairs' slip what Coulomb friction still allows beyond what the solve has used, all of it where the
 // pair sticks: the lagged potential alone would creep. Moves x, by Gauss-Seidel over the pairs.
-void stick(std::span<const ContactTerm>, const Eigen::VectorXd& inverse_mass, const Points& x0, double h,
-           double slip_width, Points& x);
+void apply_static_friction(std::span<const ContactTerm>, const Eigen::VectorXd& inverse_mass, const Points& x0,
+                           double h, double slip_width, Points& x);
 
 }  // namespace selvedge

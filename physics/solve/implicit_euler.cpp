@@ -170,7 +170,7 @@ double ImplicitEuler::imbalance(const StepProblem& problem, const Points& x) {
 // The caller's guess or the ballistic positions, whichever has the lower potential (free fall is then exact). Pins are
 // put where they belong. False if neither potential is finite.
 bool ImplicitEuler::Impl::choose_first_guess(Points& x) {
-  if (step.problem->goes_on) {
+  if (step.problem->warm_start) {
     energies(step, x, scratch, energy);
     return std::isfinite(sum_of(energy)) && x.allFinite();
   }
@@ -193,8 +193,9 @@ bool ImplicitEuler::Impl::choose_first_guess(Points& x) {
 // What a Newton step's RMS displacement has to fall below [m].
 double ImplicitEuler::Impl::goal(const Points& x) const {
   const StepProblem& problem = *step.problem;
-  return std::max(options.velocity_tolerance * problem.h * problem.roughness,
-                  options.relative_tolerance * std::max(problem.roughness, 1.0) * root_mean_square(x - *problem.x0));
+  return std::max(
+      options.velocity_tolerance * problem.h * problem.tolerance_scale,
+      options.relative_tolerance * std::max(problem.tolerance_scale, 1.0) * root_mean_square(x - *problem.x0));
 }
 
 // What the energy that a Newton step can still gain has to fall below [J]: in stiff cloth small errors store much.
@@ -292,7 +293,7 @@ NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
   impl.start(problem);
   report.finite = impl.choose_first_guess(x);
   if (!report.finite) return report;
-  const int most = std::max(1, static_cast<int>(std::lround(problem.patience * impl.options.max_newton)));
+  const int most = std::max(1, static_cast<int>(std::lround(problem.iteration_scale * impl.options.max_newton)));
   bool unfinished = false;  // the last step could gain more energy than its length says, or much of all there is
   while (!report.converged && report.iterations < (unfinished ? most_more * most : most)) {
     const auto direction = impl.find_direction(x, report);

@@ -27,10 +27,10 @@ struct StepProblem {
   Vec3 acceleration = Vec3::Zero();
   Vec3 wind = Vec3::Zero();
   std::span<const ContactTerm> contacts;
-  double roughness = 1;  // times the tolerance: for a solve that only feeds another one
+  double tolerance_scale = 1;  // of a solve that only feeds another one
   const AddedTerm* added = nullptr;
-  double patience = 1;   // times the most iterations, for a solve that another one goes on from
-  bool goes_on = false;  // from where an earlier solve of the same step ended: no other first guess is weighed
+  double iteration_scale = 1;  // of the most iterations, of a solve that another one goes on from
+  bool warm_start = false;     // x is where an earlier solve of the same step ended: no other first guess is weighed
 };
 
 }  // namespace selvedge

@@ -16,7 +16,7 @@ class CuttingStepper final : public Stepper {
       : scene_(scene), make_(std::move(make)), whole_(std::move(whole)) {}
 
   const StepperTraits& traits() const override { return whole_->traits(); }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to) override;
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override;
 
  private:
   void cut(const std::vector<int>& triangles);
@@ -47,6 +47,7 @@ StepReport step_nothing(const State& from, const Drive& drive, double dt, const 
   end.obstacles = drive.obstacles;
   end.pinched = false;
   end.clean = true;
+  end.memory.clear();
   StepReport report;
   report.status = StepStatus::accepted;
   report.by = by;
@@ -71,12 +72,11 @@ StepReport CuttingStepper::step_rest(const State& from, const Drive& drive, doub
     to.x.row(scene_.pins[p]) = drive.pins.row(static_cast<Eigen::Index>(p));
   to.v = (to.x - from.x) / dt;
   put(part_, end, to);
-  to.rest = {};
   return report;
 }
 
-StepReport CuttingStepper::step(const State& from, const Drive& drive, double dt, State& to) {
-  if (from.cut_out.empty()) return whole_->step(from, drive, dt, to);
+StepReport CuttingStepper::step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) {
+  if (from.cut_out.empty()) return whole_->step(from, drive, dt, to, extras);
   StepReport report = step_rest(from, drive, dt, to);
   if (report.status != StepStatus::accepted) return report;
   Stopwatch watch;
@@ -86,7 +86,7 @@ StepReport CuttingStepper::step(const State& from, const Drive& drive, double dt
     if (report.audit) report.audit = whole_audit(part_, *std::move(report.audit));
   } else {
     const int wanted = report.collision.pairs_wanted;
-    to.history = {};
+    forget_motion(to.memory);  // what comes back did not move with the rest
     take_audit(audit_uncut(scene_, to), to, report);
     if (to.pinched) report.collision.pairs_wanted = wanted;
   }

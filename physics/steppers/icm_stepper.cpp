@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "collision/contact/proximity.hpp"
 #include "collision/contour/find_contours.hpp"
@@ -13,7 +14,7 @@
 #include "physics/scene/features.hpp"
 #include "physics/solve/contact_terms.hpp"
 #include "physics/solve/contour_potential.hpp"
-#include "physics/steppers/step_audit.hpp"
+#include "physics/steppers/finish_step.hpp"
 #include "physics/steppers/substeps.hpp"
 
 namespace selvedge {
@@ -32,6 +33,13 @@ double mean_mass(const Eigen::VectorXd& inverse_mass) {
   return count > 0 ? sum / count : 0;
 }
 
+// What belongs to one substep.
+struct IcmWork {
+  std::vector<NodePair> held;          // that have a term, sorted
+  std::vector<ContactTerm> repulsion;  // their terms
+  Exemption exemption;                 // at the start
+};
+
 class IcmStepper final : public Stepper {
  public:
   IcmStepper(const Scene& scene, const IcmOptions& options)
@@ -47,15 +55,15 @@ class IcmStepper final : public Stepper {
         self_crossings_(world_) {}
 
   const StepperTraits& traits() const override { return traits_; }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to) override;
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override;
 
  private:
   bool has_contact() const { return features_.self_contact || features_.obstacles; }
-  void find_pairs(const Points& nodes0, const Points& at, const Points& nodes1, double h, const Exemption&,
+  void find_pairs(const Points& nodes0, const Points& at, const Points& nodes1, double h, const Exemption&, IcmWork&,
                   StepReport&);
   std::vector<ContactTerm> pushes(ContourPotential&, const Points& x, double h) const;
   bool minimise(const StepProblem&, Points& x, StepReport&);
-  bool substep(const Leg&, const Points& pins, const Drive&, double h, Points& nodes1, StepReport&);
+  bool substep(const SubstepState&, const Points& pins, const Drive&, double h, Points& nodes1, IcmWork&, StepReport&);
 
   const Scene& scene_;
   IcmOptions options_;
@@ -68,21 +76,17 @@ class IcmStepper final : public Stepper {
   AuditMemory audited_;
   SelfCrossings self_crossings_;
   StepperTraits traits_{"icm"};
-  // Of this substep:
-  std::vector<NodePair> pairs_;         // scratch
-  std::vector<NodePair> held_;          // that have a term, sorted
-  std::vector<ContactTerm> repulsion_;  // their terms
-  Exemption exemption_;                 // at the start
+  std::vector<NodePair> pairs_;  // scratch
 };
 
 // Adds terms for the pairs that are near at `at` and have none yet. A pair keeps the side on which it was first seen in
 // the substep, as in equation 5 of the paper.
 void IcmStepper::find_pairs(const Points& nodes0, const Points& at, const Points& nodes1, double h,
-                            const Exemption& exemption, StepReport& report) {
+                            const Exemption& exemption, IcmWork& work, StepReport& report) {
   const double reach = std::max(options_.reach, scene_.contact.thickness);
   search_.find(at, at, reach, pairs_);
   std::erase_if(pairs_, [&](const NodePair& pair) {
-    return std::binary_search(held_.begin(), held_.end(), pair) || exemption.leaves_alone(world_, pair.nodes);
+    return std::binary_search(work.held.begin(), work.held.end(), pair) || exemption.leaves_alone(world_, pair.nodes);
   });
   std::vector<Proximity> near = find_proximities(world_, pairs_, at, reach);
   for (Proximity& p : near) {
@@ -90,9 +94,9 @@ void IcmStepper::find_pairs(const Points& nodes0, const Points& at, const Points
     report.collision.min_gap = std::min(report.collision.min_gap, p.gap);
   }
   const auto terms = contact_terms(scene_, world_, near, inverse_mass_, nodes0, nodes1, h).terms;
-  repulsion_.insert(repulsion_.end(), terms.begin(), terms.end());
-  for (const Proximity& p : near) held_.push_back(p.pair);
-  std::sort(held_.begin(), held_.end());
+  work.repulsion.insert(work.repulsion.end(), terms.begin(), terms.end());
+  for (const Proximity& p : near) work.held.push_back(p.pair);
+  std::sort(work.held.begin(), work.held.end());
 }
 
 // What is enclosed by contours has no way out that shortens them all the time: it is asked back directly.
@@ -118,12 +122,12 @@ bool IcmStepper::minimise(const StepProblem& problem, Points& x, StepReport& rep
 }
 
 // nodes1 comes with obstacles where they are to end and the cloth at its first guess. False: not finite.
-bool IcmStepper::substep(const Leg& leg, const Points& pins, const Drive& drive, double h, Points& nodes1,
-                         StepReport& report) {
+bool IcmStepper::substep(const SubstepState& now, const Points& pins, const Drive& drive, double h, Points& nodes1,
+                         IcmWork& work, StepReport& report) {
   const int n = scene_.surface.vertex_count;
-  const Points x0 = leg.nodes.topRows(n);
+  const Points x0 = now.nodes.topRows(n);
   Points x = nodes1.topRows(n);
-  StepProblem problem{h, &x0, &leg.v, &pins, drive.acceleration, drive.wind, {}, 1};
+  StepProblem problem{h, &x0, &now.v, &pins, drive.acceleration, drive.wind, {}, 1};
   if (!has_contact()) {
     const bool finite = minimise(problem, x, report);
     nodes1.topRows(n) = x;
@@ -135,35 +139,34 @@ bool IcmStepper::substep(const Leg& leg, const Points& pins, const Drive& drive,
                           contour.add_derivatives(at, gradient, blocks);
                         }};
   if (options_.contour_weight > 0) problem.added = &added;
-  held_.clear();
-  repulsion_.clear();
-  Points at = leg.nodes;
+  Points at = now.nodes;
   for (int k = 0; k < options_.outer_iterations; ++k) {
     Stopwatch watch;
     Exemption exemption = find_exemption(world_, at);
-    self_crossings_.switch_off(leg.nodes, nodes1, exemption);
-    if (k == 0) exemption_ = exemption;
-    find_pairs(leg.nodes, at, nodes1, h, exemption, report);
-    if (k == 0 && !repulsion_.empty()) bear(repulsion_, inverse_mass_, -solver_.gradient(problem, x));
+    self_crossings_.switch_off(now.nodes, nodes1, exemption);
+    if (k == 0) work.exemption = exemption;
+    find_pairs(now.nodes, at, nodes1, h, exemption, work, report);
+    if (k == 0 && !work.repulsion.empty())
+      set_load_stiffness(work.repulsion, inverse_mass_, -solver_.gradient(problem, x));
     std::vector<ContactTerm> terms = pushes(contour, at.topRows(n), h);
-    terms.insert(terms.end(), repulsion_.begin(), repulsion_.end());
+    terms.insert(terms.end(), work.repulsion.begin(), work.repulsion.end());
     report.seconds.response += watch.lap();
     problem.contacts = terms;
     if (!minimise(problem, x, report)) return false;
     at = nodes1;
     at.topRows(n) = x;
-    lag_normal_forces(repulsion_, x);
-    stiffen(repulsion_, x);
+    lag_normal_forces(work.repulsion, x);
+    raise_stiffness(work.repulsion, x);
   }
-  report.collision.contacts = static_cast<int>(repulsion_.size());
+  report.collision.contacts = static_cast<int>(work.repulsion.size());
   nodes1.topRows(n) = x;
   return true;
 }
 
-StepReport IcmStepper::step(const State& from, const Drive& drive, double dt, State& to) {
+StepReport IcmStepper::step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) {
   restore_standard_arithmetic();
   if (const auto restart = restart_of(from, drive, options_.substeps.value_or(options_.max_substeps))) {
-    StepReport report = step(restart->state, drive, dt, to);
+    StepReport report = step(restart->state, drive, dt, to, extras);
     report.collision.jumped = restart->jumped;
     return report;
   }
@@ -172,36 +175,33 @@ StepReport IcmStepper::step(const State& from, const Drive& drive, double dt, St
   const int n = scene_.surface.vertex_count;
   const int planned =
       options_.substeps ? *options_.substeps : substeps_for_speed(from, drive, dt, edge_length_, options_.max_substeps);
-  Leg leg{gather_nodes(from.x, from.obstacles), from.v};
+  SubstepState now{gather_nodes(from.x, from.obstacles), from.v};
   const Points wanted = gather_nodes(from.x, drive.obstacles);
-  if (has_contact() && !from.clean && leg.nodes.allFinite())
+  if (has_contact() && !from.clean && now.nodes.allFinite())
     report.collision.pairs_before = audit_positions(scene_, from.x, from.obstacles).intersecting_pairs();
   for (int s = 0; s < planned; ++s) {
     const double part = 1.0 / (planned - s);  // of what is left of the frame
     const double h = dt / planned;
-    Points next = leg.nodes + part * (wanted - leg.nodes);
-    next.topRows(n) = leg.nodes.topRows(n) + h * leg.v;
-    const Points held = pinned_rows(scene_, leg.nodes);
-    if (!leg.nodes.allFinite() || !substep(leg, held + part * (drive.pins - held), drive, h, next, report)) {
+    Points next = now.nodes + part * (wanted - now.nodes);
+    next.topRows(n) = now.nodes.topRows(n) + h * now.v;
+    const Points held = pinned_rows(scene_, now.nodes);
+    IcmWork work;
+    if (!now.nodes.allFinite() || !substep(now, held + part * (drive.pins - held), drive, h, next, work, report)) {
       report.status = StepStatus::rejected;
       report.reason = Reason::not_finite;
       return report;
     }
     ++report.substeps;
-    leg.v = (next.topRows(n) - leg.nodes.topRows(n)) / h;
+    now.v = (next.topRows(n) - now.nodes.topRows(n)) / h;
     if (has_contact()) {
       Stopwatch watch;
-      report.collision.passed_through += passed_through(world_, exemption_, leg.nodes, next, audited_);
+      report.collision.passed_through += passed_through(world_, work.exemption, now.nodes, next, audited_);
       report.seconds.audit += watch.lap();
     }
-    if (s == 0) report.collision.left_alone = exemption_.cloth_vertices();
-    leg.nodes = std::move(next);
+    if (s == 0) report.collision.left_alone = work.exemption.cloth_vertices();
+    now.nodes = std::move(next);
   }
-  report.status = StepStatus::accepted;
-  arrive(from, leg, dt, to);
-  to.obstacles = drive.obstacles;
-  to.pinched = false;
-  audit_state(scene_, drive, to, audited_, report);
+  finish_step(scene_, from, drive, dt, {now.nodes.topRows(n), std::move(now.v), drive.obstacles}, audited_, to, report);
   return report;
 }
 

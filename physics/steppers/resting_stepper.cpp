@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <utility>
 
 #include "collision/geometry/box.hpp"
 #include "physics/energies/measures.hpp"
@@ -15,6 +17,8 @@ namespace {
 constexpr double still_edges = 0.005;  // in mean edges: what moves by less
 constexpr double still_seconds = 0.5;  // in that time rests
 constexpr std::size_t most_kept = 4;   // scenes of part of the cloths; one is a cache, for what falls asleep may wake
+
+constexpr const char *seconds_block = "resting.seconds", *place_block = "resting.place", *air_block = "resting.air";
 
 using Chosen = std::vector<char>;  // one a cloth
 
@@ -40,15 +44,15 @@ std::vector<int> joined_cloths(const Scene& scene) {
 
 class RestingStepper final : public Stepper {
  public:
-  RestingStepper(const Scene& scene, MakeStepper make)
+  RestingStepper(const Scene& scene, MakeStepper make, std::unique_ptr<Stepper> whole)
       : scene_(scene),
         make_(std::move(make)),
-        whole_(make_(scene)),
+        whole_(std::move(whole)),
         still_(still_edges * mean_edge_length(scene)),
         joined_(joined_cloths(scene)) {}
 
   const StepperTraits& traits() const override { return whole_->traits(); }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to) override;
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override;
 
  private:
   struct Part {
@@ -60,12 +64,12 @@ class RestingStepper final : public Stepper {
   }
   bool pins_move(const State& from, const Drive& drive, int cloth) const;
   void keep_joined(Chosen& resting) const;
-  Chosen still_ones(const State& from, const Drive& drive) const;
+  Chosen still_ones(const State& from, const Rest& rest, const Drive& drive) const;
   bool wake(const State& from, const std::vector<Box>& moving, Chosen& resting) const;
   std::vector<Box> moving_boxes(const State& from, const Drive& drive, double dt, const Chosen& resting) const;
   StepReport step_others(const State& from, const Drive& drive, double dt, const Chosen& resting, State& to);
   bool comes_near(const State& from, const State& to, Chosen& resting) const;
-  Rest rest_after(const State& from, const State& to, const Drive& drive, double dt) const;
+  Rest rest_after(Rest rest, const State& from, const State& to, const Drive& drive, double dt) const;
   Part& part(const Chosen& resting);
 
   const Scene& scene_;
@@ -95,12 +99,12 @@ void RestingStepper::keep_joined(Chosen& resting) const {
 }
 
 // Cloths that rest if nothing comes near them.
-Chosen RestingStepper::still_ones(const State& from, const Drive& drive) const {
+Chosen RestingStepper::still_ones(const State& from, const Rest& rest, const Drive& drive) const {
   Chosen still(scene_.cloths.size(), false);
-  if (!from.clean || from.pinched || from.rest.seconds.size() != still.size()) return still;
-  if (from.rest.wind != drive.wind || from.rest.acceleration != drive.acceleration) return still;
+  if (!from.clean || from.pinched || rest.seconds.size() != still.size()) return still;
+  if (rest.wind != drive.wind || rest.acceleration != drive.acceleration) return still;
   for (std::size_t c = 0; c < still.size(); ++c)
-    still[c] = from.rest.seconds[c] >= still_seconds && !pins_move(from, drive, static_cast<int>(c));
+    still[c] = rest.seconds[c] >= still_seconds && !pins_move(from, drive, static_cast<int>(c));
   keep_joined(still);
   return still;
 }
@@ -157,7 +161,7 @@ StepReport RestingStepper::step_others(const State& from, const Drive& drive, do
   to.v.setZero();
   if (count == static_cast<int>(resting.size())) {
     to.obstacles = drive.obstacles;
-    to.history = {};
+    to.memory.clear();
     StepReport report;
     report.status = StepStatus::accepted;
     report.by = traits().name;
@@ -185,8 +189,7 @@ bool RestingStepper::comes_near(const State& from, const State& to, Chosen& rest
   return wake(from, boxes, resting);
 }
 
-Rest RestingStepper::rest_after(const State& from, const State& to, const Drive& drive, double dt) const {
-  Rest rest = from.rest;
+Rest RestingStepper::rest_after(Rest rest, const State& from, const State& to, const Drive& drive, double dt) const {
   if (rest.seconds.size() != scene_.cloths.size() || rest.wind != drive.wind || rest.acceleration != drive.acceleration)
     rest = {std::vector<double>(scene_.cloths.size(), 0.0), from.x, drive.wind, drive.acceleration};
   for (std::size_t c = 0; c < rest.seconds.size(); ++c) {
@@ -199,21 +202,42 @@ Rest RestingStepper::rest_after(const State& from, const State& to, const Drive&
   return rest;
 }
 
-StepReport RestingStepper::step(const State& from, const Drive& drive, double dt, State& to) {
-  Chosen resting = still_ones(from, drive);
+StepReport RestingStepper::step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) {
+  if (extras.any()) return whole_->step(from, drive, dt, to, extras);
+  const Rest rest = rest_of(from);
+  Chosen resting = still_ones(from, rest, drive);
   while (any(resting) && wake(from, moving_boxes(from, drive, dt, resting), resting)) {
   }
   StepReport report = step_others(from, drive, dt, resting, to);
   while (report.status == StepStatus::accepted && any(resting) && comes_near(from, to, resting))
     report = step_others(from, drive, dt, resting, to);
-  if (report.status == StepStatus::accepted) to.rest = rest_after(from, to, drive, dt);
+  if (report.status == StepStatus::accepted) remember(rest_after(rest, from, to, drive, dt), to);
   return report;
 }
 
 }  // namespace
 
-std::unique_ptr<Stepper> make_resting_stepper(const Scene& scene, MakeStepper make) {
-  return std::make_unique<RestingStepper>(scene, std::move(make));
+Rest rest_of(const State& state) {
+  const auto seconds = std::ranges::find(state.memory, seconds_block, &MemoryBlock::name);
+  const MemoryRows* place = find_rows(state.memory, place_block, state.x.rows());
+  const MemoryRows* air = find_rows(state.memory, air_block, 2);
+  if (seconds == state.memory.end() || !place || !air) return {};
+  const MemoryRows& rows = seconds->rows;
+  return {{rows.data(), rows.data() + rows.size()}, *place, air->row(0).transpose(), air->row(1).transpose()};
+}
+
+void remember(const Rest& rest, State& state) {
+  MemoryRows air(2, 3);
+  air << rest.wind.transpose(), rest.acceleration.transpose();
+  const MemoryRows seconds = Eigen::Map<const Eigen::VectorXd>(rest.seconds.data(), std::ssize(rest.seconds));
+  replace_blocks(
+      "resting",
+      {{seconds_block, seconds, RowsOf::cloths}, {place_block, rest.place, RowsOf::vertices, true}, {air_block, air}},
+      state.memory);
+}
+
+std::unique_ptr<Stepper> make_resting_stepper(const Scene& scene, MakeStepper make, std::unique_ptr<Stepper> whole) {
+  return std::make_unique<RestingStepper>(scene, std::move(make), std::move(whole));
 }
 
 }  // namespace selvedge

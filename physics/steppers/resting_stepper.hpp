@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 
 #include "physics/scene/scene.hpp"
@@ -8,13 +7,23 @@
 
 namespace selvedge {
 
-using MakeStepper = std::function<std::unique_ptr<Stepper>(const Scene&)>;
+// How long each cloth has been where it is, and in which wind and under which gravity.
+struct Rest {
+  std::vector<double> seconds;  // one a cloth; empty: not known
+  Points place;                 // about where, all cloths on end
+  Vec3 wind = Vec3::Zero(), acceleration = Vec3::Zero();
+};
+
+// What the resting stepper remembers in State::memory.
+Rest rest_of(const State&);
+void remember(const Rest&, State&);
 
 // A stepper that leaves out of a step every cloth that rests: for half a second no vertex of it has moved by more
 // than 0.005 mean edges, neither its pins nor wind or gravity change, and nothing that moves comes near it. Cloths that
 // springs join rest together or not at all. The other cloths are a scene of their own, stepped by what `make` makes of
-// it. Where cloths could meet after all the step is taken again with both. A cloth rests on one that moves never, and a
-// tangled state has none that rest. Keeps a reference to the scene.
-std::unique_ptr<Stepper> make_resting_stepper(const Scene&, MakeStepper make);
+// it; all of them are stepped by `whole`, and so are steps with extras. Where cloths could meet after all the step is
+// taken again with both. A cloth rests on one that moves never, and a tangled state has none that rest. Keeps a
+// reference to the scene.
+std::unique_ptr<Stepper> make_resting_stepper(const Scene&, MakeStepper make, std::unique_ptr<Stepper> whole);
 
 }  // namespace selvedge

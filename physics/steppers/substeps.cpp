@@ -86,21 +86,10 @@ std::optional<Restart> restart_of(const State& from, const Drive& drive, int max
     if (!restart) restart = Restart{from};
     restart->state.obstacles[k] = drive.obstacles[k];
     restart->state.clean = false;
-    restart->state.last_clean = {};
-    restart->state.history = {};
+    restart->state.memory.clear();
     ++restart->jumped;
   }
   return restart;
-}
-
-void arrive(const State& from, const Leg& leg, double dt, State& to) {
-  to.time = from.time + dt;
-  to.frame = from.frame + 1;
-  to.x = leg.nodes.topRows(from.x.rows());
-  to.v = leg.v;
-  to.last_clean = {};
-  to.history = leg.history;
-  to.memory.clear();
 }
 
 Points pinned_rows(const Scene& scene, const Points& nodes) {

@@ -7,11 +7,12 @@
 #include "collision/contact/response.hpp"
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
+#include "physics/solve/bdf2.hpp"
 
 namespace selvedge {
 
 // Where a step has come to: all nodes, the cloth's velocity, and what an integrator of two steps goes on from.
-struct Leg {
+struct SubstepState {
   Points nodes, v;
   StepHistory history = {};
 };
@@ -46,9 +47,6 @@ struct Restart {
 };
 // Absent where no obstacle jumps, and where the state's obstacles lag: those are on their way.
 std::optional<Restart> restart_of(const State& from, const Drive&, int max_substeps);
-
-// Writes where and when a step of dt [s] from `from` has come to, all but the obstacles.
-void arrive(const State& from, const Leg&, double dt, State& to);
 
 Points pinned_rows(const Scene&, const Points& nodes);  // one row a Scene::pins entry
 

@@ -3,7 +3,7 @@
 #include "physics/energies/measures.hpp"
 #include "physics/linear/cholesky.hpp"
 #include "physics/solve/bdf2.hpp"
-#include "physics/steppers/conventional_stepper.hpp"
+#include "physics/steppers/decorated_stepper.hpp"
 
 namespace selvedge {
 namespace {
@@ -31,17 +31,18 @@ std::optional<AlgebraicError> algebraic_error(const Setup& setup, const State& s
   if (setup.run.stepper != "conventional") return {};
   ConventionalOptions single = setup.run.conventional;
   single.substeps = 1;
-  const auto stepper = make_conventional_stepper(setup.scene, single);
+  const auto stepper = make_recovering_conventional_stepper(setup.scene, single);
   State from = start, to;
-  from.history = {};
+  forget_motion(from.memory);
   if (single.integrator == Integrator::bdf2) {
-    if (!free_step(*stepper, from, setup.drive_at(from.time + dt), dt, to) || to.history.h != dt) return {};
+    if (!free_step(*stepper, from, setup.drive_at(from.time + dt), dt, to) || step_history(to).h != dt) return {};
     from = to;
   }
   const Drive drive = setup.drive_at(from.time + dt);
   if (!free_step(*stepper, from, drive, dt, to)) return {};
 
-  const StepStart base = from.history.h > 0 ? bdf2_start(from.history, from.x, from.v) : StepStart{dt, from.x, from.v};
+  const StepHistory history = step_history(from);
+  const StepStart base = history.h > 0 ? bdf2_start(history, from.x, from.v) : StepStart{dt, from.x, from.v};
   ImplicitEuler reference(setup.scene, tightened(single.implicit_euler));
   Points minimiser = to.x;
   const StepProblem problem{base.h, &base.x, &base.v, &drive.pins, drive.acceleration, drive.wind, {}};

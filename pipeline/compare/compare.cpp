@@ -42,12 +42,12 @@ SceneWork open_scene(const CompareRequest& request, const Comparison& comparison
   work.scene = &scene;
   work.folder = request.out / "parts" / scene.name;
   make_folder(work.folder);
-  const Setup reference = read_compared(scene, request.short_form, comparison.reference);
+  const Setup reference = read_compared(scene, request.short_form, comparison.reference, comparison.kinds);
   work.keys.program = program;
   work.keys.reference = fmt::format("{} {:016x} {} {} {}", program, hash_of(reference.config), scene.states,
                                     scene.horizon, comparison.jitter);
   for (const CompareSetting& setting : comparison.settings) {
-    Setup setup = read_compared(scene, request.short_form, setting.overrides);
+    Setup setup = read_compared(scene, request.short_form, setting.overrides, comparison.kinds);
     work.keys.settings.push_back(fmt::format("{} {:016x} {}", program, hash_of(setup.config), Eigen::nbThreads()));
     std::string trouble;
     try {
@@ -207,7 +207,8 @@ void rank(std::vector<CompareRow>& rows) {
 }
 
 CompareResult compare(const CompareRequest& request) {
-  const Comparison comparison = read_comparison(request.file, request.short_form);
+  Comparison comparison = read_comparison(request.file, request.short_form);
+  comparison.kinds = request.kinds;
   const std::string program = program_key();
   std::vector<SceneWork> all;
   for (const CompareScene& scene : comparison.scenes) all.push_back(open_scene(request, comparison, scene, program));

@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "pipeline/compare/compare_result.hpp"
+#include "pipeline/scene/kinds.hpp"
 
 namespace selvedge {
 
 struct CompareRequest {
   std::filesystem::path file;
   bool short_form = false;
+  Kinds kinds = known_kinds();  // of steppers
   std::filesystem::path out = "out/compare";
   std::ostream* log = nullptr;  // a line as each part ends
   std::function<bool()> stop;   // asked after every frame; true ends it, unfinished parts are not kept

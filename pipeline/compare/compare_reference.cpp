@@ -54,7 +54,7 @@ Flight fly(const Setup& setup, State from, int frames, const Stop& stop,
 Setup with_steps(const Comparison& comparison, const CompareScene& scene, bool short_form, int steps) {
   std::vector<std::string> overrides = comparison.reference;
   overrides.push_back(fmt::format("run.substeps={}", steps));
-  return read_compared(scene, short_form, overrides);
+  return read_compared(scene, short_form, overrides, comparison.kinds);
 }
 
 void check_arrived(const Flight& flight, const Setup& setup) {
@@ -80,7 +80,7 @@ bool run_reference(const Setup& setup, const CompareScene& scene, const Stop& st
     for (std::size_t k = 0; k < frames.size(); ++k) {
       if (state.frame == frames[k]) {
         reference.states[k].from = state;
-        reference.states[k].from.history = {};
+        forget_motion(reference.states[k].from.memory);
       }
       if (state.frame == frames[k] + scene.horizon) reference.states[k].target = state.x;
     }
@@ -108,12 +108,13 @@ double energy_of(const Setup& setup, const State& state) {
   return energies(setup.scene, state.x, state.v, setup.drive_at(state.time).acceleration).total();
 }
 
-Setup read_compared(const CompareScene& scene, bool short_form, const std::vector<std::string>& overrides) {
+Setup read_compared(const CompareScene& scene, bool short_form, const std::vector<std::string>& overrides,
+                    const Kinds& kinds) {
   std::vector<std::string> all;
-  if (short_form) all = read_setup(scene.file).short_form;
+  if (short_form) all = read_setup(scene.file, {}, kinds).short_form;
   all.insert(all.end(), scene.overrides.begin(), scene.overrides.end());
   all.insert(all.end(), overrides.begin(), overrides.end());
-  return read_setup(scene.file, all);
+  return read_setup(scene.file, all, kinds);
 }
 
 std::optional<CompareReference> make_reference(const Comparison& comparison, const CompareScene& scene, bool short_form,

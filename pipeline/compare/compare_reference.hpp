@@ -41,6 +41,7 @@ std::optional<CompareErrors> errors_of(const Setup&, const CompareReference&, co
 double energy_of(const Setup&, const State&);
 
 // A scene of the comparison with further overrides.
-Setup read_compared(const CompareScene&, bool short_form, const std::vector<std::string>& overrides);
+Setup read_compared(const CompareScene&, bool short_form, const std::vector<std::string>& overrides,
+                    const Kinds& = known_kinds());
 
 }  // namespace selvedge

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/scene/kinds.hpp"
+
 namespace selvedge {
 
 struct CompareScene {
@@ -25,6 +27,7 @@ struct Comparison {
   std::vector<CompareScene> scenes;
   std::vector<CompareSetting> settings;
   std::vector<std::string> reference;  // overrides of the temporal reference, beside its time step
+  Kinds kinds = known_kinds();         // of steppers
   int repeats = 3;
   double jitter = 1e-3;  // of the common states for the floor, in mean edge lengths
 };

@@ -48,65 +48,88 @@ void write_all(const h5::File& file, const std::string& name, const std::vector<
   for (std::size_t k = 0; k < all.size(); ++k) h5::write_points(file, numbered(name, k), all[k]);
 }
 
-void write_rest(const h5::File& file, const Rest& rest) {
-  file.write_constant("rest_seconds", H5T_NATIVE_DOUBLE, {static_cast<hsize_t>(rest.seconds.size())},
-                      rest.seconds.data());
-  Points air(2, 3);
-  air << rest.wind.transpose(), rest.acceleration.transpose();
-  h5::write_points(file, "rest_air", air);
-  h5::write_points(file, "rest_place", rest.place);
-}
-
-Rest read_rest(const h5::File& file) {
-  Rest rest;
-  const std::vector<hsize_t> shape = file.shape_of("rest_seconds", 1);
-  rest.seconds.resize(shape[0]);
-  file.read_all("rest_seconds", H5T_NATIVE_DOUBLE, shape, rest.seconds.data());
-  const Points air = read_points(file, "rest_air");
-  if (air.rows() != 2) throw_unfit(file, "rest_air has an unexpected shape");
-  rest.place = read_points(file, "rest_place");
-  rest.wind = row(air, 0);
-  rest.acceleration = row(air, 1);
-  return rest;
-}
-
-void write_memory(const h5::File& file, const std::vector<MemoryBlock>& memory) {
-  if (memory.empty()) return;
+void write_memory(const h5::File& file, const Memory& memory) {
   std::vector<std::string> names;
-  std::vector<Points> blocks;
+  std::vector<int> rows_of, positions;
   for (const MemoryBlock& block : memory) {
+    file.write_constant(numbered("memory_", names.size()), H5T_NATIVE_DOUBLE,
+                        {static_cast<hsize_t>(block.rows.rows()), static_cast<hsize_t>(block.rows.cols())},
+                        block.rows.data());
     names.push_back(block.name);
-    blocks.push_back(block.rows);
+    rows_of.push_back(static_cast<int>(block.rows_of));
+    positions.push_back(block.positions);
   }
-  file.write_texts("memory_names", names);
-  write_all(file, "memory_", blocks);
+  if (!names.empty()) file.write_texts("memory_names", names);
+  h5::write_integers(file, "memory_rows_of", rows_of);
+  h5::write_integers(file, "memory_positions", positions);
 }
 
-std::vector<MemoryBlock> read_memory(const h5::File& file) {
-  if (!file.has("memory_names")) return {};
+std::vector<int> read_integers(const h5::File& file, const std::string& name) {
+  const std::vector<hsize_t> shape = file.shape_of(name, 1);
+  std::vector<int> values(shape[0]);
+  if (!values.empty()) file.read_all(name, H5T_NATIVE_INT32, shape, values.data());
+  return values;
+}
+
+MemoryRows read_rows(const h5::File& file, const std::string& name) {
+  const std::vector<hsize_t> shape = file.shape_of(name, 2);
+  MemoryRows rows(static_cast<Eigen::Index>(shape[0]), static_cast<Eigen::Index>(shape[1]));
+  if (rows.size() > 0) file.read_all(name, H5T_NATIVE_DOUBLE, shape, rows.data());
+  return rows;
+}
+
+Memory read_memory(const h5::File& file) {
+  if (!file.has("memory_rows_of"))
+    throw Error("the checkpoint is of an earlier version of this program", file.path().string(),
+                "run without --resume");
+  const std::vector<int> rows_of = read_integers(file, "memory_rows_of");
+  if (rows_of.empty()) return {};
   const std::vector<std::string> names = file.read_texts("memory_names");
-  const std::vector<Points> blocks = read_all(file, "memory_");
-  if (names.size() != blocks.size()) throw_unfit(file, "memory_names has an unexpected shape");
-  std::vector<MemoryBlock> memory;
-  for (std::size_t k = 0; k < names.size(); ++k) memory.push_back({names[k], blocks[k]});
+  const std::vector<int> positions = read_integers(file, "memory_positions");
+  if (names.size() != rows_of.size() || names.size() != positions.size())
+    throw_unfit(file, "memory_names has an unexpected shape");
+  for (const int rows : rows_of)
+    if (rows < 0 || rows > static_cast<int>(RowsOf::cloths)) throw_unfit(file, "memory_rows_of has an unknown kind");
+  Memory memory;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    memory.push_back(
+        {names[k], read_rows(file, numbered("memory_", k)), static_cast<RowsOf>(rows_of[k]), positions[k] != 0});
   return memory;
 }
 
-// All arrays of the cloth are of as many vertices or empty, and what a step goes on from is finite.
+// Arrays of vertices are of as many as there are, and what a step goes on from is finite.
 void check_whole(const h5::File& file, const State& state) {
-  const Eigen::Index n = state.x.rows();
-  const auto of_cloth = [n](const Points& rows) { return rows.rows() == n || rows.rows() == 0; };
-  if (state.v.rows() != n || !of_cloth(state.last_clean.x) || !of_cloth(state.history.x) ||
-      state.history.v.rows() != state.history.x.rows() || !of_cloth(state.rest.place))
-    throw_unfit(file, "has arrays of different numbers of vertices");
-  if (state.history.h < 0 || (state.history.h > 0 && state.history.x.rows() != n))
-    throw_unfit(file, "history_h is given without a history");
-  bool finite = state.x.allFinite() && state.v.allFinite() && state.last_clean.x.allFinite();
+  bool same = state.v.rows() == state.x.rows(), finite = state.x.allFinite() && state.v.allFinite();
+  for (const MemoryBlock& block : state.memory) {
+    same = same && (block.rows_of != RowsOf::vertices || block.rows.rows() == state.x.rows());
+    finite = finite && block.rows.allFinite();
+  }
+  if (!same) throw_unfit(file, "has arrays of different numbers of vertices");
   for (const Points& x : state.obstacles) finite = finite && x.allFinite();
-  if (!finite) throw_unfit(file, "has positions or velocities that are not finite");
+  if (!finite) throw_unfit(file, "has values that are not finite");
   for (std::size_t k = 0; k < state.cut_out.size(); ++k)
     if (state.cut_out[k] < 0 || (k > 0 && state.cut_out[k] <= state.cut_out[k - 1]))
       throw_unfit(file, "cut_out does not ascend");
+}
+
+// How many rows a block has in this scene; -1 where any number will do.
+Eigen::Index rows_in(const Scene& scene, RowsOf rows_of) {
+  switch (rows_of) {
+    case RowsOf::vertices:
+      return scene.surface.vertex_count;
+    case RowsOf::triangles:
+      return scene.surface.triangles.rows();
+    case RowsOf::cloths:
+      return static_cast<Eigen::Index>(scene.cloths.size());
+    case RowsOf::obstacle_vertices: {
+      Eigen::Index count = 0;
+      for (const Obstacle& obstacle : scene.obstacles) count += obstacle.surface.vertex_count;
+      return count;
+    }
+    case RowsOf::none:
+      break;
+  }
+  return -1;
 }
 
 }  // namespace
@@ -125,12 +148,6 @@ void write_checkpoint(const std::filesystem::path& path, const State& state, con
     h5::write_points(file, "x", state.x);
     h5::write_points(file, "v", state.v);
     write_all(file, "obstacle_", state.obstacles);
-    h5::write_points(file, "last_clean_x", state.last_clean.x);
-    write_all(file, "last_clean_obstacle_", state.last_clean.obstacles);
-    file.write_constant("history_h", H5T_NATIVE_DOUBLE, {1}, &state.history.h);
-    h5::write_points(file, "history_x", state.history.x);
-    h5::write_points(file, "history_v", state.history.v);
-    write_rest(file, state.rest);
     h5::write_integers(file, "cut_out", state.cut_out);
     write_memory(file, state.memory);
     file.close();
@@ -159,28 +176,19 @@ State read_checkpoint(const std::filesystem::path& path, const std::string& conf
   state.x = read_points(file, "x");
   state.v = read_points(file, "v");
   state.obstacles = read_all(file, "obstacle_");
-  state.last_clean = {read_points(file, "last_clean_x"), read_all(file, "last_clean_obstacle_")};
-  state.history.h = read_value(file, "history_h");
-  state.history.x = read_points(file, "history_x");
-  state.history.v = read_points(file, "history_v");
-  state.rest = read_rest(file);
   state.memory = read_memory(file);
-  const std::vector<hsize_t> cut = file.shape_of("cut_out", 1);
-  state.cut_out.resize(cut[0]);
-  file.read_all("cut_out", H5T_NATIVE_INT32, cut, state.cut_out.data());
+  state.cut_out = read_integers(file, "cut_out");
   check_whole(file, state);
   return state;
 }
 
 void check_fits(const std::filesystem::path& path, const State& state, const Scene& scene) {
-  const Eigen::Index n = scene.surface.vertex_count;
-  bool fits = state.x.rows() == n && state.obstacles.size() == scene.obstacles.size() &&
-              (state.rest.seconds.empty() || state.rest.seconds.size() == scene.cloths.size()) &&
-              (state.last_clean.x.rows() == 0 || state.last_clean.obstacles.size() == scene.obstacles.size());
-  for (std::size_t k = 0; fits && k < scene.obstacles.size(); ++k) {
-    const Eigen::Index rows = scene.obstacles[k].surface.vertex_count;
-    fits = state.obstacles[k].rows() == rows &&
-           (state.last_clean.x.rows() == 0 || state.last_clean.obstacles[k].rows() == rows);
+  bool fits = state.x.rows() == scene.surface.vertex_count && state.obstacles.size() == scene.obstacles.size();
+  for (std::size_t k = 0; fits && k < scene.obstacles.size(); ++k)
+    fits = state.obstacles[k].rows() == scene.obstacles[k].surface.vertex_count;
+  for (const MemoryBlock& block : state.memory) {
+    const Eigen::Index rows = rows_in(scene, block.rows_of);
+    fits = fits && (rows < 0 || block.rows.rows() == rows);
   }
   if (!state.cut_out.empty()) fits = fits && state.cut_out.back() < scene.surface.triangles.rows();
   if (!fits)

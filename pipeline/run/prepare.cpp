@@ -12,7 +12,7 @@ bool prepare(Setup& setup, const std::function<bool()>& stop, Progress* progress
   const int frames = -setup.initial.frame;
   if (frames <= 0) return true;
   const Clock::time_point started = Clock::now();
-  auto stepper = make_conventional_stepper(setup.scene, {});
+  std::unique_ptr<Stepper> stepper = make_recovering_conventional_stepper(setup.scene);
   if (!setup.followers.empty()) stepper = make_following_stepper(setup.scene, setup.followers, std::move(stepper));
   State state = setup.initial;
   bool stopped = false;
@@ -33,9 +33,7 @@ bool prepare(Setup& setup, const std::function<bool()>& stop, Progress* progress
                                audit.inside_vertices, state.v.rowwise().norm().maxCoeff());
   state.time = 0;
   state.v = setup.velocity;
-  state.last_clean = {};
-  state.history = {};
-  state.rest = {};
+  state.memory.clear();
   setup.initial = std::move(state);
   return true;
 }

@@ -76,7 +76,7 @@ const Options<RunOptions>& run_options() {
                     number("fps", &O::fps, Unit::rate, positive, "frames a second")} +
           inside(&O::conventional, substep_options()) +
           OptionRows<O>{
-              word("stepper", &O::stepper, known_steppers(), "who makes the frames"),
+              word("stepper", &O::stepper, known_kinds().names(), "who makes the frames"),
               flag("rest", &O::rest, "cloths that rest, with nothing moving near them, are left out of the work"),
               section(&O::icm, icm_options(), "of the stepper `icm`"),
               section(&O::learned, learned_options(), "of the stepper `learned`")});

@@ -69,6 +69,18 @@ const Section& scene_section() {
   return table;
 }
 
+std::shared_ptr<const SceneTable> scene_table(const Kinds& kinds) {
+  const auto table = std::make_shared<SceneTable>(SceneTable{run_options().section, scene_section()});
+  for (Key& key : table->run.keys)
+    if (key.name == "stepper") key.choices = kinds.names();
+  for (const StepperKind& kind : kinds.all())
+    if (kind.options)
+      table->run.keys.push_back(table::section(*kind.options, "{}", "of the stepper `" + kind.name + "`"));
+  for (Key& key : table->scene.keys)
+    if (key.section == &run_options().section) key.section = &table->run;
+  return table;
+}
+
 const Section& material_file_section() {
   static const Section table{
       "material_file", "", "", {}, std::vector<Key>{text("description", "for people")} + keys_of(material_options())};

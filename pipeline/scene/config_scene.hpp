@@ -1,8 +1,11 @@
 #pragma once
 
+#include <memory>
+
 #include "physics/scene/scene.hpp"
 #include "pipeline/config/options.hpp"
 #include "pipeline/garments/garment_make.hpp"
+#include "pipeline/scene/kinds.hpp"
 #include "pipeline/scene/run_options.hpp"
 #include "pipeline/scene/setup_body.hpp"
 #include "pipeline/shapes/generate.hpp"
@@ -11,6 +14,11 @@ namespace selvedge {
 
 // The table of a scene file.
 const Section& scene_section();
+// The same with kinds of steppers that a caller has added.
+struct SceneTable {
+  Section run, scene;
+};
+std::shared_ptr<const SceneTable> scene_table(const Kinds&);
 // The table of a material file: what a scene may say of a material by value.
 const Section& material_file_section();
 // Every section of a scene file in the order of docs/scene.md, the scene itself first.

@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 
 #include "collision/geometry/error.hpp"
-#include "learned/steppers/learned_stepper.hpp"
-#include "physics/steppers/cutting_stepper.hpp"
-#include "physics/steppers/resting_stepper.hpp"
+#include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/scene/massless.hpp"
 
@@ -23,39 +21,54 @@ WeightFile read_learned_weights(const Setup& setup) {
 
 namespace {
 
-MakeStepper maker_of(const Setup& setup) {
-  const RunOptions& run = setup.run;
-  if (run.stepper == "conventional")
-    return [options = run.conventional](const Scene& scene) { return make_conventional_stepper(scene, options); };
-  if (run.stepper == "icm") return [options = run.icm](const Scene& scene) { return make_icm_stepper(scene, options); };
-  if (run.stepper == "learned")
-    return [file = std::make_shared<const WeightFile>(read_learned_weights(setup)),
-            options = LearnedOptions{run.learned.settle, {}, {}}](const Scene& scene) {
-      return make_learned_stepper(scene, file->architecture, file->weights, options);
-    };
-  throw Error("unknown stepper `" + run.stepper + "`", setup.file.string(), "known: " + joined(known_steppers()));
+// Why the stepper does not take the scene, and what to do.
+struct Refusal {
+  std::string what, where, cure;
+};
+
+std::vector<Refusal> refusals(const Setup& setup, const StepperTraits& traits) {
+  std::vector<Refusal> all;
+  if (!traits.accepts(1 / setup.run.fps))
+    all.push_back({fmt::format("it does not make {} frames a second", setup.run.fps), "run.fps",
+                   fmt::format("give fps: {:.0f}", 1 / traits.only_dt.value_or(1))});
+  if (!traits.may_leave_out_cloths && !setup.initial.cut_out.empty())
+    all.push_back({"it steps no cloth that is cut out", "cloths", "give the garments another start"});
+  if (traits.needs.obstacles && setup.scene.obstacles.empty())
+    all.push_back({"it needs an obstacle", "obstacles", "add one"});
+  if (!traits.needs.worn && !traits.needs.bodies) return all;
+  const Drive start = setup.drive_at(setup.initial.time);
+  if (traits.needs.worn && start.worn.rows() == 0)
+    all.push_back({"it needs cloth that a body wears", "cloths", "give a garment"});
+  if (traits.needs.bodies && std::ranges::none_of(start.bodies, [](const BodyFrame& b) { return b.is_body(); }))
+    all.push_back({"it needs a body", "obstacles", "give an obstacle with a `body`"});
+  return all;
 }
 
 void check_accepted(const Setup& setup, const StepperTraits& traits) {
-  if (traits.only_dt && std::abs(1 / setup.run.fps - *traits.only_dt) > 1e-9)
-    throw Error(fmt::format("the stepper `{}` does not make {} frames a second", traits.name, setup.run.fps),
-                setup.file.string() + ": run.fps", fmt::format("give fps: {:.0f}", 1 / *traits.only_dt));
-  if (!traits.may_leave_out_cloths && !setup.initial.cut_out.empty())
-    throw Error(fmt::format("the stepper `{}` steps no cloth that is cut out", traits.name), setup.file.string(),
-                "give the garments another start");
+  std::string what, where, cure;
+  const auto append = [](std::string& list, const std::string& item) { list += (list.empty() ? "" : ", ") + item; };
+  for (const Refusal& refusal : refusals(setup, traits)) {
+    append(what, refusal.what);
+    append(where, refusal.where);
+    append(cure, refusal.cure);
+  }
+  if (!what.empty())
+    throw Error("the stepper `" + traits.name + "` does not take this scene: " + what,
+                setup.file.string() + ": " + where, cure);
 }
 
 }  // namespace
 
 std::unique_ptr<Stepper> make_stepper(const Setup& setup) {
-  const MakeStepper make = maker_of(setup);
-  std::unique_ptr<Stepper> whole = make(setup.scene);
-  const StepperTraits traits = whole->traits();
-  check_accepted(setup, traits);
-  if (setup.run.rest && traits.may_leave_out_cloths) whole = make_resting_stepper(setup.scene, make);
-  if (!setup.initial.cut_out.empty()) whole = make_cutting_stepper(setup.scene, make, std::move(whole));
-  if (setup.followers.empty()) return whole;
-  return make_following_stepper(setup.scene, setup.followers, std::move(whole));
+  const Kinds known = known_kinds();
+  const StepperKind* kind = setup.kind.maker ? &setup.kind : known.find(setup.run.stepper);
+  if (!kind)
+    throw Error("unknown stepper `" + setup.run.stepper + "`", setup.file.string(), "known: " + joined(known.names()));
+  std::unique_ptr<Stepper> stepper =
+      decorated(setup.scene, kind->maker(setup, setup.kind_options), {setup.run.rest, !setup.initial.cut_out.empty()});
+  check_accepted(setup, stepper->traits());
+  if (setup.followers.empty()) return stepper;
+  return make_following_stepper(setup.scene, setup.followers, std::move(stepper));
 }
 
 }  // namespace selvedge

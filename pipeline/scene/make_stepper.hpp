@@ -11,8 +11,8 @@ namespace selvedge {
 // does.
 WeightFile read_learned_weights(const Setup&);
 
-// The only switch over kinds of steppers. Keeps a reference to the setup's scene. Throws Error for an unknown kind, and
-// for a scene that the stepper does not take: another time step than its own, triangles that are cut out.
+// The setup's kind of stepper with what stands round it. Keeps a reference to the setup's scene. Throws Error for an
+// unknown kind, and for a scene that does not have what the stepper's traits ask for.
 std::unique_ptr<Stepper> make_stepper(const Setup&);
 
 }  // namespace selvedge

@@ -79,15 +79,16 @@ class FollowingStepper final : public Stepper {
       pins_.push_back(static_cast<int>(std::ranges::lower_bound(scene.pins, one.vertex) - scene.pins.begin()));
   }
   const StepperTraits& traits() const override { return stepper_->traits(); }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to) override {
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override {
     Drive held = drive;  // a pin that moves would ask for substeps
     for (std::size_t k = 0; k < pins_.size(); ++k) held.pins.row(pins_[k]) = from.x.row(followers_[k].vertex);
-    StepReport report = stepper_->step(from, held, dt, to);
+    StepReport report = stepper_->step(from, held, dt, to, extras);
     if (report.status != StepStatus::accepted) return report;
     for (const Follower& one : followers_) {
       follow(one, to.x);
       follow(one, to.v);
-      if (to.history.x.rows() > 0) to.history.x.row(one.vertex) = to.x.row(one.vertex);
+      for (MemoryBlock& block : to.memory)
+        if (block.positions && block.rows_of == RowsOf::vertices) block.rows.row(one.vertex) = to.x.row(one.vertex);
     }
     return report;
   }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "physics/steppers/conventional_stepper.hpp"
 #include "physics/steppers/icm_stepper.hpp"
@@ -25,10 +24,5 @@ struct RunOptions {
   IcmOptions icm;
   LearnedRun learned;
 };
-
-inline const std::vector<std::string>& known_steppers() {
-  static const std::vector<std::string> known{"conventional", "icm", "learned"};
-  return known;
-}
 
 }  // namespace selvedge

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "physics/scene/make_scene.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/setup_cloth.hpp"
 #include "pipeline/scene/setup_mesh.hpp"
@@ -34,7 +35,8 @@ struct World {
   int pin_count = 0;
   std::vector<PinGroup> pins;
   std::vector<std::function<Points(double time)>> obstacles;
-  std::function<Points(double)> worn;  // empty: nothing is worn
+  std::vector<std::function<BodyFrame(double time)>> bodies;  // one an obstacle; empty: it is none
+  std::function<Points(double)> worn;                         // empty: nothing is worn
   Vec3 gravity = Vec3::Zero();
   std::vector<double> wind_times;
   std::vector<Vec3> wind;
@@ -50,6 +52,8 @@ Drive drive(const World& world, double time) {
   if (!world.wind.empty()) d.wind = keyed_vector(world.wind_times, world.wind, world.wind_interpolation, time);
   d.acceleration = world.gravity;
   if (world.worn) d.worn = world.worn(time);
+  if (std::ranges::any_of(world.bodies, [](const auto& body) { return body != nullptr; }))
+    for (const auto& body : world.bodies) d.bodies.push_back(body ? body(time) : BodyFrame{});
   return d;
 }
 
@@ -67,22 +71,10 @@ Points stacked(const std::vector<ClothPart>& parts, Points ClothPart::*rows) {
 }
 
 void add_cloths(const std::vector<ClothPart>& parts, Scene& scene) {
-  Eigen::Index triangles = 0;
-  for (const ClothPart& part : parts) triangles += part.mesh.triangles.rows();
-  Triangles all(triangles, 3);
-  Eigen::Index v = 0, t = 0;
   for (const ClothPart& part : parts) {
-    const Eigen::Index nv = part.mesh.x.rows(), nt = part.mesh.triangles.rows();
-    scene.cloths.push_back({part.name, part.material, static_cast<int>(v), static_cast<int>(nv), static_cast<int>(t),
-                            static_cast<int>(nt)});
-    all.middleRows(t, nt) = part.mesh.triangles.array() + static_cast<int>(v);
-    scene.rest_triangle.insert(scene.rest_triangle.end(), part.rest_triangle.begin(), part.rest_triangle.end());
+    add_cloth(scene, part.rest, part.mesh.triangles, part.material, part.name, part.rest_triangle);
     scene.rest_is_flat = part.rest_is_flat;
-    v += nv;
-    t += nt;
   }
-  scene.rest = stacked(parts, &ClothPart::rest);
-  scene.surface = make_surface(static_cast<int>(v), all);
 }
 
 // Vertices without mass cannot move freely: they stay where they are, unless they follow others.
@@ -260,6 +252,7 @@ JoinedScene join_scene(const Config& config, const SceneParts& parts, double beg
   for (const ObstaclePart& part : parts.obstacles) {
     scene.obstacles.push_back(part.obstacle);
     world->obstacles.push_back(part.at);
+    world->bodies.push_back(part.body);
   }
   world->gravity = config["gravity"].vector();
   read_wind(config["wind"], scene.wind, *world);
@@ -279,13 +272,11 @@ JoinedScene join_scene(const Config& config, const SceneParts& parts, double beg
 }
 
 // The state when the scene's time begins, with the velocity of time 0.
-State first_state(const SceneParts& parts, const JoinedScene& joined, double begin_time) {
-  State state;
+State begin_state(const SceneParts& parts, const JoinedScene& joined, double begin_time) {
+  State state = first_state(joined.scene, joined.x, joined.start.obstacles);
   state.frame = parts.begin_frame;
   state.time = begin_time;
-  state.x = joined.x;
   state.v = stacked(parts.cloths, &ClothPart::velocity);
-  state.obstacles = joined.start.obstacles;
   for (const int pin : joined.scene.pins) state.v.row(pin).setZero();
   begin_cut(parts.cloths, joined.scene, state);
   return state;
@@ -293,15 +284,18 @@ State first_state(const SceneParts& parts, const JoinedScene& joined, double beg
 
 }  // namespace
 
-Setup read_setup(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  Config config = read_config(file, scene_section(), overrides);
+Setup read_setup(const std::filesystem::path& file, const std::vector<std::string>& overrides, const Kinds& kinds) {
   Setup setup;
+  setup.table = scene_table(kinds);
+  Config config = read_config(file, setup.table->scene, overrides);
   setup.file = file;
   setup.run = read_run(config);
+  setup.kind = *kinds.find(setup.run.stepper);
+  if (setup.kind.options) setup.kind_options = config["run"][setup.kind.name];
   const SceneParts parts = read_parts(config, file.parent_path(), setup.run.fps);
   const double begin_time = parts.begin_frame / setup.run.fps;
   JoinedScene joined = join_scene(config, parts, begin_time);
-  setup.initial = first_state(parts, joined, begin_time);
+  setup.initial = begin_state(parts, joined, begin_time);
   setup.velocity = setup.initial.v;
   if (parts.begin_frame < 0) setup.initial.v.setZero();
   setup.scene = std::move(joined.scene);

@@ -10,12 +10,14 @@
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
 #include "pipeline/scene/follower.hpp"
+#include "pipeline/scene/kinds.hpp"
 #include "pipeline/scene/outcome.hpp"
 #include "pipeline/scene/run_options.hpp"
 
 namespace selvedge {
 
 struct PosedBodies;
+struct SceneTable;
 
 // A scene file, read: everything a run needs.
 struct Setup {
@@ -31,11 +33,15 @@ struct Setup {
   std::vector<Follower> followers;                   // vertices without mass that go with others, all of them pins
   std::vector<Outcome> outcomes;                     // what must come true
   std::vector<std::string> short_form;               // overrides that make a shorter run of the scene
+  StepperKind kind;                                  // of the stepper; without a maker: the known one of run.stepper
+  Config kind_options;                               // what the file gives for it
+  std::shared_ptr<const SceneTable> table;           // by which the file was read
   std::vector<std::string> warnings;  // named and counted: degenerate triangles left out, isolated vertices, ...
 };
 
 // Reads a scene file. `overrides` are key=value with dotted keys (run.frames=10). Throws Error with file, line, key,
-// what is allowed and the nearest known key.
-Setup read_setup(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+// what is allowed and the nearest known key. `kinds` are the steppers that it may name.
+Setup read_setup(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
+                 const Kinds& = known_kinds());
 
 }  // namespace selvedge

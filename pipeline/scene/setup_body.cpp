@@ -191,6 +191,11 @@ ObstaclePart obstacle_of(const std::shared_ptr<const Performance>& who) {
   part.obstacle.surface = who->surface;
   part.obstacle.moving = !is_still(*who);
   part.at = [who](double time) { return body_at(*who, time); };
+  part.body = [who, joints = joint_positions(who->body, who->shape)](double time) {
+    const BodyPose pose = pose_at(*who, time);
+    return BodyFrame{who->shape, pose.rotations, pose.translation,
+                     in_scene(*who, posed_joints(who->body, joints, pose), time)};
+  };
   return part;
 }
 

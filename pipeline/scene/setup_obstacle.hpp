@@ -4,13 +4,15 @@
 #include <functional>
 
 #include "physics/scene/scene.hpp"
+#include "physics/scene/stepper.hpp"
 #include "pipeline/config/config.hpp"
 
 namespace selvedge {
 
 struct ObstaclePart {
   Obstacle obstacle;
-  std::function<Points(double time)> at;  // positions wanted at a time [s]
+  std::function<Points(double time)> at;            // positions wanted at a time [s]
+  std::function<BodyFrame(double time)> body = {};  // empty: it is no body
 };
 
 // The name given, or that of its place in the list.

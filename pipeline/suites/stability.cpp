@@ -35,7 +35,7 @@ std::vector<StabilityCase> chosen_cases(const StabilitySuite& suite, const Stabi
 Setup read_run(const StabilityRequest& request, const StabilityCase& one, const StabilityRun& run) {
   std::vector<std::string> overrides = run.overrides;
   if (request.stepper) overrides.push_back("run.stepper=" + *request.stepper);
-  return read_setup(one.scene, overrides);
+  return read_setup(one.scene, overrides, request.kinds);
 }
 
 std::vector<std::string> failures_of(const StabilityRow& row, const RunSummary& summary,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/scene/kinds.hpp"
 #include "pipeline/suites/stability_row.hpp"
 
 namespace selvedge {
@@ -15,6 +16,7 @@ struct StabilityRequest {
   std::filesystem::path suite = "configs/stability.yaml";
   std::vector<std::string> cases;      // by name; none: all
   std::optional<std::string> stepper;  // in place of the scenes' own
+  Kinds kinds = known_kinds();         // of steppers
   bool short_form = false;
   std::filesystem::path out = "out/stability";
   std::ostream* log = nullptr;  // a line as each run ends

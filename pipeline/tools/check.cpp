@@ -9,6 +9,7 @@
 #include "collision/geometry/error.hpp"
 #include "collision/search/obstacle.hpp"
 #include "physics/energies/measures.hpp"
+#include "physics/scene/make_scene.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
 
@@ -83,19 +84,12 @@ void check_frame(const Scene& rest, const Points& x, const Bodies& bodies, doubl
   report.max_stretch = std::max(report.max_stretch.value_or(stretches.col(1).maxCoeff()), stretches.col(1).maxCoeff());
 }
 
-std::vector<RestTriangle> flatten_all(const Points& rest, const Triangles& triangles) {
-  std::vector<RestTriangle> flat;
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
-    flat.push_back(flatten(row(rest, triangles(t, 0)), row(rest, triangles(t, 1)), row(rest, triangles(t, 2))));
-  return flat;
-}
-
 std::vector<RestTriangle> read_rest(const std::filesystem::path& file, const Triangles& triangles) {
   const Mesh mesh = read_mesh(file);
   if (!same_triangles(mesh.triangles, triangles))
     throw Error("the rest mesh has other triangles than what is checked", file.string(),
                 "give the mesh that the cloth was made from, with the same faces in the same order");
-  return flatten_all(mesh.x, triangles);
+  return flattened(mesh.x, triangles);
 }
 
 Scene rest_scene(int vertex_count, const Triangles& triangles, std::vector<RestTriangle> rest) {

@@ -17,7 +17,7 @@
 #include "physics/linear/cholesky.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/host/version.hpp"
-#include "pipeline/scene/run_options.hpp"
+#include "pipeline/scene/kinds.hpp"
 
 namespace selvedge {
 namespace {
@@ -72,7 +72,7 @@ std::vector<std::pair<std::string, std::string>> facts() {
           {"openmp", has_openmp() ? "in" : "left out (SELVEDGE_OPENMP=OFF)"},
           {"threads", std::to_string(threads())},
           {"waiting", waiting()},
-          {"steppers", joined(known_steppers())}};
+          {"steppers", joined(known_kinds().names())}};
 }
 
 }  // namespace

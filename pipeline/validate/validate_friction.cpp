@@ -48,7 +48,7 @@ std::vector<Measured> incline(const ValidationValues& values) {
   drive.pins.resize(0, 3);
   drive.obstacles = {plane};
   drive.acceleration = Vec3(0, -g, 0);
-  const auto stepper = make_conventional_stepper(sheet.scene, {});
+  const auto stepper = make_recovering_conventional_stepper(sheet.scene);
   const Vec3 start = state.x.colwise().mean();
   constexpr int settle = 10, frames = 40;
   double before = 0;
@@ -112,7 +112,7 @@ std::vector<Measured> capstan(const ValidationValues& values) {
   const Vec3 near = (on_belt(-leg, wrap, r, 0) - on_belt(0, wrap, r, 0)).normalized(),
              far = (on_belt(wrap * r + leg, wrap, r, 0) - on_belt(wrap * r, wrap, r, 0)).normalized();
   const Elastic elastic = make_elastic(scene);
-  const auto stepper = make_conventional_stepper(scene, {});
+  const auto stepper = make_recovering_conventional_stepper(scene);
   const Points start = state.x;
   Drive drive;
   drive.obstacles = {bar};

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
+#include "physics/scene/make_scene.hpp"
 
 namespace selvedge {
 namespace {
@@ -63,16 +64,12 @@ StripShape strip_shape(const ValidationValues& values, double length, double wid
 }
 
 Scene flat_cloth(const std::string& name, const Mesh& mesh, const Points& rest, const Material& material) {
+  std::vector<RestTriangle> metric(static_cast<std::size_t>(mesh.triangles.rows()));
+  for (std::size_t t = 0; t < metric.size(); ++t)
+    for (int k = 0; k < 3; ++k)
+      metric[t].col(k) = mesh.uv.row(mesh.triangles(static_cast<Eigen::Index>(t), k)).transpose();
   Scene scene;
-  scene.surface = make_surface(static_cast<int>(rest.rows()), mesh.triangles);
-  scene.rest = rest;
-  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
-    RestTriangle triangle;
-    for (int k = 0; k < 3; ++k) triangle.col(k) = mesh.uv.row(mesh.triangles(t, k)).transpose();
-    scene.rest_triangle.push_back(triangle);
-  }
-  scene.cloths.push_back(
-      {name, material, 0, static_cast<int>(rest.rows()), 0, static_cast<int>(mesh.triangles.rows())});
+  add_cloth(scene, rest, mesh.triangles, material, name, metric);
   scene.contact.self = false;
   return scene;
 }

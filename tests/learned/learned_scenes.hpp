@@ -2,7 +2,7 @@
 
 #include "learned/steppers/learned_scene.hpp"
 #include "learned/steppers/learned_stepper.hpp"
-#include "physics/scene/scene.hpp"
+#include "physics/scene/make_scene.hpp"
 #include "tests/learned/graph_scenes.hpp"
 
 // Scenes for tests of learned steppers.
@@ -18,19 +18,10 @@ struct LearnedCase {
 inline LearnedCase learned_case(const Mesh& cloth, const Mesh& body, const Eigen::RowVector3d& way, int frames) {
   LearnedCase made;
   Scene& scene = made.scene;
-  scene.surface = surface_of(cloth);
-  scene.rest = cloth.x;
-  const Triangles& triangles = scene.surface.triangles;
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
-    scene.rest_triangle.push_back(
-        flatten(row(cloth.x, triangles(t, 0)), row(cloth.x, triangles(t, 1)), row(cloth.x, triangles(t, 2))));
-  Cloth sheet;
-  sheet.name = "sheet";
-  sheet.vertex_count = scene.surface.vertex_count;
-  sheet.triangle_count = static_cast<int>(triangles.rows());
-  sheet.material.lame_mu = 12;
-  sheet.material.lame_lambda = 20;
-  scene.cloths.push_back(sheet);
+  Material material;
+  material.lame_mu = 12;
+  material.lame_lambda = 20;
+  add_cloth(scene, cloth.x, cloth.triangles, material, "sheet");
   scene.pins = {0};
   made.state.x = cloth.x;
   made.state.v = Points::Zero(cloth.x.rows(), 3);

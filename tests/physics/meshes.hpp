@@ -3,7 +3,7 @@
 #include <random>
 #include <vector>
 
-#include "physics/scene/scene.hpp"
+#include "physics/scene/make_scene.hpp"
 
 // Small cloths for the tests of physics.
 namespace selvedge::meshes {
@@ -54,25 +54,12 @@ inline Mesh grid(int columns, int rows, double width, double height, Pattern pat
 
 // Appends a mesh as the scene's next cloth. The rest metric is mesh.flat, or else the triangles of mesh.points.
 inline void add_cloth(Scene& scene, const Mesh& mesh, const Material& material) {
-  Cloth cloth{material.name,
-              material,
-              scene.surface.vertex_count,
-              static_cast<int>(mesh.points.rows()),
-              static_cast<int>(scene.surface.triangles.rows()),
-              static_cast<int>(mesh.triangles.rows())};
-  Points rest(scene.rest.rows() + mesh.points.rows(), 3);
-  rest << scene.rest, mesh.points;
-  Triangles triangles(cloth.first_triangle + cloth.triangle_count, 3);
-  triangles << scene.surface.triangles, (mesh.triangles.array() + cloth.first_vertex).matrix();
-  for (int t = 0; t < cloth.triangle_count; ++t) {
-    const auto corner = mesh.triangles.row(t);
-    RestTriangle flat = flatten(row(mesh.points, corner(0)), row(mesh.points, corner(1)), row(mesh.points, corner(2)));
-    for (int k = 0; k < 3 && !mesh.flat.empty(); ++k) flat.col(k) = mesh.flat[static_cast<std::size_t>(corner(k))];
-    scene.rest_triangle.push_back(flat);
+  std::vector<RestTriangle> metric;
+  for (Eigen::Index t = 0; t < mesh.triangles.rows() && !mesh.flat.empty(); ++t) {
+    RestTriangle& flat = metric.emplace_back();
+    for (int k = 0; k < 3; ++k) flat.col(k) = mesh.flat[static_cast<std::size_t>(mesh.triangles(t, k))];
   }
-  scene.rest = rest;
-  scene.surface = make_surface(static_cast<int>(rest.rows()), triangles);
-  scene.cloths.push_back(cloth);
+  selvedge::add_cloth(scene, mesh.points, mesh.triangles, material, material.name, metric);
 }
 
 inline Scene make_scene(const Mesh& mesh, const Material& material = {}) {

@@ -2,7 +2,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "physics/steppers/conventional_stepper.hpp"
+#include "physics/scene/make_scene.hpp"
+#include "physics/steppers/decorated_stepper.hpp"
 #include "physics/steppers/resting_stepper.hpp"
 #include "tests/collision/sheets.hpp"
 
@@ -17,21 +18,14 @@ struct World {
 
 inline World make_world(const Sheet& cloth) {
   World w;
-  w.scene.surface = make_surface(static_cast<int>(cloth.x.rows()), cloth.triangles);
-  w.scene.rest = cloth.x;
-  for (int t = 0; t < cloth.triangles.rows(); ++t)
-    w.scene.rest_triangle.push_back(flatten(row(cloth.x, cloth.triangles(t, 0)), row(cloth.x, cloth.triangles(t, 1)),
-                                            row(cloth.x, cloth.triangles(t, 2))));
-  w.scene.cloths.push_back({"sheet", {}, 0, w.scene.surface.vertex_count, 0, static_cast<int>(cloth.triangles.rows())});
-  w.state.x = cloth.x;
-  w.state.v = Points::Zero(cloth.x.rows(), 3);
-  w.drive.pins = Points(0, 3);
-  w.drive.acceleration = {0, -9.81, 0};
+  selvedge::add_cloth(w.scene, cloth.x, cloth.triangles, {}, "sheet");
+  w.state = first_state(w.scene, cloth.x);
+  w.drive = at_rest(w.scene, w.state);
   return w;
 }
 
 inline void add_obstacle(World& w, const Sheet& body) {
-  w.scene.obstacles.push_back({"body", make_surface(static_cast<int>(body.x.rows()), body.triangles), false});
+  selvedge::add_obstacle(w.scene, static_cast<int>(body.x.rows()), body.triangles, false, "body");
   w.state.obstacles.push_back(body.x);
   w.drive.obstacles.push_back(body.x);
 }
@@ -49,7 +43,9 @@ struct Run {
   double lag = 0;
 };
 
-inline std::unique_ptr<Stepper> conventional(const Scene& scene) { return make_conventional_stepper(scene, {}); }
+inline std::unique_ptr<Stepper> conventional(const Scene& scene) {
+  return make_recovering_conventional_stepper(scene, {});
+}
 
 // Drops the stepper, and with it all caches, every `renew` frames.
 inline Run run(const World& w, int frames, int renew = 1 << 30, const MakeStepper& make = conventional) {

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <memory>
 
+#include "physics/scene/make_scene.hpp"
+
 namespace selvedge::fake {
 namespace {
 
@@ -95,9 +97,7 @@ ViewRun draping_run(const std::string& name, int n, int frames) {
   info.cloth_first_vertex = {0, n * n};
   info.cloth_first_triangle = {0, static_cast<int>(info.triangles.rows())};
   info.rest = rest;
-  for (int t = 0; t < info.triangles.rows(); ++t)
-    info.rest_triangle.push_back(
-        flatten(row(rest, info.triangles(t, 0)), row(rest, info.triangles(t, 1)), row(rest, info.triangles(t, 2))));
+  info.rest_triangle = flattened(rest, info.triangles);
   TrajectoryInfo::Body body{"ball", {}, 0, false};
   ball(ball_points, body.triangles);
   body.vertex_count = static_cast<int>(ball_points.rows());

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "physics/scene/make_scene.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
 #include "pipeline/run/run_scene.hpp"
 
@@ -47,21 +48,11 @@ inline Triangles grid_triangles(int n) {
 // One cloth above a still tetrahedron and beside a moving one.
 inline Scene scene(int n = 5) {
   Scene scene;
-  scene.surface = make_surface(n * n, grid_triangles(n));
-  scene.rest = grid_points(n);
-  for (Eigen::Index t = 0; t < scene.surface.triangles.rows(); ++t) {
-    const auto corner = [&](int k) { return row(scene.rest, scene.surface.triangles(t, k)); };
-    scene.rest_triangle.push_back(flatten(corner(0), corner(1), corner(2)));
-  }
-  Cloth cloth;
-  cloth.name = "sheet";
-  cloth.vertex_count = n * n;
-  cloth.triangle_count = static_cast<int>(scene.surface.triangles.rows());
-  scene.cloths.push_back(cloth);
+  add_cloth(scene, grid_points(n), grid_triangles(n), {}, "sheet");
   Triangles tetrahedron(4, 3);
   tetrahedron << 0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2;
-  scene.obstacles.push_back({"still", make_surface(4, tetrahedron), false});
-  scene.obstacles.push_back({"mover", make_surface(4, tetrahedron), true});
+  add_obstacle(scene, 4, tetrahedron, false, "still");
+  add_obstacle(scene, 4, tetrahedron, true, "mover");
   return scene;
 }
 
@@ -96,7 +87,7 @@ class FallingStepper : public Stepper {
  public:
   explicit FallingStepper(int fails_at = 1 << 30) : fails_at_(fails_at) {}
   const StepperTraits& traits() const override { return traits_; }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to) override {
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override {
     StepReport report;
     report.by = "falling";
     report.iterations = 1;

@@ -15,26 +15,18 @@ constexpr double frame_dt = 1.0 / 30;
 
 // The recorded cloths as one cloth of a scene, with the body as its obstacle.
 Scene recorded_scene(const parity::Case& recorded) {
-  Scene scene;
-  scene.surface = recorded.scene.cloth;
-  scene.rest = recorded.scene.rest;
   double area_sum = 0, mass_sum = 0;
-  for (Eigen::Index t = 0; t < scene.surface.triangles.rows(); ++t) {
-    const auto corner = [&](int k) { return row(scene.rest, scene.surface.triangles(t, k)); };
-    scene.rest_triangle.push_back(flatten(corner(0), corner(1), corner(2)));
-    area_sum += area(scene.rest_triangle.back());
-  }
+  for (const RestTriangle& triangle : flattened(recorded.scene.rest, recorded.scene.cloth.triangles))
+    area_sum += area(triangle);
   for (const double mass : recorded.scene.mass) mass_sum += mass;
-  Cloth cloth;
-  cloth.name = "recorded";
-  cloth.vertex_count = scene.surface.vertex_count;
-  cloth.triangle_count = static_cast<int>(scene.surface.triangles.rows());
-  cloth.material.density = mass_sum / area_sum;
-  cloth.material.lame_mu = recorded.npz.numbers("lame_mu").values[0] * 4.7e-4;
-  cloth.material.lame_lambda = recorded.npz.numbers("lame_lambda").values[0] * 4.7e-4;
-  cloth.material.bending_model = BendingModel::hinge;
-  cloth.material.bending = recorded.npz.numbers("bending_coeff").values[0];
-  scene.cloths.push_back(cloth);
+  Material material;
+  material.density = mass_sum / area_sum;
+  material.lame_mu = recorded.npz.numbers("lame_mu").values[0] * 4.7e-4;
+  material.lame_lambda = recorded.npz.numbers("lame_lambda").values[0] * 4.7e-4;
+  material.bending_model = BendingModel::hinge;
+  material.bending = recorded.npz.numbers("bending_coeff").values[0];
+  Scene scene;
+  add_cloth(scene, recorded.scene.rest, recorded.scene.cloth.triangles, material, "recorded");
   for (int v = 0; v < scene.surface.vertex_count; ++v)
     if (recorded.scene.types[static_cast<std::size_t>(v)] == pinned_vertex) scene.pins.push_back(v);
   if (recorded.state.body.rows() > 0) scene.obstacles.push_back({"body", recorded.scene.body, true});

@@ -164,8 +164,9 @@ TEST_CASE("springs: each stepper brings the weight to rest where it belongs", "[
   bdf2.integrator = Integrator::bdf2;
   IcmOptions icm;
   icm.implicit_euler = options.implicit_euler;
-  std::unique_ptr<Stepper> steppers[] = {make_conventional_stepper(w.scene, options),
-                                         make_conventional_stepper(w.scene, bdf2), make_icm_stepper(w.scene, icm)};
+  std::unique_ptr<Stepper> steppers[] = {make_recovering_conventional_stepper(w.scene, options),
+                                         make_recovering_conventional_stepper(w.scene, bdf2),
+                                         make_icm_stepper(w.scene, icm)};
   for (const auto& stepper : steppers) {
     const State end = run(w, *stepper, 60, 1.0 / 30);
     CHECK(std::abs(length_of(w.scene.springs[0], end.x) - 0.2 - weight_below(w) / 30) < 1e-6);
@@ -184,7 +185,7 @@ TEST_CASE("springs: bdf2 keeps the period of two weights on a spring", "[springs
   options.implicit_euler.relative_tolerance = 0;
   const double half_mass = lumped_masses(w.scene).sum() / 4;  // the reduced one
   const double period = 2 * M_PI * std::sqrt(half_mass / 0.01);
-  const auto stepper = make_conventional_stepper(w.scene, options);
+  const auto stepper = make_recovering_conventional_stepper(w.scene, options);
   const State half = run(w, *stepper, 100, period / 200);
   CHECK(length_of(w.scene.springs[0], half.x) == Approx(0.1).epsilon(0.01));
 }
@@ -196,7 +197,7 @@ TEST_CASE("springs: what they join keeps its momentum to rounding", "[springs]")
   w.drive.acceleration.setZero();
   ConventionalOptions options;
   options.implicit_euler.linear_solver = LinearSolver::pcg;
-  const auto stepper = make_conventional_stepper(w.scene, options);
+  const auto stepper = make_recovering_conventional_stepper(w.scene, options);
   const State end = run(w, *stepper, 5, 1.0 / 30);
   State next;
   const StepReport report = stepper->step(end, w.drive, 1.0 / 30, next);

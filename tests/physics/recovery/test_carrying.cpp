@@ -98,7 +98,7 @@ TEST_CASE("carrying: cloth over a place where a body crosses itself goes along w
     testing::World w = testing::make_world(sheet(12, 0.3, 0.012));
     w.drive.acceleration.setZero();
     testing::add_obstacle(w, testing::join(sheet(24, 0.3, 0), testing::tilted(sheet(23, 0.3, 3e-4), 0.05)));
-    const auto stepper = make_conventional_stepper(w.scene, {});
+    const auto stepper = make_recovering_conventional_stepper(w.scene, {});
     const Points start = w.state.x;
     for (int frame = 0; frame < 10; ++frame) {
       w.drive.obstacles[0].col(0).array() += 0.005;

@@ -9,6 +9,7 @@
 #include "physics/recovery/pierced.hpp"
 #include "physics/recovery/put_on.hpp"
 #include "physics/recovery/recovery.hpp"
+#include "physics/steppers/recovering_stepper.hpp"
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_pierced {
@@ -280,7 +281,7 @@ TEST_CASE("put on: cloth that a body closed on, through itself, is back between 
       w.drive.worn.col(1).setConstant(apart);  // in the upper one's middle
       REQUIRE(stepper->step(at, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
       CHECK(to.clean == (frame == 1 || frame == 6));
-      CHECK(to.last_clean.x.rows() == (to.clean ? 0 : to.x.rows()));
+      CHECK(last_clean(to).x.rows() == (to.clean ? 0 : to.x.rows()));
       at = to;
     }
     return at;

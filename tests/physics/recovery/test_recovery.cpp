@@ -33,7 +33,7 @@ void check_recovers(World w) {
   w.drive.acceleration.setZero();
   State state = w.state;
   double fastest = 0;
-  const auto stepper = make_conventional_stepper(w.scene, {});
+  const auto stepper = make_recovering_conventional_stepper(w.scene, {});
   for (int frame = 0; frame < 20 && !(frame > 0 && state.clean); ++frame) {
     State to;
     REQUIRE(stepper->step(state, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
@@ -146,7 +146,7 @@ TEST_CASE("recovery: cloth tangled with itself gets out of it without momentum",
     w.drive.acceleration.setZero();
     ConventionalOptions options;  // iterated solves would leave momentum of their own, with and without recovery
     options.implicit_euler.linear_tolerance = 1e-10;
-    const auto stepper = make_conventional_stepper(w.scene, options);
+    const auto stepper = make_recovering_conventional_stepper(w.scene, options);
     State state = w.state, to;
     int frame = 0;
     for (; frame < 20 && !(frame > 0 && state.clean); ++frame) {
@@ -239,7 +239,7 @@ TEST_CASE("recovery: a body that jumps farther than its size is not swept along,
   add_obstacle(w, block({3, 0, 0}, 0.03));
   w.drive.acceleration.setZero();
   const Points there = block({0.01, 0, 0.02}, 0.03).x;
-  const auto stepper = make_conventional_stepper(w.scene, {});
+  const auto stepper = make_recovering_conventional_stepper(w.scene, {});
   State state = w.state, to;
   w.drive.obstacles = {there};
   StepReport report = stepper->step(state, w.drive, 1.0 / 30, to);
@@ -261,7 +261,7 @@ TEST_CASE("recovery: a fast body that does not jump sweeps the cloth along", "[r
   w.drive.acceleration.setZero();
   w.drive.obstacles = {block({0, 1, 0}, 0.06).x};
   State to;
-  const StepReport report = make_conventional_stepper(w.scene, {})->step(w.state, w.drive, 1.0 / 30, to);
+  const StepReport report = make_recovering_conventional_stepper(w.scene, {})->step(w.state, w.drive, 1.0 / 30, to);
   REQUIRE(report.status == StepStatus::accepted);
   CHECK(report.collision.jumped == 0);
   CHECK(to.clean);

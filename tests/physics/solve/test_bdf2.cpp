@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "physics/energies/measures.hpp"
-#include "physics/steppers/conventional_stepper.hpp"
+#include "physics/steppers/decorated_stepper.hpp"
 #include "tests/physics/worlds.hpp"
 #include "tests/threads.hpp"
 
@@ -52,7 +52,7 @@ ConventionalOptions with(Integrator integrator) {
 }
 
 State run(const World& w, const ConventionalOptions& options, double time, int steps) {
-  const auto stepper = make_conventional_stepper(w.scene, options);
+  const auto stepper = make_recovering_conventional_stepper(w.scene, options);
   State state = w.state;
   for (int s = 0; s < steps; ++s) {
     State to;
@@ -64,7 +64,8 @@ State run(const World& w, const ConventionalOptions& options, double time, int s
 
 State one_step(const World& w, const ConventionalOptions& options, const State& from, double dt) {
   State to;
-  REQUIRE(make_conventional_stepper(w.scene, options)->step(from, w.drive, dt, to).status == StepStatus::accepted);
+  REQUIRE(make_recovering_conventional_stepper(w.scene, options)->step(from, w.drive, dt, to).status ==
+          StepStatus::accepted);
   return to;
 }
 
@@ -94,7 +95,7 @@ TEST_CASE("BDF2: free fall from a true history is exact", "[bdf2]") {
   at(-h, before);
   at(0, state);
   at(10 * h, end);
-  state.history = {h, before.x, before.v};
+  state.memory = blocks_of({h, before.x, before.v});
   for (int s = 0; s < 10; ++s) state = one_step(w, exact(Integrator::bdf2), state, h);
   CHECK((state.x - end.x).cwiseAbs().maxCoeff() < 1e-13);
   CHECK((state.v - end.v).cwiseAbs().maxCoeff() < 1e-12);
@@ -146,12 +147,12 @@ TEST_CASE("BDF2: a copy of the state goes on with the same bits in another stepp
   const ConventionalOptions options = with(Integrator::bdf2);
   const double dt = 1.0 / 30;
   const State middle = run(w, options, 5 * dt, 5);
-  REQUIRE(middle.history.h == Approx(dt / 2));
+  REQUIRE(step_history(middle).h == Approx(dt / 2));
   World later = w;
   later.state = middle;
   check_same(run(later, options, 5 * dt, 5), run(w, options, 10 * dt, 10));
   World forgetful = later;  // the history matters
-  forgetful.state.history = {};
+  forgetful.state.memory.clear();
   CHECK(run(forgetful, options, 5 * dt, 5).x != run(later, options, 5 * dt, 5).x);
 }
 
@@ -161,7 +162,7 @@ TEST_CASE("BDF2: one and two threads give the same bits", "[bdf2][threads]") {
   with_threads(1, [&] { one = run(w, with(Integrator::bdf2), 0.3, 9); });
   with_threads(2, [&] { two = run(w, with(Integrator::bdf2), 0.3, 9); });
   check_same(one, two);
-  CHECK(same_bits(one.history.v, two.history.v));
+  CHECK(same_bits(step_history(one).v, step_history(two).v));
 }
 
 TEST_CASE("BDF2: the first substep, one of another length and one before which pins jump are implicit Euler",
@@ -171,8 +172,8 @@ TEST_CASE("BDF2: the first substep, one of another length and one before which p
   const double dt = 1.0 / 60;
   const State first = one_step(w, bdf2, w.state, dt);
   check_same(first, one_step(w, euler, w.state, dt));
-  CHECK(first.history.h == dt);
-  CHECK(one_step(w, euler, w.state, dt).history.h == 0);
+  CHECK(step_history(first).h == dt);
+  CHECK(step_history(one_step(w, euler, w.state, dt)).h == 0);
   const State second = one_step(w, bdf2, first, dt);
   CHECK(second.x != one_step(w, euler, first, dt).x);
   check_same(one_step(w, bdf2, second, dt / 2), one_step(w, euler, second, dt / 2));
@@ -188,7 +189,7 @@ TEST_CASE("BDF2: an obstacle that jumps far makes the substep implicit Euler's",
   const ConventionalOptions euler = exact(Integrator::implicit_euler), bdf2 = exact(Integrator::bdf2);
   const double dt = 1.0 / 60;
   const State from = one_step(w, bdf2, w.state, dt);
-  REQUIRE(from.history.h == dt);
+  REQUIRE(step_history(from).h == dt);
   w.drive.obstacles[0].col(0).array() += 0.01;
   CHECK(one_step(w, bdf2, from, dt).x != one_step(w, euler, from, dt).x);
   w.drive.obstacles[0].col(0).array() += 10;
@@ -204,16 +205,16 @@ TEST_CASE("BDF2: a substep that touches is implicit Euler's and leaves no histor
   int smooth = 0, touching = 0;
   for (int f = 0; f < 30; ++f) {
     State to;
-    const StepReport report = make_conventional_stepper(w.scene, bdf2)->step(state, w.drive, dt, to);
+    const StepReport report = make_recovering_conventional_stepper(w.scene, bdf2)->step(state, w.drive, dt, to);
     REQUIRE(report.status == StepStatus::accepted);
     CHECK(report.collision.pairs_after == 0);
     CHECK(report.collision.passed_through == 0);
-    smooth += to.history.h > 0;
+    smooth += step_history(to).h > 0;
     if (report.collision.contacts > 0) {
       ++touching;
-      CHECK(to.history.h == 0);
+      CHECK(step_history(to).h == 0);
       State from = state;
-      if (from.history.h == 0) check_same(one_step(w, euler, from, dt), to);  // touching all along
+      if (step_history(from).h == 0) check_same(one_step(w, euler, from, dt), to);  // touching all along
     }
     state = to;
   }
@@ -227,14 +228,14 @@ TEST_CASE("BDF2: an impact that is met only on the way makes the substep implici
   w.state.v.col(1).setConstant(-6);
   State from = w.state;
   const double dt = 1.0 / 60;
-  from.history = {dt, (w.state.x - dt * w.state.v).eval(), w.state.v};
+  from.memory = blocks_of({dt, w.state.x - dt * w.state.v, w.state.v});
   ConventionalOptions euler = with(Integrator::implicit_euler), bdf2 = with(Integrator::bdf2);
   euler.substeps = bdf2.substeps = 1;
   State plain = from;
-  plain.history = {};
+  plain.memory.clear();
   const State to = one_step(w, bdf2, from, dt);
   check_same(to, one_step(w, euler, plain, dt));
-  CHECK(to.history.h == 0);
+  CHECK(step_history(to).h == 0);
   CHECK(to.x.col(1).minCoeff() > 0);
 }
 

@@ -71,7 +71,7 @@ TEST_CASE("contact terms: what friction allows beyond the solve stops the slip, 
     x(0, 0) += slip;
     terms[0].normal_force = 0.01;
     const double mass = 1e-4, allowed = terms[0].friction * 0.01 * h * h / mass;
-    stick(terms, c.inverse_mass, x0, h, slip_width, x);
+    apply_static_friction(terms, c.inverse_mass, x0, h, slip_width, x);
     if (slip < slip_width)
       CHECK(x(0, 0) == Approx(0).margin(1e-12));
     else
@@ -86,10 +86,10 @@ TEST_CASE("contact terms: a load is borne without sinking more than allowed", "[
   const double unloaded = terms[0].stiffness;
   Points forces = Points::Zero(1, 3);
   forces(0, 1) = 5;
-  bear(terms, c.inverse_mass, forces);
+  set_load_stiffness(terms, c.inverse_mass, forces);
   CHECK(terms[0].stiffness == unloaded);  // pulled away
   forces(0, 1) = -5;
-  bear(terms, c.inverse_mass, forces);
+  set_load_stiffness(terms, c.inverse_mass, forces);
   CHECK(terms[0].stiffness == Approx(5 / terms[0].sink));
   CHECK(-contact_force(terms[0], terms[0].target - terms[0].sink).first == Approx(5).epsilon(0.25));  // less the onset
 }
@@ -104,7 +104,7 @@ TEST_CASE("contact terms: a load is shared as it is, whatever bears it", "[conta
   edge.weights = {0.5, 0.5, 0, 0};
   edge.sink = 1e-4;
   std::vector<ContactTerm> terms{edge};
-  bear(terms, inverse_mass, forces);
+  set_load_stiffness(terms, inverse_mass, forces);
   CHECK(terms[0].normal_force == Approx(6));
 
   ContactTerm vertex;
@@ -112,7 +112,7 @@ TEST_CASE("contact terms: a load is shared as it is, whatever bears it", "[conta
   vertex.weights = {1, 0, 0, 0};
   vertex.sink = 1e-4;
   terms.assign(3, vertex);
-  bear(terms, inverse_mass, forces);
+  set_load_stiffness(terms, inverse_mass, forces);
   for (const ContactTerm& term : terms) CHECK(term.normal_force == Approx(1));
 }
 
@@ -146,12 +146,12 @@ TEST_CASE("contact terms: one that was pressed too deep is stiffened, and not be
   const VertexOnFloor c;
   auto terms = c.terms(1e-3, 2e-3, 0.01);
   const double before = terms[0].stiffness;
-  stiffen(terms, c.nodes(1.09e-3));
+  raise_stiffness(terms, c.nodes(1.09e-3));
   CHECK(terms[0].stiffness == before);
   const double deep = terms[0].target - 4 * terms[0].sink - 0.5 * terms[0].softness;
-  stiffen(terms, c.nodes(deep));
+  raise_stiffness(terms, c.nodes(deep));
   CHECK(terms[0].stiffness == Approx(4 * before));
-  stiffen(terms, c.nodes(-1e3));
+  raise_stiffness(terms, c.nodes(-1e3));
   CHECK(terms[0].stiffness == Approx(100 * before));
 }
 
@@ -163,13 +163,13 @@ TEST_CASE("contact terms: they follow a pair to where its step ends, unless it h
   end(0, 0) = 0.2;
   end.bottomRows(3).rowwise() += Eigen::RowVector3d(0, 2e-4, 0);
   contacts.terms[0].stiffness = 77;
-  follow(c.scene, c.world, c.inverse_mass, c.nodes(1e-3), end, 0.01, contacts);
+  relinearise(c.scene, c.world, c.inverse_mass, c.nodes(1e-3), end, 0.01, contacts);
   CHECK(contact_gap(contacts.terms[0], end) == Approx(1.3e-3));
   CHECK(contacts.terms[0].stiffness == 77);
   CHECK(contact_slip(contacts.terms[0], c.nodes(1e-3), end).x() == Approx(0.2));
   const double offset = contacts.terms[0].offset;
   end(0, 1) = -1e-3;
-  follow(c.scene, c.world, c.inverse_mass, c.nodes(1e-3), end, 0.01, contacts);
+  relinearise(c.scene, c.world, c.inverse_mass, c.nodes(1e-3), end, 0.01, contacts);
   CHECK(contacts.terms[0].offset == offset);
 }
 

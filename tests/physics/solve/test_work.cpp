@@ -17,7 +17,7 @@ struct Books {
 
 // The conventional stepper's energy and the bound on its work over some frames.
 Books books(const World& w, int frames, const std::function<Drive(int frame)>& drive) {
-  const auto stepper = make_conventional_stepper(w.scene, {});
+  const auto stepper = make_recovering_conventional_stepper(w.scene, {});
   WorkBound bound(w.scene);
   State state = w.state, to;
   const auto energy = [&](const State& s) { return energies(w.scene, s.x, s.v, w.drive.acceleration).total(); };

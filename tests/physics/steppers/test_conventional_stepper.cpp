@@ -41,7 +41,7 @@ TEST_CASE("conventional stepper: free fall is implicit Euler's, to rounding", "[
   w.state.v.rowwise() = Eigen::RowVector3d(1, 2, 3);
   ConventionalOptions options;
   options.substeps = 4;
-  auto stepper = make_conventional_stepper(w.scene, options);
+  auto stepper = make_recovering_conventional_stepper(w.scene, options);
   State state = w.state;
   const int frames = 10;
   for (int f = 0; f < frames; ++f) {
@@ -77,7 +77,7 @@ TEST_CASE("conventional stepper: plates that close on cloth lag, leave it clean,
   State state = w.state;
   ConventionalOptions options;
   options.implicit_euler.max_newton = 3;  // enough for what is kept, not for an attempt without room
-  auto stepper = make_conventional_stepper(w.scene, options);
+  auto stepper = make_recovering_conventional_stepper(w.scene, options);
   double worst_lag = 0;
   for (int f = 1; f <= 30; ++f) {
     const double half = f < 10 ? 0.02 * (1 - f / 10.0) : f < 15 ? 0 : std::min(0.02, 0.02 * (f - 15) / 5.0);
@@ -121,7 +121,7 @@ TEST_CASE("conventional stepper: caches carry no state at rest either", "[conven
 
 TEST_CASE("conventional stepper: cloth at rest is solved once a substep, and stays", "[conventional_stepper]") {
   const World w = resting_world();
-  auto stepper = make_conventional_stepper(w.scene, {});
+  auto stepper = make_recovering_conventional_stepper(w.scene, {});
   State state = w.state, to;
   int iterations = 0, substeps = 0;
   for (int f = 0; f < 60; ++f) {
@@ -173,7 +173,7 @@ TEST_CASE("conventional stepper: a sheet that slides or hits is stepped finer th
     w.drive.acceleration.setZero();
     w.state.v.rowwise() = velocity.transpose();
     State to;
-    const StepReport report = make_conventional_stepper(w.scene, {})->step(w.state, w.drive, dt, to);
+    const StepReport report = make_recovering_conventional_stepper(w.scene, {})->step(w.state, w.drive, dt, to);
     CHECK(to.clean);
     CHECK(report.collision.passed_through == 0);
     return report.substeps;

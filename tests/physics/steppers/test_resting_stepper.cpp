@@ -2,6 +2,7 @@
 
 #include "physics/energies/measures.hpp"
 #include "physics/scene/part_of_scene.hpp"
+#include "physics/steppers/recovering_stepper.hpp"
 #include "physics/steppers/resting_stepper.hpp"
 #include "tests/physics/worlds.hpp"
 
@@ -43,7 +44,9 @@ World one_swings() {
   return w;
 }
 
-std::unique_ptr<Stepper> resting(const Scene& scene) { return make_resting_stepper(scene, testing::conventional); }
+std::unique_ptr<Stepper> resting(const Scene& scene) {
+  return make_resting_stepper(scene, testing::conventional, testing::conventional(scene));
+}
 
 // Steps until `enough` cloths rest.
 State until_resting(const World& w, int enough) {
@@ -78,26 +81,27 @@ TEST_CASE("resting stepper: part of a scene is the scene without the others", "[
   CHECK(lumped_masses(part.scene).sum() == Approx(0.4 * 0.09));
   w.state.x.setRandom();
   w.state.v.setRandom();
-  w.state.last_clean = {2 * w.state.x, {3 * w.state.obstacles[0]}};
+  const LastClean clean{2 * w.state.x, {3 * w.state.obstacles[0]}};
+  remember(clean, w.state);
   const State of_part = state_of(part, w.state);
   CHECK(of_part.x == w.state.x.bottomRows(49));
-  CHECK(of_part.last_clean.x == w.state.last_clean.x.bottomRows(49));
-  CHECK(of_part.last_clean.obstacles == w.state.last_clean.obstacles);
+  CHECK(last_clean(of_part).x == clean.x.bottomRows(49));
+  CHECK(last_clean(of_part).obstacles == clean.obstacles);
   CHECK(drive_of(part, w.drive).pins == w.drive.pins);
   State back = w.state;
   back.x.bottomRows(49).setZero();
   back.v.bottomRows(49).setZero();
-  back.last_clean = {};
+  back.memory.clear();
   put(part, of_part, back);
   CHECK(back.x == w.state.x);
   CHECK(back.v == w.state.v);
-  CHECK(back.last_clean.x.topRows(36) == w.state.x.topRows(36));  // what is left out has not moved
-  CHECK(back.last_clean.x.bottomRows(49) == w.state.last_clean.x.bottomRows(49));
-  CHECK(back.last_clean.obstacles == w.state.last_clean.obstacles);
-  State clean = of_part;
-  clean.last_clean = {};
-  put(part, clean, back);
-  CHECK(back.last_clean.x.rows() == 0);
+  CHECK(last_clean(back).x.topRows(36) == w.state.x.topRows(36));  // what is left out has not moved
+  CHECK(last_clean(back).x.bottomRows(49) == clean.x.bottomRows(49));
+  CHECK(last_clean(back).obstacles == clean.obstacles);
+  State without = of_part;
+  without.memory.clear();
+  put(part, without, back);
+  CHECK(last_clean(back).x.rows() == 0);
   const Audit audit = whole_audit(part, Audit{{{0, 3}}, {{1, 2}}, {{4, 5}}, 0, 0});
   CHECK(audit.self_pairs[0] == std::pair(50, 53));
   CHECK(audit.vertex_pairs[0] == std::pair(51, 52));
@@ -157,7 +161,7 @@ TEST_CASE("resting stepper: cloths that a spring joins rest together or move tog
     CHECK(stepper->step(state, w.drive, 1.0 / 30, to).resting == 0);
     state = to;
   }
-  CHECK(state.rest.seconds[0] > 0.5);  // it would rest alone
+  CHECK(rest_of(state).seconds[0] > 0.5);  // it would rest alone
   w.scene.springs.clear();
   CHECK(resting_next(w, state) == 1);
 
@@ -232,9 +236,7 @@ TEST_CASE("resting stepper: what comes near, pins, wind and gravity wake a cloth
 TEST_CASE("resting stepper: a sheet that falls on a resting one wakes it and both end clean and at rest", "[resting]") {
   World w = two_cloths(lying, moved(testing::sheet(5, 0.1, 0), {0.02, 0.4, 0.01}));
   State state = w.state, to;
-  w.state.rest.seconds = {10, 0};
-  w.state.rest.place = w.state.x;
-  w.state.rest.acceleration = w.drive.acceleration;
+  remember(Rest{{10, 0}, w.state.x, Vec3::Zero(), w.drive.acceleration}, w.state);
   state = w.state;
   state.clean = true;
   const auto stepper = resting(w.scene);

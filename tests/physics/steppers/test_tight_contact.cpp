@@ -81,7 +81,7 @@ Pulled pull(double friction) {
   w.drive.acceleration.setZero();
   for (int j = 0; j <= across; ++j) w.scene.pins.push_back(j);
   for (int j = 0; j <= across; ++j) w.scene.pins.push_back(along * (across + 1) + j);
-  auto stepper = make_conventional_stepper(w.scene, {});
+  auto stepper = make_recovering_conventional_stepper(w.scene, {});
   State state = w.state;
   Pulled pulled;
   constexpr int tighten = 10, frames = 45;

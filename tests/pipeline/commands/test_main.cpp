@@ -206,4 +206,20 @@ TEST_CASE("a run that is interrupted ends with whole files and is resumed to the
   for (const int i : {10, wanted / 2, wanted}) REQUIRE(resumed.frame(i).x == whole.frame(i).x);
 }
 
+TEST_CASE("help stands in three groups, and a mistyped command names its neighbour") {
+  const fake::Folder folder("main_help");
+  const Ended help = selvedge_program(folder, "--help");
+  REQUIRE(help.status == 0);
+  const std::size_t use = help.out.find("\nUse"), prepare = help.out.find("\nPrepare"),
+                    measure = help.out.find("\nMeasure");
+  REQUIRE((use != std::string::npos && prepare != std::string::npos && measure != std::string::npos));
+  REQUIRE(help.out.find("  simulate") > use);
+  REQUIRE(help.out.find("  dress") > prepare);
+  REQUIRE(help.out.find("  validate") > measure);
+  const Ended mistyped = selvedge_program(folder, "simulat scene.yaml");
+  REQUIRE(mistyped.status == 2);
+  REQUIRE(mistyped.err.find("there is no command `simulat`; did you mean `simulate`?") != std::string::npos);
+  REQUIRE(selvedge_program(folder, "simulate").err.find("there is no command") == std::string::npos);
+}
+
 }  // namespace selvedge::test_main

@@ -103,7 +103,7 @@ TEST_CASE("a frame that the stepper has audited is recorded as an audit of the f
   for (const double height : {-0.05, -0.5}) {  // through the sheet, and below it
     Setup setup = fake::setup();
     setup.initial.obstacles[0] = fake::tetrahedron_points(0.5, height);
-    const auto stepper = make_conventional_stepper(setup.scene, {});
+    const auto stepper = make_recovering_conventional_stepper(setup.scene, {});
     Drive drive = setup.drive_at(0);
     drive.obstacles = setup.initial.obstacles;
     State state;
@@ -191,9 +191,10 @@ TEST_CASE("a checkpoint keeps every bit") {
   state.time = 0.1 + 0.2;
   state.v.setConstant(1.0 / 3);
   if (GENERATE(false, true)) {
-    state.history = {1.0 / 60, 0.7 * state.x, 0.7 * state.v};
-    state.rest = {{0.1, 1.0 / 3}, 0.9 * state.x, {1, 0, 0.3}, {0, -9.81, 0}};
-    state.last_clean = {0.6 * state.x, {0.5 * state.x, Points(), 0.4 * state.x}};
+    state.memory = {{"dummy.positions", 0.7 * state.x, RowsOf::vertices, true},
+                    {"dummy.seconds", MemoryRows::Constant(2, 1, 1.0 / 3), RowsOf::cloths},
+                    {"other.nothing", MemoryRows(0, 3), RowsOf::obstacle_vertices},
+                    {"other.wide", MemoryRows::Constant(3, 5, 0.1), RowsOf::none}};
   }
   write_checkpoint(folder.path / "c.h5", state, "a: 1\n");
   const State read = read_checkpoint(folder.path / "c.h5", "a: 1\n");
@@ -202,15 +203,13 @@ TEST_CASE("a checkpoint keeps every bit") {
   REQUIRE(read.x == state.x);
   REQUIRE(read.v == state.v);
   REQUIRE(read.obstacles == state.obstacles);
-  REQUIRE(read.last_clean.x == state.last_clean.x);
-  REQUIRE(read.last_clean.obstacles == state.last_clean.obstacles);
-  REQUIRE(read.history.h == state.history.h);
-  REQUIRE(read.history.x == state.history.x);
-  REQUIRE(read.history.v == state.history.v);
-  REQUIRE(read.rest.seconds == state.rest.seconds);
-  REQUIRE(read.rest.place == state.rest.place);
-  REQUIRE(read.rest.wind == state.rest.wind);
-  REQUIRE(read.rest.acceleration == state.rest.acceleration);
+  REQUIRE(read.memory.size() == state.memory.size());
+  for (std::size_t k = 0; k < read.memory.size(); ++k) {
+    REQUIRE(read.memory[k].name == state.memory[k].name);
+    REQUIRE(read.memory[k].rows == state.memory[k].rows);
+    REQUIRE(read.memory[k].rows_of == state.memory[k].rows_of);
+    REQUIRE(read.memory[k].positions == state.memory[k].positions);
+  }
 }
 
 TEST_CASE("a run that fails leaves no results of the run before it") {

@@ -156,6 +156,39 @@ TEST_CASE("A body that was modelled with its arms down starts as it was and move
   CHECK_NOTHROW(with_body(folder, "{model: lacking.h5}"));
 }
 
+TEST_CASE("The drive says shape, pose and joints of every body, whatever it comes from", "[setup_body]") {
+  const Folder folder("body_drive");
+  BodyModel model = make_mannequin();
+  write_body(folder.path / "own.h5", model);
+  for (const std::string body : {"clip: walk, shape: [0.5, -1]", "shape: [1]", "model: own.h5, clip: squat"}) {
+    INFO(body);
+    const Setup setup = with_body(folder, "{room: 0, " + body + "}",
+                                  "    translate: [0.5, 0, 1]\n    motion: {keyframes: [{time: 0}, {time: 1, rotate: "
+                                  "[0, 90, 0]}]}\n  - {name: floor, plane: {size: [4, 4], edge: 1}}\n");
+    for (const double time : {0.0, 0.8}) {
+      const Drive drive = setup.drive_at(time);
+      REQUIRE(drive.bodies.size() == 2);
+      CHECK_FALSE(drive.bodies[1].is_body());
+      const BodyFrame& frame = drive.bodies[0];
+      REQUIRE(frame.joints.rows() == static_cast<Eigen::Index>(model.joints.size()));
+      CHECK(frame.shape.size() > 0 == (body.find("shape") != std::string::npos));
+      const BodyPose pose{frame.rotations, frame.translation};
+      const Points skin = posed(model, frame.shape, pose);
+      const Points joints = posed_joints(model, joint_positions(model, frame.shape), pose);
+      // Placing and motion keep distances: joints lie in the scene's body as they lie in the posed one.
+      for (const Eigen::Index joint : {0, 7, 20})
+        for (const Eigen::Index vertex : {0, 100, 900})
+          CHECK((frame.joints.row(joint) - drive.obstacles[0].row(vertex)).norm() ==
+                Approx((joints.row(joint) - skin.row(vertex)).norm()).epsilon(1e-6));
+    }
+  }
+  const Setup without =
+      read_setup(fake::write(folder, "none.yaml",
+                             "cloths: [{rectangle: {size: [0.3, 0.3], resolution: 3}}]\n"
+                             "obstacles: [{sphere: {radius: 0.1, edge: 0.05}, translate: [0, -1, 0]}]\n"));
+  CHECK(without.drive_at(0.5).bodies.empty());
+}
+
 TEST_CASE("What is wrong with a body is named by file, line and cure", "[setup_body]") {
   const Folder folder("body_faulty");
   CHECK_THROWS_WITH(with_body(folder, "{clip: wlak}"),

@@ -1,0 +1,62 @@
+// A stepper of one's own: cloth goes where the body that wears it takes it, by linear blend skinning, without forces.
+// It is a baseline for other steppers. Usage: skinning_stepper SCENE.yaml [key=value ...]; see docs/library.md.
+#include <cstdio>
+#include <selvedge/collision/geometry/error.hpp>
+#include <selvedge/physics/steppers/finish_step.hpp>
+#include <selvedge/pipeline/run/simulate.hpp>
+#include <selvedge/pipeline/scene/make_stepper.hpp>
+
+using namespace selvedge;
+
+namespace {
+
+class SkinningStepper final : public Stepper {
+ public:
+  explicit SkinningStepper(const Scene& scene) : scene_(scene) {}
+  const StepperTraits& traits() const override { return traits_; }
+
+  // Vertices that nothing wears stay where they are.
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override {
+    StepEnd end{from.x, from.v, drive.obstacles};
+    for (Eigen::Index v = 0; v < from.x.rows(); ++v)
+      if (drive.worn.row(v).allFinite()) end.x.row(v) = drive.worn.row(v);
+    for (std::size_t p = 0; p < scene_.pins.size(); ++p)
+      end.x.row(scene_.pins[p]) = drive.pins.row(static_cast<Eigen::Index>(p));
+    end.v = (end.x - from.x) / dt;
+    StepReport report;
+    report.by = traits_.name;
+    report.substeps = 1;
+    if (!end.x.allFinite()) {
+      report.status = StepStatus::rejected;
+      report.reason = Reason::not_finite;
+      return report;
+    }
+    finish_step(scene_, from, drive, dt, std::move(end), audits_, to, report);  // fills `to`, audits it
+    return report;
+  }
+
+ private:
+  const Scene& scene_;
+  StepperTraits traits_{.name = "skinning", .needs = {.worn = true}};
+  AuditMemory audits_;
+};
+
+}  // namespace
+
+int main(int count, char** arguments) try {
+  if (count < 2) return 2;
+  Kinds kinds = known_kinds();
+  kinds.add({.name = "skinning", .maker = [](const Setup&, const Config&) -> MakeStepper {
+               return [](const Scene& scene) { return std::make_unique<SkinningStepper>(scene); };
+             }});
+  std::vector<std::string> overrides(arguments + 2, arguments + count);
+  overrides.push_back("run.stepper=skinning");
+  const Setup setup = read_setup(arguments[1], overrides, kinds);
+  State state = setup.initial;
+  simulate(*make_stepper(setup), setup.drive_at, 1 / setup.run.fps, setup.run.frames, state, [](const FrameEvent& e) {
+    return std::printf("frame %d: %d pairs\n", e.state.frame, e.report.collision.pairs_after) > 0;
+  });
+} catch (const Error& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 2;
+}

@@ -1,0 +1,95 @@
+#include "physics/scene/make_scene.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "collision/geometry/error.hpp"
+
+namespace selvedge {
+namespace {
+
+void require(bool fits, const std::string& what, const std::string& where, const std::string& cure) {
+  if (!fits) throw Error(what, where, cure);
+}
+
+void check_triangles(int vertex_count, const Triangles& triangles, const std::string& where) {
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    const int a = triangles(t, 0), b = triangles(t, 1), c = triangles(t, 2);
+    const std::string row = "triangle " + std::to_string(t);
+    require(std::min({a, b, c}) >= 0 && std::max({a, b, c}) < vertex_count,
+            row + " has a vertex that is not there: there are " + std::to_string(vertex_count), where,
+            "number vertices from 0");
+    require(a != b && b != c && c != a, row + " has a vertex twice", where, "leave the triangle out");
+  }
+}
+
+std::string named(const std::string& name, const char* kind, std::size_t number) {
+  return name.empty() ? kind + std::to_string(number) : name;
+}
+
+}  // namespace
+
+std::vector<RestTriangle> flattened(const Points& rest, const Triangles& triangles) {
+  std::vector<RestTriangle> flat;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+    flat.push_back(flatten(row(rest, triangles(t, 0)), row(rest, triangles(t, 1)), row(rest, triangles(t, 2))));
+  return flat;
+}
+
+int add_cloth(Scene& scene, const Points& rest, const Triangles& triangles, const Material& material,
+              const std::string& name, const std::vector<RestTriangle>& metric) {
+  Cloth cloth{named(name, "cloth", scene.cloths.size()),
+              material,
+              scene.surface.vertex_count,
+              static_cast<int>(rest.rows()),
+              static_cast<int>(scene.surface.triangles.rows()),
+              static_cast<int>(triangles.rows())};
+  check_triangles(cloth.vertex_count, triangles, cloth.name);
+  require(rest.allFinite(), "a rest position is not finite", cloth.name, "");
+  require(metric.empty() || std::ssize(metric) == triangles.rows(), "there are not as many rest shapes as triangles",
+          cloth.name, "give one a triangle, or none");
+  const std::vector<RestTriangle> own = metric.empty() ? flattened(rest, triangles) : metric;
+  scene.rest_triangle.insert(scene.rest_triangle.end(), own.begin(), own.end());
+  Points all(scene.rest.rows() + rest.rows(), 3);
+  all << scene.rest, rest;
+  Triangles joined(cloth.first_triangle + cloth.triangle_count, 3);
+  joined << scene.surface.triangles, (triangles.array() + cloth.first_vertex).matrix();
+  scene.rest = all;
+  scene.surface = make_surface(static_cast<int>(all.rows()), joined);
+  scene.cloths.push_back(cloth);
+  return static_cast<int>(scene.cloths.size()) - 1;
+}
+
+int add_obstacle(Scene& scene, int vertex_count, const Triangles& triangles, bool moving, const std::string& name) {
+  const std::string called = named(name, "obstacle", scene.obstacles.size());
+  check_triangles(vertex_count, triangles, called);
+  scene.obstacles.push_back({called, make_surface(vertex_count, triangles), moving});
+  return static_cast<int>(scene.obstacles.size()) - 1;
+}
+
+State first_state(const Scene& scene, const Points& x, const std::vector<Points>& obstacles) {
+  require(x.rows() == scene.surface.vertex_count,
+          "there are positions of " + std::to_string(x.rows()) + " vertices, the cloths have " +
+              std::to_string(scene.surface.vertex_count),
+          "first state", "give all cloths on end");
+  require(obstacles.size() == scene.obstacles.size(), "there are not as many positions as obstacles", "first state",
+          "give those of every obstacle, in its order");
+  for (std::size_t k = 0; k < obstacles.size(); ++k)
+    require(obstacles[k].rows() == scene.obstacles[k].surface.vertex_count,
+            "the obstacle " + scene.obstacles[k].name + " has another number of vertices", "first state", "");
+  State state;
+  state.x = x;
+  state.v = Points::Zero(x.rows(), 3);
+  state.obstacles = obstacles;
+  return state;
+}
+
+Drive at_rest(const Scene& scene, const State& state) {
+  Drive drive;
+  drive.pins = state.x(scene.pins, Eigen::all);
+  drive.obstacles = state.obstacles;
+  drive.acceleration = {0, -9.81, 0};
+  return drive;
+}
+
+}  // namespace selvedge

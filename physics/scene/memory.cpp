@@ -1,0 +1,49 @@
+#include "physics/scene/memory.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace selvedge {
+
+const MemoryRows* find_rows(const Memory& memory, std::string_view name, Eigen::Index rows) {
+  const auto block = std::ranges::find(memory, name, &MemoryBlock::name);
+  return block != memory.end() && block->rows.rows() == rows ? &block->rows : nullptr;
+}
+
+void replace_blocks(std::string_view owner, Memory blocks, Memory& memory) {
+  std::erase_if(memory, [owner](const MemoryBlock& block) {
+    return std::string_view(block.name).substr(0, block.name.find('.')) == owner;
+  });
+  std::ranges::move(blocks, std::back_inserter(memory));
+}
+
+void forget_motion(Memory& memory) {
+  std::erase_if(memory, [](const MemoryBlock& block) {
+    return !block.positions && (block.rows_of == RowsOf::vertices || block.rows_of == RowsOf::triangles);
+  });
+}
+
+Points joined_rows(const std::vector<Points>& parts) {
+  Eigen::Index count = 0;
+  for (const Points& part : parts) count += part.rows();
+  Points all(count, 3);
+  count = 0;
+  for (const Points& part : parts) {
+    all.middleRows(count, part.rows()) = part;
+    count += part.rows();
+  }
+  return all;
+}
+
+std::vector<Points> split_rows(const MemoryRows& joined, const std::vector<Points>& like) {
+  std::vector<Points> parts;
+  Eigen::Index first = 0;
+  for (const Points& part : like) {
+    parts.push_back(joined.middleRows(first, part.rows()));
+    first += part.rows();
+  }
+  return parts;
+}
+
+}  // namespace selvedge

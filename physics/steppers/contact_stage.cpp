@@ -1,0 +1,56 @@
+#include "physics/steppers/contact_stage.hpp"
+
+#include "physics/scene/features.hpp"
+
+namespace selvedge {
+namespace {
+
+ResolveOptions resolve_options(const ContactSettings& contact) {
+  ResolveOptions options;
+  options.thickness = contact.thickness;
+  options.separation = 0.1 * contact.thickness;
+  options.friction = contact.friction;
+  options.self_friction = contact.self_friction;
+  options.rigid_zones = contact.rigid_zones;
+  return options;
+}
+
+}  // namespace
+
+ContactStage::ContactStage(const Scene& scene)
+    : world(make_contact_world(scene.surface, obstacle_surfaces(scene), features_of(scene).self_contact, &scene.rest)),
+      search(world),
+      options(resolve_options(scene.contact)),
+      inverse_mass(inverse_masses(scene, world.node_count)) {}
+
+void ContactStage::leave_alone(const Exemption* exemption) {
+  const bool any = exemption && exemption->any();
+  if (exempt || any) path = {};  // what was listed then is not what is to be listed now
+  exempt = any;
+  search.leave_out(any ? exemption : nullptr);
+}
+
+void add(const ResolveReport& resolved, StepReport& report) {
+  report.collision.impulses += resolved.impulses;
+  report.collision.zones += resolved.zones;
+  report.collision.shortened += resolved.shortened;
+  report.collision.held_vertices += resolved.held;
+  report.seconds.broad_phase += resolved.broad_phase;
+  report.seconds.ccd += resolved.ccd;
+  report.seconds.response += resolved.response;
+}
+
+ResolveReport resolve_proposal(ContactStage& stage, const ResolveOptions& options, const State& from,
+                               const Exemption* left_alone, Points& x, std::vector<Points>& obstacles) {
+  const Points nodes0 = gather_nodes(from.x, from.obstacles);
+  Points nodes1 = gather_nodes(x, obstacles);
+  stage.leave_alone(left_alone);
+  const ResolveReport report =
+      resolve(stage.search, stage.world, stage.inverse_mass, options, nodes0, nodes1, stage.path);
+  x = nodes1.topRows(x.rows());
+  for (std::size_t k = 0; k < obstacles.size(); ++k)
+    obstacles[k] = nodes1.middleRows(stage.world.first_node[k], obstacles[k].rows());
+  return report;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+
+#include "physics/scene/scene.hpp"
+#include "physics/scene/stepper.hpp"
+#include "physics/steppers/conventional_stepper.hpp"
+
+namespace selvedge {
+
+struct Decorations {
+  bool rest = false;  // cloths that rest are left out, where the stepper allows it
+  bool cut = false;   // states may have triangles cut out
+};
+
+// A stepper of what `bare` makes of the scene or of a part of it, with all that stands round one, from outside to
+// inside: cutting, resting, recovering. The last only round a stepper that honours extras.
+std::unique_ptr<Stepper> decorated(const Scene&, const MakeStepper& bare, const Decorations& = {});
+
+MakeStepper conventional_maker(const ConventionalOptions& = {});
+
+// The conventional stepper with recovery.
+std::unique_ptr<Stepper> make_recovering_conventional_stepper(const Scene&, const ConventionalOptions& = {});
+
+}  // namespace selvedge

@@ -1,0 +1,141 @@
+#include "physics/steppers/recovering_stepper.hpp"
+
+#include <utility>
+
+#include "collision/geometry/error.hpp"
+#include "collision/geometry/stopwatch.hpp"
+#include "physics/recovery/carrying.hpp"
+#include "physics/recovery/parting.hpp"
+#include "physics/scene/features.hpp"
+#include "physics/solve/contact_terms.hpp"
+#include "physics/steppers/substeps.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr const char *clean_block = "recovering.last_clean", *clean_obstacles_block = "recovering.last_clean_obstacles";
+constexpr double carrying_speed = 3;   // of cloth that is drawn to where it is worn, at most [m/s]
+constexpr double firm = 1000;          // times as stiffly, where the body is free: else it holds its own shape
+constexpr double push_softness = 0.1;  // of what keeps cloth parted, of the thickness
+
+class RecoveringStepper final : public Stepper {
+ public:
+  RecoveringStepper(const Scene& scene, std::unique_ptr<Stepper> inner)
+      : scene_(scene),
+        inner_(std::move(inner)),
+        has_contact_(features_of(scene).self_contact || features_of(scene).obstacles),
+        world_(
+            make_contact_world(scene.surface, obstacle_surfaces(scene), features_of(scene).self_contact, &scene.rest)),
+        masses_(lumped_masses(scene)),
+        inverse_mass_(inverse_masses(scene, world_.node_count)),
+        edge_length_(mean_edge_length(scene)),
+        self_crossings_(world_) {
+    if (!inner_->traits().honours_extras)
+      throw Error("the stepper `" + inner_->traits().name + "` cannot be told what to leave alone",
+                  "inner stepper of a recovering one", "give one that honours extras");
+  }
+
+  const StepperTraits& traits() const override { return inner_->traits(); }
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override;
+
+ private:
+  StepReport step_parted(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras);
+  AddedTerm added_term(const Parting&, const Drive&, const Points& x0, double h) const;
+
+  const Scene& scene_;
+  std::unique_ptr<Stepper> inner_;
+  bool has_contact_;
+  ContactWorld world_;
+  Eigen::VectorXd masses_, inverse_mass_;
+  double edge_length_;
+  SelfCrossings self_crossings_;
+};
+
+// Holds what was gained, and draws cloth to where it is worn: stiffly where the body is free of itself.
+AddedTerm RecoveringStepper::added_term(const Parting& parting, const Drive& drive, const Points& x0, double h) const {
+  AddedTerm added;
+  if (!parting.gained.empty())
+    added = added_pushes(push_terms(parting.gained, inverse_mass_, push_softness * scene_.contact.thickness, h));
+  if (!parting.carried.empty())
+    added = sum_of(std::move(added), carrying_term(parting.carried, masses_, x0, drive.worn, carrying_speed * h, h,
+                                                   parting.left.off.empty() ? firm : 1));
+  return added;
+}
+
+Exemption both_of(Exemption a, const Exemption& b) {
+  return {either(std::move(a.self), b.self), either(std::move(a.body), b.body), either(std::move(a.off), b.off)};
+}
+
+StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive, double dt, State& to,
+                                          const StepExtras& extras) {
+  Stopwatch watch;
+  const Points wanted = gather_nodes(from.x, drive.obstacles);
+  const LastClean before = last_clean(from);
+  const WornPlaces where{&wanted, &drive.worn, gather_nodes(before.x, before.obstacles), scene_.contact.thickness, dt};
+  Points nodes = gather_nodes(from.x, from.obstacles), v = from.v;
+  const Parting parting =
+      part_at_start(world_, self_crossings_, inverse_mass_, edge_length_, from.clean, where, nodes, v);
+  if (!parting.left.any() && parting.gained.empty() && parting.carried.empty() && nodes.topRows(v.rows()) == from.x) {
+    const double parted = watch.lap();
+    StepReport report = inner_->step(from, drive, dt, to, extras);
+    report.seconds.response += parted;
+    return report;
+  }
+  State start = from;
+  start.x = nodes.topRows(v.rows());
+  start.v = v;
+  if (start.x != from.x) forget_motion(start.memory);
+  const Exemption left_alone = extras.left_alone ? both_of(parting.left, *extras.left_alone) : parting.left;
+  StepExtras all = extras;
+  all.left_alone = &left_alone;
+  if (!parting.gained.empty() || !parting.carried.empty())
+    all.added = [&](const Points& x0, double h) {
+      AddedTerm own = added_term(parting, drive, x0, h);
+      return extras.added ? sum_of(extras.added(x0, h), std::move(own)) : own;
+    };
+  const double parted = watch.lap();
+  StepReport report = inner_->step(start, drive, dt, to, all);
+  report.seconds.response += parted;
+  // The motion of cloth that was drawn stiffly is none of its own: it would fly past where it is worn.
+  if (report.status == StepStatus::accepted && parting.left.off.empty())
+    for (std::size_t k = 0; k < parting.carried.size(); ++k)
+      if (parting.carried[k]) to.v.row(static_cast<Eigen::Index>(k)).setZero();
+  return report;
+}
+
+StepReport RecoveringStepper::step(const State& from, const Drive& drive, double dt, State& to,
+                                   const StepExtras& extras) {
+  if (const auto restart = restart_of(from, drive, traits().max_substeps)) {
+    StepReport report = step(restart->state, drive, dt, to, extras);
+    report.collision.jumped = restart->jumped;
+    return report;
+  }
+  StepReport report =
+      has_contact_ ? step_parted(from, drive, dt, to, extras) : inner_->step(from, drive, dt, to, extras);
+  if (report.status == StepStatus::accepted && !to.clean && drive.worn.rows() > 0)
+    remember(from.clean ? LastClean{from.x, from.obstacles} : last_clean(from), to);
+  return report;
+}
+
+}  // namespace
+
+LastClean last_clean(const State& state) {
+  const MemoryRows* x = find_rows(state.memory, clean_block, state.x.rows());
+  const MemoryRows* obstacles = find_rows(state.memory, clean_obstacles_block, joined_rows(state.obstacles).rows());
+  if (!x || !obstacles) return {};
+  return {*x, split_rows(*obstacles, state.obstacles)};
+}
+
+void remember(const LastClean& clean, State& state) {
+  Memory blocks;
+  if (clean.x.rows() > 0)
+    blocks = {{clean_block, clean.x, RowsOf::vertices, true},
+              {clean_obstacles_block, joined_rows(clean.obstacles), RowsOf::obstacle_vertices, true}};
+  replace_blocks("recovering", std::move(blocks), state.memory);
+}
+
+std::unique_ptr<Stepper> make_recovering_stepper(const Scene& scene, std::unique_ptr<Stepper> inner) {
+  return std::make_unique<RecoveringStepper>(scene, std::move(inner));
+}
+
+}  // namespace selvedge

@@ -1,0 +1,97 @@
+#include "physics/steppers/substep_solve.hpp"
+
+#include <algorithm>
+
+#include "collision/geometry/stopwatch.hpp"
+#include "physics/scene/features.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double first_tolerance = 8;       // times that of a solve, where it only finds impacts and normal forces
+constexpr double friction_tolerance = 0.2;  // the same with friction: sticking shows in small velocities
+constexpr double contact_iterations = 0.5;  // times those of a solve that another one goes on from
+constexpr int max_passes = 6;               // solves after the first one
+constexpr int pinched_passes = 3;           // the same where there is no room: no stiffness makes any
+constexpr double normal_change = 0.05;      // solves go on while what bounds friction changes by more, relative
+
+}  // namespace
+
+SubstepSolve::SubstepSolve(const Scene& scene, const ImplicitEulerOptions& options, ContactStage& stage)
+    : scene_(scene),
+      stage_(stage),
+      solver_(scene, options),
+      friction_(features_of(scene).friction),
+      slip_speed_(options.slip_speed),
+      edge_length_(mean_edge_length(scene)),
+      deep_(deep_impact(scene)) {}
+
+NewtonReport SubstepSolve::once(const StepProblem& problem, Points& x, StepReport& report) {
+  const Timed timed(report.seconds.solve);
+  const NewtonReport newton = solver_.solve(problem, x);
+  report.iterations += newton.iterations;
+  report.linear_iterations += newton.linear_iterations;
+  return newton;
+}
+
+std::vector<Impact> SubstepSolve::impacts(const Points& nodes0, const Points& nodes1, StepReport& report) {
+  ResolveReport times;
+  auto found = find_impacts(stage_.search, stage_.inverse_mass, stage_.options, nodes0, nodes1, stage_.path, times);
+  add(times, report);
+  return found;
+}
+
+NewtonReport SubstepSolve::with_contact(Substep& s, StepProblem& problem, Points& x, Contacts& contacts,
+                                        StepReport& report) {
+  const Points& nodes0 = s.start.nodes;
+  const double creep = slip_speed_ * s.h;
+  // Where nothing touches, or nothing that does moves, the first solve is likely to be the last one.
+  const bool calm = !s.pinched && mean_touching(contacts.terms, s.h * *problem.v0) < creep;
+  for (int pass = 0;; ++pass) {
+    problem.contacts = contacts.terms;
+    problem.iteration_scale = contacts.terms.empty() ? 1 : contact_iterations;
+    problem.warm_start = pass > 0;
+    const bool friction = friction_ && !contacts.terms.empty();
+    problem.tolerance_scale = pass > 1 || (calm && friction) ? friction_tolerance
+                              : pass == 0 && !calm           ? first_tolerance
+                                                             : 1;
+    const NewtonReport newton = once(problem, x, report);
+    if (!newton.finite) return newton;
+    s.nodes.topRows(x.rows()) = x;
+    const std::vector<ContactTerm> solved = calm ? contacts.terms : std::vector<ContactTerm>{};
+    const double change = lag_normal_forces(contacts.terms, x);
+    if (pass == (s.pinched ? pinched_passes : max_passes)) return newton;
+    const auto found = impacts(nodes0, s.nodes, report);
+    if (pass == 0) s.parts = parts_for_way(farthest_past(found, nodes0, s.nodes), edge_length_, s.max_parts);
+    if (s.parts > 1) return newton;
+    if (calm && mean_touching(contacts.terms, x - *problem.x0) < creep && deepest(found, s.nodes) < deep_ &&
+        mistaken_friction(solved, contacts.terms, *problem.x0, x, creep) < normal_change)
+      return newton;
+    const int least = friction ? 2 : 1;
+    if (pass >= least && change < normal_change && deepest(found, s.nodes) < deep_) return newton;
+    const Timed timed(report.seconds.response);
+    add_impact_terms(scene_, stage_.world, found, stage_.inverse_mass, nodes0, s.nodes, s.h, deep_, contacts);
+    raise_stiffness(contacts.terms, x);
+    if (pass == least - 1) relinearise(scene_, stage_.world, stage_.inverse_mass, nodes0, s.nodes, s.h, contacts);
+  }
+}
+
+std::vector<Proximity> SubstepSolve::near(const Substep& s, StepReport& report) {
+  const Timed timed(report.seconds.response);
+  const Points& nodes = s.start.nodes;
+  const double thickness = scene_.contact.thickness;
+  auto found = find_proximities(stage_.world, pairs_within(stage_.path, nodes, thickness), nodes, thickness);
+  for (const Proximity& p : found) report.collision.min_gap = std::min(report.collision.min_gap, p.gap);
+  return found;
+}
+
+Contacts SubstepSolve::loaded_contacts(const Substep& s, const std::vector<Proximity>& near, const StepProblem& problem,
+                                       const Points& x, StepReport& report) {
+  const Timed timed(report.seconds.response);
+  Contacts contacts = contact_terms(scene_, stage_.world, near, stage_.inverse_mass, s.start.nodes, s.nodes, s.h);
+  // The load of a contact is what pulls at it where the cloth would go without any.
+  if (!contacts.terms.empty()) set_load_stiffness(contacts.terms, stage_.inverse_mass, -solver_.gradient(problem, x));
+  return contacts;
+}
+
+}  // namespace selvedge

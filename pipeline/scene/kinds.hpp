@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "physics/scene/stepper.hpp"
+#include "pipeline/config/config.hpp"
+
+namespace selvedge {
+
+struct Setup;
+
+// A kind of stepper that a scene file names by `run.stepper`.
+struct StepperKind {
+  std::string name;
+  // The table of the key run.<name>; null: the kind has no options, or they stand in run_options(). It bears the kind's
+  // name and must outlive every setup that is read with it.
+  const Section* options = nullptr;
+  // The maker of bare steppers (decorated_stepper.hpp) of a scene; `given` is the section as the file has it.
+  std::function<MakeStepper(const Setup&, const Config& given)> maker = {};
+};
+
+// The kinds that scene files may name.
+class Kinds {
+ public:
+  void add(StepperKind);                                   // throws Error for a name that is taken
+  const StepperKind* find(const std::string& name) const;  // null: none
+  const std::vector<StepperKind>& all() const { return kinds_; }
+  std::vector<std::string> names() const;
+
+ private:
+  std::vector<StepperKind> kinds_;
+};
+
+// conventional, icm, learned.
+Kinds known_kinds();
+
+}  // namespace selvedge
