@@ -7,7 +7,7 @@ namespace selvedge {
 // A weight that goes linearly from one value to another between two points of the run. Points are fractions of it,
 // never iteration counts: no run is too short for its losses.
 struct LossRamp {
-  double from = 1, to = 1;    // before `begin` and after `end`
+  double from = 1, to = 1;    // at `begin` and before, at `end` and after
   double begin = 0, end = 0;  // in [0, 1]
 };
 double weight_at(const LossRamp&, double progress);
@@ -62,8 +62,9 @@ struct LossOptions {
   double relaxation_dt = 1.0 / 3;  // of the inertia of a frame in which cloth falls to rest [s]
 };
 
-// As published, the iterations of the ramps taken as fractions of the run: HOOD's 150,000, the 56,000 of ContourCraft's
-// stages 1 and 2. The third stage has every weight full (parity README; digest 2 and 3).
+// As published, iterations being fractions of the run (parity README; digest 2 and 3): of HOOD's 150,000; of the 56,000
+// of ContourCraft's stages 1 and 2, which are blind to contours; of the 11,000 of its stage 3, in whose first 5,000 the
+// contour loss rises. The released ContourCraft trains without friction.
 LossOptions hood_losses();
 LossOptions contourcraft_losses();
 LossOptions contourcraft_final_losses();
