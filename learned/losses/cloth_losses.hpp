@@ -10,7 +10,7 @@ namespace selvedge {
 
 // The losses of cloth alone, without their weights. Each returns its value [J] and adds the derivative by the positions
 // x, n x 3, where `gradient` is not null [N]. The energies are those of physics/energies. Vertices that no triangle has
-// count nothing.
+// have no weight and no inertia.
 
 // St. Venant-Kirchhoff: sum of A (mu |G|^2 + lambda / 2 tr(G)^2), G = (F^T F - I) / 2.
 double stretching_loss(const LossGarment&, const Points& x, Points* gradient);
