@@ -22,6 +22,21 @@ void centroids_of(const Surface& surface, const Points& x, const std::vector<cha
   }
 }
 
+template <class Rows>
+bool same_rows(const Rows& a, const Rows& b) {
+  return a.rows() == b.rows() && a == b;
+}
+
+// Whether this was asked before; if not it is noted. Undefined positions are never the same.
+bool asked_before(const Surface& surface, const Points& x, const std::vector<char>& left_out, double radius,
+                  const Points& points, NearestQuery& query) {
+  if (query.radius == radius && query.left_out == left_out && same_rows(query.points, points) &&
+      same_rows(query.x, x) && same_rows(query.triangles, surface.triangles))
+    return true;
+  query = {surface.triangles, x, points, left_out, radius};
+  return false;
+}
+
 template <class SquaredOf>
 void search_from_all(const Points& points, double squared, NearestFaces& search, SquaredOf&& squared_of) {
   vertex_boxes(points, points, 0, search.boxes);
@@ -39,16 +54,19 @@ void search_from_all(const Points& points, double squared, NearestFaces& search,
 
 const std::vector<int>& nearest_centroids(const Surface& surface, const Points& x, const std::vector<char>& left_out,
                                           const Points& points, NearestFaces& search) {
+  constexpr double anywhere = std::numeric_limits<double>::infinity();
+  if (asked_before(surface, x, left_out, anywhere, points, search.query)) return search.last;
   centroids_of(surface, x, left_out, search.centroids);
   vertex_boxes(search.centroids, search.centroids, 0, search.boxes);
   update(search.faces, search.boxes);
-  search_from_all(points, std::numeric_limits<double>::infinity(), search,
+  search_from_all(points, anywhere, search,
                   [&](const Vec3& p, int f) { return (row(search.centroids, f) - p).squaredNorm(); });
   return search.last;
 }
 
 const std::vector<int>& nearest_faces(const Surface& surface, const Points& x, const std::vector<char>& left_out,
                                       double radius, const Points& points, NearestFaces& search) {
+  if (asked_before(surface, x, left_out, radius, points, search.query)) return search.last;
   triangle_boxes(surface, x, x, 0, search.boxes);
   const auto is_out = [&](int f) { return !left_out.empty() && left_out[static_cast<std::size_t>(f)]; };
   for (int f = 0; f < static_cast<int>(search.boxes.size()); ++f)

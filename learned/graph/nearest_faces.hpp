@@ -7,8 +7,17 @@
 
 namespace selvedge {
 
-// Kept between calls. It saves time and does not change what is found.
+// What was asked for.
+struct NearestQuery {
+  Triangles triangles;
+  Points x, points;
+  std::vector<char> left_out;
+  double radius = -1;
+};
+
+// Kept between calls. It saves time and does not change what is found; the same question again costs next to nothing.
 struct NearestFaces {
+  NearestQuery query;
   KeptBvh faces, points;
   std::vector<Box> boxes;
   Points centroids;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "physics/energies/membrane.hpp"
+#include "physics/energies/hinge_lanes.hpp"
 #include "physics/energies/membrane_lanes.hpp"
 
 namespace selvedge {
@@ -63,14 +63,17 @@ double stretching_loss(const LossGarment& garment, const Points& x, Points* grad
 
 double bending_loss(const LossGarment& garment, const Points& x, Points* gradient) {
   double sum = 0;
-  Vec12 slope;
-  for (const Hinge& hinge : garment.hinges) {
-    if (!gradient) {
-      sum += hinge_energy(hinge, x);
-      continue;
+  HingeLanes lanes;
+  std::span<const Hinge> rest = garment.hinges;
+  for (; !rest.empty(); rest = rest.subspan(static_cast<std::size_t>(lanes.count))) {
+    hinge_energies(rest, x, gradient != nullptr, lanes);
+    for (int l = 0; l < lanes.count; ++l) {
+      sum += lanes.energy[l];
+      if (!gradient) continue;
+      const std::array<int, 4>& node = rest[static_cast<std::size_t>(l)].nodes;
+      for (int i = 0; i < 4; ++i)
+        for (int k = 0; k < 3; ++k) (*gradient)(node[i], k) += lanes.force[3 * i + k][l];
     }
-    sum += hinge_derivatives(hinge, x, slope, nullptr);
-    for (int i = 0; i < 4; ++i) gradient->row(hinge.nodes[i]) += slope.segment<3>(3 * i).transpose();
   }
   return sum;
 }
