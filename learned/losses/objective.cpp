@@ -87,7 +87,8 @@ void find_of_prediction(const LossInputs& in, const LossOptions& options, LossSe
     search.matches.friction_after =
         nearest_centroids(*in.body, *in.body_now, left_out_of(in), *in.predicted, search.after);
   search.matches.crossings = {};
-  if (!looks_for_contours(in, options) || !in.predicted->allFinite()) return;
+  const bool has_faces = in.garment->surface.triangles.rows() > 0;
+  if (!has_faces || !looks_for_contours(in, options) || !in.predicted->allFinite()) return;
   const SheetView sheet = refreshed_sheet(in.garment->surface, *in.predicted, search.cloth);
   search.matches.crossings = find_segments({&sheet, 1});
 }

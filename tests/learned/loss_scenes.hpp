@@ -83,7 +83,7 @@ inline LossOptions all_losses() {
   options.collision.weight = {5e3, 5e5, 0, 1};
   options.collision.thickness = 6e-3;
   options.repulsion.weight = {2e3, 2e3};
-  options.repulsion.thickness = 8e-3;
+  options.repulsion.thickness = 1.5e-2;
   options.repulsion.correspondence = 2e-2;
   options.contours.weight = {30, 30};
   return options;

@@ -110,6 +110,7 @@ TEST_CASE("objective: a material for each vertex", "[losses]") {
   const auto value = [&](const LossGarment& garment) {
     LossInputs in = scene.inputs();
     in.garment = &garment;
+    in.body = nullptr;
     LossSearch search;
     return sum_of(add_losses(in, hood_losses(), search, nullptr));
   };
