@@ -9,13 +9,13 @@ namespace selvedge {
 namespace {
 
 // A face's plane with what its derivative needs: the distance of p is normal . (p - third corner).
-struct FacePlane {
+struct TurningPlane {
   Vec3 normal, side_a, side_b;  // sides: from the first corner to the second and the third
   double twice_area = 0;
 };
 
-FacePlane plane_of_face(const Points& x, const int* corner) {
-  FacePlane plane;
+TurningPlane plane_of_face(const Points& x, const int* corner) {
+  TurningPlane plane;
   const Vec3 origin = row(x, corner[0]);
   plane.side_a = row(x, corner[1]) - origin;
   plane.side_b = row(x, corner[2]) - origin;
@@ -26,8 +26,8 @@ FacePlane plane_of_face(const Points& x, const int* corner) {
 }
 
 // Adds pull times the derivative of the distance from p, which the vertex and all corners have a part in.
-void add_distance_slope(const FacePlane& plane, const int* corner, int vertex, const Vec3& from_third, double distance,
-                        double pull, Points& gradient) {
+void add_distance_slope(const TurningPlane& plane, const int* corner, int vertex, const Vec3& from_third,
+                        double distance, double pull, Points& gradient) {
   const Vec3 lever = (from_third - distance * plane.normal) / plane.twice_area;  // of the normal's turning
   const Vec3 second = plane.side_b.cross(lever), third = lever.cross(plane.side_a);
   gradient.row(vertex) += (pull * plane.normal).transpose();
@@ -107,7 +107,7 @@ double repulsion_loss(const LossGarment& garment, const RepulsionLoss& options, 
   double sum = 0;
   for (const ClothPair& pair : pairs) {
     const int* corner = garment.surface.triangles.data() + 3 * pair.face;
-    const FacePlane before = plane_of_face(now, corner), after = plane_of_face(x, corner);
+    const TurningPlane before = plane_of_face(now, corner), after = plane_of_face(x, corner);
     const double was = before.normal.dot(row(now, pair.vertex) - row(now, corner[2]));
     if (!(std::abs(was) < options.correspondence) || !(after.twice_area > 0)) continue;
     const double side = was > 0 ? 1 : was < 0 ? -1 : 0;

@@ -4,10 +4,9 @@
 
 #include "collision/geometry/distance.hpp"
 #include "learned/graph/nearest_faces.hpp"
-#include "tests/learned/with_threads.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
-
+namespace selvedge::test_nearest_faces {
 namespace {
 
 // Loose triangles in a box, and points round it.
@@ -96,6 +95,8 @@ TEST_CASE("nearest faces: several threads find the same", "[graph]") {
   const Cloud cloud(4);
   NearestFaces one, several;
   const std::vector<int> all = nearest_faces(cloud.surface, cloud.x, {}, 1, cloud.points, one);
-  fake::with_some_threads(4, [&] { nearest_faces(cloud.surface, cloud.x, {}, 1, cloud.points, several); });
+  with_threads(4, [&] { nearest_faces(cloud.surface, cloud.x, {}, 1, cloud.points, several); });
   CHECK(several.last == all);
 }
+
+}  // namespace selvedge::test_nearest_faces

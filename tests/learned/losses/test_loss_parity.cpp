@@ -4,8 +4,7 @@
 #include "learned/losses/objective.hpp"
 #include "tests/learned/parity_pack.hpp"
 
-using namespace selvedge;
-
+namespace selvedge::test_loss_parity {
 namespace {
 
 double number(const Npz& npz, const std::string& name) { return npz.numbers(name).values[0]; }
@@ -256,3 +255,5 @@ TEST_CASE("loss parity: ramps give the weights of the authors' iterations", "[lo
           Approx(theirs("icontour")));
   }
 }
+
+}  // namespace selvedge::test_loss_parity

@@ -4,7 +4,8 @@
 #include "learned/losses/cloth_losses.hpp"
 #include "tests/learned/loss_scenes.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_losses {
+
 using testing::all_losses;
 using testing::LossScene;
 
@@ -310,3 +311,5 @@ TEST_CASE("losses: numbers that are not finite, and nothing at all", "[losses]")
   const LossGarment loose = make_loss_garment(make_surface(4, triangles), rest, {}, {});
   CHECK(collision_loss(loose, {}, {0, 0, 0, 0}, floor_surface(), floor_points(), rest, nullptr) == 0);
 }
+
+}  // namespace selvedge::test_losses

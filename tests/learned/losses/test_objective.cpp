@@ -4,7 +4,8 @@
 #include "learned/losses/force_input.hpp"
 #include "tests/learned/loss_scenes.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_objective {
+
 using testing::all_losses;
 using testing::LossScene;
 
@@ -216,3 +217,5 @@ TEST_CASE("objective: the norm that a sample's gradient is divided by", "[losses
   gradient << 3, 0, 0, 100, 0, 0, 0, 4, 0, 100, 0, 0;
   CHECK(inverse_mass_norm(garment, gradient) == Approx(2.5));
 }
+
+}  // namespace selvedge::test_objective

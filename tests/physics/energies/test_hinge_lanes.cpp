@@ -5,8 +5,7 @@
 
 #include "physics/energies/hinge_lanes.hpp"
 
-using namespace selvedge;
-
+namespace selvedge::test_hinge_lanes {
 namespace {
 
 // Loose hinges with four vertices each, of every kind; the last ones are degenerate.
@@ -67,3 +66,5 @@ TEST_CASE("hinge lanes: angles all the way round", "[bending]") {
     CHECK(std::sqrt(lanes.energy[0]) == Approx(std::abs(angle)).epsilon(1e-14).margin(1e-15));
   }
 }
+
+}  // namespace selvedge::test_hinge_lanes
