@@ -39,7 +39,7 @@ const std::map<std::string, std::vector<Room>> rooms = {
       {"untangle"},
       {"audit", {"geometry", "exact"}, Door::closed_to_module}}},
     {"physics", {{"scene"}, {"energies"}, {"linear"}, {"solve"}, {"recovery"}, {"steppers"}}},
-    {"learned", {{"graph"}, {"network"}, {"steppers"}, {"torch", {"graph", "network"}, Door::closed}}},
+    {"learned", {{"graph"}, {"losses"}, {"network"}, {"steppers"}, {"torch", {"graph", "network"}, Door::closed}}},
     {"pipeline",
      {{"host"},
       {"config"},

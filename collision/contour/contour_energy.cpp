@@ -51,7 +51,8 @@ std::optional<EndPoint> end_of(std::span<const SheetView> sheets, const Segments
 }
 
 // `pull` is the derivative by the end point.
-void add_gradient(const EndPoint& p, const Vec3& pull, ContourGradient kind, std::vector<Points>& gradient) {
+void add_gradient(const EndPoint& p, const Vec3& pull, ContourGradient kind, ContourNormal normal,
+                  std::vector<Points>& gradient) {
   Points& by_edge = gradient[p.edge_sheet];
   const bool full = kind == ContourGradient::full;
   if (p.edge[1] < 0) {
@@ -62,7 +63,9 @@ void add_gradient(const EndPoint& p, const Vec3& pull, ContourGradient kind, std
   const Vec3 sliding = pull.dot(p.b - p.a) / p.slope * p.normal;
   by_edge.row(p.edge[0]) -= (1 - p.s) * sliding.transpose();
   by_edge.row(p.edge[1]) -= p.s * sliding.transpose();
-  for (int k = 0; k < 3; ++k) gradient[p.face_sheet].row(p.face[k]) += p.weight[k] * sliding.transpose();
+  const bool frozen = normal == ContourNormal::frozen;
+  for (int k = 0; k < 3; ++k)
+    gradient[p.face_sheet].row(p.face[k]) += (frozen ? 1.0 / 3 : p.weight[k]) * sliding.transpose();
   if (!full) return;
   by_edge.row(p.edge[0]) += (1 - p.s) * pull.transpose();
   by_edge.row(p.edge[1]) += p.s * pull.transpose();
@@ -71,7 +74,7 @@ void add_gradient(const EndPoint& p, const Vec3& pull, ContourGradient kind, std
 }  // namespace
 
 double contour_energy(std::span<const SheetView> sheets, const Segments& segments, ContourMeasure measure,
-                      std::vector<Points>* gradient, ContourGradient kind) {
+                      std::vector<Points>* gradient, ContourGradient kind, ContourNormal normal) {
   if (gradient) {
     gradient->clear();
     for (const SheetView& sheet : sheets) gradient->push_back(Points::Zero(sheet.surface->vertex_count, 3));
@@ -87,8 +90,8 @@ double contour_energy(std::span<const SheetView> sheets, const Segments& segment
     value += squared ? length * length : length;
     if (!gradient || length == 0) continue;
     const Vec3 pull = squared ? Vec3(2 * along) : Vec3(along / length);
-    add_gradient(*first, pull, kind, *gradient);
-    add_gradient(*second, -pull, kind, *gradient);
+    add_gradient(*first, pull, kind, normal, *gradient);
+    add_gradient(*second, -pull, kind, normal, *gradient);
   }
   return value;
 }

@@ -11,6 +11,10 @@ namespace selvedge {
 // along its normal does; full: the derivative of the value.
 enum class ContourGradient { translational, full };
 
+// Whether the face's normal turns with its corners, as it does, or is held. Then a face moves its crossings through its
+// centroid alone, as in ContourCraft's released code (parity README, 25), and neither gradient is the value's own.
+enum class ContourNormal { turning, frozen };
+
 // What the energy sums over the segments: the squares of their lengths (Grigorev et al. 2024, equation 11), or the
 // lengths (Volino and Magnenat-Thalmann 2006).
 enum class ContourMeasure { squared_length, length };
@@ -19,13 +23,14 @@ enum class ContourMeasure { squared_length, length };
 // A) with
 //   s = n.(D - A) / n.(B - A),  ds/dA = -(1 - s) n / n.(B - A),  ds/dB = -s n / n.(B - A),  ds/dD_i = w_i n / n.(B - A)
 // where D is the point w.D of the face that the edge crosses (the appendix of the paper has another factor in its
-// equation 20, a misprint). Loop vertices are held in the translational gradient and follow their vertex in the full
-// one. Segments with an end without a value (the edge in the plane of the face) are left out.
-// If `gradient` is given it gets one matrix a sheet, n x 3: the derivative of the value [m or 1], by the vertices'
-// positions. Positions may have moved since the segments were found, as long as these stay what they were
-// combinatorially: the crossings are computed anew.
+// equation 20, a misprint). With a frozen normal every w_i is a third. Loop vertices are held in the translational
+// gradient and follow their vertex in the full one. Segments with an end without a value (the edge in the plane of the
+// face) are left out. If `gradient` is given it gets one matrix a sheet, n x 3: the derivative of the value [m or 1],
+// by the vertices' positions. Positions may have moved since the segments were found, as long as these stay what they
+// were combinatorially: the crossings are computed anew.
 double contour_energy(std::span<const SheetView> sheets, const Segments& segments,
                       ContourMeasure measure = ContourMeasure::squared_length, std::vector<Points>* gradient = nullptr,
-                      ContourGradient kind = ContourGradient::translational);
+                      ContourGradient kind = ContourGradient::translational,
+                      ContourNormal normal = ContourNormal::turning);
 
 }  // namespace selvedge

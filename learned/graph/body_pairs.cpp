@@ -1,7 +1,7 @@
 #include "learned/graph/body_pairs.hpp"
 
 #include "collision/geometry/distance.hpp"
-#include "learned/graph/nearest_item.hpp"
+#include "learned/graph/nearest_search.hpp"
 
 namespace selvedge {
 namespace {
@@ -35,25 +35,13 @@ void refresh_trees(const GraphScene& scene, BodyPartner partner, const Points& c
 // Nearest items of all cloth vertices; -1 where none is within the radius. Vertices that lie together search together.
 template <class SquaredOf>
 void search_all(const Points& cloth, double radius, BodySearch& search, SquaredOf&& squared_of) {
-  const Bvh& groups = search.cloth.bvh;
-  const int count = static_cast<int>(groups.leaves.size());
+  const std::vector<Bvh::Leaf>& groups = search.cloth.bvh.leaves;
+  const int count = static_cast<int>(groups.size());
   search.last.resize(static_cast<std::size_t>(cloth.rows()), -1);
 #pragma omp parallel for schedule(dynamic, 16)
-  for (int leaf = 0; leaf < count; ++leaf) {
-    NearGroup group;
-    for (const int v : groups.leaves[static_cast<std::size_t>(leaf)].item) {
-      if (v < 0) break;
-      NearestItem best{radius * radius, -1};
-      if (const int guess = search.last[v]; guess >= 0 && guess < search.body.bvh.item_count) {
-        const double squared = squared_of(row(cloth, v), guess);
-        if (squared <= best.squared) best = {squared, guess};
-      }
-      group.add(row(cloth, v), best);
-    }
-    find_nearest(search.body.bvh, group, squared_of);
-    for (int i = 0; i < group.size; ++i)
-      search.last[groups.leaves[static_cast<std::size_t>(leaf)].item[i]] = group.best[i].item;
-  }
+  for (int leaf = 0; leaf < count; ++leaf)
+    find_nearest_of_leaf(cloth, groups[static_cast<std::size_t>(leaf)], search.body.bvh, radius * radius, search.last,
+                         squared_of);
 }
 
 }  // namespace

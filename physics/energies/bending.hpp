@@ -39,11 +39,13 @@ double curved_energy(const CurvedVertex&, const Points& x);
 // gradient: 3k, hessian: 3k x 3k (Gauss-Newton, PSD), k = nodes.size(). Returns the energy.
 double curved_derivatives(const CurvedVertex&, const Points& x, Eigen::VectorXd& gradient, Eigen::MatrixXd* hessian);
 
-// Hinge form: dihedral angle, the papers' weight k l^2 / (4 (A0 + A1)) * (theta - rest)^2 / 2.
+// Hinge form: dihedral angle, the papers' weight k l^2 / (4 (A0 + A1)) * (theta - rest)^2 / 2, with rest areas and the
+// edge's length l at rest, or now: then an edge that is stretched bends less easily, and bending pulls at it.
 struct Hinge {
   std::array<int, 4> nodes;  // the edge's two ends, then the vertices opposite in its two triangles
-  double weight = 0;         // k l^2 / (4 (A0 + A1)) with rest lengths and areas [N m]
+  double weight = 0;         // k l^2 / (4 (A0 + A1)) [N m]; with the current length k / (4 (A0 + A1)) [N/m]
   double rest_angle = 0;
+  HingeLength length = HingeLength::rest;
 };
 std::vector<Hinge> hinges(const Scene&);  // cloths with BendingModel::hinge and bending > 0
 
@@ -52,7 +54,8 @@ std::vector<Hinge> hinges(const Scene&);  // cloths with BendingModel::hinge and
 double dihedral_angle(const Vec3& e0, const Vec3& e1, const Vec3& a, const Vec3& b);
 double hinge_energy(const Hinge&, const Points& x);
 // Exact gradient; exact Hessian with psd = false. With psd = true a closed-form PSD bound of it: Gauss-Newton part plus
-// the clamped second derivative of the angle, triangle by triangle. Zero where a triangle is degenerate; bounded for
+// the clamped second derivative of the angle, triangle by triangle; with the current length more of the edge's own
+// stretching besides. Zero where a triangle is degenerate; bounded for
 // slivers (height below 1e-4 of the edge), where it is no longer exact.
 double hinge_derivatives(const Hinge&, const Points& x, Vec12& gradient, Mat12* hessian, bool psd = true);
 

@@ -108,7 +108,33 @@ double angle_at(const Hinge& hinge, const Points& x) {
 
 // The difference to the rest angle, in [-pi, pi].
 double wrapped_difference(const Hinge& hinge, const Points& x) {
-  return std::remainder(angle_at(hinge, x) - hinge.rest_angle, 2 * std::numbers::pi);
+  const double difference = angle_at(hinge, x) - hinge.rest_angle;
+  return std::abs(difference) <= std::numbers::pi ? difference : std::remainder(difference, 2 * std::numbers::pi);
+}
+
+// What 1/2 difference^2 is multiplied by [N m].
+double weight_of(const Hinge& hinge, double squared_length) {
+  return hinge.length == HingeLength::current ? hinge.weight * squared_length : hinge.weight;
+}
+
+// Adds what the current length does to the Hessian, beside the weight: with c = Hinge::weight, d the difference, a and
+// b the derivatives of the angle and of the squared length,
+//   c d (a b^T + b a^T) + c d^2 [I, -I; -I, I].
+// The first part is indefinite, and a and b are perpendicular. Of the second, what lies along the edge is c d^2 / (4
+// l^2) b b^T; four times as much makes a perfect square of it together with the Gauss-Newton part c l^2 a a^T.
+void add_length_terms(const Hinge& hinge, const Vec3& edge, double difference, const Vec12& angle_slope, bool psd,
+                      Mat12& hessian) {
+  Vec12 length_slope = Vec12::Zero();
+  length_slope.segment<3>(0) = -2 * edge;
+  length_slope.segment<3>(3) = 2 * edge;
+  const double mixed = hinge.weight * difference, own = mixed * difference;
+  hessian += mixed * (angle_slope * length_slope.transpose() + length_slope * angle_slope.transpose());
+  const Mat3 block = own * Mat3::Identity();
+  hessian.block<3, 3>(0, 0) += block;
+  hessian.block<3, 3>(3, 3) += block;
+  hessian.block<3, 3>(0, 3) -= block;
+  hessian.block<3, 3>(3, 0) -= block;
+  if (psd) hessian += 0.75 * own / edge.squaredNorm() * length_slope * length_slope.transpose();
 }
 
 }  // namespace
@@ -116,9 +142,12 @@ double wrapped_difference(const Hinge& hinge, const Points& x) {
 std::vector<Hinge> hinges(const Scene& scene) {
   const Surface& surface = scene.surface;
   std::vector<double> stiffness(surface.vertex_count, 0);
+  std::vector<HingeLength> length_of(surface.vertex_count, HingeLength::rest);
   for (const Cloth& cloth : scene.cloths)
-    if (cloth.material.bending_model == BendingModel::hinge && cloth.material.bending > 0)
+    if (cloth.material.bending_model == BendingModel::hinge && cloth.material.bending > 0) {
       std::fill_n(stiffness.begin() + cloth.first_vertex, cloth.vertex_count, cloth.material.bending);
+      std::fill_n(length_of.begin() + cloth.first_vertex, cloth.vertex_count, cloth.material.hinge_length);
+    }
   std::vector<Hinge> result;
   for (int e = 0; e < surface.edges.rows(); ++e) {
     const double k = stiffness[surface.edges(e, 0)];
@@ -132,7 +161,8 @@ std::vector<Hinge> hinges(const Scene& scene) {
     Hinge hinge;
     hinge.nodes = {surface.triangles(first, i), surface.triangles(first, (i + 1) % 3),
                    surface.triangles(first, (i + 2) % 3), surface.triangles(second, (j + 2) % 3)};
-    hinge.weight = k * length * length / (4 * areas);
+    hinge.length = length_of[surface.edges(e, 0)];
+    hinge.weight = k * (hinge.length == HingeLength::current ? 1 : length * length) / (4 * areas);
     if (!scene.rest_is_flat) hinge.rest_angle = angle_at(hinge, scene.rest);
     result.push_back(hinge);
   }
@@ -147,15 +177,16 @@ double dihedral_angle(const Vec3& e0, const Vec3& e1, const Vec3& a, const Vec3&
 
 double hinge_energy(const Hinge& hinge, const Points& x) {
   const double difference = wrapped_difference(hinge, x);
-  return 0.5 * hinge.weight * difference * difference;
+  const double squared = (row(x, hinge.nodes[1]) - row(x, hinge.nodes[0])).squaredNorm();
+  return 0.5 * weight_of(hinge, squared) * difference * difference;
 }
 
 double hinge_derivatives(const Hinge& hinge, const Points& x, Vec12& gradient, Mat12* hessian, bool psd) {
-  const double difference = wrapped_difference(hinge, x), energy = 0.5 * hinge.weight * difference * difference;
   gradient.setZero();
   if (hessian) hessian->setZero();
   const Vec3 origin = row(x, hinge.nodes[0]), edge = row(x, hinge.nodes[1]) - origin;
-  const double length = edge.norm();
+  const double length = edge.norm(), difference = wrapped_difference(hinge, x);
+  const double weight = weight_of(hinge, edge.squaredNorm()), energy = 0.5 * weight * difference * difference;
   if (!(length > 0)) return energy;
 
   std::array<Wing, 2> wings;
@@ -167,11 +198,18 @@ double hinge_derivatives(const Hinge& hinge, const Points& x, Vec12& gradient, M
     gradient.segment<3>(3) += wing.rise[1] * slope;
     gradient.segment<3>(3 * wing.tip) += slope;
   }
+  const bool current = hinge.length == HingeLength::current;
   if (hessian) {
-    *hessian = hinge.weight * gradient * gradient.transpose();
-    for (const Wing& wing : wings) add_wing(wing, edge / length, length, hinge.weight * difference, psd, *hessian);
+    *hessian = weight * gradient * gradient.transpose();
+    for (const Wing& wing : wings) add_wing(wing, edge / length, length, weight * difference, psd, *hessian);
+    if (current) add_length_terms(hinge, edge, difference, gradient, psd, *hessian);
   }
-  gradient *= hinge.weight * difference;
+  gradient *= weight * difference;
+  if (current) {
+    const Vec3 pull = hinge.weight * difference * difference * edge;
+    gradient.segment<3>(0) -= pull;
+    gradient.segment<3>(3) += pull;
+  }
   return energy;
 }
 

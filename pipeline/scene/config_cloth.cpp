@@ -35,6 +35,8 @@ const OptionRows<Material>& material_options() {
       number("hinge_bending", Unit::bending, not_negative, "",
              "the papers' coefficient k of k l^2 / (4 (A0 + A1)) angle^2 / 2; makes bending_model hinge, in place of "
              "`bending`"),
+      choice("hinge_length", &O::hinge_length, {{"rest", HingeLength::rest}, {"current", HingeLength::current}},
+             "which length of its edge weighs a hinge; `current` is the loss of HOOD and ContourCraft"),
       number("stiffness_damping", &O::stiffness_damping, Unit::time, not_negative,
              "Rayleigh: damping force is this times the stiffness times the velocity"),
       number("mass_damping", &O::mass_damping, Unit::rate, not_negative,

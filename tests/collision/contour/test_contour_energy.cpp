@@ -132,6 +132,28 @@ TEST_CASE("contour energy: the translational gradient is that with ends and norm
   }
 }
 
+TEST_CASE("contour energy: with frozen normals faces move their crossings through their centroids",
+          "[contour_energy]") {
+  Tangle tangle;
+  const ContourMeasure measure = ContourMeasure::squared_length;
+  std::vector<Frozen> frozen;
+  surrogate(tangle, tangle.sheets(), nullptr, &frozen, measure);
+  for (Frozen& end : frozen) end.weight.fill(1.0 / 3);
+  std::vector<Points> gradient, turning, full, full_turning;
+  const auto energy = [&](ContourGradient kind, ContourNormal normal, std::vector<Points>& of) {
+    return contour_energy(tangle.sheets(), tangle.found, measure, &of, kind, normal);
+  };
+  CHECK(energy(ContourGradient::translational, ContourNormal::frozen, gradient) ==
+        energy(ContourGradient::translational, ContourNormal::turning, turning));
+  check_differences(tangle, gradient, [&] { return surrogate(tangle, tangle.sheets(), &frozen, nullptr, measure); });
+  CHECK((gradient[0] - turning[0]).norm() > 0.01 * turning[0].norm());
+  // What the full gradient adds, distortion, does not know of normals.
+  energy(ContourGradient::full, ContourNormal::frozen, full);
+  energy(ContourGradient::full, ContourNormal::turning, full_turning);
+  for (int sheet = 0; sheet < 2; ++sheet)
+    CHECK(((full[sheet] - gradient[sheet]) - (full_turning[sheet] - turning[sheet])).norm() < 1e-12);
+}
+
 TEST_CASE("contour energy: turning the normals over changes nothing", "[contour_energy]") {
   Tangle tangle;
   std::vector<Points> gradient, turned_gradient;

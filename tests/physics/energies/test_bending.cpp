@@ -359,6 +359,49 @@ TEST_CASE("hinge: derivatives by finite differences; the projection is PSD and b
   }
 }
 
+TEST_CASE("hinge: with the current edge length, as in HOOD's loss", "[bending]") {
+  Hinge hinge = example_hinge(0);
+  hinge.length = HingeLength::current;
+  // The edge is 1.2 long: the weight is per square of it.
+  CHECK(hinge_energy(hinge, example_hinge_points(0.9)) == Approx(0.5 * 0.7 * 1.44 * 0.81));
+  for (unsigned trial = 0; trial < 200; ++trial) {
+    const Points x = perturbed(Points::Zero(4, 3), 1, trial);
+    const double angle = dihedral_angle(row(x, 0), row(x, 1), row(x, 2), row(x, 3)), h = 1e-7;
+    Vec12 gradient;
+    Mat12 hessian, projected, numeric;
+    hinge_derivatives(hinge, x, gradient, &hessian, false);
+    hinge_derivatives(hinge, x, gradient, &projected, true);
+    const Eigen::VectorXd spectrum = symmetric_eigenvalues(projected);
+    CHECK(spectrum[0] >= -1e-9 * spectrum[11]);
+    const Eigen::VectorXd excess = symmetric_eigenvalues(projected - hessian);
+    CHECK(excess[0] >= -1e-9 * spectrum[11]);
+    if (pi - std::abs(angle) < 1e-2 || hessian.norm() > 1e4) continue;
+    Vec12 slope;
+    for (int i = 0; i < 12; ++i) {
+      Points up = x, down = x;
+      up.data()[i] += h;
+      down.data()[i] -= h;
+      Vec12 g_up, g_down;
+      slope[i] =
+          (hinge_derivatives(hinge, up, g_up, nullptr) - hinge_derivatives(hinge, down, g_down, nullptr)) / (2 * h);
+      numeric.col(i) = (g_up - g_down) / (2 * h);
+    }
+    CHECK((gradient - slope).norm() < 1e-5 * (1 + gradient.norm()));
+    CHECK((hessian - numeric).norm() < 1e-4 * (1 + hessian.norm()));
+  }
+  Mesh mesh;
+  mesh.points.resize(4, 3);
+  mesh.points << 0, 0, 0, 1, 0, 0, 0, 0, -1, 1, 0, -1;
+  mesh.triangles.resize(2, 3);
+  mesh.triangles << 0, 1, 2, 3, 2, 1;
+  Material material = bent(0.3, BendingModel::hinge);
+  material.hinge_length = HingeLength::current;
+  const std::vector<Hinge> square = hinges(make_scene(mesh, material));
+  REQUIRE(square.size() == 1);
+  CHECK(square[0].weight == Approx(0.3 / 4));
+  CHECK(square[0].length == HingeLength::current);
+}
+
 TEST_CASE("hinge: at its rest angle the Hessian is left alone", "[bending]") {
   const Hinge hinge = example_hinge(0.4);
   Vec12 gradient;

@@ -1,0 +1,83 @@
+#include "learned/graph/nearest_faces.hpp"
+
+#include <limits>
+
+#include "collision/geometry/distance.hpp"
+#include "learned/graph/nearest_search.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+
+void centroids_of(const Surface& surface, const Points& x, const std::vector<char>& left_out, Points& centroids) {
+  const auto count = static_cast<int>(surface.triangles.rows());
+  centroids.resize(count, 3);
+  for (int f = 0; f < count; ++f) {
+    const int* corner = surface.triangles.data() + 3 * f;
+    if (!left_out.empty() && left_out[static_cast<std::size_t>(f)])
+      centroids.row(f).setConstant(undefined);
+    else
+      centroids.row(f) = (x.row(corner[0]) + x.row(corner[1]) + x.row(corner[2])) / 3;
+  }
+}
+
+template <class Rows>
+bool same_rows(const Rows& a, const Rows& b) {
+  return a.rows() == b.rows() && a == b;
+}
+
+// Whether this was asked before; if not it is noted. Undefined positions are never the same.
+bool asked_before(const Surface& surface, const Points& x, const std::vector<char>& left_out, double radius,
+                  const Points& points, NearestQuery& query) {
+  if (query.radius == radius && query.left_out == left_out && same_rows(query.points, points) &&
+      same_rows(query.x, x) && same_rows(query.triangles, surface.triangles))
+    return true;
+  query = {surface.triangles, x, points, left_out, radius};
+  return false;
+}
+
+template <class SquaredOf>
+void search_from_all(const Points& points, double squared, NearestFaces& search, SquaredOf&& squared_of) {
+  vertex_boxes(points, points, 0, search.boxes);
+  update(search.points, search.boxes);
+  const std::vector<Bvh::Leaf>& groups = search.points.bvh.leaves;
+  const int count = static_cast<int>(groups.size());
+  search.last.resize(static_cast<std::size_t>(points.rows()), -1);
+#pragma omp parallel for schedule(dynamic, 16)
+  for (int leaf = 0; leaf < count; ++leaf)
+    find_nearest_of_leaf(points, groups[static_cast<std::size_t>(leaf)], search.faces.bvh, squared, search.last,
+                         squared_of);
+}
+
+}  // namespace
+
+const std::vector<int>& nearest_centroids(const Surface& surface, const Points& x, const std::vector<char>& left_out,
+                                          const Points& points, NearestFaces& search) {
+  constexpr double anywhere = std::numeric_limits<double>::infinity();
+  if (asked_before(surface, x, left_out, anywhere, points, search.query)) return search.last;
+  centroids_of(surface, x, left_out, search.centroids);
+  vertex_boxes(search.centroids, search.centroids, 0, search.boxes);
+  update(search.faces, search.boxes);
+  search_from_all(points, anywhere, search,
+                  [&](const Vec3& p, int f) { return (row(search.centroids, f) - p).squaredNorm(); });
+  return search.last;
+}
+
+const std::vector<int>& nearest_faces(const Surface& surface, const Points& x, const std::vector<char>& left_out,
+                                      double radius, const Points& points, NearestFaces& search) {
+  if (asked_before(surface, x, left_out, radius, points, search.query)) return search.last;
+  triangle_boxes(surface, x, x, 0, search.boxes);
+  const auto is_out = [&](int f) { return !left_out.empty() && left_out[static_cast<std::size_t>(f)]; };
+  for (int f = 0; f < static_cast<int>(search.boxes.size()); ++f)
+    if (is_out(f)) search.boxes[static_cast<std::size_t>(f)] = empty_box;
+  update(search.faces, search.boxes);
+  search_from_all(points, radius * radius, search, [&](const Vec3& p, int f) {
+    if (is_out(f)) return undefined;
+    const int* v = surface.triangles.data() + 3 * f;
+    return point_triangle(p, row(x, v[0]), row(x, v[1]), row(x, v[2])).squared_distance;
+  });
+  return search.last;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "learned/graph/nearest_item.hpp"
+
+namespace selvedge {
+
+// For the points in a leaf of `groups`, a tree of points, what is nearest of the items of another tree within a
+// distance whose square is `squared`: -1 without any. `last` (as long as the points) holds guesses, such as what was
+// found before, and then the result; guesses save time and change nothing. squared_of(p, item) is a squared distance.
+template <class SquaredOf>
+void find_nearest_of_leaf(const Points& points, const Bvh::Leaf& group_leaf, const Bvh& items, double squared,
+                          std::vector<int>& last, SquaredOf&& squared_of) {
+  NearGroup group;
+  for (const int v : group_leaf.item) {
+    if (v < 0) break;
+    NearestItem best{squared, -1};
+    if (const int guess = last[static_cast<std::size_t>(v)]; guess >= 0 && guess < items.item_count)
+      if (const double there = squared_of(row(points, v), guess); there <= best.squared) best = {there, guess};
+    group.add(row(points, v), best);
+  }
+  find_nearest(items, group, squared_of);
+  for (int i = 0; i < group.size; ++i)
+    last[static_cast<std::size_t>(group_leaf.item[i])] = group.best[static_cast<std::size_t>(i)].item;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,80 @@
+#include "learned/losses/body_losses.hpp"
+
+#include <cmath>
+
+namespace selvedge {
+namespace {
+
+struct BodyPlane {
+  Vec3 centroid, normal;
+  bool has_area = false;
+};
+
+BodyPlane plane_of_body(const Surface& body, const Points& x, int face) {
+  const int* corner = body.triangles.data() + 3 * face;
+  const Vec3 a = row(x, corner[0]), b = row(x, corner[1]), c = row(x, corner[2]);
+  const Vec3 across = (b - a).cross(c - a);
+  const double length = across.norm();
+  return {(a + b + c) / 3, across / length, length > 0};
+}
+
+// c |t| and its derivative by t.
+struct Slide {
+  double value = 0;
+  Vec3 slope = Vec3::Zero();
+};
+
+Slide slide_of(const Vec3& t, SlopeAxis axis) {
+  constexpr double least = 1e-4;  // so that the root's slope stays finite
+  const double length = t.norm();
+  if (!(length > 0)) return {};
+  const Vec3 along = t / length, up = Vec3::Unit(static_cast<int>(axis));
+  const double cosine = along.dot(up), part = 1 - cosine * cosine;
+  const double factor = std::sqrt(std::abs(part) + least);
+  const double turning = (part < 0 ? cosine : -cosine) / factor;
+  return {factor * length, factor * along + turning * (up - cosine * along)};
+}
+
+}  // namespace
+
+double collision_loss(const LossGarment& garment, const CollisionLoss& options, const std::vector<int>& face,
+                      const Surface& body, const Points& body_next, const Points& x, Points* gradient) {
+  const bool cubic = options.penalty == DepthPenalty::cubic;
+  double sum = 0;
+  for (Eigen::Index v = 0; v < x.rows(); ++v) {
+    const auto at = static_cast<std::size_t>(v);
+    if (face[at] < 0 || !(garment.mass[at] > 0)) continue;
+    const BodyPlane plane = plane_of_body(body, body_next, face[at]);
+    if (!plane.has_area) continue;
+    const double depth = options.thickness - (x.row(v).transpose() - plane.centroid).dot(plane.normal);
+    if (!(depth > 0)) continue;
+    sum += cubic ? depth * depth * depth : 0.5 * depth * depth;
+    if (gradient) gradient->row(v) -= (cubic ? 3 * depth * depth : depth) * plane.normal.transpose();
+  }
+  return sum;
+}
+
+double friction_loss(const LossGarment& garment, const FrictionLoss& options, double strength,
+                     const std::vector<int>& before, const std::vector<int>& after, const Surface& body,
+                     const Points& body_previous, const Points& body_now, const Points& now, const Points& x,
+                     Points* gradient) {
+  double sum = 0;
+  for (Eigen::Index v = 0; v < x.rows(); ++v) {
+    const auto at = static_cast<std::size_t>(v);
+    const double grip = garment.mass[at] * options.coefficient * strength;
+    if (before[at] < 0 || after[at] < 0 || !(grip > 0)) continue;
+    const BodyPlane start = plane_of_body(body, body_previous, before[at]);
+    const BodyPlane moved = plane_of_body(body, body_now, before[at]), end = plane_of_body(body, body_now, after[at]);
+    const Vec3 p = now.row(v).transpose(), q = x.row(v).transpose();
+    if (!((p - start.centroid).squaredNorm() < options.squared_radius) ||
+        !((q - end.centroid).squaredNorm() < options.squared_radius) || !start.has_area || !end.has_area)
+      continue;
+    const Vec3 normal = 0.5 * (start.normal + end.normal), slid = q - (p + (moved.centroid - start.centroid));
+    const Slide slide = slide_of(slid - slid.dot(normal) * normal, options.slope);
+    sum += grip * slide.value;
+    if (gradient) gradient->row(v) += grip * (slide.slope - slide.slope.dot(normal) * normal).transpose();
+  }
+  return sum;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,56 @@
+#include "learned/losses/force_input.hpp"
+
+#include <cmath>
+
+namespace selvedge {
+namespace {
+
+constexpr LossRamp never{0, 0};
+
+// Forces of the cloth itself, softer ones of the body, and where asked for those that shorten contours.
+LossOptions losses_of_forces(const LossOptions& options, const ForceOptions& force) {
+  LossOptions soft = options;
+  soft.collision.weight = {force.contact_stiffness, force.contact_stiffness};
+  soft.collision.penalty = DepthPenalty::quadratic;
+  soft.collision.thickness = force.contact_thickness;
+  soft.contours.weight = {force.contour_weight, force.contour_weight};
+  soft.friction.weight = soft.repulsion.weight = never;
+  if (!force.inertia) soft.inertia = never;
+  return soft;
+}
+
+}  // namespace
+
+std::vector<double> jacobi_diagonal(const LossGarment& garment, double dt) {
+  std::vector<double> diagonal(garment.mass.size());
+  for (std::size_t v = 0; v < diagonal.size(); ++v) diagonal[v] = garment.mass[v] / (dt * dt);
+  for (const MembraneElement& e : garment.membranes) {
+    const Material& material = garment.materials[static_cast<std::size_t>(e.material)];
+    const double stiffness = (2 * material.lame_mu + material.lame_lambda) * e.area;
+    const Eigen::RowVector2d second = e.inverse.row(0), third = e.inverse.row(1);
+    diagonal[static_cast<std::size_t>(e.nodes[0])] += stiffness * (second + third).squaredNorm();
+    diagonal[static_cast<std::size_t>(e.nodes[1])] += stiffness * second.squaredNorm();
+    diagonal[static_cast<std::size_t>(e.nodes[2])] += stiffness * third.squaredNorm();
+  }
+  return diagonal;
+}
+
+Points force_input(const LossInputs& in, const LossOptions& options, const ForceOptions& force, LossSearch& search) {
+  Points slope = Points::Zero(in.predicted->rows(), 3);
+  add_losses(in, losses_of_forces(options, force), search, &slope);
+  const std::vector<double> diagonal =
+      jacobi_diagonal(*in.garment, in.is_initial ? options.relaxation_dt : in.timestep);
+  for (Eigen::Index v = 0; v < slope.rows(); ++v) {
+    const auto at = static_cast<std::size_t>(v);
+    const Eigen::RowVector3d step = -slope.row(v) / diagonal[at];
+    const double length = step.norm();
+    const bool counts = !in.garment->pinned[at] && diagonal[at] > 0 && std::isfinite(length) && length > 0;
+    if (counts)
+      slope.row(v) = step * (std::log1p(length / force.length) / length);
+    else
+      slope.row(v).setZero();
+  }
+  return slope;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "learned/losses/objective.hpp"
+
+namespace selvedge {
+
+// Which forces a network is shown (reference/training.md, item 1 of what worked).
+struct ForceOptions {
+  double contact_stiffness = 300;   // of a quadratic contact with the body [N/m]; 0: none
+  double contact_thickness = 3e-3;  // [m]
+  double contour_weight = 0;        // [N/m]; 0: contours are not looked for
+  double length = 1e-3;             // that is compressed to log 2 [m]
+  bool inertia = false;             // in a second pass, whose guess is not free flight
+};
+
+// -dE/dx at inputs.predicted, the guess, divided by the Jacobi diagonal m / dt^2 + sum of (2 mu + lambda) A |grad
+// phi|^2 over the vertex' triangles: a displacement d, whose length is compressed to log(1 + |d| / length). V x 3;
+// zero at pinned vertices and where the force is not finite. The bending and gravity are those of the objective.
+Points force_input(const LossInputs&, const LossOptions&, const ForceOptions&, LossSearch&);
+
+// The diagonal [N/m]; dt as the inputs' inertia takes it.
+std::vector<double> jacobi_diagonal(const LossGarment&, double dt);
+
+}  // namespace selvedge

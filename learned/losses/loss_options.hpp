@@ -1,0 +1,74 @@
+#pragma once
+
+#include "collision/contour/contour_energy.hpp"
+
+namespace selvedge {
+
+// A weight that goes linearly from one value to another between two points of the run. Points are fractions of it,
+// never iteration counts: no run is too short for its losses.
+struct LossRamp {
+  double from = 1, to = 1;    // at `begin` and before, at `end` and after
+  double begin = 0, end = 0;  // in [0, 1]
+};
+double weight_at(const LossRamp&, double progress);
+inline bool is_used(const LossRamp& ramp) { return ramp.from != 0 || ramp.to != 0; }
+
+// Which face of the body, where it is now, belongs to a cloth vertex where that is now: the one with the nearest
+// centroid, however far (HOOD), or the one with the nearest point within a radius (ContourCraft).
+enum class BodyMatching { nearest_centroid, nearest_face };
+
+// The penalty of a depth p = max(eps - d, 0): w p^3 [w in N/m^2], as published, or the softer w p^2 / 2 [w in N/m].
+enum class DepthPenalty { cubic, quadratic };
+
+struct CollisionLoss {
+  LossRamp weight{5e3, 5e5, 1.0 / 3, 1};
+  double thickness = 2e-3;  // eps [m]
+  BodyMatching matching = BodyMatching::nearest_centroid;
+  double radius = 3e-2;  // of nearest_face [m]
+  DepthPenalty penalty = DepthPenalty::cubic;
+};
+
+// The axis whose share in the slide slackens friction: the released code takes z in a world where y is up.
+enum class SlopeAxis { x, y, z };
+
+struct FrictionLoss {
+  LossRamp weight{0, 0};
+  double coefficient = 0.5;
+  double squared_radius = 3e-3;  // of nearest centroids before and after [m^2]: 5.5 cm
+  SlopeAxis slope = SlopeAxis::z;
+};
+
+struct RepulsionLoss {
+  LossRamp weight{0, 0};
+  double thickness = 3e-3;       // released configs; the paper writes 1e-3 [m]
+  double correspondence = 1e-2;  // pairs farther apart now take no part [m]
+  double pinned_factor = 100;    // inside the cube, where the vertex or one of the face is pinned
+};
+
+struct ContourLoss {
+  LossRamp weight{0, 0};
+  ContourGradient gradient = ContourGradient::translational;
+  ContourNormal normal = ContourNormal::frozen;  // frozen as released; turning: the exact derivative
+};
+
+// What is summed up. A term whose weight is zero is not evaluated. The defaults are HOOD's.
+struct LossOptions {
+  LossRamp stretching, bending, gravity, inertia;
+  CollisionLoss collision;
+  FrictionLoss friction;
+  RepulsionLoss repulsion;
+  ContourLoss contours;
+  double gravity_strength = 9.81;  // against y [m/s2]
+  double relaxation_dt = 1.0 / 3;  // of the inertia of a frame in which cloth falls to rest [s]
+};
+
+// As published, iterations being fractions of the run (parity README; digest 2 and 3): of HOOD's 150,000; of the 56,000
+// of ContourCraft's stages 1 and 2, which are blind to contours; of the 11,000 of its stage 3, in whose first 5,000 the
+// contour loss rises. The released ContourCraft trains without friction.
+LossOptions hood_losses();
+LossOptions contourcraft_losses();
+LossOptions contourcraft_final_losses();
+// reference/training.md: collision 5e3 to 1e6 between a tenth and half of the run, eps 3 mm, contours 30 N/m.
+LossOptions fast_losses();
+
+}  // namespace selvedge
