@@ -12,9 +12,9 @@ namespace selvedge {
 void gather(const FeatureOptions&, const Graph& raw, const FeatureRows& accelerations, FeatureSums<double>&);
 
 // Sets statistics from the sums. Sets of which no row was seen keep what they have. A column that hardly varied, by
-// less than 1e-4 of its largest size, gets deviation 1, so that neither its rounding nor the gradient of an embedding
+// 1e-4 of its root mean square or less, gets deviation 1, so that neither its rounding nor the gradient of an embedding
 // is blown up (parity README, 15).
-void freeze_statistics(const FeatureOptions&, const FeatureSums<double>&, FeatureTables&);
+void freeze_statistics(const FeatureSums<double>&, FeatureTables&);
 
 // Writes the embeddings of the tables into a normalised graph that was made with others: they change with every step of
 // training, while graphs are made ahead.

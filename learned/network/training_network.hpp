@@ -19,7 +19,11 @@ struct TrainingLayout;
 struct TrainingNetwork {
   Architecture architecture;
   NetworkWeights weights;
-  std::shared_ptr<TrainingLayout> layout;
+  std::shared_ptr<TrainingLayout> layout;  // training_layout.hpp
+
+  TrainingNetwork() = default;
+  TrainingNetwork(TrainingNetwork&&) = default;
+  TrainingNetwork& operator=(TrainingNetwork&&) = default;
 };
 
 // Throws Error unless the weights have the architecture's shapes and the machine has the instruction set.
