@@ -95,7 +95,8 @@ void fill_cloth_edges(const std::vector<ClothPair>& pairs, const GraphScene& sce
                       const SeenPositions& seen, const FeatureOptions& options, const FeatureTables& tables,
                       EdgeSet& set) {
   const bool dt = options.time == TimeFeature::timestep;
-  const int label = embedding_columns(options).label, time = dt ? 12 : 12 + options.label_columns, materials = 13 + options.label_columns;
+  const int label = embedding_columns(options).label, time = dt ? 12 : 12 + options.label_columns,
+            materials = 13 + options.label_columns;
   const std::size_t count = pairs.size();
   set.senders.resize(count);
   set.receivers.resize(count);

@@ -22,8 +22,8 @@ SeenPositions seen_positions(const RestGraph& rest, const GraphState& state, con
 
 Points inertial_guess(const RestGraph& rest, const GraphState& state, const SeenPositions& seen,
                       const FeatureOptions& options) {
-  Points guess = seen.x + (options.cloth_velocity == ClothVelocity::carried ? state.velocity
-                                                                            : Points(seen.x - seen.previous));
+  Points guess =
+      seen.x + (options.cloth_velocity == ClothVelocity::carried ? state.velocity : Points(seen.x - seen.previous));
   for (const int v : rest.pinned) guess.row(v) = state.target.row(v);
   return guess;
 }

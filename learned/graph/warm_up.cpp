@@ -15,7 +15,8 @@ void freeze(const DoubleAccumulators& sums, Statistics& statistics) {
   statistics = statistics_of(sums);
   for (std::size_t k = 0; k < statistics.mean.size(); ++k) {
     const double size = std::sqrt(sums.sum_squared[k] / sums.rows);
-    if (static_cast<double>(statistics.deviation[k]) <= least_variation * size || size == 0) statistics.deviation[k] = 1.f;
+    if (static_cast<double>(statistics.deviation[k]) <= least_variation * size || size == 0)
+      statistics.deviation[k] = 1.f;
   }
 }
 
@@ -26,7 +27,8 @@ void embed_columns(const FeatureRows& table, const std::vector<int>& values, int
   FeatureRows normal = table;
   for (Eigen::Index k = 0; k < normal.cols(); ++k) {
     const auto at = static_cast<std::size_t>(first + k);
-    if (at >= statistics.mean.size()) throw Error("statistics have too few columns", "weights of a learned stepper", "");
+    if (at >= statistics.mean.size())
+      throw Error("statistics have too few columns", "weights of a learned stepper", "");
     normal.col(k) = (normal.col(k).array() - statistics.mean[at]) / statistics.deviation[at];
   }
   embed(normal, values, first, columns, rows);

@@ -28,8 +28,8 @@ std::ptrdiff_t size_of(const WeightArray& array) { return static_cast<std::ptrdi
 void check_same_shapes(const std::vector<WeightArray>& arrays, const std::vector<WeightArray>& others) {
   bool same = arrays.size() == others.size();
   for (std::size_t i = 0; same && i < arrays.size(); ++i)
-    same = arrays[i].name == others[i].name && arrays[i].rows == others[i].rows &&
-           arrays[i].columns == others[i].columns;
+    same =
+        arrays[i].name == others[i].name && arrays[i].rows == others[i].rows && arrays[i].columns == others[i].columns;
   if (!same) throw Error("gradients, moments and weights have different shapes", "a step of Adam", "");
 }
 
@@ -67,7 +67,7 @@ double clip_scale(const AdamOptions& options, double norm, const std::vector<flo
 }
 
 struct StepNumbers {
-  float scale, beta1, beta2, step, root, epsilon;
+  float scale, beta1, rest1, beta2, rest2, step, root, epsilon;  // rest: 1 - beta, rounded once
 };
 
 void step_array(const StepNumbers& n, const WeightArray& gradient, const WeightArray& first, const WeightArray& second,
@@ -75,8 +75,8 @@ void step_array(const StepNumbers& n, const WeightArray& gradient, const WeightA
   const std::ptrdiff_t size = size_of(weight);
   for (std::ptrdiff_t k = 0; k < size; ++k) {
     const float g = n.scale * gradient.data[k];
-    const float m = n.beta1 * first.data[k] + (1 - n.beta1) * g;
-    const float v = n.beta2 * second.data[k] + (1 - n.beta2) * g * g;
+    const float m = n.beta1 * first.data[k] + n.rest1 * g;
+    const float v = n.beta2 * second.data[k] + n.rest2 * g * g;
     first.data[k] = m;
     second.data[k] = v;
     weight.data[k] -= n.step * m / (std::sqrt(v) * n.root + n.epsilon);
@@ -110,7 +110,9 @@ AdamReport adam_step(const Architecture& a, const AdamOptions& options, double p
   const auto t = static_cast<double>(++state.steps);
   const StepNumbers numbers{static_cast<float>(report.scale),
                             static_cast<float>(options.beta1),
+                            static_cast<float>(1 - options.beta1),
                             static_cast<float>(options.beta2),
+                            static_cast<float>(1 - options.beta2),
                             static_cast<float>(report.learning_rate / (1 - std::pow(options.beta1, t))),
                             static_cast<float>(1 / std::sqrt(1 - std::pow(options.beta2, t))),
                             static_cast<float>(options.epsilon)};
@@ -129,8 +131,7 @@ std::vector<NamedFloats> adam_arrays(const Architecture& a, const AdamState& sta
     for (const WeightArray& array : trained_arrays(a, *moments))
       arrays.push_back({prefix + array.name, {array.data, array.data + size_of(array)}});
   const auto base = static_cast<long long>(steps_base);
-  arrays.push_back(
-      {"adam/steps", {static_cast<float>(state.steps / base), static_cast<float>(state.steps % base)}});
+  arrays.push_back({"adam/steps", {static_cast<float>(state.steps / base), static_cast<float>(state.steps % base)}});
   arrays.push_back({"adam/norms", state.norms});
   return arrays;
 }
@@ -139,7 +140,8 @@ AdamState adam_from_arrays(const Architecture& a, const std::vector<NamedFloats>
   const std::string cure = "does the checkpoint belong to this architecture?";
   std::map<std::string, const std::vector<float>*> left;
   for (const NamedFloats& array : arrays)
-    if (!left.emplace(array.name, &array.values).second) throw Error("it is there twice", where + ": " + array.name, cure);
+    if (!left.emplace(array.name, &array.values).second)
+      throw Error("it is there twice", where + ": " + array.name, cure);
   const auto take = [&](const std::string& name) -> const std::vector<float>& {
     const auto found = left.find(name);
     if (found == left.end()) throw Error("it is missing", where + ": " + name, cure);
@@ -161,11 +163,11 @@ AdamState adam_from_arrays(const Architecture& a, const std::vector<NamedFloats>
   const auto is_count = [](float x) { return x >= 0 && x < steps_base && x == std::floor(x); };
   if (steps.size() != 2 || !is_count(steps[0]) || !is_count(steps[1]))
     throw Error("it is no number of steps", where + ": adam/steps", cure);
-  state.steps = static_cast<long long>(steps[0]) * static_cast<long long>(steps_base) + static_cast<long long>(steps[1]);
+  state.steps =
+      static_cast<long long>(steps[0]) * static_cast<long long>(steps_base) + static_cast<long long>(steps[1]);
   state.norms = take("adam/norms");
-  if (state.norms.size() > median_window || !std::all_of(state.norms.begin(), state.norms.end(), [](float x) {
-        return std::isfinite(x) && x >= 0;
-      }))
+  if (state.norms.size() > median_window ||
+      !std::all_of(state.norms.begin(), state.norms.end(), [](float x) { return std::isfinite(x) && x >= 0; }))
     throw Error("these are no norms", where + ": adam/norms", cure);
   if (!left.empty()) throw Error("the architecture has no place for it", where + ": " + left.begin()->first, cure);
   return state;

@@ -34,8 +34,8 @@ double learning_rate_at(const AdamOptions&, double progress);
 struct AdamReport {
   bool taken = true;  // false: the gradient is not finite, and nothing has changed
   double learning_rate = 0;
-  double norm = 0;       // of the gradient over all trained arrays
-  double scale = 1;      // that it was multiplied with
+  double norm = 0;   // of the gradient over all trained arrays
+  double scale = 1;  // that it was multiplied with
 };
 
 // One step. Afterwards call `lay_out`. 1 and n threads give the same bits. Throws Error where shapes differ.

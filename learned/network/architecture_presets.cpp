@@ -141,7 +141,8 @@ Architecture own(const std::string& name, int width, int steps, bool contact) {
 }  // namespace
 
 std::vector<std::string> preset_names() {
-  return {"hood", "hood_cvpr", "fine15", "fine48", "contourcraft", "contourcraft_paper", "small", "small_contour", "tiny"};
+  return {"hood",  "hood_cvpr",     "fine15", "fine48", "contourcraft", "contourcraft_paper",
+          "small", "small_contour", "tiny"};
 }
 
 Architecture architecture_preset(const std::string& name) {

@@ -12,8 +12,7 @@ void add_table_gradient(const ValueOf& value_of, Eigen::Index rows, const Latent
                         FeatureRows& gradient) {
   FeatureRows sums = FeatureRows::Zero(gradient.rows(), first_layer.rows());
   for (Eigen::Index i = 0; i < rows; ++i)
-    sums.row(value_of(i)) +=
-        Eigen::Map<const Eigen::RowVectorXf>(d_first.row(static_cast<int>(i)), first_layer.rows());
+    sums.row(value_of(i)) += Eigen::Map<const Eigen::RowVectorXf>(d_first.row(static_cast<int>(i)), first_layer.rows());
   const FeatureRows by_feature = sums * first_layer.middleCols(column, gradient.cols());
   for (Eigen::Index k = 0; k < gradient.cols(); ++k) {
     const auto at = static_cast<std::size_t>(column + k);

@@ -47,11 +47,11 @@ struct TorchGraphView {
 
 struct TorchReport {
   char error[512] = {};
-  char device[32] = {};    // cpu or cuda:0
-  char library[32] = {};   // version of libtorch
-  char blas[32] = {};      // what multiplies matrices
-  int threads = 0;         // that libtorch uses
-  double gemm_flops = 0;   // a second, of a product of 512 x 512 matrices
+  char device[32] = {};   // cpu or cuda:0
+  char library[32] = {};  // version of libtorch
+  char blas[32] = {};     // what multiplies matrices
+  int threads = 0;        // that libtorch uses
+  double gemm_flops = 0;  // a second, of a product of 512 x 512 matrices
   int flushes_denormals = 0;
 };
 

@@ -53,9 +53,8 @@ GraphView::GraphView(const Architecture& a, const Graph& graph) {
   const GraphPlan plan = plan_graph(a, graph, 1);
   for (std::size_t s = 0; s < graph.edge_sets.size(); ++s) {
     const EdgeSet& set = graph.edge_sets[s];
-    const bool used = std::any_of(plan.selections.begin(), plan.selections.end(), [s](const EdgeSelection& selection) {
-      return selection.set == static_cast<int>(s);
-    });
+    const bool used = std::any_of(plan.selections.begin(), plan.selections.end(),
+                                  [s](const EdgeSelection& selection) { return selection.set == static_cast<int>(s); });
     sets.push_back({a.edge_kinds[static_cast<std::size_t>(edge_kind(a, set.key))].encoder, set.features.rows(),
                     set.features.cols(), set.features.data(), used ? 1 : 0});
   }
@@ -78,8 +77,8 @@ GraphView::GraphView(const Architecture& a, const Graph& graph) {
   for (const std::vector<int>& step : plan.steps)
     for (const int index : step)
       selections.push_back(index < 0 ? TorchSelection{} : kinds[static_cast<std::size_t>(index)]);
-  view = {graph.nodes.rows(), graph.cloth_nodes,       graph.nodes.data(),
-          static_cast<int>(sets.size()), sets.data(), selections.data()};
+  view = {graph.nodes.rows(), graph.cloth_nodes, graph.nodes.data(), static_cast<int>(sets.size()),
+          sets.data(),        selections.data()};
 }
 
 }  // namespace
@@ -96,7 +95,8 @@ struct TorchNetwork::Handle {
   }
   void check(int failed, const TorchReport& report) const {
     restore_standard_arithmetic();
-    if (failed != 0) throw Error(std::string("libtorch says: ") + report.error, "network `" + architecture.name + "`", "");
+    if (failed != 0)
+      throw Error(std::string("libtorch says: ") + report.error, "network `" + architecture.name + "`", "");
   }
 };
 
@@ -129,11 +129,11 @@ TorchNetwork::TorchNetwork(const Architecture& a, const NetworkWeights& weights,
   NetworkWeights copy = weights;
   const std::vector<TorchArray> arrays = torch_arrays(a, copy);
   TorchReport report;
-  handle_->model = handle_->calls.make(&shape, arrays.data(), static_cast<int>(arrays.size()), device.c_str(), threads,
-                                       &report);
+  handle_->model =
+      handle_->calls.make(&shape, arrays.data(), static_cast<int>(arrays.size()), device.c_str(), threads, &report);
   handle_->check(handle_->model ? 0 : 1, report);
-  handle_->facts = {report.library, report.device,     report.blas, report.threads,
-                    report.gemm_flops, report.flushes_denormals != 0};
+  handle_->facts = {report.library, report.device,     report.blas,
+                    report.threads, report.gemm_flops, report.flushes_denormals != 0};
 }
 
 TorchNetwork::~TorchNetwork() = default;
@@ -182,9 +182,9 @@ void TorchNetwork::run_backward(const FeatureRows& d_output, WeightGradients& gr
   check_weights(handle_->architecture, gradients, "gradients");
   const std::vector<TorchArray> arrays = torch_arrays(handle_->architecture, gradients);
   TorchReport report;
-  handle_->check(handle_->calls.backward(handle_->model, d_output.data(), arrays.data(),
-                                         static_cast<int>(arrays.size()), &report),
-                 report);
+  handle_->check(
+      handle_->calls.backward(handle_->model, d_output.data(), arrays.data(), static_cast<int>(arrays.size()), &report),
+      report);
 }
 
 FeatureRows TorchNetwork::train(const Graph& graph, const FeatureRows& d_output, double learning_rate) {

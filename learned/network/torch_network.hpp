@@ -19,8 +19,8 @@ struct TorchFacts {
   bool flushes_denormals = false;  // after loading; standard arithmetic is restored by then
 };
 
-// The same network, computed by libtorch: what the kernels are compared with, and what runs on a GPU where there is one.
-// Its graph is that of the text book, with first layers split per node. Embeddings get no gradients here.
+// The same network, computed by libtorch: what the kernels are compared with, and what runs on a GPU where there is
+// one. Its graph is that of the text book, with first layers split per node. Embeddings get no gradients here.
 class TorchNetwork {
  public:
   // `device`: auto, cpu or cuda. `threads`: 0 leaves libtorch's. Throws Error where there is no library at `library`,

@@ -235,9 +235,8 @@ void back_edges(const TrainingRun& run, const PackedPerceptron& forward, const P
       back_edge_tile(run, back, e, std::min(training_rows, end - e), slot + e - begin, part, place);
   });
   const LatentRows& nodes = tape.nodes[step];
-  back_ends(run, backward.blocks[0], nodes, selection.receivers, first_layer, 0, [&](float* to, int i) {
-    std::copy_n(tape.to_receiver.row(i), tape.to_receiver.stride, to);
-  });
+  back_ends(run, backward.blocks[0], nodes, selection.receivers, first_layer, 0,
+            [&](float* to, int i) { std::copy_n(tape.to_receiver.row(i), tape.to_receiver.stride, to); });
   back_ends(run, backward.blocks[1], nodes, selection.senders, first_layer, 1, [&](float* to, int i) {
     const int begin = slots.sender_begin[static_cast<std::size_t>(i)];
     run.training.sum({tape.d_first.row(0), tape.d_first.stride, slots.sender_slots.data() + begin,
@@ -252,7 +251,8 @@ void back_encoders(const TrainingRun& run, const PackedNetwork& forward, const P
   for (std::size_t s = 0; s < tape.keys.size(); ++s) {
     if (!tape.used[s]) continue;
     const EdgeSet& set = run.graph.edge_sets[s];
-    const auto encoder = static_cast<std::size_t>(a.edge_kinds[static_cast<std::size_t>(edge_kind(a, set.key))].encoder);
+    const auto encoder =
+        static_cast<std::size_t>(a.edge_kinds[static_cast<std::size_t>(edge_kind(a, set.key))].encoder);
     back_encoder(run, forward.encoders[encoder], backward.encoders[encoder], tape.edge_encoders[s], set.features,
                  &tape.plan.order[s], tape.d_edges[s], gradients.encoders[encoder]);
     add_label_gradients(a, set, tape.plan.order[s], weights.encoders[encoder].layers.front().weight, tables,

@@ -15,30 +15,48 @@ template <int Lanes>
   store_vector<Lanes>(load_vector<Lanes>(to) + x, to);
 }
 
-template <int Lanes>
-[[gnu::always_inline]] inline void norm_row(const NormTile& t, int r) {
-  float* values = t.values + static_cast<std::ptrdiff_t>(r) * t.stride;
+// Several rows at once, so that their chains of sums run side by side.
+template <int Lanes, int Rows>
+[[gnu::always_inline]] inline void norm_rows(const NormTile& t, int row) {
+  float* values = t.values + static_cast<std::ptrdiff_t>(row) * t.stride;
   const int whole = t.columns / Lanes * Lanes;
-  Vector<Lanes> sums{};
-  for (int k = 0; k < whole; k += Lanes) sums += load_vector<Lanes>(values + k);
-  float mean = sum_lanes<Lanes>(sums);
-  for (int k = whole; k < t.columns; ++k) mean += values[k];
-  mean /= static_cast<float>(t.columns);
-  sums = Vector<Lanes>{};
+  const auto columns = static_cast<float>(t.columns);
+  Vector<Lanes> sums[Rows] = {};
+  float mean[Rows], factor[Rows];
   for (int k = 0; k < whole; k += Lanes) {
-    const Vector<Lanes> off = load_vector<Lanes>(values + k) - mean;
-    sums += off * off;
-    store_vector<Lanes>(off, values + k);
+    SELVEDGE_UNROLL
+    for (int r = 0; r < Rows; ++r) sums[r] += load_vector<Lanes>(values + r * t.stride + k);
   }
-  float variance = sum_lanes<Lanes>(sums);
-  for (int k = whole; k < t.columns; ++k) {
-    values[k] -= mean;
-    variance += values[k] * values[k];
+  SELVEDGE_UNROLL
+  for (int r = 0; r < Rows; ++r) {
+    mean[r] = sum_lanes<Lanes>(sums[r]);
+    for (int k = whole; k < t.columns; ++k) mean[r] += values[r * t.stride + k];
+    mean[r] /= columns;
+    sums[r] = Vector<Lanes>{};
   }
-  const float factor = 1.f / std::sqrt(variance / static_cast<float>(t.columns) + 1e-5f);
-  for (int k = 0; k < whole; k += Lanes) store_vector<Lanes>(load_vector<Lanes>(values + k) * factor, values + k);
-  for (int k = whole; k < t.columns; ++k) values[k] *= factor;
-  t.factor[r] = factor;
+  for (int k = 0; k < whole; k += Lanes) {
+    SELVEDGE_UNROLL
+    for (int r = 0; r < Rows; ++r) {
+      const Vector<Lanes> off = load_vector<Lanes>(values + r * t.stride + k) - mean[r];
+      sums[r] += off * off;
+    }
+  }
+  SELVEDGE_UNROLL
+  for (int r = 0; r < Rows; ++r) {
+    float variance = sum_lanes<Lanes>(sums[r]);
+    for (int k = whole; k < t.columns; ++k) {
+      const float off = values[r * t.stride + k] - mean[r];
+      variance += off * off;
+    }
+    factor[r] = 1.f / std::sqrt(variance / columns + 1e-5f);
+    t.factor[row + r] = factor[r];
+  }
+  for (int r = 0; r < Rows; ++r) {
+    float* of_row = values + r * t.stride;
+    for (int k = 0; k < whole; k += Lanes)
+      store_vector<Lanes>((load_vector<Lanes>(of_row + k) - mean[r]) * factor[r], of_row + k);
+    for (int k = whole; k < t.columns; ++k) of_row[k] = (of_row[k] - mean[r]) * factor[r];
+  }
 }
 
 template <int Lanes>
@@ -63,47 +81,66 @@ template <int Lanes>
 
 template <int Lanes>
 [[gnu::always_inline]] inline void norm_tile(const NormTile& t) {
-  for (int r = 0; r < t.rows; ++r) {
-    if (t.scale) norm_row<Lanes>(t, r);
-    spread_row<Lanes>(t, r);
+  int row = 0;
+  for (; row + 4 <= t.rows; row += 4) {
+    if (t.scale) norm_rows<Lanes, 4>(t, row);
+    for (int r = 0; r < 4; ++r) spread_row<Lanes>(t, row + r);
+  }
+  for (; row < t.rows; ++row) {
+    if (t.scale) norm_rows<Lanes, 1>(t, row);
+    spread_row<Lanes>(t, row);
   }
 }
 
 // With g = d scale and u the normalised values: factor (g - mean(g) - u mean(g u)).
-template <int Lanes>
-[[gnu::always_inline]] inline void norm_back_row(const NormBackTile& t, int r) {
-  float* d = t.d + static_cast<std::ptrdiff_t>(r) * t.stride;
-  const float* u = t.values + static_cast<std::ptrdiff_t>(r) * t.values_stride;
+template <int Lanes, int Rows>
+[[gnu::always_inline]] inline void norm_back_rows(const NormBackTile& t, int row) {
+  float* d = t.d + static_cast<std::ptrdiff_t>(row) * t.stride;
+  const float* u = t.values + static_cast<std::ptrdiff_t>(row) * t.values_stride;
   const int whole = t.columns / Lanes * Lanes;
-  Vector<Lanes> sums{}, products{};
+  const auto columns = static_cast<float>(t.columns);
+  Vector<Lanes> sums[Rows] = {}, products[Rows] = {};
   for (int k = 0; k < whole; k += Lanes) {
-    const Vector<Lanes> dk = load_vector<Lanes>(d + k), uk = load_vector<Lanes>(u + k);
-    const Vector<Lanes> g = dk * load_vector<Lanes>(t.scale + k);
-    add_to<Lanes>(t.d_scale + k, dk * uk);
-    add_to<Lanes>(t.d_shift + k, dk);
-    sums += g;
-    products += g * uk;
+    const Vector<Lanes> scale = load_vector<Lanes>(t.scale + k);
+    Vector<Lanes> d_scale = load_vector<Lanes>(t.d_scale + k), d_shift = load_vector<Lanes>(t.d_shift + k);
+    SELVEDGE_UNROLL
+    for (int r = 0; r < Rows; ++r) {
+      const Vector<Lanes> dk = load_vector<Lanes>(d + r * t.stride + k);
+      const Vector<Lanes> uk = load_vector<Lanes>(u + r * t.values_stride + k);
+      const Vector<Lanes> g = dk * scale;
+      d_scale += dk * uk;
+      d_shift += dk;
+      sums[r] += g;
+      products[r] += g * uk;
+    }
+    store_vector<Lanes>(d_scale, t.d_scale + k);
+    store_vector<Lanes>(d_shift, t.d_shift + k);
   }
-  float mean = sum_lanes<Lanes>(sums), slope = sum_lanes<Lanes>(products);
-  for (int k = whole; k < t.columns; ++k) {
-    t.d_scale[k] += d[k] * u[k];
-    t.d_shift[k] += d[k];
-    mean += d[k] * t.scale[k];
-    slope += d[k] * t.scale[k] * u[k];
+  for (int r = 0; r < Rows; ++r) {
+    float *dr = d + r * t.stride, mean = sum_lanes<Lanes>(sums[r]), slope = sum_lanes<Lanes>(products[r]);
+    const float* ur = u + r * t.values_stride;
+    for (int k = whole; k < t.columns; ++k) {
+      t.d_scale[k] += dr[k] * ur[k];
+      t.d_shift[k] += dr[k];
+      mean += dr[k] * t.scale[k];
+      slope += dr[k] * t.scale[k] * ur[k];
+    }
+    const float factor = t.factor[row + r];
+    mean /= columns;
+    slope /= columns;
+    for (int k = 0; k < whole; k += Lanes) {
+      const Vector<Lanes> g = load_vector<Lanes>(dr + k) * load_vector<Lanes>(t.scale + k);
+      store_vector<Lanes>((g - mean - load_vector<Lanes>(ur + k) * slope) * factor, dr + k);
+    }
+    for (int k = whole; k < t.columns; ++k) dr[k] = (dr[k] * t.scale[k] - mean - ur[k] * slope) * factor;
   }
-  const float factor = t.factor[r];
-  mean /= static_cast<float>(t.columns);
-  slope /= static_cast<float>(t.columns);
-  for (int k = 0; k < whole; k += Lanes) {
-    const Vector<Lanes> g = load_vector<Lanes>(d + k) * load_vector<Lanes>(t.scale + k);
-    store_vector<Lanes>((g - mean - load_vector<Lanes>(u + k) * slope) * factor, d + k);
-  }
-  for (int k = whole; k < t.columns; ++k) d[k] = (d[k] * t.scale[k] - mean - u[k] * slope) * factor;
 }
 
 template <int Lanes>
 [[gnu::always_inline]] inline void norm_back_tile(const NormBackTile& t) {
-  for (int r = 0; r < t.rows; ++r) norm_back_row<Lanes>(t, r);
+  int row = 0;
+  for (; row + 4 <= t.rows; row += 4) norm_back_rows<Lanes, 4>(t, row);
+  for (; row < t.rows; ++row) norm_back_rows<Lanes, 1>(t, row);
 }
 
 // Columns [i, i + Columns) of a with two vectors of b: their sums stay in registers while the rows go by.
@@ -137,8 +174,8 @@ template <int Lanes, int Columns>
 [[gnu::always_inline]] inline void outer_tile(const OuterTile& t) {
   for (int j = 0; j < t.b_columns; j += 2 * Lanes) {
     int i = 0;
-    for (; i + Columns <= t.a_columns; i += Columns) outer_block<Lanes, Columns>(t, i, j);
-    for (; i < t.a_columns; i += 2) outer_block<Lanes, 2>(t, i, j);
+    for (; (t.a_columns - i) % Columns != 0; i += 4) outer_block<Lanes, 4>(t, i, j);  // 32 and 64 are not whole sixes
+    for (; i < t.a_columns; i += Columns) outer_block<Lanes, Columns>(t, i, j);
   }
   if (!t.bias) return;
   for (int i = 0; i < t.a_columns; i += Lanes) {

@@ -32,14 +32,14 @@ struct NormBackTile {
   float *d_scale = nullptr, *d_shift = nullptr;
 };
 
-// out += sum of outer products a_r b_r, and bias += sum of a_r: the weights of a layer, whose results have derivatives a
-// and whose inputs are b. Columns are padded to whole panels.
+// out += sum of outer products a_r b_r, and bias += sum of a_r: the weights of a layer, whose results have derivatives
+// a and whose inputs are b. Columns are padded to whole panels.
 struct OuterTile {
   const float* a = nullptr;
   int a_stride = 0, a_columns = 0;
   const float* const* b = nullptr;  // one pointer a row
   int b_columns = 0;
-  float* out = nullptr;  // a_columns x b_columns
+  float* out = nullptr;   // a_columns x b_columns
   float* bias = nullptr;  // may be null
   int rows = 0;
 };

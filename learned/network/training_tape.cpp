@@ -69,12 +69,11 @@ bool same_steps(const std::vector<MessageStep>& a, const std::vector<MessageStep
   const auto same_filter = [](const EdgeFilter& one, const EdgeFilter& other) {
     return one.key == other.key && one.near == other.near;
   };
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [&same_filter](const MessageStep& one, const MessageStep& other) {
-                      return one.edge_keys == other.edge_keys &&
-                             std::equal(one.filters.begin(), one.filters.end(), other.filters.begin(),
-                                        other.filters.end(), same_filter);
-                    });
+  return std::equal(
+      a.begin(), a.end(), b.begin(), b.end(), [&same_filter](const MessageStep& one, const MessageStep& other) {
+        return one.edge_keys == other.edge_keys && std::equal(one.filters.begin(), one.filters.end(),
+                                                              other.filters.begin(), other.filters.end(), same_filter);
+      });
 }
 
 bool is_planned(const Architecture& a, const Graph& graph, const TrainingTape& tape) {
@@ -228,8 +227,8 @@ TrainingNetwork make_training_network(const Architecture& a, NetworkWeights weig
   TrainingNetwork network;
   network.architecture = a;
   network.weights = std::move(weights);
-  network.layout = std::make_shared<TrainingLayout>(TrainingLayout{
-      packed_shapes(a, set, PackedWay::forward), packed_shapes(a, set, PackedWay::backward)});
+  network.layout = std::make_shared<TrainingLayout>(
+      TrainingLayout{packed_shapes(a, set, PackedWay::forward), packed_shapes(a, set, PackedWay::backward)});
   lay_out(network);
   return network;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "learned/network/graph_plan.hpp"
 #include "learned/network/gradient_parts.hpp"
+#include "learned/network/graph_plan.hpp"
 #include "learned/network/training_kernels.hpp"
 #include "learned/network/training_network.hpp"
 

@@ -8,8 +8,8 @@ namespace selvedge {
 class UniformNumbers {
  public:
   explicit UniformNumbers(std::uint64_t seed) : state_(seed) {}
-  float in_both_signs() { return static_cast<float>(next()) / 8388608.f - 1.f; }               // in [-1, 1)
-  double in_unit() { return (static_cast<double>(next()) + 0.5) / 16777216.0; }  // in (0, 1)
+  float in_both_signs() { return static_cast<float>(next()) / 8388608.f - 1.f; }  // in [-1, 1)
+  double in_unit() { return (static_cast<double>(next()) + 0.5) / 16777216.0; }   // in (0, 1)
 
  private:
   std::uint64_t next() {

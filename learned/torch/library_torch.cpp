@@ -214,8 +214,7 @@ void* make(const TorchShape* shape, const TorchArray* arrays, int count, const c
     if (wanted == "cuda" && !torch::cuda::is_available()) throw std::runtime_error("this libtorch has no CUDA device");
     model->device = wanted != "cpu" && torch::cuda::is_available() ? torch::Device(torch::kCUDA, 0) : torch::kCPU;
     if (threads > 0) at::set_num_threads(threads);
-    for (int i = 0; i < count; ++i)
-      model->parameters.push_back(copied(arrays[i], model->device).requires_grad_(true));
+    for (int i = 0; i < count; ++i) model->parameters.push_back(copied(arrays[i], model->device).requires_grad_(true));
     build(*model, *shape);
     describe(*model, *report);
   });
@@ -228,7 +227,8 @@ int set_weights(void* handle, const TorchArray* arrays, int count, TorchReport* 
   return guarded(report, [&] {
     TorchModel& model = *static_cast<TorchModel*>(handle);
     const torch::NoGradGuard guard;
-    for (int i = 0; i < count; ++i) model.parameters.at(static_cast<std::size_t>(i)).copy_(copied(arrays[i], model.device));
+    for (int i = 0; i < count; ++i)
+      model.parameters.at(static_cast<std::size_t>(i)).copy_(copied(arrays[i], model.device));
   });
 }
 

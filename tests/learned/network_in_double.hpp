@@ -69,7 +69,7 @@ inline Matrix output(const Architecture& a, const Arrays& w, const FeatureTables
   }
   const Eigen::Index width = a.width;
   for (std::size_t s = 0; s < a.steps.size(); ++s) {
-    char step[24];
+    char step[40];
     std::snprintf(step, sizeof step, "steps/%03zu", s);
     Matrix inputs = Matrix::Zero(nodes.rows(), width * static_cast<Eigen::Index>(1 + a.steps[s].edge_keys.size()));
     inputs.leftCols(width) = nodes;

@@ -16,7 +16,8 @@ inline Graph random_graph(const Architecture& a, int cloth, int others, int edge
   };
   const auto values = [&](int count, int rows) {
     std::vector<int> list;
-    for (int i = 0; i < count && rows > 0; ++i) list.push_back(static_cast<int>(random() % static_cast<unsigned>(rows)));
+    for (int i = 0; i < count && rows > 0; ++i)
+      list.push_back(static_cast<int>(random() % static_cast<unsigned>(rows)));
     return list;
   };
   Graph graph;

@@ -157,7 +157,7 @@ TEST_CASE("warm-up: constant columns get deviation 1, and sets that were not see
   freeze_statistics(sums, tables);
   CHECK(tables.node.deviation[6] == 1);  // time step
   CHECK(tables.node.mean[6] == Approx(1. / 30));
-  CHECK(tables.node.deviation[22] == 1);  // no force
+  CHECK(tables.node.deviation[22] == 1);                        // no force
   CHECK(tables.node.deviation[9] == Approx(1e-3).epsilon(.5));  // height above the body: jitter adds up
   CHECK(tables.mesh_edge.deviation[0] > 1e-3f);
   CHECK(tables.output.mean[1] == Approx(.25));

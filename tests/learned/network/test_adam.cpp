@@ -115,7 +115,8 @@ TEST_CASE("adam: training goes on from its arrays with the same bits", "[learned
       resumed = weights;
       again = adam_from_arrays(a, adam_arrays(a, state), "test");
     }
-    const WeightGradients gradients = gradients_at(a, 100 + static_cast<unsigned>(step), 1 + .01f * static_cast<float>(step % 7));
+    const WeightGradients gradients =
+        gradients_at(a, 100 + static_cast<unsigned>(step), 1 + .01f * static_cast<float>(step % 7));
     adam_step(a, options, step / 140., gradients, state, weights);
     if (step >= 110) adam_step(a, options, step / 140., gradients, again, resumed);
   }

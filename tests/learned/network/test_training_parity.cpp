@@ -11,15 +11,16 @@ using namespace selvedge;
 
 namespace {
 
-// A training step of the authors: the state of `step`, whose losses `losses` has as entry `state`, with their gradients.
+// A training step of the authors: the state of `step`, whose losses `losses` has as entry `state`, with their
+// gradients.
 struct RecordedStep {
   std::string model, step, losses, weights;
   int state;
   double collision;  // factor between the collision weight of the state and that of the training step
 };
 
-// Derivatives by the network's output of each loss. The output becomes an acceleration by the deviations of the output's
-// statistics, which follow from the recorded pairs; pinned vertices do not move by it.
+// Derivatives by the network's output of each loss. The output becomes an acceleration by the deviations of the
+// output's statistics, which follow from the recorded pairs; pinned vertices do not move by it.
 std::vector<FeatureRows> output_derivatives(const std::filesystem::path& folder, const RecordedStep& recorded_step) {
   const std::filesystem::path step = folder / (recorded_step.step + ".npz");
   const FeatureRows output = recorded::recorded_rows(step, "decoder_output"),
@@ -33,9 +34,9 @@ std::vector<FeatureRows> output_derivatives(const std::filesystem::path& folder,
   const NpyArray<double> all = Npz(folder / (recorded_step.losses + ".npz")).numbers("gradients");
   const auto vertices = static_cast<Eigen::Index>(types.size());
   std::vector<FeatureRows> derivatives;
-  for (std::size_t loss = 0; loss < all.shape[1]; ++loss) {
-    const std::size_t begin =
-        (static_cast<std::size_t>(recorded_step.state) * all.shape[1] + loss) * types.size() * 3;
+  const auto losses = static_cast<std::size_t>(all.shape[1]);
+  for (std::size_t loss = 0; loss < losses; ++loss) {
+    const std::size_t begin = (static_cast<std::size_t>(recorded_step.state) * losses + loss) * types.size() * 3;
     Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> d =
         Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(all.values.data() + begin, vertices,
                                                                                     3);
