@@ -15,7 +15,7 @@ PACKAGES_asan-core := $(PACKAGES_release)
 PACKAGES_tsan := $(PACKAGES_release) tsan
 PACKAGES_minimal := build viewer test
 
-.PHONY: help program demo test everything validate bench stress stability wardrobe compare dev long asan asan-core tsan minimal format check-format tidy clean
+.PHONY: help program demo test everything validate bench stress stability wardrobe compare dev long asan asan-core tsan minimal torch format check-format tidy clean
 .DEFAULT_GOAL := help
 
 help:  ## This list
@@ -51,7 +51,7 @@ compare: program  ## Compare the conventional stepper's settings: tables and plo
 	@$(PROGRAM) compare configs/compare/conventional.yaml --out out/compare
 
 test: test-release  ## Build and run every test (FILTER=regular expression on test files)
-everything: test long minimal asan  ## Every test in the builds release, minimal and asan, long ones too; CI runs a part
+everything: test long minimal asan torch  ## Every test in the builds release, minimal and asan, long ones and those with libtorch too; CI runs a part
 dev: test-dev  ## The same with assertions on and warnings as errors
 asan: test-asan  ## The same under the address and undefined-behaviour sanitizers
 asan-core: test-asan-core  ## Kernels and readers under these sanitizers
@@ -59,6 +59,12 @@ long: test  ## The tests that are too long for every change, after all others
 	@build/release/selvedge_tests '[.long]'
 tsan: test-tsan  ## The same under the thread sanitizer, with clang
 minimal: test-minimal  ## The same without SuiteSparse, FCL and OpenMP
+
+torch:  ## libtorch's library beside the program in build/release, and the tests that compare the kernels with it
+	@cmake/install-packages.sh $(PACKAGES_release) torch
+	@cmake --preset release -DSELVEDGE_TORCH=ON $(CONFIGURE)
+	@cmake --build --preset release --parallel $(JOBS) --target selvedge_torch selvedge_tests
+	@build/release/selvedge_tests "[torch]"
 
 test-%:
 	@cmake/install-packages.sh $(PACKAGES_$*)

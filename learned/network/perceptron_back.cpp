@@ -1,5 +1,7 @@
 #include "learned/network/perceptron_back.hpp"
 
+#include <algorithm>
+
 namespace selvedge {
 
 PartPlaces add_places(GradientParts& parts, Perceptron& gradient) {
@@ -58,6 +60,14 @@ void add_product(const TrainingRun& run, const PackedLayer& transposed, const fl
   contiguous_rows(d, stride, rows, input);
   run.kernels.multiply(training_tile(transposed, input, mine.row(0), mine.stride, rows));
   run.training.add({mine.row(0), mine.stride, result_stride, rows, result});
+}
+
+void for_parts(GradientParts& parts, int rows, int in_part, const std::function<void(float*, int, int)>& work) {
+  const int count = tiles_of(rows, in_part);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int part = 0; part < count; ++part)
+    work(parts.start(part), part * in_part, std::min(rows, (part + 1) * in_part));
+  parts.finish();
 }
 
 }  // namespace selvedge

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <algorithm>
+#include <functional>
 
 #include "learned/network/training_layout.hpp"
 #include "learned/network/training_tape.hpp"
@@ -39,13 +39,6 @@ void add_product(const TrainingRun&, const PackedLayer& transposed, const float*
                  float* const* result, int result_stride);
 
 // Calls work(part's sums, begin, end) for parts of `rows`, each by one thread, then adds up the parts.
-template <class Work>
-void for_parts(GradientParts& parts, int rows, int in_part, Work&& work) {
-  const int count = tiles_of(rows, in_part);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int part = 0; part < count; ++part)
-    work(parts.start(part), part * in_part, std::min(rows, (part + 1) * in_part));
-  parts.finish();
-}
+void for_parts(GradientParts&, int rows, int in_part, const std::function<void(float*, int, int)>& work);
 
 }  // namespace selvedge

@@ -6,7 +6,7 @@
 #include "learned/network/architecture.hpp"
 #include "tests/learned/graph_scenes.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_objective_features {
 
 namespace {
 
@@ -181,3 +181,5 @@ TEST_CASE("warm-up: a graph made with other embeddings gets those of today", "[l
   embed_again(a.features, now, graph);
   CHECK(graph.nodes == wanted.nodes);
 }
+
+}  // namespace selvedge::test_objective_features

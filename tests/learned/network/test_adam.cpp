@@ -7,7 +7,8 @@
 #include "learned/network/initial_weights.hpp"
 #include "tests/learned/random_graph.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_adam {
+
 using in_tests::with_size;
 
 namespace {
@@ -168,3 +169,5 @@ TEST_CASE("initial weights: as published, and a last layer that is nearly zero",
   CHECK(nearly.decoder.layers.back().bias[1] == Approx(.01f * first.decoder.layers.back().bias[1]));
   CHECK(nearly.decoder.layers.front().weight == first.decoder.layers.front().weight);
 }
+
+}  // namespace selvedge::test_adam

@@ -5,9 +5,10 @@
 #include "learned/network/training_network.hpp"
 #include "tests/learned/network_in_double.hpp"
 #include "tests/learned/random_graph.hpp"
-#include "tests/learned/with_threads.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_training_network {
+
 using in_tests::random_graph;
 using in_tests::with_size;
 
@@ -179,8 +180,7 @@ TEST_CASE("training network: one and several threads give the same bits", "[lear
   const Graph graph = random_graph(a, 700, 0, 2500, 7);
   const TrainingNetwork network = make_training_network(a, random_weights(a, 2));
   std::vector<WeightGradients> all;
-  for (const int threads : {1, 2, 3, 2})
-    fake::with_some_threads(threads, [&] { all.push_back(gradients_of(network, graph)); });
+  for (const int threads : {1, 2, 3, 2}) with_threads(threads, [&] { all.push_back(gradients_of(network, graph)); });
   for (const WeightGradients& one : all) CHECK(same_bits(a, one, all.front()));
 }
 
@@ -220,3 +220,5 @@ TEST_CASE("training network: what does not fit is an error", "[learned]") {
   CHECK_THROWS_AS(run_backward(network, graph, tape, weighting(20, 3), small), Error);
   CHECK_THROWS_AS(make_training_network(a, random_weights(with_size("tiny", 9, 2), 1)), Error);
 }
+
+}  // namespace selvedge::test_training_network

@@ -7,7 +7,7 @@
 #include "pipeline/tools/published_names.hpp"
 #include "tests/learned/recorded_network.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_training_parity {
 
 namespace {
 
@@ -106,3 +106,5 @@ TEST_CASE("training parity: weight gradients of the authors' training steps", "[
   check_step({"hood", "hood_step2", "hood_losses", "hood_weight_gradients", 4, 252500. / 5000.});
   check_step({"ccraft", "ccraft_fold_step1", "ccraft_losses_fold", "ccraft_weight_gradients", 0, 1.});
 }
+
+}  // namespace selvedge::test_training_parity
