@@ -35,3 +35,7 @@ if(SELVEDGE_SUITESPARSE)
   target_include_directories(selvedge_cholmod SYSTEM INTERFACE ${CHOLMOD_INCLUDE})
   target_link_libraries(selvedge_cholmod INTERFACE ${CHOLMOD_LIBRARY})
 endif()
+
+if(SELVEDGE_TORCH)
+  find_package(Torch REQUIRED)  # Debian's libtorch-dev, or any newer one by CMAKE_PREFIX_PATH
+endif()

@@ -112,9 +112,9 @@ void view_options(CLI::App& command, ViewArguments& arguments) {
 void bench_options(CLI::App& command, BenchRequest& request) {
   command.add_option("--sizes", request.sizes, "vertices along a side")->delimiter(',');
   command.add_option("--scenes", request.scenes, "hang, drop, tube")->delimiter(',');
-  command.add_option("--only", request.only, "of the parts detection, engine, scenes")
+  command.add_option("--only", request.only, "of the parts detection, engine, training, scenes")
       ->delimiter(',')
-      ->check(CLI::IsMember({"detection", "engine", "scenes"}));
+      ->check(CLI::IsMember({"detection", "engine", "training", "scenes"}));
   command.add_option("--frames", request.frames, "instead of the scenes' own");
   command.add_option("--configs", request.configs, "folder of the scenes");
   command.add_option("--out", request.out, "folder for the results");

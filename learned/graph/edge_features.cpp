@@ -19,6 +19,9 @@ float time_value(const GraphState& state, const FeatureOptions& options) {
   return state.is_init ? 1.0f : 0.0f;
 }
 
+// Ends that lie on one place at rest have none.
+float strain_of(double length, double rest) { return rest > 0 ? static_cast<float>((length - rest) / rest) : 0.f; }
+
 int body_node(const std::vector<int>& body_vertices, int vertex, int cloth_nodes) {
   const auto at = std::lower_bound(body_vertices.begin(), body_vertices.end(), vertex);
   return cloth_nodes + static_cast<int>(at - body_vertices.begin());
@@ -41,7 +44,7 @@ void negate_vectors(FeatureRows& rows, Eigen::Index e) {
 
 }  // namespace
 
-void fill_mesh_edges(const RestEdges& rest, const GraphState& state, const SeenPositions& seen,
+void fill_mesh_edges(const RestEdges& rest, const GraphState& state, const SeenPositions& seen, const Points& guess,
                      const FeatureOptions& options, EdgeSet& set) {
   set.senders = rest.senders;
   set.receivers = rest.receivers;
@@ -52,12 +55,19 @@ void fill_mesh_edges(const RestEdges& rest, const GraphState& state, const SeenP
 #pragma omp parallel for schedule(static, 512)
   for (Eigen::Index e = 0; e < count; ++e) {
     auto features = set.features.row(e);
-    put_vector(features, 0,
-               row(seen.mesh, rest.senders[static_cast<std::size_t>(e)]) -
-                   row(seen.mesh, rest.receivers[static_cast<std::size_t>(e)]));
+    const int s = rest.senders[static_cast<std::size_t>(e)], r = rest.receivers[static_cast<std::size_t>(e)];
+    const Vec3 relative = row(seen.mesh, s) - row(seen.mesh, r);
+    put_vector(features, 0, relative);
     for (Eigen::Index k = 0; k < width; ++k) features(4 + k) = rest.rest(e, k);
-    features(4 + width) = time;
-    features.segment<3>(5 + width) = rest.materials.row(e);
+    Eigen::Index next = 4 + width;
+    if (options.strain_inputs) {
+      const auto length = static_cast<double>(rest.rest(e, width - 1));
+      features(next++) = strain_of(relative.norm(), length);
+      features(next++) = strain_of((row(guess, s) - row(guess, r)).norm(), length);
+    }
+    if (!options.edge_context) continue;
+    features(next) = time;
+    features.segment<3>(next + 1) = rest.materials.row(e);
   }
 }
 
@@ -85,7 +95,8 @@ void fill_cloth_edges(const std::vector<ClothPair>& pairs, const GraphScene& sce
                       const SeenPositions& seen, const FeatureOptions& options, const FeatureTables& tables,
                       EdgeSet& set) {
   const bool dt = options.time == TimeFeature::timestep;
-  const int label = dt ? 13 : 12, time = dt ? 12 : 12 + options.label_columns, materials = 13 + options.label_columns;
+  const int label = embedding_columns(options).label, time = dt ? 12 : 12 + options.label_columns,
+            materials = 13 + options.label_columns;
   const std::size_t count = pairs.size();
   set.senders.resize(count);
   set.receivers.resize(count);

@@ -9,8 +9,9 @@ namespace selvedge {
 
 // Edge sets with raw rows; relative vectors are sender - receiver. A set's memory is used again.
 
-// Mesh or coarse edges at seen.mesh.
-void fill_mesh_edges(const RestEdges&, const GraphState&, const SeenPositions&, const FeatureOptions&, EdgeSet&);
+// Mesh or coarse edges at seen.mesh; strains at seen.mesh and at the guess (guess_of), where the options ask for them.
+void fill_mesh_edges(const RestEdges&, const GraphState&, const SeenPositions&, const Points& guess,
+                     const FeatureOptions&, EdgeSet&);
 
 // Edges from cloth to body, then the same from body to cloth: relative vectors negated, all else alike. Body nodes
 // stand behind the cloth in the order of `body_vertices`, which has every vertex of the pairs, ascending.

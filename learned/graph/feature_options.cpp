@@ -60,12 +60,23 @@ FeatureWidths with_time(const FeatureOptions& options, int normalised, int behin
 
 }  // namespace
 
+int objective_columns(const FeatureOptions& options) {
+  return (options.body_inputs ? 14 : 0) + (options.force_inputs ? 3 : 0) + (options.pass_inputs ? 3 : 0);
+}
+
+EmbeddingColumns embedding_columns(const FeatureOptions& options) {
+  return {3, 3 + options.type_columns, options.time == TimeFeature::timestep ? 13 : 12};
+}
+
 FeatureWidths node_widths(const FeatureOptions& options) {
-  return with_time(options, 3 + options.type_columns + options.level_columns + 3 + 1, materials);
+  const int flags = int{options.pinned_flag} + int{options.body_inputs} + int{options.pass_inputs};
+  return with_time(options, 3 + options.type_columns + options.level_columns + 3 + 1 + objective_columns(options),
+                   materials + flags);
 }
 
 FeatureWidths mesh_edge_widths(const FeatureOptions& options) {
-  return with_time(options, 4 + (options.rest == RestFeature::vector ? 4 : 1), materials);
+  const int columns = 4 + (options.rest == RestFeature::vector ? 4 : 1) + (options.strain_inputs ? 2 : 0);
+  return options.edge_context ? with_time(options, columns, materials) : FeatureWidths{columns, columns};
 }
 
 FeatureWidths body_edge_widths(const FeatureOptions& options) {

@@ -46,12 +46,21 @@ struct FeatureOptions {
   BodyVelocity body_velocity = BodyVelocity::current;
   PinnedForm pinned = PinnedForm::moved;
 
+  // More columns of cloth nodes, for own training (reference/training.md). Among the normalised ones: body 14, force 3,
+  // move 3; behind the materials: flags, in the order pinned, near the body, pass. Obstacle vertices have zeros there.
+  bool pinned_flag = false;
+  bool body_inputs = false;   // of the nearest face of the body within body_radius: node_features.hpp
+  bool force_inputs = false;  // GraphState::force, its length l made log(1 + l / 1 mm)
+  bool pass_inputs = false;   // GraphState::guess - (x + velocity), and the flag GraphState::pass
+
   // Mesh and coarse edges: x_s - x_r 3 + 1, rest 3 + 1 or 1, (dt) | (is_init,) bending, mu, lambda.
   MeshOrder mesh_order = MeshOrder::larger_sends;
   RestFeature rest = RestFeature::vector;
   int coarse_levels = 3;                  // that are built; they give the vertex levels
   std::vector<int> coarse_sets{0, 1, 2};  // levels whose edges are sets of the graph
   bool shared_mesh_statistics = true;     // mesh and coarse edges are normalised alike
+  bool strain_inputs = false;             // (l - L) / L at x and at the guess, behind the rest columns
+  bool edge_context = true;               // the columns dt or is_init, bending, mu, lambda
   bool approximate_centre = false;        // of a component: the middle of a long path in place of the exact centre
 
   // Edges between cloth and obstacle, both ways: now 3 + 1, next 3 + 1, (velocity 3 + 1, no dt | is_init), or dt.
@@ -82,9 +91,16 @@ struct FeatureWidths {
   int all = 0, normalised = 0;
 };
 FeatureWidths node_widths(const FeatureOptions&);
+int objective_columns(const FeatureOptions&);           // of a node: body, force and move
 FeatureWidths mesh_edge_widths(const FeatureOptions&);  // coarse edges too
 FeatureWidths body_edge_widths(const FeatureOptions&);
 FeatureWidths cloth_edge_widths(const FeatureOptions&);
+
+// First columns of the learned embeddings: type and level in the rows of nodes, label in those of cloth-cloth edges.
+struct EmbeddingColumns {
+  int type = 0, level = 0, label = 0;
+};
+EmbeddingColumns embedding_columns(const FeatureOptions&);
 
 // Keys of the edge sets of a graph, in its order: mesh_edge, coarse_edge.., body_key, repulsion_edge, attraction_edge.
 std::vector<std::string> edge_set_keys(const FeatureOptions&);

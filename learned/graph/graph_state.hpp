@@ -28,6 +28,11 @@ struct GraphState {
   double timestep = 1.0 / 30;               // [s]
   bool is_init = false;                     // the cloth is to fall to rest (ContourCraft's flag)
   bool no_cloth_edges = false;              // first steps of the authors' training samples have none
+
+  // For models that see the objective (FeatureOptions::force_inputs, pass_inputs, strain_inputs).
+  Points guess;  // where this pass begins: what the pass before came to; empty: x + velocity, pinned vertices at target
+  Points force;  // at the guess: minus the objective's gradient over its diagonal, a displacement [m]; empty: zero
+  int pass = 0;  // of this frame, from 0
 };
 
 }  // namespace selvedge

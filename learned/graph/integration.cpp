@@ -17,6 +17,7 @@ NextCloth integrate(const RestGraph& rest, const GraphState& state, const Featur
   const SeenPositions seen = seen_positions(rest, state, options);
   const bool carried = options.cloth_velocity == ClothVelocity::carried;
   NextCloth next{seen.x, carried ? state.velocity : Points(seen.x - seen.previous)};
+  if (state.guess.rows() > 0) next.velocity = state.guess - seen.x;
   for (Eigen::Index v = 0; v < decoded.rows(); ++v)
     for (Eigen::Index k = 0; k < 3; ++k) {
       const auto column = static_cast<std::size_t>(k);

@@ -17,6 +17,8 @@ void check_sizes(const GraphScene& scene, const RestGraph& rest, const GraphStat
   if (wrong({state.x.rows(), state.previous.rows(), state.target.rows(), state.velocity.rows(),
              static_cast<Eigen::Index>(rest.vertex_levels.size())},
             cloth) ||
+      (state.guess.rows() > 0 && state.guess.rows() != cloth) ||
+      (state.force.rows() > 0 && state.force.rows() != cloth) ||
       wrong({state.body.rows(), state.body_previous.rows(), state.body_target.rows()}, body))
     throw Error("a state has another number of vertices than its scene", "graph of a learned stepper", "");
 }
@@ -29,6 +31,8 @@ bool is_usable(const Points& points) { return (points.array().abs() < largest).a
 std::string complaint(const GraphState& state) {
   if (!is_usable(state.x) || !is_usable(state.previous) || !is_usable(state.velocity) || !is_usable(state.target))
     return "a position or velocity of the cloth is not finite or far too large";
+  if (!is_usable(state.guess) || !is_usable(state.force))
+    return "a guess or a force on the cloth is not finite or far too large";
   if (!is_usable(state.body) || !is_usable(state.body_previous) || !is_usable(state.body_target))
     return "a position of the body is not finite or far too large";
   return {};
@@ -97,10 +101,14 @@ void make_raw_graph(const GraphScene& scene, const RestGraph& rest, const GraphS
   }
   const SeenPositions seen = seen_positions(rest, state, options);
   const bool with_body = !options.body_key.empty();
-  if (with_body) report.body_pairs = find_body_pairs(scene, options, seen.x, state.body, search.body);
+  if (with_body || options.body_inputs)
+    report.body_pairs = find_body_pairs(scene, options, seen.x, state.body, search.body);
   graph.body_vertices = active_vertices(scene, report);
+  if (!with_body) graph.body_vertices.clear();
   find_classes(scene, rest, state, seen, options, search, report);
   fill_node_rows(scene, rest, state, seen, options, tables, graph);
+  const Points guess = guess_of(rest, state, seen, options), inertial = inertial_guess(rest, state, seen, options);
+  fill_objective_columns(scene, state, seen, guess, inertial, options, report.body_pairs, graph);
 
   const std::vector<std::string> keys = edge_set_keys(options);
   graph.edge_sets.resize(keys.size());
@@ -108,7 +116,7 @@ void make_raw_graph(const GraphScene& scene, const RestGraph& rest, const GraphS
     EdgeSet& set = graph.edge_sets[i];
     set.key = keys[i];
     if (i < rest.sets.size())
-      fill_mesh_edges(rest.sets[i], state, seen, options, set);
+      fill_mesh_edges(rest.sets[i], state, seen, guess, options, set);
     else if (with_body && i == rest.sets.size())
       fill_body_edges(report.body_pairs, graph.body_vertices, state, seen, options, set);
     else

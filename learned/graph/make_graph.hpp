@@ -41,6 +41,8 @@ template <class Real>
 void gather_and_normalise(const FeatureOptions&, FeatureSums<Real>&, FeatureTables&, Graph&);
 template <class Real>
 FeatureSums<Real> empty_sums(const FeatureOptions&);
+// The member that sums up a set of edges.
+BasicAccumulators<double>& sums_for(const std::string& key, const FeatureOptions&, FeatureSums<double>&);
 
 // make_raw_graph and normalise: the one function for rollouts.
 void make_graph(const GraphScene&, const RestGraph&, const GraphState&, const FeatureOptions&, const FeatureTables&,

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "learned/graph/embedding.hpp"
+#include "learned/graph/node_columns.hpp"
 
 namespace selvedge {
 namespace {
@@ -18,19 +19,6 @@ Eigen::RowVector3f vertex_normal(const Surface& surface, const Points& x, int ve
   const double length = sum.norm();
   return (length > 0 ? Vec3(sum / length) : Vec3(Vec3::Zero())).transpose().cast<float>();
 }
-
-// Columns: velocity, type, level, normal, (dt,) mass, (is_init,) bending, mu, lambda.
-struct NodeColumns {
-  int type = 3, level, normal, mass, time, materials;
-
-  explicit NodeColumns(const FeatureOptions& options)
-      : level(type + options.type_columns), normal(level + options.level_columns) {
-    const bool dt = options.time == TimeFeature::timestep;
-    time = dt ? normal + 3 : normal + 4;
-    mass = dt ? normal + 4 : normal + 3;
-    materials = normal + 5;
-  }
-};
 
 void fill_cloth(const GraphScene& scene, const RestGraph& rest, const GraphState& state, const SeenPositions& seen,
                 const FeatureOptions& options, const NodeColumns& at, FeatureRows& rows) {
@@ -70,6 +58,8 @@ void fill_node_rows(const GraphScene& scene, const RestGraph& rest, const GraphS
   graph.node_levels.resize(graph.node_types.size(), 0);
   const NodeColumns at(options);
   graph.nodes.resize(static_cast<Eigen::Index>(graph.node_types.size()), node_widths(options).all);
+  graph.nodes.middleCols(at.objective, objective_columns(options)).setZero();
+  graph.nodes.rightCols(graph.nodes.cols() - at.flags).setZero();
   fill_cloth(scene, rest, state, seen, options, at, graph.nodes);
   fill_body(scene, state, options, at, graph.body_vertices, graph.nodes);
   graph.nodes.col(at.time).setConstant(options.time == TimeFeature::timestep ? static_cast<float>(state.timestep)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "learned/graph/body_pairs.hpp"
 #include "learned/graph/feature_tables.hpp"
 #include "learned/graph/seen_positions.hpp"
 
@@ -9,5 +10,11 @@ namespace selvedge {
 // where the tables lack a row for a type or a level.
 void fill_node_rows(const GraphScene&, const RestGraph&, const GraphState&, const SeenPositions&, const FeatureOptions&,
                     const FeatureTables&, Graph&);
+
+// Fills the objective's columns and the flags of cloth nodes. Of the body, p being the point of the pair's face that is
+// nearest x now and p' the same point of it in the next pose: x - p, x - p', the face's next normal, the signed
+// distances of x to its plane now and of the guess to its plane next, p' - p; zeros without a pair.
+void fill_objective_columns(const GraphScene&, const GraphState&, const SeenPositions&, const Points& guess,
+                            const Points& inertial, const FeatureOptions&, const std::vector<BodyPair>&, Graph&);
 
 }  // namespace selvedge

@@ -32,6 +32,10 @@ const Statistics& statistics_for(const std::string& key, const FeatureOptions& o
   return part_for(key, options, tables);
 }
 
+BasicAccumulators<double>& sums_for(const std::string& key, const FeatureOptions& options, FeatureSums<double>& sums) {
+  return part_for(key, options, sums);
+}
+
 void normalise(const FeatureOptions& options, const FeatureTables& tables, Graph& graph) {
   for (EdgeSet& set : graph.edge_sets) {
     const Statistics& statistics = statistics_for(set.key, options, tables);

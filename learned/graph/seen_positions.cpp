@@ -20,4 +20,17 @@ SeenPositions seen_positions(const RestGraph& rest, const GraphState& state, con
   return seen;
 }
 
+Points inertial_guess(const RestGraph& rest, const GraphState& state, const SeenPositions& seen,
+                      const FeatureOptions& options) {
+  Points guess =
+      seen.x + (options.cloth_velocity == ClothVelocity::carried ? state.velocity : Points(seen.x - seen.previous));
+  for (const int v : rest.pinned) guess.row(v) = state.target.row(v);
+  return guess;
+}
+
+Points guess_of(const RestGraph& rest, const GraphState& state, const SeenPositions& seen,
+                const FeatureOptions& options) {
+  return state.guess.rows() > 0 ? state.guess : inertial_guess(rest, state, seen, options);
+}
+
 }  // namespace selvedge

@@ -13,6 +13,12 @@ struct SeenPositions {
 
 SeenPositions seen_positions(const RestGraph&, const GraphState&, const FeatureOptions&);
 
+// What the cloth would do without forces, and where the first pass of a frame begins: x + velocity (the state's, or x -
+// previous as the options say), pinned vertices at their targets.
+Points inertial_guess(const RestGraph&, const GraphState&, const SeenPositions&, const FeatureOptions&);
+// state.guess, or the inertial guess where that is empty.
+Points guess_of(const RestGraph&, const GraphState&, const SeenPositions&, const FeatureOptions&);
+
 // Moves pinned vertices to their targets: previous <- x, x <- target.
 void move_pinned(const RestGraph&, const Points& target, Points& x, Points& previous);
 

@@ -70,8 +70,9 @@ struct Architecture {
   int passes = 1;  // runs of the network a frame, all with the same weights
 };
 
-// hood, hood_cvpr, fine15, fine48, contourcraft, contourcraft_paper, small (`preset_names`). Sizes of the published
-// ones: reference/weights.md; `small` is ours (reference/training.md). Throws Error at any other name.
+// hood, hood_cvpr, fine15, fine48, contourcraft, contourcraft_paper, small, small_contour, tiny (`preset_names`). Sizes
+// of the published ones: reference/weights.md; the last three are ours (reference/training.md): `small` is blind to
+// contact of cloth with cloth, `tiny` is for tests. Throws Error at any other name.
 Architecture architecture_preset(const std::string& name);
 std::vector<std::string> preset_names();
 

@@ -90,24 +90,50 @@ Architecture contour(const std::string& name, const FeatureOptions& features, co
   return a;
 }
 
-// Ours, for two cores (reference/training.md, "Recommended small preset"). Node inputs: velocity 3, pinned 1, normal 3,
-// time step 1, log mass 1 | bending, mu, lambda 3; nearest body face: normal 3, offset now 3 and next 3, signed
-// distance at x and at x + v 2, its motion 3, near 1; the objective's preconditioned gradient 3; move so far 3, pass 1.
-// Edge inputs: x_s - x_t 3, norm, rest length, strain at x and at x + v. `features` says only how its levels are built
-// so far: what it reads beside them comes with training.
-Architecture small_preset() {
+// What our networks see (reference/training.md, "Recommended small preset"). Nodes: velocity 3, normal 3, time step 1,
+// log mass 1, nearest body face 14, the objective's preconditioned gradient 3, move so far 3 | bending, mu, lambda 3,
+// pinned 1, near the body 1, pass 1. Edges: x_s - x_r 3, norm, rest length, strain at x and at the guess.
+FeatureOptions own_features() {
+  FeatureOptions options;
+  options.type_columns = options.level_columns = 0;
+  options.pinned_flag = options.body_inputs = options.force_inputs = options.pass_inputs = true;
+  options.strain_inputs = true;
+  options.edge_context = false;
+  options.rest = RestFeature::length;
+  options.coarse_levels = 2;
+  options.coarse_sets = {0, 1};
+  options.shared_mesh_statistics = false;
+  options.approximate_centre = true;
+  options.body_key.clear();
+  options.body_partner = BodyPartner::nearest_face;
+  options.label_columns = 0;
+  options.future_pinned = false;
+  return options;
+}
+
+// Ours, for two cores. With `contact`, cloth sees cloth.
+Architecture own(const std::string& name, int width, int steps, bool contact) {
   Architecture a;
-  a.name = "small";
-  a.width = 64;
+  a.name = name;
+  a.width = width;
   a.hidden_layers = 1;
-  a.node_inputs = 34;
-  add_edges(a, "mesh", 7, 7, {"mesh_edge"});
-  for (const std::string level : {"0", "1"}) add_edges(a, "coarse" + level, 7, 7, {"coarse_edge" + level});
-  add_steps(a, 6, {{"coarse_edge0", "coarse_edge1", "mesh_edge"}, {}});
-  a.statistics = {.node = 34, .mesh_edge = 7, .coarse_edge = 7};
-  a.features.coarse_levels = 2;
-  a.features.coarse_sets = {0, 1};
-  a.features.body_key.clear();
+  a.features = own_features();
+  a.features.cloth_edges = contact;
+  a.node_inputs = node_widths(a.features).all;
+  const FeatureWidths mesh = mesh_edge_widths(a.features), cloth = cloth_edge_widths(a.features);
+  add_edges(a, "mesh", mesh.all, mesh.normalised, {"mesh_edge"});
+  for (const std::string level : {"0", "1"})
+    add_edges(a, "coarse" + level, mesh.all, mesh.normalised, {"coarse_edge" + level});
+  if (contact)
+    for (const std::string kind : {"repulsion", "attraction"})
+      add_edges(a, kind, cloth.all, cloth.normalised, {kind + "_edge"});
+  MessageStep step{{"coarse_edge0", "coarse_edge1", "mesh_edge"}, {}};
+  if (contact) step.edge_keys = {"attraction_edge", "coarse_edge0", "coarse_edge1", "mesh_edge", "repulsion_edge"};
+  add_steps(a, steps, step);
+  a.statistics = {.node = node_widths(a.features).normalised,
+                  .mesh_edge = mesh.normalised,
+                  .coarse_edge = mesh.normalised,
+                  .world_edge = contact ? cloth.normalised : 0};
   a.passes = 2;
   return a;
 }
@@ -115,7 +141,8 @@ Architecture small_preset() {
 }  // namespace
 
 std::vector<std::string> preset_names() {
-  return {"hood", "hood_cvpr", "fine15", "fine48", "contourcraft", "contourcraft_paper", "small"};
+  return {"hood",  "hood_cvpr",     "fine15", "fine48", "contourcraft", "contourcraft_paper",
+          "small", "small_contour", "tiny"};
 }
 
 Architecture architecture_preset(const std::string& name) {
@@ -126,7 +153,8 @@ Architecture architecture_preset(const std::string& name) {
   // The released code uses the fourth level only; the paper speaks of two levels (reference/learned.md, 1.6).
   if (name == "contourcraft") return contour(name, contourcraft_features(), {"0", "1", "2", "3"}, {"3"});
   if (name == "contourcraft_paper") return contour(name, contourcraft_paper_features(), {"0", "1"}, {"0", "1"});
-  if (name == "small") return small_preset();
+  if (name == "small" || name == "small_contour") return own(name, 64, 6, name == "small_contour");
+  if (name == "tiny") return own(name, 32, 3, true);
   std::string known;
   for (const std::string& preset : preset_names()) known += (known.empty() ? "" : ", ") + preset;
   throw Error("no network of this name", name, "choose one of " + known);

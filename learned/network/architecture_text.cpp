@@ -140,6 +140,12 @@ void visit_features(Visitor& visit, Options& f) {
   visit("features.cloth_velocity", f.cloth_velocity, {"carried", "difference"});
   visit("features.body_velocity", f.body_velocity, {"current", "next"});
   visit("features.pinned", f.pinned, {"moved", "moved_for_mesh_edges"});
+  visit("features.pinned_flag", f.pinned_flag);
+  visit("features.body_inputs", f.body_inputs);
+  visit("features.force_inputs", f.force_inputs);
+  visit("features.pass_inputs", f.pass_inputs);
+  visit("features.strain_inputs", f.strain_inputs);
+  visit("features.edge_context", f.edge_context);
   visit("features.mesh_order", f.mesh_order, {"larger_sends", "smaller_sends"});
   visit("features.rest", f.rest, {"vector", "length"});
   visit("features.coarse_levels", f.coarse_levels);

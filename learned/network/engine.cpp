@@ -4,6 +4,7 @@
 
 #include "learned/network/engine_kernels.hpp"
 #include "learned/network/graph_plan.hpp"
+#include "learned/network/latent_rows.hpp"
 #include "learned/network/packed_network.hpp"
 
 namespace selvedge {
@@ -11,20 +12,6 @@ namespace {
 
 // A chunk is what one thread does at a time: some tiles of edges, or one tile of nodes.
 constexpr int edges_in_chunk = 192;
-
-int tiles_of(int rows) { return (rows + tile_rows - 1) / tile_rows; }
-
-// One row a node, edge or sum, each padded with zeros, and whole tiles of rows.
-struct LatentRows {
-  int stride = 0;
-  AlignedFloats values;
-
-  LatentRows() = default;
-  LatentRows(int rows, int columns)
-      : stride(padded(columns)), values(static_cast<std::size_t>(tiles_of(rows)) * tile_rows * stride) {}
-  float* row(int i) { return values.data() + static_cast<std::ptrdiff_t>(i) * stride; }
-  const float* row(int i) const { return values.data() + static_cast<std::ptrdiff_t>(i) * stride; }
-};
 
 // What one thread needs for one tile.
 struct TileBuffers {

@@ -1,47 +1,15 @@
 #include "learned/network/engine_kernels.hpp"
 
 #include <cmath>
-#include <cstring>
 
 #include "collision/geometry/error.hpp"
+#include "learned/network/simd_vector.hpp"
 
 // The inner loops are templates over the number of lanes, inlined into one function an instruction set. CMake lets the
 // compiler contract a * b + c here: exact bits do not matter, the same ones on every thread do.
 
-#if defined(__x86_64__)
-#define SELVEDGE_TARGET(set) __attribute__((target(set)))
-#else
-#define SELVEDGE_TARGET(set)
-#endif
-
-// Loops over the rows of a block: their sums stay in registers only if they are unrolled.
-#if defined(__clang__)
-#define SELVEDGE_UNROLL _Pragma("unroll")
-#else
-#define SELVEDGE_UNROLL _Pragma("GCC unroll 16")
-#endif
-
 namespace selvedge {
 namespace {
-
-template <int Lanes>
-struct Simd {
-  typedef float Vector __attribute__((vector_size(4 * Lanes)));
-  typedef float Anywhere __attribute__((vector_size(4 * Lanes), aligned(4), may_alias));
-};
-
-template <int Lanes>
-using Vector = typename Simd<Lanes>::Vector;
-
-template <int Lanes>
-[[gnu::always_inline]] inline Vector<Lanes> load_vector(const float* from) {
-  return *reinterpret_cast<const typename Simd<Lanes>::Anywhere*>(from);
-}
-
-template <int Lanes>
-[[gnu::always_inline]] inline void store_vector(Vector<Lanes> vector, float* to) {
-  *reinterpret_cast<typename Simd<Lanes>::Anywhere*>(to) = vector;
-}
 
 // Rows x two vectors of results stay in registers while the inputs go by. `Fetch`: the next panel of weights is brought
 // into the first cache meanwhile, one line a line that is read.
@@ -74,6 +42,10 @@ template <int Lanes, int Rows, bool Fetch>
     for (int half = 0; half < 2; ++half) {
       Vector<Lanes> result = sums[r][half];
       if (t.rectify) result = result < zero ? zero : result;  // NaN stays
+      if (t.mask) {
+        const float* mask = t.mask + static_cast<std::ptrdiff_t>(row + r) * t.mask_stride + column + half * Lanes;
+        result = load_vector<Lanes>(mask) > zero ? result : zero;
+      }
       store_vector<Lanes>(result, out + static_cast<std::ptrdiff_t>(r) * t.stride + half * Lanes);
     }
 }
@@ -97,16 +69,6 @@ template <int Lanes>
     for (int k = 0; k < t.columns; k += Lanes)
       store_vector<Lanes>(load_vector<Lanes>(t.a[r] + k) + load_vector<Lanes>(t.b[r] + k), out + k);
   }
-}
-
-template <int Lanes>
-[[gnu::always_inline]] inline float sum_lanes(Vector<Lanes> vector) {
-  float sums[Lanes];
-  std::memcpy(sums, &vector, sizeof sums);
-  SELVEDGE_UNROLL
-  for (int half = Lanes / 2; half > 0; half /= 2)
-    for (int i = 0; i < half; ++i) sums[i] += sums[i + half];
-  return sums[0];
 }
 
 // What a row is normalised with: (x - mean) * factor * scale + shift. Epsilon 1e-5, as in the published networks.

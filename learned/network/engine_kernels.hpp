@@ -26,6 +26,8 @@ struct LayerTile {
   int rows = 0;                        // one at least
   bool go_on = false;                  // start from what `out` holds
   bool rectify = false;
+  const float* mask = nullptr;  // results become zero where it is not above zero; null: none do
+  int mask_stride = 0;
 };
 
 // out = a + b, row by row: the products of an edge's two nodes.

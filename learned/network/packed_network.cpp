@@ -7,62 +7,139 @@
 namespace selvedge {
 namespace {
 
-AlignedFloats pad(const std::vector<float>& values) {
-  if (values.empty()) return {};
-  AlignedFloats copy(static_cast<std::size_t>(padded(static_cast<int>(values.size()))));
-  std::copy(values.begin(), values.end(), copy.data());
-  return copy;
-}
+int whole_panels(int columns, int panel) { return (columns + panel - 1) / panel * panel; }
 
-// Columns [begin, begin + inputs) of the layer.
-PackedLayer pack_layer(const AffineLayer& layer, int begin, int inputs, bool with_bias, int panel) {
+PackedLayer layer_shape(int inputs, int outputs, int panel) {
   PackedLayer packed;
   packed.inputs = inputs;
-  const int outputs = static_cast<int>(layer.weight.rows());
-  packed.outputs = (outputs + panel - 1) / panel * panel;
-  packed.weight = AlignedFloats(static_cast<std::size_t>(packed.outputs) * inputs);
-  float* to = packed.weight.data();
-  for (int first = 0; first < packed.outputs; first += panel)
-    for (int k = 0; k < inputs; ++k)
-      for (int i = first; i < first + panel; ++i) *to++ = i < outputs ? layer.weight(i, begin + k) : 0.f;
-  packed.bias = with_bias ? pad(layer.bias) : AlignedFloats(static_cast<std::size_t>(padded(outputs)));
+  packed.outputs = whole_panels(outputs, panel);
+  packed.weight = AlignedFloats(static_cast<std::size_t>(packed.outputs) * static_cast<std::size_t>(inputs));
+  packed.bias = AlignedFloats(static_cast<std::size_t>(padded(outputs)));
   return packed;
 }
 
-// The first layer's inputs in blocks of `block` columns.
-PackedPerceptron pack(const Perceptron& p, int block, int panel) {
+// The first layer reads `blocks` blocks of `block` inputs.
+PackedPerceptron perceptron_shape(const Architecture& a, int blocks, int block, int outputs, bool norm, int panel,
+                                  PackedWay way) {
+  const bool forward = way == PackedWay::forward;
   PackedPerceptron packed;
-  const int inputs = static_cast<int>(p.layers.front().weight.cols());
-  for (int begin = 0; begin < inputs; begin += block)
-    packed.blocks.push_back(pack_layer(p.layers.front(), begin, block, begin == 0, panel));
-  for (std::size_t layer = 1; layer < p.layers.size(); ++layer)
-    packed.layers.push_back(
-        pack_layer(p.layers[layer], 0, static_cast<int>(p.layers[layer].weight.cols()), true, panel));
-  packed.scale = pad(p.scale);
-  packed.shift = pad(p.shift);
-  packed.outputs = static_cast<int>(p.layers.back().bias.size());
+  for (int i = 0; i < blocks; ++i)
+    packed.blocks.push_back(forward ? layer_shape(block, a.width, panel) : layer_shape(a.width, block, panel));
+  for (int layer = 1; layer <= a.hidden_layers; ++layer) {
+    const int to = layer == a.hidden_layers ? outputs : a.width;
+    packed.layers.push_back(forward ? layer_shape(a.width, to, panel) : layer_shape(to, a.width, panel));
+  }
+  if (forward && norm && a.layer_norm) {
+    packed.scale = AlignedFloats(static_cast<std::size_t>(padded(outputs)));
+    packed.shift = AlignedFloats(static_cast<std::size_t>(padded(outputs)));
+  }
+  packed.outputs = outputs;
   return packed;
+}
+
+// Columns [begin, begin + inputs) of the layer, in panels of outputs.
+void fill_forward(const FeatureRows& weight, Eigen::Index begin, int panel, PackedLayer& packed) {
+  const auto outputs = static_cast<int>(weight.rows());
+  float* panels = packed.weight.data();
+  for (int i = 0; i < outputs; ++i) {
+    const float* from = weight.row(i).data() + begin;
+    float* to = panels + static_cast<std::ptrdiff_t>(i / panel) * panel * packed.inputs + i % panel;
+    for (int k = 0; k < packed.inputs; ++k) to[static_cast<std::ptrdiff_t>(k) * panel] = from[k];
+  }
+}
+
+// The same, transposed: in panels of these columns.
+void fill_backward(const FeatureRows& weight, Eigen::Index begin, Eigen::Index columns, int panel,
+                   PackedLayer& packed) {
+  float* to = packed.weight.data();
+  for (Eigen::Index first = 0; first < columns; first += panel)
+    for (int k = 0; k < packed.inputs; ++k, to += panel)
+      std::copy_n(weight.row(k).data() + begin + first, std::min<Eigen::Index>(panel, columns - first), to);
+}
+
+// One layer to be filled in.
+struct PackTask {
+  const AffineLayer* from;
+  Eigen::Index begin, columns;
+  PackedLayer* to;
+};
+
+void list_tasks(const Perceptron& p, PackedPerceptron& packed, std::vector<PackTask>& tasks) {
+  const AffineLayer& first = p.layers.front();
+  const Eigen::Index block = first.weight.cols() / static_cast<Eigen::Index>(packed.blocks.size());
+  for (std::size_t i = 0; i < packed.blocks.size(); ++i)
+    tasks.push_back({&first, static_cast<Eigen::Index>(i) * block, block, &packed.blocks[i]});
+  for (std::size_t layer = 1; layer < p.layers.size(); ++layer)
+    tasks.push_back({&p.layers[layer], 0, p.layers[layer].weight.cols(), &packed.layers[layer - 1]});
+}
+
+void copy_vectors(const Perceptron& p, PackedPerceptron& packed) {
+  std::copy(p.layers.front().bias.begin(), p.layers.front().bias.end(), packed.blocks.front().bias.data());
+  for (std::size_t layer = 1; layer < p.layers.size(); ++layer)
+    std::copy(p.layers[layer].bias.begin(), p.layers[layer].bias.end(), packed.layers[layer - 1].bias.data());
+  std::copy(p.scale.begin(), p.scale.end(), packed.scale.data());
+  std::copy(p.shift.begin(), p.shift.end(), packed.shift.data());
+}
+
+// Calls visit(perceptron, packed perceptron) for all of them.
+template <class Visit>
+void visit_perceptrons(const NetworkWeights& weights, PackedNetwork& packed, Visit&& visit) {
+  visit(weights.node_encoder, packed.node_encoder);
+  for (std::size_t i = 0; i < weights.encoders.size(); ++i) visit(weights.encoders[i], packed.encoders[i]);
+  for (std::size_t s = 0; s < weights.steps.size(); ++s) {
+    for (std::size_t k = 0; k < weights.steps[s].edges.size(); ++k)
+      visit(weights.steps[s].edges[k], packed.steps[s].edges[k]);
+    visit(weights.steps[s].node, packed.steps[s].node);
+  }
+  visit(weights.decoder, packed.decoder);
 }
 
 }  // namespace
+
+PackedNetwork packed_shapes(const Architecture& a, InstructionSet set, PackedWay way) {
+  const int panel = kernels_for(set).panel;
+  const auto shape = [&](int blocks, int block, int outputs, bool norm) {
+    return perceptron_shape(a, blocks, block, outputs, norm, panel, way);
+  };
+  PackedNetwork packed;
+  packed.architecture = a;
+  packed.set = set;
+  packed.node_encoder = shape(1, a.node_inputs, a.width, true);
+  for (const EdgeEncoder& encoder : a.encoders) packed.encoders.push_back(shape(1, encoder.inputs, a.width, true));
+  for (const MessageStep& step : a.steps) {
+    PackedStep& to = packed.steps.emplace_back();
+    for (std::size_t k = 0; k < step.edge_keys.size(); ++k) to.edges.push_back(shape(3, a.width, a.width, true));
+    to.node = shape(1 + static_cast<int>(step.edge_keys.size()), a.width, a.width, true);
+  }
+  packed.decoder = shape(1, a.width, a.outputs, false);
+  return packed;
+}
+
+void pack_again(const NetworkWeights& weights, PackedWay way, PackedNetwork& packed) {
+  const int panel = kernels_for(packed.set).panel;
+  const bool forward = way == PackedWay::forward;
+  std::vector<PackTask> tasks;
+  visit_perceptrons(weights, packed, [&](const Perceptron& p, PackedPerceptron& to) {
+    list_tasks(p, to, tasks);
+    if (forward) copy_vectors(p, to);
+  });
+  const int count = static_cast<int>(tasks.size());
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < count; ++i) {
+    const PackTask& task = tasks[static_cast<std::size_t>(i)];
+    if (forward)
+      fill_forward(task.from->weight, task.begin, panel, *task.to);
+    else
+      fill_backward(task.from->weight, task.begin, task.columns, panel, *task.to);
+  }
+}
 
 std::shared_ptr<const PackedNetwork> pack_network(const Architecture& a, const NetworkWeights& weights,
                                                   InstructionSet set) {
   check_architecture(a, "network");
   check_weights(a, weights, "network");
-  const int panel = kernels_for(set).panel;
-  auto packed = std::make_shared<PackedNetwork>();
-  packed->architecture = a;
-  packed->set = set;
-  packed->node_encoder = pack(weights.node_encoder, a.node_inputs, panel);
-  for (std::size_t i = 0; i < a.encoders.size(); ++i)
-    packed->encoders.push_back(pack(weights.encoders[i], a.encoders[i].inputs, panel));
-  for (const StepWeights& step : weights.steps) {
-    PackedStep& to = packed->steps.emplace_back();
-    for (const Perceptron& edges : step.edges) to.edges.push_back(pack(edges, a.width, panel));
-    to.node = pack(step.node, a.width, panel);
-  }
-  packed->decoder = pack(weights.decoder, a.width, panel);
+  auto packed = std::make_shared<PackedNetwork>(packed_shapes(a, set, PackedWay::forward));
+  pack_again(weights, PackedWay::forward, *packed);
   return packed;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "collision/geometry/error.hpp"
+#include "learned/network/uniform_numbers.hpp"
 
 namespace selvedge {
 namespace {
@@ -134,19 +135,13 @@ void check_weights(const Architecture& a, const NetworkWeights& weights, const s
 
 NetworkWeights random_weights(const Architecture& a, std::uint64_t seed) {
   NetworkWeights weights = blank_weights(a);
-  std::uint64_t state = seed;
-  const auto uniform = [&state] {  // splitmix64 (Steele et al. 2014), in [-1, 1)
-    std::uint64_t z = state += 0x9E3779B97F4A7C15u;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return static_cast<float>((z ^ (z >> 31)) >> 40) / 8388608.f - 1.f;
-  };
+  UniformNumbers random(seed);
   for (const WeightArray& array : weight_arrays(a, weights)) {
     const bool table = array.name.starts_with("embeddings/");
     if (!table && array.inputs == 0) continue;  // layer norms and statistics
     const bool bias = array.name.ends_with("/bias");
     const float scale = table ? 1.f : bias ? .1f : std::sqrt(3.f / static_cast<float>(array.inputs));
-    for (int i = 0; i < array.rows * array.columns; ++i) array.data[i] = scale * uniform();
+    for (int i = 0; i < array.rows * array.columns; ++i) array.data[i] = scale * random.in_both_signs();
   }
   return weights;
 }

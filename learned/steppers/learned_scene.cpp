@@ -107,7 +107,8 @@ void check_runnable(const Architecture& architecture) {
     return key == options.body_key ? body_edge_widths(options).all : cloth_edge_widths(options).all;
   };
   bool fits =
-      node_widths(options).all == architecture.node_inputs && architecture.outputs == 3 && architecture.passes == 1;
+      node_widths(options).all == architecture.node_inputs && architecture.outputs == 3 && architecture.passes == 1 &&
+      !options.force_inputs;
   for (const std::string& key : edge_set_keys(options)) {
     const int kind = edge_kind(architecture, key);
     fits =

@@ -99,6 +99,10 @@ BenchResult bench(const BenchRequest& request) {
     result.engine = time_engine();
     write_results(request, result, engine_table(*result.engine));
   }
+  if (has_part(request, "training")) {
+    for (const int threads : {1, 2}) result.training.push_back(time_training("small", 29, threads, 25));
+    write_results(request, result, training_table(result.training));
+  }
   if (!has_part(request, "scenes")) return result;
   for (const std::string& scene : request.scenes)
     for (const int size : request.sizes) {

@@ -10,6 +10,7 @@
 #include "pipeline/run/summary.hpp"
 #include "pipeline/suites/bench_detection.hpp"
 #include "pipeline/suites/bench_engine.hpp"
+#include "pipeline/suites/bench_training.hpp"
 
 namespace selvedge {
 
@@ -17,8 +18,8 @@ struct BenchRequest {
   std::filesystem::path configs = "configs/bench";  // holds SCENE.yaml of every scene
   std::vector<std::string> scenes{"hang", "drop", "tube"};
   std::vector<int> sizes{40, 64, 100, 150};
-  std::vector<std::string> only{"detection", "engine", "scenes"};  // the parts to run
-  std::optional<int> frames;                                       // instead of the scenes' own
+  std::vector<std::string> only{"detection", "engine", "training", "scenes"};  // the parts to run
+  std::optional<int> frames;                                                   // instead of the scenes' own
   std::filesystem::path out = "out/bench";
   std::ostream* log = nullptr;  // a line as each member ends
 };
@@ -34,11 +35,12 @@ struct BenchMember {
 struct BenchResult {
   std::vector<DetectionTiming> detection;
   std::optional<EngineTimings> engine;
+  std::vector<TrainingTiming> training;
   std::vector<BenchMember> members;
 };
 
-// Times self-detection, then the engine of learned steppers, then runs every scene at every size through run_scene,
-// each into its own folder below `out`, and leaves bench.json, bench.csv and bench.txt there.
+// Times self-detection, then the engine of learned steppers, then steps of training, then runs every scene at every
+// size through run_scene, each into its own folder below `out`, and leaves bench.json, bench.csv and bench.txt there.
 BenchResult bench(const BenchRequest&);
 
 std::string bench_json(const BenchResult&);

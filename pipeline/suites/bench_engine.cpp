@@ -36,7 +36,13 @@ EdgeSet random_edge_set(const Architecture& a, const std::string& key, const Edg
   return set;
 }
 
-// Mesh and coarse edges of a sheet, as the network's options build them.
+EngineTiming time_network(const Architecture& a, const Graph& graph, int rounds) {
+  return {a.name, a.width, static_cast<int>(a.steps.size()), a.passes,
+          measure_engine(*pack_network(a, random_weights(a, 1)), graph, rounds)};
+}
+
+}  // namespace
+
 Graph sheet_graph(const Architecture& a, int side) {
   const Surface sheet = square_sheet(side);
   Graph graph;
@@ -49,13 +55,6 @@ Graph sheet_graph(const Architecture& a, int side) {
         random_edge_set(a, "coarse_edge" + std::to_string(level), coarse.levels[static_cast<std::size_t>(level)]));
   return graph;
 }
-
-EngineTiming time_network(const Architecture& a, const Graph& graph, int rounds) {
-  return {a.name, a.width, static_cast<int>(a.steps.size()), a.passes,
-          measure_engine(*pack_network(a, random_weights(a, 1)), graph, rounds)};
-}
-
-}  // namespace
 
 bool is_void(const PeakMeasurement& peak) { return !(peak.share_of_ports >= 0.85); }
 

@@ -32,6 +32,9 @@ double busy_share_of_peak(const EngineTimings&, const EngineTiming&);
 // sheet of `small_nodes` vertices (the largest square below) with its coarse edges. Features and weights are random.
 EngineTimings time_engine(int rounds = 10, int nodes = 5000, int small_nodes = 12000);
 
+// Mesh and coarse edges of a sheet of side x side vertices, as the network's options build them; random features.
+Graph sheet_graph(const Architecture&, int side);
+
 std::string engine_table(const EngineTimings&);
 
 }  // namespace selvedge

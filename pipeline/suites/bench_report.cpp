@@ -88,6 +88,28 @@ nlohmann::ordered_json engine_json(const EngineTimings& timings) {
           {"rows", rows}};
 }
 
+nlohmann::ordered_json training_json(const std::vector<TrainingTiming>& timings) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const TrainingTiming& t : timings) {
+    nlohmann::ordered_json row = {{"network", t.network},
+                                  {"nodes", t.nodes},
+                                  {"edges", t.edges},
+                                  {"threads", t.threads},
+                                  {"forward_ms", 1e3 * t.forward.wall},
+                                  {"step_ms", 1e3 * t.fused.wall},
+                                  {"busy_step_ms", 1e3 * t.fused.busy}};
+    if (t.with_torch) {
+      row["libtorch_step_ms"] = 1e3 * t.torch.wall;
+      row["libtorch_busy_step_ms"] = 1e3 * t.torch.busy;
+      row["libtorch"] = t.facts.version;
+      row["blas"] = t.facts.blas;
+      row["outputs_apart"] = t.apart;
+    }
+    list.push_back(std::move(row));
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string bench_json(const BenchResult& result) {
@@ -110,6 +132,7 @@ std::string bench_json(const BenchResult& result) {
   nlohmann::ordered_json json = {{"program_version", program_version()},
                                  {"detection", detection_json(result.detection)}};
   if (result.engine) json["engine"] = engine_json(*result.engine);
+  if (!result.training.empty()) json["training"] = training_json(result.training);
   json["members"] = list;
   return json.dump(2) + "\n";
 }
@@ -145,6 +168,7 @@ std::string bench_table(const BenchResult& result) {
   };
   if (!result.detection.empty()) add(detection_table(result.detection));
   if (result.engine) add(engine_table(*result.engine));
+  if (!result.training.empty()) add(training_table(result.training));
   return text;
 }
 

@@ -43,7 +43,6 @@ TEST_CASE("architecture: ContourCraft's paper form has two coarse levels and a n
 
 TEST_CASE("architecture: the inputs are as many as the feature options make", "[learned]") {
   for (const std::string& name : preset_names()) {
-    if (name == "small") continue;  // its own inputs come with training
     INFO(name);
     const Architecture a = architecture_preset(name);
     const FeatureOptions& f = a.features;

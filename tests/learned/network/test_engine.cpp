@@ -1,51 +1,21 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "collision/geometry/error.hpp"
 #include "learned/network/engine_bench.hpp"
 #include "learned/network/packed_network.hpp"
+#include "tests/learned/random_graph.hpp"
 #include "tests/threads.hpp"
 
 namespace selvedge::test_engine {
 
+using in_tests::random_graph;
+using in_tests::with_size;
+
 namespace {
 
 const std::vector<InstructionSet> all_sets{InstructionSet::plain, InstructionSet::avx2, InstructionSet::avx512};
-
-// Edges of every kind of the network between random nodes; one node receives a tenth of them all, so that a sum reaches
-// over many tiles.
-Graph random_graph(const Architecture& a, int cloth, int others, int edges, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<float> uniform(-1, 1);
-  const auto fill = [&](Eigen::Index rows, Eigen::Index columns) {
-    return FeatureRows(FeatureRows::NullaryExpr(rows, columns, [&] { return uniform(random); }));
-  };
-  Graph graph;
-  graph.cloth_nodes = cloth;
-  graph.nodes = fill(cloth + others, a.node_inputs);
-  const int nodes = cloth + others;
-  for (const EdgeKind& kind : a.edge_kinds) {
-    EdgeSet set;
-    set.key = kind.key;
-    const int few = kind.key.starts_with("coarse") ? std::max(1, cloth / 3) : nodes;
-    for (int e = 0; e < edges; ++e) {
-      set.senders.push_back(static_cast<int>(random() % few));
-      set.receivers.push_back(e % 10 == 0 ? few - 1 : static_cast<int>(random() % few));
-    }
-    set.features = fill(edges, a.encoders[kind.encoder].inputs);
-    graph.edge_sets.push_back(std::move(set));
-  }
-  return graph;
-}
-
-Architecture with_size(const std::string& preset, int width, int steps) {
-  Architecture a = architecture_preset(preset);
-  a.width = width;
-  a.steps.resize(static_cast<std::size_t>(steps));
-  return a;
-}
 
 float largest(const FeatureRows& a) { return a.size() == 0 ? 0 : a.cwiseAbs().maxCoeff(); }
 

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "learned/network/aligned_floats.hpp"
+#include "learned/network/engine_kernels.hpp"
+
+namespace selvedge {
+
+inline int tiles_of(int rows, int tile = tile_rows) { return (rows + tile - 1) / tile; }
+
+// One row a node, edge or sum, each padded with zeros; a whole tile of any kernel can be read and written from any row.
+struct LatentRows {
+  int stride = 0;
+  AlignedFloats values;
+
+  LatentRows() = default;
+  LatentRows(int rows, int columns) { reshape(rows, columns); }
+  // What it held is lost or not. Memory is kept where it is enough.
+  void reshape(int rows, int columns) {
+    const std::size_t size = static_cast<std::size_t>(tiles_of(rows) * tile_rows) * padded(columns);
+    if (stride != padded(columns) || values.size() < size) values = AlignedFloats(size);
+    stride = padded(columns);
+  }
+  float* row(int i) { return values.data() + static_cast<std::ptrdiff_t>(i) * stride; }
+  const float* row(int i) const { return values.data() + static_cast<std::ptrdiff_t>(i) * stride; }
+};
+
+}  // namespace selvedge

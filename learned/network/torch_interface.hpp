@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+
+// What the program and the shared library with libtorch tell each other: plain structs, and one C entry that gives a
+// table of calls. Neither side throws through it: calls return 0, or another number with a sentence in the report.
+namespace selvedge {
+
+constexpr int torch_interface_version = 1;
+
+// An architecture in numbers, in the order of its weights (weight_arrays).
+struct TorchShape {
+  int width = 0, hidden_layers = 0, layer_norm = 0, node_inputs = 0, outputs = 0;
+  int encoders = 0;
+  const int* encoder_inputs = nullptr;  // of each encoder
+  int steps = 0;
+  const int* step_keys = nullptr;  // how many keys each step has
+};
+
+struct TorchArray {
+  float* data = nullptr;
+  std::int64_t rows = 0, columns = 0;  // columns: 0 for a vector
+};
+
+struct TorchEdgeSet {
+  int encoder = 0;
+  std::int64_t edges = 0, inputs = 0;
+  const float* features = nullptr;
+  int used = 0;  // by any step
+};
+
+// Edges of one key in one step.
+struct TorchSelection {
+  int set = -1;  // -1: none
+  int all = 0;   // it has every edge of the set, in their order
+  std::int64_t edges = 0;
+  const std::int64_t *edge = nullptr, *receiver = nullptr, *sender = nullptr;  // receiver, sender: nodes
+};
+
+struct TorchGraphView {
+  std::int64_t nodes = 0, cloth_nodes = 0;
+  const float* node_features = nullptr;
+  int sets = 0;
+  const TorchEdgeSet* edge_sets = nullptr;
+  const TorchSelection* selections = nullptr;  // all keys of step 0, of step 1, ..
+};
+
+struct TorchReport {
+  char error[512] = {};
+  char device[32] = {};   // cpu or cuda:0
+  char library[32] = {};  // version of libtorch
+  char blas[32] = {};     // what multiplies matrices
+  int threads = 0;        // that libtorch uses
+  double gemm_flops = 0;  // a second, of a product of 512 x 512 matrices
+  int flushes_denormals = 0;
+};
+
+struct TorchCalls {
+  int version;
+  // Arrays are the trained ones but embeddings, in the order of weight_arrays. `device`: auto, cpu or cuda. Null: the
+  // report says why.
+  void* (*make)(const TorchShape*, const TorchArray*, int count, const char* device, int threads, TorchReport*);
+  void (*discard)(void*);
+  int (*set_weights)(void*, const TorchArray*, int count, TorchReport*);
+  int (*get_weights)(void*, const TorchArray*, int count, TorchReport*);
+  // `output`: cloth_nodes x outputs. What backward needs is kept where `keep` is not 0.
+  int (*forward)(void*, const TorchGraphView*, int keep, float* output, TorchReport*);
+  // Adds to the gradients.
+  int (*backward)(void*, const float* d_output, const TorchArray* gradients, int count, TorchReport*);
+  // Forward, backward from d_output, and one step of libtorch's Adam with this rate.
+  int (*train)(void*, const TorchGraphView*, const float* d_output, double learning_rate, float* output, TorchReport*);
+};
+
+constexpr const char* torch_entry = "selvedge_torch_calls";
+using TorchEntry = const TorchCalls* (*)();
+
+}  // namespace selvedge

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <memory>
+
+#include "learned/network/engine.hpp"
+#include "learned/network/instruction_set.hpp"
+
+namespace selvedge {
+
+// Weights in the shapes of NetworkWeights. Statistics have no gradient: theirs stay zero.
+using WeightGradients = NetworkWeights;
+WeightGradients zero_gradients(const Architecture&);
+void set_zero(const Architecture&, WeightGradients&);
+
+struct TrainingLayout;
+
+// A network that is trained. `weights` may be read at any time. Whoever changes them calls `lay_out` before the next
+// forward: the kernels read a layout of their own.
+struct TrainingNetwork {
+  Architecture architecture;
+  NetworkWeights weights;
+  std::shared_ptr<TrainingLayout> layout;  // training_layout.hpp
+
+  TrainingNetwork() = default;
+  TrainingNetwork(TrainingNetwork&&) = default;
+  TrainingNetwork& operator=(TrainingNetwork&&) = default;
+};
+
+// Throws Error unless the weights have the architecture's shapes and the machine has the instruction set.
+TrainingNetwork make_training_network(const Architecture&, NetworkWeights, InstructionSet = best_instruction_set());
+void lay_out(TrainingNetwork&);
+
+struct TrainingTape;
+
+// What a forward run leaves for the backward one. Its memory is used again by the next run. One run of a network at a
+// time writes to a tape; networks and graphs may be shared by several tapes.
+class Tape {
+ public:
+  Tape();
+  ~Tape();
+  Tape(Tape&&) noexcept;
+  Tape& operator=(Tape&&) noexcept;
+  TrainingTape& operator*() const { return *tape_; }
+
+ private:
+  std::unique_ptr<TrainingTape> tape_;
+};
+
+// The decoder's output, cloth_nodes x outputs, as `infer` gives it (to rounding: 1e-5 of the largest). Errors are those
+// of `infer`. 1 and n threads give the same bits.
+FeatureRows run_forward(const TrainingNetwork&, const Graph&, Tape&);
+
+// Adds to `gradients` the derivatives of a number by every weight, where `d_output` (cloth_nodes x outputs) is its
+// derivative by the output of the last `run_forward` on this tape, with the same network, weights and graph. Embeddings
+// get theirs through the normalised columns of the graph's features, whose deviations are those of weights.tables.
+// Nothing is added for arrays that the graph does not use. 1 and n threads give the same bits. Throws Error where
+// `d_output` or `gradients` has other shapes, or where the tape is of another graph.
+void run_backward(const TrainingNetwork&, const Graph&, const Tape&, const FeatureRows& d_output,
+                  WeightGradients& gradients);
+
+}  // namespace selvedge
