@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace selvedge {
+
+// Random numbers whose whole state is one number, the same on every machine (splitmix64, Steele et al. 2014).
+struct RandomStream {
+  std::uint64_t state = 0;
+
+  std::uint64_t next() {
+    std::uint64_t z = state += 0x9E3779B97F4A7C15;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
+    return z ^ (z >> 31);
+  }
+  double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }  // [0, 1)
+  double between(double low, double high) { return low + (high - low) * uniform(); }
+  int below(int count) { return static_cast<int>(uniform() * count); }  // 0 to count - 1
+  bool heads(double share) { return uniform() < share; }
+  double normal() {  // Box and Muller 1958, one of the two
+    const double radius = std::sqrt(-2 * std::log(1 - uniform()));
+    return radius * std::cos(2 * std::numbers::pi * uniform());
+  }
+};
+
+// A stream of its own for each number, whatever was drawn before.
+inline RandomStream stream_of(std::uint64_t seed, std::uint64_t number) {
+  RandomStream mixed{seed * 0xD1342543DE82EF95 + number};
+  return RandomStream{mixed.next()};
+}
+
+}  // namespace selvedge

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "pipeline/training/training_roll.hpp"
+
+namespace selvedge {
+
+// Prepares roll-outs in a thread of its own, in the order in which they were asked for. Which they are depends on what
+// was asked for and never on time.
+class RollQueue {
+ public:
+  explicit RollQueue(RollMaker&);  // the maker is the thread's until the queue ends, but for `locked`
+  ~RollQueue();
+  RollQueue(const RollQueue&) = delete;
+  RollQueue& operator=(const RollQueue&) = delete;
+
+  void ask(const RollRequest&);
+  // The first of those that were asked for and not taken; waits until it is there. Throws what its preparation threw.
+  Roll take();
+  // Not taken yet, the first one first.
+  std::vector<RollRequest> waiting() const;
+  // Runs while nothing is being prepared.
+  template <class Work>
+  void locked(const Work& work) {
+    const std::lock_guard hold(making_);
+    work();
+  }
+
+ private:
+  struct Place {
+    RollRequest request;
+    Roll roll;
+    bool done = false;
+  };
+  void work();
+  RollMaker& maker_;
+  mutable std::mutex mutex_;
+  std::mutex making_;
+  std::condition_variable changed_;
+  std::deque<Place> places_;
+  std::exception_ptr failed_;
+  bool ends_ = false;
+  std::thread thread_;
+};
+
+}  // namespace selvedge

@@ -1,0 +1,122 @@
+#include "pipeline/training/rolling_state.hpp"
+
+#include <cmath>
+
+#include "learned/graph/integration.hpp"
+#include "learned/steppers/learned_state.hpp"
+
+namespace selvedge {
+namespace {
+
+Points wide(const PointsF& x) { return x.cast<double>(); }
+
+// Sets the body, and where the garment is worn when the frame is over.
+void set_surroundings(RollingState& state) {
+  const Roll& roll = state.roll;
+  const bool settling = is_settling(state);
+  const int entry = state.frame + (roll.request.still ? 0 : 1);  // of the body now; a settling frame stands at the next
+  const auto body_at = [&](int k) { return wide(roll.body[static_cast<std::size_t>(k)]); };
+  const bool after_settling = roll.request.still && state.frame == 1;
+  state.now.body = body_at(settling ? 1 : entry);
+  state.now.body_previous = settling || after_settling ? state.now.body : body_at(entry - 1);
+  state.now.body_target = settling ? state.now.body : body_at(entry + 1);
+  state.now.target = wide(roll.cloth[static_cast<std::size_t>(entry + 1)]);
+  state.now.timestep = settling ? settling_time : learned_dt;
+  state.now.is_init = settling;
+  state.now.no_cloth_edges = settling || !roll.request.cloth_contact;
+  state.now.guess.resize(0, 3);
+  state.now.force.resize(0, 3);
+  state.now.pass = state.pass = 0;
+}
+
+bool is_lost(const RollingState& state, double reset_distance) {
+  if (!state.now.x.allFinite() || !state.now.velocity.allFinite()) return true;
+  const int entry = state.frame + (state.roll.request.still ? 0 : 1);
+  const Points worn = wide(state.roll.cloth[static_cast<std::size_t>(entry)]);
+  return (state.now.x - worn).rowwise().norm().maxCoeff() > reset_distance;
+}
+
+}  // namespace
+
+bool is_settling(const RollingState& state) { return state.roll.request.still && state.frame == 0; }
+
+void begin_roll(Roll roll, RollingState& state) {
+  state.roll = std::move(roll);
+  state.frame = 0;
+  state.over = false;
+  state.search = {};
+  state.losses = {};
+  const Roll& own = state.roll;
+  state.now.x = wide(own.cloth[1]) + own.noise;
+  if (own.request.still) {
+    if (own.request.with_body) push_out(own.scene->graph.body, wide(own.body[1]), push_out_margin, state.now.x);
+    state.now.previous = state.now.x;
+    state.now.velocity = Points::Zero(state.now.x.rows(), 3);
+  } else {
+    state.now.previous = wide(own.cloth[0]) + own.noise;
+    state.now.velocity = state.now.x - state.now.previous;
+  }
+  set_surroundings(state);
+}
+
+LossInputs inputs_of(const RollingState& state, const SeenPositions& seen, const Points& predicted, double progress) {
+  LossInputs inputs =
+      loss_inputs(state.roll.scene->losses, state.roll.scene->graph, state.now, seen, predicted);
+  inputs.repulsion = state.found.cloth_pairs.repulsion;
+  inputs.contours = !is_settling(state) && state.roll.request.cloth_contact;
+  inputs.is_initial = is_settling(state);
+  inputs.progress = progress;
+  return inputs;
+}
+
+bool raw_graph_of(const FrameMaking& making, const FeatureTables& tables, RollingState& state, Graph& graph) {
+  const TrainingScene& scene = *state.roll.scene;
+  if (making.features.force_inputs) {
+    const SeenPositions seen = seen_positions(scene.rest, state.now, making.features);
+    const Points guess = guess_of(scene.rest, state.now, seen, making.features);
+    ForceOptions force = making.force;
+    force.inertia = state.pass > 0;
+    if (!state.roll.request.cloth_contact) force.contour_weight = 0;
+    state.now.force = force_input(inputs_of(state, seen, guess, making.progress), making.losses, force, state.losses);
+  }
+  make_raw_graph(scene.graph, scene.rest, state.now, making.features, tables, state.search, graph, state.found);
+  return state.found.refused.empty();
+}
+
+void take_pass(const FrameMaking& making, const NextCloth& next, double reset_distance, RollingState& state) {
+  if (state.pass + 1 < making.passes) {
+    state.now.guess = next.x;
+    state.now.pass = ++state.pass;
+    return;
+  }
+  const bool settled = is_settling(state);
+  state.now.previous = seen_positions(state.roll.scene->rest, state.now, making.features).x;
+  state.now.x = next.x;
+  state.now.velocity = next.velocity;
+  if (settled) {
+    state.now.previous = state.now.x;
+    if (making.passes > 1) state.now.velocity.setZero();  // HOOD goes on with what the settling frame gave
+  }
+  ++state.frame;
+  state.over = state.frame >= state.roll.request.frames || is_lost(state, reset_distance);
+  if (!state.over) set_surroundings(state);
+}
+
+NextCloth gated(const FrameMaking& making, int count, const NextCloth& next, RollingState& state) {
+  const TrainingScene& scene = *state.roll.scene;
+  const SeenPositions seen = seen_positions(scene.rest, state.now, making.features);
+  const Points base = inertial_guess(scene.rest, state.now, seen, making.features);
+  std::vector<double> factors;
+  for (int k = 0; k < count; ++k) factors.push_back(count > 1 ? 1.2 * k / (count - 1) : 1);
+  const std::vector<double> sums =
+      losses_along(inputs_of(state, seen, next.x, making.progress), making.losses, base, factors, state.losses);
+  std::size_t best = sums.size() - 1;
+  for (std::size_t k = 0; k < sums.size(); ++k)
+    if (std::isfinite(sums[k]) && !(sums[k] >= sums[best])) best = k;
+  NextCloth result{base + factors[best] * (next.x - base), {}};
+  result.velocity = result.x - seen.x;
+  for (const int pin : scene.rest.pinned) result.velocity.row(pin) = next.velocity.row(pin);
+  return result;
+}
+
+}  // namespace selvedge

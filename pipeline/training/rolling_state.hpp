@@ -1,0 +1,53 @@
+#pragma once
+
+#include <vector>
+
+#include "learned/graph/make_graph.hpp"
+#include "learned/losses/force_input.hpp"
+#include "pipeline/training/training_roll.hpp"
+
+namespace selvedge {
+
+// A roll-out on its way: which frame is to be made, in which pass, and what was made.
+struct RollingState {
+  Roll roll;
+  int frame = 0, pass = 0;
+  GraphState now;      // what the frame starts from; its guess and pass are those of the pass to come
+  bool over = true;    // the roll-out has ended
+  // Memory that is used again:
+  GraphSearch search;
+  LossSearch losses;
+  GraphReport found;
+};
+
+// Begins a roll-out: at rest, out of the body, before a frame of 1/3 s; or as the clip moves.
+void begin_roll(Roll, RollingState&);
+
+// Whether the frame to be made is the one in which cloth falls to rest.
+bool is_settling(const RollingState&);
+
+// What losses see of the frame and of a prediction. Refers to the state.
+LossInputs inputs_of(const RollingState&, const SeenPositions&, const Points& predicted, double progress);
+
+// How a network's frame is made. `force`: what force inputs are made of, where the features have them.
+struct FrameMaking {
+  FeatureOptions features;
+  LossOptions losses;
+  ForceOptions force;
+  int passes = 1;
+  double progress = 1;  // of the run
+};
+
+// The graph of the pass to come, raw. False: refused, for something is not finite.
+bool raw_graph_of(const FrameMaking&, const FeatureTables&, RollingState&, Graph&);
+
+// The pass gave `next`: goes on to the next pass, or with the frame's last one to the next frame. A roll-out is over
+// after its last frame, and where a free vertex is farther than `reset_distance` from the garment as worn, or is not
+// finite.
+void take_pass(const FrameMaking&, const NextCloth& next, double reset_distance, RollingState&);
+
+// Steps of the gate: among base + t (next - base), with `count` values of t up to 1.2, the one with the least sum of
+// losses; base is where the cloth is without forces.
+NextCloth gated(const FrameMaking&, int count, const NextCloth& next, RollingState&);
+
+}  // namespace selvedge

@@ -1,0 +1,233 @@
+#include "pipeline/training/trainer.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "collision/geometry/error.hpp"
+#include "learned/graph/integration.hpp"
+#include "learned/graph/warm_up.hpp"
+#include "learned/network/architecture_text.hpp"
+#include "learned/network/initial_weights.hpp"
+#include "learned/network/weights_hdf5.hpp"
+
+namespace selvedge {
+namespace {
+
+NetworkWeights first_weights(const TrainingOptions& options, const Architecture& architecture) {
+  if (options.weights.empty())
+    return initial_weights(architecture, options.seed, {.last_layer_scale = options.optimiser.decoder_scale});
+  WeightFile file = read_weight_file(options.weights);
+  file.architecture.name = architecture.name;
+  if (architecture_text(file.architecture) != architecture_text(architecture))
+    throw Error("holds weights of another network than `" + architecture.name + "` as configured", options.weights,
+                "give the architecture, width and message_steps that they were trained with");
+  return std::move(file.weights);
+}
+
+// Feeds one state to the sums: the first pass, and in networks of several passes one whose guess is the garment as
+// worn, off by as much as passes are.
+void gather_state(Trainer& trainer, RollingState& state) {
+  const FrameMaking making = frame_making(trainer);
+  const TrainingScene& scene = *state.roll.scene;
+  if (making.passes > 1 && trainer.random.heads(0.5)) {
+    const SeenPositions seen = seen_positions(scene.rest, state.now, making.features);
+    Points guess = inertial_guess(scene.rest, state.now, seen, making.features);
+    const double part = trainer.random.uniform();
+    guess += part * (state.now.target - guess).eval();
+    state.now.guess = std::move(guess);
+    state.now.pass = state.pass = 1;
+  }
+  if (!raw_graph_of(making, trainer.network.weights.tables, state, trainer.graph)) return;
+  gather(making.features, trainer.graph, target_accelerations(scene.rest, state.now, making.features), trainer.sums);
+}
+
+void warm_up(Trainer& trainer) {
+  const int states = trainer.options.optimiser.warm_up;
+  for (int k = 0; k < std::min(states, rolls_ahead); ++k) ask_for_roll(trainer);
+  RollingState state;
+  for (int k = 0; k < states; ++k) {
+    begin_roll(trainer.queue->take(), state);
+    if (k + rolls_ahead < states) ask_for_roll(trainer);
+    gather_state(trainer, state);
+  }
+  freeze_statistics(trainer.architecture.features, trainer.sums, trainer.network.weights.tables);
+}
+
+// The derivative by the network's output of what the sample is to make smaller; false where it is not finite.
+bool output_gradient(const Trainer& trainer, const RollingState& state, Points gradient, FeatureRows& d_output) {
+  const TrainingScene& scene = *state.roll.scene;
+  for (const int pin : scene.rest.pinned) gradient.row(pin).setZero();
+  const std::vector<float>& deviation = trainer.network.weights.tables.output.deviation;
+  double scale = 1;
+  if (trainer.options.optimiser.normalise_samples) {
+    // Divided by its size over the inverse masses, then made so that its rows' lengths sum up to about one.
+    double mass = 0;
+    for (const double m : scene.losses.mass) mass += m;
+    mass /= static_cast<double>(scene.losses.mass.size());
+    const double size = inverse_mass_norm(scene.losses, gradient);
+    const double unit = (static_cast<double>(deviation[0]) + deviation[1] + deviation[2]) / 3;
+    scale = 1 / (size * std::sqrt(mass) * unit);
+    if (!std::isfinite(scale)) return false;
+  }
+  d_output.resize(gradient.rows(), 3);
+  for (Eigen::Index k = 0; k < 3; ++k)
+    d_output.col(k) = (scale * static_cast<double>(deviation[static_cast<std::size_t>(k)]) * gradient.col(k)).cast<float>();
+  return d_output.allFinite();
+}
+
+AdamOptions adam_options(const Trainer& trainer) {
+  const OptimiserOptions& options = trainer.options.optimiser;
+  AdamOptions adam;
+  adam.schedule = RateSchedule::constant;
+  adam.learning_rate = options.learning_rate * learning_factor(options.decay, progress_of(trainer), trainer.counts.step,
+                                                               options.halving_steps, options.floor);
+  (options.clip_median ? adam.clip_median : adam.clip_norm) = options.clip;
+  return adam;
+}
+
+// The graph of the sample, normalised; statistics go on being gathered where they are not frozen.
+bool sample_graph(Trainer& trainer, const FrameMaking& making, RollingState& state) {
+  FeatureTables& tables = trainer.network.weights.tables;
+  if (!raw_graph_of(making, tables, state, trainer.graph)) return false;
+  if (!trainer.options.optimiser.freeze_statistics && trainer.options.weights.empty()) {
+    gather(making.features, trainer.graph, target_accelerations(state.roll.scene->rest, state.now, making.features),
+           trainer.sums);
+    freeze_statistics(making.features, trainer.sums, tables);
+  }
+  normalise(making.features, tables, trainer.graph);
+  return true;
+}
+
+bool are_finite(const std::vector<LossTerm>& terms) {
+  for (const LossTerm& term : terms)
+    if (!std::isfinite(term.value) || !std::isfinite(term.gradient_norm)) return false;
+  return true;
+}
+
+RollingState& chosen_state(Trainer& trainer) {
+  auto& pool = trainer.pool;
+  RollingState& state = pool[static_cast<std::size_t>(trainer.random.below(static_cast<int>(pool.size())))];
+  if (state.over) {
+    begin_roll(trainer.queue->take(), state);
+    ask_for_roll(trainer);
+  }
+  return state;
+}
+
+void count_bad(Trainer& trainer, RollingState& state, const StepRecord& record) {
+  state.over = true;
+  ++trainer.counts.bad;
+  if (++trainer.counts.bad_in_a_row > trainer.options.watch.most_bad_samples)
+    throw Error(fmt::format("{} samples in a row had no finite loss, the last: {}", trainer.counts.bad_in_a_row,
+                            record.bad),
+                "training " + trainer.options.name,
+                "take a smaller learning rate, or go on from an earlier checkpoint with another seed");
+}
+
+// Forward, losses, backward and the optimiser; `next` is what the network made.
+void learn(Trainer& trainer, const FrameMaking& making, RollingState& state, StepRecord& record, NextCloth& next) {
+  const TrainingScene& scene = *state.roll.scene;
+  if (!sample_graph(trainer, making, state)) {
+    record.bad = state.found.refused;
+    return;
+  }
+  const FeatureRows output = run_forward(trainer.network, trainer.graph, trainer.tape);
+  next = integrate(scene.rest, state.now, making.features, trainer.network.weights.tables.output, output);
+  const SeenPositions seen = seen_positions(scene.rest, state.now, making.features);
+  Points gradient = Points::Zero(next.x.rows(), 3);
+  record.terms =
+      add_losses(inputs_of(state, seen, next.x, making.progress), making.losses, state.losses, &gradient);
+  record.sum = sum_of(record.terms);
+  FeatureRows d_output;
+  if (!output.allFinite() || !are_finite(record.terms) || !output_gradient(trainer, state, gradient, d_output)) {
+    record.bad = "a loss or its gradient is not finite";
+    return;
+  }
+  set_zero(trainer.architecture, trainer.gradients);
+  run_backward(trainer.network, trainer.graph, trainer.tape, d_output, trainer.gradients);
+  record.adam = adam_step(trainer.architecture, adam_options(trainer), progress_of(trainer), trainer.gradients,
+                          trainer.adam, trainer.network.weights);
+  if (record.adam.taken)
+    lay_out(trainer.network);
+  else
+    record.bad = "the gradient of the weights is not finite";
+}
+
+}  // namespace
+
+Architecture trained_architecture(const TrainingOptions& options) {
+  Architecture architecture = architecture_preset(options.architecture);
+  if (options.width > 0) architecture.width = options.width;
+  if (options.message_steps > 0) architecture.steps.resize(static_cast<std::size_t>(options.message_steps), architecture.steps.back());
+  if (options.pool.passes != architecture.passes) architecture.passes = options.pool.passes;
+  check_architecture(architecture, options.name);
+  return architecture;
+}
+
+std::unique_ptr<Trainer> make_empty_trainer(const TrainingOptions& options) {
+  auto trainer = std::make_unique<Trainer>();
+  trainer->options = options;
+  trainer->architecture = trained_architecture(options);
+  trainer->adam = start_adam(trainer->architecture);
+  trainer->sums = empty_sums<double>(trainer->architecture.features);
+  trainer->gradients = zero_gradients(trainer->architecture);
+  trainer->random = stream_of(options.seed, 0);
+  trainer->pool.resize(static_cast<std::size_t>(options.pool.states));
+  trainer->maker = std::make_unique<RollMaker>(
+      RollMaker{options, trainer->architecture.features, make_training_world(options.samples, options.seed), {}});
+  read_flesh(flesh_folder(), trainer->maker->world);
+  trainer->queue = std::make_unique<RollQueue>(*trainer->maker);
+  return trainer;
+}
+
+std::unique_ptr<Trainer> make_trainer(const TrainingOptions& options) {
+  auto trainer = make_empty_trainer(options);
+  trainer->network = make_training_network(trainer->architecture, first_weights(options, trainer->architecture));
+  if (options.weights.empty()) warm_up(*trainer);
+  lay_out(trainer->network);
+  for (int k = 0; k < rolls_ahead; ++k) ask_for_roll(*trainer);
+  return trainer;
+}
+
+double progress_of(const Trainer& trainer) {
+  return static_cast<double>(trainer.counts.step) / trainer.options.steps;
+}
+
+FrameMaking frame_making(const Trainer& trainer) {
+  FrameMaking making;
+  making.features = trainer.architecture.features;
+  making.losses = trainer.options.objective;
+  making.passes = trainer.architecture.passes;
+  making.progress = progress_of(trainer);
+  return making;
+}
+
+void ask_for_roll(Trainer& trainer) {
+  trainer.queue->ask(
+      draw_roll(trainer.options, trainer.maker->world, trainer.counts.rolls++, progress_of(trainer)));
+}
+
+StepRecord train_step(Trainer& trainer) {
+  RollingState& state = chosen_state(trainer);
+  const FrameMaking making = frame_making(trainer);
+  StepRecord record;
+  record.pass = state.pass;
+  record.settling = is_settling(state);
+  NextCloth next;
+  learn(trainer, making, state, record, next);
+  if (!record.bad.empty()) {
+    count_bad(trainer, state, record);
+    return record;
+  }
+  trainer.counts.bad_in_a_row = 0;
+  ++trainer.counts.step;
+  const bool last_pass = state.pass + 1 == making.passes;
+  if (last_pass && trainer.options.pool.gate > 0) next = gated(making, trainer.options.pool.gate, next, state);
+  take_pass(making, next, trainer.options.pool.reset_distance, state);
+  if (last_pass) ++trainer.counts.frames;
+  if (state.over && state.frame < state.roll.request.frames) ++trainer.counts.lost;
+  return record;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,288 @@
+#include "pipeline/training/training_options.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/garments/outfit.hpp"
+#include "pipeline/motions/clip_split.hpp"
+#include "pipeline/scene/setup_paths.hpp"
+
+namespace selvedge {
+namespace {
+
+using namespace table;
+
+constexpr Range part{.low = 0, .high = 1};
+
+const Options<LossRamp>& ramp_options() {
+  using O = LossRamp;
+  static const Options<O> table("ramp", "A number over the run, linear between beginning and end.",
+                                {number("from", &O::from, Unit::none, not_negative, "before the beginning"),
+                                 number("to", &O::to, Unit::none, not_negative, "from the end on"),
+                                 number("begin", &O::begin, Unit::none, part, "part of the run"),
+                                 number("end", &O::end, Unit::none, part, "part of the run")});
+  return table;
+}
+
+// A ramp under a name of its own. What a file leaves out of it keeps the struct's value.
+template <class Struct>
+Option<Struct> ramp(std::string name, LossRamp Struct::*member, std::string about) {
+  Option<Struct> option = section(member, ramp_options(), std::move(about));
+  option.key.name = std::move(name);
+  return option;
+}
+
+const Options<VertexMaterial>& training_material_options() {
+  using O = VertexMaterial;
+  static const Options<O> table(
+      "material", "Isotropic, St. Venant-Kirchhoff.",
+      {number("density", &O::density, Unit::areal_density, positive, ""),
+       number("lame_mu", &O::lame_mu, Unit::stiffness, positive, "thickness included"),
+       number("lame_lambda", &O::lame_lambda, Unit::stiffness, not_negative, "thickness included"),
+       number("hinge_bending", &O::bending, Unit::bending, not_negative, "the papers' coefficient")});
+  return table;
+}
+
+const Options<SampleOptions>& sample_options() {
+  using O = SampleOptions;
+  static const Options<O> table(
+      "samples", "What a network is trained on. Nothing of the validation split is taken.",
+      {texts("garments", &O::garments, "by code, or outfits of outfits.yaml"),
+       number("edge", &O::edge, Unit::length, positive, "of the triangles of garments by code"),
+       texts("clips", &O::clips, "procedural; left out: all of the training split"),
+       integer("shapes", &O::shapes, at_least_one, "of the body; the first is the mean one"),
+       number("shape_spread", &O::shape_spread, Unit::none, not_negative, "standard deviations of the coefficients"),
+       section(&O::material, training_material_options(), "HOOD's where it is left out"),
+       flag("sample_materials", &O::sample_materials, "over the authors' ranges, one a roll-out"),
+       number("still_share", &O::still_share, Unit::none, part,
+              "of roll-outs that begin at rest, with a frame of 1/3 s in which the cloth falls"),
+       number("noise", &O::noise, Unit::length, not_negative, "of start positions, standard deviation"),
+       flag("yaw", &O::yaw, "each roll-out turned about the vertical at random"),
+       flag("mirror", &O::mirror, "every second roll-out left for right"),
+       number("no_body_share", &O::no_body_share, Unit::none, part, "of roll-outs, without the body"),
+       flag("flesh", &O::flesh, "the body gives way where it would pass through itself"),
+       choice("start", &O::start,
+              {{"skinned", GarmentStart::skinned},
+               {"untangle", GarmentStart::untangle},
+               {"tangled", GarmentStart::tangled}},
+              "`skinned`: where the body takes the garment; `untangle`: the same, parted; `tangled`: without the "
+              "gap between layers and with flesh that does not give way")});
+  return table;
+}
+
+const Options<PoolOptions>& pool_options() {
+  using O = PoolOptions;
+  static const Options<O> table(
+      "pool", "How states are rolled out.",
+      {integer("states", &O::states, at_least_one,
+               "that are advanced one at a time at random; 1: one roll-out after another, as published"),
+       ramp("frames", &O::frames, "most frames of a roll-out"),
+       flag("random_length", &O::random_length, "a roll-out's length is random up to that"),
+       integer("passes", &O::passes, at_least_one, "runs of the network a frame, an optimiser step each"),
+       integer("gate", &O::gate, not_negative,
+               "how many factors of the network's correction, up to 1.2, are tried before a state is advanced, the "
+               "loss being of the whole correction; 0: it is taken as it is"),
+       number("reset_distance", &O::reset_distance, Unit::length, positive,
+              "of a vertex from the skinned garment, at which a roll-out ends"),
+       number("long_share", &O::long_share, Unit::none, part, "of roll-outs that go on for `long_frames`"),
+       integer("long_frames", &O::long_frames, at_least_one, "of a long roll-out, or to the clip's end"),
+       flag("safeguarded", &O::safeguarded,
+            "states are advanced through Bridson's response, and left where that gives up"),
+       number("no_contact_share", &O::no_contact_share, Unit::none, part,
+              "of roll-outs without cloth-cloth edges and terms")});
+  return table;
+}
+
+const Options<ContactOptions>& training_contact_options() {
+  using O = ContactOptions;
+  static const Options<O> table(
+      "contact", "Which pairs of cloth see each other.",
+      {flag("edges", &O::edges, "of cloth with cloth, in the graph"),
+       flag("classify", &O::classify, "pairs repel or not by contours; false: all repel"),
+       flag("attraction", &O::attraction, "pairs that do not repel are edges; false: they are left out")});
+  return table;
+}
+
+const Options<CollisionLoss>& collision_options() {
+  using O = CollisionLoss;
+  static const Options<O> table(
+      "collision", "With the body.",
+      {ramp("weight", &O::weight, "[N/m2], of the quadratic penalty [N/m]"),
+       number("thickness", &O::thickness, Unit::length, positive, "that cloth keeps from the body"),
+       choice("matching", &O::matching,
+              {{"nearest_centroid", BodyMatching::nearest_centroid}, {"nearest_face", BodyMatching::nearest_face}},
+              "which face belongs to a vertex"),
+       number("radius", &O::radius, Unit::length, positive, "of `nearest_face`"),
+       choice("penalty", &O::penalty, {{"cubic", DepthPenalty::cubic}, {"quadratic", DepthPenalty::quadratic}}, "")});
+  return table;
+}
+
+const Options<FrictionLoss>& friction_options() {
+  using O = FrictionLoss;
+  static const Options<O> table(
+      "friction", "On the body.",
+      {ramp("weight", &O::weight, ""), number("coefficient", &O::coefficient, Unit::none, not_negative, ""),
+       number("squared_radius", &O::squared_radius, Unit::none, positive, "of nearest centroids [m2]"),
+       choice("slope", &O::slope, {{"x", SlopeAxis::x}, {"y", SlopeAxis::y}, {"z", SlopeAxis::z}},
+              "the axis along which a slide has less friction; `z` as released, y being up")});
+  return table;
+}
+
+const Options<RepulsionLoss>& repulsion_options() {
+  using O = RepulsionLoss;
+  static const Options<O> table(
+      "repulsion", "Between layers of cloth, of pairs that repel.",
+      {ramp("weight", &O::weight, "[N/m2]"), number("thickness", &O::thickness, Unit::length, positive, ""),
+       number("correspondence", &O::correspondence, Unit::length, positive, "farther apart pairs take no part"),
+       number("pinned_factor", &O::pinned_factor, Unit::none, positive, "inside the cube, of pairs with a pin")});
+  return table;
+}
+
+const Options<ContourLoss>& contour_options() {
+  using O = ContourLoss;
+  static const Options<O> table(
+      "contours", "Squared lengths of intersection contours.",
+      {ramp("weight", &O::weight, "[N/m]"),
+       choice("gradient", &O::gradient,
+              {{"translational", ContourGradient::translational}, {"full", ContourGradient::full}},
+              "`translational`: triangles are moved, not shortened"),
+       choice("normal", &O::normal, {{"frozen", ContourNormal::frozen}, {"turning", ContourNormal::turning}},
+              "`frozen` as published; `turning`: the exact derivative")});
+  return table;
+}
+
+const Options<LossOptions>& objective_options() {
+  using O = LossOptions;
+  static const Options<O> table(
+      "objective", "Weights of the terms over the run; a term whose weight is zero is left out.",
+      {ramp("stretching", &O::stretching, ""), ramp("bending", &O::bending, ""), ramp("gravity", &O::gravity, ""),
+       ramp("inertia", &O::inertia, ""), section(&O::collision, collision_options(), ""),
+       section(&O::friction, friction_options(), ""), section(&O::repulsion, repulsion_options(), ""),
+       section(&O::contours, contour_options(), ""),
+       number("gravity_strength", &O::gravity_strength, Unit::none, not_negative, "against y [m/s2]"),
+       number("relaxation_dt", &O::relaxation_dt, Unit::time, positive,
+              "of the inertia of a frame in which cloth falls to rest")});
+  return table;
+}
+
+const Options<OptimiserOptions>& optimiser_options() {
+  using O = OptimiserOptions;
+  static const Options<O> table(
+      "optimiser", "Adam, one sample a step.",
+      {number("learning_rate", &O::learning_rate, Unit::none, positive, ""),
+       choice("decay", &O::decay, {{"cosine", Decay::cosine}, {"halving", Decay::halving}, {"none", Decay::none}},
+              "of the learning rate: to zero over the run, or as published"),
+       integer("halving_steps", &O::halving_steps, at_least_one, "of the decay `halving`"),
+       number("floor", &O::floor, Unit::none, not_negative, "of the decay `halving`, added to the factor"),
+       flag("normalise_samples", &O::normalise_samples, "each sample's gradient is divided by its own size"),
+       flag("clip_median", &O::clip_median, "`clip` counts in running medians of the gradient's norm"),
+       number("clip", &O::clip, Unit::none, positive, "largest norm of a step's gradient"),
+       integer("warm_up", &O::warm_up, not_negative, "states that only feed the statistics of the inputs"),
+       flag("freeze_statistics", &O::freeze_statistics, "after the warm-up"),
+       number("decoder_scale", &O::decoder_scale, Unit::none, positive, "of the last layer's weights at the start")});
+  return table;
+}
+
+const Options<WatchOptions>& watch_options() {
+  using O = WatchOptions;
+  static const Options<O> table(
+      "watch", "When a run writes and measures, all on the training split.",
+      {number("checkpoint_minutes", &O::checkpoint_minutes, Unit::none, not_negative, "between checkpoints"),
+       integer("measurements", &O::measurements, at_least_one, "of the run: roll-outs, and gaps on fixed states"),
+       integer("frames", &O::frames, at_least_one, "of a measuring roll-out"),
+       text("garment", &O::garment, "of the measuring roll-out; left out: the first"),
+       text("clip", &O::clip, "of the measuring roll-out"),
+       integer("fixed_states", &O::fixed_states, at_least_one, "of which the gap to the optimum is printed"),
+       integer("most_bad_samples", &O::most_bad_samples, at_least_one,
+               "without a finite loss, one after another, before the run stops")});
+  return table;
+}
+
+void check_names(const TrainingOptions& options, const std::string& where) {
+  const Wardrobe wardrobe = read_wardrobe(config_folder() / "outfits.yaml");
+  std::vector<std::string> known = wardrobe.training;
+  for (const Outfit& outfit : wardrobe.outfits)
+    if (!outfit.validation) known.push_back(outfit.name);
+  const auto refuse = [&](const std::string& key, const std::string& name, const std::vector<std::string>& allowed) {
+    if (std::ranges::find(allowed, name) == allowed.end())
+      throw Error(fmt::format("`{}` is not for training, or unknown", name), where + ": " + key,
+                  "for training: " + joined(allowed) + suggestion(name, allowed));
+  };
+  if (options.samples.garments.empty()) throw Error("names no garment", where + ": samples.garments", "");
+  for (const std::string& name : options.samples.garments) refuse("samples.garments", name, known);
+  if (!options.watch.garment.empty()) refuse("watch.garment", options.watch.garment, options.samples.garments);
+  std::vector<std::string> clips;
+  for (const ClipEntry& entry : read_clip_split(config_folder() / "clips.yaml"))
+    if (!entry.validation) clips.push_back(entry.name);
+  for (const std::string& name : options.samples.clips) refuse("samples.clips", name, clips);
+  refuse("watch.clip", options.watch.clip, clips);
+}
+
+void read_over_base(const std::filesystem::path& file, const std::vector<std::string>& overrides, int depth,
+                    TrainingOptions& options) {
+  const Config config = read_config(file, training_options().section, overrides);
+  if (const Config& base = config["base"]; base.given) {
+    if (depth > 8) base.fail("leads back to this file", "let the first file have no base");
+    read_over_base(existing_path(base, file.parent_path()), {}, depth + 1, options);
+  }
+  read_options(training_options().rows, config, options);
+  if (const Config& weights = config["weights"]; weights.given)
+    options.weights = expanded_path(weights, weights.text(), file.parent_path()).string();
+}
+
+}  // namespace
+
+const Options<TrainingOptions>& training_options() {
+  using O = TrainingOptions;
+  static const Options<O> table(
+      "training", "The whole file.",
+      {text("description", "for people"),
+       path("base", "a training file whose values count where this one gives none; seen from this file"),
+       text("name", &O::name, "of the run; left out: the file's"),
+       word("architecture", &O::architecture, {"small", "hood", "contourcraft", "contourcraft_paper"}, "of the network"),
+       integer("width", &O::width, not_negative, "of latents, in place of the architecture's; 0: its own"),
+       integer("message_steps", &O::message_steps, not_negative, "in place of the architecture's; 0: its own"),
+       path("weights", &O::weights, "to start from, of an earlier stage; seen from this file"),
+       integer("seed", &O::seed, not_negative, "of all that is random"),
+       integer("steps", &O::steps, at_least_one, "of the optimiser, in all"),
+       section(&O::samples, sample_options(), ""), section(&O::pool, pool_options(), ""),
+       section(&O::contact, training_contact_options(), ""),
+       section(&O::objective, objective_options(), ""), section(&O::optimiser, optimiser_options(), ""),
+       section(&O::watch, watch_options(), "")});
+  return table;
+}
+
+TrainingOptions read_training(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  TrainingOptions options;
+  read_over_base(file, overrides, 0, options);
+  if (options.name.empty()) options.name = file.stem().string();
+  check_names(options, file.string());
+  return options;
+}
+
+std::string training_yaml(const TrainingOptions& options) { return to_yaml(training_options().written(options)); }
+
+std::vector<std::string> unfinished_ramps(const TrainingOptions& options) {
+  std::vector<std::string> complaints;
+  const auto check = [&](const char* name, const LossRamp& ramp) {
+    if (!reaches_its_end(ramp))
+      complaints.push_back(fmt::format("{} goes from {} to {} between {} and {} of the run: it must stand at its full "
+                                       "value for the last tenth",
+                                       name, ramp.from, ramp.to, ramp.begin, ramp.end));
+  };
+  const LossOptions& losses = options.objective;
+  check("pool.frames", options.pool.frames);
+  check("objective.stretching", losses.stretching);
+  check("objective.bending", losses.bending);
+  check("objective.gravity", losses.gravity);
+  check("objective.inertia", losses.inertia);
+  check("objective.collision.weight", losses.collision.weight);
+  check("objective.friction.weight", losses.friction.weight);
+  check("objective.repulsion.weight", losses.repulsion.weight);
+  check("objective.contours.weight", losses.contours.weight);
+  return complaints;
+}
+
+}  // namespace selvedge

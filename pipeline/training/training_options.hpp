@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "learned/losses/loss_garment.hpp"
+#include "pipeline/config/options.hpp"
+#include "pipeline/training/schedule.hpp"
+
+namespace selvedge {
+
+enum class GarmentStart {
+  skinned,   // where the body takes the garment, maybe tangled
+  untangle,  // the same, parted by minimised contours before the roll-out starts
+  tangled    // skinned without layers' gaps and flesh, with shapes of a wide spread
+};
+
+// What a network is trained on.
+struct SampleOptions {
+  std::vector<std::string> garments{"tshirt"};  // by code, or outfits of outfits.yaml
+  double edge = 0.035;                          // of garments' triangles [m]
+  std::vector<std::string> clips;               // empty: all of the training split
+  int shapes = 1;                               // of the body; the first is the mean one
+  double shape_spread = 1;                      // standard deviations of its coefficients
+  VertexMaterial material;                      // HOOD's unless it says otherwise
+  bool sample_materials = false;                // over the authors' ranges, one a roll-out
+  double still_share = 0.5;                     // of roll-outs that begin at rest with a settling frame
+  double noise = 3e-3;                          // of start positions [m]
+  bool yaw = true, mirror = true;               // turned about the vertical, and left for right
+  double no_body_share = 0;                     // of roll-outs
+  bool flesh = true;  // the body gives way where it would pass through itself
+  GarmentStart start = GarmentStart::skinned;
+};
+
+// How states are rolled out.
+struct PoolOptions {
+  int states = 32;            // advanced one at a time at random; 1: one roll-out after another
+  LossRamp frames{1, 30, 0, .5};  // most of a roll-out; its length is random up to that where there are several states
+  bool random_length = true;
+  int passes = 2;                 // runs of the network a frame, an optimiser step each
+  int gate = 0;                   // factors of the network's correction that advancing tries; 0: takes it as it is
+  double reset_distance = 0.6;    // of a vertex from the skinned garment [m]
+  double long_share = 0;          // of roll-outs that go on to the clip's end,
+  int long_frames = 150;          // or for so many frames
+  bool safeguarded = false;       // advanced through Bridson's response; a state that it gives up is left
+  double no_contact_share = 0;    // of roll-outs without cloth-cloth edges and terms
+};
+
+// Which pairs of cloth see each other.
+struct ContactOptions {
+  bool edges = false;       // of cloth with cloth, in the graph
+  bool classify = false;    // by contours; false: all repel
+  bool attraction = true;   // pairs that do not repel are edges; false: they are left out (Grigorev et al. 2024, 4.3)
+};
+
+struct OptimiserOptions {
+  double learning_rate = 1.5e-3;
+  Decay decay = Decay::cosine;
+  int halving_steps = 50000;
+  double floor = 0.01;            // of the halving decay
+  bool normalise_samples = true;  // each sample's gradient by its own size
+  bool clip_median = true;        // at `clip` times the running median of the gradient's norm; false: at `clip`
+  double clip = 3;
+  int warm_up = 100;              // states that only feed the statistics
+  bool freeze_statistics = true;  // after the warm-up
+  double decoder_scale = 0.01;    // of the decoder's last layer at the start
+};
+
+// When a run writes and measures.
+struct WatchOptions {
+  double checkpoint_minutes = 5;
+  int measurements = 20;       // of the run: roll-outs and gaps
+  int frames = 60;             // of a measuring roll-out
+  std::string garment;         // of the measuring roll-out; empty: the first
+  std::string clip = "walk";   // of the training split
+  int fixed_states = 8;
+  int most_bad_samples = 50;   // without a finite loss in a row, before the run stops
+};
+
+struct TrainingOptions {
+  std::string name;           // empty: the file's
+  std::string architecture = "small";
+  int width = 0, message_steps = 0;  // in place of the architecture's own; 0: those
+  std::string weights;        // of an earlier stage, to start from; empty: fresh ones
+  std::uint64_t seed = 1;
+  int steps = 8700;           // of the optimiser
+  SampleOptions samples;
+  PoolOptions pool;
+  ContactOptions contact;
+  LossOptions objective = fast_losses();
+  OptimiserOptions optimiser;
+  WatchOptions watch;
+};
+
+// The table of a training file.
+const Options<TrainingOptions>& training_options();
+
+// A training file over its base, the base's base, and so on; overrides are key=value. Throws Error, also for a base
+// that leads back, for clips, garments or outfits of the validation split and for names that are unknown.
+TrainingOptions read_training(const std::filesystem::path&, const std::vector<std::string>& overrides = {});
+
+// The whole configuration as YAML that reads back to the same.
+std::string training_yaml(const TrainingOptions&);
+
+// Complaints, a line each, about ramps that do not reach their full value before the run ends.
+std::vector<std::string> unfinished_ramps(const TrainingOptions&);
+
+}  // namespace selvedge

@@ -1,0 +1,142 @@
+#include "pipeline/training/training_roll.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "learned/steppers/learned_scene.hpp"
+#include "pipeline/scene/setup_cloth.hpp"
+
+namespace selvedge {
+namespace {
+
+// Streams of different uses of one number.
+enum Use : std::uint64_t { drawing = 1, start_noise = 2, material_draw = 3 };
+
+RandomStream stream_for(std::uint64_t seed, Use use, std::uint64_t number) {
+  return stream_of(seed * 8 + use, number);
+}
+
+void add_garment(const TrainingWorld& world, const Garment& garment, const Eigen::VectorXd& shape, bool mirrored,
+                 const Material& material, Scene& scene, Triangles& triangles) {
+  Points rest = rest_shape(garment, world.body, shape);
+  Triangles own = garment.skin.triangles;
+  if (mirrored) {
+    rest.col(0) *= -1;
+    own.col(1).swap(own.col(2));
+  }
+  const auto v = static_cast<int>(scene.rest.rows()), t = static_cast<int>(triangles.rows());
+  scene.cloths.push_back({garment.name, material, v, static_cast<int>(rest.rows()), t, static_cast<int>(own.rows())});
+  const std::vector<RestTriangle> flat = flattened(rest, own, Vec3(0, 1, 0));
+  scene.rest_triangle.insert(scene.rest_triangle.end(), flat.begin(), flat.end());
+  scene.rest.conservativeResize(v + rest.rows(), 3);
+  scene.rest.bottomRows(rest.rows()) = rest;
+  triangles.conservativeResize(t + own.rows(), 3);
+  triangles.bottomRows(own.rows()) = own.array() + v;
+  for (const int pin : garment.pins) scene.pins.push_back(v + pin);
+}
+
+Material isotropic(const VertexMaterial& values) {
+  Material material;
+  material.density = values.density;
+  material.lame_mu = values.lame_mu;
+  material.lame_lambda = values.lame_lambda;
+  material.bending_model = BendingModel::hinge;
+  material.bending = values.bending;
+  return material;
+}
+
+// Turned about the vertical and mirrored at x = 0 before.
+void turn(const RollRequest& request, PointsF& x) {
+  if (request.mirrored) x.col(0) *= -1;
+  if (request.yaw == 0) return;
+  const Eigen::Matrix3f rotation =
+      Eigen::AngleAxisd(request.yaw, Vec3::UnitY()).toRotationMatrix().cast<float>().transpose();
+  x = (x * rotation).eval();
+}
+
+}  // namespace
+
+RollRequest draw_roll(const TrainingOptions& options, const TrainingWorld& world, std::uint64_t number,
+                      double progress) {
+  RandomStream random = stream_for(options.seed, drawing, number);
+  const SampleOptions& samples = options.samples;
+  const PoolOptions& pool = options.pool;
+  RollRequest request;
+  request.number = number;
+  request.wear = random.below(static_cast<int>(world.wear.size()));
+  request.body = random.below(static_cast<int>(world.bodies.size()));
+  request.clip = random.below(static_cast<int>(world.clip_names.size()));
+  request.still = random.heads(samples.still_share);
+  request.mirrored = samples.mirror && random.heads(0.5);
+  request.with_body = !random.heads(samples.no_body_share);
+  request.cloth_contact = options.contact.edges && !random.heads(pool.no_contact_share);
+  const double turned = random.uniform();
+  request.yaw = samples.yaw ? 2 * std::numbers::pi * turned : 0;
+  const bool is_long = random.heads(pool.long_share);
+  const int most = std::max(1, static_cast<int>(weight_at(pool.frames, progress)));
+  const int some = pool.random_length ? 1 + random.below(most) : most;
+  const int there = frame_count(world, request.body, request.clip);
+  request.frames = std::min(is_long ? pool.long_frames : some, there - 1);
+  request.first_frame = random.below(std::max(1, there - request.frames));
+  return request;
+}
+
+VertexMaterial random_material(RandomStream& random) {
+  constexpr double thickness = 4.7e-4;  // [m], of the authors
+  VertexMaterial material;
+  material.density = random.between(0.0434, 0.7);
+  material.lame_mu = thickness * std::exp(random.between(std::log(15909.0), std::log(63636.0)));
+  material.lame_lambda = thickness * random.between(3535.41, 93333.74);
+  material.bending = std::exp(random.between(std::log(6.3708e-8), std::log(1.31397e-3)));
+  return material;
+}
+
+std::shared_ptr<const TrainingScene> make_training_scene(const RollMaker& maker, const RollRequest& request,
+                                                         const VertexMaterial& values) {
+  const TrainingWorld& world = maker.world;
+  auto made = std::make_shared<TrainingScene>();
+  Scene& scene = made->scene;
+  Triangles triangles;
+  for (const Garment& garment : world.wear[static_cast<std::size_t>(request.wear)].garments)
+    add_garment(world, garment, world.bodies[static_cast<std::size_t>(request.body)].shape, request.mirrored,
+                isotropic(values), scene, triangles);
+  scene.surface = make_surface(static_cast<int>(scene.rest.rows()), triangles);
+  scene.contact.self = maker.options.contact.edges;
+  if (request.with_body)
+    scene.obstacles.push_back({"body", request.mirrored ? world.mirrored : world.surface, true});
+  made->graph = learned_scene(scene).graph;
+  made->rest = make_rest_graph(made->graph, maker.features);
+  std::vector<char> pinned(static_cast<std::size_t>(scene.surface.vertex_count), 0);
+  for (const int pin : scene.pins) pinned[static_cast<std::size_t>(pin)] = 1;
+  made->losses = make_loss_garment(scene.surface, scene.rest, pinned, values);
+  return made;
+}
+
+Roll make_roll(RollMaker& maker, const RollRequest& request) {
+  Roll roll;
+  roll.request = request;
+  if (maker.options.samples.sample_materials) {
+    RandomStream random = stream_for(maker.options.seed, material_draw, request.number);
+    roll.scene = make_training_scene(maker, request, random_material(random));
+  } else {
+    auto& scene = maker.scenes[{request.wear, request.body, request.mirrored, request.with_body}];
+    if (!scene) scene = make_training_scene(maker, request, maker.options.samples.material);
+    roll.scene = scene;
+  }
+  for (int k = 0; k < request.frames + 2; ++k) {
+    WornFrame frame = worn_frame(maker.world, request.wear, request.body, request.clip, request.first_frame - 1 + k);
+    turn(request, frame.body);
+    turn(request, frame.cloth);
+    roll.body.push_back(request.with_body ? std::move(frame.body) : PointsF(0, 3));
+    roll.cloth.push_back(std::move(frame.cloth));
+  }
+  RandomStream random = stream_for(maker.options.seed, start_noise, request.number);
+  roll.noise.resize(roll.cloth.front().rows(), 3);
+  for (Eigen::Index i = 0; i < roll.noise.size(); ++i)
+    roll.noise.data()[i] = maker.options.samples.noise * random.normal();
+  for (const int pin : roll.scene->rest.pinned) roll.noise.row(pin).setZero();
+  return roll;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+
+#include "learned/graph/rest_graph.hpp"
+#include "learned/losses/loss_garment.hpp"
+#include "pipeline/training/random_stream.hpp"
+#include "pipeline/training/training_world.hpp"
+
+namespace selvedge {
+
+// What a roll-out starts from and how long it goes on: enough to prepare it again, to the bit.
+struct RollRequest {
+  std::uint64_t number = 0;  // of all roll-outs of the run
+  int wear = 0, body = 0, clip = 0;
+  int first_frame = 0, frames = 1;
+  bool still = true;     // begins at rest, with a frame of 1/3 s in which the cloth falls
+  bool mirrored = false;
+  bool with_body = true;
+  bool cloth_contact = false;
+  double yaw = 0;  // [rad]
+  bool operator==(const RollRequest&) const = default;
+};
+
+// A scene as network and losses see it.
+struct TrainingScene {
+  Scene scene;
+  GraphScene graph;
+  RestGraph rest;
+  LossGarment losses;
+};
+
+// A roll-out's world, prepared: entry k is frame first_frame - 1 + k of the clip, frames + 2 in all.
+struct Roll {
+  RollRequest request;
+  std::shared_ptr<const TrainingScene> scene;
+  std::vector<PointsF> body, cloth;  // cloth: as worn; body: empty matrices where there is none
+  Points noise;                      // of the start positions [m]; zero at pinned vertices
+};
+
+// The number-th roll-out; `progress` of the run says how long it may be.
+RollRequest draw_roll(const TrainingOptions&, const TrainingWorld&, std::uint64_t number, double progress);
+
+// Prepares roll-outs of a world. One thread at a time.
+struct RollMaker {
+  TrainingOptions options;
+  FeatureOptions features;
+  TrainingWorld world;
+  std::map<std::array<int, 4>, std::shared_ptr<const TrainingScene>> scenes;  // of the fixed material
+};
+Roll make_roll(RollMaker&, const RollRequest&);
+
+// A material over the ranges of the authors' training (digest 2.8): density and lambda uniform, mu and bending by their
+// logarithms.
+VertexMaterial random_material(RandomStream&);
+
+std::shared_ptr<const TrainingScene> make_training_scene(const RollMaker&, const RollRequest&, const VertexMaterial&);
+
+}  // namespace selvedge

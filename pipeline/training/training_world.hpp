@@ -1,0 +1,61 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "collision/untangle/give_way.hpp"
+#include "pipeline/formats/trajectory.hpp"
+#include "pipeline/garments/garment.hpp"
+#include "pipeline/motions/clip.hpp"
+#include "pipeline/training/training_options.hpp"
+
+namespace selvedge {
+
+// What is worn in one scene: a garment, or those of an outfit from the body outward.
+struct TrainingWear {
+  std::string name;
+  std::vector<Garment> garments;
+  std::vector<SkinWeights> skin;  // in what shares each vertex goes along where the body gives way; none: nowhere
+};
+
+// How far vertices of the body give way in a pose, those that do alone.
+struct FleshMoves {
+  std::vector<int> vertices;
+  PointsF moves;  // [m]
+};
+
+// A body of one shape and what it does. Frames are found when they are first asked for.
+struct TrainingBody {
+  Eigen::VectorXd shape;
+  Points joints;
+  std::shared_ptr<const GiveWay> flesh;  // null: it passes through itself
+  std::vector<Clip> clips;               // made for this body's joints
+  std::vector<std::map<int, FleshMoves>> given;  // by clip and frame
+};
+
+// Everything that samples are made of. One thread at a time.
+struct TrainingWorld {
+  BodyModel body;
+  Surface surface, mirrored;  // of its skin; with the sides of triangles exchanged
+  std::vector<std::string> clip_names;
+  std::vector<TrainingWear> wear;
+  std::vector<TrainingBody> bodies;
+};
+
+// Mannequin, garments and clips of the training split. Takes seconds where garments are not in the cache.
+TrainingWorld make_training_world(const SampleOptions&, std::uint64_t seed);
+
+// Where body and what it wears are in a frame of a clip; cloth of all garments on end [m].
+struct WornFrame {
+  PointsF body, cloth;
+};
+WornFrame worn_frame(TrainingWorld&, int wear, int body, int clip, int frame);
+int frame_count(const TrainingWorld&, int body, int clip);
+
+// Moves of flesh take long to find: they are kept in files of a folder, one for each body and clip.
+void read_flesh(const std::filesystem::path& folder, TrainingWorld&);
+void write_flesh(const std::filesystem::path& folder, const TrainingWorld&);
+
+}  // namespace selvedge
