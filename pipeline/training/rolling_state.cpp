@@ -59,6 +59,21 @@ void begin_roll(Roll roll, RollingState& state) {
   set_surroundings(state);
 }
 
+KeptRolling kept(const RollingState& state) {
+  return {state.frame, state.pass, state.now.x, state.now.previous, state.now.velocity, state.now.guess};
+}
+
+void resume_roll(Roll roll, const KeptRolling& from, RollingState& state) {
+  begin_roll(std::move(roll), state);
+  state.frame = from.frame;
+  state.now.x = from.x;
+  state.now.previous = from.previous;
+  state.now.velocity = from.velocity;
+  set_surroundings(state);
+  state.now.guess = from.guess;
+  state.now.pass = state.pass = from.pass;
+}
+
 LossInputs inputs_of(const RollingState& state, const SeenPositions& seen, const Points& predicted, double progress) {
   LossInputs inputs =
       loss_inputs(state.roll.scene->losses, state.roll.scene->graph, state.now, seen, predicted);

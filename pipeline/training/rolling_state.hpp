@@ -23,6 +23,14 @@ struct RollingState {
 // Begins a roll-out: at rest, out of the body, before a frame of 1/3 s; or as the clip moves.
 void begin_roll(Roll, RollingState&);
 
+// Goes on with a roll-out that was begun before, from what was kept of it.
+struct KeptRolling {
+  int frame = 0, pass = 0;
+  Points x, previous, velocity, guess;
+};
+KeptRolling kept(const RollingState&);
+void resume_roll(Roll, const KeptRolling&, RollingState&);
+
 // Whether the frame to be made is the one in which cloth falls to rest.
 bool is_settling(const RollingState&);
 

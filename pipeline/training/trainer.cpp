@@ -10,6 +10,8 @@
 #include "learned/network/architecture_text.hpp"
 #include "learned/network/initial_weights.hpp"
 #include "learned/network/weights_hdf5.hpp"
+#include "pipeline/scene/setup_paths.hpp"
+#include "pipeline/training/flesh_hdf5.hpp"
 
 namespace selvedge {
 namespace {
@@ -176,7 +178,7 @@ std::unique_ptr<Trainer> make_empty_trainer(const TrainingOptions& options) {
   trainer->pool.resize(static_cast<std::size_t>(options.pool.states));
   trainer->maker = std::make_unique<RollMaker>(
       RollMaker{options, trainer->architecture.features, make_training_world(options.samples, options.seed), {}});
-  read_flesh(flesh_folder(), trainer->maker->world);
+  read_flesh(cache_folder(), trainer->maker->world);
   trainer->queue = std::make_unique<RollQueue>(*trainer->maker);
   return trainer;
 }

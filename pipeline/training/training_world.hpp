@@ -54,8 +54,4 @@ struct WornFrame {
 WornFrame worn_frame(TrainingWorld&, int wear, int body, int clip, int frame);
 int frame_count(const TrainingWorld&, int body, int clip);
 
-// Moves of flesh take long to find: they are kept in files of a folder, one for each body and clip.
-void read_flesh(const std::filesystem::path& folder, TrainingWorld&);
-void write_flesh(const std::filesystem::path& folder, const TrainingWorld&);
-
 }  // namespace selvedge

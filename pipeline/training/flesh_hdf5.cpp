@@ -1,0 +1,111 @@
+#include "pipeline/training/flesh_hdf5.hpp"
+
+#include <fmt/format.h>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/bodies/mannequin.hpp"
+#include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/host/kept_rows.hpp"
+#include "pipeline/host/write_file.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr int flesh_recipe = 1;  // to be raised with every change of how bodies give way
+
+const h5::FileForm flesh_form{"selvedge flesh 1", "flesh", "docs/training.md"};
+
+// Of the body as it is and of the clip's poses: another body or clip has another file.
+std::filesystem::path flesh_file(const std::filesystem::path& folder, const TrainingWorld& world,
+                                 const TrainingBody& body, std::size_t clip, std::size_t layers) {
+  const Clip& motion = body.clips[clip];
+  std::string text = fmt::format("{} {} {} {} {}", flesh_recipe, mannequin_recipe, world.body.name, layers, motion.fps);
+  for (const double s : body.shape) text += fmt::format(" {:a}", s);
+  for (const BodyPose& pose : motion.poses)
+    text.append(reinterpret_cast<const char*>(pose.rotations.data()),
+                sizeof(double) * static_cast<std::size_t>(pose.rotations.size()));
+  return folder / "flesh" / fmt::format("{}-{:016x}.h5", motion.name, hash_of(text));
+}
+
+std::size_t most_layers(const TrainingWorld& world) {
+  std::size_t layers = 1;
+  for (const TrainingWear& wear : world.wear) layers = std::max(layers, wear.garments.size());
+  return layers;
+}
+
+// All frames on end: number of a frame, how many vertices move in it, which, and how far.
+void write_clip(const std::filesystem::path& path, const std::map<int, FleshMoves>& given) {
+  std::vector<int> frames, counts, vertices;
+  Points moves(0, 3);
+  Eigen::Index rows = 0;
+  for (const auto& [frame, known] : given) rows += known.moves.rows();
+  moves.resize(rows, 3);
+  rows = 0;
+  for (const auto& [frame, known] : given) {
+    frames.push_back(frame);
+    counts.push_back(static_cast<int>(known.vertices.size()));
+    vertices.insert(vertices.end(), known.vertices.begin(), known.vertices.end());
+    moves.middleRows(rows, known.moves.rows()) = known.moves.cast<double>();
+    rows += known.moves.rows();
+  }
+  h5::write_form(path, flesh_form, [&](const h5::File& file) {
+    h5::write_integers(file, "frames", frames);
+    h5::write_integers(file, "counts", counts);
+    h5::write_integers(file, "vertices", vertices);
+    h5::write_points(file, "moves", moves);
+  });
+}
+
+std::map<int, FleshMoves> read_clip(const std::filesystem::path& path, int body_vertices) {
+  const h5::Fields file(path, flesh_form);
+  const std::vector<int> frames = file.integers("frames"), counts = file.integers("counts"),
+                         vertices = file.integers("vertices");
+  const Points moves = file.points("moves");
+  std::map<int, FleshMoves> given;
+  std::size_t at = 0;
+  if (frames.size() != counts.size() || static_cast<Eigen::Index>(vertices.size()) != moves.rows())
+    file.fail("counts", "does not fit the other fields");
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const auto count = static_cast<std::size_t>(std::max(counts[k], 0));
+    if (count > vertices.size() - at) file.fail("counts", "asks for more vertices than there are");
+    FleshMoves& known = given[frames[k]];
+    known.vertices.assign(vertices.begin() + static_cast<std::ptrdiff_t>(at),
+                          vertices.begin() + static_cast<std::ptrdiff_t>(at + count));
+    known.moves = moves.middleRows(static_cast<Eigen::Index>(at), static_cast<Eigen::Index>(count)).cast<float>();
+    for (const int v : known.vertices)
+      if (v < 0 || v >= body_vertices) file.fail("vertices", "names a vertex that the body lacks");
+    at += count;
+  }
+  return given;
+}
+
+}  // namespace
+
+void read_flesh(const std::filesystem::path& folder, TrainingWorld& world) {
+  for (TrainingBody& body : world.bodies)
+    for (std::size_t clip = 0; body.flesh && clip < body.clips.size(); ++clip) {
+      const std::filesystem::path path = flesh_file(folder, world, body, clip, most_layers(world));
+      if (!std::filesystem::exists(path)) continue;
+      try {
+        body.given[clip].merge(read_clip(path, world.surface.vertex_count));
+      } catch (const Error&) {  // it is found anew
+      }
+    }
+}
+
+void write_flesh(const std::filesystem::path& folder, const TrainingWorld& world) {
+  for (const TrainingBody& body : world.bodies)
+    for (std::size_t clip = 0; body.flesh && clip < body.clips.size(); ++clip) {
+      const std::filesystem::path path = flesh_file(folder, world, body, clip, most_layers(world));
+      std::size_t there = 0;
+      try {
+        if (std::filesystem::exists(path)) there = read_clip(path, world.surface.vertex_count).size();
+      } catch (const Error&) {
+      }
+      if (body.given[clip].size() <= there) continue;
+      make_folder(path.parent_path());
+      write_clip(path, body.given[clip]);
+    }
+}
+
+}  // namespace selvedge

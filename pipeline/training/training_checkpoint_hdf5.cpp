@@ -1,0 +1,298 @@
+#include "pipeline/training/training_checkpoint_hdf5.hpp"
+
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/host/kept_rows.hpp"
+
+namespace selvedge {
+namespace {
+
+const h5::FileForm checkpoint_form{"selvedge training checkpoint 1", "training checkpoint", "docs/training.md"};
+
+template <class T>
+std::string bytes_of(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), sizeof(T) * values.size()};
+}
+
+// Writes fields, and at last a checksum of them all.
+struct FieldsOut {
+  const h5::File& file;
+  std::uint64_t sum = 0;
+
+  void add(const std::string& name, const std::string& bytes) {
+    sum = hash_of(fmt::format("{:016x} {} ", sum, name) + bytes);
+  }
+  void numbers(const std::string& name, const std::vector<double>& values) {
+    h5::write_numbers(file, name, values);
+    add(name, bytes_of(values));
+  }
+  void floats(const std::string& name, const std::vector<float>& values) {
+    file.write_constant(name, H5T_NATIVE_FLOAT, {static_cast<hsize_t>(values.size())}, values.data());
+    add(name, bytes_of(values));
+  }
+  void text(const std::string& name, const std::string& value) {
+    file.write_text(name, value + ".");  // never empty
+    add(name, value);
+  }
+  void points(const std::string& name, const Points& x) {
+    numbers(name, std::vector<double>(x.data(), x.data() + x.size()));
+  }
+};
+
+// Reads what FieldsOut wrote, in the same order.
+struct FieldsIn {
+  const h5::File& file;
+  std::uint64_t sum = 0;
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(what, file.path().string(), "begin the training anew, without --resume");
+  }
+  void add(const std::string& name, const std::string& bytes) {
+    sum = hash_of(fmt::format("{:016x} {} ", sum, name) + bytes);
+  }
+  std::size_t length(const std::string& name) const {
+    if (!file.has(name)) fail("the field `" + name + "` is missing");
+    const std::vector<hsize_t> shape = file.shape(file.open_dataset(name).id());
+    if (shape.size() != 1 || shape[0] > (hsize_t(1) << 32)) fail("the field `" + name + "` is no list");
+    return static_cast<std::size_t>(shape[0]);
+  }
+  std::vector<double> numbers(const std::string& name) {
+    std::vector<double> values(length(name));
+    if (!values.empty()) file.read_all(name, H5T_NATIVE_DOUBLE, values.data());
+    add(name, bytes_of(values));
+    return values;
+  }
+  std::vector<float> floats(const std::string& name) {
+    std::vector<float> values(length(name));
+    if (!values.empty()) file.read_all(name, H5T_NATIVE_FLOAT, values.data());
+    add(name, bytes_of(values));
+    return values;
+  }
+  std::string text(const std::string& name) {
+    if (!file.has(name)) fail("the field `" + name + "` is missing");
+    std::string value = file.read_text(name);
+    if (value.empty()) fail("the field `" + name + "` is empty");
+    value.pop_back();
+    add(name, value);
+    return value;
+  }
+  Points points(const std::string& name) {
+    const std::vector<double> values = numbers(name);
+    if (values.size() % 3 != 0) fail("the field `" + name + "` has no rows of three");
+    return Eigen::Map<const Points>(values.data(), static_cast<Eigen::Index>(values.size() / 3), 3);
+  }
+};
+
+std::vector<double> numbers_of(const RollRequest& r) {
+  return {static_cast<double>(r.number),   double(r.wear),      double(r.body),     double(r.clip), double(r.first_frame),
+          double(r.frames), double(r.still), double(r.mirrored), double(r.with_body), double(r.cloth_contact), r.yaw};
+}
+
+RollRequest request_of(const FieldsIn& in, const TrainingWorld& world, const double* n) {
+  RollRequest r{static_cast<std::uint64_t>(n[0]), int(n[1]), int(n[2]), int(n[3]), int(n[4]), int(n[5]),
+                n[6] != 0, n[7] != 0, n[8] != 0, n[9] != 0, n[10]};
+  const bool known = r.wear >= 0 && r.wear < int(world.wear.size()) && r.body >= 0 &&
+                     r.body < int(world.bodies.size()) && r.clip >= 0 && r.clip < int(world.clip_names.size()) &&
+                     r.frames >= 1 && r.frames < 100000;
+  if (!known) in.fail("names a roll-out that the configuration does not have");
+  return r;
+}
+constexpr std::size_t request_numbers = 11;
+
+std::vector<float> all_weights(const Architecture& architecture, NetworkWeights weights) {
+  std::vector<float> all;
+  for (const WeightArray& array : weight_arrays(architecture, weights))
+    all.insert(all.end(), array.data, array.data + static_cast<std::ptrdiff_t>(array.rows) * array.columns);
+  return all;
+}
+
+void set_weights(const FieldsIn& in, const Architecture& architecture, const std::vector<float>& all,
+                 NetworkWeights& weights) {
+  std::size_t at = 0;
+  for (const WeightArray& array : weight_arrays(architecture, weights)) {
+    const auto count = static_cast<std::size_t>(array.rows) * static_cast<std::size_t>(array.columns);
+    if (count > all.size() - at) in.fail("has too few weights");
+    std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(at), count, array.data);
+    at += count;
+  }
+  if (at != all.size()) in.fail("has too many weights");
+}
+
+template <class Sums, class Visit>
+void visit_sums(Sums& sums, const Visit& visit) {
+  visit("node", sums.node);
+  visit("mesh_edge", sums.mesh_edge);
+  visit("coarse_edge", sums.coarse_edge);
+  visit("world_edge", sums.world_edge);
+  visit("body_edge", sums.body_edge);
+  visit("output", sums.output);
+}
+
+void write_adam(FieldsOut& out, const Trainer& trainer) {
+  std::string names;
+  std::vector<double> sizes;
+  std::vector<float> values;
+  for (const NamedFloats& array : adam_arrays(trainer.architecture, trainer.adam)) {
+    names += array.name + "\n";
+    sizes.push_back(static_cast<double>(array.values.size()));
+    values.insert(values.end(), array.values.begin(), array.values.end());
+  }
+  out.text("adam_names", names);
+  out.numbers("adam_sizes", sizes);
+  out.floats("adam_values", values);
+}
+
+AdamState read_adam(FieldsIn& in, const Architecture& architecture) {
+  const std::string names = in.text("adam_names");
+  const std::vector<double> sizes = in.numbers("adam_sizes");
+  const std::vector<float> values = in.floats("adam_values");
+  std::vector<NamedFloats> arrays;
+  std::size_t at = 0, begin = 0;
+  for (const double size : sizes) {
+    const std::size_t end = names.find('\n', begin), count = static_cast<std::size_t>(size);
+    if (end == std::string::npos || count > values.size() - at) in.fail("has a damaged state of the optimiser");
+    arrays.push_back({names.substr(begin, end - begin),
+                      {values.begin() + static_cast<std::ptrdiff_t>(at),
+                       values.begin() + static_cast<std::ptrdiff_t>(at + count)}});
+    begin = end + 1;
+    at += count;
+  }
+  return adam_from_arrays(architecture, arrays, in.file.path().string());
+}
+
+void write_pool(FieldsOut& out, const Trainer& trainer) {
+  std::vector<double> waiting;
+  for (const RollRequest& request : trainer.queue->waiting()) {
+    const std::vector<double> numbers = numbers_of(request);
+    waiting.insert(waiting.end(), numbers.begin(), numbers.end());
+  }
+  out.numbers("waiting", waiting);
+  for (std::size_t k = 0; k < trainer.pool.size(); ++k) {
+    const RollingState& state = trainer.pool[k];
+    const std::string name = fmt::format("state_{}_", k);
+    std::vector<double> numbers = numbers_of(state.roll.request);
+    const KeptRolling kept_state = kept(state);
+    numbers.insert(numbers.end(), {double(state.over), double(kept_state.frame), double(kept_state.pass)});
+    out.numbers(name + "roll", numbers);
+    if (state.over) continue;
+    out.points(name + "x", kept_state.x);
+    out.points(name + "previous", kept_state.previous);
+    out.points(name + "velocity", kept_state.velocity);
+    out.points(name + "guess", kept_state.guess);
+  }
+}
+
+// The roll-outs are prepared again.
+void read_pool(FieldsIn& in, Trainer& trainer) {
+  const std::vector<double> waiting = in.numbers("waiting");
+  std::vector<KeptRolling> states(trainer.pool.size());
+  std::vector<std::size_t> going;
+  for (std::size_t k = 0; k < trainer.pool.size(); ++k) {
+    const std::string name = fmt::format("state_{}_", k);
+    const std::vector<double> numbers = in.numbers(name + "roll");
+    if (numbers.size() != request_numbers + 3) in.fail("the field `" + name + "roll` has another length");
+    if (numbers[request_numbers] != 0) continue;
+    going.push_back(k);
+    trainer.queue->ask(request_of(in, trainer.maker->world, numbers.data()));
+    states[k] = {int(numbers[request_numbers + 1]), int(numbers[request_numbers + 2]), in.points(name + "x"),
+                 in.points(name + "previous"), in.points(name + "velocity"), in.points(name + "guess")};
+  }
+  for (const std::size_t k : going) {
+    Roll roll = trainer.queue->take();
+    const Eigen::Index rows = roll.noise.rows();
+    const KeptRolling& from = states[k];
+    if (from.x.rows() != rows || from.previous.rows() != rows || from.velocity.rows() != rows ||
+        (from.guess.rows() != rows && from.guess.rows() != 0) || from.frame < 0 ||
+        from.frame >= roll.request.frames || from.pass < 0 || from.pass >= trainer.architecture.passes)
+      in.fail("has a state that does not fit its garment");
+    resume_roll(std::move(roll), from, trainer.pool[k]);
+  }
+  for (std::size_t k = 0; k + request_numbers <= waiting.size(); k += request_numbers)
+    trainer.queue->ask(request_of(in, trainer.maker->world, waiting.data() + k));
+}
+
+void write_counts(FieldsOut& out, const Trainer& trainer, const TrainingHistory& history) {
+  const TrainingCounts& c = trainer.counts;
+  out.numbers("counts", {double(c.step), double(c.rolls), double(c.frames), double(c.lost), double(c.given_up),
+                         double(c.bad), double(c.bad_in_a_row)});
+  out.text("random", fmt::format("{:016x}", trainer.random.state));
+  out.text("steps", history.steps);
+  out.text("measures", history.measures);
+  out.numbers("history", {history.seconds, history.best_score, double(history.best_step)});
+}
+
+void read_counts(FieldsIn& in, Trainer& trainer, TrainingHistory& history) {
+  const std::vector<double> c = in.numbers("counts");
+  if (c.size() != 7) in.fail("the field `counts` has another length");
+  trainer.counts = {long(c[0]), static_cast<std::uint64_t>(c[1]), long(c[2]), long(c[3]),
+                    long(c[4]), long(c[5]), long(c[6])};
+  trainer.random.state = std::strtoull(in.text("random").c_str(), nullptr, 16);
+  history.steps = in.text("steps");
+  history.measures = in.text("measures");
+  const std::vector<double> h = in.numbers("history");
+  if (h.size() != 3) in.fail("the field `history` has another length");
+  history.seconds = h[0];
+  history.best_score = h[1];
+  history.best_step = long(h[2]);
+}
+
+void check_configuration(FieldsIn& in, const TrainingOptions& options) {
+  if (in.text("config") != training_yaml(options))
+    throw Error("the checkpoint was made under another configuration", in.file.path().string(),
+                "resume with the same file and --set, or begin anew without --resume");
+}
+
+}  // namespace
+
+void write_training_checkpoint(const std::filesystem::path& path, const Trainer& trainer,
+                               const TrainingHistory& history) {
+  h5::write_form(path, checkpoint_form, [&](const h5::File& file) {
+    FieldsOut out{file};
+    out.text("config", training_yaml(trainer.options));
+    write_counts(out, trainer, history);
+    out.floats("weights", all_weights(trainer.architecture, trainer.network.weights));
+    visit_sums(trainer.sums, [&](const std::string& name, const DoubleAccumulators& sums) {
+      std::vector<double> values{sums.rows, sums.updates};
+      values.insert(values.end(), sums.sum.begin(), sums.sum.end());
+      values.insert(values.end(), sums.sum_squared.begin(), sums.sum_squared.end());
+      out.numbers("sums_" + name, values);
+    });
+    write_adam(out, trainer);
+    write_pool(out, trainer);
+    file.write_text("checksum", fmt::format("{:016x}", out.sum));
+  });
+}
+
+std::unique_ptr<Trainer> read_training_checkpoint(const std::filesystem::path& path, const TrainingOptions& options,
+                                                  TrainingHistory& history) {
+  if (!std::filesystem::exists(path))
+    throw Error("there is nothing to resume: no checkpoint", path.string(), "run without --resume");
+  const h5::Fields form(path, checkpoint_form);  // the form is checked
+  const h5::File file = h5::File::open(path);
+  FieldsIn in{file};
+  check_configuration(in, options);
+  auto trainer = make_empty_trainer(options);
+  read_counts(in, *trainer, history);
+  NetworkWeights weights = blank_weights(trainer->architecture);
+  set_weights(in, trainer->architecture, in.floats("weights"), weights);
+  visit_sums(trainer->sums, [&](const std::string& name, DoubleAccumulators& sums) {
+    const std::vector<double> values = in.numbers("sums_" + name);
+    const auto columns = static_cast<std::ptrdiff_t>(sums.sum.size());
+    if (values.size() != 2 + 2 * sums.sum.size()) in.fail("sums of " + name + " have another length");
+    sums.rows = values[0];
+    sums.updates = values[1];
+    std::copy_n(values.begin() + 2, columns, sums.sum.begin());
+    std::copy_n(values.begin() + 2 + columns, columns, sums.sum_squared.begin());
+  });
+  trainer->adam = read_adam(in, trainer->architecture);
+  read_pool(in, *trainer);
+  if (fmt::format("{:016x}", in.sum) != file.read_text("checksum")) in.fail("its checksum is wrong: it is damaged");
+  trainer->network = make_training_network(trainer->architecture, std::move(weights));
+  return trainer;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,236 @@
+#include "pipeline/training/training_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "learned/graph/integration.hpp"
+#include "learned/graph/nearest_faces.hpp"
+#include "physics/energies/measures.hpp"
+#include "pipeline/training/minimised.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr int most_evaluations = 800;
+constexpr int frames_before = 5;  // that are minimised before a fixed state
+
+// With all losses at full weight.
+FrameMaking full_making(const Trainer& trainer) {
+  FrameMaking making = frame_making(trainer);
+  making.progress = 1;
+  return making;
+}
+
+Points inertial_of(const FrameMaking& making, const RollingState& state) {
+  const RestGraph& rest = state.roll.scene->rest;
+  return inertial_guess(rest, state.now, seen_positions(rest, state.now, making.features), making.features);
+}
+
+double sum_at(const FrameMaking& making, RollingState& state, const Points& x) {
+  const SeenPositions seen = seen_positions(state.roll.scene->rest, state.now, making.features);
+  return sum_of(add_losses(inputs_of(state, seen, x, making.progress), making.losses, state.losses, nullptr));
+}
+
+RollRequest watched_request(const TrainingOptions& options, const TrainingWorld& world, int clip, int first,
+                            int frames, bool still) {
+  RollRequest request;
+  request.clip = clip;
+  request.still = still;
+  request.frames = std::max(1, std::min(frames, frame_count(world, 0, clip) - 1));
+  request.first_frame = std::clamp(first, 0, std::max(0, frame_count(world, 0, clip) - 1 - request.frames));
+  request.cloth_contact = options.contact.edges;
+  return request;
+}
+
+// Every frame of a network of several passes counts as one.
+FixedState fixed_state(const FrameMaking& making, Roll roll, bool worn) {
+  FixedState fixed;
+  fixed.worn = worn;
+  begin_roll(std::move(roll), fixed.state);
+  FrameMaking whole = making;
+  whole.passes = 1;
+  for (int k = 0; !worn && k < frames_before && !fixed.state.over; ++k) {
+    const Points x = inertial_of(whole, fixed.state);
+    const Minimised made = minimised(whole, fixed.state, x, most_evaluations);
+    const SeenPositions seen = seen_positions(fixed.state.roll.scene->rest, fixed.state.now, making.features);
+    NextCloth next{made.x, made.x - seen.x};
+    if (is_settling(fixed.state)) next.velocity.setZero();
+    take_pass(whole, next, HUGE_VAL, fixed.state);
+  }
+  const Points inertial = inertial_of(whole, fixed.state);
+  fixed.inertial = sum_at(whole, fixed.state, inertial);
+  Minimised made = minimised(whole, fixed.state, inertial, most_evaluations);
+  fixed.optimum = made.value;
+  fixed.best = std::move(made.x);
+  return fixed;
+}
+
+GapMeasure gap_of(Trainer& trainer, const FrameMaking& making, std::vector<FixedState>& states, bool worn) {
+  GapMeasure gap;
+  int count = 0;
+  for (FixedState& fixed : states) {
+    if (fixed.worn != worn) continue;
+    const KeptRolling before = kept(fixed.state);
+    NextCloth next;
+    bool made = true;
+    for (int pass = 0; made && pass < making.passes; ++pass) {
+      made = predict(trainer, making, fixed.state, next);
+      fixed.state.now.guess = next.x;
+      fixed.state.now.pass = fixed.state.pass = pass + 1;
+    }
+    fixed.state.now.guess = before.guess;
+    fixed.state.now.pass = fixed.state.pass = before.pass;
+    const double value = made ? sum_at(making, fixed.state, next.x) : HUGE_VAL;
+    const double excess = std::max(value - fixed.optimum, 1e-12);
+    gap.closed += (fixed.inertial - value) / (fixed.inertial - fixed.optimum);
+    gap.excess += excess;
+    gap.log_excess += std::log10(excess);
+    if (made) gap.rms += std::sqrt((next.x - fixed.best).rowwise().squaredNorm().mean());
+    ++count;
+  }
+  for (double* value : {&gap.closed, &gap.excess, &gap.log_excess, &gap.rms}) *value /= std::max(count, 1);
+  return gap;
+}
+
+double percentile(std::vector<double> values, double part) {
+  if (values.empty()) return 0;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+void add_strain(const Scene& scene, const Points& x, RollMeasure& roll) {
+  const auto stretches = principal_stretches(scene, x);
+  std::vector<double> strains;
+  for (const double s : stretches.reshaped()) strains.push_back(std::abs(s - 1));
+  double sum = 0;
+  for (const double s : strains) sum += s;
+  roll.strain += sum / static_cast<double>(std::max<std::size_t>(strains.size(), 1));
+  roll.strain_most = std::max(roll.strain_most, *std::ranges::max_element(strains));
+  roll.strain_99 += percentile(std::move(strains), 0.99);
+}
+
+void add_depth(const Surface& body, const Points& body_x, const Points& x, NearestFaces& search, RollMeasure& roll) {
+  if (body_x.rows() == 0) return;
+  constexpr double deep = 1e-3;  // [m]
+  const std::vector<int>& faces = nearest_centroids(body, body_x, {}, x, search);
+  int count = 0;
+  for (Eigen::Index v = 0; v < x.rows(); ++v) {
+    const int* corner = body.triangles.data() + 3 * faces[static_cast<std::size_t>(v)];
+    const Vec3 a = row(body_x, corner[0]), b = row(body_x, corner[1]), c = row(body_x, corner[2]);
+    const double depth = -(row(x, static_cast<int>(v)) - (a + b + c) / 3).dot((b - a).cross(c - a).normalized());
+    if (depth > deep) ++count;
+    roll.deepest = std::max(roll.deepest, depth);
+  }
+  roll.deep += static_cast<double>(count) / static_cast<double>(x.rows());
+}
+
+// What the last frames were like, for the jitter.
+struct MotionTrace {
+  Points x1, x2, x3;  // the last, the one before, ..
+
+  // Of the change of acceleration in the last four frames [m2/frame4]; 0 before there are so many.
+  double add(const Points& x) {
+    double squared = 0;
+    if (x3.rows() == x.rows())
+      squared = ((x - 2 * x1 + x2) - (x1 - 2 * x2 + x3)).rowwise().squaredNorm().mean();
+    x3 = std::move(x2);
+    x2 = std::move(x1);
+    x1 = x;
+    return squared;
+  }
+};
+
+}  // namespace
+
+bool predict(Trainer& trainer, const FrameMaking& making, RollingState& state, NextCloth& next) {
+  const FeatureTables& tables = trainer.network.weights.tables;
+  if (!raw_graph_of(making, tables, state, trainer.graph)) return false;
+  normalise(making.features, tables, trainer.graph);
+  const FeatureRows output = run_forward(trainer.network, trainer.graph, trainer.tape);
+  next = integrate(state.roll.scene->rest, state.now, making.features, tables.output, output);
+  return next.x.allFinite();
+}
+
+RollMeasure measure_roll(Trainer& trainer, const Roll& roll, int gate) {
+  const FrameMaking making = full_making(trainer);
+  const Scene& scene = roll.scene->scene;
+  RollingState state;
+  begin_roll(roll, state);
+  RollMeasure result;
+  MotionTrace trace;
+  NearestFaces nearest;
+  IntersectionCache cache;
+  double squares = 0;
+  int jumps = 0;
+  while (!state.over) {
+    NextCloth next;
+    if (!predict(trainer, making, state, next)) {
+      result.finite = false;
+      break;
+    }
+    const bool last_pass = state.pass + 1 == making.passes, settling = is_settling(state);
+    if (last_pass && gate > 0) next = gated(making, gate, next, state);
+    if (last_pass && !settling) {
+      result.energy += sum_at(making, state, next.x);
+      add_strain(scene, next.x, result);
+      add_depth(roll.scene->graph.body, state.now.body_target, next.x, nearest, result);
+      for (Eigen::Index v = 0; v < next.x.rows(); ++v)
+        result.kinetic += 0.5 * roll.scene->losses.mass[static_cast<std::size_t>(v)] *
+                          next.velocity.row(v).squaredNorm() / (state.now.timestep * state.now.timestep);
+      result.pairs_at_end = static_cast<int>(intersecting_pairs(scene.surface, next.x, cache).size());
+      result.pairs += result.pairs_at_end;
+      squares += trace.add(next.x);
+      jumps += trace.x3.rows() > 0 && result.frames >= 3 ? 1 : 0;
+      ++result.frames;
+    }
+    take_pass(making, next, HUGE_VAL, state);
+  }
+  for (double* sum : {&result.energy, &result.strain, &result.strain_99, &result.deep, &result.kinetic, &result.pairs})
+    *sum /= std::max(result.frames, 1);
+  result.jitter = std::sqrt(squares / std::max(jumps, 1));
+  result.finite = result.finite && std::isfinite(result.energy);
+  return result;
+}
+
+TrainingWatch make_training_watch(const TrainingOptions& options, Trainer& trainer) {
+  TrainingWatch watch;
+  RollMaker& maker = *trainer.maker;
+  const FrameMaking making = full_making(trainer);
+  std::vector<Roll> rolls;
+  trainer.queue->locked([&] {
+    const TrainingWorld& world = maker.world;
+    const auto clips = static_cast<int>(world.clip_names.size());
+    const auto found = std::ranges::find(world.clip_names, options.watch.clip);
+    const int clip = found == world.clip_names.end() ? 0 : static_cast<int>(found - world.clip_names.begin());
+    const auto wear = std::ranges::find(world.wear, options.watch.garment, &TrainingWear::name);
+    RollRequest request = watched_request(options, world, clip, 0, options.watch.frames + 1, true);
+    request.wear = wear == world.wear.end() ? 0 : static_cast<int>(wear - world.wear.begin());
+    const double noise = std::exchange(maker.options.samples.noise, 0);
+    watch.roll = make_roll(maker, request);
+    for (int k = 0; k < options.watch.fixed_states; ++k) {
+      const bool worn = k % 2 == 0;
+      const int at = (clip + k / 2) % clips, frames = worn ? 1 : frames_before + 1;
+      RollRequest of_state =
+          watched_request(options, world, at, frame_count(world, 0, at) / 3 + 10 * (k / 2 / clips), frames, !worn);
+      of_state.wear = request.wear;
+      rolls.push_back(make_roll(maker, of_state));
+    }
+    maker.options.samples.noise = noise;
+  });
+  for (std::size_t k = 0; k < rolls.size(); ++k)
+    watch.states.push_back(fixed_state(making, std::move(rolls[k]), k % 2 == 0));
+  return watch;
+}
+
+TrainingMeasure measure(Trainer& trainer, TrainingWatch& watch) {
+  const FrameMaking making = full_making(trainer);
+  TrainingMeasure result;
+  result.step = trainer.counts.step;
+  result.worn = gap_of(trainer, making, watch.states, true);
+  result.minimised = gap_of(trainer, making, watch.states, false);
+  result.roll = measure_roll(trainer, watch.roll, 0);
+  return result;
+}
+
+}  // namespace selvedge
