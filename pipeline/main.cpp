@@ -6,6 +6,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/commands/commands.hpp"
+#include "pipeline/commands/train_command.hpp"
 #include "pipeline/commands/weights_commands.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/host/process_threads.hpp"
@@ -161,6 +162,15 @@ void wardrobe_options(CLI::App& command, WardrobeRequest& request) {
   command.add_option("--out", request.out, "folder for the results");
 }
 
+void train_options(CLI::App& command, TrainArguments& arguments) {
+  command.add_option("config", arguments.config, "training file (YAML), see docs/training.md")->required();
+  command.add_option("--set", arguments.overrides, "key=value instead of the file's, dotted keys")
+      ->allow_extra_args(false);
+  command.add_option("--out", arguments.out, "folder for weights, checkpoint and tables (out/training/NAME)");
+  command.add_flag("--resume", arguments.resume, "go on from the folder's checkpoint");
+  command.add_flag("--pause", arguments.pause, "ask the run in the folder to stop at a checkpoint");
+}
+
 void weights_import_options(CLI::App& command, WeightsImportArguments& arguments) {
   command.add_option("checkpoint", arguments.checkpoint, "published by the authors of HOOD or ContourCraft (.pth)")
       ->required();
@@ -217,6 +227,8 @@ void add_commands(CLI::App& app, Chosen& chosen) {
                                 stability_options, stability_command);
   add_command<WardrobeRequest>(app, chosen, "wardrobe", "every garment by code through every procedural clip",
                                wardrobe_options, wardrobe_command);
+  add_command<TrainArguments>(app, chosen, "train", "a network of the stepper `learned`", train_options,
+                              train_command);
   add_weights_commands(app, chosen);
   add_command<Nothing>(
       app, chosen, "info", "versions, packages, threads", [](CLI::App&, Nothing&) {},

@@ -46,7 +46,7 @@ Points force_input(const LossInputs& in, const LossOptions& options, const Force
     const double length = step.norm();
     const bool counts = !in.garment->pinned[at] && diagonal[at] > 0 && std::isfinite(length) && length > 0;
     if (counts)
-      slope.row(v) = step * (std::log1p(length / force.length) / length);
+      slope.row(v) = force.length > 0 ? Eigen::RowVector3d(step * (std::log1p(length / force.length) / length)) : step;
     else
       slope.row(v).setZero();
   }

@@ -9,7 +9,7 @@ struct ForceOptions {
   double contact_stiffness = 300;   // of a quadratic contact with the body [N/m]; 0: none
   double contact_thickness = 3e-3;  // [m]
   double contour_weight = 0;        // [N/m]; 0: contours are not looked for
-  double length = 1e-3;             // that is compressed to log 2 [m]
+  double length = 1e-3;             // that is compressed to log 2 [m]; 0: none is
   bool inertia = false;             // in a second pass, whose guess is not free flight
 };
 

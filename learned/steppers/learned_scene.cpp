@@ -38,13 +38,10 @@ float input_of(const TrainedRange& range, double value, const std::string& cloth
 }
 
 Eigen::RowVector3f material_row(const Cloth& cloth, std::vector<std::string>& clamped) {
-  const Material& m = cloth.material;
-  const bool woven = m.membrane == MembraneModel::baraff_witkin;
-  const double mu = woven ? (m.warp + m.weft) / 4 : m.lame_mu, lambda = woven ? 0 : m.lame_lambda;
-  const double bending = (m.bending_model == BendingModel::hinge ? 1 : hinge_per_curvature) * m.bending;
-  const Eigen::RowVector3f row(input_of(trained_bending, bending, cloth.name, clamped),
-                               input_of(trained_mu, mu, cloth.name, clamped),
-                               input_of(trained_lambda, lambda, cloth.name, clamped));
+  const VertexMaterial m = vertex_material(cloth.material);
+  const Eigen::RowVector3f row(input_of(trained_bending, m.bending, cloth.name, clamped),
+                               input_of(trained_mu, m.lame_mu, cloth.name, clamped),
+                               input_of(trained_lambda, m.lame_lambda, cloth.name, clamped));
   if (m.density < trained_density.low || m.density > trained_density.high) {
     std::ostringstream text;
     text << cloth.name << ": density " << m.density << " kg/m2 is outside of " << trained_density.low << " to "
@@ -98,6 +95,23 @@ LearnedScene learned_scene(const Scene& scene, const std::vector<int>& omitted_b
     result.graph.body_types[static_cast<std::size_t>(vertex)] = omitted_body_vertex;
   }
   return result;
+}
+
+VertexMaterial vertex_material(const Material& m) {
+  const bool woven = m.membrane == MembraneModel::baraff_witkin;
+  return {m.density, woven ? (m.warp + m.weft) / 4 : m.lame_mu, woven ? 0 : m.lame_lambda,
+          (m.bending_model == BendingModel::hinge ? 1 : hinge_per_curvature) * m.bending};
+}
+
+LossGarment loss_garment(const Scene& scene) {
+  std::vector<char> pinned(static_cast<std::size_t>(scene.surface.vertex_count), 0);
+  for (const int pin : scene.pins) pinned[static_cast<std::size_t>(pin)] = 1;
+  std::vector<VertexMaterial> materials(pinned.size());
+  for (const Cloth& cloth : scene.cloths)
+    std::fill_n(materials.begin() + cloth.first_vertex, cloth.vertex_count, vertex_material(cloth.material));
+  LossGarment garment = make_loss_garment(scene.surface, scene.rest, pinned, VertexMaterial{});
+  set_materials(garment, materials);
+  return garment;
 }
 
 void check_runnable(const Architecture& architecture) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "learned/graph/graph_state.hpp"
+#include "learned/losses/loss_garment.hpp"
 #include "learned/network/architecture.hpp"
 #include "physics/scene/scene.hpp"
 
@@ -24,6 +25,12 @@ LearnedScene learned_scene(const Scene&);
 
 // The same, with body vertices that get no edges. Throws Error for one that is not there.
 LearnedScene learned_scene(const Scene&, const std::vector<int>& omitted_body_vertices);
+
+// A material as losses and networks take it: isotropic, bending by dihedral angles; what is said above.
+VertexMaterial vertex_material(const Material&);
+
+// The cloth of a scene as losses need it.
+LossGarment loss_garment(const Scene&);
 
 // Throws Error for a network whose inputs, outputs or passes are not those that the stepper makes.
 void check_runnable(const Architecture&);

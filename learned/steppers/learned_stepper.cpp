@@ -12,6 +12,7 @@
 #include "learned/network/packed_network.hpp"
 #include "learned/steppers/learned_scene.hpp"
 #include "learned/steppers/learned_state.hpp"
+#include "learned/steppers/shown_force.hpp"
 #include "physics/scene/features.hpp"
 
 namespace selvedge {
@@ -28,10 +29,12 @@ class LearnedStepper final : public Stepper {
       : scene_(scene),
         features_(architecture.features),
         integration_(architecture.integration),
+        passes_(architecture.passes),
         settles_(options.settle || architecture.integration == Integration::relaxation_frame),
         tables_(weights.tables),
         network_(pack_network(architecture, weights)),
         graph_scene_(learned_scene(scene, options.omitted_body_vertices).graph),
+        losses_(features_.force_inputs ? loss_garment(scene) : LossGarment{}),
         rest_(make_rest_graph(graph_scene_, features_, options.centres)),
         world_(make_contact_world(scene.surface, obstacle_surfaces(scene), features_of(scene).self_contact,
                                   &scene.rest)) {}
@@ -41,16 +44,19 @@ class LearnedStepper final : public Stepper {
 
  private:
   bool settle(GraphState&, StepReport&);
-  bool predict(const GraphState&, NextCloth&, StepReport&);
   void audit_way(const State& from, const StepEnd& end, StepReport&);
+  bool predict(GraphState, NextCloth&, StepReport&);
+  void show_force(GraphState&);
 
   const Scene& scene_;
   FeatureOptions features_;
   Integration integration_;
+  int passes_;
   bool settles_;
   FeatureTables tables_;
   std::shared_ptr<const PackedNetwork> network_;
   GraphScene graph_scene_;
+  LossGarment losses_;  // of networks that are shown the objective's force
   RestGraph rest_;
   ContactWorld world_;
   StepperTraits traits_{.name = "learned", .past_frames = 1, .only_dt = learned_dt, .may_leave_out_cloths = false};
@@ -58,19 +64,36 @@ class LearnedStepper final : public Stepper {
   GraphSearch search_;
   Graph graph_;
   GraphReport found_;
+  LossSearch force_search_;
   AuditMemory audited_;
 };
 
-// One run of the network. False: something is not finite.
-bool LearnedStepper::predict(const GraphState& state, NextCloth& next, StepReport& report) {
-  Stopwatch watch;
-  make_graph(graph_scene_, rest_, state, features_, tables_, search_, graph_, found_);
-  report.seconds.graph += watch.lap();
-  if (!found_.refused.empty()) return false;
-  next = integrate(rest_, state, features_, tables_.output, infer(*network_, graph_));
-  report.seconds.network += watch.lap();
-  ++report.substeps;
-  return is_near(next.x) && is_near(next.velocity);
+// What the objective asks for at the guess, of networks that see it.
+void LearnedStepper::show_force(GraphState& state) {
+  if (!features_.force_inputs) return;
+  const SeenPositions seen = seen_positions(rest_, state, features_);
+  const Points guess = guess_of(rest_, state, seen, features_);
+  LossInputs inputs = loss_inputs(losses_, graph_scene_, state, seen, guess);
+  inputs.is_initial = state.timestep > learned_dt * 1.5;
+  inputs.contours = !state.no_cloth_edges;
+  state.force = shown_force(inputs, state.pass, features_.contour_force, force_search_);
+}
+
+// All passes of a frame, each from what the one before came to. False: something is not finite.
+bool LearnedStepper::predict(GraphState state, NextCloth& next, StepReport& report) {
+  for (state.pass = 0; state.pass < passes_; ++state.pass) {
+    Stopwatch watch;
+    show_force(state);
+    make_graph(graph_scene_, rest_, state, features_, tables_, search_, graph_, found_);
+    report.seconds.graph += watch.lap();
+    if (!found_.refused.empty()) return false;
+    next = integrate(rest_, state, features_, tables_.output, infer(*network_, graph_));
+    report.seconds.network += watch.lap();
+    ++report.substeps;
+    if (!is_near(next.x) || !is_near(next.velocity)) return false;
+    if (state.pass + 1 < passes_) state.guess = next.x;
+  }
+  return true;
 }
 
 // The cloth falls to rest while pins and body stand still. What follows starts where it has come to, with the velocity
@@ -93,6 +116,7 @@ bool LearnedStepper::settle(GraphState& state, StepReport& report) {
   for (int v = 0; v < scene_.surface.vertex_count; ++v)
     if (graph_scene_.types[static_cast<std::size_t>(v)] != pinned_vertex) state.target.row(v) = settled.x.row(v);
   state.velocity = settled.velocity;
+  if (passes_ > 1) state.velocity.setZero();  // as our own networks are trained
   state.body_previous = state.body;
   return true;
 }

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <deque>
 
+#include "learned/losses/force_input.hpp"
+
 namespace selvedge {
 namespace {
 

@@ -4,6 +4,7 @@
 
 #include "learned/graph/integration.hpp"
 #include "learned/steppers/learned_state.hpp"
+#include "learned/steppers/shown_force.hpp"
 
 namespace selvedge {
 namespace {
@@ -89,10 +90,8 @@ bool raw_graph_of(const FrameMaking& making, const FeatureTables& tables, Rollin
   if (making.features.force_inputs) {
     const SeenPositions seen = seen_positions(scene.rest, state.now, making.features);
     const Points guess = guess_of(scene.rest, state.now, seen, making.features);
-    ForceOptions force = making.force;
-    force.inertia = state.pass > 0;
-    if (!state.roll.request.cloth_contact) force.contour_weight = 0;
-    state.now.force = force_input(inputs_of(state, seen, guess, making.progress), making.losses, force, state.losses);
+    state.now.force = shown_force(inputs_of(state, seen, guess, making.progress), state.pass,
+                                  making.features.contour_force, state.losses);
   }
   make_raw_graph(scene.graph, scene.rest, state.now, making.features, tables, state.search, graph, state.found);
   return state.found.refused.empty();

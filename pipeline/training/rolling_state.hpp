@@ -2,8 +2,9 @@
 
 #include <vector>
 
+#include "learned/graph/integration.hpp"
 #include "learned/graph/make_graph.hpp"
-#include "learned/losses/force_input.hpp"
+#include "learned/losses/objective.hpp"
 #include "pipeline/training/training_roll.hpp"
 
 namespace selvedge {
@@ -37,11 +38,10 @@ bool is_settling(const RollingState&);
 // What losses see of the frame and of a prediction. Refers to the state.
 LossInputs inputs_of(const RollingState&, const SeenPositions&, const Points& predicted, double progress);
 
-// How a network's frame is made. `force`: what force inputs are made of, where the features have them.
+// How a network's frame is made.
 struct FrameMaking {
   FeatureOptions features;
   LossOptions losses;
-  ForceOptions force;
   int passes = 1;
   double progress = 1;  // of the run
 };

@@ -14,15 +14,15 @@ namespace {
 
 using namespace table;
 
-constexpr Range part{.low = 0, .high = 1};
+constexpr Range from_0_to_1{.low = 0, .high = 1};
 
 const Options<LossRamp>& ramp_options() {
   using O = LossRamp;
   static const Options<O> table("ramp", "A number over the run, linear between beginning and end.",
                                 {number("from", &O::from, Unit::none, not_negative, "before the beginning"),
                                  number("to", &O::to, Unit::none, not_negative, "from the end on"),
-                                 number("begin", &O::begin, Unit::none, part, "part of the run"),
-                                 number("end", &O::end, Unit::none, part, "part of the run")});
+                                 number("begin", &O::begin, Unit::none, from_0_to_1, "part of the run"),
+                                 number("end", &O::end, Unit::none, from_0_to_1, "part of the run")});
   return table;
 }
 
@@ -56,12 +56,12 @@ const Options<SampleOptions>& sample_options() {
        number("shape_spread", &O::shape_spread, Unit::none, not_negative, "standard deviations of the coefficients"),
        section(&O::material, training_material_options(), "HOOD's where it is left out"),
        flag("sample_materials", &O::sample_materials, "over the authors' ranges, one a roll-out"),
-       number("still_share", &O::still_share, Unit::none, part,
+       number("still_share", &O::still_share, Unit::none, from_0_to_1,
               "of roll-outs that begin at rest, with a frame of 1/3 s in which the cloth falls"),
        number("noise", &O::noise, Unit::length, not_negative, "of start positions, standard deviation"),
        flag("yaw", &O::yaw, "each roll-out turned about the vertical at random"),
        flag("mirror", &O::mirror, "every second roll-out left for right"),
-       number("no_body_share", &O::no_body_share, Unit::none, part, "of roll-outs, without the body"),
+       number("no_body_share", &O::no_body_share, Unit::none, from_0_to_1, "of roll-outs, without the body"),
        flag("flesh", &O::flesh, "the body gives way where it would pass through itself"),
        choice("start", &O::start,
               {{"skinned", GarmentStart::skinned},
@@ -86,11 +86,11 @@ const Options<PoolOptions>& pool_options() {
                "loss being of the whole correction; 0: it is taken as it is"),
        number("reset_distance", &O::reset_distance, Unit::length, positive,
               "of a vertex from the skinned garment, at which a roll-out ends"),
-       number("long_share", &O::long_share, Unit::none, part, "of roll-outs that go on for `long_frames`"),
+       number("long_share", &O::long_share, Unit::none, from_0_to_1, "of roll-outs that go on for `long_frames`"),
        integer("long_frames", &O::long_frames, at_least_one, "of a long roll-out, or to the clip's end"),
        flag("safeguarded", &O::safeguarded,
             "states are advanced through Bridson's response, and left where that gives up"),
-       number("no_contact_share", &O::no_contact_share, Unit::none, part,
+       number("no_contact_share", &O::no_contact_share, Unit::none, from_0_to_1,
               "of roll-outs without cloth-cloth edges and terms")});
   return table;
 }

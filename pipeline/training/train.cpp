@@ -1,0 +1,220 @@
+#include "pipeline/training/train.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "collision/geometry/error.hpp"
+#include "collision/geometry/floating_point.hpp"
+#include "learned/network/weights_hdf5.hpp"
+#include "pipeline/host/version.hpp"
+#include "pipeline/host/write_file.hpp"
+#include "pipeline/run/progress.hpp"
+#include "pipeline/scene/setup_paths.hpp"
+#include "pipeline/training/flesh_hdf5.hpp"
+#include "pipeline/training/running_mark.hpp"
+#include "pipeline/training/training_checkpoint_hdf5.hpp"
+#include "pipeline/training/training_tables.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr int lines_of_a_run = 200;  // in steps.csv
+
+std::filesystem::path pause_file(const std::filesystem::path& folder) { return folder / "pause"; }
+
+// A run on its way.
+struct TrainingRun {
+  explicit TrainingRun(const TrainRequest& asked) : request(asked) {}
+  const TrainRequest& request;
+  TrainingOptions options;
+  std::filesystem::path folder;
+  std::unique_ptr<Trainer> trainer;
+  TrainingHistory history;
+  TrainingWatch watch;
+  StepWindow window;
+  TrainingMeasure last;
+  Clock::time_point started = Clock::now(), saved = Clock::now(), told = Clock::now();
+  double seconds_before = 0;  // of earlier parts of the run
+  long steps_before = 0;
+  double told_every = 2;
+
+  double seconds() const { return seconds_before + seconds_since(started); }
+  void say(const std::string& line) const {
+    if (request.log) *request.log << line << std::endl;
+  }
+};
+
+void write_weights(const TrainingRun& run, const std::string& name) {
+  const Trainer& trainer = *run.trainer;
+  WeightFile file;
+  file.architecture = trainer.architecture;
+  file.weights = trainer.network.weights;
+  file.training = training_yaml(run.options);
+  file.version = program_version();
+  file.origin = {{"trained by", "selvedge train " + run.request.config.string()},
+                 {"seed", std::to_string(run.options.seed)},
+                 {"steps", fmt::format("{} of {}", trainer.counts.step, run.options.steps)},
+                 {"hours", fmt::format("{:.3f}", run.seconds() / 3600)}};
+  write_weight_file(run.folder / name, file);
+}
+
+void write_tables(const TrainingRun& run) {
+  write_file(run.folder / "steps.csv", run.history.steps);
+  write_file(run.folder / "measures.csv", run.history.measures);
+  write_file(run.folder / "training.html", training_page(run.options, run.history.steps, run.history.measures));
+}
+
+void save(TrainingRun& run) {
+  run.history.seconds = run.seconds();
+  run.trainer->queue->locked([&] { write_flesh(cache_folder(), run.trainer->maker->world); });
+  write_weights(run, "weights.h5");
+  write_tables(run);
+  write_training_checkpoint(run.folder / "checkpoint.h5", *run.trainer, run.history);
+  run.saved = Clock::now();
+}
+
+std::string measure_text(const TrainingMeasure& m) {
+  const RollMeasure& r = m.roll;
+  if (!r.finite) return fmt::format("step {}: the measuring roll-out is not finite after {} frames", m.step, r.frames);
+  return fmt::format(
+      "step {}: gap closed {:.3f} worn, {:.3f} minimised; roll-out of {} frames: objective {:.4g} J, strain {:.2f} % "
+      "(99 %: {:.1f} %), {:.2f} % of the vertices deep in the body, {:.0f} pairs at the end",
+      m.step, m.worn.closed, m.minimised.closed, r.frames, r.energy, 100 * r.strain, 100 * r.strain_99, 100 * r.deep,
+      static_cast<double>(r.pairs_at_end));
+}
+
+void take_measure(TrainingRun& run) {
+  run.last = measure(*run.trainer, run.watch);
+  run.history.measures += measure_line(run.last, run.seconds());
+  run.say(measure_text(run.last));
+  const RollMeasure& roll = run.last.roll;
+  if (roll.finite && (run.history.best_step == 0 || roll.energy < run.history.best_score) && run.last.step > 0) {
+    run.history.best_score = roll.energy;
+    run.history.best_step = run.last.step;
+    write_weights(run, "best.h5");
+  }
+  write_tables(run);
+}
+
+void tell(TrainingRun& run) {
+  if (seconds_since(run.told) < run.told_every) return;
+  run.told = Clock::now();
+  run.told_every = std::min(1.5 * run.told_every, 60.0);
+  const TrainingCounts& counts = run.trainer->counts;
+  const double rate = static_cast<double>(counts.step - run.steps_before) / seconds_since(run.started);
+  run.say(fmt::format("step {} of {}, {:.3g} samples/s, {} left, mean loss {:.4g} J, {} bad samples, {} lost roll-outs",
+                      counts.step, run.options.steps, rate,
+                      rate > 0 ? duration_text((run.options.steps - counts.step) / rate) : "?", run.window.mean_sum(),
+                      counts.bad, counts.lost));
+}
+
+// Whether this step is one after which something is to be done `times` times in the run.
+bool is_due(const TrainingRun& run, long step, int times) {
+  const long every = std::max(1L, static_cast<long>(run.options.steps) / times);
+  return step % every == 0 || step == run.options.steps;
+}
+
+bool is_paused(const TrainingRun& run) { return std::filesystem::exists(pause_file(run.folder)); }
+
+// False: stopped before the last step.
+bool run_steps(TrainingRun& run) {
+  Trainer& trainer = *run.trainer;
+  Clock::time_point looked = Clock::now();
+  while (trainer.counts.step < run.options.steps) {
+    const StepRecord record = train_step(trainer);
+    run.window.add(record);
+    if (record.bad.empty()) {
+      if (is_due(run, trainer.counts.step, lines_of_a_run))
+        run.history.steps += run.window.take_line(trainer, run.seconds());
+      if (is_due(run, trainer.counts.step, run.options.watch.measurements)) take_measure(run);
+    }
+    tell(run);
+    if (seconds_since(run.saved) > 60 * run.options.watch.checkpoint_minutes) save(run);
+    if (run.request.stop && run.request.stop()) return false;
+    if (seconds_since(looked) < 1) continue;
+    looked = Clock::now();
+    if (is_paused(run)) return false;
+  }
+  return true;
+}
+
+void begin(TrainingRun& run) {
+  make_folder(run.folder);
+  std::filesystem::remove(pause_file(run.folder));
+  if (run.request.resume) {
+    run.trainer = read_training_checkpoint(run.folder / "checkpoint.h5", run.options, run.history);
+  } else {
+    run.trainer = make_trainer(run.options);
+    run.history.steps = steps_header();
+    run.history.measures = measures_header();
+  }
+  run.seconds_before = run.history.seconds;
+  run.steps_before = run.trainer->counts.step;
+  write_file(run.folder / "config.yaml", training_yaml(run.options));
+  run.say(fmt::format("network `{}`: {} parameters, {} passes a frame", run.trainer->architecture.name,
+                      parameter_count(run.trainer->architecture), run.trainer->architecture.passes));
+  run.watch = make_training_watch(run.options, *run.trainer);
+  run.started = run.saved = run.told = Clock::now();
+}
+
+}  // namespace
+
+TrainSummary train(const TrainRequest& request) {
+  restore_standard_arithmetic();
+  TrainingRun run(request);
+  run.options = read_training(request.config, request.overrides);
+  run.folder = request.out.empty() ? std::filesystem::path("out") / "training" / run.options.name : request.out;
+  for (const std::string& complaint : unfinished_ramps(run.options)) run.say("warning: " + complaint);
+  const RunningMark mark(run.folder);
+  if (mark.other()) run.say("warning: another training runs in " + *mark.other());
+  begin(run);
+  if (run.trainer->counts.step == 0) take_measure(run);
+  const bool finished = run_steps(run);
+  save(run);
+  std::filesystem::remove(pause_file(run.folder));
+  return {run.folder,          finished,
+          run.trainer->counts, run.history.seconds,
+          run.history.best_step, run.history.best_score,
+          run.last};
+}
+
+bool pause_training(const std::filesystem::path& folder, double seconds) {
+  if (!running_training()) return false;
+  write_file(pause_file(folder), "stop at a checkpoint\n");
+  const Clock::time_point asked = Clock::now();
+  while (std::filesystem::exists(pause_file(folder))) {
+    if (seconds_since(asked) > seconds) {
+      std::filesystem::remove(pause_file(folder));
+      return false;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  return true;
+}
+
+std::string train_text(const TrainSummary& s) {
+  return fmt::format("{:<20}{}\n{:<20}{} steps, {} frames, {} bad samples, {} lost roll-outs\n{:<20}{}\n{:<20}{}\n",
+                     s.finished ? "trained" : "stopped", s.folder.string(), "work", s.counts.step, s.counts.frames,
+                     s.counts.bad, s.counts.lost, "time", duration_text(s.seconds), "best roll-out",
+                     s.best_step > 0 ? fmt::format("{:.4g} J at step {} (best.h5)", s.best_score, s.best_step) : "none");
+}
+
+std::string train_json(const TrainSummary& s) {
+  const RollMeasure& r = s.last.roll;
+  return nlohmann::ordered_json{
+             {"folder", s.folder.string()},     {"finished", s.finished},
+             {"steps", s.counts.step},          {"frames", s.counts.frames},
+             {"bad_samples", s.counts.bad},     {"lost_rolls", s.counts.lost},
+             {"seconds", s.seconds},            {"best_step", s.best_step},
+             {"best_score", s.best_score},      {"worn_closed", s.last.worn.closed},
+             {"minimised_closed", s.last.minimised.closed}, {"strain", r.strain},
+             {"strain_99", r.strain_99},        {"pairs_at_end", r.pairs_at_end}}
+             .dump(2) +
+         "\n";
+}
+
+}  // namespace selvedge

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "pipeline/training/training_watch.hpp"
+
+namespace selvedge {
+
+struct TrainRequest {
+  std::filesystem::path config;
+  std::vector<std::string> overrides;  // key=value
+  std::filesystem::path out;           // folder; empty: out/training/NAME
+  bool resume = false;                 // go on from the folder's checkpoint
+  std::ostream* log = nullptr;         // a line now and then
+  std::function<bool()> stop;          // asked after every step; true ends the run at a checkpoint
+};
+
+struct TrainSummary {
+  std::filesystem::path folder;
+  bool finished = false;  // false: stopped at a checkpoint
+  TrainingCounts counts;
+  double seconds = 0;     // of training, over all parts of the run
+  long best_step = 0;
+  double best_score = 0;
+  TrainingMeasure last;
+};
+
+// Trains a network into a folder: checkpoint.h5, weights.h5 (the last), best.h5 (with the least energy of the measuring
+// roll-out), steps.csv, measures.csv, training.html and config.yaml. Stops at a checkpoint where it is asked to, by
+// `stop` or by pause_training. Throws Error.
+TrainSummary train(const TrainRequest&);
+
+std::string train_text(const TrainSummary&);
+std::string train_json(const TrainSummary&);
+
+// Asks the run in the folder to stop at a checkpoint and waits until it has, at most that long [s]. False: it has not,
+// or none runs there.
+bool pause_training(const std::filesystem::path& folder, double seconds);
+
+}  // namespace selvedge

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/training/training_watch.hpp"
+
+namespace selvedge {
+
+// Means over the steps since the last line, for steps.csv.
+class StepWindow {
+ public:
+  void add(const StepRecord&);
+  int count() const { return count_; }
+  double mean_sum() const { return count_ > 0 ? sum_ / count_ : 0; }
+  // The line of what was added, and begins anew.
+  std::string take_line(const Trainer&, double seconds);
+
+ private:
+  struct Term {
+    double value = 0, gradient = 0;
+  };
+  std::vector<Term> terms_;
+  int count_ = 0, bad_ = 0;
+  double sum_ = 0, norm_ = 0, scale_ = 0, rate_ = 0;
+};
+
+std::string steps_header();
+std::string measures_header();
+std::string measure_line(const TrainingMeasure&, double seconds);
+
+// The run as one HTML page that needs nothing else: every term, its share of the gradient, gaps and the roll-out.
+std::string training_page(const TrainingOptions&, const std::string& steps_csv, const std::string& measures_csv);
+
+}  // namespace selvedge
