@@ -54,4 +54,9 @@ StepEnd learned_end(const Scene& scene, const State& from, const Drive& drive, c
   return end;
 }
 
+void change_carried_velocity(const Points& change, State& state) {
+  for (MemoryBlock& block : state.memory)
+    if (block.name == carried_block && block.rows.rows() == change.rows()) block.rows += change;
+}
+
 }  // namespace selvedge

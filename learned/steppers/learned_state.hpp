@@ -28,4 +28,8 @@ GraphState graph_state(const Scene&, const State& from, const Drive&);
 StepEnd learned_end(const Scene&, const State& from, const Drive&, const GraphState&, const Points& seen,
                     const NextCloth&);
 
+// Somebody else has moved the cloth of a state that a network made: what it carries moves along [m]. Nothing happens
+// where the state carries nothing.
+void change_carried_velocity(const Points& change, State&);
+
 }  // namespace selvedge

@@ -20,8 +20,12 @@ NetworkWeights first_weights(const TrainingOptions& options, const Architecture&
   if (options.weights.empty())
     return initial_weights(architecture, options.seed, {.last_layer_scale = options.optimiser.decoder_scale});
   WeightFile file = read_weight_file(options.weights);
-  file.architecture.name = architecture.name;
-  if (architecture_text(file.architecture) != architecture_text(architecture))
+  Architecture& theirs = file.architecture;  // what a stage changes counts for nothing
+  theirs.name = architecture.name;
+  theirs.features.contours = architecture.features.contours;
+  theirs.features.contour_force = architecture.features.contour_force;
+  theirs.passes = architecture.passes;
+  if (architecture_text(theirs) != architecture_text(architecture))
     throw Error("holds weights of another network than `" + architecture.name + "` as configured", options.weights,
                 "give the architecture, width and message_steps that they were trained with");
   return std::move(file.weights);
@@ -161,8 +165,12 @@ void learn(Trainer& trainer, const FrameMaking& making, RollingState& state, Ste
 Architecture trained_architecture(const TrainingOptions& options) {
   Architecture architecture = architecture_preset(options.architecture);
   if (options.width > 0) architecture.width = options.width;
-  if (options.message_steps > 0) architecture.steps.resize(static_cast<std::size_t>(options.message_steps), architecture.steps.back());
-  if (options.pool.passes != architecture.passes) architecture.passes = options.pool.passes;
+  if (options.message_steps > 0)
+    architecture.steps.resize(static_cast<std::size_t>(options.message_steps), architecture.steps.back());
+  architecture.passes = options.pool.passes;
+  FeatureOptions& features = architecture.features;
+  features.contour_force = options.contour_force;
+  if (features.cloth_edges && !options.contact.classify) features.contours = ContourRule::all_repel;
   check_architecture(architecture, options.name);
   return architecture;
 }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
+#include "learned/network/architecture.hpp"
 #include "pipeline/garments/outfit.hpp"
 #include "pipeline/motions/clip_split.hpp"
 #include "pipeline/scene/setup_paths.hpp"
@@ -241,9 +242,11 @@ const Options<TrainingOptions>& training_options() {
       {text("description", "for people"),
        path("base", "a training file whose values count where this one gives none; seen from this file"),
        text("name", &O::name, "of the run; left out: the file's"),
-       word("architecture", &O::architecture, {"small", "hood", "contourcraft", "contourcraft_paper"}, "of the network"),
+       word("architecture", &O::architecture, preset_names(), "of the network"),
        integer("width", &O::width, not_negative, "of latents, in place of the architecture's; 0: its own"),
        integer("message_steps", &O::message_steps, not_negative, "in place of the architecture's; 0: its own"),
+       number("contour_force", &O::contour_force, Unit::none, not_negative,
+              "weight of the contours in the force that the network is shown [N/m]; 0: they have no part in it"),
        path("weights", &O::weights, "to start from, of an earlier stage; seen from this file"),
        integer("seed", &O::seed, not_negative, "of all that is random"),
        integer("steps", &O::steps, at_least_one, "of the optimiser, in all"),

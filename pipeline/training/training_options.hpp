@@ -83,6 +83,7 @@ struct TrainingOptions {
   std::string name;           // empty: the file's
   std::string architecture = "small";
   int width = 0, message_steps = 0;  // in place of the architecture's own; 0: those
+  double contour_force = 0;   // of contours in the force that the network is shown [N/m]
   std::string weights;        // of an earlier stage, to start from; empty: fresh ones
   std::uint64_t seed = 1;
   int steps = 8700;           // of the optimiser
