@@ -48,14 +48,14 @@ void begin_roll(Roll roll, RollingState& state) {
   state.search = {};
   state.losses = {};
   const Roll& own = state.roll;
-  state.now.x = wide(own.cloth[1]) + own.noise;
+  state.now.x = own.start;
   if (own.request.still) {
     if (own.request.with_body) push_out(own.scene->graph.body, wide(own.body[1]), push_out_margin, state.now.x);
     state.now.previous = state.now.x;
     state.now.velocity = Points::Zero(state.now.x.rows(), 3);
   } else {
-    state.now.previous = wide(own.cloth[0]) + own.noise;
-    state.now.velocity = state.now.x - state.now.previous;
+    state.now.velocity = wide(own.cloth[1]) - wide(own.cloth[0]);
+    state.now.previous = state.now.x - state.now.velocity;
   }
   set_surroundings(state);
 }
@@ -114,6 +114,14 @@ void take_pass(const FrameMaking& making, const NextCloth& next, double reset_di
   ++state.frame;
   state.over = state.frame >= state.roll.request.frames || is_lost(state, reset_distance);
   if (!state.over) set_surroundings(state);
+}
+
+bool pass_guard(const FrameMaking& making, RollingState& state, NextCloth& next) {
+  if (!state.guard) return true;
+  const Points from = seen_positions(state.roll.scene->rest, state.now, making.features).x, proposed = next.x;
+  const bool kept_on = (*state.guard)(from, next.x).kept;
+  next.velocity += next.x - proposed;
+  return kept_on;
 }
 
 NextCloth gated(const FrameMaking& making, int count, const NextCloth& next, RollingState& state) {

@@ -5,6 +5,7 @@
 #include "learned/graph/integration.hpp"
 #include "learned/graph/make_graph.hpp"
 #include "learned/losses/objective.hpp"
+#include "learned/steppers/safeguard.hpp"
 #include "pipeline/training/training_roll.hpp"
 
 namespace selvedge {
@@ -15,6 +16,7 @@ struct RollingState {
   int frame = 0, pass = 0;
   GraphState now;      // what the frame starts from; its guess and pass are those of the pass to come
   bool over = true;    // the roll-out has ended
+  std::unique_ptr<Safeguard> guard;  // of roll-outs that are advanced through it
   // Memory that is used again:
   GraphSearch search;
   LossSearch losses;
@@ -53,6 +55,9 @@ bool raw_graph_of(const FrameMaking&, const FeatureTables&, RollingState&, Graph
 // after its last frame, and where a free vertex is farther than `reset_distance` from the garment as worn, or is not
 // finite.
 void take_pass(const FrameMaking&, const NextCloth& next, double reset_distance, RollingState&);
+
+// Lets the state's guard change the frame's last pass, where there is a guard. False: it gives the motion up.
+bool pass_guard(const FrameMaking&, RollingState&, NextCloth& next);
 
 // Steps of the gate: among base + t (next - base), with `count` values of t up to 1.2, the one with the least sum of
 // losses; base is where the cloth is without forces.

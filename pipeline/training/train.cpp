@@ -1,5 +1,6 @@
 #include "pipeline/training/train.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -87,10 +88,21 @@ std::string measure_text(const TrainingMeasure& m) {
       static_cast<double>(r.pairs_at_end));
 }
 
+// How tangled the roll-outs began; empty where that is not counted.
+std::string starts_text(std::vector<int> pairs) {
+  if (pairs.empty()) return "";
+  std::ranges::sort(pairs);
+  const auto many = std::ranges::count_if(pairs, [](int n) { return n >= 20; });
+  const auto at = [&](double part) { return pairs[static_cast<std::size_t>(part * static_cast<double>(pairs.size() - 1))]; };
+  return fmt::format("{} tangled starts: pairs 10 % {}, median {}, 90 % {}, most {}; {:.0f} % have 20 or more", pairs.size(),
+                     at(0.1), at(0.5), at(0.9), pairs.back(), 100.0 * static_cast<double>(many) / static_cast<double>(pairs.size()));
+}
+
 void take_measure(TrainingRun& run) {
   run.last = measure(*run.trainer, run.watch);
   run.history.measures += measure_line(run.last, run.seconds());
   run.say(measure_text(run.last));
+  if (const std::string starts = starts_text(run.trainer->start_pairs); !starts.empty()) run.say(starts);
   const RollMeasure& roll = run.last.roll;
   if (roll.finite && (run.history.best_step == 0 || roll.energy < run.history.best_score) && run.last.step > 0) {
     run.history.best_score = roll.energy;

@@ -114,9 +114,14 @@ bool are_finite(const std::vector<LossTerm>& terms) {
 RollingState& chosen_state(Trainer& trainer) {
   auto& pool = trainer.pool;
   RollingState& state = pool[static_cast<std::size_t>(trainer.random.below(static_cast<int>(pool.size())))];
-  if (state.over) {
-    begin_roll(trainer.queue->take(), state);
+  while (state.over) {
+    Roll roll = trainer.queue->take();
     ask_for_roll(trainer);
+    if (!roll.usable) continue;
+    if (trainer.options.samples.start == GarmentStart::tangled && roll.request.cloth_contact)
+      trainer.start_pairs.push_back(roll.pairs);
+    begin_roll(std::move(roll), state);
+    set_guard(trainer.options, state);
   }
   return state;
 }
@@ -200,6 +205,11 @@ std::unique_ptr<Trainer> make_trainer(const TrainingOptions& options) {
   return trainer;
 }
 
+void set_guard(const TrainingOptions& options, RollingState& state) {
+  const bool wanted = options.pool.safeguarded && state.roll.request.cloth_contact;
+  state.guard = wanted ? std::make_unique<Safeguard>(state.roll.scene->scene) : nullptr;
+}
+
 double progress_of(const Trainer& trainer) {
   return static_cast<double>(trainer.counts.step) / trainer.options.steps;
 }
@@ -234,6 +244,11 @@ StepRecord train_step(Trainer& trainer) {
   ++trainer.counts.step;
   const bool last_pass = state.pass + 1 == making.passes;
   if (last_pass && trainer.options.pool.gate > 0) next = gated(making, trainer.options.pool.gate, next, state);
+  if (last_pass && !pass_guard(making, state, next)) {
+    ++trainer.counts.given_up;
+    state.over = true;
+    return record;
+  }
   take_pass(making, next, trainer.options.pool.reset_distance, state);
   if (last_pass) ++trainer.counts.frames;
   if (state.over && state.frame < state.roll.request.frames) ++trainer.counts.lost;

@@ -33,6 +33,7 @@ struct Trainer {
   std::vector<RollingState> pool;
   std::unique_ptr<RollMaker> maker;
   std::unique_ptr<RollQueue> queue;
+  std::vector<int> start_pairs;  // of the roll-outs that this process has begun, where they are counted
   // Memory that is used again:
   Tape tape;
   Graph graph;
@@ -65,6 +66,9 @@ FrameMaking frame_making(const Trainer&);
 
 // One sample and one step of the optimiser. Throws Error where too many samples in a row had no finite loss.
 StepRecord train_step(Trainer&);
+
+// Gives a roll-out that has begun the guard that the options ask for.
+void set_guard(const TrainingOptions&, RollingState&);
 
 // Rolls that are asked for and not in the pool yet; the queue is kept at this length.
 constexpr int rolls_ahead = 4;

@@ -203,13 +203,14 @@ void read_pool(FieldsIn& in, Trainer& trainer) {
   }
   for (const std::size_t k : going) {
     Roll roll = trainer.queue->take();
-    const Eigen::Index rows = roll.noise.rows();
+    const Eigen::Index rows = roll.start.rows();
     const KeptRolling& from = states[k];
     if (from.x.rows() != rows || from.previous.rows() != rows || from.velocity.rows() != rows ||
         (from.guess.rows() != rows && from.guess.rows() != 0) || from.frame < 0 ||
         from.frame >= roll.request.frames || from.pass < 0 || from.pass >= trainer.architecture.passes)
       in.fail("has a state that does not fit its garment");
     resume_roll(std::move(roll), from, trainer.pool[k]);
+    set_guard(trainer.options, trainer.pool[k]);
   }
   for (std::size_t k = 0; k + request_numbers <= waiting.size(); k += request_numbers)
     trainer.queue->ask(request_of(in, trainer.maker->world, waiting.data() + k));

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "collision/search/intersections.hpp"
+#include "collision/untangle/untangle.hpp"
 #include "learned/steppers/learned_scene.hpp"
 #include "pipeline/scene/setup_cloth.hpp"
 
@@ -11,7 +13,7 @@ namespace selvedge {
 namespace {
 
 // Streams of different uses of one number.
-enum Use : std::uint64_t { drawing = 1, start_noise = 2, material_draw = 3 };
+enum Use : std::uint64_t { drawing = 1, start_noise = 2, material_draw = 3, place = 4 };
 
 RandomStream stream_for(std::uint64_t seed, Use use, std::uint64_t number) {
   return stream_of(seed * 8 + use, number);
@@ -53,6 +55,64 @@ void turn(const RollRequest& request, PointsF& x) {
   const Eigen::Matrix3f rotation =
       Eigen::AngleAxisd(request.yaw, Vec3::UnitY()).toRotationMatrix().cast<float>().transpose();
   x = (x * rotation).eval();
+}
+
+// With noise, and parted before, which leaves out the noise that would tangle it again.
+void set_start(const TrainingOptions& options, Roll& roll) {
+  RandomStream random = stream_for(options.seed, start_noise, roll.request.number);
+  Points noise(roll.cloth[1].rows(), 3);
+  for (Eigen::Index i = 0; i < noise.size(); ++i) noise.data()[i] = options.samples.noise * random.normal();
+  for (const int pin : roll.scene->rest.pinned) noise.row(pin).setZero();
+  roll.start = roll.cloth[1].cast<double>();
+  if (options.samples.start != GarmentStart::untangle || !roll.request.cloth_contact) {
+    roll.start += noise;
+    return;
+  }
+  UntangleOptions untangling;
+  untangling.iterations = 100;
+  const UntangleResult parted = untangle(roll.scene->scene.surface, roll.start, {}, untangling);
+  roll.usable = parted.pairs_after == 0 && parted.vertex_pairs_after == 0;
+  roll.start = parted.x;
+}
+
+// Of the fixed material it is made once.
+std::shared_ptr<const TrainingScene> scene_of(RollMaker& maker, const RollRequest& request) {
+  if (maker.options.samples.sample_materials) {
+    RandomStream random = stream_for(maker.options.seed, material_draw, request.number);
+    return make_training_scene(maker, request, random_material(random));
+  }
+  auto& scene = maker.scenes[{request.wear, request.body, request.mirrored, request.with_body}];
+  if (!scene) scene = make_training_scene(maker, request, maker.options.samples.material);
+  return scene;
+}
+
+constexpr int many_pairs = 20;    // of a start that counts as tangled (Grigorev et al. 2024, figure 5, has more)
+constexpr int most_attempts = 8;  // to find one
+
+// Every second tangled start is looked for: the first of some places in the clips at which the skinned garment has many
+// pairs, or the one with the most. Says how many there are.
+RollRequest place_of_start(RollMaker& maker, const RollRequest& asked, int& pairs) {
+  RandomStream random = stream_for(maker.options.seed, place, asked.number);
+  RollRequest best = asked, tried = asked;
+  IntersectionCache cache;
+  pairs = -1;
+  for (int attempt = 0; attempt < most_attempts && pairs < many_pairs; ++attempt) {
+    const std::shared_ptr<const TrainingScene> scene = scene_of(maker, tried);
+    const WornFrame frame = worn_frame(maker.world, tried.wear, tried.body, tried.clip, tried.first_frame);
+    Points x = frame.cloth.cast<double>();
+    if (tried.mirrored) x.col(0) *= -1;
+    const auto found = static_cast<int>(intersecting_pairs(scene->scene.surface, x, cache).size());
+    if (found > pairs) {
+      pairs = found;
+      best = tried;
+    }
+    if (asked.number % 2 == 1) break;
+    tried.body = random.below(static_cast<int>(maker.world.bodies.size()));
+    tried.clip = random.below(static_cast<int>(maker.world.clip_names.size()));
+    tried.first_frame =
+        random.below(std::max(1, frame_count(maker.world, tried.body, tried.clip) - asked.frames));
+  }
+  return best;
 }
 
 }  // namespace
@@ -116,26 +176,17 @@ std::shared_ptr<const TrainingScene> make_training_scene(const RollMaker& maker,
 Roll make_roll(RollMaker& maker, const RollRequest& request) {
   Roll roll;
   roll.request = request;
-  if (maker.options.samples.sample_materials) {
-    RandomStream random = stream_for(maker.options.seed, material_draw, request.number);
-    roll.scene = make_training_scene(maker, request, random_material(random));
-  } else {
-    auto& scene = maker.scenes[{request.wear, request.body, request.mirrored, request.with_body}];
-    if (!scene) scene = make_training_scene(maker, request, maker.options.samples.material);
-    roll.scene = scene;
-  }
+  const bool looks = maker.options.samples.start == GarmentStart::tangled && request.cloth_contact;
+  const RollRequest at = looks ? place_of_start(maker, request, roll.pairs) : request;
+  roll.scene = scene_of(maker, at);
   for (int k = 0; k < request.frames + 2; ++k) {
-    WornFrame frame = worn_frame(maker.world, request.wear, request.body, request.clip, request.first_frame - 1 + k);
+    WornFrame frame = worn_frame(maker.world, at.wear, at.body, at.clip, at.first_frame - 1 + k);
     turn(request, frame.body);
     turn(request, frame.cloth);
     roll.body.push_back(request.with_body ? std::move(frame.body) : PointsF(0, 3));
     roll.cloth.push_back(std::move(frame.cloth));
   }
-  RandomStream random = stream_for(maker.options.seed, start_noise, request.number);
-  roll.noise.resize(roll.cloth.front().rows(), 3);
-  for (Eigen::Index i = 0; i < roll.noise.size(); ++i)
-    roll.noise.data()[i] = maker.options.samples.noise * random.normal();
-  for (const int pin : roll.scene->rest.pinned) roll.noise.row(pin).setZero();
+  set_start(maker.options, roll);
   return roll;
 }
 

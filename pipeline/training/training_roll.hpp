@@ -37,7 +37,9 @@ struct Roll {
   RollRequest request;
   std::shared_ptr<const TrainingScene> scene;
   std::vector<PointsF> body, cloth;  // cloth: as worn; body: empty matrices where there is none
-  Points noise;                      // of the start positions [m]; zero at pinned vertices
+  Points start;                      // where free vertices begin: as worn, parted where that is asked for, with noise
+  bool usable = true;                // false: what was to be parted did not come apart
+  int pairs = 0;                     // of triangles of cloth that intersect where it begins; counted of tangled starts
 };
 
 // The number-th roll-out; `progress` of the run says how long it may be.

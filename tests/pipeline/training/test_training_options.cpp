@@ -1,0 +1,125 @@
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/scene/setup_paths.hpp"
+#include "pipeline/training/training_options.hpp"
+#include "tests/pipeline/files.hpp"
+
+using namespace selvedge;
+using fake::Folder;
+
+namespace {
+
+std::vector<std::filesystem::path> training_files() {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(config_folder() / "training"))
+    files.push_back(entry.path());
+  std::ranges::sort(files);
+  return files;
+}
+
+std::string error_of(const std::filesystem::path& file, const std::vector<std::string>& overrides = {}) {
+  try {
+    read_training(file, overrides);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("training options: every loss of every configuration reaches its full weight", "[training]") {
+  REQUIRE(training_files().size() >= 8);
+  for (const std::filesystem::path& file : training_files()) {
+    INFO(file);
+    const TrainingOptions options = read_training(file);
+    CHECK(unfinished_ramps(options).empty());
+    const LossOptions& losses = options.objective;
+    for (const LossRamp* ramp : {&losses.stretching, &losses.bending, &losses.gravity, &losses.inertia,
+                                 &losses.collision.weight, &losses.friction.weight, &losses.repulsion.weight,
+                                 &losses.contours.weight})
+      CHECK(weight_at(*ramp, 0.9) == ramp->to);
+    CHECK(losses.stretching.to == 1);
+    CHECK(losses.collision.weight.to >= 5e5);
+  }
+  TrainingOptions late;
+  late.objective.repulsion.weight = {0, 2e6, 0.5, 1};
+  REQUIRE(unfinished_ramps(late).size() == 1);
+  CHECK(unfinished_ramps(late)[0].find("objective.repulsion.weight") == 0);
+}
+
+TEST_CASE("training options: ablations differ from their base by what they are named for", "[training]") {
+  const auto read = [](const std::string& name) { return read_training(config_folder() / "training" / (name + ".yaml")); };
+  const TrainingOptions hood = read("hood"), repulsive = read("only_repulsive"), full = read("contourcraft");
+  CHECK_FALSE(hood.contact.edges);
+  CHECK(hood.objective.repulsion.weight.to == 0);
+  CHECK(repulsive.contact.edges);
+  CHECK_FALSE(repulsive.contact.classify);
+  CHECK(repulsive.pool.safeguarded);
+  CHECK(repulsive.objective.contours.weight.to == 0);
+  CHECK(full.contact.classify);
+  CHECK(full.contact.attraction);
+  CHECK_FALSE(full.pool.safeguarded);
+  CHECK(full.objective.contours.weight.to > 0);
+  const TrainingOptions without = read("without_ic_loss"), distorting = read("full_gradient");
+  CHECK(without.objective.contours.weight.to == 0);
+  CHECK_FALSE(without.contact.attraction);
+  CHECK(distorting.objective.contours.gradient == ContourGradient::full);
+  CHECK(full.objective.contours.gradient == ContourGradient::translational);
+  // All from one base: what none of them names is the same.
+  for (const TrainingOptions* options : {&repulsive, &full, &without, &distorting}) {
+    CHECK(options->architecture == hood.architecture);
+    CHECK(options->samples.garments == hood.samples.garments);
+    CHECK(options->optimiser.normalise_samples == hood.optimiser.normalise_samples);
+  }
+}
+
+TEST_CASE("training options: a base is replaced key by key, and what is written reads back", "[training]") {
+  const Folder folder("training_options");
+  fake::write(folder, "base.yaml", "steps: 77\nseed: 5\nobjective: {collision: {thickness: 4 mm}}\n");
+  const auto file = fake::write(folder, "own.yaml", "base: base.yaml\nseed: 6\nobjective: {collision: {radius: 2 cm}}\n");
+  const TrainingOptions options = read_training(file, {"pool.states=3"});
+  CHECK(options.name == "own");
+  CHECK(options.steps == 77);
+  CHECK(options.seed == 6);
+  CHECK(options.pool.states == 3);
+  CHECK(options.objective.collision.thickness == Approx(4e-3));
+  CHECK(options.objective.collision.radius == Approx(2e-2));
+  CHECK(options.objective.collision.weight.to == fast_losses().collision.weight.to);
+
+  const auto again = fake::write(folder, "again.yaml", training_yaml(options));
+  CHECK(training_yaml(read_training(again)) == training_yaml(options));
+}
+
+TEST_CASE("training options: nothing of the validation split, and one clear error each", "[training]") {
+  const Folder folder("training_errors");
+  const auto file = fake::write(folder, "a.yaml", "steps: 10\n");
+  CHECK(error_of(file).empty());
+  CHECK(error_of(file, {"samples.garments=[tank_top]"}).find("is not for training") != std::string::npos);
+  CHECK(error_of(file, {"samples.garments=[summer]"}).find("is not for training") != std::string::npos);
+  CHECK(error_of(file, {"samples.garments=[training_layers]"}).empty());
+  CHECK(error_of(file, {"samples.clips=[walk_turning]"}).find("is not for training") != std::string::npos);
+  CHECK(error_of(file, {"watch.clip=hug"}).find("is not for training") != std::string::npos);
+  CHECK(error_of(file, {"watch.garment=vest"}).find("watch.garment") != std::string::npos);
+  CHECK(error_of(file, {"steps=0"}).find("steps") != std::string::npos);
+  CHECK(error_of(file, {"optimiser.decay=slow"}).find("halving") != std::string::npos);
+  CHECK(error_of(file, {"learning_rate=1"}).find("learning_rate") != std::string::npos);
+  fake::write(folder, "b.yaml", "base: c.yaml\n");
+  const auto circle = fake::write(folder, "c.yaml", "base: b.yaml\n");
+  CHECK(error_of(circle).find("leads back") != std::string::npos);
+  const auto lost = fake::write(folder, "d.yaml", "base: nowhere.yaml\n");
+  CHECK(error_of(lost).find("nowhere.yaml") != std::string::npos);
+}
+
+TEST_CASE("training options: learning rates fall as they are said to", "[training]") {
+  CHECK(learning_factor(Decay::cosine, 0, 0, 1, 0) == 1);
+  CHECK(learning_factor(Decay::cosine, 0.5, 0, 1, 0) == Approx(0.5));
+  CHECK(learning_factor(Decay::cosine, 1, 0, 1, 0) == Approx(0).margin(1e-15));
+  CHECK(learning_factor(Decay::none, 0.7, 9, 1, 0) == 1);
+  // HOOD: 0.5^floor(n / 50,000) + 0.01.
+  CHECK(learning_factor(Decay::halving, 0, 49999, 50000, 0.01) == Approx(1.01));
+  CHECK(learning_factor(Decay::halving, 0, 150000, 50000, 0.01) == Approx(0.135));
+}

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "pipeline/scene/setup_paths.hpp"
+#include "pipeline/training/rolling_state.hpp"
+#include "pipeline/training/trainer.hpp"
+
+namespace selvedge::fake {
+
+inline TrainingOptions tiny_training() { return read_training(config_folder() / "training" / "tiny.yaml"); }
+
+// Of the configuration `tiny`, made once: garment and mannequin take a while.
+inline RollMaker& tiny_maker() {
+  static RollMaker maker{tiny_training(), trained_architecture(tiny_training()).features,
+                         make_training_world(tiny_training().samples, 1), {}};
+  return maker;
+}
+
+inline FrameMaking tiny_making() {
+  FrameMaking making;
+  making.features = trained_architecture(tiny_training()).features;
+  making.losses = tiny_training().objective;
+  making.passes = 2;
+  return making;
+}
+
+}  // namespace selvedge::fake
