@@ -267,6 +267,20 @@ TrainingOptions read_training(const std::filesystem::path& file, const std::vect
 
 std::string training_yaml(const TrainingOptions& options) { return to_yaml(training_options().written(options)); }
 
+std::string training_reference() {
+  std::string page;
+  for (const Section* section :
+       {&training_options().section, &sample_options().section, &training_material_options().section,
+        &pool_options().section, &training_contact_options().section, &objective_options().section,
+        &collision_options().section, &friction_options().section, &repulsion_options().section,
+        &contour_options().section, &optimiser_options().section, &watch_options().section, &ramp_options().section}) {
+    page += "### " + section->name + "\n\n";
+    if (!section->about.empty()) page += section->about + "\n\n";
+    page += section_markdown(*section) + "\n";
+  }
+  return page;
+}
+
 std::vector<std::string> unfinished_ramps(const TrainingOptions& options) {
   std::vector<std::string> complaints;
   const auto check = [&](const char* name, const LossRamp& ramp) {

@@ -105,6 +105,9 @@ TrainingOptions read_training(const std::filesystem::path&, const std::vector<st
 // The whole configuration as YAML that reads back to the same.
 std::string training_yaml(const TrainingOptions&);
 
+// Every section of a training file as Markdown: the end of docs/training.md.
+std::string training_reference();
+
 // Complaints, a line each, about ramps that do not reach their full value before the run ends.
 std::vector<std::string> unfinished_ramps(const TrainingOptions&);
 

@@ -222,9 +222,34 @@ TEST_CASE("A learned stepper refuses with one error what it cannot run", "[learn
   const auto stepper = stepper_of(run.scene, fake::narrow_network("hood"));
   State to;
   CHECK_THROWS_WITH(stepper->step(run.state, run.drives[0], 1.0 / 60, to), Catch::Contains("fps: 30"));
-  const Architecture small = architecture_preset("small");
-  CHECK_THROWS_AS(make_learned_stepper(run.scene, small, random_weights(small, 1)), Error);
+  Architecture strange = architecture_preset("small");
+  ++strange.node_inputs;
+  CHECK_THROWS_AS(make_learned_stepper(run.scene, strange, random_weights(strange, 1)), Error);
   CHECK_THROWS_AS(stepper_of(run.scene, fake::narrow_network("hood"), {false, {1000}, {}}), Error);
+}
+
+TEST_CASE("A network of several passes goes on from its own guess, and starts at rest", "[learned]") {
+  const fake::LearnedCase run = above_a_plate(2);
+  for (const std::string name : {"small", "small_contour"}) {
+    INFO(name);
+    fake::NarrowNetwork network = fake::narrow_network(name, 1e-3);
+    State first, second;
+    const auto stepper = stepper_of(run.scene, network);
+    const StepReport report = stepper->step(run.state, run.drives[0], frame_dt, first);
+    REQUIRE(report.status == StepStatus::accepted);
+    CHECK(report.substeps == 4);  // two passes of the settling frame, two of the frame
+    REQUIRE(stepper->step(first, run.drives[1], frame_dt, second).substeps == 2);
+    CHECK(second.x.allFinite());
+    network.architecture.passes = 1;
+    State once;
+    stepper_of(run.scene, network)->step(run.state, run.drives[0], frame_dt, once);
+    CHECK_FALSE(fake::same_points(once.x, first.x));
+  }
+  // A network that adds nothing goes where the cloth would without forces: settled, it falls not at all.
+  fake::NarrowNetwork still = fake::narrow_network("small", 0);
+  State to;
+  REQUIRE(stepper_of(run.scene, still)->step(run.state, run.drives[0], frame_dt, to).status == StepStatus::accepted);
+  CHECK((to.x - run.state.x).bottomRows(to.x.rows() - 1).cwiseAbs().maxCoeff() < 2.1e-3);  // pushed out at most
 }
 
 TEST_CASE("Materials become the inputs of networks", "[learned]") {

@@ -123,3 +123,23 @@ TEST_CASE("training options: learning rates fall as they are said to", "[trainin
   CHECK(learning_factor(Decay::halving, 0, 49999, 50000, 0.01) == Approx(1.01));
   CHECK(learning_factor(Decay::halving, 0, 150000, 50000, 0.01) == Approx(0.135));
 }
+
+namespace {
+
+const std::filesystem::path training_page_file = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "docs" / "training.md";
+const std::string reference_begins = "<!-- written by: selvedge_tests \"[write-docs]\" -->\n";
+
+}  // namespace
+
+TEST_CASE("docs/training.md has the tables as the program has them", "[training]") {
+  const std::string text = fake::whole(training_page_file);
+  const std::size_t at = text.find(reference_begins);
+  REQUIRE(at != std::string::npos);
+  CHECK(text.substr(at + reference_begins.size()) == "\n" + training_reference());
+}
+
+TEST_CASE("docs/training.md is written anew", "[.][write-docs]") {
+  const std::string text = fake::whole(training_page_file);
+  std::ofstream(training_page_file) << text.substr(0, text.find(reference_begins) + reference_begins.size()) << "\n"
+                                    << training_reference();
+}
