@@ -16,6 +16,7 @@
 #include "pipeline/tools/ccd_report.hpp"
 #include "pipeline/tools/info.hpp"
 #include "pipeline/tools/plan.hpp"
+#include "pipeline/training/running_mark.hpp"
 #include "pipeline/view/view.hpp"
 
 namespace selvedge {
@@ -35,6 +36,12 @@ std::filesystem::path folder_for(const SimulateArguments& arguments, const Setup
   if (arguments.out) return *arguments.out;
   if (!setup.run.output.empty()) return setup.run.output;
   return std::filesystem::path("out") / arguments.scene.scene.stem();
+}
+
+// What takes times says so while a training takes the cores.
+void warn_of_training() {
+  if (const std::optional<std::string> folder = running_training())
+    std::cerr << "warning: a training runs in " << *folder << ": times are not to be compared with others\n";
 }
 
 // Makes the page and says where it is, or why it is not.
@@ -62,6 +69,8 @@ bool report_outcome(const std::vector<Outcome>& outcomes, const std::vector<Outc
 
 int simulate_command(const SimulateArguments& arguments, bool json) {
   Setup setup = read_scene(arguments.scene);
+  if (const std::optional<std::string> folder = running_training())
+    setup.warnings.push_back("times are of a machine on which a training runs (" + *folder + ")");
   for (const std::string& warning : setup.warnings) std::cerr << "warning: " << warning << "\n";
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
   Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
@@ -162,6 +171,7 @@ int view_command(const ViewArguments& arguments, bool json) {
 }
 
 int bench_command(const BenchRequest& request, bool json) {
+  warn_of_training();
   BenchRequest logged = request;
   logged.log = &std::cerr;
   const BenchResult result = bench(logged);
@@ -174,6 +184,7 @@ int bench_command(const BenchRequest& request, bool json) {
 }
 
 int stress_command(const StressRequest& request, bool json) {
+  warn_of_training();
   const InterruptWatch watch;
   const std::vector<StressRow> rows = stress(followed(request));
   people(json) << stress_table(rows);
@@ -184,6 +195,7 @@ int stress_command(const StressRequest& request, bool json) {
 }
 
 int wardrobe_command(const WardrobeRequest& request, bool json) {
+  warn_of_training();
   const InterruptWatch watch;
   const std::vector<WardrobeRow> rows = wardrobe(followed(request));
   people(json) << wardrobe_table(rows);
@@ -194,6 +206,7 @@ int wardrobe_command(const WardrobeRequest& request, bool json) {
 }
 
 int compare_command(const CompareRequest& request, bool json) {
+  warn_of_training();
   const InterruptWatch watch;
   const CompareResult result = compare(followed(request));
   people(json) << compare_table(result) << result.plots << "\n";
@@ -212,6 +225,7 @@ int validate_command(const ValidateRequest& request, bool json) {
 }
 
 int stability_command(const StabilityRequest& request, bool json) {
+  warn_of_training();
   const InterruptWatch watch;
   const std::vector<StabilityRow> rows = stability(followed(request));
   people(json) << stability_table(rows);

@@ -1,5 +1,6 @@
 #include "pipeline/training/trainer.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -48,7 +49,7 @@ void gather_state(Trainer& trainer, RollingState& state) {
   gather(making.features, trainer.graph, target_accelerations(scene.rest, state.now, making.features), trainer.sums);
 }
 
-void warm_up(Trainer& trainer) {
+void gather_warm_up(Trainer& trainer) {
   const int states = trainer.options.optimiser.warm_up;
   for (int k = 0; k < std::min(states, rolls_ahead); ++k) ask_for_roll(trainer);
   RollingState state;
@@ -57,7 +58,44 @@ void warm_up(Trainer& trainer) {
     if (k + rolls_ahead < states) ask_for_roll(trainer);
     gather_state(trainer, state);
   }
-  freeze_statistics(trainer.architecture.features, trainer.sums, trainer.network.weights.tables);
+}
+
+bool is_cloth_edge(const std::string& key) { return key == "repulsion_edge" || key == "attraction_edge"; }
+
+// Whether edges of cloth with cloth are new to weights of an earlier stage: their statistics were never gathered.
+bool are_cloth_edges_new(const Trainer& trainer) {
+  const Statistics& seen = trainer.network.weights.tables.world_edge;
+  return trainer.architecture.features.cloth_edges && trainer.options.contact.edges &&
+         std::ranges::all_of(seen.mean, [](float m) { return m == 0; }) &&
+         std::ranges::all_of(seen.deviation, [](float d) { return d == 1; });
+}
+
+// Nodes make nothing yet of edges that are new to them: the network begins as what it was.
+void silence_cloth_edges(const Architecture& architecture, NetworkWeights& weights) {
+  for (std::size_t s = 0; s < architecture.steps.size(); ++s) {
+    const std::vector<std::string>& keys = architecture.steps[s].edge_keys;
+    for (std::size_t k = 0; k < keys.size(); ++k)
+      if (is_cloth_edge(keys[k]))
+        weights.steps[s].node.layers.front().weight
+            .middleCols(static_cast<Eigen::Index>(k + 1) * architecture.width, architecture.width)
+            .setZero();
+  }
+}
+
+// Statistics of all inputs; with weights of an earlier stage only of those that it did not have.
+void warm_up(Trainer& trainer) {
+  FeatureTables& tables = trainer.network.weights.tables;
+  const bool begins = trainer.options.weights.empty();
+  if (!begins && !are_cloth_edges_new(trainer)) return;
+  gather_warm_up(trainer);
+  FeatureTables fresh = tables;
+  freeze_statistics(trainer.architecture.features, trainer.sums, fresh);
+  if (begins) {
+    tables = fresh;
+    return;
+  }
+  tables.world_edge = fresh.world_edge;
+  silence_cloth_edges(trainer.architecture, trainer.network.weights);
 }
 
 // The derivative by the network's output of what the sample is to make smaller; false where it is not finite.
@@ -199,7 +237,7 @@ std::unique_ptr<Trainer> make_empty_trainer(const TrainingOptions& options) {
 std::unique_ptr<Trainer> make_trainer(const TrainingOptions& options) {
   auto trainer = make_empty_trainer(options);
   trainer->network = make_training_network(trainer->architecture, first_weights(options, trainer->architecture));
-  if (options.weights.empty()) warm_up(*trainer);
+  warm_up(*trainer);
   lay_out(trainer->network);
   for (int k = 0; k < rolls_ahead; ++k) ask_for_roll(*trainer);
   return trainer;
