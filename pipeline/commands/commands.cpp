@@ -40,8 +40,8 @@ std::filesystem::path folder_for(const SimulateArguments& arguments, const Setup
 
 // What takes times says so while a training takes the cores.
 void warn_of_training() {
-  if (const std::optional<std::string> folder = running_training())
-    std::cerr << "warning: a training runs in " << *folder << ": times are not to be compared with others\n";
+  if (const std::optional<std::string> training = running_training())
+    std::cerr << "warning: " << *training << " is being trained: times are not to be compared with others\n";
 }
 
 // Makes the page and says where it is, or why it is not.
@@ -69,8 +69,8 @@ bool report_outcome(const std::vector<Outcome>& outcomes, const std::vector<Outc
 
 int simulate_command(const SimulateArguments& arguments, bool json) {
   Setup setup = read_scene(arguments.scene);
-  if (const std::optional<std::string> folder = running_training())
-    setup.warnings.push_back("times are of a machine on which a training runs (" + *folder + ")");
+  if (const std::optional<std::string> training = running_training())
+    setup.warnings.push_back("times are of a machine on which a training runs: " + *training);
   for (const std::string& warning : setup.warnings) std::cerr << "warning: " << warning << "\n";
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
   Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);

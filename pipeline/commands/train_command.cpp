@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "pipeline/host/interrupt.hpp"
+#include "pipeline/training/running_mark.hpp"
 #include "pipeline/training/train.hpp"
 
 namespace selvedge {
@@ -15,11 +16,13 @@ int train_command(const TrainArguments& arguments, bool json) {
         arguments.out.empty()
             ? std::filesystem::path("out") / "training" / read_training(arguments.config, arguments.overrides).name
             : arguments.out;
-    const bool paused = pause_training(folder, longest_wait);
+    const bool paused = running_training() && pause_training(folder, longest_wait);
     to << (paused ? "stopped at a checkpoint: " : "no training has answered in ") << folder.string() << "\n";
     return paused ? 0 : 1;
   }
   const InterruptWatch watch;
+  const RunningMark mark(arguments.config);
+  if (mark.other()) std::cerr << "warning: another training runs: " << *mark.other() << "\n";
   TrainRequest request{arguments.config, arguments.overrides, arguments.out, arguments.resume, &std::cerr,
                        InterruptWatch::interrupted};
   const TrainSummary summary = train(request);

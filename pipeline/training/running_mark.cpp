@@ -15,7 +15,7 @@ std::filesystem::path mark_path() { return cache_folder() / "training-running"; 
 }  // namespace
 
 // A lock on a file: the system lets go of it when the process ends.
-RunningMark::RunningMark(const std::filesystem::path& folder) {
+RunningMark::RunningMark(const std::filesystem::path& configuration) {
   std::error_code ignored;
   std::filesystem::create_directories(cache_folder(), ignored);
   file_ = open(mark_path().c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
@@ -26,7 +26,7 @@ RunningMark::RunningMark(const std::filesystem::path& folder) {
     file_ = -1;
     return;
   }
-  const std::string text = std::filesystem::absolute(folder).string();
+  const std::string text = std::filesystem::absolute(configuration).string();
   if (ftruncate(file_, 0) != 0 || write(file_, text.data(), text.size()) < 0) {
     // Whoever looks sees a training without a folder.
   }

@@ -7,10 +7,10 @@
 namespace selvedge {
 
 // While it lives, other processes of this user see that a training runs (running_training). It ends with the process,
-// however that ends. Where another training runs already, `other` says in which folder.
+// however that ends. Where another training runs already, `other` says which.
 class RunningMark {
  public:
-  explicit RunningMark(const std::filesystem::path& folder);
+  explicit RunningMark(const std::filesystem::path& configuration);
   ~RunningMark();
   RunningMark(const RunningMark&) = delete;
   RunningMark& operator=(const RunningMark&) = delete;
@@ -21,7 +21,7 @@ class RunningMark {
   std::optional<std::string> other_;
 };
 
-// The folder of a training that runs on this machine now, for commands that take times; nothing: none does.
+// The configuration of a training that runs on this machine now, for commands that take times; nothing: none does.
 std::optional<std::string> running_training();
 
 }  // namespace selvedge

@@ -16,7 +16,6 @@
 #include "pipeline/run/progress.hpp"
 #include "pipeline/scene/setup_paths.hpp"
 #include "pipeline/training/flesh_hdf5.hpp"
-#include "pipeline/training/running_mark.hpp"
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
 #include "pipeline/training/training_tables.hpp"
 
@@ -181,8 +180,6 @@ TrainSummary train(const TrainRequest& request) {
   run.options = read_training(request.config, request.overrides);
   run.folder = request.out.empty() ? std::filesystem::path("out") / "training" / run.options.name : request.out;
   for (const std::string& complaint : unfinished_ramps(run.options)) run.say("warning: " + complaint);
-  const RunningMark mark(run.folder);
-  if (mark.other()) run.say("warning: another training runs in " + *mark.other());
   begin(run);
   if (run.trainer->counts.step == 0) take_measure(run);
   const bool finished = run_steps(run);
@@ -195,7 +192,7 @@ TrainSummary train(const TrainRequest& request) {
 }
 
 bool pause_training(const std::filesystem::path& folder, double seconds) {
-  if (!running_training()) return false;
+  if (!std::filesystem::exists(folder)) return false;
   write_file(pause_file(folder), "stop at a checkpoint\n");
   const Clock::time_point asked = Clock::now();
   while (std::filesystem::exists(pause_file(folder))) {
