@@ -11,7 +11,7 @@
 namespace selvedge {
 namespace {
 
-constexpr int most_evaluations = 800;
+constexpr int most_evaluations = 500;
 constexpr int frames_before = 5;  // that are minimised before a fixed state
 
 // With all losses at full weight.
