@@ -52,6 +52,7 @@ struct FeatureOptions {
   bool body_inputs = false;   // of the nearest face of the body within body_radius: node_features.hpp
   bool force_inputs = false;  // GraphState::force, its length l made log(1 + l / 1 mm)
   bool pass_inputs = false;   // GraphState::guess - (x + velocity), and the flag GraphState::pass
+  double contour_force = 0;   // weight of the intersection contours in that force [N/m]; 0: they have no part in it
 
   // Mesh and coarse edges: x_s - x_r 3 + 1, rest 3 + 1 or 1, (dt) | (is_init,) bending, mu, lambda.
   MeshOrder mesh_order = MeshOrder::larger_sends;
@@ -78,6 +79,7 @@ struct FeatureOptions {
   bool future_pinned = true;        // pairs with pinned vertices where they will be (label 1)
   int label_columns = 4;
   ContourRule contours = ContourRule::vertex;
+  bool attraction_edges = true;  // pairs that do not repel are edges; false: they are left out (paper, 4.3)
 };
 
 FeatureOptions hood_features();  // hood_final: 24 node, 12 mesh, 9 body columns

@@ -85,6 +85,7 @@ void find_classes(const GraphScene& scene, const RestGraph& rest, const GraphSta
   const Segments segments = find_segments(std::span(&cloth, 1));
   report.cloth_pairs =
       classify_pairs(pairs, cloth, segments, find_contours(std::span(&cloth, 1), segments), options.contours);
+  if (!options.attraction_edges) report.cloth_pairs.attraction.clear();
 }
 
 }  // namespace

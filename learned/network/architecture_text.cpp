@@ -144,6 +144,7 @@ void visit_features(Visitor& visit, Options& f) {
   visit("features.body_inputs", f.body_inputs);
   visit("features.force_inputs", f.force_inputs);
   visit("features.pass_inputs", f.pass_inputs);
+  visit("features.contour_force", f.contour_force);
   visit("features.strain_inputs", f.strain_inputs);
   visit("features.edge_context", f.edge_context);
   visit("features.mesh_order", f.mesh_order, {"larger_sends", "smaller_sends"});
@@ -163,6 +164,7 @@ void visit_features(Visitor& visit, Options& f) {
   visit("features.future_pinned", f.future_pinned);
   visit("features.label_columns", f.label_columns);
   visit("features.contours", f.contours, {"all_repel", "vertex", "all_vertices"});
+  visit("features.attraction_edges", f.attraction_edges);
 }
 
 template <class Visitor, class Value>

@@ -121,8 +121,8 @@ void check_runnable(const Architecture& architecture) {
     return key == options.body_key ? body_edge_widths(options).all : cloth_edge_widths(options).all;
   };
   bool fits =
-      node_widths(options).all == architecture.node_inputs && architecture.outputs == 3 && architecture.passes == 1 &&
-      !options.force_inputs;
+      node_widths(options).all == architecture.node_inputs && architecture.outputs == 3 &&
+      (architecture.passes == 1 || options.pass_inputs);
   for (const std::string& key : edge_set_keys(options)) {
     const int kind = edge_kind(architecture, key);
     fits =
@@ -132,7 +132,7 @@ void check_runnable(const Architecture& architecture) {
   }
   if (!fits)
     throw Error("the network `" + architecture.name + "` has inputs that the learned stepper does not make",
-                "weights of a learned stepper", "give weights of HOOD or ContourCraft");
+                "weights of a learned stepper", "give weights of HOOD or ContourCraft, or of a network trained by this program");
 }
 
 }  // namespace selvedge

@@ -25,6 +25,7 @@ NetworkWeights first_weights(const TrainingOptions& options, const Architecture&
   theirs.name = architecture.name;
   theirs.features.contours = architecture.features.contours;
   theirs.features.contour_force = architecture.features.contour_force;
+  theirs.features.attraction_edges = architecture.features.attraction_edges;
   theirs.passes = architecture.passes;
   if (architecture_text(theirs) != architecture_text(architecture))
     throw Error("holds weights of another network than `" + architecture.name + "` as configured", options.weights,
@@ -89,7 +90,7 @@ void warm_up(Trainer& trainer) {
   if (!begins && !are_cloth_edges_new(trainer)) return;
   gather_warm_up(trainer);
   FeatureTables fresh = tables;
-  freeze_statistics(trainer.architecture.features, trainer.sums, fresh);
+  freeze_statistics(trainer.sums, fresh);
   if (begins) {
     tables = fresh;
     return;
@@ -137,7 +138,7 @@ bool sample_graph(Trainer& trainer, const FrameMaking& making, RollingState& sta
   if (!trainer.options.optimiser.freeze_statistics && trainer.options.weights.empty()) {
     gather(making.features, trainer.graph, target_accelerations(state.roll.scene->rest, state.now, making.features),
            trainer.sums);
-    freeze_statistics(making.features, trainer.sums, tables);
+    freeze_statistics(trainer.sums, tables);
   }
   normalise(making.features, tables, trainer.graph);
   return true;
@@ -213,6 +214,7 @@ Architecture trained_architecture(const TrainingOptions& options) {
   architecture.passes = options.pool.passes;
   FeatureOptions& features = architecture.features;
   features.contour_force = options.contour_force;
+  features.attraction_edges = options.contact.attraction;
   if (features.cloth_edges && !options.contact.classify) features.contours = ContourRule::all_repel;
   check_architecture(architecture, options.name);
   return architecture;
