@@ -227,8 +227,7 @@ void add_commands(CLI::App& app, Chosen& chosen) {
                                 stability_options, stability_command);
   add_command<WardrobeRequest>(app, chosen, "wardrobe", "every garment by code through every procedural clip",
                                wardrobe_options, wardrobe_command);
-  add_command<TrainArguments>(app, chosen, "train", "a network of the stepper `learned`", train_options,
-                              train_command);
+  add_command<TrainArguments>(app, chosen, "train", "a network of the stepper `learned`", train_options, train_command);
   add_weights_commands(app, chosen);
   add_command<Nothing>(
       app, chosen, "info", "versions, packages, threads", [](CLI::App&, Nothing&) {},

@@ -4,8 +4,8 @@
 
 namespace selvedge {
 
-// The eigenvalues of a symmetric matrix in ascending order, and its eigenvectors as columns. For small matrices that are
-// not in an inner loop: compiled here once.
+// The eigenvalues of a symmetric matrix in ascending order, and its eigenvectors as columns. For small matrices that
+// are not in an inner loop: compiled here once.
 struct Spectrum {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;

@@ -120,9 +120,8 @@ void check_runnable(const Architecture& architecture) {
     if (key == "mesh_edge" || key.starts_with("coarse_edge")) return mesh_edge_widths(options).all;
     return key == options.body_key ? body_edge_widths(options).all : cloth_edge_widths(options).all;
   };
-  bool fits =
-      node_widths(options).all == architecture.node_inputs && architecture.outputs == 3 &&
-      (architecture.passes == 1 || options.pass_inputs);
+  bool fits = node_widths(options).all == architecture.node_inputs && architecture.outputs == 3 &&
+              (architecture.passes == 1 || options.pass_inputs);
   for (const std::string& key : edge_set_keys(options)) {
     const int kind = edge_kind(architecture, key);
     fits =
@@ -132,7 +131,8 @@ void check_runnable(const Architecture& architecture) {
   }
   if (!fits)
     throw Error("the network `" + architecture.name + "` has inputs that the learned stepper does not make",
-                "weights of a learned stepper", "give weights of HOOD or ContourCraft, or of a network trained by this program");
+                "weights of a learned stepper",
+                "give weights of HOOD or ContourCraft, or of a network trained by this program");
 }
 
 }  // namespace selvedge

@@ -29,7 +29,7 @@ class SafeguardedStepper final : public Stepper {
     traits_.may_leave_out_cloths = false;
   }
   const StepperTraits& traits() const override { return traits_; }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to) override;
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override;
 
  private:
   const Scene& scene_;
@@ -39,8 +39,9 @@ class SafeguardedStepper final : public Stepper {
   AuditMemory audited_;
 };
 
-StepReport SafeguardedStepper::step(const State& from, const Drive& drive, double dt, State& to) {
-  StepReport report = inner_->step(from, drive, dt, to);
+StepReport SafeguardedStepper::step(const State& from, const Drive& drive, double dt, State& to,
+                                    const StepExtras& extras) {
+  StepReport report = inner_->step(from, drive, dt, to, extras);
   report.by = traits_.name;
   if (report.status != StepStatus::accepted) return report;
   Stopwatch watch;

@@ -12,10 +12,10 @@ namespace selvedge {
 
 // When the response to a motion is given up (ContourCraft's released code, digest 3.2). Zero: never for that reason.
 struct SafeguardOptions {
-  int largest_zone = 30;            // vertices of an impact zone
-  double largest_impulse = 5e-2;    // that a vertex is moved by it [m]
-  int most_contacts = 2000;         // of the motion as proposed
-  double thickness = 2e-3;          // of cloth [m]
+  int largest_zone = 30;          // vertices of an impact zone
+  double largest_impulse = 5e-2;  // that a vertex is moved by it [m]
+  int most_contacts = 2000;       // of the motion as proposed
+  double thickness = 2e-3;        // of cloth [m]
 };
 
 struct SafeguardReport {

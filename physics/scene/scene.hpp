@@ -10,7 +10,8 @@ namespace selvedge {
 
 enum class MembraneModel { stvk, stable_neo_hookean, baraff_witkin };
 enum class BendingModel { curvature, hinge };
-// Which length of its edge weighs a hinge: the rest shape's, or the present one, as in HOOD's and ContourCraft's losses.
+// Which length of its edge weighs a hinge: the rest shape's, or the present one, as in HOOD's and ContourCraft's
+// losses.
 enum class HingeLength { rest, current };
 
 struct Material {
@@ -22,7 +23,7 @@ struct Material {
   double warp = 1000, weft = 1000;  // Baraff-Witkin stretch stiffness along u and v [N/m]
   double shear = 400;               // Baraff-Witkin shear stiffness [N/m]
   BendingModel bending_model = BendingModel::curvature;
-  double bending = 1e-5;         // B, bending stiffness per width [N m]; for hinge: the papers' coefficient
+  double bending = 1e-5;  // B, bending stiffness per width [N m]; for hinge: the papers' coefficient
   HingeLength hinge_length = HingeLength::rest;
   double stiffness_damping = 0;  // Rayleigh: damping force = -(stiffness_damping * K + mass_damping * M) v; [s]
   double mass_damping = 0;       // [1/s]

@@ -23,8 +23,8 @@ int train_command(const TrainArguments& arguments, bool json) {
   const InterruptWatch watch;
   const RunningMark mark(arguments.config);
   if (mark.other()) std::cerr << "warning: another training runs: " << *mark.other() << "\n";
-  TrainRequest request{arguments.config, arguments.overrides, arguments.out, arguments.resume, &std::cerr,
-                       InterruptWatch::interrupted};
+  TrainRequest request{arguments.config, arguments.overrides, arguments.out,
+                       arguments.resume, &std::cerr,          InterruptWatch::interrupted};
   const TrainSummary summary = train(request);
   to << train_text(summary);
   if (!summary.finished) to << "go on with --resume and the same arguments\n";

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
+#include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/run/simulate.hpp"
 #include "pipeline/scene/massless.hpp"
 

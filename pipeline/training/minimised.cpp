@@ -51,8 +51,8 @@ Minimised minimised(const FrameMaking& making, RollingState& state, const Points
     for (const int pin : scene.rest.pinned) gradient.row(pin).setZero();
     return sum;
   };
-  const std::vector<double> diagonal = jacobi_diagonal(
-      scene.losses, is_settling(state) ? making.losses.relaxation_dt : state.now.timestep);
+  const std::vector<double> diagonal =
+      jacobi_diagonal(scene.losses, is_settling(state) ? making.losses.relaxation_dt : state.now.timestep);
   Eigen::VectorXd inverse(start.rows());
   for (Eigen::Index v = 0; v < inverse.size(); ++v) {
     const double entry = diagonal[static_cast<std::size_t>(v)];

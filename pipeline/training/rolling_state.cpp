@@ -76,8 +76,7 @@ void resume_roll(Roll roll, const KeptRolling& from, RollingState& state) {
 }
 
 LossInputs inputs_of(const RollingState& state, const SeenPositions& seen, const Points& predicted, double progress) {
-  LossInputs inputs =
-      loss_inputs(state.roll.scene->losses, state.roll.scene->graph, state.now, seen, predicted);
+  LossInputs inputs = loss_inputs(state.roll.scene->losses, state.roll.scene->graph, state.now, seen, predicted);
   inputs.repulsion = state.found.cloth_pairs.repulsion;
   inputs.contours = !is_settling(state) && state.roll.request.cloth_contact;
   inputs.is_initial = is_settling(state);

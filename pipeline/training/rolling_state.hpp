@@ -14,8 +14,8 @@ namespace selvedge {
 struct RollingState {
   Roll roll;
   int frame = 0, pass = 0;
-  GraphState now;      // what the frame starts from; its guess and pass are those of the pass to come
-  bool over = true;    // the roll-out has ended
+  GraphState now;                    // what the frame starts from; its guess and pass are those of the pass to come
+  bool over = true;                  // the roll-out has ended
   std::unique_ptr<Safeguard> guard;  // of roll-outs that are advanced through it
   // Memory that is used again:
   GraphSearch search;

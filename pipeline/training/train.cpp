@@ -92,9 +92,12 @@ std::string starts_text(std::vector<int> pairs) {
   if (pairs.empty()) return "";
   std::ranges::sort(pairs);
   const auto many = std::ranges::count_if(pairs, [](int n) { return n >= 20; });
-  const auto at = [&](double part) { return pairs[static_cast<std::size_t>(part * static_cast<double>(pairs.size() - 1))]; };
-  return fmt::format("{} tangled starts: pairs 10 % {}, median {}, 90 % {}, most {}; {:.0f} % have 20 or more", pairs.size(),
-                     at(0.1), at(0.5), at(0.9), pairs.back(), 100.0 * static_cast<double>(many) / static_cast<double>(pairs.size()));
+  const auto at = [&](double part) {
+    return pairs[static_cast<std::size_t>(part * static_cast<double>(pairs.size() - 1))];
+  };
+  return fmt::format("{} tangled starts: pairs 10 % {}, median {}, 90 % {}, most {}; {:.0f} % have 20 or more",
+                     pairs.size(), at(0.1), at(0.5), at(0.9), pairs.back(),
+                     100.0 * static_cast<double>(many) / static_cast<double>(pairs.size()));
 }
 
 void take_measure(TrainingRun& run) {
@@ -185,9 +188,7 @@ TrainSummary train(const TrainRequest& request) {
   const bool finished = run_steps(run);
   save(run);
   std::filesystem::remove(pause_file(run.folder));
-  return {run.folder,          finished,
-          run.trainer->counts, run.history.seconds,
-          run.history.best_step, run.history.best_score,
+  return {run.folder, finished, run.trainer->counts, run.history.seconds, run.history.best_step, run.history.best_score,
           run.last};
 }
 
@@ -206,22 +207,29 @@ bool pause_training(const std::filesystem::path& folder, double seconds) {
 }
 
 std::string train_text(const TrainSummary& s) {
-  return fmt::format("{:<20}{}\n{:<20}{} steps, {} frames, {} bad samples, {} lost roll-outs\n{:<20}{}\n{:<20}{}\n",
-                     s.finished ? "trained" : "stopped", s.folder.string(), "work", s.counts.step, s.counts.frames,
-                     s.counts.bad, s.counts.lost, "time", duration_text(s.seconds), "best roll-out",
-                     s.best_step > 0 ? fmt::format("{:.4g} J at step {} (best.h5)", s.best_score, s.best_step) : "none");
+  return fmt::format(
+      "{:<20}{}\n{:<20}{} steps, {} frames, {} bad samples, {} lost roll-outs\n{:<20}{}\n{:<20}{}\n",
+      s.finished ? "trained" : "stopped", s.folder.string(), "work", s.counts.step, s.counts.frames, s.counts.bad,
+      s.counts.lost, "time", duration_text(s.seconds), "best roll-out",
+      s.best_step > 0 ? fmt::format("{:.4g} J at step {} (best.h5)", s.best_score, s.best_step) : "none");
 }
 
 std::string train_json(const TrainSummary& s) {
   const RollMeasure& r = s.last.roll;
-  return nlohmann::ordered_json{
-             {"folder", s.folder.string()},     {"finished", s.finished},
-             {"steps", s.counts.step},          {"frames", s.counts.frames},
-             {"bad_samples", s.counts.bad},     {"lost_rolls", s.counts.lost},
-             {"seconds", s.seconds},            {"best_step", s.best_step},
-             {"best_score", s.best_score},      {"worn_closed", s.last.worn.closed},
-             {"minimised_closed", s.last.minimised.closed}, {"strain", r.strain},
-             {"strain_99", r.strain_99},        {"pairs_at_end", r.pairs_at_end}}
+  return nlohmann::ordered_json{{"folder", s.folder.string()},
+                                {"finished", s.finished},
+                                {"steps", s.counts.step},
+                                {"frames", s.counts.frames},
+                                {"bad_samples", s.counts.bad},
+                                {"lost_rolls", s.counts.lost},
+                                {"seconds", s.seconds},
+                                {"best_step", s.best_step},
+                                {"best_score", s.best_score},
+                                {"worn_closed", s.last.worn.closed},
+                                {"minimised_closed", s.last.minimised.closed},
+                                {"strain", r.strain},
+                                {"strain_99", r.strain_99},
+                                {"pairs_at_end", r.pairs_at_end}}
              .dump(2) +
          "\n";
 }

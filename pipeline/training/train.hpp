@@ -24,7 +24,7 @@ struct TrainSummary {
   std::filesystem::path folder;
   bool finished = false;  // false: stopped at a checkpoint
   TrainingCounts counts;
-  double seconds = 0;     // of training, over all parts of the run
+  double seconds = 0;  // of training, over all parts of the run
   long best_step = 0;
   double best_score = 0;
   TrainingMeasure last;

@@ -77,8 +77,9 @@ void silence_cloth_edges(const Architecture& architecture, NetworkWeights& weigh
     const std::vector<std::string>& keys = architecture.steps[s].edge_keys;
     for (std::size_t k = 0; k < keys.size(); ++k)
       if (is_cloth_edge(keys[k]))
-        weights.steps[s].node.layers.front().weight
-            .middleCols(static_cast<Eigen::Index>(k + 1) * architecture.width, architecture.width)
+        weights.steps[s]
+            .node.layers.front()
+            .weight.middleCols(static_cast<Eigen::Index>(k + 1) * architecture.width, architecture.width)
             .setZero();
   }
 }
@@ -117,7 +118,8 @@ bool output_gradient(const Trainer& trainer, const RollingState& state, Points g
   }
   d_output.resize(gradient.rows(), 3);
   for (Eigen::Index k = 0; k < 3; ++k)
-    d_output.col(k) = (scale * static_cast<double>(deviation[static_cast<std::size_t>(k)]) * gradient.col(k)).cast<float>();
+    d_output.col(k) =
+        (scale * static_cast<double>(deviation[static_cast<std::size_t>(k)]) * gradient.col(k)).cast<float>();
   return d_output.allFinite();
 }
 
@@ -169,10 +171,10 @@ void count_bad(Trainer& trainer, RollingState& state, const StepRecord& record) 
   state.over = true;
   ++trainer.counts.bad;
   if (++trainer.counts.bad_in_a_row > trainer.options.watch.most_bad_samples)
-    throw Error(fmt::format("{} samples in a row had no finite loss, the last: {}", trainer.counts.bad_in_a_row,
-                            record.bad),
-                "training " + trainer.options.name,
-                "take a smaller learning rate, or go on from an earlier checkpoint with another seed");
+    throw Error(
+        fmt::format("{} samples in a row had no finite loss, the last: {}", trainer.counts.bad_in_a_row, record.bad),
+        "training " + trainer.options.name,
+        "take a smaller learning rate, or go on from an earlier checkpoint with another seed");
 }
 
 // Forward, losses, backward and the optimiser; `next` is what the network made.
@@ -186,8 +188,7 @@ void learn(Trainer& trainer, const FrameMaking& making, RollingState& state, Ste
   next = integrate(scene.rest, state.now, making.features, trainer.network.weights.tables.output, output);
   const SeenPositions seen = seen_positions(scene.rest, state.now, making.features);
   Points gradient = Points::Zero(next.x.rows(), 3);
-  record.terms =
-      add_losses(inputs_of(state, seen, next.x, making.progress), making.losses, state.losses, &gradient);
+  record.terms = add_losses(inputs_of(state, seen, next.x, making.progress), making.losses, state.losses, &gradient);
   record.sum = sum_of(record.terms);
   FeatureRows d_output;
   if (!output.allFinite() || !are_finite(record.terms) || !output_gradient(trainer, state, gradient, d_output)) {
@@ -250,9 +251,7 @@ void set_guard(const TrainingOptions& options, RollingState& state) {
   state.guard = wanted ? std::make_unique<Safeguard>(state.roll.scene->scene) : nullptr;
 }
 
-double progress_of(const Trainer& trainer) {
-  return static_cast<double>(trainer.counts.step) / trainer.options.steps;
-}
+double progress_of(const Trainer& trainer) { return static_cast<double>(trainer.counts.step) / trainer.options.steps; }
 
 FrameMaking frame_making(const Trainer& trainer) {
   FrameMaking making;
@@ -264,8 +263,7 @@ FrameMaking frame_making(const Trainer& trainer) {
 }
 
 void ask_for_roll(Trainer& trainer) {
-  trainer.queue->ask(
-      draw_roll(trainer.options, trainer.maker->world, trainer.counts.rolls++, progress_of(trainer)));
+  trainer.queue->ask(draw_roll(trainer.options, trainer.maker->world, trainer.counts.rolls++, progress_of(trainer)));
 }
 
 StepRecord train_step(Trainer& trainer) {

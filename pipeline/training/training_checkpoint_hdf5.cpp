@@ -56,19 +56,17 @@ struct FieldsIn {
   }
   std::size_t length(const std::string& name) const {
     if (!file.has(name)) fail("the field `" + name + "` is missing");
-    const std::vector<hsize_t> shape = file.shape(file.open_dataset(name).id());
-    if (shape.size() != 1 || shape[0] > (hsize_t(1) << 32)) fail("the field `" + name + "` is no list");
-    return static_cast<std::size_t>(shape[0]);
+    return static_cast<std::size_t>(file.shape_of(name, 1)[0]);
   }
   std::vector<double> numbers(const std::string& name) {
     std::vector<double> values(length(name));
-    if (!values.empty()) file.read_all(name, H5T_NATIVE_DOUBLE, values.data());
+    if (!values.empty()) file.read_all(name, H5T_NATIVE_DOUBLE, {values.size()}, values.data());
     add(name, bytes_of(values));
     return values;
   }
   std::vector<float> floats(const std::string& name) {
     std::vector<float> values(length(name));
-    if (!values.empty()) file.read_all(name, H5T_NATIVE_FLOAT, values.data());
+    if (!values.empty()) file.read_all(name, H5T_NATIVE_FLOAT, {values.size()}, values.data());
     add(name, bytes_of(values));
     return values;
   }
@@ -88,13 +86,31 @@ struct FieldsIn {
 };
 
 std::vector<double> numbers_of(const RollRequest& r) {
-  return {static_cast<double>(r.number),   double(r.wear),      double(r.body),     double(r.clip), double(r.first_frame),
-          double(r.frames), double(r.still), double(r.mirrored), double(r.with_body), double(r.cloth_contact), r.yaw};
+  return {static_cast<double>(r.number),
+          double(r.wear),
+          double(r.body),
+          double(r.clip),
+          double(r.first_frame),
+          double(r.frames),
+          double(r.still),
+          double(r.mirrored),
+          double(r.with_body),
+          double(r.cloth_contact),
+          r.yaw};
 }
 
 RollRequest request_of(const FieldsIn& in, const TrainingWorld& world, const double* n) {
-  RollRequest r{static_cast<std::uint64_t>(n[0]), int(n[1]), int(n[2]), int(n[3]), int(n[4]), int(n[5]),
-                n[6] != 0, n[7] != 0, n[8] != 0, n[9] != 0, n[10]};
+  RollRequest r{static_cast<std::uint64_t>(n[0]),
+                int(n[1]),
+                int(n[2]),
+                int(n[3]),
+                int(n[4]),
+                int(n[5]),
+                n[6] != 0,
+                n[7] != 0,
+                n[8] != 0,
+                n[9] != 0,
+                n[10]};
   const bool known = r.wear >= 0 && r.wear < int(world.wear.size()) && r.body >= 0 &&
                      r.body < int(world.bodies.size()) && r.clip >= 0 && r.clip < int(world.clip_names.size()) &&
                      r.frames >= 1 && r.frames < 100000;
@@ -155,9 +171,9 @@ AdamState read_adam(FieldsIn& in, const Architecture& architecture) {
   for (const double size : sizes) {
     const std::size_t end = names.find('\n', begin), count = static_cast<std::size_t>(size);
     if (end == std::string::npos || count > values.size() - at) in.fail("has a damaged state of the optimiser");
-    arrays.push_back({names.substr(begin, end - begin),
-                      {values.begin() + static_cast<std::ptrdiff_t>(at),
-                       values.begin() + static_cast<std::ptrdiff_t>(at + count)}});
+    arrays.push_back(
+        {names.substr(begin, end - begin),
+         {values.begin() + static_cast<std::ptrdiff_t>(at), values.begin() + static_cast<std::ptrdiff_t>(at + count)}});
     begin = end + 1;
     at += count;
   }
@@ -199,15 +215,15 @@ void read_pool(FieldsIn& in, Trainer& trainer) {
     going.push_back(k);
     trainer.queue->ask(request_of(in, trainer.maker->world, numbers.data()));
     states[k] = {int(numbers[request_numbers + 1]), int(numbers[request_numbers + 2]), in.points(name + "x"),
-                 in.points(name + "previous"), in.points(name + "velocity"), in.points(name + "guess")};
+                 in.points(name + "previous"),      in.points(name + "velocity"),      in.points(name + "guess")};
   }
   for (const std::size_t k : going) {
     Roll roll = trainer.queue->take();
     const Eigen::Index rows = roll.start.rows();
     const KeptRolling& from = states[k];
     if (from.x.rows() != rows || from.previous.rows() != rows || from.velocity.rows() != rows ||
-        (from.guess.rows() != rows && from.guess.rows() != 0) || from.frame < 0 ||
-        from.frame >= roll.request.frames || from.pass < 0 || from.pass >= trainer.architecture.passes)
+        (from.guess.rows() != rows && from.guess.rows() != 0) || from.frame < 0 || from.frame >= roll.request.frames ||
+        from.pass < 0 || from.pass >= trainer.architecture.passes)
       in.fail("has a state that does not fit its garment");
     resume_roll(std::move(roll), from, trainer.pool[k]);
     set_guard(trainer.options, trainer.pool[k]);
@@ -229,8 +245,8 @@ void write_counts(FieldsOut& out, const Trainer& trainer, const TrainingHistory&
 void read_counts(FieldsIn& in, Trainer& trainer, TrainingHistory& history) {
   const std::vector<double> c = in.numbers("counts");
   if (c.size() != 7) in.fail("the field `counts` has another length");
-  trainer.counts = {long(c[0]), static_cast<std::uint64_t>(c[1]), long(c[2]), long(c[3]),
-                    long(c[4]), long(c[5]), long(c[6])};
+  trainer.counts = {long(c[0]), static_cast<std::uint64_t>(c[1]), long(c[2]), long(c[3]), long(c[4]), long(c[5]),
+                    long(c[6])};
   trainer.random.state = std::strtoull(in.text("random").c_str(), nullptr, 16);
   history.steps = in.text("steps");
   history.measures = in.text("measures");

@@ -251,9 +251,8 @@ const Options<TrainingOptions>& training_options() {
        integer("seed", &O::seed, not_negative, "of all that is random"),
        integer("steps", &O::steps, at_least_one, "of the optimiser, in all"),
        section(&O::samples, sample_options(), ""), section(&O::pool, pool_options(), ""),
-       section(&O::contact, training_contact_options(), ""),
-       section(&O::objective, objective_options(), ""), section(&O::optimiser, optimiser_options(), ""),
-       section(&O::watch, watch_options(), "")});
+       section(&O::contact, training_contact_options(), ""), section(&O::objective, objective_options(), ""),
+       section(&O::optimiser, optimiser_options(), ""), section(&O::watch, watch_options(), "")});
   return table;
 }
 
@@ -285,9 +284,10 @@ std::vector<std::string> unfinished_ramps(const TrainingOptions& options) {
   std::vector<std::string> complaints;
   const auto check = [&](const char* name, const LossRamp& ramp) {
     if (!reaches_its_end(ramp))
-      complaints.push_back(fmt::format("{} goes from {} to {} between {} and {} of the run: it must stand at its full "
-                                       "value for the last tenth",
-                                       name, ramp.from, ramp.to, ramp.begin, ramp.end));
+      complaints.push_back(
+          fmt::format("{} goes from {} to {} between {} and {} of the run: it must stand at its full "
+                      "value for the last tenth",
+                      name, ramp.from, ramp.to, ramp.begin, ramp.end));
   };
   const LossOptions& losses = options.objective;
   check("pool.frames", options.pool.frames);

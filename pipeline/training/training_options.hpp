@@ -30,29 +30,29 @@ struct SampleOptions {
   double noise = 3e-3;                          // of start positions [m]
   bool yaw = true, mirror = true;               // turned about the vertical, and left for right
   double no_body_share = 0;                     // of roll-outs
-  bool flesh = true;  // the body gives way where it would pass through itself
+  bool flesh = true;                            // the body gives way where it would pass through itself
   GarmentStart start = GarmentStart::skinned;
 };
 
 // How states are rolled out.
 struct PoolOptions {
-  int states = 32;            // advanced one at a time at random; 1: one roll-out after another
+  int states = 32;                // advanced one at a time at random; 1: one roll-out after another
   LossRamp frames{1, 30, 0, .5};  // most of a roll-out; its length is random up to that where there are several states
   bool random_length = true;
-  int passes = 2;                 // runs of the network a frame, an optimiser step each
-  int gate = 0;                   // factors of the network's correction that advancing tries; 0: takes it as it is
-  double reset_distance = 0.6;    // of a vertex from the skinned garment [m]
-  double long_share = 0;          // of roll-outs that go on to the clip's end,
-  int long_frames = 150;          // or for so many frames
-  bool safeguarded = false;       // advanced through Bridson's response; a state that it gives up is left
-  double no_contact_share = 0;    // of roll-outs without cloth-cloth edges and terms
+  int passes = 2;               // runs of the network a frame, an optimiser step each
+  int gate = 0;                 // factors of the network's correction that advancing tries; 0: takes it as it is
+  double reset_distance = 0.6;  // of a vertex from the skinned garment [m]
+  double long_share = 0;        // of roll-outs that go on to the clip's end,
+  int long_frames = 150;        // or for so many frames
+  bool safeguarded = false;     // advanced through Bridson's response; a state that it gives up is left
+  double no_contact_share = 0;  // of roll-outs without cloth-cloth edges and terms
 };
 
 // Which pairs of cloth see each other.
 struct ContactOptions {
-  bool edges = false;       // of cloth with cloth, in the graph
-  bool classify = false;    // by contours; false: all repel
-  bool attraction = true;   // pairs that do not repel are edges; false: they are left out (Grigorev et al. 2024, 4.3)
+  bool edges = false;      // of cloth with cloth, in the graph
+  bool classify = false;   // by contours; false: all repel
+  bool attraction = true;  // pairs that do not repel are edges; false: they are left out (Grigorev et al. 2024, 4.3)
 };
 
 struct OptimiserOptions {
@@ -71,22 +71,22 @@ struct OptimiserOptions {
 // When a run writes and measures.
 struct WatchOptions {
   double checkpoint_minutes = 5;
-  int measurements = 20;       // of the run: roll-outs and gaps
-  int frames = 60;             // of a measuring roll-out
-  std::string garment;         // of the measuring roll-out; empty: the first
-  std::string clip = "walk";   // of the training split
+  int measurements = 20;      // of the run: roll-outs and gaps
+  int frames = 60;            // of a measuring roll-out
+  std::string garment;        // of the measuring roll-out; empty: the first
+  std::string clip = "walk";  // of the training split
   int fixed_states = 8;
-  int most_bad_samples = 50;   // without a finite loss in a row, before the run stops
+  int most_bad_samples = 50;  // without a finite loss in a row, before the run stops
 };
 
 struct TrainingOptions {
-  std::string name;           // empty: the file's
+  std::string name;  // empty: the file's
   std::string architecture = "small";
   int width = 0, message_steps = 0;  // in place of the architecture's own; 0: those
-  double contour_force = 0;   // of contours in the force that the network is shown [N/m]
-  std::string weights;        // of an earlier stage, to start from; empty: fresh ones
+  double contour_force = 0;          // of contours in the force that the network is shown [N/m]
+  std::string weights;               // of an earlier stage, to start from; empty: fresh ones
   std::uint64_t seed = 1;
-  int steps = 8700;           // of the optimiser
+  int steps = 8700;  // of the optimiser
   SampleOptions samples;
   PoolOptions pool;
   ContactOptions contact;

@@ -61,7 +61,8 @@ std::string chart(const std::string& title, const std::vector<double>& x, const 
       }
   if (low > high) return "";
   if (high - low < 1e-12) high = low + 1;
-  std::string svg = fmt::format("<figure><figcaption>{}</figcaption><svg width='{}' height='{}'>", title, width, height);
+  std::string svg =
+      fmt::format("<figure><figcaption>{}</figcaption><svg width='{}' height='{}'>", title, width, height);
   const auto place_y = [&](double y) { return height - bottom - (y - low) / (high - low) * (height - bottom - top); };
   for (int k = 0; k <= 4; ++k) {
     const double y = low + (high - low) * k / 4;
@@ -128,7 +129,8 @@ std::string training_page(const TrainingOptions& options, const std::string& ste
   page += chart("Learning rate", at, columns_of(steps, {"learning_rate"}), false);
   page += chart("Excess over the optimum on fixed states [J]", measured,
                 columns_of(measures, {"worn_excess", "minimised_excess"}), true);
-  page += chart("Gap closed on fixed states", measured, columns_of(measures, {"worn_closed", "minimised_closed"}), false);
+  page +=
+      chart("Gap closed on fixed states", measured, columns_of(measures, {"worn_closed", "minimised_closed"}), false);
   page += chart("Roll-out on a training clip: strain", measured, columns_of(measures, {"strain", "strain_99"}), true);
   page += chart("Roll-out: objective [J]", measured, columns_of(measures, {"energy"}), true);
   page += chart("Roll-out: intersecting pairs", measured, columns_of(measures, {"pairs", "pairs_at_end"}), false);

@@ -15,9 +15,7 @@ namespace {
 // Streams of different uses of one number.
 enum Use : std::uint64_t { drawing = 1, start_noise = 2, material_draw = 3, place = 4 };
 
-RandomStream stream_for(std::uint64_t seed, Use use, std::uint64_t number) {
-  return stream_of(seed * 8 + use, number);
-}
+RandomStream stream_for(std::uint64_t seed, Use use, std::uint64_t number) { return stream_of(seed * 8 + use, number); }
 
 void add_garment(const TrainingWorld& world, const Garment& garment, const Eigen::VectorXd& shape, bool mirrored,
                  const Material& material, Scene& scene, Triangles& triangles) {
@@ -109,8 +107,7 @@ RollRequest place_of_start(RollMaker& maker, const RollRequest& asked, int& pair
     if (asked.number % 2 == 1) break;
     tried.body = random.below(static_cast<int>(maker.world.bodies.size()));
     tried.clip = random.below(static_cast<int>(maker.world.clip_names.size()));
-    tried.first_frame =
-        random.below(std::max(1, frame_count(maker.world, tried.body, tried.clip) - asked.frames));
+    tried.first_frame = random.below(std::max(1, frame_count(maker.world, tried.body, tried.clip) - asked.frames));
   }
   return best;
 }
@@ -163,8 +160,7 @@ std::shared_ptr<const TrainingScene> make_training_scene(const RollMaker& maker,
                 isotropic(values), scene, triangles);
   scene.surface = make_surface(static_cast<int>(scene.rest.rows()), triangles);
   scene.contact.self = maker.options.contact.edges;
-  if (request.with_body)
-    scene.obstacles.push_back({"body", request.mirrored ? world.mirrored : world.surface, true});
+  if (request.with_body) scene.obstacles.push_back({"body", request.mirrored ? world.mirrored : world.surface, true});
   made->graph = learned_scene(scene).graph;
   made->rest = make_rest_graph(made->graph, maker.features);
   std::vector<char> pinned(static_cast<std::size_t>(scene.surface.vertex_count), 0);

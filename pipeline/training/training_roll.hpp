@@ -16,7 +16,7 @@ struct RollRequest {
   std::uint64_t number = 0;  // of all roll-outs of the run
   int wear = 0, body = 0, clip = 0;
   int first_frame = 0, frames = 1;
-  bool still = true;     // begins at rest, with a frame of 1/3 s in which the cloth falls
+  bool still = true;  // begins at rest, with a frame of 1/3 s in which the cloth falls
   bool mirrored = false;
   bool with_body = true;
   bool cloth_contact = false;

@@ -44,9 +44,9 @@ std::string steps_header() {
 
 std::string StepWindow::take_line(const Trainer& trainer, double seconds) {
   const double n = std::max(count_, 1);
-  std::string line = fmt::format("{},{:.4f},{:.1f},{:.4g},{},{},{},{:.6g},{:.4g},{:.4g}", trainer.counts.step,
-                                 progress_of(trainer), seconds, rate_, count_, bad_, trainer.counts.lost, sum_ / n,
-                                 norm_ / n, scale_ / n);
+  std::string line =
+      fmt::format("{},{:.4f},{:.1f},{:.4g},{},{},{},{:.6g},{:.4g},{:.4g}", trainer.counts.step, progress_of(trainer),
+                  seconds, rate_, count_, bad_, trainer.counts.lost, sum_ / n, norm_ / n, scale_ / n);
   terms_.resize(term_names.size());
   for (const Term& term : terms_) line += fmt::format(",{:.6g},{:.4f}", term.value / n, term.gradient / n);
   *this = {};

@@ -31,8 +31,8 @@ double sum_at(const FrameMaking& making, RollingState& state, const Points& x) {
   return sum_of(add_losses(inputs_of(state, seen, x, making.progress), making.losses, state.losses, nullptr));
 }
 
-RollRequest watched_request(const TrainingOptions& options, const TrainingWorld& world, int clip, int first,
-                            int frames, bool still) {
+RollRequest watched_request(const TrainingOptions& options, const TrainingWorld& world, int clip, int first, int frames,
+                            bool still) {
   RollRequest request;
   request.clip = clip;
   request.still = still;
@@ -132,8 +132,7 @@ struct MotionTrace {
   // Of the change of acceleration in the last four frames [m2/frame4]; 0 before there are so many.
   double add(const Points& x) {
     double squared = 0;
-    if (x3.rows() == x.rows())
-      squared = ((x - 2 * x1 + x2) - (x1 - 2 * x2 + x3)).rowwise().squaredNorm().mean();
+    if (x3.rows() == x.rows()) squared = ((x - 2 * x1 + x2) - (x1 - 2 * x2 + x3)).rowwise().squaredNorm().mean();
     x3 = std::move(x2);
     x2 = std::move(x1);
     x1 = x;

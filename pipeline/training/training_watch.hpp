@@ -26,23 +26,23 @@ TrainingWatch make_training_watch(const TrainingOptions&, Trainer&);
 
 // What is seen of one kind of fixed states.
 struct GapMeasure {
-  double closed = 0;  // mean of (E(x + v) - E) / (E(x + v) - E*)
-  double excess = 0;  // mean of E - E* [J]
+  double closed = 0;      // mean of (E(x + v) - E) / (E(x + v) - E*)
+  double excess = 0;      // mean of E - E* [J]
   double log_excess = 0;  // mean of its decimal logarithm
-  double rms = 0;     // mean distance to the optimum [m]
+  double rms = 0;         // mean distance to the optimum [m]
 };
 
 // What is seen of a roll-out, means over its frames but for what says otherwise.
 struct RollMeasure {
   bool finite = true;
   int frames = 0;
-  double energy = 0;  // sum of losses at full weights [J]
+  double energy = 0;                                  // sum of losses at full weights [J]
   double strain = 0, strain_99 = 0, strain_most = 0;  // principal, |s - 1|: mean, 99th percentile; most of all frames
-  double deep = 0;      // part of the vertices deeper than 1 mm in the body
-  double deepest = 0;   // of all frames [m]
-  double kinetic = 0;   // [J]
-  double jitter = 0;    // RMS of the change of acceleration [m/frame^2]
-  double pairs = 0;     // of triangles of cloth that intersect
+  double deep = 0;                                    // part of the vertices deeper than 1 mm in the body
+  double deepest = 0;                                 // of all frames [m]
+  double kinetic = 0;                                 // [J]
+  double jitter = 0;                                  // RMS of the change of acceleration [m/frame^2]
+  double pairs = 0;                                   // of triangles of cloth that intersect
   int pairs_at_end = 0;
 };
 

@@ -74,7 +74,7 @@ TrainingBody training_body(const TrainingWorld& world, const SampleOptions& opti
 const FleshMoves& flesh_moves(TrainingBody& body, int clip, int frame, const Points& skinned) {
   std::map<int, FleshMoves>& known = body.given[static_cast<std::size_t>(clip)];
   if (const auto found = known.find(frame); found != known.end()) return found->second;
-  const Points moves = (*body.flesh)(skinned) - skinned;
+  const Points moves = (*body.flesh)(skinned)-skinned;
   FleshMoves kept;
   for (int v = 0; v < moves.rows(); ++v)
     if (moves.row(v).cwiseAbs().maxCoeff() > 1e-7) kept.vertices.push_back(v);
@@ -95,8 +95,8 @@ TrainingWorld make_training_world(const SampleOptions& options, std::uint64_t se
   world.clip_names = training_clip_names(options);
   for (const std::string& name : options.garments) world.wear.push_back(dressed_wear(name, options, world.body));
   for (int k = 0; k < options.shapes; ++k)
-    world.bodies.push_back(training_body(
-        world, options, training_shape(options, seed, k, world.body.skin.shape_directions.cols())));
+    world.bodies.push_back(
+        training_body(world, options, training_shape(options, seed, k, world.body.skin.shape_directions.cols())));
   return world;
 }
 

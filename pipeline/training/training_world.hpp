@@ -30,8 +30,8 @@ struct FleshMoves {
 struct TrainingBody {
   Eigen::VectorXd shape;
   Points joints;
-  std::shared_ptr<const GiveWay> flesh;  // null: it passes through itself
-  std::vector<Clip> clips;               // made for this body's joints
+  std::shared_ptr<const GiveWay> flesh;          // null: it passes through itself
+  std::vector<Clip> clips;                       // made for this body's joints
   std::vector<std::map<int, FleshMoves>> given;  // by clip and frame
 };
 

@@ -6,7 +6,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "physics/solve/assembly.hpp"
-#include "physics/steppers/conventional_stepper.hpp"
+#include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/validate/validate_strip.hpp"
 
 // Coulomb's law, by the conventional stepper with all that it does about contact.

@@ -124,7 +124,10 @@ TEST_CASE("training: a run leaves its files, and one that is stopped goes on", "
   int asked = 0;
   TrainRequest request{config_folder() / "training" / "tiny.yaml",
                        {"steps=24", "pool.states=3", "optimiser.warm_up=3", "watch.frames=3", "watch.fixed_states=2"},
-                       folder.path / "run", false, &log, [&asked] { return ++asked == 10; }};
+                       folder.path / "run",
+                       false,
+                       &log,
+                       [&asked] { return ++asked == 10; }};
   const TrainSummary stopped = train(request);
   CHECK_FALSE(stopped.finished);
   CHECK(stopped.counts.step == 10);
@@ -133,8 +136,8 @@ TEST_CASE("training: a run leaves its files, and one that is stopped goes on", "
   const TrainSummary finished = train(request);
   CHECK(finished.finished);
   CHECK(finished.counts.step == 24);
-  for (const char* name : {"checkpoint.h5", "weights.h5", "best.h5", "steps.csv", "measures.csv", "training.html",
-                           "config.yaml"})
+  for (const char* name :
+       {"checkpoint.h5", "weights.h5", "best.h5", "steps.csv", "measures.csv", "training.html", "config.yaml"})
     CHECK(std::filesystem::exists(request.out / name));
   const WeightFile weights = read_weight_file(request.out / "weights.h5");
   CHECK(weights.architecture.name == "tiny");

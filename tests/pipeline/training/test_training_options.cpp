@@ -38,9 +38,9 @@ TEST_CASE("training options: every loss of every configuration reaches its full 
     const TrainingOptions options = read_training(file);
     CHECK(unfinished_ramps(options).empty());
     const LossOptions& losses = options.objective;
-    for (const LossRamp* ramp : {&losses.stretching, &losses.bending, &losses.gravity, &losses.inertia,
-                                 &losses.collision.weight, &losses.friction.weight, &losses.repulsion.weight,
-                                 &losses.contours.weight})
+    for (const LossRamp* ramp :
+         {&losses.stretching, &losses.bending, &losses.gravity, &losses.inertia, &losses.collision.weight,
+          &losses.friction.weight, &losses.repulsion.weight, &losses.contours.weight})
       CHECK(weight_at(*ramp, 0.9) == ramp->to);
     CHECK(losses.stretching.to == 1);
     CHECK(losses.collision.weight.to >= 5e5);
@@ -52,7 +52,9 @@ TEST_CASE("training options: every loss of every configuration reaches its full 
 }
 
 TEST_CASE("training options: ablations differ from their base by what they are named for", "[training]") {
-  const auto read = [](const std::string& name) { return read_training(config_folder() / "training" / (name + ".yaml")); };
+  const auto read = [](const std::string& name) {
+    return read_training(config_folder() / "training" / (name + ".yaml"));
+  };
   const TrainingOptions hood = read("hood"), repulsive = read("only_repulsive"), full = read("contourcraft");
   CHECK_FALSE(hood.contact.edges);
   CHECK(hood.objective.repulsion.weight.to == 0);
@@ -80,7 +82,8 @@ TEST_CASE("training options: ablations differ from their base by what they are n
 TEST_CASE("training options: a base is replaced key by key, and what is written reads back", "[training]") {
   const Folder folder("training_options");
   fake::write(folder, "base.yaml", "steps: 77\nseed: 5\nobjective: {collision: {thickness: 4 mm}}\n");
-  const auto file = fake::write(folder, "own.yaml", "base: base.yaml\nseed: 6\nobjective: {collision: {radius: 2 cm}}\n");
+  const auto file =
+      fake::write(folder, "own.yaml", "base: base.yaml\nseed: 6\nobjective: {collision: {radius: 2 cm}}\n");
   const TrainingOptions options = read_training(file, {"pool.states=3"});
   CHECK(options.name == "own");
   CHECK(options.steps == 77);

@@ -10,8 +10,10 @@ inline TrainingOptions tiny_training() { return read_training(config_folder() / 
 
 // Of the configuration `tiny`, made once: garment and mannequin take a while.
 inline RollMaker& tiny_maker() {
-  static RollMaker maker{tiny_training(), trained_architecture(tiny_training()).features,
-                         make_training_world(tiny_training().samples, 1), {}};
+  static RollMaker maker{tiny_training(),
+                         trained_architecture(tiny_training()).features,
+                         make_training_world(tiny_training().samples, 1),
+                         {}};
   return maker;
 }
 
