@@ -6,7 +6,8 @@
 #include "physics/steppers/step_audit.hpp"
 #include "tests/physics/worlds.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_safeguard {
+
 using testing::make_world;
 using testing::World;
 
@@ -31,7 +32,7 @@ class FixedProposal final : public Stepper {
  public:
   explicit FixedProposal(Points x) : x_(std::move(x)) {}
   const StepperTraits& traits() const override { return traits_; }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to) override {
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override {
     to = {};
     to.time = from.time + dt;
     to.x = x_;
@@ -115,3 +116,5 @@ TEST_CASE("A safeguarded stepper goes where the response lets it, and carries wh
   CHECK(refused.status == StepStatus::rejected);
   CHECK(refused.reason == Reason::penetrating);
 }
+
+}  // namespace selvedge::test_safeguard

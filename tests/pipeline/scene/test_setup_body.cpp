@@ -171,7 +171,7 @@ TEST_CASE("The drive says shape, pose and joints of every body, whatever it come
       CHECK_FALSE(drive.bodies[1].is_body());
       const BodyFrame& frame = drive.bodies[0];
       REQUIRE(frame.joints.rows() == static_cast<Eigen::Index>(model.joints.size()));
-      CHECK(frame.shape.size() > 0 == (body.find("shape") != std::string::npos));
+      CHECK((frame.shape.size() > 0) == (body.find("shape") != std::string::npos));
       const BodyPose pose{frame.rotations, frame.translation};
       const Points skin = posed(model, frame.shape, pose);
       const Points joints = posed_joints(model, joint_positions(model, frame.shape), pose);

@@ -13,7 +13,8 @@
 #include "tests/pipeline/files.hpp"
 #include "tests/pipeline/training/tiny_training.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_train {
+
 using fake::Folder;
 
 namespace {
@@ -184,3 +185,5 @@ TEST_CASE("training: a few hundred steps close part of the gap", "[training][.lo
   CHECK(summary.last.minimised.closed > 0.5);
   CHECK(summary.last.roll.finite);
 }
+
+}  // namespace selvedge::test_train

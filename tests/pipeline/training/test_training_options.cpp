@@ -7,7 +7,8 @@
 #include "pipeline/training/training_options.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_training_options {
+
 using fake::Folder;
 
 namespace {
@@ -146,3 +147,5 @@ TEST_CASE("docs/training.md is written anew", "[.][write-docs]") {
   std::ofstream(training_page_file) << text.substr(0, text.find(reference_begins) + reference_begins.size()) << "\n"
                                     << training_reference();
 }
+
+}  // namespace selvedge::test_training_options

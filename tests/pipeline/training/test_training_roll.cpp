@@ -9,7 +9,7 @@
 #include "pipeline/training/rolling_state.hpp"
 #include "tests/pipeline/training/tiny_training.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_training_roll {
 
 namespace {
 
@@ -158,3 +158,5 @@ TEST_CASE("rolling states: a roll-out that leaves the garment as worn is over", 
   take_pass(making, next, 0.6, state);
   CHECK(state.over);
 }
+
+}  // namespace selvedge::test_training_roll
