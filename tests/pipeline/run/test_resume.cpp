@@ -69,13 +69,10 @@ TEST_CASE("Checkpoints that are damaged or of another scene are refused", "[resu
   CHECK_THAT(refusal([](State& s) { s.cut_out = {4, 2}; }), Catch::Contains("cut_out"));
   CHECK_THAT(refusal([](State& s) { s.cut_out = {1000}; }), Catch::Contains("another scene"));
   CHECK_THAT(refusal([](State& s) { s.obstacles.pop_back(); }), Catch::Contains("another scene"));
-  const auto keep = [](RowsOf rows_of) {
-    return [rows_of](State& s) { s.memory.push_back({"test.rows", MemoryRows::Zero(3, 2), rows_of}); };
-  };
-  CHECK(refusal(keep(RowsOf::none)).empty());
-  CHECK_THAT(refusal(keep(RowsOf::vertices)), Catch::Contains("numbers of vertices"));
-  CHECK_THAT(refusal(keep(RowsOf::triangles)), Catch::Contains("another scene"));
-  CHECK_THAT(refusal(keep(RowsOf::obstacle_vertices)), Catch::Contains("another scene"));
+  CHECK_THAT(refusal([](State& s) { s.memory = {{"a.b", MemoryRows::Zero(3, 3), RowsOf::triangles}}; }),
+             Catch::Contains("another scene"));
+  CHECK_THAT(refusal([](State& s) { s.memory = {{"a.b", MemoryRows::Zero(3, 3), static_cast<RowsOf>(9)}}; }),
+             Catch::Contains("memory_rows_of"));
 }
 
 }  // namespace selvedge::test_resume
