@@ -182,7 +182,6 @@ TrainingRun start_run(const TrainingNetwork& network, const Graph& graph, Traini
   const Architecture& a = network.architecture;
   int widest = std::max({a.width, a.outputs, a.node_inputs});
   for (const EdgeEncoder& encoder : a.encoders) widest = std::max(widest, encoder.inputs);
-  tape.zeros.reshape(training_rows, widest);
   tape.threads.resize(static_cast<std::size_t>(std::max(most_threads(), 1)));
   for (ThreadRows& mine : tape.threads)
     for (LatentRows* buffer : {&mine.first, &mine.second, &mine.third}) buffer->reshape(training_rows, widest);

@@ -52,7 +52,7 @@ struct TrainingTape {
   std::vector<StepTape> steps;
 
   // Memory for both ways.
-  LatentRows to_receiver, to_sender, zeros;
+  LatentRows to_receiver, to_sender;
   std::vector<ThreadRows> threads;
   // Memory for going backward.
   LatentRows d_nodes, d_first;
