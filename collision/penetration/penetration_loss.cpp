@@ -36,6 +36,7 @@ class FrozenPatches {
   Vec3 normal(int face) const {
     return closed_.turn[face] * (corner(face, 1) - corner(face, 0)).cross(corner(face, 2) - corner(face, 0));
   }
+  int turn(int face) const { return closed_.turn[face]; }
   Vec3 corner(int face, int k) const { return row(x_, surface_.triangles(face, k)); }
 
   // Mean of the ends of the pieces of one face: the apex of the face's fan.
@@ -87,10 +88,16 @@ double frozen_volume(const FrozenPatches& patches, const Triangles& corners, con
   const double pull = region.volume < 0 ? -scale : scale;
   for (const ClippedFace& clipped : region.faces) {
     if (!clipped.whole) continue;
-    const Vec3 normal = patches.normal(clipped.face);
-    volume += normal.dot(patches.corner(clipped.face, 0) - region.centre) * clipped.covered() / 3;
-    for (int k = 0; k < 3 && gradient; ++k)
-      gradient->row(corners(clipped.face, k)) += (pull * clipped.moment[k]) * normal.transpose();
+    const int sense = patches.turn(clipped.face), second = sense > 0 ? 1 : 2, third = 3 - second;
+    const double sixth = clipped.covered() / 3;
+    const Vec3 p = patches.corner(clipped.face, 0) - region.centre,
+               q = patches.corner(clipped.face, second) - region.centre,
+               r = patches.corner(clipped.face, third) - region.centre;
+    volume += sixth * p.dot(q.cross(r));
+    if (!gradient) continue;
+    gradient->row(corners(clipped.face, 0)) += (pull * sixth) * q.cross(r).transpose();
+    gradient->row(corners(clipped.face, second)) += (pull * sixth) * r.cross(p).transpose();
+    gradient->row(corners(clipped.face, third)) += (pull * sixth) * p.cross(q).transpose();
   }
   for_each_face(region.pieces, [&](std::span<const ClippedPiece> pieces) {
     const Vec3 apex = patches.apex(pieces), a = apex - region.centre;

@@ -3,8 +3,9 @@
 #include "collision/penetration/penetration_loss.hpp"
 #include "tests/collision/penetration/closed_shapes.hpp"
 
-using namespace selvedge;
-using namespace selvedge::testing;
+namespace selvedge::test_penetration_loss {
+
+using namespace testing;
 
 namespace {
 
@@ -127,3 +128,5 @@ TEST_CASE("penetration loss: frozen crossings push balls apart less than they sh
     if (times == 0) CHECK(edge < 0.7);
   }
 }
+
+}  // namespace selvedge::test_penetration_loss

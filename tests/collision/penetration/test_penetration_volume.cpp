@@ -5,8 +5,9 @@
 #include "tests/collision/penetration/closed_shapes.hpp"
 #include "tests/collision/penetration/cone_volumes.hpp"
 
-using namespace selvedge;
-using namespace selvedge::testing;
+namespace selvedge::test_penetration_volume {
+
+using namespace testing;
 
 namespace {
 
@@ -195,3 +196,5 @@ TEST_CASE("penetration: an inner layer that pokes through an outer one", "[penet
     }
   CHECK(values.front() == Approx(expected).epsilon(0.1));
 }
+
+}  // namespace selvedge::test_penetration_volume
