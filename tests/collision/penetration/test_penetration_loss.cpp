@@ -48,7 +48,8 @@ Solid pinched_tube() {
   return rings(24, 12, [](int j, double angle) {
     const double z = 0.09 * j,
                  in = 1.15 * std::exp(-8 * z * z - 1.5 * std::pow(std::remainder(angle - 0.03, 6.2831853), 2));
-    return Vec3(0.5 * std::cos(angle) - in, 0.35 * std::sin(angle) + 0.013 * j, z + 0.01 * std::sin(3 * angle));
+    return Vec3(0.5 * std::cos(angle) - in, 0.35 * std::sin(angle) + 0.013 * j,
+                z + 0.02 * std::sin(3 * angle + 0.4) + 0.01 * std::cos(7.3 * angle));
   });
 }
 
