@@ -31,6 +31,7 @@ GraphState graph_state(const Scene& scene, const State& from, const Drive& drive
   state.body = joined_rows(from.obstacles);
   state.body_target = joined_rows(drive.obstacles);
   state.timestep = learned_dt;
+  state.acceleration = drive.acceleration.transpose().replicate(from.x.rows(), 1);
   state.no_cloth_edges = !sees_cloth_edges(scene);
   if (begins_rollout(from)) {
     state.velocity = from.v * learned_dt;
