@@ -16,6 +16,15 @@ double solid_angle(const std::array<Vec3, 3>& triangle, const Vec3& at) {
   return 2 * std::atan2(volume, la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
 }
 
+// What a dipole adds at a point, if that is far enough away.
+bool add_if_far(const WindingTree::Dipole& dipole, const Vec3& at, double far, double& sum) {
+  const Vec3 to = dipole.centre - at;
+  const double square = to.squaredNorm(), reach = far * dipole.radius;
+  if (!(square > reach * reach)) return false;
+  sum += dipole.moment.dot(to) / (square * std::sqrt(square));
+  return true;
+}
+
 struct DipoleSum {
   double area = 0;
   Vec3 centre = Vec3::Zero(), moment = Vec3::Zero();
@@ -72,6 +81,12 @@ WindingTree make_winding_tree(const Surface& surface, const Points& x, const std
     for (const Vec3& corner : tree.corners.back()) box = join(box, moving_point_box(corner, corner, 0));
     boxes.push_back(box);
   }
+  for (const std::array<Vec3, 3>& corner : tree.corners) {
+    WindingTree::Dipole& dipole = tree.of_faces.emplace_back();
+    dipole.centre = (corner[0] + corner[1] + corner[2]) / 3;
+    dipole.moment = (corner[1] - corner[0]).cross(corner[2] - corner[0]) / (8 * std::numbers::pi);
+    for (const Vec3& at : corner) dipole.radius = std::max(dipole.radius, (at - dipole.centre).norm());
+  }
   tree.bvh = build_bvh(boxes);
   if (faces.empty()) return tree;
   const std::vector<DipoleSum> sums = sums_of(tree);
@@ -95,18 +110,15 @@ double winding_number(const WindingTree& tree, const Vec3& at, int left_out) {
   stack[size++] = 0;
   while (size > 0) {
     const int node = stack[--size], child = tree.bvh.nodes[node].child;
-    const WindingTree::Dipole& dipole = tree.dipoles[node];
-    const Vec3 to = dipole.centre - at;
-    const double square = to.squaredNorm(), reach = tree.far * dipole.radius;
-    if (square > reach * reach) {
-      far += dipole.moment.dot(to) / (square * std::sqrt(square));
-    } else if (child >= 0) {
+    if (add_if_far(tree.dipoles[node], at, tree.far, far)) continue;
+    if (child >= 0) {
       stack[size++] = child;
       stack[size++] = child + 1;
-    } else {
-      for (const int item : tree.bvh.leaves[~child].item)
-        if (item >= 0 && tree.faces[item] != left_out) angle += solid_angle(tree.corners[item], at);
+      continue;
     }
+    for (const int item : tree.bvh.leaves[~child].item)
+      if (item >= 0 && tree.faces[item] != left_out && !add_if_far(tree.of_faces[item], at, tree.far, far))
+        angle += solid_angle(tree.corners[item], at);
   }
   return far + angle / (4 * std::numbers::pi);
 }

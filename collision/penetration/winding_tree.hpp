@@ -16,7 +16,7 @@ struct WindingTree {
     double radius = 0;                                  // of a ball round the centre that has all triangles
   };
   Bvh bvh;
-  std::vector<Dipole> dipoles;               // by node
+  std::vector<Dipole> dipoles, of_faces;     // by node, by item
   std::vector<int> faces;                    // by item
   std::vector<std::array<Vec3, 3>> corners;  // by item, counter-clockwise seen from outside
   double far = 2.5;                          // in radii: from there on a node is a dipole

@@ -6,6 +6,7 @@
 
 #include "collision/contour/find_contours.hpp"
 #include "collision/geometry/cell_grid.hpp"
+#include "collision/penetration/winding_loss.hpp"
 
 namespace selvedge {
 namespace {

@@ -2,21 +2,9 @@
 
 #include <vector>
 
-#include "collision/penetration/penetration_loss.hpp"
-#include "collision/penetration/winding_loss.hpp"
+#include "learned/losses/loss_options.hpp"
 
 namespace selvedge {
-
-// enclosed: of all crossings, garments closed by fans (Liao et al. 2024). winding: what each garment does to itself is
-// judged by its winding number, without fans; what garments do to each other, as above.
-enum class VolumeForm { enclosed, winding };
-
-struct VolumeLoss {
-  VolumeForm form = VolumeForm::enclosed;
-  PenetrationOptions regions;
-  PenetrationMeasure measure = PenetrationMeasure::volume;
-  CrossingMotion crossings = CrossingMotion::exact;
-};
 
 // What came of the contours of a frame.
 struct VolumeCounts {
