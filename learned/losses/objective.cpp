@@ -168,7 +168,6 @@ LossInputs loss_inputs(const LossGarment& garment, const GraphScene& scene, cons
     in.body_now = &state.body;
     in.body_next = &state.body_target;
   }
-  if (state.acceleration.rows() > 0) in.acceleration = &state.acceleration;
   in.is_initial = state.is_init;
   in.timestep = state.timestep;
   return in;
