@@ -24,7 +24,7 @@ struct LossInputs {
   const Points *body_previous = nullptr, *body_now = nullptr, *body_next = nullptr;
   const std::vector<char>* body_left_out = nullptr;  // by face: cloth has nothing to do with it; null: none
   const Points* acceleration =
-      nullptr;  // by gravity and other forces without contact, V x 3 [m/s2]; null: gravity alone
+      nullptr;  // by gravity and other forces without contact, V x 3 [m/s2]; null: gravity
   std::span<const ClothPair> repulsion;  // vertices and faces of the cloth that repel
   bool contours = true;  // false: the contour loss counts nothing (published: in a first frame, and if none attracts)
   bool is_initial = false;     // the cloth falls to rest: inertia takes relaxation_dt
