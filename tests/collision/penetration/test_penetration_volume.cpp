@@ -123,6 +123,16 @@ TEST_CASE("penetration: a bar through a bar encloses what they have in common", 
   }
 }
 
+TEST_CASE("penetration: three boxes enclose what each two have in common", "[penetration]") {
+  const Vec3 size(1, 1.1, 0.9), second(0.6, 0.47, 0.31), third(0.23, -0.41, 0.52);
+  const auto common = [&](const Vec3& by) { return (size - by.cwiseAbs()).prod(); };
+  const Solid first = box(Vec3::Zero(), size);
+  const Penetration found = penetration_of(both(both(first, moved(first, second)), moved(first, third)));
+  CHECK(all_enclosed(found));
+  CHECK(found.regions.size() == 3);
+  CHECK(volume_of(found) == Approx(common(second) + common(third) + common(third - second)).epsilon(1e-12));
+}
+
 TEST_CASE("penetration: spheres approach their lens at second order", "[penetration]") {
   const double distance = 1.2, height = 1 - distance / 2;
   const double lens = 2 * 3.14159265358979 * height * height * (3 - height) / 3;
