@@ -55,6 +55,7 @@ void check_options(CLI::App& command, CheckRequest& request) {
   command.add_option("--audit", request.audit, "own, or fcl: FCL's opinion beside it")
       ->check(CLI::IsMember({"own", "fcl"}));
   command.add_option("--horizon", request.horizon, "largest gap looked for [m]")->check(CLI::PositiveNumber);
+  command.add_flag("--volume", request.volume, "the volume that crossings enclose, holes being closed");
 }
 
 void untangle_options(CLI::App& command, UntangleRequest& request) {

@@ -195,6 +195,10 @@ void mark_nested(std::span<const SheetView> sheets, std::vector<Contour>& contou
 
 }  // namespace
 
+std::vector<Contour> trace_contours(std::span<const SheetView> sheets, const Segments& segments) {
+  return trace(sheets, segments);
+}
+
 std::vector<Contour> find_contours(std::span<const SheetView> sheets, const Segments& segments) {
   std::vector<Contour> contours = trace(sheets, segments);
   std::vector<std::vector<int>> sizes;

@@ -13,6 +13,9 @@ namespace selvedge {
 // both ends are judged as the one closed curve that they are, and both get its result.
 std::vector<Contour> find_contours(std::span<const SheetView> sheets, const Segments& segments);
 
+// The contours alone: what they cut off and what is nested is not judged.
+std::vector<Contour> trace_contours(std::span<const SheetView> sheets, const Segments& segments);
+
 // The paper's rule for the vertices of sheets[0]: 1 where a correspondence must not repel, because the vertex is inside
 // a contour that cuts its sheet and is not nested in another, or in a triangle of one that does not cut it.
 std::vector<char> unrepelled_vertices(std::span<const SheetView> sheets, std::span<const Contour> contours);

@@ -39,6 +39,13 @@ FeatureOptions contourcraft_features() {
   return options;
 }
 
+FeatureOptions senc_features() {
+  FeatureOptions options = hood_features();
+  options.acceleration_inputs = true;
+  options.space_edges = true;
+  return options;
+}
+
 FeatureOptions contourcraft_paper_features() {
   FeatureOptions options = contourcraft_features();
   options.highest_level = 2;
@@ -61,7 +68,8 @@ FeatureWidths with_time(const FeatureOptions& options, int normalised, int behin
 }  // namespace
 
 int objective_columns(const FeatureOptions& options) {
-  return (options.body_inputs ? 14 : 0) + (options.force_inputs ? 3 : 0) + (options.pass_inputs ? 3 : 0);
+  return (options.body_inputs ? 14 : 0) + (options.force_inputs ? 3 : 0) + (options.pass_inputs ? 3 : 0) +
+         (options.acceleration_inputs ? 3 : 0);
 }
 
 EmbeddingColumns embedding_columns(const FeatureOptions& options) {
@@ -95,6 +103,7 @@ std::vector<std::string> edge_set_keys(const FeatureOptions& options) {
     keys.push_back("repulsion_edge");
     keys.push_back("attraction_edge");
   }
+  if (options.space_edges) keys.push_back("space_edge");
   return keys;
 }
 

@@ -33,6 +33,17 @@ enum class MeshOrder { larger_sends, smaller_sends };
 // pair (Grigorev et al. 2024, algorithm 2).
 enum class ContourRule { all_repel, vertex, all_vertices };
 
+// Which cloth vertices that are near each other get an edge, beside those of the mesh (Liao et al. 2024,
+// section 3.1.2).
+struct SpaceOptions {
+  double radius = 0.02;        // [m]
+  double radius_in_edges = 0;  // above 0: the radius in mean mesh edges at rest, in place of `radius`
+  bool mesh_pairs = false;     // with pairs that a mesh edge joins (an ablation of the paper)
+  bool rest_pairs = true;      // with pairs that are as near at rest
+  int nearest = 0;             // above 0: only so many nearest of each vertex, and one direction (10: as released)
+  int pairs_per_vertex = 32;   // on average; those farthest apart beyond are left out and counted
+};
+
 // What a model was trained to see. A plain value, part of a model's architecture. The defaults are HOOD's.
 struct FeatureOptions {
   // Nodes: velocity 3, type embedding, level embedding, normal 3, (dt,) mass | (is_init,) bending, mu, lambda.
@@ -49,10 +60,11 @@ struct FeatureOptions {
   // More columns of cloth nodes, for own training (reference/training.md). Among the normalised ones: body 14, force 3,
   // move 3; behind the materials: flags, in the order pinned, near the body, pass. Obstacle vertices have zeros there.
   bool pinned_flag = false;
-  bool body_inputs = false;   // of the nearest face of the body within body_radius: node_features.hpp
-  bool force_inputs = false;  // GraphState::force, its length l made log(1 + l / 1 mm)
-  bool pass_inputs = false;   // GraphState::guess - (x + velocity), and the flag GraphState::pass
-  double contour_force = 0;   // weight of the intersection contours in that force [N/m]; 0: they have no part in it
+  bool body_inputs = false;          // of the nearest face of the body within body_radius: node_features.hpp
+  bool force_inputs = false;         // GraphState::force, its length l made log(1 + l / 1 mm)
+  bool acceleration_inputs = false;  // behind these: GraphState::acceleration
+  bool pass_inputs = false;          // GraphState::guess - (x + velocity), and the flag GraphState::pass
+  double contour_force = 0;  // weight of the intersection contours in that force [N/m]; 0: they have no part in it
 
   // Mesh and coarse edges: x_s - x_r 3 + 1, rest 3 + 1 or 1, (dt) | (is_init,) bending, mu, lambda.
   MeshOrder mesh_order = MeshOrder::larger_sends;
@@ -80,12 +92,17 @@ struct FeatureOptions {
   int label_columns = 4;
   ContourRule contours = ContourRule::vertex;
   bool attraction_edges = true;  // pairs that do not repel are edges; false: they are left out (paper, 4.3)
+
+  // Edges of the set space_edge between cloth vertices near each other, with the columns of mesh edges.
+  bool space_edges = false;
+  SpaceOptions space;
 };
 
 FeatureOptions hood_features();  // hood_final: 24 node, 12 mesh, 9 body columns
 FeatureOptions hood_cvpr_features();
 FeatureOptions fine_features();                // fine15, fine48: 20 node columns, no coarse levels
 FeatureOptions contourcraft_features();        // released: 24, 9, 20 and 13 columns, four coarse levels
+FeatureOptions senc_features();                // HOOD's, 27 node columns, space edges
 FeatureOptions contourcraft_paper_features();  // two coarse levels, contours judged by all vertices of a pair
 
 // Columns of each kind of row, and how many of them, the first, are normalised.
@@ -104,7 +121,8 @@ struct EmbeddingColumns {
 };
 EmbeddingColumns embedding_columns(const FeatureOptions&);
 
-// Keys of the edge sets of a graph, in its order: mesh_edge, coarse_edge.., body_key, repulsion_edge, attraction_edge.
+// Keys of the edge sets of a graph, in its order: mesh_edge, coarse_edge.., body_key, repulsion_edge, attraction_edge,
+// space_edge.
 std::vector<std::string> edge_set_keys(const FeatureOptions&);
 
 }  // namespace selvedge

@@ -10,12 +10,13 @@ namespace selvedge {
 struct FeatureTables {
   Statistics node, mesh_edge, coarse_edge, world_edge, body_edge, output;
   FeatureRows node_type, vertex_level, edge_type;  // learned embeddings, one row a value
+  Statistics space_edge;
 };
 
 // What is gathered of the same sets in training.
 template <class Real>
 struct FeatureSums {
-  BasicAccumulators<Real> node, mesh_edge, coarse_edge, world_edge, body_edge, output;
+  BasicAccumulators<Real> node, mesh_edge, coarse_edge, world_edge, body_edge, output, space_edge;
 };
 
 }  // namespace selvedge

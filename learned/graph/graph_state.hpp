@@ -25,6 +25,7 @@ struct GraphScene {
 struct GraphState {
   Points x, previous, target, velocity;     // of the cloth, V x 3
   Points body, body_previous, body_target;  // W x 3
+  Points acceleration;                      // by gravity and other forces without contact, V x 3 [m/s2]; empty: none
   double timestep = 1.0 / 30;               // [s]
   bool is_init = false;                     // the cloth is to fall to rest (ContourCraft's flag)
   bool no_cloth_edges = false;              // first steps of the authors' training samples have none

@@ -19,6 +19,7 @@ void check_sizes(const GraphScene& scene, const RestGraph& rest, const GraphStat
             cloth) ||
       (state.guess.rows() > 0 && state.guess.rows() != cloth) ||
       (state.force.rows() > 0 && state.force.rows() != cloth) ||
+      (state.acceleration.rows() > 0 && state.acceleration.rows() != cloth) ||
       wrong({state.body.rows(), state.body_previous.rows(), state.body_target.rows()}, body))
     throw Error("a state has another number of vertices than its scene", "graph of a learned stepper", "");
 }
@@ -33,6 +34,7 @@ std::string complaint(const GraphState& state) {
     return "a position or velocity of the cloth is not finite or far too large";
   if (!is_usable(state.guess) || !is_usable(state.force))
     return "a guess or a force on the cloth is not finite or far too large";
+  if (!is_usable(state.acceleration)) return "an acceleration of the cloth is not finite or far too large";
   if (!is_usable(state.body) || !is_usable(state.body_previous) || !is_usable(state.body_target))
     return "a position of the body is not finite or far too large";
   return {};
@@ -88,6 +90,23 @@ void find_classes(const GraphScene& scene, const RestGraph& rest, const GraphSta
   if (!options.attraction_edges) report.cloth_pairs.attraction.clear();
 }
 
+// Both ways, the second half the reverse of the first; or one way, from the lower vertex to the higher, as released.
+void fill_space_edges(const std::vector<SpacePair>& pairs, const GraphScene& scene, const GraphState& state,
+                      const SeenPositions& seen, const Points& guess, const FeatureOptions& options, EdgeSet& set) {
+  RestEdges edges{set.key, {}, {}, {}, {}};
+  const int first = options.space.nearest > 0 || options.mesh_order == MeshOrder::smaller_sends ? 0 : 1;
+  for (const bool back : {false, true}) {
+    if (back && options.space.nearest > 0) break;
+    const int sender = back ? 1 - first : first;
+    for (const SpacePair& pair : pairs) {
+      edges.senders.push_back(pair[sender]);
+      edges.receivers.push_back(pair[1 - sender]);
+    }
+  }
+  fill_rest_columns(scene, options, edges);
+  fill_mesh_edges(edges, state, seen, guess, options, set);
+}
+
 }  // namespace
 
 void make_raw_graph(const GraphScene& scene, const RestGraph& rest, const GraphState& state,
@@ -107,6 +126,8 @@ void make_raw_graph(const GraphScene& scene, const RestGraph& rest, const GraphS
   graph.body_vertices = active_vertices(scene, report);
   if (!with_body) graph.body_vertices.clear();
   find_classes(scene, rest, state, seen, options, search, report);
+  if (options.space_edges && !state.no_cloth_edges)
+    report.space_pairs = find_space_pairs(scene, seen.mesh, options.space, search.space);
   fill_node_rows(scene, rest, state, seen, options, tables, graph);
   const Points guess = guess_of(rest, state, seen, options), inertial = inertial_guess(rest, state, seen, options);
   fill_objective_columns(scene, state, seen, guess, inertial, options, report.body_pairs, graph);
@@ -116,7 +137,9 @@ void make_raw_graph(const GraphScene& scene, const RestGraph& rest, const GraphS
   for (std::size_t i = 0; i < keys.size(); ++i) {
     EdgeSet& set = graph.edge_sets[i];
     set.key = keys[i];
-    if (i < rest.sets.size())
+    if (set.key == "space_edge")
+      fill_space_edges(report.space_pairs.pairs, scene, state, seen, guess, options, set);
+    else if (i < rest.sets.size())
       fill_mesh_edges(rest.sets[i], state, seen, guess, options, set);
     else if (with_body && i == rest.sets.size())
       fill_body_edges(report.body_pairs, graph.body_vertices, state, seen, options, set);

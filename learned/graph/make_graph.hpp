@@ -4,6 +4,7 @@
 
 #include "learned/graph/edge_features.hpp"
 #include "learned/graph/pair_classes.hpp"
+#include "learned/graph/space_pairs.hpp"
 
 namespace selvedge {
 
@@ -13,13 +14,15 @@ struct GraphReport {
   std::vector<BodyPair> body_pairs;  // with an edge
   int omitted_body_pairs = 0;        // without one, for the nearest body vertex takes no part
   PairClasses cloth_pairs;           // with an edge
-  int cloth_pairs_beyond = 0;        // left out, for they were more than the limit: those farthest apart
+  SpacePairs space_pairs;
+  int cloth_pairs_beyond = 0;  // left out, for they were more than the limit: those farthest apart
 };
 
 // Kept between frames of one scene. It saves time and changes nothing.
 struct GraphSearch {
   BodySearch body;
   ClothSearch cloth, future;
+  SpaceSearch space;
 };
 
 // Fills in the graph that a model with these options sees, using its memory again: topology and raw features, of which

@@ -60,6 +60,9 @@ void fill_node_rows(const GraphScene& scene, const RestGraph& rest, const GraphS
   graph.nodes.resize(static_cast<Eigen::Index>(graph.node_types.size()), node_widths(options).all);
   graph.nodes.middleCols(at.objective, objective_columns(options)).setZero();
   graph.nodes.rightCols(graph.nodes.cols() - at.flags).setZero();
+  if (options.acceleration_inputs && state.acceleration.rows() > 0)
+    graph.nodes.block(0, at.objective + objective_columns(options) - 3, graph.cloth_nodes, 3) =
+        state.acceleration.cast<float>();
   fill_cloth(scene, rest, state, seen, options, at, graph.nodes);
   fill_body(scene, state, options, at, graph.body_vertices, graph.nodes);
   graph.nodes.col(at.time).setConstant(options.time == TimeFeature::timestep ? static_cast<float>(state.timestep)

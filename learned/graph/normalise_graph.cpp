@@ -10,6 +10,7 @@ auto& part_for(const std::string& key, const FeatureOptions& options, Tables& ta
   if (key == options.body_key) return key == "body_edge" ? tables.body_edge : tables.world_edge;
   if (key == "mesh_edge" || (key.starts_with("coarse_edge") && options.shared_mesh_statistics)) return tables.mesh_edge;
   if (key.starts_with("coarse_edge")) return tables.coarse_edge;
+  if (key == "space_edge") return tables.space_edge;
   return tables.world_edge;
 }
 

@@ -50,6 +50,13 @@ RestEdges both_ways(std::string key, const Edges& edges, MeshOrder order) {
   return set;
 }
 
+// A vertex without triangles has no mass: the logarithm of a microgram stands for it.
+float mass_column(const FeatureOptions& options, double mass) {
+  return static_cast<float>(options.log_mass ? std::log(std::max(mass, 1e-9)) : mass);
+}
+
+}  // namespace
+
 void fill_rest_columns(const GraphScene& scene, const FeatureOptions& options, RestEdges& set) {
   const auto count = static_cast<Eigen::Index>(set.senders.size());
   const bool vector = options.rest == RestFeature::vector;
@@ -63,13 +70,6 @@ void fill_rest_columns(const GraphScene& scene, const FeatureOptions& options, R
     set.materials.row(e) = 0.5f * (scene.materials.row(s) + scene.materials.row(r));
   }
 }
-
-// A vertex without triangles has no mass: the logarithm of a microgram stands for it.
-float mass_column(const FeatureOptions& options, double mass) {
-  return static_cast<float>(options.log_mass ? std::log(std::max(mass, 1e-9)) : mass);
-}
-
-}  // namespace
 
 RestGraph make_rest_graph(const GraphScene& scene, const FeatureOptions& options, std::span<const int> centres) {
   check(scene);

@@ -32,4 +32,7 @@ struct RestGraph {
 // make_coarse_levels. Mesh edges are sorted by their larger, then their smaller vertex.
 RestGraph make_rest_graph(const GraphScene&, const FeatureOptions&, std::span<const int> centres = {});
 
+// Fills in the columns of edges whose senders and receivers are given.
+void fill_rest_columns(const GraphScene&, const FeatureOptions&, RestEdges&);
+
 }  // namespace selvedge

@@ -75,6 +75,7 @@ LossGarment make_loss_garment(const Surface& surface, const Points& rest, const 
   const Scene scene = cloth_alone(surface, rest, length);
   LossGarment garment;
   garment.surface = surface;
+  garment.closed = close_surface(surface);
   garment.pinned = pinned.empty() ? std::vector<char>(static_cast<std::size_t>(surface.vertex_count), 0) : pinned;
   garment.membranes = membrane_elements(scene);
   garment.hinges = hinges(scene);

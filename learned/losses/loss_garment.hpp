@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "collision/penetration/closed_surface.hpp"
 #include "physics/energies/bending.hpp"
 #include "physics/energies/membrane_element.hpp"
 #include "physics/scene/scene.hpp"
@@ -21,6 +22,7 @@ struct VertexMaterial {
 // A garment or outfit at rest, as losses need it. Vertices without mass, which no triangle has, take part in no loss.
 struct LossGarment {
   Surface surface;
+  ClosedSurface closed;                    // the same with its holes closed, for the volume loss
   std::vector<char> pinned;                // of each vertex
   std::vector<MembraneElement> membranes;  // `material` is an index into `materials`
   std::vector<Hinge> hinges;               // rest angle 0

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "collision/contour/contour_energy.hpp"
+#include "collision/penetration/penetration_loss.hpp"
 
 namespace selvedge {
 
@@ -51,6 +52,26 @@ struct ContourLoss {
   ContourNormal normal = ContourNormal::frozen;  // frozen as released; turning: the exact derivative
 };
 
+// enclosed: of all crossings, garments closed by fans (Liao et al. 2024). winding: what each garment does to itself is
+// judged by its winding number, without fans; what garments do to each other, as above.
+enum class VolumeForm { enclosed, winding };
+
+// L_sc. As published the weight is 3e4 from 0.632 of the run on.
+struct VolumeLoss {
+  LossRamp weight{0, 0};
+  VolumeForm form = VolumeForm::enclosed;
+  PenetrationOptions regions;
+  PenetrationMeasure measure = PenetrationMeasure::volume;
+  CrossingMotion crossings = CrossingMotion::exact;
+};
+
+// The repulsion that the paper compares L_sc with: (distance - d)^power of vertices without a common edge.
+struct VertexRepulsionLoss {
+  LossRamp weight{0, 0};
+  double distance = 0.05;  // [m]
+  int power = 2;           // or 1; the paper's is lost
+};
+
 // What is summed up. A term whose weight is zero is not evaluated. The defaults are HOOD's.
 struct LossOptions {
   LossRamp stretching, bending, gravity, inertia;
@@ -58,6 +79,8 @@ struct LossOptions {
   FrictionLoss friction;
   RepulsionLoss repulsion;
   ContourLoss contours;
+  VolumeLoss volume;
+  VertexRepulsionLoss vertex_repulsion;
   double gravity_strength = 9.81;  // against y [m/s2]
   double relaxation_dt = 1.0 / 3;  // of the inertia of a frame in which cloth falls to rest [s]
 };
@@ -66,6 +89,7 @@ struct LossOptions {
 // of ContourCraft's stages 1 and 2, which are blind to contours; of the 11,000 of its stage 3, in whose first 5,000 the
 // contour loss rises. The released ContourCraft trains without friction.
 LossOptions hood_losses();
+LossOptions senc_losses();  // its two phases of 120,000 and 70,000 in one run
 LossOptions contourcraft_losses();
 LossOptions contourcraft_final_losses();
 // reference/training.md: collision 5e3 to 1e6 between a tenth and half of the run, eps 3 mm, contours 30 N/m.

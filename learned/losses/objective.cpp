@@ -6,6 +6,7 @@
 #include "collision/geometry/error.hpp"
 #include "learned/losses/body_losses.hpp"
 #include "learned/losses/cloth_losses.hpp"
+#include "learned/losses/volume_loss.hpp"
 
 namespace selvedge {
 namespace {
@@ -21,6 +22,7 @@ void check_inputs(const LossInputs& in) {
   check_rows(in.x, vertices, "positions");
   check_rows(in.velocity, vertices, "velocities");
   check_rows(in.predicted, vertices, "predicted positions");
+  if (in.acceleration) check_rows(in.acceleration, vertices, "accelerations");
   if (!in.body) return;
   check_rows(in.body_previous, in.body->vertex_count, "the body's previous positions");
   check_rows(in.body_now, in.body->vertex_count, "the body's positions");
@@ -117,7 +119,10 @@ std::vector<LossTerm> add_checked(const LossInputs& in, const LossOptions& optio
   };
   add("stretching", options.stretching, [&](Points* g) { return stretching_loss(garment, x, g); });
   add("bending", options.bending, [&](Points* g) { return bending_loss(garment, x, g); });
-  add("gravity", options.gravity, [&](Points* g) { return gravity_loss(garment, options.gravity_strength, x, g); });
+  if (in.acceleration)
+    add("forces", options.gravity, [&](Points* g) { return force_loss(garment.mass, *in.acceleration, x, g); });
+  else
+    add("gravity", options.gravity, [&](Points* g) { return gravity_loss(garment, options.gravity_strength, x, g); });
   add("inertia", options.inertia,
       [&](Points* g) { return inertia_loss(garment, *in.x, *in.velocity, dt_of(in, options), x, g); });
   if (has_body(in)) {
@@ -131,6 +136,11 @@ std::vector<LossTerm> add_checked(const LossInputs& in, const LossOptions& optio
   }
   add("repulsion", options.repulsion.weight,
       [&](Points* g) { return repulsion_loss(garment, options.repulsion, in.repulsion, *in.x, x, g); });
+  add("volume", options.volume.weight, [&](Points* g) { return volume_loss(garment.closed, options.volume, x, g); });
+  add("vertex_repulsion", options.vertex_repulsion.weight, [&](Points* g) {
+    return vertex_repulsion_loss(garment.surface, options.vertex_repulsion.distance, options.vertex_repulsion.power, x,
+                                 g);
+  });
   if (in.contours)
     add("contours", options.contours.weight,
         [&](Points* g) { return contour_loss(in, options.contours, matches.crossings, g); });

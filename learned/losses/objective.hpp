@@ -23,7 +23,8 @@ struct LossInputs {
   const Surface* body = nullptr;
   const Points *body_previous = nullptr, *body_now = nullptr, *body_next = nullptr;
   const std::vector<char>* body_left_out = nullptr;  // by face: cloth has nothing to do with it; null: none
-  std::span<const ClothPair> repulsion;              // vertices and faces of the cloth that repel
+  const Points* acceleration = nullptr;  // by all forces without contact, V x 3 [m/s2]; null: by gravity alone
+  std::span<const ClothPair> repulsion;  // vertices and faces of the cloth that repel
   bool contours = true;  // false: the contour loss counts nothing (published: in a first frame, and if none attracts)
   bool is_initial = false;     // the cloth falls to rest: inertia takes relaxation_dt
   double timestep = 1.0 / 30;  // [s]

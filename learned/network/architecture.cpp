@@ -88,7 +88,7 @@ void check_architecture(const Architecture& a, const std::string& where) {
   require_table(a.vertex_level, where, "vertex_level");
   require_table(a.edge_type, where, "edge_type");
   const StatisticsSizes& s = a.statistics;
-  for (const int size : {s.node, s.mesh_edge, s.coarse_edge, s.world_edge, s.body_edge, s.output})
+  for (const int size : {s.node, s.mesh_edge, s.coarse_edge, s.world_edge, s.body_edge, s.output, s.space_edge})
     require_range(size, 0, 4096, where, "statistics");
 }
 

@@ -43,7 +43,7 @@ struct TableSize {
 // Columns that each set of statistics covers; zero where a model lacks it. Kinds of edges name theirs by key: the
 // published HOOD calls its edges to the body `world_edge`, and so do its statistics.
 struct StatisticsSizes {
-  int node = 0, mesh_edge = 0, coarse_edge = 0, world_edge = 0, body_edge = 0, output = 3;
+  int node = 0, mesh_edge = 0, coarse_edge = 0, world_edge = 0, body_edge = 0, output = 3, space_edge = 0;
 };
 
 // How a roll-out starts and how a frame is integrated.
@@ -70,9 +70,9 @@ struct Architecture {
   int passes = 1;  // runs of the network a frame, all with the same weights
 };
 
-// hood, hood_cvpr, fine15, fine48, contourcraft, contourcraft_paper, small, small_contour, tiny (`preset_names`). Sizes
-// of the published ones: reference/weights.md; the last three are ours (reference/training.md): `small` is blind to
-// contact of cloth with cloth, `tiny` is for tests. Throws Error at any other name.
+// hood, hood_cvpr, fine15, fine48, contourcraft, contourcraft_paper, senc, small, small_contour, tiny (`preset_names`).
+// Sizes of the published ones: reference/weights.md; the last three are ours (reference/training.md): `small` is blind
+// to contact of cloth with cloth, `tiny` is for tests. Throws Error at any other name.
 Architecture architecture_preset(const std::string& name);
 std::vector<std::string> preset_names();
 

@@ -66,6 +66,25 @@ Architecture fine(const std::string& name, int steps) {
   return a;
 }
 
+// SENC (Liao et al. 2024): HOOD with the acceleration by forces without contact among the node features, and edges in
+// space, which take part wherever mesh edges or those of the coarse level do.
+Architecture senc() {
+  Architecture a = hood();
+  a.name = "senc";
+  a.node_inputs = 27;
+  a.features = senc_features();
+  add_edges(a, "space", 12, 9, {"space_edge"});
+  for (MessageStep& step : a.steps) {
+    EdgeFilter near{"space_edge", {}};
+    for (const std::string& key : step.edge_keys)
+      if (key.starts_with("coarse_edge")) near.near.push_back(key);
+    step.edge_keys.insert(step.edge_keys.end() - 1, "space_edge");
+    if (!step.filters.empty()) step.filters.push_back(near);
+  }
+  a.statistics = {.node = 24, .mesh_edge = 9, .world_edge = 9, .space_edge = 9};
+  return a;
+}
+
 // ContourCraft (Grigorev et al. 2024) with the coarse levels `encoded`, of which every step uses `used`.
 Architecture contour(const std::string& name, const FeatureOptions& features, const std::vector<std::string>& encoded,
                      const std::vector<std::string>& used) {
@@ -141,8 +160,8 @@ Architecture own(const std::string& name, int width, int steps, bool contact) {
 }  // namespace
 
 std::vector<std::string> preset_names() {
-  return {"hood",  "hood_cvpr",     "fine15", "fine48", "contourcraft", "contourcraft_paper",
-          "small", "small_contour", "tiny"};
+  return {"hood", "hood_cvpr", "fine15",        "fine48", "contourcraft", "contourcraft_paper",
+          "senc", "small",     "small_contour", "tiny"};
 }
 
 Architecture architecture_preset(const std::string& name) {
@@ -153,6 +172,7 @@ Architecture architecture_preset(const std::string& name) {
   // The released code uses the fourth level only; the paper speaks of two levels (reference/learned.md, 1.6).
   if (name == "contourcraft") return contour(name, contourcraft_features(), {"0", "1", "2", "3"}, {"3"});
   if (name == "contourcraft_paper") return contour(name, contourcraft_paper_features(), {"0", "1"}, {"0", "1"});
+  if (name == "senc") return senc();
   if (name == "small" || name == "small_contour") return own(name, 64, 6, name == "small_contour");
   if (name == "tiny") return own(name, 32, 3, true);
   std::string known;

@@ -165,6 +165,14 @@ void visit_features(Visitor& visit, Options& f) {
   visit("features.label_columns", f.label_columns);
   visit("features.contours", f.contours, {"all_repel", "vertex", "all_vertices"});
   visit("features.attraction_edges", f.attraction_edges);
+  visit("features.acceleration_inputs", f.acceleration_inputs);
+  visit("features.space_edges", f.space_edges);
+  visit("features.space.radius", f.space.radius);
+  visit("features.space.radius_in_edges", f.space.radius_in_edges);
+  visit("features.space.mesh_pairs", f.space.mesh_pairs);
+  visit("features.space.rest_pairs", f.space.rest_pairs);
+  visit("features.space.nearest", f.space.nearest);
+  visit("features.space.pairs_per_vertex", f.space.pairs_per_vertex);
 }
 
 template <class Visitor, class Value>
@@ -186,6 +194,7 @@ void visit_values(Visitor& visit, Value& a) {
   visit("statistics.world_edge", a.statistics.world_edge);
   visit("statistics.body_edge", a.statistics.body_edge);
   visit("statistics.output", a.statistics.output);
+  visit("statistics.space_edge", a.statistics.space_edge);
   visit_features(visit, a.features);
   visit("encoders", a.encoders);
   visit("edge_kinds", a.edge_kinds);

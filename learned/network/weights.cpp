@@ -81,7 +81,8 @@ NetworkWeights blank_weights(const Architecture& a) {
   const StatisticsSizes& s = a.statistics;
   w.tables = {blank_statistics(s.node),       blank_statistics(s.mesh_edge), blank_statistics(s.coarse_edge),
               blank_statistics(s.world_edge), blank_statistics(s.body_edge), blank_statistics(s.output),
-              blank_table(a.node_type),       blank_table(a.vertex_level),   blank_table(a.edge_type)};
+              blank_table(a.node_type),       blank_table(a.vertex_level),   blank_table(a.edge_type),
+              blank_statistics(s.space_edge)};
   return w;
 }
 
@@ -105,6 +106,7 @@ std::vector<WeightArray> weight_arrays(const Architecture& a, NetworkWeights& w)
   list.add("statistics/coarse_edge", t.coarse_edge);
   list.add("statistics/world_edge", t.world_edge);
   list.add("statistics/body_edge", t.body_edge);
+  if (a.statistics.space_edge > 0) list.add("statistics/space_edge", t.space_edge);
   list.add("statistics/output", t.output);
   list.add_table("embeddings/node_type", t.node_type);
   list.add_table("embeddings/vertex_level", t.vertex_level);

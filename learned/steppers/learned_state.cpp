@@ -1,4 +1,5 @@
 #include "learned/steppers/learned_state.hpp"
+#include "physics/energies/external.hpp"
 
 namespace selvedge {
 namespace {
@@ -11,6 +12,17 @@ Eigen::Index obstacle_rows(const State& state) {
   Eigen::Index rows = 0;
   for (const Points& obstacle : state.obstacles) rows += obstacle.rows();
   return rows;
+}
+
+// By gravity and by the wind on each triangle [m/s2].
+Points free_acceleration(const Scene& scene, const State& from, const Drive& drive) {
+  Points acceleration = drive.acceleration.transpose().replicate(from.x.rows(), 1);
+  if (!scene.wind.on) return acceleration;
+  const Points forces = wind_forces(scene, from.x, from.v, drive.wind);
+  const Eigen::VectorXd mass = lumped_masses(scene);
+  for (Eigen::Index v = 0; v < mass.size(); ++v)
+    if (mass[v] > 0) acceleration.row(v) += forces.row(v) / mass[v];
+  return acceleration;
 }
 
 }  // namespace
@@ -31,6 +43,7 @@ GraphState graph_state(const Scene& scene, const State& from, const Drive& drive
   state.body = joined_rows(from.obstacles);
   state.body_target = joined_rows(drive.obstacles);
   state.timestep = learned_dt;
+  state.acceleration = free_acceleration(scene, from, drive);
   state.no_cloth_edges = !sees_cloth_edges(scene);
   if (begins_rollout(from)) {
     state.velocity = from.v * learned_dt;

@@ -20,7 +20,8 @@ bool begins_rollout(const State&);
 // What a network starts a frame from. This is the only place where velocities in m/s become displacements per frame:
 // a state that a network made keeps its own in State::memory, with where cloth and body were before; another state's
 // are v dt, and its cloth comes from x - v dt. The body goes from the state's obstacles to the drive's. Pinned vertices
-// have their target at the drive's pins, others where they are.
+// have their target at the drive's pins, others where they are. The acceleration is that of gravity and of the wind on
+// each triangle.
 GraphState graph_state(const Scene&, const State& from, const Drive&);
 
 // The frame that a network made of `state`; `seen` is where the network saw the cloth (seen_positions.hpp). Velocities

@@ -55,7 +55,8 @@ double smallest_gap(const Surface& surface, const Points& x, const std::vector<A
 }
 
 // `rest` holds what principal_stretches needs; without a rest shape it has no rest triangles.
-void check_frame(const Scene& rest, const Points& x, const Bodies& bodies, double horizon, CheckReport& report) {
+void check_frame(const Scene& rest, const Points& x, const Bodies& bodies, double horizon,
+                 const std::optional<VolumeCheck>& volume, CheckReport& report) {
   const std::vector<AuditBody> audited = bodies.for_audit();
   const Audit found = audit(rest.surface, x, audited);
   const int frame = report.frames(), pairs = found.intersecting_pairs();
@@ -74,6 +75,7 @@ void check_frame(const Scene& rest, const Points& x, const Bodies& bodies, doubl
     if (report.fcl) report.fcl->pairs_by_frame.push_back(0);
     return;
   }
+  if (volume) volume->add(x, *report.volume);
   if (report.fcl) add_opinion(rest.surface, x, audited, found, frame, *report.fcl);
   const double reach = std::min(horizon, report.min_gap);
   if (reach > 0)
@@ -82,6 +84,17 @@ void check_frame(const Scene& rest, const Points& x, const Bodies& bodies, doubl
   const auto stretches = principal_stretches(rest, x);
   report.min_stretch = std::min(report.min_stretch.value_or(stretches.col(0).minCoeff()), stretches.col(0).minCoeff());
   report.max_stretch = std::max(report.max_stretch.value_or(stretches.col(1).maxCoeff()), stretches.col(1).maxCoeff());
+}
+
+// Each cloth of a trajectory is a garment, and each component of a mesh.
+std::optional<VolumeCheck> volume_check(const CheckRequest& request, const Surface& surface,
+                                        const std::vector<int>& first_vertex, CheckReport& report) {
+  if (!request.volume) return {};
+  report.volume.emplace();
+  std::vector<int> garments;
+  for (std::size_t cloth = 0; cloth + 1 < first_vertex.size(); ++cloth)
+    garments.resize(static_cast<std::size_t>(first_vertex[cloth + 1]), static_cast<int>(cloth));
+  return VolumeCheck(surface, garments);
 }
 
 std::vector<RestTriangle> read_rest(const std::filesystem::path& file, const Triangles& triangles) {
@@ -115,11 +128,12 @@ void check_trajectory(const CheckRequest& request, CheckReport& report) {
   Bodies bodies;
   for (const TrajectoryInfo::Body& body : info.obstacles) bodies.add(body.vertex_count, body.triangles, Points());
   add_body_files(request, bodies, report);
+  const auto volume = volume_check(request, scene.surface, info.cloth_first_vertex, report);
   int last_cut = -1;
   for (int i = 0; i < reader.frame_count(); ++i) {
     const Frame frame = reader.frame(i);
     for (std::size_t k = 0; k < frame.obstacles.size(); ++k) bodies.points[k] = frame.obstacles[k].cast<double>();
-    check_frame(scene, frame.x.cast<double>(), bodies, request.horizon, report);
+    check_frame(scene, frame.x.cast<double>(), bodies, request.horizon, volume, report);
     if (frame.report.collision.cut_out > 0) last_cut = i;
   }
   if (last_cut >= 0)
@@ -137,7 +151,7 @@ void check_mesh(const CheckRequest& request, CheckReport& report) {
   add_body_files(request, bodies, report);
   const Scene scene = rest_scene(static_cast<int>(mesh.x.rows()), mesh.triangles,
                                  request.rest ? read_rest(*request.rest, mesh.triangles) : std::vector<RestTriangle>());
-  check_frame(scene, mesh.x, bodies, request.horizon, report);
+  check_frame(scene, mesh.x, bodies, request.horizon, volume_check(request, scene.surface, {}, report), report);
   report.vertices = scene.surface.vertex_count;
   report.triangles = static_cast<int>(mesh.triangles.rows());
   report.bodies = static_cast<int>(bodies.surfaces.size());

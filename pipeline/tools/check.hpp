@@ -8,6 +8,7 @@
 
 #include "collision/geometry/surface.hpp"
 #include "pipeline/tools/check_opinion.hpp"
+#include "pipeline/tools/check_volume.hpp"
 
 namespace selvedge {
 
@@ -17,6 +18,7 @@ struct CheckRequest {
   std::vector<std::filesystem::path> bodies;  // meshes that the cloth must not touch, beside a trajectory's obstacles
   std::string audit = "own";                  // or "fcl": its opinion beside the audit's
   double horizon = 0.02;                      // gaps above it are not looked for [m]
+  bool volume = false;                        // the volume that crossings enclose
 };
 
 // What was found in the positions themselves; nothing that a trajectory says about itself is trusted.
@@ -34,6 +36,7 @@ struct CheckReport {
   bool closed = true;  // false: the trajectory's writer did not end, or is still at work
   std::vector<std::string> warnings;
   std::optional<Opinion> fcl;
+  std::optional<VolumeFindings> volume;  // frames that are not finite have none
   int frames() const { return static_cast<int>(pairs_by_frame.size()); }
 };
 

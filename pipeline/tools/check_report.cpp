@@ -32,6 +32,21 @@ nlohmann::ordered_json opinion_json(const Opinion& opinion) {
           {"disagreements", list}};
 }
 
+nlohmann::ordered_json volume_json(const VolumeFindings& findings) {
+  return {{"mean_loss", findings.mean_loss()},
+          {"share_above_0.1", findings.share_above(0.1)},
+          {"share_above_0.01", findings.share_above(0.01)},
+          {"loss_by_frame", findings.loss_by_frame},
+          {"volume_by_frame", findings.volume_by_frame},
+          {"pairs", findings.pairs},
+          {"contours", findings.contours},
+          {"enclosed", findings.enclosed},
+          {"open", findings.open},
+          {"not_orientable", findings.not_orientable},
+          {"unassigned", findings.unassigned},
+          {"closed_holes", findings.closed_holes}};
+}
+
 }  // namespace
 
 std::string check_json(const CheckReport& r) {
@@ -55,6 +70,7 @@ std::string check_json(const CheckReport& r) {
                                  {"inside_vertices", r.inside_vertices},
                                  {"warnings", r.warnings}};
   if (r.fcl) json["fcl"] = opinion_json(*r.fcl);
+  if (r.volume) json["volume"] = volume_json(*r.volume);
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -74,6 +90,7 @@ std::string check_text(const CheckReport& r) {
   add("not finite", fmt::format("{} vertices", r.nonfinite));
   add("degenerate triangles", fmt::format("{}", r.degenerate_triangles));
   if (r.fcl) add("FCL's opinion", opinion_text(*r.fcl));
+  if (r.volume) add("enclosed volume", volume_text(*r.volume));
   for (const std::string& warning : r.warnings) add("warning", warning);
   return text;
 }

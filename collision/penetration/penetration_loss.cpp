@@ -1,0 +1,176 @@
+#include "collision/penetration/penetration_loss.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace selvedge {
+namespace {
+
+// Patches whose crossings have fixed weights.
+class FrozenPatches {
+ public:
+  FrozenPatches(const ClosedSurface& closed, const Points& x, const Segments& found, bool on_face)
+      : closed_(closed), surface_(closed.surface), x_(x), found_(found), on_face_(on_face) {}
+
+  Vec3 at(CurvePoint point) const {
+    if (point < 0 || !on_face_) return position_of(surface_, x_, found_, point);
+    const Crossing& c = found_.crossings[point];
+    Vec3 sum = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) sum += c.weight[k] * row(x_, surface_.triangles(c.face, k));
+    return sum;
+  }
+  void pull(CurvePoint point, const Vec3& by, Points& gradient) const {
+    if (point < 0) {
+      gradient.row(~point) += by.transpose();
+      return;
+    }
+    const Crossing& c = found_.crossings[point];
+    if (on_face_) {
+      for (int k = 0; k < 3; ++k) gradient.row(surface_.triangles(c.face, k)) += c.weight[k] * by.transpose();
+      return;
+    }
+    gradient.row(surface_.edges(c.edge, 0)) += (1 - c.s) * by.transpose();
+    gradient.row(surface_.edges(c.edge, 1)) += c.s * by.transpose();
+  }
+  // Twice the vector area of a face as it is turned.
+  Vec3 normal(int face) const {
+    return closed_.turn[face] * (corner(face, 1) - corner(face, 0)).cross(corner(face, 2) - corner(face, 0));
+  }
+  int turn(int face) const { return closed_.turn[face]; }
+  Vec3 corner(int face, int k) const { return row(x_, surface_.triangles(face, k)); }
+
+  // Mean of the ends of the pieces of one face: the apex of the face's fan.
+  Vec3 apex(std::span<const ClippedPiece> pieces) const {
+    Vec3 sum = Vec3::Zero();
+    for (const ClippedPiece& piece : pieces) sum += at(piece.from) + at(piece.to);
+    return sum / (2.0 * static_cast<double>(pieces.size()));
+  }
+  void pull_apex(std::span<const ClippedPiece> pieces, const Vec3& by, Points& gradient) const {
+    const Vec3 share = by / (2.0 * static_cast<double>(pieces.size()));
+    for (const ClippedPiece& piece : pieces) {
+      pull(piece.from, share, gradient);
+      pull(piece.to, share, gradient);
+    }
+  }
+
+ private:
+  const ClosedSurface& closed_;
+  const Surface& surface_;
+  const Points& x_;
+  const Segments& found_;
+  bool on_face_;
+};
+
+// Calls visit(pieces) for the pieces of each face. They lie side by side.
+template <class Visit>
+void for_each_face(const std::vector<ClippedPiece>& pieces, const Visit& visit) {
+  for (std::size_t first = 0, last = 0; first < pieces.size(); first = last) {
+    while (last < pieces.size() && pieces[last].face == pieces[first].face) ++last;
+    visit(std::span(pieces).subspan(first, last - first));
+  }
+}
+
+double exact_volume(const FrozenPatches& patches, const Triangles& corners, const PenetrationRegion& region,
+                    double scale, Points* gradient) {
+  const double pull = region.volume < 0 ? -scale : scale;
+  if (gradient)
+    for (const ClippedFace& clipped : region.faces) {
+      const Vec3 normal = patches.normal(clipped.face);
+      for (int k = 0; k < 3; ++k)
+        gradient->row(corners(clipped.face, k)) += (pull * clipped.moment[k]) * normal.transpose();
+    }
+  return scale * std::abs(region.volume);
+}
+
+double frozen_volume(const FrozenPatches& patches, const Triangles& corners, const PenetrationRegion& region,
+                     double scale, Points* gradient) {
+  double volume = 0;
+  const double pull = region.volume < 0 ? -scale : scale;
+  for (const ClippedFace& clipped : region.faces) {
+    if (!clipped.whole) continue;
+    const int sense = patches.turn(clipped.face), second = sense > 0 ? 1 : 2, third = 3 - second;
+    const double sixth = clipped.covered() / 3;
+    const Vec3 p = patches.corner(clipped.face, 0) - region.centre,
+               q = patches.corner(clipped.face, second) - region.centre,
+               r = patches.corner(clipped.face, third) - region.centre;
+    volume += sixth * p.dot(q.cross(r));
+    if (!gradient) continue;
+    gradient->row(corners(clipped.face, 0)) += (pull * sixth) * q.cross(r).transpose();
+    gradient->row(corners(clipped.face, second)) += (pull * sixth) * r.cross(p).transpose();
+    gradient->row(corners(clipped.face, third)) += (pull * sixth) * p.cross(q).transpose();
+  }
+  for_each_face(region.pieces, [&](std::span<const ClippedPiece> pieces) {
+    const Vec3 apex = patches.apex(pieces), a = apex - region.centre;
+    Vec3 by_apex = Vec3::Zero();
+    for (const ClippedPiece& piece : pieces) {
+      const Vec3 p = patches.at(piece.from) - region.centre, q = patches.at(piece.to) - region.centre;
+      const double sixth = piece.times / 6.0;
+      volume += sixth * a.dot(p.cross(q));
+      if (!gradient) continue;
+      by_apex += sixth * p.cross(q);
+      patches.pull(piece.from, pull * sixth * q.cross(a), *gradient);
+      patches.pull(piece.to, pull * sixth * a.cross(p), *gradient);
+    }
+    if (gradient) patches.pull_apex(pieces, pull * by_apex, *gradient);
+  });
+  return pull * volume;
+}
+
+double frozen_area(const FrozenPatches& patches, const Triangles& corners, const PenetrationRegion& region,
+                   double scale, Points* gradient) {
+  double area = 0;
+  for (const ClippedFace& clipped : region.faces) {
+    if (!clipped.whole) continue;
+    const Vec3 a = patches.corner(clipped.face, 0);
+    const Vec3 normal = (patches.corner(clipped.face, 1) - a).cross(patches.corner(clipped.face, 2) - a);
+    const double length = normal.norm(), times = std::abs(clipped.covered());
+    area += times * length;
+    if (!gradient || length == 0) continue;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 across = patches.corner(clipped.face, (k + 1) % 3) - patches.corner(clipped.face, (k + 2) % 3);
+      const Vec3 step = across.cross(normal / length);
+      gradient->row(corners(clipped.face, k)) += (scale * times) * step.transpose();
+    }
+  }
+  for_each_face(region.pieces, [&](std::span<const ClippedPiece> pieces) {
+    const Vec3 a = patches.apex(pieces);
+    Vec3 twice = Vec3::Zero();
+    for (const ClippedPiece& piece : pieces)
+      twice += piece.times * (patches.at(piece.from) - a).cross(patches.at(piece.to) - a);
+    const double length = twice.norm();
+    area += 0.5 * length;
+    if (!gradient || length == 0) return;
+    const Vec3 direction = (0.5 * scale / length) * twice;
+    Vec3 by_apex = Vec3::Zero();
+    for (const ClippedPiece& piece : pieces) {
+      const Vec3 by_from = piece.times * (patches.at(piece.to) - a).cross(direction);
+      const Vec3 by_to = piece.times * direction.cross(patches.at(piece.from) - a);
+      by_apex -= by_from + by_to;
+      patches.pull(piece.from, by_from, *gradient);
+      patches.pull(piece.to, by_to, *gradient);
+    }
+    patches.pull_apex(pieces, by_apex, *gradient);
+  });
+  return scale * area;
+}
+
+}  // namespace
+
+double penetration_loss(const ClosedSurface& closed, const Points& x, const Segments& found,
+                        const Penetration& penetration, const PenetrationLossOptions& options, Points* gradient) {
+  if (gradient) *gradient = Points::Zero(closed.surface.vertex_count, 3);
+  const bool is_area = options.measure == PenetrationMeasure::area;
+  const FrozenPatches patches(closed, x, found, options.crossings == CrossingMotion::frozen_on_face);
+  const Triangles& corners = closed.surface.triangles;
+  double loss = 0;
+  for (const PenetrationRegion& region : penetration.regions)
+    if (is_area)
+      loss += frozen_area(patches, corners, region, options.weight, gradient);
+    else if (options.crossings == CrossingMotion::exact)
+      loss += exact_volume(patches, corners, region, 6 * options.weight, gradient);
+    else
+      loss += frozen_volume(patches, corners, region, 6 * options.weight, gradient);
+  return loss;
+}
+
+}  // namespace selvedge

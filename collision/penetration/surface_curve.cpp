@@ -1,0 +1,107 @@
+#include "collision/penetration/surface_curve.hpp"
+
+#include <algorithm>
+#include <optional>
+
+namespace selvedge {
+namespace {
+
+int corner_on(const Surface& surface, int triangle, int vertex) {
+  for (int k = 0; k < 3; ++k)
+    if (surface.triangles(triangle, k) == vertex) return k;
+  return -1;
+}
+
+// A way that leaves a triangle through an edge has the edge's end in the triangle's sense of rotation on its left.
+int jump_on_leaving(const ClosedSurface& closed, int triangle, int edge) {
+  const Surface& surface = closed.surface;
+  const auto& edges = surface.triangle_edges;
+  const int k = edges(triangle, 0) == edge ? 0 : edges(triangle, 1) == edge ? 1 : 2;
+  const bool rises = surface.triangles(triangle, k) < surface.triangles(triangle, (k + 1) % 3);
+  return (rises ? 1 : -1) * closed.turn[triangle];
+}
+
+// Edges at a vertex on the way from one of its triangles to another, turning one way, with the triangle that each is
+// left from; nothing if a boundary comes between.
+std::optional<std::vector<std::array<int, 2>>> way_round(const Surface& surface, int vertex, int from, int to,
+                                                         bool forward) {
+  std::vector<std::array<int, 2>> way;
+  const std::size_t most = surface.triangles_of(vertex).size();
+  int previous = -1;
+  for (int t = from; t != to;) {
+    const int k = corner_on(surface, t, vertex);
+    const int ahead = surface.triangle_edges(t, k), behind = surface.triangle_edges(t, (k + 2) % 3);
+    const int edge = previous < 0 ? (forward ? ahead : behind) : (ahead == previous ? behind : ahead);
+    way.push_back({edge, t});
+    previous = edge;
+    const auto [first, second] = surface.edge_triangles[edge];
+    t = first == t ? second : first;
+    if (t < 0 || t == from || way.size() > most) return std::nullopt;
+  }
+  return way;
+}
+
+// Leads the curve round the vertex at which it turns from one side of the contour to the other, by the shorter way.
+bool pass_vertex(const ClosedSurface& closed, int vertex, int from, int to, SurfaceCurve& curve) {
+  const auto forward = way_round(closed.surface, vertex, from, to, true),
+             back = way_round(closed.surface, vertex, from, to, false);
+  if (!forward && !back) return false;
+  const auto& way = forward && (!back || forward->size() <= back->size()) ? *forward : *back;
+  for (const auto& [edge, triangle] : way) {
+    curve.cuts.push_back({edge, ~vertex, jump_on_leaving(closed, triangle, edge)});
+    curve.passed.push_back(triangle);
+  }
+  curve.passed.push_back(to);
+  return true;
+}
+
+// Appends what the contour is on one of its sides.
+void add_side(const ClosedSurface& closed, const Segments& found, const Contour& contour, int side, bool backwards,
+              SurfaceCurve& curve) {
+  const int segments = static_cast<int>(contour.segments.size()), points = static_cast<int>(contour.points.size());
+  const ContourSide& on = contour.sides[side];
+  for (int i = 0; i < segments; ++i) {
+    const CurvePoint from = contour.points[i], to = contour.points[(i + 1) % points];
+    curve.runs.push_back({on.triangles[i], backwards ? to : from, backwards ? from : to});
+  }
+  for (int i = 0; i < points; ++i) {
+    if (contour.points[i] < 0 || contour.point_side[i] != side) continue;
+    const int edge = found.crossings[contour.points[i]].edge, left = on.triangles[(i + segments - 1) % segments];
+    const int jump = jump_on_leaving(closed, left, edge);
+    curve.cuts.push_back({edge, contour.points[i], backwards ? -jump : jump});
+  }
+}
+
+bool ends_at_vertices(const Contour& contour) {
+  return contour.ends[0] == ContourEnd::vertex && contour.ends[1] == ContourEnd::vertex;
+}
+
+}  // namespace
+
+CurveFailure add_curves(const ClosedSurface& closed, const Segments& found, const Contour& contour, int number,
+                        std::vector<SurfaceCurve>& curves) {
+  const bool loop = !contour.closed && ends_at_vertices(contour);
+  if (!contour.closed && !loop) return CurveFailure::open;
+  for (const ContourSide& side : contour.sides)
+    if (!closed.orientable[side.component]) return CurveFailure::not_orientable;
+  if (contour.one_trace) return CurveFailure::not_orientable;
+  if (!loop) {
+    for (int side = 0; side < 2; ++side) {
+      SurfaceCurve curve{number, contour.sides[side].component, side, {}, {}, {}};
+      add_side(closed, found, contour, side, false, curve);
+      curves.push_back(std::move(curve));
+    }
+    return CurveFailure::none;
+  }
+  SurfaceCurve curve{number, contour.sides[0].component, 0, {}, {}, {}};
+  const ContourSide &there = contour.sides[0], &back = contour.sides[1];
+  add_side(closed, found, contour, 0, false, curve);
+  add_side(closed, found, contour, 1, true, curve);
+  if (!pass_vertex(closed, ~contour.points.back(), there.triangles.back(), back.triangles.back(), curve) ||
+      !pass_vertex(closed, ~contour.points.front(), back.triangles.front(), there.triangles.front(), curve))
+    return CurveFailure::open;
+  curves.push_back(std::move(curve));
+  return CurveFailure::none;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "learned/losses/loss_options.hpp"
+
+namespace selvedge {
+
+// What came of the contours of a frame.
+struct VolumeCounts {
+  int pairs = 0, contours = 0, enclosed = 0, open = 0, not_orientable = 0, unassigned = 0;
+  double volume = 0;     // enclosed [m^3]
+  double rim_share = 0;  // WindingReport
+};
+
+// The self-collision loss L_sc without its weight of 3e4: sum of 6 |V| over the regions [m^3], or of their area [m^2];
+// by winding numbers 6 x the integral of their cost. Adds the derivative by the cloth's positions x where `gradient` is
+// not null. `closed` is of the cloth (close_surface); made once a garment. Positions that are not finite give 0.
+double volume_loss(const ClosedSurface& closed, const VolumeLoss&, const Points& x, Points* gradient,
+                   VolumeCounts* counts = nullptr);
+
+// The energy of forces without contact, which takes the place of gravity's: -sum of m a.x [J]; `acceleration` is V x 3
+// [m/s2]. Adds the derivative where `gradient` is not null.
+double force_loss(const std::vector<double>& mass, const Points& acceleration, const Points& x, Points* gradient);
+
+// The repulsion that the paper compares with (its appendix A): sum over pairs of cloth vertices closer than `distance`
+// that no edge joins of (distance - d)^power, power 1 or 2 [m or m^2].
+double vertex_repulsion_loss(const Surface&, double distance, int power, const Points& x, Points* gradient);
+
+}  // namespace selvedge

@@ -1,0 +1,48 @@
+#include <catch2/catch.hpp>
+
+#include "collision/geometry/error.hpp"
+#include "learned/network/engine.hpp"
+#include "learned/network/widen_weights.hpp"
+#include "tests/learned/graph_scenes.hpp"
+
+namespace selvedge::test_widen_weights {
+
+namespace {
+
+Architecture narrow(const std::string& preset) {
+  Architecture a = architecture_preset(preset);
+  a.width = 12;
+  return a;
+}
+
+FeatureRows result_of(const Architecture& a, const NetworkWeights& weights, const fake::World& world) {
+  GraphSearch search;
+  GraphReport report;
+  const RestGraph rest = make_rest_graph(world.scene, a.features);
+  const Graph graph = make_graph(world.scene, rest, world.state, a.features, weights.tables, search, report);
+  return infer_by_definition(a, weights, graph);
+}
+
+}  // namespace
+
+TEST_CASE("a network widened for space edges and accelerations begins as it was", "[learned]") {
+  fake::Mesh mesh = fake::grid(9, 9, 0.012);
+  fake::add(mesh, fake::grid(8, 8, 0.013), {0.003, 0.005, 0.002});
+  fake::World world = fake::world(mesh, fake::grid(5, 5, 0.03));
+  fake::jitter(world.state.x, 1e-3, 3);
+  world.state.acceleration = Points::Random(world.state.x.rows(), 3);
+  const Architecture from = narrow("hood"), to = narrow("senc");
+  CHECK_NOTHROW(check_architecture(to, "senc"));
+  const NetworkWeights weights = random_weights(from, 1);
+  NetworkWeights wide = widen_weights(from, weights, to, 2);
+  const FeatureRows before = result_of(from, weights, world), after = result_of(to, wide, world);
+  REQUIRE(before.rows() == after.rows());
+  CHECK((before - after).cwiseAbs().maxCoeff() < 1e-6);
+  // Not because nothing is read: a weight that is no longer zero shows.
+  wide.steps[0].node.layers[0].weight.setConstant(0.1f);
+  CHECK((before - result_of(to, wide, world)).cwiseAbs().maxCoeff() > 1e-4);
+
+  CHECK_THROWS_AS(widen_weights(to, random_weights(to, 1), from, 2), Error);
+}
+
+}  // namespace selvedge::test_widen_weights
