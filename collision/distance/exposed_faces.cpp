@@ -46,8 +46,8 @@ void cut_polygons(const Vec3& p, const Vec3& normal, std::vector<Polygon>& polyg
 }
 
 std::vector<Polygon> cut_triangle(const Surface& surface, const Points& x, int t, const std::vector<int>& by) {
-  std::vector<Polygon> polygons{{row(x, surface.triangles(t, 0)), row(x, surface.triangles(t, 1)),
-                                 row(x, surface.triangles(t, 2))}};
+  std::vector<Polygon> polygons{
+      {row(x, surface.triangles(t, 0)), row(x, surface.triangles(t, 1)), row(x, surface.triangles(t, 2))}};
   for (const int other : by)
     if (const Vec3 normal = face_normal(surface, x, other); !normal.isZero(0))
       cut_polygons(row(x, surface.triangles(other, 0)), normal, polygons);
@@ -79,8 +79,7 @@ Regions find_regions(const Surface& surface, const Points& x, const Crossed& cro
       continue;
     }
     const Vec3 a = row(x, surface.triangles(t, 0));
-    const double size =
-        (row(x, surface.triangles(t, 1)) - a).cross(row(x, surface.triangles(t, 2)) - a).squaredNorm();
+    const double size = (row(x, surface.triangles(t, 1)) - a).cross(row(x, surface.triangles(t, 2)) - a).squaredNorm();
     const int region = regions.of_triangle[t];
     if (size > area[region]) {
       area[region] = size;
@@ -114,7 +113,8 @@ ExposedFaces classify(const Surface& surface, const Points& x, const Crossed& cr
   Points at(static_cast<Eigen::Index>(samples.size()), 3);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto corner = [&](int k) { return row(x, surface.triangles(samples[i].triangle, k)); };
-    const Vec3 middle = samples[i].polygon.empty() ? mean_of({corner(0), corner(1), corner(2)}) : mean_of(samples[i].polygon);
+    const Vec3 middle =
+        samples[i].polygon.empty() ? mean_of({corner(0), corner(1), corner(2)}) : mean_of(samples[i].polygon);
     at.row(static_cast<Eigen::Index>(i)) = (middle + step * face_normal(surface, x, samples[i].triangle)).transpose();
   }
   const std::vector<char> covered = winds_round(at);

@@ -10,9 +10,9 @@ namespace selvedge {
 // fan: then angle-weighted normals tell the side of a point by its closest point.
 bool is_closed_manifold(const Surface&);
 
-// Normals that tell sides (Baerentzen and Aanaes 2005): of a triangle its own, of an edge the sum of its two triangles',
-// of a vertex the sum of its triangles' weighted by their angles there. Unit length; zero where one of the triangles has
-// no area, or where the sum vanishes: then they tell nothing.
+// Normals that tell sides (Baerentzen and Aanaes 2005): of a triangle its own, of an edge the sum of its two
+// triangles', of a vertex the sum of its triangles' weighted by their angles there. Unit length; zero where one of the
+// triangles has no area, or where the sum vanishes: then they tell nothing.
 Vec3 face_normal(const Surface&, const Points& x, int triangle);
 Vec3 edge_pseudonormal(const Surface&, const Points& x, int edge);
 Vec3 vertex_pseudonormal(const Surface&, const Points& x, int vertex);

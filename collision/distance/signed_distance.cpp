@@ -30,10 +30,7 @@ void check_finite(const Points& points, const std::string& what) {
 }  // namespace
 
 DistanceField::DistanceField(const Surface& surface, BodyShape shape)
-    : surface_(surface),
-      shape_(shape),
-      manifold_(is_closed_manifold(surface)),
-      closed_(selvedge::is_closed(surface)) {
+    : surface_(surface), shape_(shape), manifold_(is_closed_manifold(surface)), closed_(selvedge::is_closed(surface)) {
   if (surface.triangles.rows() == 0)
     throw Error("the surface has no triangles", "signed distance", "leave out bodies without a surface");
 }
@@ -93,8 +90,8 @@ void DistanceField::measure(const Vec3& p, int t, Nearest& best) const {
 }
 
 // The nearest of the leaf's triangles first.
-void DistanceField::measure_leaf(const Vec3& p, const float* at, double reach, const WideTree::Leaf& leaf,
-                                 float& limit, Nearest& best) const {
+void DistanceField::measure_leaf(const Vec3& p, const float* at, double reach, const WideTree::Leaf& leaf, float& limit,
+                                 Nearest& best) const {
   float squared[WideTree::width];
   for (unsigned left = wide_kernels().triangles(leaf, at, limit, squared); left != 0;) {
     int i = std::countr_zero(left);
@@ -177,8 +174,7 @@ Vec3 DistanceField::place_on_piece(const Vec3& p, const Nearest& near, SignedDis
   const auto zeros = (near.weights.array() == 0).count();
   result.place = zeros > 1 ? SurfacePlace::vertex : SurfacePlace::edge;
   for (int k = 0; k < 3; ++k)
-    if (zeros == 1 && near.weights[1 + k] == 0)
-      result.along = (corner[(k + 2) % 3] - corner[(k + 1) % 3]).normalized();
+    if (zeros == 1 && near.weights[1 + k] == 0) result.along = (corner[(k + 2) % 3] - corner[(k + 1) % 3]).normalized();
   return Vec3::Zero();
 }
 

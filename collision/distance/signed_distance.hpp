@@ -20,7 +20,7 @@ enum class BodyShape { united, raw };
 enum class SurfacePlace { face, edge, vertex };
 
 struct SignedDistance {
-  double value = 0;  // [m], below 0 inside
+  double value = 0;              // [m], below 0 inside
   Vec3 gradient = Vec3::Zero();  // of `value`: unit length, out of the body; zero where nothing tells a direction
   Vec3 closest = Vec3::Zero();
   Vec3 along = Vec3::Zero();  // of the edge, unit length; zero where the place is none
@@ -29,8 +29,8 @@ struct SignedDistance {
 };
 
 // Signed distance from a triangle surface, its closest points and its derivative. Distances are exact but for rounding.
-// The side is told by angle-weighted normals on closed manifolds, and by the winding number, over 1/2 or not, elsewhere:
-// on open surfaces, and where the normals say nothing. Triangles are counter-clockwise seen from outside.
+// The side is told by angle-weighted normals on closed manifolds, and by the winding number, over 1/2 or not,
+// elsewhere: on open surfaces, and where the normals say nothing. Triangles are counter-clockwise seen from outside.
 class DistanceField {
  public:
   // Keeps a reference. Throws Error for a surface without triangles.

@@ -39,7 +39,8 @@ int add_wide_node(const Bvh& tree, int root, WideTree& wide) {
   for (int i = 0; i < WideTree::width; ++i) {
     const int source = i < static_cast<int>(open.size()) ? open[i] : -1;
     int child = 0;
-    if (source >= 0) child = tree.nodes[source].child < 0 ? tree.nodes[source].child : add_wide_node(tree, source, wide);
+    if (source >= 0)
+      child = tree.nodes[source].child < 0 ? tree.nodes[source].child : add_wide_node(tree, source, wide);
     wide.nodes[at].source[i] = source;
     wide.nodes[at].child[i] = child;
   }

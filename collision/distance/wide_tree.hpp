@@ -20,7 +20,7 @@ struct WideTree {
     int triangle[width];        // -1: none
   };
   Vec3 origin = Vec3::Zero();
-  double extent = 0;  // largest distance of a corner from the origin [m]
+  double extent = 0;        // largest distance of a corner from the origin [m]
   std::vector<Node> nodes;  // root first
   std::vector<Leaf> leaves;
 };

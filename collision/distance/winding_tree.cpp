@@ -6,8 +6,8 @@
 namespace selvedge {
 namespace {
 
-constexpr double far_away = 2.5;   // in radii of a node: from there on it is a dipole
-constexpr double undecided = 0.1;  // of a sum with dipoles, about 1/2
+constexpr double far_away = 2.5;  // in radii of a node: from there on it is a dipole
+constexpr double unclear = 0.1;   // of a sum with dipoles, about 1/2
 
 // Of one triangle, over 4 pi (van Oosterom and Strackee 1983).
 double solid_angle(const Surface& surface, const Points& x, int t, const Vec3& p) {
@@ -74,8 +74,7 @@ double exact_winding(const Surface& surface, const Points& x, const Vec3& p) {
   return sum;
 }
 
-bool winds_round(const WindingTree& windings, const Bvh& tree, const Surface& surface, const Points& x,
-                 const Vec3& p) {
+bool winds_round(const WindingTree& windings, const Bvh& tree, const Surface& surface, const Points& x, const Vec3& p) {
   double sum = 0;
   std::vector<int> stack{0};
   while (!stack.empty()) {
@@ -95,7 +94,7 @@ bool winds_round(const WindingTree& windings, const Bvh& tree, const Surface& su
         if (t >= 0) sum += solid_angle(surface, x, t, p);
     }
   }
-  if (std::abs(sum - 0.5) < undecided) sum = exact_winding(surface, x, p);
+  if (std::abs(sum - 0.5) < unclear) sum = exact_winding(surface, x, p);
   return sum > 0.5;
 }
 

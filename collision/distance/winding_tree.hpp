@@ -10,8 +10,8 @@ namespace selvedge {
 // point, over 4 pi. About 1 inside, 0 outside, 1/2 in the middle of a hole.
 struct WindingTree {
   struct Node {
-    Vec3 centre, area;   // weighted by area; sum of the triangles' vector areas [m2]
-    double radius = 0;   // of a ball round the centre that holds them [m]
+    Vec3 centre, area;  // weighted by area; sum of the triangles' vector areas [m2]
+    double radius = 0;  // of a ball round the centre that holds them [m]
   };
   std::vector<Node> nodes;  // parallel to the binary tree's
 };

@@ -89,8 +89,8 @@ FeatureRows trace_back(const PlainNetwork& n, const std::vector<LayerTrace>& mad
     if (l + 1 < n.layers.size()) {  // through the bend
       const auto slope = layer.sum.unaryExpr([&](float a) { return bend_slope(n, a); });
       if (tangents) {
-        const FeatureRows curved = layer.sum.binaryExpr(
-            layer.sum_tangent, [&](float a, float d) { return d * bend_curvature(n, a); });
+        const FeatureRows curved =
+            layer.sum.binaryExpr(layer.sum_tangent, [&](float a, float d) { return d * bend_curvature(n, a); });
         value = value.cwiseProduct(slope) + tangent.cwiseProduct(curved);
         tangent = tangent.cwiseProduct(slope).eval();
       } else {
@@ -190,8 +190,7 @@ ValueAndGradient evaluate_with_gradient(const PlainNetwork& n, const FeatureRows
   return result;
 }
 
-ValueAndTangent evaluate_with_tangent(const PlainNetwork& n, const FeatureRows& inputs,
-                                      const FeatureRows& directions) {
+ValueAndTangent evaluate_with_tangent(const PlainNetwork& n, const FeatureRows& inputs, const FeatureRows& directions) {
   ValueAndTangent result{FeatureRows(inputs.rows(), n.outputs()), FeatureRows(inputs.rows(), n.outputs())};
   for_each_chunk(inputs.rows(), [&](int, int first, int count) {
     const auto made = trace(n, some_rows(inputs, first, count), some_rows(directions, first, count));
@@ -212,10 +211,9 @@ PlainGradients backward(const PlainNetwork& n, const FeatureRows& inputs, const 
     const bool tangents = directions.rows() > 0 && adjoints.tangent.rows() > 0;
     const auto made =
         trace(n, some_rows(inputs, first, count), tangents ? some_rows(directions, first, count) : FeatureRows());
-    result.inputs.middleRows(first, count) =
-        trace_back(n, made, some_rows(adjoints.value, first, count),
-                   tangents ? some_rows(adjoints.tangent, first, count) : FeatureRows(),
-                   parts[static_cast<std::size_t>(c)]);
+    result.inputs.middleRows(first, count) = trace_back(
+        n, made, some_rows(adjoints.value, first, count),
+        tangents ? some_rows(adjoints.tangent, first, count) : FeatureRows(), parts[static_cast<std::size_t>(c)]);
   });
   constexpr int stretch = 4096;
   parallel_for(chunks_of(static_cast<int>(size), stretch), 1, [&](int s) {

@@ -11,12 +11,14 @@ namespace selvedge {
 // Between the layers: max(0, .), or log(1 + exp(beta .)) / beta.
 enum class Bend { rectified, softplus };
 
-// A multi-layer perceptron of its own, without a graph: affine layers with a bend between them and none behind the last.
+// A multi-layer perceptron of its own, without a graph: affine layers with a bend between them and none behind the
+// last.
 struct PlainNetwork {
   std::vector<AffineLayer> layers;
   Bend bend = Bend::rectified;
-  double beta = 100;    // of softplus
-  int again_layer = -1;  // reads the first `again_columns` of the inputs a second time, behind what the layer before made
+  double beta = 100;  // of softplus
+  int again_layer =
+      -1;  // reads the first `again_columns` of the inputs a second time, behind what the layer before made
   int again_columns = 0;
 
   int inputs() const { return static_cast<int>(layers.front().weight.cols()) - (again_layer == 0 ? again_columns : 0); }

@@ -164,7 +164,8 @@ TEST_CASE("signed distance: the union of bodies that pass through each other", "
       {{{Vec3(-1, -1, -1), Vec3(1, 1, 1)}, {Vec3(-0.3, -0.2, -0.5), Vec3(0.3, 0.4, 0.5)}}}};  // inside the other
   for (const auto& boxes : cases)
     for (const int n : {1, 3}) {
-      Solid solid = testing::both(testing::block(boxes[0][0], boxes[0][1], n), testing::block(boxes[1][0], boxes[1][1], n));
+      Solid solid =
+          testing::both(testing::block(boxes[0][0], boxes[0][1], n), testing::block(boxes[1][0], boxes[1][1], n));
       const Points at = queries(solid, 1200, 5);
       solid.x = testing::rotated(solid.x, turn);
       DistanceField field(solid.surface);
@@ -188,7 +189,8 @@ TEST_CASE("signed distance: the union of bodies that pass through each other", "
     }
 }
 
-TEST_CASE("signed distance: its gradient is that of its differences, its place the kind of its Jacobian", "[distance]") {
+TEST_CASE("signed distance: its gradient is that of its differences, its place the kind of its Jacobian",
+          "[distance]") {
   const Solid solid = testing::blob(10);
   DistanceField field(solid.surface);
   field.move_to(solid.x);
@@ -208,8 +210,7 @@ TEST_CASE("signed distance: its gradient is that of its differences, its place t
     }
   }
   for (const int count : places) CHECK(count > 20);
-  for (const SignedDistance& d : found)
-    CHECK(d.along.norm() == Approx(d.place == SurfacePlace::edge ? 1 : 0));
+  for (const SignedDistance& d : found) CHECK(d.along.norm() == Approx(d.place == SurfacePlace::edge ? 1 : 0));
 }
 
 TEST_CASE("signed distance: where the search begins, threads and refitting change nothing", "[distance]") {
@@ -238,7 +239,8 @@ TEST_CASE("signed distance: where the search begins, threads and refitting chang
   }
 }
 
-TEST_CASE("signed distance: ties go to the lowest triangle; singular input is finite or one clear error", "[distance]") {
+TEST_CASE("signed distance: ties go to the lowest triangle; singular input is finite or one clear error",
+          "[distance]") {
   const Solid cube = testing::block({-1, -1, -1}, {1, 1, 1}, 1);
   DistanceField field(cube.surface);
   CHECK_THROWS_AS(field.ask(Points::Zero(1, 3)), Error);
