@@ -90,10 +90,10 @@ void DistanceField::measure(const Vec3& p, int t, Nearest& best) const {
 }
 
 // The nearest of the leaf's triangles first.
-void DistanceField::measure_leaf(const Vec3& p, const float* at, double reach, const WideTree::Leaf& leaf, float& limit,
+void DistanceField::measure_leaf(const WideKernels& kernels, const Vec3& p, const float* at, double reach, const WideTree::Leaf& leaf, float& limit,
                                  Nearest& best) const {
   float squared[WideTree::width];
-  for (unsigned left = wide_kernels().triangles(leaf, at, limit, squared); left != 0;) {
+  for (unsigned left = kernels.triangles(leaf, at, limit, squared); left != 0;) {
     int i = std::countr_zero(left);
     for (unsigned rest = left & (left - 1); rest != 0; rest &= rest - 1)
       if (squared[std::countr_zero(rest)] < squared[i]) i = std::countr_zero(rest);
@@ -121,7 +121,7 @@ DistanceField::Nearest DistanceField::search(const Vec3& p, int start, std::vect
     stack.pop_back();
     if (next.squared >= limit) continue;
     if (next.child < 0) {
-      measure_leaf(p, at, reach, wide_.leaves[~next.child], limit, best);
+      measure_leaf(kernels, p, at, reach, wide_.leaves[~next.child], limit, best);
       continue;
     }
     const WideTree::Node& node = wide_.nodes[next.child];

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "collision/distance/exposed_faces.hpp"
+#include "collision/distance/wide_kernels.hpp"
 #include "collision/distance/wide_tree.hpp"
 #include "collision/distance/winding_tree.hpp"
 #include "collision/search/bvh.hpp"
@@ -64,7 +65,7 @@ class DistanceField {
     int child;
   };
   void measure(const Vec3& p, int triangle, Nearest&) const;
-  void measure_leaf(const Vec3& p, const float* at, double reach, const WideTree::Leaf&, float& limit, Nearest&) const;
+  void measure_leaf(const WideKernels&, const Vec3& p, const float* at, double reach, const WideTree::Leaf&, float& limit, Nearest&) const;
   Nearest search(const Vec3& p, int start, std::vector<Waiting>& stack) const;
   bool complete(const Vec3& p, const Nearest&, SignedDistance&) const;
   Vec3 place(const Nearest&, SignedDistance&) const;

@@ -1,11 +1,5 @@
 #include "collision/distance/wide_kernels.hpp"
 
-#if defined(__x86_64__)
-#define SELVEDGE_WITH_AVX2 __attribute__((target("avx2")))
-#else
-#define SELVEDGE_WITH_AVX2
-#endif
-
 namespace selvedge {
 namespace {
 
@@ -34,26 +28,23 @@ struct EightVec3 {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-[[gnu::always_inline]] inline unsigned flags_below(Eight value, float limit, float* out) {
-  __builtin_memcpy(out, &value, sizeof value);
+// One bit for each lane below the limit.
+[[gnu::always_inline]] inline unsigned flags_below(Eight value, float limit) {
   constexpr EightBits place{1, 2, 4, 8, 16, 32, 64, 128};
   const EightBits flags = (value < limit) & place;
-  using Four [[gnu::vector_size(16)]] = int;
-  const Four low = __builtin_shufflevector(flags, flags, 0, 1, 2, 3);
-  const Four high = __builtin_shufflevector(flags, flags, 4, 5, 6, 7);
-  const Four both = low | high;
-  return static_cast<unsigned>(both[0] | both[1] | both[2] | both[3]);
+  unsigned result = 0;
+  for (int i = 0; i < 8; ++i) result |= static_cast<unsigned>(flags[i]);
+  return result;
 }
 
-[[gnu::always_inline]] inline unsigned test_boxes(const WideTree::Node& node, const float* at, float limit,
-                                                  float* squared) {
+[[gnu::always_inline]] inline Eight test_boxes(const WideTree::Node& node, const float* at) {
   Eight sum{};
   for (int k = 0; k < 3; ++k) {
     const Eight below = load_eight(node.lo[k]) - at[k], above = at[k] - load_eight(node.hi[k]);
     const Eight outside = larger(larger(below, above), Eight{});
     sum += outside * outside;
   }
-  return flags_below(sum, limit, squared);
+  return sum;
 }
 
 // Squared distance of a point, seen from the start of an edge, from the edge.
@@ -63,8 +54,7 @@ struct EightVec3 {
   return dot(rest, rest);
 }
 
-[[gnu::always_inline]] inline unsigned test_triangles(const WideTree::Leaf& leaf, const float* at, float limit,
-                                                      float* squared) {
+[[gnu::always_inline]] inline Eight test_triangles(const WideTree::Leaf& leaf, const float* at) {
   EightVec3 corner[3], from[3];
   const EightVec3 p{Eight{} + at[0], Eight{} + at[1], Eight{} + at[2]};
   for (int c = 0; c < 3; ++c) {
@@ -81,26 +71,36 @@ struct EightVec3 {
   const Eight side_c = dot(cross(ca, from[2]), normal), height = dot(from[0], normal);
   const Eight plane = height * height / normal2;
   Eight result = smaller(smaller(side_a, side_b), side_c) > 0.0f ? smaller(plane, edges) : edges;
-  result = normal2 > 1e-3f * longest * longest ? result : Eight{};
-  return flags_below(result, limit, squared);
+  return normal2 > 1e-3f * longest * longest ? result : Eight{};
 }
 
 unsigned boxes_plain(const WideTree::Node& node, const float* at, float limit, float* squared) {
-  return test_boxes(node, at, limit, squared);
+  const Eight found = test_boxes(node, at);
+  __builtin_memcpy(squared, &found, sizeof found);
+  return flags_below(found, limit);
 }
 unsigned triangles_plain(const WideTree::Leaf& leaf, const float* at, float limit, float* squared) {
-  return test_triangles(leaf, at, limit, squared);
+  const Eight found = test_triangles(leaf, at);
+  __builtin_memcpy(squared, &found, sizeof found);
+  return flags_below(found, limit);
 }
-SELVEDGE_WITH_AVX2 unsigned boxes_avx2(const WideTree::Node& node, const float* at, float limit, float* squared) {
-  return test_boxes(node, at, limit, squared);
+
+#if defined(__x86_64__)
+[[gnu::target("avx2")]] unsigned boxes_avx2(const WideTree::Node& node, const float* at, float limit, float* squared) {
+  const Eight found = test_boxes(node, at);
+  __builtin_memcpy(squared, &found, sizeof found);
+  return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<Eight>(found < limit)));
 }
-SELVEDGE_WITH_AVX2 unsigned triangles_avx2(const WideTree::Leaf& leaf, const float* at, float limit, float* squared) {
-  return test_triangles(leaf, at, limit, squared);
+[[gnu::target("avx2")]] unsigned triangles_avx2(const WideTree::Leaf& leaf, const float* at, float limit,
+                                                float* squared) {
+  const Eight found = test_triangles(leaf, at);
+  __builtin_memcpy(squared, &found, sizeof found);
+  return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<Eight>(found < limit)));
 }
+constexpr WideKernels avx2_kernels{boxes_avx2, triangles_avx2};
+#endif
 
 constexpr WideKernels plain_kernels{boxes_plain, triangles_plain};
-constexpr WideKernels avx2_kernels{boxes_avx2, triangles_avx2};
-
 }  // namespace
 
 const WideKernels& wide_kernels() {
