@@ -64,4 +64,10 @@ void learned_arrival(const Scene& scene, const State& from, const Drive& drive, 
   to.memory = {{carried_block, next.velocity}, {previous_block, seen}, {body_block, state.body}};
 }
 
+void carry_velocities(std::span<const int> vertices, State& state) {
+  const auto block = std::ranges::find(state.memory, carried_block, &MemoryBlock::name);
+  if (block == state.memory.end() || block->rows.rows() != state.v.rows()) return;
+  for (const int v : vertices) block->rows.row(v) = state.v.row(v) * learned_dt;
+}
+
 }  // namespace selvedge

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "learned/graph/graph_state.hpp"
 #include "learned/graph/integration.hpp"
 #include "physics/scene/scene.hpp"
@@ -27,5 +29,9 @@ GraphState graph_state(const Scene&, const State& from, const Drive&);
 // audit is still to come. Velocities in m/s are what the network carries, and those of pinned vertices what they did.
 void learned_arrival(const Scene&, const State& from, const Drive&, const GraphState&, const Points& seen,
                      const NextCloth&, State& to);
+
+// What a network carries of these vertices' velocities becomes what State::v has of them. Nothing happens to a state
+// that no network made.
+void carry_velocities(std::span<const int> vertices, State&);
 
 }  // namespace selvedge
