@@ -72,4 +72,10 @@ void change_carried_velocity(const Points& change, State& state) {
     if (block.name == carried_block && block.rows.rows() == change.rows()) block.rows += change;
 }
 
+void carry_velocities(std::span<const int> vertices, State& state) {
+  const auto block = std::ranges::find(state.memory, carried_block, &MemoryBlock::name);
+  if (block == state.memory.end() || block->rows.rows() != state.v.rows()) return;
+  for (const int v : vertices) block->rows.row(v) = state.v.row(v) * learned_dt;
+}
+
 }  // namespace selvedge

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "learned/graph/graph_state.hpp"
 #include "learned/graph/integration.hpp"
 #include "physics/scene/scene.hpp"
@@ -32,5 +34,9 @@ StepEnd learned_end(const Scene&, const State& from, const Drive&, const GraphSt
 // Somebody else has moved the cloth of a state that a network made: what it carries moves along [m]. Nothing happens
 // where the state carries nothing.
 void change_carried_velocity(const Points& change, State&);
+
+// What a network carries of these vertices' velocities becomes what State::v has of them. Nothing happens to a state
+// that no network made.
+void carry_velocities(std::span<const int> vertices, State&);
 
 }  // namespace selvedge

@@ -64,6 +64,7 @@ struct CollisionReport {
   int passed_through = 0;   // pairs that met on their way by the audit of the motion, those left alone not counted
   int left_alone = 0;       // cloth vertices on or inside a contour at the start, after recovery
   int cut_out = 0;          // triangles out of the simulation at the end: no pair is counted of them
+  int pushed_out = 0;       // cloth vertices that the repulsive layer moved (refu_stepper.hpp)
   int jumped = 0;           // obstacles put where they were wanted without a sweep: too far for one
   double min_gap = std::numeric_limits<double>::infinity();  // of the contacts [m]
   double obstacle_lag = 0;                // largest distance of an obstacle vertex from where it was wanted [m]

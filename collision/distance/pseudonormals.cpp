@@ -1,0 +1,86 @@
+#include "collision/distance/pseudonormals.hpp"
+
+#include <cmath>
+
+namespace selvedge {
+namespace {
+
+Vec3 unit_or_zero(const Vec3& v) {
+  const double length = v.norm();
+  return length > 1e-12 ? Vec3(v / length) : Vec3::Zero();
+}
+
+int corner_at(const Surface& surface, int triangle, int vertex) {
+  return surface.triangles(triangle, 0) == vertex ? 0 : surface.triangles(triangle, 1) == vertex ? 1 : 2;
+}
+
+// Does the triangle pass the edge from its lower to its higher vertex?
+bool passes_upward(const Surface& surface, int triangle, int edge) {
+  for (int k = 0; k < 3; ++k)
+    if (surface.triangle_edges(triangle, k) == edge)
+      return surface.triangles(triangle, k) < surface.triangles(triangle, (k + 1) % 3);
+  return false;
+}
+
+// How many triangles one comes by, from the first one round the vertex, before one is back.
+int fan_size(const Surface& surface, int vertex) {
+  const int first = surface.triangles_of(vertex).front();
+  int at = first, size = 0;
+  do {
+    const int k = corner_at(surface, at, vertex);
+    const auto& pair = surface.edge_triangles[surface.triangle_edges(at, (k + 2) % 3)];  // the edge that enters
+    at = pair[0] == at ? pair[1] : pair[0];
+    ++size;
+  } while (at != first);
+  return size;
+}
+
+}  // namespace
+
+bool is_closed_manifold(const Surface& surface) {
+  if (!is_closed(surface)) return false;
+  for (int e = 0; e < surface.edges.rows(); ++e)
+    if (passes_upward(surface, surface.edge_triangles[e][0], e) ==
+        passes_upward(surface, surface.edge_triangles[e][1], e))
+      return false;
+  for (int v = 0; v < surface.vertex_count; ++v)
+    if (const std::size_t all = surface.triangles_of(v).size();
+        all > 0 && fan_size(surface, v) != static_cast<int>(all))
+      return false;
+  return true;
+}
+
+Vec3 face_normal(const Surface& surface, const Points& x, int t) {
+  const Vec3 a = row(x, surface.triangles(t, 0)), b = row(x, surface.triangles(t, 1)),
+             c = row(x, surface.triangles(t, 2));
+  const Vec3 normal = (b - a).cross(c - a);
+  const double length = normal.norm();
+  return length > 0 ? Vec3(normal / length) : Vec3::Zero();
+}
+
+Vec3 edge_pseudonormal(const Surface& surface, const Points& x, int edge) {
+  Vec3 sum = Vec3::Zero();
+  for (const int t : surface.edge_triangles[edge]) {
+    if (t < 0) continue;
+    const Vec3 normal = face_normal(surface, x, t);
+    if (normal.isZero(0)) return Vec3::Zero();
+    sum += normal;
+  }
+  return unit_or_zero(sum);
+}
+
+Vec3 vertex_pseudonormal(const Surface& surface, const Points& x, int vertex) {
+  Vec3 sum = Vec3::Zero();
+  for (const int t : surface.triangles_of(vertex)) {
+    const int k = corner_at(surface, t, vertex);
+    const Vec3 at = row(x, vertex);
+    const Vec3 p = row(x, surface.triangles(t, (k + 1) % 3)) - at, q = row(x, surface.triangles(t, (k + 2) % 3)) - at;
+    const Vec3 normal = p.cross(q);
+    const double length = normal.norm();
+    if (!(length > 0)) return Vec3::Zero();
+    sum += std::atan2(length, p.dot(q)) / length * normal;
+  }
+  return unit_or_zero(sum);
+}
+
+}  // namespace selvedge

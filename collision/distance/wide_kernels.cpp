@@ -1,0 +1,115 @@
+#include "collision/distance/wide_kernels.hpp"
+
+namespace selvedge {
+namespace {
+
+using Eight [[gnu::vector_size(32)]] = float;
+using EightBits [[gnu::vector_size(32)]] = int;
+struct EightVec3 {
+  Eight x, y, z;
+};
+
+[[gnu::always_inline]] inline Eight load_eight(const float* from) {
+  Eight result;
+  __builtin_memcpy(&result, from, sizeof result);
+  return result;
+}
+
+[[gnu::always_inline]] inline Eight smaller(Eight a, Eight b) { return a < b ? a : b; }
+[[gnu::always_inline]] inline Eight larger(Eight a, Eight b) { return a > b ? a : b; }
+
+[[gnu::always_inline]] inline EightVec3 minus(const EightVec3& a, const EightVec3& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+[[gnu::always_inline]] inline Eight dot(const EightVec3& a, const EightVec3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+[[gnu::always_inline]] inline EightVec3 cross(const EightVec3& a, const EightVec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+// One bit for each lane below the limit.
+[[gnu::always_inline]] inline unsigned flags_below(Eight value, float limit) {
+  constexpr EightBits place{1, 2, 4, 8, 16, 32, 64, 128};
+  const EightBits flags = (value < limit) & place;
+  unsigned result = 0;
+  for (int i = 0; i < 8; ++i) result |= static_cast<unsigned>(flags[i]);
+  return result;
+}
+
+[[gnu::always_inline]] inline Eight test_boxes(const WideTree::Node& node, const float* at) {
+  Eight sum{};
+  for (int k = 0; k < 3; ++k) {
+    const Eight below = load_eight(node.lo[k]) - at[k], above = at[k] - load_eight(node.hi[k]);
+    const Eight outside = larger(larger(below, above), Eight{});
+    sum += outside * outside;
+  }
+  return sum;
+}
+
+// Squared distance of a point, seen from the start of an edge, from the edge.
+[[gnu::always_inline]] inline Eight from_edge(const EightVec3& p, const EightVec3& edge, Eight length2) {
+  const Eight s = smaller(larger(dot(p, edge) / length2, Eight{}), Eight{} + 1.0f);  // 0 where the edge has no length
+  const EightVec3 rest{p.x - s * edge.x, p.y - s * edge.y, p.z - s * edge.z};
+  return dot(rest, rest);
+}
+
+[[gnu::always_inline]] inline Eight test_triangles(const WideTree::Leaf& leaf, const float* at) {
+  EightVec3 corner[3], from[3];
+  const EightVec3 p{Eight{} + at[0], Eight{} + at[1], Eight{} + at[2]};
+  for (int c = 0; c < 3; ++c) {
+    corner[c] = {load_eight(leaf.corner[c][0]), load_eight(leaf.corner[c][1]), load_eight(leaf.corner[c][2])};
+    from[c] = minus(p, corner[c]);
+  }
+  const EightVec3 ab = minus(corner[1], corner[0]), bc = minus(corner[2], corner[1]), ca = minus(corner[0], corner[2]);
+  const Eight ab2 = dot(ab, ab), bc2 = dot(bc, bc), ca2 = dot(ca, ca);
+  const EightVec3 normal = cross(ca, ab);
+  const Eight normal2 = dot(normal, normal), longest = larger(larger(ab2, bc2), ca2);
+  const Eight edges =
+      smaller(smaller(from_edge(from[0], ab, ab2), from_edge(from[1], bc, bc2)), from_edge(from[2], ca, ca2));
+  const Eight side_a = dot(cross(ab, from[0]), normal), side_b = dot(cross(bc, from[1]), normal);
+  const Eight side_c = dot(cross(ca, from[2]), normal), height = dot(from[0], normal);
+  const Eight plane = height * height / normal2;
+  Eight result = smaller(smaller(side_a, side_b), side_c) > 0.0f ? smaller(plane, edges) : edges;
+  return normal2 > 1e-3f * longest * longest ? result : Eight{};
+}
+
+unsigned boxes_plain(const WideTree::Node& node, const float* at, float limit, float* squared) {
+  const Eight found = test_boxes(node, at);
+  __builtin_memcpy(squared, &found, sizeof found);
+  return flags_below(found, limit);
+}
+unsigned triangles_plain(const WideTree::Leaf& leaf, const float* at, float limit, float* squared) {
+  const Eight found = test_triangles(leaf, at);
+  __builtin_memcpy(squared, &found, sizeof found);
+  return flags_below(found, limit);
+}
+
+#if defined(__x86_64__)
+[[gnu::target("avx2")]] unsigned boxes_avx2(const WideTree::Node& node, const float* at, float limit, float* squared) {
+  const Eight found = test_boxes(node, at);
+  __builtin_memcpy(squared, &found, sizeof found);
+  return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<Eight>(found < limit)));
+}
+[[gnu::target("avx2")]] unsigned triangles_avx2(const WideTree::Leaf& leaf, const float* at, float limit,
+                                                float* squared) {
+  const Eight found = test_triangles(leaf, at);
+  __builtin_memcpy(squared, &found, sizeof found);
+  return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<Eight>(found < limit)));
+}
+constexpr WideKernels avx2_kernels{boxes_avx2, triangles_avx2};
+#endif
+
+constexpr WideKernels plain_kernels{boxes_plain, triangles_plain};
+}  // namespace
+
+const WideKernels& wide_kernels() {
+#if defined(__x86_64__)
+  static const bool avx2 = __builtin_cpu_supports("avx2");
+  return avx2 ? avx2_kernels : plain_kernels;
+#else
+  return plain_kernels;
+#endif
+}
+
+}  // namespace selvedge

@@ -1,0 +1,165 @@
+#include "learned/steppers/refu_stepper.hpp"
+
+#include <algorithm>
+
+#include "collision/distance/outside_budget.hpp"
+#include "collision/geometry/distance.hpp"
+#include "collision/geometry/stopwatch.hpp"
+#include "learned/steppers/learned_scene.hpp"
+#include "learned/steppers/learned_state.hpp"
+#include "physics/steppers/step_audit.hpp"
+
+namespace selvedge {
+namespace {
+
+// A closed obstacle and the nearest faces that cloth vertices had last.
+struct RefuBody {
+  int obstacle;
+  DistanceField field;
+  std::vector<int> faces;  // one a cloth vertex
+};
+
+// What is known of a vertex: its distance from the obstacle in which it lies deepest.
+struct DeepestIn {
+  SignedDistance at;
+  int body = -1;
+};
+
+class RefuStepper final : public Stepper {
+ public:
+  RefuStepper(const Scene& scene, std::unique_ptr<Stepper> inner, const RefuOptions& options)
+      : scene_(scene),
+        inner_(std::move(inner)),
+        options_(options),
+        ring_(adjacency_of(scene.surface.vertex_count, scene.surface.edges)),
+        held_(static_cast<std::size_t>(scene.surface.vertex_count)) {
+    for (const int pin : scene.pins) held_[static_cast<std::size_t>(pin)] = true;
+    for (int k = 0; k < static_cast<int>(scene.obstacles.size()); ++k)
+      if (is_closed(scene.obstacles[static_cast<std::size_t>(k)].surface))
+        bodies_.push_back({k, DistanceField(scene.obstacles[static_cast<std::size_t>(k)].surface), {}});
+  }
+
+  const StepperTraits& traits() const override { return inner_->traits(); }
+  StepReport step(const State& from, const Drive& drive, double dt, State& to) override;
+
+ private:
+  std::vector<DeepestIn> ask(const Points& at, std::span<const int> vertices);
+  bool any_inside(const State&);
+  Repelled push_out_of_bodies(const Points& x);
+  void pass_all_edges(Points& x);
+  void calm(const State& from, double dt, const Repelled&, State& to);
+
+  const Scene& scene_;
+  std::unique_ptr<Stepper> inner_;
+  RefuOptions options_;
+  Adjacency ring_;
+  std::vector<char> held_;
+  std::vector<RefuBody> bodies_;
+  OutsideBudget budget_;
+  AuditMemory audited_;
+};
+
+// `vertices` say where the search begins: one a point, or none.
+std::vector<DeepestIn> RefuStepper::ask(const Points& at, std::span<const int> vertices) {
+  std::vector<DeepestIn> deepest(static_cast<std::size_t>(at.rows()));
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    RefuBody& body = bodies_[b];
+    body.faces.resize(static_cast<std::size_t>(scene_.surface.vertex_count), -1);
+    std::vector<int> faces;
+    for (const int v : vertices) faces.push_back(body.faces[static_cast<std::size_t>(v)]);
+    std::vector<SignedDistance> found;
+    body.field.ask(at, faces, found);
+    for (std::size_t i = 0; i < vertices.size(); ++i) body.faces[static_cast<std::size_t>(vertices[i])] = faces[i];
+    for (std::size_t i = 0; i < found.size(); ++i)
+      if (deepest[i].body < 0 || found[i].value < deepest[i].at.value) deepest[i] = {found[i], static_cast<int>(b)};
+  }
+  return deepest;
+}
+
+// Moves the bodies, and asks the vertices that may have come inside.
+bool RefuStepper::any_inside(const State& state) {
+  for (RefuBody& body : bodies_) body.field.move_to(state.obstacles[static_cast<std::size_t>(body.obstacle)]);
+  if (!options_.budget) budget_ = {};
+  const std::vector<int> due = budget_.due(state.x, joined_obstacles(state.obstacles));
+  const std::vector<DeepestIn> found = ask(state.x(due, Eigen::all), due);
+  bool inside = false;
+  for (std::size_t i = 0; i < due.size(); ++i) {
+    budget_.renew(due[i], found[i].at.value);
+    inside |= found[i].at.value < 0 && !held_[static_cast<std::size_t>(due[i])];
+  }
+  return inside;
+}
+
+Repelled RefuStepper::push_out_of_bodies(const Points& x) {
+  const AskDistance distance = [this](const Points& at, std::vector<SignedDistance>& found) {
+    const std::vector<DeepestIn> deepest = ask(at, {});
+    found.resize(deepest.size());
+    std::ranges::transform(deepest, found.begin(), [](const DeepestIn& d) { return d.at; });
+  };
+  const AskScale constant = [this](std::span<const int> vertices, std::span<const double>) {
+    return constant_scale(vertices, options_.alpha);
+  };
+  return repel(x, ring_, distance, options_.scale ? options_.scale : constant, options_.repulsion, held_);
+}
+
+void RefuStepper::pass_all_edges(Points& x) {
+  if (options_.edge_pass.rounds == 0) return;
+  for (RefuBody& body : bodies_) pass_edges(body.field, scene_.surface, options_.edge_pass, x, held_);
+}
+
+// Pushed vertices do not go on inward: relative to the surface that they were pushed to, the part of their velocities
+// against its normal is taken away.
+void RefuStepper::calm(const State& from, double dt, const Repelled& pushed, State& to) {
+  std::vector<int> vertices;
+  Points at(static_cast<Eigen::Index>(pushed.pushed.size()), 3);
+  for (const PushedVertex& vertex : pushed.pushed) {
+    at.row(static_cast<Eigen::Index>(vertices.size())) = to.x.row(vertex.vertex);
+    vertices.push_back(vertex.vertex);
+  }
+  const std::vector<DeepestIn> found = ask(at, {});
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const RefuBody& body = bodies_[static_cast<std::size_t>(found[i].body)];
+    const auto obstacle = static_cast<std::size_t>(body.obstacle);
+    const auto t = body.field.surface().triangles.row(found[i].at.triangle);
+    const Points &x = to.obstacles[obstacle], &before = from.obstacles[obstacle];
+    const Closest near = point_triangle(found[i].at.closest, row(x, t[0]), row(x, t[1]), row(x, t[2]));
+    Vec3 body_velocity = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) body_velocity -= near.weights[1 + k] * (row(x, t[k]) - row(before, t[k])) / dt;
+    const Vec3& normal = found[i].at.gradient;
+    const double inward = std::min(0.0, normal.dot(row(to.v, vertices[i]) - body_velocity));
+    to.v.row(vertices[i]) -= (inward * normal).transpose();
+  }
+  carry_velocities(vertices, to);
+}
+
+StepReport RefuStepper::step(const State& from, const Drive& drive, double dt, State& to) {
+  StepReport report = inner_->step(from, drive, dt, to);
+  const auto is_finite = [](const Points& x) { return x.allFinite(); };
+  if (report.status != StepStatus::accepted || !is_finite(to.x) || !std::ranges::all_of(to.obstacles, is_finite))
+    return report;
+  Stopwatch watch;
+  if (!any_inside(to)) {
+    report.seconds.response += watch.lap();
+    return report;
+  }
+  Repelled pushed = push_out_of_bodies(to.x);
+  to.x = std::move(pushed.x);
+  pass_all_edges(to.x);
+  calm(from, dt, pushed, to);
+  to.history = {};
+  report.collision.pushed_out = static_cast<int>(pushed.pushed.size());
+  report.seconds.response += watch.lap();
+  if (report.reason == Reason::penetrating) report.reason = Reason::none;  // the audit says it again
+  audit_state(scene_, drive, to, audited_, report);
+  return report;
+}
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_refu_stepper(const Scene& scene, std::unique_ptr<Stepper> inner,
+                                           const RefuOptions& options) {
+  if (std::ranges::none_of(scene.obstacles, [](const Obstacle& o) { return is_closed(o.surface); })) return inner;
+  return std::make_unique<RefuStepper>(scene, std::move(inner), options);
+}
+
+}  // namespace selvedge

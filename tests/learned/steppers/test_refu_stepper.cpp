@@ -1,0 +1,120 @@
+#include <catch2/catch.hpp>
+
+#include <cstring>
+
+#include "learned/steppers/refu_stepper.hpp"
+#include "tests/collision/solids.hpp"
+#include "tests/learned/learned_scenes.hpp"
+
+using namespace selvedge;
+
+namespace {
+
+// Moves all cloth by a way a step, whatever is there, and reports what a stepper with contact would.
+class BlindStepper final : public Stepper {
+ public:
+  BlindStepper(const Scene& scene, Eigen::RowVector3d way) : scene_(scene), way_(std::move(way)) {}
+  const StepperTraits& traits() const override { return traits_; }
+  StepReport step(const State& from, const Drive& drive, double dt, State& to) override {
+    StepReport report;
+    report.by = traits_.name;
+    report.status = way_.allFinite() ? StepStatus::accepted : StepStatus::rejected;
+    to = from;
+    to.time += dt;
+    ++to.frame;
+    to.x.rowwise() += way_;
+    for (std::size_t k = 0; k < scene_.pins.size(); ++k)
+      to.x.row(scene_.pins[k]) = drive.pins.row(static_cast<Eigen::Index>(k));
+    to.v = (to.x - from.x) / dt;
+    to.obstacles = drive.obstacles;
+    to.memory = {{"learned.velocity", to.v / 30}};
+    return report;
+  }
+
+ private:
+  const Scene& scene_;
+  Eigen::RowVector3d way_;
+  StepperTraits traits_{"blind"};
+};
+
+// A sheet above a ball.
+fake::LearnedCase sheet_over_ball() {
+  const testing::Solid ball = testing::ball(10);
+  fake::Mesh body{0.1 * ball.x, ball.surface.triangles}, cloth = fake::grid(9, 9);
+  cloth.x.rowwise() += Eigen::RowVector3d(-0.08, 0.12, -0.08);
+  return fake::learned_case(cloth, body, {0, 0.001, 0}, 3);
+}
+
+bool same_report(const StepReport& a, const StepReport& b) {
+  return a.status == b.status && a.reason == b.reason && a.collision.pushed_out == b.collision.pushed_out &&
+         a.audit.has_value() == b.audit.has_value();
+}
+
+}  // namespace
+
+TEST_CASE("refu stepper: the same bits where nothing is inside, and where a step is rejected", "[refu]") {
+  const fake::LearnedCase made = sheet_over_ball();
+  for (const double down : {0.001, std::numeric_limits<double>::quiet_NaN()}) {
+    const Eigen::RowVector3d way(0, -down, 0);
+    BlindStepper plain(made.scene, way);
+    const auto refu = make_refu_stepper(made.scene, std::make_unique<BlindStepper>(made.scene, way));
+    State expected, found;
+    const StepReport a = plain.step(made.state, made.drives[0], 1.0 / 30, expected);
+    const StepReport b = refu->step(made.state, made.drives[0], 1.0 / 30, found);
+    CHECK(same_report(a, b));
+    if (a.status == StepStatus::accepted) CHECK(fake::same_state(expected, found));
+  }
+  CHECK(make_refu_stepper(made.scene, std::make_unique<BlindStepper>(made.scene, Eigen::RowVector3d(0, 0, 0)))
+            ->traits()
+            .name == "blind");
+}
+
+TEST_CASE("refu stepper: what is inside comes out, no faster than the body, and pins stay", "[refu]") {
+  const fake::LearnedCase made = sheet_over_ball();
+  const Eigen::RowVector3d way(0, -0.04, 0);
+  for (const bool budget : {true, false}) {
+    RefuOptions options;
+    options.budget = budget;
+    const auto refu = make_refu_stepper(made.scene, std::make_unique<BlindStepper>(made.scene, way), options);
+    State from = made.state, to;
+    int pushed = 0;
+    for (const Drive& drive : made.drives) {
+      State blind;
+      BlindStepper(made.scene, way).step(from, drive, 1.0 / 30, blind);
+      const StepReport report = refu->step(from, drive, 1.0 / 30, to);
+      REQUIRE(report.status == StepStatus::accepted);
+      pushed += report.collision.pushed_out;
+      DistanceField field(made.scene.obstacles[0].surface);
+      field.move_to(to.obstacles[0]);
+      const std::vector<SignedDistance> found = field.ask(to.x);
+      for (int v = 0; v < to.x.rows(); ++v) {
+        const SignedDistance& at = found[static_cast<std::size_t>(v)];
+        if (v == made.scene.pins[0]) {
+          CHECK(to.x.row(v) == blind.x.row(v));
+        } else {
+          CHECK(at.value > -1e-6);
+        }
+        if (to.x.row(v) == blind.x.row(v)) {
+          CHECK(to.v.row(v) == blind.v.row(v));
+          continue;
+        }
+        const Vec3 body_velocity(0, 0.001 * 30, 0);
+        const double before = at.gradient.dot(row(blind.v, v)), after = at.gradient.dot(row(to.v, v));
+        CHECK(after >= before - 1e-9);
+        CHECK(after <= std::max(before, at.gradient.dot(body_velocity)) + 1e-6);
+        CHECK((to.memory[0].rows.row(v) - to.v.row(v) / 30).norm() < 1e-12);
+      }
+      if (report.collision.pushed_out > 0) CHECK(report.audit.has_value());
+      from = to;
+    }
+    CHECK(pushed > 5);
+  }
+}
+
+TEST_CASE("refu stepper: without a closed body it is left out", "[refu]") {
+  fake::LearnedCase made = sheet_over_ball();
+  made.scene.obstacles.clear();
+  auto inner = std::make_unique<BlindStepper>(made.scene, Eigen::RowVector3d(0, -0.01, 0));
+  const Stepper* kept = inner.get();
+  CHECK(make_refu_stepper(made.scene, std::move(inner)).get() == kept);
+}
