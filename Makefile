@@ -16,7 +16,7 @@ PACKAGES_asan-core := $(PACKAGES_release)
 PACKAGES_tsan := $(PACKAGES_release) tsan
 PACKAGES_minimal := build viewer test
 
-.PHONY: help program demo test everything validate bench stress stability wardrobe compare fuzz dev long asan asan-core tsan minimal torch format check-format tidy clean
+.PHONY: help program demo test everything validate bench stress stability wardrobe compare fuzz dev long check-install asan asan-core tsan minimal torch format check-format tidy clean
 .DEFAULT_GOAL := help
 
 help:  ## This list
@@ -52,7 +52,7 @@ compare: program  ## Compare the conventional stepper's settings: tables and plo
 	@$(PROGRAM) compare configs/compare/conventional.yaml --out out/compare
 
 test: test-release  ## Build and run every test (FILTER=regular expression on test files)
-everything: test long minimal asan fuzz torch  ## Every test in the builds release, minimal and asan, long ones, fuzzers and those with libtorch too; CI runs a part
+everything: test long check-install minimal asan fuzz torch  ## Every test in the builds release, minimal and asan, long ones, fuzzers and those with libtorch too; CI runs a part
 fuzz:  ## Readers of files given what a fuzzer makes of files, FUZZ_SECONDS each, with clang (FORMATS="obj ply": only these)
 	@cmake/install-packages.sh build fuzz
 	@$(MAKE) --no-print-directory build/fuzz/configured
@@ -61,6 +61,8 @@ fuzz:  ## Readers of files given what a fuzzer makes of files, FUZZ_SECONDS each
 dev: test-dev  ## The same with assertions on and warnings as errors
 asan: test-asan  ## The same under the address and undefined-behaviour sanitizers
 asan-core: test-asan-core  ## Kernels and readers under these sanitizers
+check-install: program  ## The libraries alone, installed and found from elsewhere
+	@cmake/check-install.sh build/check-install
 long: test  ## The tests that are too long for every change, after all others
 	@build/release/selvedge_tests '[.long]'
 tsan: test-tsan  ## The same under the thread sanitizer, with clang

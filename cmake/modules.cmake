@@ -79,7 +79,8 @@ function(selvedge_module name)
   if(module_HEAVY)
     selvedge_objects(${name} selvedge_${name}_heavy ${heavy_source})
     target_link_libraries(selvedge_${name}_heavy PRIVATE ${module_PUBLIC} ${heavy_library})
-    target_link_libraries(selvedge_${name} PRIVATE $<LINK_ONLY:${heavy_library}>)
+    target_link_libraries(selvedge_${name} PRIVATE $<BUILD_INTERFACE:$<LINK_ONLY:${heavy_library}>>
+      INTERFACE $<INSTALL_INTERFACE:selvedge::${heavy_library}>)
   endif()
 endfunction()
 

@@ -58,6 +58,7 @@ Matrix Fields::rows_of_three(const std::string& field, hid_t type) const {
 Eigen::MatrixXd Fields::directions(const std::string& field, Eigen::Index vertices) const {
   if (!file_.has(field)) return Eigen::MatrixXd(3 * vertices, 0);
   const std::vector<Eigen::Index> shape = shape_of(field, 3);
+  if (shape[2] == 0) return Eigen::MatrixXd(3 * vertices, 0);
   if (shape[0] != vertices || shape[1] != 3)
     fail(field, fmt::format("has {} vertices of {} coordinates, not {} of 3", shape[0], shape[1], vertices));
   RowMajor rows(3 * shape[0], shape[2]);

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "collision/exact/inside.hpp"
+#include "collision/distance/signed_distance.hpp"
 
 namespace selvedge {
 namespace {
@@ -52,15 +52,19 @@ void warn_of_rounding(const Scene& scene, const Points& x, const std::vector<Poi
 
 void warn_of_pins_inside(const std::vector<ClothPart>& parts, const Scene& scene, const Points& x,
                          const std::vector<Points>& obstacles, std::vector<std::string>& warnings) {
+  if (std::ranges::all_of(parts, [](const ClothPart& part) { return part.pins.empty(); })) return;
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
     const Surface& surface = scene.obstacles[k].surface;
     if (!is_closed(surface) || !obstacles[k].allFinite()) continue;
+    DistanceField field(surface, BodyShape::raw);
+    field.move_to(obstacles[k]);
     for (std::size_t c = 0; c < parts.size(); ++c)
       for (const PinPart& pin : parts[c].pins) {
         const Points at =
             Points(x.middleRows(scene.cloths[c].first_vertex, scene.cloths[c].vertex_count))(pin.vertices, Eigen::all);
-        const std::vector<char> in = inside(surface, obstacles[k], at);
-        if (const auto count = std::ranges::count(in, 1); count > 0)
+        // Those on the surface, as garments that are sewn to a body have them, are where they belong.
+        const auto deep = [&](const SignedDistance& one) { return one.value < -scene.contact.thickness; };
+        if (const auto count = std::ranges::count_if(field.ask(at), deep); count > 0)
           warnings.push_back(
               fmt::format("{} pins {} of cloth `{}` are inside the obstacle `{}`: where it does not move "
                           "away, they stay there",
