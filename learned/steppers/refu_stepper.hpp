@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "collision/distance/edge_pass.hpp"
-#include "learned/network/repulsive_layer.hpp"
+#include "learned/repulsion/repulsive_layer.hpp"
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
 

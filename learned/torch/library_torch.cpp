@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "learned/network/torch_interface.hpp"
+#include "learned/gradients/torch_interface.hpp"
 
 namespace selvedge {
 namespace {

@@ -27,8 +27,8 @@ const Section& outside_section() {
       "The farthest that a vertex lies outside a box of space [m].",
       "",
       {},
-      {selected("of", "left out: everything"), vector("min", Unit::length, "[-1e9, -1e9, -1e9]", "lowest corner"),
-       vector("max", Unit::length, "[1e9, 1e9, 1e9]", "highest corner")}};
+      {selected("of", "left out: everything"), vector("min", Unit::length, "[-1e6, -1e6, -1e6]", "lowest corner"),
+       vector("max", Unit::length, "[1e6, 1e6, 1e6]", "highest corner")}};
   return table;
 }
 

@@ -7,7 +7,7 @@
 #include "pipeline/garments/garment_make.hpp"
 #include "pipeline/scene/kinds.hpp"
 #include "pipeline/scene/run_options.hpp"
-#include "pipeline/scene/setup_body.hpp"
+#include "pipeline/meshes/setup_body.hpp"
 #include "pipeline/shapes/generate.hpp"
 
 namespace selvedge {

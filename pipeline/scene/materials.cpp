@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "pipeline/scene/config_scene.hpp"
-#include "pipeline/scene/setup_paths.hpp"
+#include "pipeline/meshes/setup_paths.hpp"
 
 namespace selvedge {
 namespace {

@@ -5,7 +5,7 @@
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/garments/outfit.hpp"
 #include "pipeline/scene/config_scene.hpp"
-#include "pipeline/scene/setup_paths.hpp"
+#include "pipeline/meshes/setup_paths.hpp"
 
 namespace selvedge {
 namespace {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/scene/config_scene.hpp"
-#include "pipeline/scene/setup_mesh.hpp"
+#include "pipeline/meshes/setup_mesh.hpp"
 #include "pipeline/shapes/generate.hpp"
 
 namespace selvedge {

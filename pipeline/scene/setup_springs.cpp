@@ -6,7 +6,7 @@
 #include <span>
 
 #include "pipeline/scene/config_scene.hpp"
-#include "pipeline/scene/setup_pairs.hpp"
+#include "pipeline/meshes/setup_pairs.hpp"
 #include "pipeline/scene/setup_selection.hpp"
 
 namespace selvedge {

@@ -12,8 +12,8 @@
 #include <optional>
 
 #include "collision/geometry/error.hpp"
-#include "learned/network/adam.hpp"
-#include "learned/network/initial_weights.hpp"
+#include "learned/gradients/adam.hpp"
+#include "learned/gradients/initial_weights.hpp"
 #include "pipeline/suites/bench_engine.hpp"
 
 namespace selvedge {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "learned/network/torch_network.hpp"
+#include "learned/gradients/torch_network.hpp"
 
 namespace selvedge {
 

@@ -15,7 +15,7 @@
 #include "pipeline/motions/clip_split.hpp"
 #include "pipeline/run/run_scene.hpp"
 #include "pipeline/scene/make_stepper.hpp"
-#include "pipeline/scene/setup_body.hpp"
+#include "pipeline/meshes/setup_body.hpp"
 #include "pipeline/view/view.hpp"
 
 namespace selvedge {

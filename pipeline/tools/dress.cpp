@@ -12,7 +12,7 @@
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/garments/garment_places.hpp"
 #include "pipeline/scene/config_scene.hpp"
-#include "pipeline/scene/setup_body.hpp"
+#include "pipeline/meshes/setup_body.hpp"
 
 namespace selvedge {
 namespace {

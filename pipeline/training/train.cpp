@@ -14,7 +14,7 @@
 #include "pipeline/host/version.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/run/progress.hpp"
-#include "pipeline/scene/setup_paths.hpp"
+#include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/training/flesh_hdf5.hpp"
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
 #include "pipeline/training/training_tables.hpp"

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "learned/network/adam.hpp"
-#include "learned/network/training_network.hpp"
+#include "learned/gradients/adam.hpp"
+#include "learned/gradients/training_network.hpp"
 #include "pipeline/training/roll_queue.hpp"
 #include "pipeline/training/rolling_state.hpp"
 

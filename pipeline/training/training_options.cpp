@@ -8,7 +8,7 @@
 #include "learned/network/architecture.hpp"
 #include "pipeline/garments/outfit.hpp"
 #include "pipeline/motions/clip_split.hpp"
-#include "pipeline/scene/setup_paths.hpp"
+#include "pipeline/meshes/setup_paths.hpp"
 
 namespace selvedge {
 namespace {

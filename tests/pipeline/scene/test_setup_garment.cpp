@@ -10,7 +10,7 @@
 #include "pipeline/run/simulate.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "pipeline/scene/setup.hpp"
-#include "pipeline/scene/setup_paths.hpp"
+#include "pipeline/meshes/setup_paths.hpp"
 #include "tests/pipeline/fake_garment.hpp"
 #include "tests/pipeline/files.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/scene/setup_paths.hpp"
+#include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/training/training_options.hpp"
 #include "tests/pipeline/files.hpp"
 

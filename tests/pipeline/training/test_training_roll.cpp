@@ -4,7 +4,7 @@
 
 #include "learned/steppers/learned_state.hpp"
 #include "pipeline/motions/clip_split.hpp"
-#include "pipeline/scene/setup_paths.hpp"
+#include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/training/roll_queue.hpp"
 #include "pipeline/training/rolling_state.hpp"
 #include "tests/pipeline/training/tiny_training.hpp"

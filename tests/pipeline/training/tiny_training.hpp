@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/scene/setup_paths.hpp"
+#include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/training/rolling_state.hpp"
 #include "pipeline/training/trainer.hpp"
 

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "learned/gradients/training_network.hpp"
+
+namespace selvedge {
+
+enum class RateSchedule { constant, cosine };  // cosine: from the rate to 0 over the run
+
+// Kingma and Ba 2015, algorithm 1, with bias correction.
+struct AdamOptions {
+  double learning_rate = 1e-3;
+  RateSchedule schedule = RateSchedule::cosine;
+  double beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8;
+  double clip_norm = 0;    // the gradient is scaled down to this norm; 0: it is not
+  double clip_median = 0;  // .. to this many times the median of the norms of the last steps; 0: it is not
+};
+
+// What goes on from step to step. Moments have the shapes of the weights.
+struct AdamState {
+  long long steps = 0;
+  NetworkWeights first, second;
+  std::vector<float> norms;  // of the gradients of the last steps, the oldest first; at most `median_window`
+};
+constexpr std::size_t median_window = 101;
+
+AdamState start_adam(const Architecture&);
+
+// The learning rate where `progress`, from 0 to 1, of the run is over.
+double learning_rate_at(const AdamOptions&, double progress);
+
+struct AdamReport {
+  bool taken = true;  // false: the gradient is not finite, and nothing has changed
+  double learning_rate = 0;
+  double norm = 0;   // of the gradient over all trained arrays
+  double scale = 1;  // that it was multiplied with
+};
+
+// One step. Afterwards call `lay_out`. 1 and n threads give the same bits. Throws Error where shapes differ.
+AdamReport adam_step(const Architecture&, const AdamOptions&, double progress, const WeightGradients&, AdamState&,
+                     NetworkWeights&);
+
+// A state as plain arrays, for a checkpoint: "adam/first/ARRAY", "adam/second/ARRAY" for each trained array
+// (`weight_arrays`), "adam/steps" (two numbers, high and low), "adam/norms". Training that goes on from what is read
+// back has the same bits.
+struct NamedFloats {
+  std::string name;
+  std::vector<float> values;
+};
+std::vector<NamedFloats> adam_arrays(const Architecture&, const AdamState&);
+// Throws Error that names the array that is missing, twice there, unknown or of another size; `where` is its file.
+AdamState adam_from_arrays(const Architecture&, const std::vector<NamedFloats>&, const std::string& where);
+
+}  // namespace selvedge

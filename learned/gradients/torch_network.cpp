@@ -1,0 +1,202 @@
+#include "learned/gradients/torch_network.hpp"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+
+#include "collision/geometry/error.hpp"
+#include "collision/geometry/floating_point.hpp"
+#include "learned/network/graph_plan.hpp"
+#include "learned/gradients/torch_interface.hpp"
+
+namespace selvedge {
+namespace {
+
+const TorchCalls& torch_calls(const std::filesystem::path& library) {
+  const std::string cure = "install libtorch-dev and configure with -DSELVEDGE_TORCH=ON, or train without libtorch";
+  void* loaded = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
+  restore_standard_arithmetic();  // a library may switch denormals off as it is loaded
+  if (!loaded) {
+    const char* reason = dlerror();
+    throw Error("libtorch's part cannot be loaded: " + std::string(reason ? reason : ""), library.string(), cure);
+  }
+  const auto entry = reinterpret_cast<TorchEntry>(dlsym(loaded, torch_entry));
+  if (!entry || entry()->version != torch_interface_version)
+    throw Error("the library is of another version of this program", library.string(), cure);
+  return *entry();
+}
+
+// The arrays that libtorch knows.
+std::vector<TorchArray> torch_arrays(const Architecture& a, NetworkWeights& weights) {
+  std::vector<TorchArray> arrays;
+  for (const WeightArray& array : weight_arrays(a, weights)) {
+    if (!array.trained || array.name.starts_with("embeddings/")) continue;
+    const bool matrix = array.name.ends_with("/weight");
+    arrays.push_back({array.data, array.rows, matrix ? array.columns : 0});
+  }
+  return arrays;
+}
+
+// A graph as the library reads it. It points into the graph.
+struct GraphView {
+  std::vector<TorchEdgeSet> sets;
+  std::vector<TorchSelection> selections;
+  std::vector<std::vector<std::int64_t>> indices;
+  TorchGraphView view;
+
+  GraphView(const Architecture& a, const Graph& graph);
+  GraphView(const GraphView&) = delete;
+};
+
+GraphView::GraphView(const Architecture& a, const Graph& graph) {
+  check_graph(a, graph);
+  const GraphPlan plan = plan_graph(a, graph, 1);
+  for (std::size_t s = 0; s < graph.edge_sets.size(); ++s) {
+    const EdgeSet& set = graph.edge_sets[s];
+    const bool used = std::any_of(plan.selections.begin(), plan.selections.end(),
+                                  [s](const EdgeSelection& selection) { return selection.set == static_cast<int>(s); });
+    sets.push_back({a.edge_kinds[static_cast<std::size_t>(edge_kind(a, set.key))].encoder, set.features.rows(),
+                    set.features.cols(), set.features.data(), used ? 1 : 0});
+  }
+  std::vector<TorchSelection> kinds;  // of each selection of the plan
+  for (const EdgeSelection& selection : plan.selections) {
+    const auto set = static_cast<std::size_t>(selection.set);
+    std::vector<std::int64_t> edge;
+    for (const int e : selection.edge) edge.push_back(plan.order[set][static_cast<std::size_t>(e)]);
+    std::sort(edge.begin(), edge.end());
+    std::vector<std::int64_t> receiver, sender;
+    for (const std::int64_t e : edge) {
+      receiver.push_back(graph.edge_sets[set].receivers[static_cast<std::size_t>(e)]);
+      sender.push_back(graph.edge_sets[set].senders[static_cast<std::size_t>(e)]);
+    }
+    const auto count = static_cast<std::int64_t>(edge.size());
+    for (std::vector<std::int64_t>* list : {&edge, &receiver, &sender}) indices.push_back(std::move(*list));
+    kinds.push_back({selection.set, count == sets[set].edges ? 1 : 0, count, indices[indices.size() - 3].data(),
+                     indices[indices.size() - 2].data(), indices.back().data()});
+  }
+  for (const std::vector<int>& step : plan.steps)
+    for (const int index : step)
+      selections.push_back(index < 0 ? TorchSelection{} : kinds[static_cast<std::size_t>(index)]);
+  view = {graph.nodes.rows(), graph.cloth_nodes, graph.nodes.data(), static_cast<int>(sets.size()),
+          sets.data(),        selections.data()};
+}
+
+}  // namespace
+
+struct TorchNetwork::Handle {
+  Architecture architecture;
+  const TorchCalls& calls;
+  void* model = nullptr;
+  TorchFacts facts;
+  int cloth_nodes = -1;  // of the last forward run
+
+  ~Handle() {
+    if (model) calls.discard(model);
+  }
+  void check(int failed, const TorchReport& report) const {
+    restore_standard_arithmetic();
+    if (failed != 0)
+      throw Error(std::string("libtorch says: ") + report.error, "network `" + architecture.name + "`", "");
+  }
+};
+
+std::filesystem::path torch_library_path() {
+  std::error_code failed;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", failed);
+  return (failed ? std::filesystem::path(".") : program.parent_path()) / "libselvedge_torch.so";
+}
+
+TorchNetwork::TorchNetwork(const Architecture& a, const NetworkWeights& weights, const std::string& device, int threads,
+                           const std::filesystem::path& library) {
+  check_architecture(a, "network");
+  check_weights(a, weights, "network");
+  if (device != "auto" && device != "cpu" && device != "cuda")
+    throw Error("`" + device + "` is no device", "libtorch", "choose auto, cpu or cuda");
+  handle_.reset(new Handle{a, torch_calls(library), nullptr, {}, -1});
+  std::vector<int> inputs, keys;
+  for (const EdgeEncoder& encoder : a.encoders) inputs.push_back(encoder.inputs);
+  for (const MessageStep& step : a.steps) keys.push_back(static_cast<int>(step.edge_keys.size()));
+  TorchShape shape;
+  shape.width = a.width;
+  shape.hidden_layers = a.hidden_layers;
+  shape.layer_norm = a.layer_norm ? 1 : 0;
+  shape.node_inputs = a.node_inputs;
+  shape.outputs = a.outputs;
+  shape.encoders = static_cast<int>(inputs.size());
+  shape.encoder_inputs = inputs.data();
+  shape.steps = static_cast<int>(keys.size());
+  shape.step_keys = keys.data();
+  NetworkWeights copy = weights;
+  const std::vector<TorchArray> arrays = torch_arrays(a, copy);
+  TorchReport report;
+  handle_->model =
+      handle_->calls.make(&shape, arrays.data(), static_cast<int>(arrays.size()), device.c_str(), threads, &report);
+  handle_->check(handle_->model ? 0 : 1, report);
+  handle_->facts = {report.library, report.device,     report.blas,
+                    report.threads, report.gemm_flops, report.flushes_denormals != 0};
+}
+
+TorchNetwork::~TorchNetwork() = default;
+TorchNetwork::TorchNetwork(TorchNetwork&&) noexcept = default;
+
+const TorchFacts& TorchNetwork::facts() const { return handle_->facts; }
+
+void TorchNetwork::set_weights(const NetworkWeights& weights) {
+  check_weights(handle_->architecture, weights, "network");
+  NetworkWeights copy = weights;
+  const std::vector<TorchArray> arrays = torch_arrays(handle_->architecture, copy);
+  TorchReport report;
+  handle_->check(handle_->calls.set_weights(handle_->model, arrays.data(), static_cast<int>(arrays.size()), &report),
+                 report);
+}
+
+void TorchNetwork::get_weights(NetworkWeights& weights) const {
+  check_weights(handle_->architecture, weights, "network");
+  const std::vector<TorchArray> arrays = torch_arrays(handle_->architecture, weights);
+  TorchReport report;
+  handle_->check(handle_->calls.get_weights(handle_->model, arrays.data(), static_cast<int>(arrays.size()), &report),
+                 report);
+}
+
+FeatureRows TorchNetwork::infer(const Graph& graph) {
+  const GraphView view(handle_->architecture, graph);
+  FeatureRows output(graph.cloth_nodes, handle_->architecture.outputs);
+  TorchReport report;
+  handle_->check(handle_->calls.forward(handle_->model, &view.view, 0, output.data(), &report), report);
+  handle_->cloth_nodes = -1;
+  return output;
+}
+
+FeatureRows TorchNetwork::run_forward(const Graph& graph) {
+  const GraphView view(handle_->architecture, graph);
+  FeatureRows output(graph.cloth_nodes, handle_->architecture.outputs);
+  TorchReport report;
+  handle_->check(handle_->calls.forward(handle_->model, &view.view, 1, output.data(), &report), report);
+  handle_->cloth_nodes = graph.cloth_nodes;
+  return output;
+}
+
+void TorchNetwork::run_backward(const FeatureRows& d_output, WeightGradients& gradients) {
+  if (d_output.rows() != handle_->cloth_nodes || d_output.cols() != handle_->architecture.outputs)
+    throw Error("a derivative is needed for each output of each cloth node of the last forward run", "libtorch", "");
+  check_weights(handle_->architecture, gradients, "gradients");
+  const std::vector<TorchArray> arrays = torch_arrays(handle_->architecture, gradients);
+  TorchReport report;
+  handle_->check(
+      handle_->calls.backward(handle_->model, d_output.data(), arrays.data(), static_cast<int>(arrays.size()), &report),
+      report);
+}
+
+FeatureRows TorchNetwork::train(const Graph& graph, const FeatureRows& d_output, double learning_rate) {
+  if (d_output.rows() != graph.cloth_nodes || d_output.cols() != handle_->architecture.outputs)
+    throw Error("a derivative is needed for each output of each cloth node", "libtorch", "");
+  const GraphView view(handle_->architecture, graph);
+  FeatureRows output(graph.cloth_nodes, handle_->architecture.outputs);
+  TorchReport report;
+  handle_->check(
+      handle_->calls.train(handle_->model, &view.view, d_output.data(), learning_rate, output.data(), &report), report);
+  handle_->cloth_nodes = -1;
+  return output;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "learned/network/packed_network.hpp"
+#include "learned/gradients/training_network.hpp"
+
+namespace selvedge {
+
+// Weights as the kernels read them.
+struct TrainingLayout {
+  PackedNetwork forward, backward;
+};
+
+}  // namespace selvedge

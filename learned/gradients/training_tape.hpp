@@ -1,0 +1,93 @@
+#pragma once
+
+#include "learned/gradients/gradient_parts.hpp"
+#include "learned/network/graph_plan.hpp"
+#include "learned/gradients/training_kernels.hpp"
+#include "learned/gradients/training_network.hpp"
+
+namespace selvedge {
+
+// What one perceptron leaves behind, one row a slot: results of its hidden layers, and its own before scale and shift.
+struct PerceptronTape {
+  std::vector<LatentRows> hidden;
+  LatentRows values;
+  std::vector<float> factor;  // of the layer norm
+};
+
+// Where the edges of a selection lie on a tape: each chunk has slots of its own, whole register blocks of them.
+struct SlotPlan {
+  std::vector<int> chunk_slot;  // first slot of each chunk
+  int slots = 0;
+  std::vector<int> sender_begin, sender_slots;  // of each sender, the slots of its edges: sender_slots[begin ..]
+};
+
+// Rows for one thread.
+struct ThreadRows {
+  LatentRows first, second, third;
+};
+
+struct StepTape {
+  std::vector<PerceptronTape> edges;  // of each key
+  std::vector<LatentRows> sums;       // of each key: one row a receiver
+  std::vector<int> version;           // of each key: which version of the set's latents the step reads
+  PerceptronTape node;
+};
+
+struct TrainingTape {
+  // What the plan was made for; it is kept while these stay the same.
+  std::vector<EdgeKind> kinds;
+  std::vector<MessageStep> planned_steps;
+  std::vector<std::vector<int>> senders, receivers;
+  std::vector<std::string> keys;
+  int cloth_nodes = -1;
+  Eigen::Index node_rows = -1;
+  GraphPlan plan;
+  std::vector<SlotPlan> slots;  // of each selection
+  std::vector<char> used;       // whether a step uses the set
+
+  std::vector<LatentRows> nodes;               // latents behind the encoder and each step
+  std::vector<std::vector<LatentRows>> edges;  // of each set: latents behind its encoder and each step that uses it
+  PerceptronTape node_encoder, decoder;
+  std::vector<PerceptronTape> edge_encoders;  // of each set
+  std::vector<StepTape> steps;
+
+  // Memory for both ways.
+  LatentRows to_receiver, to_sender;
+  std::vector<ThreadRows> threads;
+  // Memory for going backward.
+  LatentRows d_nodes, d_first;
+  std::vector<LatentRows> d_edges, d_sums;
+  GradientParts parts;
+  bool complete = false;  // a forward run has filled it
+};
+
+// One run, forward or backward.
+struct TrainingRun {
+  const Architecture& architecture;
+  const Graph& graph;
+  TrainingTape& tape;
+  const EngineKernels& kernels;
+  const TrainingKernels& training;
+
+  int width() const { return architecture.width; }
+  ThreadRows& thread_rows() const;
+};
+
+// Gives each thread its rows.
+TrainingRun start_run(const TrainingNetwork&, const Graph&, TrainingTape&);
+
+// Plans the graph unless the tape's plan is of the same one, and gives all rows their sizes.
+void prepare_tape(const Architecture&, const Graph&, TrainingTape&);
+
+// A layer that reads the rows and writes `out`.
+LayerTile training_tile(const PackedLayer&, const float* const* input, float* out, int stride, int rows);
+
+// Entries behind the last row are read and not used.
+inline void fill_rows_up(const float** rows, int count) {
+  for (int r = count; r < training_rows; ++r) rows[r] = rows[0];
+}
+
+// Work on many rows of nodes: parts that one thread does at a time, whole tiles each.
+int rows_in_part(int rows);
+
+}  // namespace selvedge

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "learned/repulsion/plain_network.hpp"
+
+namespace selvedge {
+
+// Adam (Kingma and Ba 2015, algorithm 1) for a plain network. Moments stand in the order of parameters_of.
+struct PlainAdam {
+  double rate = 1e-5, beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8;
+  long long steps = 0;
+  std::vector<float> first, second;
+};
+
+// False: the gradient is not finite, and nothing has changed.
+bool take_step(PlainAdam&, std::span<const float> gradient, PlainNetwork&);
+
+}  // namespace selvedge

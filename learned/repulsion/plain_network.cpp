@@ -1,0 +1,227 @@
+#include "learned/repulsion/plain_network.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <random>
+
+#include "collision/geometry/error.hpp"
+#include "collision/geometry/parallel.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr int rows_at_once = 128;  // of a chunk: what they make stays in the cache
+
+// What one layer makes of a chunk of rows.
+struct LayerTrace {
+  FeatureRows input, input_tangent;  // what it reads
+  FeatureRows sum, sum_tangent;      // before the bend
+};
+
+float sigmoid(float x) { return x >= 0 ? 1 / (1 + std::exp(-x)) : std::exp(x) / (1 + std::exp(x)); }
+
+float bent(const PlainNetwork& n, float a) {
+  if (n.bend == Bend::rectified) return a < 0 ? 0 : a;
+  const auto beta = static_cast<float>(n.beta);
+  return std::max(a, 0.0f) + std::log1p(std::exp(-beta * std::abs(a))) / beta;
+}
+float bend_slope(const PlainNetwork& n, float a) {
+  return n.bend == Bend::rectified ? static_cast<float>(a > 0) : sigmoid(static_cast<float>(n.beta) * a);
+}
+float bend_curvature(const PlainNetwork& n, float a) {
+  if (n.bend == Bend::rectified) return 0;
+  const auto beta = static_cast<float>(n.beta);
+  const float s = sigmoid(beta * a);
+  return beta * s * (1 - s);
+}
+
+FeatureRows beside(const FeatureRows& left, const FeatureRows& right) {
+  FeatureRows both(left.rows(), left.cols() + right.cols());
+  both << left, right;
+  return both;
+}
+
+// Forward over one chunk. Without directions no tangents are made.
+std::vector<LayerTrace> trace(const PlainNetwork& n, const FeatureRows& inputs, const FeatureRows& directions) {
+  const bool tangents = directions.rows() > 0;
+  std::vector<LayerTrace> made(n.layers.size());
+  FeatureRows at = inputs, along = directions;
+  for (std::size_t l = 0; l < n.layers.size(); ++l) {
+    LayerTrace& layer = made[l];
+    const bool again = static_cast<int>(l) == n.again_layer;
+    layer.input = again ? beside(at, inputs.leftCols(n.again_columns)) : std::move(at);
+    layer.sum.noalias() = layer.input * n.layers[l].weight.transpose();
+    layer.sum.rowwise() += Eigen::Map<const Eigen::RowVectorXf>(n.layers[l].bias.data(), layer.sum.cols());
+    if (tangents) {
+      layer.input_tangent = again ? beside(along, directions.leftCols(n.again_columns)) : std::move(along);
+      layer.sum_tangent.noalias() = layer.input_tangent * n.layers[l].weight.transpose();
+    }
+    if (l + 1 == n.layers.size()) break;
+    at = layer.sum.unaryExpr([&](float a) { return bent(n, a); });
+    if (tangents)
+      along = layer.sum_tangent.binaryExpr(layer.sum, [&](float d, float a) { return d * bend_slope(n, a); });
+  }
+  return made;
+}
+
+template <class Visit>
+void for_each_chunk(Eigen::Index rows, const Visit& visit) {
+  const int count = static_cast<int>(rows);
+  parallel_for(chunks_of(count, rows_at_once), 1, [&](int c) {
+    const int first = c * rows_at_once;
+    visit(c, first, std::min(rows_at_once, count - first));
+  });
+}
+
+FeatureRows some_rows(const FeatureRows& rows, int first, int count) {
+  return rows.rows() > 0 ? FeatureRows(rows.middleRows(first, count)) : FeatureRows(0, rows.cols());
+}
+
+// Backward over one chunk. Writes the parameters' gradient to `gradient`, and returns the inputs'.
+FeatureRows trace_back(const PlainNetwork& n, const std::vector<LayerTrace>& made, FeatureRows value,
+                       FeatureRows tangent, std::span<float> gradient) {
+  const bool tangents = tangent.rows() > 0;
+  const auto inputs = static_cast<Eigen::Index>(n.inputs());
+  FeatureRows seen_again = FeatureRows::Zero(value.rows(), inputs);
+  std::size_t end = gradient.size();
+  for (std::size_t l = n.layers.size(); l-- > 0;) {
+    const LayerTrace& layer = made[l];
+    if (l + 1 < n.layers.size()) {  // through the bend
+      const auto slope = layer.sum.unaryExpr([&](float a) { return bend_slope(n, a); });
+      if (tangents) {
+        const FeatureRows curved =
+            layer.sum.binaryExpr(layer.sum_tangent, [&](float a, float d) { return d * bend_curvature(n, a); });
+        value = value.cwiseProduct(slope) + tangent.cwiseProduct(curved);
+        tangent = tangent.cwiseProduct(slope).eval();
+      } else {
+        value = value.cwiseProduct(slope).eval();
+      }
+    }
+    const AffineLayer& affine = n.layers[l];
+    const auto size = static_cast<std::size_t>(affine.weight.size());
+    end -= affine.bias.size() + size;
+    Eigen::Map<FeatureRows> weight(gradient.data() + end, affine.weight.rows(), affine.weight.cols());
+    weight.noalias() = value.transpose() * layer.input;
+    if (tangents) weight.noalias() += tangent.transpose() * layer.input_tangent;
+    Eigen::Map<Eigen::RowVectorXf>(gradient.data() + end + size, affine.weight.rows()) = value.colwise().sum();
+    value = (value * affine.weight).eval();
+    if (tangents) tangent = (tangent * affine.weight).eval();
+    if (static_cast<int>(l) != n.again_layer) continue;
+    seen_again.leftCols(n.again_columns) += value.rightCols(n.again_columns);
+    value.conservativeResize(Eigen::NoChange, value.cols() - n.again_columns);
+    if (tangents) tangent.conservativeResize(Eigen::NoChange, tangent.cols() - n.again_columns);
+  }
+  return value + seen_again;
+}
+
+}  // namespace
+
+PlainNetwork make_plain_network(const PlainShape& shape, std::uint64_t seed) {
+  PlainNetwork made{{}, shape.bend, shape.beta, shape.again_layer, shape.again_columns};
+  std::mt19937_64 random(seed);
+  int inputs = shape.inputs;
+  for (std::size_t l = 0; l < shape.outputs.size(); ++l) {
+    if (static_cast<int>(l) == shape.again_layer) inputs += shape.again_columns;
+    const int outputs = shape.outputs[l];
+    if (inputs < 1 || outputs < 1)
+      throw Error("a layer without inputs or outputs", "layer " + std::to_string(l), "give it some");
+    AffineLayer layer{FeatureRows(outputs, inputs), std::vector<float>(static_cast<std::size_t>(outputs), 0)};
+    const double reach = std::sqrt(6.0 / inputs);
+    for (float& w : layer.weight.reshaped<Eigen::RowMajor>())
+      w = static_cast<float>(reach * (2 * static_cast<double>(random() >> 11) * 0x1p-53 - 1));
+    made.layers.push_back(std::move(layer));
+    inputs = outputs;
+  }
+  return made;
+}
+
+long long parameter_count(const PlainNetwork& n) {
+  long long count = 0;
+  for (const AffineLayer& layer : n.layers) count += layer.weight.size() + static_cast<long long>(layer.bias.size());
+  return count;
+}
+
+std::vector<float> parameters_of(const PlainNetwork& n) {
+  std::vector<float> all;
+  all.reserve(static_cast<std::size_t>(parameter_count(n)));
+  for (const AffineLayer& layer : n.layers) {
+    all.insert(all.end(), layer.weight.data(), layer.weight.data() + layer.weight.size());
+    all.insert(all.end(), layer.bias.begin(), layer.bias.end());
+  }
+  return all;
+}
+
+void set_parameters(std::span<const float> all, PlainNetwork& n) {
+  assert(static_cast<long long>(all.size()) == parameter_count(n));
+  auto at = all.begin();
+  for (AffineLayer& layer : n.layers) {
+    std::copy_n(at, layer.weight.size(), layer.weight.data());
+    at += layer.weight.size();
+    std::copy_n(at, layer.bias.size(), layer.bias.begin());
+    at += static_cast<std::ptrdiff_t>(layer.bias.size());
+  }
+}
+
+FeatureRows evaluate(const PlainNetwork& n, const FeatureRows& inputs) {
+  FeatureRows outputs(inputs.rows(), n.outputs());
+  for_each_chunk(inputs.rows(), [&](int, int first, int count) {
+    outputs.middleRows(first, count) = trace(n, some_rows(inputs, first, count), {}).back().sum;
+  });
+  return outputs;
+}
+
+ValueAndGradient evaluate_with_gradient(const PlainNetwork& n, const FeatureRows& inputs, int columns) {
+  assert(n.outputs() == 1);
+  ValueAndGradient result{FeatureRows(inputs.rows(), 1), FeatureRows(inputs.rows(), columns)};
+  for_each_chunk(inputs.rows(), [&](int, int first, int count) {
+    const std::vector<LayerTrace> made = trace(n, some_rows(inputs, first, count), {});
+    result.value.middleRows(first, count) = made.back().sum;
+    FeatureRows back = FeatureRows::Ones(count, 1), again = FeatureRows::Zero(count, n.inputs());
+    for (std::size_t l = n.layers.size(); l-- > 0;) {
+      if (l + 1 < n.layers.size())
+        back = back.cwiseProduct(made[l].sum.unaryExpr([&](float a) { return bend_slope(n, a); })).eval();
+      back = (back * n.layers[l].weight).eval();
+      if (static_cast<int>(l) != n.again_layer) continue;
+      again.leftCols(n.again_columns) += back.rightCols(n.again_columns);
+      back.conservativeResize(Eigen::NoChange, back.cols() - n.again_columns);
+    }
+    result.gradient.middleRows(first, count) = (back + again).leftCols(columns);
+  });
+  return result;
+}
+
+ValueAndTangent evaluate_with_tangent(const PlainNetwork& n, const FeatureRows& inputs, const FeatureRows& directions) {
+  ValueAndTangent result{FeatureRows(inputs.rows(), n.outputs()), FeatureRows(inputs.rows(), n.outputs())};
+  for_each_chunk(inputs.rows(), [&](int, int first, int count) {
+    const auto made = trace(n, some_rows(inputs, first, count), some_rows(directions, first, count));
+    result.value.middleRows(first, count) = made.back().sum;
+    result.tangent.middleRows(first, count) = made.back().sum_tangent;
+  });
+  return result;
+}
+
+PlainGradients backward(const PlainNetwork& n, const FeatureRows& inputs, const FeatureRows& directions,
+                        const PlainAdjoints& adjoints) {
+  const auto size = static_cast<std::size_t>(parameter_count(n));
+  const int chunks = chunks_of(static_cast<int>(inputs.rows()), rows_at_once);
+  std::vector<std::vector<float>> parts(static_cast<std::size_t>(chunks));
+  PlainGradients result{std::vector<float>(size, 0), FeatureRows(inputs.rows(), n.inputs())};
+  for_each_chunk(inputs.rows(), [&](int c, int first, int count) {
+    parts[static_cast<std::size_t>(c)].resize(size);
+    const bool tangents = directions.rows() > 0 && adjoints.tangent.rows() > 0;
+    const auto made =
+        trace(n, some_rows(inputs, first, count), tangents ? some_rows(directions, first, count) : FeatureRows());
+    result.inputs.middleRows(first, count) = trace_back(
+        n, made, some_rows(adjoints.value, first, count),
+        tangents ? some_rows(adjoints.tangent, first, count) : FeatureRows(), parts[static_cast<std::size_t>(c)]);
+  });
+  constexpr int stretch = 4096;
+  parallel_for(chunks_of(static_cast<int>(size), stretch), 1, [&](int s) {
+    const std::size_t end = std::min(size, static_cast<std::size_t>(s + 1) * stretch);
+    for (const std::vector<float>& part : parts)
+      for (std::size_t i = static_cast<std::size_t>(s) * stretch; i < end; ++i) result.parameters[i] += part[i];
+  });
+  return result;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "collision/distance/signed_distance.hpp"
+#include "collision/geometry/adjacency.hpp"
+#include "learned/repulsion/scale_network.hpp"
+
+namespace selvedge {
+
+// The layer of ReFU (Tan et al. 2022, equations 2-5): a garment vertex with f(x) < 0 goes to x - alpha f n, where n is
+// the direction of the distance's gradient and alpha comes from the vertex and f; the others stay.
+
+// Signed distances of points, accurate or by a network. A network's gradients need not have unit length.
+using AskDistance = std::function<void(const Points& at, std::vector<SignedDistance>& found)>;
+// Scales of vertices with these distances.
+using AskScale = std::function<Scales(std::span<const int> vertices, std::span<const double> distances)>;
+Scales constant_scale(std::span<const int> vertices, double alpha);
+
+struct RepulsionOptions {
+  int recheck = 0;     // so often moved vertices are asked again, and those inside projected; the paper: 0
+  double deep = 0.03;  // deeper vertices take their neighbours' mean direction [m]; infinity: none does
+  double margin = 0;   // added to every push [m]; the paper: 0
+};
+
+// One vertex that was moved.
+struct PushedVertex {
+  int vertex = 0;
+  double alpha = 1, slope = 0;    // the scale and its derivative by the distance [1/m]
+  SignedDistance at;              // where it was
+  Vec3 direction = Vec3::Zero();  // in which it went, unit length
+};
+
+struct Repelled {
+  Points x;
+  std::vector<PushedVertex> pushed;  // ascending
+  int deep = 0;                      // of them deeper than the options' `deep`
+  int torn = 0;                      // edges of the garment whose ends went over 90 degrees apart
+  int projected = 0;                 // vertices that were still inside when asked again, all times
+  int inside = 0;                    // at the end, if it was asked again; else 0
+};
+
+// `ring` joins neighbouring vertices. Vertices marked in `held`, which may be empty, stay. A vertex inside whose
+// gradient vanishes stays.
+Repelled repel(const Points& x, const Adjacency& ring, const AskDistance&, const AskScale&, const RepulsionOptions&,
+               std::span<const char> held = {});
+
+// Derivative of a pushed vertex's new position by its old one. full: I - alpha (I - P) - f alpha' n n^T, with P the
+// derivative of the closest point: I - n n^T on a face, t t^T on an edge, 0 at a vertex. frozen: n is a constant,
+// I - (alpha + f alpha') n n^T.
+Mat3 full_jacobian(const SignedDistance&, double alpha, double slope);
+Mat3 frozen_jacobian(const SignedDistance&, double alpha, double slope);
+
+}  // namespace selvedge

@@ -1,0 +1,69 @@
+#include "pipeline/meshes/setup_paths.hpp"
+
+#include <cstdlib>
+
+namespace selvedge {
+
+namespace fs = std::filesystem;
+
+fs::path config_folder() {
+  std::error_code problem;
+  const fs::path program = fs::read_symlink("/proc/self/exe", problem);
+  const fs::path installed = program.parent_path().parent_path() / "share" / "selvedge" / "configs";
+  if (!problem && fs::is_directory(installed, problem)) return installed;
+  return fs::path(SELVEDGE_SOURCE_DIR) / "configs";
+}
+
+std::vector<fs::path> config_folders(const fs::path& folder) { return {folder, folder / "..", config_folder()}; }
+
+fs::path config_near(const fs::path& folder, const std::string& name) {
+  std::error_code ignored;
+  for (const fs::path& place : config_folders(folder))
+    if (fs::exists(place / name, ignored)) return place / name;
+  return config_folder() / name;
+}
+
+fs::path cache_folder() {
+  for (const auto& [name, below] : {std::pair{"XDG_CACHE_HOME", ""}, std::pair{"HOME", ".cache"}})
+    if (const char* value = std::getenv(name); value && *value) return fs::path(value) / below / "selvedge";
+  return fs::temp_directory_path() / "selvedge";
+}
+
+namespace {
+
+std::string variable(const Config& at, const std::string& name) {
+  if (const char* value = std::getenv(name.c_str()); value && *value) return value;
+  if (name == "SELVEDGE_DATA") return (fs::path(SELVEDGE_SOURCE_DIR) / ".." / "shared" / "data").lexically_normal();
+  at.fail("uses ${" + name + "}, which the environment does not set", "set it, or write the path out");
+}
+
+}  // namespace
+
+fs::path expanded_path(const Config& at, const std::string& text, const fs::path& folder) {
+  std::string result = text;
+  for (std::size_t begin = 0; (begin = result.find("${", begin)) != std::string::npos;) {
+    const std::size_t end = result.find('}', begin);
+    if (end == std::string::npos) at.fail("has ${ without }", "write ${NAME}");
+    const std::string value = variable(at, result.substr(begin + 2, end - begin - 2));
+    result.replace(begin, end + 1 - begin, value);
+    begin += value.size();
+  }
+  const fs::path path(result);
+  return path.is_absolute() ? path : folder / path;
+}
+
+fs::path existing_path(const Config& at, const std::string& text, const fs::path& folder) {
+  const fs::path path = expanded_path(at, text, folder);
+  std::error_code ignored;
+  if (!fs::exists(path, ignored))
+    at.fail("names the missing file " + path.string(), text.find("SELVEDGE_DATA") == std::string::npos
+                                                           ? "paths are relative to the scene file"
+                                                           : "set SELVEDGE_DATA to the folder of the data");
+  return path;
+}
+
+fs::path existing_path(const Config& value, const fs::path& folder) {
+  return existing_path(value, value.text(), folder);
+}
+
+}  // namespace selvedge
