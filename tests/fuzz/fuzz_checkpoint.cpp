@@ -10,11 +10,9 @@ State state_of_run() {
   State state = fake::setup().initial;
   state.frame = 7;
   state.cut_out = {1, 3};
-  state.last_clean = {state.x, state.obstacles};
-  state.history = {0.01, state.x, state.v};
-  state.rest.seconds = {0.2};
-  state.rest.place = state.x;
-  state.memory = {{"learned.before", state.x}};
+  state.memory = {{"learned.before", state.x, RowsOf::vertices, true},
+                  {"resting.seconds", MemoryRows::Constant(1, 1, 0.2), RowsOf::cloths},
+                  {"bdf2.length", MemoryRows::Constant(1, 1, 0.01)}};
   return state;
 }
 
