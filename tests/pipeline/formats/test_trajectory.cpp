@@ -109,7 +109,7 @@ TEST_CASE("every field of a trajectory is checked before it is read") {
       for (int i = 0; i < 3; ++i) writer.append(fake::frame(scene, i));
       writer.close();
     }
-    const h5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+    h5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
     H5Ldelete(file.id(), field.c_str(), H5P_DEFAULT);
     const h5::Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
     const h5::Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
@@ -123,7 +123,7 @@ TEST_CASE("every field of a trajectory is checked before it is read") {
       REQUIRE(dataset.id() >= 0);
       if (data) H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
     }
-    H5Fflush(file.id(), H5F_SCOPE_GLOBAL);
+    file.reset();  // HDF5 opens no file twice with other flags
     try {
       const TrajectoryReader reader(path);
       for (int i = 0; i < reader.frame_count(); ++i) reader.frame(i);
