@@ -37,7 +37,7 @@ const std::map<std::string, std::vector<Room>> rooms = {
       {"untangle"},
       {"audit", {"geometry", "exact"}, Door::closed_to_module}}},
     {"physics", {{"scene"}, {"energies"}, {"linear"}, {"solve"}, {"recovery"}, {"steppers"}}},
-    {"learned", {{"graph"}, {"network"}, {"steppers"}, {"torch", {"graph", "network"}, Door::closed}}},
+    {"learned", {{"graph"}, {"network"}, {"repulsion"}, {"steppers"}, {"torch", {"graph", "network"}, Door::closed}}},
     {"pipeline",
      {{"host"},
       {"config"},

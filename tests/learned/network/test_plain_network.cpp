@@ -4,7 +4,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "learned/network/plain_network.hpp"
-#include "learned/network/scale_network.hpp"
+#include "learned/repulsion/scale_network.hpp"
 #include "tests/learned/with_threads.hpp"
 
 using namespace selvedge;

@@ -1,4 +1,4 @@
-#include "learned/network/repulsive_layer.hpp"
+#include "learned/repulsion/repulsive_layer.hpp"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "learned/network/repulsive_layer.hpp"
+#include "learned/repulsion/repulsive_layer.hpp"
 
 namespace selvedge {
 

@@ -1,4 +1,4 @@
-#include "learned/network/scale_network.hpp"
+#include "learned/repulsion/scale_network.hpp"
 
 #include <algorithm>
 #include <cassert>

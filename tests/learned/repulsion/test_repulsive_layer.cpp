@@ -3,8 +3,8 @@
 #include <limits>
 #include <random>
 
-#include "learned/network/repulsive_layer.hpp"
-#include "learned/network/smooth_push.hpp"
+#include "learned/repulsion/repulsive_layer.hpp"
+#include "learned/repulsion/smooth_push.hpp"
 #include "tests/collision/solids.hpp"
 
 using namespace selvedge;

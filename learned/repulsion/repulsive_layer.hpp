@@ -6,7 +6,7 @@
 
 #include "collision/distance/signed_distance.hpp"
 #include "collision/geometry/adjacency.hpp"
-#include "learned/network/scale_network.hpp"
+#include "learned/repulsion/scale_network.hpp"
 
 namespace selvedge {
 

@@ -1,4 +1,4 @@
-#include "learned/network/smooth_push.hpp"
+#include "learned/repulsion/smooth_push.hpp"
 
 #include <cmath>
 

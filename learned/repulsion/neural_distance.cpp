@@ -1,4 +1,4 @@
-#include "learned/network/neural_distance.hpp"
+#include "learned/repulsion/neural_distance.hpp"
 
 #include <cassert>
 #include <cmath>
