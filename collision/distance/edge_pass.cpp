@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "collision/search/intersections.hpp"
-
 namespace selvedge {
 namespace {
 
@@ -29,10 +27,9 @@ struct Touched {
 };
 
 // What of the garment meets the body.
-Touched touched_by(const DistanceField& body, const Surface& garment, const Points& x, IntersectionCache& own,
-                   IntersectionCache& theirs) {
+Touched touched_by(const DistanceField& body, const Surface& garment, const Points& x, EdgePassMemory& memory) {
   Touched touched;
-  const auto pairs = intersecting_pairs(garment, x, own, body.surface(), body.positions(), theirs);
+  const auto pairs = intersecting_pairs(garment, x, memory.garment, body.surface(), body.positions(), memory.body);
   touched.pairs = static_cast<int>(pairs.size());
   for (const auto& [t, other] : pairs) {
     touched.triangles.push_back(t);
@@ -67,7 +64,7 @@ void try_points(const DistanceField& body, const Points& x, const std::vector<st
 std::vector<Weights> first_tries(int corners) {
   std::vector<Weights> tries;
   if (corners == 2) {
-    for (int i = 1; i < 8; ++i) tries.emplace_back(1 - i / 8.0, i / 8.0, 0);
+    for (int i = 0; i <= 8; ++i) tries.emplace_back(1 - i / 8.0, i / 8.0, 0);
   } else {
     for (int i = 1; i < 6; ++i)
       for (int j = 1; i + j < 6; ++j) tries.emplace_back(i / 6.0, j / 6.0, (6 - i - j) / 6.0);
@@ -132,7 +129,8 @@ void move_once(const DistanceField& body, const Surface& garment, const Touched&
   find_deepest(body, x, places);
   std::vector<char> deep(static_cast<std::size_t>(garment.edges.rows()));
   for (std::size_t i = 0; i < places.size(); ++i)
-    if (places[i].at.value < 0 && wish(places[i], margin, wishes)) deep[touched.edges[i]] = true, ++report.edges;
+    if (places[i].at.value < 0.5 * margin && wish(places[i], margin, wishes))
+      deep[touched.edges[i]] = true, ++report.edges;
 
   places.clear();
   for (const int t : touched.triangles)
@@ -147,15 +145,20 @@ void move_once(const DistanceField& body, const Surface& garment, const Touched&
 }  // namespace
 
 EdgePassReport pass_edges(const DistanceField& body, const Surface& garment, const EdgePassOptions& options, Points& x,
-                          std::span<const char> held) {
+                          std::span<const char> held, EdgePassMemory* kept) {
   EdgePassReport report;
-  IntersectionCache own, theirs;
-  Touched touched = touched_by(body, garment, x, own, theirs);
-  report.pairs_before = report.pairs_after = touched.pairs;
-  for (int round = 0; round < options.rounds && touched.pairs > 0; ++round) {
+  EdgePassMemory own;
+  EdgePassMemory& memory = kept ? *kept : own;
+  for (int round = 0; round <= options.rounds; ++round) {
+    const bool last = round == options.rounds;
+    if (last && !options.count && round > 0) break;
+    const Touched touched = touched_by(body, garment, x, memory);
+    if (round == 0) report.pairs_before = touched.pairs;
+    if (last || touched.pairs == 0) {
+      report.pairs_after = touched.pairs;
+      break;
+    }
     move_once(body, garment, touched, options.margin, x, held, report);
-    touched = touched_by(body, garment, x, own, theirs);
-    report.pairs_after = touched.pairs;
   }
   return report;
 }

@@ -90,8 +90,8 @@ void DistanceField::measure(const Vec3& p, int t, Nearest& best) const {
 }
 
 // The nearest of the leaf's triangles first.
-void DistanceField::measure_leaf(const WideKernels& kernels, const Vec3& p, const float* at, double reach, const WideTree::Leaf& leaf, float& limit,
-                                 Nearest& best) const {
+void DistanceField::measure_leaf(const WideKernels& kernels, const Vec3& p, const float* at, double reach,
+                                 const WideTree::Leaf& leaf, float& limit, Nearest& best) const {
   float squared[WideTree::width];
   for (unsigned left = kernels.triangles(leaf, at, limit, squared); left != 0;) {
     int i = std::countr_zero(left);

@@ -65,7 +65,8 @@ class DistanceField {
     int child;
   };
   void measure(const Vec3& p, int triangle, Nearest&) const;
-  void measure_leaf(const WideKernels&, const Vec3& p, const float* at, double reach, const WideTree::Leaf&, float& limit, Nearest&) const;
+  void measure_leaf(const WideKernels&, const Vec3& p, const float* at, double reach, const WideTree::Leaf&,
+                    float& limit, Nearest&) const;
   Nearest search(const Vec3& p, int start, std::vector<Waiting>& stack) const;
   bool complete(const Vec3& p, const Nearest&, SignedDistance&) const;
   Vec3 place(const Nearest&, SignedDistance&) const;

@@ -16,23 +16,21 @@ constexpr int rows_at_once = 128;  // of a chunk: what they make stays in the ca
 struct LayerTrace {
   FeatureRows input, input_tangent;  // what it reads
   FeatureRows sum, sum_tangent;      // before the bend
+  FeatureRows slope;                 // of the bend there; none behind the last layer
 };
 
-float sigmoid(float x) { return x >= 0 ? 1 / (1 + std::exp(-x)) : std::exp(x) / (1 + std::exp(x)); }
-
-float bent(const PlainNetwork& n, float a) {
-  if (n.bend == Bend::rectified) return a < 0 ? 0 : a;
+struct Bent {
+  float value, slope;
+};
+Bent bent(const PlainNetwork& n, float a) {
+  if (n.bend == Bend::rectified) return {a < 0 ? 0 : a, static_cast<float>(a > 0)};
   const auto beta = static_cast<float>(n.beta);
-  return std::max(a, 0.0f) + std::log1p(std::exp(-beta * std::abs(a))) / beta;
+  const float e = std::exp(-beta * std::abs(a));
+  return {std::max(a, 0.0f) + std::log1p(e) / beta, (a >= 0 ? 1 : e) / (1 + e)};
 }
-float bend_slope(const PlainNetwork& n, float a) {
-  return n.bend == Bend::rectified ? static_cast<float>(a > 0) : sigmoid(static_cast<float>(n.beta) * a);
-}
-float bend_curvature(const PlainNetwork& n, float a) {
-  if (n.bend == Bend::rectified) return 0;
-  const auto beta = static_cast<float>(n.beta);
-  const float s = sigmoid(beta * a);
-  return beta * s * (1 - s);
+// The slope's derivative, from the slope.
+float bend_curvature(const PlainNetwork& n, float slope) {
+  return n.bend == Bend::rectified ? 0 : static_cast<float>(n.beta) * slope * (1 - slope);
 }
 
 FeatureRows beside(const FeatureRows& left, const FeatureRows& right) {
@@ -57,9 +55,14 @@ std::vector<LayerTrace> trace(const PlainNetwork& n, const FeatureRows& inputs, 
       layer.sum_tangent.noalias() = layer.input_tangent * n.layers[l].weight.transpose();
     }
     if (l + 1 == n.layers.size()) break;
-    at = layer.sum.unaryExpr([&](float a) { return bent(n, a); });
-    if (tangents)
-      along = layer.sum_tangent.binaryExpr(layer.sum, [&](float d, float a) { return d * bend_slope(n, a); });
+    at.resize(layer.sum.rows(), layer.sum.cols());
+    layer.slope.resize(layer.sum.rows(), layer.sum.cols());
+    for (Eigen::Index i = 0; i < at.size(); ++i) {
+      const Bent found = bent(n, layer.sum.data()[i]);
+      at.data()[i] = found.value;
+      layer.slope.data()[i] = found.slope;
+    }
+    if (tangents) along = layer.sum_tangent.cwiseProduct(layer.slope);
   }
   return made;
 }
@@ -87,14 +90,13 @@ FeatureRows trace_back(const PlainNetwork& n, const std::vector<LayerTrace>& mad
   for (std::size_t l = n.layers.size(); l-- > 0;) {
     const LayerTrace& layer = made[l];
     if (l + 1 < n.layers.size()) {  // through the bend
-      const auto slope = layer.sum.unaryExpr([&](float a) { return bend_slope(n, a); });
       if (tangents) {
-        const FeatureRows curved =
-            layer.sum.binaryExpr(layer.sum_tangent, [&](float a, float d) { return d * bend_curvature(n, a); });
-        value = value.cwiseProduct(slope) + tangent.cwiseProduct(curved);
-        tangent = tangent.cwiseProduct(slope).eval();
+        const FeatureRows curved = layer.slope.binaryExpr(
+            layer.sum_tangent, [&](float slope, float d) { return d * bend_curvature(n, slope); });
+        value = value.cwiseProduct(layer.slope) + tangent.cwiseProduct(curved);
+        tangent = tangent.cwiseProduct(layer.slope).eval();
       } else {
-        value = value.cwiseProduct(slope).eval();
+        value = value.cwiseProduct(layer.slope).eval();
       }
     }
     const AffineLayer& affine = n.layers[l];
@@ -178,8 +180,7 @@ ValueAndGradient evaluate_with_gradient(const PlainNetwork& n, const FeatureRows
     result.value.middleRows(first, count) = made.back().sum;
     FeatureRows back = FeatureRows::Ones(count, 1), again = FeatureRows::Zero(count, n.inputs());
     for (std::size_t l = n.layers.size(); l-- > 0;) {
-      if (l + 1 < n.layers.size())
-        back = back.cwiseProduct(made[l].sum.unaryExpr([&](float a) { return bend_slope(n, a); })).eval();
+      if (l + 1 < n.layers.size()) back = back.cwiseProduct(made[l].slope).eval();
       back = (back * n.layers[l].weight).eval();
       if (static_cast<int>(l) != n.again_layer) continue;
       again.leftCols(n.again_columns) += back.rightCols(n.again_columns);

@@ -17,6 +17,7 @@ struct RefuBody {
   int obstacle;
   DistanceField field;
   std::vector<int> faces;  // one a cloth vertex
+  EdgePassMemory edges;
 };
 
 // What is known of a vertex: its distance from the obstacle in which it lies deepest.
@@ -36,7 +37,7 @@ class RefuStepper final : public Stepper {
     for (const int pin : scene.pins) held_[static_cast<std::size_t>(pin)] = true;
     for (int k = 0; k < static_cast<int>(scene.obstacles.size()); ++k)
       if (is_closed(scene.obstacles[static_cast<std::size_t>(k)].surface))
-        bodies_.push_back({k, DistanceField(scene.obstacles[static_cast<std::size_t>(k)].surface), {}});
+        bodies_.push_back({k, DistanceField(scene.obstacles[static_cast<std::size_t>(k)].surface), {}, {}});
   }
 
   const StepperTraits& traits() const override { return inner_->traits(); }
@@ -104,7 +105,7 @@ Repelled RefuStepper::push_out_of_bodies(const Points& x) {
 
 void RefuStepper::pass_all_edges(Points& x) {
   if (options_.edge_pass.rounds == 0) return;
-  for (RefuBody& body : bodies_) pass_edges(body.field, scene_.surface, options_.edge_pass, x, held_);
+  for (RefuBody& body : bodies_) pass_edges(body.field, scene_.surface, options_.edge_pass, x, held_, &body.edges);
 }
 
 // Pushed vertices do not go on inward: relative to the surface that they were pushed to, the part of their velocities

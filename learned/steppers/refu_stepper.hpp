@@ -13,7 +13,7 @@ struct RefuOptions {
   RepulsionOptions repulsion{.recheck = 3, .margin = 1e-4};
   double alpha = 1;  // of every vertex, where `scale` is empty
   AskScale scale;
-  EdgePassOptions edge_pass{.rounds = 0};
+  EdgePassOptions edge_pass{.rounds = 0, .count = false};
   bool budget = true;  // vertices that provably stay outside are not asked; it changes the time and nothing else
 };
 

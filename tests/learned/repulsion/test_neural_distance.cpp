@@ -75,17 +75,17 @@ TEST_CASE("neural distance: the gradient of all three losses agrees with differe
 
 TEST_CASE("neural distance: training fits balls that it is told of, values and gradients", "[neural_distance]") {
   PlainNetwork network = narrow_distance(3, 1, 20);
-  const DistanceSamples samples = ball_samples(400, 2), unseen = ball_samples(400, 9);
+  const DistanceSamples samples = ball_samples(240, 2), unseen = ball_samples(240, 9);
   const DistanceErrors before = distance_errors(network, unseen);
   PlainAdam adam;
-  adam.rate = 3e-3;
-  for (int step = 0; step < 400; ++step) {
-    if (step == 300) adam.rate = 5e-4;
+  adam.rate = 4e-3;
+  for (int step = 0; step < 200; ++step) {
+    if (step == 150) adam.rate = 5e-4;
     REQUIRE(take_step(adam, distance_losses(network, samples, {}).gradient, network));
   }
   const DistanceErrors after = distance_errors(network, unseen);
-  CHECK(after.absolute < 0.03);
-  CHECK(after.absolute < 0.2 * before.absolute);
+  CHECK(after.absolute < 0.06);
+  CHECK(after.absolute < 0.3 * before.absolute);
   const std::vector<float> bad(static_cast<std::size_t>(parameter_count(network)), std::nanf(""));
   const std::vector<float> kept = parameters_of(network);
   CHECK_FALSE(take_step(adam, bad, network));
