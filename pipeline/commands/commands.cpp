@@ -69,8 +69,7 @@ bool report_outcome(const std::vector<Outcome>& outcomes, const std::vector<Outc
 
 int simulate_command(const SimulateArguments& arguments, bool json) {
   Setup setup = read_scene(arguments.scene);
-  if (const std::optional<std::string> training = running_training())
-    setup.warnings.push_back("times are of a machine on which a training runs: " + *training);
+  warn_of_training();
   for (const std::string& warning : setup.warnings) std::cerr << "warning: " << warning << "\n";
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
   Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);

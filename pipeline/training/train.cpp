@@ -114,8 +114,8 @@ void take_measure(TrainingRun& run) {
   write_tables(run);
 }
 
-void tell(TrainingRun& run) {
-  if (seconds_since(run.told) < run.told_every) return;
+void tell(TrainingRun& run, bool now = false) {
+  if (!now && seconds_since(run.told) < run.told_every) return;
   run.told = Clock::now();
   run.told_every = std::min(1.5 * run.told_every, 60.0);
   const TrainingCounts& counts = run.trainer->counts;
@@ -186,6 +186,7 @@ TrainSummary train(const TrainRequest& request) {
   begin(run);
   if (run.trainer->counts.step == 0) take_measure(run);
   const bool finished = run_steps(run);
+  tell(run, true);
   save(run);
   std::filesystem::remove(pause_file(run.folder));
   return {run.folder, finished, run.trainer->counts, run.history.seconds, run.history.best_step, run.history.best_score,

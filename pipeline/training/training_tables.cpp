@@ -49,7 +49,9 @@ std::string StepWindow::take_line(const Trainer& trainer, double seconds) {
                   seconds, rate_, count_, bad_, trainer.counts.lost, sum_ / n, norm_ / n, scale_ / n);
   terms_.resize(term_names.size());
   for (const Term& term : terms_) line += fmt::format(",{:.6g},{:.4f}", term.value / n, term.gradient / n);
+  const double mean = mean_sum();
   *this = {};
+  last_mean_ = mean;
   return line + "\n";
 }
 

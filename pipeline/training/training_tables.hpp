@@ -12,7 +12,8 @@ class StepWindow {
  public:
   void add(const StepRecord&);
   int count() const { return count_; }
-  double mean_sum() const { return count_ > 0 ? sum_ / count_ : 0; }
+  // Of the sums of losses since the last line, or in it where there was none since [J].
+  double mean_sum() const { return count_ > 0 ? sum_ / count_ : last_mean_; }
   // The line of what was added, and begins anew.
   std::string take_line(const Trainer&, double seconds);
 
@@ -22,7 +23,7 @@ class StepWindow {
   };
   std::vector<Term> terms_;
   int count_ = 0, bad_ = 0;
-  double sum_ = 0, norm_ = 0, scale_ = 0, rate_ = 0;
+  double sum_ = 0, norm_ = 0, scale_ = 0, rate_ = 0, last_mean_ = 0;
 };
 
 std::string steps_header();
