@@ -9,8 +9,9 @@ using Weights = Eigen::Vector3d;
 
 // An edge or a triangle of the garment, and the point of it that lies deepest so far.
 struct DeepPlace {
+  DeepPlace(const std::array<int, 3>& vertices, int count) : vertex(vertices), corners(count) {}
   std::array<int, 3> vertex;
-  int corners = 2;
+  int corners;
   Weights weight = Weights::Zero();  // of the corners, sum 1
   SignedDistance at;
 
@@ -125,7 +126,7 @@ void move_once(const DistanceField& body, const Surface& garment, const Touched&
                std::span<const char> held, EdgePassReport& report) {
   Wishes wishes{Points::Zero(x.rows(), 3), std::vector<int>(static_cast<std::size_t>(x.rows()), 0)};
   std::vector<DeepPlace> places;
-  for (const int e : touched.edges) places.push_back({{garment.edges(e, 0), garment.edges(e, 1), 0}, 2, {}, {}});
+  for (const int e : touched.edges) places.emplace_back(std::array{garment.edges(e, 0), garment.edges(e, 1), 0}, 2);
   find_deepest(body, x, places);
   std::vector<char> deep(static_cast<std::size_t>(garment.edges.rows()));
   for (std::size_t i = 0; i < places.size(); ++i)
@@ -135,7 +136,7 @@ void move_once(const DistanceField& body, const Surface& garment, const Touched&
   places.clear();
   for (const int t : touched.triangles)
     if (!has_deep_edge(garment, t, deep))
-      places.push_back({{garment.triangles(t, 0), garment.triangles(t, 1), garment.triangles(t, 2)}, 3, {}, {}});
+      places.emplace_back(std::array{garment.triangles(t, 0), garment.triangles(t, 1), garment.triangles(t, 2)}, 3);
   find_deepest(body, x, places);
   for (const DeepPlace& place : places) report.faces += wish(place, margin, wishes);
   for (int v = 0; v < x.rows(); ++v)

@@ -41,7 +41,7 @@ class RefuStepper final : public Stepper {
   }
 
   const StepperTraits& traits() const override { return inner_->traits(); }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to) override;
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override;
 
  private:
   std::vector<DeepestIn> ask(const Points& at, std::span<const int> vertices);
@@ -81,7 +81,7 @@ std::vector<DeepestIn> RefuStepper::ask(const Points& at, std::span<const int> v
 bool RefuStepper::any_inside(const State& state) {
   for (RefuBody& body : bodies_) body.field.move_to(state.obstacles[static_cast<std::size_t>(body.obstacle)]);
   if (!options_.budget) budget_ = {};
-  const std::vector<int> due = budget_.due(state.x, joined_obstacles(state.obstacles));
+  const std::vector<int> due = budget_.due(state.x, joined_rows(state.obstacles));
   const std::vector<DeepestIn> found = ask(state.x(due, Eigen::all), due);
   bool inside = false;
   for (std::size_t i = 0; i < due.size(); ++i) {
@@ -133,8 +133,8 @@ void RefuStepper::calm(const State& from, double dt, const Repelled& pushed, Sta
   carry_velocities(vertices, to);
 }
 
-StepReport RefuStepper::step(const State& from, const Drive& drive, double dt, State& to) {
-  StepReport report = inner_->step(from, drive, dt, to);
+StepReport RefuStepper::step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) {
+  StepReport report = inner_->step(from, drive, dt, to, extras);
   const auto is_finite = [](const Points& x) { return x.allFinite(); };
   if (report.status != StepStatus::accepted || !is_finite(to.x) || !std::ranges::all_of(to.obstacles, is_finite))
     return report;
@@ -147,7 +147,7 @@ StepReport RefuStepper::step(const State& from, const Drive& drive, double dt, S
   to.x = std::move(pushed.x);
   pass_all_edges(to.x);
   calm(from, dt, pushed, to);
-  to.history = {};
+  replace_blocks("bdf2", {}, to.memory);  // the cloth did not come here by its own motion
   report.collision.pushed_out = static_cast<int>(pushed.pushed.size());
   report.seconds.response += watch.lap();
   if (report.reason == Reason::penetrating) report.reason = Reason::none;  // the audit says it again
