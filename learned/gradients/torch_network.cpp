@@ -26,6 +26,17 @@ const TorchCalls& torch_calls(const std::filesystem::path& library) {
   return *entry();
 }
 
+// Debian's OpenBLAS has threads of its own, which libtorch does not set. `name` becomes what it says of itself.
+void set_blas_threads(int threads, std::string& name) {
+  void* blas = dlopen("libopenblas.so.0", RTLD_NOW | RTLD_NOLOAD);
+  if (!blas) return;
+  const auto set = reinterpret_cast<void (*)(int)>(dlsym(blas, "openblas_set_num_threads"));
+  if (set && threads > 0) set(threads);
+  const auto config = reinterpret_cast<const char* (*)()>(dlsym(blas, "openblas_get_config"));
+  if (config) name = config();
+  dlclose(blas);
+}
+
 // The arrays that libtorch knows.
 std::vector<TorchArray> torch_arrays(const Architecture& a, NetworkWeights& weights) {
   std::vector<TorchArray> arrays;
@@ -134,6 +145,7 @@ TorchNetwork::TorchNetwork(const Architecture& a, const NetworkWeights& weights,
   handle_->check(handle_->model ? 0 : 1, report);
   handle_->facts = {report.library, report.device,     report.blas,
                     report.threads, report.gemm_flops, report.flushes_denormals != 0};
+  set_blas_threads(threads, handle_->facts.blas);
 }
 
 TorchNetwork::~TorchNetwork() = default;
