@@ -27,14 +27,20 @@ bool same_rows(const Rows& a, const Rows& b) {
   return a.rows() == b.rows() && a == b;
 }
 
-// Whether this was asked before; if not it is noted. Undefined positions are never the same.
-bool asked_before(const Surface& surface, const Points& x, const std::vector<char>& left_out, double radius,
-                  const Points& points, NearestQuery& query) {
-  if (query.radius == radius && query.left_out == left_out && same_rows(query.points, points) &&
-      same_rows(query.x, x) && same_rows(query.triangles, surface.triangles))
-    return true;
-  query = {surface.triangles, x, points, left_out, radius};
-  return false;
+// What of a question is new; it is noted. Undefined positions are never the same.
+struct NewInQuestion {
+  bool faces = false, points = false;
+};
+
+NewInQuestion note_question(const Surface& surface, const Points& x, const std::vector<char>& left_out, double radius,
+                            const Points& points, NearestQuery& query) {
+  NewInQuestion fresh;
+  fresh.faces = query.radius != radius || query.left_out != left_out || !same_rows(query.x, x) ||
+                !same_rows(query.triangles, surface.triangles);
+  fresh.points = !same_rows(query.points, points);
+  if (fresh.faces) query = {surface.triangles, x, query.points, left_out, radius};
+  if (fresh.points) query.points = points;
+  return fresh;
 }
 
 template <class SquaredOf>
@@ -55,10 +61,13 @@ void search_from_all(const Points& points, double squared, NearestFaces& search,
 const std::vector<int>& nearest_centroids(const Surface& surface, const Points& x, const std::vector<char>& left_out,
                                           const Points& points, NearestFaces& search) {
   constexpr double anywhere = std::numeric_limits<double>::infinity();
-  if (asked_before(surface, x, left_out, anywhere, points, search.query)) return search.last;
-  centroids_of(surface, x, left_out, search.centroids);
-  vertex_boxes(search.centroids, search.centroids, 0, search.boxes);
-  update(search.faces, search.boxes);
+  const NewInQuestion fresh = note_question(surface, x, left_out, anywhere, points, search.query);
+  if (!fresh.faces && !fresh.points) return search.last;
+  if (fresh.faces) {
+    centroids_of(surface, x, left_out, search.centroids);
+    vertex_boxes(search.centroids, search.centroids, 0, search.boxes);
+    update(search.faces, search.boxes);
+  }
   search_from_all(points, anywhere, search,
                   [&](const Vec3& p, int f) { return (row(search.centroids, f) - p).squaredNorm(); });
   return search.last;
@@ -66,12 +75,15 @@ const std::vector<int>& nearest_centroids(const Surface& surface, const Points& 
 
 const std::vector<int>& nearest_faces(const Surface& surface, const Points& x, const std::vector<char>& left_out,
                                       double radius, const Points& points, NearestFaces& search) {
-  if (asked_before(surface, x, left_out, radius, points, search.query)) return search.last;
-  triangle_boxes(surface, x, x, 0, search.boxes);
+  const NewInQuestion fresh = note_question(surface, x, left_out, radius, points, search.query);
+  if (!fresh.faces && !fresh.points) return search.last;
   const auto is_out = [&](int f) { return !left_out.empty() && left_out[static_cast<std::size_t>(f)]; };
-  for (int f = 0; f < static_cast<int>(search.boxes.size()); ++f)
-    if (is_out(f)) search.boxes[static_cast<std::size_t>(f)] = empty_box;
-  update(search.faces, search.boxes);
+  if (fresh.faces) {
+    triangle_boxes(surface, x, x, 0, search.boxes);
+    for (int f = 0; f < static_cast<int>(search.boxes.size()); ++f)
+      if (is_out(f)) search.boxes[static_cast<std::size_t>(f)] = empty_box;
+    update(search.faces, search.boxes);
+  }
   search_from_all(points, radius * radius, search, [&](const Vec3& p, int f) {
     if (is_out(f)) return undefined;
     const int* v = surface.triangles.data() + 3 * f;

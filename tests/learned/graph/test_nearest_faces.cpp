@@ -71,6 +71,12 @@ TEST_CASE("nearest faces: as by trying all, with some left out, and from old gue
     CHECK(nearest_faces(cloud.surface, cloud.x, left_out, 0.1, cloud.points, by_face) == faces);
     CHECK(std::ranges::count(faces, -1) > 0);
     CHECK(nearest_faces(cloud.surface, cloud.x, left_out, 0.1, cloud.points, by_face) == faces);  // asked again
+    Cloud moved = cloud;  // the same faces and other points
+    moved.points.array() += 0.05;
+    CHECK(nearest_centroids(cloud.surface, cloud.x, left_out, moved.points, by_centroid) ==
+          by_all(moved, left_out, HUGE_VAL, [&](int v, int f) { return moved.to_centroid(v, f); }));
+    CHECK(nearest_faces(cloud.surface, cloud.x, left_out, 0.1, moved.points, by_face) ==
+          by_all(moved, left_out, 0.01, [&](int v, int f) { return moved.to_face(v, f); }));
   }
 }
 

@@ -215,7 +215,7 @@ void check_loss(const LossFile& file, const LossState& s, const LossMatches& mat
   const double value = terms.empty() ? 0 : terms[0].value;
   if (!terms.empty()) CHECK(terms[0].name == name);
   const double theirs = file.values.values[state * file.losses.size() + loss];
-  CHECK(std::abs(value - theirs) <= (name == "collision" ? 5e-5 : 5e-6) * std::abs(theirs));
+  CHECK(std::abs(value - theirs) <= 5e-6 * std::abs(theirs));
   const auto begin = (state * file.losses.size() + loss) * static_cast<std::size_t>(s.x.rows()) * 3;
   const Points expected = Eigen::Map<const Points>(file.gradients.values.data() + begin, s.x.rows(), 3);
   double worst = 0;
@@ -226,7 +226,7 @@ void check_loss(const LossFile& file, const LossState& s, const LossMatches& mat
     else
       ++left_out;
   CHECK(left_out < gradient.rows() / 2);
-  CHECK(worst <= (name == "friction" ? 3e-2 : 1e-4) * expected.cwiseAbs().maxCoeff());
+  CHECK(worst <= 1e-4 * expected.cwiseAbs().maxCoeff());
 }
 
 }  // namespace
