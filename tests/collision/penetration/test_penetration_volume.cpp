@@ -78,7 +78,7 @@ TEST_CASE("penetration: two closed surfaces enclose what brute force finds", "[p
   CHECK(check_pairs(120, 1) > 60);
 }
 
-TEST_CASE("penetration: two closed surfaces enclose what brute force finds, many", "[penetration][.long]") {
+TEST_CASE("penetration: two thousand pairs of closed surfaces enclose what brute force finds", "[penetration][.long]") {
   CHECK(check_pairs(2000, 2) > 1000);
 }
 
