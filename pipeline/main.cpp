@@ -68,6 +68,23 @@ void untangle_options(CLI::App& command, UntangleRequest& request) {
   command.add_option("--iterations", request.iterations, "at most")->check(CLI::PositiveNumber);
 }
 
+void push_options(CLI::App& command, PushRequest& request) {
+  command.add_option("file", request.file, "garment (.obj, .ply), in metres")->required();
+  command.add_option("--body", request.body, "mesh to push it out of")->required();
+  command.add_option("--truth", request.truth, "mesh of the garment's faces that the result is compared with");
+  command.add_option("--out", request.out, "where the pushed garment goes (.obj, .ply)");
+  command.add_option("--method", request.method, "layer, smooth (a least-squares displacement) or none")
+      ->check(CLI::IsMember({"layer", "smooth", "none"}));
+  command.add_option("--shape", request.shape, "of a body that passes through itself")
+      ->check(CLI::IsMember({"union", "raw"}));
+  command.add_option("--alpha", request.alpha, "the layer's scale")->check(CLI::NonNegativeNumber);
+  command.add_option("--margin", request.margin, "added to each push [m]")->check(CLI::NonNegativeNumber);
+  command.add_option("--recheck", request.recheck, "so often pushed vertices are asked again")
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--edge-pass", request.edge_pass, "rounds that lift crossing edges")
+      ->check(CLI::NonNegativeNumber);
+}
+
 void dress_options(CLI::App& command, DressRequest& request) {
   command.add_option("mesh", request.mesh, "garment where the body wears it (.obj, .ply)")->required();
   command.add_option("--out", request.out, "the garment for scenes (.h5)")->required();
@@ -207,6 +224,8 @@ void add_commands(CLI::App& app, Chosen& chosen) {
   add_command<CheckRequest>(app, chosen, "check", "audit a mesh or a trajectory", check_options, check_command);
   add_command<UntangleRequest>(app, chosen, "untangle", "part a cloth from itself and from bodies", untangle_options,
                                untangle_command);
+  add_command<PushRequest>(app, chosen, "push", "push a garment out of a body and measure both", push_options,
+                           push_command);
   add_command<DressRequest>(app, chosen, "dress", "a garment for scenes from a mesh that a body wears", dress_options,
                             dress_command);
   add_command<BodyRequest>(app, chosen, "body", "a rigged body from other programs' files, for scenes", body_options,

@@ -130,6 +130,13 @@ int untangle_command(const UntangleRequest& request, bool json) {
   return is_clean(report) ? 0 : 1;
 }
 
+int push_command(const PushRequest& request, bool json) {
+  const PushReport report = push_mesh(request);
+  people(json) << push_text(report);
+  if (json) std::cout << push_json(report);
+  return report.after.collision_free ? 0 : 1;
+}
+
 int dress_command(const DressRequest& request, bool json) {
   const DressReport report = dress(request);
   people(json) << dress_text(report);

@@ -14,6 +14,7 @@
 #include "pipeline/tools/convert_body.hpp"
 #include "pipeline/tools/dress.hpp"
 #include "pipeline/tools/export.hpp"
+#include "pipeline/tools/push_mesh.hpp"
 #include "pipeline/tools/untangle_mesh.hpp"
 #include "pipeline/validate/validate.hpp"
 
@@ -50,6 +51,7 @@ int simulate_command(const SimulateArguments&, bool json);
 int plan_command(const SceneArguments&, bool json);
 int check_command(const CheckRequest&, bool json);
 int untangle_command(const UntangleRequest&, bool json);
+int push_command(const PushRequest&, bool json);
 int dress_command(const DressRequest&, bool json);
 int body_command(const BodyRequest&, bool json);
 int ccd_command(const CcdArguments&, bool json);

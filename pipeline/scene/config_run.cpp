@@ -35,6 +35,17 @@ const Options<LearnedRun>& learned_options() {
   return table;
 }
 
+const Options<RefuRun>& refu_options() {
+  using O = RefuRun;
+  static const Options<O> table(
+      "refu", "Vertices that a frame leaves inside a closed body are pushed out of it.",
+      {flag("on", &O::on, "after every frame of whatever stepper"),
+       number("alpha", &O::alpha, Unit::none, not_negative,
+              "how far, in multiples of the depth; what is still inside then is projected"),
+       integer("edge_pass", &O::edge_pass, not_negative, "rounds that lift edges which still cross the body")});
+  return table;
+}
+
 const OptionRows<ConventionalOptions>& substep_options() {
   using O = ConventionalOptions;
   static const OptionRows<O> rows{or_word(integer("substeps", &O::substeps, at_least_one,
@@ -79,7 +90,8 @@ const Options<RunOptions>& run_options() {
               word("stepper", &O::stepper, known_kinds().names(), "who makes the frames"),
               flag("rest", &O::rest, "cloths that rest, with nothing moving near them, are left out of the work"),
               section(&O::icm, icm_options(), "of the stepper `icm`"),
-              section(&O::learned, learned_options(), "of the stepper `learned`")});
+              section(&O::learned, learned_options(), "of the stepper `learned`"),
+              section(&O::refu, refu_options(), "a repulsive layer behind the stepper")});
   return table;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "collision/geometry/error.hpp"
+#include "learned/steppers/refu_stepper.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/scene/massless.hpp"
@@ -57,6 +58,14 @@ void check_accepted(const Setup& setup, const StepperTraits& traits) {
                 setup.file.string() + ": " + where, cure);
 }
 
+std::unique_ptr<Stepper> with_refu(const Setup& setup, std::unique_ptr<Stepper> stepper) {
+  if (!setup.run.refu.on) return stepper;
+  RefuOptions options;
+  options.alpha = setup.run.refu.alpha;
+  options.edge_pass.rounds = setup.run.refu.edge_pass;
+  return make_refu_stepper(setup.scene, std::move(stepper), options);
+}
+
 }  // namespace
 
 std::unique_ptr<Stepper> make_stepper(const Setup& setup) {
@@ -67,6 +76,7 @@ std::unique_ptr<Stepper> make_stepper(const Setup& setup) {
   std::unique_ptr<Stepper> stepper =
       decorated(setup.scene, kind->maker(setup, setup.kind_options), {setup.run.rest, !setup.initial.cut_out.empty()});
   check_accepted(setup, stepper->traits());
+  stepper = with_refu(setup, std::move(stepper));
   if (setup.followers.empty()) return stepper;
   return make_following_stepper(setup.scene, setup.followers, std::move(stepper));
 }

@@ -13,6 +13,13 @@ struct LearnedRun {
   bool settle = false;
 };
 
+// The repulsive layer behind the stepper (learned/steppers/refu_stepper.hpp).
+struct RefuRun {
+  bool on = false;
+  double alpha = 1;
+  int edge_pass = 0;  // rounds
+};
+
 // What a scene file says of the run beside the Scene itself.
 struct RunOptions {
   int frames = 60;
@@ -23,6 +30,7 @@ struct RunOptions {
   ConventionalOptions conventional;
   IcmOptions icm;
   LearnedRun learned;
+  RefuRun refu;
 };
 
 }  // namespace selvedge

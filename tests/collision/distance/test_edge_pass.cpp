@@ -52,7 +52,7 @@ TEST_CASE("edge pass: a face pierced by a body vertex is lifted; clear cloth is 
   Solid spike = testing::ball(2);  // an octahedron
   DistanceField body(spike.surface);
   body.move_to(spike.x);
-  const Solid sheet = testing::solid_of({{-9, -9, 0.97}, {9, -9, 0.97}, {0, 9, 0.97}}, {{0, 1, 2}});
+  const Solid sheet = testing::solid_of({{-0.5, -0.5, 0.97}, {0.5, -0.5, 0.97}, {0, 0.5, 0.97}}, {{0, 1, 2}});
   Points x = sheet.x;
   const EdgePassReport report = pass_edges(body, sheet.surface, {.rounds = 60, .margin = 1e-3}, x);
   CHECK(report.pairs_before > 0);

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "collision/distance/signed_distance.hpp"
+#include "collision/geometry/adjacency.hpp"
+
+namespace selvedge {
+
+// How good one predicted garment is (Tan et al. 2022, section 4.1, and beyond). Distances are always the accurate ones.
+struct GarmentErrors {
+  std::optional<double> vertex_error;     // MPVE: mean distance from the true vertices [mm]
+  double vertices_inside = 0;             // VFCP: of the vertices, with f < -1e-6 m [%]
+  bool collision_free = false;            // CFMP counts these: no pair of triangles meets, and nothing is inside
+  int pairs = 0;                          // of garment and body triangles that meet, by exact signs
+  bool judges_agree = true;               // FCL, where the build has it, says the same of meeting at all
+  int vertex_face = 0, edge_edge = 0;     // garment triangles with a crossing of this kind
+  std::optional<double> laplacian_error;  // mean over the vertices that were inside before: of the difference of
+                                          // x - mean of the ring [mm]
+  double energy = 0;                      // penetration energy: sum of f^2 over vertices inside [m2]
+  std::optional<double> overshoot;        // mean of max(f, 0) over the vertices that were inside before [mm]
+};
+
+// What is known beside the prediction; empty where it is not.
+struct KnownOfGarment {
+  const Points* truth = nullptr;
+  const Points* before = nullptr;  // before collisions were handled
+};
+
+// The body's field stands where the body is. Throws Error for points of another number than the garment's vertices.
+GarmentErrors garment_errors(const DistanceField& body, const Surface& garment, const Points& predicted,
+                             const KnownOfGarment&);
+
+// Mean over models, with half of its 95 % interval (normal).
+struct MeanOverModels {
+  double mean = 0, half_width = 0;
+  int models = 0;
+};
+MeanOverModels mean_over_models(std::span<const double>);
+
+std::string errors_text(const GarmentErrors&);
+
+}  // namespace selvedge

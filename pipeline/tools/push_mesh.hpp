@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/tools/garment_errors.hpp"
+
+namespace selvedge {
+
+// Pushes a garment mesh out of a body, in one of the ways that are compared, and measures it before and after.
+struct PushRequest {
+  std::filesystem::path file;                  // garment (OBJ, PLY) [m]
+  std::filesystem::path body;                  // mesh
+  std::optional<std::filesystem::path> truth;  // mesh of the garment's faces
+  std::optional<std::filesystem::path> out;    // where the pushed garment goes (OBJ, PLY)
+  std::string method = "layer";                // layer, smooth (DRAPE's manner), none
+  std::string shape = "union";                 // of a body that passes through itself: union, raw
+  double alpha = 1;                            // of the layer
+  double margin = 0;                           // [m]
+  int recheck = 3, edge_pass = 0;
+};
+
+struct PushReport {
+  GarmentErrors before, after;
+  int vertices = 0, triangles = 0, body_triangles = 0;
+  bool body_closed = true, body_crosses_itself = false;
+  int pushed = 0, deep = 0, torn = 0, projected = 0;                 // repulsive_layer.hpp
+  int edges = 0, faces = 0;                                          // edge_pass.hpp
+  double seconds_distance = 0, seconds_push = 0, seconds_edges = 0;  // the first: one query of all vertices
+  std::vector<std::string> warnings;
+};
+
+// Throws Error for what cannot be read, other words than those above, and a truth of other faces.
+PushReport push_mesh(const PushRequest&);
+std::string push_text(const PushReport&);
+std::string push_json(const PushReport&);
+
+}  // namespace selvedge

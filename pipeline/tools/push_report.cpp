@@ -1,0 +1,63 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "pipeline/tools/push_mesh.hpp"
+
+namespace selvedge {
+namespace {
+
+nlohmann::ordered_json errors_as_json(const GarmentErrors& errors) {
+  const auto known = [](const std::optional<double>& value) {
+    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+  };
+  return {{"mpve_mm", known(errors.vertex_error)},
+          {"vfcp_percent", errors.vertices_inside},
+          {"collision_free", errors.collision_free},
+          {"judges_agree", errors.judges_agree},
+          {"pairs", errors.pairs},
+          {"triangles_vertex_face", errors.vertex_face},
+          {"triangles_edge_edge", errors.edge_edge},
+          {"energy_m2", errors.energy},
+          {"laplacian_error_mm", known(errors.laplacian_error)},
+          {"overshoot_mm", known(errors.overshoot)}};
+}
+
+}  // namespace
+
+std::string push_json(const PushReport& report) {
+  const nlohmann::ordered_json json = {{"vertices", report.vertices},
+                                       {"triangles", report.triangles},
+                                       {"body_triangles", report.body_triangles},
+                                       {"body_closed", report.body_closed},
+                                       {"body_crosses_itself", report.body_crosses_itself},
+                                       {"before", errors_as_json(report.before)},
+                                       {"after", errors_as_json(report.after)},
+                                       {"pushed", report.pushed},
+                                       {"deep", report.deep},
+                                       {"torn", report.torn},
+                                       {"projected", report.projected},
+                                       {"edges_moved", report.edges},
+                                       {"faces_moved", report.faces},
+                                       {"seconds_distance", report.seconds_distance},
+                                       {"seconds_push", report.seconds_push},
+                                       {"seconds_edges", report.seconds_edges},
+                                       {"warnings", report.warnings}};
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string push_text(const PushReport& report) {
+  std::string text = fmt::format("garment of {} vertices and {} triangles, body of {} triangles{}{}\n", report.vertices,
+                                 report.triangles, report.body_triangles, report.body_closed ? "" : ", open",
+                                 report.body_crosses_itself ? ", through itself" : "");
+  text += "\nbefore\n" + errors_text(report.before) + "\nafter\n" + errors_text(report.after);
+  text +=
+      fmt::format("\npushed {} vertices ({} deep, {} edges torn, {} projected again), {} edges and {} faces passed\n",
+                  report.pushed, report.deep, report.torn, report.projected, report.edges, report.faces);
+  text += fmt::format("distances {:.2f} ms, push {:.2f} ms, edges {:.2f} ms\n", 1e3 * report.seconds_distance,
+                      1e3 * report.seconds_push, 1e3 * report.seconds_edges);
+  for (const std::string& warning : report.warnings) text += "warning: " + warning + "\n";
+  return text;
+}
+
+}  // namespace selvedge
