@@ -8,7 +8,8 @@
 #include "tests/collision/sheets.hpp"
 #include "tests/collision/solids.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_edge_pass {
+
 using testing::Solid;
 
 namespace {
@@ -92,3 +93,5 @@ TEST_CASE("outside budget: no point that is spared has come inside", "[distance]
   CHECK(asked < 30 * 300 * 2 / 3);
   CHECK(budget.due(at.topRows(10), body).size() == 10);  // another garment: all of it
 }
+
+}  // namespace selvedge::test_edge_pass

@@ -8,9 +8,10 @@
 #include "collision/geometry/distance.hpp"
 #include "collision/geometry/error.hpp"
 #include "tests/collision/solids.hpp"
-#include "tests/physics/threads.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_signed_distance {
+
 using testing::Solid;
 
 namespace {
@@ -279,3 +280,5 @@ TEST_CASE("signed distance: ties go to the lowest triangle; singular input is fi
   dot.move_to(point.x);
   CHECK(dot.ask(beside)[2].value == Approx(std::sqrt(6.75)));
 }
+
+}  // namespace selvedge::test_signed_distance

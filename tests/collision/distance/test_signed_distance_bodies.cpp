@@ -13,9 +13,10 @@
 #include "tests/collision/solids.hpp"
 #include "tests/pipeline/files.hpp"
 
+namespace selvedge::test_signed_distance_bodies {
+
 // A million queries against brute force, and times. Hidden: minutes. Run it with "[distance_long]".
 
-using namespace selvedge;
 using testing::Solid;
 
 namespace {
@@ -204,3 +205,5 @@ TEST_CASE("signed distance, long: a million queries against brute force", "[.][d
   const Solid body{make_surface(static_cast<int>(mesh.x.rows()), mesh.triangles), mesh.x};
   hold_against_brute_force("MakeHuman's body", body, BodyShape::raw, 200000, 0.01);
 }
+
+}  // namespace selvedge::test_signed_distance_bodies

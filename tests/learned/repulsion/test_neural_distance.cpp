@@ -6,7 +6,7 @@
 #include "learned/repulsion/neural_distance.hpp"
 #include "learned/repulsion/plain_adam.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_neural_distance {
 
 namespace {
 
@@ -133,3 +133,5 @@ TEST_CASE("neural distance: derivatives go through bones, and folding the body c
   CHECK_THROWS_AS(NeuralDistance(network, point_query(), condition), Error);
   CHECK(forward_operations(make_neural_distance(paper_distance_shape(), 1), 9723) == Approx(165e9).epsilon(0.01));
 }
+
+}  // namespace selvedge::test_neural_distance

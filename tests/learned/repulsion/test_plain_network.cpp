@@ -5,9 +5,9 @@
 #include "collision/geometry/error.hpp"
 #include "learned/repulsion/plain_network.hpp"
 #include "learned/repulsion/scale_network.hpp"
-#include "tests/learned/with_threads.hpp"
+#include "tests/threads.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_plain_network {
 
 namespace {
 
@@ -97,8 +97,8 @@ TEST_CASE("plain network: threads change no bit; shapes without a layer are refu
   const FeatureRows inputs = random_rows(700, 5, 6), none;
   PlainGradients one, three;
   const PlainAdjoints adjoints{FeatureRows::Ones(700, 1), {}};
-  fake::with_some_threads(1, [&] { one = backward(network, inputs, none, adjoints); });
-  fake::with_some_threads(3, [&] { three = backward(network, inputs, none, adjoints); });
+  with_threads(1, [&] { one = backward(network, inputs, none, adjoints); });
+  with_threads(3, [&] { three = backward(network, inputs, none, adjoints); });
   CHECK(one.parameters == three.parameters);
   CHECK(one.inputs == three.inputs);
   CHECK_THROWS_AS(make_plain_network({0, {3}}, 1), Error);
@@ -158,3 +158,5 @@ TEST_CASE("scale network: rows of k alone give what the whole of it gives, and t
   const ScaleNetwork network = make_scale_network(small_scale_shape(2, 3), 1);
   CHECK_THROWS_AS(ScaleEvaluator(network, std::vector<float>{1}), Error);
 }
+
+}  // namespace selvedge::test_plain_network

@@ -5,7 +5,8 @@
 #include "learned/repulsion/repulsion_training.hpp"
 #include "tests/collision/solids.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_repulsion_training {
+
 using testing::Solid;
 
 namespace {
@@ -113,3 +114,5 @@ TEST_CASE("repulsion losses: gradients by the scale network's parameters agree w
     check(c.network.g, made.g);
   }
 }
+
+}  // namespace selvedge::test_repulsion_training

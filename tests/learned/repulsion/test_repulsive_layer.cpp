@@ -7,7 +7,8 @@
 #include "learned/repulsion/smooth_push.hpp"
 #include "tests/collision/solids.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_repulsive_layer {
+
 using testing::Solid;
 
 namespace {
@@ -186,3 +187,5 @@ TEST_CASE("smooth push: the displacement minimises the objective, and clears the
   stiff.damping = 1e-3;
   CHECK(inside(d, push_smoothly(d.garment.x, d.ring, d.ask, stiff).x) < made.penetrating / 4);
 }
+
+}  // namespace selvedge::test_repulsive_layer

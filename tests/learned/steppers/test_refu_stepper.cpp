@@ -6,7 +6,7 @@
 #include "tests/collision/solids.hpp"
 #include "tests/learned/learned_scenes.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_refu_stepper {
 
 namespace {
 
@@ -15,7 +15,7 @@ class BlindStepper final : public Stepper {
  public:
   BlindStepper(const Scene& scene, Eigen::RowVector3d way) : scene_(scene), way_(std::move(way)) {}
   const StepperTraits& traits() const override { return traits_; }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to) override {
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override {
     StepReport report;
     report.by = traits_.name;
     report.status = way_.allFinite() ? StepStatus::accepted : StepStatus::rejected;
@@ -118,3 +118,5 @@ TEST_CASE("refu stepper: without a closed body it is left out", "[refu]") {
   const Stepper* kept = inner.get();
   CHECK(make_refu_stepper(made.scene, std::move(inner)).get() == kept);
 }
+
+}  // namespace selvedge::test_refu_stepper

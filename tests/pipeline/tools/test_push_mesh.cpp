@@ -8,7 +8,8 @@
 #include "tests/collision/solids.hpp"
 #include "tests/pipeline/files.hpp"
 
-using namespace selvedge;
+namespace selvedge::test_push_mesh {
+
 using testing::Solid;
 
 namespace {
@@ -112,3 +113,5 @@ TEST_CASE("push: every way takes vertices out, and what is written is what is me
   files.request.truth = files.request.body;
   CHECK_THROWS_AS(push_mesh(files.request), Error);
 }
+
+}  // namespace selvedge::test_push_mesh
