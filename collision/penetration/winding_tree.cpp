@@ -117,7 +117,7 @@ double winding_number(const WindingTree& tree, const Vec3& at, int left_out) {
       continue;
     }
     for (const int item : tree.bvh.leaves[~child].item)
-      if (item >= 0 && tree.faces[item] != left_out && !add_if_far(tree.of_faces[item], at, tree.far, far))
+      if (item >= 0 && tree.faces[item] != left_out && !add_if_far(tree.of_faces[item], at, 2 * tree.far, far))
         angle += solid_angle(tree.corners[item], at);
   }
   return far + angle / (4 * std::numbers::pi);

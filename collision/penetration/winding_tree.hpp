@@ -19,7 +19,7 @@ struct WindingTree {
   std::vector<Dipole> dipoles, of_faces;     // by node, by item
   std::vector<int> faces;                    // by item
   std::vector<std::array<Vec3, 3>> corners;  // by item, counter-clockwise seen from outside
-  double far = 2.5;                          // in radii: from there on a node is a dipole
+  double far = 2.5;  // in radii: from there on a node is a dipole; a face, whose own has more to lose, from twice that
 };
 
 // Of some triangles of a surface, each turned as `turn` (+1, -1) says.
