@@ -6,8 +6,8 @@
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/floating_point.hpp"
-#include "learned/network/graph_plan.hpp"
 #include "learned/gradients/torch_interface.hpp"
+#include "learned/network/graph_plan.hpp"
 
 namespace selvedge {
 namespace {

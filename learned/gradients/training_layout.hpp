@@ -1,7 +1,7 @@
 #pragma once
 
-#include "learned/network/packed_network.hpp"
 #include "learned/gradients/training_network.hpp"
+#include "learned/network/packed_network.hpp"
 
 namespace selvedge {
 

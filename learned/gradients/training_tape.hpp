@@ -1,9 +1,9 @@
 #pragma once
 
 #include "learned/gradients/gradient_parts.hpp"
-#include "learned/network/graph_plan.hpp"
 #include "learned/gradients/training_kernels.hpp"
 #include "learned/gradients/training_network.hpp"
+#include "learned/network/graph_plan.hpp"
 
 namespace selvedge {
 

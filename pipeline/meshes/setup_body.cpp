@@ -11,13 +11,13 @@
 #include "pipeline/bodies/body_smpl.hpp"
 #include "pipeline/bodies/mannequin.hpp"
 #include "pipeline/bodies/smpl_joints.hpp"
+#include "pipeline/meshes/setup_mesh.hpp"
+#include "pipeline/meshes/setup_motion.hpp"
+#include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/motions/clip_amass.hpp"
 #include "pipeline/motions/clip_bvh.hpp"
 #include "pipeline/motions/clip_procedural.hpp"
 #include "pipeline/motions/t_pose.hpp"
-#include "pipeline/meshes/setup_mesh.hpp"
-#include "pipeline/meshes/setup_motion.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
 
 namespace selvedge {
 namespace {

@@ -6,8 +6,8 @@
 #include "collision/untangle/give_way.hpp"
 #include "pipeline/bodies/body.hpp"
 #include "pipeline/config/config.hpp"
-#include "pipeline/motions/clip.hpp"
 #include "pipeline/meshes/setup_obstacle.hpp"
+#include "pipeline/motions/clip.hpp"
 #include "pipeline/shapes/motion.hpp"
 
 namespace selvedge {

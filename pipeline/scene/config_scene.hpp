@@ -5,9 +5,9 @@
 #include "physics/scene/scene.hpp"
 #include "pipeline/config/options.hpp"
 #include "pipeline/garments/garment_make.hpp"
+#include "pipeline/meshes/setup_body.hpp"
 #include "pipeline/scene/kinds.hpp"
 #include "pipeline/scene/run_options.hpp"
-#include "pipeline/meshes/setup_body.hpp"
 #include "pipeline/shapes/generate.hpp"
 
 namespace selvedge {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "pipeline/scene/config_scene.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/scene/config_scene.hpp"
 
 namespace selvedge {
 namespace {

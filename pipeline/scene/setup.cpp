@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 
 #include "physics/scene/make_scene.hpp"
-#include "pipeline/scene/config_scene.hpp"
-#include "pipeline/scene/setup_cloth.hpp"
 #include "pipeline/meshes/setup_mesh.hpp"
 #include "pipeline/meshes/setup_motion.hpp"
 #include "pipeline/meshes/setup_obstacle.hpp"
+#include "pipeline/scene/config_scene.hpp"
+#include "pipeline/scene/setup_cloth.hpp"
 #include "pipeline/scene/setup_outcome.hpp"
 #include "pipeline/scene/setup_seams.hpp"
 #include "pipeline/scene/setup_springs.hpp"

@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include "pipeline/formats/mesh_weld.hpp"
-#include "pipeline/scene/massless.hpp"
-#include "pipeline/scene/materials.hpp"
 #include "pipeline/meshes/setup_mesh.hpp"
 #include "pipeline/meshes/setup_motion.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/scene/massless.hpp"
+#include "pipeline/scene/materials.hpp"
 #include "pipeline/scene/setup_seams.hpp"
 #include "pipeline/scene/setup_selection.hpp"
 #include "pipeline/scene/setup_sheet.hpp"

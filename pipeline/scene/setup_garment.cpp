@@ -4,8 +4,8 @@
 
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/garments/outfit.hpp"
-#include "pipeline/scene/config_scene.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/scene/config_scene.hpp"
 
 namespace selvedge {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/scene/config_scene.hpp"
 #include "pipeline/meshes/setup_mesh.hpp"
+#include "pipeline/scene/config_scene.hpp"
 #include "pipeline/shapes/generate.hpp"
 
 namespace selvedge {

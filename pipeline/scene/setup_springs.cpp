@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <span>
 
-#include "pipeline/scene/config_scene.hpp"
 #include "pipeline/meshes/setup_pairs.hpp"
+#include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/setup_selection.hpp"
 
 namespace selvedge {

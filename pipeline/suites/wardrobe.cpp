@@ -12,10 +12,10 @@
 #include "pipeline/garments/outfit.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/write_file.hpp"
+#include "pipeline/meshes/setup_body.hpp"
 #include "pipeline/motions/clip_split.hpp"
 #include "pipeline/run/run_scene.hpp"
 #include "pipeline/scene/make_stepper.hpp"
-#include "pipeline/meshes/setup_body.hpp"
 #include "pipeline/view/view.hpp"
 
 namespace selvedge {

@@ -45,11 +45,11 @@ std::string volume_text(const VolumeFindings& f) {
   const auto worst = std::ranges::max_element(f.volume_by_frame);
   const double most = worst == f.volume_by_frame.end() ? 0 : *worst;
   return fmt::format(
-      "mean L_sc {:.4g} J, above 0.1 in {:.2f} %, above 0.01 in {:.2f} % of the frames; at most {:.4g} cm3, in frame {}; "
+      "mean L_sc {:.4g} J, above 0.1 in {:.2f} %, above 0.01 in {:.2f} % of the frames; at most {:.4g} cm3, in frame "
+      "{}; "
       "{} contours: {} enclose a volume, {} open, {} not orientable, {} unassigned; {} holes closed",
-      f.mean_loss(), 100 * f.share_above(0.1), 100 * f.share_above(0.01), 1e6 * most,
-      worst - f.volume_by_frame.begin(), f.contours, f.enclosed, f.open, f.not_orientable, f.unassigned,
-      f.closed_holes);
+      f.mean_loss(), 100 * f.share_above(0.1), 100 * f.share_above(0.01), 1e6 * most, worst - f.volume_by_frame.begin(),
+      f.contours, f.enclosed, f.open, f.not_orientable, f.unassigned, f.closed_holes);
 }
 
 }  // namespace selvedge

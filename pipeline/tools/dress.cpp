@@ -11,8 +11,8 @@
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/garments/garment_places.hpp"
-#include "pipeline/scene/config_scene.hpp"
 #include "pipeline/meshes/setup_body.hpp"
+#include "pipeline/scene/config_scene.hpp"
 
 namespace selvedge {
 namespace {

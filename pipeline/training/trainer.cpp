@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
+#include "learned/gradients/initial_weights.hpp"
 #include "learned/graph/integration.hpp"
 #include "learned/graph/warm_up.hpp"
 #include "learned/network/architecture_text.hpp"
-#include "learned/gradients/initial_weights.hpp"
 #include "learned/network/weights_hdf5.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/training/flesh_hdf5.hpp"

@@ -7,8 +7,8 @@
 #include "collision/geometry/error.hpp"
 #include "learned/network/architecture.hpp"
 #include "pipeline/garments/outfit.hpp"
-#include "pipeline/motions/clip_split.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/motions/clip_split.hpp"
 
 namespace selvedge {
 namespace {

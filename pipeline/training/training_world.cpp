@@ -7,10 +7,10 @@
 #include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/garments/garment_make.hpp"
 #include "pipeline/garments/outfit.hpp"
+#include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/motions/clip_procedural.hpp"
 #include "pipeline/motions/clip_split.hpp"
 #include "pipeline/motions/t_pose.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/training/random_stream.hpp"
 
 namespace selvedge {

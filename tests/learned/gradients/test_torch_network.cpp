@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include "collision/geometry/error.hpp"
-#include "learned/network/packed_network.hpp"
 #include "learned/gradients/torch_network.hpp"
+#include "learned/network/packed_network.hpp"
 #include "tests/learned/random_graph.hpp"
 
 namespace selvedge::test_torch_network {

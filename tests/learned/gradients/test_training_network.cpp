@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include "collision/geometry/error.hpp"
-#include "learned/network/packed_network.hpp"
 #include "learned/gradients/training_network.hpp"
+#include "learned/network/packed_network.hpp"
 #include "tests/learned/network_in_double.hpp"
 #include "tests/learned/random_graph.hpp"
 #include "tests/threads.hpp"

@@ -15,7 +15,7 @@ class BlindStepper final : public Stepper {
  public:
   BlindStepper(const Scene& scene, Eigen::RowVector3d way) : scene_(scene), way_(std::move(way)) {}
   const StepperTraits& traits() const override { return traits_; }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override {
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& = {}) override {
     StepReport report;
     report.by = traits_.name;
     report.status = way_.allFinite() ? StepStatus::accepted : StepStatus::rejected;

@@ -69,9 +69,13 @@ TEST_CASE("Checkpoints that are damaged or of another scene are refused", "[resu
   CHECK_THAT(refusal([](State& s) { s.cut_out = {4, 2}; }), Catch::Contains("cut_out"));
   CHECK_THAT(refusal([](State& s) { s.cut_out = {1000}; }), Catch::Contains("another scene"));
   CHECK_THAT(refusal([](State& s) { s.obstacles.pop_back(); }), Catch::Contains("another scene"));
-  CHECK_THAT(refusal([](State& s) { s.memory = {{"a.b", MemoryRows::Zero(3, 3), RowsOf::triangles}}; }),
+  CHECK_THAT(refusal([](State& s) {
+               s.memory = {{"a.b", MemoryRows::Zero(3, 3), RowsOf::triangles}};
+             }),
              Catch::Contains("another scene"));
-  CHECK_THAT(refusal([](State& s) { s.memory = {{"a.b", MemoryRows::Zero(3, 3), static_cast<RowsOf>(9)}}; }),
+  CHECK_THAT(refusal([](State& s) {
+               s.memory = {{"a.b", MemoryRows::Zero(3, 3), static_cast<RowsOf>(9)}};
+             }),
              Catch::Contains("memory_rows_of"));
 }
 

@@ -6,11 +6,11 @@
 #include "collision/exact/inside.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/host/kept_rows.hpp"
+#include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/motions/clip_procedural.hpp"
 #include "pipeline/run/simulate.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "pipeline/scene/setup.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
 #include "tests/pipeline/fake_garment.hpp"
 #include "tests/pipeline/files.hpp"
 
