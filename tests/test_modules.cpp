@@ -155,16 +155,21 @@ TEST_CASE("modules: what the documents name exists", "[modules]") {
 }
 
 TEST_CASE("modules: headers do not define two types of one name", "[modules]") {
-  // All are in one namespace; two layouts under one name would be merged by the linker without a word.
+  // Each module is in one namespace, tests in theirs; two layouts under one name would be merged by the linker without
+  // a word.
   static const std::regex definition(R"((^|\n)(struct|class|enum class) (\w+)[^;{<]*\{)");
+  static const std::regex space(R"((^|\n)namespace ([\w:]+) \{)");
   std::map<std::string, std::string> where;
-  for (const std::string& folder : chain)
-    for (const auto& [file, text] : texts(folder, {".hpp"}))
-      for (std::sregex_iterator match(text.begin(), text.end(), definition), end; match != end; ++match) {
-        const auto [known, fresh] = where.emplace((*match)[3], file);
-        INFO(file << " and " << known->second << ": " << (*match)[3]);
-        CHECK(fresh);
-      }
+  for (const auto& [file, text] : all_sources()) {
+    if (!file.ends_with(".hpp")) continue;
+    std::smatch inside;
+    const std::string prefix = std::regex_search(text, inside, space) ? inside[2].str() + "::" : "";
+    for (std::sregex_iterator match(text.begin(), text.end(), definition), end; match != end; ++match) {
+      const auto [known, fresh] = where.emplace(prefix + (*match)[3].str(), file);
+      INFO(file << " and " << known->second << ": " << known->first);
+      CHECK(fresh);
+    }
+  }
   CHECK(where.size() > 50);
 }
 

@@ -7,8 +7,8 @@
 #include "collision/geometry/disjoint_sets.hpp"
 #include "collision/geometry/parallel.hpp"
 #include "collision/penetration/clipped_faces.hpp"
+#include "collision/penetration/dipole_tree.hpp"
 #include "collision/penetration/face_cells.hpp"
-#include "collision/penetration/winding_tree.hpp"
 
 namespace selvedge {
 namespace {
@@ -106,7 +106,7 @@ class GarmentWinding {
   const Points& x_;
   const Segments& found_;
   const std::vector<signed char>& turn_;
-  WindingTree tree_;
+  DipoleTree tree_;
   std::map<int, std::vector<int>> chords_;  // segments by face
 };
 

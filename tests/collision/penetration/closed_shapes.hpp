@@ -8,7 +8,7 @@
 
 #include "collision/geometry/surface.hpp"
 
-namespace selvedge::testing {
+namespace selvedge::closed {
 
 // A mesh of several parts with joint numbering.
 struct Solid {
@@ -112,4 +112,4 @@ Solid rings(int around, int count, const Place& place) {
   return s;
 }
 
-}  // namespace selvedge::testing
+}  // namespace selvedge::closed

@@ -5,7 +5,7 @@
 
 #include "collision/geometry/points.hpp"
 
-namespace selvedge::testing {
+namespace selvedge::closed {
 
 // Volumes by brute force, in long double, for tests: a closed surface is the signed sum of the tetrahedra between its
 // faces and a point, and the volume that two surfaces wind round is that of the overlaps of their tetrahedra. Two
@@ -92,4 +92,4 @@ inline double common_volume(const std::vector<Cone>& a, const std::vector<Cone>&
   return static_cast<double>(sum);
 }
 
-}  // namespace selvedge::testing
+}  // namespace selvedge::closed

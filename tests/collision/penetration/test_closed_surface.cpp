@@ -6,7 +6,7 @@
 
 namespace selvedge::test_closed_surface {
 
-using namespace testing;
+using namespace closed;
 
 namespace {
 

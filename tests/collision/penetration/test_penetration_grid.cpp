@@ -9,7 +9,7 @@
 
 namespace selvedge::test_penetration_grid {
 
-using namespace testing;
+using namespace closed;
 
 namespace {
 

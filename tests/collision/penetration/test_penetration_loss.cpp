@@ -5,7 +5,7 @@
 
 namespace selvedge::test_penetration_loss {
 
-using namespace testing;
+using namespace closed;
 
 namespace {
 

@@ -8,7 +8,7 @@
 
 namespace selvedge::test_penetration_tangles {
 
-using namespace testing;
+using namespace closed;
 
 namespace {
 

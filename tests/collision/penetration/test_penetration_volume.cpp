@@ -7,7 +7,7 @@
 
 namespace selvedge::test_penetration_volume {
 
-using namespace testing;
+using namespace closed;
 
 namespace {
 

@@ -5,7 +5,7 @@
 
 namespace selvedge::test_volume_loss {
 
-using namespace testing;
+using namespace closed;
 
 namespace {
 

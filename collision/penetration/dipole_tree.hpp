@@ -10,7 +10,7 @@ namespace selvedge {
 // How often triangles wind round a point: the solid angle that they are seen under, from behind as positive, over 4 pi
 // (Jacobson et al. 2013). Far away a node of the tree is one dipole at its centroid (Barill et al. 2018, first order);
 // near by triangles are exact.
-struct WindingTree {
+struct DipoleTree {
   struct Dipole {
     Vec3 centre = Vec3::Zero(), moment = Vec3::Zero();  // moment: sum of area x normal, over 4 pi
     double radius = 0;                                  // of a ball round the centre that has all triangles
@@ -23,10 +23,10 @@ struct WindingTree {
 };
 
 // Of some triangles of a surface, each turned as `turn` (+1, -1) says.
-WindingTree make_winding_tree(const Surface&, const Points& x, const std::vector<int>& faces,
-                              const std::vector<signed char>& turn, double far);
+DipoleTree make_winding_tree(const Surface&, const Points& x, const std::vector<int>& faces,
+                             const std::vector<signed char>& turn, double far);
 
 // All triangles but face `left_out`: on that face the principal value.
-double winding_number(const WindingTree&, const Vec3& at, int left_out = -1);
+double winding_number(const DipoleTree&, const Vec3& at, int left_out = -1);
 
 }  // namespace selvedge

@@ -13,7 +13,7 @@
 #include "tests/collision/solids.hpp"
 #include "tests/pipeline/files.hpp"
 
-namespace selvedge::test_signed_distance_bodies {
+namespace selvedge::long_signed_distance_bodies {
 
 // A million queries against brute force, and times. Hidden: minutes. Run it with "[distance_long]".
 
@@ -206,4 +206,4 @@ TEST_CASE("signed distance, long: a million queries against brute force", "[.][d
   hold_against_brute_force("MakeHuman's body", body, BodyShape::raw, 200000, 0.01);
 }
 
-}  // namespace selvedge::test_signed_distance_bodies
+}  // namespace selvedge::long_signed_distance_bodies

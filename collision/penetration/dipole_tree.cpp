@@ -1,4 +1,4 @@
-#include "collision/penetration/winding_tree.hpp"
+#include "collision/penetration/dipole_tree.hpp"
 
 #include <array>
 #include <cmath>
@@ -17,7 +17,7 @@ double solid_angle(const std::array<Vec3, 3>& triangle, const Vec3& at) {
 }
 
 // What a dipole adds at a point, if that is far enough away.
-bool add_if_far(const WindingTree::Dipole& dipole, const Vec3& at, double far, double& sum) {
+bool add_if_far(const DipoleTree::Dipole& dipole, const Vec3& at, double far, double& sum) {
   const Vec3 to = dipole.centre - at;
   const double square = to.squaredNorm(), reach = far * dipole.radius;
   if (!(square > reach * reach)) return false;
@@ -39,7 +39,7 @@ void add_triangle(const std::array<Vec3, 3>& t, DipoleSum& sum) {
 }
 
 // Sums of a node from those of what is below it; children stand behind their parents.
-std::vector<DipoleSum> sums_of(const WindingTree& tree) {
+std::vector<DipoleSum> sums_of(const DipoleTree& tree) {
   std::vector<DipoleSum> sums(tree.bvh.nodes.size());
   for (std::size_t i = sums.size(); i-- > 0;) {
     const int child = tree.bvh.nodes[i].child;
@@ -68,9 +68,9 @@ double farthest(const Box& box, const Vec3& from) {
 
 }  // namespace
 
-WindingTree make_winding_tree(const Surface& surface, const Points& x, const std::vector<int>& faces,
-                              const std::vector<signed char>& turn, double far) {
-  WindingTree tree;
+DipoleTree make_winding_tree(const Surface& surface, const Points& x, const std::vector<int>& faces,
+                             const std::vector<signed char>& turn, double far) {
+  DipoleTree tree;
   tree.far = far;
   tree.faces = faces;
   std::vector<Box> boxes;
@@ -82,7 +82,7 @@ WindingTree make_winding_tree(const Surface& surface, const Points& x, const std
     boxes.push_back(box);
   }
   for (const std::array<Vec3, 3>& corner : tree.corners) {
-    WindingTree::Dipole& dipole = tree.of_faces.emplace_back();
+    DipoleTree::Dipole& dipole = tree.of_faces.emplace_back();
     dipole.centre = (corner[0] + corner[1] + corner[2]) / 3;
     dipole.moment = (corner[1] - corner[0]).cross(corner[2] - corner[0]) / (8 * std::numbers::pi);
     for (const Vec3& at : corner) dipole.radius = std::max(dipole.radius, (at - dipole.centre).norm());
@@ -92,7 +92,7 @@ WindingTree make_winding_tree(const Surface& surface, const Points& x, const std
   const std::vector<DipoleSum> sums = sums_of(tree);
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const Box& box = tree.bvh.nodes[i].box;
-    WindingTree::Dipole dipole;
+    DipoleTree::Dipole dipole;
     dipole.centre = sums[i].area > 0 ? Vec3(sums[i].centre / sums[i].area)
                                      : 0.5 * Vec3(box.lo[0] + box.hi[0], box.lo[1] + box.hi[1], box.lo[2] + box.hi[2]);
     dipole.moment = sums[i].moment / (4 * std::numbers::pi);
@@ -102,7 +102,7 @@ WindingTree make_winding_tree(const Surface& surface, const Points& x, const std
   return tree;
 }
 
-double winding_number(const WindingTree& tree, const Vec3& at, int left_out) {
+double winding_number(const DipoleTree& tree, const Vec3& at, int left_out) {
   if (tree.faces.empty()) return 0;
   double far = 0, angle = 0;
   std::array<int, 128> stack;

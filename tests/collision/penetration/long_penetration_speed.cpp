@@ -7,9 +7,9 @@
 #include "collision/penetration/winding_loss.hpp"
 #include "tests/collision/penetration/closed_shapes.hpp"
 
-namespace selvedge::test_penetration_speed {
+namespace selvedge::long_penetration_speed {
 
-using namespace testing;
+using namespace closed;
 
 TEST_CASE("penetration: time at 24,000 triangles and some hundred pairs", "[penetration][.long]") {
   // A dress of 120 x 100 quads, dented here and there from one side through the other.
@@ -50,4 +50,4 @@ TEST_CASE("penetration: time at 24,000 triangles and some hundred pairs", "[pene
   CHECK(found.regions.size() > 0);
 }
 
-}  // namespace selvedge::test_penetration_speed
+}  // namespace selvedge::long_penetration_speed
