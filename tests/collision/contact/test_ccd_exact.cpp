@@ -116,7 +116,7 @@ const Four crossed{Vec3(-1, 1, 0), Vec3(1, 1, 0), Vec3(0, 0, -1), Vec3(0, 0, 1)}
 
 TEST_CASE("ccd: random transversal motions with rational times", "[ccd]") { check(random_transversal(20000, 1)); }
 
-TEST_CASE("ccd: a million random transversal motions with rational times", "[.][ccd-million]") {
+TEST_CASE("ccd: a million random transversal motions with rational times", "[.long][ccd-million]") {
   const Tally tally = random_transversal(1000000, 2);
   WARN(tally.contacts << " contacts, early by " << tally.earliness / tally.contacts << " in the mean, "
                       << tally.earliest << " at most");
@@ -148,7 +148,7 @@ TEST_CASE("ccd: transversal motions at any scale and far from the origin", "[ccd
 
 TEST_CASE("ccd: agrees with algebra on lattices", "[ccd]") { CHECK(disagreements(1500, 1) == 0); }
 
-TEST_CASE("ccd: agrees with algebra on many lattices", "[.][ccd-lattices]") {
+TEST_CASE("ccd: agrees with algebra on many lattices", "[.long][ccd-lattices]") {
   for (unsigned seed = 2; seed < 22; ++seed) CHECK(disagreements(5000, seed) == 0);
 }
 

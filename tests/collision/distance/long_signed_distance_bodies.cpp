@@ -183,13 +183,13 @@ void time_queries(const Solid& solid, BodyShape shape) {
 
 }  // namespace
 
-TEST_CASE("signed distance, long: times", "[.][distance_times]") {
+TEST_CASE("signed distance, long: times", "[.long][distance_times]") {
   time_queries(mannequin(0, 0), BodyShape::raw);
   time_queries(mannequin(0, 0), BodyShape::united);
   time_queries(mannequin(2.5, 1.35), BodyShape::united);
 }
 
-TEST_CASE("signed distance, long: a million queries against brute force", "[.][distance_long]") {
+TEST_CASE("signed distance, long: a million queries against brute force", "[.long][distance_long]") {
   hold_against_brute_force("mannequin", mannequin(0, 0), BodyShape::raw, 200000, 0.01);
   hold_against_brute_force("mannequin through itself, outside", mannequin(2.5, 1.35), BodyShape::united, 200000, 0.01);
   certify_union(mannequin(2.5, 1.35), 3000);

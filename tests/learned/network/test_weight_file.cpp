@@ -174,7 +174,9 @@ TEST_CASE("weight file: damage of any kind is an error before HDF5 sees it", "[l
   CHECK(problem(folder.path / "absent.h5") != "none");
 }
 
-TEST_CASE("weight file: two thousand damaged ones", "[.][weights-long]") { check_damage("weight_damage_long", 2000); }
+TEST_CASE("weight file: two thousand damaged ones", "[.long][weights-long]") {
+  check_damage("weight_damage_long", 2000);
+}
 
 TEST_CASE("weight file: one that is wrong on purpose is an error that names the field", "[learned]") {
   const fake::Folder folder("weight_file_2");
