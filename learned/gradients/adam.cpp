@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "collision/geometry/error.hpp"
+#include "learned/gradients/adam_rule.hpp"
 
 namespace selvedge {
 namespace {
@@ -66,23 +67,6 @@ double clip_scale(const AdamOptions& options, double norm, const std::vector<flo
   return norm > most ? most / norm : 1;
 }
 
-struct StepNumbers {
-  float scale, beta1, rest1, beta2, rest2, step, root, epsilon;  // rest: 1 - beta, rounded once
-};
-
-void step_array(const StepNumbers& n, const WeightArray& gradient, const WeightArray& first, const WeightArray& second,
-                const WeightArray& weight) {
-  const std::ptrdiff_t size = size_of(weight);
-  for (std::ptrdiff_t k = 0; k < size; ++k) {
-    const float g = n.scale * gradient.data[k];
-    const float m = n.beta1 * first.data[k] + n.rest1 * g;
-    const float v = n.beta2 * second.data[k] + n.rest2 * g * g;
-    first.data[k] = m;
-    second.data[k] = v;
-    weight.data[k] -= n.step * m / (std::sqrt(v) * n.root + n.epsilon);
-  }
-}
-
 }  // namespace
 
 AdamState start_adam(const Architecture& a) { return {0, zero_gradients(a), zero_gradients(a), {}}; }
@@ -107,20 +91,13 @@ AdamReport adam_step(const Architecture& a, const AdamOptions& options, double p
   report.scale = clip_scale(options, report.norm, state.norms);
   state.norms.push_back(static_cast<float>(report.norm));
   if (state.norms.size() > median_window) state.norms.erase(state.norms.begin());
-  const auto t = static_cast<double>(++state.steps);
-  const StepNumbers numbers{static_cast<float>(report.scale),
-                            static_cast<float>(options.beta1),
-                            static_cast<float>(1 - options.beta1),
-                            static_cast<float>(options.beta2),
-                            static_cast<float>(1 - options.beta2),
-                            static_cast<float>(report.learning_rate / (1 - std::pow(options.beta1, t))),
-                            static_cast<float>(1 / std::sqrt(1 - std::pow(options.beta2, t))),
-                            static_cast<float>(options.epsilon)};
+  const AdamNumbers numbers =
+      adam_numbers(report.learning_rate, options.beta1, options.beta2, options.epsilon, ++state.steps, report.scale);
   const int count = static_cast<int>(w.size());
 #pragma omp parallel for schedule(dynamic, 4)
   for (int i = 0; i < count; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    step_array(numbers, g[k], m[k], v[k], w[k]);
+    take_adam_step(numbers, size_of(w[k]), g[k].data, m[k].data, v[k].data, w[k].data);
   }
   return report;
 }

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "collision/geometry/error.hpp"
-#include "learned/network/simd_vector.hpp"
+#include "learned/network/row_norms.hpp"
 
 // As engine_kernels.cpp: templates over the lanes, inlined into one function an instruction set; contraction allowed.
 
@@ -15,42 +15,13 @@ template <int Lanes>
   store_vector<Lanes>(load_vector<Lanes>(to) + x, to);
 }
 
-// Several rows at once, so that their chains of sums run side by side.
 template <int Lanes, int Rows>
 [[gnu::always_inline]] inline void norm_rows(const NormTile& t, int row) {
   float* values = t.values + static_cast<std::ptrdiff_t>(row) * t.stride;
   const int whole = t.columns / Lanes * Lanes;
-  const auto columns = static_cast<float>(t.columns);
-  Vector<Lanes> sums[Rows] = {};
   float mean[Rows], factor[Rows];
-  for (int k = 0; k < whole; k += Lanes) {
-    SELVEDGE_UNROLL
-    for (int r = 0; r < Rows; ++r) sums[r] += load_vector<Lanes>(values + r * t.stride + k);
-  }
-  SELVEDGE_UNROLL
-  for (int r = 0; r < Rows; ++r) {
-    mean[r] = sum_lanes<Lanes>(sums[r]);
-    for (int k = whole; k < t.columns; ++k) mean[r] += values[r * t.stride + k];
-    mean[r] /= columns;
-    sums[r] = Vector<Lanes>{};
-  }
-  for (int k = 0; k < whole; k += Lanes) {
-    SELVEDGE_UNROLL
-    for (int r = 0; r < Rows; ++r) {
-      const Vector<Lanes> off = load_vector<Lanes>(values + r * t.stride + k) - mean[r];
-      sums[r] += off * off;
-    }
-  }
-  SELVEDGE_UNROLL
-  for (int r = 0; r < Rows; ++r) {
-    float variance = sum_lanes<Lanes>(sums[r]);
-    for (int k = whole; k < t.columns; ++k) {
-      const float off = values[r * t.stride + k] - mean[r];
-      variance += off * off;
-    }
-    factor[r] = 1.f / std::sqrt(variance / columns + 1e-5f);
-    t.factor[row + r] = factor[r];
-  }
+  find_norms<Lanes, Rows>(values, t.stride, t.columns, mean, factor);
+  for (int r = 0; r < Rows; ++r) t.factor[row + r] = factor[r];
   for (int r = 0; r < Rows; ++r) {
     float* of_row = values + r * t.stride;
     for (int k = 0; k < whole; k += Lanes)

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "collision/geometry/error.hpp"
-#include "learned/network/simd_vector.hpp"
+#include "learned/network/row_norms.hpp"
 
 // The inner loops are templates over the number of lanes, inlined into one function an instruction set. CMake lets the
 // compiler contract a * b + c here: exact bits do not matter, the same ones on every thread do.
@@ -71,42 +71,6 @@ template <int Lanes>
   }
 }
 
-// What a row is normalised with: (x - mean) * factor * scale + shift. Epsilon 1e-5, as in the published networks.
-// Several rows at once, so that their chains of sums run side by side.
-template <int Lanes, int Rows>
-[[gnu::always_inline]] inline void find_norms(const ResultTile& t, int row, float* mean, float* factor) {
-  const float* values = t.values + static_cast<std::ptrdiff_t>(row) * t.stride;
-  const int whole = t.columns / Lanes * Lanes;
-  Vector<Lanes> sums[Rows] = {};
-  for (int k = 0; k < whole; k += Lanes) {
-    SELVEDGE_UNROLL
-    for (int r = 0; r < Rows; ++r) sums[r] += load_vector<Lanes>(values + r * t.stride + k);
-  }
-  SELVEDGE_UNROLL
-  for (int r = 0; r < Rows; ++r) {
-    mean[r] = sum_lanes<Lanes>(sums[r]);
-    for (int k = whole; k < t.columns; ++k) mean[r] += values[r * t.stride + k];
-    mean[r] /= static_cast<float>(t.columns);
-    sums[r] = Vector<Lanes>{};
-  }
-  for (int k = 0; k < whole; k += Lanes) {
-    SELVEDGE_UNROLL
-    for (int r = 0; r < Rows; ++r) {
-      const Vector<Lanes> off = load_vector<Lanes>(values + r * t.stride + k) - mean[r];
-      sums[r] += off * off;
-    }
-  }
-  SELVEDGE_UNROLL
-  for (int r = 0; r < Rows; ++r) {
-    float variance = sum_lanes<Lanes>(sums[r]);
-    for (int k = whole; k < t.columns; ++k) {
-      const float off = values[r * t.stride + k] - mean[r];
-      variance += off * off;
-    }
-    factor[r] = 1.f / std::sqrt(variance / static_cast<float>(t.columns) + 1e-5f);
-  }
-}
-
 // One piece of a row: Value is a vector, or a float behind the last whole vector.
 template <class Value>
 [[gnu::always_inline]] inline Value normalised(Value x, float mean, float factor, Value scale, Value shift) {
@@ -135,7 +99,8 @@ template <int Lanes>
 template <int Lanes, int Rows>
 [[gnu::always_inline]] inline void finish_rows(const ResultTile& t, int row) {
   float mean[Rows] = {}, factor[Rows] = {};
-  if (t.scale) find_norms<Lanes, Rows>(t, row, mean, factor);
+  if (t.scale)
+    find_norms<Lanes, Rows>(t.values + static_cast<std::ptrdiff_t>(row) * t.stride, t.stride, t.columns, mean, factor);
   for (int r = 0; r < Rows; ++r) finish_row<Lanes>(t, row + r, mean[r], factor[r]);
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "learned/gradients/adam_rule.hpp"
+
 namespace selvedge {
 
 bool take_step(PlainAdam& adam, std::span<const float> gradient, PlainNetwork& network) {
@@ -10,17 +12,9 @@ bool take_step(PlainAdam& adam, std::span<const float> gradient, PlainNetwork& n
   std::vector<float> parameters = parameters_of(network);
   adam.first.resize(parameters.size(), 0);
   adam.second.resize(parameters.size(), 0);
-  ++adam.steps;
-  const double first_share = 1 - std::pow(adam.beta1, static_cast<double>(adam.steps));
-  const double second_share = 1 - std::pow(adam.beta2, static_cast<double>(adam.steps));
-  const auto step = static_cast<float>(adam.rate / first_share);
-  const auto root = static_cast<float>(1 / std::sqrt(second_share)), epsilon = static_cast<float>(adam.epsilon);
-  const auto beta1 = static_cast<float>(adam.beta1), beta2 = static_cast<float>(adam.beta2);
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    adam.first[i] = beta1 * adam.first[i] + (1 - beta1) * gradient[i];
-    adam.second[i] = beta2 * adam.second[i] + (1 - beta2) * gradient[i] * gradient[i];
-    parameters[i] -= step * adam.first[i] / (std::sqrt(adam.second[i]) * root + epsilon);
-  }
+  const AdamNumbers numbers = adam_numbers(adam.rate, adam.beta1, adam.beta2, adam.epsilon, ++adam.steps);
+  take_adam_step(numbers, static_cast<std::ptrdiff_t>(parameters.size()), gradient.data(), adam.first.data(),
+                 adam.second.data(), parameters.data());
   set_parameters(parameters, network);
   return true;
 }
