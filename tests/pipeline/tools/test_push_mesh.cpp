@@ -43,7 +43,9 @@ TEST_CASE("garment errors: each measure counts what it says", "[push]") {
   Points beside(3, 3), tip_inside(3, 3), over_edge(3, 3);
   beside << 2, 0, 0, 3, 0, 0, 2, 1, 0;
   tip_inside << 0.75, 0.1, 0.2, 2, 0.1, 0.3, 2, 0.5, 0.3;  // its tip goes through the face x = 1
-  over_edge << 1.1, -3, 0.8, 1.1, 3, 0.8, -3, 0, 1.6;      // over the cube's edge x = z = 1, no vertex inside
+  // Over the cube's edge x = z = 1 with no vertex inside: one of its edges goes through the face x = 1, where the cut
+  // ends on an edge of the cube.
+  over_edge << 1.1, -3, 0.8, 1.1, 0.3, 0.8, -3, -3, 1.6;
   GarmentErrors clean = garment_errors(body, garment, beside, {&tip_inside, nullptr});
   CHECK(clean.collision_free);
   CHECK(clean.pairs == 0);
