@@ -9,6 +9,10 @@ namespace selvedge {
 // normalised.
 enum class TimeFeature { timestep, is_init };
 
+// How coarse edges are made: by even depths from a centre (HOOD, make_coarse_levels), or between the centres of discs
+// (make_coarse_discs).
+enum class CoarseForm { depths, discs };
+
 // What a mesh or coarse edge knows of the rest shape: the relative position with its norm (HOOD), or the length alone.
 enum class RestFeature { vector, length };
 
@@ -71,6 +75,7 @@ struct FeatureOptions {
   RestFeature rest = RestFeature::vector;
   int coarse_levels = 3;                  // that are built; they give the vertex levels
   std::vector<int> coarse_sets{0, 1, 2};  // levels whose edges are sets of the graph
+  CoarseForm coarse_form = CoarseForm::depths;
   bool shared_mesh_statistics = true;     // mesh and coarse edges are normalised alike
   bool strain_inputs = false;             // (l - L) / L at x and at the guess, behind the rest columns
   bool edge_context = true;               // the columns dt or is_init, bending, mu, lambda

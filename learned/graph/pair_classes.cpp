@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <span>
 
+#include "collision/contour/find_contours.hpp"
+
 namespace selvedge {
 namespace {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "collision/geometry/error.hpp"
+#include "learned/graph/coarse_discs.hpp"
 
 namespace selvedge {
 namespace {
@@ -74,7 +75,9 @@ void fill_rest_columns(const GraphScene& scene, const FeatureOptions& options, R
 RestGraph make_rest_graph(const GraphScene& scene, const FeatureOptions& options, std::span<const int> centres) {
   check(scene);
   RestGraph result;
-  result.coarse = make_coarse_levels(scene.cloth, options.coarse_levels, centres, options.approximate_centre);
+  result.coarse = options.coarse_form == CoarseForm::discs
+                      ? make_coarse_discs(scene.cloth, scene.rest, options.coarse_levels)
+                      : make_coarse_levels(scene.cloth, options.coarse_levels, centres, options.approximate_centre);
   result.sets.push_back(both_ways("mesh_edge", mesh_order(scene.cloth.edges), options.mesh_order));
   for (const int level : options.coarse_sets) {
     const bool is_built = level >= 0 && level < options.coarse_levels;

@@ -122,7 +122,7 @@ FeatureOptions own_features() {
   options.coarse_levels = 2;
   options.coarse_sets = {0, 1};
   options.shared_mesh_statistics = false;
-  options.approximate_centre = true;
+  options.coarse_form = CoarseForm::discs;
   options.body_key.clear();
   options.body_partner = BodyPartner::nearest_face;
   options.label_columns = 0;

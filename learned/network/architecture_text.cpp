@@ -151,6 +151,7 @@ void visit_features(Visitor& visit, Options& f) {
   visit("features.rest", f.rest, {"vector", "length"});
   visit("features.coarse_levels", f.coarse_levels);
   visit("features.coarse_sets", f.coarse_sets);
+  visit("features.coarse_form", f.coarse_form, {"depths", "discs"});
   visit("features.shared_mesh_statistics", f.shared_mesh_statistics);
   visit("features.approximate_centre", f.approximate_centre);
   visit("features.body_key", f.body_key);

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "collision/geometry/adjacency.hpp"
+#include "learned/graph/coarse_discs.hpp"
 #include "learned/graph/coarse_levels.hpp"
 #include "learned/graph/graph_centre.hpp"
 #include "tests/learned/graph_scenes.hpp"
@@ -108,6 +109,43 @@ TEST_CASE("coarse levels: one component at a time, none where it is too small", 
       INFO(rings << " rings, level " << level);
       CHECK((levels.levels[static_cast<std::size_t>(level)].rows() > 0) == (reach >= 2 << level));
     }
+  }
+}
+
+TEST_CASE("coarse discs: a strip by hand, pieces apart, few edges at any numbering", "[graph]") {
+  const fake::Mesh strip = fake::grid(2, 11);
+  const Surface narrow = fake::surface_of(strip);
+  const CoarseLevels made = make_coarse_discs(narrow, strip.x, 3);
+  REQUIRE(made.levels.size() == 3);
+  for (const Edges& level : made.levels)
+    for (const auto& edge : level.rowwise()) CHECK(edge[0] < edge[1]);
+  CHECK(made.levels[0].rows() >= 3);
+  CHECK(made.levels[1].rows() <= made.levels[0].rows());
+  CHECK(made.levels[2].rows() == 0);  // one disc of 14.4 edges holds all
+
+  fake::Mesh both = strip;
+  fake::add(both, strip, {0, 2, 0});
+  const CoarseLevels two = make_coarse_discs(fake::surface_of(both), both.x, 3);
+  const int shift = static_cast<int>(strip.x.rows());
+  for (std::size_t level = 0; level < 3; ++level) {
+    PairList wanted = pairs_of(made.levels[level]), second = wanted;
+    for (auto& [a, b] : second) a += shift, b += shift;
+    wanted.insert(wanted.end(), second.begin(), second.end());
+    CHECK((pairs_of(two.levels[level]) == wanted));
+  }
+
+  // A square sheet: each level joins far fewer vertices than the one before, and all of its centres hang together.
+  const fake::Mesh sheet = fake::grid(30, 30);
+  const Surface surface = fake::surface_of(sheet);
+  const CoarseLevels levels = make_coarse_discs(surface, sheet.x, 2);
+  CHECK(levels.levels[0].rows() < surface.edges.rows() / 4);
+  CHECK(levels.levels[1].rows() < levels.levels[0].rows() / 3);
+  for (const Edges& level : levels.levels) {
+    const Adjacency graph = adjacency_of(surface.vertex_count, level);
+    const int first = level(0, 0);
+    std::vector<int> depth;
+    const std::vector<int> reached = breadth_first(graph, std::span(&first, 1), depth);
+    for (Eigen::Index i = 0; i < level.size(); ++i) CHECK(depth[static_cast<std::size_t>(level.data()[i])] >= 0);
   }
 }
 
