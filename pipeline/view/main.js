@@ -143,6 +143,7 @@ function makePage(data, options) {
     runs.forEach((run, i) => {
       const own = frameAt(run, timeline.times[player.frame]), drawn = drawnAt(run, own);
       stage.figures[i].show(drawn, look);
+      if (i === 0) stage.follow(drawn);
       showChips(panels[i].chips, chipsOf(run, own, run.marked[drawn].length));
       if (look.plots) plots[i](own);
     });

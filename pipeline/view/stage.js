@@ -7,19 +7,42 @@ function isBackdrop(body, cloth) {
   return sizeOf(boundsOf(body.boxes)) > 2.2 * sizeOf(cloth);
 }
 
-// What the camera must show: every frame of the cloths, and the obstacles near them.
+// Places of a moving thing by frame, each the mean of those less than half a second before and after.
+function smoothed(places, times) {
+  return places.map((_, k) => {
+    const mean = new THREE.Vector3();
+    let count = 0;
+    for (let i = 0; i < places.length; ++i)
+      if (Math.abs(times[i] - times[k]) < 0.5) mean.add(places[i]), ++count;
+    return mean.divideScalar(Math.max(1, count));
+  });
+}
+
+// What the camera must show of the first run: in every frame the cloths, and the obstacles near them. Where that goes
+// far the camera goes along, level: `path` has its place by drawn frame, `box` what it shows at the first one.
 function framing(runs) {
-  const cloth = boundsOf(runs.flatMap((run) => run.boxes)), bodies = runs.flatMap((run) => run.obstacles);
-  const solid = boundsOf(bodies.flatMap((body) => body.boxes));
-  const near = cloth.clone().expandByScalar(0.35 * sizeOf(cloth)), all = cloth.clone();
-  for (const body of bodies) {
-    body.backdrop = isBackdrop(body, cloth);
-    const part = boundsOf(body.boxes).intersect(near);
-    if (!body.backdrop && !part.isEmpty()) all.union(part);
-  }
-  const sphere = all.getBoundingSphere(new THREE.Sphere()), radius = Math.max(sphere.radius, 1e-3);
+  for (const run of runs)
+    for (const body of run.obstacles) body.backdrop = isBackdrop(body, boundsOf(run.boxes));
+  const run = runs[0], cloth = boundsOf(run.boxes);
+  const near = cloth.clone().expandByScalar(0.35 * sizeOf(cloth));
+  const bodies = run.obstacles.filter((body) => !body.backdrop && boundsOf(body.boxes).intersectsBox(near));
+  const boxAt = (k) => bodies.reduce(
+      (box, body) => box.union(boundsOf([body.boxes[body.moving ? k : 0]]).intersect(near)), boundsOf([run.boxes[k]]));
+  const boxes = run.boxes.map((_, k) => boxAt(k)), all = boxes.reduce((sum, box) => sum.union(box), new THREE.Box3());
+  const level = boxes.map((box) => box.getCenter(new THREE.Vector3()).sub(boxes[0].getCenter(new THREE.Vector3())).setY(0));
+  const path = smoothed(level, run.drawn.map((f) => run.series.time[f]));
+  const local = boxes.reduce((sum, box, k) => sum.union(box.clone().translate(path[k].clone().negate())), new THREE.Box3());
+  const follows = sizeOf(all) > 1.3 * sizeOf(local), box = follows ? local : all;
+  const sphere = box.getBoundingSphere(new THREE.Sphere()), radius = Math.max(sphere.radius, 1e-3);
+  const solid = boundsOf(run.obstacles.flatMap((body) => body.boxes));
   const lowest = Math.min(cloth.min.y, solid.isEmpty() ? Infinity : solid.min.y);
-  return {centre: sphere.center, radius, floor: lowest - (bodies.some((b) => b.backdrop) ? 0.05 : 0.004) * radius, box: all};
+  return {
+    centre: sphere.center,
+    radius,
+    floor: lowest - (run.obstacles.some((b) => b.backdrop) ? 0.05 : 0.004) * radius,
+    box,
+    path: follows ? path : null
+  };
 }
 
 // Spacing 1, 2 or 5 times a power of ten near a quarter of the radius.
@@ -31,14 +54,14 @@ function gridSpacing(radius) {
 function makeGrid(frame, spacing) {
   const material = new THREE.ShaderMaterial({
     uniforms: {
-      centre: {value: frame.centre},
+      centre: {value: frame.centre.clone()},
       reach: {value: 5 * frame.radius},
       spacing: {value: spacing},
       ink: {value: new THREE.Color(0, 0, 0)},
       strength: {value: 0.15},
     },
     vertexShader: `varying vec3 place;
-      void main() { place = position; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
+      void main() { place = (modelMatrix * vec4(position, 1.0)).xyz; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
     fragmentShader: `varying vec3 place; uniform vec3 centre, ink; uniform float reach, spacing, strength;
       float lines(vec2 at, float width) {
         vec2 near = abs(fract(at - 0.5) - 0.5) / (fwidth(at) * width);
@@ -98,9 +121,12 @@ function makeStage(canvas, runs) {
   const frame = framing(runs), spacing = gridSpacing(frame.radius);
   const figures = runs.map(makeFigure);
   const grids = [];
+  const surroundings = [];  // go along with the camera: the lights, the ground
   const scenes = figures.map((figure) => {
-    const scene = new THREE.Scene(), ground = makeGrid(frame, spacing);
-    scene.add(figure.group, ground.shadow, ground.grid, ...makeLights(frame));
+    const scene = new THREE.Scene(), around = new THREE.Group(), ground = makeGrid(frame, spacing);
+    around.add(ground.shadow, ground.grid, ...makeLights(frame));
+    scene.add(figure.group, around);
+    surroundings.push(around);
     grids.push(ground.grid.material.uniforms);
     return scene;
   });
@@ -115,13 +141,15 @@ function makeStage(canvas, runs) {
     minDistance: 0.05 * frame.radius,
     maxDistance: 20 * frame.radius
   });
+  const offset = new THREE.Vector3();  // how far the camera has gone along
   // Camera at an azimuth and elevation in degrees and a distance in units of the one that shows every frame's box.
   function look(azimuth, elevation, distance) {
     const a = THREE.Math.degToRad(azimuth), e = THREE.Math.degToRad(elevation);
     const toward = new THREE.Vector3(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e));
-    controls.target.copy(frame.centre);
-    camera.position.copy(toward).add(frame.centre);
-    camera.lookAt(frame.centre);
+    const centre = frame.centre.clone().add(offset);
+    controls.target.copy(centre);
+    camera.position.copy(toward).add(centre);
+    camera.lookAt(centre);
     const right = new THREE.Vector3(1, 0, 0).applyQuaternion(camera.quaternion);
     const up = new THREE.Vector3(0, 1, 0).applyQuaternion(camera.quaternion);
     const tall = Math.tan(THREE.Math.degToRad(camera.fov / 2)), wide = tall * camera.aspect;
@@ -131,8 +159,18 @@ function makeStage(canvas, runs) {
                     .sub(frame.centre);
       away = Math.max(away, c.dot(toward) + Math.max(Math.abs(c.dot(up)) / tall, Math.abs(c.dot(right)) / wide));
     }
-    camera.position.copy(toward).multiplyScalar(1.03 * distance * away).add(frame.centre);
+    camera.position.copy(toward).multiplyScalar(1.03 * distance * away).add(centre);
     controls.update();
+  }
+  // Takes the camera, wherever the user has turned it, along with the first run's drawn frame.
+  function follow(drawn) {
+    if (!frame.path) return;
+    const step = frame.path[drawn].clone().sub(offset);
+    offset.add(step);
+    camera.position.add(step);
+    controls.target.add(step);
+    grids.forEach((uniforms) => uniforms.centre.value.copy(frame.centre).add(offset));
+    surroundings.forEach((around) => around.position.copy(offset));
   }
 
   function resize() {
@@ -161,5 +199,5 @@ function makeStage(canvas, runs) {
       uniforms.strength.value = dark ? 0.13 : 0.15;
     });
   }
-  return {renderer, camera, controls, figures, spacing, look, resize, draw, setDark};
+  return {renderer, camera, controls, figures, spacing, look, follow, resize, draw, setDark};
 }
