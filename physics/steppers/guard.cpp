@@ -139,11 +139,14 @@ std::vector<char> touching_vertices(ContactStage& stage, const State& from, cons
   const double reach = contact_reach * stage.options.thickness;
   const Points before = gather_nodes(from.x, from.obstacles), after = gather_nodes(x, obstacles);
   update_pairs(stage.search, reach, before, after, stage.path);
+  // Which pairs are listed beyond those depends on what was asked before, which no checkpoint knows.
+  const auto touches = [&](const NodePair& pair) {
+    return std::min(closest(pair, before).squared_distance, closest(pair, after).squared_distance) < reach * reach;
+  };
   std::vector<char> touching(static_cast<std::size_t>(x.rows()), 0);
-  const PathMotion motion(stage.path, before, after);
-  for (std::size_t k = 0; k < stage.path.pairs.size(); ++k) {
-    if (!motion.may_come_within(k, reach)) continue;
-    for (const int node : stage.path.pairs[k].nodes)
+  for (const NodePair& pair : stage.path.pairs) {
+    if (!touches(pair)) continue;
+    for (const int node : pair.nodes)
       if (node < x.rows()) touching[static_cast<std::size_t>(node)] = 1;
   }
   return touching;

@@ -65,8 +65,7 @@ Verdict judge_motion(const Guard&, const State& from, double dt, const Points& x
 // All measures, whatever the bounds say. x must be finite.
 GuardMeasures measure(Guard&, const State& from, const Drive&, double dt, const Points& x, const AskTouching&);
 
-// Marks the cloth's vertices that come within twice the contact thickness of anything on the way from the state to x,
-// or at an end of it.
+// Marks the cloth's vertices that are within twice the contact thickness of anything, in the state or at x.
 std::vector<char> touching_vertices(ContactStage&, const State& from, const std::vector<Points>& obstacles,
                                     const Points& x);
 
