@@ -130,17 +130,22 @@ Verdict HybridStepper::judged(const Work& work, const Points& x) {
       [&] { return touching_vertices(contact_, work.from, work.drive.obstacles, x); }, measures);
 }
 
-// The proposal as it is. What the guard can tell of positions is asked before the proposer audits them.
+// The proposal as it is. What the guard can tell of positions is asked before the proposer audits them, and again where
+// it then leaves the cloth elsewhere.
 Verdict HybridStepper::propose_step(Work& work) {
   Verdict verdict = Verdict::none;
+  Points seen;
   StepExtras extras;
-  extras.wanted = [&](const Points& x) { return (verdict = judged(work, x)) == Verdict::admitted; };
+  extras.wanted = [&](const Points& x) {
+    seen = x;
+    return (verdict = judged(work, x)) == Verdict::admitted;
+  };
   StepReport made = parts_.proposer->step(work.from, work.drive, work.dt, work.to, extras);
   const double guarded = work.report.seconds.guard;
   work.report = std::move(made);
   work.report.seconds.guard += guarded;
   if (work.report.status != StepStatus::accepted) return verdict == Verdict::none ? Verdict::not_made : verdict;
-  if (verdict == Verdict::none) verdict = judged(work, work.to.x);
+  if (verdict == Verdict::none || seen != work.to.x) verdict = judged(work, work.to.x);
   if (verdict != Verdict::admitted) return verdict;
   return is_contact_free(work.to, work.report) ? Verdict::admitted : Verdict::penetrating;
 }
@@ -174,6 +179,7 @@ Verdict HybridStepper::correct(Work& work, Points x) {
         contact_.world, {}, gather_nodes(work.from.x, work.from.obstacles), gather_nodes(x, obstacles), audited_);
   }
   work.report.substeps = 1;
+  work.report.collision.pairs_before = 0;
   Points v = (x - work.from.x) / work.dt;
   finish_step(scene_, work.from, work.drive, work.dt, {std::move(x), std::move(v), std::move(obstacles)}, audited_,
               work.to, work.report);
@@ -225,7 +231,7 @@ StepReport HybridStepper::step(const State& from, const Drive& drive, double dt,
   if (!traits_.accepts(dt))
     throw Error(
         "the stepper `" + parts_.proposer->traits().name + "` does not take steps of " + std::to_string(dt) + " s",
-        "hybrid stepper", "run the scene at its frame rate");
+        "hybrid stepper", "step by " + std::to_string(traits_.only_dt.value_or(dt)) + " s");
   Stopwatch watch;
   StepReport report;
   Work work{from, drive, dt, to, report};
