@@ -36,7 +36,7 @@ void scene_options(CLI::App& command, SceneArguments& arguments) {
   command.add_option("--set", arguments.overrides, "key=value instead of the scene's, dotted keys")
       ->allow_extra_args(false);
   command.add_option("--stepper", arguments.stepper, joined(known_kinds().names()));
-  command.add_option("--weights", arguments.weights, "weight file of the stepper `learned`");
+  command.add_option("--weights", arguments.weights, "weight file of the steppers `learned` and `hybrid`");
 }
 
 void simulate_options(CLI::App& command, SimulateArguments& arguments) {
@@ -167,6 +167,7 @@ void stability_options(CLI::App& command, StabilityRequest& request) {
   command.add_option("suite", request.suite, "suite file (configs/stability.yaml)");
   command.add_option("--case", request.cases, "names of cases (all)")->allow_extra_args(false);
   command.add_option("--stepper", request.stepper, "in place of the scenes' own");
+  command.add_option("--weights", request.weights, "weight file of the steppers `learned` and `hybrid`");
   command.add_flag("--short", request.short_form, "the runs that the suite marks as short");
   command.add_option("--out", request.out, "folder for the results");
 }

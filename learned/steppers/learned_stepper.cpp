@@ -131,7 +131,7 @@ void LearnedStepper::audit_way(const State& from, const StepEnd& end, StepReport
   report.seconds.audit += watch.lap();
 }
 
-StepReport LearnedStepper::step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) {
+StepReport LearnedStepper::step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) {
   restore_standard_arithmetic();
   if (!traits_.accepts(dt))
     throw Error("a learned stepper takes steps of 1/30 s only", "time step " + std::to_string(dt) + " s",
@@ -151,6 +151,7 @@ StepReport LearnedStepper::step(const State& from, const Drive& drive, double dt
   if (!predict(state, next, report)) return report;
 
   report.reason = Reason::none;
+  if (extras.wanted && !extras.wanted(next.x)) return report;
   StepEnd end = learned_end(scene_, from, drive, state, seen_positions(rest_, state, features_).x, next);
   audit_way(from, end, report);
   finish_step(scene_, from, drive, dt, std::move(end), audited_, to, report);

@@ -4,6 +4,18 @@
 
 namespace selvedge {
 
+PhaseTimes& PhaseTimes::operator+=(const PhaseTimes& other) {
+  solve += other.solve;
+  broad_phase += other.broad_phase;
+  ccd += other.ccd;
+  response += other.response;
+  audit += other.audit;
+  graph += other.graph;
+  network += other.network;
+  guard += other.guard;
+  return *this;
+}
+
 bool StepperTraits::accepts(double dt) const { return dt > 0 && (!only_dt || std::abs(dt - *only_dt) <= 1e-9); }
 
 }  // namespace selvedge

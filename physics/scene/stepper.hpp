@@ -51,7 +51,9 @@ enum class Reason { none, not_converged, not_finite, penetrating, energy_gain, o
 struct PhaseTimes {  // [s]
   double solve = 0, broad_phase = 0, ccd = 0, response = 0, audit = 0;
   double graph = 0, network = 0;  // of a learned stepper
-  double total() const { return solve + broad_phase + ccd + response + audit + graph + network; }
+  double guard = 0;               // of a hybrid one
+  double total() const { return solve + broad_phase + ccd + response + audit + graph + network + guard; }
+  PhaseTimes& operator+=(const PhaseTimes&);
 };
 
 struct CollisionReport {
@@ -73,11 +75,30 @@ struct CollisionReport {
   double depth_wanted = 0;                // how deep a cloth vertex lies in a wanted closed obstacle [m]
 };
 
+// What a hybrid stepper has done with another stepper's proposal (guard.hpp, hybrid_stepper.hpp).
+enum class Verdict {
+  none,           // the stepper is no hybrid one
+  admitted,       // the proposal is the step, as it was or after a correction
+  refined,        // a solve began at it
+  no_history,     // not asked for: the proposer has not seen the frame before
+  tangled,        // not asked for: the step starts tangled, or where an obstacle lags or jumps
+  waiting,        // not asked for: one was refused a short while ago
+  too_slow,       // not asked for: it takes longer than it saves
+  not_made,       // the proposer rejected the step
+  not_finite,     // refused, and so are all that follow
+  moved_too_far,  // from where the cloth's velocities take it
+  overstretched,
+  energy_gain,
+  unbalanced,  // forces that nothing explains
+  penetrating  // something passed through, crosses, or is inside a body
+};
+
 struct StepReport {  // starts as failure
   StepStatus status = StepStatus::not_run;
   Reason reason = Reason::none;
-  std::string by;  // who made the state
-  bool fell_back = false;
+  std::string by;          // who made the state
+  bool fell_back = false;  // a proposal was refused, and another stepper took the step
+  Verdict verdict = Verdict::none;
   int substeps = 0;
   int resting = 0;     // cloths that were left out because they rest (resting_stepper.hpp)
   int iterations = 0;  // Newton, all substeps
@@ -97,7 +118,10 @@ struct StepExtras {
   const Exemption* left_alone = nullptr;  // what contact leaves alone; null: nothing
   // A further term of the potential in a substep of h [s] from positions x0; empty: none.
   std::function<AddedTerm(const Points& x0, double h)> added = {};
-  bool any() const { return guess || left_alone || added; }
+  // Asked about positions [m] that a step has come to, before they are audited; false: the step is rejected, and `to`
+  // is junk. A stepper that does not know it audits what nobody wants.
+  std::function<bool(const Points& x)> wanted = {};
+  bool any() const { return guess || left_alone || added || wanted; }
 };
 
 // What a scene must have.

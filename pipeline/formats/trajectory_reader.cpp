@@ -165,8 +165,9 @@ Frame TrajectoryReader::frame(int index) const {
   TrajectoryRow row{};
   r.file.read_rows(r.report.id(), r.row_type.id(), {}, static_cast<hsize_t>(index), 1, &row);
   if (row.reason < 0 || row.reason >= static_cast<int>(reason_names().size()) || row.status < 0 ||
-      row.status >= static_cast<int>(status_names().size()))
-    throw_damaged(r.file, "frame " + std::to_string(index) + " has an unknown reason or status");
+      row.status >= static_cast<int>(status_names().size()) || row.verdict < 0 ||
+      row.verdict >= static_cast<int>(verdict_names().size()))
+    throw_damaged(r.file, "frame " + std::to_string(index) + " has an unknown reason, status or verdict");
   fill_from_row(row, r.by_names, frame);
   frame.x = r.read_points(r.x, index, r.info.rest.rows());
   for (std::size_t k = 0; k < r.obstacles.size(); ++k)

@@ -21,6 +21,7 @@ std::vector<Column> columns() {
           {"reason", offsetof(Row, reason), whole},
           {"status", offsetof(Row, status), whole},
           {"fell_back", offsetof(Row, fell_back), whole},
+          {"verdict", offsetof(Row, verdict), whole},
           {"substeps", offsetof(Row, substeps), whole},
           {"resting", offsetof(Row, resting), whole},
           {"iterations", offsetof(Row, iterations), whole},
@@ -33,6 +34,7 @@ std::vector<Column> columns() {
           {"audit_seconds", offsetof(Row, phase.audit), real},
           {"graph_seconds", offsetof(Row, phase.graph), real},
           {"network_seconds", offsetof(Row, phase.network), real},
+          {"guard_seconds", offsetof(Row, phase.guard), real},
           {"contacts", offsetof(Row, collision.contacts), whole},
           {"impulses", offsetof(Row, collision.impulses), whole},
           {"zones", offsetof(Row, collision.zones), whole},
@@ -88,6 +90,7 @@ TrajectoryRow row_of(const Frame& frame, int by, std::int64_t bad_begin) {
   row.reason = static_cast<int>(report.reason);
   row.status = static_cast<int>(report.status);
   row.fell_back = report.fell_back;
+  row.verdict = static_cast<int>(report.verdict);
   row.substeps = report.substeps;
   row.resting = report.resting;
   row.iterations = report.iterations;
@@ -120,6 +123,7 @@ void fill_from_row(const TrajectoryRow& row, const std::vector<std::string>& nam
   report.reason = static_cast<Reason>(row.reason);
   report.status = static_cast<StepStatus>(row.status);
   report.fell_back = row.fell_back != 0;
+  report.verdict = static_cast<Verdict>(row.verdict);
   report.substeps = row.substeps;
   report.resting = row.resting;
   report.iterations = row.iterations;
@@ -140,6 +144,13 @@ void fill_from_row(const TrajectoryRow& row, const std::vector<std::string>& nam
 const std::vector<std::string>& reason_names() {
   static const std::vector<std::string> names{"none",        "not_converged", "not_finite",
                                               "penetrating", "energy_gain",   "overstretched"};
+  return names;
+}
+
+const std::vector<std::string>& verdict_names() {
+  static const std::vector<std::string> names{
+      "none",     "admitted",   "refined",       "no_history",    "tangled",     "waiting",    "too_slow",
+      "not_made", "not_finite", "moved_too_far", "overstretched", "energy_gain", "unbalanced", "penetrating"};
   return names;
 }
 

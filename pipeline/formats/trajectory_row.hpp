@@ -14,7 +14,7 @@ namespace selvedge {
 struct TrajectoryRow {
   double time, seconds;
   std::int32_t by, reason, status;  // rows of codes/by, codes/reason, codes/status
-  std::int32_t fell_back, substeps, resting, iterations, linear_iterations;
+  std::int32_t fell_back, verdict, substeps, resting, iterations, linear_iterations;
   double residual;
   PhaseTimes phase;
   CollisionReport collision;
@@ -31,9 +31,10 @@ h5::Handle row_file_type();  // the same columns without padding
 TrajectoryRow row_of(const Frame&, int by, std::int64_t bad_begin);
 void fill_from_row(const TrajectoryRow&, const std::vector<std::string>& names_of_by, Frame&);
 
-// Names of the enumerators, in order: the tables codes/reason and codes/status.
+// Names of the enumerators, in order: the tables codes/reason, codes/status and codes/verdict.
 const std::vector<std::string>& reason_names();
 const std::vector<std::string>& status_names();
+const std::vector<std::string>& verdict_names();
 
 // Bytes kept for a name in codes/by.
 inline constexpr std::size_t by_name_bytes = 64;

@@ -33,8 +33,17 @@ std::vector<std::pair<const char*, double>> phases_in_milliseconds(const RunSumm
                                                      {"ccd", factor * s.ccd},
                                                      {"response", factor * s.response}};
   if (s.network > 0) phases.insert(phases.end(), {{"graph", factor * s.graph}, {"network", factor * s.network}});
+  if (s.guard > 0) phases.push_back({"guard", factor * s.guard});
   phases.insert(phases.end(), {{"audit", factor * s.audit}, {"other", factor * std::max(0.0, all - s.total())}});
   return phases;
+}
+
+// The verdicts that there were, each with its frames.
+std::vector<std::pair<std::string, int>> verdict_counts(const RunSummary& s) {
+  std::vector<std::pair<std::string, int>> counts;
+  for (std::size_t k = 0; k < s.verdicts.size(); ++k)
+    if (s.verdicts[k] > 0) counts.emplace_back(verdict_names()[k], s.verdicts[k]);
+  return counts;
 }
 
 // JSON has no infinity.
@@ -50,14 +59,11 @@ void add_frame(RunSummary& summary, int index, const Frame& frame) {
   if (index > 0) {
     if (report.status == StepStatus::accepted) ++summary.frames;
     summary.frame_seconds.push_back(frame.seconds);
-    PhaseTimes& sum = summary.seconds;
-    sum.solve += report.seconds.solve;
-    sum.broad_phase += report.seconds.broad_phase;
-    sum.ccd += report.seconds.ccd;
-    sum.response += report.seconds.response;
-    sum.audit += report.seconds.audit;
-    sum.graph += report.seconds.graph;
-    sum.network += report.seconds.network;
+    summary.seconds += report.seconds;
+    if (report.verdict != Verdict::none) {
+      summary.verdicts.resize(verdict_names().size());
+      ++summary.verdicts[static_cast<std::size_t>(report.verdict)];
+    }
   }
   summary.substeps += report.substeps;
   summary.iterations += report.iterations;
@@ -120,8 +126,10 @@ bool is_clean(const RunSummary& summary) {
 }
 
 std::string summary_json(const RunSummary& s) {
-  nlohmann::ordered_json phases, left_out = nlohmann::ordered_json::array();
+  nlohmann::ordered_json phases, left_out = nlohmann::ordered_json::array(),
+                                 verdicts = nlohmann::ordered_json::object();
   for (const auto& [name, milliseconds] : phases_in_milliseconds(s)) phases[name] = milliseconds;
+  for (const auto& [name, frames] : verdict_counts(s)) verdicts[name] = frames;
   for (const PlanLine& line : s.left_out) left_out.push_back({{"feature", line.feature}, {"why", line.why}});
   const nlohmann::ordered_json json = {
       {"program_version", s.program_version},
@@ -140,6 +148,7 @@ std::string summary_json(const RunSummary& s) {
       {"substeps", s.substeps},
       {"iterations", s.iterations},
       {"linear_iterations", s.linear_iterations},
+      {"verdicts", verdicts},
       {"max_residual", finite_or_null(s.max_residual)},
       {"max_stretch", finite_or_null(s.max_stretch)},
       {"max_stretch_frame", s.max_stretch_frame},
@@ -188,6 +197,10 @@ std::string summary_text(const RunSummary& s) {
   add("cloth", fmt::format("{} vertices, {} triangles", s.vertices, s.triangles));
   add("time a frame", fmt::format("{:.1f} ms (median {:.1f})", mean_milliseconds(s), median_milliseconds(s)));
   if (!phases.empty()) add("  by phase [ms]", phases);
+  std::string verdicts;
+  for (const auto& [name, frames] : verdict_counts(s))
+    verdicts += fmt::format("{}{} {}", verdicts.empty() ? "" : ", ", name, frames);
+  if (!verdicts.empty()) add("proposals", verdicts);
   if (s.peak_memory > 0) add("peak memory", fmt::format("{:.0f} MB", static_cast<double>(s.peak_memory) / 1e6));
   add("worst stretch", fmt::format("{:.3f} in frame {}", s.max_stretch, s.max_stretch_frame));
   add("intersecting pairs",

@@ -24,6 +24,7 @@ struct RunSummary {
   PhaseTimes seconds;  // sums
   int substeps = 0, iterations = 0, linear_iterations = 0;
   std::int64_t peak_memory = 0;  // [bytes]
+  std::vector<int> verdicts;     // frames by Verdict, of a hybrid stepper; empty: it is none
   double max_stretch = 1, min_stretch = 1;
   int max_stretch_frame = 0;
   bool self_audited = true;

@@ -35,6 +35,56 @@ const Options<LearnedRun>& learned_options() {
   return table;
 }
 
+const Options<GuardOptions>& guard_options() {
+  using O = GuardOptions;
+  static const Options<O> table(
+      "guard", "What a proposal may do. The bounds come from recorded conventional steps (docs/hybrid.md).",
+      {number("acceleration", &O::acceleration, Unit::acceleration, positive, "of a vertex in the step, at most"),
+       number("mean_acceleration", &O::mean_acceleration, Unit::acceleration, positive, "RMS of all vertices; or"),
+       number("change_of_motion", &O::change_of_motion, Unit::none, not_negative,
+              "RMS change of the motion over the motion, whichever allows more"),
+       number("stretch", &O::stretch, Unit::none, positive, "largest of a triangle; or"),
+       number("stretch_growth", &O::stretch_growth, Unit::none, positive,
+              "over the largest at the start, whichever allows more"),
+       number("energy_growth", &O::energy_growth, Unit::none, not_negative,
+              "of the elastic energy, in the cloth's weight times its mean edge"),
+       number("imbalance", &O::imbalance, Unit::length, positive,
+              "RMS of how far a Jacobi sweep of the potential would move vertices that nothing touches"),
+       number("decrement", &O::decrement, Unit::none, positive,
+              "energy that this sweep would gain, in the cloth's weight times its mean edge")});
+  return table;
+}
+
+const Options<HybridOptions>& hybrid_options() {
+  using O = HybridOptions;
+  static const Options<O> table(
+      "hybrid",
+      "The network of `learned` proposes a step. A guard judges it, and where it refuses, the conventional stepper "
+      "takes the step from the same state.",
+      {choice("mode", &O::mode,
+              {{"fallback", HybridMode::fallback},
+               {"corrected", HybridMode::corrected},
+               {"refined", HybridMode::refined},
+               {"gated", HybridMode::gated},
+               {"after_k", HybridMode::after_k}},
+              "`fallback`: the proposal itself; `corrected`: its motion after the response to contact; `refined`: a "
+              "conventional solve begins at it; `gated`: corrected, after a line search of the step's potential; "
+              "`after_k`: gated, from where k Newton iterations come to"),
+       or_word(integer("newton", &O::newton, at_least_one,
+                       "k of `after_k`, or most iterations of a solve of `refined`; `auto`: 2, or max_newton"),
+               "auto"),
+       integer("gate_steps", &O::gate_steps, at_least_one, "places where `gated` asks the potential"),
+       integer("longest_stretch", &O::longest_stretch, at_least_one,
+               "frames without a proposal after several refusals: 1, 2, 4 .. of them"),
+       flag("stop_when_slow", &O::stop_when_slow,
+            "ask for no proposal where those have cost more time than they have saved; frames then depend on the "
+            "clock"),
+       number("extra_time", &O::extra_time, Unit::none, not_negative,
+              "what proposals may cost then, of the time so far"),
+       section(&O::guard, guard_options(), "when a proposal is admitted")});
+  return table;
+}
+
 const Options<RefuRun>& refu_options() {
   using O = RefuRun;
   static const Options<O> table(
@@ -91,6 +141,7 @@ const Options<RunOptions>& run_options() {
               flag("rest", &O::rest, "cloths that rest, with nothing moving near them, are left out of the work"),
               section(&O::icm, icm_options(), "of the stepper `icm`"),
               section(&O::learned, learned_options(), "of the stepper `learned`"),
+              section(&O::hybrid, hybrid_options(), "of the stepper `hybrid`"),
               section(&O::refu, refu_options(), "a repulsive layer behind the stepper")});
   return table;
 }

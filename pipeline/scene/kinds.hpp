@@ -33,7 +33,7 @@ class Kinds {
   std::vector<StepperKind> kinds_;
 };
 
-// conventional, icm, learned.
+// conventional, icm, learned, hybrid.
 Kinds known_kinds();
 
 }  // namespace selvedge

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "physics/steppers/conventional_stepper.hpp"
+#include "physics/steppers/hybrid_stepper.hpp"
 #include "physics/steppers/icm_stepper.hpp"
 
 namespace selvedge {
@@ -30,6 +31,7 @@ struct RunOptions {
   ConventionalOptions conventional;
   IcmOptions icm;
   LearnedRun learned;
+  HybridOptions hybrid;
   RefuRun refu;
 };
 

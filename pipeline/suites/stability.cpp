@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "collision/geometry/error.hpp"
 #include "physics/steppers/step_audit.hpp"
@@ -10,6 +11,7 @@
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/run_scene.hpp"
 #include "pipeline/scene/make_stepper.hpp"
+#include "pipeline/suites/spoiled_weights.hpp"
 #include "pipeline/suites/stability_suite.hpp"
 #include "pipeline/suites/stability_watch.hpp"
 #include "pipeline/view/view.hpp"
@@ -32,9 +34,25 @@ std::vector<StabilityCase> chosen_cases(const StabilitySuite& suite, const Stabi
   return chosen;
 }
 
+std::filesystem::path weights_of(const StabilityRequest& request, const StabilityRun& run) {
+  return run.fault.empty() ? *request.weights : request.out / ("weights_" + run.fault + ".h5");
+}
+
+void write_spoiled_weights(const StabilityRequest& request, const std::vector<StabilityCase>& cases) {
+  const WeightFile file = read_weight_file(*request.weights);
+  std::set<std::string> faults;
+  for (const StabilityCase& one : cases)
+    for (const StabilityRun& run : one.runs)
+      if (!run.fault.empty()) faults.insert(run.fault);
+  for (const std::string& fault : faults)
+    write_weight_file(request.out / ("weights_" + fault + ".h5"), spoiled_weights(file, fault));
+}
+
 Setup read_run(const StabilityRequest& request, const StabilityCase& one, const StabilityRun& run) {
   std::vector<std::string> overrides = run.overrides;
   if (request.stepper) overrides.push_back("run.stepper=" + *request.stepper);
+  if (request.weights)
+    overrides.push_back("run.learned.weights=" + std::filesystem::absolute(weights_of(request, run)).string());
   return read_setup(one.scene, overrides, request.kinds);
 }
 
@@ -78,9 +96,19 @@ std::optional<StabilityRow> run_one(const StabilityRequest& request, const Stabi
   const Clock::time_point started = Clock::now();
   Setup setup = read_run(request, one, run);
   if (!prepare(setup, request.stop)) return {};
-  const std::unique_ptr<Stepper> stepper = make_stepper(setup);
-  StabilityWatch watch(setup);
   StabilityRow row;
+  row.name = one.name;
+  row.run = run.name;
+  row.vertices = setup.scene.surface.vertex_count;
+  row.frames_wanted = setup.run.frames;
+  std::unique_ptr<Stepper> stepper;
+  try {
+    stepper = make_stepper(setup);
+  } catch (const Error& error) {
+    row.failures = {error.what()};
+    return row;
+  }
+  StabilityWatch watch(setup);
   RunRequest to_run;
   to_run.out = folder;
   to_run.checkpoint_seconds = 1e9;
@@ -94,12 +122,8 @@ std::optional<StabilityRow> run_one(const StabilityRequest& request, const Stabi
   };
   const RunSummary summary = run_scene(setup, *stepper, to_run);
   if (summary.end == RunEnd::interrupted) return {};
-  row.name = one.name;
-  row.run = run.name;
   row.stepper = stepper->traits().name;
-  row.vertices = summary.vertices;
   row.frames = summary.frames;
-  row.frames_wanted = summary.frames_wanted;
   const Audit start = audit_positions(setup.scene, setup.initial.x, setup.initial.obstacles);
   row.clean_start = start.intersecting_pairs() == 0 && start.inside_vertices == 0;
   row.pairs = summary.pairs;
@@ -134,6 +158,7 @@ std::vector<StabilityRow> stability(const StabilityRequest& request) {
   for (const StabilityCase& one : cases)
     for (const StabilityRun& run : one.runs) read_run(request, one, run);  // errors before minutes of work
   make_folder(request.out);
+  if (request.weights) write_spoiled_weights(request, cases);
   std::vector<StabilityRow> rows;
   for (const StabilityCase& one : cases)
     for (std::size_t k = 0; k < one.runs.size(); ++k) {

@@ -14,9 +14,10 @@ namespace selvedge {
 
 struct StabilityRequest {
   std::filesystem::path suite = "configs/stability.yaml";
-  std::vector<std::string> cases;      // by name; none: all
-  std::optional<std::string> stepper;  // in place of the scenes' own
-  Kinds kinds = known_kinds();         // of steppers
+  std::vector<std::string> cases;                // by name; none: all
+  std::optional<std::string> stepper;            // in place of the scenes' own
+  std::optional<std::filesystem::path> weights;  // of the network of the steppers `learned` and `hybrid`
+  Kinds kinds = known_kinds();                   // of steppers
   bool short_form = false;
   std::filesystem::path out = "out/stability";
   std::ostream* log = nullptr;  // a line as each run ends
@@ -27,7 +28,7 @@ struct StabilityRequest {
 // never grows by more than what pins, obstacles, wind and the response can have given it (physics/solve/work.hpp); that
 // comes to rest; whose iterations are bounded; and that stays clean if it started clean, or if an obstacle jumped is
 // clean in the end. Leaves stability.txt, stability.csv, stability.json and stability.md in `out`, and of each run that
-// failed the trajectory and its page.
+// failed the trajectory and its page. A run that the stepper does not take fails with the reason.
 std::vector<StabilityRow> stability(const StabilityRequest&);
 
 bool passed(const std::vector<StabilityRow>&);

@@ -1,6 +1,7 @@
 #include "pipeline/suites/stability_suite.hpp"
 
 #include "pipeline/config/options.hpp"
+#include "pipeline/suites/spoiled_weights.hpp"
 
 namespace selvedge {
 namespace {
@@ -27,7 +28,9 @@ const Section& run_section() {
       "name",
       {},
       {needed(text("name", "what differs, for people")), texts("set", "overrides of the scene, key=value"),
-       flag("short", false, "whether it is in the short form too")}};
+       flag("short", false, "whether it is in the short form too"),
+       word("fault", weight_faults(), "",
+            "how the weights are spoiled, for steppers with a network; `huge`: the network returns 1e6")}};
   return table;
 }
 
@@ -62,7 +65,8 @@ StabilityCase read_case(const Config& section, const std::filesystem::path& fold
   for (const Config& run : section["runs"].items) {
     std::vector<std::string> overrides = section["set"].words;
     overrides.insert(overrides.end(), run["set"].words.begin(), run["set"].words.end());
-    one.runs.push_back({run["name"].text(), overrides, run["short"].flag()});
+    one.runs.push_back(
+        {run["name"].text(), overrides, run["short"].flag(), run["fault"].given ? run["fault"].text() : ""});
   }
   if (one.runs.empty()) section["runs"].fail("is empty", "give at least one run");
   return one;

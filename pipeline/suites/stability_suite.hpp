@@ -17,6 +17,7 @@ struct StabilityRun {
   std::string name;
   std::vector<std::string> overrides;
   bool brief = false;  // also in the short form
+  std::string fault;   // by which the network's weights are spoiled (spoiled_weights.hpp); empty: they are not
 };
 
 struct StabilityCase {

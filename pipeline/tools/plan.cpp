@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "learned/steppers/learned_plan.hpp"
@@ -27,18 +28,43 @@ std::string linear_solver_of(const Setup& setup) {
                      count);
 }
 
+// Of the hybrid: what proposes, what becomes of it, and what the network leaves out.
+void append_hybrid_lines(const Setup& setup, std::vector<PlanLine>& lines) {
+  const HybridOptions& hybrid = setup.run.hybrid;
+  const std::map<HybridMode, std::string> modes{
+      {HybridMode::fallback, "a proposal that the guard admits is the step"},
+      {HybridMode::corrected, "its motion goes through the response to contact, then the guard"},
+      {HybridMode::refined, "a conventional solve begins at it"},
+      {HybridMode::gated, "a line search of the step's potential, the response to contact, then the guard"},
+      {HybridMode::after_k, "Newton iterations, a line search from there, the response to contact, then the guard"}};
+  lines.push_back({"proposals", true, modes.at(hybrid.mode)});
+  lines.push_back({"guard", hybrid.mode != HybridMode::refined,
+                   hybrid.mode != HybridMode::refined ? "refused steps are taken by the conventional stepper"
+                                                      : "the solve decides what a proposal is worth"});
+  lines.push_back({"proposals by time", hybrid.stop_when_slow,
+                   hybrid.stop_when_slow ? "none where they cost more than they save: frames depend on the clock"
+                                         : "not asked for by hybrid.stop_when_slow"});
+  for (PlanLine& line : learned_plan_lines(setup.scene, read_learned_weights(setup).architecture, false)) {
+    if (line.feature == "settling pass") continue;
+    lines.push_back({"proposal: " + line.feature, line.in, line.why});
+  }
+}
+
 // What the scene needs, and what the stepper does without.
 std::vector<PlanLine> lines_of(const Setup& setup) {
   if (setup.run.stepper == "learned")
     return learned_plan_lines(setup.scene, read_learned_weights(setup).architecture, setup.run.learned.settle);
   std::vector<PlanLine> lines = plan_lines(setup.scene);
   lines.push_back({"linear solver", true, linear_solver_of(setup)});
-  lines.push_back({"cloths at rest", !setup.run.rest,
-                   setup.run.rest ? "left out of a step as long as nothing that moves comes near them"
-                                  : "stepped like others, as run.rest asks"});
+  const bool hybrid = setup.run.stepper == "hybrid", rest = setup.run.rest && !hybrid;
+  lines.push_back({"cloths at rest", !rest,
+                   hybrid ? "stepped like others: a network sees all of the cloth"
+                   : rest ? "left out of a step as long as nothing that moves comes near them"
+                          : "stepped like others, as run.rest asks"});
   if (setup.initial.frame < 0)
     lines.push_back({"draped start", true, fmt::format("{} frames before time 0, not recorded", -setup.initial.frame)});
   if (!setup.initial.cut_out.empty()) lines.push_back({"cut start", true, setup.prepared + " until they are free"});
+  if (setup.run.stepper == "hybrid") append_hybrid_lines(setup, lines);
   if (setup.run.stepper != "icm") return lines;
   const std::string untouched = "left out by the stepper icm";
   lines.push_back({"contour energy", true, "weight " + fmt::format("{}", setup.run.icm.contour_weight)});

@@ -36,7 +36,7 @@ bool same(const State& a, const State& b) {
 
 // A sheet that hangs by a corner and falls on a ball that moves.
 Setup scene_for(const std::string& kind, const Folder& folder, std::vector<std::string> overrides = {}) {
-  if (kind == "learned") {
+  if (kind == "learned" || kind == "hybrid") {
     const fake::NarrowNetwork network = fake::narrow_network("contourcraft");
     write_weight_file(folder.path / "w.h5", {network.architecture, network.weights, "", {}, ""});
     overrides.push_back("run.learned.weights=w.h5");
@@ -93,7 +93,7 @@ TEST_CASE("known steppers: a step fills what a state must have", "[known_stepper
     const Drive drive = setup.drive_at(from.time + dt);
     const StepReport report = stepper->step(from, drive, dt, to);
     REQUIRE(report.status == StepStatus::accepted);
-    CHECK(report.by == kind);
+    CHECK(report.by.starts_with(kind));
     CHECK(report.substeps > 0);
     CHECK(to.time == Approx(from.time + dt));
     CHECK(to.frame == from.frame + 1);

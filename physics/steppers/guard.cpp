@@ -1,0 +1,159 @@
+#include "physics/steppers/guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "physics/energies/measures.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double standard_gravity = 9.81;  // [m/s2]
+constexpr double contact_reach = 2;        // thicknesses within which a vertex may be pushed
+constexpr double still = 1e-4;             // RMS motion in a step that counts as none [m]
+
+double total(const std::vector<double>& parts) { return std::accumulate(parts.begin(), parts.end(), 0.0); }
+
+double elastic_energy(const Elastic& elastic, const Points& x) {
+  std::vector<double> parts;
+  append_elastic_energies(elastic, x, parts);
+  return total(parts);
+}
+
+// Mean diagonal of the elastic Hessian at rest.
+std::vector<double> rest_stiffness(const Scene& scene, const Elastic& elastic, const std::vector<char>& free) {
+  AssemblyScratch scratch;
+  PairBlocks pairs;
+  elastic_derivatives(elastic, scene.rest, scratch, nullptr, &pairs);
+  const std::vector<double> none(free.size(), 0.0), ones(free.size(), 1.0);
+  const ContactLists no_contacts;
+  std::vector<Mat3> blocks;
+  diagonal_blocks({elastic.pattern, pairs, none, elastic.flat, ones, {}, no_contacts, free}, blocks);
+  std::vector<double> stiffness;
+  for (const Mat3& block : blocks) stiffness.push_back(block.trace() / 3);
+  return stiffness;
+}
+
+// How the motion differs from that of a free flight without gravity.
+void measure_motion(const Guard& guard, const State& from, double dt, const Points& x, GuardMeasures& m) {
+  double largest = 0, changes = 0, motions = 0;
+  int count = 0;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    if (!guard.free[static_cast<std::size_t>(i)]) continue;
+    const double change = (x.row(i) - from.x.row(i) - dt * from.v.row(i)).squaredNorm();
+    largest = std::max(largest, change);
+    changes += change;
+    motions += dt * dt * from.v.row(i).squaredNorm();
+    ++count;
+  }
+  if (count == 0) return;
+  m.acceleration = std::sqrt(largest) / (dt * dt);
+  m.mean_acceleration = std::sqrt(changes / count) / (dt * dt);
+  m.change_of_motion = std::sqrt(changes / count) / std::max(still, std::sqrt(motions / count));
+}
+
+double largest_stretch(const Scene& scene, const Points& x) {
+  const auto stretches = principal_stretches(scene, x);
+  return stretches.rows() > 0 ? stretches.col(1).maxCoeff() : 1;
+}
+
+void measure_energy(const Guard& guard, const State& from, const Points& x, GuardMeasures& m) {
+  const double growth = elastic_energy(guard.elastic, x) - elastic_energy(guard.elastic, from.x);
+  m.energy_growth = guard.unit_energy > 0 ? growth / guard.unit_energy : 0;
+}
+
+// A Jacobi sweep with the stiffness of the rest shape, of the vertices that nothing touches.
+void measure_residual(Guard& guard, const State& from, const Drive& drive, double dt, const Points& x,
+                      const std::vector<char>& touching, GuardMeasures& m) {
+  const StepProblem problem{dt, &from.x, &from.v, &drive.pins, drive.acceleration, drive.wind, {}, 1};
+  prepare(guard.scene, guard.elastic, guard.masses, problem, 1, guard.scratch, guard.step);
+  Points gradient;
+  derivatives(guard.step, x, guard.scratch, gradient, nullptr);
+  double moves = 0, gain = 0;
+  int count = 0, left_out = 0;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const auto v = static_cast<std::size_t>(i);
+    if (!guard.free[v]) continue;
+    if (!touching.empty() && touching[v]) {
+      ++left_out;
+      continue;
+    }
+    const double diagonal = guard.step.diagonal[v] + guard.stiffness[v], force = gradient.row(i).squaredNorm();
+    moves += force / (diagonal * diagonal);
+    gain += 0.5 * force / diagonal;
+    ++count;
+  }
+  m.imbalance = count > 0 ? std::sqrt(moves / count) : 0;
+  m.decrement = guard.unit_energy > 0 ? gain / guard.unit_energy : 0;
+  m.in_contact = count + left_out > 0 ? static_cast<double>(left_out) / (count + left_out) : 0;
+}
+
+}  // namespace
+
+Guard::Guard(const Scene& s, const GuardOptions& o)
+    : scene(s),
+      options(o),
+      masses(lumped_masses(s)),
+      elastic(make_elastic(s)),
+      free(free_vertices(s, masses)),
+      unit_energy(masses.sum() * standard_gravity * mean_edge_length(s)),
+      stiffness(rest_stiffness(s, elastic, free)) {}
+
+Verdict judge_motion(const Guard& guard, const State& from, double dt, const Points& x, GuardMeasures& m) {
+  const GuardOptions& most = guard.options;
+  m = {};
+  if (!x.allFinite()) return Verdict::not_finite;
+  measure_motion(guard, from, dt, x, m);
+  const bool goes_on = m.mean_acceleration <= most.mean_acceleration || m.change_of_motion <= most.change_of_motion;
+  return m.acceleration <= most.acceleration && goes_on ? Verdict::admitted : Verdict::moved_too_far;
+}
+
+Verdict judge(Guard& guard, const State& from, const Drive& drive, double dt, const Points& x,
+              const AskTouching& touching, GuardMeasures& m) {
+  const GuardOptions& most = guard.options;
+  if (const Verdict motion = judge_motion(guard, from, dt, x, m); motion != Verdict::admitted) return motion;
+  m.stretch_before = largest_stretch(guard.scene, from.x);
+  m.stretch = largest_stretch(guard.scene, x);
+  if (!(m.stretch <= std::max(most.stretch, most.stretch_growth * m.stretch_before))) return Verdict::overstretched;
+  measure_energy(guard, from, x, m);
+  if (!(m.energy_growth <= most.energy_growth)) return Verdict::energy_gain;
+  measure_residual(guard, from, drive, dt, x, touching ? touching() : std::vector<char>{}, m);
+  if (!(m.imbalance <= most.imbalance) || !(m.decrement <= most.decrement)) return Verdict::unbalanced;
+  return Verdict::admitted;
+}
+
+GuardMeasures measure(Guard& guard, const State& from, const Drive& drive, double dt, const Points& x,
+                      const AskTouching& touching) {
+  GuardMeasures m;
+  measure_motion(guard, from, dt, x, m);
+  m.stretch_before = largest_stretch(guard.scene, from.x);
+  m.stretch = largest_stretch(guard.scene, x);
+  measure_energy(guard, from, x, m);
+  measure_residual(guard, from, drive, dt, x, touching ? touching() : std::vector<char>{}, m);
+  return m;
+}
+
+std::vector<char> touching_vertices(ContactStage& stage, const State& from, const std::vector<Points>& obstacles,
+                                    const Points& x) {
+  const double reach = contact_reach * stage.options.thickness;
+  const Points before = gather_nodes(from.x, from.obstacles), after = gather_nodes(x, obstacles);
+  update_pairs(stage.search, reach, before, after, stage.path);
+  // Which pairs are listed beyond those depends on what was asked before, which no checkpoint knows.
+  const auto touches = [&](const NodePair& pair) {
+    return std::min(closest(pair, before).squared_distance, closest(pair, after).squared_distance) < reach * reach;
+  };
+  std::vector<char> touching(static_cast<std::size_t>(x.rows()), 0);
+  for (const NodePair& pair : stage.path.pairs) {
+    if (!touches(pair)) continue;
+    for (const int node : pair.nodes)
+      if (node < x.rows()) touching[static_cast<std::size_t>(node)] = 1;
+  }
+  return touching;
+}
+
+bool is_contact_free(const State& to, const StepReport& report) {
+  return to.clean && report.collision.passed_through == 0 && report.collision.pairs_after == 0;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,265 @@
+#include "physics/steppers/hybrid_stepper.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "collision/geometry/error.hpp"
+#include "collision/geometry/floating_point.hpp"
+#include "collision/geometry/stopwatch.hpp"
+#include "physics/steppers/finish_step.hpp"
+#include "physics/steppers/proposal_line_search.hpp"
+#include "physics/steppers/proposal_trust.hpp"
+#include "physics/steppers/substeps.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr int usual_newton = 2;    // iterations of the mode `after_k`
+constexpr int learning_steps = 8;  // of the parent alone, before its time counts as known
+
+bool asks_for_positions(HybridMode mode) { return mode != HybridMode::fallback; }
+
+// The times of steps, for the rule that stops proposals where they do not pay.
+struct OwnTime {
+  double parent = 0, all = 0, lost = 0, last_loss = 0;  // [s]
+  int parents = 0;
+
+  void add_parent(double seconds) {
+    parent += seconds;
+    ++parents;
+  }
+  void add_step(double seconds, bool proposed) {
+    all += seconds;
+    if (!proposed || parents == 0) return;
+    last_loss = seconds - parent / parents;
+    lost += last_loss;
+  }
+  bool allows(double extra) const {
+    return parents >= learning_steps && std::max(0.0, lost) + std::max(0.0, last_loss) <= extra * all;
+  }
+};
+
+void check_pair(const HybridParts& parts, HybridMode mode) {
+  const StepperTraits &proposer = parts.proposer->traits(), &parent = parts.parent->traits();
+  const Stepper& refiner = parts.refiner ? *parts.refiner : *parts.parent;
+  const auto refuse = [](const std::string& what, const std::string& cure) {
+    throw Error(what, "parts of a hybrid stepper", cure);
+  };
+  if (proposer.only_dt && !parent.accepts(*proposer.only_dt))
+    refuse("`" + proposer.name + "` and `" + parent.name + "` take no common time step", "join others");
+  if (mode == HybridMode::refined && !refiner.traits().honours_extras)
+    refuse("`" + refiner.traits().name + "` takes no first guess, which the mode `refined` needs",
+           "take another mode, or a stepper that honours extras");
+  if (asks_for_positions(mode) && proposer.past_frames > 0 && !parts.hand_over)
+    refuse("`" + proposer.name + "` remembers frames and is not told of those that it has not made",
+           "take the mode `fallback`, or give a way to hand over");
+}
+
+StepperTraits joint_traits(const HybridParts& parts) {
+  const StepperTraits &proposer = parts.proposer->traits(), &parent = parts.parent->traits();
+  return {.name = "hybrid",
+          .past_frames = std::max({1, proposer.past_frames, parent.past_frames}),
+          .needs = {proposer.needs.worn || parent.needs.worn, proposer.needs.bodies || parent.needs.bodies,
+                    proposer.needs.obstacles || parent.needs.obstacles},
+          .only_dt = proposer.only_dt ? proposer.only_dt : parent.only_dt,
+          .may_leave_out_cloths = false,
+          .honours_extras = false,
+          .max_substeps = parent.max_substeps};
+}
+
+class HybridStepper final : public Stepper {
+ public:
+  HybridStepper(const Scene& scene, HybridParts parts, const HybridOptions& options)
+      : scene_(scene),
+        parts_(std::move(parts)),
+        options_(options),
+        guard_(scene, options.guard),
+        contact_(scene),
+        traits_(joint_traits(parts_)) {
+    if (options.mode == HybridMode::gated || options.mode == HybridMode::after_k)
+      line_.emplace(scene, options.implicit_euler,
+                    options.mode == HybridMode::after_k ? options.newton.value_or(usual_newton) : 0);
+  }
+  const StepperTraits& traits() const override { return traits_; }
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override;
+
+ private:
+  struct Work {
+    const State& from;
+    const Drive& drive;
+    double dt;
+    State& to;
+    StepReport& report;
+  };
+  Verdict may_ask(const State& from, const Drive&, const ProposalTrust&, bool has_history) const;
+  Verdict propose(Work&);
+  Verdict propose_step(Work&);
+  std::optional<Points> proposed_positions(Work&);
+  Verdict correct(Work&, Points x);
+  Verdict refine(Work&, const Points& x);
+  Verdict judged(const Work&, const Points& x);
+  void take_parent_step(Work&);
+
+  const Scene& scene_;
+  HybridParts parts_;
+  HybridOptions options_;
+  Guard guard_;
+  ContactStage contact_;
+  std::optional<ProposalLineSearch> line_;
+  StepperTraits traits_;
+  AuditMemory audited_;
+  OwnTime time_;
+};
+
+// `none`: a proposal may be asked for.
+Verdict HybridStepper::may_ask(const State& from, const Drive& drive, const ProposalTrust& trust,
+                               bool has_history) const {
+  if (!from.clean || from.pinched || restart_of(from, drive, traits_.max_substeps)) return Verdict::tangled;
+  if (!has_history && parts_.hand_over) return Verdict::no_history;
+  if (trust.wait > 0) return Verdict::waiting;
+  if (options_.stop_when_slow && !time_.allows(options_.extra_time)) return Verdict::too_slow;
+  return Verdict::none;
+}
+
+Verdict HybridStepper::judged(const Work& work, const Points& x) {
+  const Timed timed(work.report.seconds.guard);
+  GuardMeasures measures;
+  return judge(
+      guard_, work.from, work.drive, work.dt, x,
+      [&] { return touching_vertices(contact_, work.from, work.drive.obstacles, x); }, measures);
+}
+
+// The proposal as it is. What the guard can tell of positions is asked before the proposer audits them, and again where
+// it then leaves the cloth elsewhere.
+Verdict HybridStepper::propose_step(Work& work) {
+  Verdict verdict = Verdict::none;
+  Points seen;
+  StepExtras extras;
+  extras.wanted = [&](const Points& x) {
+    seen = x;
+    return (verdict = judged(work, x)) == Verdict::admitted;
+  };
+  StepReport made = parts_.proposer->step(work.from, work.drive, work.dt, work.to, extras);
+  const double guarded = work.report.seconds.guard;
+  work.report = std::move(made);
+  work.report.seconds.guard += guarded;
+  if (work.report.status != StepStatus::accepted) return verdict == Verdict::none ? Verdict::not_made : verdict;
+  if (verdict == Verdict::none || seen != work.to.x) verdict = judged(work, work.to.x);
+  if (verdict != Verdict::admitted) return verdict;
+  return is_contact_free(work.to, work.report) ? Verdict::admitted : Verdict::penetrating;
+}
+
+// Where the proposer wants the cloth, unaudited where it can leave that out.
+std::optional<Points> HybridStepper::proposed_positions(Work& work) {
+  std::optional<Points> x;
+  StepExtras extras;
+  extras.wanted = [&](const Points& made) {
+    x = made;
+    return false;
+  };
+  StepReport made = parts_.proposer->step(work.from, work.drive, work.dt, work.to, extras);
+  if (made.status == StepStatus::accepted) x = work.to.x;
+  work.report.seconds = made.seconds;
+  return x;
+}
+
+// Bridson's response to the motion, then the common end of a step.
+Verdict HybridStepper::correct(Work& work, Points x) {
+  ResolveOptions options = contact_.options;
+  options.last_resort = false;
+  std::vector<Points> obstacles = work.drive.obstacles;
+  const ResolveReport resolved = resolve_proposal(contact_, options, work.from, nullptr, x, obstacles);
+  add(resolved, work.report);
+  if (!resolved.clean) return Verdict::penetrating;
+  if (const Verdict verdict = judged(work, x); verdict != Verdict::admitted) return verdict;
+  {
+    const Timed timed(work.report.seconds.audit);
+    work.report.collision.passed_through = passed_through(
+        contact_.world, {}, gather_nodes(work.from.x, work.from.obstacles), gather_nodes(x, obstacles), audited_);
+  }
+  work.report.substeps = 1;
+  work.report.collision.pairs_before = 0;
+  Points v = (x - work.from.x) / work.dt;
+  finish_step(scene_, work.from, work.drive, work.dt, {std::move(x), std::move(v), std::move(obstacles)}, audited_,
+              work.to, work.report);
+  if (!is_contact_free(work.to, work.report)) return Verdict::penetrating;
+  if (parts_.hand_over) parts_.hand_over(work.from, work.to);
+  return Verdict::admitted;
+}
+
+// A solve from the proposal.
+Verdict HybridStepper::refine(Work& work, const Points& x) {
+  const PhaseTimes proposal = work.report.seconds;
+  StepExtras extras;
+  extras.guess = &x;
+  Stepper& refiner = parts_.refiner ? *parts_.refiner : *parts_.parent;
+  work.report = refiner.step(work.from, work.drive, work.dt, work.to, extras);
+  work.report.seconds += proposal;
+  if (work.report.status != StepStatus::accepted) return Verdict::not_made;
+  if (parts_.hand_over) parts_.hand_over(work.from, work.to);
+  return is_contact_free(work.to, work.report) ? Verdict::refined : Verdict::penetrating;
+}
+
+// A proposal that no cloth could follow is not worth a line search, a response or a solve.
+Verdict HybridStepper::propose(Work& work) {
+  if (!asks_for_positions(options_.mode)) return propose_step(work);
+  std::optional<Points> x = proposed_positions(work);
+  if (!x) return Verdict::not_made;
+  GuardMeasures measures;
+  if (const Verdict motion = judge_motion(guard_, work.from, work.dt, *x, measures); motion != Verdict::admitted)
+    return motion;
+  if (line_) {
+    const Timed timed(work.report.seconds.guard);
+    if (!search_along(*line_, contact_, work.from, work.drive, work.dt, options_.gate_steps, *x))
+      return Verdict::energy_gain;
+  }
+  return options_.mode == HybridMode::refined ? refine(work, *x) : correct(work, std::move(*x));
+}
+
+void HybridStepper::take_parent_step(Work& work) {
+  const PhaseTimes before = work.report.seconds;
+  Stopwatch watch;
+  work.report = parts_.parent->step(work.from, work.drive, work.dt, work.to);
+  time_.add_parent(watch.lap());
+  work.report.seconds += before;
+  if (work.report.status == StepStatus::accepted && parts_.hand_over) parts_.hand_over(work.from, work.to);
+}
+
+StepReport HybridStepper::step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) {
+  restore_standard_arithmetic();
+  if (!traits_.accepts(dt))
+    throw Error(
+        "the stepper `" + parts_.proposer->traits().name + "` does not take steps of " + std::to_string(dt) + " s",
+        "hybrid stepper", "step by " + std::to_string(traits_.only_dt.value_or(dt)) + " s");
+  Stopwatch watch;
+  StepReport report;
+  Work work{from, drive, dt, to, report};
+  ProposalTrust trust;
+  const bool has_history = read_trust(from, trust);
+  Verdict verdict = may_ask(from, drive, trust, has_history);
+  const bool asked = verdict == Verdict::none;
+  if (asked) verdict = propose(work);
+  const bool taken = verdict == Verdict::admitted || verdict == Verdict::refined;
+  if (!taken) take_parent_step(work);
+  report.by = traits_.name + ": " +
+              (verdict == Verdict::admitted ? parts_.proposer->traits().name : parts_.parent->traits().name);
+  report.fell_back = asked && !taken;
+  report.verdict = verdict;
+  if (report.status == StepStatus::accepted)
+    remember(!asked  ? after_wait(trust)
+             : taken ? after_admission(trust)
+                     : after_refusal(trust, options_.longest_stretch),
+             to);
+  time_.add_step(watch.lap(), asked);
+  return report;
+}
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_hybrid_stepper(const Scene& scene, HybridParts parts, const HybridOptions& options) {
+  check_pair(parts, options.mode);
+  return std::make_unique<HybridStepper>(scene, std::move(parts), options);
+}
+
+}  // namespace selvedge

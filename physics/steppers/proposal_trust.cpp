@@ -1,0 +1,42 @@
+#include "physics/steppers/proposal_trust.hpp"
+
+#include <algorithm>
+
+namespace selvedge {
+namespace {
+
+constexpr const char* trust_block = "hybrid.trust";
+constexpr int enough_admitted = 3;  // in a row, to halve the stretch
+
+}  // namespace
+
+bool read_trust(const State& state, ProposalTrust& trust) {
+  const MemoryRows* rows = find_rows(state.memory, trust_block, 1);
+  if (!rows || rows->cols() != 3) return false;
+  const auto number = [&](int k) { return static_cast<int>((*rows)(0, k)); };
+  trust = {number(0), number(1), number(2)};
+  return true;
+}
+
+void remember(const ProposalTrust& trust, State& state) {
+  MemoryRows row(1, 3);
+  row << trust.wait, trust.stretch, trust.admitted;
+  replace_blocks("hybrid", {{trust_block, row}}, state.memory);
+}
+
+ProposalTrust after_wait(ProposalTrust trust) {
+  trust.wait = std::max(0, trust.wait - 1);
+  return trust;
+}
+
+ProposalTrust after_admission(ProposalTrust trust) {
+  if (++trust.admitted < enough_admitted) return trust;
+  return {0, std::max(1, trust.stretch / 2), 0};
+}
+
+ProposalTrust after_refusal(ProposalTrust trust, int longest_stretch) {
+  const int stretch = std::min(trust.stretch, longest_stretch);
+  return {stretch, std::min(2 * stretch, longest_stretch), 0};
+}
+
+}  // namespace selvedge

@@ -1,0 +1,239 @@
+#include "physics/steppers/hybrid_stepper.hpp"
+
+#include <cstring>
+
+#include "collision/geometry/error.hpp"
+#include "physics/steppers/finish_step.hpp"
+#include "physics/steppers/icm_stepper.hpp"
+#include "physics/steppers/proposal_trust.hpp"
+#include "tests/physics/spoiled_steps.hpp"
+
+namespace selvedge::test_hybrid_stepper {
+
+using testing::World;
+
+namespace {
+
+constexpr double dt = 1.0 / 30;
+
+// Proposes what a function makes of the state and what the conventional stepper makes of it.
+using Propose = std::function<Points(const State& from, const Points& solved)>;
+class FakeProposer final : public Stepper {
+ public:
+  FakeProposer(const Scene& scene, Propose propose, int past_frames = 0)
+      : scene_(scene),
+        solver_(make_recovering_conventional_stepper(scene)),
+        propose_(std::move(propose)),
+        traits_{.name = "fake", .past_frames = past_frames} {}
+  const StepperTraits& traits() const override { return traits_; }
+  StepReport step(const State& from, const Drive& drive, double h, State& to, const StepExtras& extras) override {
+    solver_->step(from, drive, h, to);
+    Points x = propose_(from, to.x);
+    StepReport report;
+    report.by = "fake";
+    report.status = StepStatus::rejected;
+    report.reason = Reason::not_finite;
+    if (!x.allFinite()) return report;
+    report.reason = Reason::none;
+    if (extras.wanted && !extras.wanted(x)) return report;
+    Points v = (x - from.x) / h;
+    finish_step(scene_, from, drive, h, {std::move(x), std::move(v), drive.obstacles, {{"fake.x", from.x}}}, audits_,
+                to, report);
+    return report;
+  }
+
+ private:
+  const Scene& scene_;
+  std::unique_ptr<Stepper> solver_;
+  Propose propose_;
+  StepperTraits traits_;
+  AuditMemory audits_;
+};
+
+Points as_solved(const State&, const Points& solved) { return solved; }
+Points nowhere(const State& from, const Points&) {
+  return Points::Constant(from.x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
+}
+Points frozen(const State& from, const Points&) { return from.x; }
+Points far_away(const State& from, const Points&) { return from.x.array() + 1e6; }
+Points noise(const State& from, const Points& solved) {
+  Points x = solved;
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    x(i, i % 3) += 0.02 * std::sin(17.0 * static_cast<double>(i) + from.frame);
+  return x;
+}
+
+void hand_over(const State& from, State& to) { replace_blocks("fake", {{"fake.x", from.x}}, to.memory); }
+
+std::unique_ptr<Stepper> hybrid(const Scene& scene, const Propose& propose, const HybridOptions& options = {}) {
+  return make_hybrid_stepper(
+      scene,
+      {std::make_unique<FakeProposer>(scene, propose, 1), make_recovering_conventional_stepper(scene), {}, hand_over},
+      options);
+}
+
+// A sheet that hangs by one side over a plate, and swings into it.
+World swinging() {
+  World w = testing::swinging_sheet();
+  add_obstacle(w, testing::tilted(testing::sheet(4, 0.8, 0), 0.3));
+  w.state.obstacles[0].col(1).array() -= 0.25;
+  w.drive.obstacles = w.state.obstacles;
+  return w;
+}
+
+struct Seen {
+  State state;
+  std::vector<Verdict> verdicts;
+  int pairs = 0, passed = 0, fell_back = 0;
+};
+
+Seen follow(Stepper& stepper, const World& w, State state, int frames) {
+  Seen seen{std::move(state), {}};
+  for (int f = 0; f < frames; ++f) {
+    State to;
+    const StepReport report = stepper.step(seen.state, w.drive, dt, to);
+    REQUIRE(report.status == StepStatus::accepted);
+    REQUIRE(to.x.allFinite());
+    REQUIRE(to.v.allFinite());
+    seen.verdicts.push_back(report.verdict);
+    seen.pairs += report.collision.pairs_after;
+    seen.passed += report.collision.passed_through;
+    seen.fell_back += report.fell_back;
+    seen.state = to;
+  }
+  return seen;
+}
+
+bool same_bits(const Points& a, const Points& b) {
+  return a.rows() == b.rows() &&
+         std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
+}
+
+constexpr std::array all_modes{HybridMode::fallback, HybridMode::corrected, HybridMode::refined, HybridMode::gated,
+                               HybridMode::after_k};
+
+}  // namespace
+
+TEST_CASE("hybrid: good proposals are the steps, after one frame that the proposer has to see", "[hybrid]") {
+  const World w = testing::swinging_sheet();
+  const auto stepper = hybrid(w.scene, as_solved);
+  CHECK(stepper->traits().name == "hybrid");
+  State to;
+  StepReport report = stepper->step(w.state, w.drive, dt, to);
+  CHECK(report.verdict == Verdict::no_history);
+  CHECK(report.by == "hybrid: conventional");
+  CHECK_FALSE(report.fell_back);
+  State next;
+  report = stepper->step(to, w.drive, dt, next);
+  CHECK(report.verdict == Verdict::admitted);
+  CHECK(report.by == "hybrid: fake");
+  const auto solver = make_recovering_conventional_stepper(w.scene);
+  State solved;
+  solver->step(to, w.drive, dt, solved);
+  CHECK(same_bits(next.x, solved.x));
+}
+
+TEST_CASE("hybrid: whatever is proposed, in every mode, the cloth stays finite and clean", "[hybrid]") {
+  const World w = swinging();
+  for (const HybridMode mode : all_modes)
+    for (const auto& [name, propose] : std::vector<std::pair<std::string, Propose>>{
+             {"NaN", nowhere}, {"frozen", frozen}, {"1e6", far_away}, {"noise", noise}}) {
+      INFO("mode " << static_cast<int>(mode) << ", " << name);
+      HybridOptions options;
+      options.mode = mode;
+      options.longest_stretch = 2;
+      const Seen seen = follow(*hybrid(w.scene, propose, options), w, w.state, 12);
+      CHECK(seen.pairs == 0);
+      CHECK(seen.passed == 0);
+      CHECK(seen.state.clean);
+      if (mode == HybridMode::fallback && name != "frozen") CHECK(seen.fell_back > 0);
+    }
+}
+
+TEST_CASE("hybrid: refused proposals wait for longer and longer, and come back", "[hybrid]") {
+  const World w = testing::swinging_sheet();
+  HybridOptions options;
+  options.longest_stretch = 4;
+  const Seen seen = follow(*hybrid(w.scene, nowhere, options), w, w.state, 18);
+  std::vector<int> asked;
+  for (int f = 0; f < 18; ++f)
+    if (seen.verdicts[static_cast<std::size_t>(f)] == Verdict::not_made) asked.push_back(f);
+  CHECK(asked == std::vector<int>{1, 3, 6, 11, 16});
+
+  ProposalTrust trust{0, 4, 0};
+  for (int k = 0; k < 3; ++k) trust = after_admission(trust);
+  CHECK(trust.stretch == 2);
+  CHECK(after_refusal(trust, 32).wait == 2);
+  CHECK(after_refusal(trust, 32).stretch == 4);
+}
+
+TEST_CASE("hybrid: a new stepper goes on with the same bits", "[hybrid]") {
+  const World w = swinging();
+  const Propose now_and_then = [](const State& from, const Points& solved) {
+    return from.frame % 4 == 2 ? noise(from, solved) : solved;
+  };
+  for (const HybridMode mode : all_modes) {
+    INFO("mode " << static_cast<int>(mode));
+    HybridOptions options;
+    options.mode = mode;
+    const Seen straight = follow(*hybrid(w.scene, now_and_then, options), w, w.state, 10);
+    State state = w.state;
+    for (int f = 0; f < 10; ++f) state = follow(*hybrid(w.scene, now_and_then, options), w, state, 1).state;
+    CHECK(same_bits(state.x, straight.state.x));
+    CHECK(same_bits(state.v, straight.state.v));
+  }
+}
+
+TEST_CASE("hybrid: a tangled start is left to the parent until it is clean", "[hybrid]") {
+  World w = testing::make_world(testing::tilted(testing::sheet(6, 0.2, 0), 1.2));
+  add_obstacle(w, testing::sheet(3, 0.6, 0.003));
+  const Seen seen = follow(*hybrid(w.scene, as_solved), w, w.state, 4);
+  CHECK(seen.verdicts.front() == Verdict::tangled);
+  CHECK(seen.fell_back == 0);
+}
+
+TEST_CASE("hybrid: any two steppers go together in the mode fallback", "[hybrid]") {
+  const World w = testing::swinging_sheet();
+  auto other = make_hybrid_stepper(
+      w.scene, {make_icm_stepper(w.scene, {}), make_recovering_conventional_stepper(w.scene), {}, {}}, {});
+  const Seen seen = follow(*other, w, w.state, 6);
+  CHECK(std::ranges::count(seen.verdicts, Verdict::admitted) > 0);
+  auto turned = make_hybrid_stepper(
+      w.scene, {make_recovering_conventional_stepper(w.scene), make_icm_stepper(w.scene, {}), {}, {}}, {});
+  CHECK(std::ranges::count(follow(*turned, w, w.state, 6).verdicts, Verdict::admitted) > 0);
+}
+
+TEST_CASE("hybrid: parts that lack what a mode needs are refused", "[hybrid]") {
+  const World w = testing::swinging_sheet();
+  HybridOptions options;
+  options.mode = HybridMode::refined;
+  CHECK_THROWS_AS(
+      make_hybrid_stepper(w.scene,
+                          {std::make_unique<FakeProposer>(w.scene, as_solved), make_icm_stepper(w.scene, {}), {}, {}},
+                          options),
+      Error);
+  options.mode = HybridMode::corrected;
+  CHECK_THROWS_AS(make_hybrid_stepper(w.scene,
+                                      {std::make_unique<FakeProposer>(w.scene, as_solved, 1),
+                                       make_recovering_conventional_stepper(w.scene),
+                                       {},
+                                       {}},
+                                      options),
+                  Error);
+}
+
+TEST_CASE("hybrid: a refined step is as good as the parent's", "[hybrid]") {
+  const World w = testing::swinging_sheet();
+  HybridOptions options;
+  options.mode = HybridMode::refined;
+  const auto stepper = hybrid(w.scene, as_solved, options);
+  const auto solver = make_recovering_conventional_stepper(w.scene);
+  const Seen begun = follow(*stepper, w, w.state, 3);
+  State refined, solved;
+  const StepReport report = stepper->step(begun.state, w.drive, dt, refined);
+  solver->step(begun.state, w.drive, dt, solved);
+  CHECK(report.verdict == Verdict::refined);
+  CHECK((refined.x - solved.x).rowwise().norm().maxCoeff() < 2e-3);
+}
+
+}  // namespace selvedge::test_hybrid_stepper
