@@ -27,7 +27,7 @@ HungSheet hung_sheet(double edge) {
         sheet.triangles.row(t++) << b, c, d;
       }
     }
-  sheet.pins = {0, cells};
+  for (int j = 0; j < columns; ++j) sheet.pins.push_back(j);
   return sheet;
 }
 

@@ -6,8 +6,8 @@
 
 namespace selvedge {
 
-// A square of cloth of 0.5 m at rest, upright in the plane z = 0, with its upper corners pinned; edges about `edge`
-// long [m]. What it hangs from may be anywhere: no body is near.
+// A square of cloth of 0.5 m at rest, upright in the plane z = 0, with its upper edge pinned; edges about `edge` long
+// [m].
 struct HungSheet {
   Points rest;  // [m]
   Triangles triangles;

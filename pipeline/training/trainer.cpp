@@ -98,7 +98,8 @@ bool are_cloth_edges_new(const Trainer& trainer) {
          are_blank(trainer.network.weights.tables.world_edge);
 }
 
-// Nodes make nothing yet of edges that are new to them: the network begins as what it was.
+// Nodes make nothing yet of edges that are new to them: the network begins as what it was. Of edges that the run does
+// not have they never will.
 void silence_cloth_edges(const Architecture& architecture, NetworkWeights& weights) {
   for (std::size_t s = 0; s < architecture.steps.size(); ++s) {
     const std::vector<std::string>& keys = architecture.steps[s].edge_keys;
@@ -122,6 +123,7 @@ void warm_up(Trainer& trainer) {
   freeze_statistics(trainer.sums, fresh);
   if (begins) {
     tables = fresh;
+    if (!trainer.options.contact.edges) silence_cloth_edges(trainer.architecture, trainer.network.weights);
     return;
   }
   if (space_edges) tables.space_edge = fresh.space_edge;
