@@ -5,6 +5,11 @@
 
 namespace selvedge {
 
+bool are_blank(const Statistics& statistics) {
+  return std::ranges::all_of(statistics.mean, [](float m) { return m == 0; }) &&
+         std::ranges::all_of(statistics.deviation, [](float d) { return d == 1; });
+}
+
 template <class Real>
 void accumulate(BasicAccumulators<Real>& sums, const FeatureRows& raw) {
   if (sums.updates >= most_updates) return;

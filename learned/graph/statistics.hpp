@@ -11,6 +11,9 @@ struct Statistics {
   std::vector<float> mean, deviation;
 };
 
+// Whether nothing was ever gathered for them: mean 0 and deviation 1 everywhere, as weights begin.
+bool are_blank(const Statistics&);
+
 // What is summed up of the normalised columns of a feature set while a network is trained. Float holds what the
 // authors' checkpoints hold; own training sums in double.
 template <class Real>

@@ -50,6 +50,7 @@ void freeze_statistics(const FeatureSums<double>& sums, FeatureTables& tables) {
   freeze(sums.world_edge, tables.world_edge);
   freeze(sums.body_edge, tables.body_edge);
   freeze(sums.output, tables.output);
+  freeze(sums.space_edge, tables.space_edge);
 }
 
 void embed_again(const FeatureOptions& options, const FeatureTables& tables, Graph& graph) {

@@ -70,9 +70,10 @@ struct Architecture {
   int passes = 1;  // runs of the network a frame, all with the same weights
 };
 
-// hood, hood_cvpr, fine15, fine48, contourcraft, contourcraft_paper, senc, small, small_contour, tiny (`preset_names`).
-// Sizes of the published ones: reference/weights.md; the last three are ours (reference/training.md): `small` is blind
-// to contact of cloth with cloth, `tiny` is for tests. Throws Error at any other name.
+// hood, hood_cvpr, fine15, fine48, contourcraft, contourcraft_paper, senc, small, small_contour, small_senc,
+// small_senc_layers, tiny (`preset_names`). Sizes of the published ones: reference/weights.md; the last five are ours
+// (reference/training.md): `small` is blind to contact of cloth with cloth, `small_senc` sees what SENC does,
+// `small_senc_layers` that and the edges of `small_contour`, `tiny` is for tests. Throws Error at any other name.
 Architecture architecture_preset(const std::string& name);
 std::vector<std::string> preset_names();
 

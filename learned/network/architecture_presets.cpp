@@ -130,14 +130,16 @@ FeatureOptions own_features() {
   return options;
 }
 
-// Ours, for two cores. With `contact`, cloth sees cloth.
-Architecture own(const std::string& name, int width, int steps, bool contact) {
+// Ours, for two cores. With `contact`, cloth sees cloth by vertices and faces; with `forces`, a network sees what SENC
+// does: accelerations by forces without contact, and edges in space.
+Architecture own(const std::string& name, int width, int steps, bool contact, bool forces = false) {
   Architecture a;
   a.name = name;
   a.width = width;
   a.hidden_layers = 1;
   a.features = own_features();
   a.features.cloth_edges = contact;
+  a.features.acceleration_inputs = a.features.space_edges = forces;
   a.node_inputs = node_widths(a.features).all;
   const FeatureWidths mesh = mesh_edge_widths(a.features), cloth = cloth_edge_widths(a.features);
   add_edges(a, "mesh", mesh.all, mesh.normalised, {"mesh_edge"});
@@ -146,13 +148,16 @@ Architecture own(const std::string& name, int width, int steps, bool contact) {
   if (contact)
     for (const std::string kind : {"repulsion", "attraction"})
       add_edges(a, kind, cloth.all, cloth.normalised, {kind + "_edge"});
+  if (forces) add_edges(a, "space", mesh.all, mesh.normalised, {"space_edge"});
   MessageStep step{{"coarse_edge0", "coarse_edge1", "mesh_edge"}, {}};
   if (contact) step.edge_keys = {"attraction_edge", "coarse_edge0", "coarse_edge1", "mesh_edge", "repulsion_edge"};
+  if (forces) step.edge_keys.push_back("space_edge");
   add_steps(a, steps, step);
   a.statistics = {.node = node_widths(a.features).normalised,
                   .mesh_edge = mesh.normalised,
                   .coarse_edge = mesh.normalised,
-                  .world_edge = contact ? cloth.normalised : 0};
+                  .world_edge = contact ? cloth.normalised : 0,
+                  .space_edge = forces ? mesh.normalised : 0};
   a.passes = 2;
   return a;
 }
@@ -160,8 +165,8 @@ Architecture own(const std::string& name, int width, int steps, bool contact) {
 }  // namespace
 
 std::vector<std::string> preset_names() {
-  return {"hood", "hood_cvpr", "fine15",        "fine48", "contourcraft", "contourcraft_paper",
-          "senc", "small",     "small_contour", "tiny"};
+  return {"hood", "hood_cvpr", "fine15",        "fine48",     "contourcraft",      "contourcraft_paper",
+          "senc", "small",     "small_contour", "small_senc", "small_senc_layers", "tiny"};
 }
 
 Architecture architecture_preset(const std::string& name) {
@@ -174,6 +179,7 @@ Architecture architecture_preset(const std::string& name) {
   if (name == "contourcraft_paper") return contour(name, contourcraft_paper_features(), {"0", "1"}, {"0", "1"});
   if (name == "senc") return senc();
   if (name == "small" || name == "small_contour") return own(name, 64, 6, name == "small_contour");
+  if (name == "small_senc" || name == "small_senc_layers") return own(name, 64, 6, name == "small_senc_layers", true);
   if (name == "tiny") return own(name, 32, 3, true);
   std::string known;
   for (const std::string& preset : preset_names()) known += (known.empty() ? "" : ", ") + preset;

@@ -38,11 +38,17 @@ std::vector<PlanLine> learned_plan_lines(const Scene& scene, const Architecture&
                        " levels; a piece too small for one has none"});
   lines.push_back(body_edges_line(scene, options));
   lines.push_back(cloth_edges_line(scene, options));
+  if (options.space_edges)
+    lines.push_back({"space edges", true, "between vertices of cloth that are near each other and no mesh edge joins"});
   for (const std::string& text : learned_scene(scene).clamped) lines.push_back({"material", false, text});
   const Features features = features_of(scene);
-  if (features.wind) lines.push_back({"wind", false, "the network knows none"});
+  const bool forces = options.acceleration_inputs;
+  if (features.wind)
+    lines.push_back({"wind", forces, forces ? "on each triangle, among the inputs" : "the network knows none"});
   if (features.springs) lines.push_back({"springs", false, "the network knows none"});
-  lines.push_back({"gravity", false, "as the network was trained in it, whatever the scene says"});
+  lines.push_back(
+      {"gravity", forces,
+       forces ? "the scene's, among the inputs" : "as the network was trained in it, whatever the scene says"});
   lines.push_back({"detection and response", false, "what passes through is found by the audits"});
   return lines;
 }

@@ -117,7 +117,8 @@ LossGarment loss_garment(const Scene& scene) {
 void check_runnable(const Architecture& architecture) {
   const FeatureOptions& options = architecture.features;
   const auto inputs_of = [&](const std::string& key) {
-    if (key == "mesh_edge" || key.starts_with("coarse_edge")) return mesh_edge_widths(options).all;
+    if (key == "mesh_edge" || key == "space_edge" || key.starts_with("coarse_edge"))
+      return mesh_edge_widths(options).all;
     return key == options.body_key ? body_edge_widths(options).all : cloth_edge_widths(options).all;
   };
   bool fits = node_widths(options).all == architecture.node_inputs && architecture.outputs == 3 &&

@@ -14,18 +14,17 @@ Eigen::Index obstacle_rows(const State& state) {
   return rows;
 }
 
-// By gravity and by the wind on each triangle [m/s2].
-Points free_acceleration(const Scene& scene, const State& from, const Drive& drive) {
-  Points acceleration = drive.acceleration.transpose().replicate(from.x.rows(), 1);
+}  // namespace
+
+Points free_acceleration(const Scene& scene, const Points& x, const Points& v, const Drive& drive) {
+  Points acceleration = drive.acceleration.transpose().replicate(x.rows(), 1);
   if (!scene.wind.on) return acceleration;
-  const Points forces = wind_forces(scene, from.x, from.v, drive.wind);
+  const Points forces = wind_forces(scene, x, v, drive.wind);
   const Eigen::VectorXd mass = lumped_masses(scene);
-  for (Eigen::Index v = 0; v < mass.size(); ++v)
-    if (mass[v] > 0) acceleration.row(v) += forces.row(v) / mass[v];
+  for (Eigen::Index i = 0; i < mass.size(); ++i)
+    if (mass[i] > 0) acceleration.row(i) += forces.row(i) / mass[i];
   return acceleration;
 }
-
-}  // namespace
 
 bool sees_cloth_edges(const Scene& scene) { return scene.contact.self || scene.cloths.size() > 1; }
 
@@ -43,7 +42,7 @@ GraphState graph_state(const Scene& scene, const State& from, const Drive& drive
   state.body = joined_rows(from.obstacles);
   state.body_target = joined_rows(drive.obstacles);
   state.timestep = learned_dt;
-  state.acceleration = free_acceleration(scene, from, drive);
+  state.acceleration = free_acceleration(scene, from.x, from.v, drive);
   state.no_cloth_edges = !sees_cloth_edges(scene);
   if (begins_rollout(from)) {
     state.velocity = from.v * learned_dt;

@@ -12,6 +12,9 @@ namespace selvedge {
 constexpr double learned_dt = 1.0 / 30;    // of a frame [s]; networks are trained with it
 constexpr double settling_time = 1.0 / 3;  // that the pass counts in which cloth falls to rest [s]
 
+// By the drive's acceleration and, where the scene has wind, by the wind on each triangle, V x 3 [m/s2]; v in m/s.
+Points free_acceleration(const Scene&, const Points& x, const Points& v, const Drive&);
+
 // Whether cloth is to see cloth: there are several, or contact of a cloth with itself is asked for.
 bool sees_cloth_edges(const Scene&);
 

@@ -76,6 +76,7 @@ void LearnedStepper::show_force(GraphState& state) {
   LossInputs inputs = loss_inputs(losses_, graph_scene_, state, seen, guess);
   inputs.is_initial = state.timestep > learned_dt * 1.5;
   inputs.contours = !state.no_cloth_edges;
+  if (features_.acceleration_inputs) inputs.acceleration = &state.acceleration;
   state.force = shown_force(inputs, state.pass, features_.contour_force, force_search_);
 }
 
@@ -146,7 +147,10 @@ StepReport LearnedStepper::step(const State& from, const Drive& drive, double dt
   if (!is_near(state.x) || !is_near(state.velocity) || !is_near(state.target) || !is_near(state.body) ||
       !is_near(state.body_target))
     return report;
-  if (settles_ && begins_rollout(from) && !settle(state, report)) return report;
+  if (settles_ && begins_rollout(from)) {
+    if (!settle(state, report)) return report;
+    state.acceleration = free_acceleration(scene_, state.x, state.velocity / learned_dt, drive);
+  }
   NextCloth next;
   if (!predict(state, next, report)) return report;
 

@@ -20,9 +20,10 @@ struct LearnedOptions {
 // s while the body stands still. ContourCraft does so, with its flag is_init and without cloth-cloth edges, only where
 // the options ask for it.
 //
-// The network knows no wind, no springs, and no gravity but the one that it was trained in. Nothing detects or undoes
-// what passes through on the way: the audits of motion and of positions find and report it. A state or a prediction
-// that is not finite, or beyond 1000 km, rejects the step with the reason `not_finite`.
+// A network with inputs for accelerations (SENC) is shown those of the drive and of the wind. Others know no wind, and
+// no gravity but the one that they were trained in; none knows springs. Nothing detects or undoes what passes through
+// on the way: the audits of motion and of positions find and report it. A state or a prediction that is not finite, or
+// beyond 1000 km, rejects the step with the reason `not_finite`.
 //
 // Keeps a reference to the scene, and copies what it needs of the weights. Throws Error for weights that are not of the
 // architecture's shapes, for inputs that the stepper does not make, and for a scene that is no graph

@@ -25,6 +25,11 @@ void set_surroundings(RollingState& state) {
   state.now.timestep = settling ? settling_time : learned_dt;
   state.now.is_init = settling;
   state.now.no_cloth_edges = settling || !roll.request.cloth_contact;
+  if (roll.shows_forces)
+    state.now.acceleration =
+        free_acceleration(roll.scene->scene, state.now.x, state.now.velocity / learned_dt, roll.forces);
+  else
+    state.now.acceleration.resize(0, 3);
   state.now.guess.resize(0, 3);
   state.now.force.resize(0, 3);
   state.now.pass = state.pass = 0;
@@ -80,6 +85,7 @@ LossInputs inputs_of(const RollingState& state, const SeenPositions& seen, const
   inputs.repulsion = state.found.cloth_pairs.repulsion;
   inputs.contours = !is_settling(state) && state.roll.request.cloth_contact;
   inputs.is_initial = is_settling(state);
+  if (state.now.acceleration.rows() > 0) inputs.acceleration = &state.now.acceleration;
   inputs.progress = progress;
   return inputs;
 }

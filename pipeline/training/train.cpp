@@ -132,6 +132,13 @@ bool is_due(const TrainingRun& run, long step, int times) {
   return step % every == 0 || step == run.options.steps;
 }
 
+// Whether this step is the first at or after the part of the run at which weights are kept.
+bool is_kept_now(const TrainingRun& run) {
+  const double at = run.options.watch.keep_at * run.options.steps;
+  const auto step = static_cast<double>(run.trainer->counts.step);
+  return at > 0 && step >= at && step - 1 < at;
+}
+
 bool is_paused(const TrainingRun& run) { return std::filesystem::exists(pause_file(run.folder)); }
 
 // False: stopped before the last step.
@@ -142,6 +149,7 @@ bool run_steps(TrainingRun& run) {
     const StepRecord record = train_step(trainer);
     run.window.add(record);
     if (record.bad.empty()) {
+      if (is_kept_now(run)) write_weights(run, "kept.h5");
       if (is_due(run, trainer.counts.step, lines_of_a_run))
         run.history.steps += run.window.take_line(trainer, run.seconds());
       if (is_due(run, trainer.counts.step, run.options.watch.measurements)) take_measure(run);

@@ -11,26 +11,42 @@
 #include "learned/graph/warm_up.hpp"
 #include "learned/network/architecture_text.hpp"
 #include "learned/network/weights_hdf5.hpp"
+#include "learned/network/widen_weights.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/training/flesh_hdf5.hpp"
 
 namespace selvedge {
 namespace {
 
+// Weights of an earlier stage, or of a network that sees less. What a stage changes counts for nothing.
 NetworkWeights first_weights(const TrainingOptions& options, const Architecture& architecture) {
   if (options.weights.empty())
     return initial_weights(architecture, options.seed, {.last_layer_scale = options.optimiser.decoder_scale});
   WeightFile file = read_weight_file(options.weights);
-  Architecture& theirs = file.architecture;  // what a stage changes counts for nothing
+  Architecture& theirs = file.architecture;
+  const FeatureOptions &ours = architecture.features, had = theirs.features;
   theirs.name = architecture.name;
-  theirs.features.contours = architecture.features.contours;
-  theirs.features.contour_force = architecture.features.contour_force;
-  theirs.features.attraction_edges = architecture.features.attraction_edges;
+  theirs.features.contours = ours.contours;
+  theirs.features.contour_force = ours.contour_force;
+  theirs.features.attraction_edges = ours.attraction_edges;
+  theirs.features.space = ours.space;
   theirs.passes = architecture.passes;
-  if (architecture_text(theirs) != architecture_text(architecture))
+  if (architecture_text(theirs) == architecture_text(architecture)) return std::move(file.weights);
+  Architecture wide = theirs;
+  wide.features.cloth_edges = ours.cloth_edges;
+  wide.features.acceleration_inputs = ours.acceleration_inputs;
+  wide.features.space_edges = ours.space_edges;
+  wide.node_inputs = architecture.node_inputs;
+  wide.encoders = architecture.encoders;
+  wide.edge_kinds = architecture.edge_kinds;
+  wide.steps = architecture.steps;
+  wide.statistics = architecture.statistics;
+  const bool sees_more =
+      (ours.acceleration_inputs && !had.acceleration_inputs) || (ours.space_edges && !had.space_edges);
+  if (!sees_more || architecture_text(wide) != architecture_text(architecture))
     throw Error("holds weights of another network than `" + architecture.name + "` as configured", options.weights,
                 "give the architecture, width and message_steps that they were trained with");
-  return std::move(file.weights);
+  return widen_weights(theirs, file.weights, architecture, options.seed);
 }
 
 // Feeds one state to the sums: the first pass, and in networks of several passes one whose guess is the garment as
@@ -61,17 +77,29 @@ void gather_warm_up(Trainer& trainer) {
   }
 }
 
+// The columns of accelerations are the last ones that are normalised.
+constexpr std::ptrdiff_t acceleration_columns = 3;
+bool are_accelerations_new(const Trainer& trainer) {
+  if (!trainer.architecture.features.acceleration_inputs) return false;
+  const Statistics& node = trainer.network.weights.tables.node;
+  return are_blank({{node.mean.end() - acceleration_columns, node.mean.end()},
+                    {node.deviation.end() - acceleration_columns, node.deviation.end()}});
+}
+
+bool are_space_edges_new(const Trainer& trainer) {
+  return trainer.architecture.features.space_edges && are_blank(trainer.network.weights.tables.space_edge);
+}
+
 bool is_cloth_edge(const std::string& key) { return key == "repulsion_edge" || key == "attraction_edge"; }
 
 // Whether edges of cloth with cloth are new to weights of an earlier stage: their statistics were never gathered.
 bool are_cloth_edges_new(const Trainer& trainer) {
-  const Statistics& seen = trainer.network.weights.tables.world_edge;
   return trainer.architecture.features.cloth_edges && trainer.options.contact.edges &&
-         std::ranges::all_of(seen.mean, [](float m) { return m == 0; }) &&
-         std::ranges::all_of(seen.deviation, [](float d) { return d == 1; });
+         are_blank(trainer.network.weights.tables.world_edge);
 }
 
-// Nodes make nothing yet of edges that are new to them: the network begins as what it was.
+// Nodes make nothing yet of edges that are new to them: the network begins as what it was. Of edges that the run does
+// not have they never will.
 void silence_cloth_edges(const Architecture& architecture, NetworkWeights& weights) {
   for (std::size_t s = 0; s < architecture.steps.size(); ++s) {
     const std::vector<std::string>& keys = architecture.steps[s].edge_keys;
@@ -87,15 +115,25 @@ void silence_cloth_edges(const Architecture& architecture, NetworkWeights& weigh
 // Statistics of all inputs; with weights of an earlier stage only of those that it did not have.
 void warm_up(Trainer& trainer) {
   FeatureTables& tables = trainer.network.weights.tables;
-  const bool begins = trainer.options.weights.empty();
-  if (!begins && !are_cloth_edges_new(trainer)) return;
+  const bool begins = trainer.options.weights.empty(), cloth_edges = are_cloth_edges_new(trainer),
+             space_edges = are_space_edges_new(trainer), accelerations = are_accelerations_new(trainer);
+  if (!begins && !cloth_edges && !space_edges && !accelerations) return;
   gather_warm_up(trainer);
   FeatureTables fresh = tables;
   freeze_statistics(trainer.sums, fresh);
   if (begins) {
     tables = fresh;
+    if (!trainer.options.contact.edges) silence_cloth_edges(trainer.architecture, trainer.network.weights);
     return;
   }
+  if (space_edges) tables.space_edge = fresh.space_edge;
+  if (accelerations) {
+    std::copy(fresh.node.mean.end() - acceleration_columns, fresh.node.mean.end(),
+              tables.node.mean.end() - acceleration_columns);
+    std::copy(fresh.node.deviation.end() - acceleration_columns, fresh.node.deviation.end(),
+              tables.node.deviation.end() - acceleration_columns);
+  }
+  if (!cloth_edges) return;
   tables.world_edge = fresh.world_edge;
   silence_cloth_edges(trainer.architecture, trainer.network.weights);
 }
@@ -215,6 +253,10 @@ Architecture trained_architecture(const TrainingOptions& options) {
   architecture.passes = options.pool.passes;
   FeatureOptions& features = architecture.features;
   features.contour_force = options.contour_force;
+  if (features.space_edges) features.space = options.space;
+  if (options.samples.forces.strongest > 0 && !features.acceleration_inputs)
+    throw Error("the network `" + architecture.name + "` sees no forces", options.name + ": samples.forces.strongest",
+                "take the architecture small_senc, small_senc_layers or senc, or leave the forces out");
   features.attraction_edges = options.contact.attraction;
   if (features.cloth_edges && !options.contact.classify) features.contours = ContourRule::all_repel;
   check_architecture(architecture, options.name);

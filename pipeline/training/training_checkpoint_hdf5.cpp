@@ -11,7 +11,7 @@
 namespace selvedge {
 namespace {
 
-const h5::FileForm checkpoint_form{"selvedge training checkpoint 1", "training checkpoint", "docs/training.md"};
+const h5::FileForm checkpoint_form{"selvedge training checkpoint 2", "training checkpoint", "docs/training.md"};
 
 template <class T>
 std::string bytes_of(const std::vector<T>& values) {
@@ -96,7 +96,12 @@ std::vector<double> numbers_of(const RollRequest& r) {
           double(r.mirrored),
           double(r.with_body),
           double(r.cloth_contact),
-          r.yaw};
+          r.yaw,
+          double(r.sheet),
+          double(r.wind),
+          r.force.x(),
+          r.force.y(),
+          r.force.z()};
 }
 
 RollRequest request_of(const FieldsIn& in, const TrainingWorld& world, const double* n) {
@@ -110,14 +115,17 @@ RollRequest request_of(const FieldsIn& in, const TrainingWorld& world, const dou
                 n[7] != 0,
                 n[8] != 0,
                 n[9] != 0,
-                n[10]};
+                n[10],
+                n[11] != 0,
+                n[12] != 0,
+                {n[13], n[14], n[15]}};
   const bool known = r.wear >= 0 && r.wear < int(world.wear.size()) && r.body >= 0 &&
                      r.body < int(world.bodies.size()) && r.clip >= 0 && r.clip < int(world.clip_names.size()) &&
                      r.frames >= 1 && r.frames < 100000;
   if (!known) in.fail("names a roll-out that the configuration does not have");
   return r;
 }
-constexpr std::size_t request_numbers = 11;
+constexpr std::size_t request_numbers = 16;
 
 std::vector<float> all_weights(const Architecture& architecture, NetworkWeights weights) {
   std::vector<float> all;
@@ -146,6 +154,7 @@ void visit_sums(Sums& sums, const Visit& visit) {
   visit("world_edge", sums.world_edge);
   visit("body_edge", sums.body_edge);
   visit("output", sums.output);
+  visit("space_edge", sums.space_edge);
 }
 
 void write_adam(FieldsOut& out, const Trainer& trainer) {

@@ -46,6 +46,19 @@ const Options<VertexMaterial>& training_material_options() {
   return table;
 }
 
+const Options<ForceSampling>& force_sampling_options() {
+  using O = ForceSampling;
+  static const Options<O> table(
+      "forces", "On the cloth beside gravity, of networks with inputs for accelerations; one a roll-out.",
+      {number("strongest", &O::strongest, Unit::acceleration, not_negative,
+              "the strength is uniform up to here, the direction on the sphere; 0: none"),
+       number("wind_share", &O::wind_share, Unit::none, from_0_to_1,
+              "of roll-outs: a wind on each triangle, as strong on one that faces it"),
+       number("sheet_share", &O::sheet_share, Unit::none, from_0_to_1,
+              "of roll-outs: of a hung sheet without a body, in place of a garment")});
+  return table;
+}
+
 const Options<SampleOptions>& sample_options() {
   using O = SampleOptions;
   static const Options<O> table(
@@ -69,7 +82,8 @@ const Options<SampleOptions>& sample_options() {
                {"untangle", GarmentStart::untangle},
                {"tangled", GarmentStart::tangled}},
               "`skinned`: where the body takes the garment; `untangle`: the same, parted; `tangled`: without the "
-              "gap between layers and with flesh that does not give way")});
+              "gap between layers and with flesh that does not give way"),
+       section(&O::forces, force_sampling_options(), "")});
   return table;
 }
 
@@ -103,6 +117,22 @@ const Options<ContactOptions>& training_contact_options() {
       {flag("edges", &O::edges, "of cloth with cloth, in the graph"),
        flag("classify", &O::classify, "pairs repel or not by contours; false: all repel"),
        flag("attraction", &O::attraction, "pairs that do not repel are edges; false: they are left out")});
+  return table;
+}
+
+const Options<SpaceOptions>& space_options() {
+  using O = SpaceOptions;
+  static const Options<O> table(
+      "space", "Edges between vertices of cloth near each other, of networks that have them.",
+      {number("radius", &O::radius, Unit::length, not_negative, "0: there are none"),
+       number("radius_in_edges", &O::radius_in_edges, Unit::none, not_negative,
+              "above 0: the radius in mean mesh edges at rest, in place of `radius`"),
+       flag("mesh_pairs", &O::mesh_pairs, "with pairs that a mesh edge joins"),
+       flag("rest_pairs", &O::rest_pairs, "with pairs that are as near at rest"),
+       integer("nearest", &O::nearest, not_negative,
+               "above 0: only so many nearest of each vertex, and one direction (10: as released)"),
+       integer("pairs_per_vertex", &O::pairs_per_vertex, at_least_one,
+               "on average; those farthest apart beyond are left out and counted")});
   return table;
 }
 
@@ -154,6 +184,43 @@ const Options<ContourLoss>& contour_options() {
   return table;
 }
 
+const Options<PenetrationOptions>& region_options() {
+  using O = PenetrationOptions;
+  static const Options<O> table(
+      "regions", "Which volume contours enclose.",
+      {choice("rule", &O::regions, {{"single", RegionRule::single}, {"parity", RegionRule::parity}},
+              "`single`: of each contour alone, as published; `parity`: of those with the same partner together"),
+       choice("side", &O::smaller, {{"faces", SmallerSide::faces}, {"area", SmallerSide::area}},
+              "what the side that counts as inside has less of")});
+  return table;
+}
+
+const Options<VolumeLoss>& volume_options() {
+  using O = VolumeLoss;
+  static const Options<O> table(
+      "volume", "What self-penetrating cloth encloses (Liao et al. 2024).",
+      {ramp("weight", &O::weight, "[J/m3] of 6 times the volume, as published 3e4; of `area` [J/m2]"),
+       choice("form", &O::form, {{"enclosed", VolumeForm::enclosed}, {"winding", VolumeForm::winding}},
+              "`enclosed`: holes closed by fans; `winding`: by winding numbers, without fans"),
+       section(&O::regions, region_options(), ""),
+       choice("measure", &O::measure, {{"volume", PenetrationMeasure::volume}, {"area", PenetrationMeasure::area}}, ""),
+       choice("crossings", &O::crossings,
+              {{"exact", CrossingMotion::exact},
+               {"frozen_on_edge", CrossingMotion::frozen_on_edge},
+               {"frozen_on_face", CrossingMotion::frozen_on_face}},
+              "how they follow the vertices: `exact`: they slide; the others as published")});
+  return table;
+}
+
+const Options<VertexRepulsionLoss>& vertex_repulsion_options() {
+  using O = VertexRepulsionLoss;
+  static const Options<O> table("vertex_repulsion", "Of vertices that no edge joins (Liao et al. 2024, appendix A).",
+                                {ramp("weight", &O::weight, "[J/m] or [J/m2], by the power"),
+                                 number("distance", &O::distance, Unit::length, positive, "below which they repel"),
+                                 integer("power", &O::power, {.low = 1, .high = 2}, "of what lacks to that")});
+  return table;
+}
+
 const Options<LossOptions>& objective_options() {
   using O = LossOptions;
   static const Options<O> table(
@@ -161,7 +228,8 @@ const Options<LossOptions>& objective_options() {
       {ramp("stretching", &O::stretching, ""), ramp("bending", &O::bending, ""), ramp("gravity", &O::gravity, ""),
        ramp("inertia", &O::inertia, ""), section(&O::collision, collision_options(), ""),
        section(&O::friction, friction_options(), ""), section(&O::repulsion, repulsion_options(), ""),
-       section(&O::contours, contour_options(), ""),
+       section(&O::contours, contour_options(), ""), section(&O::volume, volume_options(), ""),
+       section(&O::vertex_repulsion, vertex_repulsion_options(), ""),
        number("gravity_strength", &O::gravity_strength, Unit::none, not_negative, "against y [m/s2]"),
        number("relaxation_dt", &O::relaxation_dt, Unit::time, positive,
               "of the inertia of a frame in which cloth falls to rest")});
@@ -197,7 +265,9 @@ const Options<WatchOptions>& watch_options() {
        text("clip", &O::clip, "of the measuring roll-out"),
        integer("fixed_states", &O::fixed_states, at_least_one, "of which the gap to the optimum is printed"),
        integer("most_bad_samples", &O::most_bad_samples, at_least_one,
-               "without a finite loss, one after another, before the run stops")});
+               "without a finite loss, one after another, before the run stops"),
+       number("keep_at", &O::keep_at, Unit::none, from_0_to_1,
+              "part of the run at which the weights are kept as `kept.h5`; 0: they are not")});
   return table;
 }
 
@@ -251,8 +321,9 @@ const Options<TrainingOptions>& training_options() {
        integer("seed", &O::seed, not_negative, "of all that is random"),
        integer("steps", &O::steps, at_least_one, "of the optimiser, in all"),
        section(&O::samples, sample_options(), ""), section(&O::pool, pool_options(), ""),
-       section(&O::contact, training_contact_options(), ""), section(&O::objective, objective_options(), ""),
-       section(&O::optimiser, optimiser_options(), ""), section(&O::watch, watch_options(), "")});
+       section(&O::contact, training_contact_options(), ""), section(&O::space, space_options(), ""),
+       section(&O::objective, objective_options(), ""), section(&O::optimiser, optimiser_options(), ""),
+       section(&O::watch, watch_options(), "")});
   return table;
 }
 
@@ -270,9 +341,11 @@ std::string training_reference() {
   std::string page;
   for (const Section* section :
        {&training_options().section, &sample_options().section, &training_material_options().section,
-        &pool_options().section, &training_contact_options().section, &objective_options().section,
-        &collision_options().section, &friction_options().section, &repulsion_options().section,
-        &contour_options().section, &optimiser_options().section, &watch_options().section, &ramp_options().section}) {
+        &force_sampling_options().section, &pool_options().section, &training_contact_options().section,
+        &space_options().section, &objective_options().section, &collision_options().section,
+        &friction_options().section, &repulsion_options().section, &contour_options().section,
+        &volume_options().section, &region_options().section, &vertex_repulsion_options().section,
+        &optimiser_options().section, &watch_options().section, &ramp_options().section}) {
     page += "### " + section->name + "\n\n";
     if (!section->about.empty()) page += section->about + "\n\n";
     page += section_markdown(*section) + "\n";
@@ -299,6 +372,8 @@ std::vector<std::string> unfinished_ramps(const TrainingOptions& options) {
   check("objective.friction.weight", losses.friction.weight);
   check("objective.repulsion.weight", losses.repulsion.weight);
   check("objective.contours.weight", losses.contours.weight);
+  check("objective.volume.weight", losses.volume.weight);
+  check("objective.vertex_repulsion.weight", losses.vertex_repulsion.weight);
   return complaints;
 }
 

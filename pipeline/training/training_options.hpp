@@ -5,11 +5,20 @@
 #include <string>
 #include <vector>
 
+#include "learned/graph/feature_options.hpp"
 #include "learned/losses/loss_garment.hpp"
 #include "pipeline/config/options.hpp"
 #include "pipeline/training/schedule.hpp"
 
 namespace selvedge {
+
+// Forces on the cloth beside gravity, of networks that see accelerations (Liao et al. 2024, section 3.1): each roll-out
+// has a direction on the sphere and a strength of its own.
+struct ForceSampling {
+  double strongest = 0;     // the strength is uniform up to here [m/s2]; 0: there are no such forces
+  double wind_share = 0.5;  // of roll-outs: a wind on each triangle, as strong on one that faces it
+  double sheet_share = 0;   // of roll-outs: of a hung sheet without a body, in place of a garment
+};
 
 enum class GarmentStart {
   skinned,   // where the body takes the garment, maybe tangled
@@ -32,6 +41,7 @@ struct SampleOptions {
   double no_body_share = 0;                     // of roll-outs
   bool flesh = true;                            // the body gives way where it would pass through itself
   GarmentStart start = GarmentStart::skinned;
+  ForceSampling forces;
 };
 
 // How states are rolled out.
@@ -77,6 +87,7 @@ struct WatchOptions {
   std::string clip = "walk";  // of the training split
   int fixed_states = 8;
   int most_bad_samples = 50;  // without a finite loss in a row, before the run stops
+  double keep_at = 0;         // part of the run at which weights are kept as kept.h5; 0: they are not
 };
 
 struct TrainingOptions {
@@ -90,6 +101,7 @@ struct TrainingOptions {
   SampleOptions samples;
   PoolOptions pool;
   ContactOptions contact;
+  SpaceOptions space;
   LossOptions objective = fast_losses();
   OptimiserOptions optimiser;
   WatchOptions watch;

@@ -112,8 +112,7 @@ std::string escaped(const std::string& text) {
 std::string training_page(const TrainingOptions& options, const std::string& steps_csv,
                           const std::string& measures_csv) {
   const CsvColumns steps(steps_csv), measures(measures_csv);
-  const std::vector<std::string> terms{"stretching", "bending",  "gravity",   "inertia",
-                                       "collision",  "friction", "repulsion", "contours"};
+  const std::vector<std::string> terms(loss_names.begin(), loss_names.end());
   std::vector<std::string> shares;
   for (const std::string& term : terms) shares.push_back(term + "_share");
   const std::vector<double>&at = steps["step"], &measured = measures["step"];
@@ -134,6 +133,8 @@ std::string training_page(const TrainingOptions& options, const std::string& ste
   page += chart("Roll-out on a training clip: strain", measured, columns_of(measures, {"strain", "strain_99"}), true);
   page += chart("Roll-out: objective [J]", measured, columns_of(measures, {"energy"}), true);
   page += chart("Roll-out: intersecting pairs", measured, columns_of(measures, {"pairs", "pairs_at_end"}), false);
+  page += chart("Roll-out: volume that cloth encloses with itself [cm^3]", measured, columns_of(measures, {"volume"}),
+                false);
   page += chart("Roll-out: vertices deeper than 1 mm in the body", measured, columns_of(measures, {"deep"}), false);
   page += chart("Roll-out: jitter [m/frame^2]", measured, columns_of(measures, {"jitter"}), true);
   page += chart("Roll-out: kinetic energy [J]", measured, columns_of(measures, {"kinetic"}), true);

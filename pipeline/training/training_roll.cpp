@@ -8,6 +8,7 @@
 #include "collision/untangle/untangle.hpp"
 #include "learned/steppers/learned_scene.hpp"
 #include "pipeline/scene/setup_cloth.hpp"
+#include "pipeline/training/hung_sheet.hpp"
 
 namespace selvedge {
 namespace {
@@ -17,23 +18,21 @@ enum Use : std::uint64_t { drawing = 1, start_noise = 2, material_draw = 3, plac
 
 RandomStream stream_for(std::uint64_t seed, Use use, std::uint64_t number) { return stream_of(seed * 8 + use, number); }
 
-void add_garment(const TrainingWorld& world, const Garment& garment, const Eigen::VectorXd& shape, bool mirrored,
-                 const Material& material, Scene& scene, Triangles& triangles) {
-  Points rest = rest_shape(garment, world.body, shape);
-  Triangles own = garment.skin.triangles;
+void add_cloth_part(const std::string& name, Points rest, Triangles own, const std::vector<int>& pins, bool mirrored,
+                    const Material& material, Scene& scene, Triangles& triangles) {
   if (mirrored) {
     rest.col(0) *= -1;
     own.col(1).swap(own.col(2));
   }
   const auto v = static_cast<int>(scene.rest.rows()), t = static_cast<int>(triangles.rows());
-  scene.cloths.push_back({garment.name, material, v, static_cast<int>(rest.rows()), t, static_cast<int>(own.rows())});
+  scene.cloths.push_back({name, material, v, static_cast<int>(rest.rows()), t, static_cast<int>(own.rows())});
   const std::vector<RestTriangle> flat = flattened(rest, own, Vec3(0, 1, 0));
   scene.rest_triangle.insert(scene.rest_triangle.end(), flat.begin(), flat.end());
   scene.rest.conservativeResize(v + rest.rows(), 3);
   scene.rest.bottomRows(rest.rows()) = rest;
   triangles.conservativeResize(t + own.rows(), 3);
   triangles.bottomRows(own.rows()) = own.array() + v;
-  for (const int pin : garment.pins) scene.pins.push_back(v + pin);
+  for (const int pin : pins) scene.pins.push_back(v + pin);
 }
 
 Material isotropic(const VertexMaterial& values) {
@@ -79,9 +78,38 @@ std::shared_ptr<const TrainingScene> scene_of(RollMaker& maker, const RollReques
     RandomStream random = stream_for(maker.options.seed, material_draw, request.number);
     return make_training_scene(maker, request, random_material(random));
   }
-  auto& scene = maker.scenes[{request.wear, request.body, request.mirrored, request.with_body}];
+  auto& scene =
+      maker.scenes[{request.wear, request.body, request.mirrored, request.with_body, request.sheet, request.wind}];
   if (!scene) scene = make_training_scene(maker, request, maker.options.samples.material);
   return scene;
+}
+
+// Where what is worn is in a frame, turned as the roll-out is.
+WornFrame frame_of(RollMaker& maker, const RollRequest& request, const RollRequest& at, int k) {
+  WornFrame frame;
+  if (request.sheet)
+    frame.cloth = hung_sheet(maker.options.samples.edge).rest.cast<float>();
+  else
+    frame = worn_frame(maker.world, at.wear, at.body, at.clip, at.first_frame - 1 + k);
+  turn(request, frame.body);
+  turn(request, frame.cloth);
+  if (!request.with_body) frame.body = PointsF(0, 3);
+  return frame;
+}
+
+// Gravity and the roll-out's own force, which of wind is a speed.
+void set_forces(const RollMaker& maker, Roll& roll) {
+  const RollRequest& request = roll.request;
+  roll.shows_forces = maker.features.acceleration_inputs;
+  roll.forces.acceleration = Vec3(0, -maker.options.objective.gravity_strength, 0);
+  if (!request.wind) {
+    roll.forces.acceleration += request.force;
+    return;
+  }
+  const Wind& wind = roll.scene->scene.wind;
+  const double density = roll.scene->scene.cloths.front().material.density, strength = request.force.norm();
+  if (strength > 0)
+    roll.forces.wind = std::sqrt(2 * strength * density / (wind.air_density * wind.drag)) / strength * request.force;
 }
 
 constexpr int many_pairs = 20;    // of a start that counts as tangled (Grigorev et al. 2024, figure 5, has more)
@@ -112,6 +140,16 @@ RollRequest place_of_start(RollMaker& maker, const RollRequest& asked, int& pair
   return best;
 }
 
+void draw_force(const ForceSampling& forces, RandomStream& random, RollRequest& request) {
+  if (forces.strongest == 0) return;
+  request.sheet = random.heads(forces.sheet_share);
+  if (request.sheet) request.with_body = false;
+  request.wind = random.heads(forces.wind_share);
+  const double up = random.between(-1, 1), turned = random.between(0, 2 * std::numbers::pi),
+               across = std::sqrt(std::max(0.0, 1 - up * up));
+  request.force = random.between(0, forces.strongest) * Vec3(across * std::cos(turned), up, across * std::sin(turned));
+}
+
 }  // namespace
 
 RollRequest draw_roll(const TrainingOptions& options, const TrainingWorld& world, std::uint64_t number,
@@ -136,6 +174,7 @@ RollRequest draw_roll(const TrainingOptions& options, const TrainingWorld& world
   const int there = frame_count(world, request.body, request.clip);
   request.frames = std::min(is_long ? pool.long_frames : some, there - 1);
   request.first_frame = random.below(std::max(1, there - request.frames));
+  draw_force(samples.forces, random, request);
   return request;
 }
 
@@ -155,9 +194,17 @@ std::shared_ptr<const TrainingScene> make_training_scene(const RollMaker& maker,
   auto made = std::make_shared<TrainingScene>();
   Scene& scene = made->scene;
   Triangles triangles;
-  for (const Garment& garment : world.wear[static_cast<std::size_t>(request.wear)].garments)
-    add_garment(world, garment, world.bodies[static_cast<std::size_t>(request.body)].shape, request.mirrored,
-                isotropic(values), scene, triangles);
+  if (request.sheet) {
+    const HungSheet sheet = hung_sheet(maker.options.samples.edge);
+    add_cloth_part("sheet", sheet.rest, sheet.triangles, sheet.pins, request.mirrored, isotropic(values), scene,
+                   triangles);
+  } else {
+    const Eigen::VectorXd& shape = world.bodies[static_cast<std::size_t>(request.body)].shape;
+    for (const Garment& garment : world.wear[static_cast<std::size_t>(request.wear)].garments)
+      add_cloth_part(garment.name, rest_shape(garment, world.body, shape), garment.skin.triangles, garment.pins,
+                     request.mirrored, isotropic(values), scene, triangles);
+  }
+  scene.wind.on = request.wind;
   scene.surface = make_surface(static_cast<int>(scene.rest.rows()), triangles);
   scene.contact.self = maker.options.contact.edges;
   if (request.with_body) scene.obstacles.push_back({"body", request.mirrored ? world.mirrored : world.surface, true});
@@ -166,22 +213,22 @@ std::shared_ptr<const TrainingScene> make_training_scene(const RollMaker& maker,
   std::vector<char> pinned(static_cast<std::size_t>(scene.surface.vertex_count), 0);
   for (const int pin : scene.pins) pinned[static_cast<std::size_t>(pin)] = 1;
   made->losses = make_loss_garment(scene.surface, scene.rest, pinned, values);
+  if (request.sheet) made->losses.closed = close_surface(scene.surface, {}, scene.pins);  // it has no inside
   return made;
 }
 
 Roll make_roll(RollMaker& maker, const RollRequest& request) {
   Roll roll;
   roll.request = request;
-  const bool looks = maker.options.samples.start == GarmentStart::tangled && request.cloth_contact;
+  const bool looks = maker.options.samples.start == GarmentStart::tangled && request.cloth_contact && !request.sheet;
   const RollRequest at = looks ? place_of_start(maker, request, roll.pairs) : request;
   roll.scene = scene_of(maker, at);
   for (int k = 0; k < request.frames + 2; ++k) {
-    WornFrame frame = worn_frame(maker.world, at.wear, at.body, at.clip, at.first_frame - 1 + k);
-    turn(request, frame.body);
-    turn(request, frame.cloth);
-    roll.body.push_back(request.with_body ? std::move(frame.body) : PointsF(0, 3));
+    WornFrame frame = frame_of(maker, request, at, k);
+    roll.body.push_back(std::move(frame.body));
     roll.cloth.push_back(std::move(frame.cloth));
   }
+  set_forces(maker, roll);
   set_start(maker.options, roll);
   return roll;
 }

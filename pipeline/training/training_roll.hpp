@@ -6,6 +6,7 @@
 
 #include "learned/graph/rest_graph.hpp"
 #include "learned/losses/loss_garment.hpp"
+#include "physics/scene/stepper.hpp"
 #include "pipeline/training/random_stream.hpp"
 #include "pipeline/training/training_world.hpp"
 
@@ -20,7 +21,10 @@ struct RollRequest {
   bool mirrored = false;
   bool with_body = true;
   bool cloth_contact = false;
-  double yaw = 0;  // [rad]
+  double yaw = 0;             // [rad]
+  bool sheet = false;         // of a hung sheet in place of a garment; then there is no body
+  bool wind = false;          // the force is a wind's
+  Vec3 force = Vec3::Zero();  // beside gravity [m/s2]; of wind: what it does to a triangle that faces it
   bool operator==(const RollRequest&) const = default;
 };
 
@@ -40,6 +44,8 @@ struct Roll {
   Points start;                      // where free vertices begin: as worn, parted where that is asked for, with noise
   bool usable = true;                // false: what was to be parted did not come apart
   int pairs = 0;                     // of triangles of cloth that intersect where it begins; counted of tangled starts
+  bool shows_forces = false;         // the network has inputs for accelerations
+  Drive forces;                      // acceleration, gravity with it, and wind
 };
 
 // The number-th roll-out; `progress` of the run says how long it may be.
@@ -50,7 +56,7 @@ struct RollMaker {
   TrainingOptions options;
   FeatureOptions features;
   TrainingWorld world;
-  std::map<std::array<int, 4>, std::shared_ptr<const TrainingScene>> scenes;  // of the fixed material
+  std::map<std::array<int, 6>, std::shared_ptr<const TrainingScene>> scenes;  // of the fixed material
 };
 Roll make_roll(RollMaker&, const RollRequest&);
 

@@ -1,31 +1,23 @@
 #include "pipeline/training/training_tables.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
 
 namespace selvedge {
-namespace {
-
-constexpr std::array term_names{"stretching", "bending",  "gravity",   "inertia",
-                                "collision",  "friction", "repulsion", "contours"};
-
-}  // namespace
-
 void StepWindow::add(const StepRecord& record) {
   if (!record.bad.empty()) {
     ++bad_;
     return;
   }
-  terms_.resize(term_names.size());
+  terms_.resize(loss_names.size());
   double gradients = 0;
   for (const LossTerm& term : record.terms) gradients += term.gradient_norm;
   for (const LossTerm& term : record.terms) {
-    const auto at = std::ranges::find(term_names, term.name);
-    if (at == term_names.end()) continue;
-    Term& sum = terms_[static_cast<std::size_t>(at - term_names.begin())];
+    const auto at = std::ranges::find(loss_names, term.name);
+    if (at == loss_names.end()) continue;
+    Term& sum = terms_[static_cast<std::size_t>(at - loss_names.begin())];
     sum.value += term.value;
     sum.gradient += gradients > 0 ? term.gradient_norm / gradients : 0;
   }
@@ -38,7 +30,7 @@ void StepWindow::add(const StepRecord& record) {
 
 std::string steps_header() {
   std::string line = "step,progress,seconds,learning_rate,samples,bad,lost,sum,gradient_norm,clip_scale";
-  for (const char* name : term_names) line += fmt::format(",{0},{0}_share", name);
+  for (const char* name : loss_names) line += fmt::format(",{0},{0}_share", name);
   return line + "\n";
 }
 
@@ -47,7 +39,7 @@ std::string StepWindow::take_line(const Trainer& trainer, double seconds) {
   std::string line =
       fmt::format("{},{:.4f},{:.1f},{:.4g},{},{},{},{:.6g},{:.4g},{:.4g}", trainer.counts.step, progress_of(trainer),
                   seconds, rate_, count_, bad_, trainer.counts.lost, sum_ / n, norm_ / n, scale_ / n);
-  terms_.resize(term_names.size());
+  terms_.resize(loss_names.size());
   for (const Term& term : terms_) line += fmt::format(",{:.6g},{:.4f}", term.value / n, term.gradient / n);
   const double mean = mean_sum();
   *this = {};
@@ -58,7 +50,7 @@ std::string StepWindow::take_line(const Trainer& trainer, double seconds) {
 std::string measures_header() {
   return "step,seconds,worn_closed,worn_excess,worn_log_excess,worn_rms,minimised_closed,minimised_excess,"
          "minimised_log_excess,minimised_rms,finite,frames,energy,strain,strain_99,strain_most,deep,deepest,kinetic,"
-         "jitter,pairs,pairs_at_end\n";
+         "jitter,pairs,pairs_at_end,volume\n";
 }
 
 std::string measure_line(const TrainingMeasure& m, double seconds) {
@@ -66,9 +58,10 @@ std::string measure_line(const TrainingMeasure& m, double seconds) {
     return fmt::format("{:.4f},{:.6g},{:.3f},{:.5g}", g.closed, g.excess, g.log_excess, g.rms);
   };
   const RollMeasure& r = m.roll;
-  return fmt::format("{},{:.1f},{},{},{:d},{},{:.6g},{:.5f},{:.5f},{:.4f},{:.5f},{:.5f},{:.6g},{:.6g},{:.2f},{}\n",
-                     m.step, seconds, gap(m.worn), gap(m.minimised), r.finite, r.frames, r.energy, r.strain,
-                     r.strain_99, r.strain_most, r.deep, r.deepest, r.kinetic, r.jitter, r.pairs, r.pairs_at_end);
+  return fmt::format(
+      "{},{:.1f},{},{},{:d},{},{:.6g},{:.5f},{:.5f},{:.4f},{:.5f},{:.5f},{:.6g},{:.6g},{:.2f},{},{:.4g}\n", m.step,
+      seconds, gap(m.worn), gap(m.minimised), r.finite, r.frames, r.energy, r.strain, r.strain_99, r.strain_most,
+      r.deep, r.deepest, r.kinetic, r.jitter, r.pairs, r.pairs_at_end, 1e6 * r.volume);
 }
 
 }  // namespace selvedge

@@ -1,11 +1,16 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include "pipeline/training/training_watch.hpp"
 
 namespace selvedge {
+
+// Terms of the objective as the tables name them: LossTerm::name.
+inline constexpr std::array loss_names{"stretching", "bending",   "gravity",  "forces", "inertia",         "collision",
+                                       "friction",   "repulsion", "contours", "volume", "vertex_repulsion"};
 
 // Means over the steps since the last line, for steps.csv.
 class StepWindow {

@@ -5,6 +5,7 @@
 
 #include "learned/graph/integration.hpp"
 #include "learned/graph/nearest_faces.hpp"
+#include "learned/losses/volume_loss.hpp"
 #include "physics/energies/measures.hpp"
 #include "pipeline/training/minimised.hpp"
 
@@ -179,13 +180,17 @@ RollMeasure measure_roll(Trainer& trainer, const Roll& roll, int gate) {
                           next.velocity.row(v).squaredNorm() / (state.now.timestep * state.now.timestep);
       result.pairs_at_end = static_cast<int>(intersecting_pairs(scene.surface, next.x, cache).size());
       result.pairs += result.pairs_at_end;
+      VolumeCounts counts;
+      volume_loss(roll.scene->losses.closed, VolumeLoss{}, next.x, nullptr, &counts);
+      result.volume += counts.volume;
       squares += trace.add(next.x);
       jumps += trace.x3.rows() > 0 && result.frames >= 3 ? 1 : 0;
       ++result.frames;
     }
     take_pass(making, next, HUGE_VAL, state);
   }
-  for (double* sum : {&result.energy, &result.strain, &result.strain_99, &result.deep, &result.kinetic, &result.pairs})
+  for (double* sum : {&result.energy, &result.strain, &result.strain_99, &result.deep, &result.kinetic, &result.pairs,
+                      &result.volume})
     *sum /= std::max(result.frames, 1);
   result.jitter = std::sqrt(squares / std::max(jumps, 1));
   result.finite = result.finite && std::isfinite(result.energy);

@@ -43,6 +43,7 @@ struct RollMeasure {
   double kinetic = 0;                                 // [J]
   double jitter = 0;                                  // RMS of the change of acceleration [m/frame^2]
   double pairs = 0;                                   // of triangles of cloth that intersect
+  double volume = 0;                                  // that cloth encloses with itself [m^3]
   int pairs_at_end = 0;
 };
 

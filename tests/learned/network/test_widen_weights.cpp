@@ -45,4 +45,30 @@ TEST_CASE("a network widened for space edges and accelerations begins as it was"
   CHECK_THROWS_AS(widen_weights(to, random_weights(to, 1), from, 2), Error);
 }
 
+TEST_CASE("our small network widened for what SENC sees begins as it was", "[learned]") {
+  fake::Mesh mesh = fake::grid(9, 9, 0.012);
+  fake::add(mesh, fake::grid(8, 8, 0.013), {0.003, 0.005, 0.002});
+  fake::World world = fake::world(mesh, fake::grid(5, 5, 0.03));
+  world.state.acceleration = Points::Random(world.state.x.rows(), 3);
+  world.state.no_cloth_edges = true;  // stage 1 had none
+  const Architecture from = narrow("small_contour");
+  NetworkWeights weights = random_weights(from, 1);
+  const FeatureRows before = result_of(from, weights, world);
+  for (const std::string preset : {"small_senc", "small_senc_layers"}) {
+    INFO(preset);
+    const Architecture to = narrow(preset);
+    CHECK_NOTHROW(check_architecture(to, preset));
+    NetworkWeights wide = widen_weights(from, weights, to, 2);
+    const FeatureRows after = result_of(to, wide, world);
+    REQUIRE(before.rows() == after.rows());
+    CHECK((before - after).cwiseAbs().maxCoeff() < 1e-6);
+    wide.steps[0].node.layers[0].weight.rightCols(to.width).setConstant(0.1f);  // of the edges in space, the last kind
+    CHECK((before - result_of(to, wide, world)).cwiseAbs().maxCoeff() > 1e-4);
+  }
+  // Edges of cloth with cloth that a network was trained with are not dropped.
+  weights.tables.world_edge.mean[0] = 0.01f;
+  CHECK_THROWS_AS(widen_weights(from, weights, narrow("small_senc"), 2), Error);
+  CHECK_NOTHROW(widen_weights(from, weights, narrow("small_senc_layers"), 2));
+}
+
 }  // namespace selvedge::test_widen_weights

@@ -252,6 +252,31 @@ TEST_CASE("A network of several passes goes on from its own guess, and starts at
   CHECK((to.x - run.state.x).bottomRows(to.x.rows() - 1).cwiseAbs().maxCoeff() < 2.1e-3);  // pushed out at most
 }
 
+TEST_CASE("Networks that see forces are moved by the drive's acceleration and wind, others are not", "[learned]") {
+  fake::LearnedCase run = above_a_plate(1);
+  const auto first_of = [&](const std::string& name) {
+    State to;
+    const auto stepper = stepper_of(run.scene, fake::narrow_network(name));
+    REQUIRE(stepper->step(run.state, run.drives[0], frame_dt, to).status == StepStatus::accepted);
+    return to.x;
+  };
+  std::vector<Points> calm;
+  const std::vector<std::string> names{"senc", "small_senc", "hood", "small"};
+  for (const std::string& name : names) calm.push_back(first_of(name));
+  const auto check = [&] {
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      INFO(names[k]);
+      CHECK(fake::same_points(first_of(names[k]), calm[k]) == (k >= 2));
+    }
+  };
+  run.drives[0].acceleration = {3, -9.81, 1};
+  check();
+  run.drives[0].acceleration = {0, -9.81, 0};
+  run.scene.wind.on = true;
+  run.drives[0].wind = {0, 3, 0};
+  check();
+}
+
 TEST_CASE("Materials become the inputs of networks", "[learned]") {
   fake::LearnedCase run = above_a_plate(1);
   Material& material = run.scene.cloths[0].material;

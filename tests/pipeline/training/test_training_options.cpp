@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
@@ -39,9 +40,9 @@ TEST_CASE("training options: every loss of every configuration reaches its full 
     const TrainingOptions options = read_training(file);
     CHECK(unfinished_ramps(options).empty());
     const LossOptions& losses = options.objective;
-    for (const LossRamp* ramp :
-         {&losses.stretching, &losses.bending, &losses.gravity, &losses.inertia, &losses.collision.weight,
-          &losses.friction.weight, &losses.repulsion.weight, &losses.contours.weight})
+    for (const LossRamp* ramp : {&losses.stretching, &losses.bending, &losses.gravity, &losses.inertia,
+                                 &losses.collision.weight, &losses.friction.weight, &losses.repulsion.weight,
+                                 &losses.contours.weight, &losses.volume.weight, &losses.vertex_repulsion.weight})
       CHECK(weight_at(*ramp, 0.9) == ramp->to);
     CHECK(losses.stretching.to == 1);
     CHECK(losses.collision.weight.to >= 5e5);
@@ -78,6 +79,35 @@ TEST_CASE("training options: ablations differ from their base by what they are n
     CHECK(options->samples.garments == hood.samples.garments);
     CHECK(options->optimiser.normalise_samples == hood.optimiser.normalise_samples);
   }
+}
+
+TEST_CASE("training options: those of SENC differ from their base by what they are named for", "[training]") {
+  const auto read = [](const std::string& name) {
+    return read_training(config_folder() / "training" / (name + ".yaml"));
+  };
+  const TrainingOptions senc = read("senc"), second = read("senc_second");
+  CHECK(weight_at(senc.objective.volume.weight, 0.6319) == 0);
+  CHECK(weight_at(senc.objective.volume.weight, 0.6321) == 3e4);
+  CHECK(senc.watch.keep_at == 0.632);
+  CHECK(second.steps == std::lround(0.368 * senc.steps));
+  CHECK(senc.samples.forces.strongest == 10);
+  CHECK(read("senc_no_edges").space.radius == 0);
+  CHECK(read("senc_mesh_edges").space.mesh_pairs);
+  // One value each: without it the file is its base.
+  const auto without = [&](TrainingOptions options, const TrainingOptions& base) {
+    options.name = base.name;
+    options.objective.volume = base.objective.volume;
+    options.objective.vertex_repulsion = base.objective.vertex_repulsion;
+    options.space = base.space;
+    return training_yaml(options);
+  };
+  for (const char* name : {"senc_no_edges", "senc_mesh_edges"}) CHECK(without(read(name), senc) == training_yaml(senc));
+  for (const char* name : {"senc_frozen", "senc_area", "senc_winding", "senc_vertex_repulsion"}) {
+    INFO(name);
+    CHECK(without(read(name), second) == training_yaml(second));
+    CHECK(training_yaml(read(name)) != training_yaml(second));
+  }
+  CHECK(read("senc_layers").contact.classify);
 }
 
 TEST_CASE("training options: a base is replaced key by key, and what is written reads back", "[training]") {
