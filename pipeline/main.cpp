@@ -152,6 +152,8 @@ void stress_options(CLI::App& command, StressRequest& request) {
 void compare_options(CLI::App& command, CompareRequest& request) {
   command.add_option("comparison", request.file, "comparison file (YAML)")->required();
   command.add_flag("--short", request.short_form, "the short forms of the comparison and its scenes");
+  command.add_option("--set", request.overrides, "key=value instead of the comparison file's, dotted keys")
+      ->allow_extra_args(false);
   command.add_option("--out", request.out, "folder for the results");
 }
 

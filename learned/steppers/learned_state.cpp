@@ -57,6 +57,14 @@ GraphState graph_state(const Scene& scene, const State& from, const Drive& drive
   return state;
 }
 
+void carry_frame(const State& from, State& to) {
+  replace_blocks("learned",
+                 {{carried_block, to.x - from.x, RowsOf::vertices},
+                  {previous_block, from.x, RowsOf::vertices, true},
+                  {body_block, joined_rows(from.obstacles), RowsOf::obstacle_vertices, true}},
+                 to.memory);
+}
+
 StepEnd learned_end(const Scene& scene, const State& from, const Drive& drive, const GraphState& state,
                     const Points& seen, const NextCloth& next) {
   StepEnd end{next.x, next.velocity / learned_dt, drive.obstacles};

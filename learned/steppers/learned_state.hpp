@@ -31,6 +31,10 @@ GraphState graph_state(const Scene&, const State& from, const Drive&);
 StepEnd learned_end(const Scene&, const State& from, const Drive&, const GraphState&, const Points& seen,
                     const NextCloth&);
 
+// Somebody else has made `to` from `from`: it then carries what it would if a network had, so that no roll-out begins
+// there. The velocity is the cloth's motion of the frame.
+void carry_frame(const State& from, State& to);
+
 // Somebody else has moved the cloth of a state that a network made: what it carries moves along [m]. Nothing happens
 // where the state carries nothing.
 void change_carried_velocity(const Points& change, State&);

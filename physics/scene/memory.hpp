@@ -13,8 +13,8 @@ enum class RowsOf { none, vertices, triangles, obstacle_vertices, cloths };
 
 using MemoryRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Something that one stepper alone reads in its next step. A checkpoint writes it and a part of a scene slices it
-// without knowing it.
+// Something that one stepper alone reads in its next step. A checkpoint writes it, a part of a scene slices it, and a
+// vertex without mass takes its place along (following_stepper.hpp), without knowing it.
 struct MemoryBlock {
   std::string name;  // "stepper.quantity"
   MemoryRows rows;

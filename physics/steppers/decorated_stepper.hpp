@@ -14,7 +14,8 @@ struct Decorations {
 };
 
 // A stepper of what `bare` makes of the scene or of a part of it, with all that stands round one, from outside to
-// inside: cutting, resting, recovering. The last only round a stepper that honours extras.
+// inside: cutting, resting, recovering. The last only round a stepper that honours extras. What knows more than the
+// scene stands round all of these: the repulsive layer of learned, and vertices that follow (following_stepper.hpp).
 std::unique_ptr<Stepper> decorated(const Scene&, const MakeStepper& bare, const Decorations& = {});
 
 MakeStepper conventional_maker(const ConventionalOptions& = {});

@@ -5,7 +5,6 @@
 #include "collision/geometry/error.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/run/simulate.hpp"
-#include "pipeline/scene/massless.hpp"
 
 namespace selvedge {
 
@@ -13,8 +12,8 @@ bool prepare(Setup& setup, const std::function<bool()>& stop, Progress* progress
   const int frames = -setup.initial.frame;
   if (frames <= 0) return true;
   const Clock::time_point started = Clock::now();
-  std::unique_ptr<Stepper> stepper = make_recovering_conventional_stepper(setup.scene);
-  if (!setup.followers.empty()) stepper = make_following_stepper(setup.scene, setup.followers, std::move(stepper));
+  const std::unique_ptr<Stepper> stepper =
+      make_following_stepper(setup.scene, setup.followers, make_recovering_conventional_stepper(setup.scene));
   State state = setup.initial;
   bool stopped = false;
   if (progress) progress->begin(0, frames, "draping, frame");

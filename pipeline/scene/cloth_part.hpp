@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "physics/scene/scene.hpp"
+#include "physics/steppers/following_stepper.hpp"
 #include "pipeline/formats/mesh_io.hpp"
-#include "pipeline/scene/follower.hpp"
 #include "pipeline/scene/setup_garment.hpp"
 
 namespace selvedge {

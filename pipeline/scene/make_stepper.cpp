@@ -8,7 +8,6 @@
 #include "learned/steppers/refu_stepper.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/config/config.hpp"
-#include "pipeline/scene/massless.hpp"
 
 namespace selvedge {
 
@@ -77,7 +76,6 @@ std::unique_ptr<Stepper> make_stepper(const Setup& setup) {
       decorated(setup.scene, kind->maker(setup, setup.kind_options), {setup.run.rest, !setup.initial.cut_out.empty()});
   check_accepted(setup, stepper->traits());
   stepper = with_refu(setup, std::move(stepper));
-  if (setup.followers.empty()) return stepper;
   return make_following_stepper(setup.scene, setup.followers, std::move(stepper));
 }
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "collision/geometry/disjoint_sets.hpp"
 #include "collision/geometry/distance.hpp"
 
 namespace selvedge {
@@ -18,29 +19,40 @@ bool has_area(const RestTriangle& triangle) {
   return smallest_altitude(triangle) > without_area * longest;
 }
 
-// For each vertex the triangles that have it.
-std::vector<std::vector<int>> triangles_round(const Triangles& triangles, Eigen::Index vertices) {
-  std::vector<std::vector<int>> round(static_cast<std::size_t>(vertices));
-  for (int t = 0; t < triangles.rows(); ++t)
-    for (int k = 0; k < 3; ++k) round[triangles(t, k)].push_back(t);
-  return round;
-}
-
-// The triangles with area that the vertex reaches through triangles without.
-std::vector<int> joined_to(int vertex, const Triangles& triangles, const std::vector<std::vector<int>>& round,
-                           const std::vector<char>& sound, const std::vector<char>& massless) {
-  std::vector<int> reached{vertex}, found;
-  for (std::size_t i = 0; i < reached.size(); ++i)
-    for (const int t : round[reached[i]]) {
-      if (sound[t]) found.push_back(t);
-      for (int k = 0; k < 3 && massless[reached[i]]; ++k)
-        if (const int next = triangles(t, k); std::ranges::find(reached, next) == reached.end())
-          reached.push_back(next);
+// For each vertex without mass the triangles with area that it reaches through triangles without; for others none.
+class JoinedTriangles {
+ public:
+  JoinedTriangles(const Triangles& triangles, const std::vector<char>& sound, const std::vector<char>& massless)
+      : groups_(static_cast<int>(massless.size())), of_group_(massless.size()) {
+    std::vector<std::vector<int>> sound_round(massless.size());
+    for (int t = 0; t < triangles.rows(); ++t) {
+      int first = -1;
+      for (int k = 0; k < 3; ++k) {
+        const int v = triangles(t, k);
+        if (sound[static_cast<std::size_t>(t)]) sound_round[static_cast<std::size_t>(v)].push_back(t);
+        if (massless[static_cast<std::size_t>(v)]) groups_.join(first < 0 ? first = v : first, v);
+      }
     }
-  std::ranges::sort(found);
-  found.erase(std::unique(found.begin(), found.end()), found.end());
-  return found;
-}
+    for (const auto& triangle : triangles.rowwise()) {
+      const auto one =
+          std::ranges::find_if(triangle, [&](int v) { return massless[static_cast<std::size_t>(v)] != 0; });
+      if (one == triangle.end()) continue;
+      for (const int v : triangle) {
+        const std::vector<int>& more = sound_round[static_cast<std::size_t>(v)];
+        of(*one).insert(of(*one).end(), more.begin(), more.end());
+      }
+    }
+    for (std::vector<int>& found : of_group_) {
+      std::ranges::sort(found);
+      found.erase(std::unique(found.begin(), found.end()), found.end());
+    }
+  }
+  std::vector<int>& of(int vertex) { return of_group_[static_cast<std::size_t>(groups_.root(vertex))]; }
+
+ private:
+  DisjointSets groups_;                     // vertices without mass that triangles join
+  std::vector<std::vector<int>> of_group_;  // by the group's root, ascending
+};
 
 std::optional<Follower> follower_of(int vertex, const Triangles& triangles, const std::vector<int>& candidates,
                                     const Points& rest) {
@@ -71,40 +83,6 @@ void keep_triangles(const std::vector<char>& kept, ClothPart& part) {
   part.rest_triangle.resize(static_cast<std::size_t>(next));
 }
 
-class FollowingStepper final : public Stepper {
- public:
-  FollowingStepper(const Scene& scene, std::vector<Follower> followers, std::unique_ptr<Stepper> stepper)
-      : followers_(std::move(followers)), stepper_(std::move(stepper)) {
-    for (const Follower& one : followers_)
-      pins_.push_back(static_cast<int>(std::ranges::lower_bound(scene.pins, one.vertex) - scene.pins.begin()));
-  }
-  const StepperTraits& traits() const override { return stepper_->traits(); }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override {
-    Drive held = drive;  // a pin that moves would ask for substeps
-    for (std::size_t k = 0; k < pins_.size(); ++k) held.pins.row(pins_[k]) = from.x.row(followers_[k].vertex);
-    StepReport report = stepper_->step(from, held, dt, to, extras);
-    if (report.status != StepStatus::accepted) return report;
-    for (const Follower& one : followers_) {
-      follow(one, to.x);
-      follow(one, to.v);
-      for (MemoryBlock& block : to.memory)
-        if (block.positions && block.rows_of == RowsOf::vertices) block.rows.row(one.vertex) = to.x.row(one.vertex);
-    }
-    return report;
-  }
-
- private:
-  static void follow(const Follower& one, Points& rows) {
-    Vec3 sum = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) sum += one.weights[k] * row(rows, one.of[static_cast<std::size_t>(k)]);
-    rows.row(one.vertex) = sum.transpose();
-  }
-
-  std::vector<Follower> followers_;
-  std::vector<int> pins_;  // of each follower: its row in Scene::pins
-  std::unique_ptr<Stepper> stepper_;
-};
-
 }  // namespace
 
 void leave_out_massless(ClothPart& part, std::vector<std::string>& warnings) {
@@ -123,22 +101,15 @@ void leave_out_massless(ClothPart& part, std::vector<std::string>& warnings) {
     left_out += at_massless;
   }
   if (left_out == 0) return;
-  const auto round = triangles_round(triangles, part.rest.rows());
-  for (int v = 0; v < part.rest.rows(); ++v) {
-    if (!massless[v] || round[v].empty()) continue;
-    const std::vector<int> near = joined_to(v, triangles, round, sound, massless);
-    if (const auto found = follower_of(v, triangles, near, part.rest)) part.followers.push_back(*found);
-  }
+  JoinedTriangles joined(triangles, sound, massless);
+  for (int v = 0; v < part.rest.rows(); ++v)
+    if (massless[v])
+      if (const auto found = follower_of(v, triangles, joined.of(v), part.rest)) part.followers.push_back(*found);
   keep_triangles(kept, part);
   warnings.push_back(
       fmt::format("cloth `{}`: {} triangles of zero rest area are left out, and {} vertices without mass follow the "
                   "cloth that they were joined to by them",
                   part.name, left_out, part.followers.size()));
-}
-
-std::unique_ptr<Stepper> make_following_stepper(const Scene& scene, std::vector<Follower> followers,
-                                                std::unique_ptr<Stepper> stepper) {
-  return std::make_unique<FollowingStepper>(scene, std::move(followers), std::move(stepper));
 }
 
 }  // namespace selvedge

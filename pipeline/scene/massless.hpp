@@ -1,8 +1,8 @@
 #pragma once
 
-#include <memory>
+#include <string>
+#include <vector>
 
-#include "physics/scene/stepper.hpp"
 #include "pipeline/scene/cloth_part.hpp"
 
 // Vertices whose triangles have no area at rest, as files have them where polygons with points on straight edges were
@@ -13,10 +13,5 @@ namespace selvedge {
 // vertices followers of the nearest triangle that is joined to them. Counted in a warning. A vertex that is joined to
 // nothing with area stays where it is.
 void leave_out_massless(ClothPart&, std::vector<std::string>& warnings);
-
-// Does what the stepper does and then puts the followers, numbered as the scene's vertices, where those that they
-// follow have come to. All of them are pins of the scene; their rows of the drive count for nothing. Keeps a reference
-// to the scene.
-std::unique_ptr<Stepper> make_following_stepper(const Scene&, std::vector<Follower>, std::unique_ptr<Stepper>);
 
 }  // namespace selvedge

@@ -9,7 +9,7 @@
 
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
-#include "pipeline/scene/follower.hpp"
+#include "physics/steppers/following_stepper.hpp"
 #include "pipeline/scene/kinds.hpp"
 #include "pipeline/scene/outcome.hpp"
 #include "pipeline/scene/run_options.hpp"

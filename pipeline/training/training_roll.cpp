@@ -87,9 +87,9 @@ std::shared_ptr<const TrainingScene> scene_of(RollMaker& maker, const RollReques
 constexpr int many_pairs = 20;    // of a start that counts as tangled (Grigorev et al. 2024, figure 5, has more)
 constexpr int most_attempts = 8;  // to find one
 
-// Every second tangled start is looked for: the first of some places in the clips at which the skinned garment has many
-// pairs, or the one with the most. Says how many there are.
-RollRequest place_of_start(RollMaker& maker, const RollRequest& asked, int& pairs) {
+}  // namespace
+
+RollRequest tangled_place(RollMaker& maker, const RollRequest& asked, int& pairs) {
   RandomStream random = stream_for(maker.options.seed, place, asked.number);
   RollRequest best = asked, tried = asked;
   IntersectionCache cache;
@@ -111,8 +111,6 @@ RollRequest place_of_start(RollMaker& maker, const RollRequest& asked, int& pair
   }
   return best;
 }
-
-}  // namespace
 
 RollRequest draw_roll(const TrainingOptions& options, const TrainingWorld& world, std::uint64_t number,
                       double progress) {
@@ -173,7 +171,7 @@ Roll make_roll(RollMaker& maker, const RollRequest& request) {
   Roll roll;
   roll.request = request;
   const bool looks = maker.options.samples.start == GarmentStart::tangled && request.cloth_contact;
-  const RollRequest at = looks ? place_of_start(maker, request, roll.pairs) : request;
+  const RollRequest at = looks ? tangled_place(maker, request, roll.pairs) : request;
   roll.scene = scene_of(maker, at);
   for (int k = 0; k < request.frames + 2; ++k) {
     WornFrame frame = worn_frame(maker.world, at.wear, at.body, at.clip, at.first_frame - 1 + k);
