@@ -52,6 +52,7 @@ void check_options(CLI::App& command, CheckRequest& request) {
   command.add_option("--rest", request.rest, "mesh of the same faces at rest, for the stretches");
   command.add_option("--body", request.bodies, "mesh that must not be touched; may be given again")
       ->allow_extra_args(false);
+  command.add_option("--against", request.against, "trajectory of the same cloths: measures of papers against it");
   command.add_option("--audit", request.audit, "own, or fcl: FCL's opinion beside it")
       ->check(CLI::IsMember({"own", "fcl"}));
   command.add_option("--horizon", request.horizon, "largest gap looked for [m]")->check(CLI::PositiveNumber);

@@ -27,21 +27,26 @@ struct RunWatch {
   const Setup& setup;
   CompareRun& run;
   EnergyTerms terms = energy_terms(setup.scene);
-  RunMeasures measures;
+  std::optional<RunMeasures> measures;
   std::optional<TrajectoryWriter> writer;
   std::map<std::string, std::vector<double>> phases;
   Points acceleration;  // of the frame to come
 
   RunWatch(const Setup& s, CompareRun& r, const TimedRunOptions& options, const std::string& stepper)
-      : setup(s), run(r), measures(s.scene, s.run.frames, options.judged_frames) {
+      : setup(s), run(r) {
     const State& start = setup.initial;
-    const Audit found = audit_positions(setup.scene, start.x, start.obstacles);
-    measures.begin(start.x, joined_rows(start.obstacles), static_cast<int>(found.self_pairs.size()));
     const Drive drive = setup.drive_at(start.time);
-    acceleration = graph_state(setup.scene, start, drive).acceleration;
+    if (options.measured) begin_measures(options, start, drive);
     if (options.trajectory.empty()) return;
     writer.emplace(options.trajectory, trajectory_info(setup.scene, setup.config, stepper, setup.run.fps));
     writer->append(record_initial(setup.scene, terms, start, drive));
+  }
+
+  void begin_measures(const TimedRunOptions& options, const State& start, const Drive& drive) {
+    measures.emplace(setup.scene, setup.run.frames, options.judged_frames);
+    const Audit found = audit_positions(setup.scene, start.x, start.obstacles);
+    measures->begin(start.x, joined_rows(start.obstacles), static_cast<int>(found.self_pairs.size()));
+    acceleration = graph_state(setup.scene, start, drive).acceleration;
   }
 
   void note_phases(const PhaseTimes& s) {
@@ -62,7 +67,7 @@ struct RunWatch {
     run.passed_through += report.collision.passed_through;
     note_phases(report.seconds);
     if (writer) writer->append(record_frame(setup.scene, terms, event));
-    if (report.status != StepStatus::accepted) return;
+    if (!measures || report.status != StepStatus::accepted) return;
     const State& state = event.state;
     MeasuredFrame frame{state.x, joined_rows(state.obstacles), std::move(acceleration)};
     if (report.audit) {
@@ -71,7 +76,7 @@ struct RunWatch {
     }
     frame.depth = report.collision.depth_wanted;
     frame.kinetic = energies(setup.scene, terms, state.x, state.v, event.drive.acceleration).kinetic;
-    measures.add(std::move(frame));
+    measures->add(std::move(frame));
     acceleration = graph_state(setup.scene, state, event.drive).acceleration;
   }
 };
@@ -97,11 +102,13 @@ std::optional<CompareRun> timed_run(const Setup& setup, const TimedRunOptions& o
                               reason_names().at(static_cast<std::size_t>(last.reason)));
   run.lost = energy_of(setup, setup.initial) - energy_of(setup, state);
   run.end = bits_of(state.x);
-  run.measures = watch.measures.values();
+  if (watch.measures) {
+    run.measures = watch.measures->values();
+    run.pairs_by_frame = watch.measures->pairs_by_frame();
+  }
   run.measures["finished"] = last.status == StepStatus::accepted ? 1 : 0;
   for (const auto& [phase, times] : watch.phases)
     if (const double middle = median(times); middle > 0) run.phases[phase] = middle;
-  run.pairs_by_frame = watch.measures.pairs_by_frame();
   return run;
 }
 

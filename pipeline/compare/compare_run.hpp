@@ -8,6 +8,7 @@
 namespace selvedge {
 
 struct TimedRunOptions {
+  bool measured = true;              // false: times and counts alone
   int judged_frames = 4;             // RunMeasures
   std::filesystem::path trajectory;  // where the run is kept; empty: nowhere
 };

@@ -35,6 +35,8 @@ constexpr MeasureMeaning meanings[]{
     {"hood_collision", "[J]"},
     {"hood_total", "their sum [J]"},
     {"grad_norm", "mean over free vertices of |d hood_total / d x| [N]"},
+    {"l2_mm", "mean distance of the vertices to the reference [mm]"},
+    {"e3d", "|X - X*| / |X*| to the reference"},
     {"excess", "hood_total above the least that is found from the frame, of some frames [J]"},
     {"residual", "mass-scaled gradient norm of hood_total in these frames [N/sqrt(kg)]"}};
 
