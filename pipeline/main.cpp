@@ -52,6 +52,7 @@ void check_options(CLI::App& command, CheckRequest& request) {
   command.add_option("--rest", request.rest, "mesh of the same faces at rest, for the stretches");
   command.add_option("--body", request.bodies, "mesh that must not be touched; may be given again")
       ->allow_extra_args(false);
+  command.add_option("--against", request.against, "trajectory of the same cloths: measures of papers against it");
   command.add_option("--audit", request.audit, "own, or fcl: FCL's opinion beside it")
       ->check(CLI::IsMember({"own", "fcl"}));
   command.add_option("--horizon", request.horizon, "largest gap looked for [m]")->check(CLI::PositiveNumber);
@@ -152,6 +153,8 @@ void stress_options(CLI::App& command, StressRequest& request) {
 void compare_options(CLI::App& command, CompareRequest& request) {
   command.add_option("comparison", request.file, "comparison file (YAML)")->required();
   command.add_flag("--short", request.short_form, "the short forms of the comparison and its scenes");
+  command.add_option("--set", request.overrides, "key=value instead of the comparison file's, dotted keys")
+      ->allow_extra_args(false);
   command.add_option("--out", request.out, "folder for the results");
 }
 

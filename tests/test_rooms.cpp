@@ -58,6 +58,7 @@ const std::map<std::string, std::vector<Room>> rooms = {
       {"meshes"},
       {"scene"},
       {"run"},
+      {"measures"},
       {"view", {"host", "formats"}},
       {"tools"},
       {"training"},

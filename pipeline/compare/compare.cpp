@@ -7,13 +7,16 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/compare/compare_parts.hpp"
+#include "pipeline/compare/compare_run.hpp"
 #include "pipeline/compare/comparison.hpp"
+#include "pipeline/compare/evaluation.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/progress.hpp"
 #include "pipeline/run/summary.hpp"
 #include "pipeline/scene/make_stepper.hpp"
+#include "pipeline/view/view.hpp"
 
 namespace selvedge {
 namespace {
@@ -35,6 +38,14 @@ struct SceneWork {
   std::vector<std::vector<CompareRun>> runs;  // of each setting
 };
 
+// Why a setting is left out before it is read; empty: it is not.
+std::string missing_part(const CompareSetting& setting, const Kinds& kinds) {
+  if (!setting.stepper.empty() && !kinds.find(setting.stepper))
+    return "left out: this program has no stepper `" + setting.stepper + "`";
+  if (setting.weights.empty() || std::filesystem::exists(setting.weights)) return {};
+  return "left out: there is no weight file " + setting.weights.string();
+}
+
 // Reads every setup and makes every stepper once, so that what is wrong is said before hours of work.
 SceneWork open_scene(const CompareRequest& request, const Comparison& comparison, const CompareScene& scene,
                      const std::string& program) {
@@ -44,12 +55,20 @@ SceneWork open_scene(const CompareRequest& request, const Comparison& comparison
   make_folder(work.folder);
   const Setup reference = read_compared(scene, request.short_form, comparison.reference, comparison.kinds);
   work.keys.program = program;
-  work.keys.reference = fmt::format("{} {:016x} {} {} {}", program, hash_of(reference.config), scene.states,
-                                    scene.horizon, comparison.jitter);
+  work.keys.reference = fmt::format("{} {:016x} {} {} {} {}", program, hash_of(reference.config), scene.states,
+                                    scene.horizon, comparison.jitter, joined(comparison.algebraic));
   for (const CompareSetting& setting : comparison.settings) {
+    std::string trouble = missing_part(setting, comparison.kinds);
+    if (!trouble.empty()) {
+      work.trouble.push_back(trouble);
+      work.setups.emplace_back();
+      work.keys.settings.emplace_back();
+      continue;
+    }
     Setup setup = read_compared(scene, request.short_form, setting.overrides, comparison.kinds);
-    work.keys.settings.push_back(fmt::format("{} {:016x} {}", program, hash_of(setup.config), Eigen::nbThreads()));
-    std::string trouble;
+    work.keys.settings.push_back(fmt::format("{} {:016x} {:016x} {} {}", program, hash_of(setup.config),
+                                             hash_of(whole_file(setting.weights)), Eigen::nbThreads(),
+                                             comparison.judged_frames));
     try {
       make_stepper(setup);
     } catch (const Error& error) {
@@ -66,8 +85,21 @@ void say(const CompareRequest& request, const std::string& line) {
   if (request.log) *request.log << line << "\n" << std::flush;
 }
 
+// What is said of a scene without references: true, for nothing stops it.
+bool describe_scene(SceneWork& work) {
+  work.floor.scene = work.scene->name;
+  for (const std::optional<Setup>& setup : work.setups)
+    if (setup) {
+      work.floor.vertices = setup->scene.surface.vertex_count;
+      work.floor.frames = setup->run.frames;
+    }
+  return true;
+}
+
 // The floor and every setting's errors. The reference is made only if one of them is not there. False: stopped.
 bool find_errors(const CompareRequest& request, const Comparison& comparison, SceneWork& work) {
+  work.errors.assign(work.setups.size(), {});
+  if (work.scene->states == 0) return describe_scene(work);
   std::optional<CompareReference> reference;
   const auto need_reference = [&] {
     if (reference) return true;
@@ -99,7 +131,7 @@ bool find_errors(const CompareRequest& request, const Comparison& comparison, Sc
                                comparison.settings[s].name, errors->temporal, errors->trouble.empty() ? "" : ", ",
                                errors->trouble));
     }
-    work.errors.push_back(*errors);
+    work.errors[s] = *errors;
   }
   return true;
 }
@@ -118,15 +150,23 @@ bool prepare_settings(const CompareRequest& request, SceneWork& work) {
   return true;
 }
 
+std::filesystem::path trajectory_of(const std::filesystem::path& folder, std::size_t setting) {
+  return folder / fmt::format("row_{}.h5", setting);
+}
+
 // Every setting once, in turn. False: stopped.
 bool time_settings(const CompareRequest& request, const Comparison& comparison, int repeat, SceneWork& work) {
   for (std::size_t s = 0; s < work.setups.size(); ++s) {
     if (!work.setups[s]) continue;
     const std::filesystem::path file = work.folder / fmt::format("run_{}_{}.json", s, repeat);
     std::optional<CompareRun> run = read_run(whole_file(file), work.keys.settings[s]);
+    if (comparison.keep_runs && repeat == 0 && !std::filesystem::exists(trajectory_of(work.folder, s))) run.reset();
     const bool kept = run.has_value();
     if (!run) {
-      run = timed_run(*work.setups[s], request.stop);
+      const bool keeps = comparison.keep_runs && repeat == 0;
+      run = timed_run(*work.setups[s],
+                      {comparison.judged_frames, keeps ? trajectory_of(work.folder, s) : std::filesystem::path()},
+                      request.stop);
       if (!run) return false;
       write_file(file, part_json(*run, work.keys.settings[s]));
     }
@@ -138,18 +178,32 @@ bool time_settings(const CompareRequest& request, const Comparison& comparison, 
   return true;
 }
 
+// Every row of an evaluation that a network makes is the bare network, by its stored run.
+void check_bare(const Comparison& comparison, SceneWork& work) {
+  if (comparison.evaluation.baseline.empty()) return;
+  for (std::size_t s = 0; s < work.setups.size(); ++s) {
+    if (!work.setups[s] || work.setups[s]->run.stepper != "learned" || work.runs[s].empty()) continue;
+    if (const std::string trouble = trouble_of_bare_run(trajectory_of(work.folder, s)); !trouble.empty())
+      throw Error("a row of the evaluation is not the bare network: " + trouble, trajectory_of(work.folder, s).string(),
+                  "name gated rows by a stepper of their own");
+  }
+}
+
 CompareRow row_of(const SceneWork& work, const std::string& setting, std::size_t s) {
   CompareRow row;
   row.scene = work.scene->name;
   row.setting = setting;
+  row.outfit = work.scene->outfit;
+  row.tangled = work.scene->tangled;
   row.trouble = work.trouble[s];
-  row.floor = work.floor.floor();
+  if (work.scene->states > 0) row.floor = work.floor.floor();
   if (s < work.errors.size()) {
     const CompareErrors& errors = work.errors[s];
     if (row.trouble.empty()) row.trouble = errors.trouble;
     row.algebraic = errors.algebraic;
     row.algebraic_largest = errors.algebraic_largest;
     row.temporal = errors.temporal;
+    row.measures = errors.measures;
   }
   if (work.runs[s].empty()) return row;
   const CompareRun& first = work.runs[s].front();
@@ -169,6 +223,9 @@ CompareRow row_of(const SceneWork& work, const std::string& setting, std::size_t
   row.linear = static_cast<double>(first.linear) / frames;
   row.pairs = first.pairs;
   row.passed_through = first.passed_through;
+  row.measures.insert(first.measures.begin(), first.measures.end());
+  row.pairs_by_frame = first.pairs_by_frame;
+  for (const auto& [phase, ms] : first.phases) row.measures["ms_" + phase] = ms;
   return row;
 }
 
@@ -191,6 +248,13 @@ void write_results(const CompareRequest& request, const Comparison& comparison, 
   write_file(request.out / "compare.json", compare_json(result));
   write_file(request.out / "compare.csv", compare_csv(result));
   write_file(request.out / "compare.txt", compare_table(result));
+  if (!comparison.evaluation.baseline.empty()) {
+    const Evaluation found = evaluated(comparison, result.floors, result.rows);
+    result.evaluation = evaluation_text(found);
+    write_file(request.out / "evaluation.txt", result.evaluation);
+    write_file(request.out / "evaluation.json", evaluation_json(found));
+  }
+  write_file(request.out / "compare.html", compare_page(comparison, result));
 }
 
 }  // namespace
@@ -206,8 +270,28 @@ void rank(std::vector<CompareRow>& rows) {
   }
 }
 
+// One page a scene that plays its rows side by side. It is an extra: nothing is lost where it cannot be made.
+void write_views(const CompareRequest& request, const Comparison& comparison, const SceneWork& work,
+                 CompareResult& result) {
+  if (!comparison.keep_runs) return;
+  constexpr std::size_t most_rows = 4, most_bytes = 12'000'000;
+  std::vector<std::filesystem::path> runs;
+  for (std::size_t s = 0; s < work.setups.size() && runs.size() < most_rows; ++s)
+    if (work.setups[s] && std::filesystem::exists(trajectory_of(work.folder, s)))
+      runs.push_back(trajectory_of(work.folder, s));
+  result.views = request.out / "views";
+  make_folder(result.views);
+  try {
+    ViewOptions options;
+    options.limit = most_bytes;
+    if (!runs.empty()) write_view(runs, result.views / (work.scene->name + ".html"), options);
+  } catch (const Error& error) {
+    say(request, work.scene->name + ": no page that plays it: " + error.what());
+  }
+}
+
 CompareResult compare(const CompareRequest& request) {
-  Comparison comparison = read_comparison(request.file, request.short_form);
+  Comparison comparison = read_comparison(request.file, request.short_form, request.overrides);
   comparison.kinds = request.kinds;
   const std::string program = program_key();
   std::vector<SceneWork> all;
@@ -217,9 +301,11 @@ CompareResult compare(const CompareRequest& request) {
     result.finished = find_errors(request, comparison, work) && prepare_settings(request, work);
     for (int repeat = 0; result.finished && repeat < comparison.repeats; ++repeat) {
       result.finished = time_settings(request, comparison, repeat, work);
+      check_bare(comparison, work);
       write_results(request, comparison, all, result);
     }
     if (!result.finished) break;
+    write_views(request, comparison, work, result);
   }
   write_results(request, comparison, all, result);
   write_compare_hdf5(request.out / "compare.h5", result);

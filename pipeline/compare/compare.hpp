@@ -7,14 +7,15 @@
 #include <vector>
 
 #include "pipeline/compare/compare_result.hpp"
-#include "pipeline/scene/kinds.hpp"
+#include "pipeline/compare/comparison.hpp"
 
 namespace selvedge {
 
 struct CompareRequest {
   std::filesystem::path file;
   bool short_form = false;
-  Kinds kinds = known_kinds();  // of steppers
+  std::vector<std::string> overrides = {};  // key=value, of the comparison file
+  Kinds kinds = compared_kinds();           // of steppers
   std::filesystem::path out = "out/compare";
   std::ostream* log = nullptr;  // a line as each part ends
   std::function<bool()> stop;   // asked after every frame; true ends it, unfinished parts are not kept
@@ -22,13 +23,17 @@ struct CompareRequest {
 
 // Runs every setting on every scene `repeats` times, in turn, and holds it against two references from common states:
 // its own time step solved to the end (algebraic), and steps of a 16th of a frame (temporal). What is finished is kept
-// in the folder and not done again by the same program and settings. Leaves compare.txt, .csv, .json, .h5 and plots.
+// in the folder and not done again by the same program and settings. Leaves compare.txt, .csv, .json, .h5, .html and
+// plots, and of an evaluation (evaluation.hpp) evaluation.txt and .json.
 CompareResult compare(const CompareRequest&);
 
 // Sets ranked and front of the rows of one scene or several.
 void rank(std::vector<CompareRow>&);
 
 std::string compare_table(const CompareResult&);
+// One page that needs no other file: for each scene error against run time with the front and the floor, the table
+// behind it, what was left out, and an evaluation's tables.
+std::string compare_page(const Comparison&, const CompareResult&);
 std::string compare_csv(const CompareResult&);
 std::string compare_json(const CompareResult&);
 void write_compare_hdf5(const std::filesystem::path&, const CompareResult&);

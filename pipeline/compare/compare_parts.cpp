@@ -6,10 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "pipeline/host/kept_rows.hpp"
-#include "pipeline/run/simulate.hpp"
-#include "pipeline/scene/make_stepper.hpp"
-
 namespace selvedge {
 namespace {
 
@@ -38,34 +34,19 @@ std::optional<Part> parsed(const std::string& text, const std::string& key, Read
   }
 }
 
-std::uint64_t bits_of(const Points& x) {
-  return hash_of(std::string(reinterpret_cast<const char*>(x.data()), sizeof(double) * x.size()));
+Json numbers_of(const std::map<std::string, double>& values) {
+  Json json = Json::object();
+  for (const auto& [name, value] : values) json[name] = finite_or_null(value);
+  return json;
+}
+
+std::map<std::string, double> numbers_from(const Json& json) {
+  std::map<std::string, double> values;
+  for (const auto& [name, value] : json.items()) values[name] = number_or_unknown(value);
+  return values;
 }
 
 }  // namespace
-
-std::optional<CompareRun> timed_run(const Setup& setup, const Stop& stop) {
-  CompareRun run;
-  const std::unique_ptr<Stepper> stepper = make_stepper(setup);
-  State state = setup.initial;
-  bool stopped = false;
-  const StepReport last =
-      simulate(*stepper, setup.drive_at, 1 / setup.run.fps, setup.run.frames, state, [&](const FrameEvent& event) {
-        run.seconds.push_back(seconds_since(event.started));
-        run.substeps += event.report.substeps;
-        run.newton += event.report.iterations;
-        run.linear += event.report.linear_iterations;
-        run.pairs = std::max(run.pairs, event.report.collision.pairs_after);
-        run.passed_through += event.report.collision.passed_through;
-        stopped = stop && stop();
-        return !stopped;
-      });
-  if (stopped) return {};
-  if (last.status != StepStatus::accepted) run.trouble = fmt::format("rejects a step after frame {}", state.frame);
-  run.lost = energy_of(setup, setup.initial) - energy_of(setup, state);
-  run.end = bits_of(state.x);
-  return run;
-}
 
 std::string part_json(const CompareFloor& f, const std::string& key) {
   return with_key({{"scene", f.scene},
@@ -98,7 +79,8 @@ std::string part_json(const CompareErrors& e, const std::string& key) {
   return with_key({{"trouble", e.trouble},
                    {"algebraic", finite_or_null(e.algebraic)},
                    {"algebraic_largest", finite_or_null(e.algebraic_largest)},
-                   {"temporal", finite_or_null(e.temporal)}},
+                   {"temporal", finite_or_null(e.temporal)},
+                   {"measures", numbers_of(e.measures)}},
                   key);
 }
 
@@ -108,6 +90,7 @@ std::optional<CompareErrors> read_errors(const std::string& text, const std::str
     e.algebraic = number_or_unknown(j.at("algebraic"));
     e.algebraic_largest = number_or_unknown(j.at("algebraic_largest"));
     e.temporal = number_or_unknown(j.at("temporal"));
+    e.measures = numbers_from(j.at("measures"));
   });
 }
 
@@ -120,7 +103,10 @@ std::string part_json(const CompareRun& r, const std::string& key) {
                    {"passed_through", r.passed_through},
                    {"pairs", r.pairs},
                    {"lost", finite_or_null(r.lost)},
-                   {"end", r.end}},
+                   {"end", r.end},
+                   {"measures", numbers_of(r.measures)},
+                   {"phases", numbers_of(r.phases)},
+                   {"pairs_by_frame", r.pairs_by_frame}},
                   key);
 }
 
@@ -135,6 +121,9 @@ std::optional<CompareRun> read_run(const std::string& text, const std::string& k
     j.at("pairs").get_to(r.pairs);
     r.lost = number_or_unknown(j.at("lost"));
     j.at("end").get_to(r.end);
+    r.measures = numbers_from(j.at("measures"));
+    r.phases = numbers_from(j.at("phases"));
+    j.at("pairs_by_frame").get_to(r.pairs_by_frame);
   });
 }
 

@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "collision/geometry/error.hpp"
+#include "learned/steppers/learned_state.hpp"
 #include "physics/energies/measures.hpp"
 #include "pipeline/compare/algebraic_error.hpp"
+#include "pipeline/measures/published_measures.hpp"
 #include "pipeline/run/jitter.hpp"
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/simulate.hpp"
@@ -57,6 +59,14 @@ Setup with_steps(const Comparison& comparison, const CompareScene& scene, bool s
   return read_compared(scene, short_form, overrides, comparison.kinds);
 }
 
+// What the scene's minimisers are held against where all take a step a frame.
+Setup with_algebraic(const Comparison& comparison, const CompareScene& scene, bool short_form) {
+  std::vector<std::string> overrides{"run.substeps=1", "solver.velocity_tolerance=1e-6", "solver.relative_tolerance=0",
+                                     "solver.max_newton=60", "solver.linear_tolerance=0.01"};
+  overrides.insert(overrides.end(), comparison.algebraic.begin(), comparison.algebraic.end());
+  return read_compared(scene, short_form, overrides, comparison.kinds);
+}
+
 void check_arrived(const Flight& flight, const Setup& setup) {
   if (!flight.stopped && !flight.arrived())
     throw Error("the reference run fails: a step is rejected", setup.file.string(),
@@ -76,20 +86,38 @@ std::vector<int> chosen_frames(const CompareScene& scene, const Setup& setup) {
 bool run_reference(const Setup& setup, const CompareScene& scene, const Stop& stop, CompareReference& reference) {
   const std::vector<int> frames = chosen_frames(scene, setup);
   reference.states.resize(frames.size());
+  State before = setup.initial;
+  before.x -= setup.initial.v / setup.run.fps;
   const auto keep = [&](const State& state) {
     for (std::size_t k = 0; k < frames.size(); ++k) {
+      CommonState& common = reference.states[k];
       if (state.frame == frames[k]) {
-        reference.states[k].from = state;
-        forget_motion(reference.states[k].from.memory);
+        common.from = state;
+        forget_motion(common.from.memory);
+        carry_frame(before, common.from);
       }
-      if (state.frame == frames[k] + scene.horizon) reference.states[k].target = state.x;
+      if (state.frame == frames[k] + 1) common.next = state.x;
+      if (state.frame == frames[k] + scene.horizon) common.target = state.x;
     }
+    before = state;
   };
   keep(setup.initial);
   const Flight flight = fly(setup, setup.initial, setup.run.frames, stop, keep);
   check_arrived(flight, setup);
   reference.floor.lost = energy_of(setup, setup.initial) - energy_of(setup, flight.end);
   return flight.arrived();
+}
+
+// Where the algebraic reference is from every state; nothing where it fails. False: stopped.
+bool run_algebraic(const Setup& setup, const CompareScene& scene, const Stop& stop, CompareReference& reference) {
+  for (CommonState& state : reference.states) {
+    const Flight flight = fly(setup, state.from, scene.horizon, stop, [&](const State& at) {
+      if (at.frame == state.from.frame + 1) state.algebraic_next = at.x;
+    });
+    if (flight.stopped) return false;
+    if (flight.arrived()) state.algebraic_target = flight.end.x;
+  }
+  return true;
 }
 
 std::optional<Points> jittered_end(Setup setup, const State& from, double jitter, std::uint64_t seed, int horizon,
@@ -124,16 +152,18 @@ std::optional<CompareReference> make_reference(const Comparison& comparison, con
   const Setup coarser = with_steps(comparison, scene, short_form, half_as_fine);
   CompareReference reference;
   if (!run_reference(setup, scene, stop, reference)) return {};
+  if (!run_algebraic(with_algebraic(comparison, scene, short_form), scene, stop, reference)) return {};
   Mean motion, steps, jittered;
   for (const CommonState& state : reference.states) {
     const Flight coarse = fly(coarser, state.from, scene.horizon, stop);
     check_arrived(coarse, coarser);
     if (coarse.stopped) return {};
+    motion.add(root_mean_square(state.target - state.from.x));
+    steps.add(root_mean_square(coarse.end.x - state.target));
+    if (!state.from.clean) continue;  // a jitter is of clean states alone
     const auto one = jittered_end(setup, state.from, comparison.jitter, 1, scene.horizon, stop);
     const auto other = one ? jittered_end(setup, state.from, comparison.jitter, 2, scene.horizon, stop) : one;
     if (!other) return {};
-    motion.add(root_mean_square(state.target - state.from.x));
-    steps.add(root_mean_square(coarse.end.x - state.target));
     jittered.add(root_mean_square(*one - *other));
   }
   CompareFloor& floor = reference.floor;
@@ -150,15 +180,26 @@ std::optional<CompareReference> make_reference(const Comparison& comparison, con
 
 std::optional<CompareErrors> errors_of(const Setup& setup, const CompareReference& reference, const Stop& stop) {
   CompareErrors errors;
-  Mean temporal;
+  Mean temporal, temporal_one, algebraic_one, algebraic_end;
+  double l2 = 0, relative = 0;
   for (const CommonState& state : reference.states) {
-    const Flight flight = fly(setup, state.from, reference.floor.horizon, stop);
+    Points next;
+    const Flight flight = fly(setup, state.from, reference.floor.horizon, stop, [&](const State& at) {
+      if (at.frame == state.from.frame + 1) next = at.x;
+    });
     if (flight.stopped) return {};
     if (!flight.arrived()) {
       errors.trouble = fmt::format("rejects a step after frame {}", flight.end.frame);
       return errors;
     }
     temporal.add(root_mean_square(flight.end.x - state.target));
+    temporal_one.add(root_mean_square(next - state.next));
+    l2 += l2_mm(flight.end.x, state.target);
+    relative += e3d(flight.end.x, state.target);
+    if (state.algebraic_target.rows() > 0) {
+      algebraic_one.add(root_mean_square(next - state.algebraic_next));
+      algebraic_end.add(root_mean_square(flight.end.x - state.algebraic_target));
+    }
     const double substep = 1 / setup.run.fps / std::max(1, flight.first.substeps);
     const auto algebraic = algebraic_error(setup, state.from, substep);
     if (!algebraic || algebraic->error < errors.algebraic) continue;
@@ -166,7 +207,13 @@ std::optional<CompareErrors> errors_of(const Setup& setup, const CompareReferenc
     errors.algebraic_largest = algebraic->largest;
     if (!algebraic->reference_converged) errors.trouble = "the algebraic reference did not converge";
   }
+  const auto states = static_cast<double>(reference.states.size());
   errors.temporal = temporal.value();
+  errors.measures = {{"temporal_1", temporal_one.value()}, {"l2_mm", l2 / states}, {"e3d", relative / states}};
+  if (algebraic_one.count > 0) {
+    errors.measures["algebraic_1"] = algebraic_one.value();
+    errors.measures["algebraic_end"] = algebraic_end.value();
+  }
   return errors;
 }
 

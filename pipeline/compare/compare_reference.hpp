@@ -10,11 +10,13 @@
 
 namespace selvedge {
 
-// A state of the reference run and where the cloth is `horizon` frames later. It has no history: every integrator
-// starts anew.
+// A state of the reference run and where the cloth is one frame and `horizon` frames later, by steps of a 16th of a
+// frame (temporal) and by one converged step of implicit Euler a frame (algebraic; empty: it failed). Integrators have
+// no history there and start anew; networks go on from it as from a state of their own.
 struct CommonState {
   State from;
-  Points target;
+  Points target, next;
+  Points algebraic_target, algebraic_next;
 };
 
 struct CompareReference {
@@ -26,6 +28,9 @@ struct CompareReference {
 struct CompareErrors {
   std::string trouble;  // empty: nothing
   double algebraic = unknown, algebraic_largest = unknown, temporal = unknown;
+  // RMS distances [m], means over the states: temporal_1, algebraic_1, algebraic_end; and l2_mm, e3d of the temporal
+  // target.
+  std::map<std::string, double> measures = {};
 };
 
 using Stop = std::function<bool()>;  // asked after every frame; may be empty
@@ -42,6 +47,6 @@ double energy_of(const Setup&, const State&);
 
 // A scene of the comparison with further overrides.
 Setup read_compared(const CompareScene&, bool short_form, const std::vector<std::string>& overrides,
-                    const Kinds& = known_kinds());
+                    const Kinds& = compared_kinds());
 
 }  // namespace selvedge

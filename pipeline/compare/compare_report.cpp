@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "pipeline/compare/compare.hpp"
 #include "pipeline/formats/hdf5_handles.hpp"
@@ -59,6 +60,8 @@ Json row_json(const CompareRow& row) {
     const double value = column.value(row);
     json[column.name] = std::isfinite(value) ? Json(value) : Json(nullptr);
   }
+  for (const auto& [name, value] : row.measures) json[name] = std::isfinite(value) ? Json(value) : Json(nullptr);
+  json["pairs_by_frame"] = row.pairs_by_frame;
   json["trouble"] = row.trouble;
   return json;
 }
@@ -98,12 +101,21 @@ std::string compare_table(const CompareResult& result) {
 std::string compare_csv(const CompareResult& result) {
   std::string text = "scene,setting";
   for (const Column& column : columns()) text += std::string(",") + column.name;
+  std::set<std::string> measures;
+  for (const CompareRow& row : result.rows)
+    for (const auto& [name, value] : row.measures) measures.insert(name);
+  for (const std::string& name : measures) text += "," + name;
   text += ",trouble\n";
   for (const CompareRow& row : result.rows) {
     text += fmt::format("{},{}", quoted(row.scene), quoted(row.setting));
     for (const Column& column : columns()) {
       const double value = column.value(row);
       text += std::isfinite(value) ? fmt::format(",{:.9g}", value) : ",";
+    }
+    for (const std::string& name : measures) {
+      const auto found = row.measures.find(name);
+      const bool known = found != row.measures.end() && std::isfinite(found->second);
+      text += known ? fmt::format(",{:.9g}", found->second) : ",";
     }
     text += fmt::format(",{}\n", quoted(row.trouble));
   }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -24,6 +26,8 @@ struct CompareFloor {
 // A setting on a scene.
 struct CompareRow {
   std::string scene, setting;
+  std::string outfit;                                       // of a sequence
+  bool tangled = false;                                     // it starts so
   std::string trouble;                                      // why it was left out or what went wrong; empty: nothing
   double dt = unknown;                                      // mean substep of the run [s]
   double ms = unknown;                                      // a frame: median over frames and repeats
@@ -35,16 +39,20 @@ struct CompareRow {
   double newton = unknown, linear = unknown;                // iterations a frame
   int pairs = -1;                                           // intersecting pairs in the worst frame, by the audit
   long passed_through = 0;
-  bool reproduced = true;  // every repeat ended with the same bits
-  bool ranked = false;     // the temporal error is above the floor, the run clean to its end
-  bool front = false;      // nothing is faster and not worse by more than the floor
+  bool reproduced = true;                       // every repeat ended with the same bits
+  bool ranked = false;                          // the temporal error is above the floor, the run clean to its end
+  std::map<std::string, double> measures = {};  // by name: compare_columns.hpp
+  std::vector<int> pairs_by_frame = {};         // of cloth, the start's first
+  bool front = false;                           // nothing is faster and not worse by more than the floor
 };
 
 struct CompareResult {
   std::vector<CompareFloor> floors;
   std::vector<CompareRow> rows;
-  std::string plots;     // which were made, or why not
-  bool finished = true;  // false: stopped
+  std::string evaluation;       // of its tables, for people; empty: there is none
+  std::filesystem::path views;  // folder of the pages that play a scene's rows; empty: runs were not kept
+  std::string plots;            // which were made, or why not
+  bool finished = true;         // false: stopped
 };
 
 }  // namespace selvedge

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "pipeline/compare/sequences.hpp"
 #include "pipeline/config/options.hpp"
 
 namespace selvedge {
@@ -15,7 +16,7 @@ const Options<CompareScene>& compared_scene_options() {
       "compared_scene", "",
       {needed(path("file", "scene file, from this file's folder")), text("name", "left out: the file's"),
        texts("set", &O::overrides, "`key=value` overrides of the scene"),
-       integer("states", &O::states, at_least_one, "common states, spread over the run"),
+       integer("states", &O::states, not_negative, "common states, spread over the run; 0: no references"),
        integer("horizon", &O::horizon, at_least_one, "frames from each of them")},
       "file");
   return table;
@@ -27,7 +28,34 @@ const Section& setting_section() {
       "",
       "",
       {},
-      {needed(text("name", "")), texts("set", "`key=value` overrides of every scene; none: its defaults")}};
+      {needed(text("name", "")), text("stepper", "in place of the scene's"),
+       text("weights", "file in `weights_folder`; a row whose file is not there is left out, and says so"),
+       texts("set", "`key=value` overrides of every scene; none: its defaults")}};
+  return table;
+}
+
+const Options<SequenceOptions>& sequence_options() {
+  using O = SequenceOptions;
+  static const Options<O> table(
+      "sequences", "Outfits on clips, each a scene. The tangled ones start where training's third stage starts.",
+      {text("file", &O::file, "scene of an outfit on a body `person`"),
+       texts("outfits", &O::outfits, "of outfits.yaml"),
+       texts("clips", &O::clips, "procedural; each outfit goes through each in turn"),
+       integer("count", &O::count, not_negative, "of sequences"),
+       integer("tangled", &O::tangled, not_negative, "of them: every second one, up to this number"),
+       integer("frames", &O::frames, at_least_one, ""), integer("seed", &O::seed, not_negative, "of tangled starts"),
+       number("shape_spread", &O::shape_spread, Unit::none, not_negative,
+              "of the bodies of tangled ones, in standard deviations")});
+  return table;
+}
+
+const Options<EvaluationOptions>& evaluation_options() {
+  using O = EvaluationOptions;
+  static const Options<O> table(
+      "evaluation", "Tables of what rows leave of intersections, with paired intervals.",
+      {text("baseline", &O::baseline, "the row that the others are held against; left out: no evaluation"),
+       integer("resamples", &O::resamples, at_least_one, "of the bootstrap"),
+       integer("left_frames", &O::left_frames, at_least_one, "over which what is left of the first pairs is shown")});
   return table;
 }
 
@@ -36,9 +64,15 @@ const Options<Comparison>& comparison_options() {
   static const Options<O> table(
       "comparison", "The whole file.",
       {text("description", "for people"),
-       needed(sections("scenes", compared_scene_options().section, "", "at least one")),
+       sections("scenes", compared_scene_options().section, "[]", "at least one, or sequences"),
+       section(&O::sequences, sequence_options(), ""), section(&O::evaluation, evaluation_options(), ""),
+       text("weights_folder", &O::weights_folder, "of the settings' weights, seen from this file"),
+       flag("keep_runs", &O::keep_runs, "keep the trajectory of each row's first repeat"),
        needed(sections("settings", setting_section(), "", "at least one")),
        texts("reference", &O::reference, "`key=value` overrides of the temporal reference, beside its time step"),
+       texts("algebraic", &O::algebraic, "and of the algebraic one, beside its one step a frame"),
+       integer("judged_frames", &O::judged_frames, not_negative,
+               "of a run, of which the distance to the optimum is found"),
        integer("repeats", &O::repeats, at_least_one, "timed runs of each setting"),
        number("jitter", &O::jitter, Unit::none, not_negative, "of the floor's states, in mean edge lengths"),
        texts("short_form", "`key=value` overrides of this file that make it shorter (`--short`)")});
@@ -46,19 +80,37 @@ const Options<Comparison>& comparison_options() {
 }
 
 void check_names(const Config& list, const std::vector<std::string>& names) {
-  if (names.empty()) list.fail("is empty", "give at least one");
   for (std::size_t k = 0; k < names.size(); ++k)
     if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(k), names[k]) !=
         names.begin() + static_cast<std::ptrdiff_t>(k))
       list.items[k].fail("has the name `" + names[k] + "` of another", "give every one its own name");
 }
 
+CompareSetting read_setting(const Config& item, const std::filesystem::path& weights_folder) {
+  CompareSetting setting{item["name"].text(), {}, {}, {}};
+  if (item["stepper"].given) {
+    setting.stepper = item["stepper"].text();
+    setting.overrides.push_back("run.stepper=" + setting.stepper);
+  }
+  if (item["weights"].given) {
+    setting.weights = std::filesystem::absolute(weights_folder / item["weights"].text());
+    setting.overrides.push_back("run.learned.weights=" + setting.weights.string());
+  }
+  const std::vector<std::string>& more = item["set"].words;
+  setting.overrides.insert(setting.overrides.end(), more.begin(), more.end());
+  return setting;
+}
+
 }  // namespace
 
-Comparison read_comparison(const std::filesystem::path& file, bool short_form) {
-  Config config = read_config(file, comparison_options().section);
-  if (short_form && !config["short_form"].words.empty())
-    config = read_config(file, comparison_options().section, config["short_form"].words);
+Comparison read_comparison(const std::filesystem::path& file, bool short_form,
+                           const std::vector<std::string>& overrides) {
+  Config config = read_config(file, comparison_options().section, overrides);
+  if (short_form && !config["short_form"].words.empty()) {
+    std::vector<std::string> all = config["short_form"].words;
+    all.insert(all.end(), overrides.begin(), overrides.end());
+    config = read_config(file, comparison_options().section, all);
+  }
   Comparison comparison = comparison_options().read(config);
   comparison.file = file;
   std::vector<std::string> scenes, settings;
@@ -69,12 +121,20 @@ Comparison read_comparison(const std::filesystem::path& file, bool short_form) {
     scenes.push_back(scene.name);
     comparison.scenes.push_back(std::move(scene));
   }
+  const std::filesystem::path folder = file.parent_path() / comparison.weights_folder;
   for (const Config& item : config["settings"].items) {
-    settings.push_back(item["name"].text());
-    comparison.settings.push_back({item["name"].text(), item["set"].words});
+    comparison.settings.push_back(read_setting(item, folder));
+    settings.push_back(comparison.settings.back().name);
   }
   check_names(config["scenes"], scenes);
   check_names(config["settings"], settings);
+  if (settings.empty()) config["settings"].fail("is empty", "give at least one");
+  if (comparison.sequences.count > 0) add_sequences(comparison);
+  if (comparison.scenes.empty()) config["scenes"].fail("is empty", "give at least one, or `sequences`");
+  const std::string& baseline = comparison.evaluation.baseline;
+  if (!baseline.empty() && std::ranges::find(settings, baseline) == settings.end())
+    config["evaluation"]["baseline"].fail("names `" + baseline + "`, which is no setting",
+                                          "settings: " + joined(settings) + suggestion(baseline, settings));
   return comparison;
 }
 

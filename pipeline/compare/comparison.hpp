@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/scene/kinds.hpp"
+#include "pipeline/compare/skinning_stepper.hpp"
 
 namespace selvedge {
 
@@ -12,13 +12,36 @@ struct CompareScene {
   std::string name;
   std::filesystem::path file;
   std::vector<std::string> overrides;  // key=value
-  int states = 4;                      // common states, spread over the run
+  int states = 4;                      // common states, spread over the run; 0: no references, no errors
   int horizon = 6;                     // frames from each of them
+  // Of a sequence:
+  std::string outfit;
+  bool tangled = false;  // by the generator of training
 };
 
+// A row of every scene: a stepper as it is set.
 struct CompareSetting {
   std::string name;
   std::vector<std::string> overrides;
+  std::string stepper;            // in place of the scene's; empty: that
+  std::filesystem::path weights;  // of its network; empty: none
+};
+
+// Outfits on clips, each a scene: as skinned in the clip's first frame, or tangled as training's third stage has it.
+struct SequenceOptions {
+  std::string file;                         // the scene of them all, seen from the comparison file
+  std::vector<std::string> outfits, clips;  // each outfit with each clip in turn
+  int count = 0, tangled = 0;               // of sequences; of them tangled
+  int frames = 150;
+  std::uint64_t seed = 1;
+  double shape_spread = 3;  // of the bodies of tangled ones [standard deviations]
+};
+
+// How rows are read as a table of an evaluation.
+struct EvaluationOptions {
+  std::string baseline;  // the row that the others are held against; empty: no evaluation
+  int resamples = 10000;
+  int left_frames = 50;  // over which what is left of the first pairs is shown
 };
 
 // A comparison file, read.
@@ -27,12 +50,20 @@ struct Comparison {
   std::vector<CompareScene> scenes;
   std::vector<CompareSetting> settings;
   std::vector<std::string> reference;  // overrides of the temporal reference, beside its time step
-  Kinds kinds = known_kinds();         // of steppers
+  std::vector<std::string> algebraic;  // and of the algebraic one
+  Kinds kinds = compared_kinds();      // of steppers
+  SequenceOptions sequences;
+  EvaluationOptions evaluation;
+  std::string weights_folder;  // seen from the file
+  bool keep_runs = false;      // the trajectory of each row's first repeat
   int repeats = 3;
-  double jitter = 1e-3;  // of the common states for the floor, in mean edge lengths
+  int judged_frames = 4;  // of a run, of which the distance to the optimum is found
+  double jitter = 1e-3;   // of the common states for the floor, in mean edge lengths
 };
 
 // Throws Error with file, line and key. short_form: with the file's own `short_form` and that of every scene.
-Comparison read_comparison(const std::filesystem::path&, bool short_form);
+// `overrides` are key=value, of the comparison file.
+Comparison read_comparison(const std::filesystem::path&, bool short_form,
+                           const std::vector<std::string>& overrides = {});
 
 }  // namespace selvedge

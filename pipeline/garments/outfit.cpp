@@ -97,4 +97,13 @@ std::vector<Garment> kept_outfit(const std::filesystem::path& folder, const Outf
   return garments;
 }
 
+std::vector<Garment> kept_layers(const std::filesystem::path& folder, const Outfit& outfit, const BodyModel& mannequin,
+                                 double edge) {
+  std::vector<Garment> garments;
+  GarmentOptions options;
+  options.edge = edge;
+  for (const std::string& name : outfit.garments) garments.push_back(kept_garment(folder, name, mannequin, options));
+  return garments;
+}
+
 }  // namespace selvedge

@@ -30,5 +30,8 @@ Wardrobe read_wardrobe(const std::filesystem::path&);
 // The garments of an outfit at an edge length, each over those before it, kept in the folder as kept_garment does.
 std::vector<Garment> kept_outfit(const std::filesystem::path& folder, const Outfit&, const BodyModel& mannequin,
                                  double edge);
+// The same without the gap between them, each as if it were worn alone: they start in each other.
+std::vector<Garment> kept_layers(const std::filesystem::path& folder, const Outfit&, const BodyModel& mannequin,
+                                 double edge);
 
 }  // namespace selvedge

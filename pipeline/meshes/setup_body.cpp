@@ -78,6 +78,13 @@ Clip read_clip(const Config& section, const Measures& who, const std::filesystem
   return make_clip(clip.text(), who.joints, who.floor);
 }
 
+void begin_later(const Config& first_frame, Clip& clip) {
+  const int first = first_frame.integer();
+  if (first >= static_cast<int>(clip.poses.size()))
+    first_frame.fail(fmt::format("is beyond the clip's {} frames", clip.poses.size()), "give one of its frames");
+  clip.poses.erase(clip.poses.begin(), clip.poses.begin() + first);
+}
+
 // The clip by the body's own joints, from its own zero pose. A start with the arms down comes before the body's own
 // zero pose is accounted for, since it is said in SMPL's; the zero pose that cloth was fitted to is the body's own.
 Clip performed(const Config& section, const Performance& who, const std::filesystem::path& folder) {
@@ -90,6 +97,7 @@ Clip performed(const Config& section, const Performance& who, const std::filesys
   const Points joints = joint_positions(who.body, who.shape);
   const std::optional<BodyPose> t = t_pose(who.body, joints);
   Clip clip = read_clip(section, measured(who, joints, t), folder);
+  begin_later(section["first_frame"], clip);
   clip = blended(clip, StartPose::arms_down, !from_zero);
   if (t) clip = from_own_zero_pose(clip, who.body, joints, *t);
   return blended(clip, StartPose::zero, from_zero);

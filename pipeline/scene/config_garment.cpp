@@ -18,6 +18,10 @@ const Options<GarmentOptions>& garment_options() {
        number("edge", &GarmentOptions::edge, Unit::length, positive, "of a `cut`: length of its edges"),
        text("outfit", "of `outfits.yaml` beside the scene or in the folder above it, else of configs/outfits.yaml"),
        word("form", {"small", "full"}, "small", "of the outfit: for quick runs, or with all its vertices"),
+       word("layers", {"over", "alone"}, "over",
+            "of an outfit: each garment made over those under it, or as if it were worn alone, so that they start in "
+            "each "
+            "other"),
        text("on", "name of the obstacle that wears it; left out: the only body"),
        flag("pins", true, "whether the garment's own pins stay with the body, skinned and giving way")},
       "file", {"file", "cut", "outfit"});

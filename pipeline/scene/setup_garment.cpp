@@ -75,9 +75,10 @@ std::vector<Garment> read_outfit(const Config& section, const std::filesystem::p
   std::vector<std::string> known;
   for (const Outfit& outfit : wardrobe.outfits) {
     known.push_back(outfit.name);
-    if (outfit.name == name.text())
-      return kept_outfit(cache_folder(), outfit, who.body,
-                         section["form"].text() == "full" ? outfit.edge : outfit.small_edge);
+    if (outfit.name != name.text()) continue;
+    const double edge = section["form"].text() == "full" ? outfit.edge : outfit.small_edge;
+    return section["layers"].text() == "alone" ? kept_layers(cache_folder(), outfit, who.body, edge)
+                                               : kept_outfit(cache_folder(), outfit, who.body, edge);
   }
   name.fail("is the unknown outfit `" + name.text() + "`",
             "outfits: " + joined(known) + suggestion(name.text(), known));

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "pipeline/compare/compare_parts.hpp"
+#include "pipeline/compare/compare_run.hpp"
 #include "pipeline/host/peak_memory.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/run/prepare.hpp"
@@ -40,7 +40,7 @@ std::optional<AlgebraicError> worst_error(const Setup& setup, const StateSampler
 
 // Energy lost in a run to `end` over what the same steps, each solved to its minimiser, lose.
 std::optional<double> energy_decay(const Setup& setup, const State& end, const Setup& converged) {
-  const auto reference = timed_run(converged, {});
+  const auto reference = timed_run(converged, {.measured = false}, {});
   if (!reference || !reference->trouble.empty() || !(reference->lost > 0)) return {};
   return (energy_of(setup, setup.initial) - energy_of(setup, end)) / reference->lost;
 }

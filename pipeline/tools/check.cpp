@@ -12,6 +12,7 @@
 #include "physics/scene/make_scene.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/tools/check_measures.hpp"
 
 namespace selvedge {
 namespace {
@@ -185,6 +186,7 @@ CheckReport check(const CheckRequest& request) {
     check_trajectory(request, report);
   else
     check_mesh(request, report);
+  if (request.against) report.measures = measures_against(request.file, *request.against);
   return report;
 }
 

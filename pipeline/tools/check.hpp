@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,9 +17,10 @@ struct CheckRequest {
   std::filesystem::path file;                 // mesh (OBJ, PLY) or trajectory (HDF5)
   std::optional<std::filesystem::path> rest;  // mesh of the same triangles at rest; a trajectory holds its own
   std::vector<std::filesystem::path> bodies;  // meshes that the cloth must not touch, beside a trajectory's obstacles
-  std::string audit = "own";                  // or "fcl": its opinion beside the audit's
-  double horizon = 0.02;                      // gaps above it are not looked for [m]
-  bool volume = false;                        // the volume that crossings enclose
+  std::optional<std::filesystem::path> against;  // another trajectory of the same cloths
+  std::string audit = "own";                     // or "fcl": its opinion beside the audit's
+  double horizon = 0.02;                         // gaps above it are not looked for [m]
+  bool volume = false;                           // the volume that crossings enclose
 };
 
 // What was found in the positions themselves; nothing that a trajectory says about itself is trusted.
@@ -36,7 +38,8 @@ struct CheckReport {
   bool closed = true;  // false: the trajectory's writer did not end, or is still at work
   std::vector<std::string> warnings;
   std::optional<Opinion> fcl;
-  std::optional<VolumeFindings> volume;  // frames that are not finite have none
+  std::optional<VolumeFindings> volume;    // frames that are not finite have none
+  std::map<std::string, double> measures;  // of measures_against
   int frames() const { return static_cast<int>(pairs_by_frame.size()); }
 };
 

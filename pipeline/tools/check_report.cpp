@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/measures/run_measures.hpp"
 #include "pipeline/tools/check.hpp"
 
 namespace selvedge {
@@ -71,6 +72,7 @@ std::string check_json(const CheckReport& r) {
                                  {"warnings", r.warnings}};
   if (r.fcl) json["fcl"] = opinion_json(*r.fcl);
   if (r.volume) json["volume"] = volume_json(*r.volume);
+  for (const auto& [name, value] : r.measures) json["measures"][name] = finite_or_null(value);
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -91,6 +93,7 @@ std::string check_text(const CheckReport& r) {
   add("degenerate triangles", fmt::format("{}", r.degenerate_triangles));
   if (r.fcl) add("FCL's opinion", opinion_text(*r.fcl));
   if (r.volume) add("enclosed volume", volume_text(*r.volume));
+  for (const auto& [name, value] : r.measures) add(name.c_str(), fmt::format("{:<12.6g} {}", value, meaning_of(name)));
   for (const std::string& warning : r.warnings) add("warning", warning);
   return text;
 }

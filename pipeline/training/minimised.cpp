@@ -1,51 +1,14 @@
 #include "pipeline/training/minimised.hpp"
 
-#include <cmath>
-#include <deque>
-
 #include "learned/losses/force_input.hpp"
 
 namespace selvedge {
-namespace {
-
-struct CurvaturePair {
-  Points s, y;
-  double rho = 0;  // 1 / (s . y)
-};
-
-double dot(const Points& a, const Points& b) { return a.cwiseProduct(b).sum(); }
-
-// The two loops, with the inverse of the diagonal as the first guess of the inverse Hessian.
-Points quasi_newton(const std::deque<CurvaturePair>& pairs, const Eigen::VectorXd& inverse_diagonal,
-                    const Points& gradient) {
-  Points direction = gradient;
-  std::vector<double> alpha(pairs.size());
-  for (std::size_t k = pairs.size(); k-- > 0;) {
-    alpha[k] = pairs[k].rho * dot(pairs[k].s, direction);
-    direction -= alpha[k] * pairs[k].y;
-  }
-  double scale = 1;
-  if (!pairs.empty()) {
-    const CurvaturePair& last = pairs.back();
-    scale = 1 / (last.rho * dot(last.y, inverse_diagonal.asDiagonal() * last.y));
-  }
-  direction = (scale * inverse_diagonal).asDiagonal() * direction;
-  for (std::size_t k = 0; k < pairs.size(); ++k)
-    direction += (alpha[k] - pairs[k].rho * dot(pairs[k].y, direction)) * pairs[k].s;
-  return direction;
-}
-
-}  // namespace
 
 Minimised minimised(const FrameMaking& making, RollingState& state, const Points& start, int most_evaluations) {
-  constexpr std::size_t memory = 12;
-  constexpr double sufficient = 1e-4;  // of the slope
   const TrainingScene& scene = *state.roll.scene;
   const SeenPositions seen = seen_positions(scene.rest, state.now, making.features);
-  Minimised best{start, 0, 0};
   const auto evaluate = [&](const Points& x, Points& gradient) {
     gradient.setZero(x.rows(), 3);
-    ++best.evaluations;
     const double sum =
         sum_of(add_losses(inputs_of(state, seen, x, making.progress), making.losses, state.losses, &gradient));
     for (const int pin : scene.rest.pinned) gradient.row(pin).setZero();
@@ -58,40 +21,7 @@ Minimised minimised(const FrameMaking& making, RollingState& state, const Points
     const double entry = diagonal[static_cast<std::size_t>(v)];
     inverse[v] = entry > 0 ? 1 / entry : 0;
   }
-  Points gradient, next_gradient;
-  best.value = evaluate(best.x, gradient);
-  std::deque<CurvaturePair> pairs;
-  while (best.evaluations < most_evaluations) {
-    Points direction = -quasi_newton(pairs, inverse, gradient);
-    double slope = dot(direction, gradient);
-    if (!(slope < 0)) {
-      pairs.clear();
-      direction = -(inverse.asDiagonal() * gradient);
-      slope = dot(direction, gradient);
-      if (!(slope < 0)) break;
-    }
-    double t = 1, value = 0;
-    Points x;
-    for (int halvings = 0;; ++halvings) {
-      x = best.x + t * direction;
-      value = evaluate(x, next_gradient);
-      if (value <= best.value + sufficient * t * slope) break;
-      if (halvings == 30 || best.evaluations >= most_evaluations) return best;
-      t /= 2;
-    }
-    CurvaturePair pair{x - best.x, next_gradient - gradient, 0};
-    const double curvature = dot(pair.s, pair.y), gained = best.value - value;
-    best.x = x;
-    best.value = value;
-    gradient = next_gradient;
-    if (curvature > 0) {
-      pair.rho = 1 / curvature;
-      pairs.push_back(std::move(pair));
-      if (pairs.size() > memory) pairs.pop_front();
-    }
-    if (gained < 1e-9 * std::abs(value)) break;
-  }
-  return best;
+  return minimised(evaluate, inverse, start, most_evaluations);
 }
 
 }  // namespace selvedge

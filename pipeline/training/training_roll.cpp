@@ -112,12 +112,22 @@ void set_forces(const RollMaker& maker, Roll& roll) {
     roll.forces.wind = std::sqrt(2 * strength * density / (wind.air_density * wind.drag)) / strength * request.force;
 }
 
+void draw_force(const ForceSampling& forces, RandomStream& random, RollRequest& request) {
+  if (forces.strongest == 0) return;
+  request.sheet = random.heads(forces.sheet_share);
+  if (request.sheet) request.with_body = false;
+  request.wind = random.heads(forces.wind_share);
+  const double up = random.between(-1, 1), turned = random.between(0, 2 * std::numbers::pi),
+               across = std::sqrt(std::max(0.0, 1 - up * up));
+  request.force = random.between(0, forces.strongest) * Vec3(across * std::cos(turned), up, across * std::sin(turned));
+}
+
 constexpr int many_pairs = 20;    // of a start that counts as tangled (Grigorev et al. 2024, figure 5, has more)
 constexpr int most_attempts = 8;  // to find one
 
-// Every second tangled start is looked for: the first of some places in the clips at which the skinned garment has many
-// pairs, or the one with the most. Says how many there are.
-RollRequest place_of_start(RollMaker& maker, const RollRequest& asked, int& pairs) {
+}  // namespace
+
+RollRequest tangled_place(RollMaker& maker, const RollRequest& asked, int& pairs) {
   RandomStream random = stream_for(maker.options.seed, place, asked.number);
   RollRequest best = asked, tried = asked;
   IntersectionCache cache;
@@ -139,18 +149,6 @@ RollRequest place_of_start(RollMaker& maker, const RollRequest& asked, int& pair
   }
   return best;
 }
-
-void draw_force(const ForceSampling& forces, RandomStream& random, RollRequest& request) {
-  if (forces.strongest == 0) return;
-  request.sheet = random.heads(forces.sheet_share);
-  if (request.sheet) request.with_body = false;
-  request.wind = random.heads(forces.wind_share);
-  const double up = random.between(-1, 1), turned = random.between(0, 2 * std::numbers::pi),
-               across = std::sqrt(std::max(0.0, 1 - up * up));
-  request.force = random.between(0, forces.strongest) * Vec3(across * std::cos(turned), up, across * std::sin(turned));
-}
-
-}  // namespace
 
 RollRequest draw_roll(const TrainingOptions& options, const TrainingWorld& world, std::uint64_t number,
                       double progress) {
@@ -221,7 +219,7 @@ Roll make_roll(RollMaker& maker, const RollRequest& request) {
   Roll roll;
   roll.request = request;
   const bool looks = maker.options.samples.start == GarmentStart::tangled && request.cloth_contact && !request.sheet;
-  const RollRequest at = looks ? place_of_start(maker, request, roll.pairs) : request;
+  const RollRequest at = looks ? tangled_place(maker, request, roll.pairs) : request;
   roll.scene = scene_of(maker, at);
   for (int k = 0; k < request.frames + 2; ++k) {
     WornFrame frame = frame_of(maker, request, at, k);

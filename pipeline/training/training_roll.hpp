@@ -60,6 +60,11 @@ struct RollMaker {
 };
 Roll make_roll(RollMaker&, const RollRequest&);
 
+// Where a tangled start is taken from: of every second number, by which it is random, the first of up to eight places
+// in the clips at which the skinned garment has 20 intersecting pairs or more, or the one with the most; of others the
+// place that was asked for. Says how many pairs there are.
+RollRequest tangled_place(RollMaker&, const RollRequest& asked, int& pairs);
+
 // A material over the ranges of the authors' training (digest 2.8): density and lambda uniform, mu and bending by their
 // logarithms.
 VertexMaterial random_material(RandomStream&);

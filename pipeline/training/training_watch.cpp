@@ -6,7 +6,7 @@
 #include "learned/graph/integration.hpp"
 #include "learned/graph/nearest_faces.hpp"
 #include "learned/losses/volume_loss.hpp"
-#include "physics/energies/measures.hpp"
+#include "pipeline/measures/motion_measures.hpp"
 #include "pipeline/training/minimised.hpp"
 
 namespace selvedge {
@@ -93,24 +93,6 @@ GapMeasure gap_of(Trainer& trainer, const FrameMaking& making, std::vector<Fixed
   return gap;
 }
 
-double percentile(std::vector<double> values, double part) {
-  if (values.empty()) return 0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-void add_strain(const Scene& scene, const Points& x, RollMeasure& roll) {
-  const auto stretches = principal_stretches(scene, x);
-  std::vector<double> strains;
-  for (const double s : stretches.reshaped()) strains.push_back(std::abs(s - 1));
-  double sum = 0;
-  for (const double s : strains) sum += s;
-  roll.strain += sum / static_cast<double>(std::max<std::size_t>(strains.size(), 1));
-  roll.strain_most = std::max(roll.strain_most, *std::ranges::max_element(strains));
-  roll.strain_99 += percentile(std::move(strains), 0.99);
-}
-
 void add_depth(const Surface& body, const Points& body_x, const Points& x, NearestFaces& search, RollMeasure& roll) {
   if (body_x.rows() == 0) return;
   constexpr double deep = 1e-3;  // [m]
@@ -125,21 +107,6 @@ void add_depth(const Surface& body, const Points& body_x, const Points& x, Neare
   }
   roll.deep += static_cast<double>(count) / static_cast<double>(x.rows());
 }
-
-// What the last frames were like, for the jitter.
-struct MotionTrace {
-  Points x1, x2, x3;  // the last, the one before, ..
-
-  // Of the change of acceleration in the last four frames [m2/frame4]; 0 before there are so many.
-  double add(const Points& x) {
-    double squared = 0;
-    if (x3.rows() == x.rows()) squared = ((x - 2 * x1 + x2) - (x1 - 2 * x2 + x3)).rowwise().squaredNorm().mean();
-    x3 = std::move(x2);
-    x2 = std::move(x1);
-    x1 = x;
-    return squared;
-  }
-};
 
 }  // namespace
 
@@ -173,7 +140,10 @@ RollMeasure measure_roll(Trainer& trainer, const Roll& roll, int gate) {
     if (last_pass && gate > 0) next = gated(making, gate, next, state);
     if (last_pass && !settling) {
       result.energy += sum_at(making, state, next.x);
-      add_strain(scene, next.x, result);
+      const StrainMeasure strain = strain_of(scene, next.x);
+      result.strain += strain.mean;
+      result.strain_99 += strain.p99;
+      result.strain_most = std::max(result.strain_most, strain.most);
       add_depth(roll.scene->graph.body, state.now.body_target, next.x, nearest, result);
       for (Eigen::Index v = 0; v < next.x.rows(); ++v)
         result.kinetic += 0.5 * roll.scene->losses.mass[static_cast<std::size_t>(v)] *

@@ -31,13 +31,11 @@ std::vector<std::string> training_clip_names(const SampleOptions& options) {
 TrainingWear dressed_wear(const std::string& name, const SampleOptions& options, const BodyModel& body) {
   TrainingWear wear{name, {}, {}};
   for (const Outfit& outfit : read_wardrobe(config_folder() / "outfits.yaml").outfits)
-    if (outfit.name == name) wear.garments = kept_outfit(cache_folder(), outfit, body, options.edge);
+    if (outfit.name == name)
+      wear.garments = options.start == GarmentStart::tangled ? kept_layers(cache_folder(), outfit, body, options.edge)
+                                                             : kept_outfit(cache_folder(), outfit, body, options.edge);
   GarmentOptions cut;
   cut.edge = options.edge;
-  if (options.start == GarmentStart::tangled) {
-    // Layers without the gap between them, each as if it were worn alone.
-    for (Garment& garment : wear.garments) garment = kept_garment(cache_folder(), garment.name, body, cut);
-  }
   if (wear.garments.empty()) wear.garments.push_back(kept_garment(cache_folder(), name, body, cut));
   for (const Garment& garment : wear.garments)
     wear.skin.push_back(options.flesh ? shares_of_body(garment.skin.rest, body, flesh_skin_width) : SkinWeights{});

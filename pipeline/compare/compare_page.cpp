@@ -1,0 +1,214 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "pipeline/compare/compare.hpp"
+#include "pipeline/compare/evaluation.hpp"
+#include "pipeline/compare/svg_plots.hpp"
+#include "pipeline/host/version.hpp"
+#include "pipeline/measures/run_measures.hpp"
+#include "pipeline/tools/info.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr const char* page_style =
+    "body{font:15px/1.45 system-ui,sans-serif;margin:2em auto;max-width:1320px;padding:0 1em;color:#222}"
+    "h1{font-size:1.5em}h2{font-size:1.2em;margin-top:2em;border-top:1px solid #ccc;padding-top:.8em}"
+    "figure{display:inline-block;margin:0 1em 1em 0;vertical-align:top}figcaption{font-weight:600}"
+    "figure p{margin:.2em 0;max-width:620px}"
+    "svg{font:11px system-ui,sans-serif}svg .grid{stroke:#e4e4e4}svg .floor{fill:#f0ead8}"
+    "circle.plain{fill:#555}circle.front{fill:#d62728}circle.unclean{fill:#fff;stroke:#555;stroke-width:1.5}"
+    "polyline.front{fill:none;stroke:#d62728;stroke-width:1.5}.failed path{stroke:#b00;stroke-width:2.5}"
+    "svg .number{font-size:10px;fill:#444}.wide{overflow-x:auto}"
+    "table{border-collapse:collapse;font-size:13px;margin:.6em 0}td,th{padding:.15em .55em;text-align:right;"
+    "border-bottom:1px solid #eee;white-space:nowrap}th{background:#f6f6f6}td:first-child,th:first-child,.left"
+    "{text-align:left}tr.front td{background:#fdeeee}tr.trouble td{color:#a00}pre{background:#f6f6f6;padding:.6em;"
+    "overflow-x:auto;font-size:12.5px}.note{color:#555}";
+
+struct PageColumn {
+  const char *name, *title;
+  double factor;
+  const char* format;
+};
+// What a scene's table shows of RunMeasures, CompareErrors and times; compare.csv has all.
+constexpr PageColumn page_columns[]{{"temporal_1", "temporal 1 [mm]", 1000, "{:.3g}"},
+                                    {"algebraic_1", "algebraic 1 [mm]", 1000, "{:.3g}"},
+                                    {"algebraic_end", "algebraic end [mm]", 1000, "{:.3g}"},
+                                    {"l2_mm", "l2_mm", 1, "{:.3g}"},
+                                    {"e3d", "e3d", 1, "{:.2g}"},
+                                    {"excess", "E - E* [J]", 1, "{:.2g}"},
+                                    {"residual", "residual", 1, "{:.3g}"},
+                                    {"strain", "strain [%]", 100, "{:.2f}"},
+                                    {"strain_99", "p99 [%]", 100, "{:.1f}"},
+                                    {"kinetic", "kinetic [J]", 1, "{:.3g}"},
+                                    {"pairs_mean", "pairs", 1, "{:.1f}"},
+                                    {"pairs_end", "at end", 1, "{:.0f}"},
+                                    {"depth", "depth [mm]", 1000, "{:.2f}"},
+                                    {"jitter", "jitter [mm]", 1000, "{:.2f}"},
+                                    {"high_share", "high share", 1, "{:.3f}"},
+                                    {"collision_percent", "collision_percent", 1, "{:.2f}"},
+                                    {"collision_free_frames", "collision_free", 1, "{:.0f}"},
+                                    {"hood_total", "hood_losses [J]", 1, "{:.3g}"},
+                                    {"grad_norm", "grad_norm [N]", 1, "{:.2g}"},
+                                    {"static_share", "static_share", 1, "{:.0f}"},
+                                    {"ms_graph", "graph [ms]", 1, "{:.1f}"},
+                                    {"ms_network", "network [ms]", 1, "{:.1f}"},
+                                    {"ms_solve", "solve [ms]", 1, "{:.1f}"},
+                                    {"ms_broad_phase", "search [ms]", 1, "{:.1f}"},
+                                    {"ms_ccd", "ccd [ms]", 1, "{:.1f}"},
+                                    {"ms_response", "response [ms]", 1, "{:.1f}"},
+                                    {"ms_audit", "audit [ms]", 1, "{:.1f}"}};
+
+std::string cell(double value, const char* format) {
+  return "<td>" + (std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : std::string()) + "</td>";
+}
+
+bool is_there(const CompareRow& row) { return std::isfinite(row.ms); }
+bool is_clean_row(const CompareRow& row) { return row.pairs <= 0 && row.passed_through == 0; }
+
+PlotMark mark_of(const CompareRow& row, double error) {
+  if (!(error > 0) || !row.trouble.empty()) return PlotMark::failed;
+  return row.front ? PlotMark::front : is_clean_row(row) ? PlotMark::plain : PlotMark::unclean;
+}
+
+template <class Error>
+std::string plot_of(const std::string& title, const std::string& y, const std::vector<const CompareRow*>& rows,
+                    double floor, const Error& error) {
+  std::vector<PlotPoint> points;
+  for (const CompareRow* row : rows) points.push_back({row->setting, row->ms, error(*row), mark_of(*row, error(*row))});
+  return scatter_svg(title, "ms a frame", y, points, floor);
+}
+
+// Only columns that some row has.
+std::string rows_table(const std::vector<const CompareRow*>& rows, bool references) {
+  std::vector<const PageColumn*> columns;
+  for (const PageColumn& column : page_columns)
+    if (std::ranges::any_of(rows, [&](const CompareRow* row) { return row->measures.contains(column.name); }))
+      columns.push_back(&column);
+  std::string html = "<div class='wide'><table><tr><th></th><th>ms a frame</th>";
+  if (references) html += "<th>temporal end [mm]</th><th>ranked</th><th>front</th>";
+  for (const PageColumn* column : columns) {
+    const std::string meaning = meaning_of(column->name);
+    html += fmt::format("<th title='{}'>{}</th>", html_text(meaning.empty() ? column->name : meaning), column->title);
+  }
+  html += "<th class='left'>trouble</th></tr>";
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const CompareRow& row = *rows[k];
+    html += fmt::format("<tr class='{}'><td>{} {}</td>",
+                        row.front             ? "front"
+                        : row.trouble.empty() ? ""
+                                              : "trouble",
+                        k + 1, html_text(row.setting));
+    html += cell(row.ms, "{:.1f}");
+    if (references)
+      html += cell(1000 * row.temporal, "{:.3g}") +
+              fmt::format("<td>{}</td><td>{}</td>", row.ranked ? "yes" : "", row.front ? "yes" : "");
+    for (const PageColumn* column : columns) {
+      const auto found = row.measures.find(column->name);
+      html += cell(found == row.measures.end() ? unknown : column->factor * found->second, column->format);
+    }
+    html += "<td class='left'>" + html_text(row.trouble) + "</td></tr>";
+  }
+  return html + "</table></div>\n";
+}
+
+std::string scene_section(const CompareFloor& floor, const CompareResult& result) {
+  std::vector<const CompareRow*> rows;
+  for (const CompareRow& row : result.rows)
+    if (row.scene == floor.scene) rows.push_back(&row);
+  std::string html = fmt::format("<h2>{}</h2><p class='note'>{} vertices, {} frames", html_text(floor.scene),
+                                 floor.vertices, floor.frames);
+  if (floor.states > 0)
+    html += fmt::format(
+        "; {} common states, {} frames from each, in which the reference moves {:.3g} mm. Floor {:.3g} mm: the larger "
+        "of dt/8 against dt/16 ({:.3g}) and of two jittered references ({:.3g}); what lies below is not ranked",
+        floor.states, floor.horizon, 1000 * floor.motion, 1000 * floor.floor(), 1000 * floor.steps,
+        1000 * floor.jittered);
+  html += ".</p>\n";
+  if (floor.states > 0) {
+    html += plot_of(fmt::format("Distance to the temporal reference after {} frames", floor.horizon), "RMS [mm]", rows,
+                    1000 * floor.floor(), [](const CompareRow& r) { return 1000 * r.temporal; });
+    html +=
+        plot_of("Distance to the algebraic reference after one frame", "RMS [mm]", rows, 0, [](const CompareRow& r) {
+          const auto found = r.measures.find("algebraic_1");
+          return found == r.measures.end() ? unknown : 1000 * found->second;
+        });
+  }
+  html += rows_table(rows, floor.states > 0);
+  if (std::filesystem::path view = result.views / (floor.scene + ".html");
+      !result.views.empty() && std::filesystem::exists(view))
+    html += fmt::format("<p><a href='views/{0}.html'>{0} side by side</a></p>\n", html_text(floor.scene));
+  return html;
+}
+
+std::string evaluation_section(const Evaluation& e) {
+  std::string html = "<h2>Evaluation</h2><pre>" + html_text(evaluation_text(e)) + "</pre>\n";
+  std::vector<PlotCurve> left, pairs, speeds;
+  for (const EvaluatedRow& row : e.rows)
+    if (!row.left.empty()) left.push_back({row.row, row.left});
+  for (const auto& [row, by_frame] : e.by_frame)
+    pairs.push_back({row, std::vector<double>(by_frame.begin(), by_frame.end())});
+  html += curves_svg(fmt::format("Part of the first pairs that is left, mean over {} tangled starts", e.tangled),
+                     "frame", left);
+  html += curves_svg("Pairs by frame, " + e.shown, "frame", pairs, true);
+  html += "<table><tr><th>frames a second</th>";
+  for (std::size_t k = 0; k < e.outfits.size(); ++k)
+    html += fmt::format("<th>{} ({} nodes)</th>", html_text(e.outfits[k]), e.vertices[k]);
+  html += "</tr>";
+  for (const auto& [row, of_outfits] : e.speeds) {
+    html += "<tr><td>" + html_text(row) + "</td>";
+    for (const std::string& outfit : e.outfits) {
+      const auto found = std::ranges::find(of_outfits, outfit, [](const auto& pair) { return pair.first; });
+      html += cell(found == of_outfits.end() ? unknown : found->second, "{:.1f}");
+    }
+    html += "</tr>";
+  }
+  return html + "</table>\n";
+}
+
+std::string settings_section(const Comparison& comparison) {
+  std::string html =
+      "<h2>Settings</h2><table><tr><th>row</th><th class='left'>stepper</th><th class='left'>weights</th>"
+      "<th class='left'>set</th></tr>";
+  for (const CompareSetting& setting : comparison.settings)
+    html += fmt::format("<tr><td>{}</td><td class='left'>{}</td><td class='left'>{}</td><td class='left'>{}</td></tr>",
+                        html_text(setting.name), html_text(setting.stepper), html_text(setting.weights.filename()),
+                        html_text(joined(setting.overrides)));
+  return html + "</table>\n";
+}
+
+// Rows that no scene could run, once each.
+std::string left_out_section(const CompareResult& result) {
+  std::set<std::string> lines;
+  for (const CompareRow& row : result.rows)
+    if (!is_there(row) && !row.trouble.empty()) lines.insert(row.setting + ": " + row.trouble);
+  if (lines.empty()) return "";
+  std::string html = "<h2>What was left out</h2><ul>";
+  for (const std::string& line : lines) html += "<li>" + html_text(line) + "</li>";
+  return html + "</ul>\n";
+}
+
+}  // namespace
+
+std::string compare_page(const Comparison& comparison, const CompareResult& result) {
+  std::string html = fmt::format(
+      "<!doctype html><html lang='en'><meta charset='utf-8'><title>selvedge compare: {0}</title><style>{1}</style>"
+      "<h1>selvedge compare: {0}</h1><p class='note'>{2}. Median wall time a frame, one scene at a time, with graph, "
+      "contact and audit. Red dots and the line: the efficient front, of clean rows of which none is faster and not "
+      "worse by more than the floor. Open circles: with intersecting pairs or something passed through, on no front. "
+      "Crosses: failed. Learned rows are shown the scene's material, and hood_losses, E - E* and the residual judge "
+      "all rows by the energies that HOOD minimises; docs/comparison.md says how to read this.</p>\n",
+      html_text(comparison.file.filename()), page_style,
+      result.finished ? "Finished" : "Stopped before its end; the same command goes on");
+  if (!comparison.evaluation.baseline.empty())
+    html += evaluation_section(evaluated(comparison, result.floors, result.rows));
+  for (const CompareFloor& floor : result.floors) html += scene_section(floor, result);
+  html += left_out_section(result) + settings_section(comparison);
+  html += "<h2>Machine and build</h2><pre>" + html_text(info_text()) + "</pre></html>\n";
+  return html;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,130 @@
+#include "pipeline/compare/compare_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "learned/steppers/learned_state.hpp"
+#include "physics/steppers/step_audit.hpp"
+#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/formats/trajectory_row.hpp"
+#include "pipeline/host/kept_rows.hpp"
+#include "pipeline/measures/run_measures.hpp"
+#include "pipeline/run/record_frame.hpp"
+#include "pipeline/run/simulate.hpp"
+#include "pipeline/run/summary.hpp"
+#include "pipeline/scene/make_stepper.hpp"
+
+namespace selvedge {
+namespace {
+
+std::uint64_t bits_of(const Points& x) {
+  return hash_of(std::string(reinterpret_cast<const char*>(x.data()), sizeof(double) * x.size()));
+}
+
+// The sink of a timed run.
+struct RunWatch {
+  const Setup& setup;
+  CompareRun& run;
+  EnergyTerms terms = energy_terms(setup.scene);
+  std::optional<RunMeasures> measures;
+  std::optional<TrajectoryWriter> writer;
+  std::map<std::string, std::vector<double>> phases;
+  Points acceleration;  // of the frame to come
+
+  RunWatch(const Setup& s, CompareRun& r, const TimedRunOptions& options, const std::string& stepper)
+      : setup(s), run(r) {
+    const State& start = setup.initial;
+    const Drive drive = setup.drive_at(start.time);
+    if (options.measured) begin_measures(options, start, drive);
+    if (options.trajectory.empty()) return;
+    writer.emplace(options.trajectory, trajectory_info(setup.scene, setup.config, stepper, setup.run.fps));
+    writer->append(record_initial(setup.scene, terms, start, drive));
+  }
+
+  void begin_measures(const TimedRunOptions& options, const State& start, const Drive& drive) {
+    measures.emplace(setup.scene, setup.run.frames, options.judged_frames);
+    const Audit found = audit_positions(setup.scene, start.x, start.obstacles);
+    measures->begin(start.x, joined_rows(start.obstacles), static_cast<int>(found.self_pairs.size()));
+    acceleration = graph_state(setup.scene, start, drive).acceleration;
+  }
+
+  void note_phases(const PhaseTimes& s) {
+    const std::pair<const char*, double> all[]{{"solve", s.solve},    {"broad_phase", s.broad_phase},
+                                               {"ccd", s.ccd},        {"response", s.response},
+                                               {"audit", s.audit},    {"graph", s.graph},
+                                               {"network", s.network}};
+    for (const auto& [name, seconds] : all) phases[name].push_back(1000 * seconds);
+  }
+
+  void operator()(const FrameEvent& event) {
+    run.seconds.push_back(seconds_since(event.started));
+    const StepReport& report = event.report;
+    run.substeps += report.substeps;
+    run.newton += report.iterations;
+    run.linear += report.linear_iterations;
+    run.pairs = std::max(run.pairs, report.collision.pairs_after);
+    run.passed_through += report.collision.passed_through;
+    note_phases(report.seconds);
+    if (writer) writer->append(record_frame(setup.scene, terms, event));
+    if (!measures || report.status != StepStatus::accepted) return;
+    const State& state = event.state;
+    MeasuredFrame frame{state.x, joined_rows(state.obstacles), std::move(acceleration)};
+    if (report.audit) {
+      frame.pairs = static_cast<int>(report.audit->self_pairs.size());
+      frame.meets_body = !report.audit->obstacle_pairs.empty() || report.audit->inside_vertices > 0;
+    }
+    frame.depth = report.collision.depth_wanted;
+    frame.kinetic = energies(setup.scene, terms, state.x, state.v, event.drive.acceleration).kinetic;
+    measures->add(std::move(frame));
+    acceleration = graph_state(setup.scene, state, event.drive).acceleration;
+  }
+};
+
+}  // namespace
+
+std::optional<CompareRun> timed_run(const Setup& setup, const TimedRunOptions& options, const Stop& stop) {
+  CompareRun run;
+  const std::unique_ptr<Stepper> stepper = make_stepper(setup);
+  State state = setup.initial;
+  bool stopped = false;
+  RunWatch watch(setup, run, options, stepper->traits().name);
+  const StepReport last =
+      simulate(*stepper, setup.drive_at, 1 / setup.run.fps, setup.run.frames, state, [&](const FrameEvent& event) {
+        watch(event);
+        stopped = stop && stop();
+        return !stopped;
+      });
+  if (stopped) return {};
+  if (watch.writer) watch.writer->close();
+  if (last.status != StepStatus::accepted)
+    run.trouble = fmt::format("rejects a step after frame {} ({})", state.frame,
+                              reason_names().at(static_cast<std::size_t>(last.reason)));
+  run.lost = energy_of(setup, setup.initial) - energy_of(setup, state);
+  run.end = bits_of(state.x);
+  if (watch.measures) {
+    run.measures = watch.measures->values();
+    run.pairs_by_frame = watch.measures->pairs_by_frame();
+  }
+  run.measures["finished"] = last.status == StepStatus::accepted ? 1 : 0;
+  for (const auto& [phase, times] : watch.phases)
+    if (const double middle = median(times); middle > 0) run.phases[phase] = middle;
+  return run;
+}
+
+std::string trouble_of_bare_run(const std::filesystem::path& trajectory) {
+  const TrajectoryReader reader(trajectory);
+  for (int i = 1; i < reader.frame_count(); ++i) {
+    const StepReport& report = reader.frame(i).report;
+    if (report.status != StepStatus::accepted) continue;
+    const CollisionReport& collision = report.collision;
+    if (report.by != "learned" || report.fell_back) return fmt::format("frame {} was made by `{}`", i, report.by);
+    if (report.iterations > 0) return fmt::format("frame {} was solved", i);
+    if (collision.impulses + collision.zones + collision.shortened > 0)
+      return fmt::format("frame {} was responded to", i);
+    if (collision.pushed_out > 0) return fmt::format("frame {} was pushed out of the body", i);
+  }
+  return {};
+}
+
+}  // namespace selvedge

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/compare/compare_result.hpp"
+#include "pipeline/compare/comparison.hpp"
+
+namespace selvedge {
+
+// How a row's pairs stand to the baseline's on the same sequences: the geometric mean of (pairs + 1) / (baseline's
+// pairs
+// + 1), pairs being means over frames, with the interval of 95 % by a bootstrap over sequences.
+struct PairedRatio {
+  std::string row, baseline;
+  int sequences = 0;  // that both have
+  double ratio = unknown, low = unknown, high = unknown;
+  bool apart() const { return low > 1 || high < 1; }
+};
+
+// Percentiles 2.5 and 97.5 of the resampled means; the same numbers for the same seed.
+PairedRatio paired_ratio(const std::vector<double>& pairs, const std::vector<double>& baseline, int resamples,
+                         std::uint64_t seed = 1);
+
+// A row over sequences. `left` is the mean over tangled sequences of pairs over the first frame's, by frame.
+struct EvaluatedRow {
+  std::string row;
+  std::string trouble;  // why it was left out
+  int sequences = 0, failed = 0;
+  std::vector<double> pairs_of_outfit;  // mean over frames and sequences, in the order of Evaluation::outfits
+  double pairs = unknown;               // over all
+  double at_0 = unknown, at_50 = unknown, at_150 = unknown;  // pairs in these frames, of tangled sequences
+  std::vector<double> left;
+  double frames_a_second = unknown;  // median
+  double strain = unknown, strain_99 = unknown, depth = unknown, kinetic_ratio = unknown, jitter_ratio = unknown;
+};
+
+struct Evaluation {
+  std::string baseline;
+  std::vector<std::string> outfits;
+  std::vector<int> vertices;  // of them
+  int tangled = 0;            // of the sequences, with pairs where they start
+  std::vector<EvaluatedRow> rows;
+  std::vector<PairedRatio> ratios;                                                          // of every two rows
+  std::vector<std::pair<std::string, std::vector<std::pair<std::string, double>>>> speeds;  // of a row: outfit, fps
+  std::string shown;  // the sequence whose pairs are shown by frame
+  std::vector<std::pair<std::string, std::vector<int>>> by_frame;
+};
+
+Evaluation evaluated(const Comparison&, const std::vector<CompareFloor>&, const std::vector<CompareRow>&);
+std::string evaluation_text(const Evaluation&);
+std::string evaluation_json(const Evaluation&);
+
+}  // namespace selvedge

@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/compare/evaluation.hpp"
+
+namespace selvedge {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string shown(double value, const char* format = "{:.1f}") {
+  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
+}
+
+Json known(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+std::string ratio_text(const PairedRatio& r) {
+  return fmt::format("  {:<18} over {:<18} {:>7} [{}, {}] of {} sequences{}\n", r.row, r.baseline,
+                     shown(r.ratio, "{:.3g}"), shown(r.low, "{:.3g}"), shown(r.high, "{:.3g}"), r.sequences,
+                     r.apart() ? ", apart" : "");
+}
+
+}  // namespace
+
+std::string evaluation_text(const Evaluation& e) {
+  std::string text =
+      "evaluation: intersecting pairs of cloth, mean over frames and sequences\n  " + fmt::format("{:<18}", "");
+  for (std::size_t k = 0; k < e.outfits.size(); ++k)
+    text += fmt::format(" {:>14}", fmt::format("{} ({})", e.outfits[k], e.vertices[k]));
+  text += fmt::format(" {:>10} {:>9} {:>8} {:>8} {:>8}\n", "all", "sequences", "at 0", "at 50", "at 150");
+  for (const EvaluatedRow& row : e.rows) {
+    text += fmt::format("  {:<18}", row.row);
+    if (row.sequences == 0) {
+      text += " " + row.trouble + "\n";
+      continue;
+    }
+    for (const double pairs : row.pairs_of_outfit) text += fmt::format(" {:>14}", shown(pairs));
+    text += fmt::format(" {:>10} {:>9} {:>8} {:>8} {:>8}{}\n", shown(row.pairs), row.sequences, shown(row.at_0),
+                        shown(row.at_50), shown(row.at_150),
+                        row.failed > 0 ? fmt::format("  {} ended early", row.failed) : "");
+  }
+  text += fmt::format("  \"at\" are means over the {} sequences that start tangled\n", e.tangled);
+  text += "ratios of (pairs + 1), geometric means with intervals of 95 % over sequences\n";
+  for (const PairedRatio& ratio : e.ratios) text += ratio_text(ratio);
+  text += fmt::format("what keeps stiff or frozen cloth from looking good; kinetic energy and jitter over {}'s\n",
+                      e.baseline);
+  text += fmt::format("  {:<18} {:>8} {:>8} {:>10} {:>8} {:>8} {:>10}\n", "", "strain %", "p99 %", "depth mm",
+                      "kinetic", "jitter", "frames/s");
+  for (const EvaluatedRow& row : e.rows)
+    if (row.sequences > 0)
+      text += fmt::format("  {:<18} {:>8} {:>8} {:>10} {:>8} {:>8} {:>10}\n", row.row,
+                          shown(100 * row.strain, "{:.2f}"), shown(100 * row.strain_99, "{:.1f}"),
+                          shown(1000 * row.depth, "{:.2f}"), shown(row.kinetic_ratio, "{:.2f}"),
+                          shown(row.jitter_ratio, "{:.2f}"), shown(row.frames_a_second));
+  return text + "\n";
+}
+
+std::string evaluation_json(const Evaluation& e) {
+  Json rows = Json::array(), ratios = Json::array(), outfits = Json::array(), by_frame = Json::object(),
+       speeds = Json::object();
+  for (std::size_t k = 0; k < e.outfits.size(); ++k)
+    outfits.push_back({{"name", e.outfits[k]}, {"vertices", e.vertices[k]}});
+  for (const EvaluatedRow& row : e.rows) {
+    Json of_outfits = Json::array(), left = Json::array();
+    for (const double pairs : row.pairs_of_outfit) of_outfits.push_back(known(pairs));
+    for (const double part : row.left) left.push_back(known(part));
+    rows.push_back({{"row", row.row},
+                    {"trouble", row.trouble},
+                    {"sequences", row.sequences},
+                    {"ended_early", row.failed},
+                    {"pairs", known(row.pairs)},
+                    {"pairs_of_outfit", of_outfits},
+                    {"pairs_at_0", known(row.at_0)},
+                    {"pairs_at_50", known(row.at_50)},
+                    {"pairs_at_150", known(row.at_150)},
+                    {"left", left},
+                    {"frames_a_second", known(row.frames_a_second)},
+                    {"strain", known(row.strain)},
+                    {"strain_99", known(row.strain_99)},
+                    {"depth", known(row.depth)},
+                    {"kinetic_ratio", known(row.kinetic_ratio)},
+                    {"jitter_ratio", known(row.jitter_ratio)}});
+  }
+  for (const PairedRatio& r : e.ratios)
+    ratios.push_back({{"row", r.row},
+                      {"over", r.baseline},
+                      {"sequences", r.sequences},
+                      {"ratio", known(r.ratio)},
+                      {"low", known(r.low)},
+                      {"high", known(r.high)},
+                      {"apart", r.apart()}});
+  for (const auto& [row, pairs] : e.by_frame) by_frame[row] = pairs;
+  for (const auto& [row, of_outfits] : e.speeds)
+    for (const auto& [outfit, fps] : of_outfits) speeds[row][outfit] = fps;
+  const Json json = {{"baseline", e.baseline}, {"outfits", outfits},       {"tangled", e.tangled},
+                     {"rows", rows},           {"ratios", ratios},         {"shown", e.shown},
+                     {"by_frame", by_frame},   {"frames_a_second", speeds}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace selvedge

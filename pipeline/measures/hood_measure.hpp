@@ -1,0 +1,44 @@
+#pragma once
+
+#include "learned/losses/objective.hpp"
+#include "physics/scene/scene.hpp"
+#include "physics/scene/stepper.hpp"
+
+namespace selvedge {
+
+// hood_losses: the energies that HOOD minimises (hood_losses() at full weights), of a frame that somebody made [J].
+struct HoodLosses {
+  double stretching = 0, bending = 0, inertia = 0, gravity = 0, friction = 0, collision = 0, total = 0;
+  double grad_norm = 0;  // mean over the vertices that are not pinned of |d total / d x_i| [N]
+};
+
+// What a frame is judged by. The potential is that of one frame of 1/30 s, whoever made the frame and in however many
+// steps: HOOD's energies with the scene's materials as networks see them (vertex_material), gravity and wind as the
+// drive has them, and the penalty of bodies closer than 2 mm. Cloth-cloth contact has no part in it.
+struct HoodJudge {
+  LossGarment garment;
+  Surface body;  // all obstacles
+  std::vector<int> pins;
+  LossOptions losses;
+  LossSearch search;
+};
+HoodJudge make_hood_judge(const Scene&);
+
+// A frame and the two before it. Each body: all obstacles on end, empty where there are none.
+struct JudgedFrame {
+  Points before, now, next;  // of the cloth [m]
+  Points body_before, body_now, body_next;
+  Points acceleration;  // by all forces without contact, a row a vertex [m/s2]
+};
+
+HoodLosses hood_losses_of(HoodJudge&, const JudgedFrame&);
+
+// How far the frame's total is above the least that is found from it, and how large the mass-scaled residual is there:
+// sqrt(sum |g_i|^2 / m_i) [N/sqrt(kg)].
+struct Suboptimality {
+  double excess = 0;    // E(x) - E(x*) [J]
+  double residual = 0;  // at x
+};
+Suboptimality suboptimality_of(HoodJudge&, const JudgedFrame&, int most_evaluations = 300);
+
+}  // namespace selvedge

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "physics/scene/scene.hpp"
+
+namespace selvedge {
+
+// Principal strains |s - 1| of a cloth's triangles, two each.
+struct StrainMeasure {
+  double mean = 0, p99 = 0, most = 0;
+};
+StrainMeasure strain_of(const Scene&, const Points& x);
+
+// The lowest value that a part of them, of 0 to 1, does not exceed; 0 of none.
+double percentile(std::vector<double>, double part);
+
+// What the last frames were like, for the jitter.
+struct MotionTrace {
+  Points x1, x2, x3;  // the last, the one before, ..
+
+  // Mean square over the vertices of the change of acceleration in the last four frames [m2/frame4]; 0 before there are
+  // so many.
+  double add(const Points& x);
+};
+
+// How fast cloth moves to and fro: the spectrum of the velocities of up to 500 vertices, spread over the numbering.
+struct MotionSpectrum {
+  std::vector<Points> x;  // of those vertices, by frame
+
+  void add(const Points& all);
+  // Power of velocities [m2/frame2] by frequency: entry k is k / frames of the frame rate, up to its half; the mean
+  // velocity of each vertex, entry 0, is left at 0. Empty before there are three frames.
+  std::vector<double> power() const;
+  // Which part of the power lies above a quarter of the frame rate: 0 for smooth motion, about a half for noise of
+  // velocities.
+  double high_share() const;
+};
+
+}  // namespace selvedge

@@ -1,0 +1,95 @@
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/compare/compare.hpp"
+#include "pipeline/compare/compare_run.hpp"
+#include "pipeline/compare/svg_plots.hpp"
+#include "tests/pipeline/files.hpp"
+
+namespace selvedge::test_compare_rows {
+
+using Catch::Matchers::Contains;
+using fake::Folder;
+
+namespace {
+
+const std::filesystem::path configs = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs";
+
+const CompareRow& row_named(const CompareResult& result, const std::string& setting) {
+  const auto found = std::ranges::find(result.rows, setting, &CompareRow::setting);
+  REQUIRE(found != result.rows.end());
+  return *found;
+}
+
+}  // namespace
+
+TEST_CASE("compare: the short suite takes all kinds of steppers, and says what it leaves out", "[compare]") {
+  const Folder folder("compare_rows");
+  CompareRequest request;
+  request.file = configs / "compare" / "short.yaml";
+  request.out = folder.path;
+  request.overrides = {"weights_folder=" + (folder.path / "none").string(), "keep_runs=true"};
+  const CompareResult result = compare(request);
+  CHECK(result.finished);
+  const CompareRow& conventional = row_named(result, "conventional");
+  CHECK(conventional.trouble.empty());
+  for (const char* name : {"temporal_1", "algebraic_1", "algebraic_end", "l2_mm", "e3d", "strain_99", "hood_total",
+                           "grad_norm", "excess", "residual", "static_share", "collision_percent", "high_share"}) {
+    INFO(name);
+    CHECK(conventional.measures.contains(name));
+  }
+  CHECK(conventional.measures.at("excess") >= 0);
+  CHECK(conventional.measures.at("temporal_1") < conventional.temporal);
+  CHECK(conventional.measures.at("finished") == 1);
+  CHECK(conventional.pairs_by_frame == std::vector<int>(7, 0));
+  CHECK_THAT(row_named(result, "skinning").trouble, Contains("needs cloth that a body wears"));
+  CHECK_THAT(row_named(result, "hood").trouble, Contains("left out: there is no weight file"));
+  const std::string page = fake::whole(folder.path / "compare.html");
+  CHECK_THAT(page, Contains("<svg") && Contains("What was left out") && Contains("no weight file"));
+  CHECK_THAT(fake::whole(folder.path / "compare.csv"), Contains(",grad_norm,"));
+  CHECK_THAT(trouble_of_bare_run(folder.path / "parts" / "hang" / "row_0.h5"), Contains("made by `conventional`"));
+}
+
+TEST_CASE("compare: a stepper that this program lacks and keys of the comparison", "[compare]") {
+  const Folder folder("compare_lacks");
+  fake::write(folder, "hanging.yaml",
+              "cloths: [{rectangle: {size: [0.5, 0.5], resolution: 4}, pins: [{group: [top]}]}]\nrun: {frames: 2}\n");
+  CompareRequest request;
+  request.file = fake::write(folder, "comparison.yaml",
+                             "scenes: [{file: hanging.yaml, states: 0}]\nrepeats: 1\njudged_frames: 0\n"
+                             "settings: [{name: a}, {name: b, stepper: of_nobody}]\n");
+  request.out = folder.path / "out";
+  const CompareResult result = compare(request);
+  CHECK_THAT(row_named(result, "b").trouble, Contains("this program has no stepper `of_nobody`"));
+  CHECK(std::isnan(row_named(result, "a").temporal));  // no references were asked for
+  CHECK(row_named(result, "a").ms > 0);
+  CHECK_FALSE(row_named(result, "a").front);
+  request.overrides = {"repats=2"};
+  CHECK_THROWS_WITH(compare(request), Contains("repeats"));
+  request.overrides = {"evaluation.baseline=c"};
+  CHECK_THROWS_WITH(compare(request), Contains("which is no setting"));
+}
+
+TEST_CASE("compare: the suites are what the issue asks for", "[compare]") {
+  const Comparison standard = read_comparison(configs / "compare" / "standard.yaml", false);
+  CHECK(standard.scenes.size() >= 12);
+  for (const char* name : {"hang", "drop", "wind", "through_itself", "large", "winter_kick"})
+    CHECK(std::ranges::find(standard.scenes, name, &CompareScene::name) != standard.scenes.end());
+  const auto large = std::ranges::find(standard.scenes, "large", &CompareScene::name);
+  CHECK(read_compared(*large, false, {}).scene.surface.vertex_count >= 20000);
+}
+
+TEST_CASE("svg plots: the failed stand at the upper edge, the floor is drawn", "[compare]") {
+  const std::vector<PlotPoint> points{
+      {"a", 10, 2, PlotMark::front}, {"b", 20, std::nan(""), PlotMark::failed}, {"c < d", 30, 3, PlotMark::unclean}};
+  const std::string svg = scatter_svg("title", "x", "y", points, 1);
+  CHECK_THAT(svg, Contains("class='failed'") && Contains("class='floor'") && Contains("c &lt; d"));
+  CHECK(scatter_svg("title", "x", "y", {{"a", 10, std::nan(""), PlotMark::failed}}, 0).empty());
+  CHECK_THAT(curves_svg("title", "frame", {{"a", {3, 2, 1}}}), Contains("<polyline"));
+  CHECK(curves_svg("title", "frame", {}).empty());
+}
+
+}  // namespace selvedge::test_compare_rows

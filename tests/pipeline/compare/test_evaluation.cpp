@@ -1,0 +1,94 @@
+#include "pipeline/compare/evaluation.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace selvedge::test_evaluation {
+namespace {
+
+CompareRow sequence(const std::string& scene, const std::string& setting, std::vector<int> pairs, bool tangled) {
+  CompareRow row;
+  row.scene = scene;
+  row.setting = setting;
+  row.outfit = "summer";
+  row.tangled = tangled;
+  row.ms = 10;
+  double sum = 0;
+  for (std::size_t f = 1; f < pairs.size(); ++f) sum += pairs[f];
+  row.measures = {{"pairs_mean", sum / static_cast<double>(pairs.size() - 1)}, {"finished", 1}, {"kinetic", 2}};
+  row.pairs_by_frame = std::move(pairs);
+  return row;
+}
+
+}  // namespace
+
+TEST_CASE("evaluation: the ratio of pairs is paired, and apart where its interval leaves out 1", "[evaluation]") {
+  // Sequences differ by far more than rows do: only pairing can tell these rows apart.
+  const std::vector<double> baseline{9, 99, 999, 9999, 19, 199};
+  std::vector<double> half, same{10, 95, 1010, 9900, 18, 205};
+  for (const double pairs : baseline) half.push_back((pairs + 1) / 2 - 1);
+  const PairedRatio halved = paired_ratio(half, baseline, 2000);
+  CHECK(halved.ratio == Approx(0.5));
+  CHECK(halved.low == Approx(0.5));
+  CHECK(halved.high == Approx(0.5));
+  CHECK(halved.apart());
+  const PairedRatio alike = paired_ratio(same, baseline, 2000);
+  CHECK(alike.low < 1);
+  CHECK(alike.high > 1);
+  CHECK_FALSE(alike.apart());
+  CHECK(alike.low == paired_ratio(same, baseline, 2000).low);
+  CHECK_FALSE(paired_ratio({5}, {50}, 2000).apart());  // one sequence says nothing of the others
+  CHECK(paired_ratio({unknown, 1}, {1, 3}, 2000).sequences == 1);
+}
+
+TEST_CASE("evaluation: a bootstrap interval of two values by hand", "[evaluation]") {
+  // Logarithms 0 and log 4: means of two draws are 0, log 2, log 4 with probabilities 1/4, 1/2, 1/4.
+  const PairedRatio ratio = paired_ratio({0, 3}, {0, 0}, 4000);
+  CHECK(ratio.ratio == Approx(2));
+  CHECK(ratio.low == Approx(1));
+  CHECK(ratio.high == Approx(4));
+}
+
+TEST_CASE("evaluation: tables by hand", "[evaluation]") {
+  Comparison comparison;
+  for (const char* name : {"conventional", "hood", "absent"}) comparison.settings.push_back({name, {}, {}, {}});
+  comparison.evaluation.baseline = "conventional";
+  comparison.evaluation.left_frames = 2;
+  std::vector<CompareRow> rows{
+      sequence("a", "conventional", {20, 10, 0}, true), sequence("a", "hood", {20, 15, 5}, true),
+      sequence("b", "conventional", {0, 0, 0}, false), sequence("b", "hood", {0, 2, 4}, false)};
+  rows[1].measures["kinetic"] = 1;
+  CompareRow absent;
+  absent.scene = "a";
+  absent.setting = "absent";
+  absent.outfit = "summer";
+  absent.trouble = "left out: there is no weight file";
+  rows.push_back(absent);
+  CompareFloor floor;
+  floor.scene = "a";
+  floor.vertices = 900;
+  const Evaluation found = evaluated(comparison, {floor}, rows);
+  CHECK(found.outfits == std::vector<std::string>{"summer"});
+  CHECK(found.vertices == std::vector<int>{900});
+  CHECK(found.tangled == 1);
+  REQUIRE(found.rows.size() == 3);
+  CHECK(found.rows[0].pairs == Approx(2.5));  // (5 + 0) / 2
+  CHECK(found.rows[1].pairs == Approx(6.5));  // (10 + 3) / 2
+  CHECK(found.rows[1].left == std::vector<double>{1, 0.75, 0.25});
+  CHECK(found.rows[1].at_0 == 20);
+  CHECK(std::isnan(found.rows[1].at_50));
+  CHECK(found.rows[1].frames_a_second == Approx(100));
+  CHECK(found.rows[1].kinetic_ratio == Approx(std::sqrt(0.5)));
+  CHECK(found.rows[2].sequences == 0);
+  REQUIRE(found.ratios.size() == 1);
+  CHECK(found.ratios[0].ratio == Approx(std::sqrt(6.0 / 11 / 4)));  // (5+1)/(10+1) and (0+1)/(3+1)
+  CHECK(found.shown == "a");
+  CHECK(evaluation_text(found).find("no weight file") != std::string::npos);
+  const auto json = nlohmann::json::parse(evaluation_json(found));
+  CHECK(json["rows"][1]["pairs_of_outfit"][0] == 6.5);
+  CHECK(json["by_frame"]["hood"][1] == 15);
+}
+
+}  // namespace selvedge::test_evaluation
