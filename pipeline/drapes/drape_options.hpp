@@ -34,5 +34,6 @@ struct DrapeOptions {
 const Options<DrapeOptions>& drape_options();
 DrapeOptions read_drape_options(const std::filesystem::path&, const std::vector<std::string>& overrides = {});
 std::string drape_yaml(const DrapeOptions&);
+std::string drape_reference();  // its section as Markdown
 
 }  // namespace selvedge

@@ -129,4 +129,26 @@ TEST_CASE("drapes: the shipped files are of their kinds, and unknown rows are re
   CHECK_THROWS_AS(read_drape_options(config_folder() / "data" / "drape.yaml", {"garment=tshrt"}), Error);
 }
 
+namespace {
+
+const std::filesystem::path repulsion_page_file = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "docs" / "repulsion.md";
+const std::string drape_reference_begins = "<!-- written by: selvedge_tests \"[write-docs]\" -->\n";
+std::string drape_references() { return "\n" + drape_reference() + drape_training_reference(); }
+
+}  // namespace
+
+TEST_CASE("docs/repulsion.md has the tables as the program has them", "[drapes]") {
+  const std::string text = fake::whole(repulsion_page_file);
+  const std::size_t at = text.find(drape_reference_begins);
+  REQUIRE(at != std::string::npos);
+  CHECK(text.substr(at + drape_reference_begins.size()) == drape_references());
+}
+
+TEST_CASE("docs/repulsion.md is written anew", "[.][write-docs]") {
+  const std::string text = fake::whole(repulsion_page_file);
+  std::ofstream(repulsion_page_file) << text.substr(0,
+                                                    text.find(drape_reference_begins) + drape_reference_begins.size())
+                                     << drape_references();
+}
+
 }  // namespace selvedge::test_drape_set
