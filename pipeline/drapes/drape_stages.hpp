@@ -20,7 +20,7 @@ PlainNetwork make_distance_network(const DrapeTrainingOptions&, const DrapeLesso
 void add_distance_samples(const DistanceOptions&, const DrapeLessons&, const DrapeBody&, int points, RandomStream&,
                           DistanceSamples&);
 
-// Mean error of the drapes' vertices [mm].
+// Mean error of the drapes' vertices, before any layer [mm].
 double mean_vertex_error(const DrapeModel&, const std::vector<std::unique_ptr<DrapeBody>>&);
 
 }  // namespace selvedge

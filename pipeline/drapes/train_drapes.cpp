@@ -99,7 +99,7 @@ std::string drape_page(const DrapeRun& run, const std::vector<DrapeTableRow>& ta
     const std::vector<double>& at = columns["step"];
     page += chart(stage + ": losses", at,
                   columns_of(columns, {"reconstruction", "collision", "value", "surface_gradient", "eikonal"}), true);
-    page += chart(stage + ": error of vertices or distances on what is kept apart [mm]", at,
+    page += chart(stage + ": error of vertices (before a layer) or of distances on what is kept apart [mm]", at,
                   columns_of(columns, {"validation_mm", "error_mm"}), false);
     page += chart(stage + ": mean scale of pushed vertices", at, columns_of(columns, {"alpha"}), false);
   }
