@@ -6,6 +6,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/commands/commands.hpp"
+#include "pipeline/commands/dataset_command.hpp"
 #include "pipeline/commands/train_command.hpp"
 #include "pipeline/commands/weights_commands.hpp"
 #include "pipeline/config/config.hpp"
@@ -184,6 +185,13 @@ void wardrobe_options(CLI::App& command, WardrobeRequest& request) {
   command.add_option("--out", request.out, "folder for the results");
 }
 
+void dataset_options(CLI::App& command, DatasetRequest& request) {
+  command.add_option("config", request.config, "data file (YAML), see docs/repulsion.md")->required();
+  command.add_option("--set", request.overrides, "key=value instead of the file's, dotted keys")
+      ->allow_extra_args(false);
+  command.add_option("--out", request.out, "folder for the drapes (out/data/NAME)");
+}
+
 void train_options(CLI::App& command, TrainArguments& arguments) {
   command.add_option("config", arguments.config, "training file (YAML), see docs/training.md")->required();
   command.add_option("--set", arguments.overrides, "key=value instead of the file's, dotted keys")
@@ -251,7 +259,10 @@ void add_commands(CLI::App& app, Chosen& chosen) {
                                 stability_options, stability_command);
   add_command<WardrobeRequest>(app, chosen, "wardrobe", "every garment by code through every procedural clip",
                                wardrobe_options, wardrobe_command);
-  add_command<TrainArguments>(app, chosen, "train", "a network of the stepper `learned`", train_options, train_command);
+  add_command<DatasetRequest>(app, chosen, "dataset", "drapes at rest to train a network on", dataset_options,
+                              dataset_command);
+  add_command<TrainArguments>(app, chosen, "train", "a network of the stepper `learned`, or one of drapes",
+                              train_options, train_command);
   add_weights_commands(app, chosen);
   add_command<Nothing>(
       app, chosen, "info", "versions, packages, threads", [](CLI::App&, Nothing&) {},
@@ -260,7 +271,7 @@ void add_commands(CLI::App& app, Chosen& chosen) {
 
 // The headings of `selvedge --help`; a command that stands under none is one for use.
 void group_commands(CLI::App& app) {
-  const std::vector<std::string> prepared{"untangle", "dress", "body", "weights"};
+  const std::vector<std::string> prepared{"untangle", "dress", "body", "dataset", "weights"};
   const std::vector<std::string> measured{"ccd", "bench", "stress", "compare", "validate", "stability", "wardrobe"};
   for (CLI::App* command : app.get_subcommands({})) {
     const auto is_in = [&](const auto& names) { return std::ranges::find(names, command->get_name()) != names.end(); };

@@ -62,6 +62,7 @@ const std::map<std::string, std::vector<Room>> rooms = {
       {"view", {"host", "formats"}},
       {"tools"},
       {"training"},
+      {"drapes"},
       {"validate"},
       {"compare"},
       {"suites"},

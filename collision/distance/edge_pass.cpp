@@ -1,6 +1,7 @@
 #include "collision/distance/edge_pass.hpp"
 
 #include <algorithm>
+#include <functional>
 
 namespace selvedge {
 namespace {
@@ -63,14 +64,8 @@ void try_points(const DistanceField& body, const Points& x, const std::vector<st
 }
 
 std::vector<Weights> first_tries(int corners) {
-  std::vector<Weights> tries;
-  if (corners == 2) {
-    for (int i = 0; i <= 8; ++i) tries.emplace_back(1 - i / 8.0, i / 8.0, 0);
-  } else {
-    for (int i = 1; i < 6; ++i)
-      for (int j = 1; i + j < 6; ++j) tries.emplace_back(i / 6.0, j / 6.0, (6 - i - j) / 6.0);
-  }
-  return tries;
+  if (corners == 2) return {{1, 0, 0}, {0.75, 0.25, 0}, {0.5, 0.5, 0}, {0.25, 0.75, 0}, {0, 1, 0}};
+  return {{1.0 / 3, 1.0 / 3, 1.0 / 3}, {0.5, 0.25, 0.25}, {0.25, 0.5, 0.25}, {0.25, 0.25, 0.5}};
 }
 
 // Points round the deepest one so far, half as far off each time.
@@ -93,54 +88,52 @@ void find_deepest(const DistanceField& body, const Points& x, std::vector<DeepPl
   std::vector<std::vector<Weights>> tries;
   for (const DeepPlace& place : places) tries.push_back(first_tries(place.corners));
   try_points(body, x, tries, places, true);
-  for (double step = 1.0 / 16; step > 1e-3; step /= 2) {
+  for (double step = 1.0 / 8; step > 1.0 / 100; step /= 2) {
     for (std::size_t i = 0; i < places.size(); ++i) tries[i] = tries_round(places[i], step);
     try_points(body, x, tries, places, false);
   }
 }
 
-// What vertices are asked for.
-struct Wishes {
-  Points sum;
-  std::vector<int> count;
+// That a vertex moves so far along a normal, or farther.
+struct Wish {
+  double length = 0;
+  Vec3 normal;
 };
+using Wishes = std::vector<std::vector<Wish>>;  // by vertex
 
 // Asks the corners so that the deepest point comes to the margin. False: it is there.
 bool wish(const DeepPlace& place, double margin, Wishes& wishes) {
   if (!(place.at.value < margin) || place.at.gradient.isZero(0)) return false;
   const double square = place.weight.squaredNorm();
-  for (int k = 0; k < place.corners; ++k) {
-    if (place.weight[k] <= 0) continue;
-    wishes.sum.row(place.vertex[k]) +=
-        ((margin - place.at.value) * place.weight[k] / square * place.at.gradient).transpose();
-    ++wishes.count[place.vertex[k]];
-  }
+  for (int k = 0; k < place.corners; ++k)
+    if (place.weight[k] > 0)
+      wishes[static_cast<std::size_t>(place.vertex[k])].push_back(
+          {(margin - place.at.value) * place.weight[k] / square, place.at.gradient});
   return true;
 }
 
-bool has_deep_edge(const Surface& garment, int t, const std::vector<char>& deep) {
-  return deep[garment.triangle_edges(t, 0)] || deep[garment.triangle_edges(t, 1)] || deep[garment.triangle_edges(t, 2)];
+// About the shortest motion that grants them all: the longest first, then what the others lack.
+Vec3 granted(std::vector<Wish> wishes) {
+  std::ranges::stable_sort(wishes, std::greater{}, &Wish::length);
+  Vec3 motion = Vec3::Zero();
+  for (const Wish& one : wishes) motion += std::max(0.0, one.length - one.normal.dot(motion)) * one.normal;
+  return motion;
 }
 
 void move_once(const DistanceField& body, const Surface& garment, const Touched& touched, double margin, Points& x,
                std::span<const char> held, EdgePassReport& report) {
-  Wishes wishes{Points::Zero(x.rows(), 3), std::vector<int>(static_cast<std::size_t>(x.rows()), 0)};
-  std::vector<DeepPlace> places;
-  for (const int e : touched.edges) places.emplace_back(std::array{garment.edges(e, 0), garment.edges(e, 1), 0}, 2);
-  find_deepest(body, x, places);
-  std::vector<char> deep(static_cast<std::size_t>(garment.edges.rows()));
-  for (std::size_t i = 0; i < places.size(); ++i)
-    if (places[i].at.value < 0.5 * margin && wish(places[i], margin, wishes))
-      deep[touched.edges[i]] = true, ++report.edges;
-
-  places.clear();
+  Wishes wishes(static_cast<std::size_t>(x.rows()));
+  std::vector<DeepPlace> edges, faces;
+  for (const int e : touched.edges) edges.emplace_back(std::array{garment.edges(e, 0), garment.edges(e, 1), 0}, 2);
   for (const int t : touched.triangles)
-    if (!has_deep_edge(garment, t, deep))
-      places.emplace_back(std::array{garment.triangles(t, 0), garment.triangles(t, 1), garment.triangles(t, 2)}, 3);
-  find_deepest(body, x, places);
-  for (const DeepPlace& place : places) report.faces += wish(place, margin, wishes);
+    faces.emplace_back(std::array{garment.triangles(t, 0), garment.triangles(t, 1), garment.triangles(t, 2)}, 3);
+  find_deepest(body, x, edges);
+  find_deepest(body, x, faces);
+  for (const DeepPlace& place : edges)
+    if (place.at.value < 0.5 * margin) report.edges += wish(place, margin, wishes);
+  for (const DeepPlace& place : faces) report.faces += wish(place, margin, wishes);
   for (int v = 0; v < x.rows(); ++v)
-    if (wishes.count[v] > 0 && (held.empty() || !held[v])) x.row(v) += wishes.sum.row(v) / wishes.count[v];
+    if (!wishes[v].empty() && (held.empty() || !held[v])) x.row(v) += granted(std::move(wishes[v])).transpose();
 }
 
 }  // namespace

@@ -21,12 +21,14 @@ struct EdgePassMemory {
   IntersectionCache garment, body;
 };
 
-// Edges of a garment that still pass through a body whose inside no vertex is in. A round moves both ends of each such
-// edge by -(f - margin) n w, w = (1 - t, t) / ((1 - t)^2 + t^2), where t is the deepest point of the edge, with
-// distance f and normal n: that point then lies at the margin. Triangles that body vertices pierce between their edges
-// are moved likewise at their deepest point. A vertex goes by the mean of what it is asked for. Vertices marked in
-// `held`, which may be empty, stay. Every round starts from the positions that the last one left. Edges that only touch
-// the body count as well: those of triangles that meet it, with a point nearer than half of the margin.
+// Edges and faces of a garment that still pass through a body whose inside no vertex is in. A round asks both ends of
+// each such edge to move by -(f - margin) n w, w = (1 - t, t) / ((1 - t)^2 + t^2), where t is the deepest point of the
+// edge, with distance f and normal n: that point then lies at the margin. The corners of each triangle that meets the
+// body are asked likewise for its deepest point inside, since a face over a round body lies deeper than its edges. A
+// vertex goes by about the shortest motion that grants all that it is asked for; by their mean the
+// deepest edges stay in. Vertices marked in `held`, which may be empty, stay. Every round starts from the positions
+// that the last one left. Edges that only touch the body count as well: those of triangles that meet it, with a point
+// nearer than half of the margin.
 EdgePassReport pass_edges(const DistanceField& body, const Surface& garment, const EdgePassOptions&, Points& x,
                           std::span<const char> held = {}, EdgePassMemory* = nullptr);
 

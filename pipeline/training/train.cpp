@@ -24,8 +24,6 @@ namespace {
 
 constexpr int lines_of_a_run = 200;  // in steps.csv
 
-std::filesystem::path pause_file(const std::filesystem::path& folder) { return folder / "pause"; }
-
 // A run on its way.
 struct TrainingRun {
   explicit TrainingRun(const TrainRequest& asked) : request(asked) {}
@@ -200,6 +198,8 @@ TrainSummary train(const TrainRequest& request) {
   return {run.folder, finished, run.trainer->counts, run.history.seconds, run.history.best_step, run.history.best_score,
           run.last};
 }
+
+std::filesystem::path pause_file(const std::filesystem::path& folder) { return folder / "pause"; }
 
 bool pause_training(const std::filesystem::path& folder, double seconds) {
   if (!std::filesystem::exists(folder)) return false;

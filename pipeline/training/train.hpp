@@ -38,6 +38,9 @@ TrainSummary train(const TrainRequest&);
 std::string train_text(const TrainSummary&);
 std::string train_json(const TrainSummary&);
 
+// While it is there, the run in the folder is asked to stop.
+std::filesystem::path pause_file(const std::filesystem::path& folder);
+
 // Asks the run in the folder to stop at a checkpoint and waits until it has, at most that long [s]. False: it has not,
 // or none runs there.
 bool pause_training(const std::filesystem::path& folder, double seconds);

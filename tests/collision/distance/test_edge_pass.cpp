@@ -67,6 +67,28 @@ TEST_CASE("edge pass: a face pierced by a body vertex is lifted; clear cloth is 
   CHECK(x == above);
 }
 
+TEST_CASE("edge pass: one round takes most crossings off a coarse cap that lies on a finer ball", "[distance]") {
+  const Solid ball = testing::ball(24);
+  DistanceField body(ball.surface);
+  body.move_to(ball.x);
+  // A cap of edges four times as long, its vertices just outside.
+  const Solid coarse = testing::ball(8);
+  std::vector<std::array<int, 3>> faces;
+  for (const auto& t : coarse.surface.triangles.rowwise())
+    if (std::min({coarse.x(t(0), 2), coarse.x(t(1), 2), coarse.x(t(2), 2)}) > 0.2) faces.push_back({t(0), t(1), t(2)});
+  Triangles triangles(std::ssize(faces), 3);
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) triangles(t, k) = faces[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)];
+  const Surface cap = make_surface(static_cast<int>(coarse.x.rows()), triangles);
+  const Points start = 1.001 * coarse.x;
+  Points once = start, thrice = start;
+  const EdgePassReport first = pass_edges(body, cap, {.rounds = 1}, once);
+  REQUIRE(first.pairs_before > 50);
+  CHECK(2 * first.pairs_after <= first.pairs_before);
+  CHECK(pass_edges(body, cap, {.rounds = 3}, thrice).pairs_after == 0);
+  CHECK((thrice - start).rowwise().norm().maxCoeff() < 0.03);  // about the chords' height, 0.02
+}
+
 TEST_CASE("outside budget: no point that is spared has come inside", "[distance]") {
   const Solid solid = testing::blob(8);
   std::mt19937 random(3);

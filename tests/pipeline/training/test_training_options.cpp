@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/drapes/drape_training_options.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/training/training_options.hpp"
 #include "tests/pipeline/files.hpp"
@@ -17,7 +18,7 @@ namespace {
 std::vector<std::filesystem::path> training_files() {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(config_folder() / "training"))
-    files.push_back(entry.path());
+    if (!is_drape_training(entry.path())) files.push_back(entry.path());
   std::ranges::sort(files);
   return files;
 }

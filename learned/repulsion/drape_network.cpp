@@ -1,0 +1,84 @@
+#include "learned/repulsion/drape_network.hpp"
+
+#include <cassert>
+#include <cmath>
+
+namespace selvedge {
+namespace {
+
+// The truth's displacement from the rest shape, taken back into garment space.
+Points garment_displacement(const DrapeCase& drape) {
+  Points result(drape.rest.rows(), 3);
+  for (int v = 0; v < result.rows(); ++v) {
+    const VertexFrame& frame = drape.frames[static_cast<std::size_t>(v)];
+    const Vec3 there = frame.leftCols<3>().partialPivLu().solve(row(drape.truth, v) - frame.col(3));
+    result.row(v) = there.transpose() - drape.rest.row(v);
+  }
+  return result;
+}
+
+void set_input_scales(std::span<const DrapeCase* const> cases, DrapeNetwork& made) {
+  constexpr double constant = 1e-6;
+  const std::size_t inputs = cases[0]->inputs.size();
+  const auto count = static_cast<double>(cases.size());
+  for (std::size_t k = 0; k < inputs; ++k) {
+    double mean = 0, square = 0;
+    for (const DrapeCase* drape : cases) mean += static_cast<double>(drape->inputs[k]) / count;
+    for (const DrapeCase* drape : cases) square += std::pow(static_cast<double>(drape->inputs[k]) - mean, 2) / count;
+    made.input_mean.push_back(static_cast<float>(mean));
+    made.input_scale.push_back(square > constant * constant ? static_cast<float>(1 / std::sqrt(square)) : 0.0f);
+  }
+}
+
+}  // namespace
+
+DrapeNetwork make_drape_network(const DrapeShape& shape, std::span<const DrapeCase* const> cases, std::uint64_t seed) {
+  assert(!cases.empty());
+  DrapeNetwork made;
+  set_input_scales(cases, made);
+  made.mean = Points::Zero(cases[0]->rest.rows(), 3);
+  for (const DrapeCase* drape : cases) made.mean += garment_displacement(*drape) / static_cast<double>(cases.size());
+  PlainShape plain;
+  plain.inputs = static_cast<int>(cases[0]->inputs.size());
+  plain.outputs.assign(static_cast<std::size_t>(std::max(shape.layers - 1, 0)), shape.width);
+  plain.outputs.push_back(static_cast<int>(made.mean.size()));
+  made.plain = make_plain_network(plain, seed);
+  made.plain.layers.back().weight *= static_cast<float>(shape.last_scale);
+  return made;
+}
+
+FeatureRows drape_inputs(const DrapeNetwork& network, std::span<const DrapeCase* const> cases) {
+  FeatureRows rows(static_cast<Eigen::Index>(cases.size()), static_cast<Eigen::Index>(network.input_mean.size()));
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    for (std::size_t k = 0; k < network.input_mean.size(); ++k)
+      rows(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
+          (cases[i]->inputs[k] - network.input_mean[k]) * network.input_scale[k];
+  return rows;
+}
+
+Points drape_positions(const DrapeNetwork& network, const DrapeCase& drape, const FeatureRows& outputs,
+                       Eigen::Index which) {
+  Points x(drape.rest.rows(), 3);
+  for (int v = 0; v < x.rows(); ++v) {
+    const Vec3 there = row(drape.rest, v) + row(network.mean, v) +
+                       network.unit * outputs.row(which).segment<3>(3 * v).transpose().cast<double>();
+    const VertexFrame& frame = drape.frames[static_cast<std::size_t>(v)];
+    x.row(v) = (frame.leftCols<3>() * there + frame.col(3)).transpose();
+  }
+  return x;
+}
+
+Points drape_positions(const DrapeNetwork& network, const DrapeCase& drape) {
+  const DrapeCase* const one = &drape;
+  return drape_positions(network, drape, evaluate(network.plain, drape_inputs(network, {&one, 1})), 0);
+}
+
+Eigen::RowVectorXf by_drape_outputs(const DrapeNetwork& network, const DrapeCase& drape, const Points& by_positions) {
+  Eigen::RowVectorXf result(by_positions.size());
+  for (int v = 0; v < by_positions.rows(); ++v)
+    result.segment<3>(3 * v) =
+        (network.unit * by_positions.row(v) * drape.frames[static_cast<std::size_t>(v)].leftCols<3>()).cast<float>();
+  return result;
+}
+
+}  // namespace selvedge

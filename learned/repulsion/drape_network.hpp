@@ -1,0 +1,43 @@
+#pragma once
+
+#include "learned/repulsion/plain_network.hpp"
+
+namespace selvedge {
+
+// A drape by a multi-layer perceptron of pose, shape and style (the baseline of Tan et al. 2022, table 6): it says how
+// far each vertex lies from the garment at rest in the body's zero pose, and skinning takes that into the pose:
+//   x_v = A_v (rest_v + mean_v + unit y_v) + b_v.
+
+using VertexFrame = Eigen::Matrix<double, 3, 4>;  // (A, b)
+
+// What is known of one drape. `truth` may be empty.
+struct DrapeCase {
+  std::vector<float> inputs;        // pose, shape, style
+  Points rest;                      // garment space, N x 3 [m]
+  std::vector<VertexFrame> frames;  // of the vertices
+  Points truth;                     // where they come to rest [m]
+};
+
+struct DrapeNetwork {
+  PlainNetwork plain;
+  std::vector<float> input_mean, input_scale;  // inputs are read as (input - mean) * scale; 0 of a constant one
+  Points mean;                                 // of displacements in garment space, N x 3 [m]
+  double unit = 0.01;                          // of outputs [m]
+};
+
+struct DrapeShape {
+  int layers = 5, width = 256;
+  double last_scale = 0.1;  // of the last layer's weights at the start
+};
+// Means and deviations are those of the cases, all of one garment, one at least (assert).
+DrapeNetwork make_drape_network(const DrapeShape&, std::span<const DrapeCase* const>, std::uint64_t seed);
+
+// What the perceptron reads, a row a case.
+FeatureRows drape_inputs(const DrapeNetwork&, std::span<const DrapeCase* const>);
+// Where the vertices come to by one row of its outputs.
+Points drape_positions(const DrapeNetwork&, const DrapeCase&, const FeatureRows& outputs, Eigen::Index row);
+Points drape_positions(const DrapeNetwork&, const DrapeCase&);
+// Derivative of a loss by the outputs of a case, from the one by the positions.
+Eigen::RowVectorXf by_drape_outputs(const DrapeNetwork&, const DrapeCase&, const Points& by_positions);
+
+}  // namespace selvedge

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "learned/repulsion/drape_network.hpp"
+#include "learned/repulsion/plain_adam.hpp"
+#include "learned/repulsion/repulsion_training.hpp"
+
+namespace selvedge {
+
+// A network for drapes and the layer behind it. Without learned scales `scale` has no layers.
+struct DrapeModel {
+  DrapeNetwork drape;
+  ScaleNetwork scale;
+  bool has_scale() const { return !scale.g.layers.empty(); }
+};
+
+// What stands behind the network, and what its result is judged by.
+struct DrapeRecipe {
+  bool layer = false;  // with the model's scales, or `alpha` without them
+  double alpha = 1;
+  RepulsionOptions repulsion;  // without rechecks where a network is trained
+  RepulsionLossOptions loss;   // collision 0: there is no loss 9, and the judge is not asked
+};
+
+// A drape to learn from, and who answers for its body: the layer asks the one, the loss the other.
+struct DrapeLesson {
+  const DrapeCase* drape = nullptr;
+  AskDistance layer, judge;
+};
+
+// What the layer makes of positions; without one, the positions.
+Repelled behind_drape(const DrapeModel&, const DrapeCase&, const Points& x, const Adjacency& ring,
+                      const AskDistance& ask, const DrapeRecipe&);
+
+// Mean over the lessons of the losses 7 to 9, and its gradient by all parameters.
+struct DrapeGradients {
+  double total = 0, reconstruction = 0, collision = 0;
+  double pushed = 0, alpha = 0;  // vertices a drape, and their mean scale
+  std::vector<float> drape;      // in the order of parameters_of
+  ScaleGradients scale;          // empty lists without learned scales
+};
+DrapeGradients drape_gradients(const DrapeModel&, std::span<const DrapeLesson>, const Adjacency& ring,
+                               const DrapeRecipe&);
+
+// Adam of each network of a model.
+struct DrapeAdam {
+  PlainAdam drape, h, k, g;
+};
+// False: a gradient is not finite, and nothing has changed.
+bool take_step(DrapeAdam&, const DrapeGradients&, double rate, DrapeModel&);
+
+}  // namespace selvedge

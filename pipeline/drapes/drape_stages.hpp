@@ -1,0 +1,26 @@
+#pragma once
+
+#include "pipeline/drapes/drape_lessons.hpp"
+#include "pipeline/drapes/training_stage.hpp"
+
+namespace selvedge {
+
+// A fresh network, for the drapes that are to be trained on.
+DrapeModel make_drape_model(const DrapeTrainingOptions&, const DrapeLessons&);
+// The same with fresh scales for a row that learns them.
+void add_scales(const DrapeRow&, const DrapeTrainingOptions&, const DrapeLessons&, DrapeModel&);
+
+// Stages that train what they are given a reference to.
+TrainingStage backbone_stage(const DrapeTrainingOptions&, DrapeLessons&, DrapeModel&);
+TrainingStage row_stage(const DrapeRow&, const DrapeTrainingOptions&, DrapeLessons&, DrapeModel&);
+TrainingStage distance_stage(const DrapeTrainingOptions&, DrapeLessons&, PlainNetwork&);
+PlainNetwork make_distance_network(const DrapeTrainingOptions&, const DrapeLessons&);
+
+// Points of one body: on its surface, on the garment, each half of them with noise, and in the cube; as many of each.
+void add_distance_samples(const DistanceOptions&, const DrapeLessons&, const DrapeBody&, int points, RandomStream&,
+                          DistanceSamples&);
+
+// Mean error of the drapes' vertices, before any layer [mm].
+double mean_vertex_error(const DrapeModel&, const std::vector<std::unique_ptr<DrapeBody>>&);
+
+}  // namespace selvedge

@@ -1,0 +1,142 @@
+#include "pipeline/drapes/drape_training_options.hpp"
+
+#include <algorithm>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/host/read_file.hpp"
+
+namespace selvedge {
+namespace {
+
+using namespace table;
+
+const Options<StageOptions>& stage_options() {
+  using O = StageOptions;
+  static const Options<O> table(
+      "stage", "How long one network is trained.",
+      {integer("steps", &O::steps, at_least_one, "of Adam"),
+       integer("batch", &O::batch, at_least_one, "drapes a step; of the distance: see `bodies`"),
+       number("learning_rate", &O::learning_rate, Unit::none, positive, "at the start; to zero as half a cosine")});
+  return table;
+}
+
+template <class Struct>
+Option<Struct> stage(std::string name, StageOptions Struct::*member, std::string about) {
+  Option<Struct> option = section(member, stage_options(), std::move(about));
+  option.key.name = std::move(name);
+  return option;
+}
+
+const Options<BackboneOptions>& backbone_options() {
+  using O = BackboneOptions;
+  static const Options<O> table(
+      "backbone", "Pose, shape and style to a drape.",
+      {integer("layers", &O::layers, at_least_one, ""),
+       integer("width", &O::width, at_least_one, "of all but the last"), stage("stage", &O::stage, "")});
+  return table;
+}
+
+const Options<DistanceOptions>& distance_options() {
+  using O = DistanceOptions;
+  static const Options<O> table(
+      "distance", "The body's signed distance by a network, of the rows `approximate` and `hybrid`.",
+      {text("weights", &O::weights, "of an earlier run, seen from the working folder; left out: it is trained"),
+       integer("layers", &O::layers, at_least_one, "before the last"), integer("width", &O::width, at_least_one, ""),
+       number("beta", &O::beta, Unit::none, positive, "of softplus"),
+       flag("bones", &O::bones, "it reads the point in each bone's frame; false: as it is"),
+       integer("bodies", &O::bodies, at_least_one, "of a batch"),
+       integer("points", &O::points, at_least_one, "of a body in a batch"),
+       number("noise", &O::noise, Unit::length, not_negative, "of points round surfaces, standard deviation"),
+       number("box", &O::box, Unit::length, positive, "edge of the cube that points are drawn in"),
+       stage("stage", &O::stage, "")});
+  return table;
+}
+
+const Options<LayerOptions>& layer_options() {
+  using O = LayerOptions;
+  static const Options<O> table(
+      "layer", "The repulsive layer and the losses 7 to 9.",
+      {integer("latent", &O::latent, at_least_one, "M: of z and the layers of h; the paper: 1024"),
+       integer("per_vertex", &O::per_vertex, at_least_one, "D"),
+       number("unit", &O::unit, Unit::length, positive, "in which g reads distances"),
+       number("deep", &O::deep, Unit::length, positive, "deeper vertices take their neighbours' direction"),
+       integer("recheck", &O::recheck, not_negative, "times pushed vertices are asked again where it is measured"),
+       number("reconstruction", &O::reconstruction, Unit::none, not_negative, "weight of loss 8"),
+       number("collision", &O::collision, Unit::none, not_negative, "weight of loss 9"),
+       number("loss_unit", &O::loss_unit, Unit::length, positive, "of lengths in the losses; the paper is silent"),
+       choice("gradient", &O::gradient, {{"full", LayerGradient::full}, {"frozen", LayerGradient::frozen}},
+              "through the layer")});
+  return table;
+}
+
+}  // namespace
+
+const Options<DrapeTrainingOptions>& drape_training_options() {
+  using O = DrapeTrainingOptions;
+  static const Options<O> table(
+      "drape training", "A training file with the key `drapes`.",
+      {text("description", "for people"), text("name", &O::name, "of the run; left out: the file's"),
+       needed(text("drapes", &O::drapes, "folder that `selvedge dataset` made, seen from the working folder")),
+       integer("seed", &O::seed, not_negative, "of all that is random"),
+       integer("validation_paths", &O::validation_paths, at_least_one,
+               "of those to train on, kept to see whether training has ended"),
+       texts("rows", &O::rows, "of the table, equally long from one checkpoint"),
+       section(&O::backbone, backbone_options(), ""), stage("fine_tuning", &O::fine_tuning, "of each row"),
+       section(&O::layer, layer_options(), ""), section(&O::distance, distance_options(), ""),
+       number("checkpoint_minutes", &O::checkpoint_minutes, Unit::none, not_negative, "between checkpoints")});
+  return table;
+}
+
+bool is_drape_training(const std::filesystem::path& file) {
+  const std::string text = "\n" + read_text_file(file, "configuration");
+  return text.find("\ndrapes:") != std::string::npos;
+}
+
+DrapeTrainingOptions read_drape_training(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  DrapeTrainingOptions options =
+      drape_training_options().read(read_config(file, drape_training_options().section, overrides));
+  if (options.name.empty()) options.name = file.stem().string();
+  std::vector<std::string> known;
+  for (const DrapeRow& row : known_drape_rows()) known.push_back(row.name);
+  for (const std::string& name : options.rows)
+    if (std::ranges::find(known, name) == known.end())
+      throw Error("`" + name + "` is no row", file.string() + ": rows",
+                  "one of " + joined(known) + suggestion(name, known));
+  return options;
+}
+
+std::string drape_training_yaml(const DrapeTrainingOptions& options) {
+  return to_yaml(drape_training_options().written(options));
+}
+
+std::string drape_training_reference() {
+  std::string page;
+  for (const Section* one : {&drape_training_options().section, &backbone_options().section, &stage_options().section,
+                             &layer_options().section, &distance_options().section})
+    page += "### " + one->name + "\n\n" + one->about + "\n\n" + section_markdown(*one) + "\n";
+  return page;
+}
+
+const std::vector<DrapeRow>& known_drape_rows() {
+  static const std::vector<DrapeRow> rows{
+      {"control", "the same fine-tuning without layer and loss 9"},
+      {"collision_loss", "loss 9 alone", false, false, true},
+      {"fixed", "layer of scale 1, accurate distances", true, false, true},
+      {"learned", "layer of learned scales, accurate distances", true, true, true},
+      {"fixed_approximate", "layer of scale 1, distances by a network", true, false, true, true, true},
+      {"approximate", "learned scales, distances by a network in layer and loss", true, true, true, true, true},
+      {"hybrid", "learned scales, distances by a network in the layer, accurate in the loss", true, true, true, true,
+       false}};
+  return rows;
+}
+
+DrapeRecipe recipe_of(const DrapeRow& row, const LayerOptions& options) {
+  DrapeRecipe recipe;
+  recipe.layer = row.layer;
+  recipe.repulsion.deep = options.deep;
+  recipe.loss = {options.reconstruction, row.collision_loss ? options.collision : 0, options.loss_unit,
+                 row.neural_layer ? LayerGradient::frozen : options.gradient};
+  return recipe;
+}
+
+}  // namespace selvedge

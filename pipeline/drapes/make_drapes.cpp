@@ -1,0 +1,242 @@
+#include "pipeline/drapes/make_drapes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "collision/audit/audit.hpp"
+#include "collision/geometry/error.hpp"
+#include "collision/geometry/floating_point.hpp"
+#include "collision/geometry/stopwatch.hpp"
+#include "collision/search/intersections.hpp"
+#include "collision/search/obstacle.hpp"
+#include "physics/scene/make_scene.hpp"
+#include "physics/steppers/decorated_stepper.hpp"
+#include "pipeline/drapes/drape_path_hdf5.hpp"
+#include "pipeline/garments/garment_hdf5.hpp"
+#include "pipeline/host/folder_lock.hpp"
+#include "pipeline/host/read_file.hpp"
+#include "pipeline/host/write_file.hpp"
+#include "pipeline/motions/clip.hpp"
+#include "pipeline/run/progress.hpp"
+
+namespace selvedge {
+namespace {
+
+// A soft knit (configs/materials/jersey.yaml), damped so that it comes to rest soon.
+Material drape_material(const DrapeOptions& options) {
+  constexpr double youngs = 300, poisson = 0.4;
+  Material material;
+  material.name = "jersey";
+  material.density = 0.187;
+  material.lame_mu = youngs / (2 * (1 + poisson));
+  material.lame_lambda = youngs * poisson / (1 - poisson * poisson);
+  material.bending = 6.2e-6;
+  material.mass_damping = options.damping;
+  return material;
+}
+
+// One path on its way.
+struct PathMaker {
+  const DrapeWorld& world;
+  const std::function<bool()>& stop;
+  DrapePath path;
+  RandomStream random;
+  Points joints;  // of the shaped body
+  Scene scene;
+  State state;
+  std::unique_ptr<Stepper> stepper;
+  BodyPose pose;
+  IntersectionCache body_cache;
+
+  Points body_in(const BodyPose& at) const {
+    return posed(world.body.skin, path.shape, at, joint_transforms(world.body, joints, at));
+  }
+};
+
+void dress(PathMaker& maker) {
+  const DrapeWorld& world = maker.world;
+  const Points rest = styled_rest(world, maker.path.shape, maker.path.style);
+  add_cloth(maker.scene, rest, world.garment.skin.triangles, drape_material(world.options), world.garment.name);
+  maker.scene.rest_is_flat = true;
+  maker.scene.pins = world.garment.pins;
+  maker.scene.contact.thickness = world.options.thickness;
+  maker.scene.contact.friction = world.options.friction;
+  add_obstacle(maker.scene, world.body_surface.vertex_count, world.body_surface.triangles, true, "body");
+  maker.pose.rotations = Points::Zero(static_cast<Eigen::Index>(world.body.joints.size()), 3);
+  maker.state = first_state(maker.scene, rest, {maker.body_in(maker.pose)});
+  maker.stepper = make_recovering_conventional_stepper(maker.scene);
+}
+
+BodyPose next_pose(PathMaker& maker) {
+  constexpr int most_draws = 50;
+  BodyPose pose;
+  for (int k = 0; k < most_draws; ++k, ++maker.path.poses_redrawn) {
+    pose = draw_pose(maker.random, maker.world.body.joints, maker.world.options.pose_range);
+    if (intersecting_pairs(maker.world.body_surface, maker.body_in(pose), maker.body_cache).empty()) break;
+  }
+  return pose;
+}
+
+// False: rejected.
+bool advance(PathMaker& maker, const BodyPose& at) {
+  Drive drive = at_rest(maker.scene, maker.state);
+  drive.obstacles = {maker.body_in(at)};
+  if (!maker.scene.pins.empty()) {
+    const std::vector<VertexFrame> frames = vertex_frames(maker.world, maker.path.shape, at);
+    drive.pins.resize(std::ssize(maker.scene.pins), 3);
+    for (std::size_t k = 0; k < maker.scene.pins.size(); ++k) {
+      const VertexFrame& frame = frames[static_cast<std::size_t>(maker.scene.pins[k])];
+      drive.pins.row(static_cast<Eigen::Index>(k)) =
+          (frame.leftCols<3>() * row(maker.scene.rest, maker.scene.pins[k]) + frame.col(3)).transpose();
+    }
+  }
+  State next;
+  const StepReport report = maker.stepper->step(maker.state, drive, 1 / maker.world.options.fps, next);
+  if (report.status != StepStatus::accepted) return false;
+  maker.state = std::move(next);
+  return true;
+}
+
+double speed_of_fast_ones(const Points& v) {
+  Eigen::VectorXd speeds = v.rowwise().norm();
+  const auto place = static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(speeds.size() - 1));
+  std::nth_element(speeds.begin(), speeds.begin() + place, speeds.end());
+  return speeds[place];
+}
+
+// Why the drape is not kept; empty: it is.
+std::string reason_to_drop(const PathMaker& maker, bool at_rest) {
+  if (!at_rest) return "not at rest";
+  const State& state = maker.state;
+  const Points body = maker.body_in(maker.pose);
+  if (!state.x.allFinite()) return "not finite";
+  const std::vector<AuditBody> bodies{{&maker.world.body_surface, &body}};
+  const Audit found = audit(maker.world.surface, state.x, bodies);
+  const bool meets_body = !found.obstacle_pairs.empty(), meets_self = !found.self_pairs.empty();
+  if (obstacle_available()) {
+    const ObstacleModel cloth(maker.world.surface.triangles, state.x), solid(maker.world.body_surface.triangles, body);
+    if (collision_free(cloth, solid) == meets_body) return "FCL and audit differ on the body";
+    if (obstacle_self_pairs(cloth, maker.world.surface.triangles).empty() == meets_self)
+      return "FCL and audit differ on cloth";
+  }
+  if (meets_body) return "crosses the body";
+  if (found.inside_vertices > 0) return "inside the body";
+  if (meets_self) return "crosses itself";
+  if (!found.vertex_pairs.empty()) return "crosses itself at a vertex";
+  return "";
+}
+
+enum class PoseEnd { reached, rejected, stopped };
+
+// Takes the garment into the next pose and lets it come to rest.
+PoseEnd go_on(PathMaker& maker) {
+  const DrapeOptions& options = maker.world.options;
+  const BodyPose goal = next_pose(maker);
+  const Clip way{"way", 1, maker.world.body.joints, {maker.pose, goal}, {}};
+  bool rests = false;
+  for (int k = 1; k <= options.move_frames + std::max(options.most_settle_frames, options.settle_frames); ++k) {
+    if (maker.stop && maker.stop()) return PoseEnd::stopped;
+    const double t = std::min(1.0, static_cast<double>(k) / options.move_frames);
+    maker.pose = t < 1 ? pose_at(way, t * t * (3 - 2 * t)) : goal;
+    if (!advance(maker, maker.pose)) return PoseEnd::rejected;
+    rests = speed_of_fast_ones(maker.state.v) < options.rest_speed;
+    if (rests && k >= options.move_frames + options.settle_frames) break;
+  }
+  if (const std::string reason = reason_to_drop(maker, rests); !reason.empty()) {
+    ++maker.path.dropped[reason];
+    return PoseEnd::reached;
+  }
+  maker.path.rotations.push_back(goal.rotations);
+  maker.path.x.push_back(maker.state.x.cast<float>().cast<double>());
+  return PoseEnd::reached;
+}
+
+}  // namespace
+
+std::optional<DrapePath> make_drape_path(const DrapeWorld& world, std::uint64_t number,
+                                         const std::function<bool()>& stop) {
+  Stopwatch watch;
+  PathMaker maker{world, stop, {}, stream_of(world.options.seed, number), {}, {}, {}, {}, {}, {}};
+  maker.path.shape = draw_body_shape(maker.random, world.body.skin.shape_directions.cols(), world.options.shape_spread);
+  maker.path.style = draw_style(maker.random, world.options.style_spread);
+  maker.joints = joint_positions(world.body, maker.path.shape);
+  dress(maker);
+  for (int k = 0; k < world.options.poses; ++k) {
+    const PoseEnd end = go_on(maker);
+    if (end == PoseEnd::stopped) return {};
+    if (end == PoseEnd::rejected) {
+      maker.path.dropped["step rejected"] += world.options.poses - k;
+      break;
+    }
+  }
+  maker.path.seconds = watch.lap();
+  return std::move(maker.path);
+}
+
+DatasetSummary make_dataset(const DatasetRequest& request) {
+  restore_standard_arithmetic();
+  const DrapeOptions options = read_drape_options(request.config, request.overrides);
+  DatasetSummary summary;
+  summary.folder = request.out.empty() ? std::filesystem::path("out") / "data" / options.name : request.out;
+  make_folder(summary.folder);
+  const FolderLock lock(summary.folder);
+  const std::filesystem::path config = summary.folder / "config.yaml";
+  if (std::filesystem::exists(config) && drape_yaml(read_drape_options(config)) != drape_yaml(options))
+    throw Error("the folder has drapes of other options", summary.folder.string(), "choose another --out");
+  write_file(config, drape_yaml(options));
+  const DrapeWorld world = make_drape_world(options);
+  write_garment(summary.folder / "garment.h5", world.garment);
+  summary.vertices = world.surface.vertex_count;
+  summary.body_triangles = static_cast<int>(world.body_surface.triangles.rows());
+  std::string table = "path,split,drapes,dropped,poses_redrawn,seconds\n";
+  const int paths = options.training + options.test;
+  for (int k = 0; k < paths; ++k) {
+    const std::filesystem::path file = drape_path_file(summary.folder, k);
+    std::optional<DrapePath> path;
+    if (std::filesystem::exists(file)) {
+      path = read_drape_path(file, static_cast<int>(world.body.joints.size()), world.surface.vertex_count);
+    } else {
+      path = make_drape_path(world, static_cast<std::uint64_t>(k), request.stop);
+      if (!path) return summary;
+      write_drape_path(file, *path);
+    }
+    int dropped = 0;
+    for (const auto& [reason, count] : path->dropped) {
+      summary.dropped[reason] += count;
+      dropped += count;
+    }
+    (k < options.training ? summary.training : summary.test) += static_cast<int>(path->x.size());
+    summary.poses_redrawn += path->poses_redrawn;
+    summary.seconds += path->seconds;
+    table += fmt::format("{},{},{},{},{},{:.2f}\n", k, k < options.training ? "training" : "test", path->x.size(),
+                         dropped, path->poses_redrawn, path->seconds);
+    if (request.log)
+      *request.log << fmt::format("path {} of {}: {} drapes, {} dropped, {}\n", k + 1, paths, path->x.size(), dropped,
+                                  duration_text(path->seconds))
+                   << std::flush;
+  }
+  write_file(summary.folder / "drapes.csv", table);
+  summary.finished = true;
+  return summary;
+}
+
+std::string dataset_text(const DatasetSummary& s) {
+  std::string text = fmt::format(
+      "{:<20}{}\n{:<20}{} vertices; body of {} triangles\n{:<20}{} to train on, {} to measure on\n{:<20}{}\n",
+      s.finished ? "made" : "stopped", s.folder.string(), "garment", s.vertices, s.body_triangles, "drapes", s.training,
+      s.test, "time", duration_text(s.seconds));
+  for (const auto& [reason, count] : s.dropped) text += fmt::format("{:<20}{}: {}\n", "dropped", reason, count);
+  return text + fmt::format("{:<20}{}\n", "poses drawn anew", s.poses_redrawn);
+}
+
+std::string dataset_json(const DatasetSummary& s) {
+  return nlohmann::ordered_json{{"folder", s.folder.string()},      {"finished", s.finished}, {"vertices", s.vertices},
+                                {"training", s.training},           {"test", s.test},         {"dropped", s.dropped},
+                                {"poses_redrawn", s.poses_redrawn}, {"seconds", s.seconds}}
+             .dump(2) +
+         "\n";
+}
+
+}  // namespace selvedge

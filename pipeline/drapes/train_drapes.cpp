@@ -1,0 +1,162 @@
+#include "pipeline/drapes/train_drapes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "collision/geometry/error.hpp"
+#include "collision/geometry/floating_point.hpp"
+#include "pipeline/host/read_file.hpp"
+#include "pipeline/host/write_file.hpp"
+#include "pipeline/run/progress.hpp"
+#include "pipeline/training/csv_charts.hpp"
+
+namespace selvedge {
+namespace {
+
+const DrapeRow& row_named(const std::string& name) {
+  return *std::ranges::find(known_drape_rows(), name, &DrapeRow::name);
+}
+
+// Everything of a run.
+struct DrapeRun {
+  DrapeTrainingOptions options;
+  StageRun stage;
+  DrapeLessons lessons;
+  DrapeModel backbone;
+  PlainNetwork distance;
+  std::vector<std::pair<const DrapeRow*, DrapeModel>> rows;  // as trained
+
+  bool needs_network() const {
+    return std::ranges::any_of(options.rows, [](const std::string& name) { return row_named(name).neural_layer; });
+  }
+};
+
+// False: stopped.
+bool get_distance(DrapeRun& run) {
+  if (!run.needs_network()) return true;
+  run.distance = make_distance_network(run.options, run.lessons);
+  if (!run.options.distance.weights.empty()) {
+    const StageFile file = read_stage_file(run.options.distance.weights);
+    const StagePart* part = file.find("distance");
+    if (!part || part->network.inputs() != run.distance.inputs())
+      throw Error("is no network of distances that reads these bodies", run.options.distance.weights,
+                  "train it with the same `bones`, or leave `distance.weights` out");
+    run.distance = part->network;
+  } else if (!run_stage(run.stage, distance_stage(run.options, run.lessons, run.distance))) {
+    return false;
+  }
+  use_network(run.distance, run.lessons);
+  return true;
+}
+
+bool train_all(DrapeRun& run) {
+  if (!run_stage(run.stage, backbone_stage(run.options, run.lessons, run.backbone))) return false;
+  if (!get_distance(run)) return false;
+  for (const std::string& name : run.options.rows) {
+    const DrapeRow& row = row_named(name);
+    DrapeModel model = run.backbone;
+    add_scales(row, run.options, run.lessons, model);
+    if (!run_stage(run.stage, row_stage(row, run.options, run.lessons, model))) return false;
+    run.rows.emplace_back(&row, std::move(model));
+  }
+  return true;
+}
+
+std::vector<DrapeTableRow> measure_all(DrapeRun& run) {
+  std::vector<DrapeTableRow> table;
+  const auto add = [&](const MeasuredWay& way, const DrapeModel& model) {
+    table.push_back(measure_row(way, model, run.options, run.lessons));
+    if (run.stage.request.log) *run.stage.request.log << "measured: " << way.name << std::endl;
+  };
+  add({"backbone"}, run.backbone);
+  for (const auto& [row, model] : run.rows) {
+    add({row->name, row->layer ? row : nullptr}, model);
+    if (row->name == "control") {
+      add({"control, naive", nullptr, AfterDrape::naive}, model);
+      add({"control, naive, edges 1", nullptr, AfterDrape::naive, 1}, model);
+      add({"control, naive, edges 3", nullptr, AfterDrape::naive, 3}, model);
+      add({"control, smooth", nullptr, AfterDrape::smooth}, model);
+    }
+    if (row->layer) {
+      add({row->name + ", edges 1", row, AfterDrape::nothing, 1}, model);
+      add({row->name + ", edges 3", row, AfterDrape::nothing, 3}, model);
+    }
+  }
+  return table;
+}
+
+// The curves of every stage, the table and the configuration.
+std::string drape_page(const DrapeRun& run, const std::vector<DrapeTableRow>& table) {
+  std::string page = page_head("Training " + run.options.name);
+  std::vector<std::string> stages{"backbone", "distance"};
+  stages.insert(stages.end(), run.options.rows.begin(), run.options.rows.end());
+  for (const std::string& stage : stages) {
+    const std::filesystem::path file = run.stage.folder / (stage + ".csv");
+    if (!std::filesystem::exists(file)) continue;
+    const CsvColumns columns(read_file(file, "table"));
+    const std::vector<double>& at = columns["step"];
+    page += chart(stage + ": losses", at,
+                  columns_of(columns, {"reconstruction", "collision", "value", "surface_gradient", "eikonal"}), true);
+    page += chart(stage + ": error of vertices (before a layer) or of distances on what is kept apart [mm]", at,
+                  columns_of(columns, {"validation_mm", "error_mm"}), false);
+    page += chart(stage + ": mean scale of pushed vertices", at, columns_of(columns, {"alpha"}), false);
+  }
+  return page + page_text("Drapes to measure on", drape_table_text(table)) +
+         page_text("Configuration", drape_training_yaml(run.options));
+}
+
+}  // namespace
+
+DrapeTrainSummary train_drapes(const TrainRequest& request) {
+  restore_standard_arithmetic();
+  const DrapeTrainingOptions options = read_drape_training(request.config, request.overrides);
+  const std::filesystem::path folder =
+      request.out.empty() ? std::filesystem::path("out") / "training" / options.name : request.out;
+  make_folder(folder);
+  std::filesystem::remove(pause_file(folder));
+  write_file(folder / "config.yaml", drape_training_yaml(options));
+  DrapeLessons lessons = make_drape_lessons(options.drapes, options.validation_paths, options.distance.bones);
+  DrapeRun run{options, {request, options, folder, 0}, std::move(lessons), {}, {}, {}};
+  run.backbone = make_drape_model(options, run.lessons);
+  DrapeTrainSummary summary;
+  summary.folder = folder;
+  summary.training = static_cast<int>(run.lessons.training.size());
+  summary.validation = static_cast<int>(run.lessons.validation.size());
+  summary.test = static_cast<int>(run.lessons.test.size());
+  summary.parameters = parameter_count(run.backbone.drape.plain);
+  summary.finished = train_all(run);
+  summary.seconds = run.stage.seconds;
+  std::filesystem::remove(pause_file(folder));
+  if (!summary.finished) return summary;
+  summary.table = measure_all(run);
+  write_file(folder / "table.txt", drape_table_text(summary.table));
+  write_file(folder / "table.csv", drape_table_csv(summary.table));
+  write_file(folder / "training.html", drape_page(run, summary.table));
+  return summary;
+}
+
+std::string drape_train_text(const DrapeTrainSummary& s) {
+  return fmt::format("{:<20}{}\n{:<20}{} to train on, {} to watch, {} to measure on\n{:<20}{}\n{:<20}{}\n",
+                     s.finished ? "trained" : "stopped", s.folder.string(), "drapes", s.training, s.validation, s.test,
+                     "parameters", s.parameters, "time", duration_text(s.seconds)) +
+         (s.table.empty() ? "" : "\n" + drape_table_text(s.table));
+}
+
+std::string drape_train_json(const DrapeTrainSummary& s) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const DrapeTableRow& row : s.table)
+    rows.push_back({{"row", row.name},
+                    {"mpve_mm", row.vertex_error.mean},
+                    {"vfcp", row.inside.mean},
+                    {"cfmp", row.free.mean},
+                    {"laplacian_mm", row.laplacian.mean},
+                    {"overshoot_mm", row.overshoot.mean}});
+  return nlohmann::ordered_json{
+             {"folder", s.folder.string()}, {"finished", s.finished}, {"seconds", s.seconds}, {"rows", rows}}
+             .dump(2) +
+         "\n";
+}
+
+}  // namespace selvedge

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <functional>
+
+#include "pipeline/drapes/drape_training_options.hpp"
+#include "pipeline/drapes/stage_file_hdf5.hpp"
+#include "pipeline/training/random_stream.hpp"
+#include "pipeline/training/train.hpp"
+
+namespace selvedge {
+
+// One stage: a network that is trained so many steps into a file of the run's folder, which is its checkpoint on the
+// way and its result at the end.
+struct TrainingStage {
+  std::string name;
+  StageOptions options;
+  std::string header;  // of the table, without step, seconds and rate
+  std::function<std::string(double rate, RandomStream&, bool last)>
+      step;                                       // one; the columns of a line. last: of the
+                                                  // line that is written, which may measure more
+  std::function<StageFile()> state;               // networks and numbers as they are; the rest is filled in
+  std::function<void(const StageFile&)> restore;  // from them
+};
+
+struct StageRun {
+  const TrainRequest& request;
+  const DrapeTrainingOptions& options;
+  std::filesystem::path folder;
+  double seconds = 0;  // of all stages so far
+};
+
+// Trains it to its end, or goes on with it: false if it was stopped at a checkpoint. A stage of other options than the
+// run's is refused (Error). Leaves NAME.h5 and NAME.csv.
+bool run_stage(StageRun&, const TrainingStage&);
+
+}  // namespace selvedge

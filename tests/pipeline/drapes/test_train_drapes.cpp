@@ -1,0 +1,71 @@
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/drapes/make_drapes.hpp"
+#include "pipeline/drapes/train_drapes.hpp"
+#include "pipeline/meshes/setup_paths.hpp"
+#include "tests/pipeline/files.hpp"
+
+namespace selvedge::test_train_drapes {
+
+using fake::Folder;
+
+namespace {
+
+DatasetRequest tiny_data(const Folder& folder) {
+  DatasetRequest request;
+  request.config = config_folder() / "data" / "drape_tiny.yaml";
+  request.out = folder.path / "data";
+  return request;
+}
+
+TrainRequest tiny_run(const Folder& folder, const std::string& out) {
+  TrainRequest request;
+  request.config = config_folder() / "training" / "refu_tiny.yaml";
+  request.overrides = {"drapes=" + (folder.path / "data").string()};
+  request.out = folder.path / out;
+  return request;
+}
+
+}  // namespace
+
+TEST_CASE("drapes: from a simulated set to the table, stopped and resumed on the way", "[drapes]") {
+  const Folder folder("train_drapes");
+  const DatasetSummary data = make_dataset(tiny_data(folder));
+  REQUIRE(data.finished);
+  REQUIRE(data.training >= 3);
+  REQUIRE(data.test >= 1);
+  CHECK(make_dataset(tiny_data(folder)).training == data.training);  // nothing is made again
+  DatasetRequest other = tiny_data(folder);
+  other.overrides = {"seed=5"};
+  CHECK_THROWS_AS(make_dataset(other), Error);
+
+  const DrapeTrainSummary whole = train_drapes(tiny_run(folder, "whole"));
+  REQUIRE(whole.finished);
+  int asked = 0;
+  TrainRequest stopped = tiny_run(folder, "stopped");
+  stopped.stop = [&] { return ++asked == 25; };
+  CHECK(!train_drapes(stopped).finished);
+  stopped.stop = {};
+  stopped.resume = true;
+  const DrapeTrainSummary resumed = train_drapes(stopped);
+  REQUIRE(resumed.finished);
+  REQUIRE(resumed.table.size() == whole.table.size());
+  for (std::size_t k = 0; k < whole.table.size(); ++k) {
+    CHECK(resumed.table[k].name == whole.table[k].name);
+    CHECK(resumed.table[k].error_by_drape == whole.table[k].error_by_drape);
+  }
+  const auto row = [&](const std::string& name) {
+    const auto found = std::ranges::find(whole.table, name, &DrapeTableRow::name);
+    REQUIRE(found != whole.table.end());
+    return *found;
+  };
+  CHECK(row("control, naive").inside.mean <= row("control").inside.mean);
+  CHECK(row("learned").alpha >= 1);
+  CHECK(row("hybrid").pushed.models == data.test);
+  CHECK(fake::whole(folder.path / "whole" / "table.csv").starts_with("row,models,mpve_mm"));
+}
+
+}  // namespace selvedge::test_train_drapes
