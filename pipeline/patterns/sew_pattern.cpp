@@ -170,6 +170,8 @@ struct Sewing {
     result.joined_by = (spread(joined, joining) - closed).rowwise().norm().maxCoeff();
     const Scene scene = scene_of(mesh, joining, mesh.placed, body_triangles, body.rows(), options);
     State state = first_state(scene, joined, {body});
+    state.time = result.closing_frames / options.fps;
+    state.frame = result.closing_frames;
     const auto stepper = make_recovering_conventional_stepper(scene);
     const Vec3 gravity(0, -9.81, 0);
     for (int frame = 1; frame <= options.most_draping * options.fps; ++frame) {
