@@ -7,6 +7,7 @@
 
 #include "collision/geometry/disjoint_sets.hpp"
 #include "collision/geometry/stopwatch.hpp"
+#include "collision/untangle/untangle.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
 
 namespace selvedge {
@@ -16,7 +17,8 @@ constexpr double one_place = 1e-7;                            // vertices nearer
 constexpr double first_stiffness = 30, last_stiffness = 2e4;  // of a stitch, while it gets shorter [N/m]
 constexpr double kept_of_rest = 0.7;                          // what contact keeps of a distance at rest
 constexpr double pulled_within = 0.5;  // of the distance that contact keeps: how near a stitch pulls its sides
-constexpr int settling_frames = 6, shutting_frames = 12, most_shut_frames = 10;
+constexpr double facing = 0.01;        // [m]
+constexpr int settling_frames = 8, shutting_frames = 20, most_shut_frames = 10;
 constexpr int least_draping = 15;  // frames: what begins to fall is slow and not at rest
 
 // Panels with some stitches joined: of each vertex its number, and how many there are.
@@ -61,6 +63,10 @@ Scene scene_of(const PatternMesh& mesh, const Joining& joining, const Points& ap
   add_obstacle(scene, static_cast<int>(body_vertices), body_triangles, false, "body");
   scene.contact = options.contact;
   return scene;
+}
+
+Points apart_from_itself(const Points& body, const Triangles& triangles) {
+  return untangle(make_surface(static_cast<int>(body.rows()), triangles), body, {}).x;
 }
 
 struct Sewing {
@@ -118,16 +124,17 @@ struct Sewing {
     return rest;
   }
 
-  // What the stitches are pulled to, and what contact keeps their sides apart, in a frame of the closing [m]: first
-  // each comes as near as layers of cloth do, then all of them close, so slowly that nothing collides.
+  // How long a stitch is in a frame of the closing, and how far apart contact keeps its sides [m]: first all get as
+  // short as `facing`, at which the edges of two panels find their places beside each other; then they close, so slowly
+  // that nothing collides.
   struct Closing {
-    double share, keep;  // of their first length that is gone; [m]
+    double share, shortest, keep;  // of their first length that is gone; [m]
   };
   Closing closing_at(int frame) const {
-    const double t = std::min(1.0, frame / (options.closing * options.fps)), thickness = options.contact.thickness;
-    const double after = frame - options.closing * options.fps - settling_frames;
-    const double shut = std::clamp(after / shutting_frames, 0.0, 1.0);
-    return {t * t * (3 - 2 * t), thickness * std::pow(options.closed / thickness, shut)};
+    const double first_frames = options.closing * options.fps, t = std::min(1.0, frame / first_frames);
+    const double shut = std::clamp((frame - first_frames - settling_frames) / shutting_frames, 0.0, 1.0);
+    const double shortest = facing * std::pow(pulled_within * options.closed / facing, shut);
+    return {t * t * (3 - 2 * t), shortest, std::min(options.contact.thickness, shortest / pulled_within)};
   }
 
   // Positions of the panels' vertices with the stitches closed as far as they come.
@@ -151,7 +158,7 @@ struct Sewing {
     for (int frame = 1; frame <= frames + most_shut_frames; ++frame) {
       const Closing now = closing_at(frame);
       for (std::size_t s = 0; s < first.size(); ++s) {
-        scene.springs[s].rest_length = std::max((1 - now.share) * first[s], pulled_within * now.keep);
+        scene.springs[s].rest_length = std::max((1 - now.share) * first[s], std::min(first[s], now.shortest));
         scene.springs[s].stiffness = first_stiffness * std::pow(last_stiffness / first_stiffness, now.share);
       }
       scene.rest = means(rest_with_gap(now.keep / kept_of_rest), joining);
@@ -193,7 +200,10 @@ struct Sewing {
 SewnPattern sew_pattern(const PatternMesh& mesh, const Points& body, const Triangles& body_triangles,
                         const SewingOptions& options, const std::function<void(const SewingFrame&)>& seen) {
   Stopwatch watch;
-  Sewing sewing{mesh, body, body_triangles, options, seen};
+  const Points parted = apart_from_itself(body, body_triangles);
+  Sewing sewing{mesh, parted, body_triangles, options, seen};
+  sewing.result.body = parted;
+  sewing.result.body_moved = (parted - body).rowwise().norm().maxCoeff();
   sewing.drape(sewing.close());
   for (const auto& [name, vertices] : mesh.groups) {
     std::vector<int> members;

@@ -42,12 +42,15 @@ struct SewnPattern {
   int closing_frames = 0, draping_frames = 0;
   double seconds = 0;     // that it took
   bool rejected = false;  // a step was
+  Points body;            // as it was dressed: parted from itself [m]
+  double body_moved = 0;  // by so much at most [m]
 };
 
 // Sews the panels round a body that stands still, and lets the garment come to rest on it. The conventional stepper
 // makes every frame, from a clean start on: first each stitch is a spring that gets shorter, without gravity and
 // friction; then its two vertices become one, in their middle, and the garment falls. Stitches whose vertices lie at
-// one place from the start are joined there. `seen` is told of every frame and may be empty.
+// one place from the start are joined there. A body that crosses itself, at its armpits say, is parted from itself
+// first: faces that have passed each other leave cloth no place to be. `seen` is told of every frame and may be empty.
 SewnPattern sew_pattern(const PatternMesh&, const Points& body, const Triangles& body_triangles, const SewingOptions&,
                         const std::function<void(const SewingFrame&)>& seen);
 
