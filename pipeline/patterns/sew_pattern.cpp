@@ -15,10 +15,9 @@ namespace {
 
 constexpr double one_place = 1e-7;                            // vertices nearer than this lie at one place [m]
 constexpr double first_stiffness = 30, last_stiffness = 2e4;  // of a stitch, while it gets shorter [N/m]
-constexpr double kept_of_rest = 0.7;                          // what contact keeps of a distance at rest
-constexpr double pulled_within = 0.5;  // of the distance that contact keeps: how near a stitch pulls its sides
-constexpr double facing = 0.01;        // [m]
-constexpr int settling_frames = 8, shutting_frames = 20, most_shut_frames = 10;
+constexpr double sewn_stiffer = 30;  // in bending, while panels are sewn: it keeps them from folding
+constexpr double facing = 0.01;      // length of stitches at which edges find their places [m]
+constexpr int facing_frames = 8, shutting_frames = 10, most_shut_frames = 10, flattening_frames = 8;
 constexpr int least_draping = 15;  // frames: what begins to fall is slow and not at rest
 
 // Panels with some stitches joined: of each vertex its number, and how many there are.
@@ -52,14 +51,14 @@ Triangles renumbered(Triangles triangles, const Joining& to) {
   return triangles;
 }
 
-// `apart`: where vertices count as when contact asks how close they rest: those of a stitch at one place, so that it
-// does not hold them off each other.
-Scene scene_of(const PatternMesh& mesh, const Joining& joining, const Points& apart, const Triangles& body_triangles,
-               Eigen::Index body_vertices, const SewingOptions& options) {
+// `stiffer`: times the material's bending.
+Scene scene_of(const PatternMesh& mesh, const Joining& joining, const Triangles& body_triangles,
+               Eigen::Index body_vertices, const SewingOptions& options, double stiffer) {
   Scene scene;
   Material material = options.material;
   material.mass_damping = std::max(material.mass_damping, options.damping);
-  add_cloth(scene, means(apart, joining), renumbered(mesh.triangles, joining), material, "garment", mesh.rest);
+  material.bending *= stiffer;
+  add_cloth(scene, means(mesh.placed, joining), renumbered(mesh.triangles, joining), material, "garment", mesh.rest);
   add_obstacle(scene, static_cast<int>(body_vertices), body_triangles, false, "body");
   scene.contact = options.contact;
   return scene;
@@ -110,41 +109,21 @@ struct Sewing {
     return share;
   }
 
-  // Where vertices rest for contact, which keeps pairs of one piece no farther apart than a share of their distance at
-  // rest: those of a stitch lie `gap` apart round their middle, each toward its panel.
-  Points rest_with_gap(double gap) const {
-    const Joining all = join(mesh, [](std::size_t) { return true; });
-    const Points middle = spread(means(mesh.placed, all), all);
-    Points rest = mesh.placed;
-    for (const std::array<int, 2>& stitch : mesh.sewn)
-      for (const int v : stitch) {
-        const Vec3 away = row(mesh.placed, v) - row(middle, v);
-        if (const double far = away.norm(); far > 0) rest.row(v) = middle.row(v) + gap / (2 * far) * away.transpose();
-      }
-    return rest;
+  // How long a stitch of that first length is in a frame of the closing [m]: first all get as short as `facing`, at
+  // which the edges of two panels find their places beside each other, then they close.
+  double length_at(int frame, double first) const {
+    const double closing_frames = options.closing * options.fps, t = std::min(1.0, frame / closing_frames);
+    const double shut = std::clamp((frame - closing_frames - facing_frames) / shutting_frames, 0.0, 1.0);
+    return std::max((1 - t * t * (3 - 2 * t)) * first, (1 - shut) * std::min(first, facing));
   }
 
-  // How long a stitch is in a frame of the closing, and how far apart contact keeps its sides [m]: first all get as
-  // short as `facing`, at which the edges of two panels find their places beside each other; then they close, so slowly
-  // that nothing collides.
-  struct Closing {
-    double share, shortest, keep;  // of their first length that is gone; [m]
-  };
-  Closing closing_at(int frame) const {
-    const double first_frames = options.closing * options.fps, t = std::min(1.0, frame / first_frames);
-    const double shut = std::clamp((frame - first_frames - settling_frames) / shutting_frames, 0.0, 1.0);
-    const double shortest = facing * std::pow(pulled_within * options.closed / facing, shut);
-    return {t * t * (3 - 2 * t), shortest, std::min(options.contact.thickness, shortest / pulled_within)};
-  }
-
-  // Positions of the panels' vertices with the stitches closed as far as they come.
+  // Positions of the panels' vertices with the stitches closed as far as they come. While the last of their length
+  // goes, cloth does not meet cloth: edges that lie on each other would be held apart, and edges that overlap could not
+  // get past each other.
   Points close() {
     const Joining joining = join(mesh, [&](std::size_t s) { return gap(mesh.placed, s) < one_place; });
-    Scene scene = scene_of(mesh, joining, mesh.placed, body_triangles, body.rows(), options);
+    Scene scene = scene_of(mesh, joining, body_triangles, body.rows(), options, sewn_stiffer);
     scene.contact.friction = scene.contact.self_friction = 0;
-    // Stitches make one piece of the panels.
-    std::ranges::fill(scene.surface.component, 0);
-    scene.surface.component_count = 1;
     State state = first_state(scene, means(mesh.placed, joining), {body});
     std::vector<double> first;
     for (const std::array<int, 2>& stitch : mesh.sewn) {
@@ -154,18 +133,19 @@ struct Sewing {
       first.push_back((row(state.x, a) - row(state.x, b)).norm());
       scene.springs.push_back({a, b, first.back(), first_stiffness});
     }
-    const int frames = static_cast<int>(options.closing * options.fps) + settling_frames + shutting_frames;
-    for (int frame = 1; frame <= frames + most_shut_frames; ++frame) {
-      const Closing now = closing_at(frame);
+    const int closing_frames = static_cast<int>(options.closing * options.fps),
+              facing_end = closing_frames + facing_frames, shut_end = facing_end + shutting_frames;
+    for (int frame = 1; frame <= shut_end + most_shut_frames; ++frame) {
       for (std::size_t s = 0; s < first.size(); ++s) {
-        scene.springs[s].rest_length = std::max((1 - now.share) * first[s], std::min(first[s], now.shortest));
-        scene.springs[s].stiffness = first_stiffness * std::pow(last_stiffness / first_stiffness, now.share);
+        scene.springs[s].rest_length = length_at(frame, first[s]);
+        scene.springs[s].stiffness =
+            first_stiffness * std::pow(last_stiffness / first_stiffness, std::min(1.0, 1.0 * frame / shut_end));
       }
-      scene.rest = means(rest_with_gap(now.keep / kept_of_rest), joining);
+      scene.contact.self = frame <= facing_end;
       // A stepper takes stitches as they are when it is made.
       if (!step(*make_recovering_conventional_stepper(scene), scene, joining, false, Vec3::Zero(), state)) break;
       result.closing_frames = frame;
-      if (frame >= frames && largest_gap(spread(state.x, joining)) < 2 * options.closed) break;
+      if (frame >= shut_end && largest_gap(spread(state.x, joining)) < options.closed) break;
     }
     return spread(state.x, joining);
   }
@@ -175,10 +155,18 @@ struct Sewing {
     for (std::size_t s = 0; s < mesh.sewn.size(); ++s) result.gaps.push_back(gap(closed, s));
     const Points joined = means(closed, joining);
     result.joined_by = (spread(joined, joining) - closed).rowwise().norm().maxCoeff();
-    const Scene scene = scene_of(mesh, joining, mesh.placed, body_triangles, body.rows(), options);
-    State state = first_state(scene, joined, {body});
+    Scene flat = scene_of(mesh, joining, body_triangles, body.rows(), options, sewn_stiffer);
+    State state = first_state(flat, joined, {body});
     state.time = result.closing_frames / options.fps;
     state.frame = result.closing_frames;
+    // What overlapped at the seams springs flat before cloth meets cloth again.
+    flat.contact.self = false;
+    flat.contact.friction = 0;
+    const auto flattening = make_recovering_conventional_stepper(flat);
+    for (int frame = 1; frame <= flattening_frames; ++frame)
+      if (!step(*flattening, flat, joining, true, Vec3::Zero(), state)) return;
+    state.clean = false;
+    const Scene scene = scene_of(mesh, joining, body_triangles, body.rows(), options, 1);
     const auto stepper = make_recovering_conventional_stepper(scene);
     const Vec3 gravity(0, -9.81, 0);
     for (int frame = 1; frame <= options.most_draping * options.fps; ++frame) {

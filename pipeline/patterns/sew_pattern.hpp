@@ -12,7 +12,7 @@ struct SewingOptions {
   ContactSettings contact;  // of the drape; while stitches contract nothing rubs
   double fps = 30;
   double closing = 1;            // in which the stitches contract [s]
-  double closed = 5e-5;          // distance at which contact keeps the sides of a stitch at last [m]
+  double closed = 1e-4;          // gap below which a stitch is closed [m]
   double most_draping = 6;       // until the garment rests, at most [s]
   double damping = 3;            // of its motion, by mass [1/s]
   double resting_motion = 3e-4;  // in a frame, of a vertex that counts as moving [m]
