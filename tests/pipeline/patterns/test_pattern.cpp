@@ -139,7 +139,10 @@ TEST_CASE("Broken patterns get one error that names panel and edge") {
 
 TEST_CASE("GarmentCode's patterns are read") {
   const std::filesystem::path folder = fake::open_data() / "garmentcode";
-  if (!std::filesystem::exists(folder)) return WARN("no open data: GarmentCode's patterns are not read");
+  if (!std::filesystem::exists(folder)) {
+    WARN("no open data: GarmentCode's patterns are not read");
+    return;
+  }
   const auto counts = [&](const char* name) {
     const Pattern pattern = read_pattern(folder / (std::string(name) + "_specification.json"));
     CHECK(pattern.name == name);

@@ -159,7 +159,10 @@ TEST_CASE("Both edges of a seam get the vertices of the longer one") {
 
 TEST_CASE("GarmentCode's patterns are cut and joined into one manifold piece") {
   const std::filesystem::path folder = fake::open_data() / "garmentcode";
-  if (!std::filesystem::exists(folder)) return WARN("no open data: GarmentCode's patterns are not cut");
+  if (!std::filesystem::exists(folder)) {
+    WARN("no open data: GarmentCode's patterns are not cut");
+    return;
+  }
   // Loops: hem, neck or face, and cuffs; of the overall two legs, neck and cuffs.
   const std::vector<std::pair<const char*, std::size_t>> patterns{
       {"shirt_mean", 4}, {"hoody_mean", 4}, {"js_mean_all", 5}};
