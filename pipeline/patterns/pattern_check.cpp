@@ -39,9 +39,12 @@ std::vector<int> closed_loop(const Panel& panel, const std::string& file) {
   do {
     loop.push_back(e);
     const auto next = from.find(panel.edges[static_cast<std::size_t>(e)].ends[1]);
-    if (next == from.end() || loop.size() > panel.edges.size())
-      throw Error("ends where no edge starts: the loop is open", file + ": " + edge_name(panel, e),
-                  "let the edges of a panel follow each other once round");
+    const std::string cure = "let the edges of a panel follow each other once round";
+    if (next == from.end())
+      throw Error("ends where no edge starts: the loop is open", file + ": " + edge_name(panel, e), cure);
+    if (next->second != 0 && std::ranges::find(loop, next->second) != loop.end())
+      throw Error(fmt::format("runs back to edge {}: the loop is open", next->second),
+                  file + ": " + edge_name(panel, e), cure);
     e = next->second;
   } while (e != 0);
   if (loop.size() < panel.edges.size()) {

@@ -109,7 +109,7 @@ TEST_CASE("Broken patterns get one error that names panel and edge") {
   const auto edges = [](const char* last) {
     return R"([{"endpoints":[0,1]},{"endpoints":[1,2]},{"endpoints":[2,3]},{"endpoints":)" + std::string(last) + "}]";
   };
-  CHECK_THAT(complaint(file_with(edges("[3,2]"))), Contains(square + "3") && Contains("starts"));
+  CHECK_THAT(complaint(file_with(edges("[3,2]"))), Contains(square + "3") && Contains("back to edge 2"));
   CHECK_THAT(complaint(file_with(R"([{"endpoints":[0,1]},{"endpoints":[1,2]},{"endpoints":[2,3]}])")),
              Contains(square + "2") && Contains("open"));
   CHECK_THAT(complaint(file_with(edges("[3,7]"))), Contains(square + "3") && Contains("vertex 7"));
