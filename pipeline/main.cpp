@@ -103,6 +103,18 @@ void dress_options(CLI::App& command, DressRequest& request) {
       ->allow_extra_args(false);
 }
 
+void pattern_options(CLI::App& command, PatternRequest& request) {
+  command.add_option("pattern", request.file, "pattern of GarmentCode (*_specification.json)")->required();
+  command.add_option("--out", request.out, "the garment for scenes (.h5), or its mesh alone (.obj, .ply)")->required();
+  command.add_option("--body", request.body, "mannequin, a body (.npz, .h5) or a mesh in metres (.obj, .ply)");
+  command.add_option("--edge", request.edge, "length of the triangles' edges [m]")->check(CLI::Range(0.002, 0.2));
+  command.add_option("--material", request.material, "of the cloth: a name, as in scenes");
+  command.add_option("--pin", request.pins, "group that stays with the body in scenes; may be given again")
+      ->allow_extra_args(false);
+  command.add_option("--record", request.record, "trajectory of the sewing (.h5)");
+  command.add_flag("--flat", request.flat, "only cut: the panels as a mesh");
+}
+
 void body_options(CLI::App& command, BodyRequest& request) {
   command.add_option("file", request.file, "mesh (.obj, .ply) or model of the SMPL family (.npz)")->required();
   command.add_option("--skeleton", request.skeleton, "of the mesh, as MakeHuman has it (.mhskel)");
@@ -240,6 +252,8 @@ void add_commands(CLI::App& app, Chosen& chosen) {
                            push_command);
   add_command<DressRequest>(app, chosen, "dress", "a garment for scenes from a mesh that a body wears", dress_options,
                             dress_command);
+  add_command<PatternRequest>(app, chosen, "pattern", "a sewing pattern, sewn and draped on a body", pattern_options,
+                              pattern_command);
   add_command<BodyRequest>(app, chosen, "body", "a rigged body from other programs' files, for scenes", body_options,
                            body_command);
   add_command<CcdArguments>(app, chosen, "ccd", "continuous detection against queries with known answers", ccd_options,
@@ -271,7 +285,7 @@ void add_commands(CLI::App& app, Chosen& chosen) {
 
 // The headings of `selvedge --help`; a command that stands under none is one for use.
 void group_commands(CLI::App& app) {
-  const std::vector<std::string> prepared{"untangle", "dress", "body", "dataset", "weights"};
+  const std::vector<std::string> prepared{"untangle", "dress", "pattern", "body", "dataset", "weights"};
   const std::vector<std::string> measured{"ccd", "bench", "stress", "compare", "validate", "stability", "wardrobe"};
   for (CLI::App* command : app.get_subcommands({})) {
     const auto is_in = [&](const auto& names) { return std::ranges::find(names, command->get_name()) != names.end(); };

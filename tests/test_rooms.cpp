@@ -55,6 +55,7 @@ const std::map<std::string, std::vector<Room>> rooms = {
       {"bodies"},
       {"motions"},
       {"garments"},
+      {"patterns"},
       {"meshes"},
       {"scene"},
       {"run"},

@@ -144,6 +144,19 @@ int dress_command(const DressRequest& request, bool json) {
   return is_clean(report) ? 0 : 1;
 }
 
+int pattern_command(const PatternRequest& request, bool json) {
+  PatternRequest followed = request;
+  followed.progress = [](const SewingFrame& frame) {
+    std::cerr << fmt::format("{} {:.2f} s: gaps {:.3g} mm, {:.3g} % move, {} pairs\n",
+                             frame.sewn ? "draping" : "sewing", frame.time, 1e3 * frame.largest_gap,
+                             100 * frame.moving_share, frame.report->collision.pairs_after);
+  };
+  const PatternReport report = sew_garment(followed);
+  people(json) << pattern_text(report);
+  if (json) std::cout << pattern_json(report);
+  return request.flat || is_clean(report) ? 0 : 1;
+}
+
 int body_command(const BodyRequest& request, bool json) {
   const BodyReport report = convert_body(request);
   people(json) << body_text(report);

@@ -15,6 +15,7 @@
 #include "pipeline/tools/dress.hpp"
 #include "pipeline/tools/export.hpp"
 #include "pipeline/tools/push_mesh.hpp"
+#include "pipeline/tools/sew_garment.hpp"
 #include "pipeline/tools/untangle_mesh.hpp"
 #include "pipeline/validate/validate.hpp"
 
@@ -53,6 +54,7 @@ int check_command(const CheckRequest&, bool json);
 int untangle_command(const UntangleRequest&, bool json);
 int push_command(const PushRequest&, bool json);
 int dress_command(const DressRequest&, bool json);
+int pattern_command(const PatternRequest&, bool json);
 int body_command(const BodyRequest&, bool json);
 int ccd_command(const CcdArguments&, bool json);
 int export_command(const ExportRequest&, bool json);

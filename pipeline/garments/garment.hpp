@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "physics/scene/scene.hpp"
 #include "pipeline/bodies/body.hpp"
 
 namespace selvedge {
@@ -24,6 +25,7 @@ struct Garment {
   std::vector<int> pins;                                         // vertices that stay with the body, ascending
   std::string made_for = {};                                     // the body's name; empty: not known
   std::vector<Stitch> stitches = {};
+  std::vector<RestTriangle> flat = {};  // of each triangle, as cut from panels; empty: its rest shape, flattened
 };
 
 // How a garment vertex takes weights and directions from the body: from the nearest vertex, as tight garments do, or

@@ -30,6 +30,16 @@ void check_stitches(const std::vector<Stitch>& stitches, Eigen::Index count, con
   }
 }
 
+void check_flat(const Garment& garment, const std::string& where) {
+  if (garment.flat.empty()) return;
+  if (std::ssize(garment.flat) != garment.skin.triangles.rows())
+    throw Error(fmt::format("has {} triangles, the garment {}", garment.flat.size(), garment.skin.triangles.rows()),
+                where, "give the rest shape of every triangle, or leave it out");
+  for (std::size_t t = 0; t < garment.flat.size(); ++t)
+    if (!garment.flat[t].allFinite() || !(area(garment.flat[t]) > 0))
+      throw Error(fmt::format("has no area in triangle {}", t), where, "list corners counter-clockwise, in metres");
+}
+
 }  // namespace
 
 void check_garment(const Garment& garment, const std::string& file) {
@@ -50,6 +60,7 @@ void check_garment(const Garment& garment, const std::string& file) {
   }
   check_vertices(garment.pins, vertices, file + ": pins");
   check_stitches(garment.stitches, vertices, file + ": stitches");
+  check_flat(garment, file + ": flat");
 }
 
 }  // namespace selvedge

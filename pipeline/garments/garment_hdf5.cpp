@@ -85,6 +85,23 @@ std::vector<Stitch> read_stitches(const h5::Fields& fields) {
   return stitches;
 }
 
+void write_flat(const h5::File& file, const std::vector<RestTriangle>& flat) {
+  if (flat.empty()) return;
+  std::vector<double> numbers;
+  for (const RestTriangle& triangle : flat) numbers.insert(numbers.end(), triangle.data(), triangle.data() + 6);
+  h5::write_numbers(file, "flat", numbers);
+}
+
+std::vector<RestTriangle> read_flat(const h5::Fields& fields) {
+  if (!fields.has("flat")) return {};
+  const std::vector<double> numbers = fields.numbers("flat");
+  if (numbers.size() % 6 != 0) fields.fail("flat", fmt::format("has {} numbers, not six a triangle", numbers.size()));
+  std::vector<RestTriangle> flat(numbers.size() / 6);
+  for (std::size_t t = 0; t < flat.size(); ++t)
+    std::copy_n(numbers.begin() + 6 * static_cast<std::ptrdiff_t>(t), 6, flat[t].data());
+  return flat;
+}
+
 Eigen::Index read_joint_count(const h5::Fields& fields) {
   const std::vector<int> count = fields.integers("joint_count");
   if (count.size() != 1 || count[0] < 1) fields.fail("joint_count", "is not one number above 0");
@@ -104,6 +121,7 @@ void write_garment(const std::filesystem::path& path, const Garment& garment) {
     write_groups(file, garment);
     h5::write_integers(file, "pins", garment.pins);
     write_stitches(file, garment.stitches);
+    write_flat(file, garment.flat);
   });
 }
 
@@ -117,6 +135,7 @@ Garment read_garment(const std::filesystem::path& path) {
   read_groups(fields, garment);
   if (fields.has("pins")) garment.pins = fields.integers("pins");
   garment.stitches = read_stitches(fields);
+  garment.flat = read_flat(fields);
   check_garment(garment, path.string());
   return garment;
 }

@@ -46,7 +46,6 @@ const OptionRows<Material>& material_options() {
 }
 
 namespace table {
-namespace {
 
 const Section& material_section() {
   static const Section table{
@@ -61,6 +60,8 @@ const Section& material_section() {
           keys_of(material_options())};
   return table;
 }
+
+namespace {
 
 const Section& rest_section() {
   static const Section table{

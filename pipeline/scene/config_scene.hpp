@@ -42,6 +42,7 @@ const OptionRows<Material>& material_options();   // what may be said of a mater
 namespace table {
 
 const Section& cloth_section();
+const Section& material_section();
 std::vector<Key> sheet_keys();       // rectangle, disc, tube, ribbon, tshirt
 std::vector<Key> selection_keys();   // vertices, box, group
 const Section& selection_section();  // vertices of a named cloth

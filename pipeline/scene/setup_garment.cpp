@@ -127,6 +127,15 @@ Mesh rest_mesh(const Wearing& wearing) {
   mesh.x = rest_shape(wearing.garment, wearing.by->body, wearing.by->shape);
   mesh.triangles = wearing.garment.skin.triangles;
   mesh.groups = wearing.garment.groups;
+  const std::vector<RestTriangle>& flat = wearing.garment.flat;
+  if (flat.empty()) return mesh;
+  mesh.uv.resize(3 * std::ssize(flat), 2);
+  mesh.uv_triangles.resize(std::ssize(flat), 3);
+  for (Eigen::Index t = 0; t < std::ssize(flat); ++t)
+    for (int k = 0; k < 3; ++k) {
+      mesh.uv_triangles(t, k) = static_cast<int>(3 * t + k);
+      mesh.uv.row(3 * t + k) = flat[static_cast<std::size_t>(t)].col(k).transpose();
+    }
   return mesh;
 }
 

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "physics/scene/scene.hpp"
+#include "pipeline/patterns/pattern.hpp"
+
+namespace selvedge {
+
+// All panels as triangles, not yet sewn.
+struct PatternMesh {
+  Points placed;                                                 // round the body, where the pattern has the panels [m]
+  Triangles triangles;                                           // counter-clockwise from the right side
+  std::vector<RestTriangle> rest;                                // flat, as cut, in the panel's x and y [m]
+  std::vector<int> panel;                                        // of each vertex
+  std::vector<std::array<int, 2>> sewn;                          // pairs of vertices that become one
+  std::vector<int> seam;                                         // of each pair: which seam of the pattern
+  std::vector<std::pair<std::string, std::vector<int>>> groups;  // panels, and labels of panels and edges
+  double least_angle = 0;                                        // of a triangle at rest [rad]
+};
+
+// Panels with edges of about that length [m]: both edges of a seam get as many vertices, for the longer one. Throws
+// Error that names the panel whose outline, cut into edges, crosses itself.
+PatternMesh pattern_mesh(const Pattern&, double edge);
+
+}  // namespace selvedge

@@ -1,0 +1,125 @@
+#include "pipeline/patterns/planar_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "collision/exact/orientation.hpp"
+#include "collision/geometry/error.hpp"
+#include "pipeline/formats/polygon.hpp"
+#include "pipeline/patterns/flip_mesh.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double lattice_clearance = 0.62;  // of the lattice from the outline, in edge lengths
+constexpr int relaxations = 30;
+constexpr double sound_angle = 0.38;  // below it an edge across a corner is cut rather than turned [rad]
+
+FlipMesh outline_mesh(const std::vector<Vec2>& outline) {
+  const std::size_t n = outline.size();
+  double twice_area = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec2 &a = outline[i], &b = outline[(i + 1) % n];
+    twice_area += a.x() * b.y() - a.y() * b.x();
+  }
+  const std::string cure = "draw the panel so that its outline is simple, or take a smaller edge length";
+  if (n < 3 || !(twice_area > 0)) throw Error("has no area", "outline", cure);
+  std::vector<Vec3> corners;
+  for (const Vec2& p : outline) corners.emplace_back(p.x(), p.y(), 0);
+  FlipMesh mesh(outline, polygon_triangles(corners));
+  if (!mesh.is_sound()) throw Error("crosses itself when it is cut into edges", "outline", cure);
+  mesh.make_delaunay();
+  return mesh;
+}
+
+double distance_to_outline(const std::vector<Vec2>& outline, const Vec2& p) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Vec2 &a = outline[i], along = outline[(i + 1) % outline.size()] - a;
+    const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    least = std::min(least, (a + t * along - p).norm());
+  }
+  return least;
+}
+
+void insert_lattice(const std::vector<Vec2>& outline, double edge, FlipMesh& mesh) {
+  Vec2 low = outline[0], high = outline[0];
+  for (const Vec2& p : outline) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const double height = edge * std::sqrt(3.0) / 2;
+  // About the middle, a little aside, so that no point lies on an edge of an even outline.
+  const Vec2 middle = (low + high) / 2 + edge * Vec2(0.0137, 0.0071);
+  const int rows = static_cast<int>((high.y() - low.y()) / height) + 2,
+            columns = static_cast<int>((high.x() - low.x()) / edge) + 2;
+  for (int r = -rows / 2 - 1; r <= rows / 2 + 1; ++r)
+    for (int c = -columns / 2 - 1; c <= columns / 2 + 1; ++c) {
+      const Vec2 p = middle + Vec2(edge * (c + (r % 2 == 0 ? 0.0 : 0.5)), height * r);
+      if (distance_to_outline(outline, p) >= lattice_clearance * edge) mesh.insert(p);
+    }
+}
+
+// Each vertex inside goes to the mean of its neighbours where that turns no triangle over.
+void relax(FlipMesh& mesh) {
+  for (int round = 0; round < relaxations; ++round) {
+    const std::vector<std::vector<int>> around = mesh.triangles_round_vertices();
+    for (int v = mesh.fixed; v < static_cast<int>(mesh.points.size()); ++v) {
+      Vec2 sum = Vec2::Zero();
+      for (const int t : around[static_cast<std::size_t>(v)])
+        for (const int w : mesh.triangles[static_cast<std::size_t>(t)].corner)
+          if (w != v) sum += mesh.points[static_cast<std::size_t>(w)];
+      const Vec2 before = mesh.points[static_cast<std::size_t>(v)];
+      mesh.points[static_cast<std::size_t>(v)] =
+          sum / (2.0 * static_cast<double>(around[static_cast<std::size_t>(v)].size()));
+      for (const int t : around[static_cast<std::size_t>(v)])
+        if (mesh.sign(t) <= 0) mesh.points[static_cast<std::size_t>(v)] = before;
+    }
+    mesh.make_delaunay();
+  }
+}
+
+// Edges inside that join vertices of the outline are turned, or cut in the middle where that makes poor triangles.
+void part_chords(FlipMesh& mesh) {
+  mesh.may_make_chords = false;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      if (!mesh.is_chord(static_cast<int>(t), k)) continue;
+      if (mesh.angle_if_flipped(static_cast<int>(t), k) >= sound_angle)
+        mesh.flip(static_cast<int>(t), k);
+      else
+        mesh.cut(static_cast<int>(t), k);
+      k = -1;
+    }
+}
+
+}  // namespace
+
+double smallest_angle(const Vec2& a, const Vec2& b, const Vec2& c) {
+  const auto angle = [](const Vec2& at, const Vec2& p, const Vec2& q) {
+    const Vec2 u = p - at, v = q - at;
+    return std::atan2(std::abs(u.x() * v.y() - u.y() * v.x()), u.dot(v));
+  };
+  return std::min({angle(a, b, c), angle(b, c, a), angle(c, a, b)});
+}
+
+PlanarMesh planar_mesh(const std::vector<Vec2>& outline, double edge) {
+  FlipMesh mesh = outline_mesh(outline);
+  insert_lattice(outline, edge, mesh);
+  mesh.make_delaunay();
+  part_chords(mesh);
+  relax(mesh);
+  PlanarMesh result;
+  result.points = mesh.points;
+  result.triangles.resize(static_cast<Eigen::Index>(mesh.triangles.size()), 3);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k)
+      result.triangles(static_cast<Eigen::Index>(t), k) = mesh.triangles[t].corner[static_cast<std::size_t>(k)];
+  return result;
+}
+
+}  // namespace selvedge

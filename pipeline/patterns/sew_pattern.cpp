@@ -1,0 +1,207 @@
+#include "pipeline/patterns/sew_pattern.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "collision/geometry/disjoint_sets.hpp"
+#include "collision/geometry/stopwatch.hpp"
+#include "collision/untangle/untangle.hpp"
+#include "physics/steppers/decorated_stepper.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double one_place = 1e-7;                            // vertices nearer than this lie at one place [m]
+constexpr double first_stiffness = 30, last_stiffness = 2e4;  // of a stitch, while it gets shorter [N/m]
+constexpr double sewn_stiffer = 30;  // in bending, while panels are sewn: it keeps them from folding
+constexpr double facing = 0.01;      // length of stitches at which edges find their places [m]
+constexpr int facing_frames = 8, shutting_frames = 10, most_shut_frames = 10, flattening_frames = 8;
+constexpr int least_draping = 15;  // frames: what begins to fall is slow and not at rest
+
+// Panels with some stitches joined: of each vertex its number, and how many there are.
+struct Joining {
+  std::vector<int> number;
+  int count = 0;
+};
+
+Joining join(const PatternMesh& mesh, const std::function<bool(std::size_t stitch)>& joined) {
+  DisjointSets sets(static_cast<int>(mesh.placed.rows()));
+  for (std::size_t s = 0; s < mesh.sewn.size(); ++s)
+    if (joined(s)) sets.join(mesh.sewn[s][0], mesh.sewn[s][1]);
+  return {sets.numbers(), sets.count()};
+}
+
+Points means(const Points& x, const Joining& to) {
+  Points sum = Points::Zero(to.count, 3);
+  Eigen::VectorXd members = Eigen::VectorXd::Zero(to.count);
+  for (Eigen::Index v = 0; v < x.rows(); ++v) {
+    sum.row(to.number[static_cast<std::size_t>(v)]) += x.row(v);
+    members[to.number[static_cast<std::size_t>(v)]] += 1;
+  }
+  for (int v = 0; v < to.count; ++v) sum.row(v) /= members[v];
+  return sum;
+}
+
+Points spread(const Points& x, const Joining& from) { return x(from.number, Eigen::all); }
+
+Triangles renumbered(Triangles triangles, const Joining& to) {
+  for (int& v : triangles.reshaped()) v = to.number[static_cast<std::size_t>(v)];
+  return triangles;
+}
+
+// `stiffer`: times the material's bending.
+Scene scene_of(const PatternMesh& mesh, const Joining& joining, const Triangles& body_triangles,
+               Eigen::Index body_vertices, const SewingOptions& options, double stiffer) {
+  Scene scene;
+  Material material = options.material;
+  material.mass_damping = std::max(material.mass_damping, options.damping);
+  material.bending *= stiffer;
+  add_cloth(scene, means(mesh.placed, joining), renumbered(mesh.triangles, joining), material, "garment", mesh.rest);
+  add_obstacle(scene, static_cast<int>(body_vertices), body_triangles, false, "body");
+  scene.contact = options.contact;
+  return scene;
+}
+
+Points apart_from_itself(const Points& body, const Triangles& triangles) {
+  return untangle(make_surface(static_cast<int>(body.rows()), triangles), body, {}).x;
+}
+
+struct Sewing {
+  const PatternMesh& mesh;
+  const Points& body;
+  const Triangles& body_triangles;
+  const SewingOptions& options;
+  const std::function<void(const SewingFrame&)>& seen;
+  SewnPattern result = {};
+
+  double gap(const Points& x, std::size_t s) const {
+    return (row(x, mesh.sewn[s][0]) - row(x, mesh.sewn[s][1])).norm();
+  }
+
+  double largest_gap(const Points& x) const {
+    double most = 0;
+    for (std::size_t s = 0; s < mesh.sewn.size(); ++s) most = std::max(most, gap(x, s));
+    return most;
+  }
+
+  // Returns the share of vertices that move, or nothing where the step was rejected.
+  std::optional<double> step(Stepper& stepper, const Scene& scene, const Joining& joining, bool sewn,
+                             const Vec3& gravity, State& state) {
+    Drive drive = at_rest(scene, state);
+    drive.acceleration = gravity;
+    drive.obstacles = {body};
+    State next;
+    const StepReport report = stepper.step(state, drive, 1 / options.fps, next);
+    if (report.status != StepStatus::accepted) {
+      result.rejected = true;
+      return {};
+    }
+    const Eigen::VectorXd moved = (next.x - state.x).rowwise().norm();
+    const double share =
+        static_cast<double>((moved.array() > options.resting_motion).count()) / static_cast<double>(moved.size());
+    state = std::move(next);
+    if (seen) {
+      const Points x = spread(state.x, joining);
+      seen({state.time, sewn, largest_gap(x), share, &report, &x});
+    }
+    return share;
+  }
+
+  // How long a stitch of that first length is in a frame of the closing [m]: first all get as short as `facing`, at
+  // which the edges of two panels find their places beside each other, then they close.
+  double length_at(int frame, double first) const {
+    const double closing_frames = options.closing * options.fps, t = std::min(1.0, frame / closing_frames);
+    const double shut = std::clamp((frame - closing_frames - facing_frames) / shutting_frames, 0.0, 1.0);
+    return std::max((1 - t * t * (3 - 2 * t)) * first, (1 - shut) * std::min(first, facing));
+  }
+
+  // Positions of the panels' vertices with the stitches closed as far as they come. While the last of their length
+  // goes, cloth does not meet cloth: edges that lie on each other would be held apart, and edges that overlap could not
+  // get past each other.
+  Points close() {
+    const Joining joining = join(mesh, [&](std::size_t s) { return gap(mesh.placed, s) < one_place; });
+    Scene scene = scene_of(mesh, joining, body_triangles, body.rows(), options, sewn_stiffer);
+    scene.contact.friction = scene.contact.self_friction = 0;
+    State state = first_state(scene, means(mesh.placed, joining), {body});
+    std::vector<double> first;
+    for (const std::array<int, 2>& stitch : mesh.sewn) {
+      const int a = joining.number[static_cast<std::size_t>(stitch[0])],
+                b = joining.number[static_cast<std::size_t>(stitch[1])];
+      if (a == b) continue;
+      first.push_back((row(state.x, a) - row(state.x, b)).norm());
+      scene.springs.push_back({a, b, first.back(), first_stiffness});
+    }
+    const int closing_frames = static_cast<int>(options.closing * options.fps),
+              facing_end = closing_frames + facing_frames, shut_end = facing_end + shutting_frames;
+    for (int frame = 1; frame <= shut_end + most_shut_frames; ++frame) {
+      for (std::size_t s = 0; s < first.size(); ++s) {
+        scene.springs[s].rest_length = length_at(frame, first[s]);
+        scene.springs[s].stiffness =
+            first_stiffness * std::pow(last_stiffness / first_stiffness, std::min(1.0, 1.0 * frame / shut_end));
+      }
+      scene.contact.self = frame <= facing_end;
+      // A stepper takes stitches as they are when it is made.
+      if (!step(*make_recovering_conventional_stepper(scene), scene, joining, false, Vec3::Zero(), state)) break;
+      result.closing_frames = frame;
+      if (frame >= shut_end && largest_gap(spread(state.x, joining)) < options.closed) break;
+    }
+    return spread(state.x, joining);
+  }
+
+  void drape(const Points& closed) {
+    const Joining joining = join(mesh, [](std::size_t) { return true; });
+    for (std::size_t s = 0; s < mesh.sewn.size(); ++s) result.gaps.push_back(gap(closed, s));
+    const Points joined = means(closed, joining);
+    result.joined_by = (spread(joined, joining) - closed).rowwise().norm().maxCoeff();
+    Scene flat = scene_of(mesh, joining, body_triangles, body.rows(), options, sewn_stiffer);
+    State state = first_state(flat, joined, {body});
+    state.time = result.closing_frames / options.fps;
+    state.frame = result.closing_frames;
+    // What overlapped at the seams springs flat before cloth meets cloth again.
+    flat.contact.self = false;
+    flat.contact.friction = 0;
+    const auto flattening = make_recovering_conventional_stepper(flat);
+    for (int frame = 1; frame <= flattening_frames; ++frame)
+      if (!step(*flattening, flat, joining, true, Vec3::Zero(), state)) return;
+    state.clean = false;
+    const Scene scene = scene_of(mesh, joining, body_triangles, body.rows(), options, 1);
+    const auto stepper = make_recovering_conventional_stepper(scene);
+    const Vec3 gravity(0, -9.81, 0);
+    for (int frame = 1; frame <= options.most_draping * options.fps; ++frame) {
+      const std::optional<double> share = step(*stepper, scene, joining, true, gravity, state);
+      if (!share) break;
+      result.draping_frames = frame;
+      result.moving_share = *share;
+      if (frame >= least_draping && state.clean && *share < options.resting_share) break;
+    }
+    result.x = state.x;
+    result.triangles = scene.surface.triangles;
+    result.rest = scene.rest_triangle;
+    result.vertex = joining.number;
+  }
+};
+
+}  // namespace
+
+SewnPattern sew_pattern(const PatternMesh& mesh, const Points& body, const Triangles& body_triangles,
+                        const SewingOptions& options, const std::function<void(const SewingFrame&)>& seen) {
+  Stopwatch watch;
+  const Points parted = apart_from_itself(body, body_triangles);
+  Sewing sewing{mesh, parted, body_triangles, options, seen};
+  sewing.result.body = parted;
+  sewing.result.body_moved = (parted - body).rowwise().norm().maxCoeff();
+  sewing.drape(sewing.close());
+  for (const auto& [name, vertices] : mesh.groups) {
+    std::vector<int> members;
+    for (const int v : vertices) members.push_back(sewing.result.vertex[static_cast<std::size_t>(v)]);
+    std::ranges::sort(members);
+    members.erase(std::unique(members.begin(), members.end()), members.end());
+    sewing.result.groups.emplace_back(name, std::move(members));
+  }
+  sewing.result.seconds = watch.lap();
+  return sewing.result;
+}
+
+}  // namespace selvedge

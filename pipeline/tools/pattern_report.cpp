@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "pipeline/config/config.hpp"
+#include "pipeline/tools/sew_garment.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double degrees = 180 / 3.14159265358979323846;
+
+}  // namespace
+
+std::string pattern_json(const PatternReport& report) {
+  nlohmann::ordered_json json = {{"panels", report.panels},
+                                 {"seams", report.seams},
+                                 {"stitches", report.stitches},
+                                 {"area", report.area},
+                                 {"least_angle", degrees * report.least_angle}};
+  const SewnPattern& sewn = report.sewn;
+  if (sewn.x.rows() > 0) {
+    nlohmann::ordered_json groups = nlohmann::ordered_json::object();
+    for (const auto& [name, vertices] : report.garment.groups) groups[name] = vertices.size();
+    json.update({{"clean", is_clean(report)},
+                 {"name", report.garment.name},
+                 {"made_for", report.garment.made_for},
+                 {"vertices", sewn.x.rows()},
+                 {"triangles", sewn.triangles.rows()},
+                 {"groups", groups},
+                 {"pins", report.garment.pins.size()},
+                 {"self_pairs", report.self_pairs},
+                 {"body_pairs", report.body_pairs},
+                 {"inside_vertices", report.inside_vertices},
+                 {"largest_gap", report.largest_gap},
+                 {"joined_by", sewn.joined_by},
+                 {"moving_share", sewn.moving_share},
+                 {"body_moved", sewn.body_moved},
+                 {"median_distance", report.median_distance},
+                 {"strain_99", report.strain_99},
+                 {"frames", {sewn.closing_frames, sewn.draping_frames}},
+                 {"seconds", sewn.seconds}});
+  }
+  json["warnings"] = report.warnings;
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string pattern_text(const PatternReport& report) {
+  std::string text;
+  const auto add = [&](const std::string& label, const std::string& value) {
+    text += fmt::format("{:<24}{}\n", label, value);
+  };
+  add("pattern", fmt::format("{} panels, {} seams of {} stitches, {:.3g} m2", report.panels, report.seams,
+                             report.stitches, report.area));
+  add("smallest angle", fmt::format("{:.3g} degrees", degrees * report.least_angle));
+  for (const std::string& warning : report.warnings) add("warning", warning);
+  const SewnPattern& sewn = report.sewn;
+  if (sewn.x.rows() == 0) return text;
+  add("garment", fmt::format("{}: {} vertices, {} triangles, for the body {}", report.garment.name, sewn.x.rows(),
+                             sewn.triangles.rows(), report.garment.made_for));
+  for (const auto& [name, vertices] : report.garment.groups)
+    add("group " + name, fmt::format("{} vertices", vertices.size()));
+  add("gaps before joining", fmt::format("{:.3g} mm at most; joining moved vertices by {:.3g} mm",
+                                         1e3 * report.largest_gap, 1e3 * sewn.joined_by));
+  add("at rest", fmt::format("{:.3g} % of vertices move in the last frame", 100 * sewn.moving_share));
+  add("intersecting pairs", fmt::format("{} with itself, {} with the body", report.self_pairs, report.body_pairs));
+  add("inside the body", fmt::format("{} vertices", report.inside_vertices));
+  add("body parted from itself", fmt::format("by {:.3g} mm at most", 1e3 * sewn.body_moved));
+  add("distance to the body", fmt::format("{:.3g} mm in the median", 1e3 * report.median_distance));
+  add("strain", fmt::format("{:.3g} % in the 99th percentile", 100 * report.strain_99));
+  add("frames",
+      fmt::format("{} of sewing, {} of draping, {:.3g} s", sewn.closing_frames, sewn.draping_frames, sewn.seconds));
+  if (sewn.rejected) add("rejected", "a step found no finite end");
+  return text;
+}
+
+}  // namespace selvedge

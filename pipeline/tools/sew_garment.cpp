@@ -1,0 +1,179 @@
+#include "pipeline/tools/sew_garment.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "collision/audit/audit.hpp"
+#include "collision/distance/signed_distance.hpp"
+#include "collision/geometry/error.hpp"
+#include "physics/energies/measures.hpp"
+#include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/garments/garment_hdf5.hpp"
+#include "pipeline/garments/garment_places.hpp"
+#include "pipeline/meshes/setup_body.hpp"
+#include "pipeline/scene/config_scene.hpp"
+#include "pipeline/scene/materials.hpp"
+
+namespace selvedge {
+namespace {
+
+bool is_mesh(const std::filesystem::path& file) { return file.extension() == ".obj" || file.extension() == ".ply"; }
+
+// A body of one joint, which carries all of it.
+BodyModel body_of_mesh(const std::filesystem::path& file) {
+  const Mesh mesh = read_mesh(file);
+  BodyModel body;
+  body.name = file.stem().string();
+  body.skin.rest = mesh.x;
+  body.skin.triangles = mesh.triangles;
+  const Eigen::Index n = mesh.x.rows();
+  body.skin.weights = SkinWeights(Eigen::MatrixXd::Ones(n, 1).sparseView());
+  body.skin.shape_directions.resize(3 * n, 0);
+  body.skin.pose_directions.resize(3 * n, 0);
+  body.joints = {"root"};
+  body.parents = {-1};
+  body.regressor = SkinWeights(Eigen::MatrixXd::Constant(1, n, 1.0 / static_cast<double>(n)).sparseView());
+  return body;
+}
+
+BodyModel read_dummy(const PatternRequest& request) {
+  if (is_mesh(request.body)) return body_of_mesh(request.body);
+  return read_performance(read_values(table::body_section(), {{"model", "--body " + request.body, {request.body}}}), {})
+      .body;
+}
+
+// Frames of the sewing as a trajectory of the panels, which has one topology.
+class SewingRecorder {
+ public:
+  SewingRecorder(const PatternRequest& request, const PatternMesh& mesh, const Points& body, const Triangles& triangles)
+      : body_(body) {
+    Scene scene;
+    add_cloth(scene, mesh.placed, mesh.triangles, {}, request.file.stem(), mesh.rest);
+    add_obstacle(scene, static_cast<int>(body.rows()), triangles, false, "body");
+    writer_ =
+        std::make_unique<TrajectoryWriter>(request.record, trajectory_info(scene, "", "sewing", SewingOptions{}.fps));
+    SewingFrame first;
+    first.x = &mesh.placed;
+    add(first);
+  }
+  void add(const SewingFrame& seen) {
+    Frame frame;
+    frame.time = seen.time;
+    frame.x = seen.x->cast<float>();
+    frame.obstacles = {body_.cast<float>()};
+    if (seen.report) frame.report = *seen.report;
+    if (seen.report && seen.report->audit) {
+      frame.self_pairs = static_cast<int>(seen.report->audit->self_pairs.size());
+      frame.obstacle_pairs = static_cast<int>(seen.report->audit->obstacle_pairs.size());
+    }
+    writer_->append(frame);
+  }
+  void close() { writer_->close(); }
+
+ private:
+  const Points& body_;
+  std::unique_ptr<TrajectoryWriter> writer_;
+};
+
+Garment garment_of(const PatternRequest& request, const Pattern& pattern, const SewnPattern& sewn,
+                   const BodyModel& body, std::vector<std::string>& known) {
+  Garment garment;
+  garment.name = pattern.name;
+  garment.made_for = body.name;
+  garment.skin = attached(sewn.x, sewn.triangles, body, Fit::loose);
+  garment.flat = sewn.rest;
+  garment.groups = sewn.groups;
+  for (const auto& [name, vertices] : garment.groups) known.push_back(name);
+  if (body.joints.size() > 1)
+    for (NamedLoop& loop : named_loops(garment.skin, body, known))
+      garment.groups.emplace_back(loop.name, loop.vertices);
+  known.clear();
+  for (const auto& [name, vertices] : garment.groups) known.push_back(name);
+  for (const std::string& pin : request.pins) {
+    const auto found = std::ranges::find(known, pin);
+    if (found == known.end())
+      throw Error("names the unknown group `" + pin + "`", "--pin",
+                  "groups: " + joined(known) + suggestion(pin, known));
+    const std::vector<int>& members = garment.groups[static_cast<std::size_t>(found - known.begin())].second;
+    garment.pins.insert(garment.pins.end(), members.begin(), members.end());
+  }
+  std::ranges::sort(garment.pins);
+  garment.pins.erase(std::unique(garment.pins.begin(), garment.pins.end()), garment.pins.end());
+  return garment;
+}
+
+double percentile(std::vector<double> values, double part) {
+  if (values.empty()) return 0;
+  std::ranges::sort(values);
+  return values[std::min(values.size() - 1, static_cast<std::size_t>(part * static_cast<double>(values.size())))];
+}
+
+// Of the garment as it is written, against the body as it was given.
+void measure(const BodyModel& body, PatternReport& report) {
+  const SewnPattern& sewn = report.sewn;
+  Scene scene;
+  add_cloth(scene, sewn.x, sewn.triangles, {}, "garment", sewn.rest);
+  const auto stretches = principal_stretches(scene, sewn.x);
+  std::vector<double> strains;
+  for (Eigen::Index t = 0; t < stretches.rows(); ++t) strains.push_back(stretches(t, 1) - 1);
+  report.strain_99 = percentile(strains, 0.99);
+  const Surface surface = make_surface(static_cast<int>(body.skin.rest.rows()), body.skin.triangles);
+  const std::vector<AuditBody> bodies{{&surface, &body.skin.rest}};
+  const Audit found = audit(scene.surface, sewn.x, bodies);
+  report.self_pairs = static_cast<int>(found.self_pairs.size() + found.vertex_pairs.size());
+  report.body_pairs = static_cast<int>(found.obstacle_pairs.size());
+  report.inside_vertices = found.inside_vertices;
+  for (const double gap : sewn.gaps) report.largest_gap = std::max(report.largest_gap, gap);
+  DistanceField field(surface);
+  field.move_to(body.skin.rest);
+  std::vector<double> distances;
+  for (const SignedDistance& distance : field.ask(sewn.x)) distances.push_back(distance.value);
+  report.median_distance = percentile(distances, 0.5);
+}
+
+}  // namespace
+
+PatternReport sew_garment(const PatternRequest& request) {
+  const Pattern pattern = read_pattern(request.file);
+  const PatternMesh mesh = pattern_mesh(pattern, request.edge);
+  PatternReport report;
+  report.panels = static_cast<int>(pattern.panels.size());
+  report.seams = static_cast<int>(pattern.seams.size());
+  report.stitches = static_cast<int>(mesh.sewn.size());
+  report.least_angle = mesh.least_angle;
+  for (const RestTriangle& triangle : mesh.rest) report.area += area(triangle);
+  if (request.flat) {
+    write_mesh(request.out, mesh.placed, mesh.triangles);
+    return report;
+  }
+  const BodyModel body = read_dummy(request);
+  SewingOptions options;
+  Config material =
+      read_values(table::material_section(), {{"name", "--material " + request.material, {request.material}}});
+  options.material = read_material(material, {});
+  std::unique_ptr<SewingRecorder> recorder;
+  if (!request.record.empty())
+    recorder = std::make_unique<SewingRecorder>(request, mesh, body.skin.rest, body.skin.triangles);
+  report.sewn = sew_pattern(mesh, body.skin.rest, body.skin.triangles, options, [&](const SewingFrame& frame) {
+    if (recorder) recorder->add(frame);
+    if (request.progress) request.progress(frame);
+  });
+  if (recorder) recorder->close();
+  measure(body, report);
+  std::vector<std::string> known;
+  report.garment = garment_of(request, pattern, report.sewn, body, known);
+  if (is_mesh(request.out))
+    write_mesh(request.out, report.sewn.x, report.sewn.triangles);
+  else
+    write_garment(request.out, report.garment);
+  return report;
+}
+
+bool is_clean(const PatternReport& report) {
+  return report.self_pairs + report.body_pairs + report.inside_vertices == 0 && !report.sewn.rejected;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "pipeline/garments/garment.hpp"
+#include "pipeline/patterns/sew_pattern.hpp"
+
+namespace selvedge {
+
+struct PatternRequest {
+  std::filesystem::path file;       // *_specification.json
+  std::filesystem::path out;        // the garment (.h5), or its mesh alone (.obj, .ply)
+  std::string body = "mannequin";   // or a file: a body (.npz, .h5), or a mesh in metres (.obj, .ply)
+  double edge = 0.015;              // of the triangles [m]
+  std::string material = "cotton";  // a name, or a file
+  std::vector<std::string> pins;    // groups that stay with the body in scenes
+  bool flat = false;                // only cut: `out` is the mesh of the panels where the pattern has them
+  std::filesystem::path record;     // a trajectory of the sewing; empty: none
+  std::function<void(const SewingFrame&)> progress = {};
+};
+
+struct PatternReport {
+  Garment garment;
+  int panels = 0, seams = 0, stitches = 0;
+  double least_angle = 0;              // of a triangle, as cut [rad]
+  double area = 0;                     // of the cloth [m2]
+  SewnPattern sewn;                    // not with `flat`
+  double largest_gap = 0;              // of a stitch before it was joined [m]
+  double median_distance = 0;          // from vertices to the body's surface [m]
+  double strain_99 = 0;                // 99th percentile of the largest strain of a triangle
+  int self_pairs = 0, body_pairs = 0;  // intersecting triangles, with itself and with the body as given
+  int inside_vertices = 0;             // in the body
+  std::vector<std::string> warnings;
+};
+
+// Cuts a pattern, sews it on a body that stands in its zero pose and mean shape, and writes the garment. A body that is
+// a mesh has one joint, named `root`. Throws Error for what cannot be read or written.
+PatternReport sew_garment(const PatternRequest&);
+
+// At rest, seams closed, without pairs, and nothing inside the body.
+bool is_clean(const PatternReport&);
+
+std::string pattern_json(const PatternReport&);
+std::string pattern_text(const PatternReport&);
+
+}  // namespace selvedge
