@@ -1,6 +1,12 @@
 #pragma once
 
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "collision/geometry/adjacency.hpp"
 #include "learned/repulsion/neural_distance.hpp"
+#include "learned/repulsion/repulsive_layer.hpp"
 #include "pipeline/drapes/drape_path_hdf5.hpp"
 
 namespace selvedge {

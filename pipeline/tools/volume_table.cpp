@@ -85,7 +85,10 @@ std::vector<VolumeSummary> volume_summaries(const std::vector<VolumeSequence>& a
         for (const VolumeSequence* s : rows) values.push_back(value(*s));
         return mean_interval(values, resamples, seed);
       };
-      VolumeSummary summary{.row = row, .group = group, .sequences = static_cast<int>(rows.size())};
+      VolumeSummary summary;
+      summary.row = row;
+      summary.group = group;
+      summary.sequences = static_cast<int>(rows.size());
       std::vector<double> speeds;
       for (const VolumeSequence* s : rows) {
         summary.frames += static_cast<long>(s->found.loss_by_frame.size());
