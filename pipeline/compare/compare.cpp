@@ -163,10 +163,10 @@ bool time_settings(const CompareRequest& request, const Comparison& comparison, 
     if (comparison.keep_runs && repeat == 0 && !std::filesystem::exists(trajectory_of(work.folder, s))) run.reset();
     const bool kept = run.has_value();
     if (!run) {
-      const bool keeps = comparison.keep_runs && repeat == 0;
-      run = timed_run(*work.setups[s],
-                      {comparison.judged_frames, keeps ? trajectory_of(work.folder, s) : std::filesystem::path()},
-                      request.stop);
+      TimedRunOptions options;
+      options.judged_frames = comparison.judged_frames;
+      if (comparison.keep_runs && repeat == 0) options.trajectory = trajectory_of(work.folder, s);
+      run = timed_run(*work.setups[s], options, request.stop);
       if (!run) return false;
       write_file(file, part_json(*run, work.keys.settings[s]));
     }

@@ -8,9 +8,9 @@
 namespace selvedge {
 
 struct TimedRunOptions {
-  bool measured = true;              // false: times and counts alone
-  int judged_frames = 4;             // RunMeasures
-  std::filesystem::path trajectory;  // where the run is kept; empty: nowhere
+  bool measured = true;                // false: times and counts alone
+  int judged_frames = 4;               // RunMeasures
+  std::filesystem::path trajectory{};  // where the run is kept; empty: nowhere
 };
 
 // One run of the scene with the time of each frame, and with what is measured between them. Absent: stopped.

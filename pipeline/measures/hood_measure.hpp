@@ -9,6 +9,7 @@ namespace selvedge {
 // hood_losses: the energies that HOOD minimises (hood_losses() at full weights), of a frame that somebody made [J].
 struct HoodLosses {
   double stretching = 0, bending = 0, inertia = 0, gravity = 0, friction = 0, collision = 0, total = 0;
+  // gravity: with the wind's work where there is wind.
   double grad_norm = 0;  // mean over the vertices that are not pinned of |d total / d x_i| [N]
 };
 
