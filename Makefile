@@ -27,8 +27,12 @@ program:
 	@$(MAKE) --no-print-directory build/release/configured
 	@cmake --build --preset release --parallel $(JOBS) --target selvedge
 
-demo: program  ## Build the program, simulate configs/demo.yaml, say where the page to look at is
-	@$(PROGRAM) simulate configs/demo.yaml --out out/demo
+DEMO := $(PROGRAM) simulate configs/demo.yaml --weights configs/weights/contourcraft.h5
+demo: program  ## Build the program, simulate configs/demo.yaml by three steppers, make the page that shows them
+	@$(PROGRAM) simulate configs/demo.yaml --out out/demo/conventional
+	@$(DEMO) --stepper learned --out out/demo/learned
+	@$(DEMO) --stepper hybrid --out out/demo/hybrid
+	@$(PROGRAM) view out/demo/conventional out/demo/learned out/demo/hybrid --out out/demo/view.html
 
 validate: program  ## Physics with known answers: a table and plots, and out/validate/*
 	@cmake/install-packages.sh plots
