@@ -48,6 +48,8 @@ const Options<GuardOptions>& guard_options() {
               "over the largest at the start, whichever allows more"),
        number("energy_growth", &O::energy_growth, Unit::none, not_negative,
               "of the elastic energy, in the cloth's weight times its mean edge"),
+       number("patch_acceleration", &O::patch_acceleration, Unit::acceleration, positive,
+              "RMS of the force on patches of the cloth that contact cannot explain, over their mass"),
        number("imbalance", &O::imbalance, Unit::length, positive,
               "RMS of how far a Jacobi sweep of the potential would move vertices that nothing touches"),
        number("decrement", &O::decrement, Unit::none, positive,
