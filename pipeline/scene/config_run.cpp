@@ -38,7 +38,7 @@ const Options<LearnedRun>& learned_options() {
 const Options<GuardOptions>& guard_options() {
   using O = GuardOptions;
   static const Options<O> table(
-      "guard", "What a proposal may do. The bounds come from recorded conventional steps (docs/hybrid.md).",
+      "guard", "What a proposal may do (docs/hybrid.md).",
       {number("acceleration", &O::acceleration, Unit::acceleration, positive, "of a vertex in the step, at most"),
        number("mean_acceleration", &O::mean_acceleration, Unit::acceleration, positive, "RMS of all vertices; or"),
        number("change_of_motion", &O::change_of_motion, Unit::none, not_negative,
