@@ -12,12 +12,12 @@ namespace selvedge {
 // steps on training scenes, which tests/pipeline/run/long_guard_tables.cpp measures and prints.
 struct GuardOptions {
   double acceleration = 300;      // of a vertex in the step, at most [m/s2]
-  double mean_acceleration = 20;  // RMS of all vertices [m/s2]; or
-  double change_of_motion = 0.6;  // RMS change of the motion over the motion itself, whichever allows more
+  double mean_acceleration = 6;   // RMS of all vertices [m/s2]; or
+  double change_of_motion = 0.8;  // RMS change of the motion over the motion itself, whichever allows more
   double stretch = 1.3;           // largest of a triangle; or
   double stretch_growth = 1.1;    // over the largest at the start, whichever allows more
   double energy_growth = 10;      // of the elastic energy, in the cloth's weight times its mean edge
-  double patch_acceleration = 4;  // RMS of the unexplained force on patches, over their mass [m/s2]
+  double patch_acceleration = 6;  // RMS of the unexplained force on patches, over their mass [m/s2]
   double imbalance = 2e-4;        // RMS of how far a Jacobi sweep of the step's potential would move vertices [m]
   double decrement = 5;           // energy that it would gain, in the same unit as energy_growth
 };
