@@ -5,12 +5,14 @@
 #include <numeric>
 
 #include "physics/energies/measures.hpp"
+#include "physics/energies/nearest.hpp"
 
 namespace selvedge {
 namespace {
 
 constexpr double standard_gravity = 9.81;  // [m/s2]
 constexpr double contact_reach = 2;        // thicknesses within which a vertex may be pushed
+constexpr int patch_size = 20;             // vertices, about
 constexpr double still = 1e-4;             // RMS motion in a step that counts as none [m]
 
 double total(const std::vector<double>& parts) { return std::accumulate(parts.begin(), parts.end(), 0.0); }
@@ -33,6 +35,35 @@ std::vector<double> rest_stiffness(const Scene& scene, const Elastic& elastic, c
   std::vector<double> stiffness;
   for (const Mat3& block : blocks) stiffness.push_back(block.trace() / 3);
   return stiffness;
+}
+
+std::vector<int> patches(const Scene& scene) {
+  std::vector<int> middles;
+  for (int v = 0; v < scene.surface.vertex_count; v += patch_size) middles.push_back(v);
+  return nearest_along_edges(scene, middles);
+}
+
+// The force on each patch that nothing touches, over its mass. Elastic forces inside of a patch cancel, so that motion
+// that is wrong as a whole shows, which a Jacobi sweep of stiff cloth does not see.
+double patch_acceleration(const Guard& guard, const Points& gradient, const std::vector<char>& touching) {
+  Points forces = Points::Zero(gradient.rows(), 3);
+  std::vector<double> masses(static_cast<std::size_t>(gradient.rows()), 0.0);
+  std::vector<char> left_out(masses.size(), 0);
+  for (std::size_t v = 0; v < masses.size(); ++v) {
+    if (guard.patch[v] < 0) continue;
+    const auto patch = static_cast<std::size_t>(guard.patch[v]);
+    if (!touching.empty() && touching[v]) left_out[patch] = 1;
+    if (!guard.free[v]) continue;
+    forces.row(guard.patch[v]) += gradient.row(static_cast<Eigen::Index>(v));
+    masses[patch] += guard.masses[static_cast<Eigen::Index>(v)];
+  }
+  double squares = 0, mass = 0;
+  for (std::size_t p = 0; p < masses.size(); ++p) {
+    if (left_out[p] || !(masses[p] > 0)) continue;
+    squares += forces.row(static_cast<Eigen::Index>(p)).squaredNorm() / masses[p];
+    mass += masses[p];
+  }
+  return mass > 0 ? std::sqrt(squares / mass) : 0;
 }
 
 // How the motion differs from that of a free flight without gravity.
@@ -63,13 +94,14 @@ void measure_energy(const Guard& guard, const State& from, const Points& x, Guar
   m.energy_growth = guard.unit_energy > 0 ? growth / guard.unit_energy : 0;
 }
 
-// A Jacobi sweep with the stiffness of the rest shape, of the vertices that nothing touches.
+// Of the vertices that nothing touches: forces on patches, and a Jacobi sweep with the stiffness of the rest shape.
 void measure_residual(Guard& guard, const State& from, const Drive& drive, double dt, const Points& x,
                       const std::vector<char>& touching, GuardMeasures& m) {
   const StepProblem problem{dt, &from.x, &from.v, &drive.pins, drive.acceleration, drive.wind, {}, 1};
   prepare(guard.scene, guard.elastic, guard.masses, problem, 1, guard.scratch, guard.step);
   Points gradient;
   derivatives(guard.step, x, guard.scratch, gradient, nullptr);
+  m.patch_acceleration = patch_acceleration(guard, gradient, touching);
   double moves = 0, gain = 0;
   int count = 0, left_out = 0;
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
@@ -98,7 +130,8 @@ Guard::Guard(const Scene& s, const GuardOptions& o)
       elastic(make_elastic(s)),
       free(free_vertices(s, masses)),
       unit_energy(masses.sum() * standard_gravity * mean_edge_length(s)),
-      stiffness(rest_stiffness(s, elastic, free)) {}
+      stiffness(rest_stiffness(s, elastic, free)),
+      patch(patches(s)) {}
 
 Verdict judge_motion(const Guard& guard, const State& from, double dt, const Points& x, GuardMeasures& m) {
   const GuardOptions& most = guard.options;
@@ -119,7 +152,9 @@ Verdict judge(Guard& guard, const State& from, const Drive& drive, double dt, co
   measure_energy(guard, from, x, m);
   if (!(m.energy_growth <= most.energy_growth)) return Verdict::energy_gain;
   measure_residual(guard, from, drive, dt, x, touching ? touching() : std::vector<char>{}, m);
-  if (!(m.imbalance <= most.imbalance) || !(m.decrement <= most.decrement)) return Verdict::unbalanced;
+  if (!(m.patch_acceleration <= most.patch_acceleration) || !(m.imbalance <= most.imbalance) ||
+      !(m.decrement <= most.decrement))
+    return Verdict::unbalanced;
   return Verdict::admitted;
 }
 

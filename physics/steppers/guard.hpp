@@ -8,15 +8,16 @@
 
 namespace selvedge {
 
-// What a proposed step may do. Set from recorded conventional steps on training scenes (docs/hybrid.md): each bound is
-// one and a half times what 999 of 1,000 of them stay below.
+// What a proposed step may do. These bounds are first guesses: they are still to be set from recorded conventional
+// steps on training scenes, which tests/pipeline/run/long_guard_tables.cpp measures and prints.
 struct GuardOptions {
   double acceleration = 300;      // of a vertex in the step, at most [m/s2]
-  double mean_acceleration = 20;  // RMS of all vertices [m/s2]; or
-  double change_of_motion = 0.6;  // RMS change of the motion over the motion itself, whichever allows more
+  double mean_acceleration = 6;   // RMS of all vertices [m/s2]; or
+  double change_of_motion = 0.8;  // RMS change of the motion over the motion itself, whichever allows more
   double stretch = 1.3;           // largest of a triangle; or
   double stretch_growth = 1.1;    // over the largest at the start, whichever allows more
   double energy_growth = 10;      // of the elastic energy, in the cloth's weight times its mean edge
+  double patch_acceleration = 6;  // RMS of the unexplained force on patches, over their mass [m/s2]
   double imbalance = 2e-4;        // RMS of how far a Jacobi sweep of the step's potential would move vertices [m]
   double decrement = 5;           // energy that it would gain, in the same unit as energy_growth
 };
@@ -27,9 +28,10 @@ struct GuardMeasures {
   double change_of_motion = 0;
   double stretch = 1, stretch_before = 1;
   double energy_growth = 0;
-  double imbalance = 0;  // [m]
+  double patch_acceleration = 0;  // [m/s2]
+  double imbalance = 0;           // [m]
   double decrement = 0;
-  double in_contact = 0;  // share of the free vertices: those are left out of the last two
+  double in_contact = 0;  // share of the free vertices: those are left out of the last three
 };
 
 // Judges steps that somebody proposes. Caches, and references to the scene.
@@ -45,6 +47,7 @@ struct Guard {
   std::vector<char> free;
   double unit_energy = 0;         // weight times mean edge [J]
   std::vector<double> stiffness;  // of each vertex at rest [N/m]
+  std::vector<int> patch;         // of each vertex: forces inside of a patch cancel in its sum
   StepPotential step;
   StepScratch scratch;
 };

@@ -38,7 +38,7 @@ const Options<LearnedRun>& learned_options() {
 const Options<GuardOptions>& guard_options() {
   using O = GuardOptions;
   static const Options<O> table(
-      "guard", "What a proposal may do. The bounds come from recorded conventional steps (docs/hybrid.md).",
+      "guard", "What a proposal may do (docs/hybrid.md).",
       {number("acceleration", &O::acceleration, Unit::acceleration, positive, "of a vertex in the step, at most"),
        number("mean_acceleration", &O::mean_acceleration, Unit::acceleration, positive, "RMS of all vertices; or"),
        number("change_of_motion", &O::change_of_motion, Unit::none, not_negative,
@@ -48,6 +48,8 @@ const Options<GuardOptions>& guard_options() {
               "over the largest at the start, whichever allows more"),
        number("energy_growth", &O::energy_growth, Unit::none, not_negative,
               "of the elastic energy, in the cloth's weight times its mean edge"),
+       number("patch_acceleration", &O::patch_acceleration, Unit::acceleration, positive,
+              "RMS of the force on patches of the cloth that contact cannot explain, over their mass"),
        number("imbalance", &O::imbalance, Unit::length, positive,
               "RMS of how far a Jacobi sweep of the potential would move vertices that nothing touches"),
        number("decrement", &O::decrement, Unit::none, positive,

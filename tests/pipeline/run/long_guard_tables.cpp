@@ -131,6 +131,7 @@ TEST_CASE("guard tables: what conventional steps of training scenes measure", "[
       own["stretch"].push_back(m.stretch);
       own["stretch growth"].push_back(m.stretch / m.stretch_before);
       own["energy_growth"].push_back(m.energy_growth);
+      own["patch_acceleration"].push_back(m.patch_acceleration);
       own["imbalance [mm]"].push_back(1e3 * m.imbalance);
       own["decrement"].push_back(m.decrement);
       own["in contact"].push_back(m.in_contact);
