@@ -102,6 +102,11 @@ std::string rows_table(const std::vector<const CompareRow*>& rows, bool referenc
                         : row.trouble.empty() ? ""
                                               : "trouble",
                         k + 1, html_text(row.setting));
+    if (!is_there(row) && !std::isfinite(row.temporal)) {
+      html += fmt::format("<td class='left' colspan='{}'>{}</td></tr>", columns.size() + (references ? 5 : 2),
+                          html_text(row.trouble));
+      continue;
+    }
     html += cell(row.ms, "{:.1f}");
     if (references)
       html += cell(1000 * row.temporal, "{:.3g}") +
