@@ -29,6 +29,7 @@ struct Keys {
 
 struct SceneWork {
   const CompareScene* scene = nullptr;
+  bool keeps = false;  // the trajectories of its rows
   std::filesystem::path folder;
   Keys keys;
   std::vector<std::optional<Setup>> setups;  // absent: this build cannot, and `trouble` says why
@@ -73,6 +74,7 @@ SceneWork open_scene(const CompareRequest& request, const Comparison& comparison
       make_stepper(setup);
     } catch (const Error& error) {
       trouble = error.what();
+      std::ranges::replace(trouble, '\n', ' ');
     }
     work.trouble.push_back(trouble);
     work.setups.push_back(trouble.empty() ? std::optional<Setup>(std::move(setup)) : std::nullopt);
@@ -154,20 +156,32 @@ std::filesystem::path trajectory_of(const std::filesystem::path& folder, std::si
   return folder / fmt::format("row_{}.h5", setting);
 }
 
+// Every row of an evaluation that a network makes is the bare network, by its stored run.
+void check_bare(const Setup& setup, const std::filesystem::path& trajectory) {
+  if (setup.run.stepper != "learned") return;
+  if (const std::string trouble = trouble_of_bare_run(trajectory); !trouble.empty())
+    throw Error("a row of the evaluation is not the bare network: " + trouble, trajectory.string(),
+                "name gated rows by a stepper of their own");
+}
+
 // Every setting once, in turn. False: stopped.
 bool time_settings(const CompareRequest& request, const Comparison& comparison, int repeat, SceneWork& work) {
   for (std::size_t s = 0; s < work.setups.size(); ++s) {
     if (!work.setups[s]) continue;
     const std::filesystem::path file = work.folder / fmt::format("run_{}_{}.json", s, repeat);
     std::optional<CompareRun> run = read_run(whole_file(file), work.keys.settings[s]);
-    if (comparison.keep_runs && repeat == 0 && !std::filesystem::exists(trajectory_of(work.folder, s))) run.reset();
+    const std::filesystem::path trajectory = trajectory_of(work.folder, s);
+    if (work.keeps && repeat == 0 && !std::filesystem::exists(trajectory)) run.reset();
     const bool kept = run.has_value();
     if (!run) {
       TimedRunOptions options;
       options.judged_frames = comparison.judged_frames;
-      if (comparison.keep_runs && repeat == 0) options.trajectory = trajectory_of(work.folder, s);
+      const bool judged = !comparison.evaluation.baseline.empty();
+      if (repeat == 0 && (work.keeps || judged)) options.trajectory = trajectory;
       run = timed_run(*work.setups[s], options, request.stop);
       if (!run) return false;
+      if (judged && repeat == 0) check_bare(*work.setups[s], trajectory);
+      if (!work.keeps) std::filesystem::remove(trajectory);
       write_file(file, part_json(*run, work.keys.settings[s]));
     }
     say(request, fmt::format("{} {} of {}: {}, {:.1f} ms a frame{}{}", work.scene->name, repeat + 1, comparison.repeats,
@@ -176,17 +190,6 @@ bool time_settings(const CompareRequest& request, const Comparison& comparison, 
     work.runs[s].push_back(std::move(*run));
   }
   return true;
-}
-
-// Every row of an evaluation that a network makes is the bare network, by its stored run.
-void check_bare(const Comparison& comparison, SceneWork& work) {
-  if (comparison.evaluation.baseline.empty()) return;
-  for (std::size_t s = 0; s < work.setups.size(); ++s) {
-    if (!work.setups[s] || work.setups[s]->run.stepper != "learned" || work.runs[s].empty()) continue;
-    if (const std::string trouble = trouble_of_bare_run(trajectory_of(work.folder, s)); !trouble.empty())
-      throw Error("a row of the evaluation is not the bare network: " + trouble, trajectory_of(work.folder, s).string(),
-                  "name gated rows by a stepper of their own");
-  }
 }
 
 CompareRow row_of(const SceneWork& work, const std::string& setting, std::size_t s) {
@@ -271,9 +274,8 @@ void rank(std::vector<CompareRow>& rows) {
 }
 
 // One page a scene that plays its rows side by side. It is an extra: nothing is lost where it cannot be made.
-void write_views(const CompareRequest& request, const Comparison& comparison, const SceneWork& work,
-                 CompareResult& result) {
-  if (!comparison.keep_runs) return;
+void write_views(const CompareRequest& request, const SceneWork& work, CompareResult& result) {
+  if (!work.keeps) return;
   constexpr std::size_t most_rows = 4, most_bytes = 12'000'000;
   std::vector<std::filesystem::path> runs;
   for (std::size_t s = 0; s < work.setups.size() && runs.size() < most_rows; ++s)
@@ -296,16 +298,16 @@ CompareResult compare(const CompareRequest& request) {
   const std::string program = program_key();
   std::vector<SceneWork> all;
   for (const CompareScene& scene : comparison.scenes) all.push_back(open_scene(request, comparison, scene, program));
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].keeps = static_cast<int>(k) < comparison.keep_runs;
   CompareResult result;
   for (SceneWork& work : all) {
     result.finished = find_errors(request, comparison, work) && prepare_settings(request, work);
     for (int repeat = 0; result.finished && repeat < comparison.repeats; ++repeat) {
       result.finished = time_settings(request, comparison, repeat, work);
-      check_bare(comparison, work);
       write_results(request, comparison, all, result);
     }
     if (!result.finished) break;
-    write_views(request, comparison, work, result);
+    write_views(request, work, result);
   }
   write_results(request, comparison, all, result);
   write_compare_hdf5(request.out / "compare.h5", result);

@@ -102,6 +102,11 @@ std::string rows_table(const std::vector<const CompareRow*>& rows, bool referenc
                         : row.trouble.empty() ? ""
                                               : "trouble",
                         k + 1, html_text(row.setting));
+    if (!is_there(row) && !std::isfinite(row.temporal)) {
+      html += fmt::format("<td class='left' colspan='{}'>{}</td></tr>", columns.size() + (references ? 5 : 2),
+                          html_text(row.trouble));
+      continue;
+    }
     html += cell(row.ms, "{:.1f}");
     if (references)
       html += cell(1000 * row.temporal, "{:.3g}") +
@@ -113,6 +118,35 @@ std::string rows_table(const std::vector<const CompareRow*>& rows, bool referenc
     html += "<td class='left'>" + html_text(row.trouble) + "</td></tr>";
   }
   return html + "</table></div>\n";
+}
+
+double phases_of(const CompareRow& row, std::initializer_list<const char*> names) {
+  double sum = 0;
+  for (const char* name : names)
+    if (const auto found = row.measures.find(name); found != row.measures.end()) sum += found->second;
+  return sum;
+}
+
+// What a proposal of each network costs beside what it may save: the solve and the contact of the first conventional
+// row's frame.
+std::string break_even(const std::vector<const CompareRow*>& rows) {
+  const auto parent =
+      std::ranges::find_if(rows, [](const CompareRow* row) { return phases_of(*row, {"ms_solve"}) > 0; });
+  if (parent == rows.end()) return "";
+  const double solve = phases_of(**parent, {"ms_solve"});
+  const double contact = phases_of(**parent, {"ms_broad_phase", "ms_ccd", "ms_response"});
+  std::string html;
+  for (const CompareRow* row : rows) {
+    const double graph = phases_of(*row, {"ms_graph"}), network = phases_of(*row, {"ms_network"});
+    if (network == 0 || phases_of(*row, {"ms_solve"}) > 0) continue;
+    html += fmt::format("<li>{}: graph {:.1f} and network {:.1f} ms against solve {:.1f} and contact {:.1f} ms of {}. ",
+                        html_text(row->setting), graph, network, solve, contact, html_text((*parent)->setting));
+    const double share = (graph + network) / (solve + contact);
+    html += share < 1 ? fmt::format("Proposals that need neither pay if more than {:.0f} % of them are kept.</li>",
+                                    100 * share)
+                      : "Proposals cannot pay here, even if all of them are kept.</li>";
+  }
+  return html.empty() ? html : "<p>Break-even:</p><ul>" + html + "</ul>\n";
 }
 
 std::string scene_section(const CompareFloor& floor, const CompareResult& result) {
@@ -137,7 +171,7 @@ std::string scene_section(const CompareFloor& floor, const CompareResult& result
           return found == r.measures.end() ? unknown : 1000 * found->second;
         });
   }
-  html += rows_table(rows, floor.states > 0);
+  html += rows_table(rows, floor.states > 0) + break_even(rows);
   if (std::filesystem::path view = result.views / (floor.scene + ".html");
       !result.views.empty() && std::filesystem::exists(view))
     html += fmt::format("<p><a href='views/{0}.html'>{0} side by side</a></p>\n", html_text(floor.scene));

@@ -79,11 +79,14 @@ std::string quoted(const std::string& text) {
 std::string compare_table(const CompareResult& result) {
   std::string text;
   for (const CompareFloor& f : result.floors) {
-    text += fmt::format(
-        "{}: {} vertices, {} frames; {} common states, {} frames from each\n"
-        "  the reference moves {:.3g} m in that; floor {:.2g} m (dt/8 against dt/16 {:.2g}, jittered {:.2g}); it loses "
-        "{:.3g} J in all\n",
-        f.scene, f.vertices, f.frames, f.states, f.horizon, f.motion, f.floor(), f.steps, f.jittered, f.lost);
+    text += fmt::format("{}: {} vertices, {} frames", f.scene, f.vertices, f.frames);
+    text += f.states == 0 ? std::string("\n")
+                          : fmt::format(
+                                "; {} common states, {} frames from each\n"
+                                "  the reference moves {:.3g} m in that; floor {:.2g} m (dt/8 against dt/16 {:.2g}, "
+                                "jittered {:.2g}); it loses "
+                                "{:.3g} J in all\n",
+                                f.states, f.horizon, f.motion, f.floor(), f.steps, f.jittered, f.lost);
     text += fmt::format("  {:<24}", "setting");
     for (const Column& column : columns()) text += fmt::format(" {:>10}", column.title);
     text += "\n";

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "collision/exact/penetration_depth.hpp"
 #include "learned/steppers/learned_state.hpp"
 #include "physics/steppers/step_audit.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
@@ -74,7 +75,10 @@ struct RunWatch {
       frame.pairs = static_cast<int>(report.audit->self_pairs.size());
       frame.meets_body = !report.audit->obstacle_pairs.empty() || report.audit->inside_vertices > 0;
     }
-    frame.depth = report.collision.depth_wanted;
+    const bool may_be_inside = !report.audit || report.audit->inside_vertices > 0 || state.pinched;
+    for (std::size_t k = 0; may_be_inside && k < setup.scene.obstacles.size(); ++k)
+      frame.depth =
+          std::max(frame.depth, penetration_depth(setup.scene.obstacles[k].surface, event.drive.obstacles[k], state.x));
     frame.kinetic = energies(setup.scene, terms, state.x, state.v, event.drive.acceleration).kinetic;
     measures->add(std::move(frame));
     acceleration = graph_state(setup.scene, state, event.drive).acceleration;

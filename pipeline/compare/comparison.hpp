@@ -55,7 +55,7 @@ struct Comparison {
   SequenceOptions sequences;
   EvaluationOptions evaluation;
   std::string weights_folder;  // seen from the file
-  bool keep_runs = false;      // the trajectory of each row's first repeat
+  int keep_runs = 0;  // of so many scenes, the trajectory of each row's first repeat and a page that plays them
   int repeats = 3;
   int judged_frames = 4;  // of a run, of which the distance to the optimum is found
   double jitter = 1e-3;   // of the common states for the floor, in mean edge lengths

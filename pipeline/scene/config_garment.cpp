@@ -20,8 +20,7 @@ const Options<GarmentOptions>& garment_options() {
        word("form", {"small", "full"}, "small", "of the outfit: for quick runs, or with all its vertices"),
        word("layers", {"over", "alone"}, "over",
             "of an outfit: each garment made over those under it, or as if it were worn alone, so that they start in "
-            "each "
-            "other"),
+            "each other"),
        text("on", "name of the obstacle that wears it; left out: the only body"),
        flag("pins", true, "whether the garment's own pins stay with the body, skinned and giving way")},
       "file", {"file", "cut", "outfit"});

@@ -63,6 +63,9 @@ void same_errors(const CompareResult& a, const CompareResult& b) {
     CHECK((a.rows[k].algebraic == b.rows[k].algebraic || std::isnan(a.rows[k].algebraic)));
     CHECK(a.rows[k].decay == b.rows[k].decay);
     CHECK(a.rows[k].newton == b.rows[k].newton);
+    CHECK(a.rows[k].pairs_by_frame == b.rows[k].pairs_by_frame);
+    for (const auto& [name, value] : a.rows[k].measures)
+      if (!name.starts_with("ms_")) CHECK(value == b.rows[k].measures.at(name));
   }
   CHECK(a.floors[0].steps == b.floors[0].steps);
   CHECK(a.floors[0].jittered == b.floors[0].jittered);

@@ -31,7 +31,7 @@ TEST_CASE("compare: the short suite takes all kinds of steppers, and says what i
   CompareRequest request;
   request.file = configs / "compare" / "short.yaml";
   request.out = folder.path;
-  request.overrides = {"weights_folder=" + (folder.path / "none").string(), "keep_runs=true"};
+  request.overrides = {"weights_folder=" + (folder.path / "none").string(), "keep_runs=1"};
   const CompareResult result = compare(request);
   CHECK(result.finished);
   const CompareRow& conventional = row_named(result, "conventional");
