@@ -10,6 +10,7 @@
 #include "pipeline/compare/compare_run.hpp"
 #include "pipeline/compare/comparison.hpp"
 #include "pipeline/compare/evaluation.hpp"
+#include "pipeline/compare/volume_report.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/run/prepare.hpp"
@@ -292,6 +293,21 @@ void write_views(const CompareRequest& request, const SceneWork& work, CompareRe
   }
 }
 
+// The volume that rows leave, once all runs are there.
+void add_volumes(const CompareRequest& request, const Comparison& comparison, const std::vector<SceneWork>& all,
+                 CompareResult& result) {
+  if (!comparison.evaluation.volume || !result.finished) return;
+  std::vector<KeptRun> runs;
+  for (const SceneWork& work : all)
+    for (std::size_t s = 0; s < comparison.settings.size(); ++s) {
+      const std::filesystem::path run = trajectory_of(work.folder, s);
+      if (!work.setups[s] || !std::filesystem::exists(run)) continue;
+      const double ms = row_of(work, comparison.settings[s].name, s).ms;
+      runs.push_back({comparison.settings[s].name, work.scene->outfit, work.scene->name, run, 1000 / ms});
+    }
+  result.evaluation += write_volume_report(runs, comparison.evaluation.baseline, request.out);
+}
+
 CompareResult compare(const CompareRequest& request) {
   Comparison comparison = read_comparison(request.file, request.short_form, request.overrides);
   comparison.kinds = request.kinds;
@@ -310,6 +326,7 @@ CompareResult compare(const CompareRequest& request) {
     write_views(request, work, result);
   }
   write_results(request, comparison, all, result);
+  add_volumes(request, comparison, all, result);
   write_compare_hdf5(request.out / "compare.h5", result);
   result.plots = plot_comparison(result, request.out);
   return result;

@@ -17,7 +17,8 @@ const Options<CompareScene>& compared_scene_options() {
       {needed(path("file", "scene file, from this file's folder")), text("name", "left out: the file's"),
        texts("set", &O::overrides, "`key=value` overrides of the scene"),
        integer("states", &O::states, not_negative, "common states, spread over the run; 0: no references"),
-       integer("horizon", &O::horizon, at_least_one, "frames from each of them")},
+       integer("horizon", &O::horizon, at_least_one, "frames from each of them"),
+       text("group", &O::outfit, "what it is counted with in an evaluation, such as the garment")},
       "file");
   return table;
 }
@@ -55,6 +56,7 @@ const Options<EvaluationOptions>& evaluation_options() {
       "evaluation", "Tables of what rows leave of intersections, with paired intervals.",
       {text("baseline", &O::baseline, "the row that the others are held against; left out: no evaluation"),
        integer("resamples", &O::resamples, at_least_one, "of the bootstrap"),
+       flag("volume", &O::volume, "the volume that cloth encloses with itself too, of the runs kept (`keep_runs`)"),
        integer("left_frames", &O::left_frames, at_least_one, "over which what is left of the first pairs is shown")});
   return table;
 }

@@ -14,8 +14,8 @@ struct CompareScene {
   std::vector<std::string> overrides;  // key=value
   int states = 4;                      // common states, spread over the run; 0: no references, no errors
   int horizon = 6;                     // frames from each of them
+  std::string outfit;                  // what it is counted with in an evaluation
   // Of a sequence:
-  std::string outfit;
   bool tangled = false;  // by the generator of training
 };
 
@@ -41,6 +41,7 @@ struct SequenceOptions {
 struct EvaluationOptions {
   std::string baseline;  // the row that the others are held against; empty: no evaluation
   int resamples = 10000;
+  bool volume = false;   // of self-penetration too, on the runs kept
   int left_frames = 50;  // over which what is left of the first pairs is shown
 };
 

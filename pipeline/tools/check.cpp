@@ -92,10 +92,7 @@ std::optional<VolumeCheck> volume_check(const CheckRequest& request, const Surfa
                                         const std::vector<int>& first_vertex, CheckReport& report) {
   if (!request.volume) return {};
   report.volume.emplace();
-  std::vector<int> garments;
-  for (std::size_t cloth = 0; cloth + 1 < first_vertex.size(); ++cloth)
-    garments.resize(static_cast<std::size_t>(first_vertex[cloth + 1]), static_cast<int>(cloth));
-  return VolumeCheck(surface, garments);
+  return VolumeCheck(surface, garments_of_vertices(first_vertex));
 }
 
 std::vector<RestTriangle> read_rest(const std::filesystem::path& file, const Triangles& triangles) {

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <numeric>
 
+#include "collision/geometry/error.hpp"
 #include "collision/penetration/penetration_loss.hpp"
+#include "pipeline/formats/trajectory_hdf5.hpp"
 
 namespace selvedge {
 
@@ -39,6 +41,27 @@ void VolumeCheck::add(const Points& x, VolumeFindings& findings) const {
   findings.open += count(ContourVolume::open);
   findings.not_orientable += count(ContourVolume::not_orientable);
   findings.unassigned += count(ContourVolume::unassigned);
+}
+
+std::vector<int> garments_of_vertices(std::span<const int> first_vertex) {
+  std::vector<int> garments;
+  for (std::size_t cloth = 0; cloth + 1 < first_vertex.size(); ++cloth)
+    garments.resize(static_cast<std::size_t>(first_vertex[cloth + 1]), static_cast<int>(cloth));
+  return garments;
+}
+
+VolumeFindings volume_findings(const std::filesystem::path& trajectory) {
+  const TrajectoryReader reader(trajectory);
+  const TrajectoryInfo& info = reader.info();
+  const VolumeCheck check(make_surface(static_cast<int>(info.rest.rows()), info.triangles),
+                          garments_of_vertices(info.cloth_first_vertex));
+  VolumeFindings findings;
+  for (int i = 0; i < reader.frame_count(); ++i) {
+    const Points x = reader.frame(i).x.cast<double>();
+    if (!x.allFinite()) throw Error(fmt::format("frame {} is not finite", i), trajectory.string(), "");
+    check.add(x, findings);
+  }
+  return findings;
 }
 
 std::string volume_text(const VolumeFindings& f) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,6 +31,13 @@ class VolumeCheck {
  private:
   ClosedSurface closed_;
 };
+
+// All frames of a trajectory, each of its cloths being a garment. Throws Error for what is no trajectory, and for a
+// frame that is not finite.
+VolumeFindings volume_findings(const std::filesystem::path& trajectory);
+
+// The garment of each vertex of cloths that begin at these vertices (TrajectoryInfo::cloth_first_vertex).
+std::vector<int> garments_of_vertices(std::span<const int> first_vertex);
 
 std::string volume_text(const VolumeFindings&);
 

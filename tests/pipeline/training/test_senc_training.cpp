@@ -31,6 +31,13 @@ TrainingOptions narrow_senc() {
   return options;
 }
 
+void write_weights(const std::filesystem::path& path, const Trainer& trainer) {
+  WeightFile file;
+  file.architecture = trainer.architecture;
+  file.weights = trainer.network.weights;
+  write_weight_file(path, file);
+}
+
 RollMaker& senc_maker() {
   static RollMaker maker{narrow_senc(), trained_architecture(narrow_senc()).features, fake::tiny_maker().world, {}};
   return maker;
@@ -129,8 +136,7 @@ TEST_CASE("training of SENC begins as the network that it starts from, and what 
   blind.samples.forces = {};
   blind.objective.volume.weight = {0, 0};
   auto before = make_trainer(blind);
-  write_weight_file(folder.path / "hood.h5",
-                    {.architecture = before->architecture, .weights = before->network.weights});
+  write_weights(folder.path / "hood.h5", *before);
 
   TrainingOptions options = narrow_senc();
   options.weights = (folder.path / "hood.h5").string();
@@ -160,7 +166,7 @@ TEST_CASE("training of SENC begins as the network that it starts from, and what 
 
   // What it was trained with cannot be left out again, and forces need a network that sees them.
   blind.weights = (folder.path / "senc.h5").string();
-  write_weight_file(blind.weights, {.architecture = trainer->architecture, .weights = trainer->network.weights});
+  write_weights(blind.weights, *trainer);
   CHECK_THROWS_AS(make_trainer(blind), Error);
   blind.samples.forces.strongest = 1;
   CHECK_THROWS_WITH(trained_architecture(blind), Catch::Contains("sees no forces"));
