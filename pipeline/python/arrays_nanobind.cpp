@@ -1,0 +1,77 @@
+#include "pipeline/python/arrays_nanobind.hpp"
+
+#include <nanobind/stl/string.h>
+
+#include <cmath>
+
+#include "collision/geometry/error.hpp"
+
+namespace selvedge {
+namespace {
+
+namespace nb = nanobind;
+
+std::string text_of(const nb::object& value) { return nb::str(value).c_str(); }
+
+// The array as numpy makes it of any sequence, in one piece. `kinds` are the letters of dtypes that it may have.
+nb::object as_rows(const nb::handle& array, const char* type, const char* kinds, const std::string& where) {
+  const nb::module_ numpy = nb::module_::import_("numpy");
+  nb::object given;
+  try {
+    given = numpy.attr("asarray")(array);
+  } catch (const nb::python_error&) {
+    throw Error("is no array", where, "give an array of rows of three");
+  }
+  const std::string kind = nb::cast<std::string>(given.attr("dtype").attr("kind"));
+  if (std::string(kinds).find(kind) == std::string::npos)
+    throw Error("has the type " + text_of(given.attr("dtype")), where, std::string("give an array of ") + type);
+  if (nb::cast<int>(given.attr("ndim")) != 2 || nb::cast<Eigen::Index>(given.attr("shape")[nb::int_(1)]) != 3)
+    throw Error("has the shape " + text_of(given.attr("shape")), where, "give rows of three, n x 3");
+  return numpy.attr("ascontiguousarray")(given, type);
+}
+
+template <class Matrix>
+nb::object copied(const Matrix& rows) {
+  using Number = typename Matrix::Scalar;
+  auto* kept = new Matrix(rows);
+  const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<Matrix*>(p); });
+  return nb::cast(nb::ndarray<nb::numpy, Number, nb::shape<-1, 3>>(kept->data(),
+                                                                   {static_cast<std::size_t>(kept->rows()), 3}, owner));
+}
+
+}  // namespace
+
+Points points_of(const nb::handle& array, const std::string& where) {
+  const nb::object rows = as_rows(array, "float64", "fiu", where);
+  const auto view = nb::cast<nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>>(rows);
+  Points points = Eigen::Map<const Points>(view.data(), static_cast<Eigen::Index>(view.shape(0)), 3);
+  for (Eigen::Index v = 0; v < points.rows(); ++v)
+    if (!points.row(v).allFinite())
+      throw Error("is not finite in row " + std::to_string(v), where, "leave NaN and infinity out");
+  return points;
+}
+
+Triangles triangles_of(const nb::handle& array, Eigen::Index vertices, const std::string& where) {
+  const nb::object rows = as_rows(array, "int64", "iu", where);
+  const auto view = nb::cast<nb::ndarray<const std::int64_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>>(rows);
+  Triangles triangles(static_cast<Eigen::Index>(view.shape(0)), 3);
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const std::int64_t v = view(static_cast<std::size_t>(t), static_cast<std::size_t>(k));
+      if (v < 0 || v >= vertices)
+        throw Error("names vertex " + std::to_string(v) + " in row " + std::to_string(t) + ", there are " +
+                        std::to_string(vertices),
+                    where, "number vertices from 0");
+      triangles(t, k) = static_cast<int>(v);
+    }
+  return triangles;
+}
+
+nb::ndarray<nb::numpy, double, nb::shape<-1, 3>> view_of(Points& points, const nb::handle& owner) {
+  return {points.data(), {static_cast<std::size_t>(points.rows()), 3}, owner};
+}
+
+nb::object copy_of(const Points& points) { return copied(points); }
+nb::object copy_of(const Triangles& triangles) { return copied(triangles); }
+
+}  // namespace selvedge

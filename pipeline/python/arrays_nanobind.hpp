@@ -1,0 +1,26 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <string>
+
+#include "collision/geometry/points.hpp"
+
+namespace selvedge {
+
+// An array that numpy has, as points, n x 3 [m]. Throws Error that says `where` for another shape, for what is no
+// number, and for numbers that are not finite.
+Points points_of(const nanobind::handle& array, const std::string& where);
+
+// The same of vertex indices, m x 3 whole numbers of 0 .. vertices - 1.
+Triangles triangles_of(const nanobind::handle& array, Eigen::Index vertices, const std::string& where);
+
+// A view of points that `owner` holds: numpy reads and writes them where they are, and keeps the owner alive.
+nanobind::ndarray<nanobind::numpy, double, nanobind::shape<-1, 3>> view_of(Points&, const nanobind::handle& owner);
+
+// A copy that numpy owns.
+nanobind::object copy_of(const Points&);
+nanobind::object copy_of(const Triangles&);
+
+}  // namespace selvedge

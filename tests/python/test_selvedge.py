@@ -1,0 +1,161 @@
+"""The Python package. SELVEDGE_PROGRAM names the program whose bits a run is compared with; without it that is skipped."""
+
+import gc
+import os
+import subprocess
+
+import numpy as np
+import pytest
+
+import selvedge
+
+
+def sheet(n, size=1.0, height=0.0):
+    u = np.linspace(0, size, n)
+    x = np.array([[a, height, b] for b in u for a in u])
+    quads = [(j * n + i, j * n + i + 1, j * n + n + i, j * n + n + i + 1) for j in range(n - 1) for i in range(n - 1)]
+    triangles = [t for a, b, c, d in quads for t in ((a, c, b), (b, c, d))]
+    return x, np.array(triangles)
+
+
+def falling():
+    scene = selvedge.Scene()
+    scene.add_cloth(*sheet(8, 0.5, 0.3), name="sheet")
+    x, triangles = sheet(2, 4.0)
+    scene.add_obstacle(x - [2, 0, 2], triangles, name="floor")
+    return scene
+
+
+def test_a_sheet_falls_on_a_floor_and_stays_clean():
+    scene = falling()
+    frames = []
+    assert selvedge.simulate(scene, 40, lambda s: frames.append(s.frame)) == 40
+    assert frames == list(range(1, 41))
+    assert scene.clean and scene.pairs == 0
+    assert 0 < scene.x[:, 1].min() < scene.x[:, 1].max() < 0.02
+    assert scene.time == pytest.approx(40 / 30)
+
+
+def test_positions_are_views_that_follow_the_steps():
+    scene = falling()
+    x = scene.x
+    before = x.copy()
+    scene.step()
+    assert x is not scene.x and np.shares_memory(x, scene.x)
+    assert (x != before).any() and (x == scene.x).all()
+    x[:, 0] += 1
+    assert scene.x[0, 0] == x[0, 0]
+    # A view keeps its scene alive.
+    del scene
+    gc.collect()
+    assert np.isfinite(x).all()
+
+
+def test_the_callback_ends_a_run():
+    assert selvedge.simulate(falling(), 40, lambda s: s.frame < 3) == 3
+
+
+def test_an_obstacle_moves():
+    scene = falling()
+    x, _ = sheet(2, 4.0)
+    for frame in range(30):
+        scene.move_obstacle(0, x - [2, 0.0, 2] + [0, 0.01 * (frame + 1), 0])
+        scene.step()
+    assert scene.x[:, 1].min() > 0.29 and scene.clean
+
+
+@pytest.mark.parametrize(
+    "x, triangles, words",
+    [
+        (np.zeros((3, 2)), [[0, 1, 2]], ["cloth `c`, x", "(3, 2)"]),
+        (np.array([["a"] * 3] * 3), [[0, 1, 2]], ["cloth `c`, x", "<U1"]),
+        ([[0, 0, 0], [1, 0, 0], [0, np.nan, 1]], [[0, 1, 2]], ["cloth `c`, x", "row 2"]),
+        (np.eye(3), [[0, 1, 3]], ["cloth `c`, triangles", "vertex 3", "row 0"]),
+        (np.eye(3), [[0, 1, -1]], ["triangles", "vertex -1"]),
+        (np.eye(3), [[0.5, 1, 2]], ["triangles", "float64"]),
+        (np.eye(3), [[0, 1, 1]], ["triangle 0", "twice"]),
+        (np.eye(3), [0, 1, 2], ["triangles", "(3,)"]),
+    ],
+)
+def test_bad_arrays_say_what_and_where(x, triangles, words):
+    with pytest.raises(selvedge.Error) as error:
+        selvedge.Scene().add_cloth(x, triangles, name="c")
+    assert all(word in str(error.value) for word in words), str(error.value)
+    assert isinstance(error.value, ValueError)
+
+
+def test_a_scene_without_cloth_and_a_late_cloth_are_refused():
+    with pytest.raises(selvedge.Error, match="no cloth"):
+        selvedge.Scene().step()
+    scene = falling()
+    scene.step()
+    with pytest.raises(selvedge.Error, match="before the first step"):
+        scene.add_cloth(*sheet(3))
+
+
+def test_check_and_untangle():
+    x, triangles = sheet(9)
+    y, _ = sheet(9)
+    y = np.stack([y[:, 0] * 0.3 + 0.355, y[:, 2] * 0.3 - 0.2, np.full(len(y), 0.513)], axis=1)  # stands across it
+    both = np.vstack([x, y]), np.vstack([triangles, triangles + len(x)])
+    assert selvedge.check(x, triangles)["self_pairs"] == 0
+    assert selvedge.check(*both)["self_pairs"] > 0
+    moved, report = selvedge.untangle(*both)
+    assert report["pairs_before"] == selvedge.check(*both)["self_pairs"]
+    assert selvedge.check(moved, both[1])["self_pairs"] == report["pairs_after"]
+
+
+def test_memory_of_a_thousand_steps_does_not_grow():
+    scene = selvedge.Scene()
+    scene.add_cloth(*sheet(4, 0.2, 0.3))
+
+    def resident():
+        with open("/proc/self/statm") as f:
+            return int(f.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+    for _ in range(100):
+        scene.step()
+    before = resident()
+    for _ in range(1000):
+        scene.step()
+        scene.x, scene.v
+    assert resident() - before < 2e6
+
+
+SCENE = """
+cloths:
+  - name: sheet
+    rectangle: {size: [0.4, 0.4], edge: 5 cm}
+    translate: [0, 0.3, 0]
+obstacles:
+  - name: ball
+    sphere: {radius: 0.1}
+run: {frames: 100, fps: 30}
+"""
+
+
+def test_a_run_has_the_bits_of_the_program(tmp_path):
+    program = os.environ.get("SELVEDGE_PROGRAM")
+    if not program:
+        pytest.skip("SELVEDGE_PROGRAM is not set")
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    subprocess.run([program, "simulate", tmp_path / "scene.yaml", "--out", tmp_path / "out", "--no-view"], check=True,
+                   capture_output=True)
+    run = selvedge.read_trajectory(tmp_path / "out" / "run.h5")
+    scene = selvedge.Scene(tmp_path / "scene.yaml")
+    assert scene.frames == 100 and run["fps"] == 30
+    positions = [scene.x.astype(np.float32)]
+    selvedge.simulate(scene, callback=lambda s: positions.append(s.x.astype(np.float32)))
+    assert len(positions) == len(run["x"]) == 101
+    for ours, theirs in zip(positions, run["x"]):
+        assert (ours == theirs.astype(np.float32)).all()
+    assert (scene.triangles == run["triangles"]).all()
+
+
+def test_the_example_of_the_page_runs(capsys):
+    page = os.path.join(os.path.dirname(__file__), "..", "..", "docs", "python.md")
+    with open(page) as f:
+        code = f.read().split("```python\n")[1].split("```")[0]
+    exec(compile(code, page, "exec"), {})
+    last = capsys.readouterr().out.strip().splitlines()[-1].split()
+    assert float(last[0]) == pytest.approx(2) and float(last[1]) > 0 and last[2] == "True"
