@@ -88,7 +88,7 @@ void find_deepest(const DistanceField& body, const Points& x, std::vector<DeepPl
   std::vector<std::vector<Weights>> tries;
   for (const DeepPlace& place : places) tries.push_back(first_tries(place.corners));
   try_points(body, x, tries, places, true);
-  for (double step = 1.0 / 8; step > 1.0 / 100; step /= 2) {
+  for (double step = 1.0 / 8; step > 1e-3; step /= 2) {
     for (std::size_t i = 0; i < places.size(); ++i) tries[i] = tries_round(places[i], step);
     try_points(body, x, tries, places, false);
   }
