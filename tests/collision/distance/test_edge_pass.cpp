@@ -86,7 +86,9 @@ TEST_CASE("edge pass: one round takes most crossings off a coarse cap that lies 
   REQUIRE(first.pairs_before > 50);
   CHECK(2 * first.pairs_after <= first.pairs_before);
   CHECK(pass_edges(body, cap, {.rounds = 3}, thrice).pairs_after == 0);
-  CHECK((thrice - start).rowwise().norm().maxCoeff() < 0.03);  // about the chords' height, 0.02
+  // A diagonal of 0.55 between points of a ball of radius 1 lies 0.039 deep: that much is needed, and little more
+  // taken.
+  CHECK((thrice - start).rowwise().norm().maxCoeff() < 0.042);
 }
 
 TEST_CASE("outside budget: no point that is spared has come inside", "[distance]") {
