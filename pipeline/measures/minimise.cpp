@@ -35,7 +35,7 @@ Points quasi_newton(const std::deque<CurvaturePair>& pairs, const Eigen::VectorX
 
 }  // namespace
 
-Minimised minimised(const ValueAndGradient& function, const Eigen::VectorXd& inverse, const Points& start,
+Minimised minimised(const FunctionOfPoints& function, const Eigen::VectorXd& inverse, const Points& start,
                     int most_evaluations) {
   constexpr std::size_t memory = 12;
   constexpr double sufficient = 1e-4;  // of the slope
