@@ -55,7 +55,8 @@ CoarseLevels make_coarse_discs(const Surface& surface, const Points& rest, int c
     const std::vector<int> centre = disc_cells(graph, rest, radius).centre;
     std::vector<std::pair<int, int>> pairs;
     for (const auto& edge : surface.edges.rowwise())
-      if (const int a = centre[edge[0]], b = centre[edge[1]]; a != b) pairs.emplace_back(std::min(a, b), std::max(a, b));
+      if (const int a = centre[edge[0]], b = centre[edge[1]]; a != b)
+        pairs.emplace_back(std::min(a, b), std::max(a, b));
     const Edges& edges = result.levels.emplace_back(unique_edges(std::move(pairs)));
     for (Eigen::Index i = 0; i < edges.size(); ++i) result.vertex_level[edges.data()[i]] = level + 1;
   }

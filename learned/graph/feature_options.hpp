@@ -76,10 +76,10 @@ struct FeatureOptions {
   int coarse_levels = 3;                  // that are built; they give the vertex levels
   std::vector<int> coarse_sets{0, 1, 2};  // levels whose edges are sets of the graph
   CoarseForm coarse_form = CoarseForm::depths;
-  bool shared_mesh_statistics = true;     // mesh and coarse edges are normalised alike
-  bool strain_inputs = false;             // (l - L) / L at x and at the guess, behind the rest columns
-  bool edge_context = true;               // the columns dt or is_init, bending, mu, lambda
-  bool approximate_centre = false;        // of a component: the middle of a long path in place of the exact centre
+  bool shared_mesh_statistics = true;  // mesh and coarse edges are normalised alike
+  bool strain_inputs = false;          // (l - L) / L at x and at the guess, behind the rest columns
+  bool edge_context = true;            // the columns dt or is_init, bending, mu, lambda
+  bool approximate_centre = false;     // of a component: the middle of a long path in place of the exact centre
 
   // Edges between cloth and obstacle, both ways: now 3 + 1, next 3 + 1, (velocity 3 + 1, no dt | is_init), or dt.
   std::string body_key = "world_edge";  // empty: none

@@ -115,8 +115,8 @@ class HybridStepper final : public Stepper {
 // `none`: a proposal may be asked for.
 Verdict HybridStepper::may_ask(const State& from, const Drive& drive, const ProposalTrust& trust,
                                bool has_history) const {
-  if (!from.clean || from.pinched || restart_of(from, drive, traits_.max_substeps)) return Verdict::tangled;
   if (!has_history && parts_.hand_over) return Verdict::no_history;
+  if (!from.clean || from.pinched || restart_of(from, drive, traits_.max_substeps)) return Verdict::tangled;
   if (trust.wait > 0) return Verdict::waiting;
   if (options_.stop_when_slow && !time_.allows(options_.extra_time)) return Verdict::too_slow;
   return Verdict::none;

@@ -10,6 +10,7 @@
 #include "pipeline/compare/compare_run.hpp"
 #include "pipeline/compare/comparison.hpp"
 #include "pipeline/compare/evaluation.hpp"
+#include "pipeline/compare/sequences.hpp"
 #include "pipeline/compare/volume_report.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/write_file.hpp"
@@ -310,6 +311,7 @@ void add_volumes(const CompareRequest& request, const Comparison& comparison, co
 
 CompareResult compare(const CompareRequest& request) {
   Comparison comparison = read_comparison(request.file, request.short_form, request.overrides);
+  if (comparison.sequences.count > 0) add_sequences(comparison);
   comparison.kinds = request.kinds;
   const std::string program = program_key();
   std::vector<SceneWork> all;

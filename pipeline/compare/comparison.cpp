@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "pipeline/compare/sequences.hpp"
 #include "pipeline/config/options.hpp"
 
 namespace selvedge {
@@ -132,8 +131,8 @@ Comparison read_comparison(const std::filesystem::path& file, bool short_form,
   check_names(config["scenes"], scenes);
   check_names(config["settings"], settings);
   if (settings.empty()) config["settings"].fail("is empty", "give at least one");
-  if (comparison.sequences.count > 0) add_sequences(comparison);
-  if (comparison.scenes.empty()) config["scenes"].fail("is empty", "give at least one, or `sequences`");
+  if (comparison.scenes.empty() && comparison.sequences.count == 0)
+    config["scenes"].fail("is empty", "give at least one, or `sequences`");
   const std::string& baseline = comparison.evaluation.baseline;
   if (!baseline.empty() && std::ranges::find(settings, baseline) == settings.end())
     config["evaluation"]["baseline"].fail("names `" + baseline + "`, which is no setting",

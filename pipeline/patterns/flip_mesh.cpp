@@ -1,10 +1,10 @@
 #include "pipeline/patterns/flip_mesh.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "collision/exact/orientation.hpp"
-#include "pipeline/patterns/planar_mesh.hpp"
 
 namespace selvedge {
 namespace {
@@ -22,6 +22,14 @@ bool within_circle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
 }
 
 }  // namespace
+
+double smallest_angle(const Vec2& a, const Vec2& b, const Vec2& c) {
+  const auto angle = [](const Vec2& at, const Vec2& p, const Vec2& q) {
+    const Vec2 u = p - at, v = q - at;
+    return std::atan2(std::abs(u.x() * v.y() - u.y() * v.x()), u.dot(v));
+  };
+  return std::min({angle(a, b, c), angle(b, c, a), angle(c, a, b)});
+}
 
 FlipMesh::FlipMesh(const std::vector<Vec2>& outline, const std::vector<std::array<int, 3>>& corners)
     : points(outline), fixed(static_cast<int>(outline.size())) {

@@ -12,6 +12,9 @@ struct FlipTriangle {
   std::array<int, 3> corner{}, beyond{-1, -1, -1};
 };
 
+// The smallest angle of a triangle [rad].
+double smallest_angle(const Vec2& a, const Vec2& b, const Vec2& c);
+
 // A triangulation of a simple polygon that changes by flips of edges. The first `fixed` points are the polygon's.
 struct FlipMesh {
   std::vector<Vec2> points;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/patterns/flip_mesh.hpp"
 #include "pipeline/patterns/planar_mesh.hpp"
 
 namespace selvedge {

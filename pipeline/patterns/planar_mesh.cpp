@@ -99,14 +99,6 @@ void part_chords(FlipMesh& mesh) {
 
 }  // namespace
 
-double smallest_angle(const Vec2& a, const Vec2& b, const Vec2& c) {
-  const auto angle = [](const Vec2& at, const Vec2& p, const Vec2& q) {
-    const Vec2 u = p - at, v = q - at;
-    return std::atan2(std::abs(u.x() * v.y() - u.y() * v.x()), u.dot(v));
-  };
-  return std::min({angle(a, b, c), angle(b, c, a), angle(c, a, b)});
-}
-
 PlanarMesh planar_mesh(const std::vector<Vec2>& outline, double edge) {
   FlipMesh mesh = outline_mesh(outline);
   insert_lattice(outline, edge, mesh);

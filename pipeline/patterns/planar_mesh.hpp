@@ -18,7 +18,4 @@ struct PlanarMesh {
 // a triangular lattice inside, relaxed. Throws Error for an outline that crosses itself or has no area.
 PlanarMesh planar_mesh(const std::vector<Vec2>& outline, double edge);
 
-// The smallest angle of a triangle [rad].
-double smallest_angle(const Vec2& a, const Vec2& b, const Vec2& c);
-
 }  // namespace selvedge

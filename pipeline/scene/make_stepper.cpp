@@ -14,7 +14,8 @@ namespace selvedge {
 WeightFile read_learned_weights(const Setup& setup) {
   const std::string& weights = setup.run.learned.weights;
   if (weights.empty())
-    throw Error("the stepper `" + setup.run.stepper + "` needs a weight file", setup.file.string() + ": run.learned.weights",
+    throw Error("the stepper `" + setup.run.stepper + "` needs a weight file",
+                setup.file.string() + ": run.learned.weights",
                 "give this key or --weights; `selvedge weights import` makes such a file of a published checkpoint");
   return read_weight_file(setup.file.parent_path() / weights);  // an absolute path stays as it is
 }

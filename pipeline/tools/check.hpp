@@ -18,9 +18,9 @@ struct CheckRequest {
   std::optional<std::filesystem::path> rest;  // mesh of the same triangles at rest; a trajectory holds its own
   std::vector<std::filesystem::path> bodies;  // meshes that the cloth must not touch, beside a trajectory's obstacles
   std::optional<std::filesystem::path> against{};  // another trajectory of the same cloths
-  std::string audit = "own";                     // or "fcl": its opinion beside the audit's
-  double horizon = 0.02;                         // gaps above it are not looked for [m]
-  bool volume = false;                           // the volume that crossings enclose
+  std::string audit = "own";                       // or "fcl": its opinion beside the audit's
+  double horizon = 0.02;                           // gaps above it are not looked for [m]
+  bool volume = false;                             // the volume that crossings enclose
 };
 
 // What was found in the positions themselves; nothing that a trajectory says about itself is trusted.

@@ -121,7 +121,7 @@ TEST_CASE("drape network: gradients of the losses are their derivatives, without
     recipe.layer = true;
     DrapeModel model = model_of(ball, true);
     const DrapeGradients made = drape_gradients(model, lessons, ball.ring, recipe);
-    REQUIRE(made.pushed > 3);
+    REQUIRE(made.pushed >= 3);
     const auto loss = [&] { return drape_gradients(model, lessons, ball.ring, recipe).total; };
     CHECK(difference(model.scale.g, made.scale.g, loss) < 2e-2);
     CHECK(difference(model.scale.k, made.scale.k, loss) < 2e-2);

@@ -6,6 +6,7 @@
 
 #include "collision/geometry/disjoint_sets.hpp"
 #include "collision/geometry/error.hpp"
+#include "pipeline/patterns/flip_mesh.hpp"
 #include "pipeline/patterns/planar_mesh.hpp"
 #include "tests/pipeline/files.hpp"
 

@@ -123,7 +123,8 @@ TEST_CASE("FCL's opinion stands beside the audit's") {
   write_text(folder.path / "apart.obj", apart);
   write_text(folder.path / "body.obj",
              "v 0 0.2 0\nv 0.1 0.2 0\nv 0 0.2 0.1\nv 0 0.3 0\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n");
-  CheckRequest request{folder.path / "crossing.obj", {}, {}, "fcl"};
+  CheckRequest request{folder.path / "crossing.obj", {}, {}};
+  request.audit = "fcl";
   if (!obstacle_available()) {
     WARN("skipped: this build has no FCL");
     REQUIRE_THROWS_AS(check(request), Error);
