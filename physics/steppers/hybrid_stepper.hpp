@@ -19,7 +19,7 @@ enum class HybridMode {
 };
 
 struct HybridOptions {
-  HybridMode mode = HybridMode::fallback;
+  HybridMode mode = HybridMode::corrected;
   GuardOptions guard;
   std::optional<int> newton;  // iterations: k of `after_k`, else 2; of a solve of `refined`, else the solver's own
   int gate_steps = 6;         // places between start and proposal where the potential is asked
