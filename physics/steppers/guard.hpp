@@ -11,15 +11,15 @@ namespace selvedge {
 // What a proposed step may do. On training scenes no conventional step exceeds a third of the bounds of the residual,
 // and noise of 3 mm exceeds others before (tests/pipeline/run/long_guard_tables.cpp prints both; docs/hybrid.md).
 struct GuardOptions {
-  double acceleration = 300;      // of a vertex in the step, at most [m/s2]
-  double mean_acceleration = 6;   // RMS of all vertices [m/s2]; or
-  double change_of_motion = 0.8;  // RMS change of the motion over the motion itself, whichever allows more
-  double stretch = 1.3;           // largest of a triangle; or
-  double stretch_growth = 1.1;    // over the largest at the start, whichever allows more
-  double energy_growth = 10;      // of the elastic energy, in the cloth's weight times its mean edge
+  double acceleration = 300;       // of a vertex in the step, at most [m/s2]
+  double mean_acceleration = 6;    // RMS of all vertices [m/s2]; or
+  double change_of_motion = 0.8;   // RMS change of the motion over the motion itself, whichever allows more
+  double stretch = 1.3;            // largest of a triangle; or
+  double stretch_growth = 1.1;     // over the largest at the start, whichever allows more
+  double energy_growth = 10;       // of the elastic energy, in the cloth's weight times its mean edge
   double patch_acceleration = 60;  // RMS of the unexplained force on patches, over their mass [m/s2]
   double imbalance = 1e-3;         // RMS of how far a Jacobi sweep of the step's potential would move vertices [m]
-  double decrement = 5;           // energy that it would gain, in the same unit as energy_growth
+  double decrement = 5;            // energy that it would gain, in the same unit as energy_growth
 };
 
 // What the guard looks at, in the order of its cost.

@@ -59,7 +59,8 @@ TEST_CASE("our small network widened for what SENC sees begins as it was", "[lea
     const Architecture to = narrow(preset);
     CHECK_NOTHROW(check_architecture(to, preset));
     NetworkWeights wide = widen_weights(from, weights, to, 2);
-    // Without cloth-cloth contact a graph has no edges in space either; `small_senc` has them alone, so they may be there.
+    // Without cloth-cloth contact a graph has no edges in space either; `small_senc` has them alone, so they may be
+    // there.
     world.state.no_cloth_edges = preset == "small_senc_layers";
     const FeatureRows after = result_of(to, wide, world);
     REQUIRE(before.rows() == after.rows());
