@@ -39,7 +39,7 @@ BodyModel body_of_mesh(const std::filesystem::path& file) {
   return body;
 }
 
-BodyModel read_dummy(const PatternRequest& request) {
+BodyModel body_to_sew_on(const PatternRequest& request) {
   if (is_mesh(request.body)) return body_of_mesh(request.body);
   return read_performance(read_values(table::body_section(), {{"model", "--body " + request.body, {request.body}}}), {})
       .body;
@@ -149,7 +149,7 @@ PatternReport sew_garment(const PatternRequest& request) {
     write_mesh(request.out, mesh.placed, mesh.triangles);
     return report;
   }
-  const BodyModel body = read_dummy(request);
+  const BodyModel body = body_to_sew_on(request);
   SewingOptions options;
   Config material =
       read_values(table::material_section(), {{"name", "--material " + request.material, {request.material}}});
