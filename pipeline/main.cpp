@@ -223,6 +223,11 @@ void weights_info_options(CLI::App& command, WeightsInfoArguments& arguments) {
   command.add_option("file", arguments.file, "weight file (.h5)")->required();
 }
 
+void weights_halve_options(CLI::App& command, WeightsHalveArguments& arguments) {
+  command.add_option("file", arguments.file, "weight file (.h5)")->required();
+  command.add_option("--out", arguments.out, "where the weight file of half the size goes (.h5)")->required();
+}
+
 void weights_parity_options(CLI::App& command, WeightsParityArguments& arguments) {
   command.add_option("file", arguments.file, "weight file (.h5) or published checkpoint (.pth)")->required();
   command.add_option("dump", arguments.dump, "a step that the authors' code took (.npz)")->required();
@@ -235,6 +240,8 @@ void add_weights_commands(CLI::App& app, Chosen& chosen) {
                                       weights_import_options, weights_import_command);
   add_command<WeightsInfoArguments>(weights, chosen, "info", "what is in a weight file", weights_info_options,
                                     weights_info_command);
+  add_command<WeightsHalveArguments>(weights, chosen, "halve", "a weight file stored as 16-bit floats",
+                                     weights_halve_options, weights_halve_command);
   add_command<WeightsParityArguments>(weights, chosen, "parity", "our step beside one that the authors' code took",
                                       weights_parity_options, weights_parity_command);
 }

@@ -3,6 +3,7 @@
 #include <hdf5.h>
 #include <unistd.h>
 
+#include <Eigen/Core>
 #include <cstring>
 #include <memory>
 
@@ -14,6 +15,7 @@ namespace selvedge {
 namespace {
 
 constexpr const char* form_name = "selvedge weights 1";
+constexpr long long bytes_of_half = 2;
 constexpr hsize_t most_text = 1 << 20, most_texts = 4096;
 
 // An HDF5 identifier that closes itself, of one kind.
@@ -69,15 +71,25 @@ hid_t open_dataset(const WeightStore& store, const std::string& field) {
   return store.good(H5Dopen2(store.file.id, field.c_str(), H5P_DEFAULT), field, "is missing");
 }
 
-void write_dataset(const WeightStore& store, const std::string& field, hid_t type, const std::vector<hsize_t>& shape,
-                   const void* data) {
+// IEEE 754's binary16, little-endian: HDF5 converts it, but has no name for it before version 1.14.4.
+hid_t half_type() {
+  const hid_t type = H5Tcopy(H5T_IEEE_F32LE);
+  H5Tset_fields(type, 15, 10, 5, 0, 10);
+  H5Tset_size(type, 2);
+  H5Tset_ebias(type, 15);
+  return type;
+}
+
+// `data` are of the type `memory`; the file holds them as `type`.
+void write_dataset(const WeightStore& store, const std::string& field, hid_t type, hid_t memory,
+                   const std::vector<hsize_t>& shape, const void* data) {
   const PropertyId links(H5Pcreate(H5P_LINK_CREATE));
   H5Pset_create_intermediate_group(links.id, 1);
   const SpaceId space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr));
   const DatasetId dataset(
       store.good(H5Dcreate2(store.file.id, field.c_str(), type, space.id, links.id, H5P_DEFAULT, H5P_DEFAULT), field,
                  "cannot be written"));
-  store.good(H5Dwrite(dataset.id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), field, "cannot be written");
+  store.good(H5Dwrite(dataset.id, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), field, "cannot be written");
 }
 
 void write_texts(const WeightStore& store, const std::string& field, const std::vector<std::string>& texts) {
@@ -88,7 +100,7 @@ void write_texts(const WeightStore& store, const std::string& field, const std::
   H5Tset_strpad(type.id, H5T_STR_NULLPAD);
   std::vector<char> padded(width * texts.size() + 1, '\0');
   for (std::size_t i = 0; i < texts.size(); ++i) std::memcpy(&padded[i * width], texts[i].data(), texts[i].size());
-  write_dataset(store, field, type.id, {texts.size()}, padded.data());
+  write_dataset(store, field, type.id, type.id, {texts.size()}, padded.data());
 }
 
 std::vector<std::string> read_texts(const WeightStore& store, const std::string& field) {
@@ -131,12 +143,30 @@ void read_array(const WeightStore& store, const WeightArray& array) {
   if (shape_of(store, dataset.id, field) != wanted_shape(array, is_matrix(array)))
     store.fail(field, "its shape is not what the architecture asks for");
   const TypeId type(store.good(H5Dget_type(dataset.id), field, "has no type"));
-  if (H5Tequal(type.id, H5T_IEEE_F32LE) <= 0) store.fail(field, "its values are no 32-bit floats");
+  const TypeId half(half_type());
+  if (H5Tequal(type.id, H5T_IEEE_F32LE) <= 0 && H5Tequal(type.id, half.id) <= 0)
+    store.fail(field, "its values are neither 32-bit nor 16-bit floats");
   check_storage(store, dataset.id, field);
   store.good(H5Dread(dataset.id, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.data), field, "cannot be read");
 }
 
-void write_content(const std::filesystem::path& path, const WeightFile& content) {
+bool stored_half(const WeightArray& array, WeightStorage storage) {
+  return storage == WeightStorage::half && array.trained;
+}
+
+constexpr float largest_half = 65504;
+
+void require_half_range(const WeightFile& content, const std::string& where) {
+  NetworkWeights weights = content.weights;
+  for (const WeightArray& array : weight_arrays(content.architecture, weights)) {
+    const Eigen::Map<const Eigen::ArrayXf> values(array.data, Eigen::Index{array.rows} * array.columns);
+    if (stored_half(array, WeightStorage::half) && !(values.abs() <= largest_half).all())
+      throw Error("a weight of " + array.name + " is not finite or larger than 65,504, the largest half", where,
+                  "store the weights as 32-bit floats");
+  }
+}
+
+void write_content(const std::filesystem::path& path, const WeightFile& content, WeightStorage storage) {
   const PropertyId creation(H5Pcreate(H5P_FILE_CREATE));
   H5Pset_userblock(creation.id, seal_bytes);
   const WeightStore store{FileId(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id, H5P_DEFAULT)), path.string()};
@@ -150,8 +180,10 @@ void write_content(const std::filesystem::path& path, const WeightFile& content)
   write_texts(store, "origin_names", names);
   write_texts(store, "origin_values", values);
   NetworkWeights weights = content.weights;
+  const TypeId half(half_type());
   for (const WeightArray& array : weight_arrays(content.architecture, weights))
-    write_dataset(store, "weights/" + array.name, H5T_IEEE_F32LE, wanted_shape(array, is_matrix(array)), array.data);
+    write_dataset(store, "weights/" + array.name, stored_half(array, storage) ? half.id : H5T_IEEE_F32LE,
+                  H5T_NATIVE_FLOAT, wanted_shape(array, is_matrix(array)), array.data);
   store.good(H5Fflush(store.file.id, H5F_SCOPE_LOCAL), "end of the file", "cannot be written");
 }
 
@@ -165,19 +197,20 @@ struct FileBeside {
 };
 
 void require_fitting_architecture(const WeightStore& store, const Architecture& a, long long bytes) {
-  if (parameter_count(a) > bytes / static_cast<long long>(sizeof(float)))
+  if (parameter_count(a) > bytes / bytes_of_half)
     store.fail("architecture",
                "it asks for " + std::to_string(parameter_count(a)) + " numbers, which is more than the file can hold");
 }
 
 }  // namespace
 
-void write_weight_file(const std::filesystem::path& path, const WeightFile& content) {
+void write_weight_file(const std::filesystem::path& path, const WeightFile& content, WeightStorage storage) {
   check_architecture(content.architecture, path.string());
   check_weights(content.architecture, content.weights, path.string());
+  if (storage == WeightStorage::half) require_half_range(content, path.string());
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const FileBeside beside{path.string() + ".part" + std::to_string(getpid())};
-  write_content(beside.path, content);
+  write_content(beside.path, content, storage);
   write_seal(beside.path);
   std::error_code error;
   std::filesystem::rename(beside.path, path, error);

@@ -19,13 +19,17 @@ struct WeightFile {
 };
 
 // A weight file is an HDF5 file: texts `format`, `version`, `architecture` (architecture_text.hpp) and `training`,
-// lists of texts `origin_names` and `origin_values`, and below `weights` one dataset of 32-bit floats an array
+// lists of texts `origin_names` and `origin_values`, and below `weights` one dataset of 32-bit or 16-bit floats an array
 // (`weight_arrays`). Its user block of 512 bytes begins with a line that names the form and a checksum of all bytes
 // behind it.
 //
+// How trained numbers are stored. `half` is IEEE's binary16: half the size, each number changed by 5e-4 of itself at
+// most. Statistics are stored as 32-bit floats in both.
+enum class WeightStorage { single, half };
+
 // Written beside and renamed: another process sees the old file or the new one. Throws Error for what cannot be
-// written, and for weights that are not of the architecture's shapes.
-void write_weight_file(const std::filesystem::path&, const WeightFile&);
+// written, for weights that are not of the architecture's shapes, and for weights that are too large for `half`.
+void write_weight_file(const std::filesystem::path&, const WeightFile&, WeightStorage = WeightStorage::single);
 
 // Throws one Error, with file and field, for whatever is no whole weight file. The checksum is looked at before HDF5
 // reads a byte, so that damage never reaches it. Against files that are wrong on purpose: ranks, extents and kinds are

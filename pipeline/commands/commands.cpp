@@ -13,6 +13,7 @@
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/run_scene.hpp"
 #include "pipeline/scene/make_stepper.hpp"
+#include "pipeline/scene/trained_material_yaml.hpp"
 #include "pipeline/tools/ccd_report.hpp"
 #include "pipeline/tools/info.hpp"
 #include "pipeline/tools/plan.hpp"
@@ -71,6 +72,7 @@ int simulate_command(const SimulateArguments& arguments, bool json) {
   Setup setup = read_scene(arguments.scene);
   warn_of_training();
   for (const std::string& warning : setup.warnings) std::cerr << "warning: " << warning << "\n";
+  for (const std::string& warning : material_warnings(setup)) std::cerr << "warning: " << warning << "\n";
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
   Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
   const InterruptWatch watch;
@@ -101,6 +103,7 @@ int simulate_command(const SimulateArguments& arguments, bool json) {
 
 int plan_command(const SceneArguments& arguments, bool json) {
   const Setup setup = read_scene(arguments);
+  for (const std::string& warning : material_warnings(setup)) std::cerr << "warning: " << warning << "\n";
   std::cout << (json ? plan_json(setup) : plan_text(setup));
   return 0;
 }

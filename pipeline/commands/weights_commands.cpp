@@ -34,6 +34,12 @@ int weights_info_command(const WeightsInfoArguments& arguments, bool json) {
   return 0;
 }
 
+int weights_halve_command(const WeightsHalveArguments& arguments, bool json) {
+  write_weight_file(arguments.out, read_weight_file(arguments.file), WeightStorage::half);
+  print_weights(read_weight_file(arguments.out), json);
+  return 0;
+}
+
 int weights_parity_command(const WeightsParityArguments& arguments, bool json) {
   const bool is_checkpoint = arguments.file.extension() == ".pth";
   ImportedWeights network;

@@ -46,14 +46,21 @@ struct TrainingRun {
   }
 };
 
+// A path for a file that travels: a relative one as it is, of an absolute one the last folder and the name.
+std::string travelling(const std::filesystem::path& path) {
+  return (path.is_absolute() ? path.parent_path().filename() / path.filename() : path).string();
+}
+
 void write_weights(const TrainingRun& run, const std::string& name) {
   const Trainer& trainer = *run.trainer;
   WeightFile file;
   file.architecture = trainer.architecture;
   file.weights = trainer.network.weights;
-  file.training = training_yaml(run.options);
+  TrainingOptions options = run.options;
+  options.weights = travelling(options.weights);
+  file.training = training_yaml(options);
   file.version = program_version();
-  file.origin = {{"trained by", "selvedge train " + run.request.config.string()},
+  file.origin = {{"trained by", "selvedge train " + travelling(run.request.config)},
                  {"seed", std::to_string(run.options.seed)},
                  {"steps", fmt::format("{} of {}", trainer.counts.step, run.options.steps)},
                  {"hours", fmt::format("{:.3f}", run.seconds() / 3600)}};

@@ -139,6 +139,36 @@ TEST_CASE("weight file: what was written is read back, bit by bit", "[learned]")
   CHECK_THROWS_AS(write_weight_file(folder.path / "absent" / "w.h5", tiny_file()), Error);
 }
 
+TEST_CASE("weight file: half the size, each trained number changed by 5e-4 of itself at most", "[learned]") {
+  const fake::Folder folder("weight_file_half");
+  Architecture a = tiny();
+  a.width = 32;
+  WeightFile content{a, random_weights(a, 3), "", {}, "0.1.0"};
+  content.weights.decoder.layers[0].weight(0, 0) = 1e-3f;
+  content.weights.tables.node.mean[3] = 1.2345678e-9f;  // statistics keep all of their bits
+  write_weight_file(folder.path / "w.h5", content);
+  write_weight_file(folder.path / "half.h5", content, WeightStorage::half);
+  CHECK(std::filesystem::file_size(folder.path / "half.h5") <
+        0.75 * static_cast<double>(std::filesystem::file_size(folder.path / "w.h5")));
+  WeightFile back = read_weight_file(folder.path / "half.h5");
+  const std::vector<WeightArray> is = weight_arrays(a, back.weights), was = weight_arrays(a, content.weights);
+  double largest = 0;
+  for (std::size_t i = 0; i < is.size(); ++i)
+    for (int k = 0; k < is[i].rows * is[i].columns; ++k) {
+      const double change = std::abs(double{is[i].data[k]} - was[i].data[k]);
+      if (is[i].trained) largest = std::max(largest, change / std::max(std::abs(double{was[i].data[k]}), 6.2e-5));
+      if (!is[i].trained) REQUIRE(change == 0);
+    }
+  CHECK(largest < 5e-4);
+  CHECK(largest > 1e-5);
+  write_weight_file(folder.path / "again.h5", back, WeightStorage::half);
+  CHECK(same_bits(a, read_weight_file(folder.path / "again.h5").weights, back.weights));
+
+  content.weights.decoder.layers[0].weight(0, 0) = 7e4f;
+  CHECK_THROWS_WITH(write_weight_file(folder.path / "large.h5", content, WeightStorage::half),
+                    Catch::Matchers::Contains("65,504"));
+}
+
 namespace {
 
 // Cut off, or with one to three bytes changed; most of those where HDF5 keeps its tables.
