@@ -3,12 +3,10 @@
 #include <cstring>
 #include <functional>
 
+#include "collision/geometry/parallel.hpp"
 #include "collision/geometry/points.hpp"
 
 namespace selvedge {
-
-// How many threads OpenMP may use: one where the build has no OpenMP.
-int most_threads();
 
 // Runs `work` with that many threads (one where the build has no OpenMP).
 void with_threads(int threads, const std::function<void()>& work);

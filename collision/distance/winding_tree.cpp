@@ -3,19 +3,19 @@
 #include <cmath>
 #include <numbers>
 
+#include "collision/geometry/solid_angle.hpp"
+
 namespace selvedge {
 namespace {
 
 constexpr double far_away = 2.5;  // in radii of a node: from there on it is a dipole
 constexpr double unclear = 0.1;   // of a sum with dipoles, about 1/2
 
-// Of one triangle, over 4 pi (van Oosterom and Strackee 1983).
-double solid_angle(const Surface& surface, const Points& x, int t, const Vec3& p) {
+// What one triangle adds to the winding number.
+double winding_of(const Surface& surface, const Points& x, int t, const Vec3& p) {
   const Vec3 a = row(x, surface.triangles(t, 0)) - p, b = row(x, surface.triangles(t, 1)) - p;
   const Vec3 c = row(x, surface.triangles(t, 2)) - p;
-  const double la = a.norm(), lb = b.norm(), lc = c.norm();
-  const double below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-  return std::atan2(a.dot(b.cross(c)), below) / (2 * std::numbers::pi);
+  return solid_angle(a, b, c) / (4 * std::numbers::pi);
 }
 
 WindingTree::Node node_of_leaf(const Bvh::Leaf& leaf, const Surface& surface, const Points& x, double& weight) {
@@ -31,15 +31,6 @@ WindingTree::Node node_of_leaf(const Bvh::Leaf& leaf, const Surface& surface, co
     weight += size;
   }
   return node;
-}
-
-double farthest_corner(const Box& box, const Vec3& from) {
-  double squared = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double side = std::max(std::abs(from[k] - box.lo[k]), std::abs(from[k] - box.hi[k]));
-    squared += side * side;
-  }
-  return std::sqrt(squared);
 }
 
 }  // namespace
@@ -70,7 +61,7 @@ WindingTree make_winding_tree(const Bvh& tree, const Surface& surface, const Poi
 
 double exact_winding(const Surface& surface, const Points& x, const Vec3& p) {
   double sum = 0;
-  for (int t = 0; t < surface.triangles.rows(); ++t) sum += solid_angle(surface, x, t, p);
+  for (int t = 0; t < surface.triangles.rows(); ++t) sum += winding_of(surface, x, t, p);
   return sum;
 }
 
@@ -91,7 +82,7 @@ bool winds_round(const WindingTree& windings, const Bvh& tree, const Surface& su
       stack.push_back(child + 1);
     } else {
       for (const int t : tree.leaves[~child].item)
-        if (t >= 0) sum += solid_angle(surface, x, t, p);
+        if (t >= 0) sum += winding_of(surface, x, t, p);
     }
   }
   if (std::abs(sum - 0.5) < unclear) sum = exact_winding(surface, x, p);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -63,6 +65,16 @@ inline Box moving_point_box(const Vec3& x0, const Vec3& x1, double radius) {
 inline Box hull(const Box& a, const Box& b) { return is_empty(a) || is_empty(b) ? empty_box : join(a, b); }
 inline Box hull(const Box& a, const Box& b, const Box& c) {
   return is_empty(a) || is_empty(b) || is_empty(c) ? empty_box : join(join(a, b), c);
+}
+
+// How far the farthest corner of a box lies from a point.
+inline double farthest_corner(const Box& box, const Vec3& from) {
+  double squared = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double side = std::max(std::abs(from[k] - box.lo[k]), std::abs(from[k] - box.hi[k]));
+    squared += side * side;
+  }
+  return std::sqrt(squared);
 }
 
 }  // namespace selvedge

@@ -1,6 +1,18 @@
 #include "collision/geometry/parallel.hpp"
 
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
 namespace selvedge {
+
+int most_threads() {
+#ifdef _OPENMP
+  return omp_get_max_threads();
+#else
+  return 1;
+#endif
+}
 
 void parallel_for(int count, [[maybe_unused]] int grain, const std::function<void(int)>& body) {
 #pragma omp parallel for schedule(dynamic, grain)

@@ -7,6 +7,9 @@ namespace selvedge {
 // Calls body(i) for 0 <= i < count on all threads, `grain` calls at a time, in no order. The body must not throw.
 void parallel_for(int count, int grain, const std::function<void(int)>& body);
 
+// Most threads that a parallel loop uses here: 1 where the build has no OpenMP.
+int most_threads();
+
 // How many tasks of `size` items `count` items make. Sums that are kept by task do not depend on the number of threads.
 constexpr int chunks_of(int count, int size) { return (count + size - 1) / size; }
 

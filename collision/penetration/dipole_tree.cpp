@@ -4,16 +4,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "collision/geometry/solid_angle.hpp"
+
 namespace selvedge {
 namespace {
 
-// Solid angle of a triangle (Van Oosterom and Strackee 1983); 0 from within its plane.
-double solid_angle(const std::array<Vec3, 3>& triangle, const Vec3& at) {
+// The principal value: 0 from within the triangle's plane.
+double principal_angle(const std::array<Vec3, 3>& triangle, const Vec3& at) {
   const Vec3 a = triangle[0] - at, b = triangle[1] - at, c = triangle[2] - at;
-  const double la = a.norm(), lb = b.norm(), lc = c.norm();
-  const double volume = a.dot(b.cross(c));
-  if (volume == 0) return 0;
-  return 2 * std::atan2(volume, la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  return a.dot(b.cross(c)) == 0 ? 0 : solid_angle(a, b, c);
 }
 
 // What a dipole adds at a point, if that is far enough away.
@@ -57,19 +56,10 @@ std::vector<DipoleSum> sums_of(const DipoleTree& tree) {
   return sums;
 }
 
-double farthest(const Box& box, const Vec3& from) {
-  double square = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double reach = std::max(std::abs(box.lo[k] - from[k]), std::abs(box.hi[k] - from[k]));
-    square += reach * reach;
-  }
-  return std::sqrt(square);
-}
-
 }  // namespace
 
-DipoleTree make_winding_tree(const Surface& surface, const Points& x, const std::vector<int>& faces,
-                             const std::vector<signed char>& turn, double far) {
+DipoleTree make_dipole_tree(const Surface& surface, const Points& x, const std::vector<int>& faces,
+                            const std::vector<signed char>& turn, double far) {
   DipoleTree tree;
   tree.far = far;
   tree.faces = faces;
@@ -96,7 +86,7 @@ DipoleTree make_winding_tree(const Surface& surface, const Points& x, const std:
     dipole.centre = sums[i].area > 0 ? Vec3(sums[i].centre / sums[i].area)
                                      : 0.5 * Vec3(box.lo[0] + box.hi[0], box.lo[1] + box.hi[1], box.lo[2] + box.hi[2]);
     dipole.moment = sums[i].moment / (4 * std::numbers::pi);
-    dipole.radius = farthest(box, dipole.centre);
+    dipole.radius = farthest_corner(box, dipole.centre);
     tree.dipoles.push_back(dipole);
   }
   return tree;
@@ -118,7 +108,7 @@ double winding_number(const DipoleTree& tree, const Vec3& at, int left_out) {
     }
     for (const int item : tree.bvh.leaves[~child].item)
       if (item >= 0 && tree.faces[item] != left_out && !add_if_far(tree.of_faces[item], at, 2 * tree.far, far))
-        angle += solid_angle(tree.corners[item], at);
+        angle += principal_angle(tree.corners[item], at);
   }
   return far + angle / (4 * std::numbers::pi);
 }

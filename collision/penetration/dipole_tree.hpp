@@ -23,8 +23,8 @@ struct DipoleTree {
 };
 
 // Of some triangles of a surface, each turned as `turn` (+1, -1) says.
-DipoleTree make_winding_tree(const Surface&, const Points& x, const std::vector<int>& faces,
-                             const std::vector<signed char>& turn, double far);
+DipoleTree make_dipole_tree(const Surface&, const Points& x, const std::vector<int>& faces,
+                            const std::vector<signed char>& turn, double far);
 
 // All triangles but face `left_out`: on that face the principal value.
 double winding_number(const DipoleTree&, const Vec3& at, int left_out = -1);

@@ -49,7 +49,7 @@ class GarmentWinding {
         x_(x),
         found_(found),
         turn_(turn),
-        tree_(make_winding_tree(surface_, x, faces, turn, far)) {}
+        tree_(make_dipole_tree(surface_, x, faces, turn, far)) {}
 
   // The faces that count, and with them those round them, which do not.
   std::vector<WeighedFace> reach(const std::vector<std::array<int, 2>>& pairs, const std::vector<int>& segments) {

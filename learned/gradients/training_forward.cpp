@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "collision/geometry/parallel.hpp"
 #include "learned/gradients/training_layout.hpp"
 #include "learned/gradients/training_tape.hpp"
 
@@ -31,13 +32,20 @@ void finish_forward(const TrainingRun& run, const PackedPerceptron& p, Perceptro
                      p.shift.data(), norm ? tape.factor.data() + slot : nullptr, to.from, to.latent, to.sum});
 }
 
+// Calls work(begin, count) for the tiles of the rows, on all threads.
+template <class Work>
+void for_each_tile(int rows, const Work& work) {
+  parallel_for(tiles_of(rows, training_rows), 1, [&](int tile) {
+    const int begin = tile * training_rows;
+    work(begin, std::min(training_rows, rows - begin));
+  });
+}
+
 // Row i of `to` becomes the perceptron, whose input is one block, of row order[i] of `from` (row i without an order).
 // Slots are rows.
 void forward_rows(const TrainingRun& run, const PackedPerceptron& p, const float* from, std::ptrdiff_t from_stride,
                   const std::vector<int>* order, int rows, PerceptronTape& tape, float* to, std::ptrdiff_t to_stride) {
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int tile = 0; tile < tiles_of(rows, training_rows); ++tile) {
-    const int begin = tile * training_rows, count = std::min(training_rows, rows - begin);
+  for_each_tile(rows, [&](int begin, int count) {
     const float* input[training_rows];
     float* latent[training_rows];
     for (int r = 0; r < count; ++r) {
@@ -50,7 +58,7 @@ void forward_rows(const TrainingRun& run, const PackedPerceptron& p, const float
     first.rectify = true;
     run.kernels.multiply(first);
     finish_forward(run, p, tape, begin, count, {nullptr, latent, nullptr});
-  }
+  });
 }
 
 // Row i of `products` becomes the layer of the latent of node list[i].
@@ -163,9 +171,7 @@ void forward_nodes(const TrainingRun& run, const PackedPerceptron& p, std::size_
   const LatentRows& from = run.tape.nodes[step];
   LatentRows &to = run.tape.nodes[step + 1], &hidden = tape.node.hidden.front();
   const int rows = static_cast<int>(run.graph.nodes.rows());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int tile = 0; tile < tiles_of(rows, training_rows); ++tile) {
-    const int begin = tile * training_rows, count = std::min(training_rows, rows - begin);
+  for_each_tile(rows, [&](int begin, int count) {
     const float* input[training_rows];
     float* latent[training_rows];
     for (int r = 0; r < count; ++r) {
@@ -182,7 +188,7 @@ void forward_nodes(const TrainingRun& run, const PackedPerceptron& p, std::size_
     own.go_on = own.rectify = true;
     run.kernels.multiply(own);
     finish_forward(run, p, tape.node, begin, count, {input, latent, nullptr});
-  }
+  });
 }
 
 void encode_forward(const TrainingRun& run, const PackedNetwork& network) {

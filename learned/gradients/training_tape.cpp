@@ -7,18 +7,11 @@
 #include <algorithm>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/parallel.hpp"
 #include "learned/gradients/training_layout.hpp"
 
 namespace selvedge {
 namespace {
-
-int most_threads() {
-#ifdef _OPENMP
-  return omp_get_max_threads();
-#else
-  return 1;
-#endif
-}
 
 int this_thread() {
 #ifdef _OPENMP
@@ -182,7 +175,7 @@ TrainingRun start_run(const TrainingNetwork& network, const Graph& graph, Traini
   const Architecture& a = network.architecture;
   int widest = std::max({a.width, a.outputs, a.node_inputs});
   for (const EdgeEncoder& encoder : a.encoders) widest = std::max(widest, encoder.inputs);
-  tape.threads.resize(static_cast<std::size_t>(std::max(most_threads(), 1)));
+  tape.threads.resize(static_cast<std::size_t>(most_threads()));
   for (ThreadRows& mine : tape.threads)
     for (LatentRows* buffer : {&mine.first, &mine.second, &mine.third}) buffer->reshape(training_rows, widest);
   const InstructionSet set = network.layout->forward.set;

@@ -4,6 +4,7 @@
 #include "learned/gradients/training_kernels.hpp"
 #include "learned/gradients/training_network.hpp"
 #include "learned/network/graph_plan.hpp"
+#include "learned/network/packed_network.hpp"
 
 namespace selvedge {
 

@@ -1,11 +1,12 @@
 #pragma once
 
+#include "collision/geometry/parallel.hpp"
 #include "learned/network/aligned_floats.hpp"
 #include "learned/network/engine_kernels.hpp"
 
 namespace selvedge {
 
-inline int tiles_of(int rows, int tile = tile_rows) { return (rows + tile - 1) / tile; }
+inline int tiles_of(int rows, int tile = tile_rows) { return chunks_of(rows, tile); }
 
 // One row a node, edge or sum, each padded with zeros; a whole tile of any kernel can be read and written from any row.
 struct LatentRows {

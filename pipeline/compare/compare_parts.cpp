@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/host/kept_row_json.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -13,26 +15,6 @@ using Json = nlohmann::ordered_json;
 
 Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 double number_or_unknown(const Json& value) { return value.is_number() ? value.get<double>() : unknown; }
-
-std::string with_key(const Json& part, const std::string& key) {
-  Json json = {{"key", key}};
-  json.update(part);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-// What `read` makes of a text that has the key; nothing where another version has left it.
-template <class Part, class Read>
-std::optional<Part> parsed(const std::string& text, const std::string& key, Read read) {
-  const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded() || !json.is_object() || json.value("key", "") != key) return {};
-  try {
-    Part part;
-    read(json, part);
-    return part;
-  } catch (const Json::exception&) {
-    return {};
-  }
-}
 
 Json numbers_of(const std::map<std::string, double>& values) {
   Json json = Json::object();
@@ -49,20 +31,20 @@ std::map<std::string, double> numbers_from(const Json& json) {
 }  // namespace
 
 std::string part_json(const CompareFloor& f, const std::string& key) {
-  return with_key({{"scene", f.scene},
-                   {"vertices", f.vertices},
-                   {"frames", f.frames},
-                   {"states", f.states},
-                   {"horizon", f.horizon},
-                   {"motion", f.motion},
-                   {"steps", f.steps},
-                   {"jittered", f.jittered},
-                   {"lost", f.lost}},
-                  key);
+  return kept_row_json({{"scene", f.scene},
+                        {"vertices", f.vertices},
+                        {"frames", f.frames},
+                        {"states", f.states},
+                        {"horizon", f.horizon},
+                        {"motion", f.motion},
+                        {"steps", f.steps},
+                        {"jittered", f.jittered},
+                        {"lost", f.lost}},
+                       key);
 }
 
 std::optional<CompareFloor> read_floor(const std::string& text, const std::string& key) {
-  return parsed<CompareFloor>(text, key, [](const Json& j, CompareFloor& f) {
+  return read_kept_row<CompareFloor>(text, key, [](const Json& j, CompareFloor& f) {
     j.at("scene").get_to(f.scene);
     j.at("vertices").get_to(f.vertices);
     j.at("frames").get_to(f.frames);
@@ -76,16 +58,16 @@ std::optional<CompareFloor> read_floor(const std::string& text, const std::strin
 }
 
 std::string part_json(const CompareErrors& e, const std::string& key) {
-  return with_key({{"trouble", e.trouble},
-                   {"algebraic", finite_or_null(e.algebraic)},
-                   {"algebraic_largest", finite_or_null(e.algebraic_largest)},
-                   {"temporal", finite_or_null(e.temporal)},
-                   {"measures", numbers_of(e.measures)}},
-                  key);
+  return kept_row_json({{"trouble", e.trouble},
+                        {"algebraic", finite_or_null(e.algebraic)},
+                        {"algebraic_largest", finite_or_null(e.algebraic_largest)},
+                        {"temporal", finite_or_null(e.temporal)},
+                        {"measures", numbers_of(e.measures)}},
+                       key);
 }
 
 std::optional<CompareErrors> read_errors(const std::string& text, const std::string& key) {
-  return parsed<CompareErrors>(text, key, [](const Json& j, CompareErrors& e) {
+  return read_kept_row<CompareErrors>(text, key, [](const Json& j, CompareErrors& e) {
     j.at("trouble").get_to(e.trouble);
     e.algebraic = number_or_unknown(j.at("algebraic"));
     e.algebraic_largest = number_or_unknown(j.at("algebraic_largest"));
@@ -95,23 +77,23 @@ std::optional<CompareErrors> read_errors(const std::string& text, const std::str
 }
 
 std::string part_json(const CompareRun& r, const std::string& key) {
-  return with_key({{"trouble", r.trouble},
-                   {"seconds", r.seconds},
-                   {"substeps", r.substeps},
-                   {"newton", r.newton},
-                   {"linear", r.linear},
-                   {"passed_through", r.passed_through},
-                   {"pairs", r.pairs},
-                   {"lost", finite_or_null(r.lost)},
-                   {"end", r.end},
-                   {"measures", numbers_of(r.measures)},
-                   {"phases", numbers_of(r.phases)},
-                   {"pairs_by_frame", r.pairs_by_frame}},
-                  key);
+  return kept_row_json({{"trouble", r.trouble},
+                        {"seconds", r.seconds},
+                        {"substeps", r.substeps},
+                        {"newton", r.newton},
+                        {"linear", r.linear},
+                        {"passed_through", r.passed_through},
+                        {"pairs", r.pairs},
+                        {"lost", finite_or_null(r.lost)},
+                        {"end", r.end},
+                        {"measures", numbers_of(r.measures)},
+                        {"phases", numbers_of(r.phases)},
+                        {"pairs_by_frame", r.pairs_by_frame}},
+                       key);
 }
 
 std::optional<CompareRun> read_run(const std::string& text, const std::string& key) {
-  return parsed<CompareRun>(text, key, [](const Json& j, CompareRun& r) {
+  return read_kept_row<CompareRun>(text, key, [](const Json& j, CompareRun& r) {
     j.at("trouble").get_to(r.trouble);
     j.at("seconds").get_to(r.seconds);
     j.at("substeps").get_to(r.substeps);

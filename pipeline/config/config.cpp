@@ -139,4 +139,11 @@ std::string section_markdown(const Section& section) {
   return page;
 }
 
+std::string section_chapter(const Section& section) {
+  std::string page = "### " + section.name + "\n\n";
+  if (!section.about.empty()) page += section.about + "\n\n";
+  if (!section.shorthand.empty()) page += "A plain value stands for `" + section.shorthand + "`.\n\n";
+  return page + section_markdown(section) + "\n";
+}
+
 }  // namespace selvedge

@@ -89,5 +89,7 @@ std::string joined(const std::vector<std::string>& words);
 
 // The table of a section as Markdown, as it stands in docs/scene.md.
 std::string section_markdown(const Section&);
+// The same as a chapter: heading, what the section is about, what a plain value stands for, and the table.
+std::string section_chapter(const Section&);
 
 }  // namespace selvedge

@@ -230,6 +230,12 @@ Option<Struct> or_word(Option<Struct> option, std::string word) {
   option.key.choices = {std::move(word)};
   return with_default(std::move(option));
 }
+// A section under a name of its own. What a file leaves out of it keeps the struct's value.
+template <class Struct>
+Option<Struct> renamed(Option<Struct> option, std::string name) {
+  option.key.name = std::move(name);
+  return option;
+}
 template <class Struct>
 Option<Struct> needed(Option<Struct> option) {
   option.key.otherwise.clear();

@@ -46,10 +46,7 @@ DrapeOptions read_drape_options(const std::filesystem::path& file, const std::ve
   return options;
 }
 
-std::string drape_reference() {
-  const Section& section = drape_options().section;
-  return "### " + section.name + "\n\n" + section.about + "\n\n" + section_markdown(section) + "\n";
-}
+std::string drape_reference() { return section_chapter(drape_options().section); }
 
 std::string drape_yaml(const DrapeOptions& options) { return to_yaml(drape_options().written(options)); }
 

@@ -3,24 +3,13 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
+#include "physics/scene/memory.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
 
 namespace selvedge {
 namespace {
 
 const h5::FileForm path_form{"selvedge drapes 1", "path of drapes", "docs/repulsion.md"};
-
-Points on_end(const std::vector<Points>& all) {
-  Eigen::Index rows = 0;
-  for (const Points& points : all) rows += points.rows();
-  Points joined(rows, 3);
-  rows = 0;
-  for (const Points& points : all) {
-    joined.middleRows(rows, points.rows()) = points;
-    rows += points.rows();
-  }
-  return joined;
-}
 
 std::vector<Points> parts_of(const h5::Fields& fields, const std::string& name, int rows) {
   const Points all = fields.points(name);
@@ -38,8 +27,8 @@ void write_drape_path(const std::filesystem::path& file, const DrapePath& path) 
     h5::write_numbers(to, "shape", {path.shape.begin(), path.shape.end()});
     h5::write_numbers(to, "style", {path.style.begin(), path.style.end()});
     if (!path.x.empty()) {
-      h5::write_points(to, "rotations", on_end(path.rotations));
-      h5::write_points(to, "x", on_end(path.x));
+      h5::write_points(to, "rotations", joined_rows(path.rotations));
+      h5::write_points(to, "x", joined_rows(path.x));
     }
     std::vector<std::string> reasons;
     std::vector<int> counts;

@@ -22,9 +22,7 @@ const Options<StageOptions>& stage_options() {
 
 template <class Struct>
 Option<Struct> stage(std::string name, StageOptions Struct::*member, std::string about) {
-  Option<Struct> option = section(member, stage_options(), std::move(about));
-  option.key.name = std::move(name);
-  return option;
+  return renamed(section(member, stage_options(), std::move(about)), std::move(name));
 }
 
 const Options<BackboneOptions>& backbone_options() {
@@ -113,7 +111,7 @@ std::string drape_training_reference() {
   std::string page;
   for (const Section* one : {&drape_training_options().section, &backbone_options().section, &stage_options().section,
                              &layer_options().section, &distance_options().section})
-    page += "### " + one->name + "\n\n" + one->about + "\n\n" + section_markdown(*one) + "\n";
+    page += section_chapter(*one);
   return page;
 }
 

@@ -1,12 +1,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/config/config.hpp"
+#include "pipeline/host/read_file.hpp"
 #include "pipeline/patterns/pattern.hpp"
 #include "pipeline/patterns/pattern_check.hpp"
 
@@ -227,11 +226,7 @@ Pattern pattern_of(const std::string& json, const std::string& file) {
 }
 
 Pattern read_pattern(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw Error("cannot be read", path.string(), "check the path");
-  std::ostringstream text;
-  text << in.rdbuf();
-  Pattern pattern = pattern_of(text.str(), path.string());
+  Pattern pattern = pattern_of(read_text_file(path, "pattern"), path.string());
   pattern.name = path.stem().string();
   if (const auto end = pattern.name.rfind("_specification"); end != std::string::npos) pattern.name.resize(end);
   return pattern;

@@ -95,12 +95,7 @@ std::vector<const Section*> scene_sections() {
 
 std::string scene_reference() {
   std::string page;
-  for (const Section* section : scene_sections()) {
-    page += "### " + section->name + "\n\n";
-    if (!section->about.empty()) page += section->about + "\n\n";
-    if (!section->shorthand.empty()) page += "A plain value stands for `" + section->shorthand + "`.\n\n";
-    page += section_markdown(*section) + "\n";
-  }
+  for (const Section* section : scene_sections()) page += section_chapter(*section);
   return page;
 }
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/host/json_csv.hpp"
+#include "pipeline/host/kept_row_json.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/suites/stress.hpp"
 
@@ -12,61 +13,35 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json to_json(const StressRow& r) {
-  return {{"scene", r.scene},
-          {"repeat", r.repeat},
-          {"passed", r.passed()},
-          {"seed", r.seed},
-          {"jitter", r.jitter},
-          {"vertices", r.vertices},
-          {"frames", r.frames},
-          {"frames_wanted", r.frames_wanted},
-          {"seconds", r.seconds},
-          {"intersecting_pairs", r.pairs},
-          {"vertex_sharing_pairs", r.vertex_pairs},
-          {"nonfinite", r.nonfinite},
-          {"worst_frame", r.worst_frame},
-          {"inside_vertices", r.worst_inside},
-          {"frames_touching_wanted", r.wanted_frames},
-          {"passed_through", r.passed_through},
-          {"impulses", r.impulses},
-          {"zones", r.zones},
-          {"shortened_zones", r.shortened},
-          {"held_share", r.held_share},
-          {"obstacle_lag", r.obstacle_lag},
-          {"max_stretch", r.max_stretch},
-          {"outcome", r.outcome},
-          {"failures", r.failures}};
-}
+// The fields of a row in its JSON.
+constexpr auto stress_fields = [](auto& r, const auto& visit) {
+  visit("scene", r.scene);
+  visit("repeat", r.repeat);
+  visit("passed", r.passed());
+  visit("seed", r.seed);
+  visit("jitter", r.jitter);
+  visit("vertices", r.vertices);
+  visit("frames", r.frames);
+  visit("frames_wanted", r.frames_wanted);
+  visit("seconds", r.seconds);
+  visit("intersecting_pairs", r.pairs);
+  visit("vertex_sharing_pairs", r.vertex_pairs);
+  visit("nonfinite", r.nonfinite);
+  visit("worst_frame", r.worst_frame);
+  visit("inside_vertices", r.worst_inside);
+  visit("frames_touching_wanted", r.wanted_frames);
+  visit("passed_through", r.passed_through);
+  visit("impulses", r.impulses);
+  visit("zones", r.zones);
+  visit("shortened_zones", r.shortened);
+  visit("held_share", r.held_share);
+  visit("obstacle_lag", r.obstacle_lag);
+  visit("max_stretch", r.max_stretch);
+  visit("outcome", r.outcome);
+  visit("failures", r.failures);
+};
 
-StressRow from_json(const Json& j) {
-  StressRow r;
-  j.at("scene").get_to(r.scene);
-  j.at("repeat").get_to(r.repeat);
-  j.at("seed").get_to(r.seed);
-  j.at("jitter").get_to(r.jitter);
-  j.at("vertices").get_to(r.vertices);
-  j.at("frames").get_to(r.frames);
-  j.at("frames_wanted").get_to(r.frames_wanted);
-  j.at("seconds").get_to(r.seconds);
-  j.at("intersecting_pairs").get_to(r.pairs);
-  j.at("vertex_sharing_pairs").get_to(r.vertex_pairs);
-  j.at("nonfinite").get_to(r.nonfinite);
-  j.at("worst_frame").get_to(r.worst_frame);
-  j.at("inside_vertices").get_to(r.worst_inside);
-  j.at("frames_touching_wanted").get_to(r.wanted_frames);
-  j.at("passed_through").get_to(r.passed_through);
-  j.at("impulses").get_to(r.impulses);
-  j.at("zones").get_to(r.zones);
-  j.at("shortened_zones").get_to(r.shortened);
-  j.at("held_share").get_to(r.held_share);
-  j.at("obstacle_lag").get_to(r.obstacle_lag);
-  j.at("max_stretch").get_to(r.max_stretch);
-  j.at("outcome").get_to(r.outcome);
-  j.at("failures").get_to(r.failures);
-  r.kept = true;
-  return r;
-}
+Json to_json(const StressRow& row) { return row_to_json(row, stress_fields); }
 
 // Rows of one scene lie together.
 template <class Each>
@@ -91,20 +66,13 @@ std::string text_row(const StressRow& r) {
 
 }  // namespace
 
-std::string stress_row_json(const StressRow& row, const std::string& key) {
-  Json json = {{"key", key}};
-  json.update(to_json(row));
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
+std::string stress_row_json(const StressRow& row, const std::string& key) { return kept_row_json(to_json(row), key); }
 
 std::optional<StressRow> read_stress_row(const std::string& text, const std::string& key) {
-  const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded() || !json.is_object() || json.value("key", "") != key) return {};
-  try {
-    return from_json(json);
-  } catch (const Json::exception&) {
-    return {};  // a file that another version has left
-  }
+  return read_kept_row<StressRow>(text, key, [](const Json& json, StressRow& row) {
+    row_from_json(json, stress_fields, row);
+    row.kept = true;
+  });
 }
 
 std::string stress_json(const std::vector<StressRow>& rows) {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/host/json_csv.hpp"
+#include "pipeline/host/kept_row_json.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/suites/wardrobe.hpp"
 
@@ -12,62 +13,39 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json to_json(const WardrobeRow& r) {
-  return {{"wear", r.wear},
-          {"clip", r.clip},
-          {"passed", r.passed()},
-          {"validation", r.validation},
-          {"vertices", r.vertices},
-          {"frames", r.frames},
-          {"frames_wanted", r.frames_wanted},
-          {"excused_frames", r.excused_frames},
-          {"cloth_pairs", r.cloth_pairs},
-          {"body_pairs", r.body_pairs},
-          {"obstacle_lag", r.lag},
-          {"depth", r.depth},
-          {"milliseconds", r.milliseconds},
-          {"seconds", r.seconds},
-          {"max_stretch", r.max_stretch},
-          {"failures", r.failures}};
-}
+// The fields of a row in its JSON.
+constexpr auto wardrobe_fields = [](auto& r, const auto& visit) {
+  visit("wear", r.wear);
+  visit("clip", r.clip);
+  visit("passed", r.passed());
+  visit("validation", r.validation);
+  visit("vertices", r.vertices);
+  visit("frames", r.frames);
+  visit("frames_wanted", r.frames_wanted);
+  visit("excused_frames", r.excused_frames);
+  visit("cloth_pairs", r.cloth_pairs);
+  visit("body_pairs", r.body_pairs);
+  visit("obstacle_lag", r.lag);
+  visit("depth", r.depth);
+  visit("milliseconds", r.milliseconds);
+  visit("seconds", r.seconds);
+  visit("max_stretch", r.max_stretch);
+  visit("failures", r.failures);
+};
 
-WardrobeRow from_json(const Json& j) {
-  WardrobeRow r;
-  j.at("wear").get_to(r.wear);
-  j.at("clip").get_to(r.clip);
-  j.at("validation").get_to(r.validation);
-  j.at("vertices").get_to(r.vertices);
-  j.at("frames").get_to(r.frames);
-  j.at("frames_wanted").get_to(r.frames_wanted);
-  j.at("excused_frames").get_to(r.excused_frames);
-  j.at("cloth_pairs").get_to(r.cloth_pairs);
-  j.at("body_pairs").get_to(r.body_pairs);
-  j.at("obstacle_lag").get_to(r.lag);
-  j.at("depth").get_to(r.depth);
-  j.at("milliseconds").get_to(r.milliseconds);
-  j.at("seconds").get_to(r.seconds);
-  j.at("max_stretch").get_to(r.max_stretch);
-  j.at("failures").get_to(r.failures);
-  r.kept = true;
-  return r;
-}
+Json to_json(const WardrobeRow& row) { return row_to_json(row, wardrobe_fields); }
 
 }  // namespace
 
 std::string wardrobe_row_json(const WardrobeRow& row, const std::string& key) {
-  Json json = {{"key", key}};
-  json.update(to_json(row));
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return kept_row_json(to_json(row), key);
 }
 
 std::optional<WardrobeRow> read_wardrobe_row(const std::string& text, const std::string& key) {
-  const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded() || !json.is_object() || json.value("key", "") != key) return {};
-  try {
-    return from_json(json);
-  } catch (const Json::exception&) {
-    return {};  // a file that another version has left
-  }
+  return read_kept_row<WardrobeRow>(text, key, [](const Json& json, WardrobeRow& row) {
+    row_from_json(json, wardrobe_fields, row);
+    row.kept = true;
+  });
 }
 
 std::string wardrobe_json(const std::vector<WardrobeRow>& rows) {

@@ -3,9 +3,6 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <hdf5.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 #include <Eigen/Core>
 #include <cstdlib>
@@ -13,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "collision/geometry/parallel.hpp"
 #include "collision/search/obstacle.hpp"
 #include "physics/linear/cholesky.hpp"
 #include "pipeline/config/config.hpp"
@@ -34,14 +32,6 @@ std::string blas() {
   using Config = char* (*)();
   if (void* config = dlsym(RTLD_DEFAULT, "openblas_get_config")) return reinterpret_cast<Config>(config)();
   return dlsym(RTLD_DEFAULT, "dgemm_") ? "unknown (not OpenBLAS)" : "none found";
-}
-
-int threads() {
-#ifdef _OPENMP
-  return omp_get_max_threads();
-#else
-  return 1;
-#endif
 }
 
 // How threads wait for work; see process_threads.cpp.
@@ -70,7 +60,7 @@ std::vector<std::pair<std::string, std::string>> facts() {
           {"blas", blas()},
           {"fcl", obstacle_available() ? "in" : "left out (SELVEDGE_FCL=OFF)"},
           {"openmp", has_openmp() ? "in" : "left out (SELVEDGE_OPENMP=OFF)"},
-          {"threads", std::to_string(threads())},
+          {"threads", std::to_string(most_threads())},
           {"waiting", waiting()},
           {"steppers", joined(known_kinds().names())}};
 }
@@ -80,7 +70,7 @@ std::vector<std::pair<std::string, std::string>> facts() {
 std::string info_json() {
   nlohmann::ordered_json json;
   for (const auto& [name, value] : facts()) json[name] = value;
-  json["threads"] = threads();
+  json["threads"] = most_threads();
   return json.dump(2) + "\n";
 }
 

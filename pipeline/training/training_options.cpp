@@ -27,12 +27,9 @@ const Options<LossRamp>& ramp_options() {
   return table;
 }
 
-// A ramp under a name of its own. What a file leaves out of it keeps the struct's value.
 template <class Struct>
 Option<Struct> ramp(std::string name, LossRamp Struct::*member, std::string about) {
-  Option<Struct> option = section(member, ramp_options(), std::move(about));
-  option.key.name = std::move(name);
-  return option;
+  return renamed(section(member, ramp_options(), std::move(about)), std::move(name));
 }
 
 const Options<VertexMaterial>& training_material_options() {
@@ -345,11 +342,8 @@ std::string training_reference() {
         &space_options().section, &objective_options().section, &collision_options().section,
         &friction_options().section, &repulsion_options().section, &contour_options().section,
         &volume_options().section, &region_options().section, &vertex_repulsion_options().section,
-        &optimiser_options().section, &watch_options().section, &ramp_options().section}) {
-    page += "### " + section->name + "\n\n";
-    if (!section->about.empty()) page += section->about + "\n\n";
-    page += section_markdown(*section) + "\n";
-  }
+        &optimiser_options().section, &watch_options().section, &ramp_options().section})
+    page += section_chapter(*section);
   return page;
 }
 

@@ -1,17 +1,19 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 #include "collision/geometry/surface.hpp"
 
 namespace selvedge::testing {
 
-// A square sheet of n x n quads in the plane y = height, centred on the origin, one diagonal a quad.
 struct Sheet {
   Points x;
   Triangles triangles;
+  Surface surface() const { return make_surface(static_cast<int>(x.rows()), triangles); }
 };
 
+// A square sheet of n x n quads in the plane y = height, centred on the origin, one diagonal a quad.
 inline Sheet sheet(int n, double size, double height) {
   Sheet s{Points((n + 1) * (n + 1), 3), Triangles(2 * n * n, 3)};
   for (int j = 0; j <= n; ++j)
@@ -42,6 +44,26 @@ inline Sheet flat(int n, const Vec2& jitter) {
   return bent(n, jitter, [](double a, double b) { return Vec3(a, 0, b); });
 }
 
+// n rings of m vertices round the x axis, of radius r(x, angle) for |x| <= half_length; open at both ends.
+template <class Radius>
+Sheet tube(int n, int m, double turn, const Radius& radius, double half_length = 0.5) {
+  Sheet s{Points((n + 1) * m, 3), Triangles(2 * n * m, 3)};
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j < m; ++j) {
+      const double x = half_length * (2.0 * i / n - 1), angle = 2 * std::numbers::pi * (j + turn) / m;
+      const double r = radius(x, angle);
+      s.x.row(i * m + j) << x, r * std::cos(angle), r * std::sin(angle);
+    }
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < m; ++j) {
+      const int a = i * m + j, b = i * m + (j + 1) % m, c = a + m, d = b + m;
+      s.triangles.row(2 * (i * m + j)) << a, b, c;
+      s.triangles.row(2 * (i * m + j) + 1) << b, d, c;
+    }
+  return s;
+}
+
+// Joint numbering: b behind a.
 inline Sheet join(const Sheet& a, const Sheet& b) {
   Sheet s{Points(a.x.rows() + b.x.rows(), 3), Triangles(a.triangles.rows() + b.triangles.rows(), 3)};
   s.x << a.x, b.x;

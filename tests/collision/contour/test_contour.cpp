@@ -15,6 +15,7 @@ namespace selvedge::test_contour {
 
 using testing::bent;
 using testing::flat;
+using testing::tube;
 
 namespace {
 
@@ -71,24 +72,7 @@ const ContourSide& side_of(const Contour& contour, int component) {
 
 int side_number(const Contour& contour, int component) { return contour.sides[0].component == component ? 0 : 1; }
 
-// n rings of m vertices round the x axis, of radius r(x) over [-1, 1].
-template <class Radius>
-testing::Sheet tube(int n, int m, double turn, Radius radius) {
-  testing::Sheet s{Points((n + 1) * m, 3), Triangles(2 * n * m, 3)};
-  for (int i = 0; i <= n; ++i)
-    for (int j = 0; j < m; ++j) {
-      const double x = 2.0 * i / n - 1, angle = 2 * std::numbers::pi * (j + turn) / m;
-      s.x.row(i * m + j) << x, radius(x) * std::cos(angle), radius(x) * std::sin(angle);
-    }
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < m; ++j) {
-      const int a = i * m + j, b = i * m + (j + 1) % m, c = a + m, d = b + m;
-      s.triangles.row(2 * (i * m + j)) << a, b, c;
-      s.triangles.row(2 * (i * m + j) + 1) << b, d, c;
-    }
-  return s;
-}
-
+double half(double, double) { return 0.5; }
 double bump(double a, double b) { return 0.3 * std::exp(-12 * (a * a + b * b)) - 0.1; }
 
 }  // namespace
@@ -221,8 +205,8 @@ TEST_CASE("contour: nested ones", "[contour]") {
 }
 
 TEST_CASE("contour: tube through tube needs all contours together", "[contour]") {
-  const auto bulge = [](double x) { return 0.45 + 0.1 * std::exp(-20 * (x + 0.03) * (x + 0.03)); };
-  const Case c(testing::join(tube(20, 17, 0, [](double) { return 0.5; }), tube(24, 17, 0.3, bulge)));
+  const auto bulge = [](double x, double) { return 0.45 + 0.1 * std::exp(-20 * (x + 0.03) * (x + 0.03)); };
+  const Case c(testing::join(tube(20, 17, 0, half, 1), tube(24, 17, 0.3, bulge, 1)));
   REQUIRE(c.contours.size() == 2);
   const std::vector<int> middle = c.where(1, [](const Vec3& p) { return p.tail<2>().norm() > 0.502; });
   REQUIRE_FALSE(middle.empty());
@@ -240,12 +224,13 @@ TEST_CASE("contour: tube through tube needs all contours together", "[contour]")
 }
 
 TEST_CASE("contour: a tube across another one", "[contour]") {
-  testing::Sheet across = tube(22, 14, 0.1, [](double) { return 0.21; });
+  testing::Sheet across = tube(
+      22, 14, 0.1, [](double, double) { return 0.21; }, 1);
   for (int v = 0; v < across.x.rows(); ++v) {
     const Vec3 p = row(across.x, v);
     across.x.row(v) << p.z() + 0.02, p.x(), p.y() + 0.03;
   }
-  const Case c(testing::join(tube(21, 19, 0, [](double) { return 0.5; }), across));
+  const Case c(testing::join(tube(21, 19, 0, half, 1), across));
   REQUIRE(c.contours.size() == 2);
   CHECK(c.inside(1, 0) == c.where(1, [](const Vec3& p) { return p.tail<2>().norm() < 0.495; }));
   for (int v : c.inside(0, 1)) CHECK(std::hypot(c.mesh.x(v, 0) - 0.02, c.mesh.x(v, 2) - 0.03) < 0.21);

@@ -6,23 +6,13 @@
 #include <random>
 #include <vector>
 
-#include "collision/geometry/surface.hpp"
+#include "tests/collision/sheets.hpp"
 
 namespace selvedge::closed {
 
-// A mesh of several parts with joint numbering.
-struct Solid {
-  Points x;
-  Triangles triangles;
-  Surface surface() const { return make_surface(static_cast<int>(x.rows()), triangles); }
-};
+using Solid = testing::Sheet;
 
-inline Solid both(const Solid& a, const Solid& b) {
-  Solid s{Points(a.x.rows() + b.x.rows(), 3), Triangles(a.triangles.rows() + b.triangles.rows(), 3)};
-  s.x << a.x, b.x;
-  s.triangles << a.triangles, (b.triangles.array() + static_cast<int>(a.x.rows())).matrix();
-  return s;
-}
+inline Solid both(const Solid& a, const Solid& b) { return testing::join(a, b); }
 
 inline Solid moved(Solid s, const Vec3& by) {
   s.x.rowwise() += by.transpose();

@@ -107,7 +107,7 @@ TEST_CASE("winding: the tree is close to the definition", "[penetration]") {
   std::vector<int> faces;
   for (int t = 0; t < surface.triangles.rows(); ++t) faces.push_back(t);
   const std::vector<signed char> turn(faces.size(), 1);
-  const DipoleTree tree = make_winding_tree(surface, solid.x, faces, turn, 2.5);
+  const DipoleTree tree = make_dipole_tree(surface, solid.x, faces, turn, 2.5);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> place(-1.5, 1.5);
   double worst = 0;
@@ -116,7 +116,7 @@ TEST_CASE("winding: the tree is close to the definition", "[penetration]") {
     worst = std::max(worst, std::abs(winding_number(tree, at) - winding_by_definition(solid, at)));
   }
   CHECK(worst < 0.02);
-  CHECK(winding_number(make_winding_tree(surface, solid.x, faces, turn, 1e9), Vec3(0.1, 0.2, 0.3)) ==
+  CHECK(winding_number(make_dipole_tree(surface, solid.x, faces, turn, 1e9), Vec3(0.1, 0.2, 0.3)) ==
         Approx(winding_by_definition(solid, Vec3(0.1, 0.2, 0.3))).epsilon(1e-12));
 }
 

@@ -14,29 +14,11 @@ namespace selvedge::test_untangle {
 
 using testing::bent;
 using testing::flat;
+using testing::tube;
 
 namespace {
 
 const Vec2 jitter(0.003, 0.003);
-
-// n rings of m vertices round the x axis, of radius r(x, angle) over [-0.5, 0.5].
-template <class Radius>
-testing::Sheet tube(int n, int m, double turn, Radius radius) {
-  testing::Sheet s{Points((n + 1) * m, 3), Triangles(2 * n * m, 3)};
-  for (int i = 0; i <= n; ++i)
-    for (int j = 0; j < m; ++j) {
-      const double x = double(i) / n - 0.5, angle = 2 * std::numbers::pi * (j + turn) / m;
-      const double r = radius(x, angle);
-      s.x.row(i * m + j) << x, r * std::cos(angle), r * std::sin(angle);
-    }
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < m; ++j) {
-      const int a = i * m + j, b = i * m + (j + 1) % m, c = a + m, d = b + m;
-      s.triangles.row(2 * (i * m + j)) << a, b, c;
-      s.triangles.row(2 * (i * m + j) + 1) << b, d, c;
-    }
-  return s;
-}
 
 // Two layers; the inner one is pushed through the outer one over 30 % of its area (depth 0.04) or 32 % (0.05).
 testing::Sheet outfit(double depth) {

@@ -3,28 +3,18 @@
 #include <limits>
 
 #include "learned/repulsion/repulsion_training.hpp"
-#include "tests/collision/solids.hpp"
+#include "tests/learned/repulsion/dressed_blob.hpp"
 
 namespace selvedge::test_repulsion_training {
 
-using testing::Solid;
-
 namespace {
 
-struct LayerCase {
-  Solid body = testing::blob(10), garment = testing::ball(8);
-  DistanceField field{body.surface};
-  Adjacency ring;
+struct LayerCase : fake::DressedBlob {
   Points truth;
-  AskDistance ask;
   std::vector<float> inputs{0.4f, -0.3f, 0.8f};
   ScaleNetwork network;
 
-  explicit LayerCase(ScaleForm form) {
-    field.move_to(body.x);
-    ring = adjacency_of(garment.surface.vertex_count, garment.surface.edges);
-    truth = 1.3 * garment.x;
-    ask = [this](const Points& at, std::vector<SignedDistance>& found) { found = field.ask(at); };
+  explicit LayerCase(ScaleForm form) : DressedBlob(10, 8), truth(1.3 * garment.x) {
     ScaleShape shape = small_scale_shape(3, garment.surface.vertex_count);
     shape.latent = 12;
     shape.unit = 0.1;

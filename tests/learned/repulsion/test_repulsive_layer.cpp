@@ -5,7 +5,7 @@
 
 #include "learned/repulsion/repulsive_layer.hpp"
 #include "learned/repulsion/smooth_push.hpp"
-#include "tests/collision/solids.hpp"
+#include "tests/learned/repulsion/dressed_blob.hpp"
 
 namespace selvedge::test_repulsive_layer {
 
@@ -13,18 +13,8 @@ using testing::Solid;
 
 namespace {
 
-// A ball-shaped garment that a lumpy body sticks out of in places.
-struct Dressed {
-  Solid body = testing::blob(12), garment = testing::ball(14);
-  DistanceField field{body.surface};
-  Adjacency ring;
-  AskDistance ask;
-
-  Dressed() {
-    field.move_to(body.x);
-    ring = adjacency_of(garment.surface.vertex_count, garment.surface.edges);
-    ask = [this](const Points& at, std::vector<SignedDistance>& found) { found = field.ask(at); };
-  }
+struct Dressed : fake::DressedBlob {
+  Dressed() : DressedBlob(12, 14) {}
 };
 
 int inside(const Dressed& d, const Points& x) {

@@ -1,12 +1,11 @@
 #include "physics/steppers/hybrid_stepper.hpp"
 
-#include <cstring>
-
 #include "collision/geometry/error.hpp"
 #include "physics/steppers/finish_step.hpp"
 #include "physics/steppers/icm_stepper.hpp"
 #include "physics/steppers/proposal_trust.hpp"
 #include "tests/physics/spoiled_steps.hpp"
+#include "tests/threads.hpp"
 
 namespace selvedge::test_hybrid_stepper {
 
@@ -102,11 +101,6 @@ Seen follow(Stepper& stepper, const World& w, State state, int frames) {
     seen.state = to;
   }
   return seen;
-}
-
-bool same_bits(const Points& a, const Points& b) {
-  return a.rows() == b.rows() &&
-         std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
 }
 
 constexpr std::array all_modes{HybridMode::fallback, HybridMode::corrected, HybridMode::refined, HybridMode::gated,

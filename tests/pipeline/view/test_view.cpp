@@ -4,23 +4,15 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <limits>
-#include <sstream>
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/view/view_data.hpp"
 #include "tests/pipeline/draping_run.hpp"
-#include "tests/pipeline/fake_run.hpp"
+#include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_view {
 
 namespace {
-
-std::string read(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 // Stands in for the package, so that these tests need none.
 ViewOptions with_three_in(const std::filesystem::path& folder) {
@@ -125,7 +117,7 @@ TEST_CASE("view: a trajectory file becomes a page named after its folder", "[vie
   for (int index = 0; index < 3; ++index) writer.append(fake::frame(scene, index));
   writer.close();
   write_view({file.parent_path()}, folder.path / "page.html", options);
-  const std::string page = read(folder.path / "page.html");
+  const std::string page = fake::whole(folder.path / "page.html");
   for (const char* part : {"\"name\":\"silk-dress\"", "\"stepper\":\"hybrid-of-two\"", "\"self\":[0,1,2]",
                            "\"marked\":[[],[1],[0,1]]", "\"selfAudited\":true"})
     CHECK(page.find(part) != std::string::npos);

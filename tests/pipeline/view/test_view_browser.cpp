@@ -9,20 +9,13 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/view/view.hpp"
 #include "tests/pipeline/draping_run.hpp"
-#include "tests/pipeline/fake_run.hpp"
+#include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_view_browser {
 
 using nlohmann::json;
 
 namespace {
-
-std::string read(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 std::string find_chromium() {
   std::istringstream folders(std::getenv("PATH") ? std::getenv("PATH") : "");
@@ -47,7 +40,7 @@ Shot open(const std::string& chromium, const std::filesystem::path& page, const 
       "--enable-logging=stderr --user-data-dir={} --screenshot={} --dump-dom 'file://{}#{}' > {} 2> {}",
       chromium, at("profile"), at("shot.png"), page.string(), options, at("dom.html"), at("log.txt"));
   REQUIRE(std::system(command.c_str()) == 0);
-  return {read(folder / "dom.html"), read(folder / "log.txt"), read(folder / "shot.png")};
+  return {fake::whole(folder / "dom.html"), fake::whole(folder / "log.txt"), fake::whole(folder / "shot.png")};
 }
 
 std::string between(const std::string& text, const std::string& begin, const std::string& end) {
