@@ -27,7 +27,8 @@ struct CompareRequest {
 // plots, and of an evaluation (evaluation.hpp) evaluation.txt and .json.
 CompareResult compare(const CompareRequest&);
 
-// Sets ranked and front of the rows of one scene or several.
+// Sets ranked and front of the rows of one scene or several. A hybrid row is neither where less than 30 % of its frames
+// were made of proposals.
 void rank(std::vector<CompareRow>&);
 
 std::string compare_table(const CompareResult&);

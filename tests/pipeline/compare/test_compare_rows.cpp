@@ -82,6 +82,28 @@ TEST_CASE("compare: the suites are what the issue asks for", "[compare]") {
   CHECK(read_compared(*large, false, {}).scene.surface.vertex_count >= 20000);
 }
 
+TEST_CASE("compare: a hybrid row counts where it uses its proposals", "[compare]") {
+  const auto row = [](const char* setting, double ms, double error) {
+    CompareRow made;
+    made.scene = "one";
+    made.setting = setting;
+    made.ms = ms;
+    made.temporal = error;
+    made.floor = 1e-4;
+    return made;
+  };
+  std::vector<CompareRow> rows{row("conventional", 20, 2e-3), row("hybrid", 10, 1e-3)};
+  for (const double share : {0.29, 0.3}) {
+    rows[1].measures["proposal_share"] = share;
+    rank(rows);
+    INFO(share);
+    CHECK(rows[1].front == (share >= 0.3));
+    CHECK(rows[1].ranked == rows[1].front);
+    CHECK(rows[0].front == (share < 0.3));
+  }
+  CHECK_THAT(compare_table({{{.scene = "one"}}, rows}), Contains("share") && Contains("0.30"));
+}
+
 TEST_CASE("svg plots: the failed stand at the upper edge, the floor is drawn", "[compare]") {
   const std::vector<PlotPoint> points{
       {"a", 10, 2, PlotMark::front}, {"b", 20, std::nan(""), PlotMark::failed}, {"c < d", 30, 3, PlotMark::unclean}};
