@@ -15,7 +15,7 @@ struct CompareRequest {
   std::filesystem::path file;
   bool short_form = false;
   std::vector<std::string> overrides = {};  // key=value, of the comparison file
-  Kinds kinds = compared_kinds();           // of steppers
+  Kinds kinds = known_kinds();              // of steppers
   std::filesystem::path out = "out/compare";
   std::ostream* log = nullptr;  // a line as each part ends
   std::function<bool()> stop;   // asked after every frame; true ends it, unfinished parts are not kept

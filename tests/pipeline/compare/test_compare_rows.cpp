@@ -45,7 +45,7 @@ TEST_CASE("compare: the short suite takes all kinds of steppers, and says what i
   CHECK(conventional.measures.at("temporal_1") < conventional.temporal);
   CHECK(conventional.measures.at("finished") == 1);
   CHECK(conventional.pairs_by_frame == std::vector<int>(7, 0));
-  CHECK_THAT(row_named(result, "skinning").trouble, Contains("needs cloth that a body wears"));
+  CHECK_THAT(row_named(result, "skinning").trouble, Contains("this program has no stepper `skinning`"));
   CHECK_THAT(row_named(result, "hood").trouble, Contains("left out: there is no weight file"));
   const std::string page = fake::whole(folder.path / "compare.html");
   CHECK_THAT(page, Contains("<svg") && Contains("What was left out") && Contains("no weight file"));
