@@ -1,10 +1,10 @@
 // A stepper of one's own: cloth goes where the body that wears it takes it, by linear blend skinning, without forces.
-// It is a baseline for other steppers. Usage: skinning_stepper SCENE.yaml [key=value ...]; see docs/library.md.
+// It is a baseline for other steppers, and `selvedge compare` with it. Usage: skinning_stepper COMPARISON.yaml OUT
+// [key=value ...]; see docs/library.md.
 #include <cstdio>
 #include <selvedge/collision/geometry/error.hpp>
 #include <selvedge/physics/steppers/finish_step.hpp>
-#include <selvedge/pipeline/run/simulate.hpp>
-#include <selvedge/pipeline/scene/make_stepper.hpp>
+#include <selvedge/pipeline/compare/compare.hpp>
 
 using namespace selvedge;
 
@@ -44,18 +44,17 @@ class SkinningStepper final : public Stepper {
 }  // namespace
 
 int main(int count, char** arguments) try {
-  if (count < 2) return 2;
-  Kinds kinds = known_kinds();
-  kinds.add({.name = "skinning", .maker = [](const Setup&, const Config&) -> MakeStepper {
-               return [](const Scene& scene) { return std::make_unique<SkinningStepper>(scene); };
-             }});
-  std::vector<std::string> overrides(arguments + 2, arguments + count);
-  overrides.push_back("run.stepper=skinning");
-  const Setup setup = read_setup(arguments[1], overrides, kinds);
-  State state = setup.initial;
-  simulate(*make_stepper(setup), setup.drive_at, 1 / setup.run.fps, setup.run.frames, state, [](const FrameEvent& e) {
-    return std::printf("frame %d: %d pairs\n", e.state.frame, e.report.collision.pairs_after) > 0;
-  });
+  if (count < 3) return 2;
+  CompareRequest request;
+  request.file = arguments[1];
+  request.out = arguments[2];
+  request.overrides.assign(arguments + 3, arguments + count);
+  request.kinds.add({.name = "skinning", .maker = [](const Setup&, const Config&) -> MakeStepper {
+                       return [](const Scene& scene) { return std::make_unique<SkinningStepper>(scene); };
+                     }});
+  const CompareResult result = compare(request);
+  std::fputs(compare_table(result).c_str(), stdout);
+  return result.finished ? 0 : 1;
 } catch (const Error& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 2;

@@ -9,36 +9,21 @@
 #include "collision/geometry/stopwatch.hpp"
 #include "physics/steppers/finish_step.hpp"
 #include "physics/steppers/proposal_line_search.hpp"
+#include "physics/steppers/proposal_times.hpp"
 #include "physics/steppers/proposal_trust.hpp"
 #include "physics/steppers/substeps.hpp"
 
 namespace selvedge {
 namespace {
 
-constexpr int usual_newton = 2;    // iterations of the mode `after_k`
-constexpr int learning_steps = 8;  // of the parent alone, before its time counts as known
+constexpr int usual_newton = 2;  // iterations of the mode `after_k`
 
 bool asks_for_positions(HybridMode mode) { return mode != HybridMode::fallback; }
 
-// The times of steps, for the rule that stops proposals where they do not pay.
-struct OwnTime {
-  double parent = 0, all = 0, lost = 0, last_loss = 0;  // [s]
-  int parents = 0;
-
-  void add_parent(double seconds) {
-    parent += seconds;
-    ++parents;
-  }
-  void add_step(double seconds, bool proposed) {
-    all += seconds;
-    if (!proposed || parents == 0) return;
-    last_loss = seconds - parent / parents;
-    lost += last_loss;
-  }
-  bool allows(double extra) const {
-    return parents >= learning_steps && std::max(0.0, lost) + std::max(0.0, last_loss) <= extra * all;
-  }
-};
+std::function<double()> clock_of(const HybridParts& parts) {
+  if (parts.clock) return parts.clock;
+  return [watch = Stopwatch(), seconds = 0.0]() mutable { return seconds += watch.lap(); };
+}
 
 void check_pair(const HybridParts& parts, HybridMode mode) {
   const StepperTraits &proposer = parts.proposer->traits(), &parent = parts.parent->traits();
@@ -76,7 +61,8 @@ class HybridStepper final : public Stepper {
         options_(options),
         guard_(scene, options.guard),
         contact_(scene),
-        traits_(joint_traits(parts_)) {
+        traits_(joint_traits(parts_)),
+        clock_(clock_of(parts_)) {
     if (options.mode == HybridMode::gated || options.mode == HybridMode::after_k)
       line_.emplace(scene, options.implicit_euler,
                     options.mode == HybridMode::after_k ? options.newton.value_or(usual_newton) : 0);
@@ -100,6 +86,7 @@ class HybridStepper final : public Stepper {
   Verdict refine(Work&, const Points& x);
   Verdict judged(const Work&, const Points& x);
   void take_parent_step(Work&);
+  void note_times(bool asked, bool taken, double proposal, double parent);
 
   const Scene& scene_;
   HybridParts parts_;
@@ -109,7 +96,8 @@ class HybridStepper final : public Stepper {
   std::optional<ProposalLineSearch> line_;
   StepperTraits traits_;
   AuditMemory audited_;
-  OwnTime time_;
+  std::function<double()> clock_;
+  ProposalTimes times_;
 };
 
 // `none`: a proposal may be asked for.
@@ -118,7 +106,9 @@ Verdict HybridStepper::may_ask(const State& from, const Drive& drive, const Prop
   if (!has_history && parts_.hand_over) return Verdict::no_history;
   if (!from.clean || from.pinched || restart_of(from, drive, traits_.max_substeps)) return Verdict::tangled;
   if (trust.wait > 0) return Verdict::waiting;
-  if (options_.stop_when_slow && !time_.allows(options_.extra_time)) return Verdict::too_slow;
+  if (!options_.stop_when_slow) return Verdict::none;
+  if (!times_.knows_parent()) return Verdict::waiting;
+  if (!times_.may_propose(options_.extra_time)) return Verdict::too_slow;
   return Verdict::none;
 }
 
@@ -219,11 +209,18 @@ Verdict HybridStepper::propose(Work& work) {
 
 void HybridStepper::take_parent_step(Work& work) {
   const PhaseTimes before = work.report.seconds;
-  Stopwatch watch;
   work.report = parts_.parent->step(work.from, work.drive, work.dt, work.to);
-  time_.add_parent(watch.lap());
   work.report.seconds += before;
   if (work.report.status == StepStatus::accepted && parts_.hand_over) parts_.hand_over(work.from, work.to);
+}
+
+void HybridStepper::note_times(bool asked, bool taken, double proposal, double parent) {
+  if (taken)
+    times_.add_taken(proposal);
+  else if (asked)
+    times_.add_refused(proposal, parent);
+  else
+    times_.add_parent(parent);
 }
 
 StepReport HybridStepper::step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) {
@@ -232,7 +229,7 @@ StepReport HybridStepper::step(const State& from, const Drive& drive, double dt,
     throw Error(
         "the stepper `" + parts_.proposer->traits().name + "` does not take steps of " + std::to_string(dt) + " s",
         "hybrid stepper", "step by " + std::to_string(traits_.only_dt.value_or(dt)) + " s");
-  Stopwatch watch;
+  const double started = clock_();
   StepReport report;
   Work work{from, drive, dt, to, report};
   ProposalTrust trust;
@@ -241,7 +238,9 @@ StepReport HybridStepper::step(const State& from, const Drive& drive, double dt,
   const bool asked = verdict == Verdict::none;
   if (asked) verdict = propose(work);
   const bool taken = verdict == Verdict::admitted || verdict == Verdict::refined;
+  const double proposed = clock_();
   if (!taken) take_parent_step(work);
+  note_times(asked, taken, proposed - started, clock_() - proposed);
   report.by = traits_.name + ": " +
               (verdict == Verdict::admitted ? parts_.proposer->traits().name : parts_.parent->traits().name);
   report.fell_back = asked && !taken;
@@ -251,7 +250,6 @@ StepReport HybridStepper::step(const State& from, const Drive& drive, double dt,
              : taken ? after_admission(trust)
                      : after_refusal(trust, options_.longest_stretch),
              to);
-  time_.add_step(watch.lap(), asked);
   return report;
 }
 

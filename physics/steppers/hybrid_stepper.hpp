@@ -24,8 +24,8 @@ struct HybridOptions {
   std::optional<int> newton;  // iterations: k of `after_k`, else 2; of a solve of `refined`, else the solver's own
   int gate_steps = 6;         // places between start and proposal where the potential is asked
   int longest_stretch = 32;   // steps without a proposal, after refusals (proposal_trust.hpp)
-  // Stop asking where proposals have cost more time than they saved. Steps then depend on the clock.
-  bool stop_when_slow = false;
+  // Stop asking where proposals cost more time than they save. Steps then depend on the clock.
+  bool stop_when_slow = true;
   double extra_time = 0.05;  // that proposals may cost, of the time so far
   ImplicitEulerOptions implicit_euler;
 };
@@ -36,6 +36,7 @@ struct HybridOptions {
 struct HybridParts {
   std::unique_ptr<Stepper> proposer, parent, refiner = {};
   std::function<void(const State& from, State& to)> hand_over = {};
+  std::function<double()> clock = {};  // time so far, of the rule `stop_when_slow`; none: of the machine [s]
 };
 
 // A step is the proposer's where the guard admits it, and otherwise the parent's from the same state. No proposal is

@@ -236,6 +236,13 @@ CompareRow row_of(const SceneWork& work, const std::string& setting, std::size_t
 
 bool is_clean(const CompareRow& row) { return row.pairs <= 0 && row.passed_through == 0; }
 
+// A hybrid row that hardly uses its proposals is another name for the parent of the hybrid.
+bool stands_for_itself(const CompareRow& row) {
+  constexpr double least_share = 0.3;
+  const auto share = row.measures.find("proposal_share");
+  return share == row.measures.end() || share->second >= least_share;
+}
+
 // What may be said of a row's error: no less than the floor.
 double known_error(const CompareRow& row) { return std::max(row.temporal, row.floor); }
 
@@ -266,11 +273,13 @@ void write_results(const CompareRequest& request, const Comparison& comparison, 
 
 void rank(std::vector<CompareRow>& rows) {
   for (CompareRow& row : rows) {
-    const bool complete = std::isfinite(row.temporal) && std::isfinite(row.ms) && is_clean(row);
+    const bool complete =
+        std::isfinite(row.temporal) && std::isfinite(row.ms) && is_clean(row) && stands_for_itself(row);
     row.ranked = complete && row.temporal > row.floor;
     row.front = complete && std::none_of(rows.begin(), rows.end(), [&](const CompareRow& other) {
                   return other.scene == row.scene && std::isfinite(other.temporal) && is_clean(other) &&
-                         other.ms < row.ms && known_error(other) <= known_error(row) + row.floor;
+                         stands_for_itself(other) && other.ms < row.ms &&
+                         known_error(other) <= known_error(row) + row.floor;
                 });
   }
 }

@@ -15,7 +15,7 @@ struct CompareRequest {
   std::filesystem::path file;
   bool short_form = false;
   std::vector<std::string> overrides = {};  // key=value, of the comparison file
-  Kinds kinds = compared_kinds();           // of steppers
+  Kinds kinds = known_kinds();              // of steppers
   std::filesystem::path out = "out/compare";
   std::ostream* log = nullptr;  // a line as each part ends
   std::function<bool()> stop;   // asked after every frame; true ends it, unfinished parts are not kept
@@ -27,7 +27,8 @@ struct CompareRequest {
 // plots, and of an evaluation (evaluation.hpp) evaluation.txt and .json.
 CompareResult compare(const CompareRequest&);
 
-// Sets ranked and front of the rows of one scene or several.
+// Sets ranked and front of the rows of one scene or several. A hybrid row is neither where less than 30 % of its frames
+// were made of proposals.
 void rank(std::vector<CompareRow>&);
 
 std::string compare_table(const CompareResult&);

@@ -54,6 +54,8 @@ constexpr PageColumn page_columns[]{{"temporal_1", "temporal 1 [mm]", 1000, "{:.
                                     {"hood_total", "hood_losses [J]", 1, "{:.3g}"},
                                     {"grad_norm", "grad_norm [N]", 1, "{:.2g}"},
                                     {"static_share", "static_share", 1, "{:.0f}"},
+                                    {"proposal_share", "proposals", 1, "{:.2f}"},
+                                    {"ms_guard", "guard [ms]", 1, "{:.2f}"},
                                     {"ms_graph", "graph [ms]", 1, "{:.1f}"},
                                     {"ms_network", "network [ms]", 1, "{:.1f}"},
                                     {"ms_solve", "solve [ms]", 1, "{:.1f}"},
@@ -233,7 +235,9 @@ std::string compare_page(const Comparison& comparison, const CompareResult& resu
       "<h1>selvedge compare: {0}</h1><p class='note'>{2}. Median wall time a frame, one scene at a time, with graph, "
       "contact and audit. Red dots and the line: the efficient front, of clean rows of which none is faster and not "
       "worse by more than the floor. Open circles: with intersecting pairs or something passed through, on no front. "
-      "Crosses: failed. Learned rows are shown the scene's material, and hood_losses, E - E* and the residual judge "
+      "Crosses: failed. A hybrid row counts where at least 30 % of its frames were made of proposals, and is otherwise "
+      "on "
+      "no front. Learned rows are shown the scene's material, and hood_losses, E - E* and the residual judge "
       "all rows by the energies that HOOD minimises; docs/comparison.md says how to read this.</p>\n",
       html_text(comparison.file.filename()), page_style,
       result.finished ? "Finished" : "Stopped before its end; the same command goes on");

@@ -47,6 +47,6 @@ double energy_of(const Setup&, const State&);
 
 // A scene of the comparison with further overrides.
 Setup read_compared(const CompareScene&, bool short_form, const std::vector<std::string>& overrides,
-                    const Kinds& = compared_kinds());
+                    const Kinds& = known_kinds());
 
 }  // namespace selvedge

@@ -41,6 +41,11 @@ const std::vector<Column>& columns() {
   return all;
 }
 
+std::string share_cell(const CompareRow& row) {
+  const auto share = row.measures.find("proposal_share");
+  return share == row.measures.end() ? "" : fmt::format("{:.2f}", share->second);
+}
+
 std::string table_cell(const Column& column, const CompareRow& row) {
   const double value = column.value(row);
   if (std::isnan(value)) return "";
@@ -89,12 +94,12 @@ std::string compare_table(const CompareResult& result) {
                                 f.states, f.horizon, f.motion, f.floor(), f.steps, f.jittered, f.lost);
     text += fmt::format("  {:<24}", "setting");
     for (const Column& column : columns()) text += fmt::format(" {:>10}", column.title);
-    text += "\n";
+    text += fmt::format(" {:>10}\n", "share");
     for (const CompareRow& row : result.rows) {
       if (row.scene != f.scene) continue;
       text += fmt::format("  {:<24}", row.setting);
       for (const Column& column : columns()) text += fmt::format(" {:>10}", table_cell(column, row));
-      text += fmt::format("  {}\n", row.trouble);
+      text += fmt::format(" {:>10}  {}\n", share_cell(row), row.trouble);
     }
     text += "\n";
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "collision/exact/penetration_depth.hpp"
 #include "learned/steppers/learned_state.hpp"
@@ -31,7 +32,8 @@ struct RunWatch {
   std::optional<RunMeasures> measures;
   std::optional<TrajectoryWriter> writer;
   std::map<std::string, std::vector<double>> phases;
-  Points acceleration;  // of the frame to come
+  std::vector<long> verdicts = std::vector<long>(verdict_names().size(), 0);  // frames
+  Points acceleration;                                                        // of the frame to come
 
   RunWatch(const Setup& s, CompareRun& r, const TimedRunOptions& options, const std::string& stepper)
       : setup(s), run(r) {
@@ -51,10 +53,10 @@ struct RunWatch {
   }
 
   void note_phases(const PhaseTimes& s) {
-    const std::pair<const char*, double> all[]{{"solve", s.solve},    {"broad_phase", s.broad_phase},
-                                               {"ccd", s.ccd},        {"response", s.response},
-                                               {"audit", s.audit},    {"graph", s.graph},
-                                               {"network", s.network}};
+    const std::pair<const char*, double> all[]{{"solve", s.solve},     {"broad_phase", s.broad_phase},
+                                               {"ccd", s.ccd},         {"response", s.response},
+                                               {"audit", s.audit},     {"graph", s.graph},
+                                               {"network", s.network}, {"guard", s.guard}};
     for (const auto& [name, seconds] : all) phases[name].push_back(1000 * seconds);
   }
 
@@ -66,6 +68,7 @@ struct RunWatch {
     run.linear += report.linear_iterations;
     run.pairs = std::max(run.pairs, report.collision.pairs_after);
     run.passed_through += report.collision.passed_through;
+    if (report.verdict != Verdict::none) ++verdicts[static_cast<std::size_t>(report.verdict)];
     note_phases(report.seconds);
     if (writer) writer->append(record_frame(setup.scene, terms, event));
     if (!measures || report.status != StepStatus::accepted) return;
@@ -84,6 +87,18 @@ struct RunWatch {
     acceleration = graph_state(setup.scene, state, event.drive).acceleration;
   }
 };
+
+// Of a hybrid stepper: the part of its frames that a proposal has become, and the part with each verdict.
+void note_verdicts(const std::vector<long>& frames, CompareRun& run) {
+  const auto all = static_cast<double>(std::accumulate(frames.begin(), frames.end(), 0L));
+  if (all == 0) return;
+  const auto part = [&](Verdict verdict) {
+    return static_cast<double>(frames[static_cast<std::size_t>(verdict)]) / all;
+  };
+  run.measures["proposal_share"] = part(Verdict::admitted) + part(Verdict::refined);
+  for (std::size_t k = 0; k < frames.size(); ++k)
+    if (frames[k] > 0) run.measures["verdict_" + verdict_names()[k]] = static_cast<double>(frames[k]) / all;
+}
 
 }  // namespace
 
@@ -110,6 +125,7 @@ std::optional<CompareRun> timed_run(const Setup& setup, const TimedRunOptions& o
     run.measures = watch.measures->values();
     run.pairs_by_frame = watch.measures->pairs_by_frame();
   }
+  note_verdicts(watch.verdicts, run);
   run.measures["finished"] = last.status == StepStatus::accepted ? 1 : 0;
   for (const auto& [phase, times] : watch.phases)
     if (const double middle = median(times); middle > 0) run.phases[phase] = middle;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/compare/skinning_stepper.hpp"
+#include "pipeline/scene/kinds.hpp"
 
 namespace selvedge {
 
@@ -52,7 +52,7 @@ struct Comparison {
   std::vector<CompareSetting> settings;
   std::vector<std::string> reference;  // overrides of the temporal reference, beside its time step
   std::vector<std::string> algebraic;  // and of the algebraic one
-  Kinds kinds = compared_kinds();      // of steppers
+  Kinds kinds = known_kinds();         // of steppers
   SequenceOptions sequences;
   EvaluationOptions evaluation;
   std::string weights_folder;  // seen from the file

@@ -49,21 +49,28 @@ void write_spoiled_weights(const StabilityRequest& request, const std::vector<St
 }
 
 Setup read_run(const StabilityRequest& request, const StabilityCase& one, const StabilityRun& run) {
-  std::vector<std::string> overrides = run.overrides;
+  std::vector<std::string> overrides;
   if (request.stepper) overrides.push_back("run.stepper=" + *request.stepper);
   if (request.weights)
     overrides.push_back("run.learned.weights=" + std::filesystem::absolute(weights_of(request, run)).string());
+  overrides.insert(overrides.end(), run.overrides.begin(), run.overrides.end());
   return read_setup(one.scene, overrides, request.kinds);
 }
 
-std::vector<std::string> failures_of(const StabilityRow& row, const RunSummary& summary,
-                                     const StabilityLimits& limits) {
-  std::vector<std::string> all;
+int frames_of(const RunSummary& summary, Verdict verdict) {
+  const auto k = static_cast<std::size_t>(verdict);
+  return k < summary.verdicts.size() ? summary.verdicts[k] : 0;
+}
+
+// Nothing but numbers that are none is held against a bare network: a step that it rejects has a reason, and what else
+// there is to say of it is told.
+void judge_row(const RunSummary& summary, const StabilityLimits& limits, StabilityRow& row) {
+  std::vector<std::string>& told = row.stepper == "learned" ? row.told : row.failures;
   const auto fail_if = [&](bool bad, std::string why) {
-    if (bad) all.push_back(std::move(why));
+    if (bad) told.push_back(std::move(why));
   };
   fail_if(summary.end != RunEnd::finished, fmt::format("ended in frame {} {}", summary.frames, summary.reason));
-  fail_if(row.nonfinite > 0, fmt::format("{} numbers not finite", row.nonfinite));
+  if (row.nonfinite > 0) row.failures.push_back(fmt::format("{} numbers not finite", row.nonfinite));
   fail_if(!(row.unaccounted <= limits.growth * row.energy),
           fmt::format("energy grew by {:.3g} J from nowhere, {:.2g} % of the most there was", row.unaccounted,
                       100 * row.unaccounted / row.energy));
@@ -77,7 +84,6 @@ std::vector<std::string> failures_of(const StabilityRow& row, const RunSummary& 
           fmt::format("still {} pairs and {} vertices inside what jumped", row.end_pairs, row.end_inside));
   fail_if(row.clean_start && row.jumped == 0 && summary.passed_through > 0,
           fmt::format("{} passed through", summary.passed_through));
-  return all;
 }
 
 // A page for those that failed; nothing is kept of the others.
@@ -129,8 +135,9 @@ std::optional<StabilityRow> run_one(const StabilityRequest& request, const Stabi
   row.pairs = summary.pairs;
   row.max_stretch = summary.max_stretch;
   row.notes = setup.warnings;
+  row.proposed = frames_of(summary, Verdict::admitted) + frames_of(summary, Verdict::refined);
   watch.write(row);
-  row.failures = failures_of(row, summary, limits);
+  judge_row(summary, limits, row);
   row.seconds = seconds_since(started);
   keep_or_remove(folder, !row.passed(), request.log);
   return row;
@@ -139,7 +146,8 @@ std::optional<StabilityRow> run_one(const StabilityRequest& request, const Stabi
 std::string log_line(const StabilityRow& row) {
   std::string line =
       fmt::format("{} {}: {}, {:.1f} s\n", row.name, row.run, row.passed() ? "passed" : "FAILED", row.seconds);
-  for (const std::string& why : row.failures) line += "  " + why + "\n";
+  for (const auto* reasons : {&row.failures, &row.told})
+    for (const std::string& why : *reasons) line += "  " + why + "\n";
   return line;
 }
 

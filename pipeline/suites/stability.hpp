@@ -27,8 +27,9 @@ struct StabilityRequest {
 // Runs a suite of stiff and extreme cases. A run passes that ends without a rejected step and finite; whose energy
 // never grows by more than what pins, obstacles, wind and the response can have given it (physics/solve/work.hpp); that
 // comes to rest; whose iterations are bounded; and that stays clean if it started clean, or if an obstacle jumped is
-// clean in the end. Leaves stability.txt, stability.csv, stability.json and stability.md in `out`, and of each run that
-// failed the trajectory and its page. A run that the stepper does not take fails with the reason.
+// clean in the end. A bare network has to stay finite or to reject a step; the rest is told. Leaves stability.txt,
+// stability.csv, stability.json and stability.md in `out`, and of each run that failed the trajectory and its page. A
+// run that the stepper does not take fails with the reason.
 std::vector<StabilityRow> stability(const StabilityRequest&);
 
 bool passed(const std::vector<StabilityRow>&);

@@ -36,7 +36,9 @@ Json to_json(const StabilityRow& r) {
           {"intersecting_pairs", r.pairs},
           {"end_pairs", r.end_pairs},
           {"max_stretch", r.max_stretch},
+          {"proposed", r.proposed},
           {"notes", r.notes},
+          {"told", r.told},
           {"failures", r.failures}};
 }
 
@@ -52,6 +54,11 @@ double seconds(const std::vector<StabilityRow>& rows) {
   return sum;
 }
 
+std::string verdict_text(const StabilityRow& row) {
+  const std::vector<std::string>& reasons = row.passed() ? row.told : row.failures;
+  return (row.passed() ? "pass" : "FAIL") + (reasons.empty() ? "" : fmt::format(": {}", fmt::join(reasons, "; ")));
+}
+
 }  // namespace
 
 std::string stability_table(const std::vector<StabilityRow>& rows) {
@@ -65,7 +72,8 @@ std::string stability_table(const std::vector<StabilityRow>& rows) {
         "{:>7.1f}\n",
         row.name, row.run, row.passed() ? "pass" : "FAIL", row.vertices, row.frames, row.energy, row.work.total(),
         grown(row), 100 * row.end_speed, row.newton, row.linear, row.end_pairs, row.max_stretch, row.seconds);
-    for (const std::string& why : row.failures) text += "    " + why + "\n";
+    for (const auto* reasons : {&row.failures, &row.told})
+      for (const std::string& why : *reasons) text += "    " + why + "\n";
   }
   return text + fmt::format("{} of {} pass, {:.0f} s\n", static_cast<long>(rows.size()) - failed(rows), rows.size(),
                             seconds(rows));
@@ -78,9 +86,8 @@ std::string stability_markdown(const std::vector<StabilityRow>& rows) {
   for (const StabilityRow& row : rows)
     text += fmt::format(
         "| {} | {} | {} | {} | {} | {:.2g} | {:.2g} | {:.2g} | {:.2g} | {:.1f} | {:.1f} | {} | {:.3g} | {:.1f} |\n",
-        row.name, row.run, row.passed() ? "pass" : "FAIL: " + fmt::format("{}", fmt::join(row.failures, "; ")),
-        row.vertices, row.frames, row.energy, row.work.total(), grown(row), 100 * row.end_speed, row.newton, row.linear,
-        row.end_pairs, row.max_stretch, row.seconds);
+        row.name, row.run, verdict_text(row), row.vertices, row.frames, row.energy, row.work.total(), grown(row),
+        100 * row.end_speed, row.newton, row.linear, row.end_pairs, row.max_stretch, row.seconds);
   return text;
 }
 

@@ -25,7 +25,9 @@ struct StabilityRow {
   long pairs = 0;   // intersecting pairs over all frames
   int end_pairs = 0, end_inside = 0;
   double max_stretch = 1;
+  int proposed = 0;                   // frames that a hybrid stepper made of a proposal
   std::vector<std::string> notes;     // warnings of the scene
+  std::vector<std::string> told;      // what is not held against a bare network, a line each
   std::vector<std::string> failures;  // why it failed, a line each; empty: passed
   bool passed() const { return failures.empty(); }
 };

@@ -48,7 +48,7 @@ inline Points with_noise(const Scene& scene, const RecordedStep& step, double si
   return x;
 }
 
-// The ways of the issue, by name; "layers swapped" and "wrong body frame" need scenes of their own.
+// Ways that need no layers and no body, by name.
 inline std::vector<std::pair<std::string, Spoil>> spoils() {
   const auto noise = [](double size) {
     return [size](const Scene& scene, const RecordedStep& step) { return with_noise(scene, step, size); };

@@ -49,6 +49,22 @@ class FakeProposer final : public Stepper {
   AuditMemory audits_;
 };
 
+// Another stepper, with something that is done at each of its steps.
+class CountedStepper final : public Stepper {
+ public:
+  CountedStepper(std::unique_ptr<Stepper> inner, std::function<void()> count)
+      : inner_(std::move(inner)), count_(std::move(count)) {}
+  const StepperTraits& traits() const override { return inner_->traits(); }
+  StepReport step(const State& from, const Drive& drive, double h, State& to, const StepExtras& extras) override {
+    count_();
+    return inner_->step(from, drive, h, to, extras);
+  }
+
+ private:
+  std::unique_ptr<Stepper> inner_;
+  std::function<void()> count_;
+};
+
 Points as_solved(const State&, const Points& solved) { return solved; }
 Points nowhere(const State& from, const Points&) {
   return Points::Constant(from.x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
@@ -64,11 +80,17 @@ Points noise(const State& from, const Points& solved) {
 
 void hand_over(const State& from, State& to) { replace_blocks("fake", {{"fake.x", from.x}}, to.memory); }
 
+// Steps that do not depend on the clock.
+HybridOptions untimed(HybridOptions options = {}) {
+  options.stop_when_slow = false;
+  return options;
+}
+
 std::unique_ptr<Stepper> hybrid(const Scene& scene, const Propose& propose, const HybridOptions& options = {}) {
   return make_hybrid_stepper(
       scene,
       {std::make_unique<FakeProposer>(scene, propose, 1), make_recovering_conventional_stepper(scene), {}, hand_over},
-      options);
+      untimed(options));
 }
 
 // A sheet that hangs by one side over a plate, and swings into it.
@@ -161,6 +183,45 @@ TEST_CASE("hybrid: refused proposals wait for longer and longer, and come back",
   CHECK(after_refusal(trust, 32).stretch == 4);
 }
 
+TEST_CASE("hybrid: the default costs at most a tenth more than its parent, whatever proposals cost and come to",
+          "[hybrid]") {
+  constexpr int frames = 100;
+  constexpr double parent_work = 1;
+  const World w = testing::swinging_sheet();
+  struct Priced {
+    const char* name;
+    Propose propose;
+    double work;  // of a proposal, beside the parent's
+    double most;  // of the work of all steps, beside the parent's for all
+    int least_taken, most_asked;
+  };
+  for (const Priced& one : std::vector<Priced>{{"cheap and good", as_solved, 0.25, 0.5, 80, frames},
+                                               {"as dear as the parent, refused", nowhere, 1, 1.1, 0, 10},
+                                               {"dear and refused", nowhere, 4, 1.1, 0, 2},
+                                               {"dear and good", as_solved, 3, 1.1, 1, 5}}) {
+    INFO(one.name);
+    double work = 0;  // counted, not timed
+    const auto proposer = [&](const State& from, const Points& solved) {
+      work += one.work * parent_work;
+      return one.propose(from, solved);
+    };
+    auto stepper = make_hybrid_stepper(
+        w.scene,
+        {std::make_unique<FakeProposer>(w.scene, proposer, 1),
+         std::make_unique<CountedStepper>(make_recovering_conventional_stepper(w.scene), [&] { work += parent_work; }),
+         {},
+         hand_over,
+         [&] { return work; }},
+        {});
+    const Seen seen = follow(*stepper, w, w.state, frames);
+    CHECK(work <= one.most * frames * parent_work);
+    CHECK(std::ranges::count(seen.verdicts, Verdict::admitted) >= one.least_taken);
+    const auto asked = [](Verdict v) { return v == Verdict::admitted || v == Verdict::not_made; };
+    CHECK(std::ranges::count_if(seen.verdicts, asked) <= one.most_asked);
+    if (one.work > 1) CHECK(std::ranges::count(seen.verdicts, Verdict::too_slow) > frames / 2);
+  }
+}
+
 TEST_CASE("hybrid: a new stepper goes on with the same bits", "[hybrid]") {
   const World w = swinging();
   const Propose now_and_then = [](const State& from, const Points& solved) {
@@ -191,11 +252,11 @@ TEST_CASE("hybrid: a tangled start is left to the parent until it is clean", "[h
 TEST_CASE("hybrid: any two steppers go together in the mode fallback", "[hybrid]") {
   const World w = testing::swinging_sheet();
   auto other = make_hybrid_stepper(
-      w.scene, {make_icm_stepper(w.scene, {}), make_recovering_conventional_stepper(w.scene), {}, {}}, {});
+      w.scene, {make_icm_stepper(w.scene, {}), make_recovering_conventional_stepper(w.scene), {}, {}}, untimed());
   const Seen seen = follow(*other, w, w.state, 6);
   CHECK(std::ranges::count(seen.verdicts, Verdict::admitted) > 0);
   auto turned = make_hybrid_stepper(
-      w.scene, {make_recovering_conventional_stepper(w.scene), make_icm_stepper(w.scene, {}), {}, {}}, {});
+      w.scene, {make_recovering_conventional_stepper(w.scene), make_icm_stepper(w.scene, {}), {}, {}}, untimed());
   CHECK(std::ranges::count(follow(*turned, w, w.state, 6).verdicts, Verdict::admitted) > 0);
 }
 

@@ -45,7 +45,7 @@ TEST_CASE("compare: the short suite takes all kinds of steppers, and says what i
   CHECK(conventional.measures.at("temporal_1") < conventional.temporal);
   CHECK(conventional.measures.at("finished") == 1);
   CHECK(conventional.pairs_by_frame == std::vector<int>(7, 0));
-  CHECK_THAT(row_named(result, "skinning").trouble, Contains("needs cloth that a body wears"));
+  CHECK_THAT(row_named(result, "skinning").trouble, Contains("this program has no stepper `skinning`"));
   CHECK_THAT(row_named(result, "hood").trouble, Contains("left out: there is no weight file"));
   const std::string page = fake::whole(folder.path / "compare.html");
   CHECK_THAT(page, Contains("<svg") && Contains("What was left out") && Contains("no weight file"));
@@ -80,6 +80,28 @@ TEST_CASE("compare: the suites are what the issue asks for", "[compare]") {
     CHECK(std::ranges::find(standard.scenes, name, &CompareScene::name) != standard.scenes.end());
   const auto large = std::ranges::find(standard.scenes, "large", &CompareScene::name);
   CHECK(read_compared(*large, false, {}).scene.surface.vertex_count >= 20000);
+}
+
+TEST_CASE("compare: a hybrid row counts where it uses its proposals", "[compare]") {
+  const auto row = [](const char* setting, double ms, double error) {
+    CompareRow made;
+    made.scene = "one";
+    made.setting = setting;
+    made.ms = ms;
+    made.temporal = error;
+    made.floor = 1e-4;
+    return made;
+  };
+  std::vector<CompareRow> rows{row("conventional", 20, 2e-3), row("hybrid", 10, 1e-3)};
+  for (const double share : {0.29, 0.3}) {
+    rows[1].measures["proposal_share"] = share;
+    rank(rows);
+    INFO(share);
+    CHECK(rows[1].front == (share >= 0.3));
+    CHECK(rows[1].ranked == rows[1].front);
+    CHECK(rows[0].front == (share < 0.3));
+  }
+  CHECK_THAT(compare_table({{{.scene = "one"}}, rows}), Contains("share") && Contains("0.30"));
 }
 
 TEST_CASE("svg plots: the failed stand at the upper edge, the floor is drawn", "[compare]") {

@@ -26,7 +26,8 @@ Setup scene_of(const Folder& folder, const std::string& preset, const std::strin
   WeightFile file{network.architecture, network.weights, "", {}, ""};
   if (!fault.empty()) file = spoiled_weights(std::move(file), fault);
   write_weight_file(folder.path / "w.h5", file);
-  overrides.insert(overrides.end(), {"run.learned.weights=w.h5", "run.stepper=hybrid"});
+  overrides.insert(overrides.end(),
+                   {"run.learned.weights=w.h5", "run.stepper=hybrid", "run.hybrid.stop_when_slow=false"});
   return read_setup(
       fake::write(folder, "scene.yaml",
                   "cloths: [{name: sheet, rectangle: {size: [0.3, 0.3], resolution: 8}, translate: [0, 0.3, 0], pins: "
