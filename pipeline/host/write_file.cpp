@@ -1,28 +1,16 @@
 #include "pipeline/host/write_file.hpp"
 
-#include <fstream>
 #include <system_error>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/host/growing_file.hpp"
 
 namespace selvedge {
 
 void write_file(const std::filesystem::path& path, const std::string& content) {
-  std::filesystem::path beside = path;
-  beside += ".part";
-  std::error_code error;
-  {
-    std::ofstream stream(beside, std::ios::binary | std::ios::trunc);
-    stream << content;
-    stream.flush();
-    if (!stream) error = std::error_code(errno, std::generic_category());
-  }
-  if (!error) std::filesystem::rename(beside, path, error);
-  if (!error) return;
-  std::error_code ignored;
-  std::filesystem::remove(beside, ignored);
-  throw Error("cannot write (" + error.message() + ")", path.string(),
-              "check that the folder is there and may be written, and that its disk is not full");
+  GrowingFile file(path);
+  file.write(content);
+  file.keep();
 }
 
 void make_folder(const std::filesystem::path& path, const std::string& cure) {

@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
+#include <array>
+#include <cctype>
+#include <cmath>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/formats/glb.hpp"
 #include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/formats/point_cache.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/formats/usda.hpp"
 #include "pipeline/formats/xdmf.hpp"
 #include "pipeline/host/write_file.hpp"
 
@@ -17,15 +21,6 @@ namespace {
 
 using Paths = std::vector<std::filesystem::path>;
 
-// The cloth (index -1) or one obstacle of a trajectory.
-struct Part {
-  std::string name;
-  int obstacle = -1;
-  const Triangles* triangles = nullptr;
-  int vertex_count = 0;
-  const PointsF& of(const Frame& frame) const { return obstacle < 0 ? frame.x : frame.obstacles[obstacle]; }
-};
-
 std::string file_name(const std::string& name) {
   std::string safe = name;
   for (char& c : safe)
@@ -33,74 +28,128 @@ std::string file_name(const std::string& name) {
   return safe;
 }
 
-std::vector<Part> parts_of(const TrajectoryInfo& info, bool with_obstacles) {
-  std::vector<Part> parts{{"cloth", -1, &info.triangles, static_cast<int>(info.rest.rows())}};
-  for (std::size_t k = 0; with_obstacles && k < info.obstacles.size(); ++k)
-    parts.push_back({fmt::format("obstacle_{}_{}", k, file_name(info.obstacles[k].name)), static_cast<int>(k),
-                     &info.obstacles[k].triangles, info.obstacles[k].vertex_count});
-  return parts;
+// The colours of the page (pipeline/view/palette.js), which are sRGB, as linear ones.
+Eigen::Vector3d colour_of(int cloth) {
+  constexpr std::array<std::array<int, 3>, 5> colours = {
+      {{0x4a, 0x7f, 0xb5}, {0xc9, 0x8a, 0x5a}, {0x5d, 0x9c, 0x84}, {0x8d, 0x76, 0xb3}, {0xb9, 0xbd, 0xc2}}};
+  const auto& srgb = cloth < 0 ? colours.back() : colours[static_cast<std::size_t>(cloth % 4)];
+  Eigen::Vector3d linear;
+  for (int k = 0; k < 3; ++k) {
+    const double c = srgb[static_cast<std::size_t>(k)] / 255.0;
+    linear[k] = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+  }
+  return linear;
 }
 
-void export_meshes(const TrajectoryReader& reader, const std::vector<Part>& parts, const ExportRequest& request,
-                   Paths& written) {
+// Whether no triangle joins vertices of two cloths, as seams do.
+bool cloths_are_apart(const TrajectoryInfo& info) {
+  for (std::size_t c = 0; c + 1 < info.cloth_first_triangle.size(); ++c) {
+    const int first = info.cloth_first_triangle[c], count = info.cloth_first_triangle[c + 1] - first;
+    if (count == 0) return false;
+    const auto own = info.triangles.middleRows(first, count);
+    if (own.minCoeff() < info.cloth_first_vertex[c] || own.maxCoeff() >= info.cloth_first_vertex[c + 1]) return false;
+  }
+  return !info.cloth_names.empty();
+}
+
+// One surface a cloth, or one of all on end; then the obstacles. Positions are read once a call of `frame`.
+class ExportedRun {
+ public:
+  ExportedRun(const ExportRequest& request, bool each_cloth) : request_(request), reader_(request.trajectory) {
+    const TrajectoryInfo& info = reader_.info();
+    if (reader_.frame_count() < 1)
+      throw Error("the run has no full frame", request.trajectory.string(), "wait for its first frame");
+    run_.fps = info.fps;
+    run_.frame_count = reader_.frame_count();
+    if (each_cloth && cloths_are_apart(info))
+      for (std::size_t c = 0; c < info.cloth_names.size(); ++c)
+        add_cloth(info.cloth_names[c], info.cloth_first_vertex[c], info.cloth_first_vertex[c + 1],
+                  info.triangles.middleRows(info.cloth_first_triangle[c],
+                                            info.cloth_first_triangle[c + 1] - info.cloth_first_triangle[c]));
+    else
+      add_cloth("cloth", 0, static_cast<int>(info.rest.rows()), info.triangles);
+    for (std::size_t k = 0; request.obstacles && k < info.obstacles.size(); ++k) {
+      const TrajectoryInfo::Body& body = info.obstacles[k];
+      run_.surfaces.push_back({fmt::format("obstacle_{}_{}", k, file_name(body.name)), body.triangles,
+                               body.vertex_count, false, body.moving, colour_of(-1)});
+    }
+    run_.frame = [this](int index) { return positions(index); };
+  }
+  ExportedRun(const ExportedRun&) = delete;
+  ExportedRun& operator=(const ExportedRun&) = delete;
+  // `reads`: so often a frame is read, for the progress.
+  const AnimatedSurfaces& read_so_often(int reads) {
+    all_ = reads;
+    return run_;
+  }
+  int surfaces() const { return static_cast<int>(run_.surfaces.size()); }
+  int frames() const { return run_.frame_count; }
+
+ private:
+  void add_cloth(const std::string& name, int first, int end, const Triangles& triangles) {
+    const int number = static_cast<int>(firsts_.size());
+    firsts_.push_back(first);
+    run_.surfaces.push_back({name, triangles.array() - first, end - first, true, true, colour_of(number)});
+  }
+  std::vector<PointsF> positions(int index) {
+    const Frame frame = reader_.frame(index);
+    std::vector<PointsF> all;
+    for (std::size_t c = 0; c < firsts_.size(); ++c)
+      all.push_back(frame.x.middleRows(firsts_[c], run_.surfaces[c].vertex_count));
+    if (request_.obstacles) all.insert(all.end(), frame.obstacles.begin(), frame.obstacles.end());
+    if (request_.progress) request_.progress(++done_, all_);
+    return all;
+  }
+
+  const ExportRequest& request_;
+  TrajectoryReader reader_;
+  AnimatedSurfaces run_;
+  std::vector<int> firsts_;
+  int done_ = 0, all_ = 0;
+};
+
+void export_meshes(const AnimatedSurfaces& run, const ExportRequest& request, Paths& written) {
   const auto write = request.format == "ply" ? write_ply : write_obj;
-  for (int i = 0; i < reader.frame_count(); ++i) {
-    const Frame frame = reader.frame(i);
-    for (const Part& part : parts) {
-      written.push_back(request.out / fmt::format("{}_{:05}.{}", part.name, i, request.format));
-      write(written.back(), part.of(frame).cast<double>(), *part.triangles);
+  for (int i = 0; i < run.frame_count; ++i) {
+    const std::vector<PointsF> x = run.frame(i);
+    for (std::size_t s = 0; s < x.size(); ++s) {
+      written.push_back(request.out / fmt::format("{}_{:05}.{}", run.surfaces[s].name, i, request.format));
+      write(written.back(), x[s].cast<double>(), run.surfaces[s].triangles);
     }
   }
 }
 
-template <class Value>
-void append(std::string& bytes, Value value) {
-  static_assert(std::endian::native == std::endian::little, "PC2 is little-endian");
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-// Point cache 2: "POINTCACHE2\0", version, points, first frame, frames a sample, samples, then x y z floats.
-std::string pc2_header(int points, int samples) {
-  std::string bytes("POINTCACHE2\0", 12);
-  append<std::int32_t>(bytes, 1);
-  append<std::int32_t>(bytes, points);
-  append<float>(bytes, 0);
-  append<float>(bytes, 1);
-  append<std::int32_t>(bytes, samples);
-  return bytes;
-}
-
-void export_pc2(const TrajectoryReader& reader, const std::vector<Part>& parts, const ExportRequest& request,
-                Paths& written) {
-  for (const Part& part : parts) {
-    std::string bytes = pc2_header(part.vertex_count, reader.frame_count());
-    for (int i = 0; i < reader.frame_count(); ++i) {
-      const Frame frame = reader.frame(i);
-      const PointsF& x = part.of(frame);
-      bytes.append(reinterpret_cast<const char*>(x.data()), static_cast<std::size_t>(x.size()) * sizeof(float));
-      if (i > 0) continue;
-      written.push_back(request.out / (part.name + ".obj"));
-      write_obj(written.back(), x.cast<double>(), *part.triangles);
-    }
-    written.push_back(request.out / (part.name + ".pc2"));
-    write_file(written.back(), bytes);
+void export_caches(const AnimatedSurfaces& run, const ExportRequest& request, Paths& written) {
+  const auto write = request.format == "pc2" ? write_pc2 : write_mdd;
+  for (std::size_t s = 0; s < run.surfaces.size(); ++s) {
+    written.push_back(request.out / (run.surfaces[s].name + ".obj"));
+    write_obj(written.back(), run.frame(0)[s].cast<double>(), run.surfaces[s].triangles);
+    written.push_back(request.out / (run.surfaces[s].name + "." + request.format));
+    write(written.back(), run, s);
   }
 }
 
 }  // namespace
 
-std::vector<std::filesystem::path> export_trajectory(const ExportRequest& request) {
-  const TrajectoryReader reader(request.trajectory);
-  Paths written;
-  if (request.format == "xdmf") return {write_xdmf(request.trajectory)};
+Paths export_trajectory(const ExportRequest& request) {
+  const std::string& format = request.format;
+  const auto is = [&](const std::vector<std::string>& names) { return std::ranges::count(names, format) > 0; };
+  if (!is({"obj", "ply", "pc2", "mdd", "glb", "usda", "xdmf"}))
+    throw Error("unknown format `" + format + "`", "--format", "known: obj, ply, pc2, mdd, glb, usda, xdmf");
+  if (format == "xdmf") return {write_xdmf(request.trajectory)};
+  const bool one_file = is({"glb", "usda"});
+  ExportedRun run(request, one_file);
   make_folder(request.out);
-  const std::vector<Part> parts = parts_of(reader.info(), request.obstacles);
-  if (request.format == "obj" || request.format == "ply")
-    export_meshes(reader, parts, request, written);
-  else if (request.format == "pc2")
-    export_pc2(reader, parts, request, written);
-  else
-    throw Error("unknown format `" + request.format + "`", "--format", "known: obj, ply, pc2, xdmf");
+  Paths written;
+  if (is({"obj", "ply"})) export_meshes(run.read_so_often(run.frames()), request, written);
+  if (is({"pc2", "mdd"})) export_caches(run.read_so_often(run.surfaces() * (run.frames() + 1)), request, written);
+  if (one_file) {
+    written.push_back(request.out / (request.trajectory.stem().string() + "." + format));
+    if (format == "glb")
+      write_glb(written.back(), run.read_so_often(2 * run.frames()));
+    else
+      write_usda(written.back(), run.read_so_often(run.surfaces() * run.frames()));
+  }
   return written;
 }
 

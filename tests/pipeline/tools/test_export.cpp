@@ -32,7 +32,7 @@ TEST_CASE("meshes exported from a trajectory read back to its positions") {
   const Scene scene = fake::scene();
   const std::filesystem::path run = write_run(folder, scene, 3);
   for (const std::string format : {"obj", "ply"}) {
-    const auto files = export_trajectory({run, format, folder.path / format, true});
+    const auto files = export_trajectory({run, format, folder.path / format, true, {}});
     REQUIRE(files.size() == 9);
     const Mesh cloth = read_mesh(folder.path / format / ("cloth_00002." + format));
     REQUIRE((cloth.x - fake::frame(scene, 2).x.cast<double>()).cwiseAbs().maxCoeff() < 1e-6);
@@ -45,7 +45,7 @@ TEST_CASE("meshes exported from a trajectory read back to its positions") {
 TEST_CASE("a point cache holds every frame as floats after its header") {
   const fake::Folder folder("export_pc2");
   const Scene scene = fake::scene();
-  const auto files = export_trajectory({write_run(folder, scene, 4), "pc2", folder.path / "pc2", false});
+  const auto files = export_trajectory({write_run(folder, scene, 4), "pc2", folder.path / "pc2", false, {}});
   REQUIRE(files.size() == 2);
   const std::string bytes = read_bytes(folder.path / "pc2" / "cloth.pc2");
   REQUIRE(bytes.size() == 32 + 4 * 25 * 3 * sizeof(float));
@@ -65,7 +65,7 @@ TEST_CASE("a point cache holds every frame as floats after its header") {
 TEST_CASE("an unknown format is refused with those that are known") {
   const fake::Folder folder("export_unknown");
   const std::filesystem::path run = write_run(folder, fake::scene(), 1);
-  REQUIRE_THROWS_WITH(export_trajectory({run, "fbx", folder.path, false}), Catch::Contains("pc2"));
+  REQUIRE_THROWS_WITH(export_trajectory({run, "fbx", folder.path, false, {}}), Catch::Contains("pc2"));
 }
 
 TEST_CASE("the XDMF sidecar names the arrays and rows of every frame") {

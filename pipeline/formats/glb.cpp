@@ -1,0 +1,248 @@
+#include "pipeline/formats/glb.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/host/growing_file.hpp"
+
+namespace selvedge {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Level = Eigen::Matrix<int, 1, 3>;
+using Levels = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+constexpr int grid_steps = 65534;
+// Component types and what a view is for, by the numbers of the format.
+constexpr int unsigned_byte = 5121, signed_short = 5122, unsigned_short = 5123, unsigned_int = 5125, real = 5126;
+constexpr int vertex_data = 34962, index_data = 34963;
+
+// The smallest and the largest positions over the run: of the whole surface and of each vertex.
+struct Ranges {
+  PointsF low, high;
+  Eigen::RowVector3d origin = Eigen::RowVector3d::Zero();
+  double step = 1;  // [m]
+};
+
+Levels levels_of(const Ranges& ranges, const PointsF& x) {
+  return ((x.cast<double>().rowwise() - ranges.origin) / ranges.step).array().round().cast<int>();
+}
+
+std::vector<Ranges> ranges_of(const AnimatedSurfaces& run) {
+  std::vector<Ranges> all(run.surfaces.size());
+  for (int i = 0; i < run.frame_count; ++i) {
+    const std::vector<PointsF> x = run.frame(i);
+    for (std::size_t s = 0; s < all.size(); ++s) {
+      check_finite(run.surfaces[s], x[s], i, "glb");
+      all[s].low = i == 0 ? x[s] : all[s].low.cwiseMin(x[s]);
+      all[s].high = i == 0 ? x[s] : all[s].high.cwiseMax(x[s]);
+    }
+  }
+  for (Ranges& ranges : all) {
+    ranges.origin = ranges.low.colwise().minCoeff().cast<double>();
+    const double side = (ranges.high.colwise().maxCoeff().cast<double>() - ranges.origin).maxCoeff();
+    if (side > 0) ranges.step = side / grid_steps;
+  }
+  return all;
+}
+
+// The binary chunk and the tables of what lies where in it.
+struct Chunk {
+  std::string bytes;
+  Json views = Json::array(), accessors = Json::array();
+
+  void align() { bytes.append((4 - bytes.size() % 4) % 4, '\0'); }
+  // What has been appended since `begin` as a view.
+  int view(std::size_t begin, const Json& more = Json::object()) {
+    views.push_back({{"buffer", 0}, {"byteOffset", begin}, {"byteLength", bytes.size() - begin}});
+    views.back().update(more);
+    align();
+    return static_cast<int>(views.size()) - 1;
+  }
+  int accessor(const Json& description) {
+    accessors.push_back(description);
+    return static_cast<int>(accessors.size()) - 1;
+  }
+  template <class Value>
+  void put(Value value) {
+    char raw[sizeof value];
+    std::memcpy(raw, &value, sizeof value);
+    bytes.append(raw, sizeof value);
+  }
+};
+
+int put_corners(Chunk& chunk, const AnimatedSurface& surface) {
+  const std::size_t begin = chunk.bytes.size();
+  const bool few = surface.vertex_count < 65535;
+  for (Eigen::Index i = 0; i < surface.triangles.size(); ++i) {
+    const int corner = surface.triangles.data()[i];
+    few ? chunk.put(static_cast<std::uint16_t>(corner)) : chunk.put(static_cast<std::uint32_t>(corner));
+  }
+  const int view = chunk.view(begin, {{"target", index_data}});
+  return chunk.accessor({{"bufferView", view},
+                         {"componentType", few ? unsigned_short : unsigned_int},
+                         {"count", surface.triangles.size()},
+                         {"type", "SCALAR"}});
+}
+
+// A surface in the making: where its vertices are in the middle of their ways, and what each frame adds to that.
+struct Track {
+  Levels middle;
+  std::string bytes;  // of the middle, then of every frame: x y z and two bytes that bring a vertex to eight
+  Json accessors = Json::array();
+
+  void put(const Levels& values, bool middle_itself) {
+    const std::size_t begin = bytes.size();
+    for (Eigen::Index i = 0; i < values.rows(); ++i)
+      for (int k = 0; k < 4; ++k) {
+        const std::uint16_t word = k < 3 ? static_cast<std::uint16_t>(values(i, k)) : 0;
+        bytes.append(reinterpret_cast<const char*>(&word), 2);
+      }
+    const Level low = values.colwise().minCoeff(), high = values.colwise().maxCoeff();
+    accessors.push_back({{"byteOffset", begin},
+                         {"componentType", middle_itself ? unsigned_short : signed_short},
+                         {"count", values.rows()},
+                         {"type", "VEC3"},
+                         {"min", {low[0], low[1], low[2]}},
+                         {"max", {high[0], high[1], high[2]}}});
+  }
+};
+
+std::vector<Track> tracks_of(const AnimatedSurfaces& run, const std::vector<Ranges>& ranges) {
+  std::vector<Track> tracks(run.surfaces.size());
+  for (std::size_t s = 0; s < tracks.size(); ++s) {
+    const Levels low = levels_of(ranges[s], ranges[s].low), high = levels_of(ranges[s], ranges[s].high);
+    tracks[s].middle = ((low + high).array() / 2).matrix();
+    tracks[s].put(tracks[s].middle, true);
+  }
+  const bool any_moves = std::ranges::any_of(ranges, [](const Ranges& r) { return r.low != r.high; });
+  for (int i = 0; any_moves && i < run.frame_count; ++i) {
+    const std::vector<PointsF> x = run.frame(i);
+    for (std::size_t s = 0; s < tracks.size(); ++s)
+      if (ranges[s].low != ranges[s].high) tracks[s].put(levels_of(ranges[s], x[s]) - tracks[s].middle, false);
+  }
+  return tracks;
+}
+
+Json mesh_of(Chunk& chunk, const AnimatedSurface& surface, Track& track, int material) {
+  const std::size_t begin = chunk.bytes.size();
+  chunk.bytes += track.bytes;
+  track.bytes = {};
+  const int view = chunk.view(begin, {{"byteStride", 8}, {"target", vertex_data}});
+  std::vector<int> numbers;
+  for (Json& description : track.accessors) {
+    description["bufferView"] = view;
+    numbers.push_back(chunk.accessor(description));
+  }
+  Json primitive = {
+      {"attributes", {{"POSITION", numbers[0]}}}, {"indices", put_corners(chunk, surface)}, {"material", material}};
+  Json mesh = {{"name", surface.name}};
+  if (numbers.size() > 1) {
+    Json weights = Json::array({1});
+    for (std::size_t k = 1; k < numbers.size(); ++k) {
+      primitive["targets"].push_back({{"POSITION", numbers[k]}});
+      if (k > 1) weights.push_back(0);
+    }
+    mesh["weights"] = weights;  // without animation: frame 0
+  }
+  mesh["primitives"] = Json::array({primitive});
+  return mesh;
+}
+
+// At the time of frame i the weight of target i is 1 and the others are 0.
+Json animation_of(Chunk& chunk, const AnimatedSurfaces& run, const std::vector<int>& nodes) {
+  std::size_t begin = chunk.bytes.size();
+  for (int i = 0; i < run.frame_count; ++i) chunk.put(static_cast<float>(i / run.fps));
+  const int times = chunk.accessor({{"bufferView", chunk.view(begin)},
+                                    {"componentType", real},
+                                    {"count", run.frame_count},
+                                    {"type", "SCALAR"},
+                                    {"min", Json::array({0.0})},
+                                    {"max", Json::array({static_cast<float>((run.frame_count - 1) / run.fps)})}});
+  begin = chunk.bytes.size();
+  for (int i = 0; i < run.frame_count; ++i)
+    for (int k = 0; k < run.frame_count; ++k) chunk.bytes += i == k ? '\xff' : '\0';
+  const int weights = chunk.accessor({{"bufferView", chunk.view(begin)},
+                                      {"componentType", unsigned_byte},
+                                      {"normalized", true},
+                                      {"count", static_cast<std::int64_t>(run.frame_count) * run.frame_count},
+                                      {"type", "SCALAR"}});
+  Json channels = Json::array();
+  for (const int node : nodes) channels.push_back({{"sampler", 0}, {"target", {{"node", node}, {"path", "weights"}}}});
+  const Json sampler = {{"input", times}, {"output", weights}, {"interpolation", "LINEAR"}};
+  return {{"name", "run"}, {"samplers", Json::array({sampler})}, {"channels", channels}};
+}
+
+Json material_of(const AnimatedSurface& surface) {
+  const Eigen::Vector3d& c = surface.colour;
+  return {{"name", surface.name},
+          {"doubleSided", true},
+          {"pbrMetallicRoughness",
+           {{"baseColorFactor", {c[0], c[1], c[2], 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.8}}}};
+}
+
+void check_size(const std::filesystem::path& path, const AnimatedSurfaces& run) {
+  double bytes = 1.0 * run.frame_count * run.frame_count;
+  for (const AnimatedSurface& surface : run.surfaces)
+    bytes += 8.0 * surface.vertex_count * (run.frame_count + 1) + 4.0 * static_cast<double>(surface.triangles.size());
+  if (bytes > 4.0e9)
+    throw Error("would be larger than the 4 GiB that the format allows", path.string(),
+                "export fewer frames or without --obstacles, or to usda, pc2 or mdd");
+}
+
+void write_chunks(const std::filesystem::path& path, std::string text, const std::string& bytes) {
+  text.append((4 - text.size() % 4) % 4, ' ');
+  const auto word = [](std::size_t value) {
+    const auto small = static_cast<std::uint32_t>(value);
+    return std::string(reinterpret_cast<const char*>(&small), 4);
+  };
+  GrowingFile file(path);
+  file.write("glTF" + word(2) + word(12 + 8 + text.size() + 8 + bytes.size()));
+  file.write(word(text.size()) + "JSON" + text);
+  file.write(word(bytes.size()) + std::string("BIN\0", 4));
+  file.write(bytes);
+  file.keep();
+}
+
+}  // namespace
+
+void write_glb(const std::filesystem::path& path, const AnimatedSurfaces& run) {
+  check_size(path, run);
+  const std::vector<Ranges> ranges = ranges_of(run);
+  std::vector<Track> tracks = tracks_of(run, ranges);
+  Chunk chunk;
+  Json meshes = Json::array(), nodes = Json::array(), materials = Json::array(), roots = Json::array();
+  std::vector<int> moving;
+  for (std::size_t s = 0; s < run.surfaces.size(); ++s) {
+    const int number = static_cast<int>(s);
+    const Eigen::RowVector3d& o = ranges[s].origin;
+    if (tracks[s].accessors.size() > 1) moving.push_back(number);
+    meshes.push_back(mesh_of(chunk, run.surfaces[s], tracks[s], number));
+    materials.push_back(material_of(run.surfaces[s]));
+    nodes.push_back({{"name", run.surfaces[s].name},
+                     {"mesh", number},
+                     {"translation", {o[0], o[1], o[2]}},
+                     {"scale", {ranges[s].step, ranges[s].step, ranges[s].step}}});
+    roots.push_back(number);
+  }
+  const Json extensions = Json::array({"KHR_mesh_quantization"}), scene = {{"nodes", roots}};
+  Json all = {{"asset", {{"version", "2.0"}, {"generator", "selvedge"}}},
+              {"extensionsUsed", extensions},
+              {"extensionsRequired", extensions},
+              {"scene", 0},
+              {"scenes", Json::array({scene})},
+              {"nodes", nodes},
+              {"meshes", meshes},
+              {"materials", materials}};
+  if (!moving.empty()) all["animations"] = Json::array({animation_of(chunk, run, moving)});
+  all["bufferViews"] = chunk.views;
+  all["accessors"] = chunk.accessors;
+  const Json buffer = {{"byteLength", chunk.bytes.size()}};
+  all["buffers"] = Json::array({buffer});
+  write_chunks(path, all.dump(-1, ' ', false, Json::error_handler_t::replace), chunk.bytes);
+}
+
+}  // namespace selvedge
