@@ -18,7 +18,7 @@ struct AdamOptions {
   double clip_median = 0;  // .. to this many times the median of the norms of the last steps; 0: it is not
 };
 
-// What goes on from step to step. Moments have the shapes of the weights.
+// The state between steps. Moments have the shapes of the weights.
 struct AdamState {
   long long steps = 0;
   NetworkWeights first, second;

@@ -14,7 +14,7 @@ struct PartPlaces {
 };
 PartPlaces add_places(GradientParts&, Perceptron& gradient);
 
-// A perceptron on its way back.
+// One perceptron in the backward pass.
 struct PerceptronBack {
   const PackedPerceptron &forward, &backward;
   const PerceptronTape& tape;

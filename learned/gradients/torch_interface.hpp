@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-// What the program and the shared library with libtorch tell each other: plain structs, and one C entry that gives a
-// table of calls. Neither side throws through it: calls return 0, or another number with a sentence in the report.
+// The interface of the program and the shared library with libtorch: plain structs, and one C function that returns a
+// table of calls. No exception crosses it: calls return 0, or another number and a sentence in the report.
 namespace selvedge {
 
 constexpr int torch_interface_version = 1;

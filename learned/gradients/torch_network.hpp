@@ -20,7 +20,7 @@ struct TorchFacts {
 };
 
 // The same network, computed by libtorch: what the kernels are compared with, and what runs on a GPU where there is
-// one. Its graph is that of the text book, with first layers split per node. Embeddings get no gradients here.
+// one. It has the textbook form, but for first layers split per node. Embeddings get no gradients here.
 class TorchNetwork {
  public:
   // `device`: auto, cpu or cuda. `threads`: 0 leaves libtorch's. Throws Error where there is no library at `library`,

@@ -174,7 +174,7 @@ void back_ends(const TrainingRun& run, const PackedLayer& transposed, const Late
   });
 }
 
-// One selection of edges in one step, on its way back.
+// One selection of edges in one step of the backward pass.
 struct EdgeBack {
   const PerceptronBack& p;
   const EdgeSelection& selection;

@@ -41,8 +41,8 @@ void for_each_tile(int rows, const Work& work) {
   });
 }
 
-// Row i of `to` becomes the perceptron, whose input is one block, of row order[i] of `from` (row i without an order).
-// Slots are rows.
+// Row i of `to` becomes the perceptron's result for row order[i] of `from` (row i without an order). Its input is one
+// block. Slots are rows.
 void forward_rows(const TrainingRun& run, const PackedPerceptron& p, const float* from, std::ptrdiff_t from_stride,
                   const std::vector<int>* order, int rows, PerceptronTape& tape, float* to, std::ptrdiff_t to_stride) {
   for_each_tile(rows, [&](int begin, int count) {
@@ -61,7 +61,7 @@ void forward_rows(const TrainingRun& run, const PackedPerceptron& p, const float
   });
 }
 
-// Row i of `products` becomes the layer of the latent of node list[i].
+// Row i of `products` becomes the layer's result for the latent of node list[i].
 void multiply_nodes(const TrainingRun& run, const PackedLayer& layer, const LatentRows& nodes,
                     const std::vector<int>& list, LatentRows& products) {
   const int rows = static_cast<int>(list.size());
@@ -140,7 +140,8 @@ void forward_edges(const TrainingRun& run, const LatentRows& nodes, const SlotPl
   }
 }
 
-// Adds the layer of those sums that nodes [begin, begin + count) have to their rows from `out` on.
+// Puts the sums of nodes [begin, begin + count) through the layer and adds the results to the nodes' rows of `out`.
+// Nodes without a sum are skipped.
 void add_sums(const TrainingRun& run, const PackedLayer& layer, const EdgeSelection& selection, const LatentRows& sums,
               int begin, int count, LatentRows& out) {
   const float* input[training_rows];

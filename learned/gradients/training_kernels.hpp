@@ -7,8 +7,8 @@ namespace selvedge {
 // Rows that pass forward and back through all layers of a perceptron at a time: whole register blocks of every set.
 constexpr int training_rows = 48;
 
-// What happens forward to a perceptron's results: row r of `values` becomes (x - mean) / deviation, and `factor` of it
-// 1 / deviation; without `scale` it stays. Then latent = from + result, or the result where `from` is null, and sum +=
+// The end of a perceptron's forward pass: row r of `values` becomes (x - mean) / deviation, and `factor` of it 1 /
+// deviation; without `scale` it stays. Then latent = from + result, or the result where `from` is null, and sum +=
 // result. Epsilon 1e-5.
 struct NormTile {
   float* values = nullptr;
@@ -20,8 +20,8 @@ struct NormTile {
   float* const* sum = nullptr;  // may be null
 };
 
-// The layer norm backward: row r of `d` from the derivative by the result to that by the values. Derivatives of scale
-// and shift are added to.
+// The layer norm backward: row r of `d` goes from the derivative with respect to the result to that with respect to the
+// values. Adds to the derivatives of scale and shift.
 struct NormBackTile {
   float* d = nullptr;
   int stride = 0, columns = 0, rows = 0;

@@ -32,8 +32,8 @@ void lay_out(TrainingNetwork&);
 
 struct TrainingTape;
 
-// What a forward run leaves for the backward one. Its memory is used again by the next run. One run of a network at a
-// time writes to a tape; networks and graphs may be shared by several tapes.
+// What a forward run stores for the backward one. The next run reuses its memory. One run of a network at a time writes
+// to a tape; networks and graphs may be shared by several tapes.
 class Tape {
  public:
   Tape();
@@ -50,11 +50,11 @@ class Tape {
 // of `infer`. 1 and n threads give the same bits.
 FeatureRows run_forward(const TrainingNetwork&, const Graph&, Tape&);
 
-// Adds to `gradients` the derivatives of a number by every weight, where `d_output` (cloth_nodes x outputs) is its
-// derivative by the output of the last `run_forward` on this tape, with the same network, weights and graph. Embeddings
-// get theirs through the normalised columns of the graph's features, whose deviations are those of weights.tables.
-// Nothing is added for arrays that the graph does not use. 1 and n threads give the same bits. Throws Error where
-// `d_output` or `gradients` has other shapes, or where the tape is of another graph.
+// Adds to `gradients` the derivatives of a scalar with respect to every weight. `d_output` (cloth_nodes x outputs) is
+// the derivative of the scalar with respect to the output of the last `run_forward` on this tape, with the same
+// network, weights and graph. Embeddings get theirs through the normalised columns of the graph's features, whose
+// deviations are those of weights.tables. Nothing is added for arrays that the graph does not use. 1 and n threads give
+// the same bits. Throws Error where `d_output` or `gradients` has other shapes, or where the tape is of another graph.
 void run_backward(const TrainingNetwork&, const Graph&, const Tape&, const FeatureRows& d_output,
                   WeightGradients& gradients);
 

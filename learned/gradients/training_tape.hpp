@@ -8,7 +8,8 @@
 
 namespace selvedge {
 
-// What one perceptron leaves behind, one row a slot: results of its hidden layers, and its own before scale and shift.
+// What the forward pass of one perceptron stores, one row a slot: outputs of the hidden layers, and the result before
+// scale and shift.
 struct PerceptronTape {
   std::vector<LatentRows> hidden;
   LatentRows values;
@@ -52,10 +53,10 @@ struct TrainingTape {
   std::vector<PerceptronTape> edge_encoders;  // of each set
   std::vector<StepTape> steps;
 
-  // Memory for both ways.
+  // Memory for both passes.
   LatentRows to_receiver, to_sender;
   std::vector<ThreadRows> threads;
-  // Memory for going backward.
+  // Memory for the backward pass.
   LatentRows d_nodes, d_first;
   std::vector<LatentRows> d_edges, d_sums;
   GradientParts parts;

@@ -16,8 +16,8 @@ struct DiscCells {
   std::vector<double> distance;  // to it, along edges
 };
 
-// Dijkstra's search from the centre, as far as the radius; vertices that are nearer to it than to the centre they have
-// change over.
+// Dijkstra's search from the centre up to the radius. Vertices that are nearer to it than to their present centre are
+// assigned to it.
 void grow_disc(const Adjacency& graph, const Points& rest, double radius, int centre, DiscCells& cells) {
   using Reached = std::pair<double, int>;
   std::priority_queue<Reached, std::vector<Reached>, std::greater<>> next;

@@ -14,10 +14,10 @@ struct CoarseLevels {
   std::vector<int> centres;       // of the components with edges, by component
 };
 
-// The construction of HOOD (supplement; digest 1.5), one connected component at a time: a level keeps the vertices at
-// an even depth from the component's centre. A component has level l if its centre's eccentricity is at least 2^(l +
-// 1). `centres` names one for some or all of the components; the others get the lowest vertex of least eccentricity, or
-// its approximation.
+// The construction of HOOD (Grigorev et al. 2023, supplement), one connected component at a time: a level keeps the
+// vertices at an even depth from the component's centre. A component has level l if its centre's eccentricity is at
+// least 2^(l + 1). `centres` names one for some or all of the components; the others get the lowest vertex of least
+// eccentricity, or its approximation.
 CoarseLevels make_coarse_levels(const Surface&, int count, std::span<const int> centres = {}, bool approximate = false);
 
 }  // namespace selvedge

@@ -19,7 +19,7 @@ float time_value(const GraphState& state, const FeatureOptions& options) {
   return state.is_init ? 1.0f : 0.0f;
 }
 
-// Ends that lie on one place at rest have none.
+// Edges of rest length zero have no strain.
 float strain_of(double length, double rest) { return rest > 0 ? static_cast<float>((length - rest) / rest) : 0.f; }
 
 int body_node(const std::vector<int>& body_vertices, int vertex, int cloth_nodes) {

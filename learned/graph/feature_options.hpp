@@ -61,7 +61,7 @@ struct FeatureOptions {
   BodyVelocity body_velocity = BodyVelocity::current;
   PinnedForm pinned = PinnedForm::moved;
 
-  // More columns of cloth nodes, for own training (reference/training.md). Among the normalised ones: body 14, force 3,
+  // More columns of cloth nodes, for our own networks (docs/training.md). Among the normalised ones: body 14, force 3,
   // move 3; behind the materials: flags, in the order pinned, near the body, pass. Obstacle vertices have zeros there.
   bool pinned_flag = false;
   bool body_inputs = false;          // of the nearest face of the body within body_radius: node_features.hpp

@@ -31,7 +31,7 @@ struct GraphState {
   bool no_cloth_edges = false;              // first steps of the authors' training samples have none
 
   // For models that see the objective (FeatureOptions::force_inputs, pass_inputs, strain_inputs).
-  Points guess;  // where this pass begins: what the pass before came to; empty: x + velocity, pinned vertices at target
+  Points guess;  // where this pass begins, the result of the one before; empty: x + velocity, pinned vertices at target
   Points force;  // at the guess: minus the objective's gradient over its diagonal, a displacement [m]; empty: zero
   int pass = 0;  // of this frame, from 0
 };

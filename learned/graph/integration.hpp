@@ -9,11 +9,11 @@ struct NextCloth {
   Points x, velocity;  // [m], [m/frame]
 };
 
-// From the network's output (V x 3, normalised) to the next frame, per frame and without dt (parity README, 11):
-// a = output * deviation + mean, velocity + a, x + velocity + a, from where the options see x (seen_positions.hpp).
-// Pinned vertices go to their targets; their velocity is target - x: zero where pinned vertices are moved beforehand
-// (parity README, 1). Where the state has a guess, a is added to guess - x in place of the velocity: the next pass of a
-// frame goes on from what the one before came to.
+// From the network's output (V x 3, normalised) to the next frame, per frame and without dt (parity README, 11): a =
+// output * deviation + mean, velocity + a, x + velocity + a, from where the options see x (seen_positions.hpp). Pinned
+// vertices go to their targets; their velocity is target - x: zero where pinned vertices are moved beforehand (parity
+// README, 1). Where the state has a guess, a is added to guess - x in place of the velocity: each pass of a frame
+// starts from the result of the one before.
 NextCloth integrate(const RestGraph&, const GraphState&, const FeatureOptions&, const Statistics& output,
                     const FeatureRows& decoded);
 

@@ -8,7 +8,7 @@
 
 namespace selvedge {
 
-// What was found on the way to a graph, and what was left out.
+// What the making of a graph found and left out.
 struct GraphReport {
   std::string refused;               // why there is no graph; empty: there is one
   std::vector<BodyPair> body_pairs;  // with an edge

@@ -4,7 +4,7 @@
 
 namespace selvedge {
 
-// Which forces a network is shown (reference/training.md, item 1 of what worked).
+// Which forces a network is shown as an input (docs/training.md).
 struct ForceOptions {
   double contact_stiffness = 300;   // of a quadratic contact with the body [N/m]; 0: none
   double contact_thickness = 3e-3;  // [m]

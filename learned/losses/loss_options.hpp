@@ -85,14 +85,15 @@ struct LossOptions {
   double relaxation_dt = 1.0 / 3;  // of the inertia of a frame in which cloth falls to rest [s]
 };
 
-// As published, iterations being fractions of the run (parity README; digest 2 and 3): of HOOD's 150,000; of the 56,000
-// of ContourCraft's stages 1 and 2, which are blind to contours; of the 11,000 of its stage 3, in whose first 5,000 the
+// As published, iterations being fractions of the run (parity README): of HOOD's 150,000; of the 56,000 of
+// ContourCraft's stages 1 and 2, which are blind to contours; of the 11,000 of its stage 3, in whose first 5,000 the
 // contour loss rises. The released ContourCraft trains without friction.
 LossOptions hood_losses();
 LossOptions senc_losses();  // its two phases of 120,000 and 70,000 in one run
 LossOptions contourcraft_losses();
 LossOptions contourcraft_final_losses();
-// reference/training.md: collision 5e3 to 1e6 between a tenth and half of the run, eps 3 mm, contours 30 N/m.
+// The fast recipe of docs/training.md: collision 5e3 to 1e6 between a tenth and half of the run, eps 3 mm, contours 30
+// N/m.
 LossOptions fast_losses();
 
 }  // namespace selvedge

@@ -14,7 +14,7 @@
 
 namespace selvedge {
 
-// One frame to be judged. Arrays belong to whoever asks; those of the body may be null together: no body.
+// One frame to be judged. The caller owns the arrays. Without a body, those of the body are all null.
 struct LossInputs {
   const LossGarment* garment = nullptr;
   const Points* x = nullptr;          // now, as the losses of the model see it: HOOD after pinned vertices moved [m]
@@ -22,7 +22,7 @@ struct LossInputs {
   const Points* predicted = nullptr;  // the next frame [m]
   const Surface* body = nullptr;
   const Points *body_previous = nullptr, *body_now = nullptr, *body_next = nullptr;
-  const std::vector<char>* body_left_out = nullptr;  // by face: cloth has nothing to do with it; null: none
+  const std::vector<char>* body_left_out = nullptr;  // by face: cloth ignores it; null: none
   const Points* acceleration = nullptr;  // by all forces without contact, V x 3 [m/s2]; null: by gravity alone
   std::span<const ClothPair> repulsion;  // vertices and faces of the cloth that repel
   bool contours = true;  // false: the contour loss counts nothing (published: in a first frame, and if none attracts)
@@ -61,7 +61,7 @@ struct LossTerm {
 // returned as it is and adds nothing. Throws Error where sizes do not fit.
 std::vector<LossTerm> add_losses(const LossInputs&, const LossOptions&, LossSearch&, Points* gradient);
 
-// The parts of it: what is found, and the sum with what is given (such as the authors' own matches).
+// The two parts of add_losses: the search for matches, and the sum for given matches (such as the authors' own).
 void find_matches(const LossInputs&, const LossOptions&, LossSearch&);
 std::vector<LossTerm> add_losses(const LossInputs&, const LossOptions&, const LossMatches&, Points* gradient);
 

@@ -6,7 +6,7 @@
 
 namespace selvedge {
 
-// What came of the contours of a frame.
+// Counts of the contours of a frame, and the volume that they enclose.
 struct VolumeCounts {
   int pairs = 0, contours = 0, enclosed = 0, open = 0, not_orientable = 0, unassigned = 0;
   double volume = 0;     // enclosed [m^3]

@@ -71,9 +71,9 @@ struct Architecture {
 };
 
 // hood, hood_cvpr, fine15, fine48, contourcraft, contourcraft_paper, senc, small, small_contour, small_senc,
-// small_senc_layers, tiny (`preset_names`). Sizes of the published ones: reference/weights.md; the last five are ours
-// (reference/training.md): `small` is blind to contact of cloth with cloth, `small_senc` sees what SENC does,
-// `small_senc_layers` that and the edges of `small_contour`, `tiny` is for tests. Throws Error at any other name.
+// small_senc_layers, tiny (`preset_names`). Sizes: docs/learned.md. The last five are ours: `small` is blind to contact
+// of cloth with cloth, `small_senc` sees what SENC does, `small_senc_layers` that and the edges of `small_contour`,
+// `tiny` is for tests. Throws Error at any other name.
 Architecture architecture_preset(const std::string& name);
 std::vector<std::string> preset_names();
 

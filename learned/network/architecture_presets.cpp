@@ -109,9 +109,9 @@ Architecture contour(const std::string& name, const FeatureOptions& features, co
   return a;
 }
 
-// What our networks see (reference/training.md, "Recommended small preset"). Nodes: velocity 3, normal 3, time step 1,
-// log mass 1, nearest body face 14, the objective's preconditioned gradient 3, move so far 3 | bending, mu, lambda 3,
-// pinned 1, near the body 1, pass 1. Edges: x_s - x_r 3, norm, rest length, strain at x and at the guess.
+// What our small networks see (docs/learned.md). Nodes: velocity 3, normal 3, time step 1, log mass 1, nearest body
+// face 14, the objective's preconditioned gradient 3, move so far 3 | bending, mu, lambda 3, pinned 1, near the body 1,
+// pass 1. Edges: x_s - x_r 3, norm, rest length, strain at x and at the guess.
 FeatureOptions own_features() {
   FeatureOptions options;
   options.type_columns = options.level_columns = 0;
@@ -174,7 +174,7 @@ Architecture architecture_preset(const std::string& name) {
   if (name == "hood_cvpr") return hood_cvpr();
   if (name == "fine15") return fine(name, 15);
   if (name == "fine48") return fine(name, 48);
-  // The released code uses the fourth level only; the paper speaks of two levels (reference/learned.md, 1.6).
+  // The released code uses the fourth level only; the paper speaks of two levels (Grigorev et al. 2024).
   if (name == "contourcraft") return contour(name, contourcraft_features(), {"0", "1", "2", "3"}, {"3"});
   if (name == "contourcraft_paper") return contour(name, contourcraft_paper_features(), {"0", "1"}, {"0", "1"});
   if (name == "senc") return senc();

@@ -80,7 +80,8 @@ void finish_tile(const Pass& pass, const PackedPerceptron& p, TileBuffers& buffe
                        sum ? buffers.sum : nullptr});
 }
 
-// Row i of `to` becomes the perceptron, whose input is one block, of row order[i] of `from` (row i without an order).
+// Row i of `to` becomes the perceptron's result for row order[i] of `from` (row i without an order). Its input is one
+// block.
 void evaluate_rows(const Pass& pass, const PackedPerceptron& p, const float* from, std::ptrdiff_t from_stride,
                    const std::vector<int>* order, int rows, float* to, std::ptrdiff_t to_stride) {
 #pragma omp parallel
@@ -102,7 +103,7 @@ void evaluate_rows(const Pass& pass, const PackedPerceptron& p, const float* fro
   }
 }
 
-// Row i of `products` becomes the layer of the latent of node list[i].
+// Row i of `products` becomes the layer's result for the latent of node list[i].
 void multiply_nodes(const Pass& pass, const PackedLayer& layer, const std::vector<int>& list, LatentRows& products) {
   const int rows = static_cast<int>(list.size());
 #pragma omp parallel for schedule(dynamic, 1)

@@ -6,7 +6,7 @@
 
 namespace selvedge {
 
-// Latents on the way, for comparison with others. Rows of nodes and edges are in the order of the graph.
+// Latents inside the network, for comparisons. Rows of nodes and edges are in the order of the graph.
 struct LatentTrace {
   std::vector<FeatureRows> nodes;                    // after the encoder and after each step
   std::vector<FeatureRows> edges_first, edges_last;  // one a set of the graph: after its encoder, and at the end

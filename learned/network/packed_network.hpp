@@ -38,15 +38,16 @@ struct PackedNetwork {
   PackedPerceptron decoder;
 };
 
-// The same for going backward: from the derivatives by a layer's results to those by its inputs. Layers are transposed,
-// and have neither bias nor norm.
+// backward: from the derivatives with respect to a layer's results to those with respect to its inputs. Layers are
+// transposed, and have neither bias nor norm.
 enum class PackedWay { forward, backward };
 
 // Throws Error unless the weights have the architecture's shapes (`check_weights`) and the machine has the set.
 std::shared_ptr<const PackedNetwork> pack_network(const Architecture&, const NetworkWeights&,
                                                   InstructionSet = best_instruction_set());
 
-// One of two ways, to be filled in again where the weights change: with those of its own shapes, and no checks.
+// One direction, first without weights; pack_again fills them in after every change. Their shapes must be the same;
+// nothing is checked.
 PackedNetwork packed_shapes(const Architecture&, InstructionSet, PackedWay);
 void pack_again(const NetworkWeights&, PackedWay, PackedNetwork&);
 

@@ -13,7 +13,7 @@ struct DrapeModel {
   bool has_scale() const { return !scale.g.layers.empty(); }
 };
 
-// What stands behind the network, and what its result is judged by.
+// The layer behind the network, and the loss of its result.
 struct DrapeRecipe {
   bool layer = false;  // with the model's scales, or `alpha` without them
   double alpha = 1;
@@ -21,7 +21,7 @@ struct DrapeRecipe {
   RepulsionLossOptions loss;   // collision 0: there is no loss 9, and the judge is not asked
 };
 
-// A drape to learn from, and who answers for its body: the layer asks the one, the loss the other.
+// A drape to learn from, with two distances of its body: one for the layer, one for the loss.
 struct DrapeLesson {
   const DrapeCase* drape = nullptr;
   AskDistance layer, judge;

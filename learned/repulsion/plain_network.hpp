@@ -8,17 +8,16 @@
 
 namespace selvedge {
 
-// Between the layers: max(0, .), or log(1 + exp(beta .)) / beta.
+// The activation between layers: max(0, .), or log(1 + exp(beta .)) / beta.
 enum class Bend { rectified, softplus };
 
-// A multi-layer perceptron of its own, without a graph: affine layers with a bend between them and none behind the
-// last.
+// A multi-layer perceptron without a graph: affine layers with an activation between them and none behind the last.
 struct PlainNetwork {
   std::vector<AffineLayer> layers;
   Bend bend = Bend::rectified;
   double beta = 100;  // of softplus
-  int again_layer =
-      -1;  // reads the first `again_columns` of the inputs a second time, behind what the layer before made
+  // This layer reads the first `again_columns` of the inputs a second time, behind the results of the layer before.
+  int again_layer = -1;  // -1: none does
   int again_columns = 0;
 
   int inputs() const { return static_cast<int>(layers.front().weight.cols()) - (again_layer == 0 ? again_columns : 0); }
@@ -56,7 +55,7 @@ struct ValueAndTangent {
 };
 ValueAndTangent evaluate_with_tangent(const PlainNetwork&, const FeatureRows& inputs, const FeatureRows& directions);
 
-// What a loss says of outputs y and of their derivatives y' in the directions: dL/dy and dL/dy'.
+// Derivatives of a loss L with respect to outputs y and to their derivatives y' in the directions: dL/dy and dL/dy'.
 struct PlainAdjoints {
   FeatureRows value, tangent;  // tangent: no rows where the loss knows no derivatives
 };

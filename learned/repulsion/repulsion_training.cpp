@@ -21,7 +21,7 @@ FeatureRows as_rows(std::span<const float> values) {
   return Eigen::Map<const FeatureRows>(values.data(), 1, static_cast<Eigen::Index>(values.size()));
 }
 
-// Adds what the vertices' latents say to the gradient of k, and returns the one by z.
+// Adds the gradient with respect to the vertices' latents to that of k, and returns the gradient with respect to z.
 FeatureRows back_through_k(const ScaleNetwork& network, const FeatureRows& z, std::span<const int> vertices,
                            const FeatureRows& by_latents, std::vector<float>& gradient) {
   const AffineLayer& layer = network.k.layers.front();

@@ -4,8 +4,8 @@
 
 namespace selvedge {
 
-// Which Jacobian takes gradients back through the layer (repulsive_layer.hpp). Where a deep vertex went another way
-// than its gradient the direction counts as frozen.
+// Which Jacobian takes gradients back through the layer (repulsive_layer.hpp). Where a deep vertex was pushed in
+// another direction than its gradient, that direction counts as constant.
 enum class LayerGradient { full, frozen };
 
 // Equations 7 to 9: reconstruction * sum |x' - truth|^2 + collision * sum max(-f(x'), 0), lengths in `unit`. The paper
@@ -22,8 +22,8 @@ struct RepulsionLosses {
   std::vector<double> by_alpha;                         // by the scales of the pushed vertices, in their order
 };
 
-// Of a layer that was run without rechecks. `judge` answers f of the loss: accurate distances in the settings accurate
-// and hybrid, the network's in approximate. A vertex outside gets no gradient of the collision loss.
+// Of a layer that was run without rechecks. `judge` gives the distance f in the loss: accurate distances in the
+// settings accurate and hybrid, the network's in approximate. A vertex outside gets no gradient of the collision loss.
 RepulsionLosses repulsion_losses(const Repelled&, const Points& truth, const AskDistance& judge,
                                  const RepulsionLossOptions&);
 

@@ -26,8 +26,8 @@ std::vector<int> places_of(const std::vector<PushedVertex>& pushed, int count) {
   return place;
 }
 
-// Deep inside nearest points lie all round. From the rim inward each deep vertex takes the mean of the directions that
-// its neighbours have by then; those that reach no rim keep their own.
+// Deep inside a body the nearest points lie in all directions. From the rim of the penetrating patch inward, each deep
+// vertex takes the mean direction of those neighbours that have one already. Vertices that reach no rim keep their own.
 int turn_deep_ones(const Adjacency& ring, const std::vector<int>& place, double deep,
                    std::vector<PushedVertex>& pushed) {
   std::vector<char> known(pushed.size());

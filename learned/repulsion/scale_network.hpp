@@ -61,7 +61,7 @@ class ScaleEvaluator {
 
 // What g reads, for training: latents of the vertices and their distances, a row a vertex.
 FeatureRows scale_inputs(const ScaleNetwork&, const FeatureRows& latents, std::span<const double> distances);
-// The end of g and its derivative by the sum that it is taken of.
+// The output activation of g, and its derivative with respect to its argument `sum`.
 double scale_end(ScaleRange, double sum);
 double scale_end_slope(ScaleRange, double sum);
 

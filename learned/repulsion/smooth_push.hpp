@@ -4,13 +4,13 @@
 
 namespace selvedge {
 
-// What the layer is compared with. The naive way is `repel` with a constant scale of 1. The other one moves the whole
+// Two baselines of the layer. The naive one is `repel` with a constant scale of 1. The other one moves the whole
 // garment so that what is inside comes out and the displacements are smooth (in the manner of DRAPE, Guan et al. 2012):
 // the u that minimises
 //   sum over penetrating i of (n_i . (x_i + u_i - c_i) - gap)^2
 //     + smoothness sum over i of |u_i - mean of its neighbours' u|^2 + damping sum over i of |u_i|^2,
-// with nearest points c_i and normals n_i, taken so many times from where it has come to. The weights of the paper are
-// not confirmed.
+// with nearest points c_i and normals n_i, repeated `rounds` times, each from the result of the one before. The paper's
+// weights could not be confirmed.
 struct SmoothPushOptions {
   double gap = 0.003;  // [m]
   double smoothness = 4, damping = 0.8;

@@ -7,7 +7,8 @@
 
 namespace selvedge {
 
-// What of a network a scene uses and what it leaves out, and what of the scene the network leaves out.
+// Lines for `selvedge plan`: which inputs of the network the scene uses or leaves out, and what of the scene the
+// network ignores.
 std::vector<PlanLine> learned_plan_lines(const Scene&, const Architecture&, bool settle);
 
 }  // namespace selvedge

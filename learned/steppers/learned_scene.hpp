@@ -16,10 +16,10 @@ struct LearnedScene {
   std::vector<std::string> clamped;  // materials outside of the range that networks were trained in, a sentence each
 };
 
-// Materials become numbers between 0 and 1 over the ranges of training (digest 2.8): bending and mu by their
-// logarithms, lambda linearly. What lies outside counts as the nearest end and is named. Membrane coefficients are
-// divided by the authors' thickness of 0.47 mm. A curvature stiffness B stands for the hinge coefficient 4 B: on a mesh
-// of equilateral triangles a cylinder then stores the same energy, taken over all directions. Woven cloth
+// Materials become numbers between 0 and 1 over the ranges of training (the authors' configurations): bending and mu by
+// their logarithms, lambda linearly. What lies outside counts as the nearest end and is named. Membrane coefficients
+// are divided by the authors' thickness of 0.47 mm. A curvature stiffness B stands for the hinge coefficient 4 B: on a
+// mesh of equilateral triangles a cylinder then stores the same energy, taken over all directions. Woven cloth
 // (Baraff-Witkin) counts as isotropic, with the mean of warp and weft and without lateral contraction.
 LearnedScene learned_scene(const Scene&);
 

@@ -34,12 +34,12 @@ GraphState graph_state(const Scene&, const State& from, const Drive&);
 StepEnd learned_end(const Scene&, const State& from, const Drive&, const GraphState&, const Points& seen,
                     const NextCloth&);
 
-// Somebody else has made `to` from `from`: it then carries what it would if a network had, so that no roll-out begins
-// there. The velocity is the cloth's motion of the frame.
+// For a step that another stepper made: writes into `to` the memory that a network's step would have left, so that no
+// roll-out begins there. The velocity is the cloth's motion in the frame.
 void carry_frame(const State& from, State& to);
 
-// Somebody else has moved the cloth of a state that a network made: what it carries moves along [m]. Nothing happens
-// where the state carries nothing.
+// For cloth that another stepper has moved after a network's step: the positions in the memory move along [m]. Nothing
+// happens where the state carries nothing.
 void change_carried_velocity(const Points& change, State&);
 
 // What a network carries of these vertices' velocities becomes what State::v has of them. Nothing happens to a state

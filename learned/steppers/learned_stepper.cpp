@@ -68,7 +68,7 @@ class LearnedStepper final : public Stepper {
   AuditMemory audited_;
 };
 
-// What the objective asks for at the guess, of networks that see it.
+// The objective's force at the guess, for networks that have it as an input.
 void LearnedStepper::show_force(GraphState& state) {
   if (!features_.force_inputs) return;
   const SeenPositions seen = seen_positions(rest_, state, features_);
@@ -80,7 +80,7 @@ void LearnedStepper::show_force(GraphState& state) {
   state.force = shown_force(inputs, state.pass, features_.contour_force, force_search_);
 }
 
-// All passes of a frame, each from what the one before came to. False: something is not finite.
+// All passes of a frame, each from the result of the one before. False: a number is not finite.
 bool LearnedStepper::predict(GraphState state, NextCloth& next, StepReport& report) {
   for (state.pass = 0; state.pass < passes_; ++state.pass) {
     Stopwatch watch;
@@ -97,8 +97,8 @@ bool LearnedStepper::predict(GraphState state, NextCloth& next, StepReport& repo
   return true;
 }
 
-// The cloth falls to rest while pins and body stand still. What follows starts where it has come to, with the velocity
-// that the network gave it and no history.
+// The cloth falls to rest while pins and body stand still. The roll-out then starts from that position, with the
+// velocity that the network gave and no history.
 bool LearnedStepper::settle(GraphState& state, StepReport& report) {
   GraphState still = state;
   still.target = state.x;

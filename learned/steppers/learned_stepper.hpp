@@ -21,9 +21,9 @@ struct LearnedOptions {
 // the options ask for it.
 //
 // A network with inputs for accelerations (SENC) is shown those of the drive and of the wind. Others know no wind, and
-// no gravity but the one that they were trained in; none knows springs. Nothing detects or undoes what passes through
-// on the way: the audits of motion and of positions find and report it. A state or a prediction that is not finite, or
-// beyond 1000 km, rejects the step with the reason `not_finite`.
+// no gravity but the one that they were trained in; none knows springs. The stepper neither detects nor undoes
+// penetrations: the audits of motion and of positions find and report them. A state or a prediction that is not finite,
+// or beyond 1000 km, rejects the step with the reason `not_finite`.
 //
 // Keeps a reference to the scene, and copies what it needs of the weights. Throws Error for weights that are not of the
 // architecture's shapes, for inputs that the stepper does not make, and for a scene that is no graph

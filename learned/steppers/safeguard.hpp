@@ -10,7 +10,7 @@
 
 namespace selvedge {
 
-// When the response to a motion is given up (ContourCraft's released code, digest 3.2). Zero: never for that reason.
+// When the response to a motion is given up (ContourCraft's released code). Zero: never for that reason.
 struct SafeguardOptions {
   int largest_zone = 30;          // vertices of an impact zone
   double largest_impulse = 5e-2;  // that a vertex is moved by it [m]
@@ -24,13 +24,13 @@ struct SafeguardReport {
   int impulses = 0, zones = 0;
 };
 
-// Keeps a cloth that is free of intersections with itself so: impulses and impact zones of Bridson, Fedkiw and Anderson
-// 2002 on a motion that somebody else proposes. Obstacles count for nothing. Keeps a reference to the scene.
+// Keeps cloth free of intersections with itself: applies the impulses and impact zones of Bridson, Fedkiw and Anderson
+// 2002 to a proposed motion. Obstacles are ignored. Keeps a reference to the scene.
 class Safeguard {
  public:
   explicit Safeguard(const Scene&, const SafeguardOptions& = {});
-  // Changes `to` so that the straight motion from -> to meets nothing; given up, `to` is junk. `from` may not intersect
-  // itself: that gives up too.
+  // Changes `to` so that the straight motion from -> to meets nothing; where it gives up, `to` is undefined. It also
+  // gives up where `from` intersects itself.
   SafeguardReport operator()(const Points& from, Points& to);
 
  private:
@@ -45,8 +45,8 @@ class Safeguard {
 };
 
 // A stepper whose proposals go through a Safeguard. A step that is given up is rejected: the reason `penetrating`, with
-// the counts in the report. What a learned stepper carries to the next frame is what the response has left of it. Keeps
-// a reference to the scene.
+// the counts in the report. The velocity that a learned stepper carries to the next frame is the one after the
+// response. Keeps a reference to the scene.
 std::unique_ptr<Stepper> make_safeguarded(const Scene&, std::unique_ptr<Stepper>, const SafeguardOptions& = {});
 
 }  // namespace selvedge

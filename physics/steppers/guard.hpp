@@ -34,7 +34,7 @@ struct GuardMeasures {
   double in_contact = 0;  // share of the free vertices: those are left out of the last three
 };
 
-// Judges steps that somebody proposes. Caches, and references to the scene.
+// Judges proposed steps. Caches, and references to the scene.
 struct Guard {
   Guard(const Scene&, const GuardOptions&);
   Guard(const Guard&) = delete;
@@ -62,7 +62,7 @@ using AskTouching = std::function<std::vector<char>()>;
 Verdict judge(Guard&, const State& from, const Drive&, double dt, const Points& x, const AskTouching&,
               GuardMeasures& measures);
 
-// The first two tests alone: for who does something with a proposal before it is judged.
+// The first two tests alone: for callers that process a proposal before it is judged.
 Verdict judge_motion(const Guard&, const State& from, double dt, const Points& x, GuardMeasures& measures);
 
 // All measures, whatever the bounds say. x must be finite.

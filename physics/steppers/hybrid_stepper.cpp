@@ -120,8 +120,8 @@ Verdict HybridStepper::judged(const Work& work, const Points& x) {
       [&] { return touching_vertices(contact_, work.from, work.drive.obstacles, x); }, measures);
 }
 
-// The proposal as it is. What the guard can tell of positions is asked before the proposer audits them, and again where
-// it then leaves the cloth elsewhere.
+// The proposal as it is. The guard judges the positions before the proposer audits them, and again if the proposer then
+// ends elsewhere.
 Verdict HybridStepper::propose_step(Work& work) {
   Verdict verdict = Verdict::none;
   Points seen;
@@ -140,7 +140,7 @@ Verdict HybridStepper::propose_step(Work& work) {
   return is_contact_free(work.to, work.report) ? Verdict::admitted : Verdict::penetrating;
 }
 
-// Where the proposer wants the cloth, unaudited where it can leave that out.
+// The proposer's positions, without its audit where it can skip that.
 std::optional<Points> HybridStepper::proposed_positions(Work& work) {
   std::optional<Points> x;
   StepExtras extras;

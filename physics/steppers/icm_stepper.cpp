@@ -99,7 +99,7 @@ void IcmStepper::find_pairs(const Points& nodes0, const Points& at, const Points
   std::sort(work.held.begin(), work.held.end());
 }
 
-// What is enclosed by contours has no way out that shortens them all the time: it is asked back directly.
+// Enclosed vertices may have to lengthen a contour before they are out: they are pushed back directly.
 std::vector<ContactTerm> IcmStepper::pushes(ContourPotential& contour, const Points& x, double h) const {
   if (options_.push_speed == 0) return {};
   const Segments& found = contour.segments(x);

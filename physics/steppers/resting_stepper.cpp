@@ -30,7 +30,7 @@ Box box_of_motion(const Points& x0, const Points& x1, double margin) {
   return box;
 }
 
-// Round all that moves from x0 to x1 and strays from the way by no more than its length.
+// The box round all that moves from x0 to x1 and leaves the straight path by no more than its length.
 Box box_of_motion(const Points& x0, const Points& x1) { return box_of_motion(x0, x1, largest_row(x1 - x0)); }
 
 // Of each cloth the lowest one that springs join it to.

@@ -62,7 +62,7 @@ NewtonReport SubstepSolve::with_contact(Substep& s, StepProblem& problem, Points
     const double change = lag_normal_forces(contacts.terms, x);
     if (pass == (s.pinched ? pinched_passes : max_passes)) return newton;
     const auto found = impacts(nodes0, s.nodes, report);
-    if (pass == 0) s.parts = parts_for_way(farthest_past(found, nodes0, s.nodes), edge_length_, s.max_parts);
+    if (pass == 0) s.parts = parts_for_distance(farthest_past(found, nodes0, s.nodes), edge_length_, s.max_parts);
     if (s.parts > 1) return newton;
     if (calm && mean_touching(contacts.terms, x - *problem.x0) < creep && deepest(found, s.nodes) < deep_ &&
         mistaken_friction(solved, contacts.terms, *problem.x0, x, creep) < normal_change)

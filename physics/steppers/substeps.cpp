@@ -14,9 +14,9 @@ constexpr double visibly_damped = 1.0 / 48;  // steps of implicit Euler that are
 
 int least_substeps(double dt) { return dt > visibly_damped ? 2 : 1; }
 
-// Of a way, each no longer than that.
-int parts(double way, double longest, int least, int most) {
-  return longest > 0 ? static_cast<int>(std::clamp<double>(std::ceil(way / longest), std::min(least, most), most))
+// Parts of a distance, none of them longer than `longest`.
+int parts(double distance, double longest, int least, int most) {
+  return longest > 0 ? static_cast<int>(std::clamp<double>(std::ceil(distance / longest), std::min(least, most), most))
                      : least;
 }
 
@@ -34,8 +34,8 @@ int substeps_for_contact(double contact_speed, double dt, double edge_length, in
   return parts(dt * contact_speed, edges_past * edge_length, least_substeps(dt), max_substeps);
 }
 
-int parts_for_way(double way, double edge_length, int most) {
-  return parts(way, edges_a_substep * edge_length, 1, most);
+int parts_for_distance(double distance, double edge_length, int most) {
+  return parts(distance, edges_a_substep * edge_length, 1, most);
 }
 
 double fastest_past(std::span<const NodePair> pairs, const State& from, const Drive& drive, double dt) {
@@ -53,10 +53,12 @@ double fastest_past(std::span<const NodePair> pairs, const State& from, const Dr
 double farthest_past(std::span<const Impact> impacts, const Points& nodes0, const Points& nodes1) {
   double farthest = 0;
   for (const Impact& impact : impacts) {
-    const auto way = [&](int i) { return Vec3(row(nodes1, impact.pair.nodes[i]) - row(nodes0, impact.pair.nodes[i])); };
+    const auto moved = [&](int i) {
+      return Vec3(row(nodes1, impact.pair.nodes[i]) - row(nodes0, impact.pair.nodes[i]));
+    };
     const int split = impact.pair.kind == PairKind::vertex_face ? 1 : 2;
     for (int a = 0; a < split; ++a)
-      for (int b = split; b < 4; ++b) farthest = std::max(farthest, (way(a) - way(b)).norm());
+      for (int b = split; b < 4; ++b) farthest = std::max(farthest, (moved(a) - moved(b)).norm());
   }
   return farthest;
 }

@@ -23,9 +23,9 @@ struct SubstepState {
 int substeps_for_speed(const State& from, const Drive&, double dt, double edge_length, int max_substeps);
 // As many as keep the motion of touching pairs past each other within one edge.
 int substeps_for_contact(double contact_speed, double dt, double edge_length, int max_substeps);
-// Of a substep in which something meets after moving `way` [m] past each other: more than a few edges are too many to
-// linearise contact over.
-int parts_for_way(double way, double edge_length, int most);
+// As many as keep each part of a motion of `distance` [m] past each other within a few edges: contact cannot be
+// linearised over more.
+int parts_for_distance(double distance, double edge_length, int most);
 
 // The largest speed of a pair's one primitive past the other, of one vertex each [m/s].
 double fastest_past(std::span<const NodePair>, const State& from, const Drive&, double dt);

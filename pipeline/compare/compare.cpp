@@ -89,7 +89,7 @@ void say(const CompareRequest& request, const std::string& line) {
   if (request.log) *request.log << line << "\n" << std::flush;
 }
 
-// What is said of a scene without references: true, for nothing stops it.
+// Size and length of a scene without references. Always true: nothing stops it.
 bool describe_scene(SceneWork& work) {
   work.floor.scene = work.scene->name;
   for (const std::optional<Setup>& setup : work.setups)
@@ -140,7 +140,7 @@ bool find_errors(const CompareRequest& request, const Comparison& comparison, Sc
   return true;
 }
 
-// All settings start alike: what one scene needs to be prepared is done once. False: stopped.
+// All settings start alike: a scene is prepared once. False: stopped.
 bool prepare_settings(const CompareRequest& request, SceneWork& work) {
   const Setup* first = nullptr;
   for (std::optional<Setup>& setup : work.setups) {

@@ -37,7 +37,7 @@ struct SequenceOptions {
   double shape_spread = 3;  // of the bodies of tangled ones [standard deviations]
 };
 
-// How rows are read as a table of an evaluation.
+// Options of an evaluation's tables.
 struct EvaluationOptions {
   std::string baseline;  // the row that the others are held against; empty: no evaluation
   int resamples = 10000;

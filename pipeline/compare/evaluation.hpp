@@ -8,9 +8,8 @@
 
 namespace selvedge {
 
-// How a row's pairs stand to the baseline's on the same sequences: the geometric mean of (pairs + 1) / (baseline's
-// pairs
-// + 1), pairs being means over frames, with the interval of 95 % by a bootstrap over sequences.
+// A row's pairs over the baseline's on the same sequences: the geometric mean of (pairs + 1) / (baseline's pairs + 1),
+// where pairs are means over frames, with the interval of 95 % by a bootstrap over sequences.
 struct PairedRatio {
   std::string row, baseline;
   int sequences = 0;  // that both have

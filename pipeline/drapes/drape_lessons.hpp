@@ -11,7 +11,7 @@
 
 namespace selvedge {
 
-// One drape and who answers for its body.
+// One drape, and the distances of its body.
 struct DrapeBody {
   DrapeSample sample;
   std::unique_ptr<DistanceField> field;  // of the body as it stands there

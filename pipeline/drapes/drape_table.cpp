@@ -17,7 +17,7 @@ struct DrapeColumns {
       backbone_ms, distance_ms, push_ms, edges_ms, alphas;
 };
 
-// One drape on its way through the row's parts, each timed.
+// Takes one drape through the row's parts and times each of them.
 Points run_way(const MeasuredWay& way, const DrapeModel& model, const DrapeTrainingOptions& options,
                const DrapeLessons& lessons, DrapeBody& body, Points& before, DrapeColumns& columns) {
   constexpr double milliseconds = 1e3;

@@ -37,7 +37,7 @@ Material drape_material(const DrapeOptions& options) {
   return material;
 }
 
-// One path on its way.
+// A path in progress.
 struct PathMaker {
   const DrapeWorld& world;
   const std::function<bool()>& stop;

@@ -15,8 +15,8 @@ struct DrapeTrainSummary {
 };
 
 // Trains the backbone, the distance by a network where a row needs it, and every row from the backbone's end; then
-// measures them all, the ways of post-processing and the edge pass on the test drapes. Leaves NAME.h5 and NAME.csv of
-// each stage, table.txt, table.csv, config.yaml and training.html. Stops as `train` does, and goes on with `resume`.
+// measures all of them on the test drapes, with post-processing and edge passes. Leaves NAME.h5 and NAME.csv of each
+// stage, table.txt, table.csv, config.yaml and training.html. Stops as `train` does, and goes on with `resume`.
 DrapeTrainSummary train_drapes(const TrainRequest&);
 std::string drape_train_text(const DrapeTrainSummary&);
 std::string drape_train_json(const DrapeTrainSummary&);

@@ -9,15 +9,14 @@
 
 namespace selvedge {
 
-// One stage: a network that is trained so many steps into a file of the run's folder, which is its checkpoint on the
-// way and its result at the end.
+// One stage: a network is trained for a number of steps into a file of the run's folder. The file is the checkpoint
+// during the stage and the result after it.
 struct TrainingStage {
   std::string name;
   StageOptions options;
   std::string header;  // of the table, without step, seconds and rate
-  std::function<std::string(double rate, RandomStream&, bool last)>
-      step;                                       // one; the columns of a line. last: of the
-                                                  // line that is written, which may measure more
+  // Takes one step and returns its columns for the table. `last`: the line is written, so that it may measure more.
+  std::function<std::string(double rate, RandomStream&, bool last)> step;
   std::function<StageFile()> state;               // networks and numbers as they are; the rest is filled in
   std::function<void(const StageFile&)> restore;  // from them
 };

@@ -15,7 +15,7 @@ StrainMeasure strain_of(const Scene&, const Points& x);
 // The lowest value that a part of them, of 0 to 1, does not exceed; 0 of none.
 double percentile(std::vector<double>, double part);
 
-// What the last frames were like, for the jitter.
+// The last frames, for the jitter.
 struct MotionTrace {
   Points x1, x2, x3;  // the last, the one before, ..
 
@@ -24,7 +24,7 @@ struct MotionTrace {
   double add(const Points& x);
 };
 
-// How fast cloth moves to and fro: the spectrum of the velocities of up to 500 vertices, spread over the numbering.
+// Oscillation of the cloth: the spectrum of the velocities of up to 500 vertices, spread over the numbering.
 struct MotionSpectrum {
   std::vector<Points> x;  // of those vertices, by frame
 

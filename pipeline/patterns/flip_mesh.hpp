@@ -44,7 +44,7 @@ struct FlipMesh {
  private:
   int find(const Vec2&) const;
   int edge_to(int triangle, int other) const;  // which edge of a triangle the other one is beyond
-  void rejoin(int triangle, int k);            // tells the triangle beyond edge k
+  void rejoin(int triangle, int k);            // updates the neighbour across edge k
   bool wants_flip(int triangle, int k) const;
   void settle(std::vector<int> fan);
   mutable int last_ = 0;

@@ -110,7 +110,7 @@ class World {
     return drive;
   }
 
-  // Into the arrays that are there, so that views of them stay where they are.
+  // Writes into the existing arrays, so that views of them stay valid.
   void keep(State next, const StepReport& report) {
     Points x = std::move(state_.x), v = std::move(state_.v);
     std::vector<Points> obstacles = std::move(state_.obstacles);

@@ -40,7 +40,7 @@ struct Laps {
   }
 };
 
-// As many threads as asked for, until it goes.
+// Sets the number of threads during its lifetime.
 class ThreadCount {
  public:
   explicit ThreadCount([[maybe_unused]] int threads) {

@@ -17,7 +17,7 @@ struct StabilityRun {
   std::string name;
   std::vector<std::string> overrides;
   bool brief = false;  // also in the short form
-  std::string fault;   // by which the network's weights are spoiled (spoiled_weights.hpp); empty: they are not
+  std::string fault;   // put into the network's weights (spoiled_weights.hpp); empty: none
 };
 
 struct StabilityCase {

@@ -25,7 +25,7 @@ constexpr double least_lag = 1e-9;  // below it the body is where it was wanted,
 constexpr double most_depth = 1e-3;
 constexpr int frames_after = 10;  // that are excused after the body has passed through itself
 
-// What is worn.
+// A garment or an outfit.
 struct Wear {
   std::string name;
   bool outfit = false, validation = false;
@@ -66,8 +66,8 @@ Setup read_row(const WardrobeRequest& request, const Wear& wear, const ClipEntry
   return setup;
 }
 
-// What is worn by as many garments shares in a clip (a body leaves room for as many as it wears): where the body is,
-// asked by the same times each, and in which frames it passes through itself or did so a few frames before.
+// All outfits of as many garments share this in a clip, because the body's room depends on that number: the body's
+// positions at the frames, and in which frames it passes through itself or did so a few frames before.
 struct ClipBody {
   PosedBodies known{{}, true};
   std::vector<char> excused;

@@ -24,7 +24,7 @@ struct WardrobeRequest {
 // One garment or outfit through one clip.
 struct WardrobeRow {
   std::string wear, clip;
-  bool validation = false;  // of the clip or of what is worn
+  bool validation = false;  // of the clip, garment or outfit
   int vertices = 0, frames = 0, frames_wanted = 0;
   int excused_frames = 0;   // the body passes through itself, or did so up to ten frames before
   long cloth_pairs = 0;     // over all frames
@@ -50,6 +50,6 @@ std::string wardrobe_row_json(const WardrobeRow&, const std::string& key);
 std::optional<WardrobeRow> read_wardrobe_row(const std::string& json, const std::string& key);
 std::string wardrobe_json(const std::vector<WardrobeRow>&);
 std::string wardrobe_csv(const std::vector<WardrobeRow>&);
-std::string wardrobe_table(const std::vector<WardrobeRow>&);  // a row for each thing worn, and the sum, for people
+std::string wardrobe_table(const std::vector<WardrobeRow>&);  // a row a garment or outfit, and the sum, for people
 
 }  // namespace selvedge

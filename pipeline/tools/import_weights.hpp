@@ -22,10 +22,10 @@ struct ImportedWeights {
   long long numbers = 0;           // in the tensors that were read, statistics included
 };
 
-// Reads a checkpoint of HOOD (hood_final or postcvpr, hood_cvpr, fine15, fine48) or of ContourCraft, of any width.
-// Which it is, the names of its tensors say; every name and every shape must be as published (reference/weights.md),
-// and a missing, extra or misshapen tensor throws Error that names it. Statistics become mean and deviation in the
-// authors' float32 order (parity README, 9). The optimiser's state is not read. Safety: pickle.hpp, stored_archive.hpp.
+// Reads a checkpoint of HOOD (hood_final or postcvpr, hood_cvpr, fine15, fine48) or of ContourCraft, of any width. The
+// names of its tensors say which it is. Every name and every shape must be as published (docs/weights.md), and a
+// missing, extra or misshapen tensor throws Error that names it. Statistics become mean and deviation in the authors'
+// float32 order (parity README, 9). The optimiser's state is not read. Safety: pickle.hpp, stored_archive.hpp.
 ImportedWeights read_published_weights(const std::filesystem::path&);
 
 // Where imported weights are from, name and value, as a weight file keeps it.

@@ -8,7 +8,7 @@
 namespace selvedge {
 
 // The preset (learned/network/architecture.hpp) that a published checkpoint with these tensor names is of: hood,
-// hood_cvpr, fine15, fine48 or contourcraft; empty for names of none of them. Names: reference/weights.md.
+// hood_cvpr, fine15, fine48 or contourcraft; empty for names of none of them. Tables of the names: published_names.cpp.
 std::string published_kind(const std::vector<std::string>& tensors);
 
 // Steps that a checkpoint of the fine baselines has by its names; its kind is fine15 or fine48.

@@ -18,7 +18,7 @@ HungSheet hung_sheet(double edge) {
   for (int i = 0; i < cells; ++i)
     for (int j = 0; j < cells; ++j) {
       const int a = i * columns + j, b = a + 1, c = a + columns, d = c + 1;
-      // Diagonals change their way from cell to cell, so that the cloth has none.
+      // Diagonals alternate from cell to cell, so that the cloth has no preferred direction.
       if ((i + j) % 2 == 0) {
         sheet.triangles.row(t++) << a, c, d;
         sheet.triangles.row(t++) << a, d, b;

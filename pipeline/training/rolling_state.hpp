@@ -10,7 +10,7 @@
 
 namespace selvedge {
 
-// A roll-out on its way: which frame is to be made, in which pass, and what was made.
+// A roll-out in progress: which frame is to be made, in which pass, and what was made.
 struct RollingState {
   Roll roll;
   int frame = 0, pass = 0;

@@ -28,7 +28,7 @@ RunningMark::RunningMark(const std::filesystem::path& configuration) {
   }
   const std::string text = std::filesystem::absolute(configuration).string();
   if (ftruncate(file_, 0) != 0 || write(file_, text.data(), text.size()) < 0) {
-    // Whoever looks sees a training without a folder.
+    // Other processes then see a training without its file.
   }
 }
 

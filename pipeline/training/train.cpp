@@ -24,7 +24,7 @@ namespace {
 
 constexpr int lines_of_a_run = 200;  // in steps.csv
 
-// A run on its way.
+// A training in progress.
 struct TrainingRun {
   explicit TrainingRun(const TrainRequest& asked) : request(asked) {}
   const TrainRequest& request;

@@ -18,7 +18,7 @@
 namespace selvedge {
 namespace {
 
-// Weights of an earlier stage, or of a network that sees less. What a stage changes counts for nothing.
+// Weights of an earlier stage, or of a network that sees less. Features that stages may change are not compared.
 NetworkWeights first_weights(const TrainingOptions& options, const Architecture& architecture) {
   if (options.weights.empty())
     return initial_weights(architecture, options.seed, {.last_layer_scale = options.optimiser.decoder_scale});
@@ -49,8 +49,8 @@ NetworkWeights first_weights(const TrainingOptions& options, const Architecture&
   return widen_weights(theirs, file.weights, architecture, options.seed);
 }
 
-// Feeds one state to the sums: the first pass, and in networks of several passes one whose guess is the garment as
-// worn, off by as much as passes are.
+// Adds one state to the sums of the statistics: a first pass or, for networks of several passes, at random a later one,
+// whose guess lies off the free flight by about as much as passes move it.
 void gather_state(Trainer& trainer, RollingState& state) {
   const FrameMaking making = frame_making(trainer);
   const TrainingScene& scene = *state.roll.scene;
@@ -98,8 +98,8 @@ bool are_cloth_edges_new(const Trainer& trainer) {
          are_blank(trainer.network.weights.tables.world_edge);
 }
 
-// Nodes make nothing yet of edges that are new to them: the network begins as what it was. Of edges that the run does
-// not have they never will.
+// Cloth-cloth edges get zero weights in the node networks. Where they are new, the network begins with the same output
+// as before; where the run has none, the weights stay zero.
 void silence_cloth_edges(const Architecture& architecture, NetworkWeights& weights) {
   for (std::size_t s = 0; s < architecture.steps.size(); ++s) {
     const std::vector<std::string>& keys = architecture.steps[s].edge_keys;
@@ -138,14 +138,15 @@ void warm_up(Trainer& trainer) {
   silence_cloth_edges(trainer.architecture, trainer.network.weights);
 }
 
-// The derivative by the network's output of what the sample is to make smaller; false where it is not finite.
+// The derivative of the sample's objective with respect to the network's output. False: it is not finite.
 bool output_gradient(const Trainer& trainer, const RollingState& state, Points gradient, FeatureRows& d_output) {
   const TrainingScene& scene = *state.roll.scene;
   for (const int pin : scene.rest.pinned) gradient.row(pin).setZero();
   const std::vector<float>& deviation = trainer.network.weights.tables.output.deviation;
   double scale = 1;
   if (trainer.options.optimiser.normalise_samples) {
-    // Divided by its size over the inverse masses, then made so that its rows' lengths sum up to about one.
+    // The gradient is divided by its norm over the inverse masses, then scaled so that its rows' lengths sum up to
+    // about one.
     double mass = 0;
     for (const double m : scene.losses.mass) mass += m;
     mass /= static_cast<double>(scene.losses.mass.size());

@@ -16,7 +16,7 @@ struct TrainingCounts {
   long step = 0;                   // of the optimiser, bad samples not counted
   std::uint64_t rolls = 0;         // roll-outs that were asked for
   long frames = 0;                 // made in roll-outs
-  long lost = 0;                   // roll-outs that left the garment as worn
+  long lost = 0;                   // roll-outs that went too far from the skinned garment
   long given_up = 0;               // .. that Bridson's response gave up
   long bad = 0, bad_in_a_row = 0;  // samples without a finite loss or gradient
 };

@@ -45,7 +45,7 @@ Material isotropic(const VertexMaterial& values) {
   return material;
 }
 
-// Turned about the vertical and mirrored at x = 0 before.
+// Mirrors x at x = 0, then turns it about the vertical, as the roll-out asks for.
 void turn(const RollRequest& request, PointsF& x) {
   if (request.mirrored) x.col(0) *= -1;
   if (request.yaw == 0) return;
@@ -54,7 +54,7 @@ void turn(const RollRequest& request, PointsF& x) {
   x = (x * rotation).eval();
 }
 
-// With noise, and parted before, which leaves out the noise that would tangle it again.
+// The start with noise, or parted and then without noise, which would tangle it again.
 void set_start(const TrainingOptions& options, Roll& roll) {
   RandomStream random = stream_for(options.seed, start_noise, roll.request.number);
   Points noise(roll.cloth[1].rows(), 3);
@@ -72,7 +72,7 @@ void set_start(const TrainingOptions& options, Roll& roll) {
   roll.start = parted.x;
 }
 
-// Of the fixed material it is made once.
+// With the fixed material, each scene is made once.
 std::shared_ptr<const TrainingScene> scene_of(RollMaker& maker, const RollRequest& request) {
   if (maker.options.samples.sample_materials) {
     RandomStream random = stream_for(maker.options.seed, material_draw, request.number);
@@ -84,7 +84,7 @@ std::shared_ptr<const TrainingScene> scene_of(RollMaker& maker, const RollReques
   return scene;
 }
 
-// Where what is worn is in a frame, turned as the roll-out is.
+// Body and garments in a frame, turned as the roll-out is.
 WornFrame frame_of(RollMaker& maker, const RollRequest& request, const RollRequest& at, int k) {
   WornFrame frame;
   if (request.sheet)
@@ -97,7 +97,7 @@ WornFrame frame_of(RollMaker& maker, const RollRequest& request, const RollReque
   return frame;
 }
 
-// Gravity and the roll-out's own force, which of wind is a speed.
+// Gravity and the roll-out's own force; a wind is set by its speed.
 void set_forces(const RollMaker& maker, Roll& roll) {
   const RollRequest& request = roll.request;
   roll.shows_forces = maker.features.acceleration_inputs;

@@ -65,8 +65,8 @@ Roll make_roll(RollMaker&, const RollRequest&);
 // place that was asked for. Says how many pairs there are.
 RollRequest tangled_place(RollMaker&, const RollRequest& asked, int& pairs);
 
-// A material over the ranges of the authors' training (digest 2.8): density and lambda uniform, mu and bending by their
-// logarithms.
+// A material over the ranges of the authors' training (their configurations): density and lambda uniform, mu and
+// bending by their logarithms.
 VertexMaterial random_material(RandomStream&);
 
 std::shared_ptr<const TrainingScene> make_training_scene(const RollMaker&, const RollRequest&, const VertexMaterial&);

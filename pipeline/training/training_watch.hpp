@@ -7,7 +7,7 @@
 
 namespace selvedge {
 
-// A state that never changes, and the best that can be done with its frame.
+// A fixed state, and the optimum of its frame.
 struct FixedState {
   RollingState state;
   double inertial = 0, optimum = 0;  // sums of losses where cloth goes on without forces, and at the least [J]

@@ -13,14 +13,14 @@
 
 namespace selvedge {
 
-// What is worn in one scene: a garment, or those of an outfit from the body outward.
+// The garments of one scene: one, or those of an outfit from the body outward.
 struct TrainingWear {
   std::string name;
   std::vector<Garment> garments;
-  std::vector<SkinWeights> skin;  // in what shares each vertex goes along where the body gives way; none: nowhere
+  std::vector<SkinWeights> skin;  // how each vertex follows the flesh's displacements; empty: it does not
 };
 
-// How far vertices of the body give way in a pose, those that do alone.
+// Displacements of the flesh in a pose. Vertices that do not move are left out.
 struct FleshMoves {
   std::vector<int> vertices;
   PointsF moves;  // [m]
@@ -47,7 +47,7 @@ struct TrainingWorld {
 // Mannequin, garments and clips of the training split. Takes seconds where garments are not in the cache.
 TrainingWorld make_training_world(const SampleOptions&, std::uint64_t seed);
 
-// Where body and what it wears are in a frame of a clip; cloth of all garments on end [m].
+// Body and garments in a frame of a clip, the garments one behind the other [m].
 struct WornFrame {
   PointsF body, cloth;
 };

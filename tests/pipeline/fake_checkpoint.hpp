@@ -19,8 +19,8 @@ struct CheckpointTensor {
 
 std::vector<std::string> published_kinds();  // hood, hood_cvpr, fine15, fine48, contourcraft
 
-// Tensors of a published checkpoint without their numbers, in the order of its state dictionary, by the rules of
-// reference/weights.md; `width` is 128 in the published ones.
+// Tensors of a published checkpoint without their numbers, in the order of its state dictionary. `width` is 128 in
+// the published ones.
 std::vector<CheckpointTensor> published_shapes(const std::string& kind, int width);
 
 // The same with numbers: by the formula of the parity pack, whose SEED is `seed`, and sums of statistics such that
