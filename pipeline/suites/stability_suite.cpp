@@ -30,7 +30,7 @@ const Section& run_section() {
       {needed(text("name", "what differs, for people")), texts("set", "overrides of the scene, key=value"),
        flag("short", false, "whether it is in the short form too"),
        word("fault", weight_faults(), "",
-            "how the weights are spoiled, for steppers with a network; `huge`: the network returns 1e6")}};
+            "what is wrong with the weights, for steppers with a network; `huge`: the network returns 1e6")}};
   return table;
 }
 
@@ -80,13 +80,6 @@ StabilitySuite read_stability_suite(const std::filesystem::path& file) {
   suite.limits = limits_options().read(config["limits"]);
   for (const Config& one : config["cases"].items) suite.cases.push_back(read_case(one, file.parent_path()));
   return suite;
-}
-
-std::string stability_reference() {
-  std::string text;
-  for (const Section* one : {&suite_section(), &limits_options().section, &case_section(), &run_section()})
-    text += section_markdown(*one);
-  return text;
 }
 
 }  // namespace selvedge

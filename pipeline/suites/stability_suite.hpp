@@ -34,7 +34,4 @@ struct StabilitySuite {
 // Throws Error with file, line and key.
 StabilitySuite read_stability_suite(const std::filesystem::path&);
 
-// The sections of a suite file as Markdown, for docs/stability.md.
-std::string stability_reference();
-
 }  // namespace selvedge

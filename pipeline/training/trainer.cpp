@@ -49,8 +49,8 @@ NetworkWeights first_weights(const TrainingOptions& options, const Architecture&
   return widen_weights(theirs, file.weights, architecture, options.seed);
 }
 
-// Adds one state to the sums of the statistics: a first pass or, for networks of several passes, at random a later one,
-// whose guess lies off the free flight by about as much as passes move it.
+// Adds one state to the sums of the statistics: a first pass or, for half of the states of networks of several passes,
+// a second one. Its guess lies at random between free flight and the skinned garment.
 void gather_state(Trainer& trainer, RollingState& state) {
   const FrameMaking making = frame_making(trainer);
   const TrainingScene& scene = *state.roll.scene;
