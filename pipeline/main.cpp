@@ -292,7 +292,8 @@ void add_commands(CLI::App& app, Chosen& chosen) {
 
 // The headings of `selvedge --help`; a command that stands under none is one for use.
 void group_commands(CLI::App& app) {
-  const std::vector<std::string> prepared{"untangle", "dress", "pattern", "body", "dataset", "weights"};
+  const std::vector<std::string> prepared{"plan",  "body",     "dress", "pattern", "dataset",
+                                          "train", "untangle", "push",  "weights"};
   const std::vector<std::string> measured{"ccd", "bench", "stress", "compare", "validate", "stability", "wardrobe"};
   for (CLI::App* command : app.get_subcommands({})) {
     const auto is_in = [&](const auto& names) { return std::ranges::find(names, command->get_name()) != names.end(); };
