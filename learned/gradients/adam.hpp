@@ -26,6 +26,7 @@ struct AdamState {
 };
 constexpr std::size_t median_window = 101;
 
+// Zero moments in the architecture's shapes.
 AdamState start_adam(const Architecture&);
 
 // The learning rate where `progress`, from 0 to 1, of the run is over.

@@ -11,6 +11,7 @@ struct SeenPositions {
   Points mesh;         // for mesh and coarse edges, and the future of pinned vertices
 };
 
+// V x 3 each [m].
 SeenPositions seen_positions(const RestGraph&, const GraphState&, const FeatureOptions&);
 
 // What the cloth would do without forces, and where the first pass of a frame begins: x + velocity (the state's, or x -

@@ -61,6 +61,7 @@ struct EngineKernels {
 };
 constexpr int exercise_chains = 12;
 
+// Throws Error where the machine does not have the set.
 const EngineKernels& kernels_for(InstructionSet);
 
 }  // namespace selvedge

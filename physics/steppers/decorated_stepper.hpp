@@ -18,6 +18,7 @@ struct Decorations {
 // scene stands round all of these: the repulsive layer of learned, and vertices that follow (following_stepper.hpp).
 std::unique_ptr<Stepper> decorated(const Scene&, const MakeStepper& bare, const Decorations& = {});
 
+// Makes bare conventional steppers with these options, for `decorated`.
 MakeStepper conventional_maker(const ConventionalOptions& = {});
 
 // The conventional stepper with recovery.

@@ -16,6 +16,7 @@ struct ProposalTrust {
 bool read_trust(const State&, ProposalTrust& trust);
 void remember(const ProposalTrust&, State&);
 
+// After a step without a proposal, with an admitted one, and with a refused one.
 ProposalTrust after_wait(ProposalTrust);
 ProposalTrust after_admission(ProposalTrust);
 ProposalTrust after_refusal(ProposalTrust, int longest_stretch);

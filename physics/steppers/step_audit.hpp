@@ -12,15 +12,17 @@ namespace selvedge {
 // is what a reader will see. Cloth is held against itself where Scene::contact says so. Memories, where given, save
 // time where little moves.
 
+// Of positions [m]: crossing pairs of the cloth and with obstacles, and vertices inside closed ones.
 Audit audit_positions(const Scene&, const Points& x, const std::vector<Points>& obstacles, AuditMemory* = nullptr);
 
 // Of the state that a step made: sets `clean`, and in the report the audit, the intersecting pairs, those with
 // obstacles where the drive wanted them, the reason `penetrating` where any are left, and the seconds it took.
 void audit_state(const Scene&, const Drive&, State&, AuditMemory&, StepReport&);
 
-// Of the state without the triangles that are cut out of it, and as audit_state does without the drive: sets `clean`,
-// and in the report the audit, the intersecting pairs and the reason.
+// Of the state without the triangles that are cut out of it.
 Audit audit_uncut(const Scene&, const State&);
+// What audit_state does with an audit, but for the drive: sets `clean`, and in the report the audit, the intersecting
+// pairs and the reason.
 void take_audit(Audit, State&, StepReport&);
 
 // Pairs that met while all nodes moved straight from nodes0 to nodes1, those that contact leaves alone not counted.

@@ -31,6 +31,7 @@ CompareResult compare(const CompareRequest&);
 // were made of proposals.
 void rank(std::vector<CompareRow>&);
 
+// The result as tables for people, as CSV (a row a scene and setting) and as JSON with everything.
 std::string compare_table(const CompareResult&);
 // One page that needs no other file: for each scene error against run time with the front and the floor, the table
 // behind it, what was left out, and an evaluation's tables.

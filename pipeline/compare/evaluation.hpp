@@ -47,6 +47,7 @@ struct Evaluation {
   std::vector<std::pair<std::string, std::vector<int>>> by_frame;
 };
 
+// What the finished rows say of the sequences, for people and as JSON. Rows without a result keep their trouble.
 Evaluation evaluated(const Comparison&, const std::vector<CompareFloor>&, const std::vector<CompareRow>&);
 std::string evaluation_text(const Evaluation&);
 std::string evaluation_json(const Evaluation&);

@@ -27,6 +27,7 @@ struct DrapeTableRow {
 // Of every test drape. Distances that errors are told by are the accurate ones.
 DrapeTableRow measure_row(const MeasuredWay&, const DrapeModel&, const DrapeTrainingOptions&, DrapeLessons&);
 
+// A line a row: for people with intervals, and as CSV with everything.
 std::string drape_table_text(const std::vector<DrapeTableRow>&);
 std::string drape_table_csv(const std::vector<DrapeTableRow>&);
 

@@ -53,6 +53,7 @@ struct DrapeTrainingOptions {
   double checkpoint_minutes = 2;
 };
 
+// The table of such a file.
 const Options<DrapeTrainingOptions>& drape_training_options();
 // Whether a training file is one of these.
 bool is_drape_training(const std::filesystem::path&);

@@ -14,6 +14,7 @@ PlainNetwork read_plain_network(const h5::Fields&, const std::string& group);
 void write_plain_adam(const h5::File&, const std::string& group, const PlainAdam&);
 PlainAdam read_plain_adam(const h5::Fields&, const std::string& group, long long parameters);
 
+// A list of 32-bit floats. Both throw Error.
 void write_floats(const h5::File&, const std::string& name, const std::vector<float>&);
 std::vector<float> read_floats(const h5::Fields&, const std::string& name);
 

@@ -32,6 +32,7 @@ struct JudgedFrame {
   Points acceleration;  // by all forces without contact, a row a vertex [m/s2]
 };
 
+// The energies of `next` [J] and the norm of their gradient [N].
 HoodLosses hood_losses_of(HoodJudge&, const JudgedFrame&);
 
 // How far the frame's total is above the least that is found from it, and how large the mass-scaled residual is there:

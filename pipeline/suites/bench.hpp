@@ -43,6 +43,7 @@ struct BenchResult {
 // size through run_scene, each into its own folder below `out`, and leaves bench.json, bench.csv and bench.txt there.
 BenchResult bench(const BenchRequest&);
 
+// Everything for programs; a row a member; tables for people.
 std::string bench_json(const BenchResult&);
 std::string bench_csv(const std::vector<BenchMember>&);
 std::string bench_table(const BenchResult&);

@@ -26,8 +26,10 @@ struct DetectionShape {
 };
 std::vector<DetectionShape> detection_shapes(int n);
 
+// Times each shape at each size; with FCL where the build has it.
 std::vector<DetectionTiming> time_detection(const std::vector<int>& sizes = {100, 200});
 
+// For people.
 std::string detection_table(const std::vector<DetectionTiming>&);
 
 }  // namespace selvedge

@@ -35,6 +35,7 @@ EngineTimings time_engine(int rounds = 10, int nodes = 5000, int small_nodes = 1
 // Mesh and coarse edges of a sheet of side x side vertices, as the network's options build them; random features.
 Graph sheet_graph(const Architecture&, int side);
 
+// For people.
 std::string engine_table(const EngineTimings&);
 
 }  // namespace selvedge

@@ -30,6 +30,7 @@ struct TrainingTiming {
 TrainingTiming time_training(const std::string& preset, int side, int threads, int rounds,
                              const std::filesystem::path& torch_library = torch_library_path());
 
+// For people.
 std::string training_table(const std::vector<TrainingTiming>&);
 
 }  // namespace selvedge

@@ -35,6 +35,7 @@ struct TrainSummary {
 // `stop` or by pause_training. Throws Error.
 TrainSummary train(const TrainRequest&);
 
+// The summary for people and as one JSON object.
 std::string train_text(const TrainSummary&);
 std::string train_json(const TrainSummary&);
 

@@ -69,6 +69,7 @@ RollRequest tangled_place(RollMaker&, const RollRequest& asked, int& pairs);
 // bending by their logarithms.
 VertexMaterial random_material(RandomStream&);
 
+// The garment, outfit or sheet that the roll-out asks for, with the material, as network and losses see it.
 std::shared_ptr<const TrainingScene> make_training_scene(const RollMaker&, const RollRequest&, const VertexMaterial&);
 
 }  // namespace selvedge

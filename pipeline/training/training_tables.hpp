@@ -31,6 +31,7 @@ class StepWindow {
   double sum_ = 0, norm_ = 0, scale_ = 0, rate_ = 0, last_mean_ = 0;
 };
 
+// Titles and lines of steps.csv and measures.csv, each with a newline; `seconds` of training so far.
 std::string steps_header();
 std::string measures_header();
 std::string measure_line(const TrainingMeasure&, double seconds);

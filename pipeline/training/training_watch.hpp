@@ -53,6 +53,7 @@ struct TrainingMeasure {
   RollMeasure roll;
 };
 
+// Measures the weights as they are: both kinds of fixed states and the roll-out. Changes nothing of the training.
 TrainingMeasure measure(Trainer&, TrainingWatch&);
 
 // One run of the network on the state's pass; false: refused. Does not change the network.
