@@ -101,7 +101,11 @@ TEST_CASE("compare: a hybrid row counts where it uses its proposals", "[compare]
     CHECK(rows[1].ranked == rows[1].front);
     CHECK(rows[0].front == (share < 0.3));
   }
-  CHECK_THAT(compare_table({{{.scene = "one"}}, rows}), Contains("share") && Contains("0.30"));
+  CompareResult result;
+  result.floors.resize(1);
+  result.floors.front().scene = "one";
+  result.rows = rows;
+  CHECK_THAT(compare_table(result), Contains("share") && Contains("0.30"));
 }
 
 TEST_CASE("svg plots: the failed stand at the upper edge, the floor is drawn", "[compare]") {
