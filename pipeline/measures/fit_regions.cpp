@@ -79,7 +79,8 @@ FitRegions regions_of_file(const std::filesystem::path& file, const Points& body
   const auto count = static_cast<std::int64_t>(body.rows());
   FitRegions found;
   found.of_vertex.assign(static_cast<std::size_t>(count), -1);
-  for (const auto& [name, list] : parsed_regions(file).items()) {
+  const nlohmann::ordered_json all = parsed_regions(file);
+  for (const auto& [name, list] : all.items()) {
     if (!list.is_array()) throw Error("`" + name + "` is no list of vertices", file.string(), "give whole numbers");
     std::vector<int> own;
     for (const auto& entry : list) {
