@@ -130,9 +130,19 @@ void ccd_options(CLI::App& command, CcdArguments& arguments) {
       ->required();
 }
 
+void fit_options(CLI::App& command, FitRequest& request) {
+  command.add_option("run", request.run, "trajectory (.h5), or the folder of a run")->required();
+  command.add_option("--scene", request.scene, "that it was made of (config.yaml beside it)");
+  command.add_option("--body", request.body, "obstacle to fit (the first body)");
+  command.add_option("--regions", request.regions, "of the body: vertices by name (.json); otherwise by its joints");
+  command.add_option("--frame", request.frame, "the last one if left out")->check(CLI::NonNegativeNumber);
+  command.add_option("--reach", request.reach, "what is nearer touches the skin [m]")->check(CLI::PositiveNumber);
+  command.add_option("--out", request.out, "page, coloured (.html)");
+}
+
 void export_options(CLI::App& command, ExportRequest& request) {
   command.add_option("trajectory", request.trajectory, "run.h5")->required();
-  command.add_option("--format", request.format, "obj, ply, pc2 or xdmf");
+  command.add_option("--format", request.format, "obj, ply, pc2, mdd, glb, usda or xdmf");
   command.add_option("--out", request.out, "folder")->default_val("export");
   command.add_flag("--obstacles", request.obstacles, "also the obstacles");
 }
@@ -265,7 +275,9 @@ void add_commands(CLI::App& app, Chosen& chosen) {
                            body_command);
   add_command<CcdArguments>(app, chosen, "ccd", "continuous detection against queries with known answers", ccd_options,
                             ccd_command);
-  add_command<ExportRequest>(app, chosen, "export", "a trajectory as meshes or point caches", export_options,
+  add_command<FitRequest>(app, chosen, "fit", "ease, strain and pressure by region of the body", fit_options,
+                          fit_command);
+  add_command<ExportRequest>(app, chosen, "export", "a trajectory as meshes, point caches, glTF or USD", export_options,
                              export_command);
   add_command<ViewArguments>(app, chosen, "view", "one page that plays trajectories in a browser", view_options,
                              view_command);

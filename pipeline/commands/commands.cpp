@@ -175,13 +175,28 @@ int ccd_command(const CcdArguments& arguments, bool json) {
 }
 
 int export_command(const ExportRequest& request, bool json) {
-  const std::vector<std::filesystem::path> written = export_trajectory(request);
+  Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
+  ExportRequest shown = request;
+  shown.progress = [&](int done, int all) {
+    if (done == 1) progress.begin(0, all);
+    progress.frame(done);
+  };
+  const std::vector<std::filesystem::path> written = export_trajectory(shown);
+  progress.end();
   people(json) << fmt::format("{} files, the last is {}\n", written.size(),
                               written.empty() ? "none" : written.back().string());
   if (!json) return 0;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const std::filesystem::path& file : written) list.push_back(file.string());
   std::cout << nlohmann::ordered_json{{"files", list}}.dump(2) << "\n";
+  return 0;
+}
+
+int fit_command(const FitRequest& request, bool json) {
+  const FitReport report = fit(request);
+  people(json) << fit_text(report);
+  if (!request.out.empty()) people(json) << "page to look at: " << request.out.string() << "\n";
+  if (json) std::cout << fit_json(report);
   return 0;
 }
 

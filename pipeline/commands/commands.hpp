@@ -14,6 +14,7 @@
 #include "pipeline/tools/convert_body.hpp"
 #include "pipeline/tools/dress.hpp"
 #include "pipeline/tools/export.hpp"
+#include "pipeline/tools/fit_report.hpp"
 #include "pipeline/tools/push_mesh.hpp"
 #include "pipeline/tools/sew_garment.hpp"
 #include "pipeline/tools/untangle_mesh.hpp"
@@ -58,6 +59,7 @@ int pattern_command(const PatternRequest&, bool json);
 int body_command(const BodyRequest&, bool json);
 int ccd_command(const CcdArguments&, bool json);
 int export_command(const ExportRequest&, bool json);
+int fit_command(const FitRequest&, bool json);
 int view_command(const ViewArguments&, bool json);
 int bench_command(const BenchRequest&, bool json);
 int stress_command(const StressRequest&, bool json);

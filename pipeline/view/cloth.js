@@ -69,6 +69,18 @@ function colourByStretch(geometry, metric, top, table) {
   geometry.attributes.color.needsUpdate = true;
 }
 
+// Vertex colours by a map's values, from its low to its high; grey where there is none.
+function colourByMap(geometry, map, table) {
+  if (!geometry.attributes.color)
+    geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(3 * map.values.length), 3));
+  const colours = geometry.attributes.color.array;
+  map.values.forEach((value, v) => {
+    const at = Math.min(1, Math.max(0, (value - map.low) / (map.high - map.low || 1)));
+    for (let k = 0; k < 3; ++k) colours[3 * v + k] = isFinite(value) ? table[3 * Math.round(255 * at) + k] : 0.4;
+  });
+  geometry.attributes.color.needsUpdate = true;
+}
+
 // Fabric scatters light at grazing angles: a soft rim added to the standard material.
 function addSheen(material) {
   material.onBeforeCompile = (shader) => {
@@ -204,9 +216,11 @@ function makeFigure(run) {
   }
   function show(next, look) {
     if (next !== drawn) moveTo(next);
-    if (look.strain) colourByStretch(geometry, run.metric, look.strainTop, table);
+    const map = run.maps[look.map], coloured = map || look.strain;
+    if (map) colourByMap(geometry, map, table);
+    else if (look.strain) colourByStretch(geometry, run.metric, look.strainTop, table);
     sides.forEach((mesh, s) => mesh.material.forEach((material, c) => {
-      const mode = look.strain ? THREE.VertexColors : THREE.NoColors;
+      const mode = coloured ? THREE.VertexColors : THREE.NoColors;
       if (material.vertexColors !== mode) {
         material.vertexColors = mode;
         material.needsUpdate = true;
@@ -215,7 +229,7 @@ function makeFigure(run) {
       // what it is worn over.
       material.polygonOffset = look.wire;
       material.color.copy(base[s][c]);
-      if (look.strain) material.color.setScalar(1);
+      if (coloured) material.color.setScalar(1);
     }));
     wire.visible = look.wire;
     marks.forEach((mesh) => {

@@ -24,6 +24,9 @@ function loadRuns() {
     run.triangles = decode(`run${r}-triangles`, Uint32Array);
     run.metric = decode(`run${r}-metric`, Float32Array);
     run.levels = decode(`run${r}-x`, Uint16Array);
+    run.maps.forEach((map, m) => {
+      map.values = decode(`run${r}-map${m}`, Float32Array);
+    });
     run.frames = run.series.time.length;
     run.end = run.series.time[run.frames - 1];
     run.obstacles.forEach((body, b) => {

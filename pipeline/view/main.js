@@ -76,7 +76,8 @@ function initialLook(runs, options) {
     strain: options.flag("strain", false),
     wire: options.flag("wire", false),
     marks: options.flag("marks", true),
-    plots: options.flag("plots", runs.length === 1 || window.innerWidth > 700),
+    plots: options.flag("plots", !runs[0].maps.length && runs.length === 1 || window.innerWidth > 700),
+    map: options.number("map", runs[0].maps.length ? 0 : -1),
     strainTop: Math.max(1.0001, options.number("top", strainTop(runs))),
   };
 }
@@ -149,7 +150,7 @@ function makePage(data, options) {
     });
     stage.draw(page.rectangles());
     showTransport(player, timeline);
-    element("legend").hidden = !look.strain;
+    showLegend(runs[0], look);
     document.documentElement.dataset.frame = player.frame;
   };
   return page;
@@ -162,6 +163,8 @@ function start() {
   element("summary").textContent = `${runs} run${runs === 1 ? "" : "s"} \u00b7 version ${data.program}`;
   drawStrainScale(element("legend-scale"));
   bindControls(page);
+  bindMaps(page);
+  showTable(data.runs[0].table);
   window.addEventListener("resize", page.arrange);
 
   page.setTheme(firstTheme(options));

@@ -7,7 +7,7 @@ if(NOT three)
   set(three /usr/share/javascript/three)
 endif()
 
-set(scripts data.js palette.js cloth.js stage.js plots.js panels.js controls.js probe.js main.js)
+set(scripts data.js palette.js cloth.js stage.js plots.js panels.js controls.js maps.js probe.js main.js)
 set(page ${CMAKE_CURRENT_BINARY_DIR}/page_sources.cpp)
 set(inputs ${scripts} page.html page.css embed.cmake)
 list(TRANSFORM inputs PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/view/)

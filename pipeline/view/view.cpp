@@ -14,20 +14,23 @@ std::string run_name(const std::filesystem::path& file) {
   return stem == "run" && !folder.empty() ? folder.string() : stem;
 }
 
-ViewRun open_run(const std::filesystem::path& path) {
+}  // namespace
+
+ViewRun open_view_run(const std::filesystem::path& path) {
   const std::filesystem::path file = std::filesystem::is_directory(path) ? path / "run.h5" : path;
   const auto reader = std::make_shared<TrajectoryReader>(file);
   return {run_name(file), reader->info(), reader->frame_count(), [reader](int index) { return reader->frame(index); }};
 }
 
-}  // namespace
-
 void write_view(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& html,
                 const ViewOptions& options) {
   std::vector<ViewRun> opened;
-  for (const auto& run : runs) opened.push_back(open_run(run));
-  const std::string page = view_page(opened, options);
+  for (const auto& run : runs) opened.push_back(open_view_run(run));
+  write_view_page(opened, html, options);
+}
 
+void write_view_page(const std::vector<ViewRun>& runs, const std::filesystem::path& html, const ViewOptions& options) {
+  const std::string page = view_page(runs, options);
   std::filesystem::path beside = html;
   beside += ".part";
   std::ofstream out(beside, std::ios::binary);

@@ -20,17 +20,38 @@ struct ViewOptions {
   std::size_t limit = 60'000'000;
 };
 
+// A number at every vertex of the cloths, by which the page colours them at every frame; not a number: grey.
+struct ViewMap {
+  std::string name, unit;
+  double low = 0, high = 1;  // the ends of the colours
+  std::vector<float> values;
+};
+
+// A table over the drawing, texts in rows.
+struct ViewTable {
+  std::vector<std::string> titles;
+  std::vector<std::vector<std::string>> rows;
+};
+
 // One run as the page needs it: `frame` is called once an index, in ascending order.
 struct ViewRun {
   std::string name;
   TrajectoryInfo info;
   int frame_count = 0;
   std::function<Frame(int)> frame;
+  std::vector<ViewMap> maps = {};
+  ViewTable table = {};
 };
 
 // One HTML page that needs no network and no other file: positions rounded to 16 bits of each frame's bounding box,
 // everything else exact. Throws Error when there is no run or no frame, or when three.js is absent.
 std::string view_page(const std::vector<ViewRun>& runs, const ViewOptions& options = {});
+
+// The page, written beside and renamed. Throws Error as view_page does, and where it cannot be written.
+void write_view_page(const std::vector<ViewRun>& runs, const std::filesystem::path& html, const ViewOptions& = {});
+
+// A trajectory file or the folder of a run.h5, named after the file, a run.h5 after its folder.
+ViewRun open_view_run(const std::filesystem::path&);
 
 // Reads trajectories and writes the page beside and renamed. A run is a trajectory file or the folder of a run.h5; it
 // is named after the file, a run.h5 after its folder.

@@ -93,6 +93,15 @@ json describe(const ViewRun& run) {
           {"clothFirstTriangle", info.cloth_first_triangle}};
 }
 
+json append_maps(std::string& html, const ViewRun& run, const std::string& id) {
+  json maps = json::array();
+  for (const ViewMap& map : run.maps) {
+    append_array(html, id + "-map" + std::to_string(maps.size()), bytes_of(std::span<const float>(map.values)));
+    maps.push_back({{"name", map.name}, {"unit", map.unit}, {"low", map.low}, {"high", map.high}});
+  }
+  return maps;
+}
+
 json append_run(std::string& html, const ViewRun& run, const std::string& id, std::size_t limit) {
   const TrajectoryInfo& info = run.info;
   const std::vector<int> drawn = drawn_frames(run.frame_count, bytes_a_frame(info), limit);
@@ -115,6 +124,8 @@ json append_run(std::string& html, const ViewRun& run, const std::string& id, st
   append_array(html, id + "-metric", bytes_of(std::span<const float>(inverse_rest_metric(info.rest_triangle))));
   append_array(html, id + "-x", bytes_of(std::span<const std::uint16_t>(cloth.values)));
   json j = describe(run);
+  j["maps"] = append_maps(html, run, id);
+  j["table"] = {{"titles", run.table.titles}, {"rows", run.table.rows}};
   j["drawn"] = drawn;
   j["boxes"] = cloth.boxes;
   j["marked"] = marked;

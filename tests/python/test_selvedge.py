@@ -152,8 +152,9 @@ def test_a_run_has_the_bits_of_the_program(tmp_path):
     assert (scene.triangles == run["triangles"]).all()
 
 
-def test_the_example_of_the_page_runs(capsys):
-    page = os.path.join(os.path.dirname(__file__), "..", "..", "docs", "python.md")
+@pytest.mark.parametrize("name", ["README.md", os.path.join("docs", "python.md")])
+def test_the_example_of_the_page_runs(name, capsys):
+    page = os.path.join(os.path.dirname(__file__), "..", "..", name)
     with open(page) as f:
         code = f.read().split("```python\n")[1].split("```")[0]
     exec(compile(code, page, "exec"), {})

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "collision/distance/signed_distance.hpp"
+#include "physics/scene/scene.hpp"
+#include "pipeline/measures/fit_regions.hpp"
+
+namespace selvedge {
+
+// How one cloth fits one region of a body. What no vertex or no section tells is absent.
+struct FitRow {
+  std::string region, cloth;
+  int vertices = 0;                             // of the cloth, whose nearest point of the body lies in the region
+  double area = 0;                              // of the cloth as it is worn there [m2]
+  std::optional<double> ease, least_ease;       // girth of the cloth at rest less girth of the body: mean and least [m]
+  double gap = 0;                               // mean distance from the skin [m]
+  double strain = 0, strain_99 = 0;             // largest principal strain: mean by area, 99th percentile
+  double contact = 0;                           // share of the vertices that touch the skin
+  std::optional<double> pressure, pressure_99;  // on the skin where it is touched: mean by area, 99th percentile [Pa]
+};
+
+struct FitMeasures {
+  std::vector<FitRow> rows;               // region by region, cloth by cloth; none without vertices
+  Eigen::VectorXd gap, strain, pressure;  // of each vertex [m], 1, [Pa]; pressure 0 where nothing is touched
+  std::vector<int> row;                   // of each vertex: its place in rows, -1: nearest to no region
+};
+
+// Fit of a cloth that rests on a body, in one frame.
+//   Ease: planes across a region's axis cut the body, round whose section a tape is laid (its convex hull), and the
+// cloth, whose section is as long as it is at rest. Planes where the cloth does not go all round tell nothing.
+//   Pressure: what the skin bears is what the cloth's elastic forces and its weight leave unbalanced, along the outward
+// normal, over the area of a vertex: the contact forces of a state at rest, whoever made it. Inertia, damping and
+// pinned vertices are left out. Vertices nearer than `reach` [m] touch.
+// Throws Error for positions that are not finite.
+FitMeasures measure_fit(const Scene&, const Points& x, const Vec3& gravity, const Surface& body, const Points& body_x,
+                        const FitRegions&, double reach);
+
+}  // namespace selvedge
