@@ -68,13 +68,14 @@ std::vector<Weights> first_tries(int corners) {
   return {{1.0 / 3, 1.0 / 3, 1.0 / 3}, {0.5, 0.25, 0.25}, {0.25, 0.5, 0.25}, {0.25, 0.25, 0.5}};
 }
 
-// Points round the deepest one so far, half as far off each time.
-std::vector<Weights> tries_round(const DeepPlace& place, double step) {
+// Points round the deepest one so far, half as far off each time; only those to which its gradient goes down.
+std::vector<Weights> tries_round(const Points& x, const DeepPlace& place, double step) {
   std::vector<Weights> tries;
   for (int from = 0; from < place.corners; ++from)
     for (int to = 0; to < place.corners; ++to) {
-      if (from == to) continue;
       const double part = std::min(step, place.weight[from]);
+      if (from == to || part <= 0) continue;
+      if (place.at.gradient.dot(row(x, place.vertex[to]) - row(x, place.vertex[from])) > 0) continue;
       Weights w = place.weight;
       w[from] -= part;
       w[to] += part;
@@ -89,7 +90,7 @@ void find_deepest(const DistanceField& body, const Points& x, std::vector<DeepPl
   for (const DeepPlace& place : places) tries.push_back(first_tries(place.corners));
   try_points(body, x, tries, places, true);
   for (double step = 1.0 / 8; step > 1e-3; step /= 2) {
-    for (std::size_t i = 0; i < places.size(); ++i) tries[i] = tries_round(places[i], step);
+    for (std::size_t i = 0; i < places.size(); ++i) tries[i] = tries_round(x, places[i], step);
     try_points(body, x, tries, places, false);
   }
 }

@@ -36,6 +36,8 @@ DrapeNetwork make_drape_network(const DrapeShape& shape, std::span<const DrapeCa
   assert(!cases.empty());
   DrapeNetwork made;
   set_input_scales(cases, made);
+  for (std::size_t k = 0; k < shape.unread.size(); ++k)
+    if (shape.unread[k]) made.input_scale[k] = 0;
   made.mean = Points::Zero(cases[0]->rest.rows(), 3);
   for (const DrapeCase* drape : cases) made.mean += garment_displacement(*drape) / static_cast<double>(cases.size());
   PlainShape plain;
@@ -45,6 +47,30 @@ DrapeNetwork make_drape_network(const DrapeShape& shape, std::span<const DrapeCa
   made.plain = make_plain_network(plain, seed);
   made.plain.layers.back().weight *= static_cast<float>(shape.last_scale);
   return made;
+}
+
+void fit_linear_part(std::span<const DrapeCase* const> cases, double ridge, std::span<const double> trust,
+                     DrapeNetwork& network) {
+  Eigen::MatrixXd read = drape_inputs(network, cases).cast<double>();
+  for (std::size_t k = 0; k < trust.size(); ++k) read.col(static_cast<Eigen::Index>(k)) *= trust[k];
+  Eigen::MatrixXd wanted(read.rows(), network.mean.size());
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const Points apart = (garment_displacement(*cases[i]) - network.mean) / network.unit;
+    wanted.row(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::RowVectorXd>(apart.data(), apart.size());
+  }
+  Eigen::MatrixXd products = read * read.transpose();
+  network.linear = Eigen::MatrixXf::Zero(wanted.cols(), read.cols());
+  if (!(products.trace() > 0)) return;  // nothing is read
+  products.diagonal().array() += ridge * products.trace() / static_cast<double>(read.rows());
+  Eigen::MatrixXd fitted = products.ldlt().solve(wanted).transpose() * read;
+  for (std::size_t k = 0; k < trust.size(); ++k) fitted.col(static_cast<Eigen::Index>(k)) *= trust[k];
+  network.linear = fitted.cast<float>();
+}
+
+FeatureRows drape_outputs(const DrapeNetwork& network, const FeatureRows& inputs) {
+  FeatureRows outputs = evaluate(network.plain, inputs);
+  if (network.linear.size() > 0) outputs += inputs * network.linear.transpose();
+  return outputs;
 }
 
 FeatureRows drape_inputs(const DrapeNetwork& network, std::span<const DrapeCase* const> cases) {
@@ -70,7 +96,7 @@ Points drape_positions(const DrapeNetwork& network, const DrapeCase& drape, cons
 
 Points drape_positions(const DrapeNetwork& network, const DrapeCase& drape) {
   const DrapeCase* const one = &drape;
-  return drape_positions(network, drape, evaluate(network.plain, drape_inputs(network, {&one, 1})), 0);
+  return drape_positions(network, drape, drape_outputs(network, drape_inputs(network, {&one, 1})), 0);
 }
 
 Eigen::RowVectorXf by_drape_outputs(const DrapeNetwork& network, const DrapeCase& drape, const Points& by_positions) {

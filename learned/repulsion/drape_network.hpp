@@ -6,7 +6,8 @@ namespace selvedge {
 
 // A drape by a multi-layer perceptron of pose, shape and style (the baseline of Tan et al. 2022, table 6): it says how
 // far each vertex lies from the garment at rest in the body's zero pose, and skinning takes that into the pose:
-//   x_v = A_v (rest_v + mean_v + unit y_v) + b_v.
+//   x_v = A_v (rest_v + mean_v + unit y_v) + b_v,
+// where y is what the perceptron says, and what a linear regression says if there is one.
 
 using VertexFrame = Eigen::Matrix<double, 3, 4>;  // (A, b)
 
@@ -23,18 +24,27 @@ struct DrapeNetwork {
   std::vector<float> input_mean, input_scale;  // inputs are read as (input - mean) * scale; 0 of a constant one
   Points mean;                                 // of displacements in garment space, N x 3 [m]
   double unit = 0.01;                          // of outputs [m]
+  Eigen::MatrixXf linear;                      // 3 N x inputs, in units; empty: there is none
 };
 
 struct DrapeShape {
   int layers = 5, width = 256;
-  double last_scale = 0.1;  // of the last layer's weights at the start
+  double last_scale = 0.1;        // of the last layer's weights at the start
+  std::vector<char> unread = {};  // inputs that are left out; empty: none
 };
 // Means and deviations are those of the cases, all of one garment, one at least (assert).
 DrapeNetwork make_drape_network(const DrapeShape&, std::span<const DrapeCase* const>, std::uint64_t seed);
 
+// Ridge regression of the cases' displacements on what the perceptron reads; `ridge` is over the mean square length of
+// that. `trust`, one an input or none at all, is how much of the displacement an input is expected to explain beside
+// the others: the ridge of its coefficients is over the square. What the perceptron says so far is not looked at.
+void fit_linear_part(std::span<const DrapeCase* const>, double ridge, std::span<const double> trust, DrapeNetwork&);
+
 // What the perceptron reads, a row a case.
 FeatureRows drape_inputs(const DrapeNetwork&, std::span<const DrapeCase* const>);
-// Where the vertices come to by one row of its outputs.
+// y, a row a case.
+FeatureRows drape_outputs(const DrapeNetwork&, const FeatureRows& inputs);
+// Where the vertices come to by one row of these.
 Points drape_positions(const DrapeNetwork&, const DrapeCase&, const FeatureRows& outputs, Eigen::Index row);
 Points drape_positions(const DrapeNetwork&, const DrapeCase&);
 // Derivative of a loss by the outputs of a case, from the one by the positions.

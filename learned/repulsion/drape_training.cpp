@@ -17,23 +17,37 @@ void add(std::vector<float>& sum, const std::vector<float>& part, float factor) 
   for (std::size_t k = 0; k < part.size(); ++k) sum[k] += factor * part[k];
 }
 
-// The gradient by scales of one drape, and what its layer did.
-void add_scales(const DrapeModel& model, const DrapeCase& drape, const Repelled& made, const RepulsionLosses& losses,
-                float share, DrapeGradients& result) {
+// Vertices that a layer has pushed, and how deep they lay.
+struct PushedOnes {
   std::vector<int> vertices;
   std::vector<double> distances;
+};
+PushedOnes pushed_ones(const Repelled& made) {
+  PushedOnes ones;
   for (const PushedVertex& pushed : made.pushed) {
-    vertices.push_back(pushed.vertex);
-    distances.push_back(pushed.at.value);
-    result.alpha += pushed.alpha;
+    ones.vertices.push_back(pushed.vertex);
+    ones.distances.push_back(pushed.at.value);
   }
-  result.pushed += static_cast<double>(vertices.size());
-  if (!model.has_scale() || vertices.empty()) return;
-  const ScaleGradients own =
-      scale_gradients(model.scale, scale_inputs_of(model, drape), vertices, distances, losses.by_alpha);
-  add(result.scale.h, own.h, share);
-  add(result.scale.k, own.k, share);
-  add(result.scale.g, own.g, share);
+  return ones;
+}
+
+// Adds the gradient by the scales' networks of one drape, and to the losses' by_x what positions do through the scales.
+void add_scales(const DrapeModel& model, const DrapeLesson& lesson, const Points& x, const Adjacency& ring,
+                const Repelled& made, float share, RepulsionLosses& losses, std::vector<std::vector<float>>& parts) {
+  if (made.pushed.empty()) return;
+  const PushedOnes ones = pushed_ones(made);
+  std::size_t next = 1;
+  if (model.has_scale()) {
+    const ScaleGradients own = scale_gradients(model.scale, scale_inputs_of(model, *lesson.drape), ones.vertices,
+                                               ones.distances, losses.by_alpha);
+    for (const std::vector<float>* one : {&own.h, &own.k, &own.g}) add(parts[next++], *one, share);
+  }
+  if (model.has_neighbours()) {
+    const NeighbourGradients own = neighbour_gradients(
+        model.neighbours, neighbour_patch(x, ring, lesson.layer, ones.vertices), x, ring, losses.by_alpha);
+    for (const std::vector<float>* one : {&own.first, &own.second, &own.end}) add(parts[next++], *one, share);
+    losses.by_x += own.by_x;
+  }
 }
 
 bool is_finite(const std::vector<float>& values) {
@@ -42,6 +56,17 @@ bool is_finite(const std::vector<float>& values) {
 
 }  // namespace
 
+std::vector<DrapePart> parts_of(DrapeModel& model) {
+  std::vector<DrapePart> parts{{"drape", &model.drape.plain}};
+  if (model.has_scale())
+    parts.insert(parts.end(), {{"h", &model.scale.h}, {"k", &model.scale.k}, {"g", &model.scale.g}});
+  if (model.has_neighbours())
+    parts.insert(
+        parts.end(),
+        {{"first", &model.neighbours.first}, {"second", &model.neighbours.second}, {"end", &model.neighbours.end}});
+  return parts;
+}
+
 Repelled behind_drape(const DrapeModel& model, const DrapeCase& drape, const Points& x, const Adjacency& ring,
                       const AskDistance& ask, const DrapeRecipe& recipe) {
   if (!recipe.layer) {
@@ -49,6 +74,8 @@ Repelled behind_drape(const DrapeModel& model, const DrapeCase& drape, const Poi
     result.x = x;
     return result;
   }
+  if (model.has_neighbours())
+    return repel(x, ring, ask, ask_neighbours(model.neighbours, x, ring, ask), recipe.repulsion);
   if (!model.has_scale()) {
     const AskScale constant = [&](std::span<const int> vertices, std::span<const double>) {
       return constant_scale(vertices, recipe.alpha);
@@ -62,44 +89,44 @@ DrapeGradients drape_gradients(const DrapeModel& model, std::span<const DrapeLes
                                const DrapeRecipe& recipe) {
   std::vector<const DrapeCase*> cases;
   for (const DrapeLesson& lesson : lessons) cases.push_back(lesson.drape);
-  const FeatureRows inputs = drape_inputs(model.drape, cases), outputs = evaluate(model.drape.plain, inputs);
+  const FeatureRows inputs = drape_inputs(model.drape, cases), outputs = drape_outputs(model.drape, inputs);
   const AskDistance nobody = [](const Points& at, std::vector<SignedDistance>& found) {
     found.assign(static_cast<std::size_t>(at.rows()), {});
   };
   const double share = 1.0 / static_cast<double>(lessons.size());
   DrapeGradients result;
+  result.parts.resize(1 + (model.has_scale() ? 3 : 0) + (model.has_neighbours() ? 3 : 0));
   PlainAdjoints adjoints{FeatureRows(outputs.rows(), outputs.cols()), {}};
   for (std::size_t i = 0; i < lessons.size(); ++i) {
     const DrapeLesson& lesson = lessons[i];
     const auto row = static_cast<Eigen::Index>(i);
-    const Repelled made = behind_drape(model, *lesson.drape, drape_positions(model.drape, *lesson.drape, outputs, row),
-                                       ring, lesson.layer, recipe);
-    const RepulsionLosses losses =
+    const Points x = drape_positions(model.drape, *lesson.drape, outputs, row);
+    const Repelled made = behind_drape(model, *lesson.drape, x, ring, lesson.layer, recipe);
+    RepulsionLosses losses =
         repulsion_losses(made, lesson.drape->truth, recipe.loss.collision > 0 ? lesson.judge : nobody, recipe.loss);
     result.total += share * losses.total;
     result.reconstruction += share * losses.reconstruction;
     result.collision += share * losses.collision;
+    for (const PushedVertex& pushed : made.pushed) result.alpha += pushed.alpha;
+    result.pushed += static_cast<double>(made.pushed.size());
+    add_scales(model, lesson, x, ring, made, static_cast<float>(share), losses, result.parts);
     adjoints.value.row(row) = static_cast<float>(share) * by_drape_outputs(model.drape, *lesson.drape, losses.by_x);
-    add_scales(model, *lesson.drape, made, losses, static_cast<float>(share), result);
   }
   result.alpha /= std::max(result.pushed, 1.0);
   result.pushed *= share;
-  result.drape = backward(model.drape.plain, inputs, {}, adjoints).parameters;
+  result.parts[0] = backward(model.drape.plain, inputs, {}, adjoints).parameters;
   return result;
 }
 
 bool take_step(DrapeAdam& adam, const DrapeGradients& gradients, double rate, DrapeModel& model) {
-  const ScaleGradients& scale = gradients.scale;
-  for (const std::vector<float>* one : {&gradients.drape, &scale.h, &scale.k, &scale.g})
-    if (!is_finite(*one)) return false;
-  const auto step = [rate](PlainAdam& one, const std::vector<float>& gradient, PlainNetwork& network) {
-    one.rate = rate;
-    if (!gradient.empty()) take_step(one, gradient, network);
-  };
-  step(adam.drape, gradients.drape, model.drape.plain);
-  step(adam.h, scale.h, model.scale.h);
-  step(adam.k, scale.k, model.scale.k);
-  step(adam.g, scale.g, model.scale.g);
+  if (!std::ranges::all_of(gradients.parts, is_finite)) return false;
+  const std::vector<DrapePart> parts = parts_of(model);
+  adam.parts.resize(parts.size());
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (k == 0) adam.parts[k].decay = adam.decay;
+    adam.parts[k].rate = k == 0 ? rate : rate * adam.scale_rate;
+    if (!gradients.parts[k].empty()) take_step(adam.parts[k], gradients.parts[k], *parts[k].network);
+  }
   return true;
 }
 

@@ -1,17 +1,27 @@
 #pragma once
 
 #include "learned/repulsion/drape_network.hpp"
+#include "learned/repulsion/neighbour_scale.hpp"
 #include "learned/repulsion/plain_adam.hpp"
 #include "learned/repulsion/repulsion_training.hpp"
 
 namespace selvedge {
 
-// A network for drapes and the layer behind it. Without learned scales `scale` has no layers.
+// A network for drapes and the layer behind it. Networks of scales that it does without have no layers.
 struct DrapeModel {
   DrapeNetwork drape;
   ScaleNetwork scale;
+  NeighbourScale neighbours{};
   bool has_scale() const { return !scale.g.layers.empty(); }
+  bool has_neighbours() const { return !neighbours.end.layers.empty(); }
 };
+
+// Its trained parts by name; those without layers are left out.
+struct DrapePart {
+  const char* name;
+  PlainNetwork* network;
+};
+std::vector<DrapePart> parts_of(DrapeModel&);
 
 // The layer behind the network, and the loss of its result.
 struct DrapeRecipe {
@@ -34,16 +44,17 @@ Repelled behind_drape(const DrapeModel&, const DrapeCase&, const Points& x, cons
 // Mean over the lessons of the losses 7 to 9, and its gradient by all parameters.
 struct DrapeGradients {
   double total = 0, reconstruction = 0, collision = 0;
-  double pushed = 0, alpha = 0;  // vertices a drape, and their mean scale
-  std::vector<float> drape;      // in the order of parameters_of
-  ScaleGradients scale;          // empty lists without learned scales
+  double pushed = 0, alpha = 0;           // vertices a drape, and their mean scale
+  std::vector<std::vector<float>> parts;  // of each of parts_of, in the order of parameters_of; empty: of none pushed
 };
 DrapeGradients drape_gradients(const DrapeModel&, std::span<const DrapeLesson>, const Adjacency& ring,
                                const DrapeRecipe&);
 
-// Adam of each network of a model.
+// Adam of each of a model's parts.
 struct DrapeAdam {
-  PlainAdam drape, h, k, g;
+  std::vector<PlainAdam> parts;
+  double scale_rate = 1;  // times the rate, for all but the first part
+  double decay = 0;       // of the first part
 };
 // False: a gradient is not finite, and nothing has changed.
 bool take_step(DrapeAdam&, const DrapeGradients&, double rate, DrapeModel&);

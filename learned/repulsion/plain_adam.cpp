@@ -12,6 +12,9 @@ bool take_step(PlainAdam& adam, std::span<const float> gradient, PlainNetwork& n
   std::vector<float> parameters = parameters_of(network);
   adam.first.resize(parameters.size(), 0);
   adam.second.resize(parameters.size(), 0);
+  const auto kept = static_cast<float>(1 - adam.rate * adam.decay);
+  if (adam.decay > 0)
+    for (float& value : parameters) value *= kept;
   const AdamNumbers numbers = adam_numbers(adam.rate, adam.beta1, adam.beta2, adam.epsilon, ++adam.steps);
   take_adam_step(numbers, static_cast<std::ptrdiff_t>(parameters.size()), gradient.data(), adam.first.data(),
                  adam.second.data(), parameters.data());

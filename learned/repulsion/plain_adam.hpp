@@ -10,6 +10,7 @@ namespace selvedge {
 // Adam (Kingma and Ba 2015, algorithm 1) for a plain network. Moments stand in the order of parameters_of.
 struct PlainAdam {
   double rate = 1e-5, beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8;
+  double decay = 0;  // of all parameters, times the rate (Loshchilov and Hutter 2019)
   long long steps = 0;
   std::vector<float> first, second;
 };

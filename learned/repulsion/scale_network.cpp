@@ -71,6 +71,15 @@ double scale_end_slope(ScaleRange, double sum) {
   return sum >= 0 ? 1 / (1 + std::exp(-sum)) : std::exp(sum) / (1 + std::exp(sum));
 }
 
+PlainNetwork make_scale_end(int inputs, ScaleRange range, std::uint64_t seed) {
+  PlainNetwork made = make_plain_network({inputs, {end_width, end_width, 1}}, seed);
+  AffineLayer& last = made.layers.back();
+  last.weight *= 0.01f;  // begins near its bias whatever the latents are
+  last.bias[0] =
+      static_cast<float>(inverse_soft_plus(range == ScaleRange::at_least_one ? first_overshoot : 1 + first_overshoot));
+  return made;
+}
+
 ScaleNetwork make_scale_network(const ScaleShape& shape, std::uint64_t seed) {
   const bool has_latents = shape.form != ScaleForm::distance_only;
   if (!(shape.unit > 0) || (has_latents && (shape.inputs < 1 || shape.vertices < 1 || shape.latent < 1)) ||
@@ -84,11 +93,7 @@ ScaleNetwork make_scale_network(const ScaleShape& shape, std::uint64_t seed) {
     const int outputs = shape.form == ScaleForm::shared_latent ? columns : shape.per_vertex * shape.vertices;
     made.k = make_plain_network({shape.latent, {outputs}}, seed + 1);
   }
-  made.g = make_plain_network({columns + 1, {end_width, end_width, 1}}, seed + 2);
-  AffineLayer& last = made.g.layers.back();
-  last.weight *= 0.01f;  // begins near its bias whatever the latents are
-  last.bias[0] = static_cast<float>(
-      inverse_soft_plus(shape.range == ScaleRange::at_least_one ? first_overshoot : 1 + first_overshoot));
+  made.g = make_scale_end(columns + 1, shape.range, seed + 2);
   return made;
 }
 

@@ -61,6 +61,8 @@ class ScaleEvaluator {
 
 // What g reads, for training: latents of the vertices and their distances, a row a vertex.
 FeatureRows scale_inputs(const ScaleNetwork&, const FeatureRows& latents, std::span<const double> distances);
+// A network g that reads so many numbers, of two layers of 10 and one, whose scales begin near 1.02.
+PlainNetwork make_scale_end(int inputs, ScaleRange, std::uint64_t seed);
 // The output activation of g, and its derivative with respect to its argument `sum`.
 double scale_end(ScaleRange, double sum);
 double scale_end_slope(ScaleRange, double sum);

@@ -97,10 +97,11 @@ Repelled RefuStepper::push_out_of_bodies(const Points& x) {
     found.resize(deepest.size());
     std::ranges::transform(deepest, found.begin(), [](const DeepestIn& d) { return d.at; });
   };
-  const AskScale constant = [this](std::span<const int> vertices, std::span<const double>) {
+  AskScale scale = [this](std::span<const int> vertices, std::span<const double>) {
     return constant_scale(vertices, options_.alpha);
   };
-  return repel(x, ring_, distance, options_.scale ? options_.scale : constant, options_.repulsion, held_);
+  if (options_.neighbours) scale = ask_neighbours(*options_.neighbours, x, ring_, distance);
+  return repel(x, ring_, distance, scale, options_.repulsion, held_);
 }
 
 void RefuStepper::pass_all_edges(Points& x) {

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "collision/distance/edge_pass.hpp"
-#include "learned/repulsion/repulsive_layer.hpp"
+#include "learned/repulsion/neighbour_scale.hpp"
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
 
@@ -11,8 +11,8 @@ namespace selvedge {
 
 struct RefuOptions {
   RepulsionOptions repulsion{.recheck = 3, .margin = 1e-4};
-  double alpha = 1;  // of every vertex, where `scale` is empty
-  AskScale scale;
+  double alpha = 1;                                  // of every vertex, where there are no `neighbours`
+  std::shared_ptr<const NeighbourScale> neighbours;  // networks that say it of each
   EdgePassOptions edge_pass{.rounds = 0, .count = false};
   bool budget = true;  // vertices that provably stay outside are not asked; it changes the time and nothing else
 };

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "collision/exact/penetration_depth.hpp"
+#include "collision/search/intersections.hpp"
 #include "learned/steppers/learned_state.hpp"
 #include "physics/steppers/step_audit.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
@@ -34,6 +35,7 @@ struct RunWatch {
   std::map<std::string, std::vector<double>> phases;
   std::vector<long> verdicts = std::vector<long>(verdict_names().size(), 0);  // frames
   Points acceleration;                                                        // of the frame to come
+  std::vector<IntersectionCache> obstacles;
 
   RunWatch(const Setup& s, CompareRun& r, const TimedRunOptions& options, const std::string& stepper)
       : setup(s), run(r) {
@@ -50,6 +52,13 @@ struct RunWatch {
     const Audit found = audit_positions(setup.scene, start.x, start.obstacles);
     measures->begin(start.x, joined_rows(start.obstacles), static_cast<int>(found.self_pairs.size()));
     acceleration = graph_state(setup.scene, start, drive).acceleration;
+  }
+
+  bool obstacle_crosses_itself(const Drive& drive) {
+    obstacles.resize(setup.scene.obstacles.size());
+    for (std::size_t k = 0; k < obstacles.size(); ++k)
+      if (!intersecting_pairs(setup.scene.obstacles[k].surface, drive.obstacles[k], obstacles[k]).empty()) return true;
+    return false;
   }
 
   void note_phases(const PhaseTimes& s) {
@@ -82,6 +91,8 @@ struct RunWatch {
     for (std::size_t k = 0; may_be_inside && k < setup.scene.obstacles.size(); ++k)
       frame.depth =
           std::max(frame.depth, penetration_depth(setup.scene.obstacles[k].surface, event.drive.obstacles[k], state.x));
+    frame.crossed = frame.depth > 0 && obstacle_crosses_itself(event.drive);
+    frame.pushed_out = report.collision.pushed_out;
     frame.kinetic = energies(setup.scene, terms, state.x, state.v, event.drive.acceleration).kinetic;
     measures->add(std::move(frame));
     acceleration = graph_state(setup.scene, state, event.drive).acceleration;

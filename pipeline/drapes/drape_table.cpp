@@ -19,7 +19,8 @@ struct DrapeColumns {
 
 // Takes one drape through the row's parts and times each of them.
 Points run_way(const MeasuredWay& way, const DrapeModel& model, const DrapeTrainingOptions& options,
-               const DrapeLessons& lessons, DrapeBody& body, Points& before, DrapeColumns& columns) {
+               const DrapeLessons& lessons, DrapeBody& body, EdgePassMemory& edges, Points& before,
+               DrapeColumns& columns) {
   constexpr double milliseconds = 1e3;
   Stopwatch watch;
   before = drape_positions(model.drape, body.sample.drape);
@@ -40,14 +41,14 @@ Points run_way(const MeasuredWay& way, const DrapeModel& model, const DrapeTrain
   if (way.row) made = behind_drape(model, body.sample.drape, before, lessons.ring, timed, recipe);
   if (way.after == AfterDrape::naive) {
     recipe.layer = true;
-    made = behind_drape({model.drape, {}}, body.sample.drape, before, lessons.ring, timed, recipe);
+    made = behind_drape({model.drape, {}, {}}, body.sample.drape, before, lessons.ring, timed, recipe);
   } else if (way.after == AfterDrape::smooth) {
     made.x = push_smoothly(before, lessons.ring, timed, {}).x;
   }
   columns.distance_ms.push_back(milliseconds * asking);
   columns.push_ms.push_back(milliseconds * (watch.lap() - asking));
   if (way.edge_pass > 0)
-    pass_edges(*body.field, lessons.set->world.surface, {.rounds = way.edge_pass, .count = false}, made.x);
+    pass_edges(*body.field, lessons.set->world.surface, {.rounds = way.edge_pass, .count = false}, made.x, {}, &edges);
   columns.edges_ms.push_back(milliseconds * watch.lap());
   columns.pushed.push_back(static_cast<double>(made.pushed.size()));
   for (const PushedVertex& pushed : made.pushed) columns.alphas.push_back(pushed.alpha);
@@ -65,9 +66,10 @@ DrapeTableRow measure_row(const MeasuredWay& way, const DrapeModel& model, const
   DrapeTableRow row;
   row.name = way.name;
   DrapeColumns columns;
+  EdgePassMemory edges;
   for (const std::unique_ptr<DrapeBody>& body : lessons.test) {
     Points before;
-    const Points x = run_way(way, model, options, lessons, *body, before, columns);
+    const Points x = run_way(way, model, options, lessons, *body, edges, before, columns);
     const GarmentErrors errors =
         garment_errors(*body->field, lessons.set->world.surface, x, {&body->sample.drape.truth, &before});
     columns.vertex_error.push_back(*errors.vertex_error);

@@ -16,7 +16,9 @@ const Options<StageOptions>& stage_options() {
       "stage", "How long one network is trained.",
       {integer("steps", &O::steps, at_least_one, "of Adam"),
        integer("batch", &O::batch, at_least_one, "drapes a step; of the distance: see `bodies`"),
-       number("learning_rate", &O::learning_rate, Unit::none, positive, "at the start; to zero as half a cosine")});
+       number("learning_rate", &O::learning_rate, Unit::none, positive, "at the start; to zero as half a cosine"),
+       number("weight_decay", &O::weight_decay, Unit::none, not_negative,
+              "of all parameters, times the rate, beside each step of Adam")});
   return table;
 }
 
@@ -30,7 +32,11 @@ const Options<BackboneOptions>& backbone_options() {
   static const Options<O> table(
       "backbone", "Pose, shape and style to a drape.",
       {integer("layers", &O::layers, at_least_one, ""),
-       integer("width", &O::width, at_least_one, "of all but the last"), stage("stage", &O::stage, "")});
+       integer("width", &O::width, at_least_one, "of all but the last"),
+       flag("linear", &O::linear, "a linear regression of the drapes to train on is added to what it says"),
+       number("least_carried", &O::least_carried, Unit::none, not_negative,
+              "joints that carry less of the garment, by its skin weights, are not read"),
+       stage("stage", &O::stage, "")});
   return table;
 }
 
@@ -57,6 +63,8 @@ const Options<LayerOptions>& layer_options() {
       {integer("latent", &O::latent, at_least_one, "M: of z and the layers of h; the paper: 1024"),
        integer("per_vertex", &O::per_vertex, at_least_one, "D"),
        number("unit", &O::unit, Unit::length, positive, "in which g reads distances"),
+       number("scale_rate", &O::scale_rate, Unit::none, positive,
+              "times the learning rate, of the networks of scales: they begin untrained"),
        number("deep", &O::deep, Unit::length, positive, "deeper vertices take their neighbours' direction"),
        integer("recheck", &O::recheck, not_negative, "times pushed vertices are asked again where it is measured"),
        number("reconstruction", &O::reconstruction, Unit::none, not_negative, "weight of loss 8"),
@@ -121,6 +129,7 @@ const std::vector<DrapeRow>& known_drape_rows() {
       {"collision_loss", "loss 9 alone", false, false, true},
       {"fixed", "layer of scale 1, accurate distances", true, false, true},
       {"learned", "layer of learned scales, accurate distances", true, true, true},
+      {"neighbours", "scales by what neighbours know, accurate distances", true, false, true, false, false, true},
       {"fixed_approximate", "layer of scale 1, distances by a network", true, false, true, true, true},
       {"approximate", "learned scales, distances by a network in layer and loss", true, true, true, true, true},
       {"hybrid", "learned scales, distances by a network in the layer, accurate in the loss", true, true, true, true,

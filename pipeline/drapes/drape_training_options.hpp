@@ -10,10 +10,13 @@ namespace selvedge {
 struct StageOptions {
   int steps = 1000, batch = 8;
   double learning_rate = 1e-4;  // of Adam, to zero over the stage as half a cosine
+  double weight_decay = 0;      // beside Adam's step
 };
 
 struct BackboneOptions {
   int layers = 5, width = 256;
+  bool linear = false;       // a linear regression beside it
+  double least_carried = 0;  // part of the garment that a joint must carry to be read
   StageOptions stage{6000, 16, 1e-3};
 };
 
@@ -32,6 +35,7 @@ struct DistanceOptions {
 struct LayerOptions {
   int latent = 64, per_vertex = 10;
   double unit = 0.01;  // in which g reads distances [m]
+  double scale_rate = 1;
   double deep = 0.03;
   int recheck = 0;  // where it is measured
   double reconstruction = 1.5, collision = 0.5;
@@ -69,6 +73,7 @@ struct DrapeRow {
   bool layer = false, learned = false;  // learned: scales by a network
   bool collision_loss = false;
   bool neural_layer = false, neural_loss = false;
+  bool neighbours = false;  // scales by what neighbours know, for any garment
 };
 const std::vector<DrapeRow>& known_drape_rows();
 DrapeRecipe recipe_of(const DrapeRow&, const LayerOptions&);

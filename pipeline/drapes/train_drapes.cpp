@@ -7,6 +7,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/floating_point.hpp"
+#include "pipeline/formats/neighbour_scale_hdf5.hpp"
 #include "pipeline/host/read_file.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/run/progress.hpp"
@@ -59,6 +60,7 @@ bool train_all(DrapeRun& run) {
     DrapeModel model = run.backbone;
     add_scales(row, run.options, run.lessons, model);
     if (!run_stage(run.stage, row_stage(row, run.options, run.lessons, model))) return false;
+    if (row.neighbours) write_neighbour_scale(run.stage.folder / "scales.h5", model.neighbours);
     run.rows.emplace_back(&row, std::move(model));
   }
   return true;

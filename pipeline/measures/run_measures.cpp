@@ -22,6 +22,9 @@ constexpr MeasureMeaning meanings[]{
     {"pairs_end", "in the last frame"},
     {"pairs_start", "where the run starts"},
     {"depth", "of the deepest cloth vertex in a closed body, largest of all frames [m]"},
+    {"depth_uncrossed", "the same over frames in which no obstacle passes through itself [m]"},
+    {"crossed_frames", "frames in which one does and a vertex lies inside [%]"},
+    {"pushed_out", "vertices pushed out of obstacles, a frame"},
     {"jitter", "RMS change of acceleration [m/frame2]"},
     {"high_share", "part of the velocities' power above a quarter of the frame rate"},
     {"collision_percent", "vertices behind the body's nearest vertex [%]"},
@@ -91,6 +94,9 @@ void RunMeasures::add(MeasuredFrame frame) {
   sums_["static_share"] += static_share(last_.now, frame.x);
   mosts_["strain_most"] = std::max(mosts_["strain_most"], strain.most);
   mosts_["depth"] = std::max(mosts_["depth"], frame.depth);
+  mosts_["depth_uncrossed"] = std::max(mosts_["depth_uncrossed"], frame.crossed ? 0 : frame.depth);
+  sums_["crossed_frames"] += frame.crossed ? 100 : 0;
+  sums_["pushed_out"] += frame.pushed_out;
   free_frames_ += frame.meets_body ? 0 : 1;
   pairs_.push_back(frame.pairs);
   jitter_squares_ += trace_.add(frame.x);

@@ -17,6 +17,8 @@ struct MeasuredFrame {
   int pairs = 0;            // of cloth triangles that intersect and share no vertex
   bool meets_body = false;  // a triangle of the cloth meets an obstacle, or a vertex lies in a closed one
   double depth = 0;         // of the deepest cloth vertex in a closed obstacle [m]
+  bool crossed = false;     // an obstacle passes through itself
+  int pushed_out = 0;       // vertices, by a response to obstacles
   double kinetic = 0;       // [J]
 };
 

@@ -94,6 +94,8 @@ const Options<RefuRun>& refu_options() {
       {flag("on", &O::on, "after every frame of whatever stepper"),
        number("alpha", &O::alpha, Unit::none, not_negative,
               "how far, in multiples of the depth; what is still inside then is projected"),
+       path("weights", &O::weights,
+            "scales by what neighbours know instead (configs/weights/refu.h5); seen from the scene file"),
        integer("edge_pass", &O::edge_pass, not_negative, "rounds that lift edges which still cross the body")});
   return table;
 }

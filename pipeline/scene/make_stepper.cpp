@@ -8,6 +8,7 @@
 #include "learned/steppers/refu_stepper.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/config/config.hpp"
+#include "pipeline/formats/neighbour_scale_hdf5.hpp"
 
 namespace selvedge {
 
@@ -62,6 +63,9 @@ std::unique_ptr<Stepper> with_refu(const Setup& setup, std::unique_ptr<Stepper> 
   if (!setup.run.refu.on) return stepper;
   RefuOptions options;
   options.alpha = setup.run.refu.alpha;
+  if (!setup.run.refu.weights.empty())
+    options.neighbours =
+        std::make_shared<const NeighbourScale>(read_neighbour_scale(setup.file.parent_path() / setup.run.refu.weights));
   options.edge_pass.rounds = setup.run.refu.edge_pass;
   return make_refu_stepper(setup.scene, std::move(stepper), options);
 }

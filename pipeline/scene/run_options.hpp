@@ -18,7 +18,8 @@ struct LearnedRun {
 struct RefuRun {
   bool on = false;
   double alpha = 1;
-  int edge_pass = 0;  // rounds
+  std::string weights;  // of scales by neighbours, seen from the scene file's folder; empty: alpha
+  int edge_pass = 0;    // rounds
 };
 
 // What a scene file says of the run beside the Scene itself.

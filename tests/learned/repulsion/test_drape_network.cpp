@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include <array>
 #include <cmath>
 
 #include "learned/repulsion/drape_training.hpp"
@@ -105,6 +106,31 @@ TEST_CASE("drape network: the mean drape is where a network of zeros puts the cl
   CHECK((drape_positions(network, *one) - one->truth).cwiseAbs().maxCoeff() < 1e-12);
 }
 
+TEST_CASE("drape network: a linear part goes through the drapes it was fitted to, and not through those of one input",
+          "[drapes]") {
+  const Ball ball;
+  const auto worst = [&](const DrapeNetwork& network) {
+    double most = 0;
+    for (const DrapeCase& drape : ball.cases)
+      most = std::max(most, (drape_positions(network, drape) - drape.truth).cwiseAbs().maxCoeff());
+    return most;
+  };
+  DrapeNetwork network = make_drape_network({3, 12, 0, {}}, pointers(ball), 1);
+  const double without = worst(network);
+  fit_linear_part(pointers(ball), 1e-9, {}, network);
+  CHECK(worst(network) < 1e-6);
+  fit_linear_part(pointers(ball), 1e9, {}, network);
+  CHECK(worst(network) == Approx(without).epsilon(1e-3));
+  const std::array<double, 3> trust{1, 0, 0};
+  fit_linear_part(pointers(ball), 1e-9, trust, network);
+  CHECK(network.linear.rightCols(2).isZero(0));
+  CHECK(!network.linear.col(0).isZero(0));
+  DrapeNetwork blind = make_drape_network({3, 12, 0, {true, true, true}}, pointers(ball), 1);
+  fit_linear_part(pointers(ball), 1e-9, {}, blind);
+  CHECK(blind.linear.isZero(0));
+  CHECK(worst(blind) == Approx(without).epsilon(1e-9));
+}
+
 TEST_CASE("drape network: gradients of the losses are their derivatives, without and behind the layer", "[drapes]") {
   const Ball ball;
   const std::vector<DrapeLesson> lessons = lessons_of(ball);
@@ -114,7 +140,7 @@ TEST_CASE("drape network: gradients of the losses are their derivatives, without
     DrapeModel model = model_of(ball, false);
     const DrapeGradients made = drape_gradients(model, lessons, ball.ring, recipe);
     CHECK(made.collision > 0);
-    CHECK(difference(model.drape.plain, made.drape,
+    CHECK(difference(model.drape.plain, made.parts[0],
                      [&] { return drape_gradients(model, lessons, ball.ring, recipe).total; }) < 5e-3);
   }
   SECTION("behind the layer: the scales") {
@@ -123,9 +149,23 @@ TEST_CASE("drape network: gradients of the losses are their derivatives, without
     const DrapeGradients made = drape_gradients(model, lessons, ball.ring, recipe);
     REQUIRE(made.pushed >= 3);
     const auto loss = [&] { return drape_gradients(model, lessons, ball.ring, recipe).total; };
-    CHECK(difference(model.scale.g, made.scale.g, loss) < 2e-2);
-    CHECK(difference(model.scale.k, made.scale.k, loss) < 2e-2);
-    CHECK(difference(model.scale.h, made.scale.h, loss) < 2e-2);
+    CHECK(difference(model.scale.g, made.parts[3], loss) < 2e-2);
+    CHECK(difference(model.scale.k, made.parts[2], loss) < 2e-2);
+    CHECK(difference(model.scale.h, made.parts[1], loss) < 2e-2);
+  }
+  SECTION("behind the layer: scales by neighbours, and the network before them") {
+    recipe.layer = true;
+    DrapeModel model = model_of(ball, false);
+    NeighbourShape shape;
+    shape.edge_unit = 0.08;
+    model.neighbours = make_neighbour_scale(shape, 5);
+    model.neighbours.end.layers.back().weight *= 60;
+    const DrapeGradients made = drape_gradients(model, lessons, ball.ring, recipe);
+    REQUIRE(made.pushed >= 3);
+    const auto loss = [&] { return drape_gradients(model, lessons, ball.ring, recipe).total; };
+    const std::vector<DrapePart> parts = parts_of(model);
+    REQUIRE(parts.size() == 4);
+    for (std::size_t k = 1; k < parts.size(); ++k) CHECK(difference(*parts[k].network, made.parts[k], loss) < 2e-2);
   }
 }
 
@@ -141,8 +181,8 @@ TEST_CASE("drape network: steps of Adam make the loss smaller, and a bad gradien
     REQUIRE(take_step(adam, drape_gradients(model, lessons, ball.ring, recipe), 2e-3, model));
   CHECK(drape_gradients(model, lessons, ball.ring, recipe).total < 0.5 * before);
   DrapeGradients bad = drape_gradients(model, lessons, ball.ring, recipe);
-  REQUIRE(!bad.scale.h.empty());
-  bad.scale.h[0] = std::nanf("");
+  REQUIRE(!bad.parts[1].empty());
+  bad.parts[1][0] = std::nanf("");
   const std::vector<float> kept = parameters_of(model.drape.plain);
   CHECK(!take_step(adam, bad, 2e-3, model));
   CHECK(parameters_of(model.drape.plain) == kept);

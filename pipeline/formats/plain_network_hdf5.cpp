@@ -1,4 +1,4 @@
-#include "pipeline/drapes/plain_network_hdf5.hpp"
+#include "pipeline/formats/plain_network_hdf5.hpp"
 
 #include <cmath>
 
