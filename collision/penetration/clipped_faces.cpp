@@ -21,11 +21,12 @@ struct CountedRun {
   int times;
 };
 
-std::vector<EdgeStep> steps_of(const Surface& surface, const Segments& found, const CountedPart& part) {
+std::vector<EdgeStep> steps_of(const Surface& surface, const std::vector<Crossing>& crossings,
+                               const CountedPart& part) {
   std::vector<EdgeStep> steps;
   for (const auto& [curve, times] : part.curves)
     for (const CurveCut& cut : curve->cuts) {
-      const double s = cut.at >= 0 ? found.crossings[cut.at].s : surface.edges(cut.edge, 0) == ~cut.at ? 0.0 : 1.0;
+      const double s = cut.at >= 0 ? crossings[cut.at].s : surface.edges(cut.edge, 0) == ~cut.at ? 0.0 : 1.0;
       steps.push_back({cut.edge, s, cut.at, times * cut.jump});
     }
   std::sort(steps.begin(), steps.end(), [](const EdgeStep& a, const EdgeStep& b) { return a.key() < b.key(); });
@@ -64,9 +65,14 @@ struct GreenSum {
 
 class FaceClipper {
  public:
-  FaceClipper(const ClosedSurface& closed, const Segments& found, const std::vector<EdgeStep>& steps,
+  FaceClipper(const ClosedSurface& closed, const std::vector<Crossing>& crossings, const std::vector<EdgeStep>& steps,
               const std::vector<int>& count, ClippedPart& result)
-      : closed_(closed), surface_(closed.surface), found_(found), steps_(steps), count_(count), result_(result) {}
+      : closed_(closed),
+        surface_(closed.surface),
+        crossings_(crossings),
+        steps_(steps),
+        count_(count),
+        result_(result) {}
 
   void clip(int face, std::span<const CountedRun> runs) {
     const std::array<int, 3> corner = turned_corners(closed_, face);
@@ -83,7 +89,7 @@ class FaceClipper {
  private:
   void add(int face, CurvePoint from, CurvePoint to, int times, GreenSum& sum) {
     if (times == 0 || from == to) return;
-    sum.add(weights_in(surface_, found_, face, from), weights_in(surface_, found_, face, to), times);
+    sum.add(weights_in(surface_, crossings_, face, from), weights_in(surface_, crossings_, face, to), times);
     result_.pieces.push_back({face, from, to, times});
   }
 
@@ -111,7 +117,7 @@ class FaceClipper {
 
   const ClosedSurface& closed_;
   const Surface& surface_;
-  const Segments& found_;
+  const std::vector<Crossing>& crossings_;
   const std::vector<EdgeStep>& steps_;
   const std::vector<int>& count_;
   ClippedPart& result_;
@@ -125,14 +131,14 @@ bool has_boundary(const Surface& surface, int face) {
 
 }  // namespace
 
-ClippedPart clip_faces(const ClosedSurface& closed, const Segments& found, const CountedPart& part,
+ClippedPart clip_faces(const ClosedSurface& closed, const std::vector<Crossing>& crossings, const CountedPart& part,
                        std::vector<int>& count, std::vector<char>& cut) {
   const Surface& surface = closed.surface;
   ClippedPart result;
-  const std::vector<EdgeStep> steps = steps_of(surface, found, part);
+  const std::vector<EdgeStep> steps = steps_of(surface, crossings, part);
   const std::vector<CountedRun> runs = runs_of(part);
   for (const auto& [vertex, times] : part.vertices) count[vertex] = times;
-  FaceClipper clipper(closed, found, steps, count, result);
+  FaceClipper clipper(closed, crossings, steps, count, result);
   for (std::size_t first = 0, last = 0; first < runs.size(); first = last) {
     while (last < runs.size() && runs[last].face == runs[first].face) ++last;
     cut[runs[first].face] = 1;
@@ -149,7 +155,8 @@ ClippedPart clip_faces(const ClosedSurface& closed, const Segments& found, const
   return result;
 }
 
-std::array<double, 3> weights_in(const Surface& surface, const Segments& found, int face, CurvePoint at) {
+std::array<double, 3> weights_in(const Surface& surface, const std::vector<Crossing>& crossings, int face,
+                                 CurvePoint at) {
   const auto corner = [&](int vertex) {
     return surface.triangles(face, 0) == vertex ? 0 : surface.triangles(face, 1) == vertex ? 1 : 2;
   };
@@ -158,16 +165,16 @@ std::array<double, 3> weights_in(const Surface& surface, const Segments& found, 
     weight[corner(~at)] = 1;
     return weight;
   }
-  const Crossing& c = found.crossings[at];
+  const Crossing& c = crossings[at];
   if (c.face == face) return c.weight;
   weight[corner(surface.edges(c.edge, 0))] = 1 - c.s;
   weight[corner(surface.edges(c.edge, 1))] = c.s;
   return weight;
 }
 
-Vec3 position_of(const Surface& surface, const Points& x, const Segments& found, CurvePoint at) {
+Vec3 position_of(const Surface& surface, const Points& x, const std::vector<Crossing>& crossings, CurvePoint at) {
   if (at < 0) return row(x, ~at);
-  const Crossing& c = found.crossings[at];
+  const Crossing& c = crossings[at];
   return (1 - c.s) * row(x, surface.edges(c.edge, 0)) + c.s * row(x, surface.edges(c.edge, 1));
 }
 

@@ -40,11 +40,12 @@ struct ClippedPart {
 
 // By Green's theorem from the boundaries alone, so that curves may cross each other inside a face. `count` is zero for
 // each vertex, `cut` for each triangle, and so they are again afterwards: memory that calls share.
-ClippedPart clip_faces(const ClosedSurface&, const Segments&, const CountedPart&, std::vector<int>& count,
+ClippedPart clip_faces(const ClosedSurface&, const std::vector<Crossing>&, const CountedPart&, std::vector<int>& count,
                        std::vector<char>& cut);
 
 // Barycentric coordinates in a face.
-std::array<double, 3> weights_in(const Surface&, const Segments&, int face, CurvePoint);
-Vec3 position_of(const Surface&, const Points& x, const Segments&, CurvePoint);  // of a crossing: on its edge
+std::array<double, 3> weights_in(const Surface&, const std::vector<Crossing>&, int face, CurvePoint);
+Vec3 position_of(const Surface&, const Points& x, const std::vector<Crossing>&,
+                 CurvePoint);  // of a crossing: on its edge
 
 }  // namespace selvedge

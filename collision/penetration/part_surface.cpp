@@ -22,7 +22,7 @@ std::vector<OrderedCut> ordered_cuts(const PartingSpace& space, std::span<const 
   const Edges& edges = space.closed.surface.edges;
   for (int i = 0; i < static_cast<int>(curves.size()); ++i)
     for (const CurveCut& cut : curves[i]->cuts) {
-      const double s = cut.at >= 0 ? space.found.crossings[cut.at].s : edges(cut.edge, 0) == ~cut.at ? 0.0 : 1.0;
+      const double s = cut.at >= 0 ? space.crossings[cut.at].s : edges(cut.edge, 0) == ~cut.at ? 0.0 : 1.0;
       cuts.push_back({cut.edge, s, cut.at, cut.jump, i});
     }
   std::sort(cuts.begin(), cuts.end(), [](const OrderedCut& a, const OrderedCut& b) { return a.key() < b.key(); });
@@ -72,7 +72,7 @@ void join_round(const PartingSpace& space, std::span<const SurfaceCurve* const> 
   const int face = curves[i]->runs.front().face;
   const bool turned = space.closed.turn[face] < 0;
   const auto flat = [&](CurvePoint at) {
-    const std::array<double, 3> w = weights_in(surface, space.found, face, at);
+    const std::array<double, 3> w = weights_in(surface, space.crossings, face, at);
     return turned ? Vec2(w[2], w[1]) : Vec2(w[1], w[2]);
   };
   Vec2 start = flat(curves[i]->runs.front().from);
@@ -189,7 +189,7 @@ double share_of_area(PartingSpace& space, int component, const CountedPart& part
   }
   std::vector<char> cut(space.cut.size(), 0);
   double sum = 0;
-  for (const ClippedFace& clipped : clip_faces(space.closed, space.found, part, space.count, cut).faces)
+  for (const ClippedFace& clipped : clip_faces(space.closed, space.crossings, part, space.count, cut).faces)
     sum += 2 * clipped.covered() * face_area(space, clipped.face);
   const double all = space.component_area[component];
   return all > 0 ? sum / all : 0;
@@ -215,9 +215,9 @@ bool odd_is_larger(PartingSpace& space, std::span<const SurfaceCurve* const> cur
 
 }  // namespace
 
-PartingSpace::PartingSpace(const ClosedSurface& surface, const Points& positions, const Segments& segments,
+PartingSpace::PartingSpace(const ClosedSurface& surface, const Points& positions, const std::vector<Crossing>& found,
                            SmallerSide side)
-    : closed(surface), x(positions), found(segments), smaller(side) {
+    : closed(surface), x(positions), crossings(found), smaller(side) {
   owner.assign(static_cast<std::size_t>(surface.surface.vertex_count), -1);
   count.assign(static_cast<std::size_t>(surface.surface.vertex_count), 0);
   shut.assign(static_cast<std::size_t>(surface.surface.edges.rows()), 0);

@@ -17,13 +17,13 @@ enum class SmallerSide { faces, area };
 struct PartingSpace {
   const ClosedSurface& closed;
   const Points& x;  // closed_positions
-  const Segments& found;
+  const std::vector<Crossing>& crossings;
   SmallerSide smaller = SmallerSide::faces;
   std::vector<int> owner, count;       // of each vertex: -1, 0
   std::vector<char> shut, cut;         // of each edge, of each triangle: 0
   std::vector<double> component_area;  // [m^2]; empty until one is asked for
 
-  PartingSpace(const ClosedSurface&, const Points&, const Segments&, SmallerSide);
+  PartingSpace(const ClosedSurface&, const Points&, const std::vector<Crossing>&, SmallerSide);
 };
 
 // A component parted by curves together: where an odd number of curves lies between a place and the larger part of it,

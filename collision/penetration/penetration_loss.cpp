@@ -9,12 +9,12 @@ namespace {
 // Patches whose crossings have fixed weights.
 class FrozenPatches {
  public:
-  FrozenPatches(const ClosedSurface& closed, const Points& x, const Segments& found, bool on_face)
-      : closed_(closed), surface_(closed.surface), x_(x), found_(found), on_face_(on_face) {}
+  FrozenPatches(const ClosedSurface& closed, const Points& x, const std::vector<Crossing>& crossings, bool on_face)
+      : closed_(closed), surface_(closed.surface), x_(x), crossings_(crossings), on_face_(on_face) {}
 
   Vec3 at(CurvePoint point) const {
-    if (point < 0 || !on_face_) return position_of(surface_, x_, found_, point);
-    const Crossing& c = found_.crossings[point];
+    if (point < 0 || !is_on_face(point)) return position_of(surface_, x_, crossings_, point);
+    const Crossing& c = crossings_[point];
     Vec3 sum = Vec3::Zero();
     for (int k = 0; k < 3; ++k) sum += c.weight[k] * row(x_, surface_.triangles(c.face, k));
     return sum;
@@ -24,8 +24,8 @@ class FrozenPatches {
       gradient.row(~point) += by.transpose();
       return;
     }
-    const Crossing& c = found_.crossings[point];
-    if (on_face_) {
+    const Crossing& c = crossings_[point];
+    if (is_on_face(point)) {
       for (int k = 0; k < 3; ++k) gradient.row(surface_.triangles(c.face, k)) += c.weight[k] * by.transpose();
       return;
     }
@@ -54,10 +54,12 @@ class FrozenPatches {
   }
 
  private:
+  bool is_on_face(CurvePoint point) const { return on_face_ && crossings_[point].face >= 0; }
+
   const ClosedSurface& closed_;
   const Surface& surface_;
   const Points& x_;
-  const Segments& found_;
+  const std::vector<Crossing>& crossings_;
   bool on_face_;
 };
 
@@ -70,8 +72,9 @@ void for_each_face(const std::vector<ClippedPiece>& pieces, const Visit& visit) 
   }
 }
 
-double exact_volume(const FrozenPatches& patches, const Triangles& corners, const PenetrationRegion& region,
-                    double scale, Points* gradient) {
+double exact_volume(const ClosedSurface& closed, const Points& x, const std::vector<Crossing>& crossings,
+                    const FrozenPatches& patches, const PenetrationRegion& region, double scale, Points* gradient) {
+  const Triangles& corners = closed.surface.triangles;
   const double pull = region.volume < 0 ? -scale : scale;
   if (gradient)
     for (const ClippedFace& clipped : region.faces) {
@@ -79,7 +82,26 @@ double exact_volume(const FrozenPatches& patches, const Triangles& corners, cons
       for (int k = 0; k < 3; ++k)
         gradient->row(corners(clipped.face, k)) += (pull * clipped.moment[k]) * normal.transpose();
     }
+  if (gradient && region.closing) add_closing_flux(closed, x, crossings, *region.closing, pull, *gradient);
   return scale * std::abs(region.volume);
+}
+
+// Of the triangles that close an open contour, divided by `scale`.
+double frozen_closing(const FrozenPatches& patches, const ContourClosing::Way& way, const Vec3& centre, double scale,
+                      Points* gradient) {
+  double volume = 0;
+  const CurvePoint first = way.points.front(), last = way.points.back();
+  const Vec3 middle = (patches.at(first) + patches.at(last)) / 2 - centre;
+  for (std::size_t k = 0; k + 1 < way.points.size(); ++k) {
+    const Vec3 p = patches.at(way.points[k]) - centre, q = patches.at(way.points[k + 1]) - centre;
+    const double sixth = way.times / 6.0;
+    volume += sixth * middle.dot(p.cross(q));
+    if (!gradient) continue;
+    patches.pull(way.points[k], scale * sixth * q.cross(middle), *gradient);
+    patches.pull(way.points[k + 1], scale * sixth * middle.cross(p), *gradient);
+    for (const CurvePoint end : {first, last}) patches.pull(end, scale * sixth / 2 * p.cross(q), *gradient);
+  }
+  return volume;
 }
 
 double frozen_volume(const FrozenPatches& patches, const Triangles& corners, const PenetrationRegion& region,
@@ -113,6 +135,9 @@ double frozen_volume(const FrozenPatches& patches, const Triangles& corners, con
     }
     if (gradient) patches.pull_apex(pieces, pull * by_apex, *gradient);
   });
+  if (region.closing)
+    for (const ContourClosing::Way& way : region.closing->ways)
+      volume += frozen_closing(patches, way, region.centre, pull, gradient);
   return pull * volume;
 }
 
@@ -156,18 +181,18 @@ double frozen_area(const FrozenPatches& patches, const Triangles& corners, const
 
 }  // namespace
 
-double penetration_loss(const ClosedSurface& closed, const Points& x, const Segments& found,
-                        const Penetration& penetration, const PenetrationLossOptions& options, Points* gradient) {
+double penetration_loss(const ClosedSurface& closed, const Points& x, const Penetration& penetration,
+                        const PenetrationLossOptions& options, Points* gradient) {
   if (gradient) *gradient = Points::Zero(closed.surface.vertex_count, 3);
   const bool is_area = options.measure == PenetrationMeasure::area;
-  const FrozenPatches patches(closed, x, found, options.crossings == CrossingMotion::frozen_on_face);
+  const FrozenPatches patches(closed, x, penetration.crossings, options.crossings == CrossingMotion::frozen_on_face);
   const Triangles& corners = closed.surface.triangles;
   double loss = 0;
   for (const PenetrationRegion& region : penetration.regions)
     if (is_area)
       loss += frozen_area(patches, corners, region, options.weight, gradient);
     else if (options.crossings == CrossingMotion::exact)
-      loss += exact_volume(patches, corners, region, 6 * options.weight, gradient);
+      loss += exact_volume(closed, x, penetration.crossings, patches, region, 6 * options.weight, gradient);
     else
       loss += frozen_volume(patches, corners, region, 6 * options.weight, gradient);
   return loss;

@@ -26,7 +26,7 @@ struct PenetrationLossOptions {
 // the clipped face. With `frozen_` and with `area` positions may have moved since the regions were found: the value is
 // that of the patches as they were cut then, their faces fans round the mean of their corners, and the gradient is its
 // derivative. With `exact` they must be those that the regions were found at.
-double penetration_loss(const ClosedSurface&, const Points& closed_x, const Segments&, const Penetration&,
+double penetration_loss(const ClosedSurface&, const Points& closed_x, const Penetration&,
                         const PenetrationLossOptions& = {}, Points* gradient = nullptr);
 
 }  // namespace selvedge

@@ -13,6 +13,7 @@ namespace {
 struct RegionPlan {
   std::vector<int> contours;
   std::vector<CountedPart> parts;  // one a component, or one a curve
+  const ContourClosing* closing = nullptr;
 };
 
 // Curves between the same two components, which may be one.
@@ -38,9 +39,9 @@ class Planner {
   }
 
   // Each of them alone.
-  void plan_alone(const std::vector<int>& contours) {
+  void plan_alone(const std::vector<int>& contours, const ContourClosing* closing = nullptr) {
     for (const int contour : contours) {
-      RegionPlan plan{{contour}, {}};
+      RegionPlan plan{{contour}, {}, closing};
       for (const SurfaceCurve* curve : of_contour_[contour]) {
         auto levels = part_alone(space_, *curve);
         if (!levels) break;
@@ -169,7 +170,7 @@ Vec3 mean_crossing(const PartingSpace& space, const std::vector<ClippedPiece>& p
   double count = 0;
   for (const ClippedPiece& piece : pieces)
     if (piece.from >= 0) {
-      sum += position_of(space.closed.surface, space.x, space.found, piece.from);
+      sum += position_of(space.closed.surface, space.x, space.crossings, piece.from);
       ++count;
     }
   return count > 0 ? Vec3(sum / count) : row(space.x, 0);
@@ -179,7 +180,7 @@ Vec3 mean_crossing(const PartingSpace& space, const std::vector<ClippedPiece>& p
 bool measure(PartingSpace& space, const RegionPlan& plan, PenetrationRegion& region) {
   region.contours = plan.contours;
   for (const CountedPart& part : plan.parts) {
-    ClippedPart clipped = clip_faces(space.closed, space.found, part, space.count, space.cut);
+    ClippedPart clipped = clip_faces(space.closed, space.crossings, part, space.count, space.cut);
     if (clipped.at_boundary) return false;
     region.faces.insert(region.faces.end(), clipped.faces.begin(), clipped.faces.end());
     region.pieces.insert(region.pieces.end(), clipped.pieces.begin(), clipped.pieces.end());
@@ -193,6 +194,9 @@ bool measure(PartingSpace& space, const RegionPlan& plan, PenetrationRegion& reg
     region.volume += normal.dot(corner) * clipped.covered() / 3;
     region.area += normal.norm() * std::abs(clipped.covered());
   }
+  if (!plan.closing) return true;
+  region.closing = *plan.closing;
+  region.volume += closing_volume(space.closed, space.x, space.crossings, *plan.closing, region.centre);
   return true;
 }
 
@@ -212,16 +216,24 @@ Penetration find_penetration(const ClosedSurface& closed, const Points& x, const
                              std::span<const Contour> contours, const PenetrationOptions& options) {
   Penetration result;
   result.contours.assign(contours.size(), ContourVolume::unassigned);
+  result.crossings = segments.crossings;
   std::vector<SurfaceCurve> curves;
+  std::map<int, ContourClosing> closings;
   for (int c = 0; c < static_cast<int>(contours.size()); ++c) {
-    const CurveFailure failure = add_curves(closed, segments, contours[c], c, curves);
-    if (failure == CurveFailure::open) result.contours[c] = ContourVolume::open;
+    const CurveFailure failure = add_curves(closed, result.crossings, contours[c], c, curves);
     if (failure == CurveFailure::not_orientable) result.contours[c] = ContourVolume::not_orientable;
+    if (failure != CurveFailure::open) continue;
+    if (auto closing = close_open_contour(closed, x, contours[c], c, result.crossings, curves))
+      closings.emplace(c, std::move(*closing));
+    else
+      result.contours[c] = ContourVolume::open;
   }
-  PartingSpace space(closed, x, segments, options.smaller);
+  PartingSpace space(closed, x, result.crossings, options.smaller);
   Planner planner(space, curves, contours.size());
   std::map<std::pair<int, int>, CurveGroup> groups;
+  for (const auto& [contour, closing] : closings) planner.plan_alone({contour}, &closing);
   for (const SurfaceCurve& curve : curves) {
+    if (closings.contains(curve.contour)) continue;
     const int a = contours[curve.contour].sides[0].component, b = contours[curve.contour].sides[1].component;
     groups[std::pair(std::min(a, b), std::max(a, b))].curves.push_back(&curve);
   }

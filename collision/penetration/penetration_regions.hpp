@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "collision/contour/contour.hpp"
+#include "collision/penetration/open_contours.hpp"
 #include "collision/penetration/part_surface.hpp"
 
 namespace selvedge {
@@ -22,18 +23,19 @@ struct PenetrationOptions {
 // those on both sides must run against each other; so they make a closed surface.
 struct PenetrationRegion {
   std::vector<int> contours;
-  std::vector<ClippedFace> faces;    // with the patch's sign in the moments
-  std::vector<ClippedPiece> pieces;  // of the faces that contours run through; their sums are the faces above
-  std::vector<int> vertices;         // inside, of all patches
-  Vec3 centre = Vec3::Zero();        // mean of the crossings [m]
-  double volume = 0;                 // [m^3]; its sign says which way the patches are turned
-  double area = 0;                   // of the patches [m^2]
+  std::vector<ClippedFace> faces;         // with the patch's sign in the moments
+  std::vector<ClippedPiece> pieces;       // of the faces that contours run through; their sums are the faces above
+  std::vector<int> vertices;              // inside, of all patches
+  std::optional<ContourClosing> closing;  // of the contour, if it is open: it then is the only one
+  Vec3 centre = Vec3::Zero();             // mean of the crossings [m]
+  double volume = 0;                      // [m^3]; its sign says which way the patches are turned
+  double area = 0;                        // of the patches [m^2]
 };
 
 // What became of a contour.
 enum class ContourVolume {
   enclosed,        // it bounds a region
-  open,            // it ends at a boundary or a branch, or what it bounds goes on to a boundary
+  open,            // it ends where close_open_contour does not close it, or what it bounds goes on to a boundary
   not_orientable,  // on a surface without an inside
   unassigned       // it does not part its surface
 };
@@ -41,6 +43,7 @@ enum class ContourVolume {
 struct Penetration {
   std::vector<PenetrationRegion> regions;
   std::vector<ContourVolume> contours;  // of each contour
+  std::vector<Crossing> crossings;      // those of the segments, behind them those of the closings
 };
 
 // The segments of a closed surface with itself that count: a fan meets only its own garment.

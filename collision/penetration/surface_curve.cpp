@@ -12,15 +12,6 @@ int corner_on(const Surface& surface, int triangle, int vertex) {
   return -1;
 }
 
-// A way that leaves a triangle through an edge has the edge's end in the triangle's sense of rotation on its left.
-int jump_on_leaving(const ClosedSurface& closed, int triangle, int edge) {
-  const Surface& surface = closed.surface;
-  const auto& edges = surface.triangle_edges;
-  const int k = edges(triangle, 0) == edge ? 0 : edges(triangle, 1) == edge ? 1 : 2;
-  const bool rises = surface.triangles(triangle, k) < surface.triangles(triangle, (k + 1) % 3);
-  return (rises ? 1 : -1) * closed.turn[triangle];
-}
-
 // Edges at a vertex on the way from one of its triangles to another, turning one way, with the triangle that each is
 // left from; nothing if a boundary comes between.
 std::optional<std::vector<std::array<int, 2>>> way_round(const Surface& surface, int vertex, int from, int to,
@@ -56,8 +47,8 @@ bool pass_vertex(const ClosedSurface& closed, int vertex, int from, int to, Surf
 }
 
 // Appends what the contour is on one of its sides.
-void add_side(const ClosedSurface& closed, const Segments& found, const Contour& contour, int side, bool backwards,
-              SurfaceCurve& curve) {
+void add_side(const ClosedSurface& closed, const std::vector<Crossing>& crossings, const Contour& contour, int side,
+              bool backwards, SurfaceCurve& curve) {
   const int segments = static_cast<int>(contour.segments.size()), points = static_cast<int>(contour.points.size());
   const ContourSide& on = contour.sides[side];
   for (int i = 0; i < segments; ++i) {
@@ -65,8 +56,9 @@ void add_side(const ClosedSurface& closed, const Segments& found, const Contour&
     curve.runs.push_back({on.triangles[i], backwards ? to : from, backwards ? from : to});
   }
   for (int i = 0; i < points; ++i) {
-    if (contour.points[i] < 0 || contour.point_side[i] != side) continue;
-    const int edge = found.crossings[contour.points[i]].edge, left = on.triangles[(i + segments - 1) % segments];
+    const bool at_end = !contour.closed && (i == 0 || i + 1 == points);
+    if (at_end || contour.point_side[i] != side) continue;
+    const int edge = crossings[contour.points[i]].edge, left = on.triangles[(i + segments - 1) % segments];
     const int jump = jump_on_leaving(closed, left, edge);
     curve.cuts.push_back({edge, contour.points[i], backwards ? -jump : jump});
   }
@@ -78,25 +70,36 @@ bool ends_at_vertices(const Contour& contour) {
 
 }  // namespace
 
-CurveFailure add_curves(const ClosedSurface& closed, const Segments& found, const Contour& contour, int number,
-                        std::vector<SurfaceCurve>& curves) {
+int jump_on_leaving(const ClosedSurface& closed, int triangle, int edge) {
+  const Surface& surface = closed.surface;
+  const auto& edges = surface.triangle_edges;
+  const int k = edges(triangle, 0) == edge ? 0 : edges(triangle, 1) == edge ? 1 : 2;
+  const bool rises = surface.triangles(triangle, k) < surface.triangles(triangle, (k + 1) % 3);
+  return (rises ? 1 : -1) * closed.turn[triangle];
+}
+
+SurfaceCurve curve_on_side(const ClosedSurface& closed, const std::vector<Crossing>& crossings, const Contour& contour,
+                           int number, int side) {
+  SurfaceCurve curve{number, contour.sides[side].component, side, {}, {}, {}};
+  add_side(closed, crossings, contour, side, false, curve);
+  return curve;
+}
+
+CurveFailure add_curves(const ClosedSurface& closed, const std::vector<Crossing>& crossings, const Contour& contour,
+                        int number, std::vector<SurfaceCurve>& curves) {
   const bool loop = !contour.closed && ends_at_vertices(contour);
   if (!contour.closed && !loop) return CurveFailure::open;
   for (const ContourSide& side : contour.sides)
     if (!closed.orientable[side.component]) return CurveFailure::not_orientable;
   if (contour.one_trace) return CurveFailure::not_orientable;
   if (!loop) {
-    for (int side = 0; side < 2; ++side) {
-      SurfaceCurve curve{number, contour.sides[side].component, side, {}, {}, {}};
-      add_side(closed, found, contour, side, false, curve);
-      curves.push_back(std::move(curve));
-    }
+    for (int side = 0; side < 2; ++side) curves.push_back(curve_on_side(closed, crossings, contour, number, side));
     return CurveFailure::none;
   }
   SurfaceCurve curve{number, contour.sides[0].component, 0, {}, {}, {}};
   const ContourSide &there = contour.sides[0], &back = contour.sides[1];
-  add_side(closed, found, contour, 0, false, curve);
-  add_side(closed, found, contour, 1, true, curve);
+  add_side(closed, crossings, contour, 0, false, curve);
+  add_side(closed, crossings, contour, 1, true, curve);
   if (!pass_vertex(closed, ~contour.points.back(), there.triangles.back(), back.triangles.back(), curve) ||
       !pass_vertex(closed, ~contour.points.front(), back.triangles.front(), there.triangles.front(), curve))
     return CurveFailure::open;

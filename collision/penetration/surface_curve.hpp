@@ -39,7 +39,14 @@ struct SurfaceCurve {
 enum class CurveFailure { none, open, not_orientable };
 
 // The curves of a contour: one or two. Appends nothing where it fails.
-CurveFailure add_curves(const ClosedSurface&, const Segments&, const Contour&, int number,
+CurveFailure add_curves(const ClosedSurface&, const std::vector<Crossing>&, const Contour&, int number,
                         std::vector<SurfaceCurve>& curves);
+
+// What a contour is on one of its sides; of an open one without what happens at its ends.
+SurfaceCurve curve_on_side(const ClosedSurface&, const std::vector<Crossing>&, const Contour&, int number, int side);
+
+// CurveCut::jump of a way that leaves a triangle through an edge: the edge's end in the triangle's sense of rotation is
+// on its left.
+int jump_on_leaving(const ClosedSurface&, int triangle, int edge);
 
 }  // namespace selvedge

@@ -87,8 +87,8 @@ class GarmentWinding {
     if (const auto found = chords_.find(face); found != chords_.end())
       for (const int s : found->second) {
         const Segment& segment = found_.segments[s];
-        const auto p = weights_in(surface_, found_, face, segment.end[0]),
-                   q = weights_in(surface_, found_, face, segment.end[1]);
+        const auto p = weights_in(surface_, found_.crossings, face, segment.end[0]),
+                   q = weights_in(surface_, found_.crossings, face, segment.end[1]);
         chords.push_back({Vec2(p[1], p[2]), Vec2(q[1], q[2])});
       }
     result.cells = face_cells(chords);

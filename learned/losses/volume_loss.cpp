@@ -51,7 +51,7 @@ double volume_loss(const ClosedSurface& closed, const VolumeLoss& loss, const Po
       find_penetration(closed, at, judged, trace_contours(std::span(&sheet, 1), judged), loss.regions);
   Points by_closed, by_winding;
   double value =
-      penetration_loss(closed, at, judged, found, {loss.measure, loss.crossings, 1}, gradient ? &by_closed : nullptr);
+      penetration_loss(closed, at, found, {loss.measure, loss.crossings, 1}, gradient ? &by_closed : nullptr);
   VolumeCounts counted;
   counted.pairs = static_cast<int>(all.segments.size());
   count_contours(found, counted);

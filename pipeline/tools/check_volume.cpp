@@ -29,7 +29,7 @@ void VolumeCheck::add(const Points& x, VolumeFindings& findings) const {
   const Points at = closed_positions(closed_, x);
   Segments segments;
   const Penetration found = find_penetration(closed_, at, {}, &segments);
-  findings.loss_by_frame.push_back(penetration_loss(closed_, at, segments, found));
+  findings.loss_by_frame.push_back(penetration_loss(closed_, at, found));
   double volume = 0;
   for (const PenetrationRegion& region : found.regions) volume += std::abs(region.volume);
   findings.volume_by_frame.push_back(volume);

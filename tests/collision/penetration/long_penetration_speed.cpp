@@ -39,7 +39,7 @@ TEST_CASE("penetration: time at 24,000 triangles and some hundred pairs", "[pene
   Penetration found;
   const double volume = time_of([&] {
     found = find_penetration(closed, x, segments, trace_contours(std::span(&sheet, 1), segments));
-    penetration_loss(closed, x, segments, found, {}, &gradient);
+    penetration_loss(closed, x, found, {}, &gradient);
   });
   WindingReport report;
   const double winding = time_of([&] { report = winding_loss(closed, x, segments, {}, &gradient); });

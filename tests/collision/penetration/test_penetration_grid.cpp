@@ -79,8 +79,7 @@ void check_mesh(const Solid& solid, RegionRule rule, Counts& counts) {
   }
   for (const CrossingMotion motion : {CrossingMotion::exact, CrossingMotion::frozen_on_edge}) {
     Points gradient;
-    const double value =
-        penetration_loss(closed, x, segments, found, {PenetrationMeasure::volume, motion, 1}, &gradient);
+    const double value = penetration_loss(closed, x, found, {PenetrationMeasure::volume, motion, 1}, &gradient);
     counts.not_finite += !std::isfinite(value) || !gradient.allFinite();
   }
 }

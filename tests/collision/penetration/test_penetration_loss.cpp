@@ -15,16 +15,13 @@ struct Query {
 
   explicit Query(const Solid& solid) : closed(close_surface(solid.surface())), cloth(solid.x) {}
   double value(const Points& x, const PenetrationLossOptions& options = {}) const {
-    Segments segments;
     const Points at = closed_positions(closed, x);
-    const Penetration found = find_penetration(closed, at, {}, &segments);
-    return penetration_loss(closed, at, segments, found, options);
+    return penetration_loss(closed, at, find_penetration(closed, at), options);
   }
   Points gradient(const PenetrationLossOptions& options = {}) const {
-    Segments segments;
     const Points at = closed_positions(closed, cloth);
     Points by_closed;
-    penetration_loss(closed, at, segments, find_penetration(closed, at, {}, &segments), options, &by_closed);
+    penetration_loss(closed, at, find_penetration(closed, at), options, &by_closed);
     return by_cloth_positions(closed, by_closed);
   }
 };
@@ -80,22 +77,19 @@ TEST_CASE("penetration loss: the exact gradient is that of the value", "[penetra
 TEST_CASE("penetration loss: frozen and area gradients are those of their surrogates", "[penetration]") {
   const Query query(crossing_stars(1));
   const Points at = closed_positions(query.closed, query.cloth);
-  Segments segments;
-  const Penetration found = find_penetration(query.closed, at, {}, &segments);
+  const Penetration found = find_penetration(query.closed, at);
   for (const PenetrationMeasure measure : {PenetrationMeasure::volume, PenetrationMeasure::area})
     for (const CrossingMotion motion : {CrossingMotion::frozen_on_edge, CrossingMotion::frozen_on_face}) {
       const PenetrationLossOptions options{measure, motion, 1};
       Points gradient;
-      const double value = penetration_loss(query.closed, at, segments, found, options, &gradient);
+      const double value = penetration_loss(query.closed, at, found, options, &gradient);
       double expected = 0;
       for (const PenetrationRegion& region : found.regions)
         expected += measure == PenetrationMeasure::volume ? 6 * std::abs(region.volume) : region.area;
       CHECK(value == Approx(expected).epsilon(1e-12));
       for (unsigned d = 0; d < 3; ++d) {
         const Points direction = random_direction(at, d);
-        const auto there = [&](double h) {
-          return penetration_loss(query.closed, at + h * direction, segments, found, options);
-        };
+        const auto there = [&](double h) { return penetration_loss(query.closed, at + h * direction, found, options); };
         const double slope = (there(1e-5) - there(-1e-5)) / 2e-5;
         CHECK(gradient.cwiseProduct(direction).sum() == Approx(slope).epsilon(1e-6).margin(1e-8 * gradient.norm()));
       }

@@ -141,7 +141,7 @@ TEST_CASE("winding: on a closed surface it is the enclosed volume", "[penetratio
     const Penetration found = find_penetration(closed, x, {}, &segments);
     REQUIRE(found.regions.size() == 1);
     Points exact;
-    const double value = penetration_loss(closed, x, segments, found, {}, &exact);
+    const double value = penetration_loss(closed, x, found, {}, &exact);
     exact = by_cloth_positions(closed, exact);
     const Winding winding = winding_of(solid);
     INFO("value " << winding.report.value << " for " << value << ", gradient apart "
@@ -179,7 +179,7 @@ TEST_CASE("winding: what does not cross itself costs nothing", "[penetration]") 
   CHECK(winding.gradient.isZero(0));
   const ClosedSurface closed = close_surface(lifted.surface());
   const Points x = closed_positions(closed, lifted.x);
-  CHECK(penetration_loss(closed, x, segments_of(closed, x), find_penetration(closed, x)) > 0);
+  CHECK(penetration_loss(closed, x, find_penetration(closed, x)) > 0);
 }
 
 TEST_CASE("winding: a front hem through the back", "[penetration]") {

@@ -1,0 +1,142 @@
+#include "collision/penetration/open_contours.hpp"
+
+namespace selvedge {
+namespace {
+
+Vec3 twice_area(const ClosedSurface& closed, const Points& x, int face) {
+  const Triangles& corners = closed.surface.triangles;
+  const Vec3 a = row(x, corners(face, 0));
+  return closed.turn[face] * (row(x, corners(face, 1)) - a).cross(row(x, corners(face, 2)) - a);
+}
+
+// At both ends of a way together.
+Vec3 normal_of(const ClosedSurface& closed, const Points& x, const ContourClosing::Way& way) {
+  return twice_area(closed, x, way.end_faces[0]) + twice_area(closed, x, way.end_faces[1]);
+}
+
+// Of two normals the second counts as its opposite where they are more than a right angle apart: which way a garment is
+// turned says nothing.
+double sense_of(const ClosedSurface& closed, const Points& x, const ContourClosing& closing, int side) {
+  const bool against = normal_of(closed, x, closing.ways[0]).dot(normal_of(closed, x, closing.ways[1])) < 0;
+  return side == 1 && against ? -1 : 1;
+}
+
+class MovingClosing {
+ public:
+  MovingClosing(const ClosedSurface& closed, const Points& x, const std::vector<Crossing>& crossings,
+                const ContourClosing& closing, Points& gradient)
+      : closed_(closed),
+        surface_(closed.surface),
+        x_(x),
+        crossings_(crossings),
+        closing_(closing),
+        gradient_(gradient),
+        up_(up_of_sections(closed, x, closing)) {
+    from_ = closing.ways[0].points.front();
+    to_ = closing.ways[0].points.back();
+    middle_ = (at(from_) + at(to_)) / 2;
+  }
+
+  void pull(const ContourClosing::Way& way, double scale) {
+    for (std::size_t k = 0; k + 1 < way.points.size(); ++k) {
+      const CurvePoint a = way.points[k], b = way.points[k + 1];
+      const Vec3 share = (scale * way.times / 6) * (at(a) - middle_).cross(at(b) - middle_);
+      pull_end(from_, share / 2);
+      pull_end(to_, share / 2);
+      pull_point(a, share);
+      pull_point(b, share);
+    }
+  }
+
+ private:
+  Vec3 at(CurvePoint point) const { return position_of(surface_, x_, crossings_, point); }
+
+  // Where an edge of one garment meets a face of the other: it slides along the edge with the face.
+  void pull_end(CurvePoint point, const Vec3& by) {
+    const Crossing& c = crossings_[point];
+    const Vec3 normal = twice_area(closed_, x_, c.face);
+    const int low = surface_.edges(c.edge, 0), high = surface_.edges(c.edge, 1);
+    const Vec3 along = row(x_, high) - row(x_, low);
+    const double rise = normal.dot(along);
+    const Vec3 by_face = rise == 0 ? Vec3(Vec3::Zero()) : Vec3((by.dot(along) / rise) * normal);
+    gradient_.row(low) += (1 - c.s) * (by - by_face).transpose();
+    gradient_.row(high) += c.s * (by - by_face).transpose();
+    for (int k = 0; k < 3; ++k) gradient_.row(surface_.triangles(c.face, k)) += c.weight[k] * by_face.transpose();
+  }
+
+  void pull_point(CurvePoint point, const Vec3& by) {
+    if (point == from_ || point == to_)
+      pull_end(point, by);
+    else if (point < 0)
+      gradient_.row(~point) += by.transpose();
+    else
+      pull_section(point, by);
+  }
+
+  // A point of a section is carried by the plane: by both ends and by what is up in it.
+  void pull_section(CurvePoint point, const Vec3& by) {
+    const Vec3 along = at(to_) - at(from_), place = at(point) - at(from_), normal = along.cross(up_);
+    const double square = normal.squaredNorm();
+    if (square == 0) return;
+    const double ahead = place.cross(up_).dot(normal) / square, above = along.cross(place).dot(normal) / square;
+    pull_end(from_, (1 - ahead) * by);
+    pull_end(to_, ahead * by);
+    for (int side = 0; side < 2; ++side)
+      if (!closing_.ways[side].along_rim)
+        pull_up(closing_.ways[side], above * sense_of(closed_, x_, closing_, side) * by);
+  }
+
+  void pull_up(const ContourClosing::Way& way, const Vec3& by) {
+    const Vec3 normal = normal_of(closed_, x_, way), unit = normal.normalized();
+    const Vec3 across = (by - unit * unit.dot(by)) / normal.norm();
+    for (const int face : way.end_faces) {
+      const int a = surface_.triangles(face, 0), b = surface_.triangles(face, 1), c = surface_.triangles(face, 2);
+      const Vec3 first = row(x_, b) - row(x_, a), second = row(x_, c) - row(x_, a),
+                 turned = closed_.turn[face] * across;
+      const Vec3 by_b = second.cross(turned), by_c = turned.cross(first);
+      gradient_.row(b) += by_b.transpose();
+      gradient_.row(c) += by_c.transpose();
+      gradient_.row(a) -= (by_b + by_c).transpose();
+    }
+  }
+
+  const ClosedSurface& closed_;
+  const Surface& surface_;
+  const Points& x_;
+  const std::vector<Crossing>& crossings_;
+  const ContourClosing& closing_;
+  Points& gradient_;
+  Vec3 up_;
+  CurvePoint from_ = 0, to_ = 0;
+  Vec3 middle_;
+};
+
+}  // namespace
+
+Vec3 up_of_sections(const ClosedSurface& closed, const Points& x, const ContourClosing& closing) {
+  Vec3 up = Vec3::Zero();
+  for (int side = 0; side < 2; ++side)
+    if (!closing.ways[side].along_rim)
+      up += sense_of(closed, x, closing, side) * normal_of(closed, x, closing.ways[side]).normalized();
+  return up;
+}
+
+double closing_volume(const ClosedSurface& closed, const Points& x, const std::vector<Crossing>& crossings,
+                      const ContourClosing& closing, const Vec3& centre) {
+  const auto at = [&](CurvePoint point) { return Vec3(position_of(closed.surface, x, crossings, point) - centre); };
+  double volume = 0;
+  for (const ContourClosing::Way& way : closing.ways) {
+    const Vec3 middle = (at(way.points.front()) + at(way.points.back())) / 2;
+    for (std::size_t k = 0; k + 1 < way.points.size(); ++k)
+      volume += way.times / 6.0 * middle.dot(at(way.points[k]).cross(at(way.points[k + 1])));
+  }
+  return volume;
+}
+
+void add_closing_flux(const ClosedSurface& closed, const Points& x, const std::vector<Crossing>& crossings,
+                      const ContourClosing& closing, double scale, Points& gradient) {
+  MovingClosing moving(closed, x, crossings, closing, gradient);
+  for (const ContourClosing::Way& way : closing.ways) moving.pull(way, scale);
+}
+
+}  // namespace selvedge

@@ -1,0 +1,179 @@
+#include "collision/penetration/open_contours.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace selvedge {
+namespace {
+
+// A place on the rim of a closed hole.
+struct RimPlace {
+  int loop = -1, place = 0;  // the edge from vertex `place` of the loop to the next; -1: no rim
+};
+
+int first_fan(const ClosedSurface& closed, int loop) {
+  int first = closed.cloth_triangles;
+  for (int l = 0; l < loop; ++l) first += static_cast<int>(closed.loops[l].size());
+  return first;
+}
+
+RimPlace rim_place(const ClosedSurface& closed, int edge) {
+  for (const int t : closed.surface.edge_triangles[edge])
+    if (t >= 0 && closed.is_fan(t)) {
+      const int loop = closed.surface.triangles(t, 2) - closed.cloth_vertices;
+      return {loop, t - first_fan(closed, loop)};
+    }
+  return {};
+}
+
+double length_along(const ClosedSurface& closed, const Points& x, const std::vector<Crossing>& crossings,
+                    const std::vector<CurvePoint>& points) {
+  double length = 0;
+  for (std::size_t k = 1; k < points.size(); ++k)
+    length += (position_of(closed.surface, x, crossings, points[k]) -
+               position_of(closed.surface, x, crossings, points[k - 1]))
+                  .norm();
+  return length;
+}
+
+int edge_between(const Surface& surface, int triangle, int a, int b) {
+  for (int k = 0; k < 3; ++k) {
+    const int edge = surface.triangle_edges(triangle, k);
+    if ((surface.edges(edge, 0) == a && surface.edges(edge, 1) == b) ||
+        (surface.edges(edge, 0) == b && surface.edges(edge, 1) == a))
+      return edge;
+  }
+  return -1;
+}
+
+// Round a hole from one of its rim's crossings to another, forward or back in the order of the loop.
+std::vector<CurvePoint> round_hole(const std::vector<int>& loop, CurvePoint from, int at, CurvePoint to, int last,
+                                   bool forward) {
+  const int n = static_cast<int>(loop.size());
+  std::vector<CurvePoint> points{from};
+  for (; at != last; at = (at + (forward ? 1 : n - 1)) % n) points.push_back(~loop[forward ? (at + 1) % n : at]);
+  points.push_back(to);
+  return points;
+}
+
+class Closer {
+ public:
+  Closer(const ClosedSurface& closed, const Points& x, const Contour& contour, std::vector<Crossing>& crossings)
+      : closed_(closed), surface_(closed.surface), x_(x), contour_(contour), crossings_(crossings) {}
+
+  // The rims' places at the contour's last and first point.
+  std::array<RimPlace, 2> rims() const { return {rim_of(from()), rim_of(to())}; }
+
+  // On the inside of the rim, that is through the fan, which is left as it was.
+  void go_along_rim(const std::array<RimPlace, 2>& rims, SurfaceCurve& curve, ContourClosing::Way& way) {
+    const std::vector<int>& loop = closed_.loops[rims[0].loop];
+    const int n = static_cast<int>(loop.size()), first = first_fan(closed_, rims[0].loop);
+    way.points = round_hole(loop, from(), rims[0].place, to(), rims[1].place, true);
+    std::vector<CurvePoint> back = round_hole(loop, from(), rims[0].place, to(), rims[1].place, false);
+    const bool forward =
+        length_along(closed_, x_, crossings_, way.points) <= length_along(closed_, x_, crossings_, back);
+    if (!forward) way.points.swap(back);
+    int fan = first + rims[0].place;
+    cut(curve, way.end_faces[0], crossings_[from()].edge, from());
+    for (std::size_t k = 0; k + 1 < way.points.size(); ++k) {
+      const CurvePoint at = way.points[k], next = way.points[k + 1];
+      curve.runs.push_back({fan, at, next});
+      if (next < 0) cut(curve, fan, edge_between(surface_, fan, ~next, surface_.triangles(fan, 2)), next);
+      if (next >= 0) break;
+      fan = first + (fan - first + (forward ? 1 : n - 1)) % n;
+    }
+    cut(curve, fan, crossings_[to()].edge, to());
+  }
+
+  // False if it meets a hole, or is too long.
+  bool go_straight(const Vec3& up, SurfaceCurve& curve, ContourClosing::Way& way) {
+    way.points = {from()};
+    const Vec3 p = at(to()), toward = p - at(from());
+    const Vec3 normal = toward.cross(up);
+    const auto height = [&](int vertex) { return normal.dot(row(x_, vertex) - p); };
+    int face = way.end_faces[0], last = -1;
+    const std::size_t most = 4 * contour_.segments.size() + 100;
+    while (face != way.end_faces[1]) {
+      int chosen = -1;
+      double share = 0, farthest = 0;
+      for (int k = 0; k < 3; ++k) {
+        const int edge = surface_.triangle_edges(face, k), a = surface_.edges(edge, 0), b = surface_.edges(edge, 1);
+        const double low = height(a), high = height(b);
+        if (edge == last || (low < 0) == (high < 0)) continue;
+        const double s = low / (low - high);
+        const double ahead = toward.dot((1 - s) * row(x_, a) + s * row(x_, b));
+        if (chosen >= 0 && ahead <= farthest) continue;
+        chosen = edge;
+        share = s;
+        farthest = ahead;
+      }
+      if (chosen < 0 || way.points.size() > most) return false;
+      const int id = static_cast<int>(crossings_.size());
+      crossings_.push_back({0, chosen, 0, -1, share, {}});
+      curve.runs.push_back({face, way.points.back(), id});
+      cut(curve, face, chosen, id);
+      way.points.push_back(id);
+      const auto [first, second] = surface_.edge_triangles[chosen];
+      face = first == face ? second : first;
+      if (face < 0 || closed_.is_fan(face)) return false;
+      last = chosen;
+    }
+    curve.runs.push_back({face, way.points.back(), to()});
+    way.points.push_back(to());
+    return length_along(closed_, x_, crossings_, way.points) <= 2 * contour_.length;
+  }
+
+ private:
+  CurvePoint from() const { return contour_.points.back(); }
+  CurvePoint to() const { return contour_.points.front(); }
+  RimPlace rim_of(CurvePoint point) const { return rim_place(closed_, crossings_[point].edge); }
+  Vec3 at(CurvePoint point) const { return position_of(surface_, x_, crossings_, point); }
+  void cut(SurfaceCurve& curve, int leaving, int edge, CurvePoint point) const {
+    curve.cuts.push_back({edge, point, jump_on_leaving(closed_, leaving, edge)});
+  }
+
+  const ClosedSurface& closed_;
+  const Surface& surface_;
+  const Points& x_;
+  const Contour& contour_;
+  std::vector<Crossing>& crossings_;
+};
+
+}  // namespace
+
+std::optional<ContourClosing> close_open_contour(const ClosedSurface& closed, const Points& x, const Contour& contour,
+                                                 int number, std::vector<Crossing>& crossings,
+                                                 std::vector<SurfaceCurve>& curves) {
+  if (contour.closed || contour.ends != std::array{ContourEnd::boundary, ContourEnd::boundary}) return std::nullopt;
+  for (const ContourSide& side : contour.sides)
+    if (!closed.orientable[side.component]) return std::nullopt;
+  Closer closer(closed, x, contour, crossings);
+  const std::array<RimPlace, 2> rims = closer.rims();
+  if (rims[0].loop < 0 || rims[1].loop < 0) return std::nullopt;
+  const bool one_rim = rims[0].loop == rims[1].loop;
+  if (!one_rim && contour.end_side[0] == contour.end_side[1]) return std::nullopt;
+  ContourClosing closing;
+  const std::size_t before = crossings.size();
+  std::array<SurfaceCurve, 2> made;
+  for (int side = 0; side < 2; ++side) {
+    ContourClosing::Way& way = closing.ways[side];
+    way.times = side == 0 ? -1 : 1;
+    way.end_faces = {contour.sides[side].triangles.back(), contour.sides[side].triangles.front()};
+    way.along_rim = one_rim && side == contour.end_side[0];
+    made[side] = curve_on_side(closed, crossings, contour, number, side);
+  }
+  const Vec3 up = up_of_sections(closed, x, closing);
+  for (int side = 0; side < 2; ++side) {
+    ContourClosing::Way& way = closing.ways[side];
+    if (way.along_rim) {
+      closer.go_along_rim(rims, made[side], way);
+    } else if (!closer.go_straight(up, made[side], way)) {
+      crossings.resize(before);
+      return std::nullopt;
+    }
+  }
+  std::ranges::move(made, std::back_inserter(curves));
+  return closing;
+}
+
+}  // namespace selvedge
