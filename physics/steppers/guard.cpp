@@ -14,6 +14,7 @@ constexpr double standard_gravity = 9.81;  // [m/s2]
 constexpr double contact_reach = 2;        // thicknesses within which a vertex may be pushed
 constexpr int patch_size = 20;             // vertices, about
 constexpr double still = 1e-4;             // RMS motion in a step that counts as none [m]
+constexpr double slight = 1;               // acceleration that nothing has to explain [m/s2]
 
 double total(const std::vector<double>& parts) { return std::accumulate(parts.begin(), parts.end(), 0.0); }
 
@@ -121,6 +122,13 @@ void measure_residual(Guard& guard, const State& from, const Drive& drive, doubl
   m.in_contact = count + left_out > 0 ? static_cast<double>(left_out) / (count + left_out) : 0;
 }
 
+// Cloth stops or turns back because something makes it: where the motion changes by as much as it was, and slowly
+// enough to be let pass, forces must say why. Frozen cloth shows nothing else that is wrong.
+bool is_explained(const GuardOptions& most, const GuardMeasures& m) {
+  return m.change_of_motion <= most.change_of_motion ||
+         m.patch_acceleration <= std::max(slight, most.unexplained * m.mean_acceleration);
+}
+
 }  // namespace
 
 Guard::Guard(const Scene& s, const GuardOptions& o)
@@ -153,7 +161,7 @@ Verdict judge(Guard& guard, const State& from, const Drive& drive, double dt, co
   if (!(m.energy_growth <= most.energy_growth)) return Verdict::energy_gain;
   measure_residual(guard, from, drive, dt, x, touching ? touching() : std::vector<char>{}, m);
   if (!(m.patch_acceleration <= most.patch_acceleration) || !(m.imbalance <= most.imbalance) ||
-      !(m.decrement <= most.decrement))
+      !(m.decrement <= most.decrement) || !is_explained(most, m))
     return Verdict::unbalanced;
   return Verdict::admitted;
 }

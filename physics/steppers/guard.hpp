@@ -18,6 +18,7 @@ struct GuardOptions {
   double stretch_growth = 1.1;     // over the largest at the start, whichever allows more
   double energy_growth = 10;       // of the elastic energy, in the cloth's weight times its mean edge
   double patch_acceleration = 60;  // RMS of the unexplained force on patches, over their mass [m/s2]
+  double unexplained = 0.8;        // the same over the mean acceleration, where the motion changes by more than allowed
   double imbalance = 1e-3;         // RMS of how far a Jacobi sweep of the step's potential would move vertices [m]
   double decrement = 5;            // energy that it would gain, in the same unit as energy_growth
 };

@@ -50,6 +50,8 @@ const Options<GuardOptions>& guard_options() {
               "of the elastic energy, in the cloth's weight times its mean edge"),
        number("patch_acceleration", &O::patch_acceleration, Unit::acceleration, positive,
               "RMS of the force on patches of the cloth that contact cannot explain, over their mass"),
+       number("unexplained", &O::unexplained, Unit::none, positive,
+              "the same over the mean acceleration, where the motion changes by more than `change_of_motion`"),
        number("imbalance", &O::imbalance, Unit::length, positive,
               "RMS of how far a Jacobi sweep of the potential would move vertices that nothing touches"),
        number("decrement", &O::decrement, Unit::none, positive,

@@ -76,6 +76,26 @@ TEST_CASE("guard: the cheapest test that fails names the reason", "[guard]") {
   CHECK(verdict(step.to.x) == Verdict::admitted);
 }
 
+TEST_CASE("guard: cloth that glides slowly does not stop or turn back without a force", "[guard]") {
+  World w = testing::make_world(testing::sheet(6, 0.2, 0));
+  w.drive.acceleration.setZero();
+  w.state.v = Points::Constant(w.state.x.rows(), 3, 0.05);  // 2.9 mm a step
+  Guard guard(w.scene, {});
+  ContactStage stage(w.scene);
+  const Points way = dt * w.state.v;
+  const RecordedStep step{w.state, w.state, w.state, w.drive};
+  CHECK(verdict_of(guard, stage, step, w.state.x + way) == Verdict::admitted);
+  CHECK(verdict_of(guard, stage, step, w.state.x) == Verdict::unbalanced);
+  CHECK(verdict_of(guard, stage, step, w.state.x - way) == Verdict::unbalanced);
+  // Gravity explains that it turns.
+  const RecordedStep thrown{w.state, w.state, w.state, [&] {
+                              Drive drive = w.drive;
+                              drive.acceleration = -1.5 * Vec3::Constant(0.05) / dt;
+                              return drive;
+                            }()};
+  CHECK(verdict_of(guard, stage, thrown, w.state.x - 0.5 * way) == Verdict::admitted);
+}
+
 TEST_CASE("guard: what touches is left out of the residual", "[guard]") {
   World w = testing::make_world(testing::sheet(6, 0.2, 0.003));
   add_obstacle(w, testing::sheet(3, 0.6, 0));
