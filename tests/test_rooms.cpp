@@ -51,6 +51,7 @@ const std::map<std::string, std::vector<Room>> rooms = {
      {{"host"},
       {"config"},
       {"formats"},
+      {"exports"},
       {"shapes"},
       {"bodies"},
       {"motions"},

@@ -69,9 +69,8 @@ Eigen::VectorXd ring_means(const Surface& surface, const Eigen::VectorXd& forces
 }
 
 // Mean and least difference of girths over planes across a region.
-void add_ease(const Scene& scene, const Points& x, const FitPart& part, const Surface& body, const Points& body_x,
+void add_ease(const Scene& scene, const Cloth& cloth, const Points& x, const Surface& body, const Points& body_x,
               const std::vector<int>& body_part, const Vec3& axis, FitRow& found) {
-  if (body_part.empty()) return;
   double low = INFINITY, high = -INFINITY;
   for (const int t : body_part)
     for (int k = 0; k < 3; ++k) {
@@ -81,15 +80,14 @@ void add_ease(const Scene& scene, const Points& x, const FitPart& part, const Su
     }
   double sum = 0, least = INFINITY;
   int count = 0;
-  for (int k = 0; k < girths_a_region; ++k) {
+  for (int k = 0; k < girths_a_region && low < high; ++k) {
     const CutPlane plane{axis, low + (high - low) * (k + 0.5) / girths_a_region};
-    const auto skin = body_girth(body.triangles, body_part, body_x, plane);
-    if (!skin) continue;
-    const auto cloth =
-        girth_at_rest(scene.surface.triangles, scene.rest_triangle, part.triangles, x, plane, skin->middle);
-    if (!cloth) continue;
-    sum += *cloth - skin->length;
-    least = std::min(least, *cloth - skin->length);
+    const auto middle = section_middle(body, body_part, body_x, plane);
+    if (!middle) continue;
+    const auto skin = body_girth(body, body_x, plane, *middle), worn = girth_at_rest(scene, cloth, x, plane, *middle);
+    if (!skin || !worn) continue;
+    sum += *worn - *skin;
+    least = std::min(least, *worn - *skin);
     ++count;
   }
   if (count == 0) return;
@@ -189,7 +187,7 @@ FitMeasures measure_fit(const Scene& scene, const Points& x, const Vec3& gravity
       FitRow line = row_of(scene, field, part, found);
       line.region = regions.regions[r].name;
       line.cloth = cloth.name;
-      add_ease(scene, x, part, body, body_x, body_parts[r], regions.regions[r].axis, line);
+      add_ease(scene, cloth, x, body, body_x, body_parts[r], regions.regions[r].axis, line);
       found.rows.push_back(line);
     }
   return found;

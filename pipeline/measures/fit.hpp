@@ -29,8 +29,8 @@ struct FitMeasures {
 };
 
 // Fit of a cloth that rests on a body, in one frame.
-//   Ease: planes across a region's axis cut the body, round whose section a tape is laid (its convex hull), and the
-// cloth, whose section is as long as it is at rest. Planes where the cloth does not go all round tell nothing.
+//   Ease: seven planes across a region's axis cut the body, round whose section a tape is laid (its convex hull), and
+// the cloth, whose section is as long as it is at rest. Planes where the cloth does not go all round tell nothing.
 //   Pressure: what the skin bears is what the cloth's elastic forces and its weight leave unbalanced, along the outward
 // normal, over the area of a vertex: the contact forces of a state at rest, whoever made it. Inertia, damping and
 // pinned vertices are left out. Vertices nearer than `reach` [m] touch.

@@ -3,45 +3,92 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+#include <map>
 
 namespace selvedge {
 namespace {
 
 // Where a plane cuts a triangle: on two of its sides, as weights of its corners.
-using SectionEnds = std::array<Vec3, 2>;
+struct CutTriangle {
+  int triangle = 0;
+  std::array<int, 2> edges{};  // of the surface
+  std::array<Vec3, 2> ends{};
+};
 
-std::optional<SectionEnds> section_of(const std::array<double, 3>& heights) {
-  SectionEnds ends;
+std::optional<CutTriangle> cut_of(const Surface& surface, int t, const Points& x, const CutPlane& plane) {
+  std::array<double, 3> heights;
+  for (int k = 0; k < 3; ++k) heights[k] = plane.normal.dot(row(x, surface.triangles(t, k))) - plane.offset;
+  CutTriangle cut{t};
   int count = 0;
   for (int k = 0; k < 3 && count < 2; ++k) {
     const double a = heights[k], b = heights[(k + 1) % 3];
     if ((a < 0) == (b < 0)) continue;
-    ends[count] = Vec3::Zero();
-    ends[count][k] = b / (b - a);
-    ends[count][(k + 1) % 3] = -a / (b - a);
+    cut.edges[count] = surface.triangle_edges(t, k);
+    cut.ends[count] = Vec3::Zero();
+    cut.ends[count][k] = b / (b - a);
+    cut.ends[count][(k + 1) % 3] = -a / (b - a);
     ++count;
   }
-  return count == 2 ? std::optional(ends) : std::nullopt;
+  return count == 2 ? std::optional(cut) : std::nullopt;
 }
 
-std::optional<SectionEnds> section_of(const Triangles& triangles, int t, const Points& x, const CutPlane& plane) {
-  std::array<double, 3> heights;
-  for (int k = 0; k < 3; ++k) heights[k] = plane.normal.dot(row(x, triangles(t, k))) - plane.offset;
-  return section_of(heights);
+Vec3 in_space(const Surface& surface, int t, const Points& x, const Vec3& weights) {
+  return weights[0] * row(x, surface.triangles(t, 0)) + weights[1] * row(x, surface.triangles(t, 1)) +
+         weights[2] * row(x, surface.triangles(t, 2));
 }
 
-// Two directions that span the plane.
-Eigen::Matrix<double, 3, 2> spanned(const Vec3& normal) {
-  Eigen::Matrix<double, 3, 2> span;
-  span.col(0) = normal.unitOrthogonal();
-  span.col(1) = normal.cross(span.col(0));
-  return span;
+// Coordinates in a plane, from a point.
+struct PlaneAxes {
+  Vec3 origin, u, v;
+  PlaneAxes(const CutPlane& plane, const Vec3& from)
+      : origin(from), u(plane.normal.unitOrthogonal()), v(plane.normal.cross(u)) {}
+  Vec2 of(const Vec3& point) const { return {u.dot(point - origin), v.dot(point - origin)}; }
+};
+
+using CutLoop = std::vector<CutTriangle>;
+
+// What a plane cuts of triangles, triangle after triangle round each closed loop; what ends somewhere is left out.
+std::vector<CutLoop> closed_loops(const Surface& surface, int first, int count, const Points& x,
+                                  const CutPlane& plane) {
+  std::vector<CutTriangle> cuts;
+  std::map<int, std::vector<int>> at_edge;
+  for (int t = first; t < first + count; ++t)
+    if (const auto cut = cut_of(surface, t, x, plane)) {
+      for (const int edge : cut->edges) at_edge[edge].push_back(static_cast<int>(cuts.size()));
+      cuts.push_back(*cut);
+    }
+  std::vector<CutLoop> loops;
+  std::vector<char> seen(cuts.size(), 0);
+  for (std::size_t begin = 0; begin < cuts.size(); ++begin) {
+    CutLoop loop;
+    bool closed = true;
+    std::vector<int> waiting = {static_cast<int>(begin)};
+    while (!waiting.empty()) {
+      const int at = waiting.back();
+      waiting.pop_back();
+      if (seen[at]) continue;
+      seen[at] = 1;
+      loop.push_back(cuts[at]);
+      for (const int edge : cuts[at].edges) {
+        closed = closed && at_edge[edge].size() > 1;
+        for (const int next : at_edge[edge]) waiting.push_back(next);
+      }
+    }
+    if (!loop.empty() && closed) loops.push_back(loop);
+  }
+  return loops;
 }
 
-Vec3 in_space(const Triangles& triangles, int t, const Points& x, const Vec3& weights) {
-  return weights[0] * row(x, triangles(t, 0)) + weights[1] * row(x, triangles(t, 1)) +
-         weights[2] * row(x, triangles(t, 2));
+// By the number of its segments that a ray from the origin crosses.
+bool goes_round_origin(const Surface& surface, const CutLoop& loop, const Points& x, const PlaneAxes& axes) {
+  bool inside = false;
+  for (const CutTriangle& cut : loop) {
+    const Vec2 a = axes.of(in_space(surface, cut.triangle, x, cut.ends[0])),
+               b = axes.of(in_space(surface, cut.triangle, x, cut.ends[1]));
+    if ((a.y() < 0) == (b.y() < 0)) continue;
+    if (a.x() + (b.x() - a.x()) * a.y() / (a.y() - b.y()) > 0) inside = !inside;
+  }
+  return inside;
 }
 
 double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
@@ -69,47 +116,41 @@ double hull_length(std::vector<Vec2> points) {
 
 }  // namespace
 
-std::optional<BodyGirth> body_girth(const Triangles& triangles, const std::vector<int>& which, const Points& x,
-                                    const CutPlane& plane) {
-  const Eigen::Matrix<double, 3, 2> span = spanned(plane.normal);
-  std::vector<Vec2> points;
+std::optional<Vec3> section_middle(const Surface& surface, const std::vector<int>& which, const Points& x,
+                                   const CutPlane& plane) {
+  const PlaneAxes axes(plane, plane.offset * plane.normal);
   Vec2 low = Vec2::Constant(INFINITY), high = -low;
   for (const int t : which)
-    if (const auto ends = section_of(triangles, t, x, plane))
-      for (const Vec3& weights : *ends) {
-        points.push_back(span.transpose() * in_space(triangles, t, x, weights));
-        low = low.cwiseMin(points.back());
-        high = high.cwiseMax(points.back());
+    if (const auto cut = cut_of(surface, t, x, plane))
+      for (const Vec3& end : cut->ends) {
+        const Vec2 point = axes.of(in_space(surface, t, x, end));
+        low = low.cwiseMin(point);
+        high = high.cwiseMax(point);
       }
-  if (points.size() < 3) return {};
-  return BodyGirth{hull_length(points), span * (0.5 * (low + high)) + plane.offset * plane.normal};
+  if (low.x() > high.x()) return {};
+  const Vec2 middle = 0.5 * (low + high);
+  return Vec3(axes.origin + middle.x() * axes.u + middle.y() * axes.v);
 }
 
-std::optional<double> girth_at_rest(const Triangles& triangles, const std::vector<RestTriangle>& rest,
-                                    const std::vector<int>& which, const Points& x, const CutPlane& plane,
+std::optional<double> body_girth(const Surface& surface, const Points& x, const CutPlane& plane, const Vec3& middle) {
+  const PlaneAxes axes(plane, middle);
+  std::vector<Vec2> points;
+  for (const CutLoop& loop : closed_loops(surface, 0, static_cast<int>(surface.triangles.rows()), x, plane))
+    if (goes_round_origin(surface, loop, x, axes))
+      for (const CutTriangle& cut : loop)
+        for (const Vec3& end : cut.ends) points.push_back(axes.of(in_space(surface, cut.triangle, x, end)));
+  return points.size() > 2 ? std::optional(hull_length(points)) : std::nullopt;
+}
+
+std::optional<double> girth_at_rest(const Scene& scene, const Cloth& cloth, const Points& x, const CutPlane& plane,
                                     const Vec3& middle) {
-  constexpr int sectors = 36, most_empty = 3;
-  const Eigen::Matrix<double, 3, 2> span = spanned(plane.normal);
-  const auto sector_of = [&](const Vec3& point) {
-    const Vec2 away = span.transpose() * (point - middle);
-    const double angle = std::atan2(away.y(), away.x()) + std::numbers::pi;
-    return std::min(sectors - 1, static_cast<int>(sectors * angle / (2 * std::numbers::pi)));
-  };
-  std::array<bool, sectors> seen{};
+  const PlaneAxes axes(plane, middle);
   double length = 0;
-  for (const int t : which) {
-    const auto ends = section_of(triangles, t, x, plane);
-    if (!ends) continue;
-    length += (rest[t] * ((*ends)[1] - (*ends)[0])).norm();
-    for (int k = 0; k <= 8; ++k)  // a long segment covers sectors between its ends too
-      seen[sector_of(in_space(triangles, t, x, (k * (*ends)[1] + (8 - k) * (*ends)[0]) / 8))] = true;
-  }
-  int empty = 0, longest = 0;
-  for (int k = 0; k < 2 * sectors; ++k) {
-    empty = seen[k % sectors] ? 0 : empty + 1;
-    longest = std::max(longest, empty);
-  }
-  return longest <= most_empty ? std::optional(length) : std::nullopt;
+  for (const CutLoop& loop : closed_loops(scene.surface, cloth.first_triangle, cloth.triangle_count, x, plane))
+    if (goes_round_origin(scene.surface, loop, x, axes))
+      for (const CutTriangle& cut : loop)
+        length += (scene.rest_triangle[cut.triangle] * (cut.ends[1] - cut.ends[0])).norm();
+  return length > 0 ? std::optional(length) : std::nullopt;
 }
 
 }  // namespace selvedge

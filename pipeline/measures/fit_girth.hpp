@@ -13,17 +13,15 @@ struct CutPlane {
   double offset = 0;  // [m]
 };
 
-// Length of a tape round the section of these triangles, its convex hull, and the middle of that; absent where the
-// plane misses them.
-struct BodyGirth {
-  double length = 0;  // [m]
-  Vec3 middle = Vec3::Zero();
-};
-std::optional<BodyGirth> body_girth(const Triangles&, const std::vector<int>& which, const Points& x, const CutPlane&);
+// The middle of the box round the section of some triangles; absent where the plane misses them.
+std::optional<Vec3> section_middle(const Surface&, const std::vector<int>& which, const Points& x, const CutPlane&);
 
-// Length of a cloth's section as it is at rest [m]. Absent where it does not go all round `middle`: seen from there, an
-// opening of more than 30 degrees.
-std::optional<double> girth_at_rest(const Triangles&, const std::vector<RestTriangle>&, const std::vector<int>& which,
-                                    const Points& x, const CutPlane&, const Vec3& middle);
+// Length of a tape round the body's section, which is its convex hull [m]. Of the loops in which the plane cuts the
+// surface those count that go round `middle`; absent without any.
+std::optional<double> body_girth(const Surface&, const Points& x, const CutPlane&, const Vec3& middle);
+
+// Length of a cloth's section as it is at rest [m], of the loops that go round `middle`. Absent without any: a section
+// that ends at a boundary is no loop.
+std::optional<double> girth_at_rest(const Scene&, const Cloth&, const Points& x, const CutPlane&, const Vec3& middle);
 
 }  // namespace selvedge

@@ -30,8 +30,9 @@ Vec3 unit_or_up(const Vec3& direction) {
   return length > 1e-9 ? Vec3(direction / length) : Vec3::UnitY();
 }
 
-// From the joint to the middle of its children; from its parent where it has none.
+// From the joint to the middle of its children; from its parent where it has none. A shoulder has no girth of its own.
 Vec3 limb_axis(const BodyModel& body, const Points& joints, std::size_t joint) {
+  if (body.joints[joint].ends_with("collar")) return Vec3::Zero();
   Vec3 sum = Vec3::Zero();
   int children = 0;
   for (std::size_t k = 0; k < body.parents.size(); ++k)

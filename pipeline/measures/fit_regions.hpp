@@ -10,7 +10,7 @@ namespace selvedge {
 
 struct FitRegion {
   std::string name;
-  Vec3 axis = Vec3::UnitY();  // along which the limb runs, unit length: girths are taken across it
+  Vec3 axis = Vec3::UnitY();  // along which the limb runs, unit length: girths are taken across it; zero: none are
 };
 
 // Parts of a body's surface.

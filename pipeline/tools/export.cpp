@@ -8,11 +8,11 @@
 #include <cmath>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/formats/glb.hpp"
+#include "pipeline/exports/glb.hpp"
+#include "pipeline/exports/point_cache.hpp"
+#include "pipeline/exports/usda.hpp"
 #include "pipeline/formats/mesh_io.hpp"
-#include "pipeline/formats/point_cache.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
-#include "pipeline/formats/usda.hpp"
 #include "pipeline/formats/xdmf.hpp"
 #include "pipeline/host/write_file.hpp"
 

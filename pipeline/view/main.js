@@ -76,7 +76,7 @@ function initialLook(runs, options) {
     strain: options.flag("strain", false),
     wire: options.flag("wire", false),
     marks: options.flag("marks", true),
-    plots: options.flag("plots", !runs[0].maps.length && runs.length === 1 || window.innerWidth > 700),
+    plots: options.flag("plots", !runs[0].maps.length && (runs.length === 1 || window.innerWidth > 700)),
     map: options.number("map", runs[0].maps.length ? 0 : -1),
     strainTop: Math.max(1.0001, options.number("top", strainTop(runs))),
   };

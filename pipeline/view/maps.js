@@ -17,6 +17,7 @@ function bindMaps(page) {
   function show() {
     buttons.forEach((button, m) => button.setAttribute("aria-pressed", look.map === m));
   }
+  strain.hidden = buttons.length > 0;
   show();
 }
 
@@ -45,4 +46,5 @@ function showTable(table) {
   drawn.append(line(table.titles, "th"), ...table.rows.map((row) => line(row, "td")));
   element("table").append(drawn);
   element("table").hidden = false;
+  document.body.classList.add("with-table");
 }

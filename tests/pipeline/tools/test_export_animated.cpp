@@ -3,8 +3,8 @@
 
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/tools/export.hpp"
+#include "tests/pipeline/exports/read_animated.hpp"
 #include "tests/pipeline/fake_run.hpp"
-#include "tests/pipeline/formats/read_animated.hpp"
 
 namespace selvedge::test_export_animated {
 

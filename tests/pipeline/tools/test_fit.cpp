@@ -111,18 +111,20 @@ TEST_CASE("fit: regions have their own rows; cloth that does not go round tells 
   CHECK(found.rows[1].gap > 0.015);
   CHECK(found.rows[0].vertices + found.rows[1].vertices == tube.x.rows());
 
-  // The same girths, of a tube with a quarter left out.
-  std::vector<int> all, open;
-  for (int t = 0; t < tube.scene.surface.triangles.rows(); ++t) {
-    all.push_back(t);
-    if (t / 2 % round >= round / 4) open.push_back(t);
-  }
+  // A cut along the tube: its section ends.
   const CutPlane plane{Vec3::UnitY(), -0.05};
-  const auto girth = [&](const std::vector<int>& which) {
-    return girth_at_rest(tube.scene.surface.triangles, tube.scene.rest_triangle, which, tube.x, plane, Vec3::Zero());
+  const auto girth = [&](const Vec3& middle) {
+    return girth_at_rest(tube.scene, tube.scene.cloths[0], tube.x, plane, middle);
   };
-  CHECK(girth(all).value() == Approx(2 * std::numbers::pi * tube.rest_radius).epsilon(0.005));
-  CHECK(!girth(open).has_value());
+  CHECK(girth(Vec3::Zero()).value() == Approx(2 * std::numbers::pi * tube.rest_radius).epsilon(0.005));
+  CHECK(!girth({0.06, 0, 0}).has_value());  // beside the tube
+  Scene open;
+  const Triangles all = tube_triangles(12);
+  std::vector<int> kept;
+  for (int t = 0; t < all.rows(); ++t)
+    if (t / 2 % round != 3) kept.push_back(t);
+  add_cloth(open, tube_points(tube.rest_radius, 0.2, 12), all(kept, Eigen::all));
+  CHECK(!girth_at_rest(open, open.cloths[0], tube.x, plane, Vec3::Zero()).has_value());
 }
 
 TEST_CASE("fit: a tube that was simulated until it rests presses with T / r, and its page has colours and table") {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "pipeline/formats/animated_surfaces.hpp"
+#include "pipeline/exports/animated_surfaces.hpp"
 
 namespace selvedge {
 

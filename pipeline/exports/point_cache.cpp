@@ -1,4 +1,4 @@
-#include "pipeline/formats/point_cache.hpp"
+#include "pipeline/exports/point_cache.hpp"
 
 #include <algorithm>
 #include <bit>

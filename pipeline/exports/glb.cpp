@@ -1,4 +1,4 @@
-#include "pipeline/formats/glb.hpp"
+#include "pipeline/exports/glb.hpp"
 
 #include <algorithm>
 #include <cstdint>

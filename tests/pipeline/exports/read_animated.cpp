@@ -1,7 +1,10 @@
-#include "tests/pipeline/formats/read_animated.hpp"
+#include "tests/pipeline/exports/read_animated.hpp"
 
+#include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 

@@ -1,4 +1,4 @@
-#include "pipeline/formats/usda.hpp"
+#include "pipeline/exports/usda.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "pipeline/formats/animated_surfaces.hpp"
+#include "pipeline/exports/animated_surfaces.hpp"
 
 #include "collision/geometry/error.hpp"
 
