@@ -150,18 +150,28 @@ DistanceLosses distance_losses(const PlainNetwork& network, const DistanceSample
 
 DistanceErrors distance_errors(const PlainNetwork& network, const DistanceSamples& samples) {
   const FeatureRows made = evaluate(network, sample_inputs(network, samples));
+  constexpr double near = 0.05;
   DistanceErrors errors;
-  int counted = 0;
+  int counted = 0, near_ones = 0;
   for (Eigen::Index i = 0; i < made.rows(); ++i) {
     const auto truth = static_cast<double>(samples.distance[static_cast<std::size_t>(i)]);
     const double miss = std::abs(static_cast<double>(made(i, 0)) - truth);
     errors.absolute += miss;
+    if (std::abs(truth) < near) {
+      errors.near += miss;
+      errors.wrong_side += (made(i, 0) < 0) != (truth < 0) ? 100 : 0;
+      ++near_ones;
+    }
     if (std::abs(truth) < 1e-4) continue;
     errors.relative += 100 * miss / std::abs(truth);
     ++counted;
   }
   if (made.rows() > 0) errors.absolute /= static_cast<double>(made.rows());
   if (counted > 0) errors.relative /= counted;
+  if (near_ones > 0) {
+    errors.near /= near_ones;
+    errors.wrong_side /= near_ones;
+  }
   return errors;
 }
 

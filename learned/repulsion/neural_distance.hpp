@@ -66,9 +66,10 @@ struct DistanceLosses {
 };
 DistanceLosses distance_losses(const PlainNetwork&, const DistanceSamples&, const DistanceLossWeights&);
 
-// Mean |f - s| [m], and mean |f - s| / |s| [%] over samples with |s| of 0.1 mm and more (equation 15).
+// Mean |f - s| of all samples, of those on the surface or nearer to it than 5 cm [m], and mean |f - s| / |s| [%] over
+// samples with |s| of 0.1 mm and more (equation 15); of the near ones, how many are told to lie on the wrong side [%].
 struct DistanceErrors {
-  double absolute = 0, relative = 0;
+  double absolute = 0, near = 0, relative = 0, wrong_side = 0;
 };
 DistanceErrors distance_errors(const PlainNetwork&, const DistanceSamples&);
 

@@ -160,7 +160,7 @@ std::filesystem::path trajectory_of(const std::filesystem::path& folder, std::si
 
 // Every row of an evaluation that a network makes is the bare network, by its stored run.
 void check_bare(const Setup& setup, const std::filesystem::path& trajectory) {
-  if (setup.run.stepper != "learned" || setup.run.refu.on) return;  // the layer behind it says its name
+  if (setup.run.stepper != "learned") return;
   if (const std::string trouble = trouble_of_bare_run(trajectory); !trouble.empty())
     throw Error("a row of the evaluation is not the bare network: " + trouble, trajectory.string(),
                 "name gated rows by a stepper of their own");

@@ -16,6 +16,9 @@ TrainingStage row_stage(const DrapeRow&, const DrapeTrainingOptions&, DrapeLesso
 TrainingStage distance_stage(const DrapeTrainingOptions&, DrapeLessons&, PlainNetwork&);
 PlainNetwork make_distance_network(const DrapeTrainingOptions&, const DrapeLessons&);
 
+// Its errors on the bodies to measure on, and its arithmetic for one garment: a line for people.
+std::string distance_text(const DistanceOptions&, const DrapeLessons&, const PlainNetwork&);
+
 // Points of one body: on its surface, on the garment, each half of them with noise, and in the cube; as many of each.
 void add_distance_samples(const DistanceOptions&, const DrapeLessons&, const DrapeBody&, int points, RandomStream&,
                           DistanceSamples&);

@@ -102,7 +102,7 @@ std::string drape_page(const DrapeRun& run, const std::vector<DrapeTableRow>& ta
     page += chart(stage + ": losses", at,
                   columns_of(columns, {"reconstruction", "collision", "value", "surface_gradient", "eikonal"}), true);
     page += chart(stage + ": error of vertices (before a layer) or of distances on what is kept apart [mm]", at,
-                  columns_of(columns, {"validation_mm", "error_mm"}), false);
+                  columns_of(columns, {"validation_mm", "error_mm", "near_mm"}), false);
     page += chart(stage + ": mean scale of pushed vertices", at, columns_of(columns, {"alpha"}), false);
   }
   return page + page_text("Drapes to measure on", drape_table_text(table)) +
@@ -133,7 +133,8 @@ DrapeTrainSummary train_drapes(const TrainRequest& request) {
   std::filesystem::remove(pause_file(folder));
   if (!summary.finished) return summary;
   summary.table = measure_all(run);
-  write_file(folder / "table.txt", drape_table_text(summary.table));
+  if (run.needs_network()) summary.distance = distance_text(options.distance, run.lessons, run.distance);
+  write_file(folder / "table.txt", summary.distance + drape_table_text(summary.table));
   write_file(folder / "table.csv", drape_table_csv(summary.table));
   write_file(folder / "training.html", drape_page(run, summary.table));
   return summary;
@@ -143,7 +144,7 @@ std::string drape_train_text(const DrapeTrainSummary& s) {
   return fmt::format("{:<20}{}\n{:<20}{} to train on, {} to watch, {} to measure on\n{:<20}{}\n{:<20}{}\n",
                      s.finished ? "trained" : "stopped", s.folder.string(), "drapes", s.training, s.validation, s.test,
                      "parameters", s.parameters, "time", duration_text(s.seconds)) +
-         (s.table.empty() ? "" : "\n" + drape_table_text(s.table));
+         (s.table.empty() ? "" : "\n" + s.distance + drape_table_text(s.table));
 }
 
 std::string drape_train_json(const DrapeTrainSummary& s) {

@@ -12,6 +12,7 @@ struct DrapeTrainSummary {
   int training = 0, validation = 0, test = 0;  // drapes
   long long parameters = 0;                    // of the backbone
   std::vector<DrapeTableRow> table;
+  std::string distance;  // of the network of distances, for people; empty without one
 };
 
 // Trains the backbone, the distance by a network where a row needs it, and every row from the backbone's end; then

@@ -73,6 +73,19 @@ TEST_CASE("neural distance: the gradient of all three losses agrees with differe
   }
 }
 
+TEST_CASE("neural distance: errors are those of all samples and of the near ones", "[neural_distance]") {
+  PlainNetwork network = narrow_distance(3, 1, 20);
+  set_parameters(std::vector<float>(static_cast<std::size_t>(parameter_count(network)), 0), network);
+  network.layers.back().bias[0] = 0.01f;  // 1 cm outside everywhere
+  DistanceSamples samples = ball_samples(4, 2);
+  samples.distance = {-0.01f, 0.04f, -0.2f, 0.0f};
+  const DistanceErrors errors = distance_errors(network, samples);
+  CHECK(errors.absolute == Approx((0.02 + 0.03 + 0.21 + 0.01) / 4));
+  CHECK(errors.near == Approx((0.02 + 0.03 + 0.01) / 3));
+  CHECK(errors.wrong_side == Approx(100.0 / 3));
+  CHECK(errors.relative == Approx((200 + 75 + 105) / 3.0));
+}
+
 TEST_CASE("neural distance: training fits balls that it is told of, values and gradients", "[neural_distance]") {
   PlainNetwork network = narrow_distance(3, 1, 20);
   const DistanceSamples samples = ball_samples(240, 2), unseen = ball_samples(240, 9);

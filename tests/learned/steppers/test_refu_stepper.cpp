@@ -111,6 +111,35 @@ TEST_CASE("refu stepper: what is inside comes out, no faster than the body, and 
   }
 }
 
+TEST_CASE("refu stepper: scales by neighbours push farther than the surface, and nothing else moves", "[refu]") {
+  const fake::LearnedCase made = sheet_over_ball();
+  const Eigen::RowVector3d way(0, -0.04, 0);
+  RefuOptions plain, scaled;
+  NeighbourScale scales = make_neighbour_scale({}, 2);
+  scales.end.layers.back().weight.setZero();
+  scales.end.layers.back().bias[0] = 1;  // 1 + log(1 + e) times the depth
+  scaled.neighbours = std::make_shared<const NeighbourScale>(scales);
+  State surface, farther;
+  const auto step = [&](const RefuOptions& options, State& to) {
+    return make_refu_stepper(made.scene, std::make_unique<BlindStepper>(made.scene, way), options)
+        ->step(made.state, made.drives[0], 1.0 / 30, to)
+        .collision.pushed_out;
+  };
+  const int pushed = step(plain, surface);
+  CHECK(step(scaled, farther) == pushed);
+  DistanceField field(made.scene.obstacles[0].surface);
+  field.move_to(surface.obstacles[0]);
+  const std::vector<SignedDistance> near = field.ask(surface.x), far = field.ask(farther.x);
+  int moved = 0;
+  for (int v = 0; v < surface.x.rows(); ++v) {
+    if (surface.x.row(v) == farther.x.row(v)) continue;
+    ++moved;
+    CHECK(far[static_cast<std::size_t>(v)].value > near[static_cast<std::size_t>(v)].value);
+  }
+  CHECK(moved > 3);
+  CHECK(moved <= pushed);
+}
+
 TEST_CASE("refu stepper: without a closed body it is left out", "[refu]") {
   fake::LearnedCase made = sheet_over_ball();
   made.scene.obstacles.clear();
