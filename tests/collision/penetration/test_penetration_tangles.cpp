@@ -80,7 +80,7 @@ void check_tangles(const TangleCounts& c) {
                  << c.unassigned << " unassigned; " << c.imbalanced << " with a net push");
   CHECK(c.imbalanced == 0);
   CHECK(c.unassigned == 0);
-  CHECK(c.enclosed >= 0.94 * c.contours);
+  CHECK(c.enclosed >= 0.98 * c.contours);
 }
 
 }  // namespace
