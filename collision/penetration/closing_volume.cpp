@@ -31,7 +31,7 @@ class MovingClosing {
         crossings_(crossings),
         closing_(closing),
         gradient_(gradient),
-        up_(up_of_sections(closed, x, closing)) {
+        up_(up_of_plane(closed, x, closing)) {
     from_ = closing.ways[0].points.front();
     to_ = closing.ways[0].points.back();
     middle_ = (at(from_) + at(to_)) / 2;
@@ -43,8 +43,8 @@ class MovingClosing {
       const Vec3 share = (scale * way.times / 6) * (at(a) - middle_).cross(at(b) - middle_);
       pull_end(from_, share / 2);
       pull_end(to_, share / 2);
-      pull_point(a, share);
-      pull_point(b, share);
+      pull_point(way.kind, a, share);
+      pull_point(way.kind, b, share);
     }
   }
 
@@ -64,17 +64,22 @@ class MovingClosing {
     for (int k = 0; k < 3; ++k) gradient_.row(surface_.triangles(c.face, k)) += c.weight[k] * by_face.transpose();
   }
 
-  void pull_point(CurvePoint point, const Vec3& by) {
-    if (point == from_ || point == to_)
+  void pull_point(ClosingWay kind, CurvePoint point, const Vec3& by) {
+    if (point == from_ || point == to_) {
       pull_end(point, by);
-    else if (point < 0)
+    } else if (point < 0) {
       gradient_.row(~point) += by.transpose();
-    else
-      pull_section(point, by);
+    } else if (kind == ClosingWay::plane) {
+      pull_cut(point, by);
+    } else {
+      const Crossing& c = crossings_[point];
+      gradient_.row(surface_.edges(c.edge, 0)) += (1 - c.s) * by.transpose();
+      gradient_.row(surface_.edges(c.edge, 1)) += c.s * by.transpose();
+    }
   }
 
-  // A point of a section is carried by the plane: by both ends and by what is up in it.
-  void pull_section(CurvePoint point, const Vec3& by) {
+  // Where the plane cuts an edge, the point is carried by the plane: by both ends and by what is up in it.
+  void pull_cut(CurvePoint point, const Vec3& by) {
     const Vec3 along = at(to_) - at(from_), place = at(point) - at(from_), normal = along.cross(up_);
     const double square = normal.squaredNorm();
     if (square == 0) return;
@@ -82,7 +87,7 @@ class MovingClosing {
     pull_end(from_, (1 - ahead) * by);
     pull_end(to_, ahead * by);
     for (int side = 0; side < 2; ++side)
-      if (!closing_.ways[side].along_rim)
+      if (closing_.ways[side].kind == ClosingWay::plane)
         pull_up(closing_.ways[side], above * sense_of(closed_, x_, closing_, side) * by);
   }
 
@@ -113,10 +118,10 @@ class MovingClosing {
 
 }  // namespace
 
-Vec3 up_of_sections(const ClosedSurface& closed, const Points& x, const ContourClosing& closing) {
+Vec3 up_of_plane(const ClosedSurface& closed, const Points& x, const ContourClosing& closing) {
   Vec3 up = Vec3::Zero();
   for (int side = 0; side < 2; ++side)
-    if (!closing.ways[side].along_rim)
+    if (closing.ways[side].kind == ClosingWay::plane)
       up += sense_of(closed, x, closing, side) * normal_of(closed, x, closing.ways[side]).normalized();
   return up;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <tuple>
 
 namespace selvedge {
 namespace {
@@ -108,13 +110,8 @@ class Closer {
         farthest = ahead;
       }
       if (chosen < 0 || way.points.size() > most) return false;
-      const int id = static_cast<int>(crossings_.size());
-      crossings_.push_back({0, chosen, 0, -1, share, {}});
-      curve.runs.push_back({face, way.points.back(), id});
-      cut(curve, face, chosen, id);
-      way.points.push_back(id);
-      const auto [first, second] = surface_.edge_triangles[chosen];
-      face = first == face ? second : first;
+      leave(face, chosen, share, curve, way);
+      face = beyond(chosen, face);
       if (face < 0 || closed_.is_fan(face)) return false;
       last = chosen;
     }
@@ -123,7 +120,64 @@ class Closer {
     return length_along(closed_, x_, crossings_, way.points) <= 2 * contour_.length;
   }
 
+  void go_through_middles(SurfaceCurve& curve, ContourClosing::Way& way) {
+    way.points = {from()};
+    for (const Step& step : shortest_strip(way.end_faces[0], way.end_faces[1]))
+      leave(step.face, step.edge, 0.5, curve, way);
+    curve.runs.push_back({way.end_faces[1], way.points.back(), to()});
+    way.points.push_back(to());
+  }
+
  private:
+  struct Step {
+    int face = 0, edge = 0;  // that is left, and through which edge
+    int before = -1;         // the step before, as a place in a list
+  };
+
+  // From face to face through the middles of edges, on the cloth.
+  std::vector<Step> shortest_strip(int first, int last) const {
+    std::vector<Step> steps, strip;
+    std::set<std::tuple<double, int, int>> front;  // length of the way, edge, place of the step
+    std::vector<char> crossed(static_cast<std::size_t>(surface_.edges.rows()), 0);
+    const auto spread = [&](const Vec3& from, double length, int face, int before) {
+      for (int k = 0; k < 3; ++k) {
+        const int edge = surface_.triangle_edges(face, k);
+        if (crossed[edge]) continue;
+        front.emplace(length + (middle(edge) - from).norm(), edge, static_cast<int>(steps.size()));
+        steps.push_back({face, edge, before});
+      }
+    };
+    int reached = -1;
+    if (first != last) spread(at(from()), 0, first, -1);
+    while (!front.empty() && reached < 0) {
+      const auto [length, edge, place] = *front.begin();
+      front.erase(front.begin());
+      if (crossed[edge]) continue;
+      crossed[edge] = 1;
+      const int next = beyond(edge, steps[place].face);
+      if (next == last) reached = place;
+      if (next >= 0 && !closed_.is_fan(next)) spread(middle(edge), length, next, place);
+    }
+    for (; reached >= 0; reached = steps[reached].before) strip.push_back(steps[reached]);
+    std::ranges::reverse(strip);
+    return strip;
+  }
+
+  Vec3 middle(int edge) const { return (row(x_, surface_.edges(edge, 0)) + row(x_, surface_.edges(edge, 1))) / 2; }
+  int beyond(int edge, int face) const {
+    const auto [first, second] = surface_.edge_triangles[edge];
+    return first == face ? second : first;
+  }
+
+  // The way goes on to a place on an edge of the face, and into the next one.
+  void leave(int face, int edge, double share, SurfaceCurve& curve, ContourClosing::Way& way) {
+    const int id = static_cast<int>(crossings_.size());
+    crossings_.push_back({0, edge, 0, -1, share, {}});
+    curve.runs.push_back({face, way.points.back(), id});
+    cut(curve, face, edge, id);
+    way.points.push_back(id);
+  }
+
   CurvePoint from() const { return contour_.points.back(); }
   CurvePoint to() const { return contour_.points.front(); }
   RimPlace rim_of(CurvePoint point) const { return rim_place(closed_, crossings_[point].edge); }
@@ -155,23 +209,26 @@ std::optional<ContourClosing> close_open_contour(const ClosedSurface& closed, co
   ContourClosing closing;
   const std::size_t before = crossings.size();
   std::array<SurfaceCurve, 2> made;
-  for (int side = 0; side < 2; ++side) {
-    ContourClosing::Way& way = closing.ways[side];
-    way.times = side == 0 ? -1 : 1;
-    way.end_faces = {contour.sides[side].triangles.back(), contour.sides[side].triangles.front()};
-    way.along_rim = one_rim && side == contour.end_side[0];
-    made[side] = curve_on_side(closed, crossings, contour, number, side);
-  }
-  const Vec3 up = up_of_sections(closed, x, closing);
-  for (int side = 0; side < 2; ++side) {
-    ContourClosing::Way& way = closing.ways[side];
-    if (way.along_rim) {
-      closer.go_along_rim(rims, made[side], way);
-    } else if (!closer.go_straight(up, made[side], way)) {
-      crossings.resize(before);
-      return std::nullopt;
+  const auto close = [&](ClosingWay kind) {
+    crossings.resize(before);
+    for (int side = 0; side < 2; ++side) {
+      const std::vector<int>& triangles = contour.sides[side].triangles;
+      const bool at_rim = one_rim && side == contour.end_side[0];
+      closing.ways[side] = {
+          at_rim ? ClosingWay::rim : kind, {}, {triangles.back(), triangles.front()}, side == 0 ? -1 : 1};
+      made[side] = curve_on_side(closed, crossings, contour, number, side);
     }
-  }
+    const Vec3 up = up_of_plane(closed, x, closing);
+    bool goes = true;
+    for (int side = 0; side < 2; ++side) {
+      ContourClosing::Way& way = closing.ways[side];
+      if (way.kind == ClosingWay::rim) closer.go_along_rim(rims, made[side], way);
+      if (way.kind == ClosingWay::plane) goes &= closer.go_straight(up, made[side], way);
+      if (way.kind == ClosingWay::middles) closer.go_through_middles(made[side], way);
+    }
+    return goes;
+  };
+  if (!close(ClosingWay::plane)) close(ClosingWay::middles);
   std::ranges::move(made, std::back_inserter(curves));
   return closing;
 }

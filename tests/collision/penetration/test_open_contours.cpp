@@ -43,6 +43,15 @@ Solid without_triangles(const Solid& solid, const std::vector<int>& left_out) {
 // A box with a wall at x = 1 that is open above y = 0.1.
 Solid open_box() { return without_triangles(box(Vec3(-2, -2, -2), Vec3(1, 0.1, 2)), {6, 7}); }
 
+// A wall at x = 1 with a hole halfway between the ends of the slanted sleeve's contour, and what goes back from its
+// rim.
+Solid holed_wall() {
+  return rings(24, 6, [](int j, double angle) {
+    const std::array<double, 6> out{0.1, 0.3, 0.6, 1, 2, 2};
+    return Vec3(j < 5 ? 1 : -2, -0.2 + out[j] * std::cos(angle), out[j] * std::sin(angle));
+  });
+}
+
 // The sleeve's section.
 std::vector<Vec2> section_corners() {
   std::vector<Vec2> corners;
@@ -133,6 +142,14 @@ TEST_CASE("open contours: a hem that has gone through a wall has the volume behi
       }
 }
 
+TEST_CASE("open contours: where a straight way meets a hole, another is found", "[penetration]") {
+  const double expected = integral_above(section_corners(), [](const Vec2& at) { return -0.3 * (at.x() + 0.2); });
+  const Found found(both(slanted_sleeve(), holed_wall()));
+  REQUIRE(found.is_one_region());
+  CHECK(found.penetration.regions[0].closing->ways[1].kind == ClosingWay::middles);
+  CHECK(found.value == Approx(expected).epsilon(1e-9));
+}
+
 TEST_CASE("open contours: with ends at both rims they have the volume up to a plane through the ends",
           "[penetration]") {
   for (const Solid& wall : {open_box(), flipped(open_box())}) {
@@ -143,7 +160,7 @@ TEST_CASE("open contours: with ends at both rims they have the volume up to a pl
       return position_of(found.closed.surface, found.x, found.penetration.crossings, point);
     };
     const Vec3 from = end(closing.ways[0].points.front()), to = end(closing.ways[0].points.back());
-    const Vec3 normal = (to - from).cross(up_of_sections(found.closed, found.x, closing));
+    const Vec3 normal = (to - from).cross(up_of_plane(found.closed, found.x, closing));
     const double sign = normal.y() * (0 - from.y()) + normal.z() * (0 - from.z()) > 0 ? -1 : 1;
     const double expected = integral_above(section_corners(), [&](const Vec2& at) {
       return sign * (normal.y() * (at.x() - from.y()) + normal.z() * (at.y() - from.z())) / std::abs(normal.x());
@@ -158,6 +175,7 @@ TEST_CASE("open contours: the exact gradient is that of the value", "[penetratio
   large.x *= 2;
   check_gradient(shaken(both(slanted_sleeve(), moved(large, Vec3(-0.85, 0.02, 0.03))), 1), 2);
   check_gradient(shaken(both(deep_sleeve(), open_box()), 3), 4);
+  check_gradient(shaken(both(slanted_sleeve(), holed_wall()), 5), 6);
 }
 
 TEST_CASE("open contours: frozen gradients are those of their surrogates", "[penetration]") {

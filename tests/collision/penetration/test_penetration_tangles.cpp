@@ -75,22 +75,23 @@ TangleCounts count_tangles(int wanted, unsigned seed) {
   return counts;
 }
 
-void check_tangles(const TangleCounts& c) {
+// What ends at two holes of one garment stays open; of few tangles that may be more than 2 %.
+void check_tangles(const TangleCounts& c, double least_enclosed) {
   WARN(c.tangles << " tangles, " << c.contours << " contours: " << c.enclosed << " enclosed, " << c.open << " open, "
                  << c.unassigned << " unassigned; " << c.imbalanced << " with a net push");
   CHECK(c.imbalanced == 0);
   CHECK(c.unassigned == 0);
-  CHECK(c.enclosed >= 0.94 * c.contours);
+  CHECK(c.enclosed >= least_enclosed * c.contours);
 }
 
 }  // namespace
 
 TEST_CASE("penetration: contours of tangled garments get a volume", "[penetration]") {
-  check_tangles(count_tangles(12, 1));
+  check_tangles(count_tangles(12, 1), 0.96);
 }
 
 TEST_CASE("penetration: contours of a thousand tangled garments get a volume", "[penetration][.long]") {
-  check_tangles(count_tangles(1000, 2));
+  check_tangles(count_tangles(1000, 2), 0.98);
 }
 
 }  // namespace selvedge::test_penetration_tangles
