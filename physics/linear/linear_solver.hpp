@@ -11,7 +11,8 @@ enum class Definite { yes, perhaps };
 
 struct LinearReport {
   bool converged = false;
-  int iterations = 0;  // of PCG; a direct solve counts as one
+  int iterations = 0;     // of PCG; a direct solve counts as one
+  int coarse_builds = 0;  // of multigrid's coarse levels
 };
 
 // `automatic` takes CHOLMOD, where the build has it, for scenes of few free vertices, and multigrid for larger ones; in
@@ -27,8 +28,8 @@ class LinearSystemSolver {
   ~LinearSystemSolver();
   LinearSolver chosen() const;
 
-  // The systems from here on are one family: of one step, with the same contacts. Their preconditioner is made for the
-  // first of them and serves the others as well as it does.
+  // The systems from here on are one family: of one step. Their preconditioner is made for the first of them and serves
+  // the others as long as it does as well.
   void start_family();
 
   // Solves A x = right; `diagonal` are the blocks of diagonal_blocks(). x is zero on rows that are not free. PCG stops

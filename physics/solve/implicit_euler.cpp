@@ -129,7 +129,6 @@ struct ImplicitEuler::Impl {
   void start(const StepProblem& problem) {
     prepare(scene, elastic, masses, problem, options.slip_speed, scratch, step);
     exact_from = exact_wait = first_exact;
-    linear.start_family();
   }
   LinearSystem system() const {
     return {elastic.pattern, hessian,       step.diagonal, elastic.flat,
@@ -223,6 +222,7 @@ bool ImplicitEuler::Impl::solve_linear(Definite definite, NewtonReport& report) 
   const LinearReport solved =
       linear.solve(system(), diagonal, -gradient, tolerance, options.max_linear, motion, definite);
   report.linear_iterations += solved.iterations;
+  report.coarse_builds += solved.coarse_builds;
   return solved.converged;
 }
 
@@ -291,6 +291,7 @@ NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
   assert(impl.scene.pins.empty() || problem.pins->rows() == static_cast<Eigen::Index>(impl.scene.pins.size()));
   NewtonReport report;
   impl.start(problem);
+  if (!problem.keeps_levels) impl.linear.start_family();
   report.finite = impl.choose_first_guess(x);
   if (!report.finite) return report;
   const int most = std::max(1, static_cast<int>(std::lround(problem.iteration_scale * impl.options.max_newton)));

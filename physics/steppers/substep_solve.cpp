@@ -1,6 +1,7 @@
 #include "physics/steppers/substep_solve.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "collision/geometry/stopwatch.hpp"
 #include "physics/scene/features.hpp"
@@ -28,9 +29,13 @@ SubstepSolve::SubstepSolve(const Scene& scene, const ImplicitEulerOptions& optio
 
 NewtonReport SubstepSolve::once(const StepProblem& problem, Points& x, StepReport& report) {
   const Timed timed(report.seconds.solve);
-  const NewtonReport newton = solver_.solve(problem, x);
+  StepProblem own = problem;
+  own.keeps_levels = std::exchange(known_, true);
+  const NewtonReport newton = solver_.solve(own, x);
   report.iterations += newton.iterations;
   report.linear_iterations += newton.linear_iterations;
+  ++report.counts.solves;
+  report.counts.coarse_builds += newton.coarse_builds;
   return newton;
 }
 
