@@ -19,7 +19,7 @@ using Pairs = std::vector<std::pair<int, int>>;  // of triangles that cross
 constexpr double straight =
     0.7;  // cosine, at least, of a normal with the way through the body; aside, skin curves round
 constexpr double rest_room = 0.3;  // of that distance: the room asked for at most, for a fold has a bottom
-constexpr int sweeps = 12, press_rings = 6;
+constexpr int press_sweeps = 12, press_rings = 6;
 constexpr double smoothing = 0.5;
 constexpr double tight_part = 0.7;    // of the room and of what may give way: where less is left, pressed more
 constexpr int halvings = 2;           // of what that does where it goes wrong, before it is left
@@ -127,7 +127,7 @@ Points pressed(const Flesh& flesh, const Points& skinned, const Points& x, const
   for (const Meeting& m : found) meets[m.vertex] = 1;
   const std::vector<int> moving = with_surroundings(flesh.shape, meets);
   Points to = x;
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
+  for (int sweep = 0; sweep < press_sweeps; ++sweep) {
     smooth_displacement(flesh.shape, x, moving, smoothing, to);
     const Points from = to;
     for (const Meeting& m : found) {

@@ -28,8 +28,8 @@ class LinearSystemSolver {
   ~LinearSystemSolver();
   LinearSolver chosen() const;
 
-  // The systems from here on are one family: of one step. Their preconditioner is made for the first of them and serves
-  // the others as long as it does as well.
+  // The systems from here on are one family: of one step, with the same contacts. Their preconditioner is made for the
+  // first of them and serves the others as well as it does.
   void start_family();
 
   // Solves A x = right; `diagonal` are the blocks of diagonal_blocks(). x is zero on rows that are not free. PCG stops

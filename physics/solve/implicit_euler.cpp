@@ -129,6 +129,7 @@ struct ImplicitEuler::Impl {
   void start(const StepProblem& problem) {
     prepare(scene, elastic, masses, problem, options.slip_speed, scratch, step);
     exact_from = exact_wait = first_exact;
+    linear.start_family();
   }
   LinearSystem system() const {
     return {elastic.pattern, hessian,       step.diagonal, elastic.flat,
@@ -291,7 +292,6 @@ NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
   assert(impl.scene.pins.empty() || problem.pins->rows() == static_cast<Eigen::Index>(impl.scene.pins.size()));
   NewtonReport report;
   impl.start(problem);
-  if (!problem.keeps_levels) impl.linear.start_family();
   report.finite = impl.choose_first_guess(x);
   if (!report.finite) return report;
   const int most = std::max(1, static_cast<int>(std::lround(problem.iteration_scale * impl.options.max_newton)));

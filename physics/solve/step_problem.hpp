@@ -31,7 +31,6 @@ struct StepProblem {
   const AddedTerm* added = nullptr;
   double iteration_scale = 1;  // of the most iterations, of a solve that another one goes on from
   bool warm_start = false;     // x is where an earlier solve of the same step ended: no other first guess is weighed
-  bool keeps_levels = false;   // the solver has solved for the same step: coarse levels made then may serve
 };
 
 }  // namespace selvedge

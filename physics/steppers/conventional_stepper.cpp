@@ -330,7 +330,6 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
   StepReport report;
   report.by = traits_.name;
   StepWork work(from, drive, extras, report);
-  solve_.begin_step();
   const SearchTally before = contact_.search.tally();
   SubstepState now{gather_nodes(from.x, from.obstacles), from.v, step_history(from)};
   const Points wanted = gather_nodes(from.x, drive.obstacles);

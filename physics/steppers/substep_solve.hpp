@@ -32,8 +32,7 @@ class SubstepSolve {
   SubstepSolve(const Scene&, const ImplicitEulerOptions&, ContactStage&);
   ImplicitEuler& solver() { return solver_; }
 
-  void begin_step() { known_ = false; }
-  // x: first guess in, minimiser out. Multigrid's coarse levels live on from solve to solve of a step.
+  // x: first guess in, minimiser out.
   NewtonReport once(const StepProblem&, Points& x, StepReport&);
   // What meets on the straight motion.
   std::vector<Impact> impacts(const Points& nodes0, const Points& nodes1, StepReport&);
@@ -52,7 +51,6 @@ class SubstepSolve {
   ContactStage& stage_;
   ImplicitEuler solver_;
   bool friction_;
-  bool known_ = false;  // the solver has solved for this step
   double slip_speed_, edge_length_, deep_;
 };
 
