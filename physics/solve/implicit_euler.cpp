@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <numeric>
 
@@ -100,6 +101,15 @@ void correct_translations(const std::vector<int>& component, const StepPotential
 }
 
 }  // namespace
+
+double estimate(double motion, double gained, double length) {
+  const char* which = std::getenv("SEL_EST");
+  const int k = which ? std::atoi(which) : 0;
+  return k == 0   ? motion
+         : k == 1 ? gained
+         : k == 2 ? gained * std::abs(1 - std::min(length, 1.0))
+                  : std::min(motion, gained);
+}
 
 struct ImplicitEuler::Impl {
   const Scene& scene;
@@ -295,13 +305,20 @@ NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
   if (!report.finite) return report;
   const int most = std::max(1, static_cast<int>(std::lround(problem.iteration_scale * impl.options.max_newton)));
   bool unfinished = false;  // the last step could gain more energy than its length says, or much of all there is
-  while (!report.converged && report.iterations < (unfinished ? most_more * most : most)) {
+  while (!report.converged &&
+         report.iterations < std::min(problem.most_iterations, unfinished ? most_more * most : most)) {
+    if (problem.stop && stopped(*problem.stop)) {
+      report.stopped = true;
+      break;
+    }
     const auto direction = impl.find_direction(x, report);
     if (direction == Impl::Direction::none) {
       report.converged = true;
       break;
     }
     const double gain = -impl.gradient.cwiseProduct(impl.motion).sum(), length = impl.line_search(x);
+    report.left = estimate(std::max(length, 1.0) * root_mean_square(impl.motion),
+                           std::sqrt(std::max(gain, 0.0) / sum_of(impl.step.inertia)), length);
     if (length == 0) break;
     ++report.iterations;
     const bool far = !problem.contacts.empty() && gain > far_off * std::abs(sum_of(impl.energy));
