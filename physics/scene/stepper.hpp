@@ -109,7 +109,7 @@ struct StepReport {  // starts as failure
   bool out_of_newton = false, out_of_untangling = false;
   int linear_iterations = 0;
   double residual = 0;  // largest force imbalance at the last substep's end [N]
-  double unsolved = 0;  // RMS distance from where exact solves would end, as estimated, summed over the substeps [m]
+  double unsolved = 0;  // bound of the RMS distance from where exact solves would end, summed over substeps [m]
   PhaseTimes seconds;
   CollisionReport collision;
   std::optional<Audit> audit;  // of the state that was made, rounded to float (step_audit.hpp); absent: not audited

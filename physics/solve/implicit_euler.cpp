@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <numeric>
 
@@ -102,15 +101,6 @@ void correct_translations(const std::vector<int>& component, const StepPotential
 
 }  // namespace
 
-double estimate(double motion, double gained, double length) {
-  const char* which = std::getenv("SEL_EST");
-  const int k = which ? std::atoi(which) : 0;
-  return k == 0   ? motion
-         : k == 1 ? gained
-         : k == 2 ? gained * std::abs(1 - std::min(length, 1.0))
-                  : std::min(motion, gained);
-}
-
 struct ImplicitEuler::Impl {
   const Scene& scene;
   ImplicitEulerOptions options;
@@ -147,6 +137,7 @@ struct ImplicitEuler::Impl {
   }
   double goal(const Points& x) const;
   double energy_goal(const Points& x) const;
+  double distance_left(double gain) const;
   double mean_stiffness() const;
   bool choose_first_guess(Points& x);
   bool solve_linear(Definite, NewtonReport&);
@@ -212,6 +203,14 @@ double ImplicitEuler::Impl::goal(const Points& x) const {
 double ImplicitEuler::Impl::energy_goal(const Points& x) const {
   const double reach = stiff_allowance * goal(x);
   return reach * reach * sum_of(step.inertia);
+}
+
+// How far x is from the minimiser at most, RMS, where a Newton step can gain that energy [J]: the minimiser lies lower
+// by half of it, and inertia alone takes as much for that way. Of a convex potential; what is left after the step is
+// less.
+double ImplicitEuler::Impl::distance_left(double gain) const {
+  const double inertia = sum_of(step.inertia);
+  return inertia > 0 ? std::sqrt(std::max(gain, 0.0) / inertia) : 0;
 }
 
 // Mean stiffness of the vertices over their inertia.
@@ -317,8 +316,7 @@ NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
       break;
     }
     const double gain = -impl.gradient.cwiseProduct(impl.motion).sum(), length = impl.line_search(x);
-    report.left = estimate(std::max(length, 1.0) * root_mean_square(impl.motion),
-                           std::sqrt(std::max(gain, 0.0) / sum_of(impl.step.inertia)), length);
+    report.left = impl.distance_left(gain);
     if (length == 0) break;
     ++report.iterations;
     const bool far = !problem.contacts.empty() && gain > far_off * std::abs(sum_of(impl.energy));

@@ -18,12 +18,11 @@
 namespace selvedge {
 namespace {
 
-constexpr int max_halvings = 2;           // of a substep whose zones do not converge, before the last resort
-constexpr int pinched_rounds = 4;         // of zones, where there is no room
-constexpr int hopeful_rounds = 12;        // of zones in a substep that may still be halved
-constexpr double tolerated_error = 5e-4;  // that solves of a step may leave, else it is not converged [m]
-constexpr double tearing = 10;            // a response may raise the potential to so many times the energy there is
-constexpr double kept_motion = 0.5;       // of that to the first impact, where everything stops short
+constexpr int max_halvings = 2;      // of a substep whose zones do not converge, before the last resort
+constexpr int pinched_rounds = 4;    // of zones, where there is no room
+constexpr int hopeful_rounds = 12;   // of zones in a substep that may still be halved
+constexpr double tearing = 10;       // a response may raise the potential to so many times the energy there is
+constexpr double kept_motion = 0.5;  // of that to the first impact, where everything stops short
 
 // What belongs to one step.
 struct StepWork {
@@ -358,7 +357,7 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
   if (!advance(work, now, {wanted, drive.pins, dt / planned, planned, halvings, parts})) return report;
   if (has_contact())
     add(catch_up(contact_.search, contact_.options, contact_.inverse_mass, wanted, now.nodes, contact_.path), report);
-  if (report.unsolved > tolerated_error) report.reason = Reason::not_converged;
+  if (report.unsolved > options_.implicit_euler.tolerated_error) report.reason = Reason::not_converged;
   StepEnd end{now.nodes.topRows(from.x.rows()), std::move(now.v), {}, blocks_of(now.history)};
   for (std::size_t k = 0; k < from.obstacles.size(); ++k)
     end.obstacles.push_back(now.nodes.middleRows(contact_.world.first_node[k], from.obstacles[k].rows()));

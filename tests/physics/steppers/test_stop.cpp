@@ -42,7 +42,7 @@ TEST_CASE("stop: asked once a Newton iteration and untangling pass, and the step
   const World w = tangled();
   State state = w.state;
   int passes = 0;
-  for (int frame = 0; frame < 12; ++frame) {
+  for (int frame = 0; frame < 6; ++frame) {
     State plain;
     const StepReport unasked = testing::conventional(w.scene)->step(state, w.drive, dt, plain);
     const Polled p = step_until(*testing::conventional(w.scene), w, state, 1 << 30);
