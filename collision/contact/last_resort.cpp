@@ -18,7 +18,7 @@ void join_nodes(DisjointSets& sets, const Impact& impact, const auto& belongs) {
 
 std::vector<Impact> yield_rounds(Resolution& r, std::vector<Impact> impacts) {
   double inverse = mean_inverse_mass(r.inverse_mass) / first_obstacle_mass;
-  for (int round = 0; !impacts.empty() && round < r.options.yield_rounds; ++round, inverse *= 2) {
+  for (int round = 0; !impacts.empty() && !r.stopped() && round < r.options.yield_rounds; ++round, inverse *= 2) {
     std::vector<char> stuck(r.world.node_count, 0);
     for (const Impact& impact : impacts)
       for (const int node : impact.pair.nodes)
@@ -50,7 +50,7 @@ bool shorten_rounds(Resolution& r, std::vector<Impact> impacts) {
   bool clean = true;
   const auto moves = [&r](int node) { return r.x0.row(node) != r.x1.row(node); };
   const auto belongs = [&](int node) { return r.is_free(node) || moves(node); };
-  while (!impacts.empty()) {
+  while (!impacts.empty() && !r.stopped()) {
     std::vector<char> hit(r.world.node_count, 0);
     for (const Impact& impact : impacts) join_nodes(sets, impact, belongs);
     for (const Impact& impact : impacts)

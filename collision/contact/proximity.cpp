@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/contact/contact_normal.hpp"
 #include "collision/geometry/distance.hpp"
 
 namespace selvedge {
@@ -69,7 +70,12 @@ std::vector<Proximity> find_proximities(const ContactWorld& world, std::span<con
     if (c == 0 || claims[c].first != claims[c - 1].first) keep[claims[c].second.second] = 1;
   std::vector<Proximity> kept;
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (keep[i]) kept.push_back(all[i]);
+    if (keep[i]) {
+      Proximity& p = kept.emplace_back(all[i]);
+      const Vec3 between = p.gap * p.normal;
+      p.normal = contact_normal(world, p.pair, p.weights, between, x);
+      p.gap = p.normal.dot(between);
+    }
   return kept;
 }
 

@@ -27,6 +27,7 @@ struct Resolution {
   double violation = 0;  // left by the last round of zones, at most [m]
 
   bool is_free(int node) const { return inverse_mass[node] > 0; }
+  bool stopped() { return report.stopped = report.stopped || selvedge::stopped(options.stop); }
 };
 
 // Impacts of the pairs with a node whose path has changed since the last call.

@@ -16,6 +16,7 @@ class Separations {
   Separations(const ContactWorld& world, const ResolveOptions& options)
       : world_(world), most_(options.separation), part_(options.separation / options.thickness) {}
   double most() const { return most_; }
+  const ContactWorld& world() const { return world_; }
   double operator()(const NodePair& pair) const { return std::min(most_, part_ * rest_distance(world_, pair)); }
 
  private:
@@ -38,9 +39,10 @@ std::vector<Impact> impacts_of(const PathPairs& path, const Eigen::VectorXd& inv
       const auto any = [&](auto&& test) { return std::any_of(pair.nodes.begin(), pair.nodes.end(), test); };
       if (!moved.empty() && !any([&](int n) { return moved[n] != 0; })) continue;
       if (!motion.may_come_within(i, separation.most()) || !any([&](int n) { return inverse_mass[n] > 0; })) continue;
-      auto impact = find_impact(pair, x0, x1, separation.most());
+      auto impact = find_impact(pair, x0, x1, separation.most(), &separation.world());
       if (!impact) continue;
-      if (const double own = separation(pair); own < separation.most()) impact = find_impact(pair, x0, x1, own);
+      if (const double own = separation(pair); own < separation.most())
+        impact = find_impact(pair, x0, x1, own, &separation.world());
       if (impact) found[c].push_back(*impact);
     }
   std::vector<Impact> all;
@@ -120,6 +122,7 @@ void zone_round(Resolution& r, const std::vector<Impact>& fresh) {
     if (const auto zone = touched.find(zone_of(r, impact)); zone != touched.end()) zone->second.push_back(&impact);
   r.violation = 0;
   for (auto& [root, impacts] : touched) {
+    if (r.stopped()) return;
     r.report.largest_zone = std::max(r.report.largest_zone, free_nodes(r, impacts));
     if (!r.options.rigid_zones || !rigidify(r, impacts))
       r.violation = std::max(r.violation, project_zone(impacts, r.inverse_mass, r.x0, r.x1, r.options.zone_sweeps,
@@ -151,7 +154,8 @@ ResolveReport resolve(PairSearch& search, const ContactWorld& world, const Eigen
   std::vector<Impact> impacts = new_impacts(r);
   r.report.found = static_cast<int>(impacts.size());
   bool contradictory = false;  // zones ask for what cannot be, and more rounds do not change that
-  for (int round = 0; !impacts.empty() && !contradictory && round < options.impulse_rounds + options.zone_rounds;
+  for (int round = 0;
+       !impacts.empty() && !contradictory && !r.stopped() && round < options.impulse_rounds + options.zone_rounds;
        ++round) {
     const double before = r.violation;
     if (round < options.impulse_rounds)
@@ -166,7 +170,7 @@ ResolveReport resolve(PairSearch& search, const ContactWorld& world, const Eigen
     impacts = yield_rounds(r, std::move(impacts));
     if (!impacts.empty() && shorten_rounds(r, std::move(impacts))) impacts.clear();
   }
-  r.report.clean = impacts.empty();
+  r.report.clean = impacts.empty() && !r.report.stopped;
   return r.report;
 }
 

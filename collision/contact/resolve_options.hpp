@@ -1,5 +1,7 @@
 #pragma once
 
+#include "collision/geometry/stop_flag.hpp"
+
 namespace selvedge {
 
 struct ResolveOptions {
@@ -13,11 +15,13 @@ struct ResolveOptions {
   bool rigid_zones = false;  // zones of free nodes go on as rigid bodies
   bool last_resort = true;   // false: leave what zones do not settle, and say that it is not clean
   int yield_rounds = 20;     // last resort, first part: obstacles give way
+  StopFlag stop = {};        // asked once a zone and a round: true ends it, not clean
 };
 
 // What resolve did.
 struct ResolveReport {
-  bool clean = false;  // the last test of all pairs found no impact
+  bool clean = false;    // the last test of all pairs found no impact
+  bool stopped = false;  // by the flag: x1 is junk
   int impulses = 0, zones = 0;
   int largest_zone = 0;                           // nodes of it that are free
   int found = 0;                                  // impacts of the motion as it was asked for

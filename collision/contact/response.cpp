@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "collision/contact/contact_normal.hpp"
 #include "collision/geometry/distance.hpp"
 
 namespace selvedge {
@@ -57,7 +58,8 @@ double mean_inverse_mass(const Eigen::VectorXd& inverse_mass) {
   return free > 0 ? inverse_mass.sum() / static_cast<double>(free) : 0.0;
 }
 
-std::optional<Impact> find_impact(const NodePair& pair, const Points& x0, const Points& x1, double separation) {
+std::optional<Impact> find_impact(const NodePair& pair, const Points& x0, const Points& x1, double separation,
+                                  const ContactWorld* world) {
   const auto from = corners(pair, x0), to = corners(pair, x1);
   const std::optional<double> time = time_of_contact(pair.kind, from, to, separation);
   if (!time) return std::nullopt;
@@ -71,6 +73,7 @@ std::optional<Impact> find_impact(const NodePair& pair, const Points& x0, const 
     between = weighted(start.weights, from);
   }
   Impact impact{pair, meeting.weights, between.normalized(), *time};
+  if (world) impact.normal = contact_normal(*world, pair, meeting.weights, between, x0, x1, *time);
   // Twice the separation leaves room below the target; a pair that starts closer need not be thrown apart.
   impact.target = std::min(2 * separation, std::sqrt(start.squared_distance));
   // A path that comes too near and parts again ends above that target: ask for a little more than it has.

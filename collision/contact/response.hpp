@@ -21,7 +21,9 @@ struct Impact {
 };
 
 // The impact of a pair on the straight paths x0 -> x1, if it comes within `separation` [m].
-std::optional<Impact> find_impact(const NodePair&, const Points& x0, const Points& x1, double separation);
+// With a world its normal is one of the surfaces that meet (contact_normal.hpp).
+std::optional<Impact> find_impact(const NodePair&, const Points& x0, const Points& x1, double separation,
+                                  const ContactWorld* = nullptr);
 
 double impact_gap(const Impact&, const Points& x);
 

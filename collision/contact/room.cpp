@@ -58,7 +58,7 @@ std::vector<double> press(Squeeze& s, const Points& trial) {
   const double tolerance = 0.1 * s.options.separation, least = growing * s.options.separation * sweeps;
   std::vector<double> growth(s.demands.size());
   double sum = 0;
-  for (int b = 0; b < most_blocks; ++b) {
+  for (int b = 0; b < most_blocks && !stopped(s.options.stop); ++b) {
     for (std::size_t k = 0; k < growth.size(); ++k) growth[k] = -s.demands[k].multiplier;
     project_zone(all, s.inverse_mass, s.x0, s.x, sweeps, tolerance);
     const double before = sum;
@@ -151,7 +151,7 @@ bool make_room(PairSearch& search, const ContactWorld& world, const ResolveOptio
   Points trial = x1;
   add_meetings(s, trial);
   bool squeezed = false;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < most_rounds && !stopped(options.stop); ++round) {
     if (give_way(s, press(s, trial), trial)) {
       squeezed = true;
       s.demands.resize(s.near);  // those met on the way there were as deep as what is not there

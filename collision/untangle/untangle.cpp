@@ -267,6 +267,7 @@ Attempt attempt(const KeptShape& shape, std::span<const SheetView> obstacles, co
   std::deque<double> merits{tangle.merit};
   int iteration = 0;
   for (int since_best = 0; iteration < options.iterations && !tangle.clean() && since_best < patience; ++iteration) {
+    if (stopped(options.stop)) break;
     if (options.progress) options.progress({iteration, tangle.pairs, tangle.length});
     const std::vector<SheetView> sheets = with_cloth(cloth, x, obstacles);
     const std::vector<char> tangled = tangled_vertices(sheets, tangle);

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "collision/geometry/stop_flag.hpp"
 #include "collision/untangle/remainder.hpp"
 
 namespace selvedge {
@@ -25,6 +26,7 @@ struct UntangleOptions {
   std::vector<int> layers;
   bool second_opinion = true;  // of what repels near a contour, where the first gets stuck: as many iterations again
   std::function<void(const UntangleProgress&)> progress;
+  StopFlag stop = {};  // asked once an iteration: true ends it with the best that was seen
 };
 
 struct UntangleResult {

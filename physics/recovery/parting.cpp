@@ -17,7 +17,8 @@ constexpr double far_astray = 0.5;    // from where it is worn, of tangled cloth
 }  // namespace
 
 Parting part_at_start(const ContactWorld& world, SelfCrossings& self_crossings, const Eigen::VectorXd& inverse_mass,
-                      double edge_length, bool clean, const WornPlaces& where, Points& nodes, Points& v) {
+                      double edge_length, bool clean, const WornPlaces& where, Points& nodes, Points& v,
+                      UntanglingBudget& budget) {
   const Points &wanted = *where.wanted, &worn = *where.worn;
   Parting parting;
   std::optional<Exemption> untouched;
@@ -29,13 +30,13 @@ Parting part_at_start(const ContactWorld& world, SelfCrossings& self_crossings, 
   std::vector<char> pierced, sunken;
   if (!untouched) pierced = pierced_vertices(world, parting.left, nodes, wanted, worn, far_astray * edge_length);
   if (!untouched) sunken = sunken_vertices(world, parting.left, worn);
-  const PutOn put = put_on(world, either(sunken, pierced), where, nodes, v);
+  const PutOn put = put_on(world, either(sunken, pierced), where, nodes, v, &budget);
   if (put == PutOn::done) parting.left = find_exemption(world, nodes);
   if (put == PutOn::done) pierced.clear();
   parting.carried = either(carried_vertices(world, parting.left, worn, nodes, edge_length), pierced);
   if (parting.left.cloth() && !untouched) {
     const double reach = recovery_speed * where.h;
-    Recovery recovery = recover(world, inverse_mass, reach, parting.left, parting.carried, nodes);
+    Recovery recovery = recover(world, inverse_mass, reach, parting.left, parting.carried, nodes, &budget);
     parting.left = std::move(recovery.left);
     parting.gained = std::move(recovery.gained);
     if (recovery.stuck && put != PutOn::done) pierced = either(std::move(pierced), sunken);

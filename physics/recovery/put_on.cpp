@@ -53,12 +53,12 @@ std::vector<Place> places_for(const ContactWorld& world, const std::vector<int>&
   return places;
 }
 
-UntangleResult part(const ContactWorld& world, const Place& place) {
+UntangleResult part(const ContactWorld& world, const Place& place, UntanglingBudget& budget) {
   const WorldSheets sheets(world, place.nodes);
   UntangleOptions options;
   options.iterations = std::min(enough_iterations, most_placing / std::max(1, place.pairs));
   options.second_opinion = false;  // a place that the first does not find is looked for again in the next step
-  return untangle(*world.cloth, sheets.positions[0], std::span(sheets.views).subspan(1), options);
+  return budget.untangle(*world.cloth, sheets.positions[0], std::span(sheets.views).subspan(1), options);
 }
 
 // Tangled there, of what is marked or was not tangled before.
@@ -72,7 +72,7 @@ bool is_tangled(const Exemption& there, const Exemption& before, const std::vect
 }  // namespace
 
 PutOn put_on(const ContactWorld& world, const std::vector<char>& marked, const WornPlaces& where, Points& nodes,
-             Points& v) {
+             Points& v, UntanglingBudget* budget) {
   std::vector<int> vertices;
   for (int i = 0; i < static_cast<int>(marked.size()); ++i)
     if (marked[i]) vertices.push_back(i);
@@ -80,8 +80,9 @@ PutOn put_on(const ContactWorld& world, const std::vector<char>& marked, const W
   std::vector<Place> places = places_for(world, vertices, where, nodes);
   if (places.empty()) return PutOn::too_far;
   const Exemption before = find_exemption(world, nodes);
+  UntanglingBudget ample;
   for (Place& place : places) {
-    const UntangleResult parted = part(world, place);
+    const UntangleResult parted = part(world, place, budget ? *budget : ample);
     place.nodes.topRows(parted.x.rows()) = parted.x;  // of other layers as well, which the place may go through
     if (is_tangled(find_exemption(world, place.nodes), before, marked)) continue;
     nodes = std::move(place.nodes);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "collision/contact/contact_pairs.hpp"
+#include "physics/recovery/untangling_budget.hpp"
 
 namespace selvedge {
 
@@ -26,7 +27,8 @@ enum class PutOn { nothing, too_far, no_place, done };
 // marked makes way, and keeps its velocity. `nodes`, at the start, and the cloth's velocities v are overwritten. Both
 // stay as they were if nothing is marked, if a marked vertex would go farther than 0.3 m, or if there is no place:
 // sixty iterations do not untangle it, fewer from two thousand pairs on. Cloth without one is better off where it is.
-// All must be finite, what is worn where it is marked.
-PutOn put_on(const ContactWorld&, const std::vector<char>& marked, const WornPlaces&, Points& nodes, Points& v);
+// All must be finite, what is worn where it is marked. No budget: an ample one.
+PutOn put_on(const ContactWorld&, const std::vector<char>& marked, const WornPlaces&, Points& nodes, Points& v,
+             UntanglingBudget* = nullptr);
 
 }  // namespace selvedge

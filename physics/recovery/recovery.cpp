@@ -149,16 +149,18 @@ std::optional<Exemption> hopeless(const ContactWorld& world, const Points& nodes
 }
 
 Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass, double reach, const Exemption& before,
-                 const std::vector<char>& carried, Points& nodes) {
+                 const std::vector<char>& carried, Points& nodes, UntanglingBudget* budget) {
   const int n = world.cloth->vertex_count;
   Recovery recovery{before, {}};
   const std::vector<char> waits = waiting(world, nodes, before.body, before.off, carried);
   if (!before.cloth() || none_is_left(before, waits)) return recovery;
+  UntanglingBudget ample;
   const WorldSheets sheets(world, nodes);
   const Points& from = sheets.positions[0];
   UntangleOptions options;
   options.iterations = iterations_for(world, nodes, reach, before, waits, options);
-  const UntangleResult parted = untangle(*world.cloth, from, std::span(sheets.views).subspan(1), options);
+  const UntangleResult parted =
+      (budget ? *budget : ample).untangle(*world.cloth, from, std::span(sheets.views).subspan(1), options);
   const std::vector<char> lost = either(tangled_at(world, nodes, parted), waits);
   const Points whole_way = parted.x - from;
   Points way = whole_way;

@@ -5,6 +5,7 @@
 #include "collision/contact/exemption.hpp"
 #include "collision/search/intersections.hpp"
 #include "collision/untangle/separation.hpp"
+#include "physics/recovery/untangling_budget.hpp"
 
 namespace selvedge {
 
@@ -19,14 +20,14 @@ std::optional<Exemption> hopeless(const ContactWorld&, const Points& nodes);
 // against an obstacle: what springs back gets nowhere, and what holds it pulls the cloth after it.
 // Cloth that is carried (carrying.hpp; or empty) and what is tangled together with it, and tangled cloth at a part of a
 // body that is switched off, is left alone: it waits. Cloth that does not cross itself will not do so after. `before`
-// is what is tangled, as find_exemption has it, and what is switched off.
+// is what is tangled, as find_exemption has it, and what is switched off. No budget: an ample one.
 struct Recovery {
   Exemption left;
   std::vector<Separation> gained;
   bool stuck = false;  // untangling knows no way out of any of it: all is where it was
 };
 Recovery recover(const ContactWorld&, const Eigen::VectorXd& inverse_mass, double reach, const Exemption& before,
-                 const std::vector<char>& carried, Points& nodes);
+                 const std::vector<char>& carried, Points& nodes, UntanglingBudget* = nullptr);
 
 // Which obstacles cross themselves, in the positions of a step's start or end. Remembers what it was asked last.
 class SelfCrossings {

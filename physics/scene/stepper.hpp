@@ -10,6 +10,7 @@
 
 #include "collision/audit/audit.hpp"
 #include "collision/contact/exemption.hpp"
+#include "collision/geometry/stop_flag.hpp"
 #include "physics/scene/memory.hpp"
 
 namespace selvedge {
@@ -47,7 +48,7 @@ struct Drive {
 };
 
 enum class StepStatus { not_run, accepted, rejected };
-enum class Reason { none, not_converged, not_finite, penetrating, energy_gain, overstretched };
+enum class Reason { none, not_converged, not_finite, penetrating, energy_gain, overstretched, stopped };
 
 struct PhaseTimes {  // [s]
   double solve = 0, broad_phase = 0, ccd = 0, response = 0, audit = 0;
@@ -113,8 +114,13 @@ struct StepReport {  // starts as failure
   int substeps = 0;
   int resting = 0;     // cloths that were left out because they rest (resting_stepper.hpp)
   int iterations = 0;  // Newton, all substeps
+  int untangling = 0;  // passes before the step, of cloth that starts tangled
+  // Its budget of them ran out: solves that came later are rough; what is tangled still (left_alone) waits for the
+  // next.
+  bool out_of_newton = false, out_of_untangling = false;
   int linear_iterations = 0;
   double residual = 0;  // largest force imbalance at the last substep's end [N]
+  double unsolved = 0;  // bound of the RMS distance from where exact solves would end, summed over substeps [m]
   PhaseTimes seconds;
   StepCounts counts;
   CollisionReport collision;
@@ -123,7 +129,7 @@ struct StepReport {  // starts as failure
 
 struct AddedTerm;  // physics/solve/step_problem.hpp
 
-// What another stepper may hand to a step beside the world. Traits say whether a stepper honours it.
+// What another stepper may hand to a step beside the world. Traits say whether a stepper honours it, but for `stop`.
 struct StepExtras {
   // Where the cloth may be at the end, n x 3 [m]. The implicit solve starts there where its own guess is worse.
   const Points* guess = nullptr;
@@ -133,7 +139,10 @@ struct StepExtras {
   // Asked about positions [m] that a step has come to, before they are audited; false: the step is rejected, and `to`
   // is junk. A stepper that does not know it audits what nobody wants.
   std::function<bool(const Points& x)> wanted = {};
-  bool any() const { return guess || left_alone || added || wanted; }
+  // Asked once a Newton iteration, untangling pass and impact zone; true: the step is rejected as `stopped`, and `to`
+  // is junk. A stepper that has none of these hands it on, or is done soon.
+  StopFlag stop = {};
+  bool any() const { return guess || left_alone || added || wanted; }  // of what traits speak of
 };
 
 // What a scene must have.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <memory>
 
+#include "collision/contact/contact_normal.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -182,7 +184,7 @@ void relinearise(const Scene& scene, const ContactWorld& world, const Eigen::Vec
     for (int i = 0; i < 4; ++i) between += now.weights[i] * row(nodes1, pair.nodes[i]);
     if (between.dot(old.normal) <= same_side * between.norm()) continue;
     ContactTerm term;
-    term.normal = between.normalized();
+    term.normal = contact_normal(world, pair, now.weights, between, nodes1);
     term.target = old.target;
     term.softness = old.softness;
     term.sink = old.sink;

@@ -137,6 +137,7 @@ struct ImplicitEuler::Impl {
   }
   double goal(const Points& x) const;
   double energy_goal(const Points& x) const;
+  double distance_left(double gain) const;
   double mean_stiffness() const;
   bool choose_first_guess(Points& x);
   bool solve_linear(Definite, NewtonReport&);
@@ -202,6 +203,14 @@ double ImplicitEuler::Impl::goal(const Points& x) const {
 double ImplicitEuler::Impl::energy_goal(const Points& x) const {
   const double reach = stiff_allowance * goal(x);
   return reach * reach * sum_of(step.inertia);
+}
+
+// How far x is from the minimiser at most, RMS, where a Newton step can gain that energy [J]: the minimiser lies lower
+// by half of it, and inertia alone takes as much for that way. Of a convex potential; what is left after the step is
+// less.
+double ImplicitEuler::Impl::distance_left(double gain) const {
+  const double inertia = sum_of(step.inertia);
+  return inertia > 0 ? std::sqrt(std::max(gain, 0.0) / inertia) : 0;
 }
 
 // Mean stiffness of the vertices over their inertia.
@@ -296,13 +305,19 @@ NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
   if (!report.finite) return report;
   const int most = std::max(1, static_cast<int>(std::lround(problem.iteration_scale * impl.options.max_newton)));
   bool unfinished = false;  // the last step could gain more energy than its length says, or much of all there is
-  while (!report.converged && report.iterations < (unfinished ? most_more * most : most)) {
+  while (!report.converged &&
+         report.iterations < std::min(problem.most_iterations, unfinished ? most_more * most : most)) {
+    if (problem.stop && stopped(*problem.stop)) {
+      report.stopped = true;
+      break;
+    }
     const auto direction = impl.find_direction(x, report);
     if (direction == Impl::Direction::none) {
       report.converged = true;
       break;
     }
     const double gain = -impl.gradient.cwiseProduct(impl.motion).sum(), length = impl.line_search(x);
+    report.left = impl.distance_left(gain);
     if (length == 0) break;
     ++report.iterations;
     const bool far = !problem.contacts.empty() && gain > far_off * std::abs(sum_of(impl.energy));

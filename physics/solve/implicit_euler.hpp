@@ -12,18 +12,25 @@ struct ImplicitEulerOptions {
   double velocity_tolerance = 1.7e-3;  // Newton ends when the RMS of its displacement is below this times the time
                                        // step [m/s],
   double relative_tolerance = 1.7e-3;  // or below this part of the RMS motion in the step
-  int max_newton = 8;
+  int max_newton = 8;                  // iterations of a solve
   LinearSolver linear_solver = LinearSolver::automatic;
   double linear_tolerance = 0.25;  // of PCG in a Newton iteration, in the norm of its preconditioner
   int max_linear = 2000;
+  // Of a whole step. Once they are used up every further solve takes one, and the report says so: contact is kept, but
+  // the cloth is not where it should be.
+  int max_newton_step = 1000;
   double slip_speed = 2e-3;  // below it lagged friction is viscous [m/s]
+  // A step whose solves may be farther from their ends, RMS, is called not converged (StepReport::unsolved) [m].
+  double tolerated_error = 5e-4;
 };
 
 struct NewtonReport {
   bool converged = false;
   bool finite = true;
+  bool stopped = false;  // by the problem's flag: x is no minimiser
   int iterations = 0, linear_iterations = 0;
   int coarse_builds = 0;  // of multigrid's coarse levels
+  double left = 0;  // RMS distance from the minimiser, at most, as the last iteration shows it [m]
 };
 
 // Minimises the incremental potential

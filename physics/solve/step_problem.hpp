@@ -1,10 +1,12 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "collision/geometry/points.hpp"
+#include "collision/geometry/stop_flag.hpp"
 #include "physics/energies/contact_energy.hpp"
 #include "physics/linear/linear_system.hpp"
 
@@ -31,6 +33,8 @@ struct StepProblem {
   const AddedTerm* added = nullptr;
   double iteration_scale = 1;  // of the most iterations, of a solve that another one goes on from
   bool warm_start = false;     // x is where an earlier solve of the same step ended: no other first guess is weighed
+  const StopFlag* stop = nullptr;                         // asked once an iteration
+  int most_iterations = std::numeric_limits<int>::max();  // whatever is left to be done then
 };
 
 }  // namespace selvedge

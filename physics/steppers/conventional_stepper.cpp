@@ -36,7 +36,7 @@ struct StepWork {
   const Exemption& left_alone = extras.left_alone ? *extras.left_alone : nothing;
 };
 
-enum class SubstepOutcome { clean, impact_too_deep, zones_not_converged, not_finite };
+enum class SubstepOutcome { clean, impact_too_deep, zones_not_converged, not_finite, stopped };
 
 // Substeps still to be taken, of one length: to where `nodes` has the obstacles and to `pins`.
 struct Stretch {
@@ -66,6 +66,7 @@ class ConventionalStepper final : public Stepper {
 
  private:
   bool has_contact() const { return features_.self_contact || features_.obstacles; }
+  ResolveOptions resolve_options(const StepWork&) const;
   StepProblem problem_of(const StepWork&, const StepStart&, const Points& pins, const AddedTerm&) const;
   bool continues_history(const Substep&) const;
   bool solve_freely(StepWork&, Substep&, const StepStart&);
@@ -91,10 +92,17 @@ class ConventionalStepper final : public Stepper {
   AuditMemory audited_;
 };
 
+ResolveOptions ConventionalStepper::resolve_options(const StepWork& work) const {
+  ResolveOptions options = contact_.options;
+  options.stop = work.extras.stop;
+  return options;
+}
+
 StepProblem ConventionalStepper::problem_of(const StepWork& work, const StepStart& start, const Points& pins,
                                             const AddedTerm& added) const {
   StepProblem problem{start.h, &start.x, &start.v, &pins, work.drive.acceleration, work.drive.wind, {}, 1};
   if (added.value) problem.added = &added;
+  problem.stop = &work.extras.stop;
   return problem;
 }
 
@@ -121,10 +129,10 @@ bool ConventionalStepper::solve_freely(StepWork& work, Substep& s, const StepSta
   const StepProblem problem = problem_of(work, start, s.pins, added);
   Points nodes = s.nodes, x = nodes.topRows(n);
   const NewtonReport newton = solve_.once(problem, x, work.report);
-  if (!newton.finite || !x.allFinite()) return false;
+  if (!newton.finite || newton.stopped || !x.allFinite()) return false;
   nodes.topRows(n) = x;
   if (has_contact() && !solve_.impacts(s.start.nodes, nodes, work.report).empty()) return false;
-  if (!newton.converged) work.report.reason = Reason::not_converged;
+  work.report.unsolved += newton.left;
   work.report.residual = solve_.solver().imbalance(problem, x);
   s.nodes = std::move(nodes);
   s.v = (x - start.x) / start.h;
@@ -137,8 +145,8 @@ bool ConventionalStepper::yield_obstacles(StepWork& work, const std::vector<Prox
   const bool retried = s.attempt == SubstepAttempt::pinched;
   if (!work.look_for_room && !retried) return true;
   ResolveReport times;
-  s.pinched = make_room(contact_.search, contact_.world, contact_.options, near, s.start.nodes, s.nodes, contact_.path,
-                        s.inverse_mass, times);
+  s.pinched = make_room(contact_.search, contact_.world, resolve_options(work), near, s.start.nodes, s.nodes,
+                        contact_.path, s.inverse_mass, times);
   add(times, work.report);
   if (retried && !s.pinched) return false;
   work.look_for_room = true;
@@ -173,7 +181,7 @@ SubstepOutcome ConventionalStepper::respond(StepWork& work, Substep& s, const St
                           options_.implicit_euler.slip_speed * s.h, x);
   }
   s.nodes.topRows(n) = x;
-  ResolveOptions options = contact_.options;
+  ResolveOptions options = resolve_options(work);
   options.last_resort = s.attempt == SubstepAttempt::last_resort;
   if (!options.last_resort) options.zone_rounds = hopeful_rounds;
   if (s.pinched) options.zone_rounds = pinched_rounds;
@@ -181,13 +189,14 @@ SubstepOutcome ConventionalStepper::respond(StepWork& work, Substep& s, const St
   const ResolveReport resolved =
       resolve(contact_.search, contact_.world, s.inverse_mass, options, s.start.nodes, s.nodes, contact_.path);
   add(resolved, work.report);
+  if (resolved.stopped) return SubstepOutcome::stopped;
   if (!s.nodes.allFinite()) return SubstepOutcome::not_finite;
   if (!resolved.clean && !options.last_resort) return SubstepOutcome::zones_not_converged;
   if (resolved.impulses > 0 && torn(problem, x, s.nodes.topRows(n))) {
     if (!options.last_resort) return SubstepOutcome::zones_not_converged;
     stop_short(work, wanted, s);
   }
-  if (!newton.converged) work.report.reason = Reason::not_converged;
+  work.report.unsolved += newton.left;
   s.v = (s.nodes.topRows(n) - *problem.x0) / s.h;
   s.touched = s.touched || !contacts.terms.empty() || resolved.impulses + resolved.zones > 0;
   return SubstepOutcome::clean;
@@ -212,6 +221,7 @@ SubstepOutcome ConventionalStepper::substep(StepWork& work, Substep& s) {
   Points x = s.nodes.topRows(n);
   Contacts contacts = solve_.loaded_contacts(s, near, problem, x, work.report);
   const NewtonReport newton = solve_.with_contact(s, problem, x, contacts, work.report);
+  if (newton.stopped) return SubstepOutcome::stopped;
   if (!newton.finite) return SubstepOutcome::not_finite;
   if (s.parts > 1) return SubstepOutcome::impact_too_deep;
   work.report.collision.contacts = static_cast<int>(contacts.terms.size());
@@ -252,8 +262,14 @@ void ConventionalStepper::end_substep(StepWork& work, Substep&& s, SubstepState&
 }
 
 // Takes all substeps. One that meets something in full motion is cut into parts. One whose zones do not converge is
-// tried again with obstacles that give way, then halved; only the last halves take the last resort. False: not finite.
+// tried again with obstacles that give way, then halved; only the last halves take the last resort. False: the report
+// says why the step is rejected.
 bool ConventionalStepper::advance(StepWork& work, SubstepState& now, Stretch whole) {
+  const auto reject = [&](Reason reason) {
+    work.report.status = StepStatus::rejected;
+    work.report.reason = reason;
+    return false;
+  };
   double time_left = whole.h * whole.count;
   std::vector<Stretch> to_do{std::move(whole)};
   while (!to_do.empty()) {
@@ -275,12 +291,14 @@ bool ConventionalStepper::advance(StepWork& work, SubstepState& now, Stretch who
       s.emplace(begin_substep(work, now, target, kind, time_left));
       return substep(work, *s);
     };
+    if (stopped(work.extras.stop)) return reject(Reason::stopped);
     SubstepOutcome outcome = attempt(target.halvings == 0 ? SubstepAttempt::last_resort : SubstepAttempt::first);
     if (outcome == SubstepOutcome::zones_not_converged && !work.look_for_room && features_.obstacles) {
       target.parts = 1;
       outcome = attempt(SubstepAttempt::pinched);
     }
-    if (outcome == SubstepOutcome::not_finite) return false;
+    if (outcome == SubstepOutcome::stopped || stopped(work.extras.stop)) return reject(Reason::stopped);
+    if (outcome == SubstepOutcome::not_finite) return reject(Reason::not_finite);
     if (outcome == SubstepOutcome::clean) {
       end_substep(work, *std::move(s), now);
       time_left -= target.h;
@@ -339,11 +357,12 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
   const int planned = planned_substeps(from, drive, dt, now.nodes);
   // Cloth that left an obstacle no room will hardly do so now.
   const int halvings = from.pinched ? 0 : max_halvings, parts = options_.substeps ? 1 : options_.max_substeps / planned;
-  if (!advance(work, now, {wanted, drive.pins, dt / planned, planned, halvings, parts})) return not_finite(report);
+  if (!advance(work, now, {wanted, drive.pins, dt / planned, planned, halvings, parts})) return report;
   if (has_contact())
     add(catch_up(contact_.search, contact_.options, contact_.inverse_mass, wanted, now.nodes, contact_.path), report);
   report.counts.searches = contact_.search.tally().searches - before.searches;
   report.counts.candidates = contact_.search.tally().candidates - before.candidates;
+  if (report.unsolved > options_.implicit_euler.tolerated_error) report.reason = Reason::not_converged;
   StepEnd end{now.nodes.topRows(from.x.rows()), std::move(now.v), {}, blocks_of(now.history)};
   for (std::size_t k = 0; k < from.obstacles.size(); ++k)
     end.obstacles.push_back(now.nodes.middleRows(contact_.world.first_node[k], from.obstacles[k].rows()));

@@ -20,7 +20,7 @@ class CuttingStepper final : public Stepper {
 
  private:
   void cut(const std::vector<int>& triangles);
-  StepReport step_rest(const State& from, const Drive& drive, double dt, State& to);
+  StepReport step_rest(const State& from, const Drive& drive, double dt, const StopFlag&, State& to);
 
   const Scene& scene_;
   MakeStepper make_;
@@ -56,11 +56,12 @@ StepReport step_nothing(const State& from, const Drive& drive, double dt, const 
 }
 
 // A step of all but what is cut out, which goes where it is worn.
-StepReport CuttingStepper::step_rest(const State& from, const Drive& drive, double dt, State& to) {
+StepReport CuttingStepper::step_rest(const State& from, const Drive& drive, double dt, const StopFlag& stop,
+                                     State& to) {
   cut(from.cut_out);
   State end;
   const State start = state_of(part_, from);
-  StepReport report = stepper_ ? stepper_->step(start, drive_of(part_, drive), dt, end)
+  StepReport report = stepper_ ? stepper_->step(start, drive_of(part_, drive), dt, end, {.stop = stop})
                                : step_nothing(start, drive, dt, traits().name, end);
   if (report.status != StepStatus::accepted) return report;
   to = from;
@@ -77,7 +78,7 @@ StepReport CuttingStepper::step_rest(const State& from, const Drive& drive, doub
 
 StepReport CuttingStepper::step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) {
   if (from.cut_out.empty()) return whole_->step(from, drive, dt, to, extras);
-  StepReport report = step_rest(from, drive, dt, to);
+  StepReport report = step_rest(from, drive, dt, extras.stop, to);
   if (report.status != StepStatus::accepted) return report;
   Stopwatch watch;
   to.cut_out = still_cut_out(scene_, to);

@@ -77,6 +77,7 @@ class HybridStepper final : public Stepper {
     double dt;
     State& to;
     StepReport& report;
+    const StopFlag& stop;
   };
   Verdict may_ask(const State& from, const Drive&, const ProposalTrust&, bool has_history) const;
   Verdict propose(Work&);
@@ -125,7 +126,7 @@ Verdict HybridStepper::judged(const Work& work, const Points& x) {
 Verdict HybridStepper::propose_step(Work& work) {
   Verdict verdict = Verdict::none;
   Points seen;
-  StepExtras extras;
+  StepExtras extras{.stop = work.stop};
   extras.wanted = [&](const Points& x) {
     seen = x;
     return (verdict = judged(work, x)) == Verdict::admitted;
@@ -143,7 +144,7 @@ Verdict HybridStepper::propose_step(Work& work) {
 // The proposer's positions, without its audit where it can skip that.
 std::optional<Points> HybridStepper::proposed_positions(Work& work) {
   std::optional<Points> x;
-  StepExtras extras;
+  StepExtras extras{.stop = work.stop};
   extras.wanted = [&](const Points& made) {
     x = made;
     return false;
@@ -181,8 +182,7 @@ Verdict HybridStepper::correct(Work& work, Points x) {
 // A solve from the proposal.
 Verdict HybridStepper::refine(Work& work, const Points& x) {
   const PhaseTimes proposal = work.report.seconds;
-  StepExtras extras;
-  extras.guess = &x;
+  StepExtras extras{.guess = &x, .stop = work.stop};
   Stepper& refiner = parts_.refiner ? *parts_.refiner : *parts_.parent;
   work.report = refiner.step(work.from, work.drive, work.dt, work.to, extras);
   work.report.seconds += proposal;
@@ -209,7 +209,7 @@ Verdict HybridStepper::propose(Work& work) {
 
 void HybridStepper::take_parent_step(Work& work) {
   const PhaseTimes before = work.report.seconds;
-  work.report = parts_.parent->step(work.from, work.drive, work.dt, work.to);
+  work.report = parts_.parent->step(work.from, work.drive, work.dt, work.to, {.stop = work.stop});
   work.report.seconds += before;
   if (work.report.status == StepStatus::accepted && parts_.hand_over) parts_.hand_over(work.from, work.to);
 }
@@ -223,7 +223,7 @@ void HybridStepper::note_times(bool asked, bool taken, double proposal, double p
     times_.add_parent(parent);
 }
 
-StepReport HybridStepper::step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) {
+StepReport HybridStepper::step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) {
   restore_standard_arithmetic();
   if (!traits_.accepts(dt))
     throw Error(
@@ -231,7 +231,7 @@ StepReport HybridStepper::step(const State& from, const Drive& drive, double dt,
         "hybrid stepper", "step by " + std::to_string(traits_.only_dt.value_or(dt)) + " s");
   const double started = clock_();
   StepReport report;
-  Work work{from, drive, dt, to, report};
+  Work work{from, drive, dt, to, report, extras.stop};
   ProposalTrust trust;
   const bool has_history = read_trust(from, trust);
   Verdict verdict = may_ask(from, drive, trust, has_history);

@@ -38,6 +38,7 @@ struct IcmWork {
   std::vector<NodePair> held;          // that have a term, sorted
   std::vector<ContactTerm> repulsion;  // their terms
   Exemption exemption;                 // at the start
+  const StopFlag* stop = nullptr;
 };
 
 class IcmStepper final : public Stepper {
@@ -120,16 +121,17 @@ bool IcmStepper::minimise(const StepProblem& problem, Points& x, StepReport& rep
   report.residual = solver_.imbalance(problem, x);
   if (!newton.converged) report.reason = Reason::not_converged;
   report.seconds.solve += watch.lap();
-  return newton.finite && x.allFinite();
+  return newton.finite && !newton.stopped && x.allFinite();
 }
 
-// nodes1 comes with obstacles where they are to end and the cloth at its first guess. False: not finite.
+// nodes1 comes with obstacles where they are to end and the cloth at its first guess. False: not finite, or stopped.
 bool IcmStepper::substep(const SubstepState& now, const Points& pins, const Drive& drive, double h, Points& nodes1,
                          IcmWork& work, StepReport& report) {
   const int n = scene_.surface.vertex_count;
   const Points x0 = now.nodes.topRows(n);
   Points x = nodes1.topRows(n);
   StepProblem problem{h, &x0, &now.v, &pins, drive.acceleration, drive.wind, {}, 1};
+  problem.stop = work.stop;
   if (!has_contact()) {
     const bool finite = minimise(problem, x, report);
     nodes1.topRows(n) = x;
@@ -188,9 +190,10 @@ StepReport IcmStepper::step(const State& from, const Drive& drive, double dt, St
     next.topRows(n) = now.nodes.topRows(n) + h * now.v;
     const Points held = pinned_rows(scene_, now.nodes);
     IcmWork work;
+    work.stop = &extras.stop;
     if (!now.nodes.allFinite() || !substep(now, held + part * (drive.pins - held), drive, h, next, work, report)) {
       report.status = StepStatus::rejected;
-      report.reason = Reason::not_finite;
+      report.reason = stopped(extras.stop) ? Reason::stopped : Reason::not_finite;
       return report;
     }
     ++report.substeps;

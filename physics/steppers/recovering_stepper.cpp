@@ -20,8 +20,9 @@ constexpr double push_softness = 0.1;  // of what keeps cloth parted, of the thi
 
 class RecoveringStepper final : public Stepper {
  public:
-  RecoveringStepper(const Scene& scene, std::unique_ptr<Stepper> inner)
+  RecoveringStepper(const Scene& scene, std::unique_ptr<Stepper> inner, const RecoveringOptions& options)
       : scene_(scene),
+        options_(options),
         inner_(std::move(inner)),
         has_contact_(features_of(scene).self_contact || features_of(scene).obstacles),
         world_(
@@ -43,6 +44,7 @@ class RecoveringStepper final : public Stepper {
   AddedTerm added_term(const Parting&, const Drive&, const Points& x0, double h) const;
 
   const Scene& scene_;
+  RecoveringOptions options_;
   std::unique_ptr<Stepper> inner_;
   bool has_contact_;
   ContactWorld world_;
@@ -66,6 +68,14 @@ Exemption both_of(Exemption a, const Exemption& b) {
   return {either(std::move(a.self), b.self), either(std::move(a.body), b.body), either(std::move(a.off), b.off)};
 }
 
+StepReport stopped_report(const std::string& by) {
+  StepReport report;
+  report.by = by;
+  report.status = StepStatus::rejected;
+  report.reason = Reason::stopped;
+  return report;
+}
+
 StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive, double dt, State& to,
                                           const StepExtras& extras) {
   Stopwatch watch;
@@ -73,14 +83,18 @@ StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive,
   const LastClean before = last_clean(from);
   const WornPlaces where{&wanted, &drive.worn, gather_nodes(before.x, before.obstacles), scene_.contact.thickness, dt};
   Points nodes = gather_nodes(from.x, from.obstacles), v = from.v;
+  UntanglingBudget budget{options_.untangling_passes, &extras.stop};
   const Parting parting =
-      part_at_start(world_, self_crossings_, inverse_mass_, edge_length_, from.clean, where, nodes, v);
-  if (!parting.left.any() && parting.gained.empty() && parting.carried.empty() && nodes.topRows(v.rows()) == from.x) {
-    const double parted = watch.lap();
-    StepReport report = inner_->step(from, drive, dt, to, extras);
+      part_at_start(world_, self_crossings_, inverse_mass_, edge_length_, from.clean, where, nodes, v, budget);
+  const auto add_parting = [&, parted = watch.lap()](StepReport report) {
     report.seconds.response += parted;
+    report.untangling += budget.used;
+    report.out_of_untangling = report.out_of_untangling || budget.ran_out;
     return report;
-  }
+  };
+  if (stopped(extras.stop)) return add_parting(stopped_report(traits().name));
+  if (!parting.left.any() && parting.gained.empty() && parting.carried.empty() && nodes.topRows(v.rows()) == from.x)
+    return add_parting(inner_->step(from, drive, dt, to, extras));
   State start = from;
   start.x = nodes.topRows(v.rows());
   start.v = v;
@@ -93,9 +107,7 @@ StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive,
       AddedTerm own = added_term(parting, drive, x0, h);
       return extras.added ? sum_of(extras.added(x0, h), std::move(own)) : own;
     };
-  const double parted = watch.lap();
-  StepReport report = inner_->step(start, drive, dt, to, all);
-  report.seconds.response += parted;
+  const StepReport report = add_parting(inner_->step(start, drive, dt, to, all));
   // The motion of cloth that was drawn stiffly is none of its own: it would fly past where it is worn.
   if (report.status == StepStatus::accepted && parting.left.off.empty())
     for (std::size_t k = 0; k < parting.carried.size(); ++k)
@@ -134,8 +146,9 @@ void remember(const LastClean& clean, State& state) {
   replace_blocks("recovering", std::move(blocks), state.memory);
 }
 
-std::unique_ptr<Stepper> make_recovering_stepper(const Scene& scene, std::unique_ptr<Stepper> inner) {
-  return std::make_unique<RecoveringStepper>(scene, std::move(inner));
+std::unique_ptr<Stepper> make_recovering_stepper(const Scene& scene, std::unique_ptr<Stepper> inner,
+                                                 const RecoveringOptions& options) {
+  return std::make_unique<RecoveringStepper>(scene, std::move(inner), options);
 }
 
 }  // namespace selvedge

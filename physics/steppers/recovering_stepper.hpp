@@ -13,6 +13,10 @@ struct LastClean {
   std::vector<Points> obstacles;
 };
 
+struct RecoveringOptions {
+  int untangling_passes = 400;  // a step may take so many; the next one goes on
+};
+
 // What the recovering stepper remembers in State::memory, of worn cloth that is not clean.
 LastClean last_clean(const State&);
 void remember(const LastClean&, State&);
@@ -22,6 +26,7 @@ void remember(const LastClean&, State&);
 // has to leave alone, and gets terms that keep what was gained and draw cloth to where it is worn. From clean states
 // with bodies free of themselves the step is that of `inner`. Extras are handed on beside its own. Throws Error for an
 // inner stepper that honours none. Keeps a reference to the scene.
-std::unique_ptr<Stepper> make_recovering_stepper(const Scene&, std::unique_ptr<Stepper> inner);
+std::unique_ptr<Stepper> make_recovering_stepper(const Scene&, std::unique_ptr<Stepper> inner,
+                                                 const RecoveringOptions& = {});
 
 }  // namespace selvedge

@@ -24,15 +24,19 @@ SubstepSolve::SubstepSolve(const Scene& scene, const ImplicitEulerOptions& optio
       friction_(features_of(scene).friction),
       slip_speed_(options.slip_speed),
       edge_length_(mean_edge_length(scene)),
-      deep_(deep_impact(scene)) {}
+      deep_(deep_impact(scene)),
+      most_newton_(options.max_newton_step) {}
 
 NewtonReport SubstepSolve::once(const StepProblem& problem, Points& x, StepReport& report) {
   const Timed timed(report.seconds.solve);
-  const NewtonReport newton = solver_.solve(problem, x);
+  StepProblem bounded = problem;
+  bounded.most_iterations = std::max(1, most_newton_ - report.iterations);
+  const NewtonReport newton = solver_.solve(bounded, x);
   report.iterations += newton.iterations;
   report.linear_iterations += newton.linear_iterations;
   ++report.counts.solves;
   report.counts.coarse_builds += newton.coarse_builds;
+  report.out_of_newton = report.out_of_newton || (!newton.converged && report.iterations >= most_newton_);
   return newton;
 }
 
@@ -58,14 +62,14 @@ NewtonReport SubstepSolve::with_contact(Substep& s, StepProblem& problem, Points
                               : pass == 0 && !calm           ? first_tolerance
                                                              : 1;
     const NewtonReport newton = once(problem, x, report);
-    if (!newton.finite) return newton;
+    if (!newton.finite || newton.stopped) return newton;
     s.nodes.topRows(x.rows()) = x;
     const std::vector<ContactTerm> solved = calm ? contacts.terms : std::vector<ContactTerm>{};
     const double change = lag_normal_forces(contacts.terms, x);
     if (pass == (s.pinched ? pinched_passes : max_passes)) return newton;
     const auto found = impacts(nodes0, s.nodes, report);
     if (pass == 0) s.parts = parts_for_distance(farthest_past(found, nodes0, s.nodes), edge_length_, s.max_parts);
-    if (s.parts > 1) return newton;
+    if (s.parts > 1 || report.out_of_newton) return newton;
     if (calm && mean_touching(contacts.terms, x - *problem.x0) < creep && deepest(found, s.nodes) < deep_ &&
         mistaken_friction(solved, contacts.terms, *problem.x0, x, creep) < normal_change)
       return newton;

@@ -52,6 +52,7 @@ class SubstepSolve {
   ImplicitEuler solver_;
   bool friction_;
   double slip_speed_, edge_length_, deep_;
+  int most_newton_;
 };
 
 }  // namespace selvedge

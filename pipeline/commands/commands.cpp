@@ -79,7 +79,7 @@ int simulate_command(const SimulateArguments& arguments, bool json) {
   const std::filesystem::path out = folder_for(arguments, setup);
   make_folder(out);
   const FolderLock lock(out);
-  if (!arguments.resume && !prepare(setup, InterruptWatch::interrupted, &progress)) {
+  if (!arguments.resume && !prepare(setup, InterruptWatch::interrupted, &progress, InterruptWatch::interrupted)) {
     people(json) << "stopped before the first frame\n";
     return 1;
   }
@@ -88,7 +88,7 @@ int simulate_command(const SimulateArguments& arguments, bool json) {
   request.locked = true;
   request.resume = arguments.resume;
   request.progress = &progress;
-  request.stop = InterruptWatch::interrupted;
+  request.stop = request.interrupt = InterruptWatch::interrupted;
   OutcomeWatch outcome(setup.scene, setup.outcomes, setup.run.frames / setup.run.fps);
   outcome(setup.initial, setup.drive_at(0));
   request.observe = [&](const FrameEvent& event) { outcome(event.state, event.drive); };

@@ -8,22 +8,23 @@
 
 namespace selvedge {
 
-bool prepare(Setup& setup, const std::function<bool()>& stop, Progress* progress) {
+bool prepare(Setup& setup, const std::function<bool()>& stop, Progress* progress, const StopFlag& interrupt) {
   const int frames = -setup.initial.frame;
   if (frames <= 0) return true;
   const Clock::time_point started = Clock::now();
   const std::unique_ptr<Stepper> stepper =
       make_following_stepper(setup.scene, setup.followers, make_recovering_conventional_stepper(setup.scene));
   State state = setup.initial;
-  bool stopped = false;
+  bool ended = false;
   if (progress) progress->begin(0, frames, "draping, frame");
-  const StepReport last = simulate(*stepper, setup.drive_at, 1 / setup.run.fps, 0, state, [&](const FrameEvent& event) {
+  const FrameSink sink = [&](const FrameEvent& event) {
     if (progress) progress->frame(event.state.frame + frames);
-    stopped = stop && stop();
-    return !stopped;
-  });
+    ended = stop && stop();
+    return !ended;
+  };
+  const StepReport last = simulate(*stepper, setup.drive_at, 1 / setup.run.fps, 0, state, sink, interrupt);
   if (progress) progress->end();
-  if (stopped) return false;
+  if (ended || last.reason == Reason::stopped) return false;
   if (last.status != StepStatus::accepted)
     throw Error(fmt::format("cannot be draped: a step is rejected {} frames before time 0", -state.frame),
                 setup.file.string(), "let the body come more slowly (start.seconds), or start from: skinned");

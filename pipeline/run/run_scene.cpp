@@ -79,7 +79,7 @@ void remove_results(const RunRequest& request) {
 }
 
 void finish(RunSummary& summary, const StepReport& last, int frame) {
-  const bool rejected = last.status == StepStatus::rejected;
+  const bool rejected = last.status == StepStatus::rejected && last.reason != Reason::stopped;
   summary.end = rejected ? RunEnd::rejected : frame < summary.frames_wanted ? RunEnd::interrupted : RunEnd::finished;
   if (rejected) summary.reason = reason_names().at(static_cast<std::size_t>(last.reason));
   summary.peak_memory = peak_memory();
@@ -111,8 +111,9 @@ RunSummary run_scene(const Setup& setup, Stepper& stepper, const RunRequest& req
   }
 
   if (request.progress) request.progress->begin(state.frame, setup.run.frames);
-  const StepReport last =
-      simulate(stepper, setup.drive_at, 1 / setup.run.fps, setup.run.frames, state, std::ref(recorder));
+  const StepReport last = simulate(stepper, setup.drive_at, 1 / setup.run.fps, setup.run.frames, state,
+                                   std::ref(recorder), request.interrupt);
+  if (last.reason == Reason::stopped) recorder.checkpoint(state);
   if (request.progress) request.progress->end();
 
   recorder.writer.close();

@@ -15,7 +15,8 @@ struct RunRequest {
   bool resume = false;             // go on from the checkpoint that an interrupted run left in `out`
   double checkpoint_seconds = 30;  // between checkpoints
   Progress* progress = nullptr;
-  std::function<bool()> stop;                      // asked after every frame; true ends the run cleanly
+  std::function<bool()> stop;  // asked after every frame; true ends the run cleanly
+  StopFlag interrupt;          // asked within steps (StepExtras): true ends the run at the last whole frame
   std::function<void(const FrameEvent&)> observe;  // shown every frame, outside the measured time
 };
 

@@ -22,8 +22,9 @@ struct FrameEvent {
 using FrameSink = std::function<bool(const FrameEvent&)>;  // false ends the run
 
 // Steps `state` to frame `frames`, or until a step is rejected or the sink ends the run. Returns the last report
-// (not_run where there was nothing to do). `state` ends as the last accepted one.
+// (not_run where there was nothing to do). `state` ends as the last accepted one. A step that `stop` ended (see
+// StepExtras) ends the run unseen by the sink.
 StepReport simulate(Stepper&, const std::function<Drive(double time)>& drive_at, double dt, int frames, State& state,
-                    const FrameSink&);
+                    const FrameSink&, const StopFlag& stop = {});
 
 }  // namespace selvedge

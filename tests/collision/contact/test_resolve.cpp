@@ -21,12 +21,12 @@ struct Case {
   Eigen::VectorXd inverse_mass;
 };
 
-ResolveReport run(const Case& c, Points& x1, PathPairs& candidates) {
+ResolveReport run(const Case& c, Points& x1, PathPairs& candidates, const ResolveOptions& options = {}) {
   std::vector<const Surface*> obstacles;
   for (const Surface& s : c.obstacles) obstacles.push_back(&s);
   const ContactWorld world = make_contact_world(c.cloth, obstacles, true);
   PairSearch search(world);
-  return resolve(search, world, c.inverse_mass, {}, c.x0, x1, candidates);
+  return resolve(search, world, c.inverse_mass, options, c.x0, x1, candidates);
 }
 
 // Audits the motion at many times, obstacles included.
@@ -63,6 +63,29 @@ Case crossing(double speed) {
 }
 
 }  // namespace
+
+TEST_CASE("resolve: asks once a zone whether to stop, and ends soon, not clean", "[resolve]") {
+  const Case c = crossing(0.3);
+  int polls = 0, until = 1 << 30;
+  ResolveOptions options;
+  options.impulse_rounds = 0;
+  options.stop = [&] { return ++polls >= until; };
+  Points x1 = c.x1;
+  PathPairs candidates;
+  const ResolveReport whole = run(c, x1, candidates, options);
+  CHECK(whole.clean);
+  CHECK_FALSE(whole.stopped);
+  REQUIRE(whole.zones > 1);
+  CHECK(polls >= whole.zones);
+  for (until = 1; until <= whole.zones; ++until) {
+    polls = 0;
+    x1 = c.x1;
+    const ResolveReport report = run(c, x1, candidates, options);
+    CHECK(report.stopped);
+    CHECK_FALSE(report.clean);
+    CHECK(report.zones <= 2 * until);
+  }
+}
 
 TEST_CASE("resolve: sheets flung through each other end clean, the whole way", "[resolve]") {
   for (const double speed : {0.01, 0.05, 0.3}) {

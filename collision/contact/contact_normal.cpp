@@ -1,0 +1,101 @@
+#include "collision/contact/contact_normal.hpp"
+
+#include <array>
+#include <cmath>
+#include <initializer_list>
+
+namespace selvedge {
+namespace {
+
+constexpr double rounding = 1e-12;  // of a direction
+constexpr double across = 0.1;      // cosine: a normal that is farther off says nothing of the direction
+
+// Positions on the way.
+struct Moving {
+  const Points &x0, &x1;
+  double time;
+  Vec3 operator()(int node) const { return row(x0, node) + time * (row(x1, node) - row(x0, node)); }
+};
+
+// One side of a pair: the vertex or the edge of a surface that its closest point lies on.
+struct Feature {
+  const Surface* surface;
+  int first_node;            // of the surface
+  std::array<int, 2> nodes;  // its own; of a vertex the second is -1
+};
+
+Feature feature_of(const ContactWorld& world, std::array<int, 2> nodes) {
+  const int obstacle = world.obstacle_of(nodes[0]);
+  return {obstacle < 0 ? world.cloth : world.obstacles[obstacle], obstacle < 0 ? 0 : world.first_node[obstacle], nodes};
+}
+
+// `way`, a unit vector that leads away from the feature, if nothing of its surface beside it is nearer to where it
+// leads; else the nearest normal of the faces round it, or `way` again where that is across all of them.
+Vec3 in_cone(const Feature& feature, const Vec3& way, const Moving& x) {
+  const auto [a, b] = feature.nodes;
+  const bool vertex = b < 0;
+  const Vec3 at = x(a), edge = vertex ? Vec3(Vec3::Zero()) : Vec3((x(b) - at).normalized());
+  bool closest = true;
+  double best = across;
+  Vec3 found = way;
+  for (const int t : feature.surface->triangles_of(a - feature.first_node)) {
+    std::array<Vec3, 3> corner;
+    bool has_edge = vertex;
+    for (int k = 0; k < 3; ++k) {
+      const int node = feature.first_node + feature.surface->triangles(t, k);
+      corner[k] = x(node);
+      has_edge = has_edge || node == b;
+      if (vertex && node != a) closest = closest && way.dot((corner[k] - at).normalized()) <= rounding;
+    }
+    if (!has_edge) continue;
+    if (!vertex)
+      for (int k = 0; k < 3; ++k) {
+        Vec3 inward = corner[k] - at;  // zero, but for rounding, of the edge's own ends
+        inward -= inward.dot(edge) * edge;
+        const int node = feature.first_node + feature.surface->triangles(t, k);
+        if (node != a && node != b) closest = closest && way.dot(inward.normalized()) <= rounding;
+      }
+    const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
+    const double cosine = normal.dot(way);
+    if (!(std::abs(cosine) > best)) continue;
+    best = std::abs(cosine);
+    found = cosine > 0 ? normal : Vec3(-normal);
+  }
+  return closest ? way : found;
+}
+
+// Of the nodes with a weight, of one side of a pair: absent where it is the inside of a face.
+std::array<int, 2> ends_of(const NodePair& pair, const Eigen::Vector4d& weights, std::initializer_list<int> side,
+                           int& count) {
+  std::array<int, 2> ends{-1, -1};
+  count = 0;
+  for (const int i : side)
+    if (weights[i] != 0) {
+      if (count < 2) ends[static_cast<std::size_t>(count)] = pair.nodes[static_cast<std::size_t>(i)];
+      ++count;
+    }
+  return ends;
+}
+
+}  // namespace
+
+Vec3 contact_normal(const ContactWorld& world, const NodePair& pair, const Eigen::Vector4d& weights,
+                    const Vec3& between, const Points& x0, const Points& x1, double time) {
+  const Vec3 way = between.normalized();
+  const Moving x{x0, x1, time};
+  const bool edges = pair.kind == PairKind::edge_edge;
+  int first_count = 0, second_count = 0;
+  const auto first = edges ? ends_of(pair, weights, {0, 1}, first_count) : ends_of(pair, weights, {0}, first_count);
+  const auto second =
+      edges ? ends_of(pair, weights, {2, 3}, second_count) : ends_of(pair, weights, {1, 2, 3}, second_count);
+  const auto from_first = [&] { return Vec3(-in_cone(feature_of(world, first), -way, x)); };
+  const auto from_second = [&] { return in_cone(feature_of(world, second), way, x); };
+  const bool first_is_body = !world.is_cloth(pair.nodes[0]), second_is_body = !world.is_cloth(pair.nodes[3]);
+  if (first_is_body) return from_first();
+  if (second_is_body) return second_count < 3 ? from_second() : way;
+  if (!edges) return way;
+  const Vec3 both = from_first() + from_second();
+  return both.norm() > across ? Vec3(both.normalized()) : way;
+}
+
+}  // namespace selvedge
