@@ -19,7 +19,8 @@ struct WeightFile {
 };
 
 // A weight file is an HDF5 file: texts `format`, `version`, `architecture` (architecture_text.hpp) and `training`,
-// lists of texts `origin_names` and `origin_values`, and below `weights` one dataset of 32-bit or 16-bit floats an array
+// lists of texts `origin_names` and `origin_values`, and below `weights` one dataset of 32-bit or 16-bit floats an
+// array
 // (`weight_arrays`). Its user block of 512 bytes begins with a line that names the form and a checksum of all bytes
 // behind it.
 //

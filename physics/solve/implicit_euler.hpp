@@ -30,7 +30,7 @@ struct NewtonReport {
   bool stopped = false;  // by the problem's flag: x is no minimiser
   int iterations = 0, linear_iterations = 0;
   int coarse_builds = 0;  // of multigrid's coarse levels
-  double left = 0;  // RMS distance from the minimiser, at most, as the last iteration shows it [m]
+  double left = 0;        // RMS distance from the minimiser, at most, as the last iteration shows it [m]
 };
 
 // Minimises the incremental potential
