@@ -30,8 +30,8 @@ NeighbourScale read_neighbour_scale(const std::filesystem::path& path) {
   const h5::Fields fields(path, scale_form);
   const std::vector<int> form = fields.integers("form");
   const std::vector<double> units = fields.numbers("units");
-  constexpr int most_width = 4096;
-  if (form.size() != 2 || form[0] < 1 || form[0] > most_width || form[1] < 0 || form[1] > 1)
+  constexpr int widest = 4096;
+  if (form.size() != 2 || form[0] < 1 || form[0] > widest || form[1] < 0 || form[1] > 1)
     fields.fail("form", "is not a width, and a range of 0 or 1");
   if (units.size() != 2 || !(units[0] > 0) || !(units[1] > 0)) fields.fail("units", "are not two lengths above 0");
   NeighbourScale scale;
