@@ -151,6 +151,8 @@ void PairSearch::find(const Points& x0, const Points& x1, double radius, std::ve
     prepare(obstacle, &cloth_.tree.bvh);
     gather_with(side(obstacle), false);
   }
+  ++tally_.searches;
+  tally_.candidates += static_cast<std::int64_t>(pairs.size());
   if (!marks.empty())
     std::erase_if(pairs, [&](const NodePair& pair) {
       return std::ranges::none_of(pair.nodes, [&](int node) { return marks[node] != 0; });

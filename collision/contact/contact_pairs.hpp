@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -28,6 +29,12 @@ inline Closest closest(const NodePair& pair, const Points& x) { return closest(p
 // Distance in the rest shape of a pair of one cloth; infinite for any other, and where the world has no rest shape [m].
 double rest_distance(const ContactWorld&, const NodePair&);
 
+// Searches so far, and the pairs that they found.
+struct SearchTally {
+  int searches = 0;
+  std::int64_t candidates = 0;
+};
+
 // Finds vertex-face and edge-edge pairs that may come within `radius` of each other while all nodes move straight from
 // x0 to x1; misses none. Every vertex and edge belongs to one triangle, so that each pair is found once (representative
 // triangles, Curtis, Tamstorf and Manocha 2008). Holds trees, which are caches.
@@ -41,6 +48,7 @@ class PairSearch {
   // Pairs that are not to be found from here on; nothing ends it. Keeps the pointer.
   void leave_out(const Exemption* exemption) { left_out_ = exemption; }
   const ContactWorld& world() const { return world_; }
+  const SearchTally& tally() const { return tally_; }
 
  private:
   const ContactWorld& world_;
@@ -48,6 +56,7 @@ class PairSearch {
   SearchPart cloth_;
   std::vector<SearchPart> obstacles_;
   PartLists<NodePair> scratch_;
+  SearchTally tally_;
 };
 
 }  // namespace selvedge

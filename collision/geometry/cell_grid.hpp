@@ -17,16 +17,13 @@ class CellGrid {
   // The points by the cubes that they lie in, those of a cube side by side.
   const std::vector<int>& order() const { return point_; }
 
+  // Cubes by number, and the places in `order` where their points begin; one behind the last cube ends it.
+  int cubes() const { return static_cast<int>(begin_.size()) - 1; }
+  int first(int cube) const { return begin_[cube]; }
+
   // Visits the points of all cubes that the ball's box meets, the ball's own among them, in a fixed order.
   template <class Visit>
   void for_each_near(const Vec3& at, double radius, Visit visit) const {
-    for_each_run_near(at, radius, [&](int first, int last) {
-      for (int p = first; p < last; ++p) visit(point_[p]);
-    });
-  }
-  // The same as runs [first, last) of places in `order`, for who keeps what it asks of points in that order.
-  template <class Visit>
-  void for_each_run_near(const Vec3& at, double radius, Visit visit) const {
     std::array<int, 3> from, to;
     for (int k = 0; k < 3; ++k) {
       from[k] = std::max(0, coordinate(at[k] - radius, k));
@@ -34,7 +31,21 @@ class CellGrid {
     }
     if (from[2] > to[2]) return;
     for (int i = from[0]; i <= to[0]; ++i)
-      for (int j = from[1]; j <= to[1]; ++j) visit(begin_[cell(i, j, from[2])], begin_[cell(i, j, to[2]) + 1]);
+      for (int j = from[1]; j <= to[1]; ++j)
+        for (int p = begin_[cell(i, j, from[2])]; p < begin_[cell(i, j, to[2]) + 1]; ++p) visit(point_[p]);
+  }
+  // Visits the cubes within so many of a cube along each axis, itself among them, in ascending order.
+  template <class Visit>
+  void for_each_cube_around(int cube, int rings, Visit visit) const {
+    const std::array<int, 3> at{cube / size_[2] / size_[1], cube / size_[2] % size_[1], cube % size_[2]};
+    std::array<int, 3> from, to;
+    for (int k = 0; k < 3; ++k) {
+      from[k] = std::max(0, at[k] - rings);
+      to[k] = std::min(size_[k] - 1, at[k] + rings);
+    }
+    for (int i = from[0]; i <= to[0]; ++i)
+      for (int j = from[1]; j <= to[1]; ++j)
+        for (int k = from[2]; k <= to[2]; ++k) visit(cell(i, j, k));
   }
 
  private:

@@ -7,6 +7,7 @@
 #include "collision/geometry/cell_grid.hpp"
 #include "collision/geometry/disjoint_sets.hpp"
 #include "collision/search/intersections.hpp"
+#include "collision/untangle/facing.hpp"
 #include "collision/untangle/kept_shape.hpp"
 #include "collision/untangle/untangle.hpp"
 
@@ -15,13 +16,10 @@ namespace {
 
 using Pairs = std::vector<std::pair<int, int>>;  // of triangles that cross
 
-constexpr double opposed = -0.3;  // cosine of two normals, at most, of surfaces that face each other
 constexpr double straight =
-    0.7;                        // cosine, at least, of a normal with the way through the body; aside, skin curves round
-constexpr double closer = 0.5;  // of their distance at rest: what is nearer has come together
+    0.7;  // cosine, at least, of a normal with the way through the body; aside, skin curves round
 constexpr double rest_room = 0.3;  // of that distance: the room asked for at most, for a fold has a bottom
-constexpr double deepest = 0.7;    // of a part's thickness, that another is in it: beyond, it comes out behind
-constexpr int sweeps = 12, press_rings = 6;
+constexpr int press_sweeps = 12, press_rings = 6;
 constexpr double smoothing = 0.5;
 constexpr double tight_part = 0.7;    // of the room and of what may give way: where less is left, pressed more
 constexpr int halvings = 2;           // of what that does where it goes wrong, before it is left
@@ -44,7 +42,7 @@ std::vector<double> thicknesses(const Surface& body, const Points& x, double mos
     grid.for_each_near(row(x, v), most, [&](int w) {
       const Vec3 way = row(x, v) - row(x, w);
       const double distance = way.norm(), deep = way.dot(row(normals, v));
-      if (distance < thickness[v] && deep > straight * distance && row(normals, w).dot(row(normals, v)) < opposed)
+      if (distance < thickness[v] && deep > straight * distance && row(normals, w).dot(row(normals, v)) < facing_cosine)
         thickness[v] = distance;
     });
   return thickness;
@@ -93,52 +91,11 @@ struct Meeting {
   double share;  // of what is missing that the vertex goes
 };
 
-// A posed body with its vertices also in the order of a grid: whoever looks round goes through memory in order.
-struct Posed {
-  const Points& x;
-  Points normals;
-  CellGrid grid;
-  Points x_near, normals_near;
-
-  Posed(const Flesh& flesh, const Points& posed)
-      : x(posed),
-        normals(vertex_normals(flesh.body, posed)),
-        grid(posed, flesh.reach / 2),
-        x_near(posed(grid.order(), Eigen::all)),
-        normals_near(normals(grid.order(), Eigen::all)) {}
-};
-
-// The nearest vertex of a part that faces v and that was farther at rest; -1: none.
-int facing(const Flesh& flesh, int v, const Posed& body) {
-  const Points& rest = flesh.shape.x0;
-  const Vec3 at = row(body.x, v), normal = row(body.normals, v);
-  int found = -1;
-  double nearest = flesh.reach * flesh.reach;
-  body.grid.for_each_run_near(at, flesh.reach, [&](int first, int last) {
-    for (int p = first; p < last; ++p) {
-      if (row(body.normals_near, p).dot(normal) > opposed) continue;
-      const Vec3 way = at - row(body.x_near, p);
-      const double square = way.squaredNorm();
-      if (square >= nearest) continue;
-      const int w = body.grid.order()[p];
-      const double thin = deepest * std::min(flesh.thickness[v], flesh.thickness[w]);
-      if (square >= thin * thin && way.dot(row(body.normals, w)) < 0) continue;
-      if (square >= closer * closer * (rest.row(v) - rest.row(w)).squaredNorm()) continue;
-      nearest = square;
-      found = w;
-    }
-  });
-  return found;
-}
-
 double gap_of(const Meeting& m, const Points& x) { return m.apart.dot(row(x, m.vertex) - row(x, m.partner)); }
 
 std::vector<Meeting> meetings(const Flesh& flesh, const Points& x) {
-  const Posed body(flesh, x);
-  const Points &rest = flesh.shape.x0, &normals = body.normals;
-  std::vector<int> partner(static_cast<std::size_t>(flesh.body.vertex_count));
-#pragma omp parallel for schedule(dynamic, 64)
-  for (int v = 0; v < flesh.body.vertex_count; ++v) partner[v] = facing(flesh, v, body);
+  const Points &rest = flesh.shape.x0, normals = vertex_normals(flesh.body, x);
+  const std::vector<int> partner = facing_vertices({rest, flesh.thickness, flesh.reach}, x, normals);
   std::vector<Meeting> found;
   for (int v = 0; v < flesh.body.vertex_count; ++v) {
     const int w = partner[v];
@@ -170,7 +127,7 @@ Points pressed(const Flesh& flesh, const Points& skinned, const Points& x, const
   for (const Meeting& m : found) meets[m.vertex] = 1;
   const std::vector<int> moving = with_surroundings(flesh.shape, meets);
   Points to = x;
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
+  for (int sweep = 0; sweep < press_sweeps; ++sweep) {
     smooth_displacement(flesh.shape, x, moving, smoothing, to);
     const Points from = to;
     for (const Meeting& m : found) {

@@ -83,6 +83,7 @@ struct LinearSystemSolver::Impl {
   Vertices vertices;
   std::vector<char> free;
   std::unique_ptr<Multigrid> multigrid;  // made when first needed
+  int coarse_builds = 0;                 // so far
   int fresh_iterations = -1;             // that PCG took with the coarse levels made for its system; -1: make them
   Iterative<float> single;
   std::unique_ptr<Iterative<double>> full;  // made when float first fails
@@ -150,6 +151,7 @@ double LinearSystemSolver::Impl::prepare_single(const LinearSystem& system, std:
     if (!multigrid) multigrid = std::make_unique<Multigrid>(vertices, free);
     const bool kept = fresh_iterations >= 0;
     if (kept) multigrid->fill_finest(system, diagonal, single.matrix);
+    coarse_builds += !kept;
     if (kept || multigrid->fill(system, diagonal, single.matrix)) {
       single.preconditioner = [this](const Quads<float>& r, Quads<float>& z) { multigrid->apply(r, z); };
       return 1;
@@ -190,19 +192,21 @@ LinearReport LinearSystemSolver::solve(const LinearSystem& system, std::span<con
     if (definite == Definite::perhaps) return {false, 1};
   }
   if (impl.chosen != LinearSolver::cholmod) {
+    const int builds_before = impl.coarse_builds;
     const double share = impl.prepare_single(system, diagonal);
     report = impl.solve_iterative(impl.single, system, diagonal, right, share * tolerance, max_iterations, x);
+    report.coarse_builds = impl.coarse_builds - builds_before;
     if (share == 1) impl.judge_preconditioner(report);
     if (impl.automatic && report.iterations > stiff_iterations && Cholesky::available())
       impl.direct_turns = stiff_turns;
     if (report.converged || definite == Definite::perhaps) return report;
-    if (impl.solve_direct(system, diagonal, right, x)) return {true, report.iterations + 1};
+    if (impl.solve_direct(system, diagonal, right, x)) return {true, report.iterations + 1, report.coarse_builds};
   }
   if (!impl.full) impl.full = std::make_unique<Iterative<double>>();
   impl.full->matrix.fill(system);
   impl.full->take_jacobi(diagonal, system.free);
   const LinearReport last = impl.solve_iterative(*impl.full, system, diagonal, right, tolerance, max_iterations, x);
-  return {last.converged, report.iterations + last.iterations};
+  return {last.converged, report.iterations + last.iterations, report.coarse_builds};
 }
 
 }  // namespace selvedge

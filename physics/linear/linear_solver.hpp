@@ -11,7 +11,8 @@ enum class Definite { yes, perhaps };
 
 struct LinearReport {
   bool converged = false;
-  int iterations = 0;  // of PCG; a direct solve counts as one
+  int iterations = 0;     // of PCG; a direct solve counts as one
+  int coarse_builds = 0;  // of multigrid's coarse levels
 };
 
 // `automatic` takes CHOLMOD, where the build has it, for scenes of few free vertices, and multigrid for larger ones; in

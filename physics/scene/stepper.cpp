@@ -16,6 +16,15 @@ PhaseTimes& PhaseTimes::operator+=(const PhaseTimes& other) {
   return *this;
 }
 
+StepCounts& StepCounts::operator+=(const StepCounts& other) {
+  solves += other.solves;
+  coarse_builds += other.coarse_builds;
+  searches += other.searches;
+  candidates += other.candidates;
+  audits += other.audits;
+  return *this;
+}
+
 bool StepperTraits::accepts(double dt) const { return dt > 0 && (!only_dt || std::abs(dt - *only_dt) <= 1e-9); }
 
 }  // namespace selvedge

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -56,6 +57,16 @@ struct PhaseTimes {  // [s]
   PhaseTimes& operator+=(const PhaseTimes&);
 };
 
+// Work done, counted: no clock and no other program on the machine changes it. What caches save is not in it.
+struct StepCounts {
+  int solves = 0;               // minimisations of the incremental potential
+  int coarse_builds = 0;        // of multigrid's coarse levels
+  int searches = 0;             // for pairs that come near each other, in part or whole
+  std::int64_t candidates = 0;  // pairs whose boxes those found to overlap
+  int audits = 0;               // of a motion or of positions
+  StepCounts& operator+=(const StepCounts&);
+};
+
 struct CollisionReport {
   int contacts = 0;         // proximity pairs in the implicit solve, last substep
   int impulses = 0;         // impacts met with an impulse, all substeps
@@ -105,6 +116,7 @@ struct StepReport {  // starts as failure
   int linear_iterations = 0;
   double residual = 0;  // largest force imbalance at the last substep's end [N]
   PhaseTimes seconds;
+  StepCounts counts;
   CollisionReport collision;
   std::optional<Audit> audit;  // of the state that was made, rounded to float (step_audit.hpp); absent: not audited
 };

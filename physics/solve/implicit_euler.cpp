@@ -223,6 +223,7 @@ bool ImplicitEuler::Impl::solve_linear(Definite definite, NewtonReport& report) 
   const LinearReport solved =
       linear.solve(system(), diagonal, -gradient, tolerance, options.max_linear, motion, definite);
   report.linear_iterations += solved.iterations;
+  report.coarse_builds += solved.coarse_builds;
   return solved.converged;
 }
 

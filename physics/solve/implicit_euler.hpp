@@ -23,6 +23,7 @@ struct NewtonReport {
   bool converged = false;
   bool finite = true;
   int iterations = 0, linear_iterations = 0;
+  int coarse_builds = 0;  // of multigrid's coarse levels
 };
 
 // Minimises the incremental potential

@@ -239,6 +239,7 @@ Substep ConventionalStepper::begin_substep(const StepWork& work, const SubstepSt
 void ConventionalStepper::end_substep(StepWork& work, Substep&& s, SubstepState& now) {
   ++work.report.substeps;
   if (has_contact()) {
+    ++work.report.counts.audits;
     const Timed timed(work.report.seconds.audit);
     work.report.collision.passed_through +=
         passed_through(contact_.world, work.left_alone, now.nodes, s.nodes, audited_);
@@ -308,7 +309,8 @@ int ConventionalStepper::planned_substeps(const State& from, const Drive& drive,
   auto touching = has_contact() ? pairs_within(contact_.path, nodes, thickness) : std::vector<NodePair>{};
   std::erase_if(touching,
                 [&](const NodePair& pair) { return !(closest(pair, nodes).squared_distance < thickness * thickness); });
-  return substeps_for_contact(fastest_past(touching, from, drive, dt), dt, edge_length_, options_.max_substeps);
+  return substeps_for_contact(fastest_past(touching, from, drive, dt), dt, edge_length_,
+                              options_.min_substeps.value_or(least_substeps(dt)), options_.max_substeps);
 }
 
 StepReport not_finite(StepReport report) {
@@ -328,6 +330,7 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
   StepReport report;
   report.by = traits_.name;
   StepWork work(from, drive, extras, report);
+  const SearchTally before = contact_.search.tally();
   SubstepState now{gather_nodes(from.x, from.obstacles), from.v, step_history(from)};
   const Points wanted = gather_nodes(from.x, drive.obstacles);
   if (!now.nodes.allFinite() || !now.v.allFinite()) return not_finite(report);
@@ -339,6 +342,8 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
   if (!advance(work, now, {wanted, drive.pins, dt / planned, planned, halvings, parts})) return not_finite(report);
   if (has_contact())
     add(catch_up(contact_.search, contact_.options, contact_.inverse_mass, wanted, now.nodes, contact_.path), report);
+  report.counts.searches = contact_.search.tally().searches - before.searches;
+  report.counts.candidates = contact_.search.tally().candidates - before.candidates;
   StepEnd end{now.nodes.topRows(from.x.rows()), std::move(now.v), {}, blocks_of(now.history)};
   for (std::size_t k = 0; k < from.obstacles.size(); ++k)
     end.obstacles.push_back(now.nodes.middleRows(contact_.world.first_node[k], from.obstacles[k].rows()));

@@ -13,7 +13,8 @@ namespace selvedge {
 enum class Integrator { implicit_euler, bdf2 };
 
 struct ConventionalOptions {
-  std::optional<int> substeps;  // nothing: chosen each frame from the speed
+  std::optional<int> substeps;      // nothing: chosen each frame from the speed
+  std::optional<int> min_substeps;  // nothing: least_substeps
   int max_substeps = 12;
   Integrator integrator = Integrator::implicit_euler;
   ImplicitEulerOptions implicit_euler;

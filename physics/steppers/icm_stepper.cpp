@@ -115,6 +115,8 @@ bool IcmStepper::minimise(const StepProblem& problem, Points& x, StepReport& rep
   const NewtonReport newton = solver_.solve(problem, x);
   report.iterations += newton.iterations;
   report.linear_iterations += newton.linear_iterations;
+  ++report.counts.solves;
+  report.counts.coarse_builds += newton.coarse_builds;
   report.residual = solver_.imbalance(problem, x);
   if (!newton.converged) report.reason = Reason::not_converged;
   report.seconds.solve += watch.lap();
@@ -195,6 +197,7 @@ StepReport IcmStepper::step(const State& from, const Drive& drive, double dt, St
     now.v = (next.topRows(n) - now.nodes.topRows(n)) / h;
     if (has_contact()) {
       Stopwatch watch;
+      ++report.counts.audits;
       report.collision.passed_through += passed_through(world_, work.exemption, now.nodes, next, audited_);
       report.seconds.audit += watch.lap();
     }

@@ -40,9 +40,11 @@ void take_audit(Audit audit, State& state, StepReport& report) {
 
 void audit_state(const Scene& scene, const Drive& drive, State& state, AuditMemory& memory, StepReport& report) {
   Stopwatch watch;
+  ++report.counts.audits;
   take_audit(audit_positions(scene, state.x, state.obstacles, &memory), state, report);
   CollisionReport& collision = report.collision;
   if (state.pinched) {
+    ++report.counts.audits;
     collision.pairs_wanted = audit_positions(scene, state.x, drive.obstacles).intersecting_pairs();
     for (std::size_t k = 0; k < drive.obstacles.size(); ++k)
       collision.depth_wanted =

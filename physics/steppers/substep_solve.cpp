@@ -31,6 +31,8 @@ NewtonReport SubstepSolve::once(const StepProblem& problem, Points& x, StepRepor
   const NewtonReport newton = solver_.solve(problem, x);
   report.iterations += newton.iterations;
   report.linear_iterations += newton.linear_iterations;
+  ++report.counts.solves;
+  report.counts.coarse_builds += newton.coarse_builds;
   return newton;
 }
 
@@ -68,7 +70,9 @@ NewtonReport SubstepSolve::with_contact(Substep& s, StepProblem& problem, Points
         mistaken_friction(solved, contacts.terms, *problem.x0, x, creep) < normal_change)
       return newton;
     const int least = friction ? 2 : 1;
-    if (pass >= least && change < normal_change && deepest(found, s.nodes) < deep_) return newton;
+    // Where the iteration has not settled, normal forces change with it, and one more solve for their sake is as rough.
+    const bool bounded = change < normal_change || !newton.converged;
+    if (pass >= least && bounded && deepest(found, s.nodes) < deep_) return newton;
     const Timed timed(report.seconds.response);
     add_impact_terms(scene_, stage_.world, found, stage_.inverse_mass, nodes0, s.nodes, s.h, deep_, contacts);
     raise_stiffness(contacts.terms, x);

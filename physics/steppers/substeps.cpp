@@ -12,8 +12,6 @@ constexpr double edges_deep = 0.05;      // that an impact may be for impulses a
 
 constexpr double visibly_damped = 1.0 / 48;  // steps of implicit Euler that are longer are [s]
 
-int least_substeps(double dt) { return dt > visibly_damped ? 2 : 1; }
-
 // Parts of a distance, none of them longer than `longest`.
 int parts(double distance, double longest, int least, int most) {
   return longest > 0 ? static_cast<int>(std::clamp<double>(std::ceil(distance / longest), std::min(least, most), most))
@@ -21,6 +19,8 @@ int parts(double distance, double longest, int least, int most) {
 }
 
 }  // namespace
+
+int least_substeps(double dt) { return dt > visibly_damped ? 2 : 1; }
 
 int substeps_for_speed(const State& from, const Drive& drive, double dt, double edge_length, int max_substeps) {
   double speed = drive.acceleration.norm() * dt;
@@ -30,8 +30,8 @@ int substeps_for_speed(const State& from, const Drive& drive, double dt, double 
   return parts(dt * speed, edges_a_substep * edge_length, least_substeps(dt), max_substeps);
 }
 
-int substeps_for_contact(double contact_speed, double dt, double edge_length, int max_substeps) {
-  return parts(dt * contact_speed, edges_past * edge_length, least_substeps(dt), max_substeps);
+int substeps_for_contact(double contact_speed, double dt, double edge_length, int least, int most) {
+  return parts(dt * contact_speed, edges_past * edge_length, least, most);
 }
 
 int parts_for_distance(double distance, double edge_length, int most) {

@@ -17,12 +17,13 @@ struct SubstepState {
   StepHistory history = {};
 };
 
-// How many parts a step of dt [s] is cut into. At least two of one longer than 1/48 s: implicit Euler at 1/30 s damps
-// visibly. edge_length: the mean one [m]; speeds in m/s.
-// As many as keep every vertex's motion in a substep within a few mesh edges.
+// How many parts a step of dt [s] is cut into. edge_length: the mean one [m]; speeds in m/s.
+// At least two of a step longer than 1/48 s: implicit Euler at 1/30 s damps visibly.
+int least_substeps(double dt);
+// As many as keep every vertex's motion in a substep within a few mesh edges, and least_substeps.
 int substeps_for_speed(const State& from, const Drive&, double dt, double edge_length, int max_substeps);
 // As many as keep the motion of touching pairs past each other within one edge.
-int substeps_for_contact(double contact_speed, double dt, double edge_length, int max_substeps);
+int substeps_for_contact(double contact_speed, double dt, double edge_length, int least, int most);
 // As many as keep each part of a motion of `distance` [m] past each other within a few edges: contact cannot be
 // linearised over more.
 int parts_for_distance(double distance, double edge_length, int most);

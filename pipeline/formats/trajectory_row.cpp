@@ -35,6 +35,11 @@ std::vector<Column> columns() {
           {"graph_seconds", offsetof(Row, phase.graph), real},
           {"network_seconds", offsetof(Row, phase.network), real},
           {"guard_seconds", offsetof(Row, phase.guard), real},
+          {"solves", offsetof(Row, counts.solves), whole},
+          {"coarse_builds", offsetof(Row, counts.coarse_builds), whole},
+          {"searches", offsetof(Row, counts.searches), whole},
+          {"candidates", offsetof(Row, counts.candidates), H5T_NATIVE_INT64},
+          {"audits", offsetof(Row, counts.audits), whole},
           {"contacts", offsetof(Row, collision.contacts), whole},
           {"impulses", offsetof(Row, collision.impulses), whole},
           {"zones", offsetof(Row, collision.zones), whole},
@@ -97,6 +102,7 @@ TrajectoryRow row_of(const Frame& frame, int by, std::int64_t bad_begin) {
   row.linear_iterations = report.linear_iterations;
   row.residual = report.residual;
   row.phase = report.seconds;
+  row.counts = report.counts;
   row.collision = report.collision;
   row.self_pairs = frame.self_pairs;
   row.vertex_pairs = frame.vertex_pairs;
@@ -130,6 +136,7 @@ void fill_from_row(const TrajectoryRow& row, const std::vector<std::string>& nam
   report.linear_iterations = row.linear_iterations;
   report.residual = row.residual;
   report.seconds = row.phase;
+  report.counts = row.counts;
   report.collision = row.collision;
   frame.self_pairs = row.self_pairs;
   frame.vertex_pairs = row.vertex_pairs;

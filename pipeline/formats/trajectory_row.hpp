@@ -17,6 +17,7 @@ struct TrajectoryRow {
   std::int32_t fell_back, verdict, substeps, resting, iterations, linear_iterations;
   double residual;
   PhaseTimes phase;
+  StepCounts counts;
   CollisionReport collision;
   std::int32_t self_pairs, vertex_pairs, obstacle_pairs, inside_vertices, nonfinite;
   double max_stretch, min_stretch;

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "pipeline/formats/trajectory_row.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -68,6 +70,7 @@ void add_frame(RunSummary& summary, int index, const Frame& frame) {
   summary.substeps += report.substeps;
   summary.iterations += report.iterations;
   summary.linear_iterations += report.linear_iterations;
+  summary.counts += report.counts;
   if (frame.max_stretch > summary.max_stretch) {
     summary.max_stretch = frame.max_stretch;
     summary.max_stretch_frame = index;
@@ -120,6 +123,11 @@ double median(std::vector<double> values) {
 
 double median_milliseconds(const RunSummary& summary) { return 1000 * median(summary.frame_seconds); }
 
+double worst_milliseconds(const RunSummary& summary) {
+  const std::vector<double>& all = summary.frame_seconds;
+  return all.empty() ? 0 : 1000 * *std::ranges::max_element(all);
+}
+
 bool is_clean(const RunSummary& summary) {
   return summary.end == RunEnd::finished && summary.pairs == 0 && summary.worst_inside == 0 && summary.nonfinite == 0 &&
          summary.passed_through == 0 && summary.jumped == 0 && summary.cut_out_at_end == 0;
@@ -148,6 +156,11 @@ std::string summary_json(const RunSummary& s) {
       {"substeps", s.substeps},
       {"iterations", s.iterations},
       {"linear_iterations", s.linear_iterations},
+      {"solves", s.counts.solves},
+      {"coarse_builds", s.counts.coarse_builds},
+      {"searches", s.counts.searches},
+      {"candidates", s.counts.candidates},
+      {"audits", s.counts.audits},
       {"verdicts", verdicts},
       {"max_residual", finite_or_null(s.max_residual)},
       {"max_stretch", finite_or_null(s.max_stretch)},

@@ -23,6 +23,7 @@ struct RunSummary {
   std::vector<double> frame_seconds;
   PhaseTimes seconds;  // sums
   int substeps = 0, iterations = 0, linear_iterations = 0;
+  StepCounts counts;             // sums
   std::int64_t peak_memory = 0;  // [bytes]
   std::vector<int> verdicts;     // frames by Verdict, of a hybrid stepper; empty: it is none
   double max_stretch = 1, min_stretch = 1;
@@ -51,6 +52,7 @@ double held_fraction(const RunSummary&);
 double median(std::vector<double>);  // 0 of none
 double mean_milliseconds(const RunSummary&);
 double median_milliseconds(const RunSummary&);
+double worst_milliseconds(const RunSummary&);
 
 // Ran to its end, and every frame finite, without intersecting pairs, without vertices inside obstacles, reached by a
 // motion in which nothing passed through and no obstacle jumped, with nothing left that is cut out.

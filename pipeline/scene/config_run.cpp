@@ -1,4 +1,5 @@
 #include "pipeline/scene/config_scene.hpp"
+#include "pipeline/scene/quality.hpp"
 
 // What a scene file says of the run.
 namespace selvedge {
@@ -107,6 +108,9 @@ const OptionRows<ConventionalOptions>& substep_options() {
   static const OptionRows<O> rows{or_word(integer("substeps", &O::substeps, at_least_one,
                                                   "time steps a frame; `auto`: from the speed of what touches"),
                                           "auto"),
+                                  or_word(integer("min_substeps", &O::min_substeps, at_least_one,
+                                                  "fewest that `auto` takes; `auto`: 2 of a frame longer than 1/48 s"),
+                                          "auto"),
                                   integer("max_substeps", &O::max_substeps, at_least_one, "most that `auto` takes")};
   return rows;
 }
@@ -140,7 +144,9 @@ const Options<RunOptions>& run_options() {
   static const Options<O> table(
       "run", "",
       OptionRows<O>{integer("frames", &O::frames, at_least_one, "how many"),
-                    number("fps", &O::fps, Unit::rate, positive, "frames a second")} +
+                    number("fps", &O::fps, Unit::rate, positive, "frames a second"),
+                    word("quality", &O::quality, quality_names(),
+                         "values of other keys, which they override where they are given (docs/benchmarks.md)")} +
           inside(&O::conventional, substep_options()) +
           OptionRows<O>{
               word("stepper", &O::stepper, known_kinds().names(), "who makes the frames"),

@@ -26,6 +26,7 @@ struct RefuRun {
 struct RunOptions {
   int frames = 60;
   double fps = 30;
+  std::string quality = "standard";  // quality.hpp
   std::string stepper = "conventional";
   bool rest = true;    // cloths that rest are left out
   std::string output;  // folder for the results; empty: chosen by the command

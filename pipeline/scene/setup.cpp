@@ -10,6 +10,7 @@
 #include "pipeline/meshes/setup_motion.hpp"
 #include "pipeline/meshes/setup_obstacle.hpp"
 #include "pipeline/scene/config_scene.hpp"
+#include "pipeline/scene/quality.hpp"
 #include "pipeline/scene/setup_cloth.hpp"
 #include "pipeline/scene/setup_outcome.hpp"
 #include "pipeline/scene/setup_seams.hpp"
@@ -289,6 +290,7 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
   setup.table = scene_table(kinds);
   Config config = read_config(file, setup.table->scene, overrides);
   setup.file = file;
+  setup.quality = set_quality(config);
   setup.run = read_run(config);
   setup.kind = *kinds.find(setup.run.stepper);
   if (setup.kind.options) setup.kind_options = config["run"][setup.kind.name];

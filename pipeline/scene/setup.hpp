@@ -28,6 +28,7 @@ struct Setup {
   Points velocity;       // at time 0
   std::string prepared;  // what was done for the start; empty: nothing
   RunOptions run;
+  std::string quality;                               // what run.quality has set, for people
   std::function<Drive(double time)> drive_at;        // the world at a time [s]
   std::vector<std::shared_ptr<PosedBodies>> bodies;  // of each obstacle, null for what is no body: what drive_at knows
   std::vector<Follower> followers;                   // vertices without mass that go with others, all of them pins

@@ -16,10 +16,12 @@ struct Column {
   double (*value)(const BenchMember&);
 };
 
-double per_frame(const BenchMember& member, double seconds) {
+double a_frame(const BenchMember& member, double sum) {
   const auto frames = static_cast<double>(member.summary.frame_seconds.size());
-  return frames > 0 ? 1000 * seconds / frames : 0;
+  return frames > 0 ? sum / frames : 0;
 }
+
+double per_frame(const BenchMember& member, double seconds) { return 1000 * a_frame(member, seconds); }
 
 const std::vector<Column>& columns() {
   using M = const BenchMember&;
@@ -32,6 +34,14 @@ const std::vector<Column>& columns() {
       {"ms_ccd", "ccd", 1, [](M m) { return per_frame(m, m.summary.seconds.ccd); }},
       {"ms_response", "response", 1, [](M m) { return per_frame(m, m.summary.seconds.response); }},
       {"ms_audit", "audit", 1, [](M m) { return per_frame(m, m.summary.seconds.audit); }},
+      {"ms_worst", "worst ms", 1, [](M m) { return worst_milliseconds(m.summary); }},
+      {"iterations", "Newton", 1, [](M m) { return a_frame(m, m.summary.iterations); }},
+      {"linear_iterations", "V-cycles", 1, [](M m) { return a_frame(m, m.summary.linear_iterations); }},
+      {"solves", "solves", 1, [](M m) { return a_frame(m, m.summary.counts.solves); }},
+      {"coarse_builds", "builds", 1, [](M m) { return a_frame(m, m.summary.counts.coarse_builds); }},
+      {"searches", "searches", 1, [](M m) { return a_frame(m, m.summary.counts.searches); }},
+      {"candidates", "candidates", 0, [](M m) { return a_frame(m, double(m.summary.counts.candidates)); }},
+      {"audits", "audits", 1, [](M m) { return a_frame(m, m.summary.counts.audits); }},
       {"peak_mb", "peak MB", 1, [](M m) { return double(m.summary.peak_memory) / 1e6; }},
       {"max_contacts", "contacts", 0, [](M m) { return double(m.summary.max_contacts); }},
       {"impulses", "impulses", 0, [](M m) { return double(m.summary.impulses); }},

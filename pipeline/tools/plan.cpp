@@ -55,6 +55,7 @@ std::vector<PlanLine> lines_of(const Setup& setup) {
   if (setup.run.stepper == "learned")
     return learned_plan_lines(setup.scene, read_learned_weights(setup).architecture, setup.run.learned.settle);
   std::vector<PlanLine> lines = plan_lines(setup.scene);
+  lines.push_back({"quality", true, setup.quality});
   lines.push_back({"linear solver", true, linear_solver_of(setup)});
   const bool hybrid = setup.run.stepper == "hybrid", rest = setup.run.rest && !hybrid;
   lines.push_back({"cloths at rest", !rest,

@@ -1,0 +1,157 @@
+#include "collision/untangle/facing.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "collision/geometry/cell_grid.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double come_closer = 0.5;   // of their distance at rest: what is nearer has come together
+constexpr double deepest_part = 0.7;  // of a part's thickness, that another is in it: beyond, it comes out behind
+constexpr double widened = 1 + 1e-9;  // bounds of many vertices are taken wider by this
+constexpr int in_a_group = 8;         // vertices of a cube that are looked at together
+constexpr int cubes_away = 2;         // cubes that the reach is long
+
+struct Extent {
+  Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
+  void take(const Vec3& at) {
+    lo = lo.cwiseMin(at);
+    hi = hi.cwiseMax(at);
+  }
+  void take(const Extent& other) {
+    lo = lo.cwiseMin(other.lo);
+    hi = hi.cwiseMax(other.hi);
+  }
+};
+
+// The least that a dot product of a member of a and one of b can be.
+double least_dot(const Extent& a, const Extent& b) {
+  const Eigen::Array3d ll = a.lo.array() * b.lo.array(), lh = a.lo.array() * b.hi.array(),
+                       hl = a.hi.array() * b.lo.array(), hh = a.hi.array() * b.hi.array();
+  return ll.min(lh).min(hl).min(hh).sum();
+}
+
+double least_square(const Extent& a, const Extent& b) {
+  return (a.lo - b.hi).cwiseMax(b.lo - a.hi).cwiseMax(0).squaredNorm();
+}
+
+double largest_square(const Extent& a, const Extent& b) {
+  return (a.hi - b.lo).cwiseAbs().cwiseMax((b.hi - a.lo).cwiseAbs()).squaredNorm();
+}
+
+// The vertices of a cube of the grid, or some of them.
+struct CubeExtents {
+  Extent x, normals, rest;
+};
+
+// Places in the grid's order, side by side in one cube.
+struct VertexGroup {
+  int first, last;
+  Extent x, normals;
+};
+
+// A posed body with its vertices also in the order of a grid: whoever looks round goes through memory in order.
+struct PosedCubes {
+  const FacingBody& body;
+  const Points &x, &normals;
+  CellGrid grid;
+  Points x_near, normals_near;
+  std::vector<int> filled;           // cubes that hold vertices
+  std::vector<int> place;            // of each cube among these
+  std::vector<CubeExtents> extents;  // of these
+  std::vector<int> first_group;      // of these; one more ends them
+  std::vector<VertexGroup> groups;
+
+  PosedCubes(const FacingBody& b, const Points& posed, const Points& n)
+      : body(b),
+        x(posed),
+        normals(n),
+        grid(posed, b.reach / cubes_away),
+        x_near(posed(grid.order(), Eigen::all)),
+        normals_near(n(grid.order(), Eigen::all)),
+        place(static_cast<std::size_t>(grid.cubes()), -1) {
+    for (int cube = 0; cube < grid.cubes(); ++cube) {
+      if (grid.first(cube) == grid.first(cube + 1)) continue;
+      place[cube] = static_cast<int>(filled.size());
+      filled.push_back(cube);
+      CubeExtents& own = extents.emplace_back();
+      first_group.push_back(static_cast<int>(groups.size()));
+      for (int p = grid.first(cube); p < grid.first(cube + 1); ++p) {
+        if ((p - grid.first(cube)) % in_a_group == 0) groups.push_back({p, p, {}, {}});
+        groups.back().x.take(row(x_near, p));
+        groups.back().normals.take(row(normals_near, p));
+        groups.back().last = p + 1;
+        own.rest.take(row(body.rest, grid.order()[p]));
+      }
+      for (std::size_t g = static_cast<std::size_t>(first_group.back()); g < groups.size(); ++g) {
+        own.x.take(groups[g].x);
+        own.normals.take(groups[g].normals);
+      }
+    }
+    first_group.push_back(static_cast<int>(groups.size()));
+  }
+};
+
+// False only if no vertex of one cube faces one of the other that was farther at rest.
+bool may_face(const CubeExtents& a, const CubeExtents& b, double reach) {
+  const double square = least_square(a.x, b.x);
+  return square <= widened * reach * reach && least_dot(a.normals, b.normals) <= facing_cosine + (widened - 1) &&
+         square <= widened * come_closer * come_closer * largest_square(a.rest, b.rest);
+}
+
+// near: places of cubes among the filled ones, ascending.
+int facing_vertex(const PosedCubes& posed, int v, const std::vector<int>& near) {
+  const FacingBody& body = posed.body;
+  const Vec3 at = row(posed.x, v), normal = row(posed.normals, v);
+  int found = -1;
+  double nearest = body.reach * body.reach;
+  const auto look_at = [&](int p) {
+    if (row(posed.normals_near, p).dot(normal) > facing_cosine) return;
+    const Vec3 way = at - row(posed.x_near, p);
+    const double square = way.squaredNorm();
+    if (square >= nearest) return;
+    const int w = posed.grid.order()[p];
+    const double thin = deepest_part * std::min(body.thickness[v], body.thickness[w]);
+    if (square >= thin * thin && way.dot(row(posed.normals, w)) < 0) return;
+    if (square >= come_closer * come_closer * (body.rest.row(v) - body.rest.row(w)).squaredNorm()) return;
+    nearest = square;
+    found = w;
+  };
+  for (const int cube : near)
+    for (int g = posed.first_group[cube]; g < posed.first_group[cube + 1]; ++g) {
+      const VertexGroup& group = posed.groups[g];
+      const double gap = (group.x.lo - at).cwiseMax(at - group.x.hi).cwiseMax(0).squaredNorm();
+      const double cosine = normal.cwiseProduct(group.normals.lo).cwiseMin(normal.cwiseProduct(group.normals.hi)).sum();
+      if (gap > widened * nearest || cosine > facing_cosine + (widened - 1)) continue;
+      for (int p = group.first; p < group.last; ++p) look_at(p);
+    }
+  return found;
+}
+
+}  // namespace
+
+// Most cubes near a vertex hold nothing but skin of its own part, which looks the same way and was as near at rest:
+// they are left out for all vertices of a cube at once.
+std::vector<int> facing_vertices(const FacingBody& body, const Points& x, const Points& normals) {
+  const PosedCubes posed(body, x, normals);
+  std::vector<int> partner(static_cast<std::size_t>(x.rows()));
+#pragma omp parallel
+  {
+    std::vector<int> near;
+#pragma omp for schedule(dynamic, 16)
+    for (int c = 0; c < static_cast<int>(posed.filled.size()); ++c) {
+      near.clear();
+      posed.grid.for_each_cube_around(posed.filled[c], cubes_away, [&](int cube) {
+        if (posed.place[cube] >= 0 && may_face(posed.extents[c], posed.extents[posed.place[cube]], body.reach))
+          near.push_back(posed.place[cube]);
+      });
+      for (int p = posed.grid.first(posed.filled[c]); p < posed.grid.first(posed.filled[c] + 1); ++p)
+        partner[posed.grid.order()[p]] = facing_vertex(posed, posed.grid.order()[p], near);
+    }
+  }
+  return partner;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,66 @@
+#include "pipeline/scene/quality.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace selvedge {
+namespace {
+
+struct QualityValue {
+  std::string section, key;
+  double number = 0;
+  std::string word = {};  // in place of the number
+};
+
+struct QualityLevel {
+  std::string name, about;
+  std::vector<QualityValue> values;
+};
+
+// Measured in docs/benchmarks.md.
+const std::vector<QualityLevel>& levels() {
+  static const std::vector<QualityLevel> all{
+      {"preview", "", {{"run", "substeps", 1}, {"solver", "max_newton", 2}, {"solver", "relative_tolerance", 0.03}}},
+      {"standard", "every key's default", {}},
+      {"fine", "", {{"run", "min_substeps", 4}, {"solver", "integrator", 0, "bdf2"}}}};
+  return all;
+}
+
+const QualityLevel& level_of(const std::string& name) {
+  return *std::ranges::find(levels(), name, &QualityLevel::name);
+}
+
+// The stepper `icm` has no other integrator.
+bool applies(const QualityValue& value, const Config& scene) {
+  return value.key != "integrator" || scene["run"]["stepper"].text() != "icm";
+}
+
+}  // namespace
+
+std::vector<std::string> quality_names() {
+  std::vector<std::string> names;
+  for (const QualityLevel& level : levels()) names.push_back(level.name);
+  return names;
+}
+
+std::string set_quality(Config& scene) {
+  const QualityLevel& level = level_of(scene["run"]["quality"].text());
+  std::string text = level.about;
+  for (const QualityValue& value : level.values) {
+    if (!applies(value, scene)) continue;
+    Config& entry = scene[value.section][value.key];
+    const bool own = entry.given;
+    if (!own) {
+      entry.given = true;
+      entry.where = scene["run"]["quality"].where;
+      entry.words = value.word.empty() ? std::vector<std::string>{} : std::vector{value.word};
+      entry.numbers = value.word.empty() ? std::vector{value.number} : std::vector<double>{};
+    }
+    const std::string shown = entry.words.empty() ? fmt::format("{}", entry.numbers.front()) : entry.words.front();
+    text += (text.empty() ? "" : ", ") + value.section + "." + value.key + " " + shown + (own ? " (given)" : "");
+  }
+  return level.name + ": " + text;
+}
+
+}  // namespace selvedge
