@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "pipeline/formats/trajectory_row.hpp"
+
 namespace selvedge {
 namespace {
 

@@ -20,7 +20,7 @@ Setup read(const Folder& folder, const std::string& more, const std::vector<std:
 }  // namespace
 
 TEST_CASE("Quality: standard is every key's default", "[setup]") {
-  const Folder folder;
+  const Folder folder("quality");
   const Setup none = read(folder, ""), standard = read(folder, "run: {quality: standard}\n");
   CHECK(none.config == standard.config);
   const ConventionalOptions defaults;
@@ -30,7 +30,7 @@ TEST_CASE("Quality: standard is every key's default", "[setup]") {
 }
 
 TEST_CASE("Quality: a word stands for several keys, and a key that is given stays", "[setup]") {
-  const Folder folder;
+  const Folder folder("quality");
   const Setup preview = read(folder, "run: {quality: preview}\n");
   CHECK(preview.run.conventional.substeps == 1);
   CHECK(preview.run.conventional.implicit_euler.max_newton == 2);
@@ -56,7 +56,7 @@ TEST_CASE("Quality: a word stands for several keys, and a key that is given stay
 }
 
 TEST_CASE("Quality: the configuration of a run names it and reads back to the same", "[setup]") {
-  const Folder folder;
+  const Folder folder("quality");
   const Setup preview = read(folder, "run: {quality: preview}\nsolver: {max_newton: 3}\n");
   CHECK_THAT(preview.config, Contains("quality: \"preview\""));
   const Setup again = read_setup(fake::write(folder, "config.yaml", preview.config));
