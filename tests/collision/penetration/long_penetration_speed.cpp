@@ -45,8 +45,8 @@ TEST_CASE("penetration: time at 24,000 triangles and some hundred pairs", "[pene
   const double winding = time_of([&] { report = winding_loss(closed, x, segments, {}, &gradient); });
   const double detection = time_of([&] { find_segments(std::span(&sheet, 1)); });
   WARN(segments.segments.size() << " pairs, " << found.contours.size() << " contours, " << found.regions.size()
-                                << " regions: " << volume << " ms of one core; winding of " << report.faces << " faces " << winding
-                                << " ms; detection " << detection << " ms");
+                                << " regions: " << volume << " ms of one core; winding of " << report.faces << " faces "
+                                << winding << " ms; detection " << detection << " ms");
   CHECK(found.regions.size() > 0);
 }
 
