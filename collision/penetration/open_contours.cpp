@@ -122,21 +122,21 @@ class Closer {
 
   void go_through_middles(SurfaceCurve& curve, ContourClosing::Way& way) {
     way.points = {from()};
-    for (const Step& step : shortest_strip(way.end_faces[0], way.end_faces[1]))
+    for (const StripStep& step : shortest_strip(way.end_faces[0], way.end_faces[1]))
       leave(step.face, step.edge, 0.5, curve, way);
     curve.runs.push_back({way.end_faces[1], way.points.back(), to()});
     way.points.push_back(to());
   }
 
  private:
-  struct Step {
+  struct StripStep {
     int face = 0, edge = 0;  // that is left, and through which edge
     int before = -1;         // the step before, as a place in a list
   };
 
   // From face to face through the middles of edges, on the cloth.
-  std::vector<Step> shortest_strip(int first, int last) const {
-    std::vector<Step> steps, strip;
+  std::vector<StripStep> shortest_strip(int first, int last) const {
+    std::vector<StripStep> steps, strip;
     std::set<std::tuple<double, int, int>> front;  // length of the way, edge, place of the step
     std::vector<char> crossed(static_cast<std::size_t>(surface_.edges.rows()), 0);
     const auto spread = [&](const Vec3& from, double length, int face, int before) {
