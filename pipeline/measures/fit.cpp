@@ -6,12 +6,13 @@
 #include "physics/energies/measures.hpp"
 #include "physics/solve/assembly.hpp"
 #include "pipeline/measures/fit_girth.hpp"
+#include "pipeline/measures/motion_measures.hpp"
 
 namespace selvedge {
 namespace {
 
 constexpr int girths_a_region = 7;
-constexpr double percentile = 0.99;
+constexpr double high = 0.99;  // part of the values that a high one is not exceeded by
 
 // What is known of each vertex and triangle of the cloth.
 struct FitField {
@@ -26,12 +27,6 @@ struct FitField {
 struct FitPart {
   std::vector<int> vertices, triangles;
 };
-
-double high_value(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::ranges::sort(values);
-  return values[std::min(values.size() - 1, static_cast<std::size_t>(percentile * static_cast<double>(values.size())))];
-}
 
 // The region that most corners of a triangle are in; of three different ones the first corner's.
 int region_of_triangle(const Triangles& triangles, int t, const std::vector<int>& of_vertex) {
@@ -149,7 +144,7 @@ FitRow row_of(const Scene& scene, const FitField& field, const FitPart& part, co
     strains.push_back(field.strains[t]);
   }
   if (rest_area > 0) line.strain /= rest_area;
-  line.strain_99 = high_value(strains);
+  line.strain_99 = percentile(strains, high);
   for (const int v : part.vertices) {
     line.area += field.areas[v];
     line.gap += found.gap[v] / line.vertices;
@@ -161,7 +156,7 @@ FitRow row_of(const Scene& scene, const FitField& field, const FitPart& part, co
   line.contact = static_cast<double>(pressures.size()) / line.vertices;
   if (contact_area > 0) {
     line.pressure = std::max(0.0, force / contact_area);
-    line.pressure_99 = high_value(pressures);
+    line.pressure_99 = percentile(pressures, high);
   }
   return line;
 }

@@ -1,4 +1,5 @@
 #include "pipeline/tools/sew_garment.hpp"
+#include "pipeline/measures/motion_measures.hpp"
 
 #include <fmt/format.h>
 
@@ -103,12 +104,6 @@ Garment garment_of(const PatternRequest& request, const Pattern& pattern, const 
   std::ranges::sort(garment.pins);
   garment.pins.erase(std::unique(garment.pins.begin(), garment.pins.end()), garment.pins.end());
   return garment;
-}
-
-double percentile(std::vector<double> values, double part) {
-  if (values.empty()) return 0;
-  std::ranges::sort(values);
-  return values[std::min(values.size() - 1, static_cast<std::size_t>(part * static_cast<double>(values.size())))];
 }
 
 // Of the garment as it is written, against the body as it was given.
