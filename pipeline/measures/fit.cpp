@@ -12,7 +12,7 @@ namespace selvedge {
 namespace {
 
 constexpr int girths_a_region = 7;
-constexpr double high = 0.99;  // part of the values that a high one is not exceeded by
+constexpr double high_part = 0.99;  // of the values are not above a high one
 
 // What is known of each vertex and triangle of the cloth.
 struct FitField {
@@ -144,7 +144,7 @@ FitRow row_of(const Scene& scene, const FitField& field, const FitPart& part, co
     strains.push_back(field.strains[t]);
   }
   if (rest_area > 0) line.strain /= rest_area;
-  line.strain_99 = percentile(strains, high);
+  line.strain_99 = percentile(strains, high_part);
   for (const int v : part.vertices) {
     line.area += field.areas[v];
     line.gap += found.gap[v] / line.vertices;
@@ -156,7 +156,7 @@ FitRow row_of(const Scene& scene, const FitField& field, const FitPart& part, co
   line.contact = static_cast<double>(pressures.size()) / line.vertices;
   if (contact_area > 0) {
     line.pressure = std::max(0.0, force / contact_area);
-    line.pressure_99 = percentile(pressures, high);
+    line.pressure_99 = percentile(pressures, high_part);
   }
   return line;
 }
