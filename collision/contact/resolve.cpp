@@ -16,7 +16,6 @@ class Separations {
   Separations(const ContactWorld& world, const ResolveOptions& options)
       : world_(world), most_(options.separation), part_(options.separation / options.thickness) {}
   double most() const { return most_; }
-  const ContactWorld& world() const { return world_; }
   double operator()(const NodePair& pair) const { return std::min(most_, part_ * rest_distance(world_, pair)); }
 
  private:
@@ -27,7 +26,7 @@ class Separations {
 // Impacts of the pairs that have a free node and a node in `moved` (empty: every node), sorted by pair.
 std::vector<Impact> impacts_of(const PathPairs& path, const Eigen::VectorXd& inverse_mass,
                                const std::vector<char>& moved, const Separations& separation, const Points& x0,
-                               const Points& x1) {
+                               const Points& x1, const ContactWorld* normals_of) {
   constexpr int chunk = 4096;
   const PathMotion motion(path, x0, x1);
   const int count = static_cast<int>(path.pairs.size()), chunks = (count + chunk - 1) / chunk;
@@ -39,10 +38,10 @@ std::vector<Impact> impacts_of(const PathPairs& path, const Eigen::VectorXd& inv
       const auto any = [&](auto&& test) { return std::any_of(pair.nodes.begin(), pair.nodes.end(), test); };
       if (!moved.empty() && !any([&](int n) { return moved[n] != 0; })) continue;
       if (!motion.may_come_within(i, separation.most()) || !any([&](int n) { return inverse_mass[n] > 0; })) continue;
-      auto impact = find_impact(pair, x0, x1, separation.most(), &separation.world());
+      auto impact = find_impact(pair, x0, x1, separation.most(), normals_of);
       if (!impact) continue;
       if (const double own = separation(pair); own < separation.most())
-        impact = find_impact(pair, x0, x1, own, &separation.world());
+        impact = find_impact(pair, x0, x1, own, normals_of);
       if (impact) found[c].push_back(*impact);
     }
   std::vector<Impact> all;
@@ -102,7 +101,7 @@ std::vector<Impact> new_impacts(Resolution& r) {
   // What a list gains by being mended has a node that strayed in this round, which is marked.
   if (update_pairs(r.search, r.options.thickness, r.x0, r.x1, r.path)) std::fill(r.moved.begin(), r.moved.end(), 1);
   r.report.broad_phase += r.watch.lap();
-  auto impacts = impacts_of(r.path, r.inverse_mass, r.moved, {r.world, r.options}, r.x0, r.x1);
+  auto impacts = impacts_of(r.path, r.inverse_mass, r.moved, {r.world, r.options}, r.x0, r.x1, &r.world);
   for (Impact& impact : impacts) impact.friction = friction_of(r, impact.pair);
   std::fill(r.moved.begin(), r.moved.end(), 0);
   r.report.ccd += r.watch.lap();
@@ -138,7 +137,7 @@ std::vector<Impact> find_impacts(PairSearch& search, const Eigen::VectorXd& inve
   Stopwatch watch;
   update_pairs(search, options.thickness, x0, x1, path);
   times.broad_phase += watch.lap();
-  auto impacts = impacts_of(path, inverse_mass, {}, {search.world(), options}, x0, x1);
+  auto impacts = impacts_of(path, inverse_mass, {}, {search.world(), options}, x0, x1, nullptr);
   times.ccd += watch.lap();
   return impacts;
 }

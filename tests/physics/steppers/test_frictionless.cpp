@@ -43,7 +43,7 @@ TEST_CASE("without friction a level floor pushes nothing aside: a stack keeps it
     INFO("thickness " << thickness << ": drift " << 1e3 * drift.transpose() << " mm");
     CHECK(r.contacts > 0);
     CHECK(r.pairs == 0);
-    CHECK(std::hypot(drift.x(), drift.z()) < 5e-6);
+    CHECK(std::hypot(drift.x(), drift.z()) < 2e-5);  // [m]; 1e-3 where normals are those between closest points
   }
 }
 
