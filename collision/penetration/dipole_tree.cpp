@@ -15,42 +15,70 @@ double principal_angle(const std::array<Vec3, 3>& triangle, const Vec3& at) {
   return a.dot(b.cross(c)) == 0 ? 0 : solid_angle(a, b, c);
 }
 
-// What a dipole adds at a point, if that is far enough away.
-bool add_if_far(const DipoleTree::Dipole& dipole, const Vec3& at, double far, double& sum) {
+double seen_from(const Vec3& moment, const Vec3& to) {
+  const double square = to.squaredNorm();
+  return moment.dot(to) / (square * std::sqrt(square));
+}
+
+// What a node adds at a point, if that is far enough away.
+bool add_node(const DipoleTree& tree, int node, const Vec3& at, double& sum) {
+  const DipoleTree::Dipole& dipole = tree.dipoles[node];
   const Vec3 to = dipole.centre - at;
-  const double square = to.squaredNorm(), reach = far * dipole.radius;
+  const double square = to.squaredNorm(), reach = tree.far * dipole.radius;
   if (!(square > reach * reach)) return false;
-  sum += dipole.moment.dot(to) / (square * std::sqrt(square));
+  const Mat3& spread = tree.spreads[node];
+  sum += (dipole.moment.dot(to) + spread.trace() - 3 * to.dot(spread * to) / square) / (square * std::sqrt(square));
   return true;
 }
 
+// The same of a face.
+bool add_face(const DipoleTree& tree, int item, const Vec3& at, double& sum) {
+  const DipoleTree::Dipole& dipole = tree.of_faces[item];
+  const Vec3 to = dipole.centre - at;
+  const double square = to.squaredNorm(), reach = tree.far * dipole.radius;
+  if (!(square > reach * reach)) return false;
+  if (square > 4 * reach * reach) {
+    sum += seen_from(dipole.moment, to);
+    return true;
+  }
+  const auto& [a, b, c] = tree.corners[item];
+  const Vec3 third = dipole.moment / 3;
+  sum += seen_from(third, (a + b) / 2 - at) + seen_from(third, (b + c) / 2 - at) + seen_from(third, (c + a) / 2 - at);
+  return true;
+}
+
+// About the origin of the surface.
 struct DipoleSum {
   double area = 0;
   Vec3 centre = Vec3::Zero(), moment = Vec3::Zero();
+  Mat3 spread = Mat3::Zero();
 };
 
-void add_triangle(const std::array<Vec3, 3>& t, DipoleSum& sum) {
+void add_triangle(const std::array<Vec3, 3>& t, const Vec3& origin, DipoleSum& sum) {
   const Vec3 normal = 0.5 * (t[1] - t[0]).cross(t[2] - t[0]);
   const double area = normal.norm();
+  const Vec3 middle = (t[0] + t[1] + t[2]) / 3 - origin;
   sum.area += area;
-  sum.centre += area / 3 * (t[0] + t[1] + t[2]);
+  sum.centre += area * middle;
   sum.moment += normal;
+  sum.spread += middle * normal.transpose();
 }
 
 // Sums of a node from those of what is below it; children stand behind their parents.
-std::vector<DipoleSum> sums_of(const DipoleTree& tree) {
+std::vector<DipoleSum> sums_of(const DipoleTree& tree, const Vec3& origin) {
   std::vector<DipoleSum> sums(tree.bvh.nodes.size());
   for (std::size_t i = sums.size(); i-- > 0;) {
     const int child = tree.bvh.nodes[i].child;
     if (child < 0) {
       for (const int item : tree.bvh.leaves[~child].item)
-        if (item >= 0) add_triangle(tree.corners[item], sums[i]);
+        if (item >= 0) add_triangle(tree.corners[item], origin, sums[i]);
       continue;
     }
     for (const int c : {child, child + 1}) {
       sums[i].area += sums[c].area;
       sums[i].centre += sums[c].centre;
       sums[i].moment += sums[c].moment;
+      sums[i].spread += sums[c].spread;
     }
   }
   return sums;
@@ -79,14 +107,17 @@ DipoleTree make_dipole_tree(const Surface& surface, const Points& x, const std::
   }
   tree.bvh = build_bvh(boxes);
   if (faces.empty()) return tree;
-  const std::vector<DipoleSum> sums = sums_of(tree);
+  const Vec3 origin = tree.corners.front()[0];
+  const std::vector<DipoleSum> sums = sums_of(tree, origin);
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const Box& box = tree.bvh.nodes[i].box;
     DipoleTree::Dipole dipole;
-    dipole.centre = sums[i].area > 0 ? Vec3(sums[i].centre / sums[i].area)
+    dipole.centre = sums[i].area > 0 ? Vec3(origin + sums[i].centre / sums[i].area)
                                      : 0.5 * Vec3(box.lo[0] + box.hi[0], box.lo[1] + box.hi[1], box.lo[2] + box.hi[2]);
     dipole.moment = sums[i].moment / (4 * std::numbers::pi);
     dipole.radius = farthest_corner(box, dipole.centre);
+    tree.spreads.push_back((sums[i].spread - (dipole.centre - origin) * sums[i].moment.transpose()) /
+                           (4 * std::numbers::pi));
     tree.dipoles.push_back(dipole);
   }
   return tree;
@@ -100,14 +131,14 @@ double winding_number(const DipoleTree& tree, const Vec3& at, int left_out) {
   stack[size++] = 0;
   while (size > 0) {
     const int node = stack[--size], child = tree.bvh.nodes[node].child;
-    if (add_if_far(tree.dipoles[node], at, tree.far, far)) continue;
+    if (add_node(tree, node, at, far)) continue;
     if (child >= 0) {
       stack[size++] = child;
       stack[size++] = child + 1;
       continue;
     }
     for (const int item : tree.bvh.leaves[~child].item)
-      if (item >= 0 && tree.faces[item] != left_out && !add_if_far(tree.of_faces[item], at, 2 * tree.far, far))
+      if (item >= 0 && tree.faces[item] != left_out && !add_face(tree, item, at, far))
         angle += principal_angle(tree.corners[item], at);
   }
   return far + angle / (4 * std::numbers::pi);

@@ -7,7 +7,7 @@ namespace selvedge {
 
 struct WindingOptions {
   double weight = 1.8e5;  // [J/m^3], as 6 x 3e4 of the enclosed volume
-  double far = 2.5;       // DipoleTree
+  double far = 2;         // DipoleTree
 };
 
 // What a place where a garment winds w times costs: phi(|w - 1/2|), where phi(t) is 0 up to 1, 2 (t - 1) up to 1.5 and

@@ -107,7 +107,7 @@ TEST_CASE("winding: the tree is close to the definition", "[penetration]") {
   std::vector<int> faces;
   for (int t = 0; t < surface.triangles.rows(); ++t) faces.push_back(t);
   const std::vector<signed char> turn(faces.size(), 1);
-  const DipoleTree tree = make_dipole_tree(surface, solid.x, faces, turn, 2.5);
+  const DipoleTree tree = make_dipole_tree(surface, solid.x, faces, turn, 2);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> place(-1.5, 1.5);
   double worst = 0;
