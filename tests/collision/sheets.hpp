@@ -46,7 +46,7 @@ inline Sheet flat(int n, const Vec2& jitter) {
 
 // n rings of m vertices round the x axis, of radius r(x, angle) for |x| <= half_length; open at both ends.
 template <class Radius>
-Sheet tube(int n, int m, double turn, const Radius& radius, double half_length = 0.5) {
+Sheet round_tube(int n, int m, double turn, const Radius& radius, double half_length = 0.5) {
   Sheet s{Points((n + 1) * m, 3), Triangles(2 * n * m, 3)};
   for (int i = 0; i <= n; ++i)
     for (int j = 0; j < m; ++j) {

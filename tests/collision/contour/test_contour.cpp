@@ -15,7 +15,7 @@ namespace selvedge::test_contour {
 
 using testing::bent;
 using testing::flat;
-using testing::tube;
+using testing::round_tube;
 
 namespace {
 
@@ -206,7 +206,7 @@ TEST_CASE("contour: nested ones", "[contour]") {
 
 TEST_CASE("contour: tube through tube needs all contours together", "[contour]") {
   const auto bulge = [](double x, double) { return 0.45 + 0.1 * std::exp(-20 * (x + 0.03) * (x + 0.03)); };
-  const Case c(testing::join(tube(20, 17, 0, half, 1), tube(24, 17, 0.3, bulge, 1)));
+  const Case c(testing::join(round_tube(20, 17, 0, half, 1), round_tube(24, 17, 0.3, bulge, 1)));
   REQUIRE(c.contours.size() == 2);
   const std::vector<int> middle = c.where(1, [](const Vec3& p) { return p.tail<2>().norm() > 0.502; });
   REQUIRE_FALSE(middle.empty());
@@ -224,13 +224,13 @@ TEST_CASE("contour: tube through tube needs all contours together", "[contour]")
 }
 
 TEST_CASE("contour: a tube across another one", "[contour]") {
-  testing::Sheet across = tube(
+  testing::Sheet across = round_tube(
       22, 14, 0.1, [](double, double) { return 0.21; }, 1);
   for (int v = 0; v < across.x.rows(); ++v) {
     const Vec3 p = row(across.x, v);
     across.x.row(v) << p.z() + 0.02, p.x(), p.y() + 0.03;
   }
-  const Case c(testing::join(tube(21, 19, 0, half, 1), across));
+  const Case c(testing::join(round_tube(21, 19, 0, half, 1), across));
   REQUIRE(c.contours.size() == 2);
   CHECK(c.inside(1, 0) == c.where(1, [](const Vec3& p) { return p.tail<2>().norm() < 0.495; }));
   for (int v : c.inside(0, 1)) CHECK(std::hypot(c.mesh.x(v, 0) - 0.02, c.mesh.x(v, 2) - 0.03) < 0.21);

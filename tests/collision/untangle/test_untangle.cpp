@@ -14,7 +14,7 @@ namespace selvedge::test_untangle {
 
 using testing::bent;
 using testing::flat;
-using testing::tube;
+using testing::round_tube;
 
 namespace {
 
@@ -26,7 +26,7 @@ testing::Sheet outfit(double depth) {
     const double q = std::pow(x / 0.45, 2) + std::pow((angle - 3) / 1.7, 2);
     return 0.30 + depth * (q < 1 ? std::pow(1 - std::pow(q, 4), 2) : 0);
   };
-  return testing::join(tube(24, 48, 0, inner), tube(24, 48, 0.37, [](double, double) { return 0.32; }));
+  return testing::join(round_tube(24, 48, 0, inner), round_tube(24, 48, 0.37, [](double, double) { return 0.32; }));
 }
 
 // Of the first layer's triangles, as a share.
@@ -137,24 +137,25 @@ TEST_CASE("untangle: what is pushed back pushes no clean layer through a body", 
 
 TEST_CASE("untangle: tube through tube, all the way round", "[untangle]") {
   const auto band = [](double x, double) { return 0.30 + 0.05 * std::exp(-std::pow(x / 0.22, 4)); };
-  check_clean(untangled(testing::join(tube(20, 40, 0, band), tube(20, 40, 0.37, [](double, double) { return 0.32; }))));
+  check_clean(untangled(
+      testing::join(round_tube(20, 40, 0, band), round_tube(20, 40, 0.37, [](double, double) { return 0.32; }))));
 }
 
 TEST_CASE("untangle: tubes that lean into each other part without falling into each other again", "[untangle]") {
   const auto round = [](double, double) { return 0.2; };
-  testing::Sheet across = tube(30, 28, 0.1, round);
+  testing::Sheet across = round_tube(30, 28, 0.1, round);
   for (int v = 0; v < across.x.rows(); ++v) {
     const Vec3 p = row(across.x, v);
     across.x.row(v) << p.y() + 0.01, p.x() + 0.02, p.z() + 0.25;
   }
-  check_clean(untangled(testing::join(tube(30, 28, 0, round), across)));
+  check_clean(untangled(testing::join(round_tube(30, 28, 0, round), across)));
 }
 
 TEST_CASE("untangle: the order of layers decides where most of a layer is through", "[untangle]") {
   // 70 % of the inner tube is outside: without a hint the rest follows it, with one it comes back.
   const auto wide = [](double x, double) { return x > -0.2 ? 0.335 : 0.305; };
   const testing::Sheet mesh =
-      testing::join(tube(20, 40, 0, wide), tube(20, 40, 0.37, [](double, double) { return 0.32; }));
+      testing::join(round_tube(20, 40, 0, wide), round_tube(20, 40, 0.37, [](double, double) { return 0.32; }));
   const auto mean_radius = [&](const Points& x, int first) {
     double sum = 0;
     const int half = static_cast<int>(x.rows()) / 2;
@@ -180,7 +181,7 @@ TEST_CASE("untangle: a corner through a sheet, which encloses nothing on it", "[
 TEST_CASE("untangle: cloth goes out of a closed body that stands still", "[untangle]") {
   // A sphere of latitudes, and a sheet that cuts its top.
   const int n = 16, m = 32;
-  testing::Sheet ball = tube(n, m, 0, [](double x, double) { return std::sqrt(std::max(0.0, 0.25 - x * x)); });
+  testing::Sheet ball = round_tube(n, m, 0, [](double x, double) { return std::sqrt(std::max(0.0, 0.25 - x * x)); });
   testing::Sheet closed{Points((n - 1) * m + 2, 3), Triangles(2 * (n - 1) * m, 3)};
   closed.x.topRows((n - 1) * m) = ball.x.middleRows(m, (n - 1) * m);
   closed.x.row((n - 1) * m) << -0.5, 0, 0;
@@ -214,7 +215,7 @@ TEST_CASE("untangle: cloth goes out of a closed body that stands still", "[untan
 }
 
 TEST_CASE("untangle: what cannot be parted is named, and the rest is kept in shape", "[untangle]") {
-  testing::Sheet across = tube(20, 12, 0.1, [](double, double) { return 0.06; });
+  testing::Sheet across = round_tube(20, 12, 0.1, [](double, double) { return 0.06; });
   for (int v = 0; v < across.x.rows(); ++v) {
     const Vec3 p = row(across.x, v);
     across.x.row(v) << p.z() + 0.013, p.x(), p.y() + 0.017;
@@ -222,7 +223,7 @@ TEST_CASE("untangle: what cannot be parted is named, and the rest is kept in sha
   UntangleOptions options;
   options.iterations = 20;
   const UntangleOutcome out =
-      untangled(testing::join(tube(30, 40, 0, [](double, double) { return 0.3; }), across), options);
+      untangled(testing::join(round_tube(30, 40, 0, [](double, double) { return 0.3; }), across), options);
   CHECK(out.result.pairs_after > 0);
   REQUIRE_FALSE(out.result.left.empty());
   int pairs = 0;
