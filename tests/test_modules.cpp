@@ -24,7 +24,7 @@ const std::vector<Heavy> heavy_packages = {
     {"FCL", "fcl/.*", ".*_fcl\\.cpp"},
     {"yaml-cpp", "yaml-cpp/.*", "pipeline/.*yaml.*"},
     {"CLI11", "CLI/.*", "pipeline/.*\\.cpp"},
-    {"nlohmann-json", "nlohmann/.*", "pipeline/.*\\.cpp"},
+    {"nlohmann-json", "nlohmann/.*", "pipeline/.*(\\.cpp|_json\\.hpp)"},
     {"fmt", "fmt/.*", "pipeline/.*"},
     {"libzip", "zip\\.h", "pipeline/formats/npz\\.cpp"},
     {"Catch2", "catch2/.*", "tests/.*"},

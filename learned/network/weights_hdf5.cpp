@@ -154,7 +154,13 @@ bool stored_half(const WeightArray& array, WeightStorage storage) {
   return storage == WeightStorage::half && array.trained;
 }
 
-constexpr float largest_half = 65504;
+constexpr float largest_half = 65504, smallest_normal_half = 0x1p-14f;
+
+// HDF5 converts numbers below the smallest normal half wrongly (1.10): they become zero.
+void drop_small(const WeightArray& array) {
+  Eigen::Map<Eigen::ArrayXf> values(array.data, Eigen::Index{array.rows} * array.columns);
+  values = (values.abs() < smallest_normal_half).select(0.f, values);
+}
 
 void require_half_range(const WeightFile& content, const std::string& where) {
   NetworkWeights weights = content.weights;
@@ -181,9 +187,11 @@ void write_content(const std::filesystem::path& path, const WeightFile& content,
   write_texts(store, "origin_values", values);
   NetworkWeights weights = content.weights;
   const TypeId half(half_type());
-  for (const WeightArray& array : weight_arrays(content.architecture, weights))
+  for (const WeightArray& array : weight_arrays(content.architecture, weights)) {
+    if (stored_half(array, storage)) drop_small(array);
     write_dataset(store, "weights/" + array.name, stored_half(array, storage) ? half.id : H5T_IEEE_F32LE,
                   H5T_NATIVE_FLOAT, wanted_shape(array, is_matrix(array)), array.data);
+  }
   store.good(H5Fflush(store.file.id, H5F_SCOPE_LOCAL), "end of the file", "cannot be written");
 }
 

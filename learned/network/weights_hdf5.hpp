@@ -25,7 +25,7 @@ struct WeightFile {
 // behind it.
 //
 // How trained numbers are stored. `half` is IEEE's binary16: half the size, each number changed by 5e-4 of itself at
-// most. Statistics are stored as 32-bit floats in both.
+// most. Those below 6.1e-5 become zero. Statistics are stored as 32-bit floats in both.
 enum class WeightStorage { single, half };
 
 // Written beside and renamed: another process sees the old file or the new one. Throws Error for what cannot be

@@ -25,7 +25,7 @@ struct HybridOptions {
   int gate_steps = 6;         // places between start and proposal where the potential is asked
   int longest_stretch = 32;   // steps without a proposal, after refusals (proposal_trust.hpp)
   // Stop asking where proposals cost more time than they save. Steps then depend on the clock.
-  bool stop_when_slow = true;
+  bool stop_when_slow = false;
   double extra_time = 0.05;  // that proposals may cost, of the time so far
   ImplicitEulerOptions implicit_euler;
 };

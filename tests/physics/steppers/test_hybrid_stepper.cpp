@@ -80,17 +80,11 @@ Points noise(const State& from, const Points& solved) {
 
 void hand_over(const State& from, State& to) { replace_blocks("fake", {{"fake.x", from.x}}, to.memory); }
 
-// Steps that do not depend on the clock.
-HybridOptions untimed(HybridOptions options = {}) {
-  options.stop_when_slow = false;
-  return options;
-}
-
 std::unique_ptr<Stepper> hybrid(const Scene& scene, const Propose& propose, const HybridOptions& options = {}) {
   return make_hybrid_stepper(
       scene,
       {std::make_unique<FakeProposer>(scene, propose, 1), make_recovering_conventional_stepper(scene), {}, hand_over},
-      untimed(options));
+      options);
 }
 
 // A sheet that hangs by one side over a plate, and swings into it.
@@ -183,11 +177,13 @@ TEST_CASE("hybrid: refused proposals wait for longer and longer, and come back",
   CHECK(after_refusal(trust, 32).stretch == 4);
 }
 
-TEST_CASE("hybrid: the default costs at most a tenth more than its parent, whatever proposals cost and come to",
+TEST_CASE("hybrid: with a clock it costs at most a tenth more than its parent, whatever proposals cost and come to",
           "[hybrid]") {
   constexpr int frames = 100;
   constexpr double parent_work = 1;
   const World w = testing::swinging_sheet();
+  HybridOptions timed;
+  timed.stop_when_slow = true;
   struct Priced {
     const char* name;
     Propose propose;
@@ -212,7 +208,7 @@ TEST_CASE("hybrid: the default costs at most a tenth more than its parent, whate
          {},
          hand_over,
          [&] { return work; }},
-        {});
+        timed);
     const Seen seen = follow(*stepper, w, w.state, frames);
     CHECK(work <= one.most * frames * parent_work);
     CHECK(std::ranges::count(seen.verdicts, Verdict::admitted) >= one.least_taken);
@@ -252,11 +248,11 @@ TEST_CASE("hybrid: a tangled start is left to the parent until it is clean", "[h
 TEST_CASE("hybrid: any two steppers go together in the mode fallback", "[hybrid]") {
   const World w = testing::swinging_sheet();
   auto other = make_hybrid_stepper(
-      w.scene, {make_icm_stepper(w.scene, {}), make_recovering_conventional_stepper(w.scene), {}, {}}, untimed());
+      w.scene, {make_icm_stepper(w.scene, {}), make_recovering_conventional_stepper(w.scene), {}, {}}, {});
   const Seen seen = follow(*other, w, w.state, 6);
   CHECK(std::ranges::count(seen.verdicts, Verdict::admitted) > 0);
   auto turned = make_hybrid_stepper(
-      w.scene, {make_recovering_conventional_stepper(w.scene), make_icm_stepper(w.scene, {}), {}, {}}, untimed());
+      w.scene, {make_recovering_conventional_stepper(w.scene), make_icm_stepper(w.scene, {}), {}, {}}, {});
   CHECK(std::ranges::count(follow(*turned, w, w.state, 6).verdicts, Verdict::admitted) > 0);
 }
 

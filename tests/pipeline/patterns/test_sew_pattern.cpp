@@ -40,11 +40,11 @@ TEST_CASE("A tube is sewn round a ball and comes to rest on it") {
   const Audit found = audit(surface, sewn.x, bodies);
   CHECK(found.intersecting_pairs() == 0);
   CHECK(found.inside_vertices == 0);
-  // Round the ball with its right side out: normals point away from the axis, and it hangs above the equator.
+  // On the ball with its right side out: normals point away from the centre, also where the upper rim lies on the top.
   const Points normals = vertex_normals(surface, sewn.x);
   int outward = 0;
   for (Eigen::Index v = 0; v < sewn.x.rows(); ++v) {
-    outward += normals(v, 0) * sewn.x(v, 0) + normals(v, 2) * sewn.x(v, 2) > 0;
+    outward += normals.row(v).dot(sewn.x.row(v)) > 0;
     CHECK(std::abs(sewn.x(v, 1)) < 0.25);
   }
   CHECK(outward > 0.9 * static_cast<double>(sewn.x.rows()));

@@ -12,9 +12,9 @@ namespace {
 
 Scene scene_of(const std::string& material) {
   const fake::Folder folder("trained_material");
-  return read_setup(
-             fake::write(folder, "scene.yaml",
-                         "cloths:\n  - {name: towel, sheet: {size: [1, 1], cells: 2}, material: " + material + "}\n"))
+  return read_setup(fake::write(folder, "scene.yaml",
+                                "cloths:\n  - {name: towel, rectangle: {size: [1, 1], resolution: [2, 2]}, material: " +
+                                    material + "}\n"))
       .scene;
 }
 
