@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <optional>
 
 namespace selvedge {
 namespace {
@@ -64,16 +65,16 @@ Vec3 in_cone(const Feature& feature, const Vec3& way, const Moving& x) {
   return closest ? way : found;
 }
 
-// Of the nodes with a weight, of one side of a pair: absent where it is the inside of a face.
-std::array<int, 2> ends_of(const NodePair& pair, const Eigen::Vector4d& weights, std::initializer_list<int> side,
-                           int& count) {
+// The vertex or the edge of a side of a pair that the closest point lies on; none inside of a face.
+std::optional<std::array<int, 2>> ends_of(const NodePair& pair, const Eigen::Vector4d& weights,
+                                          std::initializer_list<int> side) {
   std::array<int, 2> ends{-1, -1};
-  count = 0;
-  for (const int i : side)
-    if (weights[i] != 0) {
-      if (count < 2) ends[static_cast<std::size_t>(count)] = pair.nodes[static_cast<std::size_t>(i)];
-      ++count;
-    }
+  std::size_t count = 0;
+  for (const int i : side) {
+    if (weights[i] == 0) continue;
+    if (count == ends.size()) return {};
+    ends[count++] = pair.nodes[static_cast<std::size_t>(i)];
+  }
   return ends;
 }
 
@@ -84,18 +85,14 @@ Vec3 contact_normal(const ContactWorld& world, const NodePair& pair, const Eigen
   const Vec3 way = between.normalized();
   const Moving x{x0, x1, time};
   const bool edges = pair.kind == PairKind::edge_edge;
-  int first_count = 0, second_count = 0;
-  const auto first = edges ? ends_of(pair, weights, {0, 1}, first_count) : ends_of(pair, weights, {0}, first_count);
-  const auto second =
-      edges ? ends_of(pair, weights, {2, 3}, second_count) : ends_of(pair, weights, {1, 2, 3}, second_count);
-  const auto from_first = [&] { return Vec3(-in_cone(feature_of(world, first), -way, x)); };
-  const auto from_second = [&] { return in_cone(feature_of(world, second), way, x); };
-  const bool first_is_body = !world.is_cloth(pair.nodes[0]), second_is_body = !world.is_cloth(pair.nodes[3]);
-  if (first_is_body) return from_first();
-  if (second_is_body) return second_count < 3 ? from_second() : way;
-  if (!edges) return way;
-  const Vec3 both = from_first() + from_second();
-  return both.norm() > across ? Vec3(both.normalized()) : way;
+  if (!world.is_cloth(pair.nodes[0])) {
+    const auto ends = edges ? ends_of(pair, weights, {0, 1}) : ends_of(pair, weights, {0});
+    return -in_cone(feature_of(world, *ends), -way, x);
+  }
+  if (!world.is_cloth(pair.nodes[3]))
+    if (const auto ends = edges ? ends_of(pair, weights, {2, 3}) : ends_of(pair, weights, {1, 2, 3}))
+      return in_cone(feature_of(world, *ends), way, x);
+  return way;
 }
 
 }  // namespace selvedge
