@@ -11,7 +11,7 @@ namespace {
 constexpr double rounding = 1e-12;  // of a direction
 constexpr double across = 0.1;      // cosine: a normal that is farther off says nothing of the direction
 
-// Positions on the way.
+// Positions during the motion.
 struct Moving {
   const Points &x0, &x1;
   double time;
@@ -30,15 +30,15 @@ Feature feature_of(const ContactWorld& world, std::array<int, 2> nodes) {
   return {obstacle < 0 ? world.cloth : world.obstacles[obstacle], obstacle < 0 ? 0 : world.first_node[obstacle], nodes};
 }
 
-// `way`, a unit vector that leads away from the feature, if nothing of its surface beside it is nearer to where it
-// leads; else the nearest normal of the faces round it, or `way` again where that is across all of them.
-Vec3 in_cone(const Feature& feature, const Vec3& way, const Moving& x) {
+// `direction`, a unit vector away from the feature, where no face beside it leans into that direction. Otherwise the
+// nearest normal of the faces round it, or `direction` again where that is across all of them.
+Vec3 in_cone(const Feature& feature, const Vec3& direction, const Moving& x) {
   const auto [a, b] = feature.nodes;
   const bool vertex = b < 0;
   const Vec3 at = x(a), edge = vertex ? Vec3(Vec3::Zero()) : Vec3((x(b) - at).normalized());
   bool closest = true;
   double best = across;
-  Vec3 found = way;
+  Vec3 found = direction;
   for (const int t : feature.surface->triangles_of(a - feature.first_node)) {
     std::array<Vec3, 3> corner;
     bool has_edge = vertex;
@@ -46,7 +46,7 @@ Vec3 in_cone(const Feature& feature, const Vec3& way, const Moving& x) {
       const int node = feature.first_node + feature.surface->triangles(t, k);
       corner[k] = x(node);
       has_edge = has_edge || node == b;
-      if (vertex && node != a) closest = closest && way.dot((corner[k] - at).normalized()) <= rounding;
+      if (vertex && node != a) closest = closest && direction.dot((corner[k] - at).normalized()) <= rounding;
     }
     if (!has_edge) continue;
     if (!vertex)
@@ -54,15 +54,15 @@ Vec3 in_cone(const Feature& feature, const Vec3& way, const Moving& x) {
         Vec3 inward = corner[k] - at;  // zero, but for rounding, of the edge's own ends
         inward -= inward.dot(edge) * edge;
         const int node = feature.first_node + feature.surface->triangles(t, k);
-        if (node != a && node != b) closest = closest && way.dot(inward.normalized()) <= rounding;
+        if (node != a && node != b) closest = closest && direction.dot(inward.normalized()) <= rounding;
       }
     const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
-    const double cosine = normal.dot(way);
+    const double cosine = normal.dot(direction);
     if (!(std::abs(cosine) > best)) continue;
     best = std::abs(cosine);
     found = cosine > 0 ? normal : Vec3(-normal);
   }
-  return closest ? way : found;
+  return closest ? direction : found;
 }
 
 // The vertex or the edge of a side of a pair that the closest point lies on; none inside of a face.
@@ -82,17 +82,17 @@ std::optional<std::array<int, 2>> ends_of(const NodePair& pair, const Eigen::Vec
 
 Vec3 contact_normal(const ContactWorld& world, const NodePair& pair, const Eigen::Vector4d& weights,
                     const Vec3& between, const Points& x0, const Points& x1, double time) {
-  const Vec3 way = between.normalized();
+  const Vec3 direction = between.normalized();
   const Moving x{x0, x1, time};
   const bool edges = pair.kind == PairKind::edge_edge;
   if (!world.is_cloth(pair.nodes[0])) {
     const auto ends = edges ? ends_of(pair, weights, {0, 1}) : ends_of(pair, weights, {0});
-    return -in_cone(feature_of(world, *ends), -way, x);
+    return -in_cone(feature_of(world, *ends), -direction, x);
   }
   if (!world.is_cloth(pair.nodes[3]))
     if (const auto ends = edges ? ends_of(pair, weights, {2, 3}) : ends_of(pair, weights, {1, 2, 3}))
-      return in_cone(feature_of(world, *ends), way, x);
-  return way;
+      return in_cone(feature_of(world, *ends), direction, x);
+  return direction;
 }
 
 }  // namespace selvedge

@@ -10,7 +10,7 @@ namespace selvedge {
 // pushed aside. What is no closest point of its body pushes along the nearest normal of the faces that meet there (the
 // cone of normals at an edge or a vertex, as in Provot 1997). Pairs of cloth push along `between`: their forces are
 // internal and move no mean, and normals of coarse cloth turn so much that pushing along them makes energy. weights: of
-// the closest points, where everything is `time` of the way from x0 to x1. Unit; as `between` where that lies across
+// the closest points, at the part `time` of the motion from x0 to x1. Unit; as `between` where that lies across
 // all normals.
 Vec3 contact_normal(const ContactWorld&, const NodePair&, const Eigen::Vector4d& weights, const Vec3& between,
                     const Points& x0, const Points& x1, double time);

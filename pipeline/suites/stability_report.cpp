@@ -94,7 +94,7 @@ std::string stability_markdown(const std::vector<StabilityRow>& rows) {
 std::string stability_csv(const std::vector<StabilityRow>& rows) {
   Json table = Json::array();
   for (const StabilityRow& row : rows) table.push_back(to_json(row));
-  return csv_of_json(table.dump());
+  return csv_of_json(table.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 std::string stability_json(const std::vector<StabilityRow>& rows) {

@@ -90,7 +90,7 @@ std::string stress_json(const std::vector<StressRow>& rows) {
 std::string stress_csv(const std::vector<StressRow>& rows) {
   Json table = Json::array();
   for (const StressRow& row : rows) table.push_back(to_json(row));
-  return csv_of_json(table.dump());
+  return csv_of_json(table.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 std::string stress_table(const std::vector<StressRow>& rows) {

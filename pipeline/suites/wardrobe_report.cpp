@@ -59,7 +59,7 @@ std::string wardrobe_json(const std::vector<WardrobeRow>& rows) {
 std::string wardrobe_csv(const std::vector<WardrobeRow>& rows) {
   Json table = Json::array();
   for (const WardrobeRow& row : rows) table.push_back(to_json(row));
-  return csv_of_json(table.dump());
+  return csv_of_json(table.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 std::string wardrobe_table(const std::vector<WardrobeRow>& rows) {

@@ -124,4 +124,10 @@ TEST_CASE("A stress suite that cannot be run says why", "[stress]") {
   CHECK_THROWS_WITH(stress(request), Contains("the start is not clean"));
 }
 
+TEST_CASE("Stress table: a name that is not UTF-8 is replaced in the CSV as in the JSON", "[stress]") {
+  StressRow row;
+  row.scene = "drop\xff";
+  CHECK_THAT(stress_csv({row}), Contains("drop\xef\xbf\xbd"));
+}
+
 }  // namespace selvedge::test_stress
