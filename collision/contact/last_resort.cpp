@@ -5,9 +5,6 @@
 namespace selvedge {
 namespace {
 
-constexpr double first_obstacle_mass = 1e3;  // of a yielding obstacle's node, in mean cloth vertices; then halved
-constexpr int halvings = 4;                  // before a motion is held still
-
 void join_nodes(DisjointSets& sets, const Impact& impact, const auto& belongs) {
   int first = -1;
   for (const int node : impact.pair.nodes)
@@ -17,7 +14,7 @@ void join_nodes(DisjointSets& sets, const Impact& impact, const auto& belongs) {
 }  // namespace
 
 std::vector<Impact> yield_rounds(Resolution& r, std::vector<Impact> impacts) {
-  double inverse = mean_inverse_mass(r.inverse_mass) / first_obstacle_mass;
+  double inverse = mean_inverse_mass(r.inverse_mass) / r.options.yielding_mass;
   for (int round = 0; !impacts.empty() && !r.stopped() && round < r.options.yield_rounds; ++round, inverse *= 2) {
     std::vector<char> stuck(r.world.node_count, 0);
     for (const Impact& impact : impacts)
@@ -65,7 +62,7 @@ bool shorten_rounds(Resolution& r, std::vector<Impact> impacts) {
       const int root = sets.root(node);
       if (!hit[root]) continue;
       halved[node] = most[root] + 1;
-      const double kept = halved[node] > halvings ? 0 : 0.5;
+      const double kept = halved[node] > r.options.motion_halvings ? 0 : 0.5;
       r.x1.row(node) = r.x0.row(node) + kept * (r.x1.row(node) - r.x0.row(node)).eval();
       r.moved[node] = 1;
       if (node == root) ++r.report.shortened;

@@ -4,6 +4,19 @@
 
 namespace selvedge {
 
+// How obstacles that would close on cloth give way before the solve (room.hpp).
+struct RoomOptions {
+  double obstacle_mass = 30;  // A node that gives way weighs so many mean cloth vertices: it presses layers together.
+  int sweeps = 25;            // Demands are projected in blocks of this many sweeps,
+  int min_blocks = 3;         // in at least
+  int max_blocks = 20;        // and at most this many blocks.
+  double growing = 1;         // A multiplier grows if it pushes by more than this part of the separation a sweep.
+  double steady = 0.98;       // Demands contradict each other if this part of all growth remains in the next block.
+  int max_rounds = 6;         // Pairs are searched anew at most this often.
+  double few = 0.01;          // `resolve` sees to new demands if they are fewer than this part of all.
+  double steepest_lag = 0.5;  // Lag changes by at most this much of the distance between two nodes of a body.
+};
+
 struct ResolveOptions {
   double thickness = 2e-3;   // distance that resting layers keep [m]
   double separation = 2e-4;  // no pair that started farther apart comes closer [m]; the same part of their rest
@@ -12,10 +25,13 @@ struct ResolveOptions {
   int impulse_rounds = 4;  // rounds of single impulses before zones
   int zone_rounds = 30;    // rounds of impact zones before the last resort
   int zone_sweeps = 200;
-  bool rigid_zones = false;  // zones of free nodes go on as rigid bodies
-  bool last_resort = true;   // false: leave what zones do not settle, and say that it is not clean
-  int yield_rounds = 20;     // last resort, first part: obstacles give way
-  StopFlag stop = {};        // asked once a zone and a round: true ends it, not clean
+  bool rigid_zones = false;    // zones of free nodes go on as rigid bodies
+  bool last_resort = true;     // false: leave what zones do not settle, and say that it is not clean
+  int yield_rounds = 20;       // last resort, first part: obstacles give way
+  double yielding_mass = 1e3;  // of their nodes in its first round, in mean cloth vertices; halved in each
+  int motion_halvings = 4;     // last resort, second part: of a motion, before it is held still
+  RoomOptions room;
+  StopFlag stop = {};  // asked once a zone and a round: true ends it, not clean
 };
 
 // What resolve did.

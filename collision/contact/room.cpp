@@ -8,15 +8,6 @@
 namespace selvedge {
 namespace {
 
-constexpr double obstacle_mass = 30;  // of a node that gives way, in mean cloth vertices: layers are pressed together
-constexpr int sweeps = 25;            // in a block
-constexpr int least_blocks = 3, most_blocks = 20;
-constexpr double growing = 1;    // of the separation, a sweep: less is what settles late
-constexpr double steady = 0.98;  // of all growth is still there in the next block: a contradiction
-constexpr int most_rounds = 6;
-constexpr double few = 0.01;      // of all demands: new ones that resolve can see to
-constexpr double steepest = 0.5;  // lag may change by this much of the distance between nodes
-
 struct Squeeze {
   PairSearch& search;
   const ContactWorld& world;
@@ -55,12 +46,13 @@ std::vector<double> press(Squeeze& s, const Points& trial) {
     demand.multiplier = 0;
     all.push_back(&demand);
   }
-  const double tolerance = 0.1 * s.options.separation, least = growing * s.options.separation * sweeps;
+  const RoomOptions& room = s.options.room;
+  const double tolerance = 0.1 * s.options.separation, least = room.growing * s.options.separation * room.sweeps;
   std::vector<double> growth(s.demands.size());
   double sum = 0;
-  for (int b = 0; b < most_blocks && !stopped(s.options.stop); ++b) {
+  for (int b = 0; b < room.max_blocks && !stopped(s.options.stop); ++b) {
     for (std::size_t k = 0; k < growth.size(); ++k) growth[k] = -s.demands[k].multiplier;
-    project_zone(all, s.inverse_mass, s.x0, s.x, sweeps, tolerance);
+    project_zone(all, s.inverse_mass, s.x0, s.x, room.sweeps, tolerance);
     const double before = sum;
     sum = 0;
     for (std::size_t k = 0; k < growth.size(); ++k) {
@@ -71,7 +63,7 @@ std::vector<double> press(Squeeze& s, const Points& trial) {
       else
         sum += way;
     }
-    if (sum == 0 || (b >= least_blocks && sum > steady * before)) break;
+    if (sum == 0 || (b >= room.min_blocks && sum > room.steady * before)) break;
   }
   return growth;
 }
@@ -123,7 +115,7 @@ void spread_lag(const Squeeze& s, const Points& wanted, Points& x1) {
     for (const auto& [minus_size, from] : lagging) {
       const double least = -minus_size - lag.norm();
       if (least <= 0) break;  // it lags more than all that follow
-      const double near = steepest * (row(wanted, from) - row(wanted, node)).norm();
+      const double near = s.options.room.steepest_lag * (row(wanted, from) - row(wanted, node)).norm();
       const Vec3 more = row(lags, from) - lag;
       if (from != node && more.norm() > near && s.world.obstacle_of(from) == body)
         lag += (1 - near / more.norm()) * more;
@@ -144,14 +136,14 @@ bool make_room(PairSearch& search, const ContactWorld& world, const ResolveOptio
             path,
             inverse_mass,
             report,
-            mean_inverse_mass(inverse_mass) / obstacle_mass,
+            mean_inverse_mass(inverse_mass) / options.room.obstacle_mass,
             std::vector<char>(world.node_count, 0)};
   for (const Proximity& p : near) s.demands.push_back({p.pair, p.weights, p.normal, 0, std::min(s.distance(), p.gap)});
   s.near = s.demands.size();
   Points trial = x1;
   add_meetings(s, trial);
   bool squeezed = false;
-  for (int round = 0; round < most_rounds && !stopped(options.stop); ++round) {
+  for (int round = 0; round < options.room.max_rounds && !stopped(options.stop); ++round) {
     if (give_way(s, press(s, trial), trial)) {
       squeezed = true;
       s.demands.resize(s.near);  // those met on the way there were as deep as what is not there
@@ -161,7 +153,7 @@ bool make_room(PairSearch& search, const ContactWorld& world, const ResolveOptio
     if (!squeezed) break;
     const std::size_t known = s.demands.size();
     add_meetings(s, s.x);
-    if (static_cast<double>(s.demands.size()) <= (1 + few) * static_cast<double>(known)) break;
+    if (static_cast<double>(s.demands.size()) <= (1 + options.room.few) * static_cast<double>(known)) break;
   }
   const Eigen::Index obstacles = x1.rows() - world.cloth->vertex_count;
   if (squeezed) {

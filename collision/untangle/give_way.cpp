@@ -16,25 +16,8 @@ namespace {
 
 using Pairs = std::vector<std::pair<int, int>>;  // of triangles that cross
 
-constexpr double straight =
-    0.7;  // cosine, at least, of a normal with the way through the body; aside, skin curves round
-constexpr double rest_room = 0.3;  // of that distance: the room asked for at most, for a fold has a bottom
-constexpr int press_sweeps = 12, press_rings = 6;
-constexpr double smoothing = 0.5;
-constexpr double tight_part = 0.7;    // of the room and of what may give way: where less is left, pressed more
-constexpr int halvings = 2;           // of what that does where it goes wrong, before it is left
-constexpr double pinched_part = 0.4;  // of the room: where less is left, cloth has no place to be
-constexpr int many_pinched = 20;      // vertices: from fewer it slips away
-constexpr int mend_rings = 1;         // round what crosses, that are mended together
-constexpr int few = 60, many = 250;   // pairs in one place: worth mending once pressed, as skinned
-constexpr int spot = 10;              // the same once pressed more: mending takes back room that is to be gained
-constexpr int presses = 3;            // for more room
-constexpr double overshoot = 1.5;     // of the farthest way, by mending
-constexpr int mend_iterations = 40;
-constexpr double mend_gap = 0.1, mend_far = 0.5;  // in mean edge lengths
-
 // How thick the body is under each vertex: to the nearest one behind it that looks the other way, at most `most` [m].
-std::vector<double> thicknesses(const Surface& body, const Points& x, double most) {
+std::vector<double> thicknesses(const Surface& body, const Points& x, double most, double through) {
   const Points normals = vertex_normals(body, x);
   const CellGrid grid(x, most / 2);
   std::vector<double> thickness(static_cast<std::size_t>(body.vertex_count), most);
@@ -42,7 +25,7 @@ std::vector<double> thicknesses(const Surface& body, const Points& x, double mos
     grid.for_each_near(row(x, v), most, [&](int w) {
       const Vec3 way = row(x, v) - row(x, w);
       const double distance = way.norm(), deep = way.dot(row(normals, v));
-      if (distance < thickness[v] && deep > straight * distance && row(normals, w).dot(row(normals, v)) < facing_cosine)
+      if (distance < thickness[v] && deep > through * distance && row(normals, w).dot(row(normals, v)) < facing_cosine)
         thickness[v] = distance;
     });
   return thickness;
@@ -70,7 +53,7 @@ struct Flesh {
         shape(keep_shape(body, rest)),
         options(o),
         reach(2 * o.most + o.room),
-        thickness(thicknesses(body, rest, reach)) {}
+        thickness(thicknesses(body, rest, reach, o.through)) {}
   Flesh(const Flesh&) = delete;  // the shape looks at the body
   Flesh& operator=(const Flesh&) = delete;
 
@@ -102,7 +85,7 @@ std::vector<Meeting> meetings(const Flesh& flesh, const Points& x) {
     if (w < 0) continue;
     const Vec3 apart = (row(normals, w) - row(normals, v)).normalized(), way = row(x, v) - row(x, w);
     const double gap = way.dot(apart), aside = (way - gap * apart).norm();
-    const double least = std::min(flesh.options.room, rest_room * (rest.row(v) - rest.row(w)).norm());
+    const double least = std::min(flesh.options.room, flesh.options.rest_room * (rest.row(v) - rest.row(w)).norm());
     // What passes it by, an edge or more aside, is not over it; either goes half the way.
     const double share = 0.5 * std::clamp(2 - aside / flesh.shape.edge_length[v], 0.0, 1.0);
     if (gap < least && share > 0) found.push_back({v, w, apart, least, share});
@@ -111,8 +94,8 @@ std::vector<Meeting> meetings(const Flesh& flesh, const Points& x) {
 }
 
 // The marked vertices and what goes along with them, listed.
-std::vector<int> with_surroundings(const KeptShape& shape, const std::vector<char>& marked) {
-  const std::vector<char> near = within_rings(shape, marked, press_rings);
+std::vector<int> with_surroundings(const Flesh& flesh, const std::vector<char>& marked) {
+  const std::vector<char> near = within_rings(flesh.shape, marked, flesh.options.press_rings);
   std::vector<int> vertices;
   for (std::size_t v = 0; v < near.size(); ++v)
     if (near[v]) vertices.push_back(static_cast<int>(v));
@@ -125,10 +108,10 @@ Points pressed(const Flesh& flesh, const Points& skinned, const Points& x, const
   if (found.empty()) return x;
   std::vector<char> meets(static_cast<std::size_t>(flesh.body.vertex_count), 0);
   for (const Meeting& m : found) meets[m.vertex] = 1;
-  const std::vector<int> moving = with_surroundings(flesh.shape, meets);
+  const std::vector<int> moving = with_surroundings(flesh, meets);
   Points to = x;
-  for (int sweep = 0; sweep < press_sweeps; ++sweep) {
-    smooth_displacement(flesh.shape, x, moving, smoothing, to);
+  for (int sweep = 0; sweep < flesh.options.press_sweeps; ++sweep) {
+    smooth_displacement(flesh.shape, x, moving, flesh.options.smoothing, to);
     const Points from = to;
     for (const Meeting& m : found) {
       const double missing = m.least - gap_of(m, from);
@@ -158,7 +141,7 @@ std::vector<Place> places_of(const Flesh& flesh, const Pairs& skinned, const Pai
       for (const int t : {a, b})
         for (const int v : body.triangles.row(t)) crosses[v] = 1;
     }
-  const std::vector<char> near = within_rings(flesh.shape, crosses, mend_rings);
+  const std::vector<char> near = within_rings(flesh.shape, crosses, flesh.options.mend_rings);
   for (const auto& edge : body.edges.rowwise())
     if (near[edge[0]] && near[edge[1]]) sets.join(edge[0], edge[1]);
   std::vector<Place> places;
@@ -168,8 +151,7 @@ std::vector<Place> places_of(const Flesh& flesh, const Pairs& skinned, const Pai
     std::vector<char> core(near.size());
     for (int v = 0; v < body.vertex_count; ++v) core[v] = sets.root(v) == root;
     const auto left = std::ranges::count_if(pressed, is_here);
-    if (left > 0)
-      places.push_back({with_surroundings(flesh.shape, core), std::ranges::count_if(skinned, is_here), left});
+    if (left > 0) places.push_back({with_surroundings(flesh, core), std::ranges::count_if(skinned, is_here), left});
   }
   return places;
 }
@@ -177,13 +159,13 @@ std::vector<Place> places_of(const Flesh& flesh, const Pairs& skinned, const Pai
 // A place untangled by itself, from where its vertices are now; none where it stays tangled or goes too far from x.
 std::optional<Points> mended(const Flesh& flesh, const Place& place, const Points& from, const Points& x) {
   UntangleOptions mending;
-  mending.iterations = mend_iterations;
-  mending.gap = mend_gap;
-  mending.far_limit = mend_far;
+  mending.iterations = flesh.options.mend_iterations;
+  mending.gap = flesh.options.mend_gap;
+  mending.far_limit = flesh.options.mend_far;
   const UntangleResult parted =
       untangle(part_of(flesh.body, place.vertices), from(place.vertices, Eigen::all), {}, mending);
   const double way = (parted.x - x(place.vertices, Eigen::all)).rowwise().norm().maxCoeff();
-  if (parted.pairs_after > 0 || way > overshoot * flesh.options.most) return {};
+  if (parted.pairs_after > 0 || way > flesh.options.overshoot * flesh.options.most) return {};
   return parted.x;
 }
 
@@ -193,13 +175,13 @@ std::optional<Points> mended(const Flesh& flesh, const Place& place, const Point
 Points opened(const Flesh& flesh, const Points& skinned, const Points& x, const std::vector<Meeting>& found,
               const Pairs& left, IntersectionCache& cache) {
   Points to = pressed(flesh, skinned, x, found);
-  for (int halving = 0; halving <= halvings; ++halving) {
+  for (int halving = 0; halving <= flesh.options.press_halvings; ++halving) {
     const Pairs anew = intersecting_pairs(flesh.body, to, cache);
     if (anew.size() <= left.size()) return to;
-    const double share = halving < halvings ? 0.5 : 0;
+    const double share = halving < flesh.options.press_halvings ? 0.5 : 0;
     for (const Place& place : places_of(flesh, left, anew)) {
       std::optional<Points> better;
-      if (place.pressed <= spot) better = mended(flesh, place, to, skinned);
+      if (place.pressed <= flesh.options.mend_spot) better = mended(flesh, place, to, skinned);
       if (!better) {
         const Points from = x(place.vertices, Eigen::all);
         better = from + share * (to(place.vertices, Eigen::all) - from);
@@ -213,7 +195,7 @@ Points opened(const Flesh& flesh, const Points& skinned, const Points& x, const 
 // Meetings that leave next to no room, or are next to none through.
 std::vector<Meeting> pinches_of(const Flesh& flesh, const std::vector<Meeting>& found, const Points& x,
                                 const Points& to) {
-  const double pinched = pinched_part * flesh.options.room;
+  const double pinched = flesh.options.pinched_part * flesh.options.room;
   const auto moves = [&](int v) { return to.row(v) != x.row(v); };
   std::vector<Meeting> pinches = found;
   std::erase_if(pinches, [&](const Meeting& m) {
@@ -261,8 +243,8 @@ Pressed where_it_opens(const Flesh& flesh, const Points& skinned, const Pressed&
 // Where over some area next to no room is left between parts after all, cloth would be held by faces that touch, and
 // there is no place to put it. There what hangs together gives way less, so that the parts pass through each other.
 void let_through(const Flesh& flesh, const std::vector<Meeting>& pinches, const Points& x, Points& to) {
-  const double pinched = pinched_part * flesh.options.room;
-  if (static_cast<int>(pinches.size()) < many_pinched) return;
+  const double pinched = flesh.options.pinched_part * flesh.options.room;
+  if (static_cast<int>(pinches.size()) < flesh.options.many_pinched) return;
   DisjointSets sets = moved_together(flesh, x, to, {&pinches});
   Eigen::VectorXi count = Eigen::VectorXi::Zero(flesh.body.vertex_count);  // by set
   Eigen::VectorXd share = Eigen::VectorXd::Ones(flesh.body.vertex_count);  // of its ways
@@ -273,7 +255,7 @@ void let_through(const Flesh& flesh, const std::vector<Meeting>& pinches, const 
     if (now > skinned) share[set] = std::min(share[set], std::clamp((-pinched - skinned) / (now - skinned), 0.0, 1.0));
   }
   for (int v = 0; v < flesh.body.vertex_count; ++v)
-    if (const int set = sets.root(v); count[set] >= many_pinched)
+    if (const int set = sets.root(v); count[set] >= flesh.options.many_pinched)
       to.row(v) = (x.row(v) + share[set] * (to.row(v) - x.row(v))).eval();
 }
 
@@ -291,8 +273,8 @@ Points GiveWay::operator()(const Points& x) const {
   if (!left.empty()) {
     for (const Place& place : places_of(*flesh_, intersecting_pairs(flesh_->body, x, cache), left)) {
       std::optional<Points> better;
-      if (place.pressed <= few) better = mended(*flesh_, place, body.x, x);
-      if (!better && place.skinned <= many) better = mended(*flesh_, place, x, x);
+      if (place.pressed <= flesh_->options.mend_pressed) better = mended(*flesh_, place, body.x, x);
+      if (!better && place.skinned <= flesh_->options.mend_skinned) better = mended(*flesh_, place, x, x);
       if (!better && place.pressed > place.skinned) better = x(place.vertices, Eigen::all);
       if (better) body.x(place.vertices, Eigen::all) = *better;
     }
@@ -300,10 +282,10 @@ Points GiveWay::operator()(const Points& x) const {
   }
   body.close = meetings(*flesh_, body.x);
   const auto is_tight = [&](const Meeting& m) {
-    return gap_of(m, body.x) < tight_part * m.least &&
-           (row(body.x, m.vertex) - row(x, m.vertex)).norm() < tight_part * flesh_->options.most;
+    return gap_of(m, body.x) < flesh_->options.tight_part * m.least &&
+           (row(body.x, m.vertex) - row(x, m.vertex)).norm() < flesh_->options.tight_part * flesh_->options.most;
   };
-  for (int press = 0; press < presses && std::ranges::any_of(body.close, is_tight); ++press) {
+  for (int press = 0; press < flesh_->options.presses && std::ranges::any_of(body.close, is_tight); ++press) {
     const Points more = opened(*flesh_, x, body.x, body.close, left, cache);
     Pressed next = where_it_opens(*flesh_, x, body, more, left.size(), cache);
     if (next.x == body.x) break;

@@ -15,9 +15,6 @@
 namespace selvedge {
 namespace {
 
-constexpr int sweeps = 12, remembered = 8, patience = 60, relaxations = 8;
-constexpr double horizon = 0.2;  // of repulsion, in mean edge lengths: about how far vertices go in one iteration
-
 struct Tangle {
   Segments found;
   std::vector<Contour> contours;
@@ -164,7 +161,7 @@ Points propose(const KeptShape& shape, const Freedom& freedom, std::span<const S
                std::span<const Separation> repulsions, const UntangleOptions& options, const Points& from) {
   const StretchRange range{options.least_stretch, options.largest_stretch};
   Points x = from;
-  for (int i = 0; i < sweeps; ++i) {
+  for (int i = 0; i < options.sweeps; ++i) {
     smooth_displacement(shape, shape.x0, freedom.vertices, 0.3, x);
     limit_stretch(shape, freedom.triangles, freedom.reach, range, x);
     satisfy(repulsions, freedom.reach, x);
@@ -221,11 +218,11 @@ void relax(const KeptShape& shape, const Freedom& freedom, std::span<const Sheet
   UntangleOptions tighter = options;
   tighter.least_stretch = std::max(options.least_stretch, 0.75);
   tighter.largest_stretch = std::min(options.largest_stretch, 1.35);
-  for (int i = 0; i < relaxations; ++i) {
+  for (int i = 0; i < options.relaxations; ++i) {
     const StretchRange now = extreme_stretch(shape, x);
     if (now.least >= tighter.least_stretch && now.largest <= tighter.largest_stretch) return;
     const std::vector<Separation> repulsions =
-        repulsion.find(x, none, freedom.reach, options.gap * shape.mean_edge, horizon * shape.mean_edge, false);
+        repulsion.find(x, none, freedom.reach, options.gap * shape.mean_edge, options.horizon * shape.mean_edge, false);
     Points next = propose(shape, freedom, {}, repulsions, tighter, x);
     if (!keep_clean(shape, freedom, obstacles, none, options, x, next).clean()) return;
     x = next;
@@ -260,13 +257,14 @@ struct Attempt {
 Attempt attempt(const KeptShape& shape, std::span<const SheetView> obstacles, const Tangle& input, Freedom freedom,
                 bool wide, Repulsion& repulsion, const UntangleOptions& options) {
   const Surface& cloth = *shape.surface;
-  const double gap = options.gap * shape.mean_edge, reach = horizon * shape.mean_edge;
+  const double gap = options.gap * shape.mean_edge, reach = options.horizon * shape.mean_edge;
   Attempt best{shape.x0, input, {}, 0};
   Points x = shape.x0;
   Tangle tangle = input;
   std::deque<double> merits{tangle.merit};
   int iteration = 0;
-  for (int since_best = 0; iteration < options.iterations && !tangle.clean() && since_best < patience; ++iteration) {
+  for (int since_best = 0; iteration < options.iterations && !tangle.clean() && since_best < options.patience;
+       ++iteration) {
     if (stopped(options.stop)) break;
     if (options.progress) options.progress({iteration, tangle.pairs, tangle.length});
     const std::vector<SheetView> sheets = with_cloth(cloth, x, obstacles);
@@ -287,7 +285,7 @@ Attempt attempt(const KeptShape& shape, std::span<const SheetView> obstacles, co
     x = next;
     tangle = std::move(after);
     merits.push_back(tangle.merit);
-    if (merits.size() > remembered) merits.pop_front();
+    if (std::ssize(merits) > options.remembered) merits.pop_front();
     ++since_best;
     if (!tangle.better_than(best.tangle)) continue;
     best.tangle = tangle;

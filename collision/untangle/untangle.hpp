@@ -21,6 +21,11 @@ struct UntangleOptions {
   double gap = 0.02;        // between what has been parted, in mean edge lengths
   double step = 0.25;       // largest motion asked for in one iteration, in mean edge lengths
   double least_stretch = 0.52, largest_stretch = 1.92;  // of every triangle against the input
+  int sweeps = 12;       // of an iteration, that smooth its displacements and meet what is asked
+  int remembered = 8;    // iterations ago, at most: a step must lower what the contours had then
+  int patience = 60;     // iterations without a better state, before the best one is the result
+  int relaxations = 8;   // rounds after the last iteration that widen the gap
+  double horizon = 0.2;  // distance within which pairs repel, in mean edge lengths: about the way of one iteration
   // Hint: a place for each component of the cloth, the innermost lowest; of two layers the higher one belongs on the
   // side that the other's normals point to. Empty: the smaller side of a contour is the wrong one.
   std::vector<int> layers;

@@ -9,34 +9,29 @@
 #include "physics/recovery/put_on.hpp"
 
 namespace selvedge {
-namespace {
-
-constexpr double recovery_speed = 1;  // at most, of a vertex that starts tangled [m/s]
-constexpr double far_astray = 0.5;    // from where it is worn, of tangled cloth that is drawn there, in mean edges
-
-}  // namespace
 
 Parting part_at_start(const ContactWorld& world, SelfCrossings& self_crossings, const Eigen::VectorXd& inverse_mass,
-                      double edge_length, bool clean, const WornPlaces& where, Points& nodes, Points& v,
-                      UntanglingBudget& budget) {
+                      double edge_length, bool clean, const WornPlaces& where, const RecoveryOptions& options,
+                      Points& nodes, Points& v, UntanglingBudget& budget) {
   const Points &wanted = *where.wanted, &worn = *where.worn;
   Parting parting;
   std::optional<Exemption> untouched;
   if (!clean && nodes.allFinite()) {
-    untouched = hopeless(world, nodes);
+    untouched = hopeless(world, nodes, options);
     parting.left = untouched ? *untouched : find_exemption(world, nodes);
   }
   self_crossings.switch_off(nodes, wanted, parting.left);
   std::vector<char> pierced, sunken;
-  if (!untouched) pierced = pierced_vertices(world, parting.left, nodes, wanted, worn, far_astray * edge_length);
-  if (!untouched) sunken = sunken_vertices(world, parting.left, worn);
-  const PutOn put = put_on(world, either(sunken, pierced), where, nodes, v, &budget);
+  if (!untouched)
+    pierced = pierced_vertices(world, parting.left, nodes, wanted, worn, options.astray * edge_length, options);
+  if (!untouched) sunken = sunken_vertices(world, parting.left, worn, options);
+  const PutOn put = put_on(world, either(sunken, pierced), where, nodes, v, &budget, options);
   if (put == PutOn::done) parting.left = find_exemption(world, nodes);
   if (put == PutOn::done) pierced.clear();
   parting.carried = either(carried_vertices(world, parting.left, worn, nodes, edge_length), pierced);
   if (parting.left.cloth() && !untouched) {
-    const double reach = recovery_speed * where.h;
-    Recovery recovery = recover(world, inverse_mass, reach, parting.left, parting.carried, nodes, &budget);
+    const double reach = options.speed * where.h;
+    Recovery recovery = recover(world, inverse_mass, reach, parting.left, parting.carried, nodes, &budget, options);
     parting.left = std::move(recovery.left);
     parting.gained = std::move(recovery.gained);
     if (recovery.stuck && put != PutOn::done) pierced = either(std::move(pierced), sunken);

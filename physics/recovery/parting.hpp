@@ -19,6 +19,7 @@ struct Parting {
 // out, what has sunken in is drawn as well. `clean`: nothing is tangled at the start, for cloth at least. Overwrites
 // the cloth's rows of `nodes`, at the start, and velocities v.
 Parting part_at_start(const ContactWorld&, SelfCrossings&, const Eigen::VectorXd& inverse_mass, double edge_length,
-                      bool clean, const WornPlaces&, Points& nodes, Points& v, UntanglingBudget&);
+                      bool clean, const WornPlaces&, const RecoveryOptions&, Points& nodes, Points& v,
+                      UntanglingBudget&);
 
 }  // namespace selvedge

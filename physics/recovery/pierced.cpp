@@ -9,10 +9,6 @@
 namespace selvedge {
 namespace {
 
-constexpr double good_part = 0.03;  // of a component's vertices
-constexpr double small_part = 0.01;
-constexpr double long_limb = 2.5;  // beyond a contour round it, in radii of the contour
-
 // How far the vertices of a side's smaller part reach from the middle of its curve, in radii of the curve.
 double slenderness(const SheetView& sheet, const ContourSide& side) {
   const Points& x = *sheet.x;
@@ -25,7 +21,8 @@ double slenderness(const SheetView& sheet, const ContourSide& side) {
   return radius > 0 ? reach / radius : 0;
 }
 
-bool goes_through(const WorldSheets& sheets, const Contour& contour, const std::vector<char>& inside) {
+bool goes_through(const WorldSheets& sheets, const Contour& contour, const std::vector<char>& inside,
+                  double long_limb) {
   const ContourSide &first = contour.sides[0], &second = contour.sides[1];
   if (!contour.closed || (first.sheet == 0) == (second.sheet == 0)) return false;
   const ContourSide &cloth = first.sheet == 0 ? first : second, &body = first.sheet == 0 ? second : first;
@@ -33,12 +30,12 @@ bool goes_through(const WorldSheets& sheets, const Contour& contour, const std::
          slenderness(sheets.views[body.sheet], body) > long_limb;
 }
 
-std::vector<char> pierced_components(const ContactWorld& world, const Points& nodes) {
+std::vector<char> pierced_components(const ContactWorld& world, const Points& nodes, double long_limb) {
   std::vector<char> pierced(static_cast<std::size_t>(world.cloth->component_count), 0);
   const WorldSheets sheets(world, nodes);
   const std::vector<char> inside = inside_obstacles(sheets.views);
   for (const Contour& contour : find_contours(sheets.views, find_segments(sheets.views)))
-    if (goes_through(sheets, contour, inside))
+    if (goes_through(sheets, contour, inside, long_limb))
       for (const ContourSide& side : contour.sides)
         if (side.sheet == 0) pierced[side.component] = 1;
   return pierced;
@@ -79,23 +76,26 @@ std::vector<char> vertices_of(const ContactWorld& world, const std::vector<char>
 
 }  // namespace
 
-std::vector<char> sunken_vertices(const ContactWorld& world, const Exemption& exemption, const Points& worn) {
+std::vector<char> sunken_vertices(const ContactWorld& world, const Exemption& exemption, const Points& worn,
+                                  const RecoveryOptions& options) {
   if (!applies(exemption, worn)) return {};
-  std::vector<char> sunken = far_components(world, exemption, Points::Zero(worn.rows(), 3), worn, small_part, -1);
+  std::vector<char> sunken =
+      far_components(world, exemption, Points::Zero(worn.rows(), 3), worn, options.sunken_part, -1);
   leave_unworn(world, worn, sunken);
   return vertices_of(world, sunken);
 }
 
 std::vector<char> pierced_vertices(const ContactWorld& world, const Exemption& exemption, const Points& nodes,
-                                   const Points& wanted, const Points& worn, double astray) {
+                                   const Points& wanted, const Points& worn, double astray,
+                                   const RecoveryOptions& options) {
   if (!applies(exemption, worn)) return {};
-  std::vector<char> pierced =
-      either(pierced_components(world, nodes), far_components(world, exemption, nodes, worn, good_part, astray));
+  std::vector<char> pierced = either(pierced_components(world, nodes, options.long_limb),
+                                     far_components(world, exemption, nodes, worn, options.pierced_part, astray));
   if (pierced.empty()) return {};
   leave_unworn(world, worn, pierced);
   Points there = wanted;
   for (int v = 0; v < worn.rows(); ++v) there.row(v) = worn.row(v).allFinite() ? worn.row(v) : nodes.row(v);
-  const std::vector<char> anyway = pierced_components(world, there);
+  const std::vector<char> anyway = pierced_components(world, there, options.long_limb);
   for (std::size_t c = 0; c < pierced.size(); ++c) pierced[c] = pierced[c] && !anyway[c];
   return vertices_of(world, pierced);
 }

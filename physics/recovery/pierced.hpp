@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "collision/contact/exemption.hpp"
+#include "physics/recovery/recovery_options.hpp"
 
 namespace selvedge {
 
@@ -13,16 +14,18 @@ namespace selvedge {
 // The worn vertices of the components of the cloth that an obstacle goes through: it has a contour with the obstacle
 // that cuts a patch out of the cloth which lies in the obstacle as a whole (an open one has an inside only for patches
 // without vertices), and that goes round a part of the obstacle which is long for its width. And of those of
-// which three vertices in a hundred are tangled with obstacles more than `astray` [m] from where it is worn: until they
+// which a part of the vertices is tangled with obstacles more than `astray` [m] from where it is worn: until they
 // are there, lest cloth on its way is taken for cloth that has only sunk in. Not those which would be gone through just
 // so where they are worn, nor where an obstacle crosses itself. `exemption` is what is tangled and switched off at
 // `nodes`; `wanted` has the obstacles at the step's end. 1 a vertex of the cloth; empty where there is none.
 std::vector<char> pierced_vertices(const ContactWorld&, const Exemption& exemption, const Points& nodes,
-                                   const Points& wanted, const Points& worn, double astray);
+                                   const Points& wanted, const Points& worn, double astray,
+                                   const RecoveryOptions& = {});
 
-// The worn vertices of the components of the cloth of which one vertex in a hundred is tangled with an obstacle that
+// The worn vertices of the components of the cloth of which a small part is tangled with an obstacle that
 // does not cross itself: what is left of such a passage, once drawn near, is of no one kind. All of it may be put on
 // again where it is worn (put_on.hpp). 1 a vertex of the cloth; empty where there is none.
-std::vector<char> sunken_vertices(const ContactWorld&, const Exemption&, const Points& worn);
+std::vector<char> sunken_vertices(const ContactWorld&, const Exemption&, const Points& worn,
+                                  const RecoveryOptions& = {});
 
 }  // namespace selvedge

@@ -11,10 +11,6 @@
 namespace selvedge {
 namespace {
 
-constexpr double most_way = 0.3;       // [m]
-constexpr int enough_iterations = 60;  // of untangling: what is worn is shallow in the body, or not to be parted
-constexpr int most_placing = 100'000;  // pairs times iterations of it
-
 struct Place {
   Points nodes, ways;  // with what is marked put there, and how far that goes along in the step
   int pairs;           // of triangles that cross there
@@ -33,10 +29,10 @@ Points ways_along(const ContactWorld& world, const Points& at, const Points& pla
 
 // Those within reach, the least tangled first: where it is worn, and where it was clean last, carried along since.
 std::vector<Place> places_for(const ContactWorld& world, const std::vector<int>& vertices, const WornPlaces& where,
-                              const Points& nodes) {
+                              const Points& nodes, double farthest) {
   std::vector<Place> places;
   const auto add = [&](const Points& there, Points ways) {
-    if (!((there - nodes(vertices, Eigen::all)).rowwise().squaredNorm().maxCoeff() <= most_way * most_way)) return;
+    if (!((there - nodes(vertices, Eigen::all)).rowwise().squaredNorm().maxCoeff() <= farthest * farthest)) return;
     Place place{nodes, std::move(ways), 0};
     place.nodes(vertices, Eigen::all) = there;
     place.pairs = intersecting_pairs(find_segments(WorldSheets(world, place.nodes).views));
@@ -53,10 +49,11 @@ std::vector<Place> places_for(const ContactWorld& world, const std::vector<int>&
   return places;
 }
 
-UntangleResult part(const ContactWorld& world, const Place& place, UntanglingBudget& budget) {
+UntangleResult part(const ContactWorld& world, const Place& place, const RecoveryOptions& limits,
+                    UntanglingBudget& budget) {
   const WorldSheets sheets(world, place.nodes);
   UntangleOptions options;
-  options.iterations = std::min(enough_iterations, most_placing / std::max(1, place.pairs));
+  options.iterations = std::min(limits.placing_passes, limits.max_placing_pair_passes / std::max(1, place.pairs));
   options.second_opinion = false;  // a place that the first does not find is looked for again in the next step
   return budget.untangle(*world.cloth, sheets.positions[0], std::span(sheets.views).subspan(1), options);
 }
@@ -72,17 +69,17 @@ bool is_tangled(const Exemption& there, const Exemption& before, const std::vect
 }  // namespace
 
 PutOn put_on(const ContactWorld& world, const std::vector<char>& marked, const WornPlaces& where, Points& nodes,
-             Points& v, UntanglingBudget* budget) {
+             Points& v, UntanglingBudget* budget, const RecoveryOptions& limits) {
   std::vector<int> vertices;
   for (int i = 0; i < static_cast<int>(marked.size()); ++i)
     if (marked[i]) vertices.push_back(i);
   if (vertices.empty()) return PutOn::nothing;
-  std::vector<Place> places = places_for(world, vertices, where, nodes);
+  std::vector<Place> places = places_for(world, vertices, where, nodes, limits.farthest_place);
   if (places.empty()) return PutOn::too_far;
   const Exemption before = find_exemption(world, nodes);
   UntanglingBudget ample;
   for (Place& place : places) {
-    const UntangleResult parted = part(world, place, budget ? *budget : ample);
+    const UntangleResult parted = part(world, place, limits, budget ? *budget : ample);
     place.nodes.topRows(parted.x.rows()) = parted.x;  // of other layers as well, which the place may go through
     if (is_tangled(find_exemption(world, place.nodes), before, marked)) continue;
     nodes = std::move(place.nodes);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "collision/contact/contact_pairs.hpp"
+#include "physics/recovery/recovery_options.hpp"
 #include "physics/recovery/untangling_budget.hpp"
 
 namespace selvedge {
@@ -25,10 +26,10 @@ enum class PutOn { nothing, too_far, no_place, done };
 // move along with the obstacle's node that is nearest. Where they were clean last, carried along since
 // (carried_along.hpp), is a second place; the one with fewer crossing triangles is tried first. Cloth that is not
 // marked makes way, and keeps its velocity. `nodes`, at the start, and the cloth's velocities v are overwritten. Both
-// stay as they were if nothing is marked, if a marked vertex would go farther than 0.3 m, or if there is no place:
-// sixty iterations do not untangle it, fewer from two thousand pairs on. Cloth without one is better off where it is.
+// stay as they were if nothing is marked, if a marked vertex would go farther than it may, or if there is no place:
+// the passes that it may take do not untangle it. Cloth without one is better off where it is.
 // All must be finite, what is worn where it is marked. No budget: an ample one.
 PutOn put_on(const ContactWorld&, const std::vector<char>& marked, const WornPlaces&, Points& nodes, Points& v,
-             UntanglingBudget* = nullptr);
+             UntanglingBudget* = nullptr, const RecoveryOptions& = {});
 
 }  // namespace selvedge

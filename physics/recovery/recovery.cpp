@@ -12,14 +12,6 @@
 namespace selvedge {
 namespace {
 
-constexpr int most_pairs = 10;         // of triangles that cross, each triangle of the cloth
-constexpr int most_parting = 150'000;  // pairs times iterations of untangling, a step: the next one goes on
-constexpr double ample = 12;           // times the way that a step can go, of untangling: the rest would not be used
-constexpr int least_iterations = 30;   // of it, however small the step
-constexpr int most_halvings = 3;       // of a way that would have clean cloth cross itself
-constexpr int hasty_iterations = 5;    // of untangling from a body that crosses itself: some of it must wait anyway
-constexpr double negligible = 1e-6;    // way, in mean edge lengths
-
 // The vertices that cross the cloth still, where `untangle` says that they should be: to push them towards it for ever
 // would keep the cloth from resting. Empty where there are none.
 std::vector<char> tangled_at(const ContactWorld& world, const Points& nodes, const UntangleResult& parted) {
@@ -112,12 +104,13 @@ std::size_t pairs_within_cloth(const ContactWorld& world, const Points& nodes) {
 // Of untangling, in a step in which vertices can go as far as `reach` [m]. What sits on a body goes straight out; where
 // cloth is tangled with itself the first steps may be the wrong ones.
 int iterations_for(const ContactWorld& world, const Points& nodes, double reach, const Exemption& before,
-                   const std::vector<char>& waits, const UntangleOptions& options) {
-  if (std::ranges::find(waits, 1) != waits.end()) return hasty_iterations;
+                   const std::vector<char>& waits, const UntangleOptions& options, const RecoveryOptions& limits) {
+  if (std::ranges::find(waits, 1) != waits.end()) return limits.waiting_passes;
   if (!before.self.empty())
-    return std::min(options.iterations, most_parting / std::max(1, static_cast<int>(pairs_within_cloth(world, nodes))));
+    return std::min(options.iterations,
+                    limits.max_pair_passes / std::max(1, static_cast<int>(pairs_within_cloth(world, nodes))));
   const double step = options.step * mean_edge(*world.cloth, nodes.topRows(world.cloth->vertex_count));
-  const double useful = std::max<double>(least_iterations, ample * reach / step);
+  const double useful = std::max<double>(limits.min_passes, limits.useful_motions * reach / step);
   return useful < options.iterations ? static_cast<int>(useful) : options.iterations;
 }
 
@@ -138,9 +131,10 @@ Exemption stop_at_obstacles(const ContactWorld& world, const Exemption& before, 
 
 }  // namespace
 
-std::optional<Exemption> hopeless(const ContactWorld& world, const Points& nodes) {
+std::optional<Exemption> hopeless(const ContactWorld& world, const Points& nodes, const RecoveryOptions& options) {
   if (!world.self) return {};
-  if (pairs_within_cloth(world, nodes) <= most_pairs * std::size_t(world.cloth->triangles.rows())) return {};
+  if (pairs_within_cloth(world, nodes) <= options.hopeless_pairs * std::size_t(world.cloth->triangles.rows()))
+    return {};
   ContactWorld bodies = world;
   bodies.self = false;
   Exemption exemption = find_exemption(bodies, nodes);
@@ -149,7 +143,8 @@ std::optional<Exemption> hopeless(const ContactWorld& world, const Points& nodes
 }
 
 Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass, double reach, const Exemption& before,
-                 const std::vector<char>& carried, Points& nodes, UntanglingBudget* budget) {
+                 const std::vector<char>& carried, Points& nodes, UntanglingBudget* budget,
+                 const RecoveryOptions& limits) {
   const int n = world.cloth->vertex_count;
   Recovery recovery{before, {}};
   const std::vector<char> waits = waiting(world, nodes, before.body, before.off, carried);
@@ -158,7 +153,7 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
   const WorldSheets sheets(world, nodes);
   const Points& from = sheets.positions[0];
   UntangleOptions options;
-  options.iterations = iterations_for(world, nodes, reach, before, waits, options);
+  options.iterations = iterations_for(world, nodes, reach, before, waits, options, limits);
   const UntangleResult parted =
       (budget ? *budget : ample).untangle(*world.cloth, from, std::span(sheets.views).subspan(1), options);
   const std::vector<char> lost = either(tangled_at(world, nodes, parted), waits);
@@ -166,8 +161,9 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
   Points way = whole_way;
   for (int v = 0; v < n; ++v)
     if (!lost.empty() && lost[v]) way.row(v).setZero();
-  for (int halving = 0; halving <= most_halvings; ++halving, reach /= 2) {
-    std::vector<Separation> gained = pushes_along(whole_way, lost, sheets, negligible * parted.mean_edge, reach);
+  for (int halving = 0; halving <= limits.max_halvings; ++halving, reach /= 2) {
+    std::vector<Separation> gained =
+        pushes_along(whole_way, lost, sheets, limits.negligible_move * parted.mean_edge, reach);
     Points moved = nodes;
     moved.topRows(n) += balanced_motion(*world.cloth, inverse_mass, gained, way, reach);
     Exemption left = stop_at_obstacles(world, before, from, moved);

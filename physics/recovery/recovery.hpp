@@ -5,13 +5,14 @@
 #include "collision/contact/exemption.hpp"
 #include "collision/search/intersections.hpp"
 #include "collision/untangle/separation.hpp"
+#include "physics/recovery/recovery_options.hpp"
 #include "physics/recovery/untangling_budget.hpp"
 
 namespace selvedge {
 
 // What contact leaves alone of cloth that crosses itself through and through, a sheet that starts in one point say: it
 // has no sides to go to, and its own stiffness opens it first. Absent where it does not.
-std::optional<Exemption> hopeless(const ContactWorld&, const Points& nodes);
+std::optional<Exemption> hopeless(const ContactWorld&, const Points& nodes, const RecoveryOptions&);
 
 // What a step that starts tangled does first: `untangle` says where the cloth should be, and every vertex that may move
 // goes there by at most `reach` [m], through no obstacle that it was clean of. Cloth that is tangled with cloth gets no
@@ -27,7 +28,8 @@ struct Recovery {
   bool stuck = false;  // untangling knows no way out of any of it: all is where it was
 };
 Recovery recover(const ContactWorld&, const Eigen::VectorXd& inverse_mass, double reach, const Exemption& before,
-                 const std::vector<char>& carried, Points& nodes, UntanglingBudget* = nullptr);
+                 const std::vector<char>& carried, Points& nodes, UntanglingBudget* = nullptr,
+                 const RecoveryOptions& = {});
 
 // Which obstacles cross themselves, in the positions of a step's start or end. Remembers what it was asked last.
 class SelfCrossings {

@@ -9,13 +9,6 @@
 namespace selvedge {
 namespace {
 
-constexpr double contact_stiffness = 200;  // times mass / h^2
-constexpr double overlap_removed = 0.1;    // of the overlap, at most, a step
-constexpr double onset = 0.02;             // width of the smooth onset, of the thickness
-constexpr double least_sink = 0.01;        // of the thickness, a step, under load
-constexpr double impact_sink = 0.25;       // of the gap at which an impact is stopped
-constexpr double most_stiffer = 100;       // times, in a step: where there is no room, no stiffness makes any
-
 double compliance(const ContactTerm& term, const Eigen::VectorXd& inverse_mass) {
   double sum = 0;
   for (int i = 0; i < 4; ++i)
@@ -27,7 +20,7 @@ double compliance(const ContactTerm& term, const Eigen::VectorXd& inverse_mass) 
 // in. False if nothing in the pair can move.
 bool linearise(const Scene& scene, const ContactWorld& world, const NodePair& pair, const Eigen::Vector4d& weights,
                const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1, double h,
-               ContactTerm& term) {
+               const ContactTermOptions& options, ContactTerm& term) {
   bool obstacle = false;
   for (int i = 0; i < 4; ++i) {
     const int node = pair.nodes[i];
@@ -42,8 +35,8 @@ bool linearise(const Scene& scene, const ContactWorld& world, const NodePair& pa
   }
   const double give = compliance(term, inverse_mass);
   if (give <= 0) return false;
-  term.stiffness = contact_stiffness / (give * h * h);
-  term.stiffest = most_stiffer * term.stiffness;
+  term.stiffness = options.stiffness / (give * h * h);
+  term.stiffest = options.max_stiffening * term.stiffness;
   term.friction = obstacle ? scene.contact.friction : scene.contact.self_friction;
   return true;
 }
@@ -51,17 +44,18 @@ bool linearise(const Scene& scene, const ContactWorld& world, const NodePair& pa
 }  // namespace
 
 Contacts contact_terms(const Scene& scene, const ContactWorld& world, std::span<const Proximity> proximities,
-                       const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1, double h) {
+                       const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1, double h,
+                       const ContactTermOptions& options) {
   Contacts contacts;
   for (const Proximity& p : proximities) {
-    const double lift = overlap_removed * (p.rest_gap - p.gap);
+    const double lift = options.overlap_removed * (p.rest_gap - p.gap);
     ContactTerm term;
     term.normal = p.normal;
     term.target = std::min(p.rest_gap, p.gap + lift);
-    term.softness = onset * p.rest_gap;
+    term.softness = options.onset * p.rest_gap;
     // Loaded cloth comes to rest where it sinks by as much as it is lifted: at half the rest gap.
-    term.sink = std::max(overlap_removed * p.gap, least_sink * p.rest_gap);
-    if (!linearise(scene, world, p.pair, p.weights, inverse_mass, nodes0, nodes1, h, term)) continue;
+    term.sink = std::max(options.overlap_removed * p.gap, options.load_sink * p.rest_gap);
+    if (!linearise(scene, world, p.pair, p.weights, inverse_mass, nodes0, nodes1, h, options, term)) continue;
     contacts.pairs.push_back(p.pair);
     contacts.terms.push_back(term);
   }
@@ -70,7 +64,7 @@ Contacts contact_terms(const Scene& scene, const ContactWorld& world, std::span<
 
 void add_impact_terms(const Scene& scene, const ContactWorld& world, std::span<const Impact> impacts,
                       const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1, double h,
-                      double deep, Contacts& contacts) {
+                      double deep, Contacts& contacts, const ContactTermOptions& options) {
   std::vector<std::pair<NodePair, std::size_t>> owned;
   for (std::size_t k = 0; k < contacts.pairs.size(); ++k) owned.emplace_back(contacts.pairs[k], k);
   std::sort(owned.begin(), owned.end());
@@ -82,9 +76,9 @@ void add_impact_terms(const Scene& scene, const ContactWorld& world, std::span<c
     ContactTerm term;
     term.normal = impact.normal;
     term.target = std::clamp(impact_gap(impact, nodes0), 0.0, 0.5 * scene.contact.thickness);
-    term.softness = onset * scene.contact.thickness;
-    term.sink = std::max(impact_sink * term.target, least_sink * scene.contact.thickness);
-    if (!linearise(scene, world, impact.pair, impact.weights, inverse_mass, nodes0, nodes1, h, term)) continue;
+    term.softness = options.onset * scene.contact.thickness;
+    term.sink = std::max(options.impact_sink * term.target, options.load_sink * scene.contact.thickness);
+    if (!linearise(scene, world, impact.pair, impact.weights, inverse_mass, nodes0, nodes1, h, options, term)) continue;
     if (has_term) {
       const ContactTerm& old = contacts.terms[owner->second];
       term.stiffness = std::max(term.stiffness, old.stiffness);
@@ -98,7 +92,7 @@ void add_impact_terms(const Scene& scene, const ContactWorld& world, std::span<c
 }
 
 std::vector<ContactTerm> push_terms(std::span<const Separation> separations, const Eigen::VectorXd& inverse_mass,
-                                    double softness, double h) {
+                                    double softness, double h, const ContactTermOptions& options) {
   std::vector<ContactTerm> terms;
   for (const Separation& s : separations) {
     ContactTerm term;
@@ -110,7 +104,7 @@ std::vector<ContactTerm> push_terms(std::span<const Separation> separations, con
     term.softness = softness;
     const double give = compliance(term, inverse_mass);
     if (give <= 0) continue;
-    term.stiffness = contact_stiffness / (give * h * h);
+    term.stiffness = options.stiffness / (give * h * h);
     terms.push_back(term);
   }
   return terms;
@@ -174,21 +168,21 @@ double mistaken_friction(std::span<const ContactTerm> solved, std::span<const Co
 }
 
 void relinearise(const Scene& scene, const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
-                 const Points& nodes0, const Points& nodes1, double h, Contacts& contacts) {
-  constexpr double same_side = 0.7;  // cosine
+                 const Points& nodes0, const Points& nodes1, double h, Contacts& contacts,
+                 const ContactTermOptions& options) {
   for (std::size_t k = 0; k < contacts.terms.size(); ++k) {
     const NodePair& pair = contacts.pairs[k];
     const ContactTerm& old = contacts.terms[k];
     const Closest now = closest(pair, nodes1);
     Vec3 between = Vec3::Zero();
     for (int i = 0; i < 4; ++i) between += now.weights[i] * row(nodes1, pair.nodes[i]);
-    if (between.dot(old.normal) <= same_side * between.norm()) continue;
+    if (between.dot(old.normal) <= options.same_side * between.norm()) continue;
     ContactTerm term;
     term.normal = contact_normal(world, pair, now.weights, between, nodes1);
     term.target = old.target;
     term.softness = old.softness;
     term.sink = old.sink;
-    if (!linearise(scene, world, pair, now.weights, inverse_mass, nodes0, nodes1, h, term)) continue;
+    if (!linearise(scene, world, pair, now.weights, inverse_mass, nodes0, nodes1, h, options, term)) continue;
     term.stiffness = old.stiffness;
     term.stiffest = old.stiffest;
     term.normal_force = old.normal_force;
@@ -196,7 +190,8 @@ void relinearise(const Scene& scene, const ContactWorld& world, const Eigen::Vec
   }
 }
 
-void set_load_stiffness(std::vector<ContactTerm>& terms, const Eigen::VectorXd& inverse_mass, const Points& forces) {
+void set_load_stiffness(std::vector<ContactTerm>& terms, const Eigen::VectorXd& inverse_mass, const Points& forces,
+                        const ContactTermOptions& options) {
   std::vector<double> borne(forces.rows(), 0.0), held(borne);  // by how many terms, of each vertex; by what weight
   for (const ContactTerm& term : terms)
     for (int i = 0; i < 4; ++i)
@@ -217,7 +212,7 @@ void set_load_stiffness(std::vector<ContactTerm>& terms, const Eigen::VectorXd& 
     }
     const double load = approach / compliance(term, inverse_mass);
     term.stiffness = std::max(term.stiffness, load * std::sqrt(alone / shared) / term.sink);
-    term.stiffest = most_stiffer * term.stiffness;
+    term.stiffest = options.max_stiffening * term.stiffness;
     term.normal_force = std::max(0.0, load * alone / together);
   }
 }
@@ -230,8 +225,7 @@ void raise_stiffness(std::vector<ContactTerm>& terms, const Points& x) {
 }
 
 void apply_static_friction(std::span<const ContactTerm> terms, const Eigen::VectorXd& inverse_mass, const Points& x0,
-                           double h, double slip_width, Points& x) {
-  constexpr int sweeps = 4;
+                           double h, double slip_width, Points& x, const ContactTermOptions& options) {
   std::vector<double> budget(terms.size(), 0.0);  // tangential impulse times h still allowed [kg m]
   for (std::size_t k = 0; k < terms.size(); ++k) {
     const Vec3 slip = contact_slip(terms[k], x0, x);
@@ -239,7 +233,7 @@ void apply_static_friction(std::span<const ContactTerm> terms, const Eigen::Vect
     const double used = friction_force(terms[k], slip, slip_width).factor * slip.norm();
     budget[k] = std::max(0.0, terms[k].friction * terms[k].normal_force - used) * h * h;
   }
-  for (int sweep = 0; sweep < sweeps; ++sweep)
+  for (int sweep = 0; sweep < options.static_friction_sweeps; ++sweep)
     for (std::size_t k = 0; k < terms.size(); ++k) {
       if (budget[k] <= 0) continue;
       const ContactTerm& term = terms[k];

@@ -7,6 +7,7 @@
 #include "collision/contact/response.hpp"
 #include "collision/untangle/separation.hpp"
 #include "physics/energies/contact_energy.hpp"
+#include "physics/solve/contact_term_options.hpp"
 #include "physics/solve/implicit_euler.hpp"
 
 namespace selvedge {
@@ -18,23 +19,25 @@ struct Contacts {
 };
 
 // The proximities of a step as terms of its incremental potential. nodes0, nodes1: all nodes at the step's start, and
-// with obstacles where they end. A pair's stiffness begins with `contact_stiffness` times its mass over h^2, which
+// with obstacles where they end. A pair's stiffness begins with a multiple of its mass over h^2, which
 // makes a layer's own weight sink it by the same small fraction of g h^2 at any density, scale or time step; its force
 // vanishes where a tenth of the overlap is gone, so that no pair is thrown apart (Bridson, Fedkiw and Anderson 2002,
 // section 7.2). Pairs farther apart than their rest gap are stopped there.
 Contacts contact_terms(const Scene&, const ContactWorld&, std::span<const Proximity>,
-                       const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1, double h);
+                       const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1, double h,
+                       const ContactTermOptions& = {});
 
 // Impacts that a solve has run into, as terms of the next one, so that the whole cloth gives way and not the four
 // vertices alone. They stop half the thickness away, or where they are if that is nearer. A pair that has a term keeps
 // it, but is linearised anew where its impact is deeper than `deep` [m].
 void add_impact_terms(const Scene&, const ContactWorld&, std::span<const Impact>, const Eigen::VectorXd& inverse_mass,
-                      const Points& nodes0, const Points& nodes1, double h, double deep, Contacts&);
+                      const Points& nodes0, const Points& nodes1, double h, double deep, Contacts&,
+                      const ContactTermOptions& = {});
 
 // Separations as terms without friction, as stiff as contacts; softness [m]. Those of more than four vertices are left
 // out.
 std::vector<ContactTerm> push_terms(std::span<const Separation>, const Eigen::VectorXd& inverse_mass, double softness,
-                                    double h);
+                                    double h, const ContactTermOptions& = {});
 
 // Terms without friction as one of the potential, for solves that have contacts beside them.
 AddedTerm added_pushes(std::vector<ContactTerm>);
@@ -56,11 +59,12 @@ double mistaken_friction(std::span<const ContactTerm> solved, std::span<const Co
 // Euler has it: with those of the start, sliding round a bend is braked. Pairs that have changed sides stay as they
 // are.
 void relinearise(const Scene&, const ContactWorld&, const Eigen::VectorXd& inverse_mass, const Points& nodes0,
-                 const Points& nodes1, double h, Contacts&);
+                 const Points& nodes1, double h, Contacts&, const ContactTermOptions& = {});
 
 // Makes terms as stiff as they must be to bear the forces on the cloth's vertices [N] without sinking more than they
 // may.
-void set_load_stiffness(std::vector<ContactTerm>&, const Eigen::VectorXd& inverse_mass, const Points& forces);
+void set_load_stiffness(std::vector<ContactTerm>&, const Eigen::VectorXd& inverse_mass, const Points& forces,
+                        const ContactTermOptions& = {});
 
 // Makes terms that their load has pressed deeper than they may sink as stiff as that load asks for, so that tight cloth
 // is held by the solve and not by impulses.
@@ -69,6 +73,6 @@ void raise_stiffness(std::vector<ContactTerm>&, const Points& x);
 // Takes from the pairs' slip what Coulomb friction still allows beyond what the solve has used, all of it where the
 // pair sticks: the lagged potential alone would creep. Moves x, by Gauss-Seidel over the pairs.
 void apply_static_friction(std::span<const ContactTerm>, const Eigen::VectorXd& inverse_mass, const Points& x0,
-                           double h, double slip_width, Points& x);
+                           double h, double slip_width, Points& x, const ContactTermOptions& = {});
 
 }  // namespace selvedge

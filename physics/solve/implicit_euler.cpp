@@ -19,13 +19,6 @@ namespace {
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 constexpr double sufficient_decrease = 1e-4;  // Armijo
 constexpr int max_halvings = 40;
-constexpr double almost_linear = 0.7;  // change over slope; 0.5 where the quadratic model is exact
-constexpr double max_length = 16;
-constexpr double usual_stiffness = 1e5;  // of vertices, over their inertia: linear solves need not know of more
-constexpr double stiff_allowance = 4;    // energy of a last step, over that of its goal as plain motion
-constexpr double far_off = 0.1;          // of the potential: what is left of more, impulses would meet
-constexpr int most_more = 8;             // times the most iterations, of a solve that either of these keeps
-constexpr int first_exact = 3;           // Newton iterations with filtered Hessians before the exact one is tried
 
 struct EnergyChange {
   double change = 0;  // [J]
@@ -128,7 +121,7 @@ struct ImplicitEuler::Impl {
 
   void start(const StepProblem& problem) {
     prepare(scene, elastic, masses, problem, options.slip_speed, scratch, step);
-    exact_from = exact_wait = first_exact;
+    exact_from = exact_wait = options.newton.exact_from;
     linear.start_family();
   }
   LinearSystem system() const {
@@ -201,7 +194,7 @@ double ImplicitEuler::Impl::goal(const Points& x) const {
 
 // What the energy that a Newton step can still gain has to fall below [J]: in stiff cloth small errors store much.
 double ImplicitEuler::Impl::energy_goal(const Points& x) const {
-  const double reach = stiff_allowance * goal(x);
+  const double reach = options.newton.stiff_allowance * goal(x);
   return reach * reach * sum_of(step.inertia);
 }
 
@@ -228,7 +221,8 @@ double ImplicitEuler::Impl::mean_stiffness() const {
 // motion by its stiffness: the stiffer the cloth, the less of it are the soft modes, which carry the motion.
 bool ImplicitEuler::Impl::solve_linear(Definite definite, NewtonReport& report) {
   relative_stiffness = mean_stiffness();
-  const double tolerance = options.linear_tolerance * std::min(1.0, std::sqrt(usual_stiffness / relative_stiffness));
+  const double tolerance =
+      options.linear_tolerance * std::min(1.0, std::sqrt(options.newton.stiff / relative_stiffness));
   const LinearReport solved =
       linear.solve(system(), diagonal, -gradient, tolerance, options.max_linear, motion, definite);
   report.linear_iterations += solved.iterations;
@@ -282,8 +276,8 @@ double ImplicitEuler::Impl::line_search(Points& x) {
   if (!enough()) return 0;
   std::vector<double> best_energy = trial_energy;
   const bool measurable = -slope > best.noise;
-  while (measurable && length >= 1 && length < max_length &&
-         best.change < almost_linear * length * slope - best.noise) {
+  while (measurable && length >= 1 && length < options.newton.longest_step &&
+         best.change < options.newton.nearly_linear * length * slope - best.noise) {
     const EnergyChange longer = try_length(2 * length);
     if (!(longer.change < best.change)) break;
     best = longer;
@@ -306,7 +300,8 @@ NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
   const int most = std::max(1, static_cast<int>(std::lround(problem.iteration_scale * impl.options.max_newton)));
   bool unfinished = false;  // the last step could gain more energy than its length says, or much of all there is
   while (!report.converged &&
-         report.iterations < std::min(problem.most_iterations, unfinished ? most_more * most : most)) {
+         report.iterations <
+             std::min(problem.most_iterations, unfinished ? impl.options.newton.more_iterations * most : most)) {
     if (problem.stop && stopped(*problem.stop)) {
       report.stopped = true;
       break;
@@ -320,8 +315,8 @@ NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
     report.left = impl.distance_left(gain);
     if (length == 0) break;
     ++report.iterations;
-    const bool far = !problem.contacts.empty() && gain > far_off * std::abs(sum_of(impl.energy));
-    unfinished = far || (impl.relative_stiffness > usual_stiffness && gain > impl.energy_goal(x));
+    const bool far = !problem.contacts.empty() && gain > impl.options.newton.far_energy * std::abs(sum_of(impl.energy));
+    unfinished = far || (impl.relative_stiffness > impl.options.newton.stiff && gain > impl.energy_goal(x));
     report.converged = !unfinished && direction == Impl::Direction::accurate &&
                        std::max(length, 1.0) * root_mean_square(impl.motion) < impl.goal(x);
   }

@@ -8,6 +8,19 @@
 
 namespace selvedge {
 
+// When Newton goes beyond its usual step, Hessian and number of iterations.
+struct NewtonOptions {
+  double nearly_linear =
+      0.7;                   // A longer step is tried where the change over the slope is larger; exact models have 0.5.
+  double longest_step = 16;  // No step is longer than this many Newton steps.
+  int exact_from = 3;        // The exact Hessian is tried after this many filtered ones.
+  double stiff = 1e5;        // Cloth is stiff if its mean stiffness is this many times its inertia over h^2:
+  double stiff_allowance =
+      4;                    // it is solved until the energy that a step gains is that of a motion this many goals long.
+  double far_energy = 0.1;  // With contact it is solved until a step gains less than this part of the potential.
+  int more_iterations = 8;  // These two rules take at most this many times max_newton iterations.
+};
+
 struct ImplicitEulerOptions {
   double velocity_tolerance = 1.7e-3;  // Newton ends when the RMS of its displacement is below this times the time
                                        // step [m/s],
@@ -22,6 +35,7 @@ struct ImplicitEulerOptions {
   double slip_speed = 2e-3;  // below it lagged friction is viscous [m/s]
   // A step whose solves may be farther from their ends, RMS, is called not converged (StepReport::unsolved) [m].
   double tolerated_error = 5e-4;
+  NewtonOptions newton;
 };
 
 struct NewtonReport {

@@ -5,8 +5,7 @@
 namespace selvedge {
 namespace {
 
-ResolveOptions resolve_options(const ContactSettings& contact) {
-  ResolveOptions options;
+ResolveOptions resolve_options(const ContactSettings& contact, ResolveOptions options) {
   options.thickness = contact.thickness;
   options.separation = 0.1 * contact.thickness;
   options.friction = contact.friction;
@@ -17,10 +16,10 @@ ResolveOptions resolve_options(const ContactSettings& contact) {
 
 }  // namespace
 
-ContactStage::ContactStage(const Scene& scene)
+ContactStage::ContactStage(const Scene& scene, const ResolveOptions& limits)
     : world(make_contact_world(scene.surface, obstacle_surfaces(scene), features_of(scene).self_contact, &scene.rest)),
       search(world),
-      options(resolve_options(scene.contact)),
+      options(resolve_options(scene.contact, limits)),
       inverse_mass(inverse_masses(scene, world.node_count)) {}
 
 void ContactStage::leave_alone(const Exemption* exemption) {

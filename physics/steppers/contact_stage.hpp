@@ -8,10 +8,10 @@
 
 namespace selvedge {
 
-// What contact of a scene needs from step to step: the numbering of nodes, the trees, the settings. Holds references to
-// the scene, and caches.
+// What contact of a scene needs from step to step: the numbering of nodes, the trees, the settings. The scene's contact
+// settings replace thickness, separation and friction of `limits`. Holds references to the scene, and caches.
 struct ContactStage {
-  explicit ContactStage(const Scene&);
+  explicit ContactStage(const Scene&, const ResolveOptions& limits = {});
   ContactStage(const ContactStage&) = delete;
   ContactStage& operator=(const ContactStage&) = delete;
 

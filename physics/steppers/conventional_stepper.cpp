@@ -18,12 +18,6 @@
 namespace selvedge {
 namespace {
 
-constexpr int max_halvings = 2;      // of a substep whose zones do not converge, before the last resort
-constexpr int pinched_rounds = 4;    // of zones, where there is no room
-constexpr int hopeful_rounds = 12;   // of zones in a substep that may still be halved
-constexpr double tearing = 10;       // a response may raise the potential to so many times the energy there is
-constexpr double kept_motion = 0.5;  // of that to the first impact, where everything stops short
-
 // What belongs to one step.
 struct StepWork {
   StepWork(const State& from, const Drive& d, const StepExtras& e, StepReport& r)
@@ -53,8 +47,8 @@ class ConventionalStepper final : public Stepper {
       : scene_(scene),
         options_(options),
         features_(features_of(scene)),
-        contact_(scene),
-        solve_(scene, options.implicit_euler, contact_),
+        contact_(scene, options.resolve),
+        solve_(scene, options.implicit_euler, options.substep, contact_),
         edge_length_(mean_edge_length(scene)),
         traits_{.name = "conventional",
                 .past_frames = options.integrator == Integrator::bdf2 ? 1 : 0,
@@ -158,14 +152,15 @@ bool ConventionalStepper::yield_obstacles(StepWork& work, const std::vector<Prox
 bool ConventionalStepper::torn(const StepProblem& problem, const Points& x, const Points& after) {
   const double moving =
       0.5 * solve_.solver().masses().dot((x - *problem.x0).rowwise().squaredNorm()) / (problem.h * problem.h);
-  return solve_.solver().potential(problem, after) > tearing * (solve_.solver().potential(problem, x) + moving);
+  return solve_.solver().potential(problem, after) >
+         options_.substep.tearing * (solve_.solver().potential(problem, x) + moving);
 }
 
 // Takes everything together as far as nothing meets.
 void ConventionalStepper::stop_short(StepWork& work, const Points& wanted, Substep& s) {
   double first = 1;
   for (const Impact& impact : solve_.impacts(s.start.nodes, wanted, work.report)) first = std::min(first, impact.time);
-  s.nodes = s.start.nodes + kept_motion * first * (wanted - s.start.nodes);
+  s.nodes = s.start.nodes + options_.substep.kept_motion * first * (wanted - s.start.nodes);
   update_pairs(contact_.search, contact_.options.thickness, s.start.nodes, s.nodes, contact_.path);
   ++work.report.collision.shortened;
   work.report.collision.held_vertices += scene_.surface.vertex_count;
@@ -178,13 +173,13 @@ SubstepOutcome ConventionalStepper::respond(StepWork& work, Substep& s, const St
   {
     const Timed timed(work.report.seconds.response);
     apply_static_friction(contacts.terms, contact_.inverse_mass, *problem.x0, s.h,
-                          options_.implicit_euler.slip_speed * s.h, x);
+                          options_.implicit_euler.slip_speed * s.h, x, options_.substep.contact);
   }
   s.nodes.topRows(n) = x;
   ResolveOptions options = resolve_options(work);
   options.last_resort = s.attempt == SubstepAttempt::last_resort;
-  if (!options.last_resort) options.zone_rounds = hopeful_rounds;
-  if (s.pinched) options.zone_rounds = pinched_rounds;
+  if (!options.last_resort) options.zone_rounds = options_.substep.halving_zone_rounds;
+  if (s.pinched) options.zone_rounds = options_.substep.pinched_zone_rounds;
   const Points wanted = s.nodes;
   const ResolveReport resolved =
       resolve(contact_.search, contact_.world, s.inverse_mass, options, s.start.nodes, s.nodes, contact_.path);
@@ -328,7 +323,8 @@ int ConventionalStepper::planned_substeps(const State& from, const Drive& drive,
   std::erase_if(touching,
                 [&](const NodePair& pair) { return !(closest(pair, nodes).squared_distance < thickness * thickness); });
   return substeps_for_contact(fastest_past(touching, from, drive, dt), dt, edge_length_,
-                              options_.min_substeps.value_or(least_substeps(dt)), options_.max_substeps);
+                              options_.min_substeps.value_or(least_substeps(dt, options_.substep)),
+                              options_.max_substeps, options_.substep);
 }
 
 StepReport not_finite(StepReport report) {
@@ -356,7 +352,8 @@ StepReport ConventionalStepper::step(const State& from, const Drive& drive, doub
   if (work.left_alone.any()) now.history = {};
   const int planned = planned_substeps(from, drive, dt, now.nodes);
   // Cloth that left an obstacle no room will hardly do so now.
-  const int halvings = from.pinched ? 0 : max_halvings, parts = options_.substeps ? 1 : options_.max_substeps / planned;
+  const int halvings = from.pinched ? 0 : options_.substep.max_halvings,
+            parts = options_.substeps ? 1 : options_.max_substeps / planned;
   if (!advance(work, now, {wanted, drive.pins, dt / planned, planned, halvings, parts})) return report;
   if (has_contact())
     add(catch_up(contact_.search, contact_.options, contact_.inverse_mass, wanted, now.nodes, contact_.path), report);

@@ -3,8 +3,10 @@
 #include <memory>
 #include <optional>
 
+#include "collision/contact/resolve_options.hpp"
 #include "physics/scene/stepper.hpp"
 #include "physics/solve/implicit_euler.hpp"
+#include "physics/steppers/substep_options.hpp"
 
 namespace selvedge {
 
@@ -18,6 +20,8 @@ struct ConventionalOptions {
   int max_substeps = 12;
   Integrator integrator = Integrator::implicit_euler;
   ImplicitEulerOptions implicit_euler;
+  SubstepOptions substep;
+  ResolveOptions resolve;  // thickness, separation and friction are those of the scene
 };
 
 // Implicit Euler or BDF2, then contact in Bridson's order, then the audit. Keeps a reference to the scene.

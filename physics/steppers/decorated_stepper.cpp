@@ -3,18 +3,18 @@
 #include <utility>
 
 #include "physics/steppers/cutting_stepper.hpp"
-#include "physics/steppers/recovering_stepper.hpp"
-#include "physics/steppers/resting_stepper.hpp"
 
 namespace selvedge {
 
 std::unique_ptr<Stepper> decorated(const Scene& scene, const MakeStepper& bare, const Decorations& wanted) {
-  const MakeStepper make = [bare](const Scene& part) {
+  const MakeStepper make = [bare, recovery = wanted.recovery](const Scene& part) {
     std::unique_ptr<Stepper> stepper = bare(part);
-    return stepper->traits().honours_extras ? make_recovering_stepper(part, std::move(stepper)) : std::move(stepper);
+    return stepper->traits().honours_extras ? make_recovering_stepper(part, std::move(stepper), recovery)
+                                            : std::move(stepper);
   };
   std::unique_ptr<Stepper> whole = make(scene);
-  if (wanted.rest && whole->traits().may_leave_out_cloths) whole = make_resting_stepper(scene, make, std::move(whole));
+  if (wanted.rest && whole->traits().may_leave_out_cloths)
+    whole = make_resting_stepper(scene, make, std::move(whole), wanted.resting);
   return wanted.cut ? make_cutting_stepper(scene, make, std::move(whole)) : std::move(whole);
 }
 

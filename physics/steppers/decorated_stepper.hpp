@@ -5,12 +5,16 @@
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
 #include "physics/steppers/conventional_stepper.hpp"
+#include "physics/steppers/recovering_stepper.hpp"
+#include "physics/steppers/resting_stepper.hpp"
 
 namespace selvedge {
 
 struct Decorations {
   bool rest = false;  // cloths that rest are left out, where the stepper allows it
   bool cut = false;   // states may have triangles cut out
+  RecoveryOptions recovery = {};
+  RestingOptions resting = {};
 };
 
 // A stepper of what `bare` makes of the scene or of a part of it, with all that stands round one, from outside to

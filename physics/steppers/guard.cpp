@@ -11,10 +11,7 @@ namespace selvedge {
 namespace {
 
 constexpr double standard_gravity = 9.81;  // [m/s2]
-constexpr double contact_reach = 2;        // thicknesses within which a vertex may be pushed
-constexpr int patch_size = 20;             // vertices, about
-constexpr double still = 1e-4;             // RMS motion in a step that counts as none [m]
-constexpr double slight = 1;               // acceleration that nothing has to explain [m/s2]
+constexpr double contact_reach = 2;        // A vertex may be pushed within this many thicknesses.
 
 double total(const std::vector<double>& parts) { return std::accumulate(parts.begin(), parts.end(), 0.0); }
 
@@ -38,7 +35,7 @@ std::vector<double> rest_stiffness(const Scene& scene, const Elastic& elastic, c
   return stiffness;
 }
 
-std::vector<int> patches(const Scene& scene) {
+std::vector<int> patches(const Scene& scene, int patch_size) {
   std::vector<int> middles;
   for (int v = 0; v < scene.surface.vertex_count; v += patch_size) middles.push_back(v);
   return nearest_along_edges(scene, middles);
@@ -82,7 +79,7 @@ void measure_motion(const Guard& guard, const State& from, double dt, const Poin
   if (count == 0) return;
   m.acceleration = std::sqrt(largest) / (dt * dt);
   m.mean_acceleration = std::sqrt(changes / count) / (dt * dt);
-  m.change_of_motion = std::sqrt(changes / count) / std::max(still, std::sqrt(motions / count));
+  m.change_of_motion = std::sqrt(changes / count) / std::max(guard.options.still, std::sqrt(motions / count));
 }
 
 double largest_stretch(const Scene& scene, const Points& x) {
@@ -126,7 +123,7 @@ void measure_residual(Guard& guard, const State& from, const Drive& drive, doubl
 // enough to be let pass, forces must say why. Frozen cloth shows nothing else that is wrong.
 bool is_explained(const GuardOptions& most, const GuardMeasures& m) {
   return m.change_of_motion <= most.change_of_motion ||
-         m.patch_acceleration <= std::max(slight, most.unexplained * m.mean_acceleration);
+         m.patch_acceleration <= std::max(most.slight, most.unexplained * m.mean_acceleration);
 }
 
 }  // namespace
@@ -139,7 +136,7 @@ Guard::Guard(const Scene& s, const GuardOptions& o)
       free(free_vertices(s, masses)),
       unit_energy(masses.sum() * standard_gravity * mean_edge_length(s)),
       stiffness(rest_stiffness(s, elastic, free)),
-      patch(patches(s)) {}
+      patch(patches(s, o.patch_size)) {}
 
 Verdict judge_motion(const Guard& guard, const State& from, double dt, const Points& x, GuardMeasures& m) {
   const GuardOptions& most = guard.options;

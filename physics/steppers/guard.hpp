@@ -21,6 +21,9 @@ struct GuardOptions {
   double unexplained = 0.8;        // the same over the mean acceleration, where the motion changes by more than allowed
   double imbalance = 1e-3;         // RMS of how far a Jacobi sweep of the step's potential would move vertices [m]
   double decrement = 5;            // energy that it would gain, in the same unit as energy_growth
+  int patch_size = 20;             // vertices, about
+  double still = 1e-4;             // RMS motion in a step that counts as none [m]
+  double slight = 1;               // mean acceleration that nothing has to explain [m/s2]
 };
 
 // What the guard looks at, in the order of its cost.

@@ -247,7 +247,7 @@ StepReport HybridStepper::step(const State& from, const Drive& drive, double dt,
   report.verdict = verdict;
   if (report.status == StepStatus::accepted)
     remember(!asked  ? after_wait(trust)
-             : taken ? after_admission(trust)
+             : taken ? after_admission(trust, options_.admitted_to_halve)
                      : after_refusal(trust, options_.longest_stretch),
              to);
   return report;

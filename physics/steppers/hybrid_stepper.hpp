@@ -24,6 +24,7 @@ struct HybridOptions {
   std::optional<int> newton;  // iterations: k of `after_k`, else 2; of a solve of `refined`, else the solver's own
   int gate_steps = 6;         // places between start and proposal where the potential is asked
   int longest_stretch = 32;   // steps without a proposal, after refusals (proposal_trust.hpp)
+  int admitted_to_halve = 3;  // proposals in a row that halve this stretch
   // Stop asking where proposals cost more time than they save. Steps then depend on the clock.
   bool stop_when_slow = false;
   double extra_time = 0.05;  // that proposals may cost, of the time so far

@@ -20,8 +20,6 @@
 namespace selvedge {
 namespace {
 
-constexpr double softness = 0.02;  // of a push's onset, of the thickness
-
 double mean_mass(const Eigen::VectorXd& inverse_mass) {
   double sum = 0;
   int count = 0;
@@ -94,7 +92,8 @@ void IcmStepper::find_pairs(const Points& nodes0, const Points& at, const Points
     p.rest_gap = std::min(p.rest_gap, scene_.contact.thickness);
     report.collision.min_gap = std::min(report.collision.min_gap, p.gap);
   }
-  const auto terms = contact_terms(scene_, world_, near, inverse_mass_, nodes0, nodes1, h).terms;
+  const auto terms =
+      contact_terms(scene_, world_, near, inverse_mass_, nodes0, nodes1, h, options_.substep.contact).terms;
   work.repulsion.insert(work.repulsion.end(), terms.begin(), terms.end());
   for (const Proximity& p : near) work.held.push_back(p.pair);
   std::sort(work.held.begin(), work.held.end());
@@ -108,7 +107,8 @@ std::vector<ContactTerm> IcmStepper::pushes(ContourPotential& contour, const Poi
   const auto separations =
       part_contours(contour.sheets(), found, contours, enclosed_regions(contour.sheets(), contours),
                     {scene_.contact.thickness, options_.push_speed * h});
-  return push_terms(separations, inverse_mass_, softness * scene_.contact.thickness, h);
+  return push_terms(separations, inverse_mass_, options_.push_softness * scene_.contact.thickness, h,
+                    options_.substep.contact);
 }
 
 bool IcmStepper::minimise(const StepProblem& problem, Points& x, StepReport& report) {
@@ -151,7 +151,7 @@ bool IcmStepper::substep(const SubstepState& now, const Points& pins, const Driv
     if (k == 0) work.exemption = exemption;
     find_pairs(now.nodes, at, nodes1, h, exemption, work, report);
     if (k == 0 && !work.repulsion.empty())
-      set_load_stiffness(work.repulsion, inverse_mass_, -solver_.gradient(problem, x));
+      set_load_stiffness(work.repulsion, inverse_mass_, -solver_.gradient(problem, x), options_.substep.contact);
     std::vector<ContactTerm> terms = pushes(contour, at.topRows(n), h);
     terms.insert(terms.end(), work.repulsion.begin(), work.repulsion.end());
     report.seconds.response += watch.lap();
@@ -177,8 +177,9 @@ StepReport IcmStepper::step(const State& from, const Drive& drive, double dt, St
   StepReport report;
   report.by = traits_.name;
   const int n = scene_.surface.vertex_count;
-  const int planned =
-      options_.substeps ? *options_.substeps : substeps_for_speed(from, drive, dt, edge_length_, options_.max_substeps);
+  const int planned = options_.substeps
+                          ? *options_.substeps
+                          : substeps_for_speed(from, drive, dt, edge_length_, options_.max_substeps, options_.substep);
   SubstepState now{gather_nodes(from.x, from.obstacles), from.v};
   const Points wanted = gather_nodes(from.x, drive.obstacles);
   if (has_contact() && !from.clean && now.nodes.allFinite())

@@ -6,6 +6,7 @@
 #include "collision/contour/contour_energy.hpp"
 #include "physics/scene/stepper.hpp"
 #include "physics/solve/implicit_euler.hpp"
+#include "physics/steppers/substep_options.hpp"
 
 namespace selvedge {
 
@@ -15,9 +16,11 @@ struct IcmOptions {
   int outer_iterations = 2;     // a substep: pairs found anew, then a minimisation
   double contour_weight = 0.1;  // of the contour energy, in mean vertex masses over h^2: without unit
   ContourGradient contour_gradient = ContourGradient::translational;
-  double push_speed = 0.5;  // at which vertices on the wrong side are asked back [m/s]; 0: the contour energy alone
-  double reach = 0.01;      // how far apart pairs may be that are kept from passing each other [m]
+  double push_speed = 0.5;      // at which vertices on the wrong side are asked back [m/s]; 0: the contour energy alone
+  double reach = 0.01;          // how far apart pairs may be that are kept from passing each other [m]
+  double push_softness = 0.02;  // A push sets in over this part of the thickness.
   ImplicitEulerOptions implicit_euler;
+  SubstepOptions substep;
 };
 
 // Intersection contour minimisation without learning: each substep minimises

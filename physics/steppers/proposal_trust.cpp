@@ -6,7 +6,6 @@ namespace selvedge {
 namespace {
 
 constexpr const char* trust_block = "hybrid.trust";
-constexpr int enough_admitted = 3;  // in a row, to halve the stretch
 
 }  // namespace
 
@@ -29,8 +28,8 @@ ProposalTrust after_wait(ProposalTrust trust) {
   return trust;
 }
 
-ProposalTrust after_admission(ProposalTrust trust) {
-  if (++trust.admitted < enough_admitted) return trust;
+ProposalTrust after_admission(ProposalTrust trust, int to_halve) {
+  if (++trust.admitted < to_halve) return trust;
   return {0, std::max(1, trust.stretch / 2), 0};
 }
 

@@ -5,7 +5,8 @@
 namespace selvedge {
 
 // When a hybrid stepper asks for the next proposal. After one that was refused the conventional stepper goes on alone
-// for a stretch of steps. Each refusal doubles the next stretch; some proposals in a row that are admitted halve it.
+// for a stretch of steps. Each refusal doubles the next stretch; `to_halve` proposals in a row that are admitted halve
+// it.
 struct ProposalTrust {
   int wait = 0;      // steps until a proposal is asked for
   int stretch = 1;   // of the next wait
@@ -18,7 +19,7 @@ void remember(const ProposalTrust&, State&);
 
 // After a step without a proposal, with an admitted one, and with a refused one.
 ProposalTrust after_wait(ProposalTrust);
-ProposalTrust after_admission(ProposalTrust);
+ProposalTrust after_admission(ProposalTrust, int to_halve);
 ProposalTrust after_refusal(ProposalTrust, int longest_stretch);
 
 }  // namespace selvedge

@@ -14,13 +14,10 @@ namespace selvedge {
 namespace {
 
 constexpr const char *clean_block = "recovering.last_clean", *clean_obstacles_block = "recovering.last_clean_obstacles";
-constexpr double carrying_speed = 3;   // of cloth that is drawn to where it is worn, at most [m/s]
-constexpr double firm = 1000;          // times as stiffly, where the body is free: else it holds its own shape
-constexpr double push_softness = 0.1;  // of what keeps cloth parted, of the thickness
 
 class RecoveringStepper final : public Stepper {
  public:
-  RecoveringStepper(const Scene& scene, std::unique_ptr<Stepper> inner, const RecoveringOptions& options)
+  RecoveringStepper(const Scene& scene, std::unique_ptr<Stepper> inner, const RecoveryOptions& options)
       : scene_(scene),
         options_(options),
         inner_(std::move(inner)),
@@ -44,7 +41,7 @@ class RecoveringStepper final : public Stepper {
   AddedTerm added_term(const Parting&, const Drive&, const Points& x0, double h) const;
 
   const Scene& scene_;
-  RecoveringOptions options_;
+  RecoveryOptions options_;
   std::unique_ptr<Stepper> inner_;
   bool has_contact_;
   ContactWorld world_;
@@ -57,10 +54,12 @@ class RecoveringStepper final : public Stepper {
 AddedTerm RecoveringStepper::added_term(const Parting& parting, const Drive& drive, const Points& x0, double h) const {
   AddedTerm added;
   if (!parting.gained.empty())
-    added = added_pushes(push_terms(parting.gained, inverse_mass_, push_softness * scene_.contact.thickness, h));
+    added =
+        added_pushes(push_terms(parting.gained, inverse_mass_, options_.push_softness * scene_.contact.thickness, h));
   if (!parting.carried.empty())
-    added = sum_of(std::move(added), carrying_term(parting.carried, masses_, x0, drive.worn, carrying_speed * h, h,
-                                                   parting.left.off.empty() ? firm : 1));
+    added =
+        sum_of(std::move(added), carrying_term(parting.carried, masses_, x0, drive.worn, options_.carrying_speed * h, h,
+                                               parting.left.off.empty() ? options_.carrying_stiffness : 1));
   return added;
 }
 
@@ -84,8 +83,8 @@ StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive,
   const WornPlaces where{&wanted, &drive.worn, gather_nodes(before.x, before.obstacles), scene_.contact.thickness, dt};
   Points nodes = gather_nodes(from.x, from.obstacles), v = from.v;
   UntanglingBudget budget{options_.untangling_passes, &extras.stop};
-  const Parting parting =
-      part_at_start(world_, self_crossings_, inverse_mass_, edge_length_, from.clean, where, nodes, v, budget);
+  const Parting parting = part_at_start(world_, self_crossings_, inverse_mass_, edge_length_, from.clean, where,
+                                        options_, nodes, v, budget);
   const auto add_parting = [&, parted = watch.lap()](StepReport report) {
     report.seconds.response += parted;
     report.untangling += budget.used;
@@ -147,7 +146,7 @@ void remember(const LastClean& clean, State& state) {
 }
 
 std::unique_ptr<Stepper> make_recovering_stepper(const Scene& scene, std::unique_ptr<Stepper> inner,
-                                                 const RecoveringOptions& options) {
+                                                 const RecoveryOptions& options) {
   return std::make_unique<RecoveringStepper>(scene, std::move(inner), options);
 }
 

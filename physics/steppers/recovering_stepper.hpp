@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "physics/recovery/recovery_options.hpp"
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
 
@@ -11,10 +12,6 @@ namespace selvedge {
 struct LastClean {
   Points x;  // without rows: it never was
   std::vector<Points> obstacles;
-};
-
-struct RecoveringOptions {
-  int untangling_passes = 400;  // a step may take so many; the next one goes on
 };
 
 // What the recovering stepper remembers in State::memory, of worn cloth that is not clean.
@@ -27,6 +24,6 @@ void remember(const LastClean&, State&);
 // with bodies free of themselves the step is that of `inner`. Extras are handed on beside its own. Throws Error for an
 // inner stepper that honours none. Keeps a reference to the scene.
 std::unique_ptr<Stepper> make_recovering_stepper(const Scene&, std::unique_ptr<Stepper> inner,
-                                                 const RecoveringOptions& = {});
+                                                 const RecoveryOptions& = {});
 
 }  // namespace selvedge

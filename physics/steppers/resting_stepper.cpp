@@ -14,9 +14,7 @@
 namespace selvedge {
 namespace {
 
-constexpr double still_edges = 0.005;  // in mean edges: what moves by less
-constexpr double still_seconds = 0.5;  // in that time rests
-constexpr std::size_t most_kept = 4;   // scenes of part of the cloths; one is a cache, for what falls asleep may wake
+constexpr std::size_t most_kept = 4;  // scenes of part of the cloths; one is a cache, for what falls asleep may wake
 
 constexpr const char *seconds_block = "resting.seconds", *place_block = "resting.place", *air_block = "resting.air";
 
@@ -44,11 +42,12 @@ std::vector<int> joined_cloths(const Scene& scene) {
 
 class RestingStepper final : public Stepper {
  public:
-  RestingStepper(const Scene& scene, MakeStepper make, std::unique_ptr<Stepper> whole)
+  RestingStepper(const Scene& scene, MakeStepper make, std::unique_ptr<Stepper> whole, const RestingOptions& options)
       : scene_(scene),
         make_(std::move(make)),
         whole_(std::move(whole)),
-        still_(still_edges * mean_edge_length(scene)),
+        still_(options.still_edges * mean_edge_length(scene)),
+        still_seconds_(options.still_seconds),
         joined_(joined_cloths(scene)) {}
 
   const StepperTraits& traits() const override { return whole_->traits(); }
@@ -76,7 +75,8 @@ class RestingStepper final : public Stepper {
   const Scene& scene_;
   MakeStepper make_;
   std::unique_ptr<Stepper> whole_;
-  double still_;             // [m]
+  double still_;             // what moves by less is still [m]
+  double still_seconds_;     // what has been still for this long rests
   std::vector<int> joined_;  // of each cloth the lowest one that springs join it to
   std::map<Chosen, Part> parts_;
 };
@@ -105,7 +105,7 @@ Chosen RestingStepper::still_ones(const State& from, const Rest& rest, const Dri
   if (!from.clean || from.pinched || rest.seconds.size() != still.size()) return still;
   if (rest.wind != drive.wind || rest.acceleration != drive.acceleration) return still;
   for (std::size_t c = 0; c < still.size(); ++c)
-    still[c] = rest.seconds[c] >= still_seconds && !pins_move(from, drive, static_cast<int>(c));
+    still[c] = rest.seconds[c] >= still_seconds_ && !pins_move(from, drive, static_cast<int>(c));
   keep_joined(still);
   return still;
 }
@@ -238,8 +238,9 @@ void remember(const Rest& rest, State& state) {
       state.memory);
 }
 
-std::unique_ptr<Stepper> make_resting_stepper(const Scene& scene, MakeStepper make, std::unique_ptr<Stepper> whole) {
-  return std::make_unique<RestingStepper>(scene, std::move(make), std::move(whole));
+std::unique_ptr<Stepper> make_resting_stepper(const Scene& scene, MakeStepper make, std::unique_ptr<Stepper> whole,
+                                              const RestingOptions& options) {
+  return std::make_unique<RestingStepper>(scene, std::move(make), std::move(whole), options);
 }
 
 }  // namespace selvedge

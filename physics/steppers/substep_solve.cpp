@@ -6,26 +6,18 @@
 #include "physics/scene/features.hpp"
 
 namespace selvedge {
-namespace {
 
-constexpr double first_tolerance = 8;       // times that of a solve, where it only finds impacts and normal forces
-constexpr double friction_tolerance = 0.2;  // the same with friction: sticking shows in small velocities
-constexpr double contact_iterations = 0.5;  // times those of a solve that another one goes on from
-constexpr int max_passes = 6;               // solves after the first one
-constexpr int pinched_passes = 3;           // the same where there is no room: no stiffness makes any
-constexpr double normal_change = 0.05;      // solves go on while what bounds friction changes by more, relative
-
-}  // namespace
-
-SubstepSolve::SubstepSolve(const Scene& scene, const ImplicitEulerOptions& options, ContactStage& stage)
+SubstepSolve::SubstepSolve(const Scene& scene, const ImplicitEulerOptions& euler, const SubstepOptions& options,
+                           ContactStage& stage)
     : scene_(scene),
       stage_(stage),
-      solver_(scene, options),
+      options_(options),
+      solver_(scene, euler),
       friction_(features_of(scene).friction),
-      slip_speed_(options.slip_speed),
+      slip_speed_(euler.slip_speed),
       edge_length_(mean_edge_length(scene)),
-      deep_(deep_impact(scene)),
-      most_newton_(options.max_newton_step) {}
+      deep_(deep_impact(scene, options)),
+      most_newton_(euler.max_newton_step) {}
 
 NewtonReport SubstepSolve::once(const StepProblem& problem, Points& x, StepReport& report) {
   const Timed timed(report.seconds.solve);
@@ -55,32 +47,35 @@ NewtonReport SubstepSolve::with_contact(Substep& s, StepProblem& problem, Points
   const bool calm = !s.pinched && mean_touching(contacts.terms, s.h * *problem.v0) < creep;
   for (int pass = 0;; ++pass) {
     problem.contacts = contacts.terms;
-    problem.iteration_scale = contacts.terms.empty() ? 1 : contact_iterations;
+    problem.iteration_scale = contacts.terms.empty() ? 1 : options_.contact_iterations;
     problem.warm_start = pass > 0;
     const bool friction = friction_ && !contacts.terms.empty();
-    problem.tolerance_scale = pass > 1 || (calm && friction) ? friction_tolerance
-                              : pass == 0 && !calm           ? first_tolerance
+    problem.tolerance_scale = pass > 1 || (calm && friction) ? options_.friction_tolerance
+                              : pass == 0 && !calm           ? options_.first_tolerance
                                                              : 1;
     const NewtonReport newton = once(problem, x, report);
     if (!newton.finite || newton.stopped) return newton;
     s.nodes.topRows(x.rows()) = x;
     const std::vector<ContactTerm> solved = calm ? contacts.terms : std::vector<ContactTerm>{};
     const double change = lag_normal_forces(contacts.terms, x);
-    if (pass == (s.pinched ? pinched_passes : max_passes)) return newton;
+    if (pass == (s.pinched ? options_.pinched_passes : options_.max_passes)) return newton;
     const auto found = impacts(nodes0, s.nodes, report);
-    if (pass == 0) s.parts = parts_for_distance(farthest_past(found, nodes0, s.nodes), edge_length_, s.max_parts);
+    if (pass == 0)
+      s.parts = parts_for_distance(farthest_past(found, nodes0, s.nodes), edge_length_, s.max_parts, options_);
     if (s.parts > 1 || report.out_of_newton) return newton;
     if (calm && mean_touching(contacts.terms, x - *problem.x0) < creep && deepest(found, s.nodes) < deep_ &&
-        mistaken_friction(solved, contacts.terms, *problem.x0, x, creep) < normal_change)
+        mistaken_friction(solved, contacts.terms, *problem.x0, x, creep) < options_.normal_change)
       return newton;
     const int least = friction ? 2 : 1;
     // Where the iteration has not settled, normal forces change with it, and one more solve for their sake is as rough.
-    const bool bounded = change < normal_change || !newton.converged;
+    const bool bounded = change < options_.normal_change || !newton.converged;
     if (pass >= least && bounded && deepest(found, s.nodes) < deep_) return newton;
     const Timed timed(report.seconds.response);
-    add_impact_terms(scene_, stage_.world, found, stage_.inverse_mass, nodes0, s.nodes, s.h, deep_, contacts);
+    add_impact_terms(scene_, stage_.world, found, stage_.inverse_mass, nodes0, s.nodes, s.h, deep_, contacts,
+                     options_.contact);
     raise_stiffness(contacts.terms, x);
-    if (pass == least - 1) relinearise(scene_, stage_.world, stage_.inverse_mass, nodes0, s.nodes, s.h, contacts);
+    if (pass == least - 1)
+      relinearise(scene_, stage_.world, stage_.inverse_mass, nodes0, s.nodes, s.h, contacts, options_.contact);
   }
 }
 
@@ -96,9 +91,11 @@ std::vector<Proximity> SubstepSolve::near(const Substep& s, StepReport& report) 
 Contacts SubstepSolve::loaded_contacts(const Substep& s, const std::vector<Proximity>& near, const StepProblem& problem,
                                        const Points& x, StepReport& report) {
   const Timed timed(report.seconds.response);
-  Contacts contacts = contact_terms(scene_, stage_.world, near, stage_.inverse_mass, s.start.nodes, s.nodes, s.h);
+  Contacts contacts =
+      contact_terms(scene_, stage_.world, near, stage_.inverse_mass, s.start.nodes, s.nodes, s.h, options_.contact);
   // The load of a contact is what pulls at it where the cloth would go without any.
-  if (!contacts.terms.empty()) set_load_stiffness(contacts.terms, stage_.inverse_mass, -solver_.gradient(problem, x));
+  if (!contacts.terms.empty())
+    set_load_stiffness(contacts.terms, stage_.inverse_mass, -solver_.gradient(problem, x), options_.contact);
   return contacts;
 }
 

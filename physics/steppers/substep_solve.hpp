@@ -29,7 +29,7 @@ struct Substep {
 // The implicit solves of a substep. Times and counts go into reports. Keeps references to the scene and the stage.
 class SubstepSolve {
  public:
-  SubstepSolve(const Scene&, const ImplicitEulerOptions&, ContactStage&);
+  SubstepSolve(const Scene&, const ImplicitEulerOptions&, const SubstepOptions&, ContactStage&);
   ImplicitEuler& solver() { return solver_; }
 
   // x: first guess in, minimiser out.
@@ -49,6 +49,7 @@ class SubstepSolve {
  private:
   const Scene& scene_;
   ContactStage& stage_;
+  SubstepOptions options_;
   ImplicitEuler solver_;
   bool friction_;
   double slip_speed_, edge_length_, deep_;

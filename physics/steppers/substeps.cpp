@@ -6,12 +6,6 @@
 namespace selvedge {
 namespace {
 
-constexpr double edges_a_substep = 2.5;  // how far a vertex may move, in mean edge lengths
-constexpr double edges_past = 1;         // how far contact, linearised, may slide: more locks cloth pulled round a post
-constexpr double edges_deep = 0.05;      // that an impact may be for impulses alone
-
-constexpr double visibly_damped = 1.0 / 48;  // steps of implicit Euler that are longer are [s]
-
 // Parts of a distance, none of them longer than `longest`.
 int parts(double distance, double longest, int least, int most) {
   return longest > 0 ? static_cast<int>(std::clamp<double>(std::ceil(distance / longest), std::min(least, most), most))
@@ -20,22 +14,24 @@ int parts(double distance, double longest, int least, int most) {
 
 }  // namespace
 
-int least_substeps(double dt) { return dt > visibly_damped ? 2 : 1; }
+int least_substeps(double dt, const SubstepOptions& options) { return dt > options.longest ? 2 : 1; }
 
-int substeps_for_speed(const State& from, const Drive& drive, double dt, double edge_length, int max_substeps) {
+int substeps_for_speed(const State& from, const Drive& drive, double dt, double edge_length, int max_substeps,
+                       const SubstepOptions& options) {
   double speed = drive.acceleration.norm() * dt;
   if (from.v.rows() > 0) speed += from.v.rowwise().norm().maxCoeff();
   for (std::size_t k = 0; k < from.obstacles.size(); ++k)
     speed = std::max(speed, (drive.obstacles[k] - from.obstacles[k]).rowwise().norm().maxCoeff() / dt);
-  return parts(dt * speed, edges_a_substep * edge_length, least_substeps(dt), max_substeps);
+  return parts(dt * speed, options.max_motion * edge_length, least_substeps(dt, options), max_substeps);
 }
 
-int substeps_for_contact(double contact_speed, double dt, double edge_length, int least, int most) {
-  return parts(dt * contact_speed, edges_past * edge_length, least, most);
+int substeps_for_contact(double contact_speed, double dt, double edge_length, int least, int most,
+                         const SubstepOptions& options) {
+  return parts(dt * contact_speed, options.max_slide * edge_length, least, most);
 }
 
-int parts_for_distance(double distance, double edge_length, int most) {
-  return parts(distance, edges_a_substep * edge_length, 1, most);
+int parts_for_distance(double distance, double edge_length, int most, const SubstepOptions& options) {
+  return parts(distance, options.max_motion * edge_length, 1, most);
 }
 
 double fastest_past(std::span<const NodePair> pairs, const State& from, const Drive& drive, double dt) {
@@ -69,8 +65,8 @@ double deepest(std::span<const Impact> impacts, const Points& nodes1) {
   return depth;
 }
 
-double deep_impact(const Scene& scene) {
-  const double deep = edges_deep * mean_edge_length(scene), thickness = scene.contact.thickness;
+double deep_impact(const Scene& scene, const SubstepOptions& options) {
+  const double deep = options.deep_impact * mean_edge_length(scene), thickness = scene.contact.thickness;
   const bool narrow = std::any_of(scene.rest_triangle.begin(), scene.rest_triangle.end(),
                                   [&](const RestTriangle& t) { return smallest_altitude(t) < thickness; });
   return narrow ? std::min(deep, thickness) : deep;

@@ -21,7 +21,8 @@ const Options<IcmOptions>& icm_options() {
        number("push_speed", &O::push_speed, Unit::speed, not_negative,
               "at which what contours enclose is asked back; 0: the contour energy alone"),
        number("reach", &O::reach, Unit::length, not_negative,
-              "how far apart pairs may be that are kept from passing each other; the thickness at least")});
+              "how far apart pairs may be that are kept from passing each other; the thickness at least"),
+       number("push_softness", &O::push_softness, Unit::none, positive, "over which a push sets in, in thicknesses")});
   return table;
 }
 
@@ -56,7 +57,11 @@ const Options<GuardOptions>& guard_options() {
        number("imbalance", &O::imbalance, Unit::length, positive,
               "RMS of how far a Jacobi sweep of the potential would move vertices that nothing touches"),
        number("decrement", &O::decrement, Unit::none, positive,
-              "energy that this sweep would gain, in the cloth's weight times its mean edge")});
+              "energy that this sweep would gain, in the cloth's weight times its mean edge"),
+       integer("patch_size", &O::patch_size, at_least_one, "vertices of a patch, about"),
+       number("still", &O::still, Unit::length, positive, "RMS motion in a step that counts as none"),
+       number("slight", &O::slight, Unit::acceleration, not_negative,
+              "mean acceleration that nothing has to explain")});
   return table;
 }
 
@@ -79,6 +84,8 @@ const Options<HybridOptions>& hybrid_options() {
                        "k of `after_k`, or most iterations of a solve of `refined`; `auto`: 2, or max_newton"),
                "auto"),
        integer("gate_steps", &O::gate_steps, at_least_one, "places where `gated` asks the potential"),
+       integer("admitted_to_halve", &O::admitted_to_halve, at_least_one,
+               "proposals admitted in a row that halve the next stretch without one"),
        integer("longest_stretch", &O::longest_stretch, at_least_one,
                "frames without a proposal after several refusals: 1, 2, 4 .. of them"),
        flag("stop_when_slow", &O::stop_when_slow,
@@ -103,7 +110,54 @@ const Options<RefuRun>& refu_options() {
   return table;
 }
 
-const OptionRows<ConventionalOptions>& substep_options() {
+const Options<RestingOptions>& resting_options() {
+  using O = RestingOptions;
+  static const Options<O> table(
+      "resting", "A cloth rests if it hardly moves for a while.",
+      {number("still_edges", &O::still_edges, Unit::none, not_negative, "largest motion of a vertex, in mean edges"),
+       number("still_seconds", &O::still_seconds, Unit::time, positive, "how long no vertex moves by more")});
+  return table;
+}
+
+const Options<RecoveryOptions>& recovery_options() {
+  using O = RecoveryOptions;
+  static const Options<O> table(
+      "recovery", "A step that starts tangled first untangles the cloth, or puts it on again.",
+      {integer("untangling_passes", &O::untangling_passes, at_least_one, "most of a step; the next one goes on"),
+       number("speed", &O::speed, Unit::speed, positive, "largest of a tangled vertex"),
+       integer("hopeless_pairs", &O::hopeless_pairs, at_least_one,
+               "crossing pairs a triangle, beyond which the cloth's own stiffness has to open it"),
+       integer("max_pair_passes", &O::max_pair_passes, at_least_one, "most crossing pairs times passes of a step"),
+       number("useful_motions", &O::useful_motions, Unit::none, positive,
+              "ways longer than this many times what a step can go are not looked for"),
+       integer("min_passes", &O::min_passes, at_least_one, "fewest passes, however short the step"),
+       integer("waiting_passes", &O::waiting_passes, at_least_one, "passes at a body that crosses itself"),
+       integer("max_halvings", &O::max_halvings, not_negative,
+               "most halvings of a motion that makes clean cloth cross itself"),
+       number("negligible_move", &O::negligible_move, Unit::none, not_negative,
+              "a way that counts as none, in mean edges"),
+       number("farthest_place", &O::farthest_place, Unit::length, not_negative,
+              "how far a vertex may be put on from where it is"),
+       integer("placing_passes", &O::placing_passes, at_least_one, "most passes where cloth is put on"),
+       integer("max_placing_pair_passes", &O::max_placing_pair_passes, at_least_one,
+               "most crossing pairs times passes there"),
+       number("pierced_part", &O::pierced_part, Unit::none, not_negative,
+              "part of a component that is tangled and astray, beyond which a limb has gone through it"),
+       number("astray", &O::astray, Unit::none, not_negative, "from where it is worn, in mean edges"),
+       number("sunken_part", &O::sunken_part, Unit::none, not_negative,
+              "part of a component that is tangled, beyond which it has sunken into the body"),
+       number("long_limb", &O::long_limb, Unit::none, positive,
+              "how far a limb reaches beyond a contour, in the contour's radii"),
+       number("carrying_speed", &O::carrying_speed, Unit::speed, positive,
+              "largest at which cloth is drawn to where it is worn"),
+       number("carrying_stiffness", &O::carrying_stiffness, Unit::none, positive,
+              "how much stiffer it is drawn where the body is free of itself"),
+       number("push_softness", &O::push_softness, Unit::none, positive,
+              "over which what keeps parted cloth parted sets in, in thicknesses")});
+  return table;
+}
+
+const OptionRows<ConventionalOptions>& substep_count_options() {
   using O = ConventionalOptions;
   static const OptionRows<O> rows{or_word(integer("substeps", &O::substeps, at_least_one,
                                                   "time steps a frame; `auto`: from the speed of what touches"),
@@ -112,28 +166,6 @@ const OptionRows<ConventionalOptions>& substep_options() {
                                                   "fewest that `auto` takes; `auto`: 2 of a frame longer than 1/48 s"),
                                           "auto"),
                                   integer("max_substeps", &O::max_substeps, at_least_one, "most that `auto` takes")};
-  return rows;
-}
-
-const OptionRows<ImplicitEulerOptions>& implicit_euler_options() {
-  using O = ImplicitEulerOptions;
-  static const OptionRows<O> rows{
-      number("velocity_tolerance", &O::velocity_tolerance, Unit::speed, positive,
-             "Newton ends when the RMS of its displacement is below this times the time step,"),
-      number("relative_tolerance", &O::relative_tolerance, Unit::none, not_negative,
-             "or below this part of the RMS motion in the step"),
-      integer("max_newton", &O::max_newton, at_least_one, "iterations a step"),
-      choice("linear_solver", &O::linear_solver,
-             {{"automatic", LinearSolver::automatic},
-              {"cholmod", LinearSolver::cholmod},
-              {"pcg", LinearSolver::pcg},
-              {"multigrid", LinearSolver::multigrid}},
-             "`automatic`: cholmod for the smallest scenes, otherwise multigrid"),
-      number("linear_tolerance", &O::linear_tolerance, Unit::none,
-             {.low = 0, .high = 1, .low_in = false, .high_in = false},
-             "residual of PCG in a Newton iteration, relative, in its preconditioner's norm"),
-      integer("max_linear", &O::max_linear, at_least_one, "PCG iterations"),
-      number("slip_speed", &O::slip_speed, Unit::speed, positive, "below it friction is viscous")};
   return rows;
 }
 
@@ -147,26 +179,16 @@ const Options<RunOptions>& run_options() {
                     number("fps", &O::fps, Unit::rate, positive, "frames a second"),
                     word("quality", &O::quality, quality_names(),
                          "values of other keys, which they override where they are given (docs/benchmarks.md)")} +
-          inside(&O::conventional, substep_options()) +
+          inside(&O::conventional, substep_count_options()) +
           OptionRows<O>{
               word("stepper", &O::stepper, known_kinds().names(), "who makes the frames"),
               flag("rest", &O::rest, "cloths that rest, with nothing moving near them, are left out of the work"),
+              section(&O::resting, resting_options(), "when a cloth rests"),
+              section(&O::recovery, recovery_options(), "what a step does that starts tangled"),
               section(&O::icm, icm_options(), "of the stepper `icm`"),
               section(&O::learned, learned_options(), "of the stepper `learned`"),
               section(&O::hybrid, hybrid_options(), "of the stepper `hybrid`"),
               section(&O::refu, refu_options(), "a repulsive layer behind the stepper")});
-  return table;
-}
-
-const Options<ConventionalOptions>& solver_options() {
-  using O = ConventionalOptions;
-  static const Options<O> table(
-      "solver", "",
-      OptionRows<O>{choice(
-          "integrator", &O::integrator, {{"implicit_euler", Integrator::implicit_euler}, {"bdf2", Integrator::bdf2}},
-          "`bdf2`: of second order in time where nothing touches, with less damping; implicit Euler elsewhere. "
-          "Not of the stepper `icm`")} +
-          inside(&O::implicit_euler, implicit_euler_options()));
   return table;
 }
 

@@ -19,18 +19,19 @@ MakeStepper learned_maker(const Setup& setup) {
 
 // The conventional stepper as the scene has it; `newton`: most iterations of a solve.
 std::unique_ptr<Stepper> conventional_part(const Scene& scene, ConventionalOptions options,
-                                           std::optional<int> newton = {}) {
+                                           const RecoveryOptions& recovery, std::optional<int> newton = {}) {
   options.implicit_euler.max_newton = newton.value_or(options.implicit_euler.max_newton);
-  return make_recovering_conventional_stepper(scene, options);
+  return decorated(scene, conventional_maker(options), {.recovery = recovery});
 }
 
 MakeStepper hybrid_maker(const Setup& setup) {
   HybridOptions options = setup.run.hybrid;
   options.implicit_euler = setup.run.conventional.implicit_euler;
-  return [options, learned = learned_maker(setup), conventional = setup.run.conventional](const Scene& scene) {
-    HybridParts parts{learned(scene), conventional_part(scene, conventional)};
+  return [options, learned = learned_maker(setup), conventional = setup.run.conventional,
+          recovery = setup.run.recovery](const Scene& scene) {
+    HybridParts parts{learned(scene), conventional_part(scene, conventional, recovery)};
     if (options.mode == HybridMode::refined && options.newton)
-      parts.refiner = conventional_part(scene, conventional, options.newton);
+      parts.refiner = conventional_part(scene, conventional, recovery, options.newton);
     parts.hand_over = carry_frame;
     return make_hybrid_stepper(scene, std::move(parts), options);
   };

@@ -78,7 +78,8 @@ std::unique_ptr<Stepper> make_stepper(const Setup& setup) {
   if (!kind)
     throw Error("unknown stepper `" + setup.run.stepper + "`", setup.file.string(), "known: " + joined(known.names()));
   std::unique_ptr<Stepper> stepper =
-      decorated(setup.scene, kind->maker(setup, setup.kind_options), {setup.run.rest, !setup.initial.cut_out.empty()});
+      decorated(setup.scene, kind->maker(setup, setup.kind_options),
+                {setup.run.rest, !setup.initial.cut_out.empty(), setup.run.recovery, setup.run.resting});
   check_accepted(setup, stepper->traits());
   stepper = with_refu(setup, std::move(stepper));
   return make_following_stepper(setup.scene, setup.followers, std::move(stepper));

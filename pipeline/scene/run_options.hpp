@@ -5,6 +5,8 @@
 #include "physics/steppers/conventional_stepper.hpp"
 #include "physics/steppers/hybrid_stepper.hpp"
 #include "physics/steppers/icm_stepper.hpp"
+#include "physics/steppers/recovering_stepper.hpp"
+#include "physics/steppers/resting_stepper.hpp"
 
 namespace selvedge {
 
@@ -31,6 +33,8 @@ struct RunOptions {
   bool rest = true;    // cloths that rest are left out
   std::string output;  // folder for the results; empty: chosen by the command
   ConventionalOptions conventional;
+  RecoveryOptions recovery;
+  RestingOptions resting;
   IcmOptions icm;
   LearnedRun learned;
   HybridOptions hybrid;

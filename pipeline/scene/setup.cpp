@@ -150,6 +150,7 @@ RunOptions read_run(const Config& scene) {
   run.icm.substeps = run.conventional.substeps;
   run.icm.max_substeps = run.conventional.max_substeps;
   run.icm.implicit_euler = run.conventional.implicit_euler;
+  run.icm.substep = run.conventional.substep;
   return run;
 }
 

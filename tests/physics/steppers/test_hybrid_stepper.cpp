@@ -171,7 +171,7 @@ TEST_CASE("hybrid: refused proposals wait for longer and longer, and come back",
   CHECK(asked == std::vector<int>{1, 3, 6, 11, 16});
 
   ProposalTrust trust{0, 4, 0};
-  for (int k = 0; k < 3; ++k) trust = after_admission(trust);
+  for (int k = 0; k < 3; ++k) trust = after_admission(trust, HybridOptions{}.admitted_to_halve);
   CHECK(trust.stretch == 2);
   CHECK(after_refusal(trust, 32).wait == 2);
   CHECK(after_refusal(trust, 32).stretch == 4);
