@@ -21,7 +21,12 @@ struct QualityLevel {
 // Measured in docs/benchmarks.md.
 const std::vector<QualityLevel>& levels() {
   static const std::vector<QualityLevel> all{
-      {"preview", "", {{"run", "substeps", 1}, {"solver", "max_newton", 2}, {"solver", "relative_tolerance", 0.03}}},
+      {"preview",
+       "",
+       {{"run", "substeps", 1},
+        {"solver", "max_newton", 2},
+        {"solver", "relative_tolerance", 0.03},
+        {"solver", "max_newton_step", 16}}},
       {"standard", "every key's default", {}},
       {"fine", "", {{"run", "min_substeps", 4}, {"solver", "integrator", 0, "bdf2"}}}};
   return all;

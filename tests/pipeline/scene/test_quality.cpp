@@ -35,6 +35,7 @@ TEST_CASE("Quality: a word stands for several keys, and a key that is given stay
   CHECK(preview.run.conventional.substeps == 1);
   CHECK(preview.run.conventional.implicit_euler.max_newton == 2);
   CHECK(preview.run.conventional.implicit_euler.relative_tolerance == 0.03);
+  CHECK(preview.run.conventional.implicit_euler.max_newton_step == 16);
   CHECK(preview.run.icm.substeps == 1);
 
   const Setup given = read(folder, "run: {quality: preview, substeps: auto}\nsolver: {max_newton: 5}\n");
