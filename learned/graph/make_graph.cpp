@@ -59,12 +59,19 @@ void keep_within(const FeatureOptions& options, std::size_t queries, std::vector
   report.cloth_pairs_beyond += keep_nearest_pairs(pairs, most);
 }
 
+// Those of the vertices that a triangle has. Others, such as vertices of parts that are cut out, see no pair.
+std::vector<int> on_cloth(const Surface& cloth, std::vector<int> vertices) {
+  std::erase_if(vertices, [&](int v) { return cloth.triangles_of(v).empty(); });
+  return vertices;
+}
+
 // Pinned vertices against the cloth, all where their velocity takes them.
 std::vector<ClothPair> future_pairs(const GraphScene& scene, const RestGraph& rest, const GraphState& state,
                                     const SeenPositions& seen, const FeatureOptions& options, ClothSearch& search) {
   if (!options.future_pinned || rest.pinned.empty()) return {};
   const Points x = seen.mesh + state.velocity;
-  std::vector<ClothPair> pairs = find_cloth_pairs(scene.cloth, x, rest.pinned, options.cloth_radius, search);
+  std::vector<ClothPair> pairs =
+      find_cloth_pairs(scene.cloth, x, on_cloth(scene.cloth, rest.pinned), options.cloth_radius, search);
   for (ClothPair& pair : pairs) pair.label = 1;
   return pairs;
 }
@@ -74,7 +81,8 @@ void find_classes(const GraphScene& scene, const RestGraph& rest, const GraphSta
   if (!options.cloth_edges || state.no_cloth_edges) return;
   std::vector<int> all(static_cast<std::size_t>(scene.cloth.vertex_count));
   for (std::size_t v = 0; v < all.size(); ++v) all[v] = static_cast<int>(v);
-  std::vector<ClothPair> pairs = find_cloth_pairs(scene.cloth, seen.x, all, options.cloth_radius, search.cloth);
+  std::vector<ClothPair> pairs =
+      find_cloth_pairs(scene.cloth, seen.x, on_cloth(scene.cloth, all), options.cloth_radius, search.cloth);
   keep_within(options, all.size(), pairs, report);
   std::vector<ClothPair> future = future_pairs(scene, rest, state, seen, options, search.future);
   keep_within(options, rest.pinned.size(), future, report);
@@ -123,6 +131,7 @@ void make_raw_graph(const GraphScene& scene, const RestGraph& rest, const GraphS
   const bool with_body = !options.body_key.empty();
   if (with_body || options.body_inputs)
     report.body_pairs = find_body_pairs(scene, options, seen.x, state.body, search.body);
+  std::erase_if(report.body_pairs, [&](const BodyPair& pair) { return scene.cloth.triangles_of(pair.cloth).empty(); });
   graph.body_vertices = active_vertices(scene, report);
   if (!with_body) graph.body_vertices.clear();
   find_classes(scene, rest, state, seen, options, search, report);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ LearnedScene learned_scene(const Scene&);
 
 // The same, with body vertices that get no edges. Throws Error for one that is not there.
 LearnedScene learned_scene(const Scene&, const std::vector<int>& omitted_body_vertices);
+
+// The same numbers of materials that are one a vertex, V x 3.
+FeatureRows material_inputs(std::span<const VertexMaterial>);
 
 // A material as losses and networks take it: isotropic, bending by dihedral angles; what is said above.
 VertexMaterial vertex_material(const Material&);

@@ -85,6 +85,14 @@ void begin_later(const Config& first_frame, Clip& clip) {
   clip.poses.erase(clip.poses.begin(), clip.poses.begin() + first);
 }
 
+// Goes on where the clip ends: backward to its first pose, forward again, and so on.
+void turn_round(int turns, Clip& clip) {
+  const std::size_t once = clip.poses.size();
+  clip.poses.reserve(once + static_cast<std::size_t>(turns) * (once - 1));
+  for (int turn = 0; turn < turns; ++turn)
+    for (std::size_t k = 1; k < once; ++k) clip.poses.push_back(clip.poses[turn % 2 == 0 ? once - 1 - k : k]);
+}
+
 // The clip by the body's own joints, from its own zero pose. A start with the arms down comes before the body's own
 // zero pose is accounted for, since it is said in SMPL's; the zero pose that cloth was fitted to is the body's own.
 Clip performed(const Config& section, const Performance& who, const std::filesystem::path& folder) {
@@ -98,6 +106,7 @@ Clip performed(const Config& section, const Performance& who, const std::filesys
   const std::optional<BodyPose> t = t_pose(who.body, joints);
   Clip clip = read_clip(section, measured(who, joints, t), folder);
   begin_later(section["first_frame"], clip);
+  turn_round(section["turns"].integer(), clip);
   clip = blended(clip, StartPose::arms_down, !from_zero);
   if (t) clip = from_own_zero_pose(clip, who.body, joints, *t);
   return blended(clip, StartPose::zero, from_zero);

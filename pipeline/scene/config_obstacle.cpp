@@ -109,6 +109,8 @@ const Section& body_section() {
                "of a .bvh clip: a frame in which the figure stands upright with its feet flat; left out: the file's "
                "zero pose, or where nobody stands in that, its first frame"),
        integer("first_frame", not_negative, "0", "of the clip, with which it begins"),
+       integer("turns", {.low = 0, .high = 100}, "0",
+               "how often it turns round where the clip ends: 1: forward and backward; 0: it stands still there"),
        number("blend_in", Unit::time, not_negative, "0", "from the start pose into the clip; 0: starts at frame 0"),
        word("start_pose", {"zero", "arms_down"}, "zero", "what is blended in from"),
        with_words(

@@ -25,7 +25,9 @@ void compare(const std::string& cloth, const char* quantity, const char* unit, d
 std::optional<VertexMaterial> trained_material(const std::string& training) {
   try {
     const YAML::Node samples = YAML::Load(training)["samples"];
-    if (!samples || samples["sample_materials"].as<bool>(false)) return {};
+    if (!samples) return {};
+    const auto sampled = samples["sample_materials"].as<std::string>("none");
+    if (sampled != "none" && sampled != "false") return {};  // `false`: written by earlier versions
     const YAML::Node m = samples["material"];
     if (!m) return {};
     return VertexMaterial{m["density"].as<double>(), m["lame_mu"].as<double>(), m["lame_lambda"].as<double>(),

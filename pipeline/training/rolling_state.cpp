@@ -22,6 +22,12 @@ void set_surroundings(RollingState& state) {
   state.now.body_previous = settling || after_settling ? state.now.body : body_at(entry - 1);
   state.now.body_target = settling ? state.now.body : body_at(entry + 1);
   state.now.target = wide(roll.cloth[static_cast<std::size_t>(entry + 1)]);
+  state.body_left_out.clear();
+  if (!roll.body_left_out.empty()) {
+    state.body_left_out = roll.body_left_out[static_cast<std::size_t>(settling ? 1 : entry)];
+    const std::vector<char>& next = roll.body_left_out[static_cast<std::size_t>(settling ? 1 : entry + 1)];
+    for (std::size_t f = 0; f < next.size(); ++f) state.body_left_out[f] = state.body_left_out[f] || next[f];
+  }
   state.now.timestep = settling ? settling_time : learned_dt;
   state.now.is_init = settling;
   state.now.no_cloth_edges = settling || !roll.request.cloth_contact;
@@ -85,6 +91,7 @@ LossInputs inputs_of(const RollingState& state, const SeenPositions& seen, const
   inputs.repulsion = state.found.cloth_pairs.repulsion;
   inputs.contours = !is_settling(state) && state.roll.request.cloth_contact;
   inputs.is_initial = is_settling(state);
+  if (!state.body_left_out.empty()) inputs.body_left_out = &state.body_left_out;
   if (state.now.acceleration.rows() > 0) inputs.acceleration = &state.now.acceleration;
   inputs.progress = progress;
   return inputs;

@@ -17,6 +17,7 @@ struct RollingState {
   GraphState now;                    // what the frame starts from; its guess and pass are those of the pass to come
   bool over = true;                  // the roll-out has ended
   std::unique_ptr<Safeguard> guard;  // of roll-outs that are advanced through it
+  std::vector<char> body_left_out;   // faces of the body that meet others now or next; empty: none
   // Memory that is used again:
   GraphSearch search;
   LossSearch losses;

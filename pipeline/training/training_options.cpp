@@ -66,7 +66,12 @@ const Options<SampleOptions>& sample_options() {
        integer("shapes", &O::shapes, at_least_one, "of the body; the first is the mean one"),
        number("shape_spread", &O::shape_spread, Unit::none, not_negative, "standard deviations of the coefficients"),
        section(&O::material, training_material_options(), "HOOD's where it is left out"),
-       flag("sample_materials", &O::sample_materials, "over the authors' ranges, one a roll-out"),
+       choice("sample_materials", &O::sample_materials,
+              {{"none", MaterialSampling::none},
+               {"garment", MaterialSampling::garment},
+               {"vertex", MaterialSampling::vertex}},
+              "over the authors' ranges, anew for each roll-out: `garment`: one for each; `vertex`: two for each, "
+              "mixed over its rest shape; `none`: `material`"),
        number("still_share", &O::still_share, Unit::none, from_0_to_1,
               "of roll-outs that begin at rest, with a frame of 1/3 s in which the cloth falls"),
        number("noise", &O::noise, Unit::length, not_negative, "of start positions, standard deviation"),
@@ -77,9 +82,11 @@ const Options<SampleOptions>& sample_options() {
        choice("start", &O::start,
               {{"skinned", GarmentStart::skinned},
                {"untangle", GarmentStart::untangle},
+               {"cut", GarmentStart::cut},
                {"tangled", GarmentStart::tangled}},
-              "`skinned`: where the body takes the garment; `untangle`: the same, parted; `tangled`: without the "
-              "gap between layers and with flesh that does not give way"),
+              "`skinned`: where the body takes the garment; `untangle`: the same, parted; `cut`: the same "
+              "without the triangles that intersect, as released; `tangled`: without the gap between layers and with "
+              "flesh that does not give way"),
        section(&O::forces, force_sampling_options(), "")});
   return table;
 }

@@ -23,7 +23,15 @@ struct ForceSampling {
 enum class GarmentStart {
   skinned,   // where the body takes the garment, maybe tangled
   untangle,  // the same, parted by minimised contours before the roll-out starts
+  cut,       // the same without the triangles that intersect; vertices left alone go as the garment is worn
   tangled    // skinned without layers' gaps and flesh, with shapes of a wide spread
+};
+
+// How far a drawn material reaches, over the authors' ranges.
+enum class MaterialSampling {
+  none,     // all have the material of the configuration
+  garment,  // each garment of a roll-out has its own
+  vertex    // each garment changes from one to another over its rest shape
 };
 
 // What a network is trained on.
@@ -34,12 +42,12 @@ struct SampleOptions {
   int shapes = 1;                               // of the body; the first is the mean one
   double shape_spread = 1;                      // standard deviations of its coefficients
   VertexMaterial material;                      // HOOD's unless it says otherwise
-  bool sample_materials = false;                // over the authors' ranges, one a roll-out
-  double still_share = 0.5;                     // of roll-outs that begin at rest with a settling frame
-  double noise = 3e-3;                          // of start positions [m]
-  bool yaw = true, mirror = true;               // turned about the vertical, and left for right
-  double no_body_share = 0;                     // of roll-outs
-  bool flesh = true;                            // the body gives way where it would pass through itself
+  MaterialSampling sample_materials = MaterialSampling::none;
+  double still_share = 0.5;        // of roll-outs that begin at rest with a settling frame
+  double noise = 3e-3;             // of start positions [m]
+  bool yaw = true, mirror = true;  // turned about the vertical, and left for right
+  double no_body_share = 0;        // of roll-outs
+  bool flesh = true;               // the body gives way where it would pass through itself
   GarmentStart start = GarmentStart::skinned;
   ForceSampling forces;
 };

@@ -7,6 +7,7 @@
 #include "collision/search/intersections.hpp"
 #include "collision/untangle/untangle.hpp"
 #include "learned/steppers/learned_scene.hpp"
+#include "physics/recovery/cut_out.hpp"
 #include "pipeline/scene/setup_cloth.hpp"
 #include "pipeline/training/hung_sheet.hpp"
 
@@ -45,6 +46,40 @@ Material isotropic(const VertexMaterial& values) {
   return material;
 }
 
+VertexMaterial mixed(const MaterialDraw& draw, double part) {
+  if (draw.one == draw.other) return draw.one;
+  const auto plain = [&](double a, double b) { return a + part * (b - a); };
+  const auto by_logarithm = [&](double a, double b) { return std::exp(plain(std::log(a), std::log(b))); };
+  return {plain(draw.one.density, draw.other.density), by_logarithm(draw.one.lame_mu, draw.other.lame_mu),
+          plain(draw.one.lame_lambda, draw.other.lame_lambda), by_logarithm(draw.one.bending, draw.other.bending)};
+}
+
+void add_materials(const MaterialDraw& draw, const Points& rest, std::vector<VertexMaterial>& materials) {
+  const Eigen::VectorXd along = rest * draw.direction;
+  const double low = along.minCoeff(), length = along.maxCoeff() - low;
+  for (const double at : along) materials.push_back(mixed(draw, length > 0 ? (at - low) / length : 0));
+}
+
+// Graph and losses of a scene whose cloths, rest shape and pins are set.
+std::shared_ptr<const TrainingScene> with_graph(const RollMaker& maker, const RollRequest& request,
+                                                const Triangles& triangles, std::shared_ptr<TrainingScene> made) {
+  Scene& scene = made->scene;
+  scene.surface = make_surface(static_cast<int>(scene.rest.rows()), triangles);
+  made->graph = learned_scene(scene).graph;
+  std::vector<char> pinned(static_cast<std::size_t>(scene.surface.vertex_count), 0);
+  for (const int pin : scene.pins) pinned[static_cast<std::size_t>(pin)] = 1;
+  const std::vector<VertexMaterial>& materials = made->materials;
+  made->losses = make_loss_garment(scene.surface, scene.rest, pinned, materials.front());
+  if (std::ranges::any_of(materials, [&](const VertexMaterial& m) { return m != materials.front(); })) {
+    set_materials(made->losses, materials);
+    made->graph.materials = material_inputs(materials);
+    made->graph.mass = made->losses.mass;
+  }
+  made->rest = make_rest_graph(made->graph, maker.features);
+  if (request.sheet) made->losses.closed = close_surface(scene.surface, {}, scene.pins);  // it has no inside
+  return made;
+}
+
 // Mirrors x at x = 0, then turns it about the vertical, as the roll-out asks for.
 void turn(const RollRequest& request, PointsF& x) {
   if (request.mirrored) x.col(0) *= -1;
@@ -72,15 +107,37 @@ void set_start(const TrainingOptions& options, Roll& roll) {
   roll.start = parted.x;
 }
 
+// Cuts out what meets other cloth where the roll-out begins.
+void cut_start(const RollMaker& maker, Roll& roll) {
+  Scene alone = roll.scene->scene;
+  alone.obstacles.clear();
+  State state;
+  state.x = roll.start;
+  const std::vector<char> all(static_cast<std::size_t>(alone.surface.triangles.rows()), 1);
+  const std::vector<int> cut = cut_out_at_start(alone, state, all);
+  roll.cut = static_cast<int>(cut.size());
+  if (cut.empty()) return;
+  roll.usable = cut.size() < all.size();
+  if (!roll.usable) return;
+  roll.scene = cut_scene(maker, roll.request, *roll.scene, cut);
+  for (const int pin : roll.scene->rest.pinned) roll.start.row(pin) = roll.cloth[1].row(pin).cast<double>();
+}
+
+// Of each triangle, 1 where it meets another one.
+std::vector<char> meeting(const Surface& surface, const Points& x, IntersectionCache& cache) {
+  std::vector<char> marks(static_cast<std::size_t>(surface.triangles.rows()), 0);
+  for (const auto& [a, b] : intersecting_pairs(surface, x, cache))
+    marks[static_cast<std::size_t>(a)] = marks[static_cast<std::size_t>(b)] = 1;
+  return marks;
+}
+
 // With the fixed material, each scene is made once.
 std::shared_ptr<const TrainingScene> scene_of(RollMaker& maker, const RollRequest& request) {
-  if (maker.options.samples.sample_materials) {
-    RandomStream random = stream_for(maker.options.seed, material_draw, request.number);
-    return make_training_scene(maker, request, random_material(random));
-  }
+  if (maker.options.samples.sample_materials != MaterialSampling::none)
+    return make_training_scene(maker, request, drawn_materials(maker, request));
   auto& scene =
       maker.scenes[{request.wear, request.body, request.mirrored, request.with_body, request.sheet, request.wind}];
-  if (!scene) scene = make_training_scene(maker, request, maker.options.samples.material);
+  if (!scene) scene = make_training_scene(maker, request, drawn_materials(maker, request));
   return scene;
 }
 
@@ -186,33 +243,74 @@ VertexMaterial random_material(RandomStream& random) {
   return material;
 }
 
+std::vector<MaterialDraw> drawn_materials(const RollMaker& maker, const RollRequest& request) {
+  const SampleOptions& samples = maker.options.samples;
+  const std::size_t garments =
+      request.sheet ? 1 : maker.world.wear[static_cast<std::size_t>(request.wear)].garments.size();
+  std::vector<MaterialDraw> draws(garments, {samples.material, samples.material});
+  if (samples.sample_materials == MaterialSampling::none) return draws;
+  RandomStream random = stream_for(maker.options.seed, material_draw, request.number);
+  for (MaterialDraw& draw : draws) {
+    draw.one = draw.other = random_material(random);
+    if (samples.sample_materials == MaterialSampling::garment) continue;
+    draw.other = random_material(random);
+    for (double& part : draw.direction) part = random.normal();
+  }
+  return draws;
+}
+
 std::shared_ptr<const TrainingScene> make_training_scene(const RollMaker& maker, const RollRequest& request,
-                                                         const VertexMaterial& values) {
+                                                         const std::vector<MaterialDraw>& draws) {
   const TrainingWorld& world = maker.world;
   auto made = std::make_shared<TrainingScene>();
   Scene& scene = made->scene;
   Triangles triangles;
+  const auto add = [&](const std::string& name, const Points& rest, const Triangles& own,
+                       const std::vector<int>& pins) {
+    const MaterialDraw& draw = draws[scene.cloths.size()];
+    add_materials(draw, rest, made->materials);
+    add_cloth_part(name, rest, own, pins, request.mirrored, isotropic(mixed(draw, 0.5)), scene, triangles);
+  };
   if (request.sheet) {
     const HungSheet sheet = hung_sheet(maker.options.samples.edge);
-    add_cloth_part("sheet", sheet.rest, sheet.triangles, sheet.pins, request.mirrored, isotropic(values), scene,
-                   triangles);
+    add("sheet", sheet.rest, sheet.triangles, sheet.pins);
   } else {
     const Eigen::VectorXd& shape = world.bodies[static_cast<std::size_t>(request.body)].shape;
     for (const Garment& garment : world.wear[static_cast<std::size_t>(request.wear)].garments)
-      add_cloth_part(garment.name, rest_shape(garment, world.body, shape), garment.skin.triangles, garment.pins,
-                     request.mirrored, isotropic(values), scene, triangles);
+      add(garment.name, rest_shape(garment, world.body, shape), garment.skin.triangles, garment.pins);
   }
   scene.wind.on = request.wind;
-  scene.surface = make_surface(static_cast<int>(scene.rest.rows()), triangles);
   scene.contact.self = maker.options.contact.edges;
   if (request.with_body) scene.obstacles.push_back({"body", request.mirrored ? world.mirrored : world.surface, true});
-  made->graph = learned_scene(scene).graph;
-  made->rest = make_rest_graph(made->graph, maker.features);
-  std::vector<char> pinned(static_cast<std::size_t>(scene.surface.vertex_count), 0);
-  for (const int pin : scene.pins) pinned[static_cast<std::size_t>(pin)] = 1;
-  made->losses = make_loss_garment(scene.surface, scene.rest, pinned, values);
-  if (request.sheet) made->losses.closed = close_surface(scene.surface, {}, scene.pins);  // it has no inside
-  return made;
+  return with_graph(maker, request, triangles, std::move(made));
+}
+
+std::shared_ptr<const TrainingScene> cut_scene(const RollMaker& maker, const RollRequest& request,
+                                               const TrainingScene& whole, const std::vector<int>& cut) {
+  auto made = std::make_shared<TrainingScene>();
+  made->materials = whole.materials;
+  made->scene = whole.scene;
+  Scene& scene = made->scene;
+  const Triangles& all = whole.scene.surface.triangles;
+  Triangles triangles(all.rows() - static_cast<Eigen::Index>(cut.size()), 3);
+  std::vector<char> alone(static_cast<std::size_t>(scene.rest.rows()), 1);
+  scene.rest_triangle.clear();
+  Eigen::Index kept = 0;
+  for (Cloth& cloth : scene.cloths) {
+    const int first = cloth.first_triangle, end = first + cloth.triangle_count;
+    cloth.first_triangle = static_cast<int>(kept);
+    for (int t = first; t < end; ++t) {
+      if (std::ranges::binary_search(cut, t)) continue;
+      triangles.row(kept++) = all.row(t);
+      scene.rest_triangle.push_back(whole.scene.rest_triangle[static_cast<std::size_t>(t)]);
+      for (const int v : all.row(t)) alone[static_cast<std::size_t>(v)] = 0;
+    }
+    cloth.triangle_count = static_cast<int>(kept) - cloth.first_triangle;
+  }
+  for (const int pin : scene.pins) alone[static_cast<std::size_t>(pin)] = 0;
+  for (int v = 0; v < static_cast<int>(alone.size()); ++v)
+    if (alone[static_cast<std::size_t>(v)]) scene.pins.push_back(v);
+  return with_graph(maker, request, triangles, std::move(made));
 }
 
 Roll make_roll(RollMaker& maker, const RollRequest& request) {
@@ -221,13 +319,17 @@ Roll make_roll(RollMaker& maker, const RollRequest& request) {
   const bool looks = maker.options.samples.start == GarmentStart::tangled && request.cloth_contact && !request.sheet;
   const RollRequest at = looks ? tangled_place(maker, request, roll.pairs) : request;
   roll.scene = scene_of(maker, at);
+  const bool crosses_itself = request.with_body && !maker.options.samples.flesh;
+  IntersectionCache cache;
   for (int k = 0; k < request.frames + 2; ++k) {
     WornFrame frame = frame_of(maker, request, at, k);
+    if (crosses_itself) roll.body_left_out.push_back(meeting(roll.scene->graph.body, frame.body.cast<double>(), cache));
     roll.body.push_back(std::move(frame.body));
     roll.cloth.push_back(std::move(frame.cloth));
   }
   set_forces(maker, roll);
   set_start(maker.options, roll);
+  if (maker.options.samples.start == GarmentStart::cut && request.cloth_contact) cut_start(maker, roll);
   return roll;
 }
 

@@ -28,8 +28,16 @@ struct RollRequest {
   bool operator==(const RollRequest&) const = default;
 };
 
+// A garment's material: `one` at the lower end of its rest shape along `direction`, `other` at the upper end, and mixed
+// in between, mu and bending by their logarithms.
+struct MaterialDraw {
+  VertexMaterial one, other;
+  Vec3 direction{0, 1, 0};
+};
+
 // A scene as network and losses see it.
 struct TrainingScene {
+  std::vector<VertexMaterial> materials;  // of each vertex
   Scene scene;
   GraphScene graph;
   RestGraph rest;
@@ -43,9 +51,12 @@ struct Roll {
   std::vector<PointsF> body, cloth;  // cloth: as worn; body: empty matrices where there is none
   Points start;                      // where free vertices begin: as worn, parted where that is asked for, with noise
   bool usable = true;                // false: what was to be parted did not come apart
-  int pairs = 0;                     // of triangles of cloth that intersect where it begins; counted of tangled starts
-  bool shows_forces = false;         // the network has inputs for accelerations
-  Drive forces;                      // acceleration, gravity with it, and wind
+  int cut = 0;                       // triangles that were cut out where it begins
+  std::vector<std::vector<char>>
+      body_left_out;          // of each entry, faces of the body that meet others; empty: it gives way
+  int pairs = 0;              // of triangles of cloth that intersect where it begins; counted of tangled starts
+  bool shows_forces = false;  // the network has inputs for accelerations
+  Drive forces;               // acceleration, gravity with it, and wind
 };
 
 // The number-th roll-out; `progress` of the run says how long it may be.
@@ -69,7 +80,16 @@ RollRequest tangled_place(RollMaker&, const RollRequest& asked, int& pairs);
 // bending by their logarithms.
 VertexMaterial random_material(RandomStream&);
 
-// The garment, outfit or sheet that the roll-out asks for, with the material, as network and losses see it.
-std::shared_ptr<const TrainingScene> make_training_scene(const RollMaker&, const RollRequest&, const VertexMaterial&);
+// The materials that the roll-out's garments have, one a garment.
+std::vector<MaterialDraw> drawn_materials(const RollMaker&, const RollRequest&);
+
+// The garment, outfit or sheet that the roll-out asks for, with these materials, as network and losses see it.
+std::shared_ptr<const TrainingScene> make_training_scene(const RollMaker&, const RollRequest&,
+                                                         const std::vector<MaterialDraw>&);
+
+// The same scene without some triangles, which are ascending. Vertices that are left alone are pinned: they go as the
+// garment is worn, and no loss, edge or pair has them (Grigorev et al. 2024, as released).
+std::shared_ptr<const TrainingScene> cut_scene(const RollMaker&, const RollRequest&, const TrainingScene&,
+                                               const std::vector<int>& triangles);
 
 }  // namespace selvedge

@@ -64,6 +64,23 @@ TEST_CASE("A clip moves the body over the ground, blended in from a start pose, 
   CHECK((body_at(aside, 1) - body_at(walk, 1)).rowwise().norm().minCoeff() == Approx(std::sqrt(5.0)));
 }
 
+TEST_CASE("A clip that turns round goes backward, forward again, and then stands still", "[setup_body]") {
+  const Folder folder("body_turns");
+  const Setup once = with_body(folder, "{clip: walk, first_frame: 170, room: 0}"),
+              turned = with_body(folder, "{clip: walk, first_frame: 170, turns: 2, room: 0}");
+  const auto frame = [](const Setup& setup, int k) { return body_at(setup, k / 30.0); };
+  constexpr int last = 9;  // the clip has 180 frames
+  for (int k = 0; k <= last; ++k) {
+    INFO(k);
+    const Points there = frame(once, k);
+    for (const int same : {k, 2 * last - k, 2 * last + k})
+      CHECK((frame(turned, same) - there).cwiseAbs().maxCoeff() < 1e-12);
+  }
+  CHECK((frame(turned, 3 * last + 5) - frame(once, last)).cwiseAbs().maxCoeff() < 1e-12);
+  CHECK((frame(once, last) - frame(once, 0)).rowwise().norm().mean() > 0.05);
+  CHECK_THROWS_WITH(with_body(folder, "{clip: walk, turns: -1}"), Contains("turns"));
+}
+
 TEST_CASE("A body with a clip gives way where it would pass through itself, unless no room is asked for",
           "[setup_body]") {
   const Folder folder("body_flesh");

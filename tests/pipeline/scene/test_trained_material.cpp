@@ -24,7 +24,7 @@ TEST_CASE("trained material: the training text of a weight file names it", "[sce
   TrainingOptions options;
   options.samples.material = {0.3, 20, 30, 4e-5};
   CHECK(trained_material(training_yaml(options)) == options.samples.material);
-  options.samples.sample_materials = true;
+  options.samples.sample_materials = MaterialSampling::garment;
   CHECK(!trained_material(training_yaml(options)));
   CHECK(!trained_material(""));                              // imported
   CHECK(!trained_material("samples: {material: {mu: 1}}"));  // of another version
