@@ -9,14 +9,15 @@ CONFIGURE := $(if $(CI),-DSELVEDGE_WERROR=ON)
 SOURCES = git ls-files '*.cpp' '*.hpp'
 PROGRAM := build/release/selvedge
 
-PACKAGES_release := build suitesparse fcl viewer plots test
+PACKAGES_release := build suitesparse fcl viewer plots test python
+ADDED_release := cmake/add-python.sh build/release
 PACKAGES_dev := $(PACKAGES_release)
 PACKAGES_asan := $(PACKAGES_release)
 PACKAGES_asan-core := $(PACKAGES_release)
 PACKAGES_tsan := $(PACKAGES_release) tsan
 PACKAGES_minimal := build viewer test
 
-.PHONY: help program demo test everything validate bench stress stability wardrobe compare fuzz dev long check-install asan asan-core tsan minimal torch format check-format tidy clean
+.PHONY: help program demo test everything validate bench stress stability wardrobe compare fuzz dev long check-install wheel asan asan-core tsan minimal torch format check-format tidy clean
 .DEFAULT_GOAL := help
 
 help:  ## This list
@@ -56,7 +57,7 @@ compare: program  ## Compare the conventional stepper's settings: tables and plo
 	@$(PROGRAM) compare configs/compare/conventional.yaml --out out/compare
 
 test: test-release  ## Build and run every test (FILTER=regular expression on test files)
-everything: test long check-install minimal asan fuzz torch  ## Every test in the builds release, minimal and asan, long ones, fuzzers and those with libtorch too; CI runs a part
+everything: test long check-install minimal wheel asan fuzz torch  ## Every test in the builds release, minimal and asan, long ones, of the wheel, fuzzers and those with libtorch too; CI runs a part
 fuzz:  ## Readers of files given what a fuzzer makes of files, FUZZ_SECONDS each, with clang (FORMATS="obj ply": only these)
 	@cmake/install-packages.sh build fuzz
 	@$(MAKE) --no-print-directory build/fuzz/configured
@@ -67,6 +68,9 @@ asan: test-asan  ## The same under the address and undefined-behaviour sanitizer
 asan-core: test-asan-core  ## Kernels and readers under these sanitizers
 check-install: program  ## The libraries alone, installed and found from elsewhere
 	@cmake/check-install.sh build/check-install
+wheel:  ## pip install . into an empty environment, its source moved away, and the Python tests on that
+	@cmake/install-packages.sh build viewer python
+	@JOBS=$(JOBS) cmake/test-wheel.sh build/wheel-test build/minimal/selvedge
 long: test  ## The tests that are too long for every change, after all others
 	@build/release/selvedge_tests '[.long]'
 tsan: test-tsan  ## The same under the thread sanitizer, with clang
@@ -81,6 +85,7 @@ torch:  ## libtorch's library beside the program in build/release, and the tests
 test-%:
 	@cmake/install-packages.sh $(PACKAGES_$*)
 	@$(MAKE) --no-print-directory build/$*/configured
+	@$(ADDED_$*)
 	@cmake --build --preset $* --parallel $(JOBS)
 	@cmake/run-tests.sh $* $(JOBS) --tests-regex '$(FILTER)'
 

@@ -1,13 +1,21 @@
-# How a module is compiled: the files of a room together, a precompiled header, OpenMP only where there is a pragma.
+# How a module is compiled: the files of a room together, a precompiled header, OpenMP only where there is a pragma,
+# position-independent everywhere, so that the Python extension is linked to the libraries of any build.
 
 set(SELVEDGE_COMMON_HEADERS <algorithm> <array> <cassert> <cmath> <functional> <map> <optional> <set> <span> <string>
   <vector> <Eigen/Core> <Eigen/Geometry>)
+
+# Functions of a file that call each other are inlined as elsewhere: nothing replaces them when a program is loaded.
+function(selvedge_position_independent target)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_compile_options(${target} PRIVATE -fno-semantic-interposition)
+endfunction()
 
 # The precompiled headers that modules share, one for each set of compiler flags.
 foreach(flags IN ITEMS plain parallel)
   set(headers selvedge_headers_${flags})
   file(CONFIGURE OUTPUT ${headers}.cpp CONTENT "")
   add_library(${headers} OBJECT ${CMAKE_CURRENT_BINARY_DIR}/${headers}.cpp)
+  selvedge_position_independent(${headers})
   target_link_libraries(${headers} PRIVATE Eigen3::Eigen selvedge_warnings)
   target_precompile_headers(${headers} PRIVATE ${SELVEDGE_COMMON_HEADERS} <Eigen/SparseCore>)
 endforeach()
@@ -47,6 +55,7 @@ function(selvedge_module name)
   list(REMOVE_ITEM sources ${parallel})
 
   add_library(selvedge_${name} STATIC ${sources})
+  selvedge_position_independent(selvedge_${name})
   target_include_directories(selvedge_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
     $<INSTALL_INTERFACE:include>)
   # Who builds on it names headers as where it is installed: <selvedge/...>.
@@ -87,6 +96,7 @@ endfunction()
 # selvedge_objects(NAME TARGET source...): sources with flags of their own, part of the library selvedge_NAME.
 function(selvedge_objects name target)
   add_library(${target} OBJECT ${ARGN})
+  selvedge_position_independent(${target})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${target} PRIVATE selvedge_warnings)
   target_sources(selvedge_${name} PRIVATE $<TARGET_OBJECTS:${target}>)

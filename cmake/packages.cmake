@@ -9,6 +9,7 @@ if(SELVEDGE_PROGRAM)
   find_package(CLI11 REQUIRED)
   find_package(nlohmann_json REQUIRED)
   find_package(fmt REQUIRED)
+  find_package(TinyGLTF REQUIRED)
   # Debian's CMake package of libzip asks for programs that it does not install.
   find_path(LIBZIP_INCLUDE zip.h REQUIRED)
   find_library(LIBZIP_LIBRARY zip REQUIRED)

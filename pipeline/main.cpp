@@ -116,7 +116,10 @@ void pattern_options(CLI::App& command, PatternRequest& request) {
 }
 
 void body_options(CLI::App& command, BodyRequest& request) {
-  command.add_option("file", request.file, "mesh (.obj, .ply) or model of the SMPL family (.npz)")->required();
+  command
+      .add_option("file", request.file,
+                  "mesh (.obj, .ply), model of the SMPL family (.npz) or glTF with a skin (.glb, .gltf)")
+      ->required();
   command.add_option("--skeleton", request.skeleton, "of the mesh, as MakeHuman has it (.mhskel)");
   command.add_option("--weights", request.weights, "of the mesh, as MakeHuman has them (.mhw)");
   command.add_option("--joints", request.joints, "where the joints of a mesh are that has neither (.yaml)");

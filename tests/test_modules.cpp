@@ -26,6 +26,7 @@ const std::vector<Heavy> heavy_packages = {
     {"CLI11", "CLI/.*", "pipeline/.*\\.cpp"},
     {"nlohmann-json", "nlohmann/.*", "pipeline/.*(\\.cpp|_json\\.hpp)"},
     {"fmt", "fmt/.*", "pipeline/.*"},
+    {"tinygltf", "tiny_gltf\\.h", ".*_tinygltf\\.cpp"},
     {"libzip", "zip\\.h", "pipeline/formats/npz\\.cpp"},
     {"Catch2", "catch2/.*", "tests/.*"},
 };

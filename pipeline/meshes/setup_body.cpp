@@ -17,19 +17,23 @@
 #include "pipeline/motions/clip_amass.hpp"
 #include "pipeline/motions/clip_bvh.hpp"
 #include "pipeline/motions/clip_procedural.hpp"
+#include "pipeline/motions/rig_gltf.hpp"
 #include "pipeline/motions/t_pose.hpp"
 
 namespace selvedge {
 namespace {
 
-constexpr double amass_fps = 30;
+constexpr double amass_fps = 30, gltf_fps = 60;
+
+bool is_gltf(const std::filesystem::path& name) { return name.extension() == ".glb" || name.extension() == ".gltf"; }
 
 BodyModel read_model(const Config& model, const std::filesystem::path& folder) {
   if (model.text() == "mannequin") return kept_mannequin(cache_folder());
   const std::filesystem::path file = existing_path(model, folder);
   if (file.extension() == ".npz") return read_smpl(file);
   if (file.extension() == ".h5") return read_body(file);
-  model.fail("is neither `mannequin` nor a .npz or .h5 file", "convert the body as docs/bodies.md says");
+  if (is_gltf(file)) return read_gltf_rig(file).body;
+  model.fail("is neither `mannequin` nor a .npz, .h5, .glb or .gltf file", "convert the body as docs/bodies.md says");
 }
 
 // What clips are made for: the body in SMPL's zero pose.
@@ -74,8 +78,18 @@ Clip read_clip(const Config& section, const Measures& who, const std::filesystem
   const std::vector<std::string> known = procedural_clip_names();
   if (std::find(known.begin(), known.end(), clip.text()) == known.end())
     clip.fail("is the unknown clip `" + clip.text() + "`",
-              "name a .bvh or .npz file, or one of " + joined(known) + suggestion(clip.text(), known));
+              "name a .bvh, .npz, .glb or .gltf file, or one of " + joined(known) + suggestion(clip.text(), known));
   return make_clip(clip.text(), who.joints, who.floor);
+}
+
+// An animation of the body's own skeleton, as it is.
+Clip own_animation(const Config& section, const Performance& who, const std::filesystem::path& folder) {
+  const Config &clip = section["clip"], &animation = section["animation"];
+  const GltfRig rig = read_gltf_rig(existing_path(clip, folder));
+  const Points ours = joint_positions(who.body, who.shape);
+  if (rig.body.joints != who.body.joints || !(joint_positions(rig.body, {}) - ours).isZero(1e-3))
+    clip.fail("moves another skeleton than the body's", "give the same file as `model`, or the body made of it");
+  return read_gltf_clip(rig, animation.given ? animation.text() : "", gltf_fps);
 }
 
 void begin_later(const Config& first_frame, Clip& clip) {
@@ -101,6 +115,14 @@ Clip performed(const Config& section, const Performance& who, const std::filesys
   const auto blended = [&](const Clip& clip, StartPose start, bool wanted) {
     return wanted && seconds > 0 ? blended_in(clip, seconds, start) : clip;
   };
+  const bool gltf = is_gltf(section["clip"].text());
+  if (section["animation"].given && !gltf)
+    section["animation"].fail("is given for a clip that is no glTF file", "leave it out");
+  if (gltf) {
+    Clip clip = own_animation(section, who, folder);
+    begin_later(section["first_frame"], clip);
+    return blended(clip, from_zero ? StartPose::zero : StartPose::arms_down, true);
+  }
   check_joints(who.body, section["clip"]);
   const Points joints = joint_positions(who.body, who.shape);
   const std::optional<BodyPose> t = t_pose(who.body, joints);

@@ -1,5 +1,7 @@
 #include "pipeline/meshes/setup_paths.hpp"
 
+#include <dlfcn.h>
+
 #include <cstdlib>
 
 namespace selvedge {
@@ -11,6 +13,11 @@ fs::path config_folder() {
   const fs::path program = fs::read_symlink("/proc/self/exe", problem);
   const fs::path installed = program.parent_path().parent_path() / "share" / "selvedge" / "configs";
   if (!problem && fs::is_directory(installed, problem)) return installed;
+  Dl_info loaded;  // the file that this code is in
+  if (dladdr(reinterpret_cast<void*>(&config_folder), &loaded) != 0 && loaded.dli_fname) {
+    const fs::path beside = fs::path(loaded.dli_fname).parent_path() / "configs";
+    if (fs::is_directory(beside, problem)) return beside;
+  }
   return fs::path(SELVEDGE_SOURCE_DIR) / "configs";
 }
 

@@ -8,7 +8,8 @@
 
 namespace selvedge {
 
-// The folder `configs` of the program: share/selvedge/configs beside an installed program, else the source's.
+// The folder `configs` of the program: share/selvedge/configs beside an installed program, configs beside an installed
+// Python extension, else the source's.
 std::filesystem::path config_folder();
 
 // Where what a scene names is looked for, in this order: the scene file's folder, the one above it, the program's

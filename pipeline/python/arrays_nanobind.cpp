@@ -30,22 +30,23 @@ nb::object as_rows(const nb::handle& array, const char* type, const char* kinds,
   return numpy.attr("ascontiguousarray")(given, type);
 }
 
-template <class Matrix>
-nb::object copied(const Matrix& rows) {
-  using Number = typename Matrix::Scalar;
-  auto* kept = new Matrix(rows);
-  const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<Matrix*>(p); });
-  return nb::cast(nb::ndarray<nb::numpy, Number, nb::shape<-1, 3>>(kept->data(),
-                                                                   {static_cast<std::size_t>(kept->rows()), 3}, owner));
+// An array of numpy's that owns its numbers; Array has data().
+template <class Number, class Array>
+nb::object copied(const Array& array, std::initializer_list<std::size_t> shape) {
+  auto* own = new Array(array);
+  const nb::capsule owner(own, [](void* p) noexcept { delete static_cast<Array*>(p); });
+  return nb::cast(nb::ndarray<nb::numpy, Number>(own->data(), shape, owner));
 }
+
+std::size_t count(Eigen::Index rows) { return static_cast<std::size_t>(rows); }
 
 }  // namespace
 
-Points points_of(const nb::handle& array, const std::string& where) {
+Points points_of(const nb::handle& array, const std::string& where, NotFinite not_finite) {
   const nb::object rows = as_rows(array, "float64", "fiu", where);
   const auto view = nb::cast<nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>>(rows);
   Points points = Eigen::Map<const Points>(view.data(), static_cast<Eigen::Index>(view.shape(0)), 3);
-  for (Eigen::Index v = 0; v < points.rows(); ++v)
+  for (Eigen::Index v = 0; v < points.rows() && not_finite == NotFinite::refused; ++v)
     if (!points.row(v).allFinite())
       throw Error("is not finite in row " + std::to_string(v), where, "leave NaN and infinity out");
   return points;
@@ -71,7 +72,9 @@ nb::ndarray<nb::numpy, double, nb::shape<-1, 3>> view_of(Points& points, const n
   return {points.data(), {static_cast<std::size_t>(points.rows()), 3}, owner};
 }
 
-nb::object copy_of(const Points& points) { return copied(points); }
-nb::object copy_of(const Triangles& triangles) { return copied(triangles); }
+nb::object copy_of(const Points& points) { return copied<double>(points, {count(points.rows()), 3}); }
+nb::object copy_of(const Triangles& triangles) { return copied<int>(triangles, {count(triangles.rows()), 3}); }
+nb::object copy_of(const Eigen::VectorXd& values) { return copied<double>(values, {count(values.size())}); }
+nb::object copy_of(const std::vector<int>& values) { return copied<int>(values, {values.size()}); }
 
 }  // namespace selvedge

@@ -4,14 +4,16 @@
 #include <nanobind/ndarray.h>
 
 #include <string>
+#include <vector>
 
 #include "collision/geometry/points.hpp"
 
 namespace selvedge {
 
 // An array that numpy has, as points, n x 3 [m]. Throws Error that says `where` for another shape, for what is no
-// number, and for numbers that are not finite.
-Points points_of(const nanobind::handle& array, const std::string& where);
+// number, and for numbers that are not finite unless they are allowed.
+enum class NotFinite { refused, allowed };
+Points points_of(const nanobind::handle& array, const std::string& where, NotFinite = NotFinite::refused);
 
 // The same of vertex indices, m x 3 whole numbers of 0 .. vertices - 1.
 Triangles triangles_of(const nanobind::handle& array, Eigen::Index vertices, const std::string& where);
@@ -22,5 +24,7 @@ nanobind::ndarray<nanobind::numpy, double, nanobind::shape<-1, 3>> view_of(Point
 // A copy that numpy owns.
 nanobind::object copy_of(const Points&);
 nanobind::object copy_of(const Triangles&);
+nanobind::object copy_of(const Eigen::VectorXd&);
+nanobind::object copy_of(const std::vector<int>&);
 
 }  // namespace selvedge

@@ -5,10 +5,23 @@ if(NOT nanobind_ROOT)
     OUTPUT_VARIABLE nanobind_ROOT)
 endif()
 find_package(nanobind CONFIG REQUIRED)
-nanobind_add_module(_selvedge NB_STATIC STABLE_ABI python/module_nanobind.cpp python/arrays_nanobind.cpp)
+file(GLOB sources CONFIGURE_DEPENDS python/*.cpp)
+nanobind_add_module(_selvedge NB_STATIC STABLE_ABI ${sources})
 target_include_directories(_selvedge PRIVATE ${PROJECT_SOURCE_DIR})
-target_link_libraries(_selvedge PRIVATE selvedge_pipeline)
+target_link_libraries(_selvedge PRIVATE selvedge_studies selvedge_warnings)
 target_compile_features(_selvedge PRIVATE cxx_std_20)
-set_target_properties(_selvedge PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/python/selvedge)
-configure_file(python/selvedge/__init__.py ${PROJECT_BINARY_DIR}/python/selvedge/__init__.py COPYONLY)
+# What the libraries export is nobody else's: calls among them are direct, and another extension's are not mixed up.
+target_link_options(_selvedge PRIVATE LINKER:--exclude-libs,ALL)
+
+# A package that is complete, for the tests of a build tree.
+set(package ${PROJECT_BINARY_DIR}/python/selvedge)
+set_target_properties(_selvedge PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${package})
+file(GLOB files CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR}/python/selvedge python/selvedge/*.py*
+  python/selvedge/py.typed)
+foreach(file IN LISTS files)
+  configure_file(python/selvedge/${file} ${package}/${file} COPYONLY)
+endforeach()
+
 install(TARGETS _selvedge LIBRARY DESTINATION selvedge COMPONENT python)
+# What scenes name without a path: materials, bodies, outfits. Trained networks are left out.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/configs DESTINATION selvedge COMPONENT python FILES_MATCHING PATTERN *.yaml)

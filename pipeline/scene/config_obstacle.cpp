@@ -101,9 +101,13 @@ const Section& body_section() {
       "model",
       {},
       {named("model", "mannequin",
-             "`mannequin`, made by code, or a file: SMPL, SMPL-H or SMPL-X as .npz, any rigged body as .h5"),
+             "`mannequin`, made by code, or a file: SMPL, SMPL-H or SMPL-X as .npz, any rigged body as .h5, .glb or "
+             ".gltf"),
        numbers("shape", any, "coefficients of its shapes; left out: what an AMASS clip gives an SMPL body, else zero"),
-       text("clip", "a procedural clip, or a file: .bvh, or AMASS .npz; left out: it stands in the zero pose"),
+       text("clip",
+            "a procedural clip, or a file: .bvh, AMASS .npz, or .glb or .gltf with an animation of the body's own "
+            "skeleton; left out: it stands in the zero pose"),
+       text("animation", "of a glTF clip: its name; left out: the file's first"),
        section(bvh_joints_section(), "", "of a .bvh clip whose names are not known, or known wrongly"),
        integer("rest_frame", not_negative, "",
                "of a .bvh clip: a frame in which the figure stands upright with its feet flat; left out: the file's "

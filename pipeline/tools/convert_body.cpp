@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -11,7 +12,9 @@
 #include "pipeline/bodies/body_jointed.hpp"
 #include "pipeline/bodies/body_makehuman.hpp"
 #include "pipeline/bodies/body_smpl.hpp"
+#include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/config/config_units.hpp"
+#include "pipeline/motions/rig_gltf.hpp"
 #include "pipeline/motions/t_pose.hpp"
 
 namespace selvedge {
@@ -19,12 +22,19 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
-BodyModel read(const BodyRequest& request) {
+BodyModel read(const BodyRequest& request, BodyReport& report) {
   const std::string extension = request.file.extension().string();
+  if (extension == ".glb" || extension == ".gltf") {
+    if (request.unit != "m")
+      throw Error("is given for glTF, which is in metres", "--unit " + request.unit, "leave it out");
+    GltfRig rig = read_gltf_rig(request.file);
+    for (const GltfAnimation& animation : rig.scene.animations) report.animations.push_back(animation.name);
+    return std::move(rig.body);
+  }
   if (extension == ".npz") return read_smpl(request.file);
   if (extension != ".obj" && extension != ".ply")
-    throw Error("is neither a mesh (.obj, .ply) nor a model of the SMPL family (.npz)", request.file.string(),
-                "write other bodies in HDF5 yourself, see docs/bodies.md");
+    throw Error("is neither a mesh (.obj, .ply), a model of the SMPL family (.npz) nor glTF (.glb, .gltf)",
+                request.file.string(), "write other bodies in HDF5 yourself, see docs/bodies.md");
   const double metres = metres_per_unit(request.unit);
   const bool rigged = !request.skeleton.empty() || !request.weights.empty();
   if (!request.joints.empty() && rigged)
@@ -41,10 +51,10 @@ BodyModel read(const BodyRequest& request) {
 BodyReport convert_body(const BodyRequest& request) {
   if (request.out.extension() != ".h5")
     throw Error("is no .h5 file", "--out " + request.out.string(), "bodies are written in HDF5");
-  const BodyModel body = read(request);
+  BodyReport report;
+  const BodyModel body = read(request, report);
   const Points& rest = body.skin.rest;
   const Points joints = joint_positions(body, {});
-  BodyReport report;
   report.out = request.out;
   report.vertices = static_cast<int>(rest.rows());
   report.triangles = static_cast<int>(body.skin.triangles.rows());
@@ -52,16 +62,22 @@ BodyReport convert_body(const BodyRequest& request) {
   report.shapes = static_cast<int>(body.skin.shape_directions.cols());
   report.closed = is_closed(make_surface(report.vertices, body.skin.triangles));
   report.height = rest.col(1).maxCoeff() - rest.col(1).minCoeff();
-  report.arms_off = arms_off_t_pose(smpl_joints(body, joints));
-  report.t_pose = !t_pose(body, joints);
+  const std::vector<int> found = smpl_joints_among(body.joints);
+  if (const auto missing = std::ranges::find(found, -1); missing != found.end()) {
+    report.lacks = smpl_joint_names(smpl::joints)[static_cast<std::size_t>(missing - found.begin())];
+  } else {
+    report.arms_off = arms_off_t_pose(smpl_joints(body, joints));
+    report.t_pose = !t_pose(body, joints);
+  }
   write_body(request.out, body);
   return report;
 }
 
 std::string body_json(const BodyReport& r) {
-  const nlohmann::ordered_json json = {{"body", r.out.string()}, {"vertices", r.vertices}, {"triangles", r.triangles},
-                                       {"closed", r.closed},     {"joints", r.joints},     {"shapes", r.shapes},
-                                       {"height", r.height},     {"arms_off", r.arms_off}, {"t_pose", r.t_pose}};
+  const nlohmann::ordered_json json = {
+      {"body", r.out.string()}, {"vertices", r.vertices}, {"triangles", r.triangles},  {"closed", r.closed},
+      {"joints", r.joints},     {"shapes", r.shapes},     {"height", r.height},        {"arms_off", r.arms_off},
+      {"t_pose", r.t_pose},     {"lacks", r.lacks},       {"animations", r.animations}};
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -74,8 +90,12 @@ std::string body_text(const BodyReport& r) {
       fmt::format("{} vertices, {} triangles, {}", r.vertices, r.triangles, r.closed ? "closed" : "not closed"));
   add("joints", fmt::format("{}, {} shapes", r.joints, r.shapes));
   add("height", fmt::format("{:.3f} m", r.height));
-  add("zero pose", fmt::format("arms {:.0f} degrees from SMPL's, {}", r.arms_off / degree,
-                               r.t_pose ? "taken as the same" : "clips are carried over"));
+  if (r.lacks.empty())
+    add("zero pose", fmt::format("arms {:.0f} degrees from SMPL's, {}", r.arms_off / degree,
+                                 r.t_pose ? "taken as the same" : "clips are carried over"));
+  else
+    add("zero pose", fmt::format("no joint `{}`: only its own animations move it", r.lacks));
+  if (!r.animations.empty()) add("animations", fmt::format("{}", fmt::join(r.animations, ", ")));
   add("body", r.out.string());
   return text;
 }

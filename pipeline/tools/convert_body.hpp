@@ -2,11 +2,12 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace selvedge {
 
 struct BodyRequest {
-  std::filesystem::path file;               // SMPL family (.npz), or a mesh with:
+  std::filesystem::path file;               // SMPL family (.npz), glTF with a skin (.glb, .gltf), or a mesh with:
   std::filesystem::path skeleton, weights;  // MakeHuman's .mhskel and .mhw
   std::string unit = "m";                   // of the mesh
   std::filesystem::path out;                // our HDF5 form (.h5)
@@ -20,6 +21,8 @@ struct BodyReport {
   double height = 0;    // of the zero pose [m]
   double arms_off = 0;  // largest angle of upper arms and forearms to SMPL's zero pose [rad]
   bool t_pose = false;  // as near to it that clips turn from the zero pose
+  std::string lacks;    // a joint of SMPL's that is not there, so that only its own animations move it; empty: none
+  std::vector<std::string> animations;  // of a glTF file
 };
 
 // Reads a body by its extension and writes it for scenes to use. Throws Error with what is missing in the request, and

@@ -105,6 +105,31 @@ def test_check_and_untangle():
     assert selvedge.check(moved, both[1])["self_pairs"] == report["pairs_after"]
 
 
+def test_contours():
+    x, triangles = sheet(9)
+    y = np.array([[0.4, -0.2, 0.513], [0.6, -0.2, 0.507], [0.51, 0.3, 0.511]])  # hangs through the sheet
+    both = np.vstack([x, y]), np.vstack([triangles, [[81, 82, 83]]])
+    assert selvedge.contours(x, triangles) == []
+    for found, sheets in ((selvedge.contours(*both), [0, 0]), (selvedge.contours(x, triangles, [(y, [[0, 1, 2]])]), [0, 1])):
+        assert len(found) == 1 and not found[0]["closed"]
+        assert [side["sheet"] for side in found[0]["sides"]] == sheets
+        assert found[0]["points"][:, 1] == pytest.approx(0, abs=1e-12)
+        steps = np.linalg.norm(np.diff(found[0]["points"], axis=0), axis=1)
+        assert found[0]["length"] == pytest.approx(steps.sum())
+
+
+def test_distances():
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
+    faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    points = np.array([[0.1, 0.1, 0.05], [0.2, 0.3, -2], [-3, -4, 0]])
+    found = selvedge.distance(points, corners, faces)
+    assert found["value"] == pytest.approx([-0.05, 2, 5])
+    assert found["gradient"][1] == pytest.approx([0, 0, -1]) and found["triangle"][1] == 0
+    assert found["closest"][2] == pytest.approx([0, 0, 0])
+    with pytest.raises(selvedge.Error, match="points.*row 1"):
+        selvedge.distance([[0, 0, 0], [0, np.inf, 0]], corners, faces)
+
+
 def test_memory_of_a_thousand_steps_does_not_grow():
     scene = selvedge.Scene()
     scene.add_cloth(*sheet(4, 0.2, 0.3))

@@ -1,11 +1,30 @@
-"""Cloth simulation with audited contact: scenes from numpy arrays or scene files."""
+"""Cloth simulation with audited contact: scenes from numpy arrays or scene files. Metres, seconds, kilograms; Y is up."""
 
-from ._selvedge import Error, Scene, check, read_trajectory, untangle
+from __future__ import annotations
 
-__all__ = ["Error", "Scene", "check", "read_trajectory", "simulate", "untangle"]
+from typing import Callable
+
+from ._selvedge import Error, Scene, check, compare, contours, distance, read_trajectory, untangle
+from .steppers import SceneArrays, StepDrive, Stepper, StepStart
+
+__all__ = [
+    "Error",
+    "Scene",
+    "SceneArrays",
+    "StepDrive",
+    "StepStart",
+    "Stepper",
+    "check",
+    "compare",
+    "contours",
+    "distance",
+    "read_trajectory",
+    "simulate",
+    "untangle",
+]
 
 
-def simulate(scene, frames=None, callback=None):
+def simulate(scene: Scene, frames: int | None = None, callback: Callable[[Scene], bool | None] | None = None) -> int:
     """Steps to that frame (the scene file's by default), or until a step is rejected or the callback, which is called
     with the scene after every frame, returns False. Returns the frame that was reached."""
     frames = scene.frames if frames is None else frames

@@ -1,0 +1,335 @@
+#include "pipeline/formats/gltf_tinygltf.hpp"
+
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/formats/mesh_weld.hpp"
+
+namespace selvedge {
+namespace {
+
+using Numbers = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// The file as the package has parsed it. Nothing in it can be trusted: indices and sizes are checked where they are
+// used.
+class Document {
+ public:
+  explicit Document(const std::filesystem::path& file) : file_(file) {
+    tinygltf::TinyGLTF loader;
+    loader.SetImageLoader([](auto...) { return true; }, nullptr);  // images are of no use here
+    std::string error, warning;
+    bool good = false;
+    try {
+      good = file.extension() == ".glb" ? loader.LoadBinaryFromFile(&model, &error, &warning, file.string())
+                                        : loader.LoadASCIIFromFile(&model, &error, &warning, file.string());
+    } catch (const std::exception& problem) {
+      error = problem.what();
+    }
+    std::ranges::replace(error, '\n', ' ');
+    if (!good) fail("file", "is no glTF 2.0 that can be read (" + error + ")", "export it anew, as .glb");
+    for (const std::string& extension : model.extensionsRequired)
+      if (extension != "KHR_mesh_quantization" && extension.find("_materials_") == std::string::npos &&
+          extension.find("_texture_") == std::string::npos)
+        fail("extensionsRequired", "asks for " + extension, "export without it, uncompressed");
+  }
+
+  [[noreturn]] void fail(const std::string& part, const std::string& what, const std::string& cure) const {
+    throw Error(what, file_.string() + ": " + part, cure);
+  }
+
+  // An entry of one of the file's lists.
+  template <class Entry>
+  const Entry& entry(const std::vector<Entry>& list, int index, const std::string& part) const {
+    if (index < 0 || index >= std::ssize(list))
+      fail(part, "names entry " + std::to_string(index) + " of " + std::to_string(list.size()), "export it anew");
+    return list[static_cast<std::size_t>(index)];
+  }
+
+  // The numbers of an accessor, a row each; `columns` must be right.
+  Numbers numbers(int index, int columns, const std::string& part) const {
+    const tinygltf::Accessor& accessor = entry(model.accessors, index, part);
+    if (accessor.sparse.isSparse) fail(part, "is stored sparsely", "export it without sparse accessors");
+    const int has = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
+    if (has != columns)
+      fail(part, "has " + std::to_string(has) + " numbers a row, not " + std::to_string(columns), "export it anew");
+    const tinygltf::BufferView& view = entry(model.bufferViews, accessor.bufferView, part);
+    const std::vector<unsigned char>& bytes = entry(model.buffers, view.buffer, part).data;
+    const int stride = accessor.ByteStride(view);
+    const int size = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType));
+    if (stride <= 0 || size <= 0) fail(part, "is of no known type", "export it anew");
+    const std::size_t row = static_cast<std::size_t>(size) * static_cast<std::size_t>(columns);
+    const auto fits = [](std::size_t begin, std::size_t length, std::size_t whole) {
+      return begin <= whole && length <= whole - begin;
+    };
+    if (accessor.count > bytes.size() || !fits(view.byteOffset, view.byteLength, bytes.size()) ||
+        (accessor.count > 0 &&
+         !fits(accessor.byteOffset, (accessor.count - 1) * static_cast<std::size_t>(stride) + row, view.byteLength)))
+      fail(part, "reaches beyond its buffer", "the file is cut short or damaged");
+    Numbers all(static_cast<Eigen::Index>(accessor.count), columns);
+    const unsigned char* begin = bytes.data() + view.byteOffset + accessor.byteOffset;
+    for (Eigen::Index i = 0; i < all.rows(); ++i)
+      for (int k = 0; k < columns; ++k)
+        all(i, k) = number(begin + i * stride + k * size, accessor.componentType, accessor.normalized, part);
+    if (!all.allFinite()) fail(part, "is not finite", "repair it where it was made");
+    return all;
+  }
+
+  tinygltf::Model model;
+
+ private:
+  double number(const unsigned char* at, int type, bool normalized, const std::string& part) const {
+    const auto as = [&]<class Value>(Value value) {
+      std::memcpy(&value, at, sizeof value);
+      const double scale = normalized ? static_cast<double>(std::numeric_limits<Value>::max()) : 1;
+      return std::max(static_cast<double>(value) / scale, normalized ? -1.0 : std::numeric_limits<double>::lowest());
+    };
+    switch (type) {
+      case TINYGLTF_COMPONENT_TYPE_BYTE:
+        return as(std::int8_t{});
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        return as(std::uint8_t{});
+      case TINYGLTF_COMPONENT_TYPE_SHORT:
+        return as(std::int16_t{});
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        return as(std::uint16_t{});
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+        return as(std::uint32_t{});
+      case TINYGLTF_COMPONENT_TYPE_FLOAT: {
+        float value;
+        std::memcpy(&value, at, sizeof value);
+        return value;
+      }
+      default:
+        fail(part, "is of no known type", "export it anew");
+    }
+  }
+
+  std::filesystem::path file_;
+};
+
+std::string name_or(const std::string& name, const char* noun, std::size_t number) {
+  return name.empty() ? noun + std::to_string(number) : name;
+}
+
+// Translation, rotation and scale of a matrix, given by columns.
+void set_by_matrix(const Document& file, const std::vector<double>& m, const std::string& part, GltfNode& node) {
+  const Eigen::Matrix4d all = Eigen::Map<const Eigen::Matrix4d>(m.data());
+  Mat3 linear = all.topLeftCorner<3, 3>();
+  node.translation = all.topRightCorner<3, 1>();
+  node.scale = linear.colwise().norm().transpose();
+  if (linear.determinant() < 0) node.scale[0] = -node.scale[0];
+  linear = linear * node.scale.cwiseInverse().asDiagonal();
+  if (!(linear * linear.transpose()).isIdentity(1e-3))
+    file.fail(part, "is sheared or flattened by its matrix", "apply its transforms where it was made");
+  node.rotation = Eigen::Quaterniond(linear).normalized();
+}
+
+GltfNode node_of(const Document& file, std::size_t number) {
+  const tinygltf::Node& given = file.model.nodes[number];
+  GltfNode node;
+  node.name = name_or(given.name, "node", number);
+  const std::string part = "node `" + node.name + "`";
+  const auto sized = [&](const std::vector<double>& values, std::size_t size) {
+    if (!values.empty() && values.size() != size) file.fail(part, "has a transform of another size", "export it anew");
+    if (!std::ranges::all_of(values, [](double v) { return std::isfinite(v); }))
+      file.fail(part, "is not finite", "repair it where it was made");
+    return !values.empty();
+  };
+  if (sized(given.matrix, 16)) set_by_matrix(file, given.matrix, part, node);
+  if (sized(given.translation, 3)) node.translation = Eigen::Map<const Vec3>(given.translation.data());
+  if (sized(given.scale, 3)) node.scale = Eigen::Map<const Vec3>(given.scale.data());
+  if (sized(given.rotation, 4))
+    node.rotation = Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(given.rotation.data()));
+  if (!(node.rotation.norm() > 1e-6)) file.fail(part, "has a rotation of length 0", "export it anew");
+  node.rotation.normalize();
+  return node;
+}
+
+// The nodes, parents first, and the place of each of the file's among them.
+std::vector<int> read_nodes(const Document& file, std::vector<GltfNode>& nodes) {
+  const std::vector<tinygltf::Node>& given = file.model.nodes;
+  std::vector<int> parent(given.size(), -1), place(given.size(), -1), order;
+  for (std::size_t i = 0; i < given.size(); ++i)
+    for (const int child : given[i].children) {
+      file.entry(given, child, "node " + std::to_string(i) + ", children");
+      if (parent[static_cast<std::size_t>(child)] >= 0)
+        file.fail("node " + std::to_string(child), "has two parents", "export it anew");
+      parent[static_cast<std::size_t>(child)] = static_cast<int>(i);
+    }
+  for (std::size_t i = 0; i < given.size(); ++i)
+    if (parent[i] < 0) order.push_back(static_cast<int>(i));
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const auto i = static_cast<std::size_t>(order[k]);
+    place[i] = static_cast<int>(k);
+    nodes.push_back(node_of(file, i));
+    nodes.back().parent = parent[i] < 0 ? -1 : place[static_cast<std::size_t>(parent[i])];
+    order.insert(order.end(), given[i].children.begin(), given[i].children.end());
+  }
+  if (order.size() != given.size()) file.fail("nodes", "are in a circle", "export it anew");
+  return place;
+}
+
+// The one skin that meshes use.
+int used_skin(const Document& file) {
+  std::optional<int> skin;
+  for (const tinygltf::Node& node : file.model.nodes) {
+    if (node.mesh < 0 || node.skin < 0) continue;
+    if (skin && *skin != node.skin)
+      file.fail("skins", "are several, used by different meshes", "export the body alone, with one armature");
+    skin = node.skin;
+  }
+  if (!skin) file.fail("skins", "is not used by any mesh", "export the body together with its armature and weights");
+  return *skin;
+}
+
+// Joints and weights of a vertex in sets of four.
+void add_weights(const Document& file, const tinygltf::Primitive& primitive, const std::string& part, int first,
+                 int count, int joints, std::vector<Eigen::Triplet<double>>& all) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(count);
+  for (int set = 0;; ++set) {
+    const auto number = primitive.attributes.find("JOINTS_" + std::to_string(set)),
+               weight = primitive.attributes.find("WEIGHTS_" + std::to_string(set));
+    if (number == primitive.attributes.end() || weight == primitive.attributes.end()) break;
+    const Numbers joint = file.numbers(number->second, 4, part + ", " + number->first);
+    const Numbers w = file.numbers(weight->second, 4, part + ", " + weight->first);
+    if (joint.rows() != count || w.rows() != count)
+      file.fail(part + ", " + weight->first, "has not as many rows as there are vertices", "export it anew");
+    for (int v = 0; v < count; ++v)
+      for (int k = 0; k < 4; ++k) {
+        if (w(v, k) <= 0) continue;
+        if (!(joint(v, k) >= 0 && joint(v, k) < joints))
+          file.fail(part + ", " + number->first, "names a joint beyond the skin's " + std::to_string(joints),
+                    "export it anew");
+        all.emplace_back(first + v, static_cast<int>(joint(v, k)), w(v, k));
+        sum[v] += w(v, k);
+      }
+  }
+  for (int v = 0; v < count; ++v)
+    if (!(sum[v] > 0)) file.fail(part, "has no weights at vertex " + std::to_string(v), "weight every vertex");
+}
+
+void add_primitive(const Document& file, const tinygltf::Primitive& primitive, const std::string& part, int joints,
+                   std::vector<Eigen::Triplet<double>>& weights, Mesh& mesh) {
+  if (primitive.mode != TINYGLTF_MODE_TRIANGLES && primitive.mode != -1)
+    file.fail(part, "is not made of triangles", "export triangles");
+  const auto position = primitive.attributes.find("POSITION");
+  if (position == primitive.attributes.end()) file.fail(part, "has no positions", "export it anew");
+  const Numbers x = file.numbers(position->second, 3, part + ", POSITION");
+  const int first = static_cast<int>(mesh.x.rows()), count = static_cast<int>(x.rows());
+  mesh.x.conservativeResize(first + count, 3);
+  mesh.x.bottomRows(count) = x;
+  Numbers corners;
+  if (primitive.indices >= 0)
+    corners = file.numbers(primitive.indices, 1, part + ", indices");
+  else
+    corners = Eigen::VectorXd::LinSpaced(count, 0, count - 1);
+  if (corners.rows() % 3 != 0) file.fail(part + ", indices", "are not whole triangles", "export it anew");
+  if (corners.rows() > 0 && !(corners.minCoeff() >= 0 && corners.maxCoeff() < count))
+    file.fail(part + ", indices", "name a vertex beyond the " + std::to_string(count), "export it anew");
+  const Eigen::Index before = mesh.triangles.rows();
+  mesh.triangles.conservativeResize(before + corners.rows() / 3, 3);
+  for (Eigen::Index i = 0; i < corners.rows(); ++i)
+    mesh.triangles(before + i / 3, i % 3) = first + static_cast<int>(corners(i, 0));
+  add_weights(file, primitive, part, first, count, joints, weights);
+}
+
+// Vertices at one place become one, with the weights of the lowest.
+void join_vertices(const Document& file, const std::string& name, GltfScene& scene,
+                   const std::vector<Eigen::Triplet<double>>& weights) {
+  const Eigen::Index as_read = scene.mesh.x.rows();
+  if (scene.mesh.triangles.rows() == 0) file.fail("meshes", "have no triangles", "export the body's surface");
+  weld(scene.mesh, name);
+  leave_out_repeated(scene.mesh, name);
+  const std::vector<int>& welded = scene.mesh.welded;
+  std::vector<int> lowest(static_cast<std::size_t>(scene.mesh.x.rows()), -1);
+  std::vector<Eigen::Triplet<double>> kept;
+  std::vector<double> sum(lowest.size(), 0.0);
+  for (int v = 0; v < as_read; ++v) {
+    const int to = welded.empty() ? v : welded[static_cast<std::size_t>(v)];
+    if (int& low = lowest[static_cast<std::size_t>(to)]; low < 0) low = v;
+  }
+  for (const Eigen::Triplet<double>& w : weights) {
+    const int to = welded.empty() ? w.row() : welded[static_cast<std::size_t>(w.row())];
+    if (lowest[static_cast<std::size_t>(to)] != w.row()) continue;
+    kept.emplace_back(to, w.col(), w.value());
+    sum[static_cast<std::size_t>(to)] += w.value();
+  }
+  scene.weights.resize(scene.mesh.x.rows(), static_cast<Eigen::Index>(scene.joints.size()));
+  scene.weights.setFromTriplets(kept.begin(), kept.end());
+  for (Eigen::Index v = 0; v < scene.weights.rows(); ++v) scene.weights.row(v) /= sum[static_cast<std::size_t>(v)];
+}
+
+std::optional<GltfPath> path_of(const std::string& name) {
+  if (name == "translation") return GltfPath::translation;
+  if (name == "rotation") return GltfPath::rotation;
+  if (name == "scale") return GltfPath::scale;
+  return {};  // weights of morph targets, and what extensions animate
+}
+
+GltfAnimation animation_of(const Document& file, const std::vector<int>& place, std::size_t number) {
+  const tinygltf::Animation& given = file.model.animations[number];
+  GltfAnimation animation{name_or(given.name, "animation", number), {}};
+  for (std::size_t c = 0; c < given.channels.size(); ++c) {
+    const tinygltf::AnimationChannel& channel = given.channels[c];
+    const std::optional<GltfPath> path = path_of(channel.target_path);
+    if (!path || channel.target_node < 0) continue;
+    const std::string part = "animation `" + animation.name + "`, channel " + std::to_string(c);
+    const tinygltf::AnimationSampler& sampler = file.entry(given.samplers, channel.sampler, part);
+    GltfTrack track{file.entry(place, channel.target_node, part), *path, GltfInterpolation::linear, {}, {}};
+    if (sampler.interpolation == "STEP") track.interpolation = GltfInterpolation::step;
+    if (sampler.interpolation == "CUBICSPLINE") track.interpolation = GltfInterpolation::cubic;
+    track.times = file.numbers(sampler.input, 1, part + ", times");
+    track.values = file.numbers(sampler.output, *path == GltfPath::rotation ? 4 : 3, part + ", values");
+    const Eigen::Index rows = track.times.size() * (track.interpolation == GltfInterpolation::cubic ? 3 : 1);
+    if (track.times.size() == 0 || track.values.rows() != rows)
+      file.fail(
+          part,
+          "has " + std::to_string(track.values.rows()) + " values for " + std::to_string(track.times.size()) + " times",
+          "export it anew");
+    for (Eigen::Index i = 1; i < track.times.size(); ++i)
+      if (!(track.times[i] > track.times[i - 1])) file.fail(part + ", times", "do not ascend", "export it anew");
+    animation.tracks.push_back(std::move(track));
+  }
+  return animation;
+}
+
+}  // namespace
+
+GltfScene read_gltf(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) throw Error("is not there", path.string(), "check the path");
+  const Document file(path);
+  GltfScene scene;
+  const std::vector<int> place = read_nodes(file, scene.nodes);
+  const int number = used_skin(file);
+  const tinygltf::Skin& skin = file.entry(file.model.skins, number, "skins");
+  for (const int joint : skin.joints) scene.joints.push_back(file.entry(place, joint, "skin, joints"));
+  if (scene.joints.empty()) file.fail("skin, joints", "is empty", "export it anew");
+  const auto joints = static_cast<int>(scene.joints.size());
+  scene.inverse_bind.assign(scene.joints.size(), Eigen::Matrix4d::Identity());
+  if (skin.inverseBindMatrices >= 0) {
+    const Numbers all = file.numbers(skin.inverseBindMatrices, 16, "skin, inverseBindMatrices");
+    if (all.rows() < joints) file.fail("skin, inverseBindMatrices", "are too few", "export it anew");
+    for (int j = 0; j < joints; ++j)
+      scene.inverse_bind[static_cast<std::size_t>(j)] = Eigen::Map<const Eigen::Matrix4d>(all.data() + 16 * j);
+  }
+  std::vector<Eigen::Triplet<double>> weights;
+  for (const tinygltf::Node& node : file.model.nodes) {
+    if (node.mesh < 0 || node.skin != number) continue;
+    const tinygltf::Mesh& mesh = file.entry(file.model.meshes, node.mesh, "node `" + node.name + "`");
+    for (std::size_t p = 0; p < mesh.primitives.size(); ++p)
+      add_primitive(file, mesh.primitives[p], "mesh `" + mesh.name + "`, primitive " + std::to_string(p), joints,
+                    weights, scene.mesh);
+  }
+  join_vertices(file, path.filename().string(), scene, weights);
+  for (std::size_t a = 0; a < file.model.animations.size(); ++a)
+    scene.animations.push_back(animation_of(file, place, a));
+  return scene;
+}
+
+}  // namespace selvedge

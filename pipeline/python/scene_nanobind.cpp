@@ -1,0 +1,180 @@
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <memory>
+
+#include "collision/geometry/error.hpp"
+#include "physics/scene/make_scene.hpp"
+#include "physics/steppers/decorated_stepper.hpp"
+#include "pipeline/python/arrays_nanobind.hpp"
+#include "pipeline/python/bindings_nanobind.hpp"
+#include "pipeline/python/stepper_nanobind.hpp"
+#include "pipeline/run/prepare.hpp"
+#include "pipeline/scene/make_stepper.hpp"
+#include "pipeline/scene/setup.hpp"
+
+namespace selvedge {
+namespace {
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+// A scene with its state and stepper: from arrays, or from a scene file.
+class World {
+ public:
+  explicit World(const nb::object& stepper)
+      : make_(stepper.is_none() ? conventional_maker() : python_maker("python", stepper)) {
+    setup_.run.fps = 30;
+  }
+
+  World(const std::filesystem::path& file, const std::vector<std::string>& overrides, const nb::dict& kinds)
+      : setup_(read_setup(file, overrides, kinds_with(kinds))) {
+    prepare(setup_);
+    state_ = setup_.initial;
+    stepper_ = make_stepper(setup_);
+  }
+
+  int add_cloth_arrays(const nb::handle& x, const nb::handle& triangles, const std::string& name, double density,
+                       double youngs_modulus, double poisson, double bending) {
+    must_be_open();
+    const Points points = points_of(x, "cloth `" + name + "`, x");
+    Material material;
+    material.density = density;
+    material.lame_mu = youngs_modulus / (2 * (1 + poisson));
+    material.lame_lambda = youngs_modulus * poisson / (1 - poisson * poisson);
+    material.bending = bending;
+    const int number =
+        add_cloth(setup_.scene, points, triangles_of(triangles, points.rows(), "cloth `" + name + "`, triangles"),
+                  material, name);
+    const Eigen::Index before = x_.rows();
+    x_.conservativeResize(before + points.rows(), 3);
+    x_.bottomRows(points.rows()) = points;
+    return number;
+  }
+
+  int add_obstacle_arrays(const nb::handle& x, const nb::handle& triangles, const std::string& name) {
+    must_be_open();
+    obstacles_.push_back(points_of(x, "obstacle `" + name + "`, x"));
+    return add_obstacle(setup_.scene, static_cast<int>(obstacles_.back().rows()),
+                        triangles_of(triangles, obstacles_.back().rows(), "obstacle `" + name + "`, triangles"), true,
+                        name);
+  }
+
+  void move_obstacle(int number, const nb::handle& x) {
+    begin();
+    const std::string where = "obstacle " + std::to_string(number);
+    if (number < 0 || number >= std::ssize(obstacles_)) throw Error("is not there", where, "number obstacles from 0");
+    Points to = points_of(x, where);
+    if (to.rows() != obstacles_[static_cast<std::size_t>(number)].rows())
+      throw Error("has " + std::to_string(to.rows()) + " rows, not as many as before", where, "give every vertex");
+    obstacles_[static_cast<std::size_t>(number)] = std::move(to);
+  }
+
+  // One step; false where it was rejected, which leaves everything as it was.
+  bool step() {
+    begin();
+    const double dt = 1 / setup_.run.fps;
+    State next;
+    const StepReport report = stepper_->step(state_, drive_at(state_.time + dt), dt, next);
+    if (report.status != StepStatus::accepted) return false;
+    keep(std::move(next), report);
+    return true;
+  }
+
+  State& state() {
+    begin();
+    return state_;
+  }
+  int pairs() const { return pairs_; }
+  double fps() const { return setup_.run.fps; }
+  int frames() const { return setup_.run.frames; }
+  const Triangles& triangles() const { return setup_.scene.surface.triangles; }
+
+ private:
+  void must_be_open() const {
+    if (stepper_) throw Error("has been stepped", "scene", "add cloths and obstacles before the first step");
+  }
+
+  void begin() {
+    if (stepper_) return;
+    if (x_.rows() == 0) throw Error("has no cloth", "scene", "add one");
+    state_ = first_state(setup_.scene, x_, obstacles_);
+    stepper_ = decorated(setup_.scene, make_);
+  }
+
+  Drive drive_at(double time) const {
+    if (setup_.drive_at) return setup_.drive_at(time);
+    Drive drive = at_rest(setup_.scene, state_);
+    drive.obstacles = obstacles_;
+    return drive;
+  }
+
+  // Writes into the existing arrays, so that views of them stay valid.
+  void keep(State next, const StepReport& report) {
+    Points x = std::move(state_.x), v = std::move(state_.v);
+    std::vector<Points> obstacles = std::move(state_.obstacles);
+    x = next.x;
+    v = next.v;
+    for (std::size_t k = 0; k < obstacles.size(); ++k) obstacles[k] = next.obstacles[k];
+    state_ = std::move(next);
+    state_.x.swap(x);
+    state_.v.swap(v);
+    state_.obstacles.swap(obstacles);
+    pairs_ = report.collision.pairs_after;
+  }
+
+  Setup setup_;
+  MakeStepper make_;  // of a scene from arrays
+  Points x_;
+  std::vector<Points> obstacles_;
+  State state_;
+  std::unique_ptr<Stepper> stepper_;
+  int pairs_ = -1;
+};
+
+}  // namespace
+
+void bind_scene(nb::module_& module) {
+  nb::class_<World>(module, "Scene",
+                    "Cloths and obstacles with their state, stepped by the conventional stepper or as a file says.")
+      .def(nb::init<const std::filesystem::path&, const std::vector<std::string>&, const nb::dict&>(), "file"_a,
+           "overrides"_a = std::vector<std::string>{}, "kinds"_a = nb::dict(),
+           "A scene file (YAML). overrides: key=value with dotted keys. kinds: names that run.stepper may have beside "
+           "the known ones, each with its subclass of Stepper.")
+      .def(nb::init<const nb::object&>(), nb::kw_only(), "stepper"_a = nb::none(),
+           "A scene without anything, at 30 frames a second, under gravity. stepper: a subclass of Stepper; None: the "
+           "conventional one.")
+      .def("add_cloth", &World::add_cloth_arrays, "x"_a, "triangles"_a, nb::kw_only(), "name"_a = "cloth",
+           "density"_a = 0.2, "youngs_modulus"_a = 1000.0, "poisson"_a = 0.3, "bending"_a = 1e-5,
+           "Appends a cloth and returns its number. x: rest positions, n x 3 [m]; triangles: m x 3, whole numbers of "
+           "0 .. n - 1; density [kg/m2]; youngs_modulus: times thickness [N/m]; poisson [1]; bending [N m].")
+      .def("add_obstacle", &World::add_obstacle_arrays, "x"_a, "triangles"_a, nb::kw_only(), "name"_a = "obstacle",
+           "Appends an obstacle and returns its number. x: positions, n x 3 [m]; triangles: m x 3, counter-clockwise "
+           "seen from outside.")
+      .def("move_obstacle", &World::move_obstacle, "number"_a, "x"_a,
+           "x: where every vertex of an obstacle is to be at the end of the next step, n x 3 [m].")
+      .def("step", &World::step, nb::call_guard<nb::gil_scoped_release>(),
+           "Steps one frame of 1 / fps [s]. False: the step was rejected, and everything is as it was.")
+      .def_prop_ro(
+          "x", [](nb::handle self) { return view_of(nb::cast<World&>(self).state().x, self); },
+          "Positions of all cloths on end, n x 3 [m]: a view without a copy, which shows the present state after every "
+          "step. What is written to it changes the state.")
+      .def_prop_ro(
+          "v", [](nb::handle self) { return view_of(nb::cast<World&>(self).state().v, self); },
+          "Velocities, n x 3 [m/s]: a view without a copy.")
+      .def_prop_ro(
+          "triangles", [](const World& world) { return copy_of(world.triangles()); }, "m x 3, of all cloths: a copy.")
+      .def_prop_ro(
+          "time", [](World& world) { return world.state().time; }, "Of the present state [s].")
+      .def_prop_ro(
+          "frame", [](World& world) { return world.state().frame; }, "Steps made so far.")
+      .def_prop_ro(
+          "clean", [](World& world) { return world.state().clean; }, "Known to be free of intersections.")
+      .def_prop_ro("pairs", &World::pairs, "Intersecting pairs of triangles after the last step; -1: not known.")
+      .def_prop_ro("fps", &World::fps, "Frames a second.")
+      .def_prop_ro("frames", &World::frames, "That the scene file asks for; 0 of a scene from arrays.");
+}
+
+}  // namespace selvedge

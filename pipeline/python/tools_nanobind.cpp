@@ -1,0 +1,201 @@
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "collision/audit/audit.hpp"
+#include "collision/contour/find_contours.hpp"
+#include "collision/distance/signed_distance.hpp"
+#include "collision/geometry/error.hpp"
+#include "collision/untangle/untangle.hpp"
+#include "pipeline/compare/compare.hpp"
+#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/python/arrays_nanobind.hpp"
+#include "pipeline/python/bindings_nanobind.hpp"
+#include "pipeline/python/stepper_nanobind.hpp"
+
+namespace selvedge {
+namespace {
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+struct Meshes {
+  std::vector<Surface> surfaces;
+  std::vector<Points> points;
+};
+
+std::vector<SheetView> sheets_of(const Meshes& meshes) {
+  std::vector<SheetView> sheets;
+  for (std::size_t k = 0; k < meshes.points.size(); ++k) sheets.push_back({&meshes.surfaces[k], &meshes.points[k]});
+  return sheets;
+}
+
+// Arrays as a mesh of its own, at the end of the list.
+void add_mesh(const nb::handle& x, const nb::handle& triangles, const std::string& before, Meshes& meshes) {
+  meshes.points.push_back(points_of(x, before + "x"));
+  const Eigen::Index n = meshes.points.back().rows();
+  meshes.surfaces.push_back(make_surface(static_cast<int>(n), triangles_of(triangles, n, before + "triangles")));
+}
+
+// The cloth, then the bodies.
+Meshes meshes_of(const nb::handle& x, const nb::handle& triangles, const nb::list& bodies) {
+  Meshes meshes;
+  add_mesh(x, triangles, "", meshes);
+  for (const nb::handle body : bodies) {
+    const std::string where = "body " + std::to_string(meshes.points.size() - 1);
+    if (!nb::isinstance<nb::sequence>(body) || nb::len(body) != 2)
+      throw Error("is no pair", where, "give (x, triangles) for every body");
+    add_mesh(body[0], body[1], where + ", ", meshes);
+  }
+  return meshes;
+}
+
+nb::dict check_arrays(const nb::handle& x, const nb::handle& triangles, const nb::list& bodies) {
+  const Meshes meshes = meshes_of(x, triangles, bodies);
+  std::vector<AuditBody> obstacles;
+  for (std::size_t k = 1; k < meshes.points.size(); ++k) obstacles.push_back({&meshes.surfaces[k], &meshes.points[k]});
+  const Audit found = audit(meshes.surfaces[0], meshes.points[0], obstacles);
+  nb::dict result;
+  result["self_pairs"] = found.self_pairs.size();
+  result["vertex_pairs"] = found.vertex_pairs.size();
+  result["body_pairs"] = found.obstacle_pairs.size();
+  result["inside_vertices"] = found.inside_vertices;
+  return result;
+}
+
+nb::tuple untangle_arrays(const nb::handle& x, const nb::handle& triangles, const nb::list& bodies, int iterations) {
+  const Meshes meshes = meshes_of(x, triangles, bodies);
+  const std::vector<SheetView> sheets = sheets_of(meshes);
+  UntangleOptions options;
+  options.iterations = iterations;
+  const UntangleResult result = untangle(meshes.surfaces[0], meshes.points[0], std::span(sheets).subspan(1), options);
+  nb::dict report;
+  report["pairs_before"] = result.pairs_before;
+  report["pairs_after"] = result.pairs_after;
+  report["iterations"] = result.iterations;
+  return nb::make_tuple(copy_of(result.x), report);
+}
+
+// Where the contours' points are, k x 3.
+Points contour_points(const std::vector<SheetView>& sheets, const Segments& found, const Contour& contour) {
+  Points x(static_cast<Eigen::Index>(contour.points.size()), 3);
+  for (std::size_t k = 0; k < contour.points.size(); ++k) {
+    const int end = contour.points[k];
+    x.row(static_cast<Eigen::Index>(k)) =
+        end < 0 ? sheets[0].x->row(~end)
+                : point_of(sheets, found.crossings[static_cast<std::size_t>(end)]).transpose().eval();
+  }
+  return x;
+}
+
+nb::list contours_of_arrays(const nb::handle& x, const nb::handle& triangles, const nb::list& bodies) {
+  const Meshes meshes = meshes_of(x, triangles, bodies);
+  const std::vector<SheetView> sheets = sheets_of(meshes);
+  const Segments found = find_segments(sheets);
+  nb::list all;
+  for (const Contour& contour : find_contours(sheets, found)) {
+    nb::dict one;
+    one["points"] = copy_of(contour_points(sheets, found, contour));
+    one["closed"] = contour.closed;
+    one["length"] = contour.length;
+    nb::list sides;
+    for (const ContourSide& side : contour.sides) {
+      nb::dict its;
+      its["sheet"] = side.sheet;
+      its["triangles"] = copy_of(side.triangles);
+      its["inside"] = copy_of(side.inside);
+      sides.append(its);
+    }
+    one["sides"] = sides;
+    all.append(one);
+  }
+  return all;
+}
+
+nb::dict distance_of_arrays(const nb::handle& points, const nb::handle& x, const nb::handle& triangles) {
+  const Points at = points_of(points, "points");
+  const Meshes meshes = meshes_of(x, triangles, nb::list());
+  DistanceField field(meshes.surfaces[0]);
+  field.move_to(meshes.points[0]);
+  const std::vector<SignedDistance> found = field.ask(at);
+  Eigen::VectorXd value(at.rows());
+  Points gradient(at.rows(), 3), closest(at.rows(), 3);
+  std::vector<int> triangle;
+  for (Eigen::Index i = 0; i < at.rows(); ++i) {
+    const SignedDistance& one = found[static_cast<std::size_t>(i)];
+    value[i] = one.value;
+    gradient.row(i) = one.gradient.transpose();
+    closest.row(i) = one.closest.transpose();
+    triangle.push_back(one.triangle);
+  }
+  nb::dict result;
+  result["value"] = copy_of(value);
+  result["gradient"] = copy_of(gradient);
+  result["closest"] = copy_of(closest);
+  result["triangle"] = copy_of(triangle);
+  return result;
+}
+
+nb::object compare_file(const std::filesystem::path& file, const nb::dict& kinds, const std::filesystem::path& out,
+                        const std::vector<std::string>& overrides, bool short_form) {
+  CompareRequest request;
+  request.file = file;
+  request.kinds = kinds_with(kinds);
+  request.out = out;
+  request.overrides = overrides;
+  request.short_form = short_form;
+  request.stop = [] {
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();  // Ctrl-C
+    return false;
+  };
+  const CompareResult result = compare(request);
+  nb::object rows = nb::module_::import_("json").attr("loads")(compare_json(result));
+  rows["table"] = compare_table(result);
+  return rows;
+}
+
+nb::dict read_trajectory(const std::filesystem::path& file) {
+  const TrajectoryReader reader(file);
+  nb::list x, time;
+  for (int k = 0; k < reader.frame_count(); ++k) {
+    const Frame frame = reader.frame(k);
+    x.append(copy_of(Points(frame.x.cast<double>())));
+    time.append(frame.time);
+  }
+  nb::dict result;
+  result["triangles"] = copy_of(reader.info().triangles);
+  result["fps"] = reader.info().fps;
+  result["time"] = time;
+  result["x"] = x;
+  return result;
+}
+
+}  // namespace
+
+void bind_tools(nb::module_& module) {
+  module.def("check", &check_arrays, "x"_a, "triangles"_a, "bodies"_a = nb::list(),
+             "Audits a cloth, with itself and with bodies that stand still. x: positions, n x 3 [m]; triangles: m x 3; "
+             "bodies: list of (x, triangles). Returns counts: self_pairs (triangles that share no vertex and "
+             "intersect), vertex_pairs (that share one and cross), body_pairs, inside_vertices (of the cloth, in "
+             "closed bodies).");
+  module.def("contours", &contours_of_arrays, "x"_a, "triangles"_a, "bodies"_a = nb::list(),
+             "The curves along which a cloth crosses itself or bodies, arguments as for check. Returns for each: "
+             "points, k x 3 [m]; closed; length [m]; sides, two of sheet (0: the cloth, k: body k - 1), triangles (one "
+             "a segment) and inside (vertices of the smaller part that the curve cuts off).");
+  module.def("distance", &distance_of_arrays, "points"_a, "x"_a, "triangles"_a,
+             "Signed distances of points, p x 3 [m], from a surface. Returns value, p [m], below 0 inside; gradient, "
+             "p x 3, of unit length; closest, p x 3 [m]; triangle, p.");
+  module.def("untangle", &untangle_arrays, "x"_a, "triangles"_a, "bodies"_a = nb::list(), "iterations"_a = 300,
+             "Parts a cloth from itself and from bodies, arguments as for check. Returns positions, n x 3 [m], and a "
+             "report: pairs_before, pairs_after, iterations.");
+  module.def("read_trajectory", &read_trajectory, "file"_a,
+             "A run's run.h5: triangles, m x 3; fps; time, a list [s]; x, a list of n x 3 [m], one a frame.");
+  module.def("compare", &compare_file, "file"_a, "kinds"_a = nb::dict(), "out"_a = std::filesystem::path("out/compare"),
+             "overrides"_a = std::vector<std::string>{}, "short"_a = false,
+             "Runs a comparison file (YAML), whose settings may name steppers of kinds, name to subclass of Stepper. "
+             "What is finished is kept in the folder out, by the file's settings: empty it when a class has changed. "
+             "Returns what compare.json holds, and table, a text.");
+}
+
+}  // namespace selvedge

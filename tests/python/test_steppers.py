@@ -1,0 +1,138 @@
+"""Steppers written in Python."""
+
+import numpy as np
+import pytest
+
+import selvedge
+
+SCENE = """
+cloths:
+  - name: sheet
+    rectangle: {size: [0.4, 0.4], edge: 10 cm}
+    translate: [0, 0.3, 0]
+    pins: [{vertices: [0]}]
+obstacles:
+  - name: floor
+    plane: {size: [2, 2], edge: 0.5}
+run: {frames: 5, fps: 30}
+"""
+
+COMPARISON = """
+scenes: [{name: fall, file: scene.yaml, states: 0}]
+repeats: 1
+settings:
+  - {name: thrown, stepper: thrown}
+  - {name: conventional, stepper: conventional}
+"""
+
+
+class Thrown(selvedge.Stepper):
+    """Every vertex falls by itself."""
+
+    def step(self, start, drive, dt):
+        v = start.v + dt * np.array(drive.acceleration)
+        return start.x + dt * v, v
+
+
+@pytest.fixture
+def scene_file(tmp_path):
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    return tmp_path / "scene.yaml"
+
+
+def square(height=0.0, size=1.0):
+    return np.array([[0, height, 0], [0, height, size], [size, height, 0], [size, height, size]]), [[0, 1, 2], [2, 1, 3]]
+
+
+def test_it_steps_a_scene_of_arrays_and_is_told_what_is_there():
+    seen = []
+
+    class Watcher(Thrown):
+        def __init__(self, scene):
+            super().__init__(scene)
+            seen.append(scene)
+
+        def step(self, start, drive, dt):
+            seen.append((start.frame, start.obstacles, drive.obstacles, dt))
+            return super().step(start, drive, dt)
+
+    scene = selvedge.Scene(stepper=Watcher)
+    scene.add_cloth(*square(1), name="sheet", density=0.3)
+    scene.add_obstacle(*square(-1, 3))
+    assert scene.step() and scene.clean
+    dt = 1 / 30
+    assert scene.x[:, 1] == pytest.approx(1 - 9.81 * dt * dt)
+    assert scene.v[:, 1] == pytest.approx(-9.81 * dt)
+    arrays, (frame, before, wanted, step) = seen
+    assert arrays.masses == pytest.approx([0.05, 0.1, 0.1, 0.05]) and arrays.cloths == [("sheet", 0, 4)]
+    assert arrays.rest.shape == (4, 3) and arrays.triangles.tolist() == [[0, 1, 2], [2, 1, 3]]
+    assert frame == 0 and step == dt and (before[0] == wanted[0]).all() and len(arrays.obstacles[0]) == 2
+
+
+def test_its_states_are_audited():
+    scene = selvedge.Scene(stepper=Thrown)
+    scene.add_cloth(*square(0.05))
+    scene.add_obstacle(np.array([[-1, 0, -1], [-1, 0, 2], [2, 0, -1], [2, 0.06, 2]]), [[0, 1, 2], [2, 1, 3]])
+    reached = selvedge.simulate(scene, 20, lambda s: s.clean)
+    assert 0 < reached < 20 and not scene.clean and scene.pairs > 0
+
+
+def test_positions_alone_give_velocities_and_pins_stay_pinned(scene_file):
+    class Lifted(selvedge.Stepper):
+        def step(self, start, drive, dt):
+            assert drive.pins == pytest.approx(start.x[self.scene.pins])
+            return start.x + [0, 0.01, 0]
+
+    scene = selvedge.Scene(scene_file, ["run.stepper=lifted"], kinds={"lifted": Lifted})
+    before = scene.x.copy()
+    assert selvedge.simulate(scene) == 5
+    assert (scene.x[0] == before[0]).all()
+    assert scene.x[1:, 1] == pytest.approx(before[1:, 1] + 0.05)
+    assert scene.v[1:, 1] == pytest.approx(0.3) and (scene.v[0] == 0).all()
+
+
+@pytest.mark.parametrize("made", [None, lambda x: x * np.nan])
+def test_nothing_and_what_is_not_finite_reject_a_step(made):
+    class Fails(selvedge.Stepper):
+        def step(self, start, drive, dt):
+            return made and made(start.x)
+
+    scene = selvedge.Scene(stepper=Fails)
+    scene.add_cloth(*square())
+    assert not scene.step() and scene.frame == 0 and (scene.x == square()[0]).all()
+
+
+def test_mistakes_in_a_stepper_say_what_and_where():
+    def scene_of(result):
+        class Wrong(selvedge.Stepper):
+            def step(self, start, drive, dt):
+                return result(start.x)
+
+        scene = selvedge.Scene(stepper=Wrong)
+        scene.add_cloth(*square())
+        return scene
+
+    with pytest.raises(selvedge.Error, match=r"`python`, x: has 3 rows"):
+        scene_of(lambda x: x[:3]).step()
+    with pytest.raises(selvedge.Error, match=r"`python`, v: has the shape \(4,\)"):
+        scene_of(lambda x: (x, x[:, 0])).step()
+    with pytest.raises(ZeroDivisionError):
+        scene_of(lambda x: 1 / 0).step()
+    with pytest.raises(selvedge.Error, match="no subclass"):
+        selvedge.Scene(stepper=dict)
+    with pytest.raises(selvedge.Error, match="no subclass"):
+        selvedge.Scene(stepper=Thrown(None))
+
+
+def test_it_runs_in_a_comparison(scene_file, tmp_path):
+    (tmp_path / "comparison.yaml").write_text(COMPARISON)
+    result = selvedge.compare(tmp_path / "comparison.yaml", kinds={"thrown": Thrown}, out=tmp_path / "out")
+    rows = {row["setting"]: row for row in result["rows"]}
+    assert list(rows) == ["thrown", "conventional"]
+    assert all(not row["trouble"] and row["finished"] == 1 and row["ms"] > 0 for row in rows.values()), rows
+    assert "thrown" in result["table"] and (tmp_path / "out" / "compare.html").exists()
+    with pytest.raises(selvedge.Error, match="conventional"):
+        selvedge.compare(tmp_path / "comparison.yaml", kinds={"conventional": Thrown}, out=tmp_path / "out")
+    # A name that no kind has is left out and said.
+    rows = selvedge.compare(tmp_path / "comparison.yaml", out=tmp_path / "other")["rows"]
+    assert "no stepper `thrown`" in rows[0]["trouble"]

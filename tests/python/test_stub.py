@@ -1,0 +1,59 @@
+"""The type stub says what the extension has: the same names, with the same arguments in the same order."""
+
+import ast
+import pathlib
+import re
+
+import selvedge
+from selvedge import _selvedge
+
+STUB = ast.parse((pathlib.Path(selvedge.__file__).parent / "_selvedge.pyi").read_text())
+
+
+def arguments(node):
+    a = node.args
+    return [arg.arg for arg in a.posonlyargs + a.args + a.kwonlyargs if arg.arg != "self"]
+
+
+def stubbed(body):
+    found = {}
+    for node in body:
+        if isinstance(node, ast.FunctionDef):
+            found.setdefault(node.name, []).append(arguments(node))
+    return found
+
+
+def real(thing):
+    # nanobind keeps a text such as "def check(x: object, triangles: object, bodies: list = ...) -> dict".
+    texts = [signature[0] for signature in thing.__nb_signature__]
+    inner = [re.search(r"\((.*)\)", re.sub(r"\[[^\]]*\]", "", text)).group(1) for text in texts]
+    return [[name for name in re.findall(r"(?:^|, )(\w+):", text) if name != "self"] for text in inner]
+
+
+def public(thing):
+    return {name for name in vars(thing) if not name.startswith("_")}
+
+
+def test_functions():
+    functions = stubbed(STUB.body)
+    assert set(functions) == {name for name in public(_selvedge) if not isinstance(getattr(_selvedge, name), type)}
+    for name, all_arguments in functions.items():
+        assert all_arguments == real(getattr(_selvedge, name)), name
+
+
+def test_scene():
+    scene = next(node for node in STUB.body if isinstance(node, ast.ClassDef) and node.name == "Scene")
+    methods = stubbed(scene.body)
+    assert {name for name in methods if name != "__init__"} == public(selvedge.Scene)
+    for name, all_arguments in methods.items():
+        member = getattr(selvedge.Scene, name)
+        if hasattr(member, "__nb_signature__"):
+            assert all_arguments == real(member), name
+
+
+def test_everything_public_says_what_it_is():
+    for name in selvedge.__all__:
+        if name != "Error":
+            assert getattr(selvedge, name).__doc__, name
+    for name in public(selvedge.Scene):
+        assert getattr(selvedge.Scene, name).__doc__, name
