@@ -57,7 +57,7 @@ bool train_all(DrapeRun& run) {
   if (!get_distance(run)) return false;
   for (const std::string& name : run.options.rows) {
     const DrapeRow& row = row_named(name);
-    DrapeModel model = run.backbone;
+    DrapeModel model = run.options.from_scratch ? make_drape_model(run.options, run.lessons) : run.backbone;
     add_scales(row, run.options, run.lessons, model);
     if (!run_stage(run.stage, row_stage(row, run.options, run.lessons, model))) return false;
     if (row.neighbours) write_neighbour_scale(run.stage.folder / "scales.h5", model.neighbours);
@@ -127,7 +127,7 @@ DrapeTrainSummary train_drapes(const TrainRequest& request) {
   summary.training = static_cast<int>(run.lessons.training.size());
   summary.validation = static_cast<int>(run.lessons.validation.size());
   summary.test = static_cast<int>(run.lessons.test.size());
-  summary.parameters = parameter_count(run.backbone.drape.plain);
+  for (const DrapePart& part : parts_of(run.backbone)) summary.parameters += parameter_count(*part.network);
   summary.finished = train_all(run);
   summary.seconds = run.stage.seconds;
   std::filesystem::remove(pause_file(folder));
