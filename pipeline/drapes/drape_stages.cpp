@@ -132,7 +132,12 @@ double mean_vertex_error(const DrapeModel& model, const std::vector<std::unique_
   return 1e3 * sum / static_cast<double>(bodies.size());
 }
 
-DrapeModel make_drape_model(const DrapeTrainingOptions& options, const DrapeLessons& lessons) {
+void restore_model(const StageFile& file, DrapeModel& model) {
+  DrapeAdam adam;
+  restore_into(file, model, adam);
+}
+
+DrapeModel blank_drape_model(const DrapeTrainingOptions& options, const DrapeLessons& lessons) {
   std::vector<const DrapeCase*> cases;
   for (const std::unique_ptr<DrapeBody>& body : lessons.training) cases.push_back(&body->sample.drape);
   DrapeShape shape{options.backbone.layers, options.backbone.width, 0.1, unread_inputs(options, lessons)};
@@ -141,8 +146,15 @@ DrapeModel make_drape_model(const DrapeTrainingOptions& options, const DrapeLess
     shape.mesh = options.backbone.mesh;
     shape.ring = &lessons.ring;
   }
-  DrapeModel model{make_drape_network(shape, cases, options.seed), {}, {}};
-  if (options.backbone.linear) fit_best_linear_part(cases, lessons, model);
+  return {make_drape_network(shape, cases, options.seed), {}, {}};
+}
+
+DrapeModel make_drape_model(const DrapeTrainingOptions& options, const DrapeLessons& lessons) {
+  DrapeModel model = blank_drape_model(options, lessons);
+  if (!options.backbone.linear) return model;
+  std::vector<const DrapeCase*> cases;
+  for (const std::unique_ptr<DrapeBody>& body : lessons.training) cases.push_back(&body->sample.drape);
+  fit_best_linear_part(cases, lessons, model);
   return model;
 }
 

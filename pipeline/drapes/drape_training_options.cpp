@@ -141,6 +141,7 @@ const std::vector<DrapeRow>& known_drape_rows() {
   static const std::vector<DrapeRow> rows{
       {"control", "the same fine-tuning without layer and loss 9"},
       {"collision_loss", "loss 9 alone", false, false, true},
+      {"collision_loss_approximate", "loss 9 alone, distances by a network", false, false, true, false, true},
       {"fixed", "layer of scale 1, accurate distances", true, false, true},
       {"learned", "layer of learned scales, accurate distances", true, true, true},
       {"neighbours", "scales by what neighbours know, accurate distances", true, false, true, false, false, true},
