@@ -43,9 +43,15 @@ DrapeNetwork make_drape_network(const DrapeShape& shape, std::span<const DrapeCa
   PlainShape plain;
   plain.inputs = static_cast<int>(cases[0]->inputs.size());
   plain.outputs.assign(static_cast<std::size_t>(std::max(shape.layers - 1, 0)), shape.width);
-  plain.outputs.push_back(static_cast<int>(made.mean.size()));
+  if (shape.mesh.levels > 0) {
+    assert(shape.ring && shape.ring->vertex_count() == made.mean.rows());
+    made.mesh = make_mesh_layers(*shape.ring, shape.mesh, seed + 1);
+    made.mesh.back().kernels.layers[0].weight *= static_cast<float>(shape.last_scale);
+  }
+  plain.outputs.push_back(made.mesh.empty() ? static_cast<int>(made.mean.size())
+                                            : made.mesh[0].sources * made.mesh[0].channels_in());
   made.plain = make_plain_network(plain, seed);
-  made.plain.layers.back().weight *= static_cast<float>(shape.last_scale);
+  if (made.mesh.empty()) made.plain.layers.back().weight *= static_cast<float>(shape.last_scale);
   return made;
 }
 
@@ -68,7 +74,7 @@ void fit_linear_part(std::span<const DrapeCase* const> cases, double ridge, std:
 }
 
 FeatureRows drape_outputs(const DrapeNetwork& network, const FeatureRows& inputs) {
-  FeatureRows outputs = evaluate(network.plain, inputs);
+  FeatureRows outputs = evaluate(network.mesh, evaluate(network.plain, inputs));
   if (network.linear.size() > 0) outputs += inputs * network.linear.transpose();
   return outputs;
 }

@@ -1,13 +1,14 @@
 #pragma once
 
-#include "learned/repulsion/plain_network.hpp"
+#include "learned/repulsion/mesh_layers.hpp"
 
 namespace selvedge {
 
 // A drape by a multi-layer perceptron of pose, shape and style (the baseline of Tan et al. 2022, table 6): it says how
 // far each vertex lies from the garment at rest in the body's zero pose, and skinning takes that into the pose:
 //   x_v = A_v (rest_v + mean_v + unit y_v) + b_v,
-// where y is what the perceptron says, and what a linear regression says if there is one.
+// where y is what the perceptron says, and what a linear regression says if there is one. A graph network (their table
+// 5) says y by convolutions over the garment: its perceptron says what is on the coarsest of their levels.
 
 using VertexFrame = Eigen::Matrix<double, 3, 4>;  // (A, b)
 
@@ -21,6 +22,7 @@ struct DrapeCase {
 
 struct DrapeNetwork {
   PlainNetwork plain;
+  std::vector<MeshLayer> mesh;                 // behind it; empty: there are none
   std::vector<float> input_mean, input_scale;  // inputs are read as (input - mean) * scale; 0 of a constant one
   Points mean;                                 // of displacements in garment space, N x 3 [m]
   double unit = 0.01;                          // of outputs [m]
@@ -31,6 +33,8 @@ struct DrapeShape {
   int layers = 5, width = 256;
   double last_scale = 0.1;        // of the last layer's weights at the start
   std::vector<char> unread = {};  // inputs that are left out; empty: none
+  MeshShape mesh = {};
+  const Adjacency* ring = nullptr;  // of the garment, where there are mesh layers
 };
 // Means and deviations are those of the cases, all of one garment, one at least (assert).
 DrapeNetwork make_drape_network(const DrapeShape&, std::span<const DrapeCase* const>, std::uint64_t seed);

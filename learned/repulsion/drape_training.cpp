@@ -59,11 +59,13 @@ bool is_finite(const std::vector<float>& values) {
 std::vector<DrapePart> parts_of(DrapeModel& model) {
   std::vector<DrapePart> parts{{"drape", &model.drape.plain}};
   if (model.has_scale())
-    parts.insert(parts.end(), {{"h", &model.scale.h}, {"k", &model.scale.k}, {"g", &model.scale.g}});
-  if (model.has_neighbours())
-    parts.insert(
-        parts.end(),
-        {{"first", &model.neighbours.first}, {"second", &model.neighbours.second}, {"end", &model.neighbours.end}});
+    parts.insert(parts.end(), {{"h", &model.scale.h, true}, {"k", &model.scale.k, true}, {"g", &model.scale.g, true}});
+  if (NeighbourScale& n = model.neighbours; model.has_neighbours())
+    parts.insert(parts.end(), {{"first", &n.first, true}, {"second", &n.second, true}, {"end", &n.end, true}});
+  for (std::size_t l = 0; l < model.drape.mesh.size(); ++l) {
+    parts.push_back({"kernels_" + std::to_string(l), &model.drape.mesh[l].kernels});
+    parts.push_back({"mix_" + std::to_string(l), &model.drape.mesh[l].mix});
+  }
   return parts;
 }
 
@@ -90,12 +92,13 @@ DrapeGradients drape_gradients(const DrapeModel& model, std::span<const DrapeLes
   std::vector<const DrapeCase*> cases;
   for (const DrapeLesson& lesson : lessons) cases.push_back(lesson.drape);
   const FeatureRows inputs = drape_inputs(model.drape, cases), outputs = drape_outputs(model.drape, inputs);
+  const std::size_t scales = (model.has_scale() ? 3 : 0) + (model.has_neighbours() ? 3 : 0);
   const AskDistance nobody = [](const Points& at, std::vector<SignedDistance>& found) {
     found.assign(static_cast<std::size_t>(at.rows()), {});
   };
   const double share = 1.0 / static_cast<double>(lessons.size());
   DrapeGradients result;
-  result.parts.resize(1 + (model.has_scale() ? 3 : 0) + (model.has_neighbours() ? 3 : 0));
+  result.parts.resize(1 + scales + 2 * model.drape.mesh.size());
   PlainAdjoints adjoints{FeatureRows(outputs.rows(), outputs.cols()), {}};
   for (std::size_t i = 0; i < lessons.size(); ++i) {
     const DrapeLesson& lesson = lessons[i];
@@ -114,6 +117,11 @@ DrapeGradients drape_gradients(const DrapeModel& model, std::span<const DrapeLes
   }
   result.alpha /= std::max(result.pushed, 1.0);
   result.pushed *= share;
+  if (!model.drape.mesh.empty()) {
+    MeshGradients mesh = backward(model.drape.mesh, evaluate(model.drape.plain, inputs), adjoints.value);
+    std::ranges::move(mesh.parts, result.parts.begin() + static_cast<std::ptrdiff_t>(1 + scales));
+    adjoints.value = std::move(mesh.inputs);
+  }
   result.parts[0] = backward(model.drape.plain, inputs, {}, adjoints).parameters;
   return result;
 }
@@ -124,7 +132,7 @@ bool take_step(DrapeAdam& adam, const DrapeGradients& gradients, double rate, Dr
   adam.parts.resize(parts.size());
   for (std::size_t k = 0; k < parts.size(); ++k) {
     if (k == 0) adam.parts[k].decay = adam.decay;
-    adam.parts[k].rate = k == 0 ? rate : rate * adam.scale_rate;
+    adam.parts[k].rate = parts[k].scales ? rate * adam.scale_rate : rate;
     if (!gradients.parts[k].empty()) take_step(adam.parts[k], gradients.parts[k], *parts[k].network);
   }
   return true;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "learned/repulsion/drape_network.hpp"
 #include "learned/repulsion/neighbour_scale.hpp"
 #include "learned/repulsion/plain_adam.hpp"
@@ -16,10 +18,12 @@ struct DrapeModel {
   bool has_neighbours() const { return !neighbours.end.layers.empty(); }
 };
 
-// Its trained parts by name; those without layers are left out.
+// Its trained parts by name: the perceptron, the networks of scales, then kernels and mixtures of the mesh layers.
+// Those of a model without them are left out.
 struct DrapePart {
-  const char* name;
+  std::string name;
   PlainNetwork* network;
+  bool scales = false;  // it belongs to the networks of scales
 };
 std::vector<DrapePart> parts_of(DrapeModel&);
 
@@ -53,7 +57,7 @@ DrapeGradients drape_gradients(const DrapeModel&, std::span<const DrapeLesson>, 
 // Adam of each of a model's parts.
 struct DrapeAdam {
   std::vector<PlainAdam> parts;
-  double scale_rate = 1;  // times the rate, for all but the first part
+  double scale_rate = 1;  // times the rate, for the networks of scales
   double decay = 0;       // of the first part
 };
 // False: a gradient is not finite, and nothing has changed.

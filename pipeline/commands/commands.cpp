@@ -246,7 +246,7 @@ int compare_command(const CompareRequest& request, bool json) {
   warn_of_training();
   const InterruptWatch watch;
   const CompareResult result = compare(followed(request));
-  people(json) << compare_table(result) << result.evaluation << result.plots << "\n"
+  people(json) << compare_table(result) << result.evaluation << result.repulsion << result.plots << "\n"
                << (request.out / "compare.html").string() << "\n";
   if (!result.finished) people(json) << "stopped; the same command goes on\n";
   if (json) std::cout << compare_json(result);

@@ -8,6 +8,7 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/compare/compare_parts.hpp"
 #include "pipeline/compare/compare_run.hpp"
+#include "pipeline/compare/compared_drapes.hpp"
 #include "pipeline/compare/comparison.hpp"
 #include "pipeline/compare/evaluation.hpp"
 #include "pipeline/compare/sequences.hpp"
@@ -318,6 +319,23 @@ void add_volumes(const CompareRequest& request, const Comparison& comparison, co
   result.evaluation += write_volume_report(runs, comparison.evaluation.baseline, request.out);
 }
 
+// The tables of the repulsive layer, of the trainings that are there. False: stopped.
+bool report_drapes(const CompareRequest& request, const Comparison& comparison, CompareResult& result) {
+  if (comparison.drapes.empty()) return true;
+  result.views = request.out / "views";
+  std::vector<MeasuredDrapes> all;
+  for (const ComparedDrapes& one : comparison.drapes) {
+    std::optional<MeasuredDrapes> made = measured_drapes(one, result.views, request.log, request.stop);
+    if (!made) return false;
+    if (!made->rows.empty()) write_file(request.out / (one.name + ".csv"), drape_table_csv(made->rows));
+    all.push_back(std::move(*made));
+    result.repulsion = repulsion_tables(all);
+    result.repulsion_figures = repulsion_figures(all);
+    write_file(request.out / "repulsion.txt", result.repulsion);
+  }
+  return true;
+}
+
 CompareResult compare(const CompareRequest& request) {
   Comparison comparison = read_comparison(request.file, request.short_form, request.overrides);
   if (comparison.sequences.count > 0) add_sequences(comparison);
@@ -327,7 +345,9 @@ CompareResult compare(const CompareRequest& request) {
   for (const CompareScene& scene : comparison.scenes) all.push_back(open_scene(request, comparison, scene, program));
   for (std::size_t k = 0; k < all.size(); ++k) all[k].keeps = static_cast<int>(k) < comparison.keep_runs;
   CompareResult result;
+  result.finished = report_drapes(request, comparison, result);
   for (SceneWork& work : all) {
+    if (!result.finished) break;
     result.finished = find_errors(request, comparison, work) && prepare_settings(request, work);
     for (int repeat = 0; result.finished && repeat < comparison.repeats; ++repeat) {
       result.finished = time_settings(request, comparison, repeat, work);

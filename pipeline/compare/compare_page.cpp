@@ -205,6 +205,17 @@ std::string evaluation_section(const Evaluation& e) {
   return html + "</table>\n";
 }
 
+std::string repulsion_section(const Comparison& comparison, const CompareResult& result) {
+  if (comparison.drapes.empty()) return "";
+  std::string html = "<h2>Repulsive layer</h2><pre>" + html_text(result.repulsion) + "</pre>\n";
+  for (const ComparedDrapes& one : comparison.drapes)
+    for (const auto& [file, about] : {std::pair{one.name, "ways to handle collisions (figures 1, 4, 10 to 13)"},
+                                      std::pair{one.name + "_scales", "fixed and predicted scales (figure 5)"}})
+      if (std::filesystem::exists(result.views / (file + ".html")))
+        html += fmt::format("<p><a href='views/{0}.html'>{0}</a>: {1}</p>\n", html_text(file), about);
+  return html + result.repulsion_figures;
+}
+
 std::string settings_section(const Comparison& comparison) {
   std::string html =
       "<h2>Settings</h2><table><tr><th>row</th><th class='left'>stepper</th><th class='left'>weights</th>"
@@ -243,6 +254,7 @@ std::string compare_page(const Comparison& comparison, const CompareResult& resu
       result.finished ? "Finished" : "Stopped before its end; the same command goes on");
   if (!comparison.evaluation.baseline.empty())
     html += evaluation_section(evaluated(comparison, result.floors, result.rows));
+  html += repulsion_section(comparison, result);
   for (const CompareFloor& floor : result.floors) html += scene_section(floor, result);
   html += left_out_section(result) + settings_section(comparison);
   html += "<h2>Machine and build</h2><pre>" + html_text(info_text()) + "</pre></html>\n";

@@ -49,10 +49,11 @@ struct CompareRow {
 struct CompareResult {
   std::vector<CompareFloor> floors;
   std::vector<CompareRow> rows;
-  std::string evaluation;       // of its tables, for people; empty: there is none
-  std::filesystem::path views;  // folder of the pages that play a scene's rows; empty: runs were not kept
-  std::string plots;            // which were made, or why not
-  bool finished = true;         // false: stopped
+  std::string evaluation;                    // of its tables, for people; empty: there is none
+  std::string repulsion, repulsion_figures;  // tables for people and figures as SVG, of trainings of drapes
+  std::filesystem::path views;               // folder of the pages that play a scene's rows; empty: runs were not kept
+  std::string plots;                         // which were made, or why not
+  bool finished = true;                      // false: stopped
 };
 
 }  // namespace selvedge

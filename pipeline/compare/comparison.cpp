@@ -49,6 +49,20 @@ const Options<SequenceOptions>& sequence_options() {
   return table;
 }
 
+const Options<ComparedDrapes>& compared_drapes_options() {
+  using O = ComparedDrapes;
+  static const Options<O> table(
+      "compared_drapes", "",
+      {needed(text("run", "folder of a finished `selvedge train` of drapes, seen from the working folder")),
+       text("name", &O::name, "left out: the folder's"),
+       choice("of", &O::use,
+              {{"garments", DrapesUse::garments}, {"gcnn", DrapesUse::graph_network}, {"clips", DrapesUse::clips}},
+              "the tables that it stands in: those of garments, of graph networks, or of unseen clips"),
+       flag("counted", &O::counted, "in the means over all garments")},
+      "run");
+  return table;
+}
+
 const Options<EvaluationOptions>& evaluation_options() {
   using O = EvaluationOptions;
   static const Options<O> table(
@@ -65,7 +79,8 @@ const Options<Comparison>& comparison_options() {
   static const Options<O> table(
       "comparison", "The whole file.",
       {text("description", "for people"),
-       sections("scenes", compared_scene_options().section, "[]", "at least one, or sequences"),
+       sections("scenes", compared_scene_options().section, "[]", "at least one, or sequences, or drapes"),
+       sections("drapes", compared_drapes_options().section, "[]", "trainings for the tables of the repulsive layer"),
        section(&O::sequences, sequence_options(), ""), section(&O::evaluation, evaluation_options(), ""),
        text("weights_folder", &O::weights_folder, "of the settings' weights, seen from this file"),
        integer("keep_runs", &O::keep_runs, not_negative,
@@ -128,11 +143,20 @@ Comparison read_comparison(const std::filesystem::path& file, bool short_form,
     comparison.settings.push_back(read_setting(item, folder));
     settings.push_back(comparison.settings.back().name);
   }
+  std::vector<std::string> drapes;
+  for (const Config& item : config["drapes"].items) {
+    ComparedDrapes one = compared_drapes_options().read(item);
+    one.run = item["run"].text();
+    if (one.name.empty()) one.name = one.run.filename().string();
+    drapes.push_back(one.name);
+    comparison.drapes.push_back(std::move(one));
+  }
+  check_names(config["drapes"], drapes);
   check_names(config["scenes"], scenes);
   check_names(config["settings"], settings);
   if (settings.empty()) config["settings"].fail("is empty", "give at least one");
-  if (comparison.scenes.empty() && comparison.sequences.count == 0)
-    config["scenes"].fail("is empty", "give at least one, or `sequences`");
+  if (comparison.scenes.empty() && comparison.sequences.count == 0 && comparison.drapes.empty())
+    config["scenes"].fail("is empty", "give at least one, or `sequences`, or `drapes`");
   const std::string& baseline = comparison.evaluation.baseline;
   if (!baseline.empty() && std::ranges::find(settings, baseline) == settings.end())
     config["evaluation"]["baseline"].fail("names `" + baseline + "`, which is no setting",

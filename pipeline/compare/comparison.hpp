@@ -45,11 +45,24 @@ struct EvaluationOptions {
   int left_frames = 50;  // over which what is left of the first pairs is shown
 };
 
+// Which table of Tan et al. 2022 a run stands in: those of garments, table 5 (graph networks from scratch) or table 6
+// (few and many shapes on unseen clips).
+enum class DrapesUse { garments, graph_network, clips };
+
+// A finished training of drapes, for the tables of the repulsive layer.
+struct ComparedDrapes {
+  std::string name;
+  std::filesystem::path run;  // its folder, seen from the working folder
+  DrapesUse use = DrapesUse::garments;
+  bool counted = true;  // in the means over all garments
+};
+
 // A comparison file, read.
 struct Comparison {
   std::filesystem::path file;
   std::vector<CompareScene> scenes;
   std::vector<CompareSetting> settings;
+  std::vector<ComparedDrapes> drapes;
   std::vector<std::string> reference;  // overrides of the temporal reference, beside its time step
   std::vector<std::string> algebraic;  // and of the algebraic one
   Kinds kinds = known_kinds();         // of steppers

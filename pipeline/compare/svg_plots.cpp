@@ -163,4 +163,31 @@ std::string curves_svg(const std::string& title, const std::string& x_name, cons
   return svg + "</svg><p>" + names + "</p></figure>\n";
 }
 
+std::string bars_svg(const std::string& title, const std::string& x_name, const std::vector<std::string>& labels,
+                     const std::vector<PlotCurve>& bars) {
+  if (labels.empty() || bars.empty()) return "";
+  double most = 0;
+  for (const PlotCurve& one : bars)
+    for (const double v : one.y) most = std::max(most, v);
+  const PlotAxis y{0, most > 0 ? 1.05 * most : 1, plot_height - plot_bottom, plot_top};
+  std::string svg = frame_svg(title, x_name, "");
+  for (int k = 0; k <= 5; ++k) svg += y_line(y.place(y.high * k / 5), fmt::format("{:.3g}", y.high * k / 5));
+  const double group = (plot_width - plot_right - plot_left) / static_cast<double>(labels.size());
+  const double width = 0.8 * group / static_cast<double>(bars.size());
+  std::string names;
+  for (std::size_t c = 0; c < bars.size(); ++c) {
+    const char* colour = plot_colours[c % plot_colours.size()];
+    for (std::size_t k = 0; k < bars[c].y.size(); ++k)
+      svg += fmt::format("<rect fill='{}' x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}'/>", colour,
+                         plot_left + (static_cast<double>(k) + 0.1) * group + static_cast<double>(c) * width,
+                         y.place(bars[c].y[k]), width, y.place(0) - y.place(bars[c].y[k]));
+    names += fmt::format("<span style='color:{}'>&#9632; {}</span> ", colour, html_text(bars[c].name));
+  }
+  for (std::size_t k = 0; k < labels.size(); ++k)
+    svg += fmt::format("<text x='{:.1f}' y='{}' text-anchor='middle'>{}</text>",
+                       plot_left + (static_cast<double>(k) + 0.5) * group, plot_height - plot_bottom + 16,
+                       html_text(labels[k]));
+  return svg + "</svg><p>" + names + "</p></figure>\n";
+}
+
 }  // namespace selvedge

@@ -27,6 +27,10 @@ struct PlotCurve {
 std::string curves_svg(const std::string& title, const std::string& x_name, const std::vector<PlotCurve>&,
                        bool logarithmic = false);
 
+// Bars in groups over labels. Empty without labels or bars.
+std::string bars_svg(const std::string& title, const std::string& x_name, const std::vector<std::string>& labels,
+                     const std::vector<PlotCurve>& bars);
+
 std::string html_text(const std::string&);  // with <, > and & as text
 
 }  // namespace selvedge

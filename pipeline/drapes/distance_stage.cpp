@@ -102,8 +102,13 @@ PlainNetwork make_distance_network(const DrapeTrainingOptions& options, const Dr
   return make_neural_distance(shape, options.seed + 200);
 }
 
+DistanceErrors distance_errors_of(const DistanceOptions& options, const DrapeLessons& lessons,
+                                  const PlainNetwork& network) {
+  return distance_errors(network, samples_to_watch(options, lessons, lessons.test, 64));
+}
+
 std::string distance_text(const DistanceOptions& options, const DrapeLessons& lessons, const PlainNetwork& network) {
-  const DistanceErrors errors = distance_errors(network, samples_to_watch(options, lessons, lessons.test, 64));
+  const DistanceErrors errors = distance_errors_of(options, lessons, network);
   const double queries = lessons.set->world.surface.vertex_count;
   return fmt::format(
       "distances by a network of {} numbers on the bodies to measure on: mean error {:.2f} mm, {:.2f} mm within 5 cm "

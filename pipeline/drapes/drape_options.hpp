@@ -18,6 +18,9 @@ struct DrapeOptions {
   std::uint64_t seed = 1;
   int poses = 10;               // of a path
   int training = 15, test = 4;  // paths
+  // Poses along procedural clips in place of drawn ones: every one of `shapes` bodies in every clip is a path.
+  std::vector<std::string> clips, test_clips;
+  int shapes = 5;
   double pose_range = 1;        // of the ranges of the joints' angles
   double shape_spread = 0.7;    // standard deviation of the shape's coefficients
   double style_spread = 1;      // of the styles' ranges; 0: all alike

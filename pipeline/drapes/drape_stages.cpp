@@ -17,7 +17,7 @@ StageFile state_of(DrapeModel& model, DrapeAdam& adam) {
   const std::vector<DrapePart> parts = parts_of(model);
   adam.parts.resize(parts.size());
   for (std::size_t k = 0; k < parts.size(); ++k)
-    file.parts.push_back({parts[k].name, *parts[k].network, adam.parts[k]});
+    if (!parts[k].network->layers.empty()) file.parts.push_back({parts[k].name, *parts[k].network, adam.parts[k]});
   file.numbers["input_mean"] = doubles(model.drape.input_mean);
   file.numbers["input_scale"] = doubles(model.drape.input_scale);
   if (model.drape.linear.size() > 0)
@@ -132,13 +132,29 @@ double mean_vertex_error(const DrapeModel& model, const std::vector<std::unique_
   return 1e3 * sum / static_cast<double>(bodies.size());
 }
 
-DrapeModel make_drape_model(const DrapeTrainingOptions& options, const DrapeLessons& lessons) {
+void restore_model(const StageFile& file, DrapeModel& model) {
+  DrapeAdam adam;
+  restore_into(file, model, adam);
+}
+
+DrapeModel blank_drape_model(const DrapeTrainingOptions& options, const DrapeLessons& lessons) {
   std::vector<const DrapeCase*> cases;
   for (const std::unique_ptr<DrapeBody>& body : lessons.training) cases.push_back(&body->sample.drape);
   DrapeShape shape{options.backbone.layers, options.backbone.width, 0.1, unread_inputs(options, lessons)};
   if (options.backbone.linear) shape.last_scale = 0;
-  DrapeModel model{make_drape_network(shape, cases, options.seed), {}, {}};
-  if (options.backbone.linear) fit_best_linear_part(cases, lessons, model);
+  if (options.backbone.kind == BackboneKind::mesh) {
+    shape.mesh = options.backbone.mesh;
+    shape.ring = &lessons.ring;
+  }
+  return {make_drape_network(shape, cases, options.seed), {}, {}};
+}
+
+DrapeModel make_drape_model(const DrapeTrainingOptions& options, const DrapeLessons& lessons) {
+  DrapeModel model = blank_drape_model(options, lessons);
+  if (!options.backbone.linear) return model;
+  std::vector<const DrapeCase*> cases;
+  for (const std::unique_ptr<DrapeBody>& body : lessons.training) cases.push_back(&body->sample.drape);
+  fit_best_linear_part(cases, lessons, model);
   return model;
 }
 
@@ -155,6 +171,7 @@ void add_scales(const DrapeRow& row, const DrapeTrainingOptions& options, const 
       small_scale_shape(static_cast<int>(model.drape.input_mean.size()), lessons.set->world.surface.vertex_count);
   shape.latent = options.layer.latent;
   shape.per_vertex = options.layer.per_vertex;
+  shape.form = row.form;
   shape.unit = options.layer.unit;
   shape.range = row.neural_layer ? ScaleRange::at_least_zero : ScaleRange::at_least_one;
   model.scale = make_scale_network(shape, options.seed + 100);
@@ -168,8 +185,8 @@ TrainingStage backbone_stage(const DrapeTrainingOptions& options, DrapeLessons& 
 
 TrainingStage row_stage(const DrapeRow& row, const DrapeTrainingOptions& options, DrapeLessons& lessons,
                         DrapeModel& model) {
-  return drape_stage(row.name, options.fine_tuning, row, recipe_of(row, options.layer), options.layer.scale_rate,
-                     lessons, model);
+  return drape_stage(row.name, options.from_scratch ? options.backbone.stage : options.fine_tuning, row,
+                     recipe_of(row, options.layer), options.layer.scale_rate, lessons, model);
 }
 
 }  // namespace selvedge

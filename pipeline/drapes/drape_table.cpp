@@ -15,6 +15,7 @@ namespace {
 struct DrapeColumns {
   std::vector<double> vertex_error, inside, free, vertex_face, edge_edge, laplacian, overshoot, energy, pairs, pushed,
       backbone_ms, distance_ms, push_ms, edges_ms, alphas;
+  std::vector<std::pair<double, double>> ratio_and_alpha;
 };
 
 // Takes one drape through the row's parts and times each of them.
@@ -25,7 +26,7 @@ Points run_way(const MeasuredWay& way, const DrapeModel& model, const DrapeTrain
   Stopwatch watch;
   before = drape_positions(model.drape, body.sample.drape);
   columns.backbone_ms.push_back(milliseconds * watch.lap());
-  const bool by_network = way.row && way.row->neural_layer;
+  const bool by_network = way.by_network || (way.row && way.row->neural_layer);
   double asking = 0;
   const AskDistance plain = by_network ? body.by_network() : body.accurate();
   const AskDistance timed = [&](const Points& at, std::vector<SignedDistance>& found) {
@@ -52,6 +53,11 @@ Points run_way(const MeasuredWay& way, const DrapeModel& model, const DrapeTrain
   columns.edges_ms.push_back(milliseconds * watch.lap());
   columns.pushed.push_back(static_cast<double>(made.pushed.size()));
   for (const PushedVertex& pushed : made.pushed) columns.alphas.push_back(pushed.alpha);
+  if (!by_network || made.pushed.empty()) return made.x;
+  const std::vector<SignedDistance> accurate = body.field->ask(before);
+  for (const PushedVertex& pushed : made.pushed)
+    if (const double f = accurate[static_cast<std::size_t>(pushed.vertex)].value; f < -1e-6)
+      columns.ratio_and_alpha.emplace_back(pushed.at.value / f, pushed.alpha);
   return made.x;
 }
 
@@ -60,6 +66,14 @@ std::string with_interval(const MeanOverModels& m, int digits) {
 }
 
 }  // namespace
+
+Points way_positions(const MeasuredWay& way, const DrapeModel& model, const DrapeTrainingOptions& options,
+                     const DrapeLessons& lessons, DrapeBody& body) {
+  EdgePassMemory edges;
+  Points before;
+  DrapeColumns columns;
+  return run_way(way, model, options, lessons, body, edges, before, columns);
+}
 
 DrapeTableRow measure_row(const MeasuredWay& way, const DrapeModel& model, const DrapeTrainingOptions& options,
                           DrapeLessons& lessons) {
@@ -101,7 +115,10 @@ DrapeTableRow measure_row(const MeasuredWay& way, const DrapeModel& model, const
   for (const double alpha : columns.alphas)
     row.alpha_deviation += std::pow(alpha - row.alpha, 2) / static_cast<double>(columns.alphas.size());
   row.alpha_deviation = std::sqrt(row.alpha_deviation);
-  row.error_by_drape = columns.vertex_error;
+  row.error_by_drape = std::move(columns.vertex_error);
+  row.inside_by_drape = std::move(columns.inside);
+  row.energy_by_drape = std::move(columns.energy);
+  row.ratio_and_alpha = std::move(columns.ratio_and_alpha);
   return row;
 }
 

@@ -11,7 +11,8 @@ struct MeasuredWay {
   std::string name;
   const DrapeRow* row = nullptr;  // the layer; null: none
   AfterDrape after = AfterDrape::nothing;
-  int edge_pass = 0;  // rounds
+  int edge_pass = 0;        // rounds
+  bool by_network = false;  // distances of what is done afterwards; the layer's row knows its own
 };
 
 // Means over the test drapes with halves of their 95 % intervals.
@@ -22,7 +23,15 @@ struct DrapeTableRow {
   double alpha = 0, alpha_deviation = 0;  // of pushed vertices, of all drapes
   int judges_differ = 0;                  // drapes of which FCL and exact signs differ
   std::vector<double> error_by_drape;     // [mm]
+  std::vector<double> inside_by_drape;    // [%]
+  std::vector<double> energy_by_drape;    // [m2]
+  // Of pushed vertices that are inside indeed: the distance that the layer was told over the accurate one, and alpha.
+  std::vector<std::pair<double, double>> ratio_and_alpha;
 };
+
+// Where a way takes one drape of the lessons.
+Points way_positions(const MeasuredWay&, const DrapeModel&, const DrapeTrainingOptions&, const DrapeLessons&,
+                     DrapeBody&);
 
 // Of every test drape. Distances that errors are told by are the accurate ones.
 DrapeTableRow measure_row(const MeasuredWay&, const DrapeModel&, const DrapeTrainingOptions&, DrapeLessons&);

@@ -27,11 +27,23 @@ Option<Struct> stage(std::string name, StageOptions Struct::*member, std::string
   return renamed(section(member, stage_options(), std::move(about)), std::move(name));
 }
 
+const Options<MeshShape>& mesh_options() {
+  using O = MeshShape;
+  static const Options<O> table(
+      "mesh", "Convolutions over the garment's mesh.",
+      {integer("levels", &O::levels, at_least_one, "of pooling"),
+       integer("channels", &O::channels, at_least_one, "of the finest level; twice and four times as many above"),
+       integer("kernels", &O::kernels, at_least_one, "matrices that each edge mixes")});
+  return table;
+}
+
 const Options<BackboneOptions>& backbone_options() {
   using O = BackboneOptions;
   static const Options<O> table(
       "backbone", "Pose, shape and style to a drape.",
-      {integer("layers", &O::layers, at_least_one, ""),
+      {choice("kind", &O::kind, {{"mlp", BackboneKind::perceptron}, {"gcnn", BackboneKind::mesh}},
+              "a perceptron; or one behind which convolutions with locally varying kernels go up to the garment"),
+       section(&O::mesh, mesh_options(), "of `gcnn`"), integer("layers", &O::layers, at_least_one, "of the perceptron"),
        integer("width", &O::width, at_least_one, "of all but the last"),
        flag("linear", &O::linear, "a linear regression of the drapes to train on is added to what it says"),
        number("least_carried", &O::least_carried, Unit::none, not_negative,
@@ -87,6 +99,8 @@ const Options<DrapeTrainingOptions>& drape_training_options() {
        integer("validation_paths", &O::validation_paths, at_least_one,
                "of those to train on, kept to see whether training has ended"),
        texts("rows", &O::rows, "of the table, equally long from one checkpoint"),
+       flag("from_scratch", &O::from_scratch,
+            "rows begin where the backbone began, and are trained as it was; false: they go on from its end"),
        section(&O::backbone, backbone_options(), ""), stage("fine_tuning", &O::fine_tuning, "of each row"),
        section(&O::layer, layer_options(), ""), section(&O::distance, distance_options(), ""),
        number("checkpoint_minutes", &O::checkpoint_minutes, Unit::none, not_negative, "between checkpoints")});
@@ -117,8 +131,8 @@ std::string drape_training_yaml(const DrapeTrainingOptions& options) {
 
 std::string drape_training_reference() {
   std::string page;
-  for (const Section* one : {&drape_training_options().section, &backbone_options().section, &stage_options().section,
-                             &layer_options().section, &distance_options().section})
+  for (const Section* one : {&drape_training_options().section, &backbone_options().section, &mesh_options().section,
+                             &stage_options().section, &layer_options().section, &distance_options().section})
     page += section_chapter(*one);
   return page;
 }
@@ -127,9 +141,14 @@ const std::vector<DrapeRow>& known_drape_rows() {
   static const std::vector<DrapeRow> rows{
       {"control", "the same fine-tuning without layer and loss 9"},
       {"collision_loss", "loss 9 alone", false, false, true},
+      {"collision_loss_approximate", "loss 9 alone, distances by a network", false, false, true, false, true},
       {"fixed", "layer of scale 1, accurate distances", true, false, true},
       {"learned", "layer of learned scales, accurate distances", true, true, true},
       {"neighbours", "scales by what neighbours know, accurate distances", true, false, true, false, false, true},
+      {"shared_latent", "learned scales with one latent for all vertices (Alt. 1), accurate distances", true, true,
+       true, false, false, false, ScaleForm::shared_latent},
+      {"distance_only", "learned scales of the distance alone (Alt. 2), accurate distances", true, true, true, false,
+       false, false, ScaleForm::distance_only},
       {"fixed_approximate", "layer of scale 1, distances by a network", true, false, true, true, true},
       {"approximate", "learned scales, distances by a network in layer and loss", true, true, true, true, true},
       {"hybrid", "learned scales, distances by a network in the layer, accurate in the loss", true, true, true, true,

@@ -13,10 +13,14 @@ struct StageOptions {
   double weight_decay = 0;      // beside Adam's step
 };
 
+enum class BackboneKind { perceptron, mesh };
+
 struct BackboneOptions {
-  int layers = 5, width = 256;
-  bool linear = false;       // a linear regression beside it
-  double least_carried = 0;  // part of the garment that a joint must carry to be read
+  BackboneKind kind = BackboneKind::perceptron;
+  int layers = 5, width = 256;  // of the perceptron
+  MeshShape mesh{4, 16, 9};     // behind it, if it is of that kind
+  bool linear = false;          // a linear regression beside it
+  double least_carried = 0;     // part of the garment that a joint must carry to be read
   StageOptions stage{6000, 16, 1e-3};
 };
 
@@ -50,6 +54,7 @@ struct DrapeTrainingOptions {
   std::uint64_t seed = 1;
   int validation_paths = 4;  // of those to train on, the last ones
   std::vector<std::string> rows{"control", "collision_loss", "fixed", "learned"};
+  bool from_scratch = false;  // rows begin as the backbone did and are trained as long
   BackboneOptions backbone;
   StageOptions fine_tuning{1500, 8, 1e-4};
   LayerOptions layer;
@@ -74,6 +79,7 @@ struct DrapeRow {
   bool collision_loss = false;
   bool neural_layer = false, neural_loss = false;
   bool neighbours = false;  // scales by what neighbours know, for any garment
+  ScaleForm form = ScaleForm::vertex_latents;
 };
 const std::vector<DrapeRow>& known_drape_rows();
 DrapeRecipe recipe_of(const DrapeRow&, const LayerOptions&);

@@ -18,7 +18,7 @@
 #include "pipeline/host/folder_lock.hpp"
 #include "pipeline/host/read_file.hpp"
 #include "pipeline/host/write_file.hpp"
-#include "pipeline/motions/clip.hpp"
+#include "pipeline/motions/clip_procedural.hpp"
 #include "pipeline/run/progress.hpp"
 
 namespace selvedge {
@@ -49,6 +49,7 @@ struct PathMaker {
   std::unique_ptr<Stepper> stepper;
   BodyPose pose;
   IntersectionCache body_cache;
+  std::optional<Clip> clip;  // that poses are taken from; none: they are drawn
 
   Points body_in(const BodyPose& at) const {
     return posed(world.body.skin, path.shape, at, joint_transforms(world.body, joints, at));
@@ -69,10 +70,27 @@ void dress(PathMaker& maker) {
   maker.stepper = make_recovering_conventional_stepper(maker.scene);
 }
 
-BodyPose next_pose(PathMaker& maker) {
+// The pose of the clip at that time; where the body passes through itself, the first later one in which it does not.
+BodyPose clip_pose(PathMaker& maker, double time) {
+  const Clip& clip = *maker.clip;
+  BodyPose pose;
+  for (int later = 0; later < std::ssize(clip.poses); ++later, ++maker.path.poses_redrawn) {
+    pose = matched(pose_at(clip, time + later / clip.fps), clip.joints, maker.world.body.joints);
+    pose.translation.setZero();
+    if (intersecting_pairs(maker.world.body_surface, maker.body_in(pose), maker.body_cache).empty()) break;
+  }
+  return pose;
+}
+
+// Of the path's drape number k.
+BodyPose next_pose(PathMaker& maker, int k) {
+  if (maker.clip) {
+    const double length = static_cast<double>(maker.clip->poses.size()) / maker.clip->fps;
+    return clip_pose(maker, length * (k + 1) / (maker.world.options.poses + 1));
+  }
   constexpr int most_draws = 50;
   BodyPose pose;
-  for (int k = 0; k < most_draws; ++k, ++maker.path.poses_redrawn) {
+  for (int draw = 0; draw < most_draws; ++draw, ++maker.path.poses_redrawn) {
     pose = draw_pose(maker.random, maker.world.body.joints, maker.world.options.pose_range);
     if (intersecting_pairs(maker.world.body_surface, maker.body_in(pose), maker.body_cache).empty()) break;
   }
@@ -131,9 +149,9 @@ std::string reason_to_drop(const PathMaker& maker, bool at_rest) {
 enum class PoseEnd { reached, rejected, stopped };
 
 // Takes the garment into the next pose and lets it come to rest.
-PoseEnd go_on(PathMaker& maker) {
+PoseEnd go_on(PathMaker& maker, int number) {
   const DrapeOptions& options = maker.world.options;
-  const BodyPose goal = next_pose(maker);
+  const BodyPose goal = next_pose(maker, number);
   const Clip way{"way", 1, maker.world.body.joints, {maker.pose, goal}, {}};
   bool rests = false;
   for (int k = 1; k <= options.move_frames + std::max(options.most_settle_frames, options.settle_frames); ++k) {
@@ -158,13 +176,24 @@ PoseEnd go_on(PathMaker& maker) {
 std::optional<DrapePath> make_drape_path(const DrapeWorld& world, std::uint64_t number,
                                          const std::function<bool()>& stop) {
   Stopwatch watch;
-  PathMaker maker{world, stop, {}, stream_of(world.options.seed, number), {}, {}, {}, {}, {}, {}};
-  maker.path.shape = draw_body_shape(maker.random, world.body.skin.shape_directions.cols(), world.options.shape_spread);
+  const DrapeOptions& options = world.options;
+  PathMaker maker{world, stop, {}, stream_of(options.seed, number), {}, {}, {}, {}, {}, {}, {}};
+  // Paths along clips share their bodies.
+  constexpr std::uint64_t shapes_from = 1'000'000;
+  const auto shapes = static_cast<std::uint64_t>(options.shapes);
+  RandomStream of_shape = options.clips.empty() ? maker.random : stream_of(options.seed, shapes_from + number % shapes);
+  maker.path.shape = draw_body_shape(of_shape, world.body.skin.shape_directions.cols(), options.shape_spread);
+  if (options.clips.empty()) maker.random = of_shape;
   maker.path.style = draw_style(maker.random, world.options.style_spread);
   maker.joints = joint_positions(world.body, maker.path.shape);
+  if (!options.clips.empty()) {
+    std::vector<std::string> all = options.clips;
+    all.insert(all.end(), options.test_clips.begin(), options.test_clips.end());
+    maker.clip = make_clip(all[number / shapes], maker.joints.topRows(24));
+  }
   dress(maker);
   for (int k = 0; k < world.options.poses; ++k) {
-    const PoseEnd end = go_on(maker);
+    const PoseEnd end = go_on(maker, k);
     if (end == PoseEnd::stopped) return {};
     if (end == PoseEnd::rejected) {
       maker.path.dropped["step rejected"] += world.options.poses - k;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "collision/geometry/error.hpp"
 #include "collision/geometry/floating_point.hpp"
+#include "pipeline/drapes/drape_run.hpp"
 #include "pipeline/formats/neighbour_scale_hdf5.hpp"
 #include "pipeline/host/read_file.hpp"
 #include "pipeline/host/write_file.hpp"
@@ -16,86 +16,60 @@
 namespace selvedge {
 namespace {
 
-const DrapeRow& row_named(const std::string& name) {
-  return *std::ranges::find(known_drape_rows(), name, &DrapeRow::name);
-}
-
-// Everything of a run.
-struct DrapeRun {
-  DrapeTrainingOptions options;
+// A run that is being made.
+struct DrapeTraining {
+  DrapeRun run;
   StageRun stage;
-  DrapeLessons lessons;
-  DrapeModel backbone;
-  PlainNetwork distance;
-  std::vector<std::pair<const DrapeRow*, DrapeModel>> rows;  // as trained
-
-  bool needs_network() const {
-    return std::ranges::any_of(options.rows, [](const std::string& name) { return row_named(name).neural_layer; });
-  }
 };
 
 // False: stopped.
-bool get_distance(DrapeRun& run) {
-  if (!run.needs_network()) return true;
+bool get_distance(DrapeTraining& training) {
+  DrapeRun& run = training.run;
+  const bool by_network = std::ranges::any_of(run.options.rows, [](const std::string& name) {
+    return drape_row(name).neural_layer || drape_row(name).neural_loss;
+  });
+  if (!by_network) return true;
   run.distance = make_distance_network(run.options, run.lessons);
-  if (!run.options.distance.weights.empty()) {
-    const StageFile file = read_stage_file(run.options.distance.weights);
-    const StagePart* part = file.find("distance");
-    if (!part || part->network.inputs() != run.distance.inputs())
-      throw Error("is no network of distances that reads these bodies", run.options.distance.weights,
-                  "train it with the same `bones`, or leave `distance.weights` out");
-    run.distance = part->network;
-  } else if (!run_stage(run.stage, distance_stage(run.options, run.lessons, run.distance))) {
+  if (!run.options.distance.weights.empty())
+    run.distance = read_distance_network(run.options.distance.weights, run.distance.inputs());
+  else if (!run_stage(training.stage, distance_stage(run.options, run.lessons, run.distance)))
     return false;
-  }
   use_network(run.distance, run.lessons);
   return true;
 }
 
-bool train_all(DrapeRun& run) {
-  if (!run_stage(run.stage, backbone_stage(run.options, run.lessons, run.backbone))) return false;
-  if (!get_distance(run)) return false;
+bool train_all(DrapeTraining& training) {
+  DrapeRun& run = training.run;
+  if (!run_stage(training.stage, backbone_stage(run.options, run.lessons, run.backbone))) return false;
+  if (!get_distance(training)) return false;
   for (const std::string& name : run.options.rows) {
-    const DrapeRow& row = row_named(name);
-    DrapeModel model = run.backbone;
+    const DrapeRow& row = drape_row(name);
+    DrapeModel model = run.options.from_scratch ? make_drape_model(run.options, run.lessons) : run.backbone;
     add_scales(row, run.options, run.lessons, model);
-    if (!run_stage(run.stage, row_stage(row, run.options, run.lessons, model))) return false;
-    if (row.neighbours) write_neighbour_scale(run.stage.folder / "scales.h5", model.neighbours);
+    if (!run_stage(training.stage, row_stage(row, run.options, run.lessons, model))) return false;
+    if (row.neighbours) write_neighbour_scale(training.stage.folder / "scales.h5", model.neighbours);
     run.rows.emplace_back(&row, std::move(model));
   }
   return true;
 }
 
-std::vector<DrapeTableRow> measure_all(DrapeRun& run) {
+std::vector<DrapeTableRow> measure_all(DrapeTraining& training) {
   std::vector<DrapeTableRow> table;
-  const auto add = [&](const MeasuredWay& way, const DrapeModel& model) {
-    table.push_back(measure_row(way, model, run.options, run.lessons));
-    if (run.stage.request.log) *run.stage.request.log << "measured: " << way.name << std::endl;
-  };
-  add({"backbone"}, run.backbone);
-  for (const auto& [row, model] : run.rows) {
-    add({row->name, row->layer ? row : nullptr}, model);
-    if (row->name == "control") {
-      add({"control, naive", nullptr, AfterDrape::naive}, model);
-      add({"control, naive, edges 1", nullptr, AfterDrape::naive, 1}, model);
-      add({"control, naive, edges 3", nullptr, AfterDrape::naive, 3}, model);
-      add({"control, smooth", nullptr, AfterDrape::smooth}, model);
-    }
-    if (row->layer) {
-      add({row->name + ", edges 1", row, AfterDrape::nothing, 1}, model);
-      add({row->name + ", edges 3", row, AfterDrape::nothing, 3}, model);
-    }
+  for (const DrapeWay& one : measured_ways(training.run)) {
+    table.push_back(measure_row(one.way, *one.model, training.run.options, training.run.lessons));
+    if (training.stage.request.log) *training.stage.request.log << "measured: " << one.way.name << std::endl;
   }
   return table;
 }
 
 // The curves of every stage, the table and the configuration.
-std::string drape_page(const DrapeRun& run, const std::vector<DrapeTableRow>& table) {
+std::string drape_page(const DrapeTraining& training, const std::vector<DrapeTableRow>& table) {
+  const DrapeRun& run = training.run;
   std::string page = page_head("Training " + run.options.name);
   std::vector<std::string> stages{"backbone", "distance"};
   stages.insert(stages.end(), run.options.rows.begin(), run.options.rows.end());
   for (const std::string& stage : stages) {
-    const std::filesystem::path file = run.stage.folder / (stage + ".csv");
+    const std::filesystem::path file = training.stage.folder / (stage + ".csv");
     if (!std::filesystem::exists(file)) continue;
     const CsvColumns columns(read_file(file, "table"));
     const std::vector<double>& at = columns["step"];
@@ -120,23 +94,24 @@ DrapeTrainSummary train_drapes(const TrainRequest& request) {
   std::filesystem::remove(pause_file(folder));
   write_file(folder / "config.yaml", drape_training_yaml(options));
   DrapeLessons lessons = make_drape_lessons(options.drapes, options.validation_paths, options.distance.bones);
-  DrapeRun run{options, {request, options, folder, 0}, std::move(lessons), {}, {}, {}};
+  DrapeTraining training{{options, std::move(lessons), {}}, {request, options, folder, 0}};
+  DrapeRun& run = training.run;
   run.backbone = make_drape_model(options, run.lessons);
   DrapeTrainSummary summary;
   summary.folder = folder;
   summary.training = static_cast<int>(run.lessons.training.size());
   summary.validation = static_cast<int>(run.lessons.validation.size());
   summary.test = static_cast<int>(run.lessons.test.size());
-  summary.parameters = parameter_count(run.backbone.drape.plain);
-  summary.finished = train_all(run);
-  summary.seconds = run.stage.seconds;
+  for (const DrapePart& part : parts_of(run.backbone)) summary.parameters += parameter_count(*part.network);
+  summary.finished = train_all(training);
+  summary.seconds = training.stage.seconds;
   std::filesystem::remove(pause_file(folder));
   if (!summary.finished) return summary;
-  summary.table = measure_all(run);
-  if (run.needs_network()) summary.distance = distance_text(options.distance, run.lessons, run.distance);
+  summary.table = measure_all(training);
+  if (!run.distance.layers.empty()) summary.distance = distance_text(options.distance, run.lessons, run.distance);
   write_file(folder / "table.txt", summary.distance + drape_table_text(summary.table));
   write_file(folder / "table.csv", drape_table_csv(summary.table));
-  write_file(folder / "training.html", drape_page(run, summary.table));
+  write_file(folder / "training.html", drape_page(training, summary.table));
   return summary;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/drapes/drape_run.hpp"
 #include "pipeline/drapes/make_drapes.hpp"
 #include "pipeline/drapes/train_drapes.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
@@ -66,6 +67,44 @@ TEST_CASE("drapes: from a simulated set to the table, stopped and resumed on the
   CHECK(row("learned").alpha >= 1);
   CHECK(row("hybrid").pushed.models == data.test);
   CHECK(fake::whole(folder.path / "whole" / "table.csv").starts_with("row,models,mpve_mm"));
+
+  // What the folder holds measures as the run did.
+  const DrapeRun opened = open_drape_run(folder.path / "whole");
+  DrapeLessons lessons = make_drape_lessons(opened.options.drapes, opened.options.validation_paths, true);
+  use_network(opened.distance, lessons);
+  const std::vector<DrapeWay> ways = measured_ways(opened);
+  REQUIRE(ways.size() == whole.table.size());
+  for (std::size_t k = 0; k < ways.size(); ++k)
+    CHECK(measure_row(ways[k].way, *ways[k].model, opened.options, lessons).error_by_drape ==
+          whole.table[k].error_by_drape);
+  std::filesystem::remove(folder.path / "whole" / "learned.h5");
+  CHECK_THROWS_AS(open_drape_run(folder.path / "whole"), Error);
+}
+
+TEST_CASE("drapes: a graph network whose rows begin from scratch, and poses of clips on shared bodies", "[drapes]") {
+  const Folder folder("train_drapes_gcnn");
+  DatasetRequest request = tiny_data(folder);
+  request.overrides = {"clips=[walk, march]", "test_clips=[twist]", "shapes=2"};
+  const DatasetSummary data = make_dataset(request);
+  REQUIRE(data.finished);
+  REQUIRE(data.training + data.test >= 4);
+  const DrapeSet set = read_drape_set(folder.path / "data");
+  REQUIRE(set.training.size() == 4);
+  REQUIRE(set.test.size() == 2);
+  CHECK(set.training[0].shape == set.training[2].shape);
+  CHECK(set.training[0].shape == set.test[0].shape);
+  CHECK(set.training[0].shape != set.training[1].shape);
+
+  TrainRequest run = tiny_run(folder, "gcnn");
+  for (const char* more : {"rows=[control, learned]", "from_scratch=true", "backbone.kind=gcnn",
+                           "backbone.mesh.levels=2", "backbone.mesh.channels=2", "backbone.mesh.kernels=2"})
+    run.overrides.emplace_back(more);
+  const DrapeTrainSummary made = train_drapes(run);
+  REQUIRE(made.finished);
+  const DrapeRun opened = open_drape_run(folder.path / "gcnn");
+  REQUIRE(opened.backbone.drape.mesh.size() == 3);
+  // Without a layer a row from scratch is the backbone once more.
+  CHECK(made.table[0].error_by_drape == made.table[1].error_by_drape);
 }
 
 }  // namespace selvedge::test_train_drapes

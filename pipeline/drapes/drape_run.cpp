@@ -1,0 +1,84 @@
+#include "pipeline/drapes/drape_run.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/drapes/stage_file_hdf5.hpp"
+
+namespace selvedge {
+namespace {
+
+StageFile finished_stage(const std::filesystem::path& folder, const std::string& name, const StageOptions& options) {
+  const std::filesystem::path file = folder / (name + ".h5");
+  StageFile stage = read_stage_file(file);
+  if (stage.step < options.steps)
+    throw Error("has come to step " + std::to_string(stage.step) + " of " + std::to_string(options.steps),
+                file.string(), "go on with `selvedge train --resume`");
+  return stage;
+}
+
+}  // namespace
+
+const DrapeRow& drape_row(const std::string& name) {
+  const auto found = std::ranges::find(known_drape_rows(), name, &DrapeRow::name);
+  assert(found != known_drape_rows().end());
+  return *found;
+}
+
+PlainNetwork read_distance_network(const std::filesystem::path& file, int inputs) {
+  const StageFile stage = read_stage_file(file);
+  const StagePart* part = stage.find("distance");
+  if (!part || part->network.inputs() != inputs)
+    throw Error("is no network of distances that reads these bodies", file.string(),
+                "train it with the same `bones`, or leave `distance.weights` out");
+  return part->network;
+}
+
+DrapeRun open_drape_run(const std::filesystem::path& folder) {
+  const DrapeTrainingOptions options = read_drape_training(folder / "config.yaml");
+  DrapeRun run{options, make_drape_lessons(options.drapes, options.validation_paths, options.distance.bones), {}};
+  run.backbone = blank_drape_model(options, run.lessons);
+  restore_model(finished_stage(folder, "backbone", options.backbone.stage), run.backbone);
+  const bool by_network = std::ranges::any_of(options.rows, [](const std::string& name) {
+    return drape_row(name).neural_layer || drape_row(name).neural_loss;
+  });
+  if (by_network) {
+    std::filesystem::path weights = options.distance.weights;
+    if (weights.empty()) weights = folder / "distance.h5";
+    run.distance = read_distance_network(weights, make_distance_network(options, run.lessons).inputs());
+    use_network(run.distance, run.lessons);
+  }
+  for (const std::string& name : options.rows) {
+    DrapeModel model = blank_drape_model(options, run.lessons);
+    add_scales(drape_row(name), options, run.lessons, model);
+    restore_model(finished_stage(folder, name, options.from_scratch ? options.backbone.stage : options.fine_tuning),
+                  model);
+    run.rows.emplace_back(&drape_row(name), std::move(model));
+  }
+  return run;
+}
+
+std::vector<DrapeWay> measured_ways(const DrapeRun& run) {
+  std::vector<DrapeWay> ways{{{"backbone"}, &run.backbone}};
+  for (const auto& [row, model] : run.rows) {
+    ways.push_back({{row->name, row->layer ? row : nullptr}, &model});
+    if (row->name == "control") {
+      ways.push_back({{"control, naive", nullptr, AfterDrape::naive}, &model});
+      ways.push_back({{"control, naive, edges 1", nullptr, AfterDrape::naive, 1}, &model});
+      ways.push_back({{"control, naive, edges 3", nullptr, AfterDrape::naive, 3}, &model});
+      ways.push_back({{"control, smooth", nullptr, AfterDrape::smooth}, &model});
+      if (!run.distance.layers.empty()) {
+        ways.push_back({{"control, naive, approximate", nullptr, AfterDrape::naive, 0, true}, &model});
+        ways.push_back({{"control, smooth, approximate", nullptr, AfterDrape::smooth, 0, true}, &model});
+      }
+    }
+    if (row->layer) {
+      ways.push_back({{row->name + ", edges 1", row, AfterDrape::nothing, 1}, &model});
+      ways.push_back({{row->name + ", edges 3", row, AfterDrape::nothing, 3}, &model});
+    }
+  }
+  return ways;
+}
+
+}  // namespace selvedge
