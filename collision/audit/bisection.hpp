@@ -73,9 +73,9 @@ void visit_pairs(const Cell& cell, std::span<const ExactBox> first, std::span<co
   const int axis = sweep_axis(cell, first);
   const Sweep mine(first, cell.first, axis), theirs(second, cell.second, axis);
   for (std::size_t i = 0; i < mine.entries.size(); ++i) {
-    const auto& [box, a] = mine.entries[i];
-    if (within_first) mine.overlapping(i + 1, box, cell.bounds, [&](int b) { self(a, b); });
-    theirs.overlapping(0, box, cell.bounds, [&](int c) { other(a, c); });
+    const Sweep::Entry& a = mine.entries[i];
+    if (within_first) mine.overlapping(i + 1, a.box, cell.bounds, [&](int b) { self(a.item, b); });
+    theirs.overlapping(0, a.box, cell.bounds, [&](int c) { other(a.item, c); });
   }
 }
 

@@ -9,6 +9,15 @@
 #include "physics/recovery/put_on.hpp"
 
 namespace selvedge {
+namespace {
+
+std::vector<char> worn_ones(std::vector<char> marked, const Points& worn) {
+  for (std::size_t v = 0; v < marked.size(); ++v)
+    marked[v] = marked[v] && worn.rows() > 0 && worn.row(static_cast<Eigen::Index>(v)).allFinite();
+  return marked;
+}
+
+}  // namespace
 
 Parting part_at_start(const ContactWorld& world, SelfCrossings& self_crossings, const Eigen::VectorXd& inverse_mass,
                       double edge_length, bool clean, const WornPlaces& where, const RecoveryOptions& options,
@@ -34,6 +43,8 @@ Parting part_at_start(const ContactWorld& world, SelfCrossings& self_crossings, 
     Recovery recovery = recover(world, inverse_mass, reach, parting.left, parting.carried, nodes, &budget, options);
     parting.left = std::move(recovery.left);
     parting.gained = std::move(recovery.gained);
+    // What waits would sink in.
+    parting.carried = either(std::move(parting.carried), worn_ones(std::move(recovery.waits), worn));
     if (recovery.stuck && put != PutOn::done) pierced = either(std::move(pierced), sunken);
   }
   parting.carried = either(std::move(parting.carried), pierced);

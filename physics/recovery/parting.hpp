@@ -15,8 +15,9 @@ struct Parting {
 };
 
 // In this order: what a limb has gone through, or has sunken in, is put on again (put_on.hpp); where that cannot be it
-// is drawn to where it is worn, and what else is tangled is parted (recovery.hpp); and where untangling knows no way
-// out, what has sunken in is drawn as well. `clean`: nothing is tangled at the start, for cloth at least. Overwrites
+// is drawn to where it is worn, and what else is tangled is parted (recovery.hpp); what has to wait for the body to be
+// free of itself is drawn to where it is worn meanwhile; and where untangling knows no way out, so is what has sunken
+// in. `clean`: nothing is tangled at the start, for cloth at least. Overwrites
 // the cloth's rows of `nodes`, at the start, and velocities v.
 Parting part_at_start(const ContactWorld&, SelfCrossings&, const Eigen::VectorXd& inverse_mass, double edge_length,
                       bool clean, const WornPlaces&, const RecoveryOptions&, Points& nodes, Points& v,

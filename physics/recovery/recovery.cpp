@@ -104,8 +104,7 @@ std::size_t pairs_within_cloth(const ContactWorld& world, const Points& nodes) {
 // Of untangling, in a step in which vertices can go as far as `reach` [m]. What sits on a body goes straight out; where
 // cloth is tangled with itself the first steps may be the wrong ones.
 int iterations_for(const ContactWorld& world, const Points& nodes, double reach, const Exemption& before,
-                   const std::vector<char>& waits, const UntangleOptions& options, const RecoveryOptions& limits) {
-  if (std::ranges::find(waits, 1) != waits.end()) return limits.waiting_passes;
+                   const UntangleOptions& options, const RecoveryOptions& limits) {
   if (!before.self.empty())
     return std::min(options.iterations,
                     limits.max_pair_passes / std::max(1, static_cast<int>(pairs_within_cloth(world, nodes))));
@@ -146,14 +145,19 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
                  const std::vector<char>& carried, Points& nodes, UntanglingBudget* budget,
                  const RecoveryOptions& limits) {
   const int n = world.cloth->vertex_count;
-  Recovery recovery{before, {}};
   const std::vector<char> waits = waiting(world, nodes, before.body, before.off, carried);
+  Recovery recovery{before, {}, false, waits};
   if (!before.cloth() || none_is_left(before, waits)) return recovery;
   UntanglingBudget ample;
   const WorldSheets sheets(world, nodes);
   const Points& from = sheets.positions[0];
   UntangleOptions options;
-  options.iterations = iterations_for(world, nodes, reach, before, waits, options, limits);
+  if (std::ranges::find(waits, 1) != waits.end()) {
+    options.iterations = limits.waiting_passes;
+    options.second_opinion = false;
+  } else {
+    options.iterations = iterations_for(world, nodes, reach, before, options, limits);
+  }
   const UntangleResult parted =
       (budget ? *budget : ample).untangle(*world.cloth, from, std::span(sheets.views).subspan(1), options);
   const std::vector<char> lost = either(tangled_at(world, nodes, parted), waits);
@@ -169,7 +173,7 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
     Exemption left = stop_at_obstacles(world, before, from, moved);
     if (before.self.empty() && !left.self.empty()) continue;
     nodes = std::move(moved);
-    recovery = {std::move(left), std::move(gained), parted.moved == 0};
+    recovery = {std::move(left), std::move(gained), parted.moved == 0, waits};
     recovery.left.off = before.off;
     break;
   }

@@ -25,7 +25,8 @@ std::optional<Exemption> hopeless(const ContactWorld&, const Points& nodes, cons
 struct Recovery {
   Exemption left;
   std::vector<Separation> gained;
-  bool stuck = false;  // untangling knows no way out of any of it: all is where it was
+  bool stuck = false;       // untangling knows no way out of any of it: all is where it was
+  std::vector<char> waits;  // 1 for vertices that wait, or empty
 };
 Recovery recover(const ContactWorld&, const Eigen::VectorXd& inverse_mass, double reach, const Exemption& before,
                  const std::vector<char>& carried, Points& nodes, UntanglingBudget* = nullptr,

@@ -25,7 +25,9 @@ struct RecoveryOptions {
   double sunken_part = 0.01;              // It has sunken in if this part of its vertices is tangled.
   double long_limb = 2.5;                 // A limb reaches this many radii of the contour beyond it.
   double carrying_speed = 3;              // Cloth is drawn at most this fast [m/s],
-  double carrying_stiffness = 1000;       // and this many times as stiffly where the body is free of itself.
+  double carrying_stiffness = 1000;       // and this many times as stiffly as its inertia where the body is free of
+                                          // itself,
+  double crossing_stiffness = 300;        // or this many times where it is not: contact holds against it.
   double push_softness = 0.1;             // What keeps parted cloth parted sets in over this part of the thickness.
 };
 

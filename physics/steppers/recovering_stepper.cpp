@@ -57,9 +57,9 @@ AddedTerm RecoveringStepper::added_term(const Parting& parting, const Drive& dri
     added =
         added_pushes(push_terms(parting.gained, inverse_mass_, options_.push_softness * scene_.contact.thickness, h));
   if (!parting.carried.empty())
-    added =
-        sum_of(std::move(added), carrying_term(parting.carried, masses_, x0, drive.worn, options_.carrying_speed * h, h,
-                                               parting.left.off.empty() ? options_.carrying_stiffness : 1));
+    added = sum_of(std::move(added),
+                   carrying_term(parting.carried, masses_, x0, drive.worn, options_.carrying_speed * h, h,
+                                 parting.left.off.empty() ? options_.carrying_stiffness : options_.crossing_stiffness));
   return added;
 }
 

@@ -151,7 +151,9 @@ const Options<RecoveryOptions>& recovery_options() {
        number("carrying_speed", &O::carrying_speed, Unit::speed, positive,
               "largest at which cloth is drawn to where it is worn"),
        number("carrying_stiffness", &O::carrying_stiffness, Unit::none, positive,
-              "how much stiffer it is drawn where the body is free of itself"),
+              "how much stiffer than its inertia it is drawn where the body is free of itself"),
+       number("crossing_stiffness", &O::crossing_stiffness, Unit::none, positive,
+              "how much stiffer it is drawn where the body is not"),
        number("push_softness", &O::push_softness, Unit::none, positive,
               "over which what keeps parted cloth parted sets in, in thicknesses")});
   return table;

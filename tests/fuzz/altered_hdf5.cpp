@@ -140,6 +140,9 @@ hid_t latest_format() {
 AlteredHdf5::AlteredHdf5(const std::filesystem::path& valid) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const hid_t file = H5Fopen(valid.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  const hid_t creation = H5Fget_create_plist(file);
+  H5Pget_userblock(creation, &user_block_);
+  H5Pclose(creation);
   std::pair<std::vector<std::string>, std::vector<std::string>> names;
   H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, note_object, &names, H5O_INFO_BASIC);
   groups_ = names.first;
@@ -169,7 +172,10 @@ void AlteredHdf5::write(const std::uint8_t* bytes, std::size_t size, const std::
     const unsigned what = choices.byte(), where = choices.byte();
     list.push_back({what, where, choices.byte()});
   }
-  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, latest_format());
+  const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
+  H5Pset_userblock(creation, user_block_);
+  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, latest_format());
+  H5Pclose(creation);
   for (const std::string& group : groups_)
     H5Gclose(H5Gcreate2(file, group.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
   for (std::size_t f = 0; f < fields_.size(); ++f) {

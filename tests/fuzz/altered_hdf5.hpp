@@ -15,7 +15,8 @@ class AlteredHdf5 {
  public:
   explicit AlteredHdf5(const std::filesystem::path& valid);
 
-  // A file that HDF5 itself has no objection to. `bytes` say what is altered; none: nothing.
+  // A file that HDF5 itself has no objection to, with an empty user block of the valid one's length. `bytes` say what
+  // is altered; none: nothing.
   void write(const std::uint8_t* bytes, std::size_t size, const std::filesystem::path& path) const;
 
  private:
@@ -27,6 +28,7 @@ class AlteredHdf5 {
   };
   std::vector<std::string> groups_;
   std::vector<Field> fields_;
+  hsize_t user_block_ = 0;  // [bytes] before the HDF5 part, as the valid file has them
 };
 
 }  // namespace selvedge::fuzz
