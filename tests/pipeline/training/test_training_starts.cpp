@@ -149,7 +149,7 @@ TEST_CASE("training starts: faces of the body that meet others now or next take 
 TEST_CASE("training starts: every second roll-out looks for a place with 20 pairs or the most that eight have",
           "[training]") {
   RollMaker maker = contact_maker(GarmentStart::tangled, 0);
-  maker.options.samples.clips = {"walk", "arms_folded", "hands_through_torso"};
+  maker.options.samples.clips = {"walk", "arms_up_down", "jumping_jacks"};
   maker.world = make_training_world(maker.options.samples, 1);
   const auto pairs_at = [&](const RollRequest& place) {
     IntersectionCache cache;
