@@ -8,7 +8,7 @@ set -uo pipefail
 seconds="$1"
 shift
 formats=("$@")
-((${#formats[@]})) || formats=(obj ply bvh yaml npz trajectory checkpoint body garment weights stage scales drapes
+((${#formats[@]})) || formats=(obj ply bvh yaml npz gltf trajectory checkpoint body garment weights stage scales drapes
   torch pattern rig ccd)
 failed=0
 for format in "${formats[@]}"; do
