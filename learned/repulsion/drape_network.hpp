@@ -31,9 +31,9 @@ struct DrapeNetwork {
 
 struct DrapeShape {
   int layers = 5, width = 256;
-  double last_scale = 0.1;        // of the last layer's weights at the start
-  std::vector<char> unread = {};  // inputs that are left out; empty: none
-  MeshShape mesh = {};
+  double last_scale = 0.1;          // of the last layer's weights at the start
+  std::vector<char> unread = {};    // inputs that are left out; empty: none
+  MeshShape mesh = {0};             // levels 0: there are no mesh layers
   const Adjacency* ring = nullptr;  // of the garment, where there are mesh layers
 };
 // Means and deviations are those of the cases, all of one garment, one at least (assert).

@@ -27,7 +27,7 @@ struct MeshLayer {
 };
 
 struct MeshShape {
-  int levels = 0;     // of pooling; 0: there are no such layers
+  int levels = 4;     // of pooling
   int channels = 16;  // of the finest level, doubled from level to level up to four times as many
   int kernels = 9;    // matrices that an edge mixes
 };

@@ -341,6 +341,7 @@ CompareResult compare(const CompareRequest& request) {
   if (comparison.sequences.count > 0) add_sequences(comparison);
   comparison.kinds = request.kinds;
   const std::string program = program_key();
+  make_folder(request.out);
   std::vector<SceneWork> all;
   for (const CompareScene& scene : comparison.scenes) all.push_back(open_scene(request, comparison, scene, program));
   for (std::size_t k = 0; k < all.size(); ++k) all[k].keeps = static_cast<int>(k) < comparison.keep_runs;

@@ -39,7 +39,7 @@ std::string energy_bars(const std::string& title, const std::vector<const DrapeT
 std::string energies(const MeasuredDrapes& drapes) {
   const DrapeTableRow *without = first_of(drapes, {"control", "backbone"}),
                       *with = first_of(drapes, {"hybrid", "approximate", "learned"});
-  if (!without || !with) return "";
+  if (!without || !with || without->energy_by_drape.empty()) return "";
   const double most = std::ranges::max(without->energy_by_drape);
   if (!(most > 0)) return "";
   return energy_bars("Figure 6, " + drapes.name + ": models by penetration energy", {without, with}, most) +

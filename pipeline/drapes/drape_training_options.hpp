@@ -18,7 +18,7 @@ enum class BackboneKind { perceptron, mesh };
 struct BackboneOptions {
   BackboneKind kind = BackboneKind::perceptron;
   int layers = 5, width = 256;  // of the perceptron
-  MeshShape mesh{4, 16, 9};     // behind it, if it is of that kind
+  MeshShape mesh;               // behind it, if it is of that kind
   bool linear = false;          // a linear regression beside it
   double least_carried = 0;     // part of the garment that a joint must carry to be read
   StageOptions stage{6000, 16, 1e-3};
