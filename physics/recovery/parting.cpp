@@ -43,8 +43,7 @@ Parting part_at_start(const ContactWorld& world, SelfCrossings& self_crossings, 
     Recovery recovery = recover(world, inverse_mass, reach, parting.left, parting.carried, nodes, &budget, options);
     parting.left = std::move(recovery.left);
     parting.gained = std::move(recovery.gained);
-    // What waits would sink in.
-    parting.carried = either(std::move(parting.carried), worn_ones(std::move(recovery.waits), worn));
+    if (!parting.left.off.empty()) parting.waits = worn_ones(std::move(recovery.waits), worn);
     if (recovery.stuck && put != PutOn::done) pierced = either(std::move(pierced), sunken);
   }
   parting.carried = either(std::move(parting.carried), pierced);

@@ -12,6 +12,7 @@ struct Parting {
   Exemption left;                  // what is tangled still, and what is switched off: contact leaves it alone
   std::vector<Separation> gained;  // what the solve must not lose again
   std::vector<char> carried;       // 1 for vertices that are drawn to where they are worn (carrying.hpp), or empty
+  std::vector<char> waits;         // the same of what is tangled where an obstacle crosses itself: firmly
 };
 
 // In this order: what a limb has gone through, or has sunken in, is put on again (put_on.hpp); where that cannot be it

@@ -56,10 +56,13 @@ AddedTerm RecoveringStepper::added_term(const Parting& parting, const Drive& dri
   if (!parting.gained.empty())
     added =
         added_pushes(push_terms(parting.gained, inverse_mass_, options_.push_softness * scene_.contact.thickness, h));
-  if (!parting.carried.empty())
+  const auto draw = [&](const std::vector<char>& marked, double stiffness) {
+    if (marked.empty()) return;
     added = sum_of(std::move(added),
-                   carrying_term(parting.carried, masses_, x0, drive.worn, options_.carrying_speed * h, h,
-                                 parting.left.off.empty() ? options_.carrying_stiffness : options_.crossing_stiffness));
+                   carrying_term(marked, masses_, x0, drive.worn, options_.carrying_speed * h, h, stiffness));
+  };
+  draw(parting.carried, parting.left.off.empty() ? options_.carrying_stiffness : 1);
+  draw(parting.waits, options_.crossing_stiffness);
   return added;
 }
 
@@ -101,7 +104,7 @@ StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive,
   const Exemption left_alone = extras.left_alone ? both_of(parting.left, *extras.left_alone) : parting.left;
   StepExtras all = extras;
   all.left_alone = &left_alone;
-  if (!parting.gained.empty() || !parting.carried.empty())
+  if (!parting.gained.empty() || !parting.carried.empty() || !parting.waits.empty())
     all.added = [&](const Points& x0, double h) {
       AddedTerm own = added_term(parting, drive, x0, h);
       return extras.added ? sum_of(extras.added(x0, h), std::move(own)) : own;

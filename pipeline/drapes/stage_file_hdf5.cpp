@@ -9,6 +9,7 @@
 namespace selvedge {
 namespace {
 
+constexpr double most_steps = 1e15;
 const h5::FileForm stage_form{"selvedge drape training 1", "stage of a training", "docs/repulsion.md"};
 
 }  // namespace
@@ -59,7 +60,8 @@ StageFile read_stage_file(const std::filesystem::path& path) {
     fields.fail("random", "is no number");
   }
   const std::vector<double> progress = fields.numbers("progress");
-  if (progress.size() != 2 || !(progress[0] >= 0)) fields.fail("progress", "is not a step and a time");
+  if (progress.size() != 2 || !(progress[0] >= 0 && progress[0] <= most_steps))
+    fields.fail("progress", "is not a step and a time");
   stage.step = static_cast<long>(progress[0]);
   stage.seconds = progress[1];
   for (const std::string& name : fields.texts("parts")) {

@@ -6,6 +6,7 @@ namespace selvedge {
 namespace {
 
 constexpr int most_width = 1 << 20;
+constexpr double most_steps = 1e15;  // of a training
 
 }  // namespace
 
@@ -62,7 +63,10 @@ void write_plain_adam(const h5::File& file, const std::string& group, const Plai
 
 PlainAdam read_plain_adam(const h5::Fields& fields, const std::string& group, long long parameters) {
   PlainAdam adam;
-  adam.steps = static_cast<long long>(fields.numbers(group + "/steps").at(0));
+  const std::vector<double> steps = fields.numbers(group + "/steps");
+  if (steps.size() != 1 || !(steps[0] >= 0 && steps[0] <= most_steps))
+    fields.fail(group + "/steps", "is no count of steps");
+  adam.steps = static_cast<long long>(steps[0]);
   if (!fields.has(group + "/first")) return adam;
   adam.first = read_floats(fields, group + "/first");
   adam.second = read_floats(fields, group + "/second");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "collision/exact/orientation.hpp"
@@ -12,7 +13,23 @@ namespace selvedge {
 namespace {
 
 constexpr double least_length = 1e-6;  // of an edge [m]
+constexpr double most_way = 1000;      // of a place from the origin of its panel, and of a panel from the body's [m]
+constexpr double most_radius = 1e6;    // [m]
 constexpr int checked_pieces = 24;     // of a curved edge, when it is looked at for crossings
+
+// Farther off lengths and angles are no numbers any more. What is not finite is too far as well.
+void check_places(const Panel& panel, const std::string& file) {
+  const std::string cure = "check the numbers, and `units_in_meter`";
+  if (!(panel.translation.cwiseAbs().maxCoeff() <= most_way))
+    throw Error(fmt::format("is more than {} m from the body", most_way), file + ": panel `" + panel.name + "`", cure);
+  const auto is_far = [](const Vec2& p) { return !(p.cwiseAbs().maxCoeff() <= most_way); };
+  for (int e = 0; e < static_cast<int>(panel.edges.size()); ++e) {
+    const PanelEdge& edge = panel.edges[static_cast<std::size_t>(e)];
+    bool far = std::ranges::any_of(edge.controls, is_far) || !(std::abs(edge.radius) <= most_radius);
+    for (const int v : edge.ends) far = far || is_far(panel.corners[static_cast<std::size_t>(v)]);
+    if (far) throw Error(fmt::format("reaches farther than {} m", most_way), file + ": " + edge_name(panel, e), cure);
+  }
+}
 
 void check_edge(const Panel& panel, int e, const std::string& file) {
   const PanelEdge& edge = panel.edges[static_cast<std::size_t>(e)];
@@ -95,6 +112,7 @@ void check_seams(const Pattern& pattern, const std::string& file) {
 
 void check_pattern(Pattern& pattern, const std::string& file) {
   for (Panel& panel : pattern.panels) {
+    check_places(panel, file);
     for (int e = 0; e < static_cast<int>(panel.edges.size()); ++e) check_edge(panel, e, file);
     panel.loop = closed_loop(panel, file);
     check_crossings(panel, file);

@@ -111,6 +111,23 @@ TEST_CASE("recovery: a body that crosses itself is switched off there and nowher
   CHECK(r.passed_through == 0);
 }
 
+TEST_CASE("recovery: all that is tangled with a body that crosses itself is drawn to where it is worn", "[recovery]") {
+  World w = make_world(sheet(12, 0.4, 0));
+  add_obstacle(w, testing::join(block({-0.05, 0, 0}, 0.06), block({0.05, 0.011, 0.013}, 0.06)));
+  w.drive.acceleration.setZero();
+  w.drive.worn = w.state.x;
+  w.drive.worn.col(2).array() += 0.03;
+  const ContactWorld world = with_its_obstacle(w);
+  const Exemption tangled = find_exemption(world, gather_nodes(w.state.x, w.state.obstacles));
+  REQUIRE(std::count(tangled.body.begin(), tangled.body.end(), 1) > 20);
+  State to;
+  const StepReport report = make_recovering_conventional_stepper(w.scene, {})->step(w.state, w.drive, 1.0 / 30, to);
+  REQUIRE(report.status == StepStatus::accepted);
+  CHECK(report.untangling == 0);  // it waits
+  for (int v = 0; v < to.x.rows(); ++v)
+    if (tangled.body[v]) CHECK((to.x.row(v) - w.drive.worn.row(v)).norm() < 0.01);
+}
+
 TEST_CASE("recovery: nothing is asked of what cannot be parted, the rest goes without momentum", "[recovery]") {
   const World w = lump(7, 0.04, Vec3::Zero());
   const ContactWorld world = make_contact_world(w.scene.surface, {}, true);

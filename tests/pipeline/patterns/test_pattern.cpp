@@ -153,4 +153,18 @@ TEST_CASE("GarmentCode's patterns are read") {
   CHECK(counts("js_mean_all") == std::pair<std::size_t, std::size_t>(12, 57));
 }
 
+TEST_CASE("A pattern with numbers that are too large to be lengths is refused") {
+  const auto far_corner = [](const std::string& x) {
+    return complaint(file_with(straight, "[[0,0],[" + x + ",0],[40,40],[0,40]]"));
+  };
+  CHECK(far_corner("40") == "none");
+  for (const char* x : {"1e9", "1e200", "-1e308"}) CHECK_THAT(far_corner(x), Contains("reaches farther than 1000 m"));
+  CHECK_THAT(complaint(file_with(R"([{"endpoints":[0,1],"curvature":{"type":"circle","params":[1e200,0,1]}},
+                                    {"endpoints":[1,2]},{"endpoints":[2,3]},{"endpoints":[3,0]}])")),
+             Contains("reaches farther than 1000 m"));
+  std::string text = file_with(straight);
+  text.replace(text.find("[0,100,25]"), 10, "[0,1e300,0]");
+  CHECK_THAT(complaint(text), Contains("is more than 1000 m from the body"));
+}
+
 }  // namespace selvedge::test_pattern
