@@ -21,13 +21,14 @@ double seen_from(const Vec3& moment, const Vec3& to) {
 }
 
 // What a node adds at a point, if that is far enough away.
-bool add_node(const DipoleTree& tree, int node, const Vec3& at, double& sum) {
-  const DipoleTree::Dipole& dipole = tree.dipoles[node];
-  const Vec3 to = dipole.centre - at;
-  const double square = to.squaredNorm(), reach = tree.far * dipole.radius;
-  if (!(square > reach * reach)) return false;
-  const Mat3& spread = tree.spreads[node];
-  sum += (dipole.moment.dot(to) + spread.trace() - 3 * to.dot(spread * to) / square) / (square * std::sqrt(square));
+bool add_node(const DipoleTree::SpreadDipole& node, const Vec3& at, double& sum) {
+  const Vec3 to = node.centre - at;
+  const double x = to[0], y = to[1], z = to[2], square = x * x + y * y + z * z;
+  if (!(square > node.reach_squared)) return false;
+  const std::array<double, 6>& s = node.spread;
+  const double spread = x * (s[0] * x + s[5] * y) + y * (s[1] * y + s[3] * z) + z * (s[2] * z + s[4] * x);
+  const double nearness = 1 / square;
+  sum += (node.moment.dot(to) + node.trace - 3 * nearness * spread) * (nearness * std::sqrt(nearness));
   return true;
 }
 
@@ -35,9 +36,9 @@ bool add_node(const DipoleTree& tree, int node, const Vec3& at, double& sum) {
 bool add_face(const DipoleTree& tree, int item, const Vec3& at, double& sum) {
   const DipoleTree::Dipole& dipole = tree.of_faces[item];
   const Vec3 to = dipole.centre - at;
-  const double square = to.squaredNorm(), reach = tree.far * dipole.radius;
-  if (!(square > reach * reach)) return false;
-  if (square > 4 * reach * reach) {
+  const double square = to.squaredNorm();
+  if (!(square > dipole.reach_squared)) return false;
+  if (square > 4 * dipole.reach_squared) {
     sum += seen_from(dipole.moment, to);
     return true;
   }
@@ -84,6 +85,31 @@ std::vector<DipoleSum> sums_of(const DipoleTree& tree, const Vec3& origin) {
   return sums;
 }
 
+void add_nodes(DipoleTree& tree) {
+  const Vec3 origin = tree.corners.front()[0];
+  const std::vector<DipoleSum> sums = sums_of(tree, origin);
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const Bvh::Node& node = tree.bvh.nodes[i];
+    const Box& box = node.box;
+    DipoleTree::SpreadDipole& dipole = tree.nodes.emplace_back();
+    dipole.child = node.child;
+    dipole.centre = sums[i].area > 0 ? Vec3(origin + sums[i].centre / sums[i].area)
+                                     : 0.5 * Vec3(box.lo[0] + box.hi[0], box.lo[1] + box.hi[1], box.lo[2] + box.hi[2]);
+    dipole.moment = sums[i].moment / (4 * std::numbers::pi);
+    const double reach = tree.far * farthest_corner(box, dipole.centre);
+    dipole.reach_squared = reach * reach;
+    const Mat3 spread =
+        (sums[i].spread - (dipole.centre - origin) * sums[i].moment.transpose()) / (4 * std::numbers::pi);
+    dipole.trace = spread.trace();
+    dipole.spread = {spread(0, 0),
+                     spread(1, 1),
+                     spread(2, 2),
+                     spread(1, 2) + spread(2, 1),
+                     spread(2, 0) + spread(0, 2),
+                     spread(0, 1) + spread(1, 0)};
+  }
+}
+
 }  // namespace
 
 DipoleTree make_dipole_tree(const Surface& surface, const Points& x, const std::vector<int>& faces,
@@ -103,23 +129,11 @@ DipoleTree make_dipole_tree(const Surface& surface, const Points& x, const std::
     DipoleTree::Dipole& dipole = tree.of_faces.emplace_back();
     dipole.centre = (corner[0] + corner[1] + corner[2]) / 3;
     dipole.moment = (corner[1] - corner[0]).cross(corner[2] - corner[0]) / (8 * std::numbers::pi);
-    for (const Vec3& at : corner) dipole.radius = std::max(dipole.radius, (at - dipole.centre).norm());
+    for (const Vec3& at : corner)
+      dipole.reach_squared = std::max(dipole.reach_squared, far * far * (at - dipole.centre).squaredNorm());
   }
   tree.bvh = build_bvh(boxes);
-  if (faces.empty()) return tree;
-  const Vec3 origin = tree.corners.front()[0];
-  const std::vector<DipoleSum> sums = sums_of(tree, origin);
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    const Box& box = tree.bvh.nodes[i].box;
-    DipoleTree::Dipole dipole;
-    dipole.centre = sums[i].area > 0 ? Vec3(origin + sums[i].centre / sums[i].area)
-                                     : 0.5 * Vec3(box.lo[0] + box.hi[0], box.lo[1] + box.hi[1], box.lo[2] + box.hi[2]);
-    dipole.moment = sums[i].moment / (4 * std::numbers::pi);
-    dipole.radius = farthest_corner(box, dipole.centre);
-    tree.spreads.push_back((sums[i].spread - (dipole.centre - origin) * sums[i].moment.transpose()) /
-                           (4 * std::numbers::pi));
-    tree.dipoles.push_back(dipole);
-  }
+  if (!faces.empty()) add_nodes(tree);
   return tree;
 }
 
@@ -130,8 +144,9 @@ double winding_number(const DipoleTree& tree, const Vec3& at, int left_out) {
   int size = 0;
   stack[size++] = 0;
   while (size > 0) {
-    const int node = stack[--size], child = tree.bvh.nodes[node].child;
-    if (add_node(tree, node, at, far)) continue;
+    const DipoleTree::SpreadDipole& node = tree.nodes[stack[--size]];
+    if (add_node(node, at, far)) continue;
+    const int child = node.child;
     if (child >= 0) {
       stack[size++] = child;
       stack[size++] = child + 1;

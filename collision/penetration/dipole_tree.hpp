@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "collision/penetration/closed_surface.hpp"
@@ -13,12 +14,19 @@ namespace selvedge {
 // by it is exact.
 struct DipoleTree {
   struct Dipole {
-    Vec3 centre = Vec3::Zero(), moment = Vec3::Zero();  // moment: sum of area x normal, over 4 pi
-    double radius = 0;                                  // of a ball round the centre that has all triangles
+    Vec3 centre = Vec3::Zero();
+    double reach_squared = 0;    // of the distance beyond which it stands for its triangles [m^2]
+    Vec3 moment = Vec3::Zero();  // sum of area x normal, over 4 pi
+  };
+  // A node: with S = sum of (centroid - centre) (area x normal)^T over 4 pi.
+  struct SpreadDipole : Dipole {
+    double trace = 0;                // of S
+    std::array<double, 6> spread{};  // of S + S^T: half of the diagonal, then yz, zx, xy
+    int child = 0;                   // as the tree has it
   };
   Bvh bvh;
-  std::vector<Dipole> dipoles, of_faces;     // by node, by item
-  std::vector<Mat3> spreads;                 // by node: sum of (centroid - centre) (area x normal)^T, over 4 pi
+  std::vector<SpreadDipole> nodes;           // of the tree
+  std::vector<Dipole> of_faces;              // by item
   std::vector<int> faces;                    // by item
   std::vector<std::array<Vec3, 3>> corners;  // by item, counter-clockwise seen from outside
   double far = 2;  // in radii: from there on a node is a dipole and a face three; a face is one from twice that

@@ -2,18 +2,24 @@
 
 #include <cmath>
 
+#include "learned/graph/integration.hpp"
 #include "learned/losses/volume_loss.hpp"
+#include "pipeline/training/minimised.hpp"
 #include "pipeline/training/training_watch.hpp"
 #include "tests/pipeline/training/tiny_training.hpp"
 
 // Four tangles of a T-shirt that never change: what a network learns of them in 200 steps, with the volume loss and
-// without.
+// without. Where a clip leaves the garment, the body's collision and stretching alone take three quarters of the volume
+// away in one frame: so the tangles have come to rest under all losses but that of the volume, over a body that stands.
 
 namespace selvedge::test_senc_tangles {
 
 namespace {
 
-constexpr double least_volume = 2e-6;  // of a tangle [m^3]
+constexpr double least_volume = 2e-6,
+                 most_volume = 1e-4;  // of a tangle at rest [m^3]; with more an arm is in the trunk
+constexpr int frames_to_rest = 20;
+constexpr double moves_at_rest = 4e-3;  // of no vertex more in the last of them [m]
 
 TrainingOptions tangle_training(double weight) {
   TrainingOptions options = fake::tiny_training();
@@ -36,7 +42,27 @@ double volume_at(const Roll& roll, const Points& x) {
   return counts.volume;
 }
 
+// The roll-out stands still in its first frame, where the cloth goes on without the volume's loss until it rests, each
+// frame from zero velocity. False: it moves on.
+bool come_to_rest(const FrameMaking& making, Roll& roll) {
+  for (PointsF& body : roll.body) body = PointsF(roll.body[1]);
+  for (PointsF& cloth : roll.cloth) cloth = PointsF(roll.cloth[1]);
+  push_out(roll.scene->graph.body, roll.body[1].cast<double>(), push_out_margin, roll.start);
+  RollingState state;
+  begin_roll(roll, state);
+  double moved = 0;
+  for (int frame = 0; frame < frames_to_rest; ++frame) {
+    const Points x = minimised(making, state, state.now.x, 200).x;
+    moved = (x - state.now.x).rowwise().norm().maxCoeff();
+    state.now.x = state.now.previous = x;
+  }
+  roll.start = state.now.x;
+  return moved < moves_at_rest;
+}
+
 std::vector<Roll> four_tangles(RollMaker& maker) {
+  FrameMaking making{maker.features, maker.options.objective, 1, 1};
+  making.losses.volume.weight = {0, 0};
   std::vector<Roll> found;
   for (int clip = 0; clip < static_cast<int>(maker.world.clip_names.size()); ++clip)
     for (int frame = 5; frame + 3 < frame_count(maker.world, 0, clip) && found.size() < 4; frame += 15) {
@@ -45,7 +71,9 @@ std::vector<Roll> four_tangles(RollMaker& maker) {
       request.first_frame = frame;
       request.still = false;
       Roll roll = make_roll(maker, request);
-      if (volume_at(roll, roll.start) > least_volume) found.push_back(std::move(roll));
+      if (volume_at(roll, roll.start) > least_volume && come_to_rest(making, roll) &&
+          volume_at(roll, roll.start) > least_volume && volume_at(roll, roll.start) < most_volume)
+        found.push_back(std::move(roll));
     }
   return found;
 }
