@@ -34,15 +34,15 @@ Points after(const Setup& setup, int frames) {
 
 TEST_CASE("Step options: what a scene file gives reaches the steppers", "[setup]") {
   const Folder folder("step_options");
-  const Setup set =
-      read(folder, {"solver.newton.exact_from=5", "solver.substep.max_passes=4", "solver.substep.contact.stiffness=300",
-                    "solver.resolve.zone_sweeps=150", "solver.resolve.room.max_rounds=3",
-                    "run.resting.still_seconds=0.25", "run.recovery.farthest_place=20 cm",
-                    "run.hybrid.admitted_to_halve=2", "run.hybrid.guard.patch_size=30", "run.icm.push_softness=0.03"});
+  const Setup set = read(
+      folder, {"solver.newton.exact_from=5", "solver.substep.max_passes=4", "solver.substep.contact_term.stiffness=300",
+               "solver.response.zone_sweeps=150", "solver.response.room.max_rounds=3", "run.resting.still_seconds=0.25",
+               "run.recovery.farthest_place=20 cm", "run.hybrid.admitted_to_halve=2", "run.hybrid.guard.patch_size=30",
+               "run.icm.push_softness=0.03"});
   const ConventionalOptions& conventional = set.run.conventional;
   CHECK(conventional.implicit_euler.newton.exact_from == 5);
   CHECK(conventional.substep.max_passes == 4);
-  CHECK(conventional.substep.contact.stiffness == 300);
+  CHECK(conventional.substep.contact_term.stiffness == 300);
   CHECK(conventional.resolve.zone_sweeps == 150);
   CHECK(conventional.resolve.room.max_rounds == 3);
   CHECK(set.run.resting.still_seconds == 0.25);
@@ -58,12 +58,12 @@ TEST_CASE("Step options: what a scene file gives reaches the steppers", "[setup]
 TEST_CASE("Step options: defaults written out give the same bits, other values another step", "[setup]") {
   const Folder folder("step_options");
   const Points standard = after(read(folder), 8);
-  const std::vector<std::string> as_they_are{"solver.substep.max_passes=6", "solver.substep.contact.stiffness=200",
-                                             "solver.resolve.room.sweeps=25", "solver.newton.exact_from=3"};
+  const std::vector<std::string> as_they_are{"solver.substep.max_passes=6", "solver.substep.contact_term.stiffness=200",
+                                             "solver.response.room.sweeps=25", "solver.newton.exact_from=3"};
   CHECK(after(read(folder, as_they_are), 8) == standard);
-  CHECK(after(read(folder, {"solver.substep.contact.stiffness=50"}), 8) != standard);
-  CHECK(after(read(folder, {"solver.substep.longest=10 ms"}), 8) != standard);
-  CHECK(after(read(folder, {"solver.resolve.impulse_rounds=0"}), 8) != standard);
+  CHECK(after(read(folder, {"solver.substep.contact_term.stiffness=50"}), 8) != standard);
+  CHECK(after(read(folder, {"solver.substep.longest=50 ms"}), 8) != standard);
+  CHECK(after(read(folder, {"solver.response.impulse_rounds=0"}), 8) != standard);
 }
 
 }  // namespace selvedge::test_step_options
