@@ -42,7 +42,7 @@ TEST_CASE("Step options: what a scene file gives reaches the steppers", "[setup]
   const ConventionalOptions& conventional = set.run.conventional;
   CHECK(conventional.implicit_euler.newton.exact_from == 5);
   CHECK(conventional.substep.max_passes == 4);
-  CHECK(conventional.substep.contact_term.stiffness == 300);
+  CHECK(conventional.substep.contact.stiffness == 300);
   CHECK(conventional.resolve.zone_sweeps == 150);
   CHECK(conventional.resolve.room.max_rounds == 3);
   CHECK(set.run.resting.still_seconds == 0.25);
