@@ -30,6 +30,16 @@ fs::path config_near(const fs::path& folder, const std::string& name) {
   return config_folder() / name;
 }
 
+fs::path files_folder(const Config& scene, const fs::path& file) {
+  const Config& folder = scene["folder"];
+  if (!folder.given) return file.parent_path();
+  const fs::path place = file.parent_path() / folder.text();
+  std::error_code ignored;
+  if (!fs::is_directory(place, ignored))
+    folder.fail("names the missing folder " + place.string(), "put the scene's folder back, or give its new place");
+  return place;
+}
+
 fs::path cache_folder() {
   for (const auto& [name, below] : {std::pair{"XDG_CACHE_HOME", ""}, std::pair{"HOME", ".cache"}})
     if (const char* value = std::getenv(name); value && *value) return fs::path(value) / below / "selvedge";

@@ -23,6 +23,9 @@ std::filesystem::path config_near(const std::filesystem::path& folder, const std
 // for temporary files.
 std::filesystem::path cache_folder();
 
+// Where the relative paths of a scene file begin: its `folder`, or its own. Throws Error where that is not there.
+std::filesystem::path files_folder(const Config& scene, const std::filesystem::path& file);
+
 // `text` with ${NAME} replaced by the environment's value (SELVEDGE_DATA has the default ../shared/data beside the
 // source), relative to `folder`. Throws Error at `at` for an unknown variable.
 std::filesystem::path expanded_path(const Config& at, const std::string& text, const std::filesystem::path& folder);

@@ -85,6 +85,20 @@ void finish(RunSummary& summary, const StepReport& last, int frame) {
   summary.peak_memory = peak_memory();
 }
 
+// The configuration as the run's folder has it: paths go on from the scene's.
+std::string config_in(const std::filesystem::path& out, const Setup& setup) {
+  if (setup.file.empty() || setup.config.starts_with("folder: ") ||
+      setup.config.find("\nfolder: ") != std::string::npos)
+    return setup.config;
+  const std::filesystem::path from = std::filesystem::absolute(setup.file).parent_path();
+  std::error_code problem;
+  std::filesystem::path folder = std::filesystem::relative(from, out, problem);
+  if (problem || folder.empty()) folder = from;
+  std::string quoted;
+  for (const char c : folder.string()) quoted += c == '\'' ? std::string("''") : std::string(1, c);
+  return "folder: '" + quoted + "'\n" + setup.config;
+}
+
 }  // namespace
 
 RunSummary run_scene(const Setup& setup, Stepper& stepper, const RunRequest& request) {
@@ -96,7 +110,7 @@ RunSummary run_scene(const Setup& setup, Stepper& stepper, const RunRequest& req
   State state = request.resume ? read_checkpoint(saved, setup.config) : setup.initial;
   if (request.resume) check_fits(saved, state, setup.scene);
   remove_results(request);
-  write_file(request.out / "config.yaml", setup.config);
+  write_file(request.out / "config.yaml", config_in(request.out, setup));
 
   // A resumed run writes beside the old file until all that is kept of it has been copied.
   const std::filesystem::path first_file = request.resume ? request.out / "resumed.h5" : file;

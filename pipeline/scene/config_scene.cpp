@@ -58,7 +58,11 @@ const Section& scene_section() {
       "The whole file.",
       "",
       {},
-      {text("description", "for people"), needed(sections("cloths", cloth_section(), "", "at least one")),
+      {text("description", "for people"),
+       text("folder",
+            "where relative paths of files begin, relative to this file's folder; left out: that folder. The "
+            "config.yaml of a run names the scene's"),
+       needed(sections("cloths", cloth_section(), "", "at least one")),
        sections("springs", spring_options().section, "[]", "buttons and stitches"),
        sections("obstacles", obstacle_section(), "[]", ""), vector("gravity", Unit::acceleration, "[0, -9.81, 0]", ""),
        section(wind_options().section, "", ""), section(contact_options().section, "{}", ""),

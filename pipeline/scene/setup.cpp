@@ -9,6 +9,7 @@
 #include "pipeline/meshes/setup_mesh.hpp"
 #include "pipeline/meshes/setup_motion.hpp"
 #include "pipeline/meshes/setup_obstacle.hpp"
+#include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/quality.hpp"
 #include "pipeline/scene/setup_cloth.hpp"
@@ -293,9 +294,15 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
   setup.file = file;
   setup.quality = set_quality(config);
   setup.run = read_run(config);
+  const std::filesystem::path folder = files_folder(config, file);
+  if (Config& given = config["folder"]; given.given) {  // the text of the setup may be kept anywhere
+    given.words = {std::filesystem::absolute(folder).lexically_normal().string()};
+    for (std::string* weights : {&setup.run.learned.weights, &setup.run.refu.weights})
+      if (!weights->empty()) *weights = std::filesystem::absolute(folder / *weights).string();
+  }
   setup.kind = *kinds.find(setup.run.stepper);
   if (setup.kind.options) setup.kind_options = config["run"][setup.kind.name];
-  const SceneParts parts = read_parts(config, file.parent_path(), setup.run.fps);
+  const SceneParts parts = read_parts(config, folder, setup.run.fps);
   const double begin_time = parts.begin_frame / setup.run.fps;
   JoinedScene joined = join_scene(config, parts, begin_time);
   setup.initial = begin_state(parts, joined, begin_time);

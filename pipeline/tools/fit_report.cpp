@@ -8,6 +8,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/meshes/setup_body.hpp"
+#include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/setup.hpp"
 #include "pipeline/view/view.hpp"
@@ -138,7 +139,8 @@ FitReport fit(const FitRequest& request) {
   const std::filesystem::path file = scene_file(request);
   const Setup setup = read_setup(file);
   check_same_cloth(setup.scene, run.info, file);
-  const Performances bodies = read_performances(read_config(file, scene_section())["obstacles"], file.parent_path());
+  const Config config = read_config(file, scene_section());
+  const Performances bodies = read_performances(config["obstacles"], files_folder(config, file));
   const std::size_t k = obstacle_to_fit(request, run.info, bodies);
   report.body = run.info.obstacles[k].name;
 
