@@ -5,6 +5,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/formats/read_point_cache.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
 #include "pipeline/meshes/setup_motion.hpp"
 #include "pipeline/meshes/setup_obstacle.hpp"
@@ -43,6 +44,22 @@ std::vector<std::filesystem::path> sequence_files(const Config& section, const s
   return files;
 }
 
+// The positions of a point cache on the faces of a mesh.
+Sequence cached_sequence(const Config& section, const std::filesystem::path& folder,
+                         std::vector<std::string>& warnings) {
+  const Config& name = section["cache"];
+  if (!section["mesh"].given) name.fail("is given without a mesh", "give the faces: mesh: FILE.obj");
+  const Mesh mesh = read_mesh(existing_path(section["mesh"], folder));
+  PointCache cache = read_point_cache(existing_path(name, folder));
+  if (cache.frames.front().rows() != mesh.x.rows())
+    name.fail(fmt::format("has {} vertices, its mesh has {}", cache.frames.front().rows(), mesh.x.rows()),
+              "give the mesh that it was made of");
+  warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
+  const double unit = read_unit(section["unit"]), own = section["fps"].given ? 0 : cache.fps;
+  for (Points& x : cache.frames) x *= unit;
+  return {std::move(cache.frames), mesh.triangles, own > 0 ? own : section["fps"].number()};
+}
+
 }  // namespace
 
 Points sequence_at(const Sequence& sequence, double time) {
@@ -55,6 +72,9 @@ Points sequence_at(const Sequence& sequence, double time) {
 }
 
 Sequence read_sequence(const Config& section, const std::filesystem::path& folder, std::vector<std::string>& warnings) {
+  if (section["mesh"].given && !section["cache"].given)
+    section["mesh"].fail("is given without a point cache", "give cache: FILE.pc2, .pc16 or .mdd, or leave it out");
+  if (section["cache"].given) return cached_sequence(section, folder, warnings);
   Sequence sequence;
   sequence.fps = section["fps"].number();
   const double unit = read_unit(section["unit"]);

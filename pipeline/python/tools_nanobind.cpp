@@ -9,6 +9,7 @@
 #include "collision/geometry/error.hpp"
 #include "collision/untangle/untangle.hpp"
 #include "pipeline/compare/compare.hpp"
+#include "pipeline/formats/read_point_cache.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
 #include "pipeline/python/bindings_nanobind.hpp"
@@ -171,6 +172,16 @@ nb::dict read_trajectory(const std::filesystem::path& file) {
   return result;
 }
 
+nb::dict read_cache(const std::filesystem::path& file) {
+  const PointCache cache = read_point_cache(file);
+  nb::list x;
+  for (const Points& frame : cache.frames) x.append(copy_of(frame));
+  nb::dict result;
+  result["fps"] = cache.fps;
+  result["x"] = x;
+  return result;
+}
+
 }  // namespace
 
 void bind_tools(nb::module_& module) {
@@ -191,6 +202,10 @@ void bind_tools(nb::module_& module) {
              "report: pairs_before, pairs_after, iterations.");
   module.def("read_trajectory", &read_trajectory, "file"_a,
              "A run's run.h5: triangles, m x 3; fps; time, a list [s]; x, a list of n x 3 [m], one a frame.");
+  module.def(
+      "read_cache", &read_cache, "file"_a,
+      "A point cache, .pc2, .pc16 (half floats, as CLOTH3D has them) or .mdd: fps, 0 where it does not say; x, a "
+      "list of n x 3 in the file's unit, one a frame.");
   module.def("compare", &compare_file, "file"_a, "kinds"_a = nb::dict(), "out"_a = std::filesystem::path("out/compare"),
              "overrides"_a = std::vector<std::string>{}, "short"_a = false,
              "Runs a comparison file (YAML), whose settings may name steppers of kinds, name to subclass of Stepper. "

@@ -62,11 +62,14 @@ const Section& sequence_section() {
       "sequence",
       "One mesh a frame, all with the same faces; positions between frames are linear in time, the last is held.",
       "",
-      {"pattern", "files"},
+      {"pattern", "files", "cache"},
       {path("pattern", "path with one %d or %0Nd for the number"),
        integer("first", not_negative, "0", "first number of the pattern"),
        integer("count", at_least_one, "", "how many; left out: as many as there are"), texts("files", "the paths"),
-       number("fps", Unit::rate, positive, "30", "frames a second of the sequence"), unit_key()}};
+       path("cache", "a point cache: .pc2, .pc16 (half floats, as CLOTH3D has them) or .mdd"),
+       path("mesh", "whose faces the cache moves"),
+       number("fps", Unit::rate, positive, "30", "frames a second of the sequence; left out: what a .mdd says, or 30"),
+       unit_key()}};
   return table;
 }
 

@@ -185,3 +185,11 @@ def test_the_example_of_the_page_runs(name, capsys):
     exec(compile(code, page, "exec"), {})
     last = capsys.readouterr().out.strip().splitlines()[-1].split()
     assert float(last[0]) == pytest.approx(2) and float(last[1]) > 0 and last[2] == "True"
+
+
+def test_point_caches(tmp_path):
+    frames = np.array([[[0.5, 1, -2], [3, 0.25, 0]], [[1, 1, 1], [2, 2, 2]]], dtype="<f2")
+    head = b"POINTCACHE2\0" + np.array([1, 2], "<i4").tobytes() + np.array([0, 1], "<f4").tobytes()
+    (tmp_path / "a.pc16").write_bytes(head + np.array([2], "<i4").tobytes() + frames.tobytes())
+    cache = selvedge.read_cache(tmp_path / "a.pc16")
+    assert cache["fps"] == 0 and (np.array(cache["x"]) == frames).all()

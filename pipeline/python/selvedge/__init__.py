@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Callable
 
-from ._selvedge import Error, Scene, check, compare, contours, distance, read_trajectory, untangle
+from ._selvedge import Error, Scene, check, compare, contours, distance, read_cache, read_trajectory, untangle
 from .steppers import SceneArrays, StepDrive, Stepper, StepStart
 
 __all__ = [
@@ -18,6 +18,7 @@ __all__ = [
     "compare",
     "contours",
     "distance",
+    "read_cache",
     "read_trajectory",
     "simulate",
     "untangle",

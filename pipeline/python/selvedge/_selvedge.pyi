@@ -49,6 +49,10 @@ class Trajectory(TypedDict):
     time: list[float]
     x: list[Numbers]
 
+class Cache(TypedDict):
+    fps: float
+    x: list[Numbers]
+
 class Scene:
     @overload
     def __init__(
@@ -96,6 +100,7 @@ def untangle(
     x: npt.ArrayLike, triangles: npt.ArrayLike, bodies: Bodies = ..., iterations: int = ...
 ) -> tuple[Numbers, UntangleReport]: ...
 def read_trajectory(file: Path) -> Trajectory: ...
+def read_cache(file: Path) -> Cache: ...
 def compare(
     file: Path,
     kinds: Mapping[str, type[Stepper]] = ...,
