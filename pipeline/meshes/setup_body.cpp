@@ -121,6 +121,7 @@ Clip performed(const Config& section, const Performance& who, const std::filesys
   if (gltf) {
     Clip clip = own_animation(section, who, folder);
     begin_later(section["first_frame"], clip);
+    turn_round(section["turns"].integer(), clip);
     return blended(clip, from_zero ? StartPose::zero : StartPose::arms_down, true);
   }
   check_joints(who.body, section["clip"]);

@@ -21,9 +21,9 @@ struct RunRequest {
 };
 
 // Simulates a scene, prepared (prepare.hpp) unless it is resumed, into a folder: run.h5 (trajectory), run.xdmf,
-// summary.json, config.yaml (whose `folder` is the scene's), and checkpoint.h5 until the run has finished. A rejected step is recorded as a frame with
-// the last accepted positions and ends the run. Throws Error where files cannot be written, there is nothing to resume,
-// or another process is running into the folder.
+// summary.json, config.yaml (whose `folder` is the scene's), and checkpoint.h5 until the run has finished. A rejected
+// step is recorded as a frame with the last accepted positions and ends the run. Throws Error where files cannot be
+// written, there is nothing to resume, or another process is running into the folder.
 RunSummary run_scene(const Setup&, Stepper&, const RunRequest&);
 
 }  // namespace selvedge

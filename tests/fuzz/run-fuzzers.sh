@@ -8,8 +8,8 @@ set -uo pipefail
 seconds="$1"
 shift
 formats=("$@")
-((${#formats[@]})) || formats=(obj ply bvh yaml npz gltf trajectory checkpoint body garment weights stage scales drapes
-  torch pattern rig ccd)
+((${#formats[@]})) || formats=(obj ply bvh yaml npz trajectory checkpoint body garment weights stage scales drapes
+  torch pattern rig gltf ccd)
 failed=0
 for format in "${formats[@]}"; do
   found="out/fuzz/$format"
