@@ -72,7 +72,7 @@ std::string methods_table(const MeasuredDrapes& drapes, std::span<const Reported
       for (const ReportedMetric& metric : metrics)
         text += fmt::format("{:>18}", mean_text(row->*metric.of, metric.digits));
     else
-      text += fmt::format("  left out: no row `{}` was trained", method.row);
+      text += fmt::format("  left out: the run has no row `{}`", method.row);
     text += "\n";
   }
   return text;
@@ -166,7 +166,7 @@ std::string times_table(const UsedDrapes& all) {
     }
     text += "\n";
   }
-  return text + "  left out: the row was not trained\n\n";
+  return text + "  left out: the run has no such row\n\n";
 }
 
 std::string edge_passes_table(const UsedDrapes& all) {
@@ -185,7 +185,7 @@ std::string edge_passes_table(const UsedDrapes& all) {
                           *three = find_row(*one, name + ", edges 3");
       text += fmt::format("  {:<28}", way.title);
       if (!none || !single || !three)
-        text += fmt::format("  left out: no row `{}` was trained\n", name);
+        text += fmt::format("  left out: the run has no row `{}`\n", name);
       else
         text += fmt::format("{:>16}{:>16}{:>16}{:>14.1f}{:>14.1f}{:>14.1f}{:>16.3f}\n", mean_text(none->free, 1),
                             mean_text(single->free, 1), mean_text(three->free, 1), none->pairs.mean, single->pairs.mean,

@@ -60,7 +60,7 @@ TEST_CASE("repulsion report: trends follow from the rows, and what is not there 
   const std::string text = repulsion_tables(all);
   CHECK_THAT(text, Contains("-60.0 %"));  // the paper prints -97.5 % of the same numbers
   CHECK_THAT(text, Contains("left out: there is no trained run (out/shirt)"));
-  CHECK_THAT(text, Contains("left out: no row `collision_loss` was trained"));
+  CHECK_THAT(text, Contains("left out: the run has no row `collision_loss`"));
   CHECK_THAT(text, Contains("left out: no run of a graph network has come to its end"));
   CHECK_THAT(text, Contains("left out: no run of drapes along clips has come to its end"));
   CHECK_THAT(text, Contains("3 not at rest"));
@@ -89,7 +89,7 @@ TEST_CASE("compare: trainings that are not there are left out, and the report is
   request.out = folder.path / "out";
   const CompareResult result = compare(request);
   CHECK(result.finished);
-  CHECK_THAT(result.repulsion, Contains("left out: there is no trained run"));
+  CHECK_THAT(result.repulsion, Contains("nowhere: there is no trained run"));
   CHECK_THAT(fake::whole(request.out / "compare.html"), Contains("Repulsive layer"));
   CHECK(fake::whole(request.out / "repulsion.txt") == result.repulsion);
 }

@@ -124,6 +124,13 @@ TEST_CASE("drapes: the shipped files are of their kinds, and unknown rows are re
   CHECK(is_drape_training(training / "refu.yaml"));
   CHECK(!is_drape_training(training / "tiny.yaml"));
   CHECK(read_drape_training(training / "refu.yaml").rows.size() >= 4);
+  CHECK(read_drape_training(training / "refu_gcnn.yaml").from_scratch);
+  CHECK(read_drape_training(training / "refu_clips.yaml").backbone.kind == BackboneKind::perceptron);
+  const DrapeOptions clips = read_drape_options(config_folder() / "data" / "drape_clips_17.yaml");
+  CHECK(clips.training == 17 * 8);
+  CHECK(clips.test == 17 * 4);
+  CHECK_THROWS_AS(read_drape_options(config_folder() / "data" / "drape_clips_5.yaml", {"clips=[wlak]"}), Error);
+  CHECK_THROWS_AS(read_drape_options(config_folder() / "data" / "drape_clips_5.yaml", {"test_clips=[]"}), Error);
   CHECK_THROWS_AS(read_drape_training(training / "refu.yaml", {"rows=[lerned]"}), Error);
   CHECK(read_drape_options(config_folder() / "data" / "drape.yaml").name == "drape");
   CHECK_THROWS_AS(read_drape_options(config_folder() / "data" / "drape.yaml", {"garment=tshrt"}), Error);

@@ -84,20 +84,18 @@ TEST_CASE("drapes: from a simulated set to the table, stopped and resumed on the
 TEST_CASE("drapes: a graph network whose rows begin from scratch, and poses of clips on shared bodies", "[drapes]") {
   const Folder folder("train_drapes_gcnn");
   DatasetRequest request = tiny_data(folder);
-  request.overrides = {"clips=[walk, march]", "test_clips=[twist]", "shapes=2"};
+  request.overrides = {"clips=[walk]", "test_clips=[twist]", "shapes=2"};
   const DatasetSummary data = make_dataset(request);
   REQUIRE(data.finished);
-  REQUIRE(data.training + data.test >= 4);
   const DrapeSet set = read_drape_set(folder.path / "data");
-  REQUIRE(set.training.size() == 4);
+  REQUIRE(set.training.size() == 2);
   REQUIRE(set.test.size() == 2);
-  CHECK(set.training[0].shape == set.training[2].shape);
   CHECK(set.training[0].shape == set.test[0].shape);
   CHECK(set.training[0].shape != set.training[1].shape);
 
   TrainRequest run = tiny_run(folder, "gcnn");
-  for (const char* more : {"rows=[control, learned]", "from_scratch=true", "backbone.kind=gcnn",
-                           "backbone.mesh.levels=2", "backbone.mesh.channels=2", "backbone.mesh.kernels=2"})
+  for (const char* more : {"rows=[control]", "from_scratch=true", "backbone.kind=gcnn", "backbone.mesh.levels=2",
+                           "backbone.mesh.channels=2", "backbone.mesh.kernels=2"})
     run.overrides.emplace_back(more);
   const DrapeTrainSummary made = train_drapes(run);
   REQUIRE(made.finished);
