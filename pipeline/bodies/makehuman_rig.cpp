@@ -111,7 +111,7 @@ std::vector<RigWeight> read_rig_weights(const std::filesystem::path& path, const
   std::vector<RigWeight> found;
   for (const auto& [name, ignored] : weights.object().items()) {
     const Value list = weights.at(name);
-    const auto bone = std::find_if(bones.begin(), bones.end(), [&](const RigBone& b) { return b.name == name; });
+    const auto bone = std::ranges::find(bones, name, &RigBone::name);
     if (bone == bones.end()) list.fail("is of no bone of the skeleton", "give skeleton and weights of one rig");
     for (std::size_t k = 0; k < list.list_size(); ++k) {
       const Value entry = list.at(k);
