@@ -9,8 +9,8 @@
 #include "pipeline/scene/setup.hpp"
 #include "pipeline/tools/convert_body.hpp"
 #include "tests/pipeline/fake_body.hpp"
-#include "tests/pipeline/fake_gltf.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/pipeline/motions/fake_gltf.hpp"
 
 namespace selvedge::test_rig_gltf {
 

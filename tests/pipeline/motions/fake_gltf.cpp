@@ -1,4 +1,4 @@
-#include "tests/pipeline/fake_gltf.hpp"
+#include "tests/pipeline/motions/fake_gltf.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
