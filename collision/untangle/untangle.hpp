@@ -21,11 +21,11 @@ struct UntangleOptions {
   double gap = 0.02;        // between what has been parted, in mean edge lengths
   double step = 0.25;       // largest motion asked for in one iteration, in mean edge lengths
   double least_stretch = 0.52, largest_stretch = 1.92;  // of every triangle against the input
-  int sweeps = 12;       // of an iteration, that smooth its displacements and meet what is asked
-  int remembered = 8;    // iterations ago, at most: a step must lower what the contours had then
-  int patience = 60;     // iterations without a better state, before the best one is the result
-  int relaxations = 8;   // rounds after the last iteration that widen the gap
-  double horizon = 0.2;  // distance within which pairs repel, in mean edge lengths: about the way of one iteration
+  int sweeps = 12;       // An iteration smooths displacements and meets separations in this many sweeps.
+  int remembered = 8;    // A step must stay below the largest merit of this many last iterations.
+  int patience = 60;     // Untangling ends after this many iterations without a better state.
+  int relaxations = 8;   // A clean cloth gives stretched triangles their shape back in at most this many rounds.
+  double horizon = 0.2;  // Pairs repel within this many mean edge lengths: about how far an iteration moves vertices.
   // Hint: a place for each component of the cloth, the innermost lowest; of two layers the higher one belongs on the
   // side that the other's normals point to. Empty: the smaller side of a contour is the wrong one.
   std::vector<int> layers;
