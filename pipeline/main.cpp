@@ -38,6 +38,7 @@ void scene_options(CLI::App& command, SceneArguments& arguments) {
       ->allow_extra_args(false);
   command.add_option("--stepper", arguments.stepper, joined(known_kinds().names()));
   command.add_option("--weights", arguments.weights, "weight file of the steppers `learned` and `hybrid`");
+  command.add_option("--device", arguments.device, "that runs their network: cpu, libtorch, cuda or auto");
 }
 
 void simulate_options(CLI::App& command, SimulateArguments& arguments) {

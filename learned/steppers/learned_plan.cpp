@@ -26,13 +26,15 @@ PlanLine settling_line(const Architecture& architecture, bool settle) {
 
 }  // namespace
 
-std::vector<PlanLine> learned_plan_lines(const Scene& scene, const Architecture& architecture, bool settle) {
+std::vector<PlanLine> learned_plan_lines(const Scene& scene, const Architecture& architecture,
+                                         const LearnedOptions& learned) {
   const FeatureOptions& options = architecture.features;
   std::vector<PlanLine> lines;
   lines.push_back({"network", true,
                    architecture.name + ", " + std::to_string(parameter_count(architecture)) + " parameters, " +
                        std::to_string(architecture.steps.size()) + " message-passing steps"});
-  lines.push_back(settling_line(architecture, settle));
+  lines.push_back(settling_line(architecture, learned.settle));
+  lines.push_back({"libtorch", learned.device != NetworkDevice::cpu, device_sentence(learned.device)});
   lines.push_back({"coarse edges", !options.coarse_sets.empty(),
                    std::to_string(options.coarse_sets.size()) + " of " + std::to_string(options.coarse_levels) +
                        " levels; a piece too small for one has none"});

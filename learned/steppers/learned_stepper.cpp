@@ -7,6 +7,7 @@
 #include "collision/geometry/floating_point.hpp"
 #include "collision/geometry/stopwatch.hpp"
 #include "collision/untangle/find_exemption.hpp"
+#include "learned/gradients/torch_network.hpp"
 #include "learned/graph/make_graph.hpp"
 #include "learned/network/engine.hpp"
 #include "learned/network/packed_network.hpp"
@@ -33,6 +34,7 @@ class LearnedStepper final : public Stepper {
         settles_(options.settle || architecture.integration == Integration::relaxation_frame),
         tables_(weights.tables),
         network_(pack_network(architecture, weights)),
+        torch_(torch_network_for(options.device, architecture, weights)),
         graph_scene_(learned_scene(scene, options.omitted_body_vertices).graph),
         losses_(features_.force_inputs ? loss_garment(scene) : LossGarment{}),
         rest_(make_rest_graph(graph_scene_, features_, options.centres)),
@@ -55,6 +57,7 @@ class LearnedStepper final : public Stepper {
   bool settles_;
   FeatureTables tables_;
   std::shared_ptr<const PackedNetwork> network_;
+  std::unique_ptr<TorchNetwork> torch_;  // in place of the kernels
   GraphScene graph_scene_;
   LossGarment losses_;  // of networks that are shown the objective's force
   RestGraph rest_;
@@ -88,7 +91,8 @@ bool LearnedStepper::predict(GraphState state, NextCloth& next, StepReport& repo
     make_graph(graph_scene_, rest_, state, features_, tables_, search_, graph_, found_);
     report.seconds.graph += watch.lap();
     if (!found_.refused.empty()) return false;
-    next = integrate(rest_, state, features_, tables_.output, infer(*network_, graph_));
+    const FeatureRows output = torch_ ? torch_->infer(graph_) : infer(*network_, graph_);
+    next = integrate(rest_, state, features_, tables_.output, output);
     report.seconds.network += watch.lap();
     ++report.substeps;
     if (!is_near(next.x) || !is_near(next.velocity)) return false;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "learned/network/weights.hpp"
+#include "learned/steppers/network_device.hpp"
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
 
@@ -11,8 +12,9 @@ namespace selvedge {
 
 struct LearnedOptions {
   bool settle = false;  // the roll-out of a network with a start flag begins with a settling pass too
-  std::vector<int> omitted_body_vertices;  // of the obstacles, on end: they get no edges, as hands in HOOD
-  std::vector<int> centres;                // from which coarse levels are made, one a piece at most; others are chosen
+  std::vector<int> omitted_body_vertices = {};  // of the obstacles, on end: they get no edges, as hands in HOOD
+  std::vector<int> centres = {};  // from which coarse levels are made, one a piece at most; others are chosen
+  NetworkDevice device = NetworkDevice::cpu;
 };
 
 // A network of HOOD's or ContourCraft's kind makes each frame of 1/30 s. Where a roll-out begins, HOOD first takes its
@@ -27,7 +29,8 @@ struct LearnedOptions {
 //
 // Keeps a reference to the scene, and copies what it needs of the weights. Throws Error for weights that are not of the
 // architecture's shapes, for inputs that the stepper does not make, and for a scene that is no graph
-// (make_rest_graph) or lacks an omitted vertex. A step throws Error for another time step than 1/30 s.
+// (make_rest_graph) or lacks an omitted vertex, and where the options ask for a device that is not there. A step throws
+// Error for another time step than 1/30 s.
 std::unique_ptr<Stepper> make_learned_stepper(const Scene&, const Architecture&, const NetworkWeights&,
                                               const LearnedOptions& = {});
 

@@ -30,6 +30,7 @@ Setup read_scene(const SceneArguments& arguments) {
   if (arguments.stepper) overrides.push_back("run.stepper=" + *arguments.stepper);
   if (arguments.weights)
     overrides.push_back("run.learned.weights=" + std::filesystem::absolute(*arguments.weights).string());
+  if (arguments.device) overrides.push_back("run.learned.device=" + *arguments.device);
   return read_setup(arguments.scene, overrides);
 }
 

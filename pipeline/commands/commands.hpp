@@ -31,6 +31,7 @@ struct SceneArguments {
   std::vector<std::string> overrides;  // key=value
   std::optional<std::string> stepper;
   std::optional<std::filesystem::path> weights;  // of the stepper `learned`
+  std::optional<std::string> device;             // that computes its network
 };
 
 struct SimulateArguments {

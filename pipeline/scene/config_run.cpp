@@ -33,7 +33,15 @@ const Options<LearnedRun>& learned_options() {
       {path("weights", &O::weights, "weight file (`selvedge weights import`); seen from the scene file"),
        flag("settle", &O::settle,
             "the first frame begins with a pass in which the cloth falls to rest, as ContourCraft's training does; "
-            "HOOD always has one")});
+            "HOOD always has one"),
+       choice(
+           "device", &O::device,
+           {{"cpu", NetworkDevice::cpu},
+            {"libtorch", NetworkDevice::libtorch},
+            {"cuda", NetworkDevice::cuda},
+            {"auto", NetworkDevice::automatic}},
+           "what computes the network. `cpu`: the program's kernels; `libtorch`: libtorch on the CPU (`make torch`); "
+           "`cuda`: libtorch on a GPU; `auto`: `cuda` where there is one, else `cpu`")});
   return table;
 }
 

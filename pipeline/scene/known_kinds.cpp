@@ -11,10 +11,8 @@ namespace selvedge {
 namespace {
 
 MakeStepper learned_maker(const Setup& setup) {
-  return [file = std::make_shared<const WeightFile>(read_learned_weights(setup)),
-          options = LearnedOptions{setup.run.learned.settle, {}, {}}](const Scene& scene) {
-    return make_learned_stepper(scene, file->architecture, file->weights, options);
-  };
+  return [file = std::make_shared<const WeightFile>(read_learned_weights(setup)), options = learned_options_of(setup)](
+             const Scene& scene) { return make_learned_stepper(scene, file->architecture, file->weights, options); };
 }
 
 // The conventional stepper as the scene has it; `newton`: most iterations of a solve.

@@ -21,6 +21,13 @@ WeightFile read_learned_weights(const Setup& setup) {
   return read_weight_file(setup.file.parent_path() / weights);  // an absolute path stays as it is
 }
 
+LearnedOptions learned_options_of(const Setup& setup) {
+  return {.settle = setup.run.learned.settle,
+          .omitted_body_vertices = {},
+          .centres = {},
+          .device = setup.run.learned.device};
+}
+
 namespace {
 
 // Why the stepper does not take the scene, and what to do.

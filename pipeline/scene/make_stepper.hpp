@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "learned/network/weights_hdf5.hpp"
+#include "learned/steppers/learned_stepper.hpp"
 #include "pipeline/scene/setup.hpp"
 
 namespace selvedge {
@@ -10,6 +11,9 @@ namespace selvedge {
 // The network that the stepper `learned` runs. Throws Error where the scene names none, and whatever read_weight_file
 // does.
 WeightFile read_learned_weights(const Setup&);
+
+// How that stepper runs it.
+LearnedOptions learned_options_of(const Setup&);
 
 // The setup's kind of stepper with what stands round it. Keeps a reference to the setup's scene. Throws Error for an
 // unknown kind, and for a scene that does not have what the stepper's traits ask for.

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "learned/steppers/network_device.hpp"
 #include "physics/steppers/conventional_stepper.hpp"
 #include "physics/steppers/hybrid_stepper.hpp"
 #include "physics/steppers/icm_stepper.hpp"
@@ -14,6 +15,7 @@ namespace selvedge {
 struct LearnedRun {
   std::string weights;  // weight file, seen from the scene file's folder
   bool settle = false;
+  NetworkDevice device = NetworkDevice::cpu;
 };
 
 // The repulsive layer behind the stepper (learned/steppers/refu_stepper.hpp).

@@ -44,7 +44,8 @@ void append_hybrid_lines(const Setup& setup, std::vector<PlanLine>& lines) {
   lines.push_back({"proposals by time", hybrid.stop_when_slow,
                    hybrid.stop_when_slow ? "none where they cost more than they save: frames depend on the clock"
                                          : "not asked for by hybrid.stop_when_slow"});
-  for (PlanLine& line : learned_plan_lines(setup.scene, read_learned_weights(setup).architecture, false)) {
+  for (PlanLine& line :
+       learned_plan_lines(setup.scene, read_learned_weights(setup).architecture, learned_options_of(setup))) {
     if (line.feature == "settling pass") continue;
     lines.push_back({"proposal: " + line.feature, line.in, line.why});
   }
@@ -53,7 +54,7 @@ void append_hybrid_lines(const Setup& setup, std::vector<PlanLine>& lines) {
 // What the scene needs, and what the stepper does without.
 std::vector<PlanLine> lines_of(const Setup& setup) {
   if (setup.run.stepper == "learned")
-    return learned_plan_lines(setup.scene, read_learned_weights(setup).architecture, setup.run.learned.settle);
+    return learned_plan_lines(setup.scene, read_learned_weights(setup).architecture, learned_options_of(setup));
   std::vector<PlanLine> lines = plan_lines(setup.scene);
   lines.push_back({"quality", true, setup.quality});
   lines.push_back({"linear solver", true, linear_solver_of(setup)});

@@ -1,7 +1,9 @@
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <limits>
 
 #include "collision/geometry/error.hpp"
+#include "learned/gradients/torch_network.hpp"
 #include "learned/graph/integration.hpp"
 #include "learned/network/engine.hpp"
 #include "learned/network/packed_network.hpp"
@@ -298,7 +300,7 @@ TEST_CASE("Materials become the inputs of networks", "[learned]") {
 
 TEST_CASE("The plan says what of the network a scene leaves out", "[learned]") {
   const auto is_in = [](const Scene& scene, const std::string& preset, const std::string& feature) {
-    for (const PlanLine& line : learned_plan_lines(scene, architecture_preset(preset), false))
+    for (const PlanLine& line : learned_plan_lines(scene, architecture_preset(preset), {}))
       if (line.feature == feature) return line.in;
     FAIL("no line of " << feature);
     return false;
@@ -307,10 +309,36 @@ TEST_CASE("The plan says what of the network a scene leaves out", "[learned]") {
   CHECK(is_in(run.scene, "contourcraft", "body edges"));
   CHECK(is_in(run.scene, "contourcraft", "world edges"));
   CHECK_FALSE(is_in(run.scene, "hood", "world edges"));
+  CHECK_FALSE(is_in(run.scene, "hood", "libtorch"));
   run.scene.contact.self = false;
   CHECK_FALSE(is_in(run.scene, "contourcraft", "world edges"));
   run.scene.obstacles.clear();
   CHECK_FALSE(is_in(run.scene, "hood", "body edges"));
+}
+
+TEST_CASE("A network runs on the device that is asked for, or there is an error", "[learned]") {
+  const fake::LearnedCase run = above_a_plate(1);
+  const fake::NarrowNetwork network = fake::narrow_network("hood");
+  const std::vector<State> kernels = rollout(run, *stepper_of(run.scene, network));
+  const bool is_there = std::filesystem::exists(torch_library_path());
+  if (!is_there) {
+    for (const NetworkDevice device : {NetworkDevice::libtorch, NetworkDevice::cuda})
+      CHECK_THROWS_AS(stepper_of(run.scene, network, {.device = device}), Error);
+    const std::vector<State> automatic =
+        rollout(run, *stepper_of(run.scene, network, {.device = NetworkDevice::automatic}));
+    CHECK(automatic.back().x == kernels.back().x);
+  }
+}
+
+TEST_CASE("A roll-out by libtorch is that of the kernels", "[.torch]") {
+  const fake::LearnedCase run = above_a_plate(4);
+  for (const char* preset : {"hood", "contourcraft"}) {
+    const fake::NarrowNetwork network = fake::narrow_network(preset);
+    const std::vector<State> kernels = rollout(run, *stepper_of(run.scene, network)),
+                             torch = rollout(run, *stepper_of(run.scene, network, {.device = NetworkDevice::libtorch}));
+    REQUIRE(torch.size() == 5);
+    CHECK((torch.back().x - kernels.back().x).cwiseAbs().maxCoeff() < 1e-5);
+  }
 }
 
 }  // namespace selvedge::test_learned_stepper

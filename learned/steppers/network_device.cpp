@@ -1,0 +1,32 @@
+#include "learned/steppers/network_device.hpp"
+
+#include "learned/gradients/torch_network.hpp"
+
+namespace selvedge {
+
+std::unique_ptr<TorchNetwork> torch_network_for(NetworkDevice device, const Architecture& architecture,
+                                                const NetworkWeights& weights) {
+  if (device == NetworkDevice::cpu) return nullptr;
+  const bool choose = device == NetworkDevice::automatic;
+  if (choose && !std::filesystem::exists(torch_library_path())) return nullptr;
+  const char* name = choose ? "auto" : device == NetworkDevice::cuda ? "cuda" : "cpu";
+  auto network = std::make_unique<TorchNetwork>(architecture, weights, name, 0);
+  if (choose && network->facts().device == "cpu") return nullptr;
+  return network;
+}
+
+std::string device_sentence(NetworkDevice device) {
+  switch (device) {
+    case NetworkDevice::cpu:
+      return "the program's own kernels run the network";
+    case NetworkDevice::libtorch:
+      return "on the CPU, as learned.device asks";
+    case NetworkDevice::cuda:
+      return "on a GPU, as learned.device asks";
+    case NetworkDevice::automatic:
+      break;
+  }
+  return "where it finds a GPU, as learned.device asks; else the program's own kernels";
+}
+
+}  // namespace selvedge

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+namespace selvedge {
+
+struct Architecture;
+struct NetworkWeights;
+class TorchNetwork;
+
+// What computes a network in a roll-out.
+enum class NetworkDevice {
+  cpu,       // the program's own kernels
+  libtorch,  // libtorch on the CPU: the code that a GPU runs, for machines without one
+  cuda,      // libtorch on the first CUDA device
+  automatic  // cuda where libtorch's part is beside the program and finds a device, else cpu
+};
+
+// The network by libtorch where `device` takes it; null: the kernels run. Throws Error where libtorch's part is not
+// beside the program or has no such device.
+std::unique_ptr<TorchNetwork> torch_network_for(NetworkDevice device, const Architecture&, const NetworkWeights&);
+
+// Whether libtorch is asked for, in words for `selvedge plan`.
+std::string device_sentence(NetworkDevice);
+
+}  // namespace selvedge
