@@ -96,19 +96,23 @@ EvaluatedRow described(const Comparison& comparison, const Evaluation& evaluatio
   row.sequences = static_cast<int>(rows.size());
   row.failed = static_cast<int>(std::ranges::count_if(rows, [](const CompareRow* r) { return !finished(*r); }));
   const auto pairs = [](const CompareRow& r) { return measure_of(r, "pairs_mean"); };
+  const auto strain = [](const CompareRow& r) { return measure_of(r, "strain"); };
+  const auto strain_99 = [](const CompareRow& r) { return measure_of(r, "strain_99"); };
   for (const std::string& outfit : evaluation.outfits) {
     Rows of_outfit;
     for (const CompareRow* one : rows)
       if (one->outfit == outfit) of_outfit.push_back(one);
     row.pairs_of_outfit.push_back(mean_over(of_outfit, pairs));
+    row.strain_of_outfit.push_back(mean_over(of_outfit, strain));
+    row.strain_99_of_outfit.push_back(mean_over(of_outfit, strain_99));
   }
   row.pairs = mean_over(rows, pairs);
   describe_tangled(rows, comparison.evaluation.left_frames, row);
   std::vector<double> ms;
   for (const CompareRow* one : rows) ms.push_back(one->ms);
   if (!ms.empty()) row.frames_a_second = 1000 / median(ms);
-  row.strain = mean_over(rows, [](const CompareRow& r) { return measure_of(r, "strain"); });
-  row.strain_99 = mean_over(rows, [](const CompareRow& r) { return measure_of(r, "strain_99"); });
+  row.strain = mean_over(rows, strain);
+  row.strain_99 = mean_over(rows, strain_99);
   row.depth = mean_over(rows, [](const CompareRow& r) { return measure_of(r, "depth"); });
   row.kinetic_ratio = ratio_to(rows, baseline, "kinetic");
   row.jitter_ratio = ratio_to(rows, baseline, "jitter");

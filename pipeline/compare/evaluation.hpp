@@ -27,8 +27,9 @@ struct EvaluatedRow {
   std::string row;
   std::string trouble;  // why it was left out
   int sequences = 0, failed = 0;
-  std::vector<double> pairs_of_outfit;  // mean over frames and sequences, in the order of Evaluation::outfits
-  double pairs = unknown;               // over all
+  // Means over frames and sequences, in the order of Evaluation::outfits.
+  std::vector<double> pairs_of_outfit, strain_of_outfit, strain_99_of_outfit;
+  double pairs = unknown;                                    // over all
   double at_0 = unknown, at_50 = unknown, at_150 = unknown;  // pairs in these frames, of tangled sequences
   std::vector<double> left;
   double frames_a_second = unknown;  // median

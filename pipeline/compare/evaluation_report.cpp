@@ -22,6 +22,22 @@ std::string ratio_text(const PairedRatio& r) {
                      r.apart() ? ", apart" : "");
 }
 
+// Strains tell of garments that a network has never seen; the outfits of the validation split are of such.
+std::string strain_by_outfit(const Evaluation& e) {
+  std::string text = "principal strain by outfit, mean % (99th percentile %)\n  " + fmt::format("{:<18}", "");
+  for (const std::string& outfit : e.outfits) text += fmt::format(" {:>14}", outfit);
+  text += "\n";
+  for (const EvaluatedRow& row : e.rows) {
+    if (row.sequences == 0) continue;
+    text += fmt::format("  {:<18}", row.row);
+    for (std::size_t k = 0; k < e.outfits.size(); ++k)
+      text += fmt::format(" {:>14}", fmt::format("{} ({})", shown(100 * row.strain_of_outfit[k], "{:.2f}"),
+                                                 shown(100 * row.strain_99_of_outfit[k])));
+    text += "\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string evaluation_text(const Evaluation& e) {
@@ -54,7 +70,7 @@ std::string evaluation_text(const Evaluation& e) {
                           shown(100 * row.strain, "{:.2f}"), shown(100 * row.strain_99, "{:.1f}"),
                           shown(1000 * row.depth, "{:.2f}"), shown(row.kinetic_ratio, "{:.2f}"),
                           shown(row.jitter_ratio, "{:.2f}"), shown(row.frames_a_second));
-  return text + "\n";
+  return text + strain_by_outfit(e) + "\n";
 }
 
 std::string evaluation_json(const Evaluation& e) {
@@ -63,8 +79,11 @@ std::string evaluation_json(const Evaluation& e) {
   for (std::size_t k = 0; k < e.outfits.size(); ++k)
     outfits.push_back({{"name", e.outfits[k]}, {"vertices", e.vertices[k]}});
   for (const EvaluatedRow& row : e.rows) {
-    Json of_outfits = Json::array(), left = Json::array();
+    Json of_outfits = Json::array(), strains = Json::array(), left = Json::array();
     for (const double pairs : row.pairs_of_outfit) of_outfits.push_back(known(pairs));
+    for (std::size_t k = 0; k < e.outfits.size(); ++k)
+      strains.push_back(
+          {{"mean", known(row.strain_of_outfit[k])}, {"percentile_99", known(row.strain_99_of_outfit[k])}});
     for (const double part : row.left) left.push_back(known(part));
     rows.push_back({{"row", row.row},
                     {"trouble", row.trouble},
@@ -72,6 +91,7 @@ std::string evaluation_json(const Evaluation& e) {
                     {"ended_early", row.failed},
                     {"pairs", known(row.pairs)},
                     {"pairs_of_outfit", of_outfits},
+                    {"strain_of_outfit", strains},
                     {"pairs_at_0", known(row.at_0)},
                     {"pairs_at_50", known(row.at_50)},
                     {"pairs_at_150", known(row.at_150)},

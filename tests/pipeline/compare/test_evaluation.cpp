@@ -60,6 +60,8 @@ TEST_CASE("evaluation: tables by hand", "[evaluation]") {
       sequence("a", "conventional", {20, 10, 0}, true), sequence("a", "hood", {20, 15, 5}, true),
       sequence("b", "conventional", {0, 0, 0}, false), sequence("b", "hood", {0, 2, 4}, false)};
   rows[1].measures["kinetic"] = 1;
+  rows[1].measures["strain"] = 0.03;
+  rows[3].measures["strain"] = 0.05;
   CompareRow absent;
   absent.scene = "a";
   absent.setting = "absent";
@@ -88,6 +90,8 @@ TEST_CASE("evaluation: tables by hand", "[evaluation]") {
   CHECK(evaluation_text(found).find("no weight file") != std::string::npos);
   const auto json = nlohmann::json::parse(evaluation_json(found));
   CHECK(json["rows"][1]["pairs_of_outfit"][0] == 6.5);
+  CHECK(json["rows"][1]["strain_of_outfit"][0]["mean"].get<double>() == Approx(0.04));
+  CHECK(evaluation_text(found).find("4.00 (-)") != std::string::npos);
   CHECK(json["by_frame"]["hood"][1] == 15);
 }
 
