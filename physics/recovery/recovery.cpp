@@ -106,13 +106,12 @@ std::size_t pairs_within_cloth(const ContactWorld& world, const Points& nodes) {
 // cloth is tangled with itself the first steps may be the wrong ones.
 int iterations_for(const ContactWorld& world, const Points& nodes, double reach, const Exemption& before,
                    const UntangleOptions& options, const RecoveryOptions& limits) {
-  int most = options.iterations;
   if (!before.self.empty())
-    most = std::min(most, limits.max_pair_passes / std::max(1, static_cast<int>(pairs_within_cloth(world, nodes))));
-  if (!before.self.empty() && options.let_through.empty()) return most;
+    return std::min(options.iterations,
+                    limits.max_pair_passes / std::max(1, static_cast<int>(pairs_within_cloth(world, nodes))));
   const double step = options.step * mean_edge(*world.cloth, nodes.topRows(world.cloth->vertex_count));
   const double useful = std::max<double>(limits.min_passes, limits.useful_motions * reach / step);
-  return useful < most ? static_cast<int>(useful) : most;
+  return useful < options.iterations ? static_cast<int>(useful) : options.iterations;
 }
 
 // Vertices that would go through an obstacle anew stay: it holds them up. Returns what is tangled then.
@@ -155,6 +154,7 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
   const Points& from = sheets.positions[0];
   UntangleOptions options;
   if (std::ranges::find(waits, 1) != waits.end()) {
+    options.iterations = limits.waiting_passes;
     options.let_through = either(waits, carried);
     options.second_opinion = false;
   }
