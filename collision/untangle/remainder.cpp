@@ -66,8 +66,11 @@ std::vector<Remainder> explain_remainders(std::span<const SheetView> sheets, con
     for (int s : contour.segments) left.pairs += !found.segments[s].at_vertex();
     remainders.push_back(std::move(left));
   }
-  if (!found.touching.empty())
-    remainders.push_back({static_cast<int>(found.touching.size()), 0, "triangles that touch without crossing"});
+  if (!found.touching.empty()) {
+    Remainder& touching = remainders.emplace_back();
+    touching.pairs = static_cast<int>(found.touching.size());
+    touching.reason = "triangles that touch without crossing";
+  }
   return remainders;
 }
 

@@ -9,6 +9,7 @@
 #include "collision/geometry/floating_point.hpp"
 #include "collision/search/bvh.hpp"
 #include "collision/untangle/kept_shape.hpp"
+#include "collision/untangle/let_through.hpp"
 #include "collision/untangle/repulsion.hpp"
 #include "collision/untangle/separation.hpp"
 
@@ -55,9 +56,17 @@ struct Standing {
   Standing& operator=(const Standing&) = delete;
 };
 
-// found: the segments of the sheets.
+Segments segments_that_count(std::span<const SheetView> sheets, const UntangleOptions& options) {
+  Segments found = find_segments(sheets);
+  drop_let_through(sheets, options.let_through, found);
+  return found;
+}
+
+// found: the segments of the sheets that count.
 Tangle tangle_of(std::span<const SheetView> sheets, Segments found, const KeptShape& shape,
-                 const std::vector<int>& layers) {
+                 const UntangleOptions& options) {
+  const std::vector<int>& layers = options.layers;
+  const std::vector<char>& through = options.let_through;
   Tangle tangle;
   tangle.found = std::move(found);
   tangle.contours = find_contours(sheets, tangle.found);
@@ -66,7 +75,11 @@ Tangle tangle_of(std::span<const SheetView> sheets, Segments found, const KeptSh
   tangle.pairs = intersecting_pairs(tangle.found);
   for (const Segment& segment : tangle.found.segments) tangle.vertex_pairs += segment.at_vertex();
   for (const Contour& contour : tangle.contours) tangle.length += contour.length;
-  const std::vector<char> inside = inside_obstacles(sheets);
+  std::vector<char> inside = inside_obstacles(sheets);
+  for (std::size_t v = 0; v < through.size(); ++v) inside[v] = inside[v] && !through[v];
+  for (Region& region : tangle.regions)
+    if (region.sheet == 0 && region.partner_sheet != 0 && !through.empty())
+      std::erase_if(region.vertices, [&](int v) { return through[v] != 0; });
   tangle.inside = static_cast<int>(std::count(inside.begin(), inside.end(), 1));
   tangle.merit = tangle.length + tangle.inside * shape.mean_edge;
   tangle.enclosed = inside;
@@ -191,7 +204,7 @@ Tangle keep_clean(const KeptShape& shape, const Freedom& freedom, std::span<cons
   for (int round = 0;; ++round) {
     keep_range(shape, freedom, options, before, x);
     const std::vector<SheetView> sheets = with_cloth(cloth, x, obstacles);
-    Segments found = find_segments(sheets);
+    Segments found = segments_that_count(sheets, options);
     bool clean = true;
     const auto judge = [&](int a, int sheet, int b) {
       std::vector<int> vertices;
@@ -206,7 +219,7 @@ Tangle keep_clean(const KeptShape& shape, const Freedom& freedom, std::span<cons
     };
     for (const Segment& s : found.segments) judge(s.triangle[0], s.sheet[1], s.triangle[1]);
     for (const auto& [a, sheet, b] : found.touching) judge(a, sheet, b);
-    if (clean) return tangle_of(sheets, std::move(found), shape, options.layers);
+    if (clean) return tangle_of(sheets, std::move(found), shape, options);
     take_back(offends, round, before, x);
   }
 }
@@ -221,8 +234,9 @@ void relax(const KeptShape& shape, const Freedom& freedom, std::span<const Sheet
   for (int i = 0; i < options.relaxations; ++i) {
     const StretchRange now = extreme_stretch(shape, x);
     if (now.least >= tighter.least_stretch && now.largest <= tighter.largest_stretch) return;
-    const std::vector<Separation> repulsions =
+    std::vector<Separation> repulsions =
         repulsion.find(x, none, freedom.reach, options.gap * shape.mean_edge, options.horizon * shape.mean_edge, false);
+    drop_let_through(options.let_through, repulsions);
     Points next = propose(shape, freedom, {}, repulsions, tighter, x);
     if (!keep_clean(shape, freedom, obstacles, none, options, x, next).clean()) return;
     x = next;
@@ -270,14 +284,16 @@ Attempt attempt(const KeptShape& shape, std::span<const SheetView> obstacles, co
     const std::vector<SheetView> sheets = with_cloth(cloth, x, obstacles);
     const std::vector<char> tangled = tangled_vertices(sheets, tangle);
     widen(shape, tangled, options, freedom);
-    const std::vector<Separation> repulsions = repulsion.find(x, tangled, freedom.reach, gap, reach, wide);
+    std::vector<Separation> repulsions = repulsion.find(x, tangled, freedom.reach, gap, reach, wide);
+    drop_let_through(options.let_through, repulsions);
     const double bound = *std::max_element(merits.begin(), merits.end());
     double step = options.step * shape.mean_edge;
     Points next;
     Tangle after;
     for (int shorter = 0; shorter < 3; ++shorter, step *= 0.4) {
-      const std::vector<Separation> separations =
+      std::vector<Separation> separations =
           part_contours(sheets, tangle.found, tangle.contours, tangle.regions, {gap, step});
+      drop_let_through(options.let_through, separations);
       next = propose(shape, freedom, separations, repulsions, options, x);
       after = keep_clean(shape, freedom, obstacles, tangled, options, x, next);
       if (after.merit <= bound) break;
@@ -306,7 +322,7 @@ UntangleResult untangle(const Surface& cloth, const Points& x, std::span<const S
   const std::span<const SheetView> obstacles = standing.views;
   const KeptShape shape = keep_shape(cloth, x);
   const std::vector<SheetView> sheets = with_cloth(cloth, x, obstacles);
-  const Tangle input = tangle_of(sheets, find_segments(sheets), shape, options.layers);
+  const Tangle input = tangle_of(sheets, segments_that_count(sheets, options), shape, options);
   const std::vector<char> tangled = tangled_vertices(sheets, input);
   const Freedom freedom = make_freedom(shape, tangled, options);
   Repulsion repulsion(cloth, obstacles, shape);

@@ -29,6 +29,9 @@ struct UntangleOptions {
   // Hint: a place for each component of the cloth, the innermost lowest; of two layers the higher one belongs on the
   // side that the other's normals point to. Empty: the smaller side of a contour is the wrong one.
   std::vector<int> layers;
+  // 1 for vertices that obstacles neither meet nor hold, there or anywhere along a contour; the cloth itself does.
+  // Empty: none.
+  std::vector<char> let_through;
   bool second_opinion = true;  // of what repels near a contour, where the first gets stuck: as many iterations again
   std::function<void(const UntangleProgress&)> progress;
   StopFlag stop = {};  // asked once an iteration: true ends it with the best that was seen

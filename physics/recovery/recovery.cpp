@@ -5,6 +5,7 @@
 
 #include "collision/contour/find_contours.hpp"
 #include "collision/untangle/find_exemption.hpp"
+#include "collision/untangle/let_through.hpp"
 #include "collision/untangle/untangle.hpp"
 #include "collision/untangle/world_sheets.hpp"
 #include "physics/recovery/balanced_motion.hpp"
@@ -154,13 +155,13 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
   UntangleOptions options;
   if (std::ranges::find(waits, 1) != waits.end()) {
     options.iterations = limits.waiting_passes;
+    options.let_through = either(waits, carried);
     options.second_opinion = false;
-  } else {
-    options.iterations = iterations_for(world, nodes, reach, before, options, limits);
   }
+  options.iterations = iterations_for(world, nodes, reach, before, options, limits);
   const UntangleResult parted =
       (budget ? *budget : ample).untangle(*world.cloth, from, std::span(sheets.views).subspan(1), options);
-  const std::vector<char> lost = either(tangled_at(world, nodes, parted), waits);
+  const std::vector<char> lost = tangled_at(world, nodes, parted);
   const Points whole_way = parted.x - from;
   Points way = whole_way;
   for (int v = 0; v < n; ++v)
@@ -168,6 +169,7 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
   for (int halving = 0; halving <= limits.max_halvings; ++halving, reach /= 2) {
     std::vector<Separation> gained =
         pushes_along(whole_way, lost, sheets, limits.negligible_move * parted.mean_edge, reach);
+    drop_let_through(options.let_through, gained);
     Points moved = nodes;
     moved.topRows(n) += balanced_motion(*world.cloth, inverse_mass, gained, way, reach);
     Exemption left = stop_at_obstacles(world, before, from, moved);

@@ -12,7 +12,7 @@ struct RecoveryOptions {
   int max_pair_passes = 150'000;  // Crossing pairs times passes stay below this in a step.
   double useful_motions = 12;     // A longer way than this many times what a step can go is not looked for.
   int min_passes = 30;            // Untangling may always take this many passes, however short the step.
-  int waiting_passes = 5;         // Beside cloth that waits for a body to be free of itself it takes this many.
+  int waiting_passes = 40;        // Beside cloth that waits for a body to be free of itself it takes at most this many.
   int max_halvings = 3;           // A motion that would make clean cloth cross itself is halved at most this often.
   double negligible_move = 1e-6;  // A shorter way counts as none [mean edges].
 

@@ -212,6 +212,10 @@ TEST_CASE("untangle: cloth goes out of a closed body that stands still", "[untan
   CHECK(after.intersecting_pairs() == 0);
   CHECK(result.least_stretch > 0.5);
   CHECK(result.largest_stretch < 2);
+  // Let through, it is clean where it is.
+  UntangleOptions through;
+  through.let_through.assign(static_cast<std::size_t>(level.x.rows()), 1);
+  CHECK(untangle(surface, level.x, obstacles, through).iterations == 0);
 }
 
 TEST_CASE("untangle: what cannot be parted is named, and the rest is kept in shape", "[untangle]") {

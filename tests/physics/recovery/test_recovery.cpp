@@ -128,6 +128,36 @@ TEST_CASE("recovery: all that is tangled with a body that crosses itself is draw
     if (tangled.body[v]) CHECK((to.x.row(v) - w.drive.worn.row(v)).norm() < 0.01);
 }
 
+// Two layers over blocks that overlap; the upper one dips through the lower one there, and is worn like that.
+World layers_at_a_crossing() {
+  testing::Sheet dipped = sheet(16, 0.4, 0.015);
+  for (int v = 0; v < dipped.x.rows(); ++v)
+    if (std::hypot(dipped.x(v, 0), dipped.x(v, 2)) < 0.07) dipped.x(v, 1) = -0.015;
+  World w = make_world(testing::join(sheet(12, 0.4, 0), dipped));
+  add_obstacle(w, testing::join(block({-0.05, 0, 0}, 0.06), block({0.05, 0.011, 0.013}, 0.06)));
+  w.drive.acceleration.setZero();
+  w.drive.worn = w.state.x;
+  return w;
+}
+
+int pairs_of(const World& w, const State& state) {
+  return static_cast<int>(audit(w.scene.surface, state.x, {}).self_pairs.size());
+}
+
+TEST_CASE("recovery: where a body crosses itself cloth is parted from cloth, and stays so", "[recovery]") {
+  const World w = layers_at_a_crossing();
+  REQUIRE(pairs_of(w, w.state) > 20);
+  State state = w.state;
+  const auto stepper = make_recovering_conventional_stepper(w.scene, {});
+  for (int frame = 0; frame < 12; ++frame) {
+    State to;
+    REQUIRE(stepper->step(state, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
+    state = to;
+    if (frame >= 5) CHECK(pairs_of(w, state) == 0);
+  }
+  CHECK_FALSE(find_exemption(with_its_obstacle(w), gather_nodes(state.x, state.obstacles)).body.empty());  // it waits
+}
+
 TEST_CASE("recovery: nothing is asked of what cannot be parted, the rest goes without momentum", "[recovery]") {
   const World w = lump(7, 0.04, Vec3::Zero());
   const ContactWorld world = make_contact_world(w.scene.surface, {}, true);
