@@ -41,15 +41,20 @@ double largest_square(const Extent& a, const Extent& b) {
   return (a.hi - b.lo).cwiseAbs().cwiseMax((b.hi - a.lo).cwiseAbs()).squaredNorm();
 }
 
-// The vertices of a cube of the grid, or some of them.
-struct CubeExtents {
+// Of the vertices of a cube of the grid, or of some of them.
+struct Extents {
   Extent x, normals, rest;
+  void take(const Extents& other) {
+    x.take(other.x);
+    normals.take(other.normals);
+    rest.take(other.rest);
+  }
 };
 
 // Places in the grid's order, side by side in one cube.
 struct VertexGroup {
   int first, last;
-  Extent x, normals;
+  Extents extents;
 };
 
 // A posed body with its vertices also in the order of a grid: whoever looks round goes through memory in order.
@@ -58,10 +63,10 @@ struct PosedCubes {
   const Points &x, &normals;
   CellGrid grid;
   Points x_near, normals_near;
-  std::vector<int> filled;           // cubes that hold vertices
-  std::vector<int> place;            // of each cube among these
-  std::vector<CubeExtents> extents;  // of these
-  std::vector<int> first_group;      // of these; one more ends them
+  std::vector<int> filled;       // cubes that hold vertices
+  std::vector<int> place;        // of each cube among these
+  std::vector<Extents> extents;  // of these
+  std::vector<int> first_group;  // of these; one more ends them
   std::vector<VertexGroup> groups;
 
   PosedCubes(const FacingBody& b, const Points& posed, const Points& n)
@@ -76,32 +81,31 @@ struct PosedCubes {
       if (grid.first(cube) == grid.first(cube + 1)) continue;
       place[cube] = static_cast<int>(filled.size());
       filled.push_back(cube);
-      CubeExtents& own = extents.emplace_back();
+      Extents& own = extents.emplace_back();
       first_group.push_back(static_cast<int>(groups.size()));
       for (int p = grid.first(cube); p < grid.first(cube + 1); ++p) {
-        if ((p - grid.first(cube)) % in_a_group == 0) groups.push_back({p, p, {}, {}});
-        groups.back().x.take(row(x_near, p));
-        groups.back().normals.take(row(normals_near, p));
-        groups.back().last = p + 1;
-        own.rest.take(row(body.rest, grid.order()[p]));
+        if ((p - grid.first(cube)) % in_a_group == 0) groups.push_back({p, p, {}});
+        VertexGroup& group = groups.back();
+        group.last = p + 1;
+        group.extents.x.take(row(x_near, p));
+        group.extents.normals.take(row(normals_near, p));
+        group.extents.rest.take(row(body.rest, grid.order()[p]));
       }
-      for (std::size_t g = static_cast<std::size_t>(first_group.back()); g < groups.size(); ++g) {
-        own.x.take(groups[g].x);
-        own.normals.take(groups[g].normals);
-      }
+      for (std::size_t g = static_cast<std::size_t>(first_group.back()); g < groups.size(); ++g)
+        own.take(groups[g].extents);
     }
     first_group.push_back(static_cast<int>(groups.size()));
   }
 };
 
-// False only if no vertex of one cube faces one of the other that was farther at rest.
-bool may_face(const CubeExtents& a, const CubeExtents& b, double reach) {
+// False only if no vertex of a faces one of b that was farther at rest.
+bool may_face(const Extents& a, const Extents& b, double reach) {
   const double square = least_square(a.x, b.x);
   return square <= widened * reach * reach && least_dot(a.normals, b.normals) <= facing_cosine + (widened - 1) &&
          square <= widened * come_closer * come_closer * largest_square(a.rest, b.rest);
 }
 
-// near: places of cubes among the filled ones, ascending.
+// near: groups, ascending.
 int facing_vertex(const PosedCubes& posed, int v, const std::vector<int>& near) {
   const FacingBody& body = posed.body;
   const Vec3 at = row(posed.x, v), normal = row(posed.normals, v);
@@ -119,36 +123,44 @@ int facing_vertex(const PosedCubes& posed, int v, const std::vector<int>& near) 
     nearest = square;
     found = w;
   };
-  for (const int cube : near)
-    for (int g = posed.first_group[cube]; g < posed.first_group[cube + 1]; ++g) {
-      const VertexGroup& group = posed.groups[g];
-      const double gap = (group.x.lo - at).cwiseMax(at - group.x.hi).cwiseMax(0).squaredNorm();
-      const double cosine = normal.cwiseProduct(group.normals.lo).cwiseMin(normal.cwiseProduct(group.normals.hi)).sum();
-      if (gap > widened * nearest || cosine > facing_cosine + (widened - 1)) continue;
-      for (int p = group.first; p < group.last; ++p) look_at(p);
-    }
+  for (const int g : near) {
+    const auto& [first, last, extents] = posed.groups[g];
+    const double gap = (extents.x.lo - at).cwiseMax(at - extents.x.hi).cwiseMax(0).squaredNorm();
+    const double cosine =
+        normal.cwiseProduct(extents.normals.lo).cwiseMin(normal.cwiseProduct(extents.normals.hi)).sum();
+    if (gap > widened * nearest || cosine > facing_cosine + (widened - 1)) continue;
+    for (int p = first; p < last; ++p) look_at(p);
+  }
   return found;
 }
 
 }  // namespace
 
 // Most cubes near a vertex hold nothing but skin of its own part, which looks the same way and was as near at rest:
-// they are left out for all vertices of a cube at once.
+// they are left out for all vertices of a cube at once, and so are groups for those of a group.
 std::vector<int> facing_vertices(const FacingBody& body, const Points& x, const Points& normals) {
   const PosedCubes posed(body, x, normals);
   std::vector<int> partner(static_cast<std::size_t>(x.rows()));
 #pragma omp parallel
   {
-    std::vector<int> near;
+    std::vector<int> in_cubes, near;  // groups
 #pragma omp for schedule(dynamic, 16)
     for (int c = 0; c < static_cast<int>(posed.filled.size()); ++c) {
-      near.clear();
+      in_cubes.clear();
       posed.grid.for_each_cube_around(posed.filled[c], cubes_away, [&](int cube) {
-        if (posed.place[cube] >= 0 && may_face(posed.extents[c], posed.extents[posed.place[cube]], body.reach))
-          near.push_back(posed.place[cube]);
+        const int other = posed.place[cube];
+        if (other < 0 || !may_face(posed.extents[c], posed.extents[other], body.reach)) return;
+        for (int g = posed.first_group[other]; g < posed.first_group[other + 1]; ++g)
+          if (may_face(posed.extents[c], posed.groups[g].extents, body.reach)) in_cubes.push_back(g);
       });
-      for (int p = posed.grid.first(posed.filled[c]); p < posed.grid.first(posed.filled[c] + 1); ++p)
-        partner[posed.grid.order()[p]] = facing_vertex(posed, posed.grid.order()[p], near);
+      for (int own = posed.first_group[c]; own < posed.first_group[c + 1]; ++own) {
+        const VertexGroup& group = posed.groups[own];
+        near.clear();
+        for (const int g : in_cubes)
+          if (may_face(group.extents, posed.groups[g].extents, body.reach)) near.push_back(g);
+        for (int p = group.first; p < group.last; ++p)
+          partner[posed.grid.order()[p]] = facing_vertex(posed, posed.grid.order()[p], near);
+      }
     }
   }
   return partner;

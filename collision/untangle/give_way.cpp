@@ -53,7 +53,9 @@ struct Flesh {
         shape(keep_shape(body, rest)),
         options(o),
         reach(2 * o.most + o.room),
-        thickness(thicknesses(body, rest, reach, o.through)) {}
+        thickness(thicknesses(body, rest, reach, o.through)) {
+    intersecting_pairs(body, rest, at_rest);
+  }
   Flesh(const Flesh&) = delete;  // the shape looks at the body
   Flesh& operator=(const Flesh&) = delete;
 
@@ -62,6 +64,7 @@ struct Flesh {
   GiveWayOptions options;
   double reach;                   // within which vertices meet: both go as far as they can, and leave room [m]
   std::vector<double> thickness;  // under each vertex [m]
+  IntersectionCache at_rest;      // Its tree serves poses, refitted, and changes no pair.
 };
 
 namespace {
@@ -268,7 +271,7 @@ GiveWay::GiveWay(Surface body, const Points& rest, const GiveWayOptions& options
 // left as it crosses less. Then pressed more for room, where no more of it would next to touch by that.
 Points GiveWay::operator()(const Points& x) const {
   Pressed body{pressed(*flesh_, x, x, meetings(*flesh_, x)), {}};
-  IntersectionCache cache;
+  IntersectionCache cache = flesh_->at_rest;
   Pairs left = intersecting_pairs(flesh_->body, body.x, cache);
   if (!left.empty()) {
     for (const Place& place : places_of(*flesh_, intersecting_pairs(flesh_->body, x, cache), left)) {

@@ -6,8 +6,8 @@
 
 namespace selvedge {
 
-// Several hinges side by side, a lane each, so that the same arithmetic goes over them in wide registers. What
-// hinge_energy and hinge_derivatives give for each of them, but for rounding.
+// Several hinges side by side, a lane each, so that the same arithmetic goes over them in wide registers. Of
+// each of them what hinge_energy, but for rounding, and hinge_derivatives give.
 struct HingeLanes {
   static constexpr int width = 16;
   using Lane = double[width];
@@ -16,11 +16,24 @@ struct HingeLanes {
   // The edge e1 - e0, the tips a - e0 and b - e0; weight, rest angle, and 1 where the current length weighs, else 0.
   Lane edge[3], tip_a[3], tip_b[3], weight, rest_angle, current;
 
-  Lane energy;     // [J]
-  Lane force[12];  // gradient in the order of Hinge::nodes [N]
+  Lane difference;  // of the angle to the one at rest, in [-pi, pi]
+  Lane energy;      // [J]
+  Lane force[12];   // gradient in the order of Hinge::nodes [N]
+  // Hessian between the nodes (0, 1), (0, 2), (0, 3), (1, 2), (1, 3) and (2, 3), by rows [N/m]. Forces do not see a
+  // translation, so that a node's own block is minus the sum of its row.
+  static constexpr int pairs = 6;
+  Lane block[pairs][9];
 };
 
 // The first hinges, as many as fit: `energy`, and `force` where asked for.
 void hinge_energies(std::span<const Hinge>, const Points& x, bool gradient, HingeLanes&);
+
+// `block` of the hinges that are loaded, exact or as hinge_derivatives bounds it.
+void hinge_hessians(bool psd, HingeLanes&);
+
+Mat3 block_of(const HingeLanes&, int pair, int lane);
+
+// The sum [J].
+double hinge_energy(std::span<const Hinge>, const Points& x);
 
 }  // namespace selvedge

@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "collision/geometry/parallel.hpp"
+#include "physics/energies/hinge_lanes.hpp"
 #include "physics/energies/membrane_lanes.hpp"
 
 namespace selvedge {
@@ -86,6 +87,31 @@ void derivatives_of_membranes(const Elastic& elastic, const Points& x, int begin
   }
 }
 
+void derivatives_of_hinges(const Elastic& elastic, const Points& x, int begin, int end, bool forces, bool pairs,
+                           HessianForm form, AssemblyScratch& scratch) {
+  const int hinges_begin = static_cast<int>(elastic.membrane.size());
+  HingeLanes lanes;
+  for (int first = begin; first < end; first += lanes.count) {
+    const std::span<const Hinge> hinges(elastic.hinges.data() + (first - hinges_begin), end - first);
+    hinge_energies(hinges, x, true, lanes);
+    if (pairs) hinge_hessians(form != HessianForm::exact, lanes);
+    for (int l = 0; l < lanes.count; ++l) {
+      const int e = first + l, slot = elastic.element_begin[e];
+      if (forces)
+        for (int k = 0; k < 12; ++k) scratch.forces(slot + k / 3, k % 3) = lanes.force[k][l];
+      if (!pairs) continue;
+      const double weight = form == HessianForm::damping ? elastic.element_damping[e] : 1;
+      const std::array<int, 4>& nodes = hinges[l].nodes;
+      for (int i = 0, pair = 0; i < 4; ++i)
+        for (int j = i + 1; j < 4; ++j, ++pair) {
+          Mat3& block = scratch.pairs[elastic.pair_begin[e] + pair];
+          block = weight * block_of(lanes, pair, l);
+          if (nodes[i] > nodes[j]) block.transposeInPlace();
+        }
+    }
+  }
+}
+
 void derivatives_of_chunk(const Elastic& elastic, const Points& x, int begin, int end, bool forces, bool pairs,
                           HessianForm form, AssemblyScratch& scratch) {
   const int hinges_begin = static_cast<int>(elastic.membrane.size());
@@ -94,18 +120,16 @@ void derivatives_of_chunk(const Elastic& elastic, const Points& x, int begin, in
   const bool psd = form != HessianForm::exact;
   Vec6 gradient6;
   Mat6 hessian6;
-  Vec12 gradient12;
-  Mat12 hessian12;
   Eigen::VectorXd gradient;
   Eigen::MatrixXd hessian;
   if (begin < hinges_begin)
     derivatives_of_membranes(elastic, x, begin, std::min(end, hinges_begin), forces, pairs, form, scratch);
-  for (int e = std::max(begin, hinges_begin); e < end; ++e) {
+  if (end > hinges_begin && begin < curved_begin)
+    derivatives_of_hinges(elastic, x, std::max(begin, hinges_begin), std::min(end, curved_begin), forces, pairs, form,
+                          scratch);
+  for (int e = std::max(begin, curved_begin); e < end; ++e) {
     const double weight = form == HessianForm::damping ? elastic.element_damping[e] : 1;
-    if (e < curved_begin) {
-      hinge_derivatives(elastic.hinges[e - hinges_begin], x, gradient12, pairs ? &hessian12 : nullptr, psd);
-      store(elastic, e, gradient12, hessian12, weight, forces, pairs, scratch);
-    } else if (e < springs_begin) {
+    if (e < springs_begin) {
       curved_derivatives(elastic.curved[e - curved_begin], x, gradient, pairs ? &hessian : nullptr);
       store(elastic, e, gradient, hessian, weight, forces, pairs, scratch);
     } else {
@@ -124,10 +148,13 @@ double energy_of_chunk(const Elastic& elastic, const Points& x, int begin, int e
     const std::span<const MembraneElement> all = elastic.membrane;
     sum = membrane_energy(elastic.materials, all.subspan(begin, std::min(end, hinges_begin) - begin), x);
   }
-  for (int e = std::max(begin, hinges_begin); e < end; ++e) {
-    if (e < curved_begin)
-      sum += hinge_energy(elastic.hinges[e - hinges_begin], x);
-    else if (e < springs_begin)
+  if (end > hinges_begin && begin < curved_begin) {
+    const int first = std::max(begin, hinges_begin) - hinges_begin;
+    const std::span<const Hinge> all = elastic.hinges;
+    sum += hinge_energy(all.subspan(first, std::min(end, curved_begin) - hinges_begin - first), x);
+  }
+  for (int e = std::max(begin, curved_begin); e < end; ++e) {
+    if (e < springs_begin)
       sum += curved_energy(elastic.curved[e - curved_begin], x);
     else
       sum += spring_energy(elastic.springs[e - springs_begin], x);

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include <Eigen/Eigenvalues>
 #include <numbers>
 #include <random>
 
@@ -32,25 +33,62 @@ struct LooseHinges {
   }
 };
 
+// The positive eigenvalues, summed, of scale x the second derivative of a dihedral angle, of the part of one wing.
+double positive_part(const Points& x, int tip, double scale) {
+  const Vec3 edge = row(x, 1) - row(x, 0), up = row(x, tip) - row(x, 0);
+  const double length = edge.norm(), foot = up.dot(edge) / edge.squaredNorm(), height = (up - foot * edge).norm();
+  const Vec3 r(foot - 1, -foot, 1), q(-1, 1, 0);
+  Eigen::Matrix<double, 3, 6> mixed;  // of motion along the normal with motion along the edge, then across it
+  mixed.leftCols<3>() = q * r.transpose() / (height * length);
+  mixed.rightCols<3>() = r * r.transpose() / (height * height) + q * q.transpose() / (2 * length * length);
+  Eigen::Matrix<double, 9, 9> part = Eigen::Matrix<double, 9, 9>::Zero();
+  part.topRightCorner<3, 6>() = scale * mixed;
+  part.bottomLeftCorner<6, 3>() = part.topRightCorner<3, 6>().transpose();
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>>(part).eigenvalues().cwiseMax(0).sum();
+}
+
 }  // namespace
 
-TEST_CASE("hinge lanes: energies and gradients are those of single hinges", "[bending]") {
+TEST_CASE("hinge lanes: the projection adds no more than what makes each wing's part positive", "[bending]") {
+  LooseHinges loose(41);
+  for (std::size_t h = 0; h < 30; ++h) {
+    Hinge hinge = loose.hinges[h];
+    hinge.nodes = {0, 1, 2, 3};
+    hinge.length = HingeLength::rest;
+    const Points x = loose.x.middleRows(4 * static_cast<int>(h), 4);
+    Vec12 gradient;
+    Mat12 hessian;
+    const double energy = hinge_derivatives(hinge, x, gradient, &hessian, true);
+    const double scale = std::sqrt(2 * energy * hinge.weight);  // weight x difference; its sign does not matter
+    double trace = hinge.weight * gradient.squaredNorm() / (scale * scale);
+    for (int tip : {2, 3}) trace += positive_part(x, tip, scale);
+    CHECK(hessian.trace() == Approx(trace).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("hinge lanes: energies, gradients and Hessians are those of single hinges", "[bending]") {
   const LooseHinges loose(77);
+  const bool psd = GENERATE(false, true);
   std::span<const Hinge> rest = loose.hinges;
+  CHECK(hinge_energy(rest, loose.x) > 0);
   HingeLanes lanes, bare;
   for (; !rest.empty(); rest = rest.subspan(static_cast<std::size_t>(lanes.count))) {
     hinge_energies(rest, loose.x, true, lanes);
+    hinge_hessians(psd, lanes);
     hinge_energies(rest, loose.x, false, bare);
     REQUIRE(lanes.count == static_cast<int>(std::min<std::size_t>(rest.size(), HingeLanes::width)));
     for (int l = 0; l < lanes.count; ++l) {
       const Hinge& hinge = rest[static_cast<std::size_t>(l)];
       INFO("hinge " << hinge.nodes[0] / 4);
-      Vec12 gradient, ours;
-      const double energy = hinge_derivatives(hinge, loose.x, gradient, nullptr);
-      for (int k = 0; k < 12; ++k) ours[k] = lanes.force[k][l];
-      CHECK(lanes.energy[l] == Approx(energy).epsilon(1e-12).margin(1e-28));
+      Vec12 gradient;
+      Mat12 hessian;
+      CHECK(lanes.energy[l] == Approx(hinge_energy(hinge, loose.x)).epsilon(1e-12).margin(1e-28));
       CHECK(bare.energy[l] == lanes.energy[l]);
-      CHECK((ours - gradient).norm() <= 1e-10 * gradient.norm());
+      CHECK(hinge_derivatives(hinge, loose.x, gradient, &hessian, psd) == lanes.energy[l]);
+      for (int k = 0; k < 12; ++k) CHECK(lanes.force[k][l] == gradient[k]);
+      for (int i = 0, pair = 0; i < 4; ++i)
+        for (int j = i + 1; j < 4; ++j, ++pair)
+          CHECK(block_of(lanes, pair, l) == Mat3(hessian.block<3, 3>(3 * i, 3 * j)));
     }
   }
 }
