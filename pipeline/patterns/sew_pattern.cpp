@@ -9,6 +9,7 @@
 #include "collision/geometry/stopwatch.hpp"
 #include "collision/untangle/untangle.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
+#include "pipeline/patterns/clear_stitches.hpp"
 
 namespace selvedge {
 namespace {
@@ -189,7 +190,9 @@ SewnPattern sew_pattern(const PatternMesh& mesh, const Points& body, const Trian
                         const SewingOptions& options, const std::function<void(const SewingFrame&)>& seen) {
   Stopwatch watch;
   const Points parted = apart_from_itself(body, body_triangles);
-  Sewing sewing{mesh, parted, body_triangles, options, seen};
+  PatternMesh begun = mesh;
+  begun.placed = clear_of(mesh, parted, body_triangles);
+  Sewing sewing{begun, parted, body_triangles, options, seen};
   sewing.result.body = parted;
   sewing.result.body_moved = (parted - body).rowwise().norm().maxCoeff();
   sewing.drape(sewing.close());

@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import Callable
 
 from ._selvedge import Error, Scene, check, compare, contours, distance, read_cache, read_trajectory, untangle
+from .alembic import AlembicMesh, read_alembic, write_alembic
 from .steppers import SceneArrays, StepDrive, Stepper, StepStart
 
 __all__ = [
+    "AlembicMesh",
     "Error",
     "Scene",
     "SceneArrays",
@@ -18,10 +20,12 @@ __all__ = [
     "compare",
     "contours",
     "distance",
+    "read_alembic",
     "read_cache",
     "read_trajectory",
     "simulate",
     "untangle",
+    "write_alembic",
 ]
 
 
