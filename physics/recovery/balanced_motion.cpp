@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "collision/geometry/disjoint_sets.hpp"
+#include "physics/solve/contact_terms.hpp"
 
 namespace selvedge {
 namespace {
@@ -57,11 +58,9 @@ void take_means(const Eigen::VectorXd& inverse_mass, const std::vector<char>& le
 void meet(std::span<const Separation> pushes, const Eigen::VectorXd& inverse_mass, Points& move) {
   for (int sweep = 0; sweep < sweeps; ++sweep)
     for (const Separation& push : pushes) {
-      double value = 0, compliance = 0;
-      for (int i = 0; i < push.count; ++i) {
-        value += push.weight[i] * push.direction.dot(row(move, push.vertex[i]));
-        compliance += push.weight[i] * push.weight[i] * inverse_mass[push.vertex[i]];
-      }
+      double value = 0;
+      for (int i = 0; i < push.count; ++i) value += push.weight[i] * push.direction.dot(row(move, push.vertex[i]));
+      const double compliance = push_compliance(push, inverse_mass);
       if (value >= push.least || compliance == 0) continue;
       const Vec3 impulse = (push.least - value) / compliance * push.direction;
       for (int i = 0; i < push.count; ++i)

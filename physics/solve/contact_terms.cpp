@@ -9,11 +9,22 @@
 namespace selvedge {
 namespace {
 
+constexpr double least_free_weight = 0.01;
+
+// What a gap gives under a unit impulse [1/kg]. 0 where no free node has a hundredth of the gap: it would go a hundred
+// times as far.
+double compliance(std::span<const int> nodes, std::span<const double> weights, const Eigen::VectorXd& inverse_mass) {
+  double sum = 0, largest_free = 0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (nodes[i] < 0 || inverse_mass[nodes[i]] <= 0) continue;
+    sum += weights[i] * weights[i] * inverse_mass[nodes[i]];
+    largest_free = std::max(largest_free, std::abs(weights[i]));
+  }
+  return largest_free < least_free_weight ? 0 : sum;
+}
+
 double compliance(const ContactTerm& term, const Eigen::VectorXd& inverse_mass) {
-  double sum = 0;
-  for (int i = 0; i < 4; ++i)
-    if (term.nodes[i] >= 0) sum += term.weights[i] * term.weights[i] * inverse_mass[term.nodes[i]];
-  return sum;
+  return compliance(term.nodes, term.weights, inverse_mass);
 }
 
 // What proximities and impacts have in common: the linearised gap and the slip, with what belongs to obstacles folded
@@ -91,6 +102,11 @@ void add_impact_terms(const Scene& scene, const ContactWorld& world, std::span<c
   }
 }
 
+double push_compliance(const Separation& push, const Eigen::VectorXd& inverse_mass) {
+  const auto count = static_cast<std::size_t>(push.count);
+  return compliance(std::span(push.vertex).first(count), std::span(push.weight).first(count), inverse_mass);
+}
+
 std::vector<ContactTerm> push_terms(std::span<const Separation> separations, const Eigen::VectorXd& inverse_mass,
                                     double softness, double h, const ContactTermOptions& options) {
   std::vector<ContactTerm> terms;
@@ -102,7 +118,7 @@ std::vector<ContactTerm> push_terms(std::span<const Separation> separations, con
     term.normal = s.direction;
     term.target = s.least;
     term.softness = softness;
-    const double give = compliance(term, inverse_mass);
+    const double give = push_compliance(s, inverse_mass);
     if (give <= 0) continue;
     term.stiffness = options.stiffness / (give * h * h);
     terms.push_back(term);

@@ -34,8 +34,12 @@ void add_impact_terms(const Scene&, const ContactWorld&, std::span<const Impact>
                       const Points& nodes0, const Points& nodes1, double h, double deep, Contacts&,
                       const ContactTermOptions& = {});
 
-// Separations as terms without friction, as stiff as contacts; softness [m]. Those of more than four vertices are left
-// out.
+// What a separation gives under a unit impulse [1/kg]. 0 where no free vertex has a weight of 0.01: it would go a
+// hundred times as far as the separation.
+double push_compliance(const Separation&, const Eigen::VectorXd& inverse_mass);
+
+// Separations as terms without friction, as stiff as contacts; softness [m]. Those of more than four vertices and those
+// that give nothing are left out.
 std::vector<ContactTerm> push_terms(std::span<const Separation>, const Eigen::VectorXd& inverse_mass, double softness,
                                     double h, const ContactTermOptions& = {});
 

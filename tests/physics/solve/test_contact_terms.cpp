@@ -55,6 +55,25 @@ TEST_CASE("contact terms: a moving obstacle carries the gap and the slip with it
   CHECK(slip.y() == Approx(0).margin(1e-15));
 }
 
+TEST_CASE("contact terms: a pair in which what is free has hardly a part is left out", "[contact_terms]") {
+  VertexOnFloor c;
+  Separation push;
+  push.vertex = {0, 1, 2, 3, -1};
+  push.count = 4;
+  push.direction = Vec3::UnitY();
+  for (const auto& [weight, is_there] : {std::pair(1e-21, false), std::pair(0.005, false), std::pair(0.2, true)}) {
+    INFO(weight);
+    push.weight = {-weight, 1, weight - 1, 0, 0};
+    CHECK((push_compliance(push, c.inverse_mass) > 0) == is_there);
+    CHECK(push_terms(std::vector{push}, c.inverse_mass, 1e-3, 0.01).empty() != is_there);
+    const Proximity p{
+        {PairKind::vertex_face, {0, 1, 2, 3}}, {weight, -0.5 * weight, -0.5 * weight, 0}, Vec3::UnitY(), 1e-3, 2e-3};
+    const auto terms =
+        contact_terms(c.scene, c.world, std::vector{p}, c.inverse_mass, c.nodes(1e-3), c.nodes(1e-3), 0.01);
+    CHECK(terms.terms.empty() != is_there);
+  }
+}
+
 TEST_CASE("contact terms: a pair that cannot move is left out", "[contact_terms]") {
   VertexOnFloor c;
   c.inverse_mass.setZero();
