@@ -55,12 +55,16 @@ void take_means(const Eigen::VectorXd& inverse_mass, const std::vector<char>& le
       move.row(v) -= (momentum[set] / mass[set]).transpose();
 }
 
+double value_of(const Separation& push, const Points& move) {
+  double value = 0;
+  for (int i = 0; i < push.count; ++i) value += push.weight[i] * push.direction.dot(row(move, push.vertex[i]));
+  return value;
+}
+
 void meet(std::span<const Separation> pushes, const Eigen::VectorXd& inverse_mass, Points& move) {
   for (int sweep = 0; sweep < sweeps; ++sweep)
     for (const Separation& push : pushes) {
-      double value = 0;
-      for (int i = 0; i < push.count; ++i) value += push.weight[i] * push.direction.dot(row(move, push.vertex[i]));
-      const double compliance = push_compliance(push, inverse_mass);
+      const double value = value_of(push, move), compliance = push_compliance(push, inverse_mass);
       if (value >= push.least || compliance == 0) continue;
       const Vec3 impulse = (push.least - value) / compliance * push.direction;
       for (int i = 0; i < push.count; ++i)
@@ -75,6 +79,17 @@ void shorten_sets(double reach, DisjointSets& sets, Points& move) {
     if (const double length = most[sets.root(v)]; length > reach) move.row(v) *= reach / length;
 }
 
+// A push that has hold of a vertex by a small weight sends it many times as far as the gap, and its set is shortened
+// for it. Each set keeps the motion that does more of what its pushes ask.
+void keep_better(std::span<const Separation> pushes, const Points& other, DisjointSets& sets, Points& move) {
+  std::vector<double> gain(static_cast<std::size_t>(move.rows()), 0.0);  // of `other` over `move`, by set [m]
+  for (const Separation& push : pushes)
+    gain[sets.root(push.vertex[0])] +=
+        std::min(push.least, value_of(push, other)) - std::min(push.least, value_of(push, move));
+  for (int v = 0; v < move.rows(); ++v)
+    if (gain[sets.root(v)] > 0) move.row(v) = other.row(v);
+}
+
 }  // namespace
 
 Points balanced_motion(const Surface& cloth, const Eigen::VectorXd& inverse_mass, std::span<const Separation> pushes,
@@ -85,8 +100,11 @@ Points balanced_motion(const Surface& cloth, const Eigen::VectorXd& inverse_mass
   for (const Separation& push : pushes)
     if (leans_on_prescribed(push, inverse_mass)) leans[sets.root(push.vertex[0])] = 1;
   take_means(inverse_mass, leans, sets, move);
+  Points unpushed = move;
   meet(pushes, inverse_mass, move);
   shorten_sets(reach, sets, move);
+  shorten_sets(reach, sets, unpushed);
+  keep_better(pushes, unpushed, sets, move);
   return move;
 }
 

@@ -114,12 +114,6 @@ int iterations_for(const ContactWorld& world, const Points& nodes, double reach,
   return useful < options.iterations ? static_cast<int>(useful) : options.iterations;
 }
 
-Points free_part(const Eigen::VectorXd& inverse_mass, Points way) {
-  for (Eigen::Index v = 0; v < way.rows(); ++v)
-    if (inverse_mass[v] == 0) way.row(v).setZero();
-  return way;
-}
-
 // Vertices that would go through an obstacle anew stay: it holds them up. Returns what is tangled then.
 Exemption stop_at_obstacles(const ContactWorld& world, const Exemption& before, const Points& from, Points& nodes) {
   for (;;) {
@@ -172,15 +166,12 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
   Points way = whole_way;
   for (int v = 0; v < n; ++v)
     if (!lost.empty() && lost[v]) way.row(v).setZero();
-  // Where all comes apart within reach there is nothing to balance.
-  const bool arrives = way.rowwise().norm().maxCoeff() <= reach;
   for (int halving = 0; halving <= limits.max_halvings; ++halving, reach /= 2) {
     std::vector<Separation> gained =
         pushes_along(whole_way, lost, sheets, limits.negligible_move * parted.mean_edge, reach);
     drop_let_through(options.let_through, gained);
     Points moved = nodes;
-    moved.topRows(n) += arrives && halving == 0 ? free_part(inverse_mass, way)
-                                                : balanced_motion(*world.cloth, inverse_mass, gained, way, reach);
+    moved.topRows(n) += balanced_motion(*world.cloth, inverse_mass, gained, way, reach);
     Exemption left = stop_at_obstacles(world, before, from, moved);
     if (before.self.empty() && !left.self.empty()) continue;
     nodes = std::move(moved);
