@@ -235,8 +235,6 @@ CompareRow row_of(const SceneWork& work, const std::string& setting, std::size_t
   return row;
 }
 
-bool is_clean(const CompareRow& row) { return row.pairs <= 0 && row.passed_through == 0; }
-
 // A hybrid row that hardly uses its proposals is another name for the parent of the hybrid.
 bool stands_for_itself(const CompareRow& row) {
   constexpr double least_share = 0.3;

@@ -8,6 +8,7 @@
 
 #include "pipeline/compare/compare_result.hpp"
 #include "pipeline/compare/comparison.hpp"
+#include "pipeline/compare/svg_plots.hpp"
 
 namespace selvedge {
 
@@ -30,6 +31,9 @@ CompareResult compare(const CompareRequest&);
 // Sets ranked and front of the rows of one scene or several. A hybrid row is neither where less than 30 % of its frames
 // were made of proposals.
 void rank(std::vector<CompareRow>&);
+
+// How a row with this error is drawn, on the page and in plots.
+PlotMark mark_of(const CompareRow&, double error);
 
 // The result as tables for people, as CSV (a row a scene and setting) and as JSON with everything.
 std::string compare_table(const CompareResult&);

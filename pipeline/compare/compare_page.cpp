@@ -6,7 +6,6 @@
 
 #include "pipeline/compare/compare.hpp"
 #include "pipeline/compare/evaluation.hpp"
-#include "pipeline/compare/svg_plots.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/measures/run_measures.hpp"
 #include "pipeline/tools/info.hpp"
@@ -69,13 +68,6 @@ std::string cell(double value, const char* format) {
 }
 
 bool is_there(const CompareRow& row) { return std::isfinite(row.ms); }
-bool is_clean_row(const CompareRow& row) { return row.pairs <= 0 && row.passed_through == 0; }
-
-PlotMark mark_of(const CompareRow& row, double error) {
-  if (!(error > 0) || !row.trouble.empty()) return PlotMark::failed;
-  return row.front ? PlotMark::front : is_clean_row(row) ? PlotMark::plain : PlotMark::unclean;
-}
-
 template <class Error>
 std::string plot_of(const std::string& title, const std::string& y, const std::vector<const CompareRow*>& rows,
                     double floor, const Error& error) {

@@ -46,6 +46,8 @@ struct CompareRow {
   bool front = false;                           // nothing is faster and not worse by more than the floor
 };
 
+inline bool is_clean(const CompareRow& row) { return row.pairs <= 0 && row.passed_through == 0; }
+
 struct CompareResult {
   std::vector<CompareFloor> floors;
   std::vector<CompareRow> rows;

@@ -6,7 +6,7 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/compare/compare.hpp"
 #include "pipeline/compare/compare_run.hpp"
-#include "pipeline/compare/svg_plots.hpp"
+#include "pipeline/host/gnuplot.hpp"
 #include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_compare_rows {
@@ -116,6 +116,37 @@ TEST_CASE("svg plots: the failed stand at the upper edge, the floor is drawn", "
   CHECK(scatter_svg("title", "x", "y", {{"a", 10, std::nan(""), PlotMark::failed}}, 0).empty());
   CHECK_THAT(curves_svg("title", "frame", {{"a", {3, 2, 1}}}), Contains("<polyline"));
   CHECK(curves_svg("title", "frame", {}).empty());
+}
+
+TEST_CASE("plots: a row is marked as on the page", "[compare]") {
+  const Folder folder("compare_plots");
+  CompareResult result;
+  result.floors.resize(1);
+  result.floors.front().scene = "one";
+  for (const char* name : {"fast", "slow", "crossing", "passing", "rejected"}) {
+    CompareRow& row = result.rows.emplace_back();
+    row.scene = "one";
+    row.setting = name;
+    row.ms = 10.0 * static_cast<double>(result.rows.size());
+    row.temporal = 1e-3;
+    row.floor = 1e-4;
+    row.pairs = 0;
+  }
+  result.rows[2].pairs = 3;
+  result.rows[3].passed_through = 1;
+  result.rows[4].trouble = "rejects a step";
+  rank(result.rows);
+  const PlotMark marks[]{PlotMark::front, PlotMark::plain, PlotMark::unclean, PlotMark::unclean, PlotMark::failed};
+  for (std::size_t k = 0; k < 5; ++k) {
+    INFO(result.rows[k].setting);
+    CHECK(mark_of(result.rows[k], 1e-3) == marks[k]);
+  }
+  CHECK(mark_of(result.rows[1], std::nan("")) == PlotMark::failed);
+  if (!gnuplot_is_there()) return WARN(no_gnuplot);
+  CHECK_THAT(plot_comparison(result, folder.path), Contains("one_temporal.svg"));
+  CHECK_THAT(fake::whole(folder.path / "one_temporal.gnuplot"),
+             Contains("$unclean << EOD\n30 0.001 \"crossing\"\n40 0.001 \"passing\"\nEOD") &&
+                 Contains("$failed << EOD\n50 0.001") && Contains("'floor'"));
 }
 
 }  // namespace selvedge::test_compare_rows
