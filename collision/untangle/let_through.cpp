@@ -1,7 +1,6 @@
 #include "collision/untangle/let_through.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "collision/contour/find_contours.hpp"
 
@@ -30,13 +29,9 @@ void drop_let_through(std::span<const SheetView> sheets, const std::vector<char>
 void drop_let_through(const std::vector<char>& let_through, std::vector<Separation>& separations) {
   if (let_through.empty()) return;
   std::erase_if(separations, [&](const Separation& s) {
-    double sum = 0;  // of the weights: 0 within the cloth, 1 or -1 against an obstacle
     bool marked = false;
-    for (int i = 0; i < s.count; ++i) {
-      sum += s.weight[i];
-      marked = marked || let_through[s.vertex[i]];
-    }
-    return marked && std::abs(sum) > 0.5;
+    for (int i = 0; i < s.count; ++i) marked = marked || let_through[s.vertex[i]];
+    return marked && is_against_obstacle(s);
   });
 }
 

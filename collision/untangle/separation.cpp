@@ -390,6 +390,12 @@ std::vector<Separation> part_contours(std::span<const SheetView> sheets, const S
   return separations;
 }
 
+bool is_against_obstacle(const Separation& separation) {
+  double sum = 0;
+  for (int i = 0; i < separation.count; ++i) sum += separation.weight[i];
+  return std::abs(sum) > 0.5;
+}
+
 std::vector<char> inside_obstacles(std::span<const SheetView> sheets) {
   std::vector<char> inside_any(sheets[0].surface->vertex_count, 0);
   for (int k = 1; k < static_cast<int>(sheets.size()); ++k) {

@@ -16,6 +16,9 @@ struct Separation {
   int count = 0;
 };
 
+// Of the cloth against an obstacle: its weights sum to 1 or -1, and to 0 where cloth goes against cloth.
+bool is_against_obstacle(const Separation&);
+
 struct SeparationLengths {
   double gap = 0, step = 0;  // [m]
 };

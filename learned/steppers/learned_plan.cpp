@@ -43,11 +43,9 @@ std::vector<PlanLine> learned_plan_lines(const Scene& scene, const Architecture&
   if (options.space_edges)
     lines.push_back({"space edges", true, "between vertices of cloth that are near each other and no mesh edge joins"});
   for (const std::string& text : learned_scene(scene).clamped) lines.push_back({"material", false, text});
-  const Features features = features_of(scene);
   const bool forces = options.acceleration_inputs;
-  if (features.wind)
-    lines.push_back({"wind", forces, forces ? "on each triangle, among the inputs" : "the network knows none"});
-  if (features.springs) lines.push_back({"springs", false, "the network knows none"});
+  if (forces && features_of(scene).wind) lines.push_back({"wind", true, "on each triangle, among the inputs"});
+  for (const PlanLine& line : ignored_lines(scene, learned_traits(architecture))) lines.push_back(line);
   lines.push_back(
       {"gravity", forces,
        forces ? "the scene's, among the inputs" : "as the network was trained in it, whatever the scene says"});

@@ -38,8 +38,9 @@ class LearnedStepper final : public Stepper {
         graph_scene_(learned_scene(scene, options.omitted_body_vertices).graph),
         losses_(features_.force_inputs ? loss_garment(scene) : LossGarment{}),
         rest_(make_rest_graph(graph_scene_, features_, options.centres)),
-        world_(make_contact_world(scene.surface, obstacle_surfaces(scene), features_of(scene).self_contact,
-                                  &scene.rest)) {}
+        world_(
+            make_contact_world(scene.surface, obstacle_surfaces(scene), features_of(scene).self_contact, &scene.rest)),
+        traits_(learned_traits(architecture)) {}
 
   const StepperTraits& traits() const override { return traits_; }
   StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override;
@@ -62,7 +63,7 @@ class LearnedStepper final : public Stepper {
   LossGarment losses_;  // of networks that are shown the objective's force
   RestGraph rest_;
   ContactWorld world_;
-  StepperTraits traits_{.name = "learned", .past_frames = 1, .only_dt = learned_dt, .may_leave_out_cloths = false};
+  StepperTraits traits_;
   // Memory that is used again:
   GraphSearch search_;
   Graph graph_;
@@ -167,6 +168,16 @@ StepReport LearnedStepper::step(const State& from, const Drive& drive, double dt
 }
 
 }  // namespace
+
+StepperTraits learned_traits(const Architecture& architecture) {
+  StepperTraits traits{.name = "learned",
+                       .past_frames = 1,
+                       .only_dt = learned_dt,
+                       .may_leave_out_cloths = false,
+                       .ignores = {"springs", "stiffness damping", "mass damping"}};
+  if (!architecture.features.acceleration_inputs) traits.ignores.push_back("wind");
+  return traits;
+}
 
 std::unique_ptr<Stepper> make_learned_stepper(const Scene& scene, const Architecture& architecture,
                                               const NetworkWeights& weights, const LearnedOptions& options) {

@@ -22,8 +22,8 @@ namespace selvedge {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double smallest_rise =
-    1e-4;  // Lower wings, as a fraction of the edge, count as this: a sliver's force is bounded.
+// Of a wing's height over the edge's length; lower wings count as this, which bounds a sliver's force.
+constexpr double smallest_rise = 1e-4;
 
 // atan(u) / u for |u| <= tan(pi / 8), in u^2; off by 3.5e-17 at most.
 constexpr double arc_coefficients[] = {1.0,

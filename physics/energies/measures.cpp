@@ -1,14 +1,26 @@
 #include "physics/energies/measures.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "physics/energies/springs.hpp"
+#include "physics/scene/stepper.hpp"
 
 namespace selvedge {
 
 EnergyTerms energy_terms(const Scene& scene) {
   EnergyTerms terms{lumped_masses(scene), {}, membrane_elements(scene), curvature_bending(scene), hinges(scene)};
   for (const Cloth& cloth : scene.cloths) terms.materials.push_back(cloth.material);
+  return terms;
+}
+
+EnergyTerms energy_terms(const Scene& scene, const StepperTraits& traits) {
+  EnergyTerms terms = energy_terms(scene);
+  const auto has = [&](const char* force) { return std::ranges::find(traits.ignores, force) == traits.ignores.end(); };
+  terms.with_membrane = has("membrane");
+  terms.with_bending = has("bending (curvature)") && has("bending (hinge)");
+  terms.with_springs = has("springs");
   return terms;
 }
 
@@ -25,6 +37,10 @@ Energies energies(const Scene& scene, const EnergyTerms& terms, const Points& x,
   for (const CurvedVertex& vertex : terms.curvature.curved) energy.bending += curved_energy(vertex, x);
   for (const Hinge& hinge : terms.hinges) energy.bending += hinge_energy(hinge, x);
   for (const Spring& spring : scene.springs) energy.springs += spring_energy(spring, x);
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (!terms.with_membrane) energy.membrane = none;
+  if (!terms.with_bending) energy.bending = none;
+  if (!terms.with_springs && !scene.springs.empty()) energy.springs = none;
   return energy;
 }
 

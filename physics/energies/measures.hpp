@@ -5,6 +5,8 @@
 
 namespace selvedge {
 
+struct StepperTraits;
+
 // Everything of a scene that its energies need and positions do not change. Build it once for a run.
 struct EnergyTerms {
   Eigen::VectorXd masses;           // [kg]
@@ -12,8 +14,11 @@ struct EnergyTerms {
   std::vector<MembraneElement> membrane;
   CurvatureBending curvature;
   std::vector<Hinge> hinges;
+  bool with_membrane = true, with_bending = true, with_springs = true;  // false: that energy is not a number
 };
 EnergyTerms energy_terms(const Scene&);
+// Of a stepper's run, without the energies of forces that the stepper ignores.
+EnergyTerms energy_terms(const Scene&, const StepperTraits&);
 
 struct Energies {  // [J]; gravity is -sum m acceleration . x
   double kinetic = 0, gravity = 0, membrane = 0, bending = 0, springs = 0;

@@ -1,7 +1,6 @@
 #include "physics/recovery/balanced_motion.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "collision/geometry/disjoint_sets.hpp"
 #include "physics/solve/contact_terms.hpp"
@@ -12,13 +11,9 @@ namespace {
 constexpr int sweeps = 10;
 
 bool leans_on_prescribed(const Separation& push, const Eigen::VectorXd& inverse_mass) {
-  double sum = 0;
   bool prescribed = false;
-  for (int i = 0; i < push.count; ++i) {
-    sum += push.weight[i];
-    prescribed = prescribed || inverse_mass[push.vertex[i]] == 0;
-  }
-  return prescribed || std::abs(sum) > 0.5;  // 0 within the cloth, 1 or -1 against an obstacle
+  for (int i = 0; i < push.count; ++i) prescribed = prescribed || inverse_mass[push.vertex[i]] == 0;
+  return prescribed || is_against_obstacle(push);
 }
 
 Points cut_to(double reach, const Eigen::VectorXd& inverse_mass, const Points& way) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "physics/scene/stepper.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -161,6 +163,14 @@ std::vector<PlanLine> plan_lines(const Scene& scene) {
   if (f.springs)
     lines.push_back(
         {"springs", true, count(static_cast<long long>(scene.springs.size()), "pair") + " of vertices joined"});
+  return lines;
+}
+
+std::vector<PlanLine> ignored_lines(const Scene& scene, const StepperTraits& traits) {
+  std::vector<PlanLine> lines;
+  for (const PlanLine& line : plan_lines(scene))
+    if (line.in && std::ranges::find(traits.ignores, line.feature) != traits.ignores.end())
+      lines.push_back({line.feature, false, line.why + ", which the stepper `" + traits.name + "` ignores"});
   return lines;
 }
 

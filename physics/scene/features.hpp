@@ -7,6 +7,8 @@
 
 namespace selvedge {
 
+struct StepperTraits;
+
 // What a scene needs, derived from its data and never declared. Factories build only what is set here.
 struct Features {
   bool obstacles = false, moving_obstacles = false;
@@ -28,5 +30,8 @@ struct PlanLine {
   std::string why;
 };
 std::vector<PlanLine> plan_lines(const Scene&);
+
+// What the scene has and a stepper with these traits ignores: lines that are not in.
+std::vector<PlanLine> ignored_lines(const Scene&, const StepperTraits&);
 
 }  // namespace selvedge

@@ -160,6 +160,8 @@ struct StepperTraits {
   bool may_leave_out_cloths = true;    // a step of some of the cloths is what a step of all of them does with these
   bool honours_extras = false;
   int max_substeps = 1;  // obstacles that move by more than so many times their own size are put where they are wanted
+  std::vector<std::string> ignores =
+      {};                         // forces of a scene that it lacks, by their names in plan_lines (features.hpp)
   bool accepts(double dt) const;  // [s]
 };
 

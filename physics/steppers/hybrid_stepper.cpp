@@ -50,7 +50,8 @@ StepperTraits joint_traits(const HybridParts& parts) {
           .only_dt = proposer.only_dt ? proposer.only_dt : parent.only_dt,
           .may_leave_out_cloths = false,
           .honours_extras = false,
-          .max_substeps = parent.max_substeps};
+          .max_substeps = parent.max_substeps,
+          .ignores = parent.ignores};
 }
 
 class HybridStepper final : public Stepper {

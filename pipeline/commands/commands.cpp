@@ -72,9 +72,9 @@ bool report_outcome(const std::vector<Outcome>& outcomes, const std::vector<Outc
 int simulate_command(const SimulateArguments& arguments, bool json) {
   Setup setup = read_scene(arguments.scene);
   warn_of_training();
-  for (const std::string& warning : setup.warnings) std::cerr << "warning: " << warning << "\n";
-  for (const std::string& warning : material_warnings(setup)) std::cerr << "warning: " << warning << "\n";
+  for (const std::string& warning : material_warnings(setup)) setup.warnings.push_back(warning);
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
+  for (const std::string& warning : run_warnings(setup, stepper->traits())) std::cerr << "warning: " << warning << "\n";
   Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
   const InterruptWatch watch;
   const std::filesystem::path out = folder_for(arguments, setup);

@@ -29,7 +29,7 @@ std::uint64_t bits_of(const Points& x) {
 struct RunWatch {
   const Setup& setup;
   CompareRun& run;
-  EnergyTerms terms = energy_terms(setup.scene);
+  EnergyTerms terms;
   std::optional<RunMeasures> measures;
   std::optional<TrajectoryWriter> writer;
   std::map<std::string, std::vector<double>> phases;
@@ -37,13 +37,13 @@ struct RunWatch {
   Points acceleration;                                                        // of the frame to come
   std::vector<IntersectionCache> obstacles;
 
-  RunWatch(const Setup& s, CompareRun& r, const TimedRunOptions& options, const std::string& stepper)
-      : setup(s), run(r) {
+  RunWatch(const Setup& s, CompareRun& r, const TimedRunOptions& options, const StepperTraits& stepper)
+      : setup(s), run(r), terms(energy_terms(s.scene, stepper)) {
     const State& start = setup.initial;
     const Drive drive = setup.drive_at(start.time);
     if (options.measured) begin_measures(options, start, drive);
     if (options.trajectory.empty()) return;
-    writer.emplace(options.trajectory, trajectory_info(setup.scene, setup.config, stepper, setup.run.fps));
+    writer.emplace(options.trajectory, trajectory_info(setup.scene, setup.config, stepper.name, setup.run.fps));
     writer->append(record_initial(setup.scene, terms, start, drive));
   }
 
@@ -118,7 +118,7 @@ std::optional<CompareRun> timed_run(const Setup& setup, const TimedRunOptions& o
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
   State state = setup.initial;
   bool stopped = false;
-  RunWatch watch(setup, run, options, stepper->traits().name);
+  RunWatch watch(setup, run, options, stepper->traits());
   const StepReport last =
       simulate(*stepper, setup.drive_at, 1 / setup.run.fps, setup.run.frames, state, [&](const FrameEvent& event) {
         watch(event);
@@ -130,7 +130,10 @@ std::optional<CompareRun> timed_run(const Setup& setup, const TimedRunOptions& o
   if (last.status != StepStatus::accepted)
     run.trouble = fmt::format("rejects a step after frame {} ({})", state.frame,
                               reason_names().at(static_cast<std::size_t>(last.reason)));
-  run.lost = energy_of(setup, setup.initial) - energy_of(setup, state);
+  const auto energy = [&](const State& at) {
+    return energies(setup.scene, watch.terms, at.x, at.v, setup.drive_at(at.time).acceleration).total();
+  };
+  run.lost = energy(setup.initial) - energy(state);
   run.end = bits_of(state.x);
   if (watch.measures) {
     run.measures = watch.measures->values();

@@ -28,7 +28,7 @@ struct CacheBytes {
   template <class Value>
   Value next() {
     char raw[sizeof(Value)];
-    if (bytes.size() - at < sizeof raw) fail("ends in its head", "the file is cut short");
+    if (bytes.size() - at < sizeof raw) fail("ends within its header", "write it anew: it is cut short");
     std::memcpy(raw, bytes.data() + at, sizeof raw);
     at += sizeof raw;
     if (big_endian) std::reverse(raw, raw + sizeof raw);
@@ -48,11 +48,12 @@ struct CacheBytes {
 
   void check_size(std::int32_t points, std::int32_t frames, std::size_t head) const {
     if (points < 1 || frames < 1)
-      fail(fmt::format("has {} points and {} frames", points, frames), "a cache has one of each at least");
+      fail(fmt::format("has {} points and {} frames", points, frames), "write one of each at least");
     const double whole = static_cast<double>(head) + (half ? 2.0 : 4.0) * 3 * points * frames;
     if (whole != static_cast<double>(bytes.size()))
       fail(fmt::format("has {} bytes, {} points in {} frames take {:.0f}", bytes.size(), points, frames, whole),
-           half ? "it is cut short, or no .pc16 of half floats" : "it is cut short, or of another format");
+           half ? "write it anew, as half floats: it is cut short, or has others"
+                : "write it anew, as 32-bit floats: it is cut short, or has others");
   }
 
   std::vector<Points> read(std::int32_t points, std::int32_t frames) {
@@ -75,7 +76,7 @@ PointCache read_pc2(CacheBytes file) {
   if (!file.bytes.starts_with(head)) file.fail("does not begin with POINTCACHE2", "give a .pc2 or .pc16 file");
   file.at = head.size();
   if (const auto version = file.next<std::int32_t>(); version != 1)
-    file.fail(fmt::format("has version {}", version), "version 1 is read");
+    file.fail(fmt::format("has version {}", version), "write version 1, which alone is read");
   const auto points = file.next<std::int32_t>();
   file.next<float>();  // first frame
   file.next<float>();  // frames a sample

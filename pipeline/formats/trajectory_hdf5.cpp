@@ -43,6 +43,7 @@ void write_constants(const h5::File& file, const TrajectoryInfo& info) {
   const h5::Handle codes = file.make_group("codes");
   file.write_texts("codes/reason", reason_names());
   file.write_texts("codes/status", status_names());
+  file.write_texts("codes/verdict", verdict_names());
 }
 
 }  // namespace

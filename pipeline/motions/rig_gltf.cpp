@@ -118,7 +118,7 @@ SkinWeights exact_regressor(const BodyModel& body, const Points& joints, const s
   for (int j = 0; j < joints.rows(); ++j) {
     const Eigen::VectorXd weights = exact_mean(x, row(joints, j));
     if (!weights.allFinite() || !((x.transpose() * weights - row(joints, j)).norm() <= 1e-6 * size))
-      throw Error("is flat", file + ": meshes", "give the surface of a body");
+      throw Error("lies in one plane", file + ": meshes", "give the surface of a body");
     for (int v = 0; v < weights.size(); ++v) entries.emplace_back(j, v, weights[v]);
   }
   SkinWeights regressor(joints.rows(), x.rows());
@@ -187,7 +187,7 @@ BodyPose animated_pose(const GltfRig& rig, const Points& zero, const GltfAnimati
     const std::string& name = rig.body.joints[static_cast<std::size_t>(j)];
     const auto fail = [&](const std::string& what) {
       throw Error(what, fmt::format("{}: animation `{}`, joint `{}` at {:.3f} s", rig.file, animation.name, name, time),
-                  "bones keep their lengths here: bake the animation so");
+                  "bones keep their lengths here: clear scale and stretch of the bones before the export");
     };
     if (std::abs(size_of(m) - 1) > 0.01) fail("is scaled");
     m.topLeftCorner<3, 3>() = nearest_rotation(m.topLeftCorner<3, 3>());
@@ -258,7 +258,8 @@ Clip read_gltf_clip(const GltfRig& rig, const std::string& name, double fps) {
   for (const GltfTrack& track : animation.tracks) end = std::max(end, track.times[track.times.size() - 1]);
   constexpr double longest = 1e5;  // frames
   if (!(end * fps < longest))
-    throw Error("is longer than an hour", rig.file + ": animation `" + animation.name + "`", "cut it");
+    throw Error(fmt::format("is over {:.0f} poses long at {} a second", longest, fps),
+                rig.file + ": animation `" + animation.name + "`", "cut it into shorter ones before the export");
   const Points zero = joint_positions(rig.body, {});
   Clip clip{animation.name, fps, rig.body.joints, {}, {}};
   const int frames = static_cast<int>(std::floor(end * fps + 1e-6)) + 1;

@@ -35,11 +35,11 @@ class Placing {
     for (std::size_t first = 0; first < mesh_.sewn.size();) {
       std::size_t end = first;
       while (end < mesh_.sewn.size() && mesh_.seam[end] == mesh_.seam[first]) ++end;
-      const SignedDistance& most = at_most(deepest, first, end);
+      const SignedDistance& most = deepest_of(deepest, first, end);
       if (most.value < 0 && most.value > -deepest_grazing) {
         Points moved = freed(x, first, end);
         std::vector<SignedDistance> then = depths(moved);
-        if (at_most(then, first, end).value >= 0 && none_deeper(deepest, then) && is_free(x, moved)) {
+        if (deepest_of(then, first, end).value >= 0 && none_deeper(deepest, then) && is_free(x, moved)) {
           x = std::move(moved);
           deepest = std::move(then);
         }
@@ -70,7 +70,8 @@ class Placing {
   }
 
   static bool is_deeper(const SignedDistance& a, const SignedDistance& b) { return a.value < b.value; }
-  static const SignedDistance& at_most(const std::vector<SignedDistance>& depths, std::size_t first, std::size_t end) {
+  static const SignedDistance& deepest_of(const std::vector<SignedDistance>& depths, std::size_t first,
+                                          std::size_t end) {
     const auto begin = depths.begin();
     return *std::min_element(begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(end),
                              is_deeper);
@@ -88,7 +89,7 @@ class Placing {
     const int one = group(mesh_.sewn[first][0]), other = group(mesh_.sewn[first][1]);
     for (int move = 0; move < most_moves; ++move) {
       const std::vector<SignedDistance> now = depths(x);
-      const SignedDistance& most = at_most(now, first, end);
+      const SignedDistance& most = deepest_of(now, first, end);
       if (most.value >= passing) break;
       for (int v = 0; v < x.rows(); ++v)
         if (group(v) == one || group(v) == other) x.row(v) += (passing - most.value) * most.gradient.transpose();

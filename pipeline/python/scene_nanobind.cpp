@@ -25,12 +25,12 @@ using namespace nb::literals;
 class World {
  public:
   explicit World(const nb::object& stepper)
-      : make_(stepper.is_none() ? conventional_maker() : python_maker("python", stepper)) {
+      : make_(stepper.is_none() ? conventional_maker() : python_maker("python", stepper, held_)) {
     setup_.run.fps = 30;
   }
 
   World(const std::filesystem::path& file, const std::vector<std::string>& overrides, const nb::dict& kinds)
-      : setup_(read_setup(file, overrides, kinds_with(kinds))) {
+      : setup_(read_setup(file, overrides, kinds_with(kinds, held_))) {
     prepare(setup_);
     state_ = setup_.initial;
     stepper_ = make_stepper(setup_);
@@ -92,6 +92,22 @@ class World {
   int frames() const { return setup_.run.frames; }
   const Triangles& triangles() const { return setup_.scene.surface.triangles; }
 
+  // For Python's collector of cycles: all that it holds of Python, and to let go of it. It is no use after that.
+  static int traverse(PyObject* self, visitproc visit, void* arg) {
+    Py_VISIT(Py_TYPE(self));
+    if (!nb::inst_ready(self)) return 0;
+    for (const auto& one : *nb::inst_ptr<World>(self)->held_)
+      if (const auto object = one.lock()) Py_VISIT(object->ptr());
+    return 0;
+  }
+  static int clear(PyObject* self) {
+    World& world = *nb::inst_ptr<World>(self);
+    world.stepper_.reset();
+    world.make_ = {};
+    world.setup_.kind = {};
+    return 0;
+  }
+
  private:
   void must_be_open() const {
     if (stepper_) throw Error("has been stepped", "scene", "add cloths and obstacles before the first step");
@@ -125,6 +141,7 @@ class World {
     pairs_ = report.collision.pairs_after;
   }
 
+  HeldObjects held_ = std::make_shared<HeldObjects::element_type>();
   Setup setup_;
   MakeStepper make_;  // of a scene from arrays
   Points x_;
@@ -137,7 +154,10 @@ class World {
 }  // namespace
 
 void bind_scene(nb::module_& module) {
-  nb::class_<World>(module, "Scene",
+  static PyType_Slot collected[] = {{Py_tp_traverse, reinterpret_cast<void*>(World::traverse)},
+                                    {Py_tp_clear, reinterpret_cast<void*>(World::clear)},
+                                    {0, nullptr}};
+  nb::class_<World>(module, "Scene", nb::type_slots(collected),
                     "Cloths and obstacles with their state, stepped by the conventional stepper or as a file says.")
       .def(nb::init<const std::filesystem::path&, const std::vector<std::string>&, const nb::dict&>(), "file"_a,
            "overrides"_a = std::vector<std::string>{}, "kinds"_a = nb::dict(),

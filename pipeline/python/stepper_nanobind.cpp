@@ -17,11 +17,14 @@ using namespace nb::literals;
 // A Python object that C++ copies and drops without Python's lock.
 using Kept = std::shared_ptr<nb::object>;
 
-Kept kept(nb::object object) {
-  return {new nb::object(std::move(object)), [](nb::object* last) {
-            const nb::gil_scoped_acquire lock;
-            delete last;
-          }};
+Kept kept(nb::object object, const HeldObjects& held) {
+  Kept made{new nb::object(std::move(object)), [](nb::object* last) {
+              const nb::gil_scoped_acquire lock;
+              delete last;
+            }};
+  std::erase_if(*held, [](const auto& one) { return one.expired(); });
+  held->push_back(made);
+  return made;
 }
 
 nb::object steppers_module() { return nb::module_::import_("selvedge.steppers"); }
@@ -66,8 +69,9 @@ StepperTraits traits_of(const std::string& kind, const nb::object& stepper) {
 
 class PythonStepper final : public Stepper {
  public:
-  PythonStepper(const std::string& kind, const Kept& type, const Scene& scene) : scene_(scene) {
-    stepper_ = kept((*type)(described(scene)));
+  PythonStepper(const std::string& kind, const Kept& type, const Scene& scene, const HeldObjects& held)
+      : scene_(scene) {
+    stepper_ = kept((*type)(described(scene)), held);
     traits_ = traits_of(kind, *stepper_);
   }
   const StepperTraits& traits() const override { return traits_; }
@@ -116,23 +120,23 @@ class PythonStepper final : public Stepper {
 
 }  // namespace
 
-MakeStepper python_maker(const std::string& kind, const nb::handle& type) {
+MakeStepper python_maker(const std::string& kind, const nb::handle& type, const HeldObjects& held) {
   const nb::object base = steppers_module().attr("Stepper");
   if (!PyType_Check(type.ptr()) || PyObject_IsSubclass(type.ptr(), base.ptr()) != 1)
     throw Error("is no subclass of selvedge.Stepper", "stepper `" + kind + "`",
                 "give the class itself, not an instance");
-  return [kind, type = kept(nb::borrow(type))](const Scene& scene) -> std::unique_ptr<Stepper> {
+  return [kind, type = kept(nb::borrow(type), held), held](const Scene& scene) -> std::unique_ptr<Stepper> {
     const nb::gil_scoped_acquire lock;
-    return std::make_unique<PythonStepper>(kind, type, scene);
+    return std::make_unique<PythonStepper>(kind, type, scene, held);
   };
 }
 
-Kinds kinds_with(const nb::dict& types) {
+Kinds kinds_with(const nb::dict& types, const HeldObjects& held) {
   Kinds kinds = known_kinds();
   for (const auto& [key, type] : types) {
     const std::string name = nb::cast<std::string>(key);
-    kinds.add(
-        {.name = name, .maker = [maker = python_maker(name, type)](const Setup&, const Config&) { return maker; }});
+    kinds.add({.name = name,
+               .maker = [maker = python_maker(name, type, held)](const Setup&, const Config&) { return maker; }});
   }
   return kinds;
 }

@@ -142,7 +142,7 @@ nb::object compare_file(const std::filesystem::path& file, const nb::dict& kinds
                         const std::vector<std::string>& overrides, bool short_form) {
   CompareRequest request;
   request.file = file;
-  request.kinds = kinds_with(kinds);
+  request.kinds = kinds_with(kinds, std::make_shared<HeldObjects::element_type>());
   request.out = out;
   request.overrides = overrides;
   request.short_form = short_form;

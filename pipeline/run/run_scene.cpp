@@ -13,6 +13,7 @@
 #include "pipeline/host/version.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/run/record_frame.hpp"
+#include "pipeline/scene/make_stepper.hpp"
 
 namespace selvedge {
 namespace {
@@ -29,7 +30,8 @@ RunSummary empty_summary(const Setup& setup, const Stepper& stepper) {
   summary.self_audited = setup.scene.contact.self;
   for (const PlanLine& line : plan_lines(setup.scene))
     if (!line.in) summary.left_out.push_back(line);
-  summary.warnings = setup.warnings;
+  for (const PlanLine& line : ignored_lines(setup.scene, stepper.traits())) summary.left_out.push_back(line);
+  summary.warnings = run_warnings(setup, stepper.traits());
   return summary;
 }
 
@@ -39,8 +41,8 @@ struct Recorder {
   const RunRequest& request;
   RunSummary& summary;
   TrajectoryWriter writer;
+  EnergyTerms terms;
   int next = 0;
-  EnergyTerms terms = energy_terms(setup.scene);
   Clock::time_point last_checkpoint = Clock::now();
 
   void add(const Frame& frame) {
@@ -116,7 +118,8 @@ RunSummary run_scene(const Setup& setup, Stepper& stepper, const RunRequest& req
   const std::filesystem::path first_file = request.resume ? request.out / "resumed.h5" : file;
   RunSummary summary = empty_summary(setup, stepper);
   const TrajectoryInfo info = trajectory_info(setup.scene, setup.config, stepper.traits().name, setup.run.fps);
-  Recorder recorder{setup, request, summary, TrajectoryWriter(first_file, info)};
+  Recorder recorder{setup, request, summary, TrajectoryWriter(first_file, info),
+                    energy_terms(setup.scene, stepper.traits())};
   if (request.resume) {
     copy_frames(file, state.frame, recorder);
     std::filesystem::rename(first_file, file);

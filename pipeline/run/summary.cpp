@@ -226,7 +226,7 @@ std::string summary_text(const RunSummary& s) {
                           s.cut_out_at_end)
             : fmt::format("{} triangles at the start, none after frame {}", s.cut_out_at_start, s.last_cut_frame));
   if (!s.self_audited) add("self", "not audited");
-  if (s.vertex_pairs > 0) add("crossing at a vertex", fmt::format("{} pairs over all frames", s.vertex_pairs));
+  if (s.vertex_pairs > 0) add("cross at a vertex", fmt::format("{} pairs over all frames", s.vertex_pairs));
   if (s.worst_inside > 0) add("inside obstacles", fmt::format("{} vertices in the worst frame", s.worst_inside));
   if (s.nonfinite > 0) add("not finite", fmt::format("{} vertices over all frames", s.nonfinite));
   add("contacts", fmt::format("{} at most; {} impulses, {} zones", s.max_contacts, s.impulses, s.zones));

@@ -6,6 +6,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "learned/steppers/refu_stepper.hpp"
+#include "physics/scene/features.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/formats/neighbour_scale_hdf5.hpp"
@@ -90,6 +91,12 @@ std::unique_ptr<Stepper> make_stepper(const Setup& setup) {
   check_accepted(setup, stepper->traits());
   stepper = with_refu(setup, std::move(stepper));
   return make_following_stepper(setup.scene, setup.followers, std::move(stepper));
+}
+
+std::vector<std::string> run_warnings(const Setup& setup, const StepperTraits& traits) {
+  std::vector<std::string> warnings = setup.warnings;
+  for (const PlanLine& line : ignored_lines(setup.scene, traits)) warnings.push_back(line.feature + ": " + line.why);
+  return warnings;
 }
 
 }  // namespace selvedge

@@ -19,4 +19,7 @@ LearnedOptions learned_options_of(const Setup&);
 // unknown kind, and for a scene that does not have what the stepper's traits ask for.
 std::unique_ptr<Stepper> make_stepper(const Setup&);
 
+// The setup's warnings, and a sentence for each force of the scene that the stepper ignores.
+std::vector<std::string> run_warnings(const Setup&, const StepperTraits&);
+
 }  // namespace selvedge

@@ -51,10 +51,20 @@ void append_hybrid_lines(const Setup& setup, std::vector<PlanLine>& lines) {
   }
 }
 
+void append_start_lines(const Setup& setup, std::vector<PlanLine>& lines) {
+  if (setup.initial.frame < 0)
+    lines.push_back({"draped start", true, fmt::format("{} frames before time 0, not recorded", -setup.initial.frame)});
+  if (!setup.initial.cut_out.empty()) lines.push_back({"cut start", true, setup.prepared + " until they are free"});
+}
+
 // What the scene needs, and what the stepper does without.
 std::vector<PlanLine> lines_of(const Setup& setup) {
-  if (setup.run.stepper == "learned")
-    return learned_plan_lines(setup.scene, read_learned_weights(setup).architecture, learned_options_of(setup));
+  if (setup.run.stepper == "learned") {
+    std::vector<PlanLine> lines =
+        learned_plan_lines(setup.scene, read_learned_weights(setup).architecture, learned_options_of(setup));
+    append_start_lines(setup, lines);
+    return lines;
+  }
   std::vector<PlanLine> lines = plan_lines(setup.scene);
   lines.push_back({"quality", true, setup.quality});
   lines.push_back({"linear solver", true, linear_solver_of(setup)});
@@ -63,9 +73,7 @@ std::vector<PlanLine> lines_of(const Setup& setup) {
                    hybrid ? "stepped like others: a network sees all of the cloth"
                    : rest ? "left out of a step as long as nothing that moves comes near them"
                           : "stepped like others, as run.rest asks"});
-  if (setup.initial.frame < 0)
-    lines.push_back({"draped start", true, fmt::format("{} frames before time 0, not recorded", -setup.initial.frame)});
-  if (!setup.initial.cut_out.empty()) lines.push_back({"cut start", true, setup.prepared + " until they are free"});
+  append_start_lines(setup, lines);
   if (setup.run.stepper == "hybrid") append_hybrid_lines(setup, lines);
   if (setup.run.stepper != "icm") return lines;
   const std::string untouched = "left out by the stepper icm";

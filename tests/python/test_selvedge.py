@@ -177,16 +177,6 @@ def test_a_run_has_the_bits_of_the_program(tmp_path):
     assert (scene.triangles == run["triangles"]).all()
 
 
-@pytest.mark.parametrize("name", ["README.md", os.path.join("docs", "python.md")])
-def test_the_example_of_the_page_runs(name, capsys):
-    page = os.path.join(os.path.dirname(__file__), "..", "..", name)
-    with open(page) as f:
-        code = f.read().split("```python\n")[1].split("```")[0]
-    exec(compile(code, page, "exec"), {})
-    last = capsys.readouterr().out.strip().splitlines()[-1].split()
-    assert float(last[0]) == pytest.approx(2) and float(last[1]) > 0 and last[2] == "True"
-
-
 def test_point_caches(tmp_path):
     frames = np.array([[[0.5, 1, -2], [3, 0.25, 0]], [[1, 1, 1], [2, 2, 2]]], dtype="<f2")
     head = b"POINTCACHE2\0" + np.array([1, 2], "<i4").tobytes() + np.array([0, 1], "<f4").tobytes()

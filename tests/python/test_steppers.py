@@ -1,5 +1,8 @@
 """Steppers written in Python."""
 
+import gc
+import weakref
+
 import numpy as np
 import pytest
 
@@ -136,3 +139,16 @@ def test_it_runs_in_a_comparison(scene_file, tmp_path):
     # A name that no kind has is left out and said.
     rows = selvedge.compare(tmp_path / "comparison.yaml", out=tmp_path / "other")["rows"]
     assert "no stepper `thrown`" in rows[0]["trouble"]
+
+
+def test_a_class_that_refers_to_its_scene_goes_with_it():
+    class Refers(Thrown):
+        pass
+
+    Refers.scene_of_it = scene = selvedge.Scene(stepper=Refers)
+    scene.add_cloth(*square())
+    assert scene.step()
+    left = weakref.ref(Refers)
+    del Refers, scene
+    gc.collect()
+    assert left() is None

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "physics/energies/measures.hpp"
+#include "physics/scene/stepper.hpp"
 #include "tests/physics/meshes.hpp"
 
 namespace selvedge::test_measures {
@@ -74,6 +75,22 @@ TEST_CASE("measures: springs store half their stiffness times the stretch square
   const Energies energy = energies(scene, x, Points::Zero(x.rows(), 3), Vec3::Zero());
   CHECK(energy.springs == Approx(0.5 * 30 * std::pow(apart - 0.1, 2) + 0.5 * 7 * std::pow(0.1 - 0.05, 2)));
   CHECK(energy.total() == Approx(energy.membrane + energy.bending + energy.springs));
+}
+
+TEST_CASE("measures: the energy of a force that the stepper ignores is not a number", "[measures]") {
+  Scene scene = two_cloths();
+  const Points still = Points::Zero(scene.rest.rows(), 3);
+  const auto of = [&](const std::vector<std::string>& ignored) {
+    return energies(scene, energy_terms(scene, {.name = "some", .ignores = ignored}), scene.rest, still, Vec3::Zero());
+  };
+  CHECK(of({"springs"}).springs == 0);  // there are none
+  scene.springs = {{0, scene.cloths[1].first_vertex, 0.1, 30}};
+  CHECK(of({"wind"}).springs == energies(scene, scene.rest, still, Vec3::Zero()).springs);
+  CHECK(of({"wind"}).springs > 0);
+  CHECK(std::isnan(of({"springs"}).springs));
+  CHECK(std::isfinite(of({"springs"}).membrane));
+  CHECK(std::isnan(of({"membrane"}).membrane));
+  CHECK(std::isnan(of({"bending (hinge)"}).bending));
 }
 
 TEST_CASE("measures: bending energy of curved rest shapes counts", "[measures]") {

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "physics/scene/features.hpp"
+#include "physics/scene/stepper.hpp"
 #include "tests/physics/meshes.hpp"
 
 namespace selvedge::test_features {
@@ -101,6 +102,21 @@ TEST_CASE("plan: springs have a line where there are any", "[features]") {
   scene.springs = {{0, 5, 0.1, 10}};
   CHECK(features_of(scene).springs);
   CHECK(line(scene, "springs").why == "1 pair of vertices joined");
+}
+
+TEST_CASE("plan: what a stepper ignores has a line where the scene has it, and no other", "[features]") {
+  Scene scene = plain();
+  const StepperTraits traits{.name = "some", .ignores = {"springs", "wind", "mass damping"}};
+  CHECK(ignored_lines(scene, traits).empty());
+  scene.springs = {{0, 5, 0.1, 10}};
+  scene.cloths[0].material.mass_damping = 1;
+  CHECK(ignored_lines(scene, {.name = "other"}).empty());
+  const std::vector<PlanLine> lines = ignored_lines(scene, traits);
+  REQUIRE(lines.size() == 2);
+  CHECK(lines[0].feature == "mass damping");
+  CHECK(lines[1].feature == "springs");
+  CHECK(lines[1].why == "1 pair of vertices joined, which the stepper `some` ignores");
+  CHECK_FALSE((lines[0].in || lines[1].in));
 }
 
 }  // namespace selvedge::test_features

@@ -9,6 +9,7 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/hdf5_handles.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/formats/trajectory_row.hpp"
 #include "tests/pipeline/fake_run.hpp"
 
 namespace selvedge::test_trajectory {
@@ -53,6 +54,7 @@ TEST_CASE("a trajectory read back is what was written") {
   REQUIRE(reader.info().stepper == "conventional");
   REQUIRE(reader.info().program_version == info.program_version);
   REQUIRE(reader.info().self_audited);
+  REQUIRE(h5::File::open(folder.path / "run.h5").read_texts("codes/verdict") == verdict_names());
   REQUIRE(reader.info().triangles == scene.surface.triangles);
   REQUIRE(reader.info().rest == scene.rest);
   REQUIRE(reader.info().rest_triangle == scene.rest_triangle);

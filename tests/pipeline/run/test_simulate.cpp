@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "collision/geometry/error.hpp"
+#include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/formats/checkpoint.hpp"
 #include "pipeline/run/record_frame.hpp"
 #include "pipeline/run/simulate.hpp"

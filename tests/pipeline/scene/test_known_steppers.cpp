@@ -5,6 +5,7 @@
 #include "collision/geometry/error.hpp"
 #include "learned/network/weights_hdf5.hpp"
 #include "physics/steppers/step_audit.hpp"
+#include "pipeline/run/run_scene.hpp"
 #include "pipeline/run/simulate.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "tests/learned/learned_scenes.hpp"
@@ -183,6 +184,33 @@ TEST_CASE("known steppers: what the traits do not accept is refused", "[known_st
                       Contains("the stepper `" + kind + "` does not take this scene") && Contains("run.fps"));
     State to;
     CHECK_THROWS_AS(stepper->step(setup.initial, setup.drive_at(1.0 / 60), 1.0 / 60, to), Error);
+  }
+}
+
+TEST_CASE("known steppers: a run says what of the scene its stepper ignores, and shows no energy of it",
+          "[known_steppers]") {
+  for (const std::string& kind : known_kinds().names()) {
+    INFO(kind);
+    const Folder folder("ignored_" + kind);
+    Setup setup = scene_for(kind, folder, {"run.frames=1", "wind.velocity=[1, 0, 0]"});
+    setup.scene.springs = {{0, 14, 0.05, 10}};
+    Material& material = setup.scene.cloths[0].material;
+    material.mass_damping = material.stiffness_damping = 0.01;
+    const auto stepper = make_stepper(setup);
+    const std::vector<std::string>& ignored = stepper->traits().ignores;
+    CHECK(ignored_lines(setup.scene, stepper->traits()).size() == ignored.size());  // each is a feature of the plan
+    const bool none = std::ranges::find(ignored, "springs") != ignored.end();
+    CHECK(none == (kind == "learned"));
+    RunRequest request;
+    request.out = folder.path / "out";
+    const RunSummary summary = run_scene(setup, *stepper, request);
+    CHECK(summary.warnings.size() == setup.warnings.size() + ignored.size());
+    CHECK(std::ranges::any_of(summary.left_out, [](const PlanLine& l) { return l.feature == "springs"; }) == none);
+    const TrajectoryReader reader(request.out / "run.h5");
+    for (int frame = 0; frame < reader.frame_count(); ++frame) {
+      CHECK(std::isnan(reader.frame(frame).energy.springs) == none);
+      CHECK(std::isfinite(reader.frame(frame).energy.membrane));
+    }
   }
 }
 

@@ -1,0 +1,74 @@
+"""The Python of README.md and docs/python.md: every block runs as it stands there, beside the files that it names."""
+
+import os
+import pathlib
+import subprocess
+
+import numpy as np
+import pytest
+
+import selvedge
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+FILES = {
+    "scene.yaml": """
+cloths:
+  - {name: sheet, rectangle: {size: [0.4, 0.4], edge: 10 cm}, translate: [0, 0.3, 0]}
+run: {frames: 3, fps: 30}
+""",
+    "comparison.yaml": """
+scenes: [{name: fall, file: scene.yaml, states: 0}]
+repeats: 1
+settings:
+  - {name: falling, stepper: falling}
+""",
+}
+
+
+def blocks(page):
+    return [text.split("```")[0] for text in (ROOT / page).read_text().split("```python\n")[1:]]
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run_block(page, number):
+    """What the names of a block have come to. Blocks after the first one of a page rely on its imports."""
+    names = {"np": np, "selvedge": selvedge} if number > 0 else {}
+    exec(compile(blocks(page)[number], f"{page}, Python block {number + 1}", "exec"), names)
+    return names
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
+def test_a_sheet_on_a_floor(page, folder, capsys):
+    run_block(page, 0)
+    last = capsys.readouterr().out.strip().splitlines()[-1].split()
+    assert float(last[0]) == pytest.approx(2) and float(last[1]) > 0 and last[2] == "True"
+
+
+def test_a_run_goes_out_as_alembic(folder):
+    pytest.importorskip("alembic3d")
+    program = os.environ.get("SELVEDGE_PROGRAM")
+    if not program:
+        pytest.skip("SELVEDGE_PROGRAM is not set")
+    subprocess.run([program, "simulate", "scene.yaml", "--out", "out/walk", "--no-view"], check=True, capture_output=True)
+    run = run_block("docs/python.md", 1)["run"]
+    (mesh,) = selvedge.read_alembic("walk.abc").values()
+    assert mesh["fps"] == pytest.approx(30) and (np.array(mesh["x"]) == np.array(run["x"], np.float32)).all()
+
+
+def test_a_stepper_in_python(folder):
+    names = run_block("docs/python.md", 2)
+    assert names["scene"].step() and names["scene"].v[:, 1] == pytest.approx(-9.81 / 30)
+    (row,) = names["rows"]
+    assert row["setting"] == "falling" and not row["trouble"] and row["finished"] == 1
+
+
+def test_no_block_is_left_out():
+    assert len(blocks("README.md")) == 1 and len(blocks("docs/python.md")) == 3  # a new block needs a test of its own
