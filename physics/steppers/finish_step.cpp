@@ -37,6 +37,7 @@ void finish_step(const Scene& scene, const State& from, const Drive& drive, doub
   } catch (const TooManyPairs&) {
     report.status = StepStatus::rejected;
     report.reason = Reason::too_many_pairs;
+    to.clean = false;
   }
 }
 
