@@ -103,9 +103,10 @@ void judge_pair(const Soup& cloth, int a, int b, Audit& found) {
   if (shared == 1 && cross_at_vertex(cloth, a, b)) found.vertex_pairs.push_back(numbers);
 }
 
-void audit_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, bool with_self, Audit& found) {
+void audit_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, bool with_self, PairBudget& budget,
+                Audit& found) {
   visit_pairs(
-      cell, cloth.boxes, bodies.boxes, with_self, [&](int a, int b) { judge_pair(cloth, a, b, found); },
+      cell, cloth.boxes, bodies.boxes, with_self, budget, [&](int a, int b) { judge_pair(cloth, a, b, found); },
       [&](int a, int c) {
         if (intersect(cloth.corners[a], bodies.corners[c]))
           found.obstacle_pairs.emplace_back(cloth.number[a], bodies.number[c]);
@@ -162,7 +163,8 @@ double squared_box_gap(const ExactBox& a, const ExactBox& b, double margin) {
 }
 
 // Least squared gap of the pairs in a cell, or `bound` if none is nearer.
-double gap_in_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, double margin, double bound) {
+double gap_in_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, double margin, double bound,
+                   PairBudget& budget) {
   double least = bound;
   const auto take = [&](const Soup& second, int a, int b) {
     // A little slack for the rounding of the margins: passing over a pair must never change the result.
@@ -171,7 +173,7 @@ double gap_in_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, doub
     least = std::min(least, intersect(p, q) ? 0.0 : squared_gap(p, q));
   };
   visit_pairs(
-      cell, cloth.boxes, bodies.boxes, true,
+      cell, cloth.boxes, bodies.boxes, true, budget,
       [&](int a, int b) {
         if (shared_vertices(cloth.vertices[a], cloth.vertices[b]) == 0) take(cloth, a, b);
       },
@@ -228,8 +230,10 @@ Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> ob
   const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, self);
   const int count = static_cast<int>(cells.size());
   std::vector<Audit> found(cells.size());
+  PairBudget budget(mine.boxes.size() + others.boxes.size());
 #pragma omp parallel for schedule(dynamic, 4)
-  for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, found[r]);
+  for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, budget, found[r]);
+  budget.check();
 
   Audit result;
   for (const Audit& part : found) {
@@ -251,8 +255,10 @@ double min_gap(const Surface& cloth, const Points& x, std::span<const AuditBody>
   const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, true);
   const int count = static_cast<int>(cells.size());
   std::vector<double> least(cells.size());
+  PairBudget budget(mine.boxes.size() + others.boxes.size());
 #pragma omp parallel for schedule(dynamic, 4)
-  for (int r = 0; r < count; ++r) least[r] = gap_in_cell(cells[r], mine, others, margin, horizon * horizon);
+  for (int r = 0; r < count; ++r) least[r] = gap_in_cell(cells[r], mine, others, margin, horizon * horizon, budget);
+  budget.check();
   const double nearest = least.empty() ? horizon * horizon : *std::min_element(least.begin(), least.end());
   return nearest < horizon * horizon ? std::sqrt(nearest) : std::numeric_limits<double>::infinity();
 }

@@ -27,12 +27,14 @@ struct AuditBody {
 struct AuditMemory;
 
 // Pairs come sorted. Isolated vertices are not tested for inside; neither is an obstacle that is open or not finite.
-// self = false leaves the cloth-cloth test out. memory: saves time, and changes nothing else.
+// self = false leaves the cloth-cloth test out. memory: saves time, and changes nothing else. Throws TooManyPairs where
+// the boxes of more overlap than an audit may look at (pair_budget.hpp): it says so, and never leaves pairs out.
 Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, bool self = true,
             AuditMemory* memory = nullptr);
 
 // Smallest distance between two triangles that share no vertex, within the cloth and from cloth to obstacles [m];
-// zero where any intersect; infinity where there is no such pair within `horizon`.
+// zero where any intersect; infinity where there is no such pair within `horizon`. Throws TooManyPairs as an audit
+// does.
 double min_gap(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, double horizon);
 
 }  // namespace selvedge

@@ -63,9 +63,10 @@ struct Ray {
 void trace(std::vector<Ray>& rays, std::span<const ExactBox> faces, const Surface& body, const Points& y) {
   std::vector<ExactBox> boxes;
   for (const Ray& ray : rays) boxes.push_back(box_of({ray.from, ray.to}));
+  PairBudget budget(boxes.size() + faces.size());
   for (const Cell& cell : bisect(boxes, faces, false))
     visit_pairs(
-        cell, boxes, faces, false, [](int, int) {},
+        cell, boxes, faces, false, budget, [](int, int) {},
         [&](int i, int t) {
           Ray& ray = rays[i];
           const int* v = body.triangles.data() + 3 * t;
@@ -74,6 +75,7 @@ void trace(std::vector<Ray>& rays, std::span<const ExactBox> faces, const Surfac
           ray.on_face |= found == Passage::on_face;
           ray.unclear |= found == Passage::unclear;
         });
+  budget.check();
 }
 
 }  // namespace

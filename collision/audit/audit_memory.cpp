@@ -147,8 +147,9 @@ double largest(std::span<const Points> all) {
   return size;
 }
 
-// Lists the pairs within reach of the reference, with their gaps, less what rounding may have added to them.
-void measure(AuditMemory& memory, const Surface& cloth, std::span<const MovingBody> bodies, bool self) {
+// Lists the pairs within reach of the reference, with their gaps, less what rounding may have added to them. False:
+// there are too many to look at.
+bool measure(AuditMemory& memory, const Surface& cloth, std::span<const MovingBody> bodies, bool self) {
   Faces mine, others;
   const double margin = 0.5 * memory.reach * (1 + 1e-9);
   mine.add(cloth, memory.reference[0], margin);
@@ -157,6 +158,7 @@ void measure(AuditMemory& memory, const Surface& cloth, std::span<const MovingBo
   const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, self);
   const int count = static_cast<int>(cells.size());
   std::vector<std::vector<AuditMemory::Pair>> found_self(cells.size()), found_body(cells.size());
+  PairBudget budget(mine.boxes.size() + others.boxes.size());
 #pragma omp parallel for schedule(dynamic, 4)
   for (int c = 0; c < count; ++c) {
     const auto keep = [&](std::vector<AuditMemory::Pair>& list, AuditMemory::Pair pair) {
@@ -164,17 +166,20 @@ void measure(AuditMemory& memory, const Surface& cloth, std::span<const MovingBo
       if (pair.gap < memory.reach) list.push_back(pair);
     };
     visit_pairs(
-        cells[c], mine.boxes, others.boxes, self, [&](int a, int b) { keep(found_self[c], measured(mine, a, b)); },
+        cells[c], mine.boxes, others.boxes, self, budget,
+        [&](int a, int b) { keep(found_self[c], measured(mine, a, b)); },
         [&](int a, int b) {
           keep(found_body[c], {a, b, gap_of_triangles(mine.corners[a], others.corners[b]), 0});
         });
   }
   memory.self_pairs.clear();
   memory.body_pairs.clear();
+  if (budget.exceeded()) return false;
   for (int c = 0; c < count; ++c) {
     memory.self_pairs.insert(memory.self_pairs.end(), found_self[c].begin(), found_self[c].end());
     memory.body_pairs.insert(memory.body_pairs.end(), found_body[c].begin(), found_body[c].end());
   }
+  return true;
 }
 
 // In a crowd a short list is worth more than a large budget.
@@ -258,7 +263,10 @@ AuditQuestions open_questions(AuditMemory& memory, const MovingBody& cloth, std:
   memory.reference = memory.last;
   memory.reach = reach;
   memory.inside = -1;
-  measure(memory, *cloth.surface, bodies, self);
+  if (!measure(memory, *cloth.surface, bodies, self)) {
+    memory.reference.clear();
+    return questions;
+  }
   shorten(memory, many * static_cast<double>(cloth.surface->triangles.rows()));
   ask(memory, sheets, questions);
   return questions;

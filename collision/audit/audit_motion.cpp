@@ -168,9 +168,9 @@ struct PairAudit {
 };
 
 void audit_cell(const Cell& cell, const Side& cloth, const Side& bodies, bool self, int max_halvings,
-                std::vector<PassedPair>& passed) {
+                PairBudget& budget, std::vector<PassedPair>& passed) {
   visit_pairs(
-      cell, cloth.boxes, bodies.boxes, self,
+      cell, cloth.boxes, bodies.boxes, self, budget,
       [&](int a, int b) {
         if (stay_apart_along_an_axis(cloth, a, cloth, b)) return;
         PairAudit{cloth.faces[std::min(a, b)], cloth.faces[std::max(a, b)], max_halvings, passed}();
@@ -229,8 +229,10 @@ MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x
   const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, self);
   const int count = static_cast<int>(cells.size());
   std::vector<std::vector<PassedPair>> found(cells.size());
+  PairBudget budget(mine.boxes.size() + others.boxes.size());
 #pragma omp parallel for schedule(dynamic, 4)
-  for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, max_halvings, found[r]);
+  for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, max_halvings, budget, found[r]);
+  budget.check();
   for (const auto& part : found) result.passed.insert(result.passed.end(), part.begin(), part.end());
   std::sort(result.passed.begin(), result.passed.end());
   return result;

@@ -33,7 +33,7 @@ struct AuditMemory;
 // every gap of two nodes is linear in time. Where no direction among those of the closest features does, the interval
 // is halved; what is not apart after `max_halvings` counts as passed. So a pair that meets is always found, and one
 // that is found came within about its motion times 2^-max_halvings, or the rounding of its size.
-// memory: saves time, and changes nothing else.
+// memory: saves time, and changes nothing else. Throws TooManyPairs as the audit of a state does.
 MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x1, std::span<const MovingBody> bodies,
                          bool self = true, AuditMemory* memory = nullptr, int max_halvings = 30);
 

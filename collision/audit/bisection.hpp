@@ -3,7 +3,10 @@
 #include <array>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
+
+#include "collision/geometry/pair_budget.hpp"
 
 namespace selvedge {
 
@@ -29,10 +32,11 @@ struct Cell {
 std::vector<Cell> bisect(std::span<const ExactBox> first, std::span<const ExactBox> second, bool within_first);
 
 // Calls self(a, b) for the pairs of two of `first` (where within_first) and other(a, c) for those of one of `first` and
-// one of `second` that belong to the cell. Boxes are those given to bisect.
+// one of `second` that belong to the cell. Boxes are those given to bisect. Each pair is taken from the budget, and
+// every eight comparisons of boxes; once it is spent, here or elsewhere, some pairs are not visited.
 template <typename Self, typename Other>
 void visit_pairs(const Cell& cell, std::span<const ExactBox> first, std::span<const ExactBox> second, bool within_first,
-                 Self&& self, Other&& other);
+                 PairBudget& budget, Self&& self, Other&& other);
 
 // Boxes of a cell side by side, in the order of their lower ends along an axis.
 struct Sweep {
@@ -45,11 +49,14 @@ struct Sweep {
 
   Sweep(std::span<const ExactBox> boxes, std::span<const int> items, int axis);
 
-  // Calls visit(item) for the entries from place `from` on that overlap the box and belong to the cell with it.
+  // Calls visit(item) for the entries from place `from` on that overlap the box and belong to the cell with it. Returns
+  // how many were compared.
   template <typename Visit>
-  void overlapping(std::size_t from, const ExactBox& box, const ExactBox& bounds, Visit&& visit) const {
-    for (std::size_t i = from; i < entries.size() && entries[i].box.lo[axis] <= box.hi[axis]; ++i)
+  std::size_t overlapping(std::size_t from, const ExactBox& box, const ExactBox& bounds, Visit&& visit) const {
+    std::size_t i = from;
+    for (; i < entries.size() && entries[i].box.lo[axis] <= box.hi[axis]; ++i)
       if (meet_in(bounds, box, entries[i].box)) visit(entries[i].item);
+    return i - from;
   }
 
  private:
@@ -69,14 +76,27 @@ int sweep_axis(const Cell&, std::span<const ExactBox> first);
 
 template <typename Self, typename Other>
 void visit_pairs(const Cell& cell, std::span<const ExactBox> first, std::span<const ExactBox> second, bool within_first,
-                 Self&& self, Other&& other) {
+                 PairBudget& budget, Self&& self, Other&& other) {
   const int axis = sweep_axis(cell, first);
   const Sweep mine(first, cell.first, axis), theirs(second, cell.second, axis);
+  constexpr std::int64_t told_at_once = 1 << 12;
+  std::int64_t untold = 0;  // to the budget
   for (std::size_t i = 0; i < mine.entries.size(); ++i) {
     const Sweep::Entry& a = mine.entries[i];
-    if (within_first) mine.overlapping(i + 1, a.box, cell.bounds, [&](int b) { self(a.item, b); });
-    theirs.overlapping(0, a.box, cell.bounds, [&](int c) { other(a.item, c); });
+    std::size_t compared = 0;
+    if (within_first)
+      compared += mine.overlapping(i + 1, a.box, cell.bounds, [&](int b) {
+        ++untold;
+        self(a.item, b);
+      });
+    compared += theirs.overlapping(0, a.box, cell.bounds, [&](int c) {
+      ++untold;
+      other(a.item, c);
+    });
+    untold += static_cast<std::int64_t>(compared / 8);
+    if (untold >= told_at_once && !budget.add(std::exchange(untold, 0))) return;
   }
+  budget.add(untold);
 }
 
 }  // namespace selvedge

@@ -99,7 +99,8 @@ struct LeafPairs {
       edges_with_edges(own, ++next, last, box, pairs);
     });
   }
-  void operator()(NodeWork w, std::vector<NodePair>& pairs) const {
+  std::int64_t operator()(NodeWork w, std::vector<NodePair>& pairs) const {
+    const std::size_t before = pairs.size();
     const Bvh::Node &node_a = a.bvh().nodes[w.a], &node_b = b.bvh().nodes[w.b];
     vertices_with_faces(a, ~node_a.child, b, ~node_b.child, node_b.box, pairs);
     if (same && w.a == w.b) {
@@ -108,6 +109,7 @@ struct LeafPairs {
       vertices_with_faces(b, ~node_b.child, a, ~node_a.child, node_a.box, pairs);
       edges_with_edges(~node_a.child, ~node_b.child, node_b.box, pairs);
     }
+    return static_cast<std::int64_t>(pairs.size() - before);
   }
 };
 

@@ -42,7 +42,8 @@ class PairSearch {
  public:
   explicit PairSearch(const ContactWorld&);  // keeps a reference
   // In an order that depends on what the trees went through; the pairs themselves do not. `pairs` is overwritten. With
-  // marks by node only the pairs are found that have a marked one.
+  // marks by node only the pairs are found that have a marked one. Throws TooManyPairs (pair_budget.hpp), and then
+  // `pairs` is empty.
   void find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs,
             const std::vector<char>& marks = {});
   // Pairs that are not to be found from here on; nothing ends it. Keeps the pointer.

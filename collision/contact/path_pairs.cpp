@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "collision/geometry/distance.hpp"
 
@@ -43,6 +44,9 @@ double squared_gap(const NodePair& pair, const Points& x) {
   return (lo_a - hi_b).cwiseMax(lo_b - hi_a).cwiseMax(0).squaredNorm();
 }
 
+// Makes the list hold for no motion, until it is complete again: a search that throws leaves nothing that looks whole.
+void invalidate(PathPairs& path) { path.end.resize(0, 3); }
+
 // Of the pairs from `first` on, keeps those that may come within `reach` [m], with their gaps. Boxes round motions
 // hold many pairs that never come near each other; the gap of the pair's own boxes tells most of them.
 void keep_what_comes_near(PathPairs& path, std::size_t first, double reach) {
@@ -72,10 +76,13 @@ void search_again(PairSearch& search, const std::vector<char>& strayed, double r
   leave_out(path, 0, [&](std::size_t i) {
     return std::ranges::any_of(path.pairs[i].nodes, [&](int node) { return strayed[node] != 0; });
   });
+  Points end = path.end;
   for (Eigen::Index i = 0; i < x1.rows(); ++i)
-    if (strayed[i]) path.end.row(i) = x1.row(i);
+    if (strayed[i]) end.row(i) = x1.row(i);
   std::vector<NodePair> found;
-  search.find(path.start, path.end, reach, found, strayed);
+  invalidate(path);
+  search.find(path.start, end, reach, found, strayed);
+  path.end = std::move(end);
   const std::size_t kept = path.pairs.size();
   path.pairs.insert(path.pairs.end(), found.begin(), found.end());
   keep_what_comes_near(path, kept, reach);
@@ -101,10 +108,11 @@ bool update_pairs(PairSearch& search, double thickness, const Points& x0, const 
       return false;
     }
   }
+  invalidate(path);
+  search.find(x0, x1, reach, path.pairs);
   path.start = x0;
   path.end = x1;
   path.slack = slack_part * thickness;
-  search.find(x0, x1, reach, path.pairs);
   keep_what_comes_near(path, 0, reach);
   return true;
 }

@@ -16,7 +16,8 @@ struct PathPairs {
 // Makes `path` good for the motion x0 -> x1: it lists every pair that comes within a thickness [m] on the way or at its
 // ends. The list is kept as long as x1, and x0 unless it is the start, are within its slack of the end for which it was
 // made: a displacement budget that saves the search where little moves. Where x0 is the start and few nodes end
-// elsewhere, only what has such a node is searched for anew. True if everything was.
+// elsewhere, only what has such a node is searched for anew. True if everything was. Throws TooManyPairs
+// (pair_budget.hpp), and then `path` is good for no motion.
 bool update_pairs(PairSearch&, double thickness, const Points& x0, const Points& x1, PathPairs& path);
 
 // Positions relative to those at which the gaps of a list were taken.

@@ -235,7 +235,8 @@ std::vector<Candidate> candidates(std::span<const SheetView> sheets) {
         if (!may_meet(sheets[0], planes[a], a, sheets[k], planes_b[b], b)) return;
         found.push_back(k == 0 ? Candidate{0, std::min(a, b), std::max(a, b)} : Candidate{k, a, b});
       };
-      traversal.is_self(w) ? for_each_overlap(of_a, test) : for_each_overlap(of_a, of_b, other.nodes[w.b].box, test);
+      return traversal.is_self(w) ? for_each_overlap(of_a, test)
+                                  : for_each_overlap(of_a, of_b, other.nodes[w.b].box, test);
     });
   }
   return result;

@@ -50,7 +50,8 @@ struct Segments {
   std::vector<std::array<int, 3>> touching;  // triangle of sheet 0, sheet, triangle of that sheet; sorted
 };
 
-// sheets[0] against itself and against each of the others. Vertices must be finite.
+// sheets[0] against itself and against each of the others. Vertices must be finite. Throws TooManyPairs
+// (pair_budget.hpp).
 Segments find_segments(std::span<const SheetView> sheets);
 
 Vec3 point_of(std::span<const SheetView> sheets, const Crossing&);  // on the edge

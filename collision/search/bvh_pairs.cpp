@@ -34,7 +34,7 @@ void self_pairs(const Bvh& tree, Pairs& pairs) {
     const auto add = [&](int i, int j) {
       found.emplace_back(std::min(a.item[i], b.item[j]), std::max(a.item[i], b.item[j]));
     };
-    w.a == w.b ? for_each_overlap(a, add) : for_each_overlap(a, b, tree.nodes[w.b].box, add);
+    return w.a == w.b ? for_each_overlap(a, add) : for_each_overlap(a, b, tree.nodes[w.b].box, add);
   });
 }
 
@@ -44,7 +44,8 @@ void cross_pairs(const Bvh& first, const Bvh& second, Pairs& pairs) {
   const BvhTraversal traversal{first, second, false};
   gather(traversal, parts, pairs, [&](NodeWork w, Pairs& found) {
     const Bvh::Leaf &a = traversal.leaf_a(w), &b = traversal.leaf_b(w);
-    for_each_overlap(a, b, second.nodes[w.b].box, [&](int i, int j) { found.emplace_back(a.item[i], b.item[j]); });
+    return for_each_overlap(a, b, second.nodes[w.b].box,
+                            [&](int i, int j) { found.emplace_back(a.item[i], b.item[j]); });
   });
 }
 

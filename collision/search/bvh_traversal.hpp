@@ -1,9 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "collision/geometry/pair_budget.hpp"
 #include "collision/geometry/parallel.hpp"
 #include "collision/search/bvh.hpp"
 
@@ -107,48 +110,77 @@ inline Box box_of(const Bvh::Leaf& leaf, int i) {
   return box;
 }
 
-// Calls visit(i, j) for the places i in a and j in b whose boxes overlap. box_b holds all of b.
+// Calls visit(i, j) for the places i in a and j in b whose boxes overlap, and returns how many those are. box_b holds
+// all of b.
 template <class Visit>
-[[gnu::always_inline]] inline void for_each_overlap(const Bvh::Leaf& a, const Bvh::Leaf& b, const Box& box_b,
-                                                    Visit&& visit) {
+[[gnu::always_inline]] inline int for_each_overlap(const Bvh::Leaf& a, const Bvh::Leaf& b, const Box& box_b,
+                                                   Visit&& visit) {
+  int visited = 0;
   for (unsigned from = overlaps(a, box_b); from != 0; from &= from - 1) {
     const int i = std::countr_zero(from);
-    for (unsigned bits = overlaps(b, box_of(a, i)); bits != 0; bits &= bits - 1) visit(i, std::countr_zero(bits));
+    for (unsigned bits = overlaps(b, box_of(a, i)); bits != 0; bits &= bits - 1, ++visited)
+      visit(i, std::countr_zero(bits));
   }
+  return visited;
 }
 
 // The same within one leaf, i < j.
 template <class Visit>
-[[gnu::always_inline]] inline void for_each_overlap(const Bvh::Leaf& a, Visit&& visit) {
+[[gnu::always_inline]] inline int for_each_overlap(const Bvh::Leaf& a, Visit&& visit) {
+  int visited = 0;
   for (int i = 0; i < Bvh::leaf_size && a.item[i] >= 0; ++i)
-    for (unsigned bits = overlaps(a, box_of(a, i)) & (~1u << i); bits != 0; bits &= bits - 1)
+    for (unsigned bits = overlaps(a, box_of(a, i)) & (~1u << i); bits != 0; bits &= bits - 1, ++visited)
       visit(i, std::countr_zero(bits));
+  return visited;
 }
 
 // Lists that parts of a traversal fill; keeping them between calls spares their allocation.
 template <class Item>
 using PartLists = std::vector<std::vector<Item>>;
 
+// Goes through what is below `w`. Takes from the budget what the visits have looked at, and eight pairs for each visit.
+// False: it ended early, as the budget was spent.
+template <class Item, class Visit>
+bool visit_below(const BvhTraversal& traversal, NodeWork w, std::vector<Item>& list, PairBudget& budget,
+                 Visit&& visit) {
+  constexpr std::int64_t told_at_once = 1 << 14;
+  std::vector<NodeWork> stack{w};
+  std::int64_t untold = 0;  // to the budget
+  while (!stack.empty()) {
+    w = stack.back();
+    stack.pop_back();
+    if (!traversal.is_leaf(w)) {
+      traversal.split(w, stack);
+    } else if (!traversal.is_quiet(w)) {
+      untold += Bvh::leaf_size + visit(w, list);
+      if (untold >= told_at_once && !budget.add(std::exchange(untold, 0))) return false;
+    }
+  }
+  return budget.add(untold);
+}
+
 // Calls visit(w, list) for every pair of leaves whose boxes overlap (and every leaf with itself, within one tree), on
 // all threads; what the calls append to their lists is appended to `out` in an order that depends on the trees alone.
+// The calls return how many pairs they have looked at. Throws TooManyPairs, with empty lists and `out`, where that is
+// more than a search may look at (pair_budget.hpp).
 template <class Item, class Visit>
 void gather(const BvhTraversal& traversal, PartLists<Item>& parts, std::vector<Item>& out, Visit&& visit) {
   if (traversal.first.item_count == 0 || traversal.second.item_count == 0) return;
   const std::vector<NodeWork> front = traversal.frontier();
   const int count = static_cast<int>(front.size());
   if (parts.size() < front.size()) parts.resize(front.size());
+  const std::int64_t items =
+      traversal.first.item_count + (traversal.within_one ? std::int64_t{0} : traversal.second.item_count);
+  PairBudget budget(items);
   parallel_for(count, 1, [&](int i) {
     parts[i].clear();
-    std::vector<NodeWork> stack{front[i]};
-    while (!stack.empty()) {
-      const NodeWork w = stack.back();
-      stack.pop_back();
-      if (!traversal.is_leaf(w))
-        traversal.split(w, stack);
-      else if (!traversal.is_quiet(w))
-        visit(w, parts[i]);
-    }
+    visit_below(traversal, front[i], parts[i], budget, visit);
   });
+  if (budget.exceeded()) {
+    PartLists<Item>().swap(parts);
+    std::vector<Item>().swap(out);
+    budget.check();
+  }
   std::vector<std::size_t> begin(count + 1, out.size());
   for (int i = 0; i < count; ++i) begin[i + 1] = begin[i] + parts[i].size();
   out.resize(begin[count]);

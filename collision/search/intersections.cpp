@@ -128,7 +128,7 @@ Pairs intersecting_pairs(const Surface& surface, const Points& x, IntersectionCa
       if (!share_vertex(surface.triangles, s, t) && intersect(corners_of(surface, x, s), corners_of(surface, x, t)))
         found.emplace_back(std::min(s, t), std::max(s, t));
     };
-    w.a == w.b ? for_each_overlap(a, test) : for_each_overlap(a, b, tree.nodes[w.b].box, test);
+    return w.a == w.b ? for_each_overlap(a, test) : for_each_overlap(a, b, tree.nodes[w.b].box, test);
   });
   std::sort(pairs.begin(), pairs.end());
   return pairs;
@@ -143,7 +143,7 @@ Pairs intersecting_pairs(const Surface& first, const Points& x_first, Intersecti
   Pairs pairs;
   gather(traversal, cache_first.lists, pairs, [&](NodeWork w, Pairs& found) {
     const Bvh::Leaf &a = traversal.leaf_a(w), &b = traversal.leaf_b(w);
-    for_each_overlap(a, b, other.nodes[w.b].box, [&](int i, int j) {
+    return for_each_overlap(a, b, other.nodes[w.b].box, [&](int i, int j) {
       if (intersect(corners_of(first, x_first, a.item[i]), corners_of(second, x_second, b.item[j])))
         found.emplace_back(a.item[i], b.item[j]);
     });

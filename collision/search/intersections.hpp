@@ -21,6 +21,7 @@ struct IntersectionCache {
 
 // Discrete detection for the solver's side: triangles of a surface that intersect and share no vertex, exact signs
 // (triangles_meet), each pair once with i < j, sorted. A triangle with an undefined coordinate intersects nothing.
+// Throws TooManyPairs (pair_budget.hpp).
 std::vector<std::pair<int, int>> intersecting_pairs(const Surface&, const Points& x, IntersectionCache&);
 
 // Of a surface with another: (triangle of a, triangle of b), sorted. Each surface has a cache of its own.

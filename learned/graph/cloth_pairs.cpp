@@ -51,12 +51,15 @@ std::vector<ClothPair> find_cloth_pairs(const Surface& surface, const Points& x,
   gather(traversal, search.lists, pairs, [&](NodeWork w, std::vector<ClothPair>& found) {
     const Bvh::Leaf &from = traversal.leaf_a(w), &to = traversal.leaf_b(w);
     const FrameLeaf& frame = search.frames[static_cast<std::size_t>(~tree.nodes[static_cast<std::size_t>(w.b)].child)];
+    int looked = 0;
     for (unsigned some = overlaps(from, tree.nodes[static_cast<std::size_t>(w.b)].box); some != 0; some &= some - 1) {
       const int place = std::countr_zero(some), v = vertices[static_cast<std::size_t>(from.item[place])];
       unsigned bits = overlaps(to, box_of(from, place));
+      looked += std::popcount(bits);
       if (bits != 0) bits &= may_project(frame, row(x, v), static_cast<float>(radius));
       for (; bits != 0; bits &= bits - 1) add_if_close(surface, x, v, to.item[std::countr_zero(bits)], radius, found);
     }
+    return looked;
   });
   std::sort(pairs.begin(), pairs.end(), [](const auto& a, const auto& b) { return place_of(a) < place_of(b); });
   return pairs;

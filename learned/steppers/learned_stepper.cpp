@@ -15,6 +15,7 @@
 #include "learned/steppers/learned_state.hpp"
 #include "learned/steppers/shown_force.hpp"
 #include "physics/scene/features.hpp"
+#include "physics/steppers/bounded_step.hpp"
 
 namespace selvedge {
 namespace {
@@ -43,9 +44,12 @@ class LearnedStepper final : public Stepper {
         traits_(learned_traits(architecture)) {}
 
   const StepperTraits& traits() const override { return traits_; }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override;
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override {
+    return bounded_step(traits_.name, [&] { return take_step(from, drive, dt, to, extras); });
+  }
 
  private:
+  StepReport take_step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&);
   bool settle(GraphState&, StepReport&);
   void audit_way(const State& from, const StepEnd& end, StepReport&);
   bool predict(GraphState, NextCloth&, StepReport&);
@@ -137,7 +141,8 @@ void LearnedStepper::audit_way(const State& from, const StepEnd& end, StepReport
   report.seconds.audit += watch.lap();
 }
 
-StepReport LearnedStepper::step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) {
+StepReport LearnedStepper::take_step(const State& from, const Drive& drive, double dt, State& to,
+                                     const StepExtras& extras) {
   restore_standard_arithmetic();
   if (!traits_.accepts(dt))
     throw Error("a learned stepper takes steps of 1/30 s only", "time step " + std::to_string(dt) + " s",

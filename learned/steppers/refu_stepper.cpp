@@ -7,6 +7,7 @@
 #include "collision/geometry/stopwatch.hpp"
 #include "learned/steppers/learned_scene.hpp"
 #include "learned/steppers/learned_state.hpp"
+#include "physics/steppers/bounded_step.hpp"
 #include "physics/steppers/step_audit.hpp"
 
 namespace selvedge {
@@ -41,9 +42,12 @@ class RefuStepper final : public Stepper {
   }
 
   const StepperTraits& traits() const override { return inner_->traits(); }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override;
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override {
+    return bounded_step(traits().name, [&] { return take_step(from, drive, dt, to, extras); });
+  }
 
  private:
+  StepReport take_step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&);
   std::vector<DeepestIn> ask(const Points& at, std::span<const int> vertices);
   bool any_inside(const State&);
   Repelled push_out_of_bodies(const Points& x);
@@ -134,7 +138,8 @@ void RefuStepper::calm(const State& from, double dt, const Repelled& pushed, Sta
   carry_velocities(vertices, to);
 }
 
-StepReport RefuStepper::step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) {
+StepReport RefuStepper::take_step(const State& from, const Drive& drive, double dt, State& to,
+                                  const StepExtras& extras) {
   StepReport report = inner_->step(from, drive, dt, to, extras);
   const auto is_finite = [](const Points& x) { return x.allFinite(); };
   if (report.status != StepStatus::accepted || !is_finite(to.x) || !std::ranges::all_of(to.obstacles, is_finite))

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "collision/geometry/floating_point.hpp"
+#include "collision/geometry/pair_budget.hpp"
 #include "collision/geometry/stopwatch.hpp"
 #include "learned/steppers/learned_state.hpp"
 #include "physics/steppers/step_audit.hpp"
@@ -75,6 +76,17 @@ Safeguard::Safeguard(const Scene& scene, const SafeguardOptions& options)
       inverse_mass_(inverse_masses(scene, world_.node_count)) {}
 
 SafeguardReport Safeguard::operator()(const Points& from, Points& to) {
+  try {
+    return respond(from, to);
+  } catch (const TooManyPairs& error) {
+    SafeguardReport report;
+    report.kept = false;
+    report.why = error.problem();
+    return report;
+  }
+}
+
+SafeguardReport Safeguard::respond(const Points& from, Points& to) {
   restore_standard_arithmetic();
   SafeguardReport report;
   const auto give_up = [&](const std::string& why) {

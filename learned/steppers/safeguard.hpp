@@ -34,6 +34,8 @@ class Safeguard {
   SafeguardReport operator()(const Points& from, Points& to);
 
  private:
+  SafeguardReport respond(const Points& from, Points& to);
+
   SafeguardOptions options_;
   ResolveOptions resolve_;
   const Surface& surface_;

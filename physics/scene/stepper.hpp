@@ -48,7 +48,7 @@ struct Drive {
 };
 
 enum class StepStatus { not_run, accepted, rejected };
-enum class Reason { none, not_converged, not_finite, penetrating, energy_gain, overstretched, stopped };
+enum class Reason { none, not_converged, not_finite, penetrating, energy_gain, overstretched, stopped, too_many_pairs };
 
 struct PhaseTimes {  // [s]
   double solve = 0, broad_phase = 0, ccd = 0, response = 0, audit = 0;
@@ -178,8 +178,9 @@ class Stepper {
   virtual ~Stepper() = default;
   virtual const StepperTraits& traits() const = 0;
   // Steps by dt [s]. If rejected, `to` is junk and `from` is untouched: going back is doing nothing. Holds caches only:
-  // a new stepper makes the same step. Never throws for numerical trouble; throws Error for a dt that it does not
-  // accept. Extras are ignored unless it honours them.
+  // a new stepper makes the same step. Never throws for numerical trouble (a search that meets more pairs than it may
+  // look at is some: bounded_step.hpp); throws Error for a dt that it does not accept. Extras are ignored unless it
+  // honours them.
   virtual StepReport step(const State& from, const Drive&, double dt, State& to, const StepExtras& = {}) = 0;
 };
 

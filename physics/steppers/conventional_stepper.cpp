@@ -10,6 +10,7 @@
 #include "physics/scene/features.hpp"
 #include "physics/solve/bdf2.hpp"
 #include "physics/solve/contact_terms.hpp"
+#include "physics/steppers/bounded_step.hpp"
 #include "physics/steppers/contact_stage.hpp"
 #include "physics/steppers/finish_step.hpp"
 #include "physics/steppers/substep_solve.hpp"
@@ -30,7 +31,7 @@ struct StepWork {
   const Exemption& left_alone = extras.left_alone ? *extras.left_alone : nothing;
 };
 
-enum class SubstepOutcome { clean, impact_too_deep, zones_not_converged, not_finite, stopped };
+enum class SubstepOutcome { clean, impact_too_deep, zones_not_converged, too_many_pairs, not_finite, stopped };
 
 // Substeps still to be taken, of one length: to where `nodes` has the obstacles and to `pins`.
 struct Stretch {
@@ -56,9 +57,12 @@ class ConventionalStepper final : public Stepper {
                 .max_substeps = options.substeps.value_or(options.max_substeps)} {}
 
   const StepperTraits& traits() const override { return traits_; }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override;
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override {
+    return bounded_step(traits_.name, [&] { return take_step(from, drive, dt, to, extras); });
+  }
 
  private:
+  StepReport take_step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras);
   bool has_contact() const { return features_.self_contact || features_.obstacles; }
   ResolveOptions resolve_options(const StepWork&) const;
   StepProblem problem_of(const StepWork&, const StepStart&, const Points& pins, const AddedTerm&) const;
@@ -257,8 +261,8 @@ void ConventionalStepper::end_substep(StepWork& work, Substep&& s, SubstepState&
 }
 
 // Takes all substeps. One that meets something in full motion is cut into parts. One whose zones do not converge is
-// tried again with obstacles that give way, then halved; only the last halves take the last resort. False: the report
-// says why the step is rejected.
+// tried again with obstacles that give way, then halved; only the last halves take the last resort. One that comes near
+// more than can be searched is halved too. False: the report says why the step is rejected.
 bool ConventionalStepper::advance(StepWork& work, SubstepState& now, Stretch whole) {
   const auto reject = [&](Reason reason) {
     work.report.status = StepStatus::rejected;
@@ -284,7 +288,12 @@ bool ConventionalStepper::advance(StepWork& work, SubstepState& now, Stretch who
     std::optional<Substep> s;
     const auto attempt = [&](SubstepAttempt kind) {
       s.emplace(begin_substep(work, now, target, kind, time_left));
-      return substep(work, *s);
+      try {
+        return substep(work, *s);
+      } catch (const TooManyPairs&) {  // half of the motion may not come near so much
+        update_pairs(contact_.search, contact_.options.thickness, now.nodes, now.nodes, contact_.path);
+        return SubstepOutcome::too_many_pairs;
+      }
     };
     if (stopped(work.extras.stop)) return reject(Reason::stopped);
     SubstepOutcome outcome = attempt(target.halvings == 0 ? SubstepAttempt::last_resort : SubstepAttempt::first);
@@ -299,7 +308,9 @@ bool ConventionalStepper::advance(StepWork& work, SubstepState& now, Stretch who
       time_left -= target.h;
       continue;
     }
-    const bool halve = outcome == SubstepOutcome::zones_not_converged;
+    const bool crowded = outcome == SubstepOutcome::too_many_pairs;
+    if (crowded && target.halvings == 0) return reject(Reason::too_many_pairs);
+    const bool halve = crowded || outcome == SubstepOutcome::zones_not_converged;
     if (halve) ++work.report.collision.halved_substeps;
     const int count = halve ? 2 : s->parts;
     to_do.push_back({target.nodes, target.pins, target.h / count, count, target.halvings - halve, 1});
@@ -333,11 +344,11 @@ StepReport not_finite(StepReport report) {
   return report;
 }
 
-StepReport ConventionalStepper::step(const State& from, const Drive& drive, double dt, State& to,
-                                     const StepExtras& extras) {
+StepReport ConventionalStepper::take_step(const State& from, const Drive& drive, double dt, State& to,
+                                          const StepExtras& extras) {
   restore_standard_arithmetic();
   if (const auto restart = restart_of(from, drive, traits_.max_substeps)) {
-    StepReport report = step(restart->state, drive, dt, to, extras);
+    StepReport report = take_step(restart->state, drive, dt, to, extras);
     report.collision.jumped = restart->jumped;
     return report;
   }

@@ -5,6 +5,7 @@
 #include "collision/geometry/stopwatch.hpp"
 #include "physics/recovery/cut_out.hpp"
 #include "physics/scene/part_of_scene.hpp"
+#include "physics/steppers/bounded_step.hpp"
 #include "physics/steppers/step_audit.hpp"
 
 namespace selvedge {
@@ -16,11 +17,15 @@ class CuttingStepper final : public Stepper {
       : scene_(scene), make_(std::move(make)), whole_(std::move(whole)) {}
 
   const StepperTraits& traits() const override { return whole_->traits(); }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override;
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override {
+    if (from.cut_out.empty()) return whole_->step(from, drive, dt, to, extras);
+    return bounded_step(traits().name, [&] { return step_cut(from, drive, dt, extras.stop, to); });
+  }
 
  private:
   void cut(const std::vector<int>& triangles);
   StepReport step_rest(const State& from, const Drive& drive, double dt, const StopFlag&, State& to);
+  StepReport step_cut(const State& from, const Drive& drive, double dt, const StopFlag&, State& to);
 
   const Scene& scene_;
   MakeStepper make_;
@@ -76,9 +81,8 @@ StepReport CuttingStepper::step_rest(const State& from, const Drive& drive, doub
   return report;
 }
 
-StepReport CuttingStepper::step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) {
-  if (from.cut_out.empty()) return whole_->step(from, drive, dt, to, extras);
-  StepReport report = step_rest(from, drive, dt, extras.stop, to);
+StepReport CuttingStepper::step_cut(const State& from, const Drive& drive, double dt, const StopFlag& stop, State& to) {
+  StepReport report = step_rest(from, drive, dt, stop, to);
   if (report.status != StepStatus::accepted) return report;
   Stopwatch watch;
   to.cut_out = still_cut_out(scene_, to);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "collision/geometry/pair_budget.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -30,7 +32,13 @@ void finish_step(const Scene& scene, const State& from, const Drive& drive, doub
   to.cut_out = from.cut_out;
   to.memory = std::move(end.memory);
   report.collision.obstacle_lag = to.pinched ? lag : 0;
-  audit_state(scene, drive, to, audits, report);
+  try {
+    audit_state(scene, drive, to, audits, report);
+  } catch (const TooManyPairs&) {
+    report.status = StepStatus::rejected;
+    report.reason = Reason::too_many_pairs;
+    to.clean = false;
+  }
 }
 
 }  // namespace selvedge

@@ -6,6 +6,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/floating_point.hpp"
+#include "collision/geometry/pair_budget.hpp"
 #include "collision/geometry/stopwatch.hpp"
 #include "physics/steppers/finish_step.hpp"
 #include "physics/steppers/proposal_line_search.hpp"
@@ -82,6 +83,7 @@ class HybridStepper final : public Stepper {
   };
   Verdict may_ask(const State& from, const Drive&, const ProposalTrust&, bool has_history) const;
   Verdict propose(Work&);
+  Verdict propose_within_budget(Work&);
   Verdict propose_step(Work&);
   std::optional<Points> proposed_positions(Work&);
   Verdict correct(Work&, Points x);
@@ -208,6 +210,15 @@ Verdict HybridStepper::propose(Work& work) {
   return options_.mode == HybridMode::refined ? refine(work, *x) : correct(work, std::move(*x));
 }
 
+// What comes near more than can be searched is taken for what crosses.
+Verdict HybridStepper::propose_within_budget(Work& work) {
+  try {
+    return propose(work);
+  } catch (const TooManyPairs&) {
+    return Verdict::penetrating;
+  }
+}
+
 void HybridStepper::take_parent_step(Work& work) {
   const PhaseTimes before = work.report.seconds;
   work.report = parts_.parent->step(work.from, work.drive, work.dt, work.to, {.stop = work.stop});
@@ -237,7 +248,7 @@ StepReport HybridStepper::step(const State& from, const Drive& drive, double dt,
   const bool has_history = read_trust(from, trust);
   Verdict verdict = may_ask(from, drive, trust, has_history);
   const bool asked = verdict == Verdict::none;
-  if (asked) verdict = propose(work);
+  if (asked) verdict = propose_within_budget(work);
   const bool taken = verdict == Verdict::admitted || verdict == Verdict::refined;
   const double proposed = clock_();
   if (!taken) take_parent_step(work);

@@ -14,6 +14,7 @@
 #include "physics/scene/features.hpp"
 #include "physics/solve/contact_terms.hpp"
 #include "physics/solve/contour_potential.hpp"
+#include "physics/steppers/bounded_step.hpp"
 #include "physics/steppers/finish_step.hpp"
 #include "physics/steppers/substeps.hpp"
 
@@ -54,9 +55,12 @@ class IcmStepper final : public Stepper {
         self_crossings_(world_) {}
 
   const StepperTraits& traits() const override { return traits_; }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override;
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override {
+    return bounded_step(traits_.name, [&] { return take_step(from, drive, dt, to, extras); });
+  }
 
  private:
+  StepReport take_step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&);
   bool has_contact() const { return features_.self_contact || features_.obstacles; }
   void find_pairs(const Points& nodes0, const Points& at, const Points& nodes1, double h, const Exemption&, IcmWork&,
                   StepReport&);
@@ -167,10 +171,11 @@ bool IcmStepper::substep(const SubstepState& now, const Points& pins, const Driv
   return true;
 }
 
-StepReport IcmStepper::step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) {
+StepReport IcmStepper::take_step(const State& from, const Drive& drive, double dt, State& to,
+                                 const StepExtras& extras) {
   restore_standard_arithmetic();
   if (const auto restart = restart_of(from, drive, options_.substeps.value_or(options_.max_substeps))) {
-    StepReport report = step(restart->state, drive, dt, to, extras);
+    StepReport report = take_step(restart->state, drive, dt, to, extras);
     report.collision.jumped = restart->jumped;
     return report;
   }

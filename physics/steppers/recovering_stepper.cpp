@@ -8,6 +8,7 @@
 #include "physics/recovery/parting.hpp"
 #include "physics/scene/features.hpp"
 #include "physics/solve/contact_terms.hpp"
+#include "physics/steppers/bounded_step.hpp"
 #include "physics/steppers/substeps.hpp"
 
 namespace selvedge {
@@ -124,8 +125,9 @@ StepReport RecoveringStepper::step(const State& from, const Drive& drive, double
     report.collision.jumped = restart->jumped;
     return report;
   }
-  StepReport report =
-      has_contact_ ? step_parted(from, drive, dt, to, extras) : inner_->step(from, drive, dt, to, extras);
+  StepReport report = bounded_step(traits().name, [&] {
+    return has_contact_ ? step_parted(from, drive, dt, to, extras) : inner_->step(from, drive, dt, to, extras);
+  });
   if (report.status == StepStatus::accepted && !to.clean && drive.worn.rows() > 0)
     remember(from.clean ? LastClean{from.x, from.obstacles} : last_clean(from), to);
   return report;

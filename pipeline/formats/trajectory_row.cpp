@@ -150,7 +150,7 @@ void fill_from_row(const TrajectoryRow& row, const std::vector<std::string>& nam
 
 const std::vector<std::string>& reason_names() {
   static const std::vector<std::string> names{"none",        "not_converged", "not_finite", "penetrating",
-                                              "energy_gain", "overstretched", "stopped"};
+                                              "energy_gain", "overstretched", "stopped",    "too_many_pairs"};
   return names;
 }
 

@@ -109,4 +109,22 @@ TEST_CASE("balanced motion: no farther than the reach, and still without momentu
   CHECK(move.norm() > 0.5 * reach);
 }
 
+TEST_CASE("balanced motion: where one push goes far beyond the reach, the way that does what the others ask is kept",
+          "[balanced_motion]") {
+  TwoPieces two;
+  for (const int v : {9, 10, 12}) two.inverse_mass[v] = 0;
+  two.way.topRows(9).col(1).setConstant(0.03);
+  std::vector<Separation> pushes;
+  for (int v = 0; v < 9; ++v) pushes.push_back(against_obstacle(v, 0.03));
+  const Points free = two.move(pushes, 0.04);
+  // Pinned but for a fiftieth: its vertex would have to go 1.5 m, and all that moves with it a fiftieth of its way.
+  pushes.push_back({{4, 9, 10, 12, -1}, {0.02, -0.5, -0.25, -0.25, 0}, Vec3::UnitX(), 0.03, 4});
+  const Points move = two.move(pushes, 0.04);
+  for (int v = 0; v < 9; ++v) CHECK(value(pushes[static_cast<std::size_t>(v)], move) == Approx(0.03));
+  CHECK(move == free);
+  // Where pushes do more than the way, they count.
+  two.way.setZero();
+  CHECK(value(pushes[9], two.move(pushes, 0.04)) > 0);
+}
+
 }  // namespace selvedge::test_balanced_motion
