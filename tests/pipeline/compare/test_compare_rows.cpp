@@ -142,7 +142,10 @@ TEST_CASE("plots: a row is marked as on the page", "[compare]") {
     CHECK(mark_of(result.rows[k], 1e-3) == marks[k]);
   }
   CHECK(mark_of(result.rows[1], std::nan("")) == PlotMark::failed);
-  if (!gnuplot_is_there()) return WARN(no_gnuplot);
+  if (!gnuplot_is_there()) {
+    WARN(no_gnuplot);
+    return;
+  }
   CHECK_THAT(plot_comparison(result, folder.path), Contains("one_temporal.svg"));
   CHECK_THAT(fake::whole(folder.path / "one_temporal.gnuplot"),
              Contains("$unclean << EOD\n30 0.001 \"crossing\"\n40 0.001 \"passing\"\nEOD") &&
