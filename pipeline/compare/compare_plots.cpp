@@ -86,9 +86,9 @@ std::string plot_comparison(const CompareResult& result, const std::filesystem::
       made += (made.empty() ? "plots: " : ", ") + (folder / (name + ".svg")).string();
   };
   for (const CompareFloor& floor : result.floors) {
-    plot(floor.scene + "_temporal", scene_plot(
-                                        result, floor, "distance to the reference [m]",
-                                        [](const CompareRow& row) { return row.temporal; }, true));
+    plot(floor.scene + "_temporal",
+         scene_plot(
+             result, floor, "distance to the reference [m]", [](const CompareRow& row) { return row.temporal; }, true));
     plot(floor.scene + "_algebraic", scene_plot(
                                          result, floor, "algebraic error of a step, of its motion",
                                          [](const CompareRow& row) { return row.algebraic; }, false));

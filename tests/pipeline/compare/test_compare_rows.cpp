@@ -123,6 +123,7 @@ TEST_CASE("plots: a row is marked as on the page", "[compare]") {
   CompareResult result;
   result.floors.resize(1);
   result.floors.front().scene = "one";
+  result.floors.front().steps = 1e-4;
   for (const char* name : {"fast", "slow", "crossing", "passing", "rejected"}) {
     CompareRow& row = result.rows.emplace_back();
     row.scene = "one";
