@@ -6,7 +6,7 @@
 // table of calls. No exception crosses it: calls return 0, or another number and a sentence in the report.
 namespace selvedge {
 
-constexpr int torch_interface_version = 1;
+constexpr int torch_interface_version = 2;
 
 // An architecture in numbers, in the order of its weights (weight_arrays).
 struct TorchShape {
@@ -55,6 +55,12 @@ struct TorchReport {
   int flushes_denormals = 0;
 };
 
+// Where derivatives with respect to features are added: of nodes or of the edges of a set.
+struct TorchFeatureGradient {
+  int set = -1;  // -1: nodes
+  TorchArray array;
+};
+
 struct TorchCalls {
   int version;
   // Arrays are the trained ones but embeddings, in the order of weight_arrays. `device`: auto, cpu or cuda. Null: the
@@ -65,8 +71,9 @@ struct TorchCalls {
   int (*get_weights)(void*, const TorchArray*, int count, TorchReport*);
   // `output`: cloth_nodes x outputs. What backward needs is kept where `keep` is not 0.
   int (*forward)(void*, const TorchGraphView*, int keep, float* output, TorchReport*);
-  // Adds to the gradients.
-  int (*backward)(void*, const float* d_output, const TorchArray* gradients, int count, TorchReport*);
+  // Adds to the gradients of the arrays of `make`, and to those of features.
+  int (*backward)(void*, const float* d_output, const TorchArray* gradients, int count, const TorchFeatureGradient*,
+                  int feature_count, TorchReport*);
   // Forward, backward from d_output, and one step of libtorch's Adam with this rate.
   int (*train)(void*, const TorchGraphView*, const float* d_output, double learning_rate, float* output, TorchReport*);
 };

@@ -3,9 +3,11 @@
 #include <dlfcn.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/floating_point.hpp"
+#include "learned/gradients/embedding_gradients.hpp"
 #include "learned/gradients/torch_interface.hpp"
 #include "learned/network/graph_plan.hpp"
 
@@ -90,6 +92,48 @@ GraphView::GraphView(const Architecture& a, const Graph& graph) {
       selections.push_back(index < 0 ? TorchSelection{} : kinds[static_cast<std::size_t>(index)]);
   view = {graph.nodes.rows(), graph.cloth_nodes, graph.nodes.data(), static_cast<int>(sets.size()),
           sets.data(),        selections.data()};
+}
+
+// Derivatives with respect to the features that hold learned embeddings: of the nodes, and of each set with labels.
+struct FeatureGradients {
+  FeatureRows nodes;
+  std::vector<FeatureRows> sets;
+  std::vector<TorchFeatureGradient> wanted;  // points into those
+
+  FeatureGradients(const Architecture& a, const Graph& graph) : sets(graph.edge_sets.size()) {
+    if (a.features.type_columns + a.features.level_columns > 0) want(-1, graph.nodes, nodes);
+    for (std::size_t s = 0; s < sets.size(); ++s)
+      if (!graph.edge_sets[s].labels.empty()) want(static_cast<int>(s), graph.edge_sets[s].features, sets[s]);
+  }
+  FeatureGradients(const FeatureGradients&) = delete;
+
+ private:
+  void want(int set, const FeatureRows& features, FeatureRows& gradient) {
+    gradient.setZero(features.rows(), features.cols());
+    wanted.push_back({set, {gradient.data(), gradient.rows(), gradient.cols()}});
+  }
+};
+
+LatentRows latent_rows(const FeatureRows& rows) {
+  LatentRows copy(static_cast<int>(rows.rows()), static_cast<int>(rows.cols()));
+  for (Eigen::Index i = 0; i < rows.rows(); ++i)
+    Eigen::Map<Eigen::RowVectorXf>(copy.row(static_cast<int>(i)), rows.cols()) = rows.row(i);
+  return copy;
+}
+
+// The features are what the first layer sees, so that the layer in between is the identity.
+void add_embedding_gradients(const Architecture& a, const Graph& graph, const FeatureTables& tables,
+                             const FeatureGradients& features, FeatureTables& gradients) {
+  const auto identity = [](const FeatureRows& rows) { return FeatureRows::Identity(rows.cols(), rows.cols()); };
+  if (features.nodes.size() > 0)
+    add_node_gradients(a, graph, identity(features.nodes), tables, latent_rows(features.nodes), gradients);
+  for (std::size_t s = 0; s < features.sets.size(); ++s) {
+    const FeatureRows& rows = features.sets[s];
+    if (rows.size() == 0) continue;
+    std::vector<int> order(static_cast<std::size_t>(rows.rows()));
+    std::iota(order.begin(), order.end(), 0);
+    add_label_gradients(a, graph.edge_sets[s], order, identity(rows), tables, latent_rows(rows), gradients);
+  }
 }
 
 }  // namespace
@@ -188,15 +232,20 @@ FeatureRows TorchNetwork::run_forward(const Graph& graph) {
   return output;
 }
 
-void TorchNetwork::run_backward(const FeatureRows& d_output, WeightGradients& gradients) {
-  if (d_output.rows() != handle_->cloth_nodes || d_output.cols() != handle_->architecture.outputs)
+void TorchNetwork::run_backward(const Graph& graph, const FeatureTables& tables, const FeatureRows& d_output,
+                                WeightGradients& gradients) {
+  const Architecture& a = handle_->architecture;
+  if (d_output.rows() != handle_->cloth_nodes || d_output.rows() != graph.cloth_nodes || d_output.cols() != a.outputs)
     throw Error("a derivative is needed for each output of each cloth node of the last forward run", "libtorch", "");
-  check_weights(handle_->architecture, gradients, "gradients");
-  const std::vector<TorchArray> arrays = torch_arrays(handle_->architecture, gradients);
+  check_weights(a, gradients, "gradients");
+  const std::vector<TorchArray> arrays = torch_arrays(a, gradients);
+  const FeatureGradients features(a, graph);
   TorchReport report;
   handle_->check(
-      handle_->calls.backward(handle_->model, d_output.data(), arrays.data(), static_cast<int>(arrays.size()), &report),
+      handle_->calls.backward(handle_->model, d_output.data(), arrays.data(), static_cast<int>(arrays.size()),
+                              features.wanted.data(), static_cast<int>(features.wanted.size()), &report),
       report);
+  add_embedding_gradients(a, graph, tables, features, gradients.tables);
 }
 
 FeatureRows TorchNetwork::train(const Graph& graph, const FeatureRows& d_output, double learning_rate) {

@@ -20,7 +20,7 @@ struct TorchFacts {
 };
 
 // The same network, computed by libtorch: what the kernels are compared with, and what runs on a GPU where there is
-// one. It has the textbook form, but for first layers split per node. Embeddings get no gradients here.
+// one. It has the textbook form, but for first layers split per node. The same input gives the same bits, on a GPU too.
 class TorchNetwork {
  public:
   // `device`: auto, cpu or cuda. `threads`: 0 leaves libtorch's. Throws Error where there is no library at `library`,
@@ -35,10 +35,11 @@ class TorchNetwork {
   void get_weights(NetworkWeights&) const;  // all but embeddings and statistics, which stay
 
   FeatureRows infer(const Graph&);
-  // As run_forward, run_backward of training_network.hpp; several backward runs may follow a forward one.
+  // As run_forward, run_backward of training_network.hpp; several backward runs may follow a forward one. `tables` are
+  // those that the graph's features were normalised with.
   FeatureRows run_forward(const Graph&);
-  void run_backward(const FeatureRows& d_output, WeightGradients&);
-  // Forward, backward and a step of libtorch's own Adam; the output before the step.
+  void run_backward(const Graph&, const FeatureTables& tables, const FeatureRows& d_output, WeightGradients&);
+  // Forward, backward and a step of libtorch's own Adam; the output before the step. Embeddings stay.
   FeatureRows train(const Graph&, const FeatureRows& d_output, double learning_rate);
 
  private:

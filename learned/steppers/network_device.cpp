@@ -4,6 +4,13 @@
 
 namespace selvedge {
 
+std::vector<std::pair<std::string, NetworkDevice>> network_devices() {
+  return {{"cpu", NetworkDevice::cpu},
+          {"libtorch", NetworkDevice::libtorch},
+          {"cuda", NetworkDevice::cuda},
+          {"auto", NetworkDevice::automatic}};
+}
+
 std::unique_ptr<TorchNetwork> torch_network_for(NetworkDevice device, const Architecture& architecture,
                                                 const NetworkWeights& weights) {
   if (device == NetworkDevice::cpu) return nullptr;

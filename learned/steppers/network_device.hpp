@@ -2,6 +2,8 @@
 
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace selvedge {
 
@@ -9,13 +11,16 @@ struct Architecture;
 struct NetworkWeights;
 class TorchNetwork;
 
-// What computes a network in a roll-out.
+// What computes a network, in a roll-out or in training.
 enum class NetworkDevice {
   cpu,       // the program's own kernels
   libtorch,  // libtorch on the CPU: the code that a GPU runs, for machines without one
   cuda,      // libtorch on the first CUDA device
   automatic  // cuda where libtorch's part is beside the program and finds a device, else cpu
 };
+
+// The words for them in scene and training files.
+std::vector<std::pair<std::string, NetworkDevice>> network_devices();
 
 // The network by libtorch where `device` takes it; null: the kernels run. Throws Error where libtorch's part is not
 // beside the program or has no such device.

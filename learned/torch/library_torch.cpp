@@ -2,10 +2,13 @@
 #include <torch/torch.h>
 #include <xmmintrin.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "learned/gradients/torch_interface.hpp"
@@ -40,15 +43,27 @@ struct TorchStep {
   TorchPerceptron node;
 };
 
+// A graph as tensors.
+struct TorchGraph {
+  Tensor nodes;
+  std::vector<Tensor> features;  // of each set
+  struct Ends {
+    Tensor edge, receiver, sender;
+  };
+  std::vector<Ends> selections;
+};
+
 struct TorchModel {
   torch::Device device = torch::kCPU;
   std::int64_t width = 0;
-  std::vector<Tensor> parameters;  // in the order of the arrays
+  Tensor flat;                     // all weights, one behind the other
+  std::vector<Tensor> parameters;  // views of it, in the order of the arrays
   TorchPerceptron node_encoder, decoder;
   std::vector<TorchPerceptron> encoders;
   std::vector<TorchStep> steps;
   std::unique_ptr<torch::optim::Adam> adam;
-  Tensor output;  // of the last forward run that was to be kept
+  Tensor output;     // of the last forward run that was to be kept
+  TorchGraph graph;  // of the same
 };
 
 // Hands out the parameters in their order.
@@ -71,10 +86,52 @@ struct ParameterReader {
   }
 };
 
-Tensor copied(const TorchArray& array, const torch::Device& device) {
-  const std::vector<std::int64_t> shape =
-      array.columns == 0 ? std::vector<std::int64_t>{array.rows} : std::vector<std::int64_t>{array.rows, array.columns};
-  return torch::from_blob(array.data, shape).clone().to(device);
+// Small arrays that go to the device in one copy, one behind the other: a copy each would cost more than the network.
+template <class Number>
+class Parcel {
+ public:
+  void add(const Number* values, std::int64_t count) {
+    pieces_.emplace_back(values, count);
+    size_ += count;
+  }
+  // Where each piece lies there.
+  std::vector<Tensor> sent(const torch::Device& device) const {
+    const auto options = torch::TensorOptions(c10::CppTypeToScalarType<Number>::value).pinned_memory(device.is_cuda());
+    const Tensor host = torch::empty({size_}, options);
+    Number* to = host.data_ptr<Number>();
+    for (const auto& [values, count] : pieces_) to = std::copy_n(values, count, to);
+    const Tensor there = host.to(device);
+    std::vector<Tensor> parts;
+    std::int64_t at = 0;
+    for (const auto& [values, count] : pieces_) {
+      parts.push_back(there.narrow(0, at, count));
+      at += count;
+    }
+    return parts;
+  }
+
+ private:
+  std::vector<std::pair<const Number*, std::int64_t>> pieces_;
+  std::int64_t size_ = 0;
+};
+
+std::int64_t size_of(const TorchArray& array) { return array.rows * std::max<std::int64_t>(1, array.columns); }
+
+Tensor flat_weights(const TorchArray* arrays, int count, const torch::Device& device) {
+  std::vector<float> values;
+  for (int i = 0; i < count; ++i) values.insert(values.end(), arrays[i].data, arrays[i].data + size_of(arrays[i]));
+  return torch::from_blob(values.data(), {static_cast<std::int64_t>(values.size())}).clone().to(device);
+}
+
+void make_parameters(TorchModel& model, const TorchArray* arrays, int count) {
+  model.flat = flat_weights(arrays, count, model.device);
+  std::int64_t at = 0;
+  for (int i = 0; i < count; ++i) {
+    const TorchArray& array = arrays[i];
+    const Tensor view = model.flat.narrow(0, at, size_of(array));
+    model.parameters.push_back((array.columns == 0 ? view : view.view({array.rows, array.columns})).requires_grad_());
+    at += size_of(array);
+  }
 }
 
 void build(TorchModel& model, const TorchShape& shape) {
@@ -103,40 +160,47 @@ Tensor evaluate(const TorchPerceptron& p, const Tensor& x) {
   return behind_first(p, torch::addmm(p.bias[0], x, p.weight[0].t()));
 }
 
-// A graph as tensors.
-struct TorchGraph {
-  Tensor nodes;
-  std::vector<Tensor> features;  // of each set
-  struct Ends {
-    Tensor edge, receiver, sender;
-  };
-  std::vector<Ends> selections;
-};
-
-Tensor index_tensor(const std::int64_t* values, std::int64_t count, const torch::Device& device) {
-  return torch::from_blob(const_cast<std::int64_t*>(values), {count}, torch::kInt64).clone().to(device);
-}
-
+// Steps that take the same edges share their tensors.
 TorchGraph tensors_of(const TorchModel& model, const TorchGraphView& view) {
-  TorchGraph graph;
-  const auto rows = [&](const float* values, std::int64_t count, std::int64_t columns) {
-    return torch::from_blob(const_cast<float*>(values), {count, columns}).clone().to(model.device);
-  };
-  graph.nodes = rows(view.node_features, view.nodes, model.node_encoder.weight[0].size(1));
+  Parcel<float> floats;
+  floats.add(view.node_features, view.nodes * model.node_encoder.weight[0].size(1));
   for (int s = 0; s < view.sets; ++s)
-    graph.features.push_back(rows(view.edge_sets[s].features, view.edge_sets[s].edges, view.edge_sets[s].inputs));
+    floats.add(view.edge_sets[s].features, view.edge_sets[s].edges * view.edge_sets[s].inputs);
+  const std::vector<Tensor> values = floats.sent(model.device);
+
   std::size_t count = 0;
   for (const TorchStep& step : model.steps) count += step.edges.size();
+  std::vector<const TorchSelection*> different;
+  std::vector<std::size_t> kinds(count);
+  Parcel<std::int64_t> indices;
   for (std::size_t i = 0; i < count; ++i) {
     const TorchSelection& selection = view.selections[i];
-    TorchGraph::Ends ends;
-    if (selection.set >= 0) {
-      if (selection.all == 0) ends.edge = index_tensor(selection.edge, selection.edges, model.device);
-      ends.receiver = index_tensor(selection.receiver, selection.edges, model.device);
-      ends.sender = index_tensor(selection.sender, selection.edges, model.device);
-    }
-    graph.selections.push_back(std::move(ends));
+    const auto same = [&](const TorchSelection* other) {
+      return other->set == selection.set && other->receiver == selection.receiver;
+    };
+    kinds[i] = static_cast<std::size_t>(std::find_if(different.begin(), different.end(), same) - different.begin());
+    if (kinds[i] < different.size()) continue;
+    different.push_back(&selection);
+    if (selection.set < 0) continue;
+    for (const std::int64_t* list : {selection.edge, selection.receiver, selection.sender})
+      indices.add(list, selection.edges);
   }
+  const std::vector<Tensor> lists = indices.sent(model.device);
+  std::vector<TorchGraph::Ends> ends;
+  std::size_t next = 0;
+  for (const TorchSelection* selection : different) {
+    ends.emplace_back();
+    if (selection->set < 0) continue;
+    ends.back() = {lists[next], lists[next + 1], lists[next + 2]};
+    next += 3;
+  }
+
+  TorchGraph graph;
+  graph.nodes = values[0].view({view.nodes, -1});
+  for (int s = 0; s < view.sets; ++s)
+    graph.features.push_back(
+        values[static_cast<std::size_t>(s) + 1].view({view.edge_sets[s].edges, view.edge_sets[s].inputs}));
+  for (const std::size_t kind : kinds) graph.selections.push_back(ends[kind]);
   return graph;
 }
 
@@ -151,8 +215,7 @@ Tensor edge_values(const TorchModel& model, const TorchPerceptron& p, const Tens
   return behind_first(p, torch::addmm(p.bias[0], edges, weight.slice(1, 2 * w, 3 * w).t()) + ends_part);
 }
 
-Tensor run(const TorchModel& model, const TorchGraphView& view) {
-  const TorchGraph graph = tensors_of(model, view);
+Tensor run(const TorchModel& model, const TorchGraphView& view, const TorchGraph& graph) {
   Tensor nodes = evaluate(model.node_encoder, graph.nodes);
   std::vector<Tensor> edges(graph.features.size());
   for (std::size_t s = 0; s < edges.size(); ++s)
@@ -197,6 +260,15 @@ double gemm_speed(const torch::Device& device) {
   return 2.0 * 512 * 512 * 512 / best;
 }
 
+// The same graph and weights give the same bits, on a GPU too.
+void make_deterministic() {
+  setenv("CUBLAS_WORKSPACE_CONFIG", ":4096:8", 0);
+  at::globalContext().setDeterministicAlgorithms(true, false);
+#if TORCH_VERSION_MAJOR >= 2
+  at::globalContext().setDeterministicFillUninitializedMemory(false);
+#endif
+}
+
 void describe(const TorchModel& model, TorchReport& report) {
   put_text(report.device, sizeof report.device, model.device.str());
   put_text(report.library, sizeof report.library, TORCH_VERSION);
@@ -213,8 +285,9 @@ void* make(const TorchShape* shape, const TorchArray* arrays, int count, const c
     const std::string wanted = device;
     if (wanted == "cuda" && !torch::cuda::is_available()) throw std::runtime_error("this libtorch has no CUDA device");
     model->device = wanted != "cpu" && torch::cuda::is_available() ? torch::Device(torch::kCUDA, 0) : torch::kCPU;
+    if (model->device.is_cuda()) make_deterministic();
     if (threads > 0) at::set_num_threads(threads);
-    for (int i = 0; i < count; ++i) model->parameters.push_back(copied(arrays[i], model->device).requires_grad_(true));
+    make_parameters(*model, arrays, count);
     build(*model, *shape);
     describe(*model, *report);
   });
@@ -227,8 +300,7 @@ int set_weights(void* handle, const TorchArray* arrays, int count, TorchReport* 
   return guarded(report, [&] {
     TorchModel& model = *static_cast<TorchModel*>(handle);
     const torch::NoGradGuard guard;
-    for (int i = 0; i < count; ++i)
-      model.parameters.at(static_cast<std::size_t>(i)).copy_(copied(arrays[i], model.device));
+    model.flat.copy_(flat_weights(arrays, count, model.device));
   });
 }
 
@@ -239,8 +311,9 @@ void copy_out(const Tensor& tensor, float* to) {
 
 int get_weights(void* handle, const TorchArray* arrays, int count, TorchReport* report) {
   return guarded(report, [&] {
-    TorchModel& model = *static_cast<TorchModel*>(handle);
-    for (int i = 0; i < count; ++i) copy_out(model.parameters.at(static_cast<std::size_t>(i)), arrays[i].data);
+    const Tensor values = static_cast<TorchModel*>(handle)->flat.to(torch::kCPU);
+    const float* from = values.data_ptr<float>();
+    for (int i = 0; i < count; from += size_of(arrays[i]), ++i) std::copy_n(from, size_of(arrays[i]), arrays[i].data);
   });
 }
 
@@ -248,9 +321,15 @@ int forward(void* handle, const TorchGraphView* view, int keep, float* output, T
   return guarded(report, [&] {
     TorchModel& model = *static_cast<TorchModel*>(handle);
     const torch::AutoGradMode mode(keep != 0);
-    model.output = run(model, *view);
-    copy_out(model.output, output);
-    if (keep == 0) model.output = Tensor();
+    TorchGraph graph = tensors_of(model, *view);
+    if (keep != 0) {
+      graph.nodes.requires_grad_();
+      for (Tensor& features : graph.features) features.requires_grad_();
+    }
+    const Tensor made = run(model, *view, graph);
+    copy_out(made, output);
+    model.output = keep != 0 ? made : Tensor();
+    model.graph = keep != 0 ? std::move(graph) : TorchGraph();
   });
 }
 
@@ -258,17 +337,34 @@ Tensor derivative_of(const TorchModel& model, const float* d_output) {
   return torch::from_blob(const_cast<float*>(d_output), model.output.sizes()).clone().to(model.device);
 }
 
-int backward(void* handle, const float* d_output, const TorchArray* gradients, int count, TorchReport* report) {
+void add_to(const TorchArray& array, const float* values) {
+  for (std::int64_t k = 0; k < size_of(array); ++k) array.data[k] += values[k];
+}
+
+// Derivatives of tensors that the output does not depend on are zero. All of them come back in one copy.
+int backward(void* handle, const float* d_output, const TorchArray* gradients, int count,
+             const TorchFeatureGradient* features, int feature_count, TorchReport* report) {
   return guarded(report, [&] {
     TorchModel& model = *static_cast<TorchModel*>(handle);
     if (!model.output.defined()) throw std::runtime_error("going backward needs a forward run that was kept");
-    for (Tensor& parameter : model.parameters) parameter.mutable_grad() = Tensor();
-    model.output.backward(derivative_of(model, d_output), /*retain_graph=*/true);
-    for (int i = 0; i < count; ++i) {
-      const Tensor& gradient = model.parameters.at(static_cast<std::size_t>(i)).grad();
-      if (!gradient.defined()) continue;
-      const Tensor values = gradient.to(torch::kCPU).contiguous();
-      for (std::int64_t k = 0; k < values.numel(); ++k) gradients[i].data[k] += values.data_ptr<float>()[k];
+    std::vector<Tensor> inputs(model.parameters.begin(), model.parameters.begin() + count);
+    std::vector<TorchArray> arrays(gradients, gradients + count);
+    for (int k = 0; k < feature_count; ++k) {
+      const int set = features[k].set;
+      inputs.push_back(set < 0 ? model.graph.nodes : model.graph.features.at(static_cast<std::size_t>(set)));
+      arrays.push_back(features[k].array);
+    }
+    std::vector<Tensor> results = torch::autograd::grad({model.output}, inputs, {derivative_of(model, d_output)},
+                                                        /*retain_graph=*/true, /*create_graph=*/false,
+                                                        /*allow_unused=*/true);
+    for (std::size_t i = 0; i < results.size(); ++i)
+      results[i] =
+          results[i].defined() ? results[i].reshape({-1}) : torch::zeros({inputs[i].numel()}, model.flat.options());
+    const Tensor values = torch::cat(results).to(torch::kCPU);
+    const float* from = values.data_ptr<float>();
+    for (const TorchArray& array : arrays) {
+      add_to(array, from);
+      from += size_of(array);
     }
   });
 }
@@ -280,7 +376,7 @@ int train(void* handle, const TorchGraphView* view, const float* d_output, doubl
     if (!model.adam) model.adam = std::make_unique<torch::optim::Adam>(model.parameters, learning_rate);
     static_cast<torch::optim::AdamOptions&>(model.adam->param_groups()[0].options()).lr(learning_rate);
     model.adam->zero_grad();
-    model.output = run(model, *view);
+    model.output = run(model, *view, tensors_of(model, *view));
     copy_out(model.output, output);
     model.output.backward(derivative_of(model, d_output));
     model.adam->step();

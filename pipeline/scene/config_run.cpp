@@ -35,11 +35,7 @@ const Options<LearnedRun>& learned_options() {
             "the first frame begins with a pass in which the cloth falls to rest, as ContourCraft's training does; "
             "HOOD always has one"),
        choice(
-           "device", &O::device,
-           {{"cpu", NetworkDevice::cpu},
-            {"libtorch", NetworkDevice::libtorch},
-            {"cuda", NetworkDevice::cuda},
-            {"auto", NetworkDevice::automatic}},
+           "device", &O::device, network_devices(),
            "what computes the network. `cpu`: the program's kernels; `libtorch`: libtorch on the CPU (`make torch`); "
            "`cuda`: libtorch on a GPU; `auto`: `cuda` where there is one, else `cpu`")});
   return table;

@@ -216,6 +216,19 @@ void count_bad(Trainer& trainer, RollingState& state, const StepRecord& record) 
         "take a smaller learning rate, or go on from an earlier checkpoint with another seed");
 }
 
+FeatureRows forward(Trainer& trainer) {
+  return trainer.torch ? trainer.torch->run_forward(trainer.graph)
+                       : run_forward(trainer.network, trainer.graph, trainer.tape);
+}
+
+void backward(Trainer& trainer, const FeatureRows& d_output) {
+  set_zero(trainer.architecture, trainer.gradients);
+  if (trainer.torch)
+    trainer.torch->run_backward(trainer.graph, trainer.network.weights.tables, d_output, trainer.gradients);
+  else
+    run_backward(trainer.network, trainer.graph, trainer.tape, d_output, trainer.gradients);
+}
+
 // Forward, losses, backward and the optimiser; `next` is what the network made.
 void learn(Trainer& trainer, const FrameMaking& making, RollingState& state, StepRecord& record, NextCloth& next) {
   const TrainingScene& scene = *state.roll.scene;
@@ -223,7 +236,7 @@ void learn(Trainer& trainer, const FrameMaking& making, RollingState& state, Ste
     record.bad = state.found.refused;
     return;
   }
-  const FeatureRows output = run_forward(trainer.network, trainer.graph, trainer.tape);
+  const FeatureRows output = forward(trainer);
   next = integrate(scene.rest, state.now, making.features, trainer.network.weights.tables.output, output);
   const SeenPositions seen = seen_positions(scene.rest, state.now, making.features);
   Points gradient = Points::Zero(next.x.rows(), 3);
@@ -234,12 +247,11 @@ void learn(Trainer& trainer, const FrameMaking& making, RollingState& state, Ste
     record.bad = "a loss or its gradient is not finite";
     return;
   }
-  set_zero(trainer.architecture, trainer.gradients);
-  run_backward(trainer.network, trainer.graph, trainer.tape, d_output, trainer.gradients);
+  backward(trainer, d_output);
   record.adam = adam_step(trainer.architecture, adam_options(trainer), progress_of(trainer), trainer.gradients,
                           trainer.adam, trainer.network.weights);
   if (record.adam.taken)
-    lay_out(trainer.network);
+    place_network(trainer);
   else
     record.bad = "the gradient of the weights is not finite";
 }
@@ -284,9 +296,17 @@ std::unique_ptr<Trainer> make_trainer(const TrainingOptions& options) {
   auto trainer = make_empty_trainer(options);
   trainer->network = make_training_network(trainer->architecture, first_weights(options, trainer->architecture));
   warm_up(*trainer);
-  lay_out(trainer->network);
+  trainer->torch = torch_network_for(options.device, trainer->architecture, trainer->network.weights);
+  place_network(*trainer);
   for (int k = 0; k < rolls_ahead; ++k) ask_for_roll(*trainer);
   return trainer;
+}
+
+void place_network(Trainer& trainer) {
+  if (trainer.torch)
+    trainer.torch->set_weights(trainer.network.weights);
+  else
+    lay_out(trainer.network);
 }
 
 void set_guard(const TrainingOptions& options, RollingState& state) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "learned/gradients/adam.hpp"
+#include "learned/gradients/torch_network.hpp"
 #include "learned/gradients/training_network.hpp"
 #include "pipeline/training/roll_queue.hpp"
 #include "pipeline/training/rolling_state.hpp"
@@ -26,6 +27,7 @@ struct Trainer {
   TrainingOptions options;
   Architecture architecture;
   TrainingNetwork network;
+  std::unique_ptr<TorchNetwork> torch;  // computes `network` where the options name libtorch or a GPU; else null
   AdamState adam;
   FeatureSums<double> sums;
   RandomStream random;
@@ -58,6 +60,9 @@ Architecture trained_architecture(const TrainingOptions&);
 std::unique_ptr<Trainer> make_trainer(const TrainingOptions&);
 // Everything but weights, statistics and states: what a resumed run begins with.
 std::unique_ptr<Trainer> make_empty_trainer(const TrainingOptions&);
+
+// Hands changed weights to what computes the network.
+void place_network(Trainer&);
 
 double progress_of(const Trainer&);  // part of the run, 0 to 1
 

@@ -266,8 +266,14 @@ void read_counts(FieldsIn& in, Trainer& trainer, TrainingHistory& history) {
   history.best_step = long(h[2]);
 }
 
+// The device is left out: a run may go on with another.
+std::string configuration(TrainingOptions options) {
+  options.device = {};
+  return training_yaml(options);
+}
+
 void check_configuration(FieldsIn& in, const TrainingOptions& options) {
-  if (in.text("config") != training_yaml(options))
+  if (in.text("config") != configuration(options))
     throw Error("the checkpoint was made under another configuration", in.file.path().string(),
                 "resume with the same file and --set, or begin anew without --resume");
 }
@@ -278,7 +284,7 @@ void write_training_checkpoint(const std::filesystem::path& path, const Trainer&
                                const TrainingHistory& history) {
   h5::write_form(path, checkpoint_form, [&](const h5::File& file) {
     FieldsOut out{file};
-    out.text("config", training_yaml(trainer.options));
+    out.text("config", configuration(trainer.options));
     write_counts(out, trainer, history);
     out.floats("weights", all_weights(trainer.architecture, trainer.network.weights));
     visit_sums(trainer.sums, [&](const std::string& name, const DoubleAccumulators& sums) {
@@ -318,6 +324,7 @@ std::unique_ptr<Trainer> read_training_checkpoint(const std::filesystem::path& p
   read_pool(in, *trainer);
   if (fmt::format("{:016x}", in.sum) != file.read_text("checksum")) in.fail("its checksum is wrong: it is damaged");
   trainer->network = make_training_network(trainer->architecture, std::move(weights));
+  trainer->torch = torch_network_for(options.device, trainer->architecture, trainer->network.weights);
   return trainer;
 }
 

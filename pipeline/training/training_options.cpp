@@ -324,6 +324,9 @@ const Options<TrainingOptions>& training_options() {
        path("weights", &O::weights, "to start from, of an earlier stage; seen from this file"),
        integer("seed", &O::seed, not_negative, "of all that is random"),
        integer("steps", &O::steps, at_least_one, "of the optimiser, in all"),
+       choice("device", &O::device, network_devices(),
+              "what goes forward and backward through the network, as `learned.device` of a scene: the rest of a step "
+              "stays on the CPU; a run may be resumed with another"),
        section(&O::samples, sample_options(), ""), section(&O::pool, pool_options(), ""),
        section(&O::contact, training_contact_options(), ""), section(&O::space, space_options(), ""),
        section(&O::objective, objective_options(), ""), section(&O::optimiser, optimiser_options(), ""),

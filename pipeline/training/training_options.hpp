@@ -7,6 +7,7 @@
 
 #include "learned/graph/feature_options.hpp"
 #include "learned/losses/loss_garment.hpp"
+#include "learned/steppers/network_device.hpp"
 #include "pipeline/config/options.hpp"
 #include "pipeline/training/schedule.hpp"
 
@@ -105,7 +106,8 @@ struct TrainingOptions {
   double contour_force = 0;          // of contours in the force that the network is shown [N/m]
   std::string weights;               // of an earlier stage, to start from; empty: fresh ones
   std::uint64_t seed = 1;
-  int steps = 8700;  // of the optimiser
+  int steps = 8700;                           // of the optimiser
+  NetworkDevice device = NetworkDevice::cpu;  // that goes forward and backward
   SampleOptions samples;
   PoolOptions pool;
   ContactOptions contact;

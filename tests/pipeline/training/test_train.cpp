@@ -79,6 +79,33 @@ TEST_CASE("training: what is resumed goes on with the same bits", "[training]") 
   CHECK(error_of(folder.path / "checkpoint.h5", other).find("another configuration") != std::string::npos);
 }
 
+TEST_CASE("training: libtorch goes the kernels' steps, embeddings included, and a run may change the device",
+          "[.torch]") {
+  const Folder folder("train_device");
+  TrainingOptions options = few_steps();
+  auto ours = make_trainer(options);
+  const std::vector<float> first = weights_of(*ours);
+  options.device = NetworkDevice::automatic;
+  if (!make_trainer(options)->torch) options.device = NetworkDevice::libtorch;
+  auto theirs = make_trainer(options), again = make_trainer(options);
+  for (int k = 0; k < 4; ++k)
+    for (Trainer* trainer : {ours.get(), theirs.get(), again.get()}) train_step(*trainer);
+  const std::vector<float> a = weights_of(*ours), b = weights_of(*theirs);
+  CHECK(b == weights_of(*again));
+  double change = 0, apart = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    change += std::pow(a[k] - first[k], 2);
+    apart += std::pow(a[k] - b[k], 2);
+  }
+  CHECK(change > 0);
+  CHECK(std::sqrt(apart / change) < 0.02);  // Adam's first steps turn rounding of small gradients into their signs
+  CHECK(theirs->gradients.tables.node_type.cwiseAbs().maxCoeff() > 0);
+  write_training_checkpoint(folder.path / "checkpoint.h5", *theirs, {"a\n", "b\n", 0, 0, 0});
+  options.device = NetworkDevice::cpu;
+  TrainingHistory history;
+  CHECK(read_training_checkpoint(folder.path / "checkpoint.h5", options, history)->counts.step == 4);
+}
+
 TEST_CASE("training: damaged and foreign checkpoints are one error", "[training]") {
   const Folder folder("train_damage");
   TrainingOptions options = few_steps();
