@@ -1,13 +1,26 @@
 #include "collision/geometry/cell_grid.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace selvedge {
 
+namespace {
+
+double cube_count(const Vec3& extent, double cell) {
+  double count = 1;
+  for (int k = 0; k < 3; ++k) count *= std::floor(extent[k] / cell) + 1;
+  return count;
+}
+
+}  // namespace
+
 CellGrid::CellGrid(const Points& x, double cell_edge) : cell_(cell_edge) {
   if (x.rows() > 0) {
     lo_ = x.colwise().minCoeff().transpose();
-    for (int k = 0; k < 3; ++k) size_[k] = coordinate(x.col(k).maxCoeff(), k) + 1;
+    const Vec3 hi = x.colwise().maxCoeff().transpose();
+    while (cube_count(hi - lo_, cell_) > most_cubes) cell_ *= 2;
+    for (int k = 0; k < 3; ++k) size_[k] = coordinate(hi[k], k) + 1;
   }
   std::vector<int> cells(static_cast<std::size_t>(x.rows()));
   begin_.assign(static_cast<std::size_t>(cell(size_[0] - 1, size_[1] - 1, size_[2] - 1)) + 2, 0);
@@ -21,6 +34,8 @@ CellGrid::CellGrid(const Points& x, double cell_edge) : cell_(cell_edge) {
   for (int v = 0; v < x.rows(); ++v) point_[next[cells[v]]++] = v;
 }
 
-int CellGrid::coordinate(double at, int axis) const { return static_cast<int>(std::floor((at - lo_[axis]) / cell_)); }
+int CellGrid::coordinate(double at, int axis) const {
+  return static_cast<int>(std::clamp(std::floor((at - lo_[axis]) / cell_), -1e9, 1e9));
+}
 
 }  // namespace selvedge

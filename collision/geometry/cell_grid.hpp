@@ -11,8 +11,10 @@ namespace selvedge {
 // Points by the cubes of a grid that they lie in.
 class CellGrid {
  public:
-  // All points finite; `cell` is the cubes' edge [m].
+  // All points finite; `cell` is the cubes' edge [m]. It is doubled until the box of the points has at most
+  // `most_cubes`.
   CellGrid(const Points& x, double cell);
+  static constexpr int most_cubes = 1 << 24;
 
   // The points by the cubes that they lie in, those of a cube side by side.
   const std::vector<int>& order() const { return point_; }

@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "learned/gradients/torch_interface.hpp"
+#include "learned/torch/graph_torch.hpp"
 
 namespace selvedge {
 namespace {
@@ -41,16 +39,6 @@ struct TorchPerceptron {
 struct TorchStep {
   std::vector<TorchPerceptron> edges;
   TorchPerceptron node;
-};
-
-// A graph as tensors.
-struct TorchGraph {
-  Tensor nodes;
-  std::vector<Tensor> features;  // of each set
-  struct Ends {
-    Tensor edge, receiver, sender;
-  };
-  std::vector<Ends> selections;
 };
 
 struct TorchModel {
@@ -84,35 +72,6 @@ struct ParameterReader {
     }
     return p;
   }
-};
-
-// Small arrays that go to the device in one copy, one behind the other: a copy each would cost more than the network.
-template <class Number>
-class Parcel {
- public:
-  void add(const Number* values, std::int64_t count) {
-    pieces_.emplace_back(values, count);
-    size_ += count;
-  }
-  // Where each piece lies there.
-  std::vector<Tensor> sent(const torch::Device& device) const {
-    const auto options = torch::TensorOptions(c10::CppTypeToScalarType<Number>::value).pinned_memory(device.is_cuda());
-    const Tensor host = torch::empty({size_}, options);
-    Number* to = host.data_ptr<Number>();
-    for (const auto& [values, count] : pieces_) to = std::copy_n(values, count, to);
-    const Tensor there = host.to(device);
-    std::vector<Tensor> parts;
-    std::int64_t at = 0;
-    for (const auto& [values, count] : pieces_) {
-      parts.push_back(there.narrow(0, at, count));
-      at += count;
-    }
-    return parts;
-  }
-
- private:
-  std::vector<std::pair<const Number*, std::int64_t>> pieces_;
-  std::int64_t size_ = 0;
 };
 
 std::int64_t size_of(const TorchArray& array) { return array.rows * std::max<std::int64_t>(1, array.columns); }
@@ -160,59 +119,51 @@ Tensor evaluate(const TorchPerceptron& p, const Tensor& x) {
   return behind_first(p, torch::addmm(p.bias[0], x, p.weight[0].t()));
 }
 
-// Steps that take the same edges share their tensors.
 TorchGraph tensors_of(const TorchModel& model, const TorchGraphView& view) {
-  Parcel<float> floats;
-  floats.add(view.node_features, view.nodes * model.node_encoder.weight[0].size(1));
-  for (int s = 0; s < view.sets; ++s)
-    floats.add(view.edge_sets[s].features, view.edge_sets[s].edges * view.edge_sets[s].inputs);
-  const std::vector<Tensor> values = floats.sent(model.device);
-
-  std::size_t count = 0;
-  for (const TorchStep& step : model.steps) count += step.edges.size();
-  std::vector<const TorchSelection*> different;
-  std::vector<std::size_t> kinds(count);
-  Parcel<std::int64_t> indices;
-  for (std::size_t i = 0; i < count; ++i) {
-    const TorchSelection& selection = view.selections[i];
-    const auto same = [&](const TorchSelection* other) {
-      return other->set == selection.set && other->receiver == selection.receiver;
-    };
-    kinds[i] = static_cast<std::size_t>(std::find_if(different.begin(), different.end(), same) - different.begin());
-    if (kinds[i] < different.size()) continue;
-    different.push_back(&selection);
-    if (selection.set < 0) continue;
-    for (const std::int64_t* list : {selection.edge, selection.receiver, selection.sender})
-      indices.add(list, selection.edges);
-  }
-  const std::vector<Tensor> lists = indices.sent(model.device);
-  std::vector<TorchGraph::Ends> ends;
-  std::size_t next = 0;
-  for (const TorchSelection* selection : different) {
-    ends.emplace_back();
-    if (selection->set < 0) continue;
-    ends.back() = {lists[next], lists[next + 1], lists[next + 2]};
-    next += 3;
-  }
-
-  TorchGraph graph;
-  graph.nodes = values[0].view({view.nodes, -1});
-  for (int s = 0; s < view.sets; ++s)
-    graph.features.push_back(
-        values[static_cast<std::size_t>(s) + 1].view({view.edge_sets[s].edges, view.edge_sets[s].inputs}));
-  for (const std::size_t kind : kinds) graph.selections.push_back(ends[kind]);
-  return graph;
+  std::size_t keys = 0;
+  for (const TorchStep& step : model.steps) keys += step.edges.size();
+  return tensors_of(view, model.node_encoder.weight[0].size(1), keys, model.device);
 }
 
+// Rows of edges summed up node by node, in the order of the edges: the same bits each time, unlike index_add on a GPU.
+Tensor summed(const Tensor& rows, const Tensor& count, const Tensor& edge) {
+  return at::segment_reduce(rows.index_select(0, edge), "sum", count, {}, {}, 0, /*unsafe=*/true, 0.0);
+}
+
+// Rows of nodes at the ends of edges; its derivative is `summed`.
+struct AtEnds : torch::autograd::Function<AtEnds> {
+  static Tensor forward(torch::autograd::AutogradContext* context, const Tensor& rows, const TorchEnds& ends) {
+    context->save_for_backward({ends.count, ends.edge});
+    return rows.index_select(0, ends.node);
+  }
+  static torch::autograd::tensor_list backward(torch::autograd::AutogradContext* context,
+                                               const torch::autograd::tensor_list& gradient) {
+    const auto saved = context->get_saved_variables();
+    return {summed(gradient[0], saved[0], saved[1]), Tensor()};
+  }
+};
+
+// `summed`, whose derivative is what `AtEnds` gives.
+struct SumAtEnds : torch::autograd::Function<SumAtEnds> {
+  static Tensor forward(torch::autograd::AutogradContext* context, const Tensor& rows, const TorchEnds& ends) {
+    context->save_for_backward({ends.node});
+    return summed(rows, ends.count, ends.edge);
+  }
+  static torch::autograd::tensor_list backward(torch::autograd::AutogradContext* context,
+                                               const torch::autograd::tensor_list& gradient) {
+    return {gradient[0].index_select(0, context->get_saved_variables()[0]), Tensor()};
+  }
+};
+
 // New values of the edges of a selection. The first layer's products with the nodes are made once a node.
-Tensor edge_values(const TorchModel& model, const TorchPerceptron& p, const Tensor& nodes, const Tensor& edges,
-                   const TorchGraph::Ends& ends) {
+Tensor edge_values(const TorchModel& model, const TorchPerceptron& p, const Tensor& nodes, const Tensor& latents,
+                   const TorchEdges& edges) {
   const std::int64_t w = model.width;
   const Tensor& weight = p.weight[0];
-  const Tensor to_receiver = nodes.matmul(weight.slice(1, 0, w).t());
+  const Tensor to_receiver = torch::addmm(p.bias[0], nodes, weight.slice(1, 0, w).t());
   const Tensor to_sender = nodes.matmul(weight.slice(1, w, 2 * w).t());
-  const Tensor ends_part = to_receiver.index_select(0, ends.receiver) + to_sender.index_select(0, ends.sender);
-  return behind_first(p, torch::addmm(p.bias[0], edges, weight.slice(1, 2 * w, 3 * w).t()) + ends_part);
+  const Tensor ends = AtEnds::apply(to_receiver, edges.receivers) + AtEnds::apply(to_sender, edges.senders);
+  return behind_first(p, torch::addmm(ends, latents, weight.slice(1, 2 * w, 3 * w).t()));
 }
 
 Tensor run(const TorchModel& model, const TorchGraphView& view, const TorchGraph& graph) {
@@ -225,17 +176,18 @@ Tensor run(const TorchModel& model, const TorchGraphView& view, const TorchGraph
   for (const TorchStep& step : model.steps) {
     std::vector<Tensor> inputs{nodes};
     for (std::size_t k = 0; k < step.edges.size(); ++k, ++at) {
-      Tensor sums = torch::zeros({view.nodes, model.width}, nodes.options());
       const TorchSelection& selection = view.selections[at];
-      if (selection.set >= 0) {
-        const TorchGraph::Ends& ends = graph.selections[at];
-        Tensor& latents = edges[static_cast<std::size_t>(selection.set)];
-        const Tensor taken = selection.all != 0 ? latents : latents.index_select(0, ends.edge);
-        const Tensor values = edge_values(model, step.edges[k], nodes, taken, ends);
-        sums = sums.index_add(0, ends.receiver, values);
-        latents = selection.all != 0 ? latents + values : latents.index_add(0, ends.edge, values);
+      if (selection.set < 0) {
+        inputs.push_back(torch::zeros_like(nodes));
+        continue;
       }
-      inputs.push_back(sums);
+      const TorchEdges& chosen = graph.selections[at];
+      Tensor& latents = edges[static_cast<std::size_t>(selection.set)];
+      const bool all = !chosen.taken.defined();
+      const Tensor values =
+          edge_values(model, step.edges[k], nodes, all ? latents : latents.index_select(0, chosen.taken), chosen);
+      inputs.push_back(SumAtEnds::apply(values, chosen.receivers));
+      latents = all ? latents + values : latents.index_add(0, chosen.taken, values);
     }
     nodes = nodes + evaluate(step.node, torch::cat(inputs, 1));
   }
@@ -260,15 +212,6 @@ double gemm_speed(const torch::Device& device) {
   return 2.0 * 512 * 512 * 512 / best;
 }
 
-// The same graph and weights give the same bits, on a GPU too.
-void make_deterministic() {
-  setenv("CUBLAS_WORKSPACE_CONFIG", ":4096:8", 0);
-  at::globalContext().setDeterministicAlgorithms(true, false);
-#if TORCH_VERSION_MAJOR >= 2
-  at::globalContext().setDeterministicFillUninitializedMemory(false);
-#endif
-}
-
 void describe(const TorchModel& model, TorchReport& report) {
   put_text(report.device, sizeof report.device, model.device.str());
   put_text(report.library, sizeof report.library, TORCH_VERSION);
@@ -285,7 +228,6 @@ void* make(const TorchShape* shape, const TorchArray* arrays, int count, const c
     const std::string wanted = device;
     if (wanted == "cuda" && !torch::cuda::is_available()) throw std::runtime_error("this libtorch has no CUDA device");
     model->device = wanted != "cpu" && torch::cuda::is_available() ? torch::Device(torch::kCUDA, 0) : torch::kCPU;
-    if (model->device.is_cuda()) make_deterministic();
     if (threads > 0) at::set_num_threads(threads);
     make_parameters(*model, arrays, count);
     build(*model, *shape);

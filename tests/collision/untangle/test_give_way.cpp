@@ -260,4 +260,24 @@ TEST_CASE("a grid of cells misses no neighbour", "[give_way]") {
   CHECK_NOTHROW(CellGrid(Points(0, 3), 1).for_each_near(Vec3::Zero(), 1, [](int) { FAIL("none is there"); }));
 }
 
+TEST_CASE("grid: a point that is thrown far away makes the cubes larger, and near points are still found") {
+  Points x = Points::Random(100, 3);
+  for (const double far : {1e4, 1e9, -1e30}) {
+    x(17, 1) = far;
+    const CellGrid grid(x, 0.01);
+    CHECK(grid.cubes() <= CellGrid::most_cubes);
+    for (int a = 0; a < x.rows(); ++a) {
+      std::vector<int> found;
+      grid.for_each_near(x.row(a).transpose(), 0.5, [&](int b) {
+        if ((x.row(a) - x.row(b)).norm() < 0.5) found.push_back(b);
+      });
+      std::sort(found.begin(), found.end());
+      std::vector<int> near;
+      for (int b = 0; b < x.rows(); ++b)
+        if ((x.row(a) - x.row(b)).norm() < 0.5) near.push_back(b);
+      CHECK(found == near);
+    }
+  }
+}
+
 }  // namespace selvedge::test_give_way

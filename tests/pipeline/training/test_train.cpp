@@ -79,8 +79,7 @@ TEST_CASE("training: what is resumed goes on with the same bits", "[training]") 
   CHECK(error_of(folder.path / "checkpoint.h5", other).find("another configuration") != std::string::npos);
 }
 
-TEST_CASE("training: libtorch goes the kernels' steps, embeddings included, and a run may change the device",
-          "[.torch]") {
+TEST_CASE("training: libtorch goes the steps of the kernels, and a run may change the device", "[.torch]") {
   const Folder folder("train_device");
   TrainingOptions options = few_steps();
   auto ours = make_trainer(options);
@@ -99,7 +98,6 @@ TEST_CASE("training: libtorch goes the kernels' steps, embeddings included, and 
   }
   CHECK(change > 0);
   CHECK(std::sqrt(apart / change) < 0.02);  // Adam's first steps turn rounding of small gradients into their signs
-  CHECK(theirs->gradients.tables.node_type.cwiseAbs().maxCoeff() > 0);
   write_training_checkpoint(folder.path / "checkpoint.h5", *theirs, {"a\n", "b\n", 0, 0, 0});
   options.device = NetworkDevice::cpu;
   TrainingHistory history;
