@@ -20,7 +20,7 @@ struct TorchFacts {
 };
 
 // The same network, computed by libtorch: what the kernels are compared with, and what runs on a GPU where there is
-// one. It has the textbook form, but for first layers split per node. The same input gives the same bits, on a GPU too.
+// one. It has the textbook form, but for first layers split per node. All sums have a fixed order, on a GPU too.
 class TorchNetwork {
  public:
   // `device`: auto, cpu or cuda. `threads`: 0 leaves libtorch's. Throws Error where there is no library at `library`,
