@@ -6,6 +6,14 @@
 
 namespace selvedge {
 
+bool has_openmp() {
+#ifdef _OPENMP
+  return true;
+#else
+  return false;
+#endif
+}
+
 int most_threads() {
 #ifdef _OPENMP
   return omp_get_max_threads();

@@ -7,6 +7,8 @@ namespace selvedge {
 // Calls body(i) for 0 <= i < count on all threads, `grain` calls at a time, in no order. The body must not throw.
 void parallel_for(int count, int grain, const std::function<void(int)>& body);
 
+bool has_openmp();  // whether the build has it
+
 // Most threads that a parallel loop uses here: 1 where the build has no OpenMP.
 int most_threads();
 

@@ -41,14 +41,6 @@ std::string waiting() {
   return "as the OpenMP library does by itself";
 }
 
-bool has_openmp() {
-#ifdef _OPENMP
-  return true;
-#else
-  return false;
-#endif
-}
-
 std::vector<std::pair<std::string, std::string>> facts() {
   return {{"version", program_version()},
           {"compiler", __VERSION__},
