@@ -222,6 +222,7 @@ CompareRow row_of(const SceneWork& work, const std::string& setting, std::size_t
   }
   const auto frames = static_cast<double>(first.seconds.size());
   if (!first.trouble.empty()) row.trouble = first.trouble;
+  row.measures.insert(first.measures.begin(), first.measures.end());
   if (seconds.empty()) return row;
   row.ms = 1000 * median(seconds);
   row.ms_spread = *std::ranges::max_element(medians) - *std::ranges::min_element(medians);
@@ -231,7 +232,6 @@ CompareRow row_of(const SceneWork& work, const std::string& setting, std::size_t
   row.linear = static_cast<double>(first.linear) / frames;
   row.pairs = first.pairs;
   row.passed_through = first.passed_through;
-  row.measures.insert(first.measures.begin(), first.measures.end());
   row.pairs_by_frame = first.pairs_by_frame;
   for (const auto& [phase, ms] : first.phases) row.measures["ms_" + phase] = ms;
   return row;
