@@ -174,4 +174,20 @@ std::vector<PlanLine> ignored_lines(const Scene& scene, const StepperTraits& tra
   return lines;
 }
 
+Scene without_ignored(Scene scene, const StepperTraits& traits) {
+  const auto ignored = [&](const std::string& force) {
+    return std::ranges::find(traits.ignores, force) != traits.ignores.end();
+  };
+  if (ignored("springs")) scene.springs.clear();
+  if (ignored("wind")) scene.wind.on = false;
+  for (Cloth& cloth : scene.cloths) {
+    Material& m = cloth.material;
+    if (ignored("membrane")) m.lame_mu = m.lame_lambda = m.warp = m.weft = m.shear = 0;
+    if (ignored(m.bending_model == BendingModel::curvature ? "bending (curvature)" : "bending (hinge)")) m.bending = 0;
+    if (ignored("stiffness damping")) m.stiffness_damping = 0;
+    if (ignored("mass damping")) m.mass_damping = 0;
+  }
+  return scene;
+}
+
 }  // namespace selvedge

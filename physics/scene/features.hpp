@@ -34,4 +34,7 @@ std::vector<PlanLine> plan_lines(const Scene&);
 // What the scene has and a stepper with these traits ignores: lines that are not in.
 std::vector<PlanLine> ignored_lines(const Scene&, const StepperTraits&);
 
+// The scene as such a stepper has it: without the forces that it ignores.
+Scene without_ignored(Scene, const StepperTraits&);
+
 }  // namespace selvedge

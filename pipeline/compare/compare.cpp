@@ -70,9 +70,9 @@ SceneWork open_scene(const CompareRequest& request, const Comparison& comparison
       continue;
     }
     Setup setup = read_compared(scene, request.short_form, setting.overrides, comparison.kinds);
-    work.keys.settings.push_back(fmt::format("{} {:016x} {:016x} {} {}", program, hash_of(setup.config),
-                                             hash_of(whole_file(setting.weights)), Eigen::nbThreads(),
-                                             comparison.judged_frames));
+    work.keys.settings.push_back(fmt::format(
+        "{} {:016x} {:016x} {} {} {} {}", program, hash_of(setup.config), hash_of(whole_file(setting.weights)),
+        Eigen::nbThreads(), comparison.judged_frames, comparison.limits.pairs, comparison.limits.seconds));
     try {
       make_stepper(setup);
     } catch (const Error& error) {
@@ -129,7 +129,7 @@ bool find_errors(const CompareRequest& request, const Comparison& comparison, Sc
         work.setups[s] ? read_errors(whole_file(file), key) : CompareErrors{work.trouble[s]};
     if (!errors) {
       if (!need_reference()) return false;
-      errors = errors_of(*work.setups[s], *reference, request.stop);
+      errors = errors_of(*work.setups[s], *reference, comparison.limits, request.stop);
       if (!errors) return false;
       write_file(file, part_json(*errors, key));
       say(request, fmt::format("{}: errors of {}: {:.2g} m from the reference{}{}", work.scene->name,
@@ -179,6 +179,7 @@ bool time_settings(const CompareRequest& request, const Comparison& comparison, 
     if (!run) {
       TimedRunOptions options;
       options.judged_frames = comparison.judged_frames;
+      options.limits = comparison.limits;
       const bool judged = !comparison.evaluation.baseline.empty();
       if (repeat == 0 && (work.keeps || judged)) options.trajectory = trajectory;
       run = timed_run(*work.setups[s], options, request.stop);
@@ -221,6 +222,8 @@ CompareRow row_of(const SceneWork& work, const std::string& setting, std::size_t
   }
   const auto frames = static_cast<double>(first.seconds.size());
   if (!first.trouble.empty()) row.trouble = first.trouble;
+  row.measures.insert(first.measures.begin(), first.measures.end());
+  if (seconds.empty()) return row;
   row.ms = 1000 * median(seconds);
   row.ms_spread = *std::ranges::max_element(medians) - *std::ranges::min_element(medians);
   row.dt = frames / work.setups[s]->run.fps / static_cast<double>(first.substeps);
@@ -229,10 +232,15 @@ CompareRow row_of(const SceneWork& work, const std::string& setting, std::size_t
   row.linear = static_cast<double>(first.linear) / frames;
   row.pairs = first.pairs;
   row.passed_through = first.passed_through;
-  row.measures.insert(first.measures.begin(), first.measures.end());
   row.pairs_by_frame = first.pairs_by_frame;
   for (const auto& [phase, ms] : first.phases) row.measures["ms_" + phase] = ms;
   return row;
+}
+
+// No step was rejected, and no limit ended the run.
+bool came_to_its_end(const CompareRow& row) {
+  const auto finished = row.measures.find("finished");
+  return finished == row.measures.end() || finished->second == 1;
 }
 
 // A hybrid row that hardly uses its proposals is another name for the parent of the hybrid.
@@ -240,6 +248,11 @@ bool stands_for_itself(const CompareRow& row) {
   constexpr double least_share = 0.3;
   const auto share = row.measures.find("proposal_share");
   return share == row.measures.end() || share->second >= least_share;
+}
+
+bool may_be_ranked(const CompareRow& row) {
+  return std::isfinite(row.temporal) && std::isfinite(row.ms) && is_clean(row) && came_to_its_end(row) &&
+         stands_for_itself(row);
 }
 
 // What may be said of a row's error: no less than the floor.
@@ -272,12 +285,9 @@ void write_results(const CompareRequest& request, const Comparison& comparison, 
 
 void rank(std::vector<CompareRow>& rows) {
   for (CompareRow& row : rows) {
-    const bool complete =
-        std::isfinite(row.temporal) && std::isfinite(row.ms) && is_clean(row) && stands_for_itself(row);
-    row.ranked = complete && row.temporal > row.floor;
-    row.front = complete && std::none_of(rows.begin(), rows.end(), [&](const CompareRow& other) {
-                  return other.scene == row.scene && std::isfinite(other.temporal) && is_clean(other) &&
-                         stands_for_itself(other) && other.ms < row.ms &&
+    row.ranked = may_be_ranked(row) && row.temporal > row.floor;
+    row.front = may_be_ranked(row) && std::none_of(rows.begin(), rows.end(), [&](const CompareRow& other) {
+                  return other.scene == row.scene && may_be_ranked(other) && other.ms < row.ms &&
                          known_error(other) <= known_error(row) + row.floor;
                 });
   }

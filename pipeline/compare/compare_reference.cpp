@@ -39,17 +39,19 @@ struct Flight {
 };
 
 Flight fly(const Setup& setup, State from, int frames, const Stop& stop,
-           const std::function<void(const State&)>& observe = {}) {
+           const std::function<void(const State&)>& observe = {}, RowWatch* row = nullptr) {
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
   Flight flight;
   flight.end = std::move(from);
-  flight.last = simulate(*stepper, setup.drive_at, 1 / setup.run.fps, flight.end.frame + frames, flight.end,
-                         [&](const FrameEvent& event) {
-                           if (flight.first.status == StepStatus::not_run) flight.first = event.report;
-                           if (observe && event.report.status == StepStatus::accepted) observe(event.state);
-                           flight.stopped = stop && stop();
-                           return !flight.stopped;
-                         });
+  flight.last = simulate(
+      *stepper, setup.drive_at, 1 / setup.run.fps, flight.end.frame + frames, flight.end,
+      [&](const FrameEvent& event) {
+        if (flight.first.status == StepStatus::not_run) flight.first = event.report;
+        if (observe && event.report.status == StepStatus::accepted) observe(event.state);
+        flight.stopped = stop && stop();
+        return !flight.stopped && (!row || row->goes_on(event.report));
+      },
+      row ? row->stop_flag() : StopFlag());
   return flight;
 }
 
@@ -178,16 +180,24 @@ std::optional<CompareReference> make_reference(const Comparison& comparison, con
   return reference;
 }
 
-std::optional<CompareErrors> errors_of(const Setup& setup, const CompareReference& reference, const Stop& stop) {
+std::optional<CompareErrors> errors_of(const Setup& setup, const CompareReference& reference, const RowLimits& limits,
+                                       const Stop& stop) {
   CompareErrors errors;
+  RowWatch row(limits, static_cast<int>(setup.scene.surface.triangles.rows()));
   Mean temporal, temporal_one, algebraic_one, algebraic_end;
   double l2 = 0, relative = 0;
   for (const CommonState& state : reference.states) {
     Points next;
-    const Flight flight = fly(setup, state.from, reference.floor.horizon, stop, [&](const State& at) {
+    const int horizon = reference.floor.horizon;
+    const auto keep_next = [&](const State& at) {
       if (at.frame == state.from.frame + 1) next = at.x;
-    });
+    };
+    const Flight flight = fly(setup, state.from, horizon, stop, keep_next, &row);
     if (flight.stopped) return {};
+    if (std::string why = row.trouble(flight.end.frame - state.from.frame, horizon); !why.empty()) {
+      errors.trouble = "from a common state: " + why;
+      return errors;
+    }
     if (!flight.arrived()) {
       errors.trouble = fmt::format("rejects a step after frame {}", flight.end.frame);
       return errors;

@@ -39,8 +39,8 @@ using Stop = std::function<bool()>;  // asked after every frame; may be empty
 // Throws Error where the reference itself fails, or the run is shorter than the horizon.
 std::optional<CompareReference> make_reference(const Comparison&, const CompareScene&, bool short_form, const Stop&);
 
-// The same numbers every time. Absent: stopped.
-std::optional<CompareErrors> errors_of(const Setup&, const CompareReference&, const Stop&);
+// The same numbers every time, unless time ends it. Absent: stopped.
+std::optional<CompareErrors> errors_of(const Setup&, const CompareReference&, const RowLimits&, const Stop&);
 
 // Energy of a state [J].
 double energy_of(const Setup&, const State&);

@@ -119,15 +119,19 @@ std::optional<CompareRun> timed_run(const Setup& setup, const TimedRunOptions& o
   State state = setup.initial;
   bool stopped = false;
   RunWatch watch(setup, run, options, stepper->traits());
-  const StepReport last =
-      simulate(*stepper, setup.drive_at, 1 / setup.run.fps, setup.run.frames, state, [&](const FrameEvent& event) {
+  RowWatch row(options.limits, static_cast<int>(setup.scene.surface.triangles.rows()));
+  const StepReport last = simulate(
+      *stepper, setup.drive_at, 1 / setup.run.fps, setup.run.frames, state,
+      [&](const FrameEvent& event) {
         watch(event);
         stopped = stop && stop();
-        return !stopped;
-      });
+        return !stopped && row.goes_on(event.report);
+      },
+      row.stop_flag());
   if (stopped) return {};
   if (watch.writer) watch.writer->close();
-  if (last.status != StepStatus::accepted)
+  run.trouble = row.trouble(state.frame, setup.run.frames);
+  if (run.trouble.empty() && last.status != StepStatus::accepted)
     run.trouble = fmt::format("rejects a step after frame {} ({})", state.frame,
                               reason_names().at(static_cast<std::size_t>(last.reason)));
   const auto energy = [&](const State& at) {
@@ -140,7 +144,7 @@ std::optional<CompareRun> timed_run(const Setup& setup, const TimedRunOptions& o
     run.pairs_by_frame = watch.measures->pairs_by_frame();
   }
   note_verdicts(watch.verdicts, run);
-  run.measures["finished"] = last.status == StepStatus::accepted ? 1 : 0;
+  run.measures["finished"] = run.trouble.empty() ? 1 : 0;
   for (const auto& [phase, times] : watch.phases)
     if (const double middle = median(times); middle > 0) run.phases[phase] = middle;
   return run;

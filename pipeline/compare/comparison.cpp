@@ -74,6 +74,19 @@ const Options<EvaluationOptions>& evaluation_options() {
   return table;
 }
 
+const Options<RowLimits>& row_limit_options() {
+  using O = RowLimits;
+  static const Options<O> table(
+      "limits", "When a row ends before its last frame. It stays in table and plot, marked, with what was measured.",
+      {integer("pairs", &O::pairs, not_negative,
+               "intersecting pairs of cloth, a triangle, at the end of a frame; 0: any number"),
+       number(
+           "seconds", &O::seconds, Unit::time, not_negative,
+           "of a run, measuring included, and of a row's frames from the common states; 0: any time. Where it ends a "
+           "row depends on the machine")});
+  return table;
+}
+
 const Options<Comparison>& comparison_options() {
   using O = Comparison;
   static const Options<O> table(
@@ -82,6 +95,7 @@ const Options<Comparison>& comparison_options() {
        sections("scenes", compared_scene_options().section, "[]", "at least one, or sequences, or drapes"),
        sections("drapes", compared_drapes_options().section, "[]", "trainings for the tables of the repulsive layer"),
        section(&O::sequences, sequence_options(), ""), section(&O::evaluation, evaluation_options(), ""),
+       section(&O::limits, row_limit_options(), ""),
        text("weights_folder", &O::weights_folder, "of the settings' weights, seen from this file"),
        integer("keep_runs", &O::keep_runs, not_negative,
                "of how many scenes the trajectories of the rows' first repeats are kept, with a page that plays them"),

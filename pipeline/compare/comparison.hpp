@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/compare/row_limits.hpp"
 #include "pipeline/scene/kinds.hpp"
 
 namespace selvedge {
@@ -68,6 +69,7 @@ struct Comparison {
   Kinds kinds = known_kinds();         // of steppers
   SequenceOptions sequences;
   EvaluationOptions evaluation;
+  RowLimits limits;
   std::string weights_folder;  // seen from the file
   int keep_runs = 0;  // of so many scenes, the trajectory of each row's first repeat and a page that plays them
   int repeats = 3;

@@ -114,7 +114,7 @@ std::optional<StabilityRow> run_one(const StabilityRequest& request, const Stabi
     row.failures = {error.what()};
     return row;
   }
-  StabilityWatch watch(setup);
+  StabilityWatch watch(setup, stepper->traits());
   RunRequest to_run;
   to_run.out = folder;
   to_run.checkpoint_seconds = 1e9;

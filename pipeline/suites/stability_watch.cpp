@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/scene/features.hpp"
 #include "pipeline/scene/setup.hpp"
 
 namespace selvedge {
@@ -14,15 +15,19 @@ long count_nonfinite(const Points& points) { return points.size() - points.array
 
 }  // namespace
 
-StabilityWatch::StabilityWatch(const Setup& setup)
-    : setup_(setup), bound_(setup.scene), terms_(energy_terms(setup.scene)), before_(setup.initial) {
+StabilityWatch::StabilityWatch(const Setup& setup, const StepperTraits& stepper)
+    : setup_(setup),
+      scene_(without_ignored(setup.scene, stepper)),
+      bound_(scene_),
+      terms_(energy_terms(scene_)),
+      before_(setup.initial) {
   const Vec3 gravity = setup.drive_at(0).acceleration;
   lowest_ = energy(before_, gravity);
 }
 
 // Total energy; notes the largest without gravity.
 double StabilityWatch::energy(const State& state, const Vec3& acceleration) {
-  const Energies e = energies(setup_.scene, terms_, state.x, state.v, acceleration);
+  const Energies e = energies(scene_, terms_, state.x, state.v, acceleration);
   largest_ = std::max(largest_, e.kinetic + e.membrane + e.bending);
   return e.total();
 }

@@ -7,10 +7,10 @@ namespace selvedge {
 
 struct Setup;
 
-// Follows a run and keeps the books of its energy.
+// Follows a run and keeps the books of its energy, without the forces that its stepper ignores.
 class StabilityWatch {
  public:
-  explicit StabilityWatch(const Setup&);
+  StabilityWatch(const Setup&, const StepperTraits&);
   void operator()(const FrameEvent&);
   void write(StabilityRow&) const;  // all that was seen
 
@@ -19,6 +19,7 @@ class StabilityWatch {
   void count_iterations(const StepReport&);
 
   const Setup& setup_;
+  Scene scene_;  // as the stepper has it
   WorkBound bound_;
   EnergyTerms terms_;
   State before_;

@@ -119,4 +119,25 @@ TEST_CASE("plan: what a stepper ignores has a line where the scene has it, and n
   CHECK_FALSE((lines[0].in || lines[1].in));
 }
 
+TEST_CASE("features: a scene without what a stepper ignores lacks all of it, and nothing else", "[features]") {
+  Scene scene = plain();
+  scene.springs = {{0, 5, 0.1, 10}};
+  scene.wind.on = true;
+  scene.cloths[0].material.mass_damping = scene.cloths[0].material.stiffness_damping = 1;
+  std::vector<std::string> forces;
+  for (const PlanLine& entry : plan_lines(scene)) forces.push_back(entry.feature);
+  for (const std::string force :
+       {"springs", "wind", "mass damping", "stiffness damping", "membrane", "bending (curvature)"}) {
+    INFO(force);
+    REQUIRE(line(scene, force).in);
+    const Scene without = without_ignored(scene, {.name = "some", .ignores = {force}});
+    for (const std::string& other : forces) {
+      if (other == "springs" && force == "springs") continue;  // it has no line where there are none
+      INFO(other);
+      CHECK(line(without, other).in == (other != force && line(scene, other).in));
+    }
+    CHECK(without.springs.empty() == (force == "springs"));
+  }
+}
+
 }  // namespace selvedge::test_features

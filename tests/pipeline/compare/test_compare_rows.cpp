@@ -108,6 +108,87 @@ TEST_CASE("compare: a hybrid row counts where it uses its proposals", "[compare]
   CHECK_THAT(compare_table(result), Contains("share") && Contains("0.30"));
 }
 
+TEST_CASE("compare: a row that exceeds its limits ends, and stays with what was measured", "[compare]") {
+  const Folder folder("compare_limits");
+  std::string scene = "run: {frames: 5}\ncloths:\n";  // a lattice of held sheets, each through all of the other way
+  for (int k = 0; k < 5; ++k) {
+    const std::string sheet = "rectangle: {size: [1, 1], resolution: 2}, pins: [{group: [boundary]}]";
+    const std::string at = std::to_string(0.07 * k);
+    scene += "  - {name: flat" + std::to_string(k) + ", " + sheet + ", translate: [0, " + at + ", 0]}\n";
+    scene += "  - {name: upright" + std::to_string(k) + ", " + sheet + ", rotate: [90, 0, 0], translate: [0, 0, " + at +
+             "]}\n";
+  }
+  fake::write(folder, "lattice.yaml", scene);
+  CompareRequest request;
+  request.file = fake::write(folder, "comparison.yaml",
+                             "scenes: [{file: lattice.yaml, states: 0}]\nrepeats: 1\njudged_frames: 0\n"
+                             "settings: [{name: conventional, stepper: conventional}]\n");
+  request.out = folder.path / "out";
+  const CompareRow whole = row_named(compare(request), "conventional");
+  CHECK(whole.trouble.empty());
+  REQUIRE(whole.pairs_by_frame.size() == 6);
+  REQUIRE(whole.pairs > 20);  // triangles
+
+  request.overrides = {"limits.pairs=1"};
+  const CompareResult result = compare(request);
+  const CompareRow& dense = row_named(result, "conventional");
+  CHECK_THAT(dense.trouble, Contains("ended by `limits` after frame 1 of 5") && Contains("more than 1 a triangle"));
+  CHECK(dense.pairs_by_frame == std::vector<int>{whole.pairs_by_frame[0], whole.pairs_by_frame[1]});
+  CHECK(dense.ms > 0);
+  CHECK(dense.measures.at("finished") == 0);
+  CHECK_THAT(compare_table(result), Contains(dense.trouble));
+
+  request.overrides = {"limits.seconds=1e-9"};
+  const CompareRow slow = row_named(compare(request), "conventional");  // not even a frame
+  CHECK_THAT(slow.trouble, Contains("ended by `limits` after frame 0 of 5: not done in 1e-09 s"));
+  CHECK(std::isnan(slow.ms));
+  CHECK(slow.measures.at("finished") == 0);
+}
+
+TEST_CASE("compare: the limit of time holds for a row's frames from the common states", "[compare]") {
+  const Folder folder("compare_limit_of_time");
+  CompareRequest request;
+  request.file = configs / "compare" / "short.yaml";
+  request.out = folder.path;
+  request.overrides = {"settings=[{name: conventional, stepper: conventional}]", "limits.seconds=1e-9"};
+  const CompareRow row = row_named(compare(request), "conventional");
+  CHECK(std::isnan(row.temporal));
+  CHECK(row.floor > 0);  // references have no limit
+  CHECK_THAT(fake::whole(folder.path / "parts" / "hang" / "errors_0.json"),
+             Contains("from a common state: ended by `limits` after frame 0 of 2"));
+}
+
+TEST_CASE("compare: the limit of pairs counts them by the triangle, and none after the last frame", "[compare]") {
+  StepReport report;
+  report.audit.emplace();
+  report.audit->self_pairs.assign(20, {0, 1});
+  RowWatch watch({.pairs = 10}, 2);
+  CHECK(watch.goes_on(report));
+  CHECK(watch.trouble(3, 8).empty());
+  report.audit->self_pairs.push_back({0, 1});
+  CHECK_FALSE(watch.goes_on(report));
+  CHECK(watch.trouble(8, 8).empty());
+  CHECK(watch.trouble(4, 8) == "ended by `limits` after frame 4 of 8: 21 intersecting pairs, more than 10 a triangle");
+  RowWatch any({.pairs = 0}, 2);
+  CHECK(any.goes_on(report));
+  CHECK_FALSE(any.stop_flag());
+}
+
+TEST_CASE("compare: a row that did not come to its end is on no front", "[compare]") {
+  std::vector<CompareRow> rows(2);
+  for (CompareRow& row : rows) {
+    row.scene = "one";
+    row.ms = row.temporal = 1;
+    row.floor = 0.1;
+  }
+  rows[0].ms = 0.5;
+  rows[0].measures["finished"] = 0;
+  rank(rows);
+  CHECK_FALSE(rows[0].front);
+  CHECK_FALSE(rows[0].ranked);
+  CHECK(rows[1].front);  // nor does it put others off
+}
+
 TEST_CASE("svg plots: the failed stand at the upper edge, the floor is drawn", "[compare]") {
   const std::vector<PlotPoint> points{
       {"a", 10, 2, PlotMark::front}, {"b", 20, std::nan(""), PlotMark::failed}, {"c < d", 30, 3, PlotMark::unclean}};
