@@ -17,15 +17,14 @@ std::vector<double> ordered_heights(const std::vector<SignedDistance>& at, doubl
   Eigen::Index next = 0;
   for (const SignedDistance& d : at)
     if (d.value < 0) places.row(next++) = d.closest.transpose();
-  const double radius = std::max(std::ranges::max(depths) / order.slope, 1e-6);
-  const CellGrid grid(places, radius);
+  const CellGrid grid(places, order.span);
   for (std::size_t i = 0; i < at.size(); ++i) {
     const double height = at[i].value;
     if (height >= order.reach) continue;
     double depth = 0;  // of the deepest vertex over this place
-    grid.for_each_near(at[i].closest, radius, [&](int k) {
-      depth =
-          std::max(depth, depths[static_cast<std::size_t>(k)] - order.slope * (row(places, k) - at[i].closest).norm());
+    grid.for_each_near(at[i].closest, order.span, [&](int k) {
+      const double part = 1 - (row(places, k) - at[i].closest).norm() / order.span;
+      depth = std::max(depth, part * depths[static_cast<std::size_t>(k)]);
     });
     if (depth <= 0) continue;
     const double squeezed = (order.reach - margin) / (order.reach + depth);

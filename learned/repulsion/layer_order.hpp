@@ -9,11 +9,12 @@ namespace selvedge {
 
 // Cloth that comes out of a body would go through cloth that lies over it, and layers that are both inside would end on
 // one surface. Here heights over the body's surface go to heights that keep their order: over each place of the surface
-// the deepest vertex goes to `margin`, what lies at `reach` stays, and between them the map is linear. A deep vertex
-// counts for places round it, as so much less deep as `slope` times their distance says.
+// the deepest vertex goes to `margin`, what lies at `reach` stays, and between them the map is linear. A vertex inside
+// counts for places round it, less and less deep, to a distance of `span`: farther than edges are long, or vertices of
+// one layer say nothing of the other.
 struct LayerOrder {
   double reach = 0;    // from the surface outward, to where cloth goes along [m]; 0: it does not
-  double slope = 0.5;  // how fast a push fades along the surface
+  double span = 0.04;  // along the surface [m]
   double most = 0.03;  // deeper vertices count as so deep [m]
 };
 
