@@ -34,8 +34,8 @@ TEST_CASE("layer order: heights over one place keep their order, and none goes d
 
 TEST_CASE("layer order: a push fades along the surface, and without a vertex inside nothing goes", "[layer_order]") {
   const LayerOrder order{.reach = 0.01};
-  const std::vector<SignedDistance> at{over({0, 0, 0}, -0.004), over({0.002, 0, 0}, 0.001), over({0.006, 0, 0}, 0.001),
-                                       over({0.009, 0, 0}, 0.001)};
+  const std::vector<SignedDistance> at{over({0, 0, 0}, -0.004), over({0.01, 0, 0}, 0.001), over({0.03, 0, 0}, 0.001),
+                                       over({0.041, 0, 0}, 0.001)};
   const std::vector<double> heights = ordered_heights(at, 0, order);
   CHECK(heights[1] > heights[2]);
   CHECK(heights[2] > 0.001);
