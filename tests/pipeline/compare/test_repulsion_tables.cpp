@@ -62,8 +62,9 @@ void check_rows(const DrapeTrainSummary& made) {
     CHECK(row.inside.mean == 0);
     CHECK(row.pushed.mean > 0);
     CHECK(row.vertex_error.mean < control.vertex_error.mean + 0.05);
-    CHECK(row.overshoot.mean < 2);
   }
+  for (const char* name : {"control, naive", "fixed", "learned", "neighbours"})
+    CHECK(row_of(made, name).overshoot.mean < 2);  // pumping cloth outward is no solution
   CHECK(row_of(made, "control, smooth").inside.mean < control.inside.mean);
   for (const char* name : {"control, naive", "fixed", "learned", "neighbours", "hybrid"}) {
     INFO(name);
@@ -123,8 +124,7 @@ TEST_CASE("repulsion tables: small garments are made, trained on and measured, a
   CHECK_THAT(text, Contains(fmt::format("{:.2f} +- {:.2f}", row_of(tank, "learned").vertex_error.mean,
                                         row_of(tank, "learned").vertex_error.half_width)));
   const std::string page = fake::whole(request.out / "compare.html");
-  for (const char* figure : {"Figure 6, tank", "Figure 8, tank", "Figure 9, tank"})
-    CHECK_THAT(page, Contains(figure));
+  for (const char* figure : {"Figure 6, tank", "Figure 8, tank", "Figure 9, tank"}) CHECK_THAT(page, Contains(figure));
 }
 
 }  // namespace selvedge::test_repulsion_tables
