@@ -1,6 +1,7 @@
 #include "learned/repulsion/repulsive_layer.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace selvedge {
 namespace {
@@ -136,7 +137,7 @@ Repelled repel(const Points& x, const Adjacency& ring, const AskDistance& ask, c
   }
   const std::vector<PushedVertex> moved = keep_order(found, options, held, result, x);
   for (int round = 0; round < options.recheck; ++round) {
-    const int count = project(moved, ask, options.margin, true, result.x);
+    const int count = project(moved, ask, std::ldexp(options.margin, -round), true, result.x);
     result.projected += count;
     if (count == 0) return result;
   }

@@ -21,7 +21,9 @@ using AskScale = std::function<Scales(std::span<const int> vertices, std::span<c
 Scales constant_scale(std::span<const int> vertices, double alpha);
 
 struct RepulsionOptions {
-  int recheck = 0;        // so often moved vertices are asked again, and those inside projected; the paper: 0
+  // So often moved vertices are asked again, and those inside projected, to half the margin each time: a narrow place
+  // has no room for all of it. The paper: 0.
+  int recheck = 0;
   double deep = 0.03;     // deeper vertices take their neighbours' mean direction [m]; infinity: none does
   double margin = 0;      // added to every push [m]; the paper: 0
   LayerOrder order = {};  // cloth over pushed vertices goes along; the paper: none does

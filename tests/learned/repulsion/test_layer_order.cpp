@@ -84,4 +84,30 @@ TEST_CASE("layer order: two layers inside come out one over the other; held vert
   }
 }
 
+TEST_CASE("repulsive layer: a vertex comes to rest in a gap that is narrower than the margin", "[layer_order]") {
+  const testing::Solid left = testing::block({-1, -1, -1}, {-2e-5, 1, 1}, 2),
+                       right = testing::block({2e-5, -1, -1}, {1, 1, 1}, 2);
+  std::vector<Vec3> points;
+  std::vector<std::array<int, 3>> triangles;
+  for (const testing::Solid* solid : {&left, &right}) {
+    const int first = static_cast<int>(points.size());
+    for (int v = 0; v < solid->x.rows(); ++v) points.push_back(row(solid->x, v));
+    for (int t = 0; t < solid->surface.triangles.rows(); ++t)
+      triangles.push_back({first + solid->surface.triangles(t, 0), first + solid->surface.triangles(t, 1),
+                           first + solid->surface.triangles(t, 2)});
+  }
+  const testing::Solid both = testing::solid_of(points, triangles);
+  DistanceField field(both.surface);
+  field.move_to(both.x);
+  const AskDistance ask = [&](const Points& at, std::vector<SignedDistance>& found) { found = field.ask(at); };
+  const AskScale one = [](std::span<const int> vertices, std::span<const double>) {
+    return constant_scale(vertices, 1);
+  };
+  const Points x = Eigen::RowVector3d(-0.001, 0.1, 0.2);
+  const Repelled made = repel(x, adjacency_of(1, Edges(0, 2)), ask, one, {.recheck = 8, .margin = 1e-4});
+  CHECK(made.projected > 1);
+  CHECK(made.inside == 0);
+  CHECK(std::abs(made.x(0, 0)) < 2e-5);
+}
+
 }  // namespace selvedge::test_layer_order
