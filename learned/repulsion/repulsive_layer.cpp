@@ -1,6 +1,7 @@
 #include "learned/repulsion/repulsive_layer.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace selvedge {
 namespace {
@@ -79,6 +80,30 @@ int project(const std::vector<PushedVertex>& pushed, const AskDistance& ask, dou
   return count;
 }
 
+// Pushed vertices go at least as far as the order of layers wants, and those over them go along. Returns these and the
+// pushed ones.
+std::vector<PushedVertex> keep_order(const std::vector<SignedDistance>& found, const RepulsionOptions& options,
+                                     std::span<const char> held, Repelled& result, const Points& x) {
+  std::vector<PushedVertex> moved = result.pushed;
+  if (!(options.order.reach > 0)) return moved;
+  std::vector<SignedDistance> free = found;
+  for (std::size_t i = 0; i < held.size(); ++i)
+    if (held[i]) free[i].value = options.order.reach;
+  const std::vector<double> heights = ordered_heights(free, options.margin, options.order);
+  for (const PushedVertex& p : result.pushed) {
+    const double length = heights[p.vertex] - p.at.value;
+    if (length > options.margin - p.alpha * p.at.value)
+      result.x.row(p.vertex) = x.row(p.vertex) + (length * p.direction).transpose();
+  }
+  for (int i = 0; i < static_cast<int>(found.size()); ++i) {
+    if (!(found[i].value >= 0) || !(heights[i] > found[i].value) || (!held.empty() && held[i])) continue;
+    result.x.row(i) += ((heights[i] - found[i].value) * found[i].gradient).transpose();
+    moved.emplace_back().vertex = i;
+    ++result.carried;
+  }
+  return moved;
+}
+
 }  // namespace
 
 Scales constant_scale(std::span<const int> vertices, double alpha) {
@@ -110,12 +135,13 @@ Repelled repel(const Points& x, const Adjacency& ring, const AskDistance& ask, c
     vertex.slope = scales.slope[i];
     result.x.row(vertex.vertex) += ((options.margin - vertex.alpha * vertex.at.value) * vertex.direction).transpose();
   }
+  const std::vector<PushedVertex> moved = keep_order(found, options, held, result, x);
   for (int round = 0; round < options.recheck; ++round) {
-    const int count = project(result.pushed, ask, options.margin, true, result.x);
+    const int count = project(moved, ask, std::ldexp(options.margin, -round), true, result.x);
     result.projected += count;
     if (count == 0) return result;
   }
-  if (options.recheck > 0) result.inside = project(result.pushed, ask, 0, false, result.x);
+  if (options.recheck > 0) result.inside = project(moved, ask, 0, false, result.x);
   return result;
 }
 

@@ -6,6 +6,7 @@
 
 #include "collision/distance/signed_distance.hpp"
 #include "collision/geometry/adjacency.hpp"
+#include "learned/repulsion/layer_order.hpp"
 #include "learned/repulsion/scale_network.hpp"
 
 namespace selvedge {
@@ -20,9 +21,12 @@ using AskScale = std::function<Scales(std::span<const int> vertices, std::span<c
 Scales constant_scale(std::span<const int> vertices, double alpha);
 
 struct RepulsionOptions {
-  int recheck = 0;     // so often moved vertices are asked again, and those inside projected; the paper: 0
-  double deep = 0.03;  // deeper vertices take their neighbours' mean direction [m]; infinity: none does
-  double margin = 0;   // added to every push [m]; the paper: 0
+  // So often moved vertices are asked again, and those inside projected, to half the margin each time: a narrow place
+  // has no room for all of it. The paper: 0.
+  int recheck = 0;
+  double deep = 0.03;     // deeper vertices take their neighbours' mean direction [m]; infinity: none does
+  double margin = 0;      // added to every push [m]; the paper: 0
+  LayerOrder order = {};  // cloth over pushed vertices goes along; the paper: none does
 };
 
 // One vertex that was moved.
@@ -38,12 +42,13 @@ struct Repelled {
   std::vector<PushedVertex> pushed;  // ascending
   int deep = 0;                      // of them deeper than the options' `deep`
   int torn = 0;                      // edges of the garment whose ends went over 90 degrees apart
+  int carried = 0;                   // vertices outside that went along
   int projected = 0;                 // vertices that were still inside when asked again, all times
   int inside = 0;                    // at the end, if it was asked again; else 0
 };
 
-// `ring` joins neighbouring vertices. Vertices marked in `held`, which may be empty, stay. A vertex inside whose
-// gradient vanishes stays.
+// `ring` joins neighbouring vertices; `order` needs gradients of unit length. Vertices marked in `held`, which may be
+// empty, stay. A vertex inside whose gradient vanishes stays.
 Repelled repel(const Points& x, const Adjacency& ring, const AskDistance&, const AskScale&, const RepulsionOptions&,
                std::span<const char> held = {});
 

@@ -158,15 +158,17 @@ std::string times_table(const UsedDrapes& all) {
                      fmt::format("  {:<28}", "");
   for (const TimedPart& part : parts) text += fmt::format("{:>16}", part.title);
   text += "\n";
+  bool lacks = false;
   for (const MeasuredDrapes* one : all) {
     text += fmt::format("  {:<28}", one->name);
     for (const TimedPart& part : parts) {
       const DrapeTableRow* row = find_row(*one, part.row);
       text += fmt::format("{:>16}", row ? mean_text(row->*part.of, 2) : "left out");
+      lacks |= !row;
     }
     text += "\n";
   }
-  return text + "  left out: the run has no such row\n\n";
+  return text + (lacks ? "  left out: the run has no such row\n\n" : "\n");
 }
 
 std::string edge_passes_table(const UsedDrapes& all) {

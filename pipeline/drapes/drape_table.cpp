@@ -146,7 +146,7 @@ std::string drape_table_csv(const std::vector<DrapeTableRow>& rows) {
   for (const char* name : columns) csv += fmt::format(",{0},{0}_95", name);
   csv += ",alpha,alpha_deviation,judges_differ\n";
   for (const DrapeTableRow& r : rows) {
-    csv += fmt::format("{},{}", r.name, r.vertex_error.models);
+    csv += fmt::format("\"{}\",{}", r.name, r.vertex_error.models);  // names have commas
     for (const MeanOverModels* m :
          {&r.vertex_error, &r.inside, &r.free, &r.vertex_face, &r.edge_edge, &r.pairs, &r.energy, &r.laplacian,
           &r.overshoot, &r.pushed, &r.backbone_ms, &r.distance_ms, &r.push_ms, &r.edges_ms})

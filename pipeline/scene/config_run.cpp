@@ -110,7 +110,10 @@ const Options<RefuRun>& refu_options() {
               "how far, in multiples of the depth; what is still inside then is projected"),
        path("weights", &O::weights,
             "scales by what neighbours know instead (configs/weights/refu.h5); seen from the scene file"),
-       integer("edge_pass", &O::edge_pass, not_negative, "rounds that lift edges which still cross the body")});
+       integer("edge_pass", &O::edge_pass, not_negative, "rounds that lift edges which still cross the body"),
+       number("order", &O::order, Unit::length, not_negative,
+              "height over the body up to which cloth goes along with what is pushed out under it, so that layers keep "
+              "their order; 0: none does")});
   return table;
 }
 

@@ -75,6 +75,7 @@ std::unique_ptr<Stepper> with_refu(const Setup& setup, std::unique_ptr<Stepper> 
     options.neighbours =
         std::make_shared<const NeighbourScale>(read_neighbour_scale(setup.file.parent_path() / setup.run.refu.weights));
   options.edge_pass.rounds = setup.run.refu.edge_pass;
+  options.repulsion.order.reach = setup.run.refu.order;
   return make_refu_stepper(setup.scene, std::move(stepper), options);
 }
 

@@ -24,6 +24,7 @@ struct RefuRun {
   double alpha = 1;
   std::string weights;  // of scales by neighbours, seen from the scene file's folder; empty: alpha
   int edge_pass = 0;    // rounds
+  double order = 0.03;  // height over the body up to which cloth goes along with what is pushed [m]
 };
 
 // What a scene file says of the run beside the Scene itself.

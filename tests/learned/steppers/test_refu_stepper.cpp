@@ -140,6 +140,45 @@ TEST_CASE("refu stepper: scales by neighbours push farther than the surface, and
   CHECK(moved <= pushed);
 }
 
+TEST_CASE("refu stepper: vertices on faces, edges and corners, and flat bodies, leave the cloth finite", "[refu]") {
+  for (const Vec3& half : {Vec3(0.08, 0.02, 0.08), Vec3(0.08, 0, 0.08), Vec3(0, 0, 0)}) {
+    const testing::Solid body = testing::block(-half, half, 2);
+    fake::Mesh cloth = fake::grid(9, 9);
+    cloth.x.rowwise() += Eigen::RowVector3d(-0.08, half.y(), -0.08);  // its rim over that of the body's top
+    const fake::LearnedCase made = fake::learned_case(cloth, {body.x, body.surface.triangles}, {0, 0, 0}, 1);
+    for (const double down : {0.0, 0.01}) {
+      const Eigen::RowVector3d way(0, -down, 0);
+      State to;
+      const StepReport report = make_refu_stepper(made.scene, std::make_unique<BlindStepper>(made.scene, way))
+                                    ->step(made.state, made.drives[0], 1.0 / 30, to);
+      REQUIRE(report.status == StepStatus::accepted);
+      CHECK(to.x.allFinite());
+      CHECK(to.v.allFinite());
+      CHECK((to.x - made.state.x).rowwise().norm().maxCoeff() < 0.05);
+      DistanceField field(made.scene.obstacles[0].surface);
+      field.move_to(to.obstacles[0]);
+      for (const SignedDistance& at : field.ask(to.x)) CHECK(at.value > -1e-6);
+    }
+  }
+}
+
+TEST_CASE("refu stepper: where a body or the cloth is not finite, the step is as the inner stepper made it", "[refu]") {
+  const fake::LearnedCase made = sheet_over_ball();
+  for (const bool in_body : {true, false}) {
+    State from = made.state, expected, found;
+    Drive drive = made.drives[0];
+    (in_body ? drive.obstacles[0] : from.x)(5, 1) = std::numeric_limits<double>::quiet_NaN();
+    const Eigen::RowVector3d way(0, -0.04, 0);
+    BlindStepper(made.scene, way).step(from, drive, 1.0 / 30, expected);
+    make_refu_stepper(made.scene, std::make_unique<BlindStepper>(made.scene, way))->step(from, drive, 1.0 / 30, found);
+    REQUIRE(found.x.rows() == expected.x.rows());
+    CHECK(std::memcmp(found.x.data(), expected.x.data(), sizeof(double) * static_cast<std::size_t>(found.x.size())) ==
+          0);
+    CHECK(std::memcmp(found.v.data(), expected.v.data(), sizeof(double) * static_cast<std::size_t>(found.v.size())) ==
+          0);
+  }
+}
+
 TEST_CASE("refu stepper: without a closed body it is left out", "[refu]") {
   fake::LearnedCase made = sheet_over_ball();
   made.scene.obstacles.clear();
