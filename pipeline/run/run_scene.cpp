@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/config/config.hpp"
 #include "pipeline/formats/checkpoint.hpp"
 #include "pipeline/formats/trajectory_row.hpp"
 #include "pipeline/formats/xdmf.hpp"
@@ -96,9 +97,7 @@ std::string config_in(const std::filesystem::path& out, const Setup& setup) {
   std::error_code problem;
   std::filesystem::path folder = std::filesystem::relative(from, out, problem);
   if (problem || folder.empty()) folder = from;
-  std::string quoted;
-  for (const char c : folder.string()) quoted += c == '\'' ? std::string("''") : std::string(1, c);
-  return "folder: '" + quoted + "'\n" + setup.config;
+  return "folder: " + quoted_yaml(folder.string()) + "\n" + setup.config;
 }
 
 }  // namespace
