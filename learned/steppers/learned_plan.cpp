@@ -24,7 +24,8 @@ PlanLine cloth_edges_line(const Scene& scene, const FeatureOptions& options) {
 PlanLine settling_line(const Architecture& architecture, bool settle) {
   if (architecture.integration == Integration::relaxation_frame)
     return {"settling pass", true, "first, out of the body and 1/3 s long, as HOOD starts"};
-  return {"settling pass", settle, settle ? "first, as run.learned.settle asks" : "not asked for by run.learned.settle"};
+  return {"settling pass", settle,
+          settle ? "first, as run.learned.settle asks" : "not asked for by run.learned.settle"};
 }
 
 }  // namespace

@@ -35,9 +35,10 @@ Setup read_scene(const SceneArguments& arguments) {
   Setup setup = read_setup(arguments.scene, overrides);
   for (const std::string& warning : network_warnings(setup)) setup.warnings.push_back(warning);
   if ((arguments.weights || arguments.device) && !runs_network(setup))
-    setup.warnings.push_back(fmt::format("{} has no part in the stepper `{}`, which runs no network; --stepper learned "
-                                         "and --stepper hybrid do",
-                                         arguments.weights ? "--weights" : "--device", setup.run.stepper));
+    setup.warnings.push_back(
+        fmt::format("{} has no part in the stepper `{}`, which runs no network; --stepper learned "
+                    "and --stepper hybrid do",
+                    arguments.weights ? "--weights" : "--device", setup.run.stepper));
   return setup;
 }
 

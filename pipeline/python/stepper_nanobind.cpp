@@ -65,9 +65,8 @@ nb::object described(const Drive& drive) {
 
 // Forces by the names that StepperTraits::ignores has.
 std::vector<std::string> ignored_by(const std::string& kind, const nb::object& stepper) {
-  const std::vector<std::string> known{"membrane", "bending (curvature)", "bending (hinge)",
-                                       "springs",  "stiffness damping",   "mass damping",
-                                       "wind"};
+  const std::vector<std::string> known{
+      "membrane", "bending (curvature)", "bending (hinge)", "springs", "stiffness damping", "mass damping", "wind"};
   const nb::object given = stepper.attr("ignores");
   if (!nb::isinstance<nb::tuple>(given) && !nb::isinstance<nb::list>(given))
     throw Error("is no tuple", "stepper `" + kind + "`, ignores", "give a tuple of: " + joined(known));

@@ -26,9 +26,9 @@ void compare(const std::string& cloth, const char* quantity, const char* unit, d
 }
 
 double edge_of(const Scene& scene, const Cloth& cloth) {
-  return mean_edge_length(std::span(scene.rest_triangle)
-                              .subspan(static_cast<std::size_t>(cloth.first_triangle),
-                                       static_cast<std::size_t>(cloth.triangle_count)));
+  return mean_edge_length(
+      std::span(scene.rest_triangle)
+          .subspan(static_cast<std::size_t>(cloth.first_triangle), static_cast<std::size_t>(cloth.triangle_count)));
 }
 
 void compare_edges(const Scene& scene, double trained, std::vector<std::string>& sentences) {
@@ -79,9 +79,10 @@ std::vector<std::string> network_warnings(const Setup& setup) {
   std::vector<std::string> sentences = unlike_training(setup.scene, trained_with(file.training));
   if (!file.architecture.features.acceleration_inputs) compare_gravity(setup, sentences);
   if (const long long count = nonfinite_numbers(file); count > 0)
-    sentences.push_back(fmt::format("{}: {} of the network's numbers are not finite, so that it can make no frame; "
-                                    "train or import it again",
-                                    setup.run.learned.weights, count));
+    sentences.push_back(
+        fmt::format("{}: {} of the network's numbers are not finite, so that it can make no frame; "
+                    "train or import it again",
+                    setup.run.learned.weights, count));
   return sentences;
 }
 
