@@ -132,7 +132,7 @@ std::string break_even(const std::vector<const CompareRow*>& rows) {
   std::string html;
   for (const CompareRow* row : rows) {
     const double graph = phases_of(*row, {"ms_graph"}), network = phases_of(*row, {"ms_network"});
-    if (network == 0 || phases_of(*row, {"ms_solve"}) > 0) continue;
+    if (network == 0 || !row->trouble.empty() || phases_of(*row, {"ms_solve"}) > 0) continue;
     html += fmt::format("<li>{}: graph {:.1f} and network {:.1f} ms against solve {:.1f} and contact {:.1f} ms of {}. ",
                         html_text(row->setting), graph, network, solve, contact, html_text((*parent)->setting));
     const double share = (graph + network) / (solve + contact);

@@ -1,4 +1,4 @@
-#include "pipeline/scene/network_warnings.hpp"
+#include "pipeline/tools/network_warnings.hpp"
 
 #include <fmt/format.h>
 
