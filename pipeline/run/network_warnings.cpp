@@ -1,4 +1,4 @@
-#include "pipeline/tools/network_warnings.hpp"
+#include "pipeline/run/network_warnings.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,9 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 
-#include "learned/steppers/learned_scene.hpp"
-#include "pipeline/tools/network_warnings.hpp"
+#include "learned/network/weights_hdf5.hpp"
+#include "pipeline/run/network_warnings.hpp"
 #include "pipeline/training/training_options.hpp"
 #include "tests/learned/learned_scenes.hpp"
 #include "tests/pipeline/files.hpp"
@@ -36,7 +37,7 @@ std::vector<std::string> warnings_of(const std::string& preset, const std::strin
 
 }  // namespace
 
-TEST_CASE("network warnings: the training text of a weight file says what it was trained with", "[tools]") {
+TEST_CASE("network warnings: the training text of a weight file says what it was trained with", "[run]") {
   TrainingOptions options;
   options.samples.material = {0.3, 20, 30, 4e-5};
   options.samples.edge = 0.03;
@@ -50,7 +51,7 @@ TEST_CASE("network warnings: the training text of a weight file says what it was
   CHECK(!trained_with("samples: [\n\t- {").material);             // no YAML
 }
 
-TEST_CASE("network warnings: cloth that the network does not know is named", "[tools]") {
+TEST_CASE("network warnings: cloth that the network does not know is named", "[run]") {
   const VertexMaterial hood;
   CHECK(unlike_training(scene_of("hood"), {hood, {}}).empty());
   const std::vector<std::string> cotton = unlike_training(scene_of("cotton"), {hood, {}});
@@ -61,7 +62,7 @@ TEST_CASE("network warnings: cloth that the network does not know is named", "[t
   CHECK(unlike_training(scene_of("hood"), {light, {}}).size() == 1);
 }
 
-TEST_CASE("network warnings: edges of another length than in training are named", "[tools]") {
+TEST_CASE("network warnings: edges of another length than in training are named", "[run]") {
   const double mean = (2 + std::sqrt(2.0)) / 3;  // of a square's two triangles
   CHECK(unlike_training(scene_of("hood"), {{}, mean / 1.4}).empty());
   CHECK(unlike_training(scene_of("hood"), {{}, 1.4 * mean}).empty());
@@ -72,7 +73,7 @@ TEST_CASE("network warnings: edges of another length than in training are named"
   }
 }
 
-TEST_CASE("network warnings: gravity that a network does not see is named", "[tools]") {
+TEST_CASE("network warnings: gravity that a network does not see is named", "[run]") {
   CHECK(warnings_of("hood", "[0, -9.81, 0]").empty());
   const std::vector<std::string> moon = warnings_of("hood", "[0, -1.62, 0]");
   REQUIRE(moon.size() == 1);
@@ -81,7 +82,7 @@ TEST_CASE("network warnings: gravity that a network does not see is named", "[to
   CHECK(warnings_of("small_senc", "[0, -1.62, 0]").empty());
 }
 
-TEST_CASE("network warnings: numbers of a network that are not finite are counted", "[tools]") {
+TEST_CASE("network warnings: numbers of a network that are not finite are counted", "[run]") {
   for (const std::string stepper : {"learned", "hybrid"}) {
     const std::vector<std::string> sentences = warnings_of("hood", "[0, -9.81, 0]", true, stepper);
     REQUIRE(sentences.size() == 1);
