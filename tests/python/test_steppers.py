@@ -136,7 +136,8 @@ def test_forces_that_it_ignores_have_no_energy(scene_file, tmp_path):
     class Blind(Thrown):
         ignores = ("membrane",)
 
-    (tmp_path / "comparison.yaml").write_text(COMPARISON.replace("conventional", "blind").replace("states: 0", "states: 1"))
+    comparison = COMPARISON.replace("conventional", "blind").replace("states: 0", "states: 1, horizon: 2")
+    (tmp_path / "comparison.yaml").write_text(comparison)
     kinds = {"thrown": Thrown, "blind": Blind}
     result = selvedge.compare(tmp_path / "comparison.yaml", kinds=kinds, out=tmp_path / "out")
     decay = {row["setting"]: row["decay"] for row in result["rows"]}
