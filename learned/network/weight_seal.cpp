@@ -52,8 +52,9 @@ long long check_seal(const std::filesystem::path& path) {
   std::string seal(seal_bytes, '\0');
   file.read(seal.data(), seal_bytes);
   if (!file || !seal.starts_with(seal_name))
-    throw Error("is no weight file of this program", path.string(),
-                "a published checkpoint (.pth) must be imported first");
+    throw Error("holds no weights of a network that a stepper runs", path.string(),
+                "give weights.h5 or best.h5 of `selvedge train`, or what `selvedge weights import` made of a published "
+                "checkpoint (.pth); scales of the repulsive layer belong to run.refu.weights");
   long long length = 0;
   if (wanted_seal(file, length) != seal)
     throw Error("its bytes do not fit its checksum", path.string(), "the file is damaged: copy or make it again");

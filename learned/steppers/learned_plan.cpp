@@ -7,7 +7,10 @@ namespace selvedge {
 namespace {
 
 PlanLine body_edges_line(const Scene& scene, const FeatureOptions& options) {
-  if (options.body_key.empty()) return {"body edges", false, "the network has none"};
+  if (options.body_key.empty())
+    return {"body edges", false,
+            options.body_inputs ? "the network has none: vertices see the body's nearest face among their inputs"
+                                : "the network has none"};
   if (scene.obstacles.empty()) return {"body edges", false, "there is no obstacle"};
   return {"body edges", true, "obstacles are one body of " + std::to_string(scene.obstacles.size()) + " parts"};
 }
@@ -21,7 +24,8 @@ PlanLine cloth_edges_line(const Scene& scene, const FeatureOptions& options) {
 PlanLine settling_line(const Architecture& architecture, bool settle) {
   if (architecture.integration == Integration::relaxation_frame)
     return {"settling pass", true, "first, out of the body and 1/3 s long, as HOOD starts"};
-  return {"settling pass", settle, settle ? "first, as learned.settle asks" : "not asked for by learned.settle"};
+  return {"settling pass", settle,
+          settle ? "first, as run.learned.settle asks" : "not asked for by run.learned.settle"};
 }
 
 }  // namespace
@@ -49,6 +53,7 @@ std::vector<PlanLine> learned_plan_lines(const Scene& scene, const Architecture&
   lines.push_back(
       {"gravity", forces,
        forces ? "the scene's, among the inputs" : "as the network was trained in it, whatever the scene says"});
+  lines.push_back({"substeps", false, "the network makes whole frames, whatever the scene says"});
   lines.push_back({"detection and response", false, "what passes through is found by the audits"});
   return lines;
 }

@@ -99,7 +99,6 @@ bool LearnedStepper::predict(GraphState state, NextCloth& next, StepReport& repo
     const FeatureRows output = torch_ ? torch_->infer(graph_) : infer(*network_, graph_);
     next = integrate(rest_, state, features_, tables_.output, output);
     report.seconds.network += watch.lap();
-    ++report.substeps;
     if (!is_near(next.x) || !is_near(next.velocity)) return false;
     if (state.pass + 1 < passes_) state.guess = next.x;
   }
@@ -149,6 +148,7 @@ StepReport LearnedStepper::take_step(const State& from, const Drive& drive, doub
                 "run the scene with fps: 30");
   StepReport report;
   report.by = traits_.name;
+  report.substeps = 1;
   report.status = StepStatus::rejected;
   report.reason = Reason::not_finite;
   report.collision.pairs_before = from.clean ? 0 : -1;

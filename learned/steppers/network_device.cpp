@@ -27,13 +27,13 @@ std::string device_sentence(NetworkDevice device) {
     case NetworkDevice::cpu:
       return "the program's own kernels run the network";
     case NetworkDevice::libtorch:
-      return "on the CPU, as learned.device asks";
+      return "on the CPU, as run.learned.device asks";
     case NetworkDevice::cuda:
-      return "on a GPU, as learned.device asks";
+      return "on a GPU, as run.learned.device asks";
     case NetworkDevice::automatic:
       break;
   }
-  return "where it finds a GPU, as learned.device asks; else the program's own kernels";
+  return "where it finds a GPU, as run.learned.device asks; else the program's own kernels";
 }
 
 }  // namespace selvedge

@@ -7,13 +7,14 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/config/config.hpp"
 #include "pipeline/host/folder_lock.hpp"
 #include "pipeline/host/interrupt.hpp"
 #include "pipeline/host/write_file.hpp"
+#include "pipeline/run/network_warnings.hpp"
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/run_scene.hpp"
 #include "pipeline/scene/make_stepper.hpp"
-#include "pipeline/scene/trained_material_yaml.hpp"
 #include "pipeline/tools/ccd_report.hpp"
 #include "pipeline/tools/info.hpp"
 #include "pipeline/tools/plan.hpp"
@@ -29,9 +30,16 @@ Setup read_scene(const SceneArguments& arguments) {
   std::vector<std::string> overrides = arguments.overrides;
   if (arguments.stepper) overrides.push_back("run.stepper=" + *arguments.stepper);
   if (arguments.weights)
-    overrides.push_back("run.learned.weights=" + std::filesystem::absolute(*arguments.weights).string());
+    overrides.push_back("run.learned.weights=" + quoted_yaml(std::filesystem::absolute(*arguments.weights).string()));
   if (arguments.device) overrides.push_back("run.learned.device=" + *arguments.device);
-  return read_setup(arguments.scene, overrides);
+  Setup setup = read_setup(arguments.scene, overrides);
+  for (const std::string& warning : network_warnings(setup)) setup.warnings.push_back(warning);
+  if ((arguments.weights || arguments.device) && !runs_network(setup))
+    setup.warnings.push_back(
+        fmt::format("{} has no part in the stepper `{}`, which runs no network; --stepper learned "
+                    "and --stepper hybrid do",
+                    arguments.weights ? "--weights" : "--device", setup.run.stepper));
+  return setup;
 }
 
 std::filesystem::path folder_for(const SimulateArguments& arguments, const Setup& setup) {
@@ -72,7 +80,6 @@ bool report_outcome(const std::vector<Outcome>& outcomes, const std::vector<Outc
 int simulate_command(const SimulateArguments& arguments, bool json) {
   Setup setup = read_scene(arguments.scene);
   warn_of_training();
-  for (const std::string& warning : material_warnings(setup)) setup.warnings.push_back(warning);
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
   for (const std::string& warning : run_warnings(setup, stepper->traits())) std::cerr << "warning: " << warning << "\n";
   Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
@@ -104,7 +111,6 @@ int simulate_command(const SimulateArguments& arguments, bool json) {
 
 int plan_command(const SceneArguments& arguments, bool json) {
   const Setup setup = read_scene(arguments);
-  for (const std::string& warning : material_warnings(setup)) std::cerr << "warning: " << warning << "\n";
   std::cout << (json ? plan_json(setup) : plan_text(setup));
   return 0;
 }

@@ -50,6 +50,12 @@ std::string missing_part(const CompareSetting& setting, const Kinds& kinds) {
   return "left out: there is no weight file " + setting.weights.string();
 }
 
+// An error's cure stands on a line of its own.
+std::string on_one_line(const std::string& error) {
+  const std::size_t end = error.find("\n  cure: ");
+  return end == std::string::npos ? error : error.substr(0, end) + "; " + error.substr(end + 3);
+}
+
 // Reads every setup and makes every stepper once, so that what is wrong is said before hours of work.
 SceneWork open_scene(const CompareRequest& request, const Comparison& comparison, const CompareScene& scene,
                      const std::string& program) {
@@ -76,8 +82,7 @@ SceneWork open_scene(const CompareRequest& request, const Comparison& comparison
     try {
       make_stepper(setup);
     } catch (const Error& error) {
-      trouble = error.what();
-      std::ranges::replace(trouble, '\n', ' ');
+      trouble = on_one_line(error.what());
     }
     work.trouble.push_back(trouble);
     work.setups.push_back(trouble.empty() ? std::optional<Setup>(std::move(setup)) : std::nullopt);

@@ -132,7 +132,7 @@ std::string break_even(const std::vector<const CompareRow*>& rows) {
   std::string html;
   for (const CompareRow* row : rows) {
     const double graph = phases_of(*row, {"ms_graph"}), network = phases_of(*row, {"ms_network"});
-    if (network == 0 || phases_of(*row, {"ms_solve"}) > 0) continue;
+    if (network == 0 || !row->trouble.empty() || phases_of(*row, {"ms_solve"}) > 0) continue;
     html += fmt::format("<li>{}: graph {:.1f} and network {:.1f} ms against solve {:.1f} and contact {:.1f} ms of {}. ",
                         html_text(row->setting), graph, network, solve, contact, html_text((*parent)->setting));
     const double share = (graph + network) / (solve + contact);
@@ -219,13 +219,14 @@ std::string settings_section(const Comparison& comparison) {
   return html + "</table>\n";
 }
 
-// Rows that no scene could run, once each.
-std::string left_out_section(const CompareResult& result) {
+// Rows that a scene could not run, and those that it could not finish, once each.
+std::string trouble_section(const CompareResult& result) {
   std::set<std::string> lines;
   for (const CompareRow& row : result.rows)
-    if (!is_there(row) && !row.trouble.empty()) lines.insert(row.setting + ": " + row.trouble);
+    if (!row.trouble.empty())
+      lines.insert(row.setting + ": " + (is_there(row) ? row.scene + ": " : std::string()) + row.trouble);
   if (lines.empty()) return "";
-  std::string html = "<h2>What was left out</h2><ul>";
+  std::string html = "<h2>What was left out, and what failed</h2><ul>";
   for (const std::string& line : lines) html += "<li>" + html_text(line) + "</li>";
   return html + "</ul>\n";
 }
@@ -248,7 +249,7 @@ std::string compare_page(const Comparison& comparison, const CompareResult& resu
     html += evaluation_section(evaluated(comparison, result.floors, result.rows));
   html += repulsion_section(comparison, result);
   for (const CompareFloor& floor : result.floors) html += scene_section(floor, result);
-  html += left_out_section(result) + settings_section(comparison);
+  html += trouble_section(result) + settings_section(comparison);
   html += "<h2>Machine and build</h2><pre>" + html_text(info_text()) + "</pre></html>\n";
   return html;
 }

@@ -20,6 +20,8 @@ struct Column {
   double (*value)(const CompareRow&);
 };
 
+double if_it_ran(const CompareRow& row, double value) { return std::isfinite(row.ms) ? value : unknown; }
+
 const std::vector<Column>& columns() {
   using R = const CompareRow&;
   static const std::vector<Column> all{
@@ -35,9 +37,9 @@ const std::vector<Column>& columns() {
       {"decay", "decay", "{:.3f}", [](R r) { return r.decay; }},
       {"newton", "Newton", "{:.1f}", [](R r) { return r.newton; }},
       {"linear", "linear", "{:.1f}", [](R r) { return r.linear; }},
-      {"pairs", "pairs", "{:.0f}", [](R r) { return double(r.pairs); }},
-      {"passed_through", "through", "{:.0f}", [](R r) { return double(r.passed_through); }},
-      {"reproduced", "same bits", "{}", [](R r) { return double(r.reproduced); }}};
+      {"pairs", "pairs", "{:.0f}", [](R r) { return if_it_ran(r, double(r.pairs)); }},
+      {"passed_through", "through", "{:.0f}", [](R r) { return if_it_ran(r, double(r.passed_through)); }},
+      {"reproduced", "same bits", "{}", [](R r) { return if_it_ran(r, r.reproduced); }}};
   return all;
 }
 

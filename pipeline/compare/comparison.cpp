@@ -125,7 +125,7 @@ CompareSetting read_setting(const Config& item, const std::filesystem::path& wei
   }
   if (item["weights"].given) {
     setting.weights = std::filesystem::absolute(weights_folder / item["weights"].text());
-    setting.overrides.push_back("run.learned.weights=" + setting.weights.string());
+    setting.overrides.push_back("run.learned.weights=" + quoted_yaml(setting.weights.string()));
   }
   const std::vector<std::string>& more = item["set"].words;
   setting.overrides.insert(setting.overrides.end(), more.begin(), more.end());

@@ -71,6 +71,9 @@ struct Config {
 // Throws Error with file, line, key, what is allowed and the nearest known key.
 Config read_config(const std::filesystem::path&, const Section&, const std::vector<std::string>& overrides = {});
 
+// Any text as a YAML value, in quotes, for files and overrides.
+std::string quoted_yaml(const std::string& text);
+
 // A section whose values come from elsewhere than a file, by keys that are not dotted; `where` is for errors.
 struct GivenValue {
   std::string key, where;

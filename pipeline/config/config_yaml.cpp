@@ -172,6 +172,12 @@ Config read_values(const Section& section, const std::vector<GivenValue>& values
   return checked_section(root, section, "", origin.file, origin);
 }
 
+std::string quoted_yaml(const std::string& text) {
+  YAML::Emitter out;
+  out << YAML::DoubleQuoted << text;
+  return out.c_str();
+}
+
 std::string to_yaml(const Config& config) {
   YAML::Emitter out;
   emit(out, config);

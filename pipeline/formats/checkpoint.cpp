@@ -167,7 +167,7 @@ State read_checkpoint(const std::filesystem::path& path, const std::string& conf
   const h5::File file = h5::File::open(path);
   if (file.read_text("config") != config)
     throw Error("the checkpoint was made under another configuration", path.string(),
-                "resume with the same scene file and --set, or run without --resume");
+                "resume with the same scene file, weights and --set, or run without --resume");
   State state;
   state.time = read_value(file, "time");
   state.frame = read_whole(file, "frame");

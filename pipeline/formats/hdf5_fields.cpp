@@ -20,8 +20,8 @@ std::vector<hsize_t> extents(const std::vector<Eigen::Index>& shape) { return {s
 
 Fields::Fields(const std::filesystem::path& path, FileForm form) : form_(std::move(form)), file_(File::open(path)) {
   if (!file_.has("format") || file_.read_text("format") != form_.format)
-    throw Error("is no " + form_.noun + " of this program", path.string(),
-                "its field `format` must be `" + form_.format + "`");
+    throw Error("holds no " + form_.noun + " of this program", path.string(),
+                "give a file whose field `format` is `" + form_.format + "`");
 }
 
 void Fields::fail(const std::string& field, const std::string& what) const {

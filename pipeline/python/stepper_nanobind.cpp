@@ -4,8 +4,11 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+
 #include "collision/geometry/error.hpp"
 #include "physics/steppers/finish_step.hpp"
+#include "pipeline/config/config.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
 
 namespace selvedge {
@@ -60,10 +63,28 @@ nb::object described(const Drive& drive) {
       "worn"_a = drive.worn.rows() > 0 ? copy_of(drive.worn) : nb::object(nb::none()));
 }
 
+// Forces by the names that StepperTraits::ignores has.
+std::vector<std::string> ignored_by(const std::string& kind, const nb::object& stepper) {
+  const std::vector<std::string> known{
+      "membrane", "bending (curvature)", "bending (hinge)", "springs", "stiffness damping", "mass damping", "wind"};
+  const nb::object given = stepper.attr("ignores");
+  if (!nb::isinstance<nb::tuple>(given) && !nb::isinstance<nb::list>(given))
+    throw Error("is no tuple", "stepper `" + kind + "`, ignores", "give a tuple of: " + joined(known));
+  std::vector<std::string> names;
+  for (const nb::handle item : given) {
+    names.push_back(nb::cast<std::string>(nb::str(item)));
+    if (std::ranges::find(known, names.back()) == known.end())
+      throw Error("`" + names.back() + "` is no force that a stepper may lack", "stepper `" + kind + "`, ignores",
+                  "known: " + joined(known));
+  }
+  return names;
+}
+
 StepperTraits traits_of(const std::string& kind, const nb::object& stepper) {
   const auto yes = [&](const char* name) { return nb::cast<bool>(nb::bool_(stepper.attr(name))); };
   StepperTraits traits{.name = kind, .needs = {.worn = yes("needs_worn"), .obstacles = yes("needs_obstacles")}};
   traits.may_leave_out_cloths = yes("may_leave_out_cloths");
+  traits.ignores = ignored_by(kind, stepper);
   return traits;
 }
 

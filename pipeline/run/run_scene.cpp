@@ -1,14 +1,18 @@
 #include "pipeline/run/run_scene.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <optional>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/config/config.hpp"
 #include "pipeline/formats/checkpoint.hpp"
 #include "pipeline/formats/trajectory_row.hpp"
 #include "pipeline/formats/xdmf.hpp"
 #include "pipeline/host/folder_lock.hpp"
+#include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/peak_memory.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/host/write_file.hpp"
@@ -35,6 +39,17 @@ RunSummary empty_summary(const Setup& setup, const Stepper& stepper) {
   return summary;
 }
 
+// What a run may be resumed under: its configuration, and the weights that make its frames.
+std::string resumed_under(const Setup& setup) {
+  std::vector<std::string> files;
+  if (runs_network(setup)) files.push_back(setup.run.learned.weights);
+  if (setup.run.refu.on && !setup.run.refu.weights.empty()) files.push_back(setup.run.refu.weights);
+  std::string text = setup.config;
+  for (const std::string& file : files)
+    text += fmt::format("# {} {:016x}\n", file, hash_of(whole_file(setup.file.parent_path() / file)));
+  return text;
+}
+
 // The sink of a run: trajectory, summary, checkpoints.
 struct Recorder {
   const Setup& setup;
@@ -42,6 +57,7 @@ struct Recorder {
   RunSummary& summary;
   TrajectoryWriter writer;
   EnergyTerms terms;
+  std::string under = resumed_under(setup);
   int next = 0;
   Clock::time_point last_checkpoint = Clock::now();
 
@@ -51,7 +67,7 @@ struct Recorder {
   }
 
   void checkpoint(const State& state) {
-    write_checkpoint(request.out / "checkpoint.h5", state, setup.config);
+    write_checkpoint(request.out / "checkpoint.h5", state, under);
     last_checkpoint = Clock::now();
   }
 
@@ -96,9 +112,7 @@ std::string config_in(const std::filesystem::path& out, const Setup& setup) {
   std::error_code problem;
   std::filesystem::path folder = std::filesystem::relative(from, out, problem);
   if (problem || folder.empty()) folder = from;
-  std::string quoted;
-  for (const char c : folder.string()) quoted += c == '\'' ? std::string("''") : std::string(1, c);
-  return "folder: '" + quoted + "'\n" + setup.config;
+  return "folder: " + quoted_yaml(folder.string()) + "\n" + setup.config;
 }
 
 }  // namespace
@@ -109,7 +123,7 @@ RunSummary run_scene(const Setup& setup, Stepper& stepper, const RunRequest& req
   std::optional<FolderLock> lock;
   if (!request.locked) lock.emplace(request.out);
   const std::filesystem::path file = request.out / "run.h5", saved = request.out / "checkpoint.h5";
-  State state = request.resume ? read_checkpoint(saved, setup.config) : setup.initial;
+  State state = request.resume ? read_checkpoint(saved, resumed_under(setup)) : setup.initial;
   if (request.resume) check_fits(saved, state, setup.scene);
   remove_results(request);
   write_file(request.out / "config.yaml", config_in(request.out, setup));

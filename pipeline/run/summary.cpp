@@ -229,7 +229,8 @@ std::string summary_text(const RunSummary& s) {
   if (s.vertex_pairs > 0) add("cross at a vertex", fmt::format("{} pairs over all frames", s.vertex_pairs));
   if (s.worst_inside > 0) add("inside obstacles", fmt::format("{} vertices in the worst frame", s.worst_inside));
   if (s.nonfinite > 0) add("not finite", fmt::format("{} vertices over all frames", s.nonfinite));
-  add("contacts", fmt::format("{} at most; {} impulses, {} zones", s.max_contacts, s.impulses, s.zones));
+  if (s.max_contacts > 0 || s.impulses > 0 || s.zones > 0)  // a network looks for none
+    add("contacts", fmt::format("{} at most; {} impulses, {} zones", s.max_contacts, s.impulses, s.zones));
   if (s.halved_substeps > 0) add("substeps halved", std::to_string(s.halved_substeps));
   if (s.held_vertices > 0)
     add("held back", fmt::format("{:.2g} % of all vertices and substeps", 100 * held_fraction(s)));

@@ -13,6 +13,8 @@
 
 namespace selvedge {
 
+bool runs_network(const Setup& setup) { return setup.run.stepper == "learned" || setup.run.stepper == "hybrid"; }
+
 WeightFile read_learned_weights(const Setup& setup) {
   const std::string& weights = setup.run.learned.weights;
   if (weights.empty())
@@ -54,6 +56,8 @@ std::vector<Refusal> refusals(const Setup& setup, const StepperTraits& traits) {
   return all;
 }
 
+}  // namespace
+
 void check_accepted(const Setup& setup, const StepperTraits& traits) {
   std::string what, where, cure;
   const auto append = [](std::string& list, const std::string& item) { list += (list.empty() ? "" : ", ") + item; };
@@ -66,6 +70,8 @@ void check_accepted(const Setup& setup, const StepperTraits& traits) {
     throw Error("the stepper `" + traits.name + "` does not take this scene: " + what,
                 setup.file.string() + ": " + where, cure);
 }
+
+namespace {
 
 std::unique_ptr<Stepper> with_refu(const Setup& setup, std::unique_ptr<Stepper> stepper) {
   if (!setup.run.refu.on) return stepper;

@@ -8,12 +8,18 @@
 
 namespace selvedge {
 
+// Whether the setup's stepper is one of those that run a network, `learned` and `hybrid`.
+bool runs_network(const Setup&);
+
 // The network that the stepper `learned` runs. Throws Error where the scene names none, and whatever read_weight_file
 // does.
 WeightFile read_learned_weights(const Setup&);
 
 // How that stepper runs it.
 LearnedOptions learned_options_of(const Setup&);
+
+// Throws Error where a stepper with these traits does not take the setup's scene.
+void check_accepted(const Setup&, const StepperTraits&);
 
 // The setup's kind of stepper with what stands round it. Keeps a reference to the setup's scene. Throws Error for an
 // unknown kind, and for a scene that does not have what the stepper's traits ask for.

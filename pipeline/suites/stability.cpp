@@ -7,6 +7,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "physics/steppers/step_audit.hpp"
+#include "pipeline/config/config.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/run_scene.hpp"
@@ -52,7 +53,8 @@ Setup read_run(const StabilityRequest& request, const StabilityCase& one, const 
   std::vector<std::string> overrides;
   if (request.stepper) overrides.push_back("run.stepper=" + *request.stepper);
   if (request.weights)
-    overrides.push_back("run.learned.weights=" + std::filesystem::absolute(weights_of(request, run)).string());
+    overrides.push_back("run.learned.weights=" +
+                        quoted_yaml(std::filesystem::absolute(weights_of(request, run)).string()));
   overrides.insert(overrides.end(), run.overrides.begin(), run.overrides.end());
   return read_setup(one.scene, overrides, request.kinds);
 }

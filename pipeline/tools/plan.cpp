@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "learned/steppers/learned_plan.hpp"
+#include "learned/steppers/learned_stepper.hpp"
 #include "physics/linear/linear_solver.hpp"
 #include "physics/scene/features.hpp"
 #include "physics/solve/step_potential.hpp"
@@ -28,6 +29,15 @@ std::string linear_solver_of(const Setup& setup) {
                      count);
 }
 
+// Of a stepper that runs a network. Throws Error where it does not take the scene, as a run does.
+std::vector<PlanLine> network_lines(const Setup& setup) {
+  const Architecture architecture = read_learned_weights(setup).architecture;
+  StepperTraits traits = learned_traits(architecture);
+  traits.name = setup.run.stepper;
+  check_accepted(setup, traits);
+  return learned_plan_lines(setup.scene, architecture, learned_options_of(setup));
+}
+
 // Of the hybrid: what proposes, what becomes of it, and what the network leaves out.
 void append_hybrid_lines(const Setup& setup, std::vector<PlanLine>& lines) {
   const HybridOptions& hybrid = setup.run.hybrid;
@@ -43,15 +53,20 @@ void append_hybrid_lines(const Setup& setup, std::vector<PlanLine>& lines) {
                                                       : "the solve decides what a proposal is worth"});
   lines.push_back({"proposals by time", hybrid.stop_when_slow,
                    hybrid.stop_when_slow ? "none where they cost more than they save: frames depend on the clock"
-                                         : "not asked for by hybrid.stop_when_slow"});
-  for (PlanLine& line :
-       learned_plan_lines(setup.scene, read_learned_weights(setup).architecture, learned_options_of(setup))) {
+                                         : "not asked for by run.hybrid.stop_when_slow"});
+  for (const PlanLine& line : network_lines(setup)) {
     if (line.feature == "settling pass") continue;
     lines.push_back({"proposal: " + line.feature, line.in, line.why});
   }
 }
 
-void append_start_lines(const Setup& setup, std::vector<PlanLine>& lines) {
+// What stands round a stepper of any kind.
+void append_common_lines(const Setup& setup, std::vector<PlanLine>& lines) {
+  const RefuRun& refu = setup.run.refu;
+  lines.push_back({"repulsive layer", refu.on,
+                   !refu.on               ? "not asked for by run.refu.on"
+                   : refu.weights.empty() ? "behind every frame: what is inside a closed body is pushed out"
+                                          : "behind every frame, its scales by the network " + refu.weights});
   if (setup.initial.frame < 0)
     lines.push_back({"draped start", true, fmt::format("{} frames before time 0, not recorded", -setup.initial.frame)});
   if (!setup.initial.cut_out.empty()) lines.push_back({"cut start", true, setup.prepared + " until they are free"});
@@ -60,9 +75,8 @@ void append_start_lines(const Setup& setup, std::vector<PlanLine>& lines) {
 // What the scene needs, and what the stepper does without.
 std::vector<PlanLine> lines_of(const Setup& setup) {
   if (setup.run.stepper == "learned") {
-    std::vector<PlanLine> lines =
-        learned_plan_lines(setup.scene, read_learned_weights(setup).architecture, learned_options_of(setup));
-    append_start_lines(setup, lines);
+    std::vector<PlanLine> lines = network_lines(setup);
+    append_common_lines(setup, lines);
     return lines;
   }
   std::vector<PlanLine> lines = plan_lines(setup.scene);
@@ -73,7 +87,7 @@ std::vector<PlanLine> lines_of(const Setup& setup) {
                    hybrid ? "stepped like others: a network sees all of the cloth"
                    : rest ? "left out of a step as long as nothing that moves comes near them"
                           : "stepped like others, as run.rest asks"});
-  append_start_lines(setup, lines);
+  append_common_lines(setup, lines);
   if (setup.run.stepper == "hybrid") append_hybrid_lines(setup, lines);
   if (setup.run.stepper != "icm") return lines;
   const std::string untouched = "left out by the stepper icm";

@@ -121,10 +121,27 @@ def test_mistakes_in_a_stepper_say_what_and_where():
         scene_of(lambda x: (x, x[:, 0])).step()
     with pytest.raises(ZeroDivisionError):
         scene_of(lambda x: 1 / 0).step()
+    for wrong, message in [(("glue",), "`glue` is no force"), ("wind", "is no tuple")]:
+        scene = selvedge.Scene(stepper=type("Wrong", (Thrown,), {"ignores": wrong}))
+        scene.add_cloth(*square())
+        with pytest.raises(selvedge.Error, match=message):
+            scene.step()
     with pytest.raises(selvedge.Error, match="no subclass"):
         selvedge.Scene(stepper=dict)
     with pytest.raises(selvedge.Error, match="no subclass"):
         selvedge.Scene(stepper=Thrown(None))
+
+
+def test_forces_that_it_ignores_have_no_energy(scene_file, tmp_path):
+    class Blind(Thrown):
+        ignores = ("membrane",)
+
+    comparison = COMPARISON.replace("conventional", "blind").replace("states: 0", "states: 1, horizon: 2")
+    (tmp_path / "comparison.yaml").write_text(comparison)
+    kinds = {"thrown": Thrown, "blind": Blind}
+    result = selvedge.compare(tmp_path / "comparison.yaml", kinds=kinds, out=tmp_path / "out")
+    decay = {row["setting"]: row["decay"] for row in result["rows"]}
+    assert decay["blind"] is None and decay["thrown"] is not None
 
 
 def test_it_runs_in_a_comparison(scene_file, tmp_path):

@@ -53,6 +53,9 @@ class Stepper:
     needs_worn = False  # a scene must have cloth that a body wears
     needs_obstacles = False
     may_leave_out_cloths = False  # stepping a part of the cloths gives what stepping all of them gives of these
+    # Forces of a scene that it lacks, so that a run shows no energy of theirs: "membrane", "bending (curvature)",
+    # "bending (hinge)", "springs", "stiffness damping", "mass damping", "wind".
+    ignores: tuple[str, ...] = ()
 
     def __init__(self, scene: SceneArrays) -> None:
         self.scene = scene

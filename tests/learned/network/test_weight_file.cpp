@@ -265,4 +265,10 @@ TEST_CASE("weight file: values that lie elsewhere are refused", "[learned]") {
   CHECK_THAT(problem(path), Catch::Matchers::Contains("does not write"));
 }
 
+TEST_CASE("weight file: another file of this program is not taken for a checkpoint", "[learned]") {
+  const std::filesystem::path scales = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs/weights/refu.h5";
+  CHECK_THROWS_WITH(read_weight_file(scales),
+                    Catch::Contains("holds no weights of a network") && Catch::Contains("run.refu.weights"));
+}
+
 }  // namespace selvedge::test_weight_file

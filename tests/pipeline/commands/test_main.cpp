@@ -137,6 +137,26 @@ TEST_CASE("bad input ends with status 2 and says what, where and the cure") {
           2);
 }
 
+TEST_CASE("a weight file may lie anywhere, and one that nothing runs is named") {
+  const fake::Folder folder("main_weights");
+  write_scene(folder);
+  const std::filesystem::path odd = folder.path / "a #1: [b] 'c'";
+  std::filesystem::create_directory(odd);
+  std::filesystem::copy_file(std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs/weights/hood.h5", odd / "w #2.h5");
+  const std::string weights =
+      (folder.path / "scene.yaml").string() + " --weights \"" + (odd / "w #2.h5").string() + "\"";
+  const Ended learned = selvedge_program(folder, "plan --json --stepper learned " + weights);
+  INFO(learned.err);
+  REQUIRE(learned.status == 0);
+  const auto plan = nlohmann::json::parse(learned.out);
+  CHECK(plan["plan"][0]["feature"] == "network");
+  REQUIRE(plan["warnings"].size() == 1);  // cotton
+  CHECK(plan["warnings"][0].get<std::string>().find("mu is 385") != std::string::npos);
+  const Ended conventional = selvedge_program(folder, "plan " + weights);
+  CHECK(conventional.status == 0);
+  CHECK(conventional.out.find("--weights has no part in the stepper `conventional`") != std::string::npos);
+}
+
 TEST_CASE("a denied contact ends with status 1") {
   const fake::Folder folder("main_ccd");
   std::filesystem::create_directories(folder.path / "edge-edge");

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "collision/geometry/error.hpp"
+#include "learned/network/weights_hdf5.hpp"
 #include "pipeline/compare/compare.hpp"
 #include "pipeline/compare/compare_run.hpp"
 #include "pipeline/host/gnuplot.hpp"
+#include "tests/learned/learned_scenes.hpp"
 #include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_compare_rows {
@@ -67,6 +70,7 @@ TEST_CASE("compare: a stepper that this program lacks and keys of the comparison
   CHECK(std::isnan(row_named(result, "a").temporal));  // no references were asked for
   CHECK(row_named(result, "a").ms > 0);
   CHECK_FALSE(row_named(result, "a").front);
+  CHECK(fake::whole(request.out / "compare.json").find("\"reproduced\": null") != std::string::npos);  // of b
   request.overrides = {"repats=2"};
   CHECK_THROWS_WITH(compare(request), Contains("repeats"));
   request.overrides = {"evaluation.baseline=c"};
@@ -232,6 +236,29 @@ TEST_CASE("plots: a row is marked as on the page", "[compare]") {
   CHECK_THAT(fake::whole(folder.path / "one_temporal.gnuplot"),
              Contains("$unclean << EOD\n30 0.001 \"crossing\"\n40 0.001 \"passing\"\nEOD") &&
                  Contains("$failed << EOD\n50 0.001") && Contains("'floor'"));
+}
+
+TEST_CASE("compare: rows of networks step once a frame, and what failed is said on the page", "[compare]") {
+  const Folder folder("compare_networks");
+  for (const bool spoiled : {false, true}) {
+    fake::NarrowNetwork network = fake::narrow_network("small");
+    if (spoiled)
+      weight_arrays(network.architecture, network.weights)[0].data[0] = std::numeric_limits<float>::quiet_NaN();
+    write_weight_file(folder.path / (spoiled ? "spoiled.h5" : "w.h5"),
+                      {network.architecture, network.weights, "", {}, ""});
+  }
+  fake::write(folder, "hanging.yaml",
+              "cloths: [{rectangle: {size: [0.5, 0.5], resolution: 4}, pins: [{group: [top]}]}]\nrun: {frames: 2}\n");
+  CompareRequest request;
+  request.file = fake::write(folder, "comparison.yaml",
+                             "scenes: [{name: hanging, file: hanging.yaml, states: 0}]\nrepeats: 1\njudged_frames: 0\n"
+                             "settings: [{name: a, stepper: learned, weights: w.h5}, {name: b, stepper: learned, "
+                             "weights: spoiled.h5}, {name: c, stepper: learned, weights: w.h5, set: [run.fps=60]}]\n");
+  request.out = folder.path / "out";
+  const CompareResult result = compare(request);
+  CHECK(row_named(result, "a").dt == Approx(1.0 / 30));
+  CHECK_THAT(row_named(result, "c").trouble, Contains("60 frames a second; cure: give fps: 30"));
+  CHECK_THAT(fake::whole(request.out / "compare.html"), Contains("<li>b: hanging: rejects a step after frame 0"));
 }
 
 }  // namespace selvedge::test_compare_rows

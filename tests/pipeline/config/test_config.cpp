@@ -227,6 +227,14 @@ TEST_CASE("Overrides reach every key and are named when wrong", "[config]") {
   CHECK_THROWS_WITH(read("run.frame=3"), Contains("did you mean `frames`"));
 }
 
+TEST_CASE("Any text can be given by an override, in quotes", "[config]") {
+  const Folder folder("quoted");
+  const std::filesystem::path file = fake::write(folder, "scene.yaml", "cloths: [{rectangle: {}}]\n");
+  const auto table = scene_table(known_kinds());
+  for (const std::string text : {"plain", "a #b", "c: d", "[e]", "it's", "\"f\"", "true", "1e5", "g\\h"})
+    CHECK(read_config(file, table->scene, {"description=" + quoted_yaml(text)})["description"].text() == text);
+}
+
 TEST_CASE("The full configuration reads back to itself", "[config]") {
   const Folder folder("config");
   const Setup first = read_setup(

@@ -56,6 +56,22 @@ TEST_CASE("A learned run that is stopped and resumed has the frames of one that 
   }
 }
 
+TEST_CASE("A learned run is not resumed with other weights under the same name", "[learned_run]") {
+  const Folder folder("learned_other");
+  for (const char* stepper : {"learned", "hybrid"}) {
+    INFO(stepper);
+    write_network(folder, "w.h5", "hood");
+    const Setup setup = read(folder, std::string("{frames: 5, stepper: ") + stepper + ", learned: {weights: w.h5}}");
+    REQUIRE(run(setup, folder.path / stepper, false, 2).frames == 2);
+    std::filesystem::rename(folder.path / "w.h5", folder.path / "kept.h5");
+    write_network(folder, "w.h5", "hood_cvpr");
+    CHECK_THROWS_WITH(run(setup, folder.path / stepper, true),
+                      Contains("another configuration") && Contains("weights"));
+    std::filesystem::rename(folder.path / "kept.h5", folder.path / "w.h5");
+    CHECK(run(setup, folder.path / stepper, true).frames == 5);
+  }
+}
+
 TEST_CASE("The keys of run.learned: weights are seen from the scene file, settle adds a frame at rest",
           "[learned_run]") {
   const Folder folder("learned_keys");

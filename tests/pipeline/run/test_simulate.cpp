@@ -68,6 +68,7 @@ TEST_CASE("a run leaves a trajectory, its sidecar, the configuration and a summa
   REQUIRE(is_clean(summary));
   REQUIRE(summary.frames == 12);
   REQUIRE(summary.frame_seconds.size() == 12);
+  REQUIRE(summary_text(summary).find("contacts") == std::string::npos);  // where none were looked for
 
   const TrajectoryReader reader(folder.path / "run.h5");
   REQUIRE(reader.closed());
