@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "collision/audit/audit.hpp"
 #include "collision/exact/penetration_depth.hpp"
 #include "collision/search/intersections.hpp"
 #include "learned/steppers/learned_state.hpp"
@@ -49,9 +50,13 @@ struct RunWatch {
 
   void begin_measures(const TimedRunOptions& options, const State& start, const Drive& drive) {
     measures.emplace(setup.scene, setup.run.frames, options.judged_frames);
-    const Audit found = audit_positions(setup.scene, start.x, start.obstacles);
-    measures->begin(start.x, joined_rows(start.obstacles), static_cast<int>(found.self_pairs.size()));
+    measures->begin(start.x, joined_rows(start.obstacles), pairs_of_cloth(start.x));
     acceleration = graph_state(setup.scene, start, drive).acceleration;
+  }
+
+  // Where a run leaves out contact of cloth with itself, its own audits do not look at it.
+  int pairs_of_cloth(const Points& x) const {
+    return static_cast<int>(audit(setup.scene.surface, x.cast<float>().cast<double>(), {}).self_pairs.size());
   }
 
   bool obstacle_crosses_itself(const Drive& drive) {
@@ -84,7 +89,9 @@ struct RunWatch {
     const State& state = event.state;
     MeasuredFrame frame{state.x, joined_rows(state.obstacles), std::move(acceleration)};
     if (report.audit) {
-      frame.pairs = static_cast<int>(report.audit->self_pairs.size());
+      frame.pairs =
+          setup.scene.contact.self ? static_cast<int>(report.audit->self_pairs.size()) : pairs_of_cloth(state.x);
+      run.pairs = std::max(run.pairs, frame.pairs);
       frame.meets_body = !report.audit->obstacle_pairs.empty() || report.audit->inside_vertices > 0;
     }
     const bool may_be_inside = !report.audit || report.audit->inside_vertices > 0 || state.pinched;

@@ -133,6 +133,13 @@ TEST_CASE("compare: a row that exceeds its limits ends, and stays with what was 
   REQUIRE(whole.pairs_by_frame.size() == 6);
   REQUIRE(whole.pairs > 20);  // triangles
 
+  // Pairs are counted where a run leaves contact of cloth with itself out, too.
+  request.overrides = {"settings=[{name: blind, stepper: conventional, set: [contact.self=false]}]"};
+  const CompareRow blind = row_named(compare(request), "blind");
+  REQUIRE(blind.pairs_by_frame.size() == 6);
+  CHECK(blind.pairs_by_frame[0] == whole.pairs_by_frame[0]);
+  CHECK(blind.pairs > 20);
+
   request.overrides = {"limits.pairs=1"};
   const CompareResult result = compare(request);
   const CompareRow& dense = row_named(result, "conventional");
