@@ -48,11 +48,18 @@ std::vector<FeatureRows> output_derivatives(const std::filesystem::path& folder,
   return derivatives;
 }
 
-void check_step(const RecordedStep& step) {
+// A hidden unit whose sum is zero but for rounding may count or not, and then all arrays before it change by up
+// to 2.5e-3 of their largest entry. With plain kernels it falls as in the recording, but for one in eight changes of
+// the inputs by 2e-7; so the bound for kernels that round otherwise is wider.
+double bound_for(InstructionSet set) { return set == InstructionSet::plain ? 1e-3 : 4e-3; }
+
+void check_step(const RecordedStep& step, InstructionSet set) {
+  INFO(name_of(set));
+  const double bound = bound_for(set);
   const std::filesystem::path folder = recorded::pack_folder();
   if (folder.empty()) return;
   const Architecture a = recorded::recorded_architecture(step.model);
-  const TrainingNetwork network = make_training_network(a, recorded::formula_weights(step.model));
+  const TrainingNetwork network = make_training_network(a, recorded::formula_weights(step.model), set);
   const Graph graph = recorded::recorded_graph(folder / (step.step + ".npz"));
   const Npz file(folder / (step.weights + ".npz"));
   const std::vector<std::string> names = file.texts("names").values, losses = file.texts("loss_names").values;
@@ -79,7 +86,7 @@ void check_step(const RecordedStep& step) {
       const double wanted = norms[loss * names.size() + place.at(published_name(a, array.name))];
       const Eigen::Map<const Eigen::VectorXf> ours(array.data, static_cast<Eigen::Index>(array.rows) * array.columns);
       INFO(array.name);
-      CHECK(ours.cast<double>().norm() == Approx(wanted).epsilon(1e-3).margin(1e-12));
+      CHECK(ours.cast<double>().norm() == Approx(wanted).epsilon(bound).margin(1e-12));
       ++compared;
     }
   }
@@ -96,15 +103,18 @@ void check_step(const RecordedStep& step) {
         largest = std::max(largest, std::abs(theirs[i]));
         worst = std::max(worst, std::abs(theirs[i] - static_cast<double>(array.data[i])));
       }
-      CHECK(worst <= 1e-3 * largest);
+      CHECK(worst <= bound * largest);
     }
 }
 
 }  // namespace
 
 TEST_CASE("training parity: weight gradients of the authors' training steps", "[learned]") {
-  check_step({"hood", "hood_step2", "hood_losses", "hood_weight_gradients", 4, 252500. / 5000.});
-  check_step({"ccraft", "ccraft_fold_step1", "ccraft_losses_fold", "ccraft_weight_gradients", 0, 1.});
+  for (const InstructionSet set : {InstructionSet::plain, InstructionSet::avx2, InstructionSet::avx512}) {
+    if (!is_supported(set)) continue;
+    check_step({"hood", "hood_step2", "hood_losses", "hood_weight_gradients", 4, 252500. / 5000.}, set);
+    check_step({"ccraft", "ccraft_fold_step1", "ccraft_losses_fold", "ccraft_weight_gradients", 0, 1.}, set);
+  }
 }
 
 }  // namespace selvedge::test_training_parity
