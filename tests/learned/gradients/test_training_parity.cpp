@@ -49,7 +49,7 @@ std::vector<FeatureRows> output_derivatives(const std::filesystem::path& folder,
 }
 
 // A hidden unit whose sum is zero but for rounding may count or not, and then all arrays before it change by up
-// to 2.5e-3 of their largest entry. With plain kernels it falls as in the recording, but for one in eight changes of
+// to 1 % of their norm. With plain kernels it falls as in the recording, but for one in eight changes of
 // the inputs by 2e-7; so the bound for kernels that round otherwise is wider.
 double bound_for(InstructionSet set) { return set == InstructionSet::plain ? 1e-3 : 2e-2; }
 
