@@ -11,7 +11,7 @@ namespace {
 constexpr double come_closer = 0.5;   // of their distance at rest: what is nearer has come together
 constexpr double deepest_part = 0.7;  // of a part's thickness, that another is in it: beyond, it comes out behind
 constexpr double widened = 1 + 1e-9;  // bounds of many vertices are taken wider by this
-constexpr int in_a_group = 8;         // vertices of a cube that are looked at together
+constexpr int in_a_group = 4;         // vertices of a cube that are looked at together
 constexpr int cubes_away = 2;         // cubes that the reach is long
 
 struct Extent {
@@ -108,7 +108,7 @@ bool may_face(const Extents& a, const Extents& b, double reach) {
 // near: groups, ascending.
 int facing_vertex(const PosedCubes& posed, int v, const std::vector<int>& near) {
   const FacingBody& body = posed.body;
-  const Vec3 at = row(posed.x, v), normal = row(posed.normals, v);
+  const Vec3 at = row(posed.x, v), normal = row(posed.normals, v), rest = row(body.rest, v);
   int found = -1;
   double nearest = body.reach * body.reach;
   const auto look_at = [&](int p) {
@@ -129,6 +129,8 @@ int facing_vertex(const PosedCubes& posed, int v, const std::vector<int>& near) 
     const double cosine =
         normal.cwiseProduct(extents.normals.lo).cwiseMin(normal.cwiseProduct(extents.normals.hi)).sum();
     if (gap > widened * nearest || cosine > facing_cosine + (widened - 1)) continue;
+    const double at_rest = (extents.rest.hi - rest).cwiseAbs().cwiseMax((rest - extents.rest.lo).cwiseAbs()).squaredNorm();
+    if (gap > widened * come_closer * come_closer * at_rest) continue;
     for (int p = first; p < last; ++p) look_at(p);
   }
   return found;

@@ -270,7 +270,8 @@ GiveWay::GiveWay(Surface body, const Points& rest, const GiveWayOptions& options
 // Pressed apart where parts meet. Where that does not do, mended place by place: from there, or as skinned, or else
 // left as it crosses less. Then pressed more for room, where no more of it would next to touch by that.
 Points GiveWay::operator()(const Points& x) const {
-  Pressed body{pressed(*flesh_, x, x, meetings(*flesh_, x)), {}};
+  std::vector<Meeting> found = meetings(*flesh_, x);
+  Pressed body{pressed(*flesh_, x, x, found), {}};
   IntersectionCache cache = flesh_->at_rest;
   Pairs left = intersecting_pairs(flesh_->body, body.x, cache);
   if (!left.empty()) {
@@ -283,7 +284,7 @@ Points GiveWay::operator()(const Points& x) const {
     }
     left = intersecting_pairs(flesh_->body, body.x, cache);
   }
-  body.close = meetings(*flesh_, body.x);
+  body.close = body.x == x ? std::move(found) : meetings(*flesh_, body.x);
   const auto is_tight = [&](const Meeting& m) {
     return gap_of(m, body.x) < flesh_->options.tight_part * m.least &&
            (row(body.x, m.vertex) - row(x, m.vertex)).norm() < flesh_->options.tight_part * flesh_->options.most;
