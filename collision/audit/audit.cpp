@@ -17,20 +17,29 @@ namespace {
 
 using Pairs = std::vector<std::pair<int, int>>;
 
-// Triangles with their corners beside them, for what is left after the vertices with undefined coordinates are out.
+struct Triangle {
+  std::array<Vec3, 3> corners;
+  std::array<int, 3> vertices;
+  int number;  // in the mesh; of obstacles, numbered on end
+
+  bool is_finite() const { return corners[0].allFinite() && corners[1].allFinite() && corners[2].allFinite(); }
+};
+
+Triangle triangle_of(const Surface& surface, const Points& x, int t, int first_number) {
+  const std::array<int, 3> v{surface.triangles(t, 0), surface.triangles(t, 1), surface.triangles(t, 2)};
+  return {{row(x, v[0]), row(x, v[1]), row(x, v[2])}, v, first_number + t};
+}
+
+// What is left after the vertices with undefined coordinates are out.
 struct Soup {
-  std::vector<std::array<Vec3, 3>> corners;
-  std::vector<std::array<int, 3>> vertices;
-  std::vector<int> number;  // of the triangle in the mesh; of obstacles, numbered on end
+  std::vector<Triangle> triangles;
   std::vector<ExactBox> boxes;
 };
 
 // If its box comes within the bounds.
-void add_triangle(const Surface& surface, const Points& x, int t, int first_number, double margin,
-                  const ExactBox& bounds, Soup& soup) {
-  const std::array<int, 3> v{surface.triangles(t, 0), surface.triangles(t, 1), surface.triangles(t, 2)};
-  const std::array<Vec3, 3> p{row(x, v[0]), row(x, v[1]), row(x, v[2])};
-  if (!(p[0].allFinite() && p[1].allFinite() && p[2].allFinite())) return;
+void add_triangle(const Triangle& triangle, double margin, const ExactBox& bounds, Soup& soup) {
+  if (!triangle.is_finite()) return;
+  const auto& p = triangle.corners;
   ExactBox box;
   for (int k = 0; k < 3; ++k) {
     const auto [lo, hi] = std::minmax({p[0][k], p[1][k], p[2][k]});
@@ -38,15 +47,14 @@ void add_triangle(const Surface& surface, const Points& x, int t, int first_numb
     box.hi[k] = hi + margin;
   }
   if (!overlap(box, bounds)) return;
-  soup.corners.push_back(p);
-  soup.vertices.push_back(v);
-  soup.number.push_back(first_number + t);
+  soup.triangles.push_back(triangle);
   soup.boxes.push_back(box);
 }
 
 void add_triangles(const Surface& surface, const Points& x, int first_number, double margin, const ExactBox& bounds,
                    Soup& soup) {
-  for (int t = 0; t < surface.triangles.rows(); ++t) add_triangle(surface, x, t, first_number, margin, bounds, soup);
+  for (int t = 0; t < surface.triangles.rows(); ++t)
+    add_triangle(triangle_of(surface, x, t, first_number), margin, bounds, soup);
 }
 
 Soup soup_of(const Surface& surface, const Points& x, double margin) {
@@ -73,7 +81,8 @@ int shared_vertices(const std::array<int, 3>& a, const std::array<int, 3>& b) {
   return shared;
 }
 
-bool intersect(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+bool intersect(const Triangle& s, const Triangle& t) {
+  const auto &a = s.corners, &b = t.corners;
   return triangles_intersect(a[0], a[1], a[2], b[0], b[1], b[2]);
 }
 
@@ -84,11 +93,11 @@ bool surely_beside(const Vec3& s, const Vec3& a1, const Vec3& a2, const Vec3& b1
 }
 
 // a and b share one vertex.
-bool cross_at_vertex(const Soup& cloth, int a, int b) {
+bool cross_at_vertex(const Triangle& a, const Triangle& b) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
-      if (cloth.vertices[a][i] == cloth.vertices[b][j]) {
-        const auto &p = cloth.corners[a], &q = cloth.corners[b];
+      if (a.vertices[i] == b.vertices[j]) {
+        const auto &p = a.corners, &q = b.corners;
         if (surely_beside(p[i], p[(i + 1) % 3], p[(i + 2) % 3], q[(j + 1) % 3], q[(j + 2) % 3])) return false;
         return triangles_cross_at_vertex(p[i], p[(i + 1) % 3], p[(i + 2) % 3], q[(j + 1) % 3], q[(j + 2) % 3]);
       }
@@ -96,21 +105,24 @@ bool cross_at_vertex(const Soup& cloth, int a, int b) {
 }
 
 // Of two triangles of the cloth.
-void judge_pair(const Soup& cloth, int a, int b, Audit& found) {
-  const int shared = shared_vertices(cloth.vertices[a], cloth.vertices[b]);
-  const std::pair numbers = std::minmax({cloth.number[a], cloth.number[b]});
-  if (shared == 0 && intersect(cloth.corners[a], cloth.corners[b])) found.self_pairs.push_back(numbers);
-  if (shared == 1 && cross_at_vertex(cloth, a, b)) found.vertex_pairs.push_back(numbers);
+void judge_pair(const Triangle& a, const Triangle& b, Audit& found) {
+  const int shared = shared_vertices(a.vertices, b.vertices);
+  const std::pair numbers = std::minmax({a.number, b.number});
+  if (shared == 0 && intersect(a, b)) found.self_pairs.push_back(numbers);
+  if (shared == 1 && cross_at_vertex(a, b)) found.vertex_pairs.push_back(numbers);
+}
+
+// Of a triangle of the cloth and one of a body.
+void judge_body_pair(const Triangle& a, const Triangle& c, Audit& found) {
+  if (intersect(a, c)) found.obstacle_pairs.emplace_back(a.number, c.number);
 }
 
 void audit_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, bool with_self, PairBudget& budget,
                 Audit& found) {
   visit_pairs(
-      cell, cloth.boxes, bodies.boxes, with_self, budget, [&](int a, int b) { judge_pair(cloth, a, b, found); },
-      [&](int a, int c) {
-        if (intersect(cloth.corners[a], bodies.corners[c]))
-          found.obstacle_pairs.emplace_back(cloth.number[a], bodies.number[c]);
-      });
+      cell, cloth.boxes, bodies.boxes, with_self, budget,
+      [&](int a, int b) { judge_pair(cloth.triangles[a], cloth.triangles[b], found); },
+      [&](int a, int c) { judge_body_pair(cloth.triangles[a], bodies.triangles[c], found); });
 }
 
 void append(Pairs& all, const Pairs& part) { all.insert(all.end(), part.begin(), part.end()); }
@@ -169,43 +181,65 @@ double gap_in_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, doub
   const auto take = [&](const Soup& second, int a, int b) {
     // A little slack for the rounding of the margins: passing over a pair must never change the result.
     if (squared_box_gap(cloth.boxes[a], second.boxes[b], margin) > least * (1 + 1e-9) + 1e-300) return;
-    const auto &p = cloth.corners[a], &q = second.corners[b];
-    least = std::min(least, intersect(p, q) ? 0.0 : squared_gap(p, q));
+    const Triangle &s = cloth.triangles[a], &t = second.triangles[b];
+    least = std::min(least, intersect(s, t) ? 0.0 : squared_gap(s.corners, t.corners));
   };
   visit_pairs(
       cell, cloth.boxes, bodies.boxes, true, budget,
       [&](int a, int b) {
-        if (shared_vertices(cloth.vertices[a], cloth.vertices[b]) == 0) take(cloth, a, b);
+        if (shared_vertices(cloth.triangles[a].vertices, cloth.triangles[b].vertices) == 0) take(cloth, a, b);
       },
       [&](int a, int c) { take(bodies, a, c); });
   return least;
 }
 
-void sort_pairs(Audit& result) {
-  for (Pairs* pairs : {&result.self_pairs, &result.vertex_pairs, &result.obstacle_pairs})
+Audit joined(const std::vector<Audit>& parts) {
+  Audit all;
+  for (const Audit& part : parts) {
+    append(all.self_pairs, part.self_pairs);
+    append(all.vertex_pairs, part.vertex_pairs);
+    append(all.obstacle_pairs, part.obstacle_pairs);
+  }
+  for (Pairs* pairs : {&all.self_pairs, &all.vertex_pairs, &all.obstacle_pairs})
     std::sort(pairs->begin(), pairs->end());
+  return all;
+}
+
+// Of listed pairs; all is finite.
+Audit audit_listed(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, const Pairs& self_pairs,
+                   const Pairs& body_pairs) {
+  constexpr int at_once = 256;
+  const int of_self = static_cast<int>(self_pairs.size()), count = of_self + static_cast<int>(body_pairs.size());
+  std::vector<Audit> found(static_cast<std::size_t>((count + at_once - 1) / at_once));
+#pragma omp parallel for schedule(static)
+  for (int k = 0; k < static_cast<int>(found.size()); ++k)
+    for (int i = k * at_once; i < std::min(count, (k + 1) * at_once); ++i) {
+      const auto& [a, b] = i < of_self ? self_pairs[i] : body_pairs[i - of_self];
+      const Triangle mine = triangle_of(cloth, x, a, 0);
+      if (i < of_self) {
+        judge_pair(mine, triangle_of(cloth, x, b, 0), found[k]);
+        continue;
+      }
+      const AuditBody* body = obstacles.data();
+      int t = b;
+      for (; t >= body->surface->triangles.rows(); ++body) t -= static_cast<int>(body->surface->triangles.rows());
+      judge_body_pair(mine, triangle_of(*body->surface, *body->points, t, b - t), found[k]);
+    }
+  return joined(found);
+}
+
+Pairs triangles_of(const std::vector<AuditMemory::Pair>& pairs) {
+  Pairs triangles;
+  for (const AuditMemory::Pair& pair : pairs) triangles.emplace_back(pair.a, pair.b);
+  return triangles;
 }
 
 // Looks at what the memory leaves open. Where no triangle has come to an obstacle since the reference, none of its
 // vertices has come into it or out of it.
 Audit answer(const AuditQuestions& questions, const Surface& cloth, const Points& x,
              std::span<const AuditBody> obstacles, AuditMemory& memory) {
-  Audit result;
-  for (const AuditMemory::Pair& pair : questions.self_pairs) {
-    Soup two;
-    for (const int t : {pair.a, pair.b}) add_triangle(cloth, x, t, 0, 0, everywhere, two);
-    judge_pair(two, 0, 1, result);
-  }
-  for (const AuditMemory::Pair& pair : questions.body_pairs) {
-    const AuditBody* body = obstacles.data();
-    int t = pair.b;
-    for (; t >= body->surface->triangles.rows(); ++body) t -= static_cast<int>(body->surface->triangles.rows());
-    Soup mine, other;
-    add_triangle(cloth, x, pair.a, 0, 0, everywhere, mine);
-    add_triangle(*body->surface, *body->points, t, pair.b - t, 0, everywhere, other);
-    if (intersect(mine.corners[0], other.corners[0])) result.obstacle_pairs.emplace_back(pair.a, pair.b);
-  }
-  sort_pairs(result);
+  Audit result =
+      audit_listed(cloth, x, obstacles, triangles_of(questions.self_pairs), triangles_of(questions.body_pairs));
   if (questions.body_pairs.empty() && memory.inside >= 0) {
     result.inside_vertices = memory.inside;
   } else {
@@ -223,8 +257,14 @@ Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> ob
   if (memory) {
     std::vector<MovingBody> bodies;
     for (const AuditBody& body : obstacles) bodies.push_back({body.surface, body.points, body.points});
-    const AuditQuestions questions = open_questions(*memory, {&cloth, &x, &x}, bodies, self);
+    const MovingBody still{&cloth, &x, &x};
+    const AuditQuestions questions = open_questions(*memory, still, bodies, self);
     if (!questions.all) return answer(questions, cloth, x, obstacles, *memory);
+    if (is_at_end(memory->end, still, bodies, self)) {
+      Audit result = audit_listed(cloth, x, obstacles, memory->end.self_pairs, memory->end.body_pairs);
+      result.inside_vertices = count_inside(cloth, x, obstacles, result.obstacle_pairs);
+      return result;
+    }
   }
   const Soup mine = soup_of(cloth, x, 0), others = soup_near(mine, obstacles, 0);
   const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, self);
@@ -235,13 +275,7 @@ Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> ob
   for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, budget, found[r]);
   budget.check();
 
-  Audit result;
-  for (const Audit& part : found) {
-    append(result.self_pairs, part.self_pairs);
-    append(result.vertex_pairs, part.vertex_pairs);
-    append(result.obstacle_pairs, part.obstacle_pairs);
-  }
-  sort_pairs(result);
+  Audit result = joined(found);
   result.inside_vertices = count_inside(cloth, x, obstacles, result.obstacle_pairs);
   result.nonfinite = count_nonfinite(x);
   for (const AuditBody& body : obstacles) result.nonfinite += count_nonfinite(*body.points);

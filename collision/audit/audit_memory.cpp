@@ -12,6 +12,7 @@ namespace {
 constexpr double most_reach = 0.4, first_reach = 0.2;  // in the cloth's mean edges
 constexpr double many = 16;                            // pairs for each of the cloth's triangles: less reach will do
 constexpr double slow = 0.125;                         // of the reach, since the last audit: then remembering pays
+constexpr double rounding_to_float = 0x1p-22;          // of a coordinate, and four times more
 
 using Corners = std::array<Vec3, 3>;
 
@@ -246,6 +247,22 @@ bool is_slow(AuditMemory& memory, std::span<const MovingBody> sheets, double rea
 }
 
 }  // namespace
+
+double reach_of_rounding(const MovingBody& cloth, std::span<const MovingBody> bodies) {
+  double most = largest({cloth.x1, 1});
+  for (const MovingBody& body : bodies) most = std::max(most, largest({body.x1, 1}));
+  return rounding_to_float * most;
+}
+
+bool is_at_end(const MotionEnd& end, const MovingBody& cloth, std::span<const MovingBody> bodies, bool self) {
+  const auto is_there = [&](const Points& at, const Points& x) {
+    return at.rows() == x.rows() && ((x - at).cwiseAbs().array() <= end.reach).all();
+  };
+  if (end.self != self || end.x.size() != bodies.size() + 1 || !is_there(end.x[0], *cloth.x1)) return false;
+  for (std::size_t k = 0; k < bodies.size(); ++k)
+    if (!is_there(end.x[k + 1], *bodies[k].x1)) return false;
+  return true;
+}
 
 AuditQuestions open_questions(AuditMemory& memory, const MovingBody& cloth, std::span<const MovingBody> bodies,
                               bool self) {

@@ -8,6 +8,21 @@
 
 namespace selvedge {
 
+// Where a motion ended, and which triangles have boxes within `reach` of each other there: the search for pairs of the
+// motion serves the state at its end, rounded to float, too.
+struct MotionEnd {
+  std::vector<Points> x;                                    // cloth, then obstacles; empty: none is known
+  double reach = 0;                                         // [m]
+  bool self = true;                                         // pairs of the cloth with itself were looked for
+  std::vector<std::pair<int, int>> self_pairs, body_pairs;  // as in AuditMemory
+};
+
+// How far coordinates of bodies that move so may be rounded to float, and more [m].
+double reach_of_rounding(const MovingBody& cloth, std::span<const MovingBody> bodies);
+
+// Are all coordinates within the reach of where the motion ended? Then other triangles than those listed are apart.
+bool is_at_end(const MotionEnd&, const MovingBody& cloth, std::span<const MovingBody> bodies, bool self);
+
 // What the audit remembers of a scene, so that what rests need not be proven again: which pairs of triangles were near
 // each other at some reference positions, and how far apart they were proven to be. A displacement budget of the
 // audit's own: two triangles stay apart while the largest displacements of their vertices from there sum to less than
@@ -24,6 +39,7 @@ struct AuditMemory {
   bool slow = false;              // and there was little of that
   double reach = 0;               // pairs farther apart than this are not listed [m]
   std::vector<Pair> self_pairs, body_pairs;
+  MotionEnd end;    // of the last motion that was looked at as a whole
   int inside = -1;  // cloth vertices inside obstacles at the reference; -1: not known
 };
 

@@ -16,6 +16,7 @@ struct Side {
     const Surface* surface;
     const Points *x0, *x1;
     int triangle, first_node;
+    int number;  // as in AuditMemory::Pair
   };
   std::vector<Face> faces;
   std::vector<ExactBox> start, end, boxes;  // at both ends, and round both
@@ -52,15 +53,32 @@ bool stay_apart_along_an_axis(const Side& a, int i, const Side& b, int j) {
   return apart;
 }
 
-// The faces that come within the bounds. Returns the number of vertices that are not finite.
-int add(const MovingBody& body, int first_node, const ExactBox& bounds, Side& side) {
+// May two faces be within `reach` of each other at the end?
+bool meet_at_end(const ExactBox& a, const ExactBox& b, double reach) {
+  bool meet = true;
+  for (int k = 0; k < 3; ++k) meet &= (a.lo[k] <= b.hi[k] + 2 * reach) & (b.lo[k] <= a.hi[k] + 2 * reach);
+  return meet;
+}
+
+ExactBox grown(ExactBox box, double margin) {
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] -= margin;
+    box.hi[k] += margin;
+  }
+  return box;
+}
+
+// The faces that come within the bounds, with boxes grown by the margin. Returns the number of vertices that are not
+// finite.
+int add(const MovingBody& body, int first_node, int first_number, double margin, const ExactBox& bounds, Side& side) {
   const Surface& s = *body.surface;
   std::vector<char> good(s.vertex_count);
   for (int v = 0; v < s.vertex_count; ++v) good[v] = finite(*body.x0, *body.x1, v);
   for (int t = 0; t < s.triangles.rows(); ++t) {
     if (!good[s.triangles(t, 0)] || !good[s.triangles(t, 1)] || !good[s.triangles(t, 2)]) continue;
-    const Side::Face face{&s, body.x0, body.x1, t, first_node};
-    const ExactBox start = box_of(face, *body.x0), end = box_of(face, *body.x1), both = round_both(start, end);
+    const Side::Face face{&s, body.x0, body.x1, t, first_node, first_number + t};
+    const ExactBox start = box_of(face, *body.x0), end = box_of(face, *body.x1),
+                   both = grown(round_both(start, end), margin);
     if (!overlap(both, bounds)) continue;
     side.faces.push_back(face);
     side.start.push_back(start);
@@ -167,18 +185,52 @@ struct PairAudit {
   }
 };
 
-void audit_cell(const Cell& cell, const Side& cloth, const Side& bodies, bool self, int max_halvings,
-                PairBudget& budget, std::vector<PassedPair>& passed) {
+// What was found in a cell, or in all of them.
+struct Found {
+  std::vector<PassedPair> passed;
+  std::vector<std::pair<int, int>> self_at_end, body_at_end;  // that meet at the end
+};
+
+// reach: as of MotionEnd.
+void audit_cell(const Cell& cell, const Side& cloth, const Side& bodies, bool self, int max_halvings, double reach,
+                PairBudget& budget, Found& found) {
   visit_pairs(
       cell, cloth.boxes, bodies.boxes, self, budget,
       [&](int a, int b) {
+        const auto [first, second] = std::minmax(a, b);
+        if (meet_at_end(cloth.end[a], cloth.end[b], reach))
+          found.self_at_end.emplace_back(cloth.faces[first].number, cloth.faces[second].number);
         if (stay_apart_along_an_axis(cloth, a, cloth, b)) return;
-        PairAudit{cloth.faces[std::min(a, b)], cloth.faces[std::max(a, b)], max_halvings, passed}();
+        PairAudit{cloth.faces[first], cloth.faces[second], max_halvings, found.passed}();
       },
       [&](int a, int c) {
+        if (meet_at_end(cloth.end[a], bodies.end[c], reach))
+          found.body_at_end.emplace_back(cloth.faces[a].number, bodies.faces[c].number);
         if (stay_apart_along_an_axis(cloth, a, bodies, c)) return;
-        PairAudit{cloth.faces[a], bodies.faces[c], max_halvings, passed}();
+        PairAudit{cloth.faces[a], bodies.faces[c], max_halvings, found.passed}();
       });
+}
+
+template <typename T>
+void append(std::vector<T>& all, const std::vector<T>& part) {
+  all.insert(all.end(), part.begin(), part.end());
+}
+
+Found joined(const std::vector<Found>& parts) {
+  Found all;
+  for (const Found& part : parts) {
+    append(all.passed, part.passed);
+    append(all.self_at_end, part.self_at_end);
+    append(all.body_at_end, part.body_at_end);
+  }
+  std::sort(all.passed.begin(), all.passed.end());
+  return all;
+}
+
+MotionEnd end_of(const MovingBody& cloth, std::span<const MovingBody> bodies, bool self, double reach, Found&& found) {
+  MotionEnd end{{*cloth.x1}, reach, self, std::move(found.self_at_end), std::move(found.body_at_end)};
+  for (const MovingBody& body : bodies) end.x.push_back(*body.x1);
+  return end;
 }
 
 // Of the pairs that the memory leaves open; all are finite.
@@ -186,7 +238,7 @@ std::vector<PassedPair> passed_of(const AuditQuestions& questions, const MovingB
                                   std::span<const MovingBody> bodies, int max_halvings) {
   std::vector<PassedPair> passed;
   const auto face = [](const MovingBody& body, int t, int first_node) {
-    return Side::Face{body.surface, body.x0, body.x1, t, first_node};
+    return Side::Face{body.surface, body.x0, body.x1, t, first_node, t};
   };
   for (const AuditMemory::Pair& pair : questions.self_pairs)
     PairAudit{face(cloth, std::min(pair.a, pair.b), 0), face(cloth, std::max(pair.a, pair.b), 0), max_halvings,
@@ -209,32 +261,36 @@ std::vector<PassedPair> passed_of(const AuditQuestions& questions, const MovingB
 MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x1, std::span<const MovingBody> bodies,
                          bool self, AuditMemory* memory, int max_halvings) {
   restore_standard_arithmetic();
+  const MovingBody moving{&cloth, &x0, &x1};
   MotionAudit result;
   if (memory) {
-    const MovingBody moving{&cloth, &x0, &x1};
+    memory->end = {};
     const AuditQuestions questions = open_questions(*memory, moving, bodies, self);
     if (!questions.all) {
       result.passed = passed_of(questions, moving, bodies, max_halvings);
       return result;
     }
   }
+  const double reach = memory ? reach_of_rounding(moving, bodies) : 0;
   Side mine, others;
-  result.nonfinite = add({&cloth, &x0, &x1}, 0, everywhere, mine);
+  result.nonfinite = add(moving, 0, 0, reach, everywhere, mine);
   const ExactBox round_cloth = hull_of(mine.boxes);
-  int first_node = cloth.vertex_count;
+  int first_node = cloth.vertex_count, first_number = 0;
   for (const MovingBody& body : bodies) {
-    result.nonfinite += add(body, first_node, round_cloth, others);
+    result.nonfinite += add(body, first_node, first_number, reach, round_cloth, others);
     first_node += body.surface->vertex_count;
+    first_number += static_cast<int>(body.surface->triangles.rows());
   }
   const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, self);
   const int count = static_cast<int>(cells.size());
-  std::vector<std::vector<PassedPair>> found(cells.size());
+  std::vector<Found> parts(cells.size());
   PairBudget budget(mine.boxes.size() + others.boxes.size());
 #pragma omp parallel for schedule(dynamic, 4)
-  for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, max_halvings, budget, found[r]);
+  for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, max_halvings, reach, budget, parts[r]);
   budget.check();
-  for (const auto& part : found) result.passed.insert(result.passed.end(), part.begin(), part.end());
-  std::sort(result.passed.begin(), result.passed.end());
+  Found found = joined(parts);
+  result.passed = std::move(found.passed);
+  if (memory) memory->end = end_of(moving, bodies, self, reach, std::move(found));
   return result;
 }
 

@@ -129,7 +129,8 @@ int facing_vertex(const PosedCubes& posed, int v, const std::vector<int>& near) 
     const double cosine =
         normal.cwiseProduct(extents.normals.lo).cwiseMin(normal.cwiseProduct(extents.normals.hi)).sum();
     if (gap > widened * nearest || cosine > facing_cosine + (widened - 1)) continue;
-    const double at_rest = (extents.rest.hi - rest).cwiseAbs().cwiseMax((rest - extents.rest.lo).cwiseAbs()).squaredNorm();
+    const double at_rest =
+        (extents.rest.hi - rest).cwiseAbs().cwiseMax((rest - extents.rest.lo).cwiseAbs()).squaredNorm();
     if (gap > widened * come_closer * come_closer * at_rest) continue;
     for (int p = first; p < last; ++p) look_at(p);
   }
