@@ -20,6 +20,7 @@ class RowCollector {
   }
   void finish() {
     for (std::size_t k = begin_.back(); k < column_.size(); ++k) slot_[column_[k]] = -1;
+    sort_by_target();
     begin_.push_back(static_cast<int>(column_.size()));
     product_.begin.push_back(static_cast<int>(product_.term.size()));
   }
@@ -33,10 +34,26 @@ class RowCollector {
     }
     return slot_[column];
   }
+  // The terms of the last row, the diagonal's first, each target's in the order in which they came.
+  void sort_by_target();
   int row_ = 0;
   std::vector<int> slot_, begin_{0}, column_;  // slots are positions in column_
+  std::vector<int> next_;                      // of each target of a row: where its next term goes
+  std::vector<ProductTerm> sorted_;
   Product product_;
 };
+
+void RowCollector::sort_by_target() {
+  const auto terms = std::span(product_.term).subspan(product_.begin.back());
+  const int first = begin_.back() - 1;  // the diagonal stands before the row's slots
+  const auto place = [&](const ProductTerm& term) { return term.target < 0 ? 0 : term.target - first; };
+  next_.assign(column_.size() - first + 1, 0);
+  for (const ProductTerm& term : terms) ++next_[place(term) + 1];
+  std::partial_sum(next_.begin(), next_.end(), next_.begin());
+  sorted_.resize(terms.size());
+  for (const ProductTerm& term : terms) sorted_[next_[place(term)]++] = term;
+  std::ranges::copy(sorted_, terms.begin());
+}
 
 // The product with what was collected and its mirror image in one pattern: each row's left part first.
 Product RowCollector::with_mirrored(RowPattern& whole) {
@@ -202,14 +219,27 @@ Product make_product(std::span<const ContactBlock> contacts, const Prolongation&
 void accumulate(const Product& product, const BlockPair<float>* source, const BlockColumns<float>* source_diagonal,
                 BlockPair<float>* target, BlockColumns<float>* target_diagonal, int begin, int end) {
   for (int a = begin; a < end; ++a)
-    for (int t = product.begin[a]; t < product.begin[a + 1]; ++t) {
-      const ProductTerm term = product.term[t];
-      for (int k = 0; k < 3; ++k) {
-        const Quad<float>& from =
-            term.source < 0 ? source_diagonal[~term.source].column[k] : column_of(source, term.source, k);
-        Quad<float>& to = term.target < 0 ? target_diagonal[a].column[k] : column_of(target, term.target, k);
-        to.lanes += from.lanes * term.weight;
+    for (int t = product.begin[a], end_of_row = product.begin[a + 1]; t < end_of_row;) {
+      const int entry = product.term[t].target;
+      const auto to = [&](int k) -> Quad<float>& {
+        return entry < 0 ? target_diagonal[a].column[k] : column_of(target, entry, k);
+      };
+      auto x = to(0).lanes, y = to(1).lanes, z = to(2).lanes;
+      for (; t < end_of_row && product.term[t].target == entry; ++t) {
+        const auto [source_entry, unused, weight] = product.term[t];
+        const auto add = [&](const auto& from) {
+          x += from(0).lanes * weight;
+          y += from(1).lanes * weight;
+          z += from(2).lanes * weight;
+        };
+        if (source_entry < 0)
+          add([&](int k) -> const Quad<float>& { return source_diagonal[~source_entry].column[k]; });
+        else
+          add([&](int k) -> const Quad<float>& { return column_of(source, source_entry, k); });
       }
+      to(0).lanes = x;
+      to(1).lanes = y;
+      to(2).lanes = z;
     }
 }
 
