@@ -11,15 +11,16 @@ int Exemption::cloth_vertices() const {
   return count;
 }
 
+// Of cloth with cloth a pair is left alone where all of it is tangled: what is clean of each other stays so.
 bool Exemption::leaves_alone(const ContactWorld& world, const std::array<int, 4>& nodes) const {
-  bool self_alone = false, body_alone = false, all_cloth = true, all_off = !off.empty();
+  bool self_alone = !self.empty(), body_alone = false, all_cloth = true, all_off = !off.empty();
   for (const int node : nodes) {
     if (!world.is_cloth(node)) {
       all_cloth = false;
       all_off = all_off && off[node];
       continue;
     }
-    self_alone = self_alone || (!self.empty() && self[node]);
+    self_alone = self_alone && self[node];
     body_alone = body_alone || (!body.empty() && body[node]);
   }
   return all_cloth ? self_alone : body_alone || all_off;

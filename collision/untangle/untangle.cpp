@@ -136,7 +136,7 @@ Freedom make_freedom(const KeptShape& shape, const std::vector<char>& tangled, c
   Freedom freedom;
   freedom.reach.assign(shape.surface->vertex_count, 0);
   for (int v = 0; v < shape.surface->vertex_count; ++v) {
-    if (!around[v]) continue;
+    if (!around[v] || (!options.held.empty() && options.held[v])) continue;
     freedom.reach[v] = near[v] ? std::numeric_limits<double>::infinity() : options.far_limit * far_unit(shape, v);
     freedom.vertices.push_back(v);
   }

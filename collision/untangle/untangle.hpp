@@ -32,6 +32,7 @@ struct UntangleOptions {
   // 1 for vertices that obstacles neither meet nor hold, there or anywhere along a contour; the cloth itself does.
   // Empty: none.
   std::vector<char> let_through;
+  std::vector<char> held;      // 1 for vertices that stay where they are, as pins do. Empty: none.
   bool second_opinion = true;  // of what repels near a contour, where the first gets stuck: as many iterations again
   std::function<void(const UntangleProgress&)> progress;
   StopFlag stop = {};  // asked once an iteration: true ends it with the best that was seen

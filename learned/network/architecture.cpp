@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "collision/geometry/error.hpp"
+#include "learned/network/architecture_limits.hpp"
 
 namespace selvedge {
 namespace {
@@ -61,7 +62,7 @@ int edge_kind(const Architecture& a, const std::string& key) {
 
 void check_architecture(const Architecture& a, const std::string& where) {
   require_name(a.name, where, "name");
-  require_range(a.width, 1, 4096, where, "width");
+  require_range(a.width, 1, most_latents, where, "width");
   require_range(a.hidden_layers, 1, 16, where, "hidden_layers");
   require_range(a.node_inputs, 1, 4096, where, "node_inputs");
   require_range(a.outputs, 1, 4096, where, "outputs");
@@ -69,7 +70,7 @@ void check_architecture(const Architecture& a, const std::string& where) {
   require_range(a.passes, 1, 64, where, "passes");
   require_range(static_cast<int>(a.encoders.size()), 0, 64, where, "encoders");
   require_range(static_cast<int>(a.edge_kinds.size()), 0, 64, where, "edge_kinds");
-  require_range(static_cast<int>(a.steps.size()), 0, 1024, where, "steps");
+  require_range(static_cast<int>(a.steps.size()), 0, most_message_steps, where, "steps");
   for (const EdgeEncoder& encoder : a.encoders) {
     require_name(encoder.name, where, "encoders");
     require_range(encoder.inputs, 1, 4096, where, "encoders");

@@ -1,5 +1,6 @@
 #include "learned/steppers/network_device.hpp"
 
+#include "collision/geometry/error.hpp"
 #include "learned/gradients/torch_network.hpp"
 
 namespace selvedge {
@@ -11,13 +12,32 @@ std::vector<std::pair<std::string, NetworkDevice>> network_devices() {
           {"auto", NetworkDevice::automatic}};
 }
 
+namespace {
+
+// Throws Error that names the key and what to do without such a device.
+std::unique_ptr<TorchNetwork> on_libtorch(const char* device, const Architecture& architecture,
+                                          const NetworkWeights& weights) {
+  try {
+    return std::make_unique<TorchNetwork>(architecture, weights, device, 0);
+  } catch (const Error& error) {
+    const std::string cure = "give `cpu` or `auto`, which run where there is no GPU";
+    throw Error(
+        "the network cannot run there: " + error.problem() + " (" + error.where() + ")",
+        std::string("`device` of the network (--device, run.learned.device, or device of a training file), on ") +
+            (std::string(device) == "cpu" ? "libtorch" : device),
+        error.cure().empty() ? cure : cure + "; or " + error.cure());
+  }
+}
+
+}  // namespace
+
 std::unique_ptr<TorchNetwork> torch_network_for(NetworkDevice device, const Architecture& architecture,
                                                 const NetworkWeights& weights) {
   if (device == NetworkDevice::cpu) return nullptr;
   const bool choose = device == NetworkDevice::automatic;
   if (choose && !std::filesystem::exists(torch_library_path())) return nullptr;
   const char* name = choose ? "auto" : device == NetworkDevice::cuda ? "cuda" : "cpu";
-  auto network = std::make_unique<TorchNetwork>(architecture, weights, name, 0);
+  auto network = on_libtorch(name, architecture, weights);
   if (choose && network->facts().device == "cpu") return nullptr;
   return network;
 }

@@ -153,6 +153,7 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
   const WorldSheets sheets(world, nodes);
   const Points& from = sheets.positions[0];
   UntangleOptions options;
+  for (int v = 0; v < n; ++v) options.held.push_back(inverse_mass[v] == 0);
   if (std::ranges::find(waits, 1) != waits.end()) {
     options.iterations = limits.waiting_passes;
     options.let_through = either(waits, carried);

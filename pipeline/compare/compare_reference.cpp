@@ -49,7 +49,7 @@ Flight fly(const Setup& setup, State from, int frames, const Stop& stop,
         if (flight.first.status == StepStatus::not_run) flight.first = event.report;
         if (observe && event.report.status == StepStatus::accepted) observe(event.state);
         flight.stopped = stop && stop();
-        return !flight.stopped && (!row || row->goes_on(event.report));
+        return !flight.stopped && (!row || row->goes_on(event.report, event.state.x));
       },
       row ? row->stop_flag() : StopFlag());
   return flight;
@@ -183,7 +183,7 @@ std::optional<CompareReference> make_reference(const Comparison& comparison, con
 std::optional<CompareErrors> errors_of(const Setup& setup, const CompareReference& reference, const RowLimits& limits,
                                        const Stop& stop) {
   CompareErrors errors;
-  RowWatch row(limits, static_cast<int>(setup.scene.surface.triangles.rows()));
+  RowWatch row(limits, setup.scene);
   Mean temporal, temporal_one, algebraic_one, algebraic_end;
   double l2 = 0, relative = 0;
   for (const CommonState& state : reference.states) {

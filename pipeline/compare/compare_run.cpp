@@ -50,13 +50,8 @@ struct RunWatch {
 
   void begin_measures(const TimedRunOptions& options, const State& start, const Drive& drive) {
     measures.emplace(setup.scene, setup.run.frames, options.judged_frames);
-    measures->begin(start.x, joined_rows(start.obstacles), pairs_of_cloth(start.x));
+    measures->begin(start.x, joined_rows(start.obstacles), pairs_of_cloth(setup.scene.surface, start.x));
     acceleration = graph_state(setup.scene, start, drive).acceleration;
-  }
-
-  // Where a run leaves out contact of cloth with itself, its own audits do not look at it.
-  int pairs_of_cloth(const Points& x) const {
-    return static_cast<int>(audit(setup.scene.surface, x.cast<float>().cast<double>(), {}).self_pairs.size());
   }
 
   bool obstacle_crosses_itself(const Drive& drive) {
@@ -89,8 +84,7 @@ struct RunWatch {
     const State& state = event.state;
     MeasuredFrame frame{state.x, joined_rows(state.obstacles), std::move(acceleration)};
     if (report.audit) {
-      frame.pairs =
-          setup.scene.contact.self ? static_cast<int>(report.audit->self_pairs.size()) : pairs_of_cloth(state.x);
+      frame.pairs = pairs_of_cloth(setup.scene, report, state.x);
       run.pairs = std::max(run.pairs, frame.pairs);
       frame.meets_body = !report.audit->obstacle_pairs.empty() || report.audit->inside_vertices > 0;
     }
@@ -126,13 +120,13 @@ std::optional<CompareRun> timed_run(const Setup& setup, const TimedRunOptions& o
   State state = setup.initial;
   bool stopped = false;
   RunWatch watch(setup, run, options, stepper->traits());
-  RowWatch row(options.limits, static_cast<int>(setup.scene.surface.triangles.rows()));
+  RowWatch row(options.limits, setup.scene);
   const StepReport last = simulate(
       *stepper, setup.drive_at, 1 / setup.run.fps, setup.run.frames, state,
       [&](const FrameEvent& event) {
         watch(event);
         stopped = stop && stop();
-        return !stopped && row.goes_on(event.report);
+        return !stopped && row.goes_on(event.report, event.state.x);
       },
       row.stop_flag());
   if (stopped) return {};

@@ -106,7 +106,7 @@ const Options<RefuRun>& refu_options() {
   static const Options<O> table(
       "refu", "Vertices that a frame leaves inside a closed body are pushed out of it.",
       {flag("on", &O::on, "after every frame of whatever stepper"),
-       number("alpha", &O::alpha, Unit::none, not_negative,
+       number("alpha", &O::alpha, Unit::none, {.low = 0, .high = 1000},
               "how far, in multiples of the depth; what is still inside then is projected"),
        path("weights", &O::weights,
             "scales by what neighbours know instead (configs/weights/refu.h5); seen from the scene file"),

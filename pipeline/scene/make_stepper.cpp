@@ -31,6 +31,12 @@ LearnedOptions learned_options_of(const Setup& setup) {
           .device = setup.run.learned.device};
 }
 
+std::shared_ptr<const NeighbourScale> read_refu_weights(const Setup& setup) {
+  const std::string& weights = setup.run.refu.weights;
+  if (weights.empty()) return nullptr;
+  return std::make_shared<const NeighbourScale>(read_neighbour_scale(setup.file.parent_path() / weights));
+}
+
 namespace {
 
 // Why the stepper does not take the scene, and what to do.
@@ -77,9 +83,7 @@ std::unique_ptr<Stepper> with_refu(const Setup& setup, std::unique_ptr<Stepper> 
   if (!setup.run.refu.on) return stepper;
   RefuOptions options;
   options.alpha = setup.run.refu.alpha;
-  if (!setup.run.refu.weights.empty())
-    options.neighbours =
-        std::make_shared<const NeighbourScale>(read_neighbour_scale(setup.file.parent_path() / setup.run.refu.weights));
+  options.neighbours = read_refu_weights(setup);
   options.edge_pass.rounds = setup.run.refu.edge_pass;
   options.repulsion.order.reach = setup.run.refu.order;
   return make_refu_stepper(setup.scene, std::move(stepper), options);

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "learned/network/weights_hdf5.hpp"
+#include "learned/repulsion/neighbour_scale.hpp"
 #include "learned/steppers/learned_stepper.hpp"
 #include "pipeline/scene/setup.hpp"
 
@@ -17,6 +18,10 @@ WeightFile read_learned_weights(const Setup&);
 
 // How that stepper runs it.
 LearnedOptions learned_options_of(const Setup&);
+
+// Networks that scale the repulsive layer's pushes; null where the scene names none. Throws what read_neighbour_scale
+// does.
+std::shared_ptr<const NeighbourScale> read_refu_weights(const Setup&);
 
 // Throws Error where a stepper with these traits does not take the setup's scene.
 void check_accepted(const Setup&, const StepperTraits&);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -68,6 +69,20 @@ std::optional<Follower> follower_of(int vertex, const Triangles& triangles, cons
   return best;
 }
 
+// Triangles with an edge that no other has: taken away they open nothing.
+std::vector<char> at_the_rim(const Triangles& triangles) {
+  std::map<std::pair<int, int>, int> count;
+  const auto edge = [&](Eigen::Index t, int k) -> std::pair<int, int> {
+    return std::minmax(triangles(t, k), triangles(t, (k + 1) % 3));
+  };
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) ++count[edge(t, k)];
+  std::vector<char> rim(static_cast<std::size_t>(triangles.rows()), 0);
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) rim[static_cast<std::size_t>(t)] |= count[edge(t, k)] == 1;
+  return rim;
+}
+
 void keep_triangles(const std::vector<char>& kept, ClothPart& part) {
   Mesh& mesh = part.mesh;
   Eigen::Index next = 0;
@@ -92,13 +107,15 @@ void leave_out_massless(ClothPart& part, std::vector<std::string>& warnings) {
   for (Eigen::Index t = 0; t < triangles.rows(); ++t)
     for (int k = 0; k < 3; ++k)
       if (sound[static_cast<std::size_t>(t)]) massless[triangles(t, k)] = 0;
+  const std::vector<char> rim = at_the_rim(triangles);
   std::vector<char> kept(sound.size());
   int left_out = 0;
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    bool at_massless = false;
-    for (int k = 0; k < 3; ++k) at_massless = at_massless || massless[triangles(t, k)];
-    kept[static_cast<std::size_t>(t)] = !at_massless;
-    left_out += at_massless;
+    const auto i = static_cast<std::size_t>(t);
+    bool goes = !sound[i] && rim[i];
+    for (int k = 0; k < 3; ++k) goes = goes || massless[triangles(t, k)];
+    kept[i] = !goes;
+    left_out += goes;
   }
   if (left_out == 0) return;
   JoinedTriangles joined(triangles, sound, massless);
@@ -106,10 +123,11 @@ void leave_out_massless(ClothPart& part, std::vector<std::string>& warnings) {
     if (massless[v])
       if (const auto found = follower_of(v, triangles, joined.of(v), part.rest)) part.followers.push_back(*found);
   keep_triangles(kept, part);
-  warnings.push_back(
-      fmt::format("cloth `{}`: {} triangles of zero rest area are left out, and {} vertices without mass follow the "
-                  "cloth that they were joined to by them",
-                  part.name, left_out, part.followers.size()));
+  std::string warning = fmt::format("cloth `{}`: {} triangles of zero rest area are left out", part.name, left_out);
+  if (std::ranges::find(massless, 1) != massless.end())
+    warning += fmt::format(", and {} vertices without mass follow the cloth that they were joined to by them",
+                           part.followers.size());
+  warnings.push_back(warning);
 }
 
 }  // namespace selvedge

@@ -60,9 +60,10 @@ void append_hybrid_lines(const Setup& setup, std::vector<PlanLine>& lines) {
   }
 }
 
-// What stands round a stepper of any kind.
+// What stands round a stepper of any kind. Throws Error where a run would not find it.
 void append_common_lines(const Setup& setup, std::vector<PlanLine>& lines) {
   const RefuRun& refu = setup.run.refu;
+  if (refu.on) read_refu_weights(setup);
   lines.push_back({"repulsive layer", refu.on,
                    !refu.on               ? "not asked for by run.refu.on"
                    : refu.weights.empty() ? "behind every frame: what is inside a closed body is pushed out"

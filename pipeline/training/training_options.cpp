@@ -6,6 +6,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "learned/network/architecture.hpp"
+#include "learned/network/architecture_limits.hpp"
 #include "pipeline/garments/outfit.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/motions/clip_split.hpp"
@@ -317,8 +318,10 @@ const Options<TrainingOptions>& training_options() {
        path("base", "a training file whose values count where this one gives none; seen from this file"),
        text("name", &O::name, "of the run; left out: the file's"),
        word("architecture", &O::architecture, preset_names(), "of the network"),
-       integer("width", &O::width, not_negative, "of latents, in place of the architecture's; 0: its own"),
-       integer("message_steps", &O::message_steps, not_negative, "in place of the architecture's; 0: its own"),
+       integer("width", &O::width, {.low = 0, .high = most_latents},
+               "of latents, in place of the architecture's; 0: its own"),
+       integer("message_steps", &O::message_steps, {.low = 0, .high = most_message_steps},
+               "in place of the architecture's; 0: its own"),
        number("contour_force", &O::contour_force, Unit::none, not_negative,
               "weight of the contours in the force that the network is shown [N/m]; 0: they have no part in it"),
        path("weights", &O::weights, "to start from, of an earlier stage; seen from this file"),

@@ -92,6 +92,19 @@ TEST_CASE("untangle: a bump through a sheet goes back through", "[untangle]") {
     if (row(mesh.x, v).norm() > 0.9) CHECK((out.result.x.row(v) - mesh.x.row(v)).norm() < 0.02);
 }
 
+TEST_CASE("untangle: what is held stays, and the other side goes all of the way", "[untangle]") {
+  const auto bump = [](double a, double b) { return Vec3(a, 0.3 * std::exp(-12 * (a * a + b * b)) - 0.1, b); };
+  const testing::Sheet level = flat(18, jitter), mesh = testing::join(level, bent(20, jitter, bump));
+  const Eigen::Index count = level.x.rows();
+  CHECK(untangled(mesh).result.x.topRows(count) != level.x);
+  UntangleOptions options;
+  options.held.assign(static_cast<std::size_t>(mesh.x.rows()), 0);
+  std::fill_n(options.held.begin(), count, 1);
+  const UntangleOutcome out = untangled(mesh, options);
+  check_clean(out);
+  CHECK(out.result.x.topRows(count) == level.x);
+}
+
 TEST_CASE("untangle: a layer pushed through another over 30 % of its area", "[untangle]") {
   for (double depth : {0.04, 0.05}) {
     const testing::Sheet mesh = outfit(depth);

@@ -323,7 +323,9 @@ TEST_CASE("A network runs on the device that is asked for, or there is an error"
   const bool is_there = std::filesystem::exists(torch_library_path());
   if (!is_there) {
     for (const NetworkDevice device : {NetworkDevice::libtorch, NetworkDevice::cuda})
-      CHECK_THROWS_AS(stepper_of(run.scene, network, {.device = device}), Error);
+      CHECK_THROWS_WITH(stepper_of(run.scene, network, {.device = device}),
+                        Catch::Contains("run.learned.device") && Catch::Contains("libselvedge_torch.so") &&
+                            Catch::Contains("cure: give `cpu` or `auto`"));
     const std::vector<State> automatic =
         rollout(run, *stepper_of(run.scene, network, {.device = NetworkDevice::automatic}));
     CHECK(automatic.back().x == kernels.back().x);

@@ -259,14 +259,17 @@ TEST_CASE("recovery: a tangled cloth is put through no floor", "[recovery]") {
   }
 }
 
-TEST_CASE("recovery: what is left alone is every pair with a tangled vertex", "[recovery]") {
+TEST_CASE("recovery: left alone is what is tangled with cloth wholly, and with an obstacle at one vertex",
+          "[recovery]") {
   World w = make_world(sheet(2, 0.4, 0));
   add_obstacle(w, block({0, -0.2, 0}, 0.06));
   const ContactWorld world = with_its_obstacle(w);
   Exemption exemption;
   CHECK_FALSE(exemption.leaves_alone(world, {0, 1, 4, 5}));
   exemption.self.assign(9, 0);
-  exemption.self[4] = 1;
+  for (const int v : {0, 1, 4}) exemption.self[v] = 1;
+  CHECK_FALSE(exemption.leaves_alone(world, {0, 1, 4, 5}));  // 5 is clean of the rest
+  exemption.self[5] = 1;
   CHECK(exemption.leaves_alone(world, {0, 1, 4, 5}));
   CHECK_FALSE(exemption.leaves_alone(world, {0, 1, 2, 5}));
   CHECK_FALSE(exemption.leaves_alone(world, {4, 9, 10, 11}));

@@ -69,6 +69,20 @@ TEST_CASE("What has no mass holds nothing and follows what it was joined to", "[
   CHECK(with.row(51) == Eigen::RowVector3d(1, 1, 1));
 }
 
+TEST_CASE("A triangle without area along the rim meets nothing of the sheet that it lies on", "[massless]") {
+  const fake::Folder folder("massless_rim");
+  const Setup plain = with_mesh(folder, sheet("", "")), faulty = with_mesh(folder, sheet("", "f 1 2 3\n"));
+  CHECK(warned(faulty, "1 triangles of zero rest area are left out"));
+  CHECK_FALSE(warned(faulty, "vertices without mass"));
+  CHECK(faulty.scene.surface.triangles == plain.scene.surface.triangles);
+  CHECK(after(faulty, 3) == after(plain, 3));
+  // Inside the sheet, where two triangles have an edge in three parts, it closes the gap.
+  const Setup filler = with_mesh(folder,
+                                 "v 0 0.5 0\nv 0.1 0.5 0\nv 0.2 0.5 0\nv 0.1 0.5 0.1\nv 0.1 0.5 -0.1\n"
+                                 "f 1 4 2\nf 2 4 3\nf 1 3 5\nf 1 2 3\n");
+  CHECK(filler.scene.surface.triangles.rows() == 4);
+}
+
 TEST_CASE("A pin holds a vertex without mass, and the cloth falls all the same", "[massless]") {
   const fake::Folder folder("massless_pin");
   const Setup setup = with_mesh(folder, sheet("v 0.02 0.5 0.05\n", "f 8 50 9\n"), ", pins: [{vertices: [49]}]");

@@ -47,6 +47,18 @@ TEST_CASE("plan: says of every stepper whether a repulsive layer stands behind i
   }
 }
 
+TEST_CASE("plan: weights of the repulsive layer that a run would not find are its error", "[plan]") {
+  const Folder folder("plan_layer_weights");
+  const std::string missing = "run.refu.weights=missing.h5";
+  CHECK_THROWS_WITH(plan_of(folder, "hood", {"run.stepper=icm", "run.refu.on=true", missing}), Contains("missing.h5"));
+  CHECK_NOTHROW(plan_of(folder, "hood", {"run.stepper=icm", missing}));
+}
+
+TEST_CASE("plan: a push that no body is deep enough for is one clear error", "[plan]") {
+  const Folder folder("plan_layer_alpha");
+  CHECK_THROWS_WITH(plan_of(folder, "hood", {"run.refu.alpha=1e308"}), Contains("alpha") && Contains("0 to 1000"));
+}
+
 TEST_CASE("plan: a small network sees the body without edges", "[plan]") {
   const Folder folder("plan_body");
   CHECK_THAT(plan_of(folder, "small", {}), Contains("the body's nearest face"));

@@ -142,6 +142,8 @@ TEST_CASE("training options: nothing of the validation split, and one clear erro
   CHECK(error_of(file, {"samples.clips=[walk_turning]"}).find("is not for training") != std::string::npos);
   CHECK(error_of(file, {"watch.clip=hug"}).find("is not for training") != std::string::npos);
   CHECK(error_of(file, {"watch.garment=vest"}).find("watch.garment") != std::string::npos);
+  CHECK(error_of(file, {"width=100000"}).find("0 to 4096") != std::string::npos);
+  CHECK(error_of(file, {"message_steps=100000"}).find("0 to 1024") != std::string::npos);
   CHECK(error_of(file, {"steps=0"}).find("steps") != std::string::npos);
   CHECK(error_of(file, {"optimiser.decay=slow"}).find("halving") != std::string::npos);
   CHECK(error_of(file, {"learning_rate=1"}).find("learning_rate") != std::string::npos);
