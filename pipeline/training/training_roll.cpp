@@ -316,6 +316,7 @@ std::shared_ptr<const TrainingScene> cut_scene(const RollMaker& maker, const Rol
 Roll make_roll(RollMaker& maker, const RollRequest& request) {
   Roll roll;
   roll.request = request;
+  roll.space_edges = request.cloth_contact || !maker.options.contact.edges;
   const bool looks = maker.options.samples.start == GarmentStart::tangled && request.cloth_contact && !request.sheet;
   const RollRequest at = looks ? tangled_place(maker, request, roll.pairs) : request;
   roll.scene = scene_of(maker, at);

@@ -55,6 +55,7 @@ struct Roll {
   std::vector<std::vector<char>>
       body_left_out;          // of each entry, faces of the body that meet others; empty: it gives way
   int pairs = 0;              // of triangles of cloth that intersect where it begins; counted of tangled starts
+  bool space_edges = true;    // of networks that have them; false: left out with all contact of cloth with cloth
   bool shows_forces = false;  // the network has inputs for accelerations
   Drive forces;               // acceleration, gravity with it, and wind
 };
