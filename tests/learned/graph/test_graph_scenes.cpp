@@ -136,12 +136,6 @@ TEST_CASE("graph: what a set leaves out is left out", "[graph]") {
   const MadeGraph none = made_graph(layered, options);
   CHECK(none.graph.edge_sets[6].key == "repulsion_edge");
   CHECK(none.graph.edge_sets[6].senders.empty());
-  // Edges in space are another thing than edges of cloth with cloth.
-  options.space_edges = true;
-  CHECK(made_graph(layered, options).report.space_pairs.pairs.size() > 0);
-  layered.state.no_space_edges = true;
-  CHECK(made_graph(layered, options).report.space_pairs.pairs.empty());
-  options.space_edges = false;
   options.cloth_edges = false;
   options.body_key.clear();
   options.coarse_sets = {3};
