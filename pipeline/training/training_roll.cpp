@@ -100,10 +100,14 @@ void set_start(const TrainingOptions& options, Roll& roll) {
     roll.start += noise;
     return;
   }
+  // What comes apart does so soon; of what does not, most of the time would be spent.
   UntangleOptions untangling;
-  untangling.iterations = 100;
+  untangling.iterations = 60;
+  untangling.patience = 15;
+  untangling.second_opinion = false;
   const UntangleResult parted = untangle(roll.scene->scene.surface, roll.start, {}, untangling);
   roll.usable = parted.pairs_after == 0 && parted.vertex_pairs_after == 0;
+  roll.parting = parted.iterations;
   roll.start = parted.x;
 }
 

@@ -51,6 +51,7 @@ struct Roll {
   std::vector<PointsF> body, cloth;  // cloth: as worn; body: empty matrices where there is none
   Points start;                      // where free vertices begin: as worn, parted where that is asked for, with noise
   bool usable = true;                // false: what was to be parted did not come apart
+  int parting = 0;                   // iterations that parted the start
   int cut = 0;                       // triangles that were cut out where it begins
   std::vector<std::vector<char>>
       body_left_out;          // of each entry, faces of the body that meet others; empty: it gives way
