@@ -122,22 +122,13 @@ TEST_CASE("training starts: no edge, pair or loss has a vertex that is left alon
 
 TEST_CASE("training starts: a start that does not come apart is soon given up", "[training]") {
   RollMaker maker = contact_maker(GarmentStart::untangle, 0);
-  maker.options.samples.clips = {"arms_up_down", "jumping_jacks"};
-  maker.options.samples.flesh = false;  // arms go into the trunk, and sleeves with them
-  maker.world = make_training_world(maker.options.samples, 1);
-  int parted = 0, left = 0;
-  for (int place = 0; place < 12; ++place) {
-    RollRequest request = contact_request(static_cast<std::uint64_t>(place));
-    request.clip = place % 2;
-    request.first_frame = 8 * place;
-    const Roll roll = make_roll(maker, request);
-    INFO(place << ": " << roll.parting << " iterations, usable " << roll.usable);
-    CHECK(roll.parting <= 60);
-    parted += roll.usable && roll.parting > 0;
-    left += !roll.usable;
-  }
-  CHECK(parted > 0);
-  CHECK(left > 0);
+  Points& worn = maker.world.wear[0].garments[0].skin.rest;
+  RandomStream random = stream_of(5, 0);
+  for (Eigen::Index i = 0; i < worn.size(); ++i) worn.data()[i] += 0.04 * random.normal();
+  const Roll roll = make_roll(maker, contact_request(0));
+  CHECK_FALSE(roll.usable);
+  CHECK(roll.parting > 0);
+  CHECK(roll.parting <= 60);
 }
 
 TEST_CASE("training starts: faces of the body that meet others now or next take no part in losses", "[training]") {
