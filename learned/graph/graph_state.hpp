@@ -28,7 +28,8 @@ struct GraphState {
   Points acceleration;                      // by gravity and other forces without contact, V x 3 [m/s2]; empty: none
   double timestep = 1.0 / 30;               // [s]
   bool is_init = false;                     // the cloth is to fall to rest (ContourCraft's flag)
-  bool no_cloth_edges = false;              // first steps of the authors' training samples have none
+  bool no_cloth_edges = false;              // of cloth with cloth; the authors' training samples begin without
+  bool no_space_edges = false;              // between vertices near each other
 
   // For models that see the objective (FeatureOptions::force_inputs, pass_inputs, strain_inputs).
   Points guess;  // where this pass begins, the result of the one before; empty: x + velocity, pinned vertices at target

@@ -135,7 +135,7 @@ void make_raw_graph(const GraphScene& scene, const RestGraph& rest, const GraphS
   graph.body_vertices = active_vertices(scene, report);
   if (!with_body) graph.body_vertices.clear();
   find_classes(scene, rest, state, seen, options, search, report);
-  if (options.space_edges && !state.no_cloth_edges)
+  if (options.space_edges && !state.no_space_edges)
     report.space_pairs = find_space_pairs(scene, seen.mesh, options.space, search.space);
   fill_node_rows(scene, rest, state, seen, options, tables, graph);
   const Points guess = guess_of(rest, state, seen, options), inertial = inertial_guess(rest, state, seen, options);

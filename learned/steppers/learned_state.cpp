@@ -43,7 +43,7 @@ GraphState graph_state(const Scene& scene, const State& from, const Drive& drive
   state.body_target = joined_rows(drive.obstacles);
   state.timestep = learned_dt;
   state.acceleration = free_acceleration(scene, from.x, from.v, drive);
-  state.no_cloth_edges = !sees_cloth_edges(scene);
+  state.no_cloth_edges = state.no_space_edges = !sees_cloth_edges(scene);
   if (begins_rollout(from)) {
     state.velocity = from.v * learned_dt;
     state.previous = from.x - state.velocity;

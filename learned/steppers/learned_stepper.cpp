@@ -113,7 +113,7 @@ bool LearnedStepper::settle(GraphState& state, StepReport& report) {
   still.velocity.setZero();
   still.body_target = still.body_previous = state.body;
   still.timestep = settling_time;
-  still.no_cloth_edges = true;
+  still.no_cloth_edges = still.no_space_edges = true;
   if (integration_ == Integration::relaxation_frame) {
     push_out(graph_scene_.body, still.body, push_out_margin, still.x);
   } else {

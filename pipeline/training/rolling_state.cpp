@@ -31,6 +31,7 @@ void set_surroundings(RollingState& state) {
   state.now.timestep = settling ? settling_time : learned_dt;
   state.now.is_init = settling;
   state.now.no_cloth_edges = settling || !roll.request.cloth_contact;
+  state.now.no_space_edges = settling || !roll.space_edges;
   if (roll.shows_forces)
     state.now.acceleration =
         free_acceleration(roll.scene->scene, state.now.x, state.now.velocity / learned_dt, roll.forces);

@@ -100,10 +100,14 @@ void set_start(const TrainingOptions& options, Roll& roll) {
     roll.start += noise;
     return;
   }
+  // What comes apart does so soon; of what does not, most of the time would be spent.
   UntangleOptions untangling;
-  untangling.iterations = 100;
+  untangling.iterations = 60;
+  untangling.patience = 15;
+  untangling.second_opinion = false;
   const UntangleResult parted = untangle(roll.scene->scene.surface, roll.start, {}, untangling);
   roll.usable = parted.pairs_after == 0 && parted.vertex_pairs_after == 0;
+  roll.parting = parted.iterations;
   roll.start = parted.x;
 }
 
@@ -316,6 +320,7 @@ std::shared_ptr<const TrainingScene> cut_scene(const RollMaker& maker, const Rol
 Roll make_roll(RollMaker& maker, const RollRequest& request) {
   Roll roll;
   roll.request = request;
+  roll.space_edges = request.cloth_contact || !maker.options.contact.edges;
   const bool looks = maker.options.samples.start == GarmentStart::tangled && request.cloth_contact && !request.sheet;
   const RollRequest at = looks ? tangled_place(maker, request, roll.pairs) : request;
   roll.scene = scene_of(maker, at);

@@ -51,10 +51,12 @@ struct Roll {
   std::vector<PointsF> body, cloth;  // cloth: as worn; body: empty matrices where there is none
   Points start;                      // where free vertices begin: as worn, parted where that is asked for, with noise
   bool usable = true;                // false: what was to be parted did not come apart
+  int parting = 0;                   // iterations that parted the start
   int cut = 0;                       // triangles that were cut out where it begins
   std::vector<std::vector<char>>
       body_left_out;          // of each entry, faces of the body that meet others; empty: it gives way
   int pairs = 0;              // of triangles of cloth that intersect where it begins; counted of tangled starts
+  bool space_edges = true;    // of networks that have them; false: left out with all contact of cloth with cloth
   bool shows_forces = false;  // the network has inputs for accelerations
   Drive forces;               // acceleration, gravity with it, and wind
 };

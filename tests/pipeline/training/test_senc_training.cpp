@@ -172,4 +172,33 @@ TEST_CASE("training of SENC begins as the network that it starts from, and what 
   CHECK_THROWS_WITH(trained_architecture(blind), Catch::Contains("sees no forces"));
 }
 
+TEST_CASE("training of SENC shows the network edges in space, and it learns from them", "[training]") {
+  TrainingOptions options = narrow_senc();
+  options.space.radius = 0.06;  // the garment of `tiny` is coarse
+  REQUIRE_FALSE(options.contact.edges);
+  auto trainer = make_trainer(options);
+  const std::vector<std::string>& keys = trainer->architecture.steps[0].edge_keys;
+  REQUIRE(keys.back() == "space_edge");
+  const int width = trainer->architecture.width;
+  const FeatureRows before = trainer->network.weights.steps[0].node.layers[0].weight.rightCols(width);
+  for (int k = 0; k < 8; ++k) train_step(*trainer);
+  CHECK(trainer->network.weights.steps[0].node.layers[0].weight.rightCols(width) != before);
+
+  const auto pairs_in = [&](bool edges, bool cloth_contact, bool still) {
+    RollMaker maker{options, trainer->architecture.features, fake::tiny_maker().world, {}};
+    maker.options.contact.edges = edges;
+    RollingState state;
+    RollRequest request{.first_frame = 30, .frames = 3, .still = still};
+    request.cloth_contact = cloth_contact;
+    begin_roll(make_roll(maker, request), state);
+    Graph graph;
+    REQUIRE(raw_graph_of(frame_making(*trainer), trainer->network.weights.tables, state, graph));
+    return state.found.space_pairs.pairs.size();
+  };
+  CHECK(pairs_in(false, false, false) > 0);
+  CHECK(pairs_in(true, true, false) > 0);
+  CHECK(pairs_in(true, false, false) == 0);  // a roll-out without contact of cloth with cloth
+  CHECK(pairs_in(false, false, true) == 0);  // while the cloth falls to rest
+}
+
 }  // namespace selvedge::test_senc_training

@@ -120,6 +120,17 @@ TEST_CASE("training starts: no edge, pair or loss has a vertex that is left alon
   CHECK(pairs > 0);
 }
 
+TEST_CASE("training starts: a start that does not come apart is soon given up", "[training]") {
+  RollMaker maker = contact_maker(GarmentStart::untangle, 0);
+  Points& worn = maker.world.wear[0].garments[0].skin.rest;
+  RandomStream random = stream_of(5, 0);
+  for (Eigen::Index i = 0; i < worn.size(); ++i) worn.data()[i] += 0.04 * random.normal();
+  const Roll roll = make_roll(maker, contact_request(0));
+  CHECK_FALSE(roll.usable);
+  CHECK(roll.parting > 0);
+  CHECK(roll.parting <= 60);
+}
+
 TEST_CASE("training starts: faces of the body that meet others now or next take no part in losses", "[training]") {
   RollMaker maker = contact_maker(GarmentStart::skinned, 0);
   RollRequest request = contact_request(1);
