@@ -11,8 +11,8 @@ namespace selvedge {
 
 // Leaves out the triangles without area of vertices that have no other, so that nothing meets them, and makes these
 // vertices followers of the nearest triangle that is joined to them. A vertex that is joined to nothing with area stays
-// where it is. Other triangles without area are left out where they have an edge that no other has: such an edge lies on
-// the cloth beside it and would meet it for ever. Counted in a warning.
+// where it is. Other triangles without area are left out where they have an edge that no other has: such an edge lies
+// on the cloth beside it and would meet it for ever. Counted in a warning.
 void leave_out_massless(ClothPart&, std::vector<std::string>& warnings);
 
 }  // namespace selvedge
