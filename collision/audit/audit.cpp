@@ -125,8 +125,6 @@ void audit_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, bool wi
       [&](int a, int c) { judge_body_pair(cloth.triangles[a], bodies.triangles[c], found); });
 }
 
-void append(Pairs& all, const Pairs& part) { all.insert(all.end(), part.begin(), part.end()); }
-
 int count_nonfinite(const Points& x) {
   int count = 0;
   for (int v = 0; v < x.rows(); ++v) count += !x.row(v).allFinite();
@@ -193,13 +191,8 @@ double gap_in_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, doub
   return least;
 }
 
-Audit joined(const std::vector<Audit>& parts) {
-  Audit all;
-  for (const Audit& part : parts) {
-    append(all.self_pairs, part.self_pairs);
-    append(all.vertex_pairs, part.vertex_pairs);
-    append(all.obstacle_pairs, part.obstacle_pairs);
-  }
+Audit joined_and_sorted(const std::vector<Audit>& parts) {
+  Audit all = joined(parts, &Audit::self_pairs, &Audit::vertex_pairs, &Audit::obstacle_pairs);
   for (Pairs* pairs : {&all.self_pairs, &all.vertex_pairs, &all.obstacle_pairs})
     std::sort(pairs->begin(), pairs->end());
   return all;
@@ -225,7 +218,7 @@ Audit audit_listed(const Surface& cloth, const Points& x, std::span<const AuditB
       for (; t >= body->surface->triangles.rows(); ++body) t -= static_cast<int>(body->surface->triangles.rows());
       judge_body_pair(mine, triangle_of(*body->surface, *body->points, t, b - t), found[k]);
     }
-  return joined(found);
+  return joined_and_sorted(found);
 }
 
 Pairs triangles_of(const std::vector<AuditMemory::Pair>& pairs) {
@@ -275,7 +268,7 @@ Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> ob
   for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, budget, found[r]);
   budget.check();
 
-  Audit result = joined(found);
+  Audit result = joined_and_sorted(found);
   result.inside_vertices = count_inside(cloth, x, obstacles, result.obstacle_pairs);
   result.nonfinite = count_nonfinite(x);
   for (const AuditBody& body : obstacles) result.nonfinite += count_nonfinite(*body.points);

@@ -12,7 +12,7 @@ namespace {
 constexpr double most_reach = 0.4, first_reach = 0.2;  // in the cloth's mean edges
 constexpr double many = 16;                            // pairs for each of the cloth's triangles: less reach will do
 constexpr double slow = 0.125;                         // of the reach, since the last audit: then remembering pays
-constexpr double rounding_to_float = 0x1p-22;          // of a coordinate, and four times more
+constexpr double rounding_to_float = 0x1p-22;          // of a coordinate, four times over
 
 using Corners = std::array<Vec3, 3>;
 

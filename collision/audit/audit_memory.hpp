@@ -17,7 +17,7 @@ struct MotionEnd {
   std::vector<std::pair<int, int>> self_pairs, body_pairs;  // as in AuditMemory
 };
 
-// How far coordinates of bodies that move so may be rounded to float, and more [m].
+// Four times what rounding to float moves a coordinate by, at most, at the end of these motions [m].
 double reach_of_rounding(const MovingBody& cloth, std::span<const MovingBody> bodies);
 
 // Are all coordinates within the reach of where the motion ended? Then other triangles than those listed are apart.

@@ -211,22 +211,6 @@ void audit_cell(const Cell& cell, const Side& cloth, const Side& bodies, bool se
       });
 }
 
-template <typename T>
-void append(std::vector<T>& all, const std::vector<T>& part) {
-  all.insert(all.end(), part.begin(), part.end());
-}
-
-Found joined(const std::vector<Found>& parts) {
-  Found all;
-  for (const Found& part : parts) {
-    append(all.passed, part.passed);
-    append(all.self_at_end, part.self_at_end);
-    append(all.body_at_end, part.body_at_end);
-  }
-  std::sort(all.passed.begin(), all.passed.end());
-  return all;
-}
-
 MotionEnd end_of(const MovingBody& cloth, std::span<const MovingBody> bodies, bool self, double reach, Found&& found) {
   MotionEnd end{{*cloth.x1}, reach, self, std::move(found.self_at_end), std::move(found.body_at_end)};
   for (const MovingBody& body : bodies) end.x.push_back(*body.x1);
@@ -288,9 +272,11 @@ MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x
 #pragma omp parallel for schedule(dynamic, 4)
   for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, max_halvings, reach, budget, parts[r]);
   budget.check();
-  Found found = joined(parts);
+  Found found = joined(parts, &Found::passed, &Found::self_at_end, &Found::body_at_end);
+  std::sort(found.passed.begin(), found.passed.end());
   result.passed = std::move(found.passed);
-  if (memory) memory->end = end_of(moving, bodies, self, reach, std::move(found));
+  // A face that was left out may be whole again at the end.
+  if (memory && result.nonfinite == 0) memory->end = end_of(moving, bodies, self, reach, std::move(found));
   return result;
 }
 

@@ -38,6 +38,17 @@ template <typename Self, typename Other>
 void visit_pairs(const Cell& cell, std::span<const ExactBox> first, std::span<const ExactBox> second, bool within_first,
                  PairBudget& budget, Self&& self, Other&& other);
 
+// What was found in each cell, joined list by list.
+template <typename Found, typename... Lists>
+Found joined(const std::vector<Found>& parts, Lists... lists) {
+  Found all;
+  const auto append = [&](const Found& part, auto list) {
+    (all.*list).insert((all.*list).end(), (part.*list).begin(), (part.*list).end());
+  };
+  for (const Found& part : parts) (append(part, lists), ...);
+  return all;
+}
+
 // Boxes of a cell side by side, in the order of their lower ends along an axis.
 struct Sweep {
   struct Entry {

@@ -226,16 +226,16 @@ void accumulate(const Product& product, const BlockPair<float>* source, const Bl
       };
       auto x = to(0).lanes, y = to(1).lanes, z = to(2).lanes;
       for (; t < end_of_row && product.term[t].target == entry; ++t) {
-        const auto [source_entry, unused, weight] = product.term[t];
+        const ProductTerm term = product.term[t];
         const auto add = [&](const auto& from) {
-          x += from(0).lanes * weight;
-          y += from(1).lanes * weight;
-          z += from(2).lanes * weight;
+          x += from(0).lanes * term.weight;
+          y += from(1).lanes * term.weight;
+          z += from(2).lanes * term.weight;
         };
-        if (source_entry < 0)
-          add([&](int k) -> const Quad<float>& { return source_diagonal[~source_entry].column[k]; });
+        if (term.source < 0)
+          add([&](int k) -> const Quad<float>& { return source_diagonal[~term.source].column[k]; });
         else
-          add([&](int k) -> const Quad<float>& { return column_of(source, source_entry, k); });
+          add([&](int k) -> const Quad<float>& { return column_of(source, term.source, k); });
       }
       to(0).lanes = x;
       to(1).lanes = y;

@@ -116,6 +116,13 @@ TEST_CASE("motion end: it serves only where the motion ended, and what was asked
     CHECK(same(scene.state(rounded(scene.x), &memory), scene.state(rounded(scene.x), nullptr)));
     CHECK(same(scene.state(x, &memory), plain));
   }
+  SECTION("what was undefined where the motion began was not looked at") {
+    AuditMemory of_broken;
+    Points broken = from;
+    broken(4, 1) = std::numeric_limits<double>::quiet_NaN();
+    scene.move(broken, of_broken);
+    CHECK(same(scene.state(x, &of_broken), plain));
+  }
   SECTION("without pairs of the cloth with itself it does not serve an audit with them") {
     AuditMemory of_floor_alone;
     scene.move(from, of_floor_alone, false);
