@@ -84,13 +84,13 @@ std::vector<char> inside_body(const Surface& cloth, const Points& x, const std::
                               const Surface& body, const Points& y) {
   std::vector<char> inside(cloth.vertex_count, 0);
   if (body.triangles.rows() == 0) return inside;
-  std::vector<ExactBox> faces;
-  Vec3 lo = row(y, body.triangles(0, 0)), hi = lo;
-  for (int t = 0; t < body.triangles.rows(); ++t) {
-    faces.push_back(box_of({row(y, body.triangles(t, 0)), row(y, body.triangles(t, 1)), row(y, body.triangles(t, 2))}));
-    lo = lo.cwiseMin(Vec3::Map(faces.back().lo.data()));
-    hi = hi.cwiseMax(Vec3::Map(faces.back().hi.data()));
-  }
+  std::vector<ExactBox> faces(static_cast<std::size_t>(body.triangles.rows()));
+  const int count = static_cast<int>(faces.size());
+#pragma omp parallel for schedule(static) if (count > 1000)
+  for (int t = 0; t < count; ++t)
+    faces[t] = box_of({row(y, body.triangles(t, 0)), row(y, body.triangles(t, 1)), row(y, body.triangles(t, 2))});
+  const ExactBox hull = hull_of(faces);
+  const Vec3 lo = Vec3::Map(hull.lo.data()), hi = Vec3::Map(hull.hi.data());
   int axis = 0;
   (hi - lo).minCoeff(&axis);
 

@@ -70,12 +70,15 @@ std::vector<Proximity> find_proximities(const ContactWorld& world, std::span<con
     if (c == 0 || claims[c].first != claims[c - 1].first) keep[claims[c].second.second] = 1;
   std::vector<Proximity> kept;
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (keep[i]) {
-      Proximity& p = kept.emplace_back(all[i]);
-      const Vec3 between = p.gap * p.normal;
-      p.normal = contact_normal(world, p.pair, p.weights, between, x);
-      p.gap = p.normal.dot(between);
-    }
+    if (keep[i]) kept.push_back(all[i]);
+  const int count = static_cast<int>(kept.size());
+#pragma omp parallel for schedule(static) if (count > 64)
+  for (int i = 0; i < count; ++i) {
+    Proximity& p = kept[i];
+    const Vec3 between = p.gap * p.normal;
+    p.normal = contact_normal(world, p.pair, p.weights, between, x);
+    p.gap = p.normal.dot(between);
+  }
   return kept;
 }
 

@@ -26,6 +26,12 @@ class CellGrid {
   // Visits the points of all cubes that the ball's box meets, the ball's own among them, in a fixed order.
   template <class Visit>
   void for_each_near(const Vec3& at, double radius, Visit visit) const {
+    for_each_place_near(at, radius, [&](int p) { visit(point_[p]); });
+  }
+
+  // The same by their places in `order`, ascending.
+  template <class Visit>
+  void for_each_place_near(const Vec3& at, double radius, Visit visit) const {
     std::array<int, 3> from, to;
     for (int k = 0; k < 3; ++k) {
       from[k] = std::max(0, coordinate(at[k] - radius, k));
@@ -34,8 +40,9 @@ class CellGrid {
     if (from[2] > to[2]) return;
     for (int i = from[0]; i <= to[0]; ++i)
       for (int j = from[1]; j <= to[1]; ++j)
-        for (int p = begin_[cell(i, j, from[2])]; p < begin_[cell(i, j, to[2]) + 1]; ++p) visit(point_[p]);
+        for (int p = begin_[cell(i, j, from[2])]; p < begin_[cell(i, j, to[2]) + 1]; ++p) visit(p);
   }
+
   // Visits the cubes within so many of a cube along each axis, itself among them, in ascending order.
   template <class Visit>
   void for_each_cube_around(int cube, int rings, Visit visit) const {

@@ -123,15 +123,22 @@ std::vector<std::vector<int>> boundary_loops(const Surface& s) {
 }
 
 Points vertex_normals(const Surface& s, const Points& x) {
-  Points normals = Points::Zero(s.vertex_count, 3);
-  for (int t = 0; t < s.triangles.rows(); ++t) {
-    const Vec3 a = row(x, s.triangles(t, 0)), b = row(x, s.triangles(t, 1)), c = row(x, s.triangles(t, 2));
-    const Vec3 twice_area = (b - a).cross(c - a);
-    for (int k = 0; k < 3; ++k) normals.row(s.triangles(t, k)) += twice_area.transpose();
-  }
-  for (int v = 0; v < s.vertex_count; ++v) {
-    const double length = normals.row(v).norm();
-    if (length > 0) normals.row(v) /= length;
+  const int faces = static_cast<int>(s.triangles.rows());
+  Points twice_area(faces, 3), normals(s.vertex_count, 3);
+#pragma omp parallel if (faces > 1000)
+  {
+#pragma omp for schedule(static)
+    for (int t = 0; t < faces; ++t) {
+      const Vec3 a = row(x, s.triangles(t, 0)), b = row(x, s.triangles(t, 1)), c = row(x, s.triangles(t, 2));
+      twice_area.row(t) = (b - a).cross(c - a).transpose();
+    }
+#pragma omp for schedule(static)
+    for (int v = 0; v < s.vertex_count; ++v) {
+      Vec3 sum = Vec3::Zero();
+      for (const int t : s.triangles_of(v)) sum += row(twice_area, t);
+      const double length = sum.norm();
+      normals.row(v) = (length > 0 ? Vec3(sum / length) : sum).transpose();
+    }
   }
   return normals;
 }

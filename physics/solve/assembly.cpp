@@ -232,7 +232,7 @@ void elastic_derivatives(const Elastic& elastic, const Points& x, AssemblyScratc
   }
 #pragma omp parallel if (tasks > 8)
   {
-#pragma omp for schedule(static)
+#pragma omp for schedule(dynamic)  // an element's cost depends on its kind
     for (int c = 0; c < tasks; ++c)
       derivatives_of_chunk(elastic, x, c * assembly_chunk, std::min(count, (c + 1) * assembly_chunk), gradient, hessian,
                            form, scratch);

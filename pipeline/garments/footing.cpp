@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-
-#include "collision/geometry/cell_grid.hpp"
-
 namespace selvedge {
 namespace {
 
@@ -15,20 +12,18 @@ constexpr double facing = -0.3;                       // cosine, at most, of its
 
 // How far it is from each foot, on its way out to x, to where another part of the body begins [m]; what that way would
 // pass by counts as farther by the distance. Endless where it is farther than squeezing asks for.
-std::vector<double> gaps(const std::vector<int>& foot, const Surface& body, const Points& posed, const Points& x) {
+std::vector<double> gaps(const std::vector<int>& foot, const PosedSkin& body, const Points& x) {
   std::vector<double> gap(foot.size(), std::numeric_limits<double>::infinity());
-  const Points normals = vertex_normals(body, posed);
-  const CellGrid grid(posed, far);
-#pragma omp parallel for schedule(dynamic, 64)
+#pragma omp parallel for schedule(dynamic, 64) if (foot.size() > 256)
   for (int v = 0; v < static_cast<int>(foot.size()); ++v) {
-    const Vec3 from = row(posed, foot[v]), way = row(x, v) - from;
+    const Vec3 from = row(body.x, foot[v]), way = row(x, v) - from;
     const double out = way.norm(), most = out / first_part;
     if (!(out > 0 && out < far)) continue;
     const Vec3 along = way / out;
-    grid.for_each_near(from, most + beside, [&](int w) {
-      const Vec3 to = row(posed, w) - from;
+    body.grid.for_each_place_near(from, most + beside, [&](int p) {
+      const Vec3 to = row(body.x_in_order, p) - from;
       const double height = to.dot(along);
-      if (!(height > 0 && height < std::min(gap[v], most)) || row(normals, w).dot(along) > facing) return;
+      if (!(height > 0 && height < std::min(gap[v], most)) || row(body.normals_in_order, p).dot(along) > facing) return;
       const double there = height + std::max(0.0, (to - height * along).norm() - beside);
       if (there < most) gap[v] = std::min(gap[v], there);
     });
@@ -38,15 +33,21 @@ std::vector<double> gaps(const std::vector<int>& foot, const Surface& body, cons
 
 }  // namespace
 
-Footing footing_of(const Points& x, const Surface& body, const Points& rest) {
+PosedSkin::PosedSkin(const Surface& body, const Points& posed)
+    : x(posed),
+      grid(posed, far),
+      x_in_order(posed(grid.order(), Eigen::all)),
+      normals_in_order(vertex_normals(body, posed)(grid.order(), Eigen::all)) {}
+
+Footing footing_of(const Points& x, const PosedSkin& rest) {
   Footing footing;
   footing.foot.resize(static_cast<std::size_t>(x.rows()));
 #pragma omp parallel for schedule(static)
   for (Eigen::Index v = 0; v < x.rows(); ++v)
-    (rest.rowwise() - x.row(v)).rowwise().squaredNorm().minCoeff(&footing.foot[static_cast<std::size_t>(v)]);
-  const std::vector<double> gap = gaps(footing.foot, body, rest, x);
+    (rest.x.rowwise() - x.row(v)).rowwise().squaredNorm().minCoeff(&footing.foot[static_cast<std::size_t>(v)]);
+  const std::vector<double> gap = gaps(footing.foot, rest, x);
   for (std::size_t v = 0; v < gap.size(); ++v) {
-    const double out = (x.row(static_cast<Eigen::Index>(v)) - rest.row(footing.foot[v])).norm();
+    const double out = (x.row(static_cast<Eigen::Index>(v)) - rest.x.row(footing.foot[v])).norm();
     footing.part.push_back(std::clamp(out / gap[v], first_part, 1.0));
   }
   return footing;
@@ -62,11 +63,11 @@ Footing footing_of(const Footing& all, const std::vector<int>& vertices) {
   return some;
 }
 
-Points squeezed(const Footing& footing, const Surface& body, const Points& posed, const Points& x) {
-  const std::vector<double> gap = gaps(footing.foot, body, posed, x);
+Points squeezed(const Footing& footing, const PosedSkin& body, const Points& x) {
+  const std::vector<double> gap = gaps(footing.foot, body, x);
   Points to = x;
   for (std::size_t v = 0; v < gap.size(); ++v) {
-    const Vec3 foot = row(posed, footing.foot[v]), way = row(x, static_cast<int>(v)) - foot;
+    const Vec3 foot = row(body.x, footing.foot[v]), way = row(x, static_cast<int>(v)) - foot;
     const double out = way.norm(), free = footing.part[v] * gap[v],
                  left = last_part * gap[v] - free;  // none where it was so near at rest
     if (!(out > free)) continue;

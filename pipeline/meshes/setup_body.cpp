@@ -135,10 +135,15 @@ Clip performed(const Config& section, const Performance& who, const std::filesys
   return blended(clip, StartPose::zero, from_zero);
 }
 
+void forget(PosedBodies& known) {
+  known.at.clear();
+  known.skin.reset();
+}
+
 void leave_room(double room, Performance& who) {
   if (room > 0)
     who.flesh = std::make_shared<GiveWay>(who.surface, shaped(who.body.skin, who.shape), GiveWayOptions{.room = room});
-  who.known->at.clear();
+  forget(*who.known);
 }
 
 }  // namespace
@@ -196,7 +201,7 @@ void come_from(const Points& rotations, double begins, double seconds, Performan
   const Clip still{who.name, fps, who.body.joints, {pose_at(who, 0)}, {}};
   who.before = blended_in(still, seconds, rotations);
   who.begins = begins;
-  who.known->at.clear();
+  forget(*who.known);
 }
 
 BodyPose pose_at(const Performance& who, double time) {
@@ -213,6 +218,15 @@ const PosedBody& posed_at(const Performance& who, double time) {
   PosedBody body{posed(who.body, who.shape, pose_at(who, time)), {}};
   body.given = who.flesh ? (*who.flesh)(body.skinned) : body.skinned;
   return at.emplace(time, std::move(body)).first->second;
+}
+
+const PosedSkin& skin_at(const Performance& who, double time) {
+  PosedBodies& known = *who.known;
+  if (!known.skin || known.skin_at != time) {
+    known.skin.emplace(who.surface, posed_at(who, time).given);
+    known.skin_at = time;
+  }
+  return *known.skin;
 }
 
 Points in_scene(const Performance& who, const Points& x, double time) {

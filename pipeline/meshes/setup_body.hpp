@@ -2,10 +2,12 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "collision/untangle/give_way.hpp"
 #include "pipeline/bodies/body.hpp"
 #include "pipeline/config/config.hpp"
+#include "pipeline/garments/footing.hpp"
 #include "pipeline/meshes/setup_obstacle.hpp"
 #include "pipeline/motions/clip.hpp"
 #include "pipeline/shapes/motion.hpp"
@@ -27,6 +29,8 @@ struct PosedBody {
 struct PosedBodies {
   std::map<double, PosedBody> at;
   bool keeps_all = false;  // else those asked for last
+  double skin_at = 0;      // the moment of:
+  std::optional<PosedSkin> skin;
 };
 
 // A body of a scene, what it does and where: the obstacle and the garments on it share it.
@@ -65,6 +69,9 @@ BodyPose pose_at(const Performance&, double time);
 
 // Before it is placed; kept in what the performance knows.
 const PosedBody& posed_at(const Performance&, double time);
+
+// Where it has given way to itself, before it is placed; the last one is kept.
+const PosedSkin& skin_at(const Performance&, double time);
 
 // The body, giving way where it has flesh, where the scene has it at a time [s].
 Points body_at(const Performance&, double time);

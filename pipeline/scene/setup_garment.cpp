@@ -115,7 +115,7 @@ std::vector<std::shared_ptr<const Wearing>> read_wearings(const Config& cloth, c
     Footing footing;
     if (who->flesh) {
       skin = shares_of_body(garment.skin.rest, who->body, skin_width);
-      footing = footing_of(garment.skin.rest, who->surface, who->body.skin.rest);
+      footing = footing_of(garment.skin.rest, {who->surface, who->body.skin.rest});
     }
     worn.push_back(std::make_shared<Wearing>(Wearing{std::move(garment), who, std::move(skin), std::move(footing)}));
   }
@@ -157,7 +157,7 @@ Points carried(const Wearing& wearing, double time) {
 
 Points squeezed_at(const Wearing& wearing, const Footing& footing, double time, const Points& x) {
   const Performance& who = *wearing.by;
-  return who.flesh ? squeezed(footing, who.surface, posed_at(who, time).given, x) : x;
+  return who.flesh ? squeezed(footing, skin_at(who, time), x) : x;
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ struct Plates {
     }
     return x;
   }
+  PosedSkin skin(double gap, double aside = 0) const { return {surface, at(gap, aside)}; }
 };
 
 // Layers over the middle of the lower plate.
@@ -46,11 +47,11 @@ Points layers(std::initializer_list<double> heights) {
 TEST_CASE("footing: what comes near squeezes layers into its half of the gap, in their order", "[footing]") {
   const Plates body;
   const Points x = layers({0.002, 0.005, 0.01, 0.015, 0.02, 0.03});
-  const Footing footing = footing_of(x, body.surface, body.at(1));
+  const Footing footing = footing_of(x, body.skin(1));
   Points before = x;
   for (double gap = 0.2; gap > 0.004; gap *= 0.9) {
     CAPTURE(gap);
-    const Points to = squeezed(footing, body.surface, body.at(gap), x);
+    const Points to = squeezed(footing, body.skin(gap), x);
     CHECK(to.col(0).isZero());
     CHECK((to.col(1).array() <= before.col(1).array()).all());  // nearer parts squeeze more, without a jump
     CHECK((to - before).rowwise().norm().maxCoeff() < 0.006);
@@ -58,27 +59,27 @@ TEST_CASE("footing: what comes near squeezes layers into its half of the gap, in
     CHECK(to.col(1).maxCoeff() < gap / 2);
     before = to;
   }
-  CHECK(squeezed(footing, body.surface, body.at(0.15), x) == x);
+  CHECK(squeezed(footing, body.skin(0.15), x) == x);
 }
 
 TEST_CASE("footing: nothing moves for what was as near at rest, behind, far, or all of it worn far out", "[footing]") {
   const Plates body;
   const Points x = layers({0.002, 0.015, 0.019});
-  const Footing near = footing_of(x, body.surface, body.at(0.04));
-  CHECK(squeezed(near, body.surface, body.at(0.04), x) == x);
-  CHECK(squeezed(near, body.surface, body.at(0.03), x) != x);
-  const Footing footing = footing_of(x, body.surface, body.at(1));
-  CHECK(squeezed(footing, body.surface, body.at(-0.01), x) == x);       // gone through
-  CHECK(squeezed(footing, body.surface, body.at(0.01, 0.5), x) == x);   // passes by
-  CHECK(squeezed(footing, body.surface, body.at(0.01, 0.23), x) != x);  // not quite
+  const Footing near = footing_of(x, body.skin(0.04));
+  CHECK(squeezed(near, body.skin(0.04), x) == x);
+  CHECK(squeezed(near, body.skin(0.03), x) != x);
+  const Footing footing = footing_of(x, body.skin(1));
+  CHECK(squeezed(footing, body.skin(-0.01), x) == x);       // gone through
+  CHECK(squeezed(footing, body.skin(0.01, 0.5), x) == x);   // passes by
+  CHECK(squeezed(footing, body.skin(0.01, 0.23), x) != x);  // not quite
   const Points out = layers({0.07});
-  CHECK(squeezed(footing_of(out, body.surface, body.at(1)), body.surface, body.at(0.05), out) == out);
+  CHECK(squeezed(footing_of(out, body.skin(1)), body.skin(0.05), out) == out);
 }
 
 TEST_CASE("footing: what lies on the body stays on it", "[footing]") {
   const Plates body;
   const Points x = layers({0});
-  CHECK(squeezed(footing_of(x, body.surface, body.at(1)), body.surface, body.at(0.001), x) == x);
+  CHECK(squeezed(footing_of(x, body.skin(1)), body.skin(0.001), x) == x);
 }
 
 }  // namespace selvedge::test_footing
