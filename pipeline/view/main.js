@@ -114,10 +114,16 @@ function makePage(data, options) {
 
   page.rectangles = () => {
     const origin = element("stage").getBoundingClientRect();
-    return panels.map(({view}) => {
-      const box = view.getBoundingClientRect();
-      return {left: box.left - origin.left, top: box.top - origin.top, width: box.width, height: box.height};
-    });
+    const boxes = panels.map(({view}) => view.getBoundingClientRect());
+    // In a narrow panel the labels, with one row of chips, would lie over the figure's head: it is drawn below them.
+    const labels = boxes[0].width < 640 ? Math.max(...panels.map(({chips}) => chips.offsetTop)) + 26 : 0;
+    return boxes.map((box) => ({
+      left: box.left - origin.left,
+      top: box.top - origin.top,
+      width: box.width,
+      height: box.height,
+      labels: Math.min(labels, 0.3 * box.height)
+    }));
   };
   page.arrange = () => {
     const wanted = element("stage").clientWidth < 700 ? 1 : columns;
@@ -129,9 +135,7 @@ function makePage(data, options) {
   };
   page.home = () => {
     const [azimuth, elevation, distance] = (options.text("camera") || "30,20,1").split(",").map(Number);
-    const {width, height} = page.rectangles()[0];
-    stage.camera.aspect = width / Math.max(1, height);
-    stage.look(azimuth || 0, elevation || 0, distance || 1);
+    stage.look(azimuth || 0, elevation || 0, distance || 1, page.rectangles()[0]);
     page.redraw();
   };
   page.setTheme = (theme) => {

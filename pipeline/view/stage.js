@@ -142,8 +142,9 @@ function makeStage(canvas, runs) {
     maxDistance: 20 * frame.radius
   });
   const offset = new THREE.Vector3();  // how far the camera has gone along
-  // Camera at an azimuth and elevation in degrees and a distance in units of the one that shows every frame's box.
-  function look(azimuth, elevation, distance) {
+  // Camera at an azimuth and elevation in degrees and a distance in units of the one that shows every frame's box, in a
+  // rectangle below its labels.
+  function look(azimuth, elevation, distance, {width, height, labels}) {
     const a = THREE.Math.degToRad(azimuth), e = THREE.Math.degToRad(elevation);
     const toward = new THREE.Vector3(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e));
     const centre = frame.centre.clone().add(offset);
@@ -152,7 +153,8 @@ function makeStage(canvas, runs) {
     camera.lookAt(centre);
     const right = new THREE.Vector3(1, 0, 0).applyQuaternion(camera.quaternion);
     const up = new THREE.Vector3(0, 1, 0).applyQuaternion(camera.quaternion);
-    const tall = Math.tan(THREE.Math.degToRad(camera.fov / 2)), wide = tall * camera.aspect;
+    const half = Math.tan(THREE.Math.degToRad(camera.fov / 2)), free = (height - labels) / Math.max(1, height);
+    const tall = half * free, wide = half * width / Math.max(1, height);
     let away = 0;
     for (let corner = 0; corner < 8; ++corner) {
       const c = new THREE.Vector3(...["x", "y", "z"].map((k, i) => frame.box[corner & (1 << i) ? "max" : "min"][k]))
@@ -177,19 +179,18 @@ function makeStage(canvas, runs) {
     renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     renderer.setSize(canvas.clientWidth, canvas.clientHeight, false);
   }
-  // Draws every scene into its rectangle, given in CSS pixels of the canvas.
+  // Draws every scene into its rectangle, given in CSS pixels of the canvas with the height of its labels.
   function draw(rectangles) {
     renderer.setScissorTest(false);
     renderer.clear();
     renderer.setScissorTest(true);
     scenes.forEach((scene, i) => {
-      const {left, top, width, height} = rectangles[i];
+      const {left, top, width, height, labels} = rectangles[i];
       if (width < 1 || height < 1) return;
       const bottom = canvas.clientHeight - top - height;
       renderer.setViewport(left, bottom, width, height);
       renderer.setScissor(left, bottom, width, height);
-      camera.aspect = width / height;
-      camera.updateProjectionMatrix();
+      camera.setViewOffset(width, height, 0, -labels / 2, width, height);
       renderer.render(scene, camera);
     });
   }
