@@ -60,7 +60,7 @@ RepulsionLosses repulsion_losses(const Repelled& layer, const Points& truth, con
   losses.total = options.reconstruction * losses.reconstruction + options.collision * losses.collision;
   for (const PushedVertex& pushed : layer.pushed) {
     const Vec3 by_moved = row(losses.by_x, pushed.vertex);
-    losses.by_alpha.push_back(-pushed.at.value * by_moved.dot(pushed.direction));
+    losses.by_alpha.push_back(pushed.bounded ? 0 : -pushed.at.value * by_moved.dot(pushed.direction));
     losses.by_x.row(pushed.vertex) = (layer_jacobian(pushed, options.gradient).transpose() * by_moved).transpose();
   }
   return losses;

@@ -27,6 +27,13 @@ std::vector<int> places_of(const std::vector<PushedVertex>& pushed, int count) {
   return place;
 }
 
+void set_scale(double alpha, double slope, double most_beyond, PushedVertex& vertex) {
+  const double f = vertex.at.value;  // < 0
+  vertex.bounded = (1 - alpha) * f > most_beyond;
+  vertex.alpha = vertex.bounded ? 1 - most_beyond / f : alpha;
+  vertex.slope = vertex.bounded ? most_beyond / (f * f) : slope;
+}
+
 // Deep inside a body the nearest points lie in all directions. From the rim of the penetrating patch inward, each deep
 // vertex takes the mean direction of those neighbours that have one already. Vertices that reach no rim keep their own.
 int turn_deep_ones(const Adjacency& ring, const std::vector<int>& place, double deep,
@@ -131,8 +138,7 @@ Repelled repel(const Points& x, const Adjacency& ring, const AskDistance& ask, c
   result.torn = count_torn(ring, place, result.pushed);
   for (std::size_t i = 0; i < result.pushed.size(); ++i) {
     PushedVertex& vertex = result.pushed[i];
-    vertex.alpha = scales.alpha[i];
-    vertex.slope = scales.slope[i];
+    set_scale(scales.alpha[i], scales.slope[i], options.most_beyond, vertex);
     result.x.row(vertex.vertex) += ((options.margin - vertex.alpha * vertex.at.value) * vertex.direction).transpose();
   }
   const std::vector<PushedVertex> moved = keep_order(found, options, held, result, x);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -24,8 +25,11 @@ struct RepulsionOptions {
   // So often moved vertices are asked again, and those inside projected, to half the margin each time: a narrow place
   // has no room for all of it. The paper: 0.
   int recheck = 0;
-  double deep = 0.03;     // deeper vertices take their neighbours' mean direction [m]; infinity: none does
-  double margin = 0;      // added to every push [m]; the paper: 0
+  double deep = 0.03;  // deeper vertices take their neighbours' mean direction [m]; infinity: none does
+  double margin = 0;   // added to every push [m]; the paper: 0
+  // No scale takes a vertex farther beyond the surface than this [m], however deep it was: networks of scales are asked
+  // for depths that they have not seen. The paper has no such bound.
+  double most_beyond = std::numeric_limits<double>::infinity();
   LayerOrder order = {};  // cloth over pushed vertices goes along; the paper: none does
 };
 
@@ -33,6 +37,7 @@ struct RepulsionOptions {
 struct PushedVertex {
   int vertex = 0;
   double alpha = 1, slope = 0;    // the scale and its derivative by the distance [1/m]
+  bool bounded = false;           // by `most_beyond`: the network's scale has no say
   SignedDistance at;              // where it was
   Vec3 direction = Vec3::Zero();  // in which it went, unit length
 };

@@ -10,7 +10,7 @@
 namespace selvedge {
 
 struct RefuOptions {
-  RepulsionOptions repulsion{.recheck = 8, .margin = 1e-4, .order = {.reach = 0.03}};
+  RepulsionOptions repulsion{.recheck = 8, .margin = 1e-4, .most_beyond = 0.01, .order = {.reach = 0.03}};
   double alpha = 1;                                  // of every vertex, where there are no `neighbours`
   std::shared_ptr<const NeighbourScale> neighbours;  // networks that say it of each
   EdgePassOptions edge_pass{.rounds = 0, .count = false};

@@ -78,6 +78,8 @@ const Options<LayerOptions>& layer_options() {
        number("scale_rate", &O::scale_rate, Unit::none, positive,
               "times the learning rate, of the networks of scales: they begin untrained"),
        number("deep", &O::deep, Unit::length, positive, "deeper vertices take their neighbours' direction"),
+       number("most_beyond", &O::most_beyond, Unit::length, positive,
+              "no scale takes a vertex farther out of the body; the paper has no such bound"),
        integer("recheck", &O::recheck, not_negative, "times pushed vertices are asked again where it is measured"),
        number("reconstruction", &O::reconstruction, Unit::none, not_negative, "weight of loss 8"),
        number("collision", &O::collision, Unit::none, not_negative, "weight of loss 9"),
@@ -160,6 +162,7 @@ DrapeRecipe recipe_of(const DrapeRow& row, const LayerOptions& options) {
   DrapeRecipe recipe;
   recipe.layer = row.layer;
   recipe.repulsion.deep = options.deep;
+  recipe.repulsion.most_beyond = options.most_beyond;
   recipe.loss = {options.reconstruction, row.collision_loss ? options.collision : 0, options.loss_unit,
                  row.neural_layer ? LayerGradient::frozen : options.gradient};
   return recipe;

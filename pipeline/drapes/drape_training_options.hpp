@@ -41,7 +41,8 @@ struct LayerOptions {
   double unit = 0.01;  // in which g reads distances [m]
   double scale_rate = 1;
   double deep = 0.03;
-  int recheck = 0;  // where it is measured
+  double most_beyond = 0.01;  // [m]
+  int recheck = 0;            // where it is measured
   double reconstruction = 1.5, collision = 0.5;
   double loss_unit = 1;  // of lengths in the losses [m]
   LayerGradient gradient = LayerGradient::full;

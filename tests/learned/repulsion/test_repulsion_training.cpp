@@ -13,6 +13,7 @@ struct LayerCase : fake::DressedBlob {
   Points truth;
   std::vector<float> inputs{0.4f, -0.3f, 0.8f};
   ScaleNetwork network;
+  double most_beyond = std::numeric_limits<double>::infinity();
 
   explicit LayerCase(ScaleForm form) : DressedBlob(10, 8), truth(1.3 * garment.x) {
     ScaleShape shape = small_scale_shape(3, garment.surface.vertex_count);
@@ -29,6 +30,7 @@ struct LayerCase : fake::DressedBlob {
     const ScaleEvaluator scale(network, inputs);
     RepulsionOptions options;
     options.deep = std::numeric_limits<double>::infinity();
+    options.most_beyond = most_beyond;
     return repel(x, ring, ask, scale, options);
   }
   double loss(const Points& x) const { return repulsion_losses(layer(x), truth, ask, {}).total; }
@@ -62,6 +64,29 @@ TEST_CASE("repulsion losses: gradients by positions agree with differences", "[r
       if (std::ranges::none_of(layer.pushed, [v](const PushedVertex& p) { return p.vertex == v; })) return v;
   }();
   CHECK((row(losses.by_x, outside) - 3 * (row(layer.x, outside) - row(c.truth, outside))).norm() < 1e-12);
+}
+
+TEST_CASE("repulsion losses: a bounded push has the gradient of its bound, and none by its scale",
+          "[repulsion_training]") {
+  LayerCase c(ScaleForm::vertex_latents);
+  c.network.g.layers.back().bias[0] += 5;
+  c.most_beyond = 1e-3;
+  const Repelled layer = c.layer(c.garment.x);
+  const RepulsionLosses losses = repulsion_losses(layer, c.truth, c.ask, {});
+  int tested = 0;
+  for (std::size_t i = 0; i < layer.pushed.size(); ++i) {
+    const int v = layer.pushed[i].vertex;
+    if (!layer.pushed[i].bounded || layer.pushed[i].at.value > -0.01) continue;
+    CHECK(losses.by_alpha[i] == 0);
+    for (int k = 0; k < 3; ++k) {
+      Points forth = c.garment.x, back = forth;
+      forth(v, k) += 1e-6;
+      back(v, k) -= 1e-6;
+      CHECK((c.loss(forth) - c.loss(back)) / 2e-6 == Approx(losses.by_x(v, k)).epsilon(1e-4).margin(1e-3));
+    }
+    ++tested;
+  }
+  CHECK(tested > 3);
 }
 
 TEST_CASE("repulsion losses: gradients by the scale network's parameters agree with differences",

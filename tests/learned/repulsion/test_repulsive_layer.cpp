@@ -95,6 +95,24 @@ TEST_CASE("repulsive layer: what is outside stays bit for bit, what is inside go
   CHECK(repel(d.garment.x, d.ring, d.ask, constant(1), options, held).pushed.empty());
 }
 
+TEST_CASE("repulsive layer: no scale takes a vertex farther out than the bound", "[refu]") {
+  const Dressed d;
+  RepulsionOptions options;
+  options.deep = no_depth;
+  options.most_beyond = 0.002;
+  const Repelled made = repel(d.garment.x, d.ring, d.ask, constant(40), options);
+  const Repelled free = repel(d.garment.x, d.ring, d.ask, constant(1), options);
+  REQUIRE(made.pushed.size() > 20);
+  for (const PushedVertex& p : made.pushed) {
+    const double push = (made.x.row(p.vertex) - d.garment.x.row(p.vertex)).norm();
+    CHECK(p.bounded == (-39 * p.at.value > 0.002));
+    CHECK(push == Approx(p.bounded ? 0.002 - p.at.value : -40 * p.at.value));
+    // The derivative of the bounded push by the distance: a push of -f and a constant.
+    if (p.bounded) CHECK(p.alpha + p.at.value * p.slope == Approx(1));
+  }
+  for (const PushedVertex& p : free.pushed) CHECK_FALSE(p.bounded);
+}
+
 TEST_CASE("repulsive layer: rechecked, no vertex is inside whatever the scales are", "[refu]") {
   const Dressed d;
   const AskScale wild = [](std::span<const int> vertices, std::span<const double>) {
