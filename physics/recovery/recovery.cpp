@@ -167,6 +167,7 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
   Points way = whole_way;
   for (int v = 0; v < n; ++v)
     if (!lost.empty() && lost[v]) way.row(v).setZero();
+  const std::size_t pairs = before.self.empty() ? 0 : pairs_within_cloth(world, nodes);
   for (int halving = 0; halving <= limits.max_halvings; ++halving, reach /= 2) {
     std::vector<Separation> gained =
         pushes_along(whole_way, lost, sheets, limits.negligible_move * parted.mean_edge, reach);
@@ -174,7 +175,7 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
     Points moved = nodes;
     moved.topRows(n) += balanced_motion(*world.cloth, inverse_mass, gained, way, reach);
     Exemption left = stop_at_obstacles(world, before, from, moved);
-    if (before.self.empty() && !left.self.empty()) continue;
+    if (before.self.empty() ? !left.self.empty() : pairs_within_cloth(world, moved) > pairs) continue;
     nodes = std::move(moved);
     recovery = {std::move(left), std::move(gained), parted.moved == 0, waits};
     recovery.left.off = before.off;

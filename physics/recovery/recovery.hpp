@@ -21,8 +21,8 @@ std::optional<Exemption> hopeless(const ContactWorld&, const Points& nodes, cons
 // against an obstacle: what springs back gets nowhere, and what holds it pulls the cloth after it.
 // Cloth that is carried (carrying.hpp; or empty) and what is tangled together with it, and tangled cloth at a part of a
 // body that is switched off, waits: it is parted from cloth but not from obstacles. Cloth that does not cross itself
-// will not do so after. `before` is what is tangled, as find_exemption has it, and what is switched off. No budget: an
-// ample one.
+// will not do so after, and cloth that does crosses itself in no more pairs. `before` is what is tangled, as
+// find_exemption has it, and what is switched off. No budget: an ample one.
 struct Recovery {
   Exemption left;
   std::vector<Separation> gained;

@@ -13,7 +13,7 @@ struct RecoveryOptions {
   double useful_motions = 12;     // A longer way than this many times what a step can go is not looked for.
   int min_passes = 30;            // Untangling may always take this many passes, however short the step.
   int waiting_passes = 40;        // Beside cloth that waits for a body to be free of itself it takes at most this many.
-  int max_halvings = 3;           // A motion that would make clean cloth cross itself is halved at most this often.
+  int max_halvings = 3;           // A motion after which more pairs cross is halved at most this often.
   double negligible_move = 1e-6;  // A shorter way counts as none [mean edges].
 
   // Worn cloth that a limb has gone through is put on again, or drawn to where it is worn.

@@ -140,7 +140,7 @@ const Options<RecoveryOptions>& recovery_options() {
        integer("min_passes", &O::min_passes, at_least_one, "fewest passes, however short the step"),
        integer("waiting_passes", &O::waiting_passes, at_least_one, "passes at a body that crosses itself"),
        integer("max_halvings", &O::max_halvings, not_negative,
-               "most halvings of a motion that makes clean cloth cross itself"),
+               "most halvings of a motion that makes cloth cross itself in more pairs"),
        number("negligible_move", &O::negligible_move, Unit::none, not_negative,
               "a way that counts as none, in mean edges"),
        number("farthest_place", &O::farthest_place, Unit::length, not_negative,
