@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace selvedge {
 namespace {
@@ -72,10 +73,18 @@ void for_each_face(const std::vector<ClippedPiece>& pieces, const Visit& visit) 
   }
 }
 
+// The derivative of saturated_volume.
+double pressure_share(double volume, double saturation) {
+  return saturation > 0 && volume > saturation ? saturation / volume : 1;
+}
+
 double exact_volume(const ClosedSurface& closed, const Points& x, const std::vector<Crossing>& crossings,
-                    const FrozenPatches& patches, const PenetrationRegion& region, double scale, Points* gradient) {
+                    const FrozenPatches& patches, const PenetrationRegion& region,
+                    const PenetrationLossOptions& options, Points* gradient) {
   const Triangles& corners = closed.surface.triangles;
-  const double pull = region.volume < 0 ? -scale : scale;
+  const double size = std::abs(region.volume), scale = 6 * options.weight;
+  const double share = pressure_share(size, options.saturation);
+  const double pull = (region.volume < 0 ? -scale : scale) * share;
   if (gradient)
     for (const ClippedFace& clipped : region.faces) {
       const Vec3 normal = patches.normal(clipped.face);
@@ -83,7 +92,7 @@ double exact_volume(const ClosedSurface& closed, const Points& x, const std::vec
         gradient->row(corners(clipped.face, k)) += (pull * clipped.moment[k]) * normal.transpose();
     }
   if (gradient && region.closing) add_closing_flux(closed, x, crossings, *region.closing, pull, *gradient);
-  return scale * std::abs(region.volume);
+  return scale * saturated_volume(size, options.saturation);
 }
 
 // Of the triangles that close an open contour, divided by `scale`.
@@ -104,10 +113,10 @@ double frozen_closing(const FrozenPatches& patches, const ContourClosing::Way& w
   return volume;
 }
 
-double frozen_volume(const FrozenPatches& patches, const Triangles& corners, const PenetrationRegion& region,
-                     double scale, Points* gradient) {
+// `pull` times the volume that the patches have now.
+double pulled_volume(const FrozenPatches& patches, const Triangles& corners, const PenetrationRegion& region,
+                     double pull, Points* gradient) {
   double volume = 0;
-  const double pull = region.volume < 0 ? -scale : scale;
   for (const ClippedFace& clipped : region.faces) {
     if (!clipped.whole) continue;
     const int sense = patches.turn(clipped.face), second = sense > 0 ? 1 : 2, third = 3 - second;
@@ -139,6 +148,18 @@ double frozen_volume(const FrozenPatches& patches, const Triangles& corners, con
     for (const ContourClosing::Way& way : region.closing->ways)
       volume += frozen_closing(patches, way, region.centre, pull, gradient);
   return pull * volume;
+}
+
+double frozen_volume(const FrozenPatches& patches, const Triangles& corners, const PenetrationRegion& region,
+                     const PenetrationLossOptions& options, Points* gradient) {
+  const double scale = 6 * options.weight, sense = region.volume < 0 ? -1 : 1;
+  if (options.saturation == 0) return pulled_volume(patches, corners, region, sense * scale, gradient);
+  const double size = pulled_volume(patches, corners, region, sense, nullptr);
+  if (gradient) {
+    const double share = pressure_share(size, options.saturation);
+    pulled_volume(patches, corners, region, sense * scale * share, gradient);
+  }
+  return scale * saturated_volume(size, options.saturation);
 }
 
 double frozen_area(const FrozenPatches& patches, const Triangles& corners, const PenetrationRegion& region,
@@ -181,6 +202,10 @@ double frozen_area(const FrozenPatches& patches, const Triangles& corners, const
 
 }  // namespace
 
+double saturated_volume(double volume, double saturation) {
+  return saturation > 0 && volume > saturation ? saturation * (1 + std::log(volume / saturation)) : volume;
+}
+
 double penetration_loss(const ClosedSurface& closed, const Points& x, const Penetration& penetration,
                         const PenetrationLossOptions& options, Points* gradient) {
   if (gradient) *gradient = Points::Zero(closed.surface.vertex_count, 3);
@@ -192,9 +217,9 @@ double penetration_loss(const ClosedSurface& closed, const Points& x, const Pene
     if (is_area)
       loss += frozen_area(patches, corners, region, options.weight, gradient);
     else if (options.crossings == CrossingMotion::exact)
-      loss += exact_volume(closed, x, penetration.crossings, patches, region, 6 * options.weight, gradient);
+      loss += exact_volume(closed, x, penetration.crossings, patches, region, options, gradient);
     else
-      loss += frozen_volume(patches, corners, region, 6 * options.weight, gradient);
+      loss += frozen_volume(patches, corners, region, options, gradient);
   return loss;
 }
 

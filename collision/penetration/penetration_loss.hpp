@@ -17,8 +17,13 @@ enum class CrossingMotion { exact, frozen_on_edge, frozen_on_face };
 struct PenetrationLossOptions {
   PenetrationMeasure measure = PenetrationMeasure::volume;
   CrossingMotion crossings = CrossingMotion::exact;
-  double weight = 3e4;  // of 6 |V|, as released: a pressure of 180 kPa [J/m^3]
+  double weight = 3e4;    // of 6 |V|, as released: a pressure of 180 kPa [J/m^3]
+  double saturation = 0;  // |V| of a region from which on its pressure falls, not of areas; 0: nowhere [m^3]
 };
+
+// What a region of |V| is counted as: |V| up to the saturation V0, V0 (1 + ln(|V| / V0)) beyond, so that its pressure
+// is V0 / |V| of what it was.
+double saturated_volume(double volume, double saturation);
 
 // Sum over the regions of weight x measure (Liao et al. 2024, section 3.2.4; the absolute value is each region's). If
 // `gradient` is given it gets the derivative by the closed positions, n x 3; by_cloth_positions brings it to the cloth.

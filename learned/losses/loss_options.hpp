@@ -63,6 +63,7 @@ struct VolumeLoss {
   PenetrationOptions regions;
   PenetrationMeasure measure = PenetrationMeasure::volume;
   CrossingMotion crossings = CrossingMotion::exact;
+  double saturation = 0;  // PenetrationLossOptions [m^3]
 };
 
 // The repulsion that the paper compares L_sc with: (distance - d)^power of vertices without a common edge.

@@ -50,16 +50,16 @@ double volume_loss(const ClosedSurface& closed, const VolumeLoss& loss, const Po
   const Penetration found =
       find_penetration(closed, at, judged, trace_contours(std::span(&sheet, 1), judged), loss.regions);
   Points by_closed, by_winding;
-  double value =
-      penetration_loss(closed, at, found, {loss.measure, loss.crossings, 1}, gradient ? &by_closed : nullptr);
+  const PenetrationLossOptions options{loss.measure, loss.crossings, 1, loss.saturation};
+  double value = penetration_loss(closed, at, found, options, gradient ? &by_closed : nullptr);
   VolumeCounts counted;
   counted.pairs = static_cast<int>(all.segments.size());
   count_contours(found, counted);
   if (winding) {
-    WindingOptions options;
-    options.weight = 6;
+    WindingOptions turns;
+    turns.weight = 6;
     const WindingReport report =
-        winding_loss(closed, at, segments_of_kind(closed, all, false), options, gradient ? &by_winding : nullptr);
+        winding_loss(closed, at, segments_of_kind(closed, all, false), turns, gradient ? &by_winding : nullptr);
     value += report.value;
     counted.rim_share = report.rim_share;
     if (gradient) by_closed += by_winding;

@@ -13,9 +13,10 @@ struct VolumeCounts {
   double rim_share = 0;  // WindingReport
 };
 
-// The self-collision loss L_sc without its weight of 3e4: sum of 6 |V| over the regions [m^3], or of their area [m^2];
-// by winding numbers 6 x the integral of their cost. Adds the derivative by the cloth's positions x where `gradient` is
-// not null. `closed` is of the cloth (close_surface); made once a garment. Positions that are not finite give 0.
+// The self-collision loss L_sc without its weight of 3e4: sum of 6 |V| over the regions, each as saturated_volume
+// counts it [m^3], or of their area [m^2]; by winding numbers 6 x the integral of their cost. Adds the derivative by
+// the cloth's positions x where `gradient` is not null. `closed` is of the cloth (close_surface); made once a garment.
+// Positions that are not finite give 0.
 double volume_loss(const ClosedSurface& closed, const VolumeLoss&, const Points& x, Points* gradient,
                    VolumeCounts* counts = nullptr);
 

@@ -23,6 +23,9 @@ constexpr std::array symbols = {
     Symbol{"dm", Unit::length, 0.1},
     Symbol{"cm", Unit::length, 0.01},
     Symbol{"mm", Unit::length, 0.001},
+    Symbol{"m3", Unit::volume, 1},
+    Symbol{"l", Unit::volume, 1e-3},
+    Symbol{"cm3", Unit::volume, 1e-6},
     Symbol{"rad", Unit::angle, 1},
     Symbol{"deg", Unit::angle, 3.14159265358979323846 / 180},
     Symbol{"s", Unit::time, 1},
@@ -66,6 +69,7 @@ double largest_sensible(Unit unit) {
     case Unit::areal_density:
       return 1e9;
     case Unit::density:
+    case Unit::volume:
       return 1e12;
     case Unit::stiffness:
     case Unit::bending:

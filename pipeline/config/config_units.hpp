@@ -9,6 +9,7 @@ namespace selvedge {
 enum class Unit {
   none,
   length,
+  volume,
   angle,
   time,
   rate,

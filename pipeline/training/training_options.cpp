@@ -213,7 +213,10 @@ const Options<VolumeLoss>& volume_options() {
               {{"exact", CrossingMotion::exact},
                {"frozen_on_edge", CrossingMotion::frozen_on_edge},
                {"frozen_on_face", CrossingMotion::frozen_on_face}},
-              "how they follow the vertices: `exact`: they slide; the others as published")});
+              "how they follow the vertices: `exact`: they slide; the others as published"),
+       number("saturation", &O::saturation, Unit::volume, not_negative,
+              "of a region: up to here it is pressed on evenly, beyond its pressure falls as 1 / V; 0: nowhere, as "
+              "published; `area` and what a garment does to itself in the form `winding` have none")});
   return table;
 }
 

@@ -96,6 +96,39 @@ TEST_CASE("penetration loss: frozen and area gradients are those of their surrog
     }
 }
 
+TEST_CASE("penetration loss: beyond the saturation a region's pressure falls as one over its volume", "[penetration]") {
+  CHECK(saturated_volume(3, 0) == 3);
+  CHECK(saturated_volume(3, 3) == 3);
+  CHECK(saturated_volume(3 * std::exp(1.0), 3) == Approx(6));
+  const Query query(crossing_stars(3));
+  const Points at = closed_positions(query.closed, query.cloth);
+  const Penetration found = find_penetration(query.closed, at);
+  REQUIRE(found.regions.size() == 1);
+  const double volume = std::abs(found.regions[0].volume);
+  for (const CrossingMotion motion : {CrossingMotion::exact, CrossingMotion::frozen_on_edge}) {
+    const PenetrationLossOptions published{PenetrationMeasure::volume, motion, 1};
+    PenetrationLossOptions bounded = published;
+    bounded.saturation = 1.01 * volume;
+    CHECK(query.value(query.cloth, bounded) == query.value(query.cloth, published));
+    CHECK(query.gradient(bounded) == query.gradient(published));
+    bounded.saturation = volume / 4;
+    CHECK(query.value(query.cloth, bounded) == Approx(1.5 * volume * (1 + std::log(4.0))));
+    const Points gradient = query.gradient(bounded);
+    CHECK((4 * gradient - query.gradient(published)).norm() < 1e-12 * gradient.norm());
+    if (motion == CrossingMotion::exact) {
+      const Points along = random_direction(query.cloth, 7);
+      const auto there = [&](double h) { return query.value(query.cloth + h * along, bounded); };
+      CHECK(gradient.cwiseProduct(along).sum() == Approx((there(2e-5) - there(-2e-5)) / 4e-5).epsilon(1e-6));
+    } else {
+      const Points along = random_direction(at, 7), far = at + 0.01 * along;
+      Points by_closed;
+      penetration_loss(query.closed, far, found, bounded, &by_closed);
+      const auto there = [&](double h) { return penetration_loss(query.closed, far + h * along, found, bounded); };
+      CHECK(by_closed.cwiseProduct(along).sum() == Approx((there(1e-5) - there(-1e-5)) / 2e-5).epsilon(1e-6));
+    }
+  }
+}
+
 TEST_CASE("penetration loss: no gradient depends on the origin, and none turns the whole", "[penetration]") {
   for (const CrossingMotion motion :
        {CrossingMotion::exact, CrossingMotion::frozen_on_edge, CrossingMotion::frozen_on_face}) {

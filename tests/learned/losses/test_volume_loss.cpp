@@ -50,6 +50,11 @@ TEST_CASE("volume loss: value, gradient and counts", "[learned]") {
   const std::vector<int> one(static_cast<std::size_t>(solid.x.rows()), 0);
   CHECK(volume_loss(close_surface(solid.surface(), one), winding, solid.x, nullptr) == Approx(value).epsilon(0.03));
 
+  VolumeLoss bounded;
+  bounded.saturation = counts.volume / 3;
+  check_gradient(solid.x, 1e-5, [&](const Points& x, Points* g) { return volume_loss(closed, bounded, x, g); });
+  CHECK(volume_loss(closed, bounded, solid.x, nullptr) == Approx(value / 3 * (1 + std::log(3.0))));
+
   Points undefined = solid.x;
   undefined(3, 1) = std::nan("");
   CHECK(volume_loss(closed, {}, undefined, nullptr) == 0);

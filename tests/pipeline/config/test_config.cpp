@@ -57,6 +57,8 @@ TEST_CASE("Quantities carry their unit or are SI", "[config]") {
   CHECK(read_quantity("2 mm", Unit::length).value == Approx(0.002));
   CHECK(read_quantity("2mm", Unit::length).value == Approx(0.002));
   CHECK(read_quantity("1 dm", Unit::length).value == Approx(0.1));
+  CHECK(read_quantity("3 cm3", Unit::volume).value == Approx(3e-6));
+  CHECK(read_quantity("1.5 l", Unit::volume).value == Approx(1.5e-3));
   CHECK(read_quantity("150 g/m2", Unit::areal_density).value == Approx(0.15));
   CHECK(read_quantity("150 g/m^2", Unit::areal_density).value == Approx(0.15));
   CHECK(read_quantity("150 g/m\xC2\xB2", Unit::areal_density).value == Approx(0.15));

@@ -111,7 +111,12 @@ TEST_CASE("training options: those of SENC differ from their base by what they a
     CHECK(without(read(name), second) == training_yaml(second));
     CHECK(training_yaml(read(name)) != training_yaml(second));
   }
-  CHECK(read("senc_layers").contact.classify);
+  const TrainingOptions layers = read("senc_layers"), layers_second = read("senc_layers_second");
+  CHECK(layers.contact.classify);
+  CHECK(layers_second.steps == second.steps);
+  CHECK(layers_second.objective.volume.weight.from == 3e4);
+  CHECK(layers_second.objective.volume.saturation == layers.objective.volume.saturation);
+  CHECK(layers_second.contour_force == layers.contour_force);
 }
 
 TEST_CASE("training options: a base is replaced key by key, and what is written reads back", "[training]") {
