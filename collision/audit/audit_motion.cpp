@@ -100,7 +100,8 @@ int add(const MovingBody& body, int first_node, int first_number, double margin,
   Adding adding{body, first_node, first_number, margin, bounds, {}};
   adding.good.resize(static_cast<std::size_t>(body.surface->vertex_count));
   for (int v = 0; v < body.surface->vertex_count; ++v) adding.good[v] = finite(*body.x0, *body.x1, v);
-  const int faces = static_cast<int>(body.surface->triangles.rows()), count = (faces + faces_of_part - 1) / faces_of_part;
+  const int faces = static_cast<int>(body.surface->triangles.rows()),
+            count = (faces + faces_of_part - 1) / faces_of_part;
   std::vector<Side> parts(static_cast<std::size_t>(count) + 1);
   parts[0] = std::move(side);
 #pragma omp parallel for schedule(static) if (count > 1)
