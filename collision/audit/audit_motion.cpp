@@ -68,47 +68,24 @@ ExactBox grown(ExactBox box, double margin) {
   return box;
 }
 
-// What `add` asks of each face of a body.
-struct Adding {
-  const MovingBody& body;
-  int first_node, first_number;
-  double margin;
-  const ExactBox& bounds;
-  std::vector<char> good;  // vertices that are finite
-};
-
-void add_faces(const Adding& adding, int begin, int end_face, Side& side) {
-  const MovingBody& body = adding.body;
-  const Triangles& triangles = body.surface->triangles;
-  for (int t = begin; t < end_face; ++t) {
-    if (!adding.good[triangles(t, 0)] || !adding.good[triangles(t, 1)] || !adding.good[triangles(t, 2)]) continue;
-    const Side::Face face{body.surface, body.x0, body.x1, t, adding.first_node, adding.first_number + t};
+// The faces that come within the bounds, with boxes grown by the margin. Returns the number of vertices that are not
+// finite.
+int add(const MovingBody& body, int first_node, int first_number, double margin, const ExactBox& bounds, Side& side) {
+  const Surface& s = *body.surface;
+  std::vector<char> good(s.vertex_count);
+  for (int v = 0; v < s.vertex_count; ++v) good[v] = finite(*body.x0, *body.x1, v);
+  for (int t = 0; t < s.triangles.rows(); ++t) {
+    if (!good[s.triangles(t, 0)] || !good[s.triangles(t, 1)] || !good[s.triangles(t, 2)]) continue;
+    const Side::Face face{&s, body.x0, body.x1, t, first_node, first_number + t};
     const ExactBox start = box_of(face, *body.x0), end = box_of(face, *body.x1),
-                   both = grown(round_both(start, end), adding.margin);
-    if (!overlap(both, adding.bounds)) continue;
+                   both = grown(round_both(start, end), margin);
+    if (!overlap(both, bounds)) continue;
     side.faces.push_back(face);
     side.start.push_back(start);
     side.end.push_back(end);
     side.boxes.push_back(both);
   }
-}
-
-// The faces that come within the bounds, with boxes grown by the margin. Returns the number of vertices that are not
-// finite.
-int add(const MovingBody& body, int first_node, int first_number, double margin, const ExactBox& bounds, Side& side) {
-  constexpr int faces_of_part = 512;
-  Adding adding{body, first_node, first_number, margin, bounds, {}};
-  adding.good.resize(static_cast<std::size_t>(body.surface->vertex_count));
-  for (int v = 0; v < body.surface->vertex_count; ++v) adding.good[v] = finite(*body.x0, *body.x1, v);
-  const int faces = static_cast<int>(body.surface->triangles.rows()),
-            count = (faces + faces_of_part - 1) / faces_of_part;
-  std::vector<Side> parts(static_cast<std::size_t>(count) + 1);
-  parts[0] = std::move(side);
-#pragma omp parallel for schedule(static) if (count > 1)
-  for (int c = 0; c < count; ++c)
-    add_faces(adding, c * faces_of_part, std::min(faces, (c + 1) * faces_of_part), parts[c + 1]);
-  side = joined(parts, &Side::faces, &Side::start, &Side::end, &Side::boxes);
-  return static_cast<int>(std::count(adding.good.begin(), adding.good.end(), 0));
+  return static_cast<int>(std::count(good.begin(), good.end(), 0));
 }
 
 // A node of either face, and where it is relative to the first corner of the first.

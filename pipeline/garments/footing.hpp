@@ -28,9 +28,10 @@ Footing footing_of(const Points& x, const PosedSkin& rest);
 // That of some vertices; none of none.
 Footing footing_of(const Footing&, const std::vector<int>& vertices);
 
-// Where x, worn by the body in that pose, would reach into another part of the body that has come near, or past the middle of
-// the gap between, it is squeezed: drawn to its feet, as far as leaves the order of layers and both sides their half.
-// What is farther from the body than 6 cm stays, and so does all where no part is nearer than it was at rest.
+// Where x, worn by the body in that pose, would reach into another part of the body that has come near, or past the
+// middle of the gap between, it is squeezed: drawn to its feet, as far as leaves the order of layers and both sides
+// their half. What is farther from the body than 6 cm stays, and so does all where no part is nearer than it was at
+// rest.
 Points squeezed(const Footing&, const PosedSkin&, const Points& x);
 
 }  // namespace selvedge
