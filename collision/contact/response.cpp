@@ -4,10 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
-
 #include "collision/contact/contact_normal.hpp"
 #include "collision/geometry/distance.hpp"
+#include "collision/geometry/factorisations.hpp"
 
 namespace selvedge {
 namespace {
@@ -123,12 +122,11 @@ double project_zone(std::span<Impact*> impacts, const Eigen::VectorXd& inverse_m
 }
 
 Vec3 angular_velocity(const Mat3& inertia, const Vec3& momentum) {
-  const Eigen::SelfAdjointEigenSolver<Mat3> spectrum(inertia);
+  const Spectrum3 spectrum = symmetric_spectrum3(inertia);
   Vec3 turn = Vec3::Zero();
   for (int k = 0; k < 3; ++k) {
-    const Vec3 axis = spectrum.eigenvectors().col(k);
-    if (spectrum.eigenvalues()[k] > no_inertia * spectrum.eigenvalues()[2])
-      turn += axis.dot(momentum) / spectrum.eigenvalues()[k] * axis;
+    const Vec3 axis = spectrum.vectors.col(k);
+    if (spectrum.values[k] > no_inertia * spectrum.values[2]) turn += axis.dot(momentum) / spectrum.values[k] * axis;
   }
   return turn;
 }

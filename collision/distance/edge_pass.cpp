@@ -96,7 +96,7 @@ std::vector<SignedDistance> ask_ends(const DistanceField& body, const Surface& g
   std::vector<int> ends;
   for (const int e : edges) ends.insert(ends.end(), {garment.edges(e, 0), garment.edges(e, 1)});
   std::ranges::sort(ends);
-  ends.erase(std::ranges::unique(ends).begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   Points at(std::ssize(ends), 3);
   for (std::size_t k = 0; k < ends.size(); ++k) at.row(static_cast<Eigen::Index>(k)) = x.row(ends[k]);
   const std::vector<SignedDistance> found = body.ask(at);

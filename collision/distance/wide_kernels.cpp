@@ -37,14 +37,15 @@ struct EightVec3 {
   return result;
 }
 
-[[gnu::always_inline]] inline Eight test_boxes(const WideTree::Node& node, const float* at) {
-  Eight sum{};
+// Squared distances of the point from eight boxes. Results are written, not returned: clang returns no wide vector
+// between functions of different instruction sets.
+[[gnu::always_inline]] inline void test_boxes(const WideTree::Node& node, const float* at, Eight& sum) {
+  sum = Eight{};
   for (int k = 0; k < 3; ++k) {
     const Eight below = load_eight(node.lo[k]) - at[k], above = at[k] - load_eight(node.hi[k]);
     const Eight outside = larger(larger(below, above), Eight{});
     sum += outside * outside;
   }
-  return sum;
 }
 
 // Squared distance of a point, seen from the start of an edge, from the edge.
@@ -54,7 +55,8 @@ struct EightVec3 {
   return dot(rest, rest);
 }
 
-[[gnu::always_inline]] inline Eight test_triangles(const WideTree::Leaf& leaf, const float* at) {
+// Squared distances of the point from eight triangles; 0 for those without area.
+[[gnu::always_inline]] inline void test_triangles(const WideTree::Leaf& leaf, const float* at, Eight& found) {
   EightVec3 corner[3], from[3];
   const EightVec3 p{Eight{} + at[0], Eight{} + at[1], Eight{} + at[2]};
   for (int c = 0; c < 3; ++c) {
@@ -70,30 +72,34 @@ struct EightVec3 {
   const Eight side_a = dot(cross(ab, from[0]), normal), side_b = dot(cross(bc, from[1]), normal);
   const Eight side_c = dot(cross(ca, from[2]), normal), height = dot(from[0], normal);
   const Eight plane = height * height / normal2;
-  Eight result = smaller(smaller(side_a, side_b), side_c) > 0.0f ? smaller(plane, edges) : edges;
-  return normal2 > 1e-3f * longest * longest ? result : Eight{};
+  const Eight squared = smaller(smaller(side_a, side_b), side_c) > 0.0f ? smaller(plane, edges) : edges;
+  found = normal2 > 1e-3f * longest * longest ? squared : Eight{};
 }
 
 unsigned boxes_plain(const WideTree::Node& node, const float* at, float limit, float* squared) {
-  const Eight found = test_boxes(node, at);
+  Eight found;
+  test_boxes(node, at, found);
   __builtin_memcpy(squared, &found, sizeof found);
   return flags_below(found, limit);
 }
 unsigned triangles_plain(const WideTree::Leaf& leaf, const float* at, float limit, float* squared) {
-  const Eight found = test_triangles(leaf, at);
+  Eight found;
+  test_triangles(leaf, at, found);
   __builtin_memcpy(squared, &found, sizeof found);
   return flags_below(found, limit);
 }
 
 #if defined(__x86_64__)
 [[gnu::target("avx2")]] unsigned boxes_avx2(const WideTree::Node& node, const float* at, float limit, float* squared) {
-  const Eight found = test_boxes(node, at);
+  Eight found;
+  test_boxes(node, at, found);
   __builtin_memcpy(squared, &found, sizeof found);
   return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<Eight>(found < limit)));
 }
 [[gnu::target("avx2")]] unsigned triangles_avx2(const WideTree::Leaf& leaf, const float* at, float limit,
                                                 float* squared) {
-  const Eight found = test_triangles(leaf, at);
+  Eight found;
+  test_triangles(leaf, at, found);
   __builtin_memcpy(squared, &found, sizeof found);
   return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<Eight>(found < limit)));
 }

@@ -3,6 +3,9 @@
 #include <cassert>
 #include <cmath>
 
+#include "collision/geometry/factorisations.hpp"
+#include "learned/network/dense_products.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -11,7 +14,7 @@ Points garment_displacement(const DrapeCase& drape) {
   Points result(drape.rest.rows(), 3);
   for (int v = 0; v < result.rows(); ++v) {
     const VertexFrame& frame = drape.frames[static_cast<std::size_t>(v)];
-    const Vec3 there = frame.leftCols<3>().partialPivLu().solve(row(drape.truth, v) - frame.col(3));
+    const Vec3 there = Mat3(frame.leftCols<3>()).inverse() * (row(drape.truth, v) - frame.col(3));
     result.row(v) = there.transpose() - drape.rest.row(v);
   }
   return result;
@@ -68,14 +71,16 @@ void fit_linear_part(std::span<const DrapeCase* const> cases, double ridge, std:
   network.linear = Eigen::MatrixXf::Zero(wanted.cols(), read.cols());
   if (!(products.trace() > 0)) return;  // nothing is read
   products.diagonal().array() += ridge * products.trace() / static_cast<double>(read.rows());
-  Eigen::MatrixXd fitted = products.ldlt().solve(wanted).transpose() * read;
+  Eigen::MatrixXd fitted = solve_symmetric(products, wanted).transpose() * read;
   for (std::size_t k = 0; k < trust.size(); ++k) fitted.col(static_cast<Eigen::Index>(k)) *= trust[k];
   network.linear = fitted.cast<float>();
 }
 
 FeatureRows drape_outputs(const DrapeNetwork& network, const FeatureRows& inputs) {
   FeatureRows outputs = evaluate(network.mesh, evaluate(network.plain, inputs));
-  if (network.linear.size() > 0) outputs += inputs * network.linear.transpose();
+  // By columns it lies in memory as its transpose does by rows.
+  const Eigen::Map<const FeatureRows> transposed(network.linear.data(), network.linear.cols(), network.linear.rows());
+  if (network.linear.size() > 0) outputs += product(inputs, transposed);
   return outputs;
 }
 

@@ -27,7 +27,7 @@ std::vector<std::vector<int>> sources_above(const Adjacency& ring, const std::ve
     own.push_back(coarse_of[static_cast<std::size_t>(v)]);
     for (const int w : ring.of(v)) own.push_back(coarse_of[static_cast<std::size_t>(w)]);
     std::ranges::sort(own);
-    own.erase(std::ranges::unique(own).begin(), own.end());
+    own.erase(std::unique(own.begin(), own.end()), own.end());
   }
   return sources;
 }

@@ -6,6 +6,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/parallel.hpp"
+#include "learned/network/dense_products.hpp"
 
 namespace selvedge {
 namespace {
@@ -48,11 +49,11 @@ std::vector<LayerTrace> trace(const PlainNetwork& n, const FeatureRows& inputs, 
     LayerTrace& layer = made[l];
     const bool again = static_cast<int>(l) == n.again_layer;
     layer.input = again ? beside(at, inputs.leftCols(n.again_columns)) : std::move(at);
-    layer.sum.noalias() = layer.input * n.layers[l].weight.transpose();
+    layer.sum = product_transposed(layer.input, n.layers[l].weight);
     layer.sum.rowwise() += Eigen::Map<const Eigen::RowVectorXf>(n.layers[l].bias.data(), layer.sum.cols());
     if (tangents) {
       layer.input_tangent = again ? beside(along, directions.leftCols(n.again_columns)) : std::move(along);
-      layer.sum_tangent.noalias() = layer.input_tangent * n.layers[l].weight.transpose();
+      layer.sum_tangent = product_transposed(layer.input_tangent, n.layers[l].weight);
     }
     if (l + 1 == n.layers.size()) break;
     at.resize(layer.sum.rows(), layer.sum.cols());
@@ -103,11 +104,12 @@ FeatureRows trace_back(const PlainNetwork& n, const std::vector<LayerTrace>& mad
     const auto size = static_cast<std::size_t>(affine.weight.size());
     end -= affine.bias.size() + size;
     Eigen::Map<FeatureRows> weight(gradient.data() + end, affine.weight.rows(), affine.weight.cols());
-    weight.noalias() = value.transpose() * layer.input;
-    if (tangents) weight.noalias() += tangent.transpose() * layer.input_tangent;
+    weight.setZero();
+    add_transposed_product(value, layer.input, weight);
+    if (tangents) add_transposed_product(tangent, layer.input_tangent, weight);
     Eigen::Map<Eigen::RowVectorXf>(gradient.data() + end + size, affine.weight.rows()) = value.colwise().sum();
-    value = (value * affine.weight).eval();
-    if (tangents) tangent = (tangent * affine.weight).eval();
+    value = product(value, affine.weight);
+    if (tangents) tangent = product(tangent, affine.weight);
     if (static_cast<int>(l) != n.again_layer) continue;
     seen_again.leftCols(n.again_columns) += value.rightCols(n.again_columns);
     value.conservativeResize(Eigen::NoChange, value.cols() - n.again_columns);
@@ -181,7 +183,7 @@ ValueAndGradient evaluate_with_gradient(const PlainNetwork& n, const FeatureRows
     FeatureRows back = FeatureRows::Ones(count, 1), again = FeatureRows::Zero(count, n.inputs());
     for (std::size_t l = n.layers.size(); l-- > 0;) {
       if (l + 1 < n.layers.size()) back = back.cwiseProduct(made[l].slope).eval();
-      back = (back * n.layers[l].weight).eval();
+      back = product(back, n.layers[l].weight);
       if (static_cast<int>(l) != n.again_layer) continue;
       again.leftCols(n.again_columns) += back.rightCols(n.again_columns);
       back.conservativeResize(Eigen::NoChange, back.cols() - n.again_columns);

@@ -6,7 +6,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "collision/geometry/eigenvalues.hpp"
+#include "collision/geometry/factorisations.hpp"
 #include "physics/energies/nearest.hpp"
 
 namespace selvedge {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
+#include "collision/geometry/factorisations.hpp"
 
 namespace selvedge {
 namespace {
@@ -61,7 +61,7 @@ void flatten(const Points& rest, int i, std::vector<Candidate>& around) {
     const Vec3 offset = row(rest, c.vertex) - row(rest, i);
     spread += offset * offset.transpose();
   }
-  const Mat3 axes = Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors();
+  const Mat3 axes = symmetric_spectrum3(spread).vectors;
   for (Candidate& c : around) {
     const Vec3 offset = row(rest, c.vertex) - row(rest, i);
     c.place = {axes.col(2).dot(offset), axes.col(1).dot(offset)};

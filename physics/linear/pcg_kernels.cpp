@@ -121,6 +121,21 @@ template <class Real>
   return sum_of(sum);
 }
 
+[[gnu::always_inline]] inline void multiply_level_inline(const LevelView& a, const Quad<float>* u, Quad<float>* y,
+                                                         int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    const Quad<float> own = u[i];
+    const Eight<float> owns = side_by_side(own, own);
+    Quad<float> sum{};
+    add_product(a.diagonal[i], own, sum);
+    Eight<float> sums{};
+    for (int part = 0; part < 2; ++part)
+      for (int k = a.begin[part][i]; k < a.begin[part][i + 1]; k += 2)
+        add_products(a.block[part][k / 2], side_by_side(u[a.column[part][k]], u[a.column[part][k + 1]]) - owns, sums);
+    y[i].lanes = sum.lanes + sum_of_halves<float>(sums).lanes;
+  }
+}
+
 }  // namespace
 
 // SELVEDGE_CLONES (CMake) has the compiler make one clone an instruction set, from which the loader picks for the
@@ -136,17 +151,7 @@ SELVEDGE_CLONES double multiply_rows(const RowView<double>& a, const Quad<double
   return multiply_rows_inline(a, u, y, begin, end);
 }
 SELVEDGE_CLONES void multiply_level(const LevelView& a, const Quad<float>* u, Quad<float>* y, int begin, int end) {
-  for (int i = begin; i < end; ++i) {
-    const Quad<float> own = u[i];
-    const Eight<float> owns = side_by_side(own, own);
-    Quad<float> sum{};
-    add_product(a.diagonal[i], own, sum);
-    Eight<float> sums{};
-    for (int part = 0; part < 2; ++part)
-      for (int k = a.begin[part][i]; k < a.begin[part][i + 1]; k += 2)
-        add_products(a.block[part][k / 2], side_by_side(u[a.column[part][k]], u[a.column[part][k + 1]]) - owns, sums);
-    y[i].lanes = sum.lanes + sum_of_halves<float>(sums).lanes;
-  }
+  multiply_level_inline(a, u, y, begin, end);
 }
 SELVEDGE_CLONES void gather(const WeightView& p, const Quad<float>* u, Quad<float>* y, int begin, int end) {
   for (int i = begin; i < end; ++i) {

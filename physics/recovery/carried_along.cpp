@@ -1,9 +1,9 @@
 #include "physics/recovery/carried_along.hpp"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
-#include <cassert>
 #include <vector>
+
+#include "collision/geometry/factorisations.hpp"
 
 namespace selvedge {
 
@@ -35,9 +35,7 @@ Points carried_along(const ContactWorld& world, const Points& before, const Poin
   }
   Eigen::SparseMatrix<double> matrix(cloth.vertex_count, cloth.vertex_count);
   matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
-  assert(factor.info() == Eigen::Success);
-  return x + factor.solve(Eigen::MatrixXd(pull));
+  return x + solve_symmetric(matrix, pull);
 }
 
 }  // namespace selvedge

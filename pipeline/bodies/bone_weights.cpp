@@ -4,9 +4,9 @@
 #include <numeric>
 
 #include <Eigen/Geometry>
-#include <Eigen/SparseCholesky>
 
 #include "collision/exact/orientation.hpp"
+#include "collision/geometry/factorisations.hpp"
 #include "collision/search/bvh.hpp"
 
 namespace selvedge {
@@ -189,7 +189,7 @@ SkinWeights bone_weights(const Surface& surface, const Points& rest, const Point
     matrix.coeffRef(v, v) += rate;
     for (const int j : source.joints) heat(v, j) += rate / static_cast<double>(source.joints.size());
   }
-  const Eigen::MatrixXd warmth = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(heat);
+  const Eigen::MatrixXd warmth = solve_symmetric(matrix, heat);
   std::vector<Eigen::Triplet<double>> entries;
   for (int v = 0; v < warmth.rows(); ++v) {
     double sum = 0;

@@ -43,7 +43,7 @@ MeasuredDrapes describe_drapes(const ComparedDrapes& asked, const DrapeRun& run)
       for (const auto& [reason, count] : path.dropped) made.dropped[reason] += count;
     }
   std::ranges::sort(shapes);
-  made.shapes = static_cast<int>(std::ranges::unique(shapes).begin() - shapes.begin());
+  made.shapes = static_cast<int>(std::unique(shapes.begin(), shapes.end()) - shapes.begin());
   if (!run.distance.layers.empty()) made.distance = distance_errors_of(run.options.distance, run.lessons, run.distance);
   made.from_training = distances_from_training(run);
   return made;
@@ -78,7 +78,8 @@ ViewRun view_of(const DrapeRun& run, const std::string& name, const std::functio
     frame.obstacle_pairs = static_cast<int>(pairs.size());
     for (const auto& [triangle, other] : pairs) frame.bad_triangles.push_back(triangle);
     std::ranges::sort(frame.bad_triangles);
-    frame.bad_triangles.erase(std::ranges::unique(frame.bad_triangles).begin(), frame.bad_triangles.end());
+    frame.bad_triangles.erase(std::unique(frame.bad_triangles.begin(), frame.bad_triangles.end()),
+                              frame.bad_triangles.end());
     return frame;
   };
   return view;

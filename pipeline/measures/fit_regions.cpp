@@ -1,10 +1,10 @@
 #include "pipeline/measures/fit_regions.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/factorisations.hpp"
 #include "pipeline/host/read_file.hpp"
 
 namespace selvedge {
@@ -49,8 +49,7 @@ Vec3 longest_direction(const Points& x, const std::vector<int>& vertices) {
   if (vertices.size() < 2) return Vec3::UnitY();
   const Points own = x(vertices, Eigen::all);
   const Points centred = own.rowwise() - own.colwise().mean();
-  const Eigen::Matrix3d covariance = centred.transpose() * centred;
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors().col(2);
+  return symmetric_spectrum3(centred.transpose() * centred).vectors.col(2);
 }
 
 nlohmann::ordered_json parsed_regions(const std::filesystem::path& file) {

@@ -1,11 +1,11 @@
 #include "pipeline/motions/rig_gltf.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/factorisations.hpp"
 #include "pipeline/bodies/body_smpl.hpp"
 #include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/config/config.hpp"
@@ -41,9 +41,10 @@ double size_of(const Matrix4d& m) {
   return (linear.transpose() * linear / (size * size)).isIdentity(1e-3) && linear.determinant() > 0 ? size : 0;
 }
 
+// The rotation of a polar decomposition; `m` keeps orientation.
 Mat3 nearest_rotation(const Mat3& m) {
-  const Eigen::JacobiSVD<Mat3> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * svd.matrixV().transpose();
+  const Spectrum3 stretch = symmetric_spectrum3(m.transpose() * m);  // of its squares
+  return m * stretch.vectors * stretch.values.cwiseSqrt().cwiseInverse().asDiagonal() * stretch.vectors.transpose();
 }
 
 // The joints of a skin as a tree: of each its parent among them, through whatever nodes lie between.
@@ -106,7 +107,7 @@ std::vector<std::string> joint_names(const std::vector<std::string>& names, cons
 Eigen::VectorXd exact_mean(const Points& x, const Vec3& point) {
   const Vec3 mean = x.colwise().mean().transpose();
   const Points off = x.rowwise() - mean.transpose();
-  const Eigen::Vector3d pull = (off.transpose() * off).ldlt().solve(point - mean);
+  const Vec3 pull = solve_symmetric(off.transpose() * off, point - mean);
   return (off * pull).array() + 1.0 / static_cast<double>(x.rows());
 }
 

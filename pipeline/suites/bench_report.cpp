@@ -57,7 +57,9 @@ const std::vector<Column>& columns() {
   return all;
 }
 
-std::string number(double value, int digits) { return std::isnan(value) ? "" : fmt::format("{:.{}f}", value, digits); }
+std::string rounded_number(double value, int digits) {
+  return std::isnan(value) ? "" : fmt::format("{:.{}f}", value, digits);
+}
 
 nlohmann::ordered_json detection_json(const std::vector<DetectionTiming>& timings) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
@@ -154,7 +156,7 @@ std::string bench_csv(const std::vector<BenchMember>& members) {
   for (const BenchMember& member : members) {
     text += fmt::format("{},{}", member.scene, member.size);
     for (const Column& column : columns())
-      text += fmt::format(",{}", number(column.value(member), column.digits > 0 ? column.digits + 3 : 0));
+      text += fmt::format(",{}", rounded_number(column.value(member), column.digits > 0 ? column.digits + 3 : 0));
     text += "\n";
   }
   return text;
@@ -169,7 +171,8 @@ std::string bench_table(const BenchResult& result) {
   }
   for (const BenchMember& member : result.members) {
     text += fmt::format("{:<6} {:>4}", member.scene, member.size);
-    for (const Column& column : columns()) text += fmt::format(" {:>10}", number(column.value(member), column.digits));
+    for (const Column& column : columns())
+      text += fmt::format(" {:>10}", rounded_number(column.value(member), column.digits));
     text += "\n";
   }
   const auto add = [&text](const std::string& table) {

@@ -16,11 +16,11 @@
 namespace selvedge {
 namespace {
 
-constexpr double least_lag = 1e-9;  // below it an obstacle is where it was wanted, but for rounding [m]
-constexpr double most_held = 0.01;  // share of vertex-steps: frozen cloth is not clean cloth
+constexpr double least_obstacle_lag = 1e-9;  // below it an obstacle is where it was wanted, but for rounding [m]
+constexpr double most_held = 0.01;           // share of vertex-steps: frozen cloth is not clean cloth
 
 // What the frames of a run show beyond its summary.
-struct Watch {
+struct StressWatch {
   OutcomeWatch outcome;
   int wanted_frames = 0;
 
@@ -76,7 +76,8 @@ std::vector<std::string> failures_of(const StressRow& row, const RunSummary& sum
   fail_if(row.passed_through > 0, fmt::format("{} passed through", row.passed_through));
   fail_if(row.held_share >= most_held, fmt::format("{:.2f} % of vertex-steps held back", 100 * row.held_share));
   if (!obstacles_must_lag(setup)) {
-    fail_if(row.obstacle_lag > least_lag, fmt::format("obstacles lag {:.2g} m where there is room", row.obstacle_lag));
+    fail_if(row.obstacle_lag > least_obstacle_lag,
+            fmt::format("obstacles lag {:.2g} m where there is room", row.obstacle_lag));
     fail_if(row.wanted_frames > 0, fmt::format("{} frames touch the wanted positions", row.wanted_frames));
   }
   for (std::size_t k = 0; k < results.size(); ++k)
@@ -104,7 +105,7 @@ std::optional<StressRow> run_repeat(const StressRequest& request, const Repeat& 
   if (!prepare(setup, request.stop)) return {};
   row.jitter = jitter_start(setup, request.jitter, row.seed);
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
-  Watch watch{OutcomeWatch(setup.scene, setup.outcomes, setup.run.frames / setup.run.fps)};
+  StressWatch watch{OutcomeWatch(setup.scene, setup.outcomes, setup.run.frames / setup.run.fps)};
   watch.outcome(setup.initial, setup.drive_at(0));
   RunRequest run;
   run.out = repeat.run_folder();

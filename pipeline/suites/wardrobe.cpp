@@ -21,7 +21,7 @@
 namespace selvedge {
 namespace {
 
-constexpr double least_lag = 1e-9;  // below it the body is where it was wanted, but for rounding [m]
+constexpr double least_body_lag = 1e-9;  // below it the body is where it was wanted, but for rounding [m]
 constexpr double most_depth = 1e-3;
 constexpr int frames_after = 10;  // that are excused after the body has passed through itself
 
@@ -89,7 +89,7 @@ void find_excused(const Setup& setup, ClipBody& body) {
 }
 
 // Adds a frame to its row.
-struct Watch {
+struct WardrobeWatch {
   const std::vector<char>& excused;
   WardrobeRow& row;
 
@@ -115,7 +115,7 @@ std::vector<std::string> failures_of(const WardrobeRow& row, const RunSummary& s
                                 for_the_body ? ", where the body passes through itself" : ""));
   fail_if(row.cloth_pairs > 0, fmt::format("{} pairs of cloth with cloth", row.cloth_pairs));
   fail_if(row.body_pairs > 0, fmt::format("{} pairs of cloth with the body", row.body_pairs));
-  fail_if(row.lag > least_lag, fmt::format("the body lags by {:.2g} m", row.lag));
+  fail_if(row.lag > least_body_lag, fmt::format("the body lags by {:.2g} m", row.lag));
   fail_if(row.depth > most_depth, fmt::format("a vertex is {:.2g} m deep in the body", row.depth));
   return all;
 }
@@ -143,7 +143,7 @@ std::optional<WardrobeRow> run_row(const WardrobeRequest& request, const Wear& w
   RunRequest run;
   run.out = place.folder;
   run.checkpoint_seconds = 1e9;
-  run.observe = Watch{excused, row};
+  run.observe = WardrobeWatch{excused, row};
   run.stop = request.stop;
   const RunSummary summary = run_scene(setup, *make_stepper(setup), run);
   std::swap(known, body.known);

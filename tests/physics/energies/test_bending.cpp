@@ -2,7 +2,7 @@
 #include <numbers>
 #include <random>
 
-#include "collision/geometry/eigenvalues.hpp"
+#include "collision/geometry/factorisations.hpp"
 #include "physics/energies/bending.hpp"
 #include "tests/physics/meshes.hpp"
 

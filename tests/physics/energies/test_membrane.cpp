@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "collision/geometry/eigenvalues.hpp"
+#include "collision/geometry/factorisations.hpp"
 #include "physics/energies/membrane.hpp"
 #include "physics/energies/membrane_lanes.hpp"
 #include "tests/physics/meshes.hpp"

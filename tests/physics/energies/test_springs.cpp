@@ -1,4 +1,4 @@
-#include "collision/geometry/eigenvalues.hpp"
+#include "collision/geometry/factorisations.hpp"
 #include "physics/energies/springs.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+
+#include "collision/geometry/points.hpp"
+
+namespace selvedge {
+
+// Factorisations of symmetric matrices. Eigen's take seconds to compile wherever they are used, so that these are
+// compiled once. Small ones are not for inner loops.
+
+// Eigenvalues in ascending order, and eigenvectors as columns.
+struct Spectrum {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+Spectrum symmetric_spectrum(const Eigen::MatrixXd& matrix);
+Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
+
+struct Spectrum3 {
+  Vec3 values;
+  Mat3 vectors;
+};
+Spectrum3 symmetric_spectrum3(const Mat3& matrix);
+
+// The solution of matrix * x = right, a column for each of the right sides'. The matrix is not singular.
+Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
+// The same for a sparse, positive definite matrix (assert), of which the lower triangle is read.
+Eigen::MatrixXd solve_symmetric(const Eigen::SparseMatrix<double>& matrix, const Eigen::MatrixXd& right);
+
+}  // namespace selvedge

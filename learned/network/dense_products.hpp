@@ -1,0 +1,17 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "learned/graph/graph.hpp"
+
+namespace selvedge {
+
+// Products of matrices stored by rows. Eigen's product takes seconds to compile wherever it is used, so that it is
+// compiled here alone.
+using RowsView = Eigen::Ref<const FeatureRows>;
+
+FeatureRows product(const RowsView& a, const RowsView& b);                                       // a b
+FeatureRows product_transposed(const RowsView& a, const RowsView& b);                            // a b^T
+void add_transposed_product(const RowsView& a, const RowsView& b, Eigen::Ref<FeatureRows> sum);  // sum += a^T b
+
+}  // namespace selvedge
