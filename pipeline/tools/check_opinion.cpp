@@ -35,8 +35,6 @@ double gap_along(const Vec3& direction, const Corners& a, const Corners& b) {
   return std::max(b_lo - a_hi, a_lo - b_hi);
 }
 
-double largest_coordinate(const Points& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0; }
-
 Pairs pairs_with_bodies(const ObstacleModel& cloth, std::span<const AuditBody> bodies, bool& free) {
   Pairs all;
   int first_number = 0;
