@@ -67,7 +67,8 @@ NewtonReport SubstepSolve::with_contact(Substep& s, StepProblem& problem, Points
         mistaken_friction(solved, contacts.terms, *problem.x0, x, creep) < options_.normal_change)
       return newton;
     const int least = friction ? 2 : 1;
-    // Where the iteration has not settled, normal forces change with it, and one more solve for their sake is as rough.
+    // Where the iteration has not converged, normal forces change with it, and one more solve for their sake is as
+    // rough.
     const bool bounded = change < options_.normal_change || !newton.converged;
     if (pass >= least && bounded && deepest(found, s.nodes) < deep_) return newton;
     const Timed timed(report.seconds.response);
