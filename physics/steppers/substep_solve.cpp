@@ -4,6 +4,7 @@
 
 #include "collision/geometry/stopwatch.hpp"
 #include "physics/scene/features.hpp"
+#include "physics/steppers/count_solve.hpp"
 
 namespace selvedge {
 
@@ -24,10 +25,7 @@ NewtonReport SubstepSolve::once(const StepProblem& problem, Points& x, StepRepor
   StepProblem bounded = problem;
   bounded.most_iterations = std::max(1, most_newton_ - report.iterations);
   const NewtonReport newton = solver_.solve(bounded, x);
-  report.iterations += newton.iterations;
-  report.linear_iterations += newton.linear_iterations;
-  ++report.counts.solves;
-  report.counts.coarse_builds += newton.coarse_builds;
+  count_solve(newton, report);
   report.out_of_newton = report.out_of_newton || (!newton.converged && report.iterations >= most_newton_);
   return newton;
 }
