@@ -317,12 +317,18 @@ void group_commands(CLI::App& app) {
   }
 }
 
-// What to say of a first word that is no command: the nearest one. Empty where it is one.
-std::string command_suggestion(const CLI::App& app, int argc, char** argv) {
+// What is wrong with the command line, in the form of every other error.
+std::string refusal(const CLI::App& app, const CLI::ParseError& problem, int argc, char** argv) {
   std::vector<std::string> known;
   for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
-  if (argc < 2 || argv[1][0] == '-' || std::ranges::find(known, argv[1]) != known.end()) return {};
-  return "selvedge: there is no command `" + std::string(argv[1]) + "`" + suggestion(argv[1], known) + "\n";
+  const std::string word = argc > 1 ? argv[1] : "";
+  const bool is_command = std::ranges::find(known, word) != known.end();
+  const Error error = is_command ? Error(problem.what(), word, "`selvedge " + word + " --help` lists what it takes")
+                      : word.empty() || word[0] == '-'
+                          ? Error(problem.what(), "the command line", "`selvedge --help` lists the commands")
+                          : Error("there is no command `" + word + "`" + suggestion(word, known), "the command line",
+                                  "`selvedge --help` lists the commands");
+  return "selvedge: " + std::string(error.what()) + "\n";
 }
 
 }  // namespace
@@ -340,8 +346,9 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
     return chosen();
   } catch (const CLI::ParseError& error) {
-    std::cerr << command_suggestion(app, argc, argv);
-    return app.exit(error) == 0 ? 0 : 2;
+    if (error.get_exit_code() == 0) return app.exit(error);  // help or version, which it prints
+    std::cerr << refusal(app, error, argc, argv);
+    return 2;
   } catch (const std::exception& error) {
     std::cerr << "selvedge: " << error.what() << "\n";
     return 2;

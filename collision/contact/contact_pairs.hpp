@@ -22,7 +22,9 @@ struct NodePair {
   auto operator<=>(const NodePair&) const = default;
 };
 
+// The positions of a pair's nodes, in their order. x: one row a node of the world.
 std::array<Vec3, 4> corners(const NodePair&, const Points& x);
+// The closest points of a pair's two primitives (distance.hpp).
 Closest closest(PairKind, const std::array<Vec3, 4>& corners);
 inline Closest closest(const NodePair& pair, const Points& x) { return closest(pair.kind, corners(pair, x)); }
 

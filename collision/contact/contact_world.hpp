@@ -19,6 +19,7 @@ struct ContactWorld {
   int obstacle_of(int node) const;  // -1: cloth
 };
 
+// Keeps all that it is given by pointer. rest: of the cloth, one row a vertex.
 ContactWorld make_contact_world(const Surface& cloth, std::vector<const Surface*> obstacles, bool self,
                                 const Points* rest = nullptr);
 

@@ -13,8 +13,6 @@ namespace {
 constexpr double slack_part = 0.5;   // of the thickness
 constexpr double few_strayed = 0.3;  // of the cloth's vertices: a search for what has some of them is worth its while
 
-double largest(const Points& x) { return x.rows() > 0 ? x.cwiseAbs().maxCoeff() : 0.0; }
-
 // Takes the pairs from `first` on for which out(i) is true off the list.
 template <class Out>
 void leave_out(PathPairs& path, std::size_t first, Out&& out) {
@@ -122,7 +120,7 @@ PathMotion::PathMotion(const PathPairs& path, const Points& x0, const Points& x1
       from_(x0 - path.start),
       to_(x1 - path.start),
       rounding_(64 * std::numeric_limits<double>::epsilon() *
-                std::max({largest(path.start), largest(x0), largest(x1)})) {}
+                std::max({largest_coordinate(path.start), largest_coordinate(x0), largest_coordinate(x1)})) {}
 
 bool PathMotion::may_come_within(std::size_t i, double distance) const {
   const NodePair& pair = path_.pairs[i];

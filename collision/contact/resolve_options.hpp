@@ -26,7 +26,7 @@ struct ResolveOptions {
   int zone_rounds = 30;    // rounds of impact zones before the last resort
   int zone_sweeps = 200;
   bool rigid_zones = false;    // zones of free nodes go on as rigid bodies
-  bool last_resort = true;     // false: leave what zones do not settle, and say that it is not clean
+  bool last_resort = true;     // false: leave what zones do not solve, and say that it is not clean
   int yield_rounds = 20;       // last resort, first part: obstacles give way
   double yielding_mass = 1e3;  // of their nodes in its first round, in mean cloth vertices; halved in each
   int motion_halvings = 4;     // last resort, second part: of a motion, before it is held still

@@ -25,7 +25,7 @@ struct Impact {
 std::optional<Impact> find_impact(const NodePair&, const Points& x0, const Points& x1, double separation,
                                   const ContactWorld* = nullptr);
 
-double impact_gap(const Impact&, const Points& x);
+double impact_gap(const Impact&, const Points& x);  // normal . sum w_i x_i [m]
 
 // Inverse of the mass that the pair feels along any direction [1/kg].
 double compliance(const Impact&, const Eigen::VectorXd& inverse_mass);

@@ -15,6 +15,7 @@ struct ContourTranslation {
   std::vector<Vec3> local;   // at each of the contour's points, the neighbours taken in; zero at loop vertices
 };
 
+// The contour must be one of those that find_contours makes of the segments.
 ContourTranslation contour_translation(std::span<const SheetView> sheets, const Segments&, const Contour&);
 
 }  // namespace selvedge

@@ -6,6 +6,7 @@
 
 #include "collision/exact/symbolic_orientation.hpp"
 #include "collision/exact/triangle_pair.hpp"
+#include "collision/geometry/corners.hpp"
 #include "collision/search/bvh_traversal.hpp"
 #include "collision/search/intersections.hpp"
 
@@ -141,16 +142,11 @@ bool have_common_corner(const int* a, const int* b) {
   return common;
 }
 
-std::array<Vec3, 3> corners_of(const SheetView& sheet, int triangle) {
-  const int* v = sheet.surface->triangles.data() + 3 * triangle;
-  return {row(*sheet.x, v[0]), row(*sheet.x, v[1]), row(*sheet.x, v[2])};
-}
-
 std::vector<FacePlane> face_planes(const SheetView& sheet) {
   std::vector<FacePlane> planes(static_cast<std::size_t>(sheet.surface->triangles.rows()));
   const int count = static_cast<int>(planes.size());
 #pragma omp parallel for schedule(static)
-  for (int t = 0; t < count; ++t) planes[t] = face_plane(corners_of(sheet, t));
+  for (int t = 0; t < count; ++t) planes[t] = face_plane(corners_of(*sheet.surface, *sheet.x, t));
   return planes;
 }
 
@@ -158,7 +154,7 @@ std::vector<FacePlane> face_planes(const SheetView& sheet) {
 // exact signs.
 bool may_meet(const SheetView& of_a, const FacePlane& plane_a, int a, const SheetView& of_b, const FacePlane& plane_b,
               int b) {
-  const std::array<Vec3, 3> at_a = corners_of(of_a, a), at_b = corners_of(of_b, b);
+  const std::array<Vec3, 3> at_a = corners_of(*of_a.surface, *of_a.x, a), at_b = corners_of(*of_b.surface, *of_b.x, b);
   return !surely_on_one_side(plane_a, at_b) && !surely_on_one_side(plane_b, at_a) && !surely_apart(at_a, at_b);
 }
 

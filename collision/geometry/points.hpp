@@ -18,4 +18,10 @@ using Edges = Eigen::Matrix<int, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
 inline Vec3 row(const Points& points, int vertex) { return points.row(vertex).transpose(); }
 
+// The largest absolute value among all coordinates; 0 without rows. All must be numbers.
+inline double largest_coordinate(const Points& x) { return x.rows() > 0 ? x.cwiseAbs().maxCoeff() : 0.0; }
+
+// Twice the signed area of the triangle 0, a, b: positive where b lies counter-clockwise of a.
+inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
 }  // namespace selvedge

@@ -4,6 +4,7 @@
 
 namespace selvedge {
 
+// Times of reports, by a clock that is never set back.
 class Stopwatch {
  public:
   // Seconds since the last lap, or since it was made.

@@ -7,15 +7,13 @@ namespace {
 
 using Polygon = std::vector<Vec2>;
 
-double cross_of(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 // Does the chord run through the inside of a convex polygon?
 bool runs_through(const Polygon& polygon, const FaceChord& chord) {
   double first = 0, last = 1;
   const Vec2 along = chord.to - chord.from;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vec2 &p = polygon[i], side = polygon[(i + 1) % polygon.size()] - p;
-    const double height = cross_of(side, chord.from - p), rise = cross_of(side, along);
+    const double height = cross(side, chord.from - p), rise = cross(side, along);
     if (rise > 0)
       first = std::max(first, -height / rise);
     else if (rise < 0)
@@ -32,7 +30,7 @@ std::array<Polygon, 2> split_along(const Polygon& polygon, const FaceChord& chor
   const Vec2 along = chord.to - chord.from;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vec2 &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
-    const double hp = cross_of(along, p - chord.from), hq = cross_of(along, q - chord.from);
+    const double hp = cross(along, p - chord.from), hq = cross(along, q - chord.from);
     if (hp >= 0) parts[0].push_back(p);
     if (hp <= 0) parts[1].push_back(p);
     if ((hp > 0) != (hq > 0) && hp != 0 && hq != 0)
@@ -45,7 +43,7 @@ FaceCell measured(Polygon polygon) {
   FaceCell cell;
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
     const Vec2 &a = polygon[0], &b = polygon[i], &c = polygon[i + 1];
-    const double area = 0.5 * cross_of(b - a, c - a);
+    const double area = 0.5 * cross(b - a, c - a);
     const Vec2 mean = (a + b + c) / 3;
     cell.moment[0] += area * (1 - mean.sum());
     cell.moment[1] += area * mean.x();

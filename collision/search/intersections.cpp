@@ -5,17 +5,13 @@
 #include <limits>
 
 #include "collision/exact/triangle_pair.hpp"
+#include "collision/geometry/corners.hpp"
 
 namespace selvedge {
 namespace {
 
 using Pairs = std::vector<std::pair<int, int>>;
 using Corners = std::array<Vec3, 3>;
-
-Corners corners_of(const Surface& surface, const Points& x, int triangle) {
-  const int* v = surface.triangles.data() + 3 * triangle;
-  return {row(x, v[0]), row(x, v[1]), row(x, v[2])};
-}
 
 bool share_vertex(const Triangles& triangles, int s, int t) {
   const int *a = triangles.data() + 3 * s, *b = triangles.data() + 3 * t;

@@ -95,12 +95,10 @@ struct PartFinder {
   }
 };
 
-double cross2(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 // Segments without a common end.
 bool surely_apart(const Vec2& p, const Vec2& q, const Vec2& a, const Vec2& b, double slack) {
   const auto beside = [slack](const Vec2& from, const Vec2& to, const Vec2& c, const Vec2& d) {
-    const double at_c = cross2(to - from, c - from), at_d = cross2(to - from, d - from);
+    const double at_c = cross(to - from, c - from), at_d = cross(to - from, d - from);
     return std::min(at_c, at_d) > slack || std::max(at_c, at_d) < -slack;
   };
   return beside(p, q, a, b) || beside(a, b, p, q);
@@ -240,7 +238,7 @@ bool surely_simple(const std::vector<Vec2>& polygon, double margin) {
   const double span = (hi - lo).maxCoeff(), slack = 16 * margin * span + 2e-15 * span * span;
   for (int i = 0; i < count; ++i) {
     const Vec2 into = at(i + 1) - at(i), out = at(i + 2) - at(i + 1);
-    if (!(std::abs(cross2(into, out)) > slack || into.dot(out) > slack)) return false;
+    if (!(std::abs(cross(into, out)) > slack || into.dot(out) > slack)) return false;
   }
   std::sort(segments.begin(), segments.end(), [](const Segment& a, const Segment& b) { return a.lo < b.lo; });
   for (int i = 0; i < count; ++i) {

@@ -84,10 +84,6 @@ struct EdgeUpdate {
   PerceptronTape& tape;
 };
 
-void prefetch_row(const float* row, int columns) {
-  for (int k = 0; k < columns; k += 16) __builtin_prefetch(row + k, 0, 2);
-}
-
 // Edges [begin, begin + count), the first of which lies at `slot`.
 void forward_edge_tile(const TrainingRun& run, const EdgeUpdate& update, int begin, int count, int slot) {
   const EdgeSelection& selection = update.selection;

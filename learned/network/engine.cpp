@@ -116,15 +116,10 @@ void multiply_nodes(const Pass& pass, const PackedLayer& layer, const std::vecto
   }
 }
 
-// Brings a row of floats closer to the core.
-void prefetch(const float* row, int columns) {
-  for (int k = 0; k < columns; k += 16) __builtin_prefetch(row + k, 0, 2);
-}
-
 void prefetch_edge_tile(const Pass& pass, const EdgeSelection& selection, int begin, int end) {
   for (int e = begin; e < std::min(begin + tile_rows, end); ++e) {
-    prefetch(pass.edges[selection.set].row(selection.edge[e]), pass.width());
-    prefetch(pass.to_sender.row(selection.sender[e]), pass.width());
+    prefetch_row(pass.edges[selection.set].row(selection.edge[e]), pass.width());
+    prefetch_row(pass.to_sender.row(selection.sender[e]), pass.width());
   }
 }
 

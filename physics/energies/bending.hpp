@@ -35,8 +35,8 @@ CurvatureBending curvature_bending(const Scene&);  // cloths with BendingModel::
 // Poisson's ratio of a plate of this material: the membrane's own in plane stress, 0 for woven cloth.
 double bending_poisson(const Material&);
 
-double curved_energy(const CurvedVertex&, const Points& x);
-// gradient: 3k, hessian: 3k x 3k (Gauss-Newton, PSD), k = nodes.size(). Returns the energy.
+double curved_energy(const CurvedVertex&, const Points& x);  // [J]
+// gradient: 3k [N], hessian: 3k x 3k (Gauss-Newton, PSD) [N/m] or null, k = nodes.size(). Returns the energy [J].
 double curved_derivatives(const CurvedVertex&, const Points& x, Eigen::VectorXd& gradient, Eigen::MatrixXd* hessian);
 
 // Hinge form: dihedral angle, the papers' weight k l^2 / (4 (A0 + A1)) * (theta - rest)^2 / 2, with rest areas and the
@@ -44,7 +44,7 @@ double curved_derivatives(const CurvedVertex&, const Points& x, Eigen::VectorXd&
 struct Hinge {
   std::array<int, 4> nodes;  // the edge's two ends, then the vertices opposite in its two triangles
   double weight = 0;         // k l^2 / (4 (A0 + A1)) [N m]; with the current length k / (4 (A0 + A1)) [N/m]
-  double rest_angle = 0;
+  double rest_angle = 0;     // [rad]
   HingeLength length = HingeLength::rest;
 };
 std::vector<Hinge> hinges(const Scene&);  // cloths with BendingModel::hinge and bending > 0
@@ -52,11 +52,11 @@ std::vector<Hinge> hinges(const Scene&);  // cloths with BendingModel::hinge and
 // In (-pi, pi]; zero where flat, positive where the surface is convex seen from the side of its normals (the edge runs
 // e0 -> e1 in the triangle with a). Zero where a triangle is degenerate.
 double dihedral_angle(const Vec3& e0, const Vec3& e1, const Vec3& a, const Vec3& b);
-double hinge_energy(const Hinge&, const Points& x);
-// Exact gradient; exact Hessian with psd = false. With psd = true a closed-form PSD bound of it: Gauss-Newton part plus
-// the clamped second derivative of the angle, triangle by triangle; with the current length more of the edge's own
-// stretching besides. Zero where a triangle is degenerate; bounded for
-// slivers (height below 1e-4 of the edge), where it is no longer exact.
+double hinge_energy(const Hinge&, const Points& x);  // [J]
+// Returns the energy [J]. Exact gradient [N], x y z of each node in turn; exact Hessian [N/m] with psd = false. With
+// psd = true a closed-form PSD bound of it: Gauss-Newton part plus the clamped second derivative of the angle, triangle
+// by triangle; with the current length more of the edge's own stretching besides. Zero where a triangle is degenerate;
+// bounded for slivers (height below 1e-4 of the edge), where it is no longer exact.
 double hinge_derivatives(const Hinge&, const Points& x, Vec12& gradient, Mat12* hessian, bool psd = true);
 
 }  // namespace selvedge

@@ -26,16 +26,16 @@ struct ContactTerm {
 // Value, first and second derivative with respect to the gap of
 //   0 for s <= 0, k s^3 / (6 e) for 0 < s < e, k (s^2 / 2 - e s / 2 + e^2 / 6) for s >= e, where s = target - d, e =
 //   softness.
-// Convex and twice continuously differentiable.
+// Convex and twice continuously differentiable. [J], [N], [N/m].
 struct ContactForce {
   double energy = 0, first = 0, second = 0;
 };
 ContactForce contact_force(const ContactTerm&, double gap);
-double contact_gap(const ContactTerm&, const Points& x);
+double contact_gap(const ContactTerm&, const Points& x);  // d(x) [m]
 
 // Lagged Coulomb friction as a potential of the tangential slip u of the step, b = mu f (the IPC form, Li et al. 2020):
 // b |u| for |u| >= w = slip_width [m], b w (r^2 - r^3 / 3 + 1 / 3) with r = |u| / w below. Convex, twice continuously
-// differentiable. Value, and the factor c >= 0 so that gradient = c u and c (I - n n^T) is a PSD Hessian.
+// differentiable. Value [J], and the factor c >= 0 [N/m] so that gradient = c u and c (I - n n^T) is a PSD Hessian.
 struct FrictionForce {
   double energy = 0, factor = 0;
 };

@@ -109,10 +109,4 @@ double hinge_derivatives(const Hinge& hinge, const Points& x, Vec12& gradient, M
   return lanes.energy[0];
 }
 
-Mat3 block_of(const HingeLanes& lanes, int pair, int lane) {
-  Mat3 block;
-  for (int k = 0; k < 9; ++k) block(k / 3, k % 3) = lanes.block[pair][k][lane];
-  return block;
-}
-
 }  // namespace selvedge

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "physics/energies/bending.hpp"
+#include "physics/energies/lane_block.hpp"
 
 namespace selvedge {
 
@@ -30,8 +31,6 @@ void hinge_energies(std::span<const Hinge>, const Points& x, bool gradient, Hing
 
 // `block` of the hinges that are loaded, exact or as hinge_derivatives bounds it.
 void hinge_hessians(bool psd, HingeLanes&);
-
-Mat3 block_of(const HingeLanes&, int pair, int lane);
 
 // The sum [J].
 double hinge_energy(std::span<const Hinge>, const Points& x);

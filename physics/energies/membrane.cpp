@@ -135,12 +135,6 @@ void membrane_derivatives(const Material& material, MembraneElement element, con
   }
 }
 
-Mat3 block_of(const MembraneLanes& lanes, int pair, int lane) {
-  Mat3 block;
-  for (int k = 0; k < 9; ++k) block(k / 3, k % 3) = lanes.block[pair][k][lane];
-  return block;
-}
-
 int together(std::span<const Material> materials, std::span<const MembraneElement> elements) {
   const auto model = [&](std::size_t e) { return materials[elements[e].material].membrane; };
   std::size_t count = 1;

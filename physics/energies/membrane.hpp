@@ -11,6 +11,7 @@ namespace selvedge {
 // Triangles of zero rest area carry no membrane energy and are left out.
 std::vector<MembraneElement> membrane_elements(const Scene&);
 
+// F, 3 x 2: takes vectors of the rest plane to those of the triangle in space.
 Mat32 deformation_gradient(const MembraneElement&, const Points& x);
 
 // Energy of one element [J] for the material's model: St. Venant-Kirchhoff, stable neo-Hookean on principal stretches,

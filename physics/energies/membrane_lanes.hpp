@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "physics/energies/lane_block.hpp"
 #include "physics/energies/membrane_element.hpp"
 #include "physics/scene/scene.hpp"
 
@@ -34,8 +35,6 @@ int together(std::span<const Material> materials, std::span<const MembraneElemen
 void membrane_energies(std::span<const Material>, std::span<const MembraneElement>, const Points& x, MembraneLanes&);
 void membrane_derivatives(std::span<const Material>, std::span<const MembraneElement>, const Points& x, bool hessian,
                           bool psd, MembraneLanes&);
-
-Mat3 block_of(const MembraneLanes&, int pair, int lane);
 
 // What isotropic models do of it, from edges on: energies, or everything of the second stage. Without `hessian` no
 // second derivative is written.

@@ -73,8 +73,6 @@ struct Weights {
   std::array<double, 3> weight{1, 0, 0};
 };
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 // The triangle of the nearest candidates that the origin lies in. False: in none.
 bool triangle_weights(const std::vector<Candidate>& c, Weights& found) {
   for (int k = 2; k < static_cast<int>(c.size()); ++k)

@@ -7,6 +7,7 @@
 
 namespace selvedge {
 
+// What is known of a matrix on its free rows: exact Hessians are only perhaps positive definite.
 enum class Definite { yes, perhaps };
 
 struct LinearReport {

@@ -16,10 +16,10 @@ bool leans_on_prescribed(const Separation& push, const Eigen::VectorXd& inverse_
   return prescribed || is_against_obstacle(push);
 }
 
-Points cut_to(double reach, const Eigen::VectorXd& inverse_mass, const Points& way) {
-  Points move = way;
-  for (int v = 0; v < way.rows(); ++v) {
-    const double length = way.row(v).norm();
+Points cut_to(double reach, const Eigen::VectorXd& inverse_mass, const Points& wanted) {
+  Points move = wanted;
+  for (int v = 0; v < wanted.rows(); ++v) {
+    const double length = wanted.row(v).norm();
     if (inverse_mass[v] == 0) move.row(v).setZero();
     if (length > reach) move.row(v) *= reach / length;
   }
@@ -88,8 +88,8 @@ void keep_better(std::span<const Separation> pushes, const Points& other, Disjoi
 }  // namespace
 
 Points balanced_motion(const Surface& cloth, const Eigen::VectorXd& inverse_mass, std::span<const Separation> pushes,
-                       const Points& way, double reach) {
-  Points move = cut_to(reach, inverse_mass, way);
+                       const Points& wanted, double reach) {
+  Points move = cut_to(reach, inverse_mass, wanted);
   DisjointSets sets = moving_together(cloth, pushes, move);
   std::vector<char> leans(cloth.vertex_count, 0);
   for (const Separation& push : pushes)

@@ -36,7 +36,7 @@ std::vector<char> carried_vertices(const ContactWorld& world, const Exemption& e
 }
 
 AddedTerm carrying_term(const std::vector<char>& carried, const Eigen::VectorXd& masses, const Points& x0,
-                        const Points& worn, double way, double h, double firmness) {
+                        const Points& worn, double farthest, double h, double firmness) {
   struct Pull {
     int vertex;
     Vec3 target;
@@ -46,7 +46,7 @@ AddedTerm carrying_term(const std::vector<char>& carried, const Eigen::VectorXd&
   for (int v = 0; v < static_cast<int>(carried.size()); ++v) {
     if (!carried[v]) continue;
     const Vec3 whole = row(worn, v) - row(x0, v);
-    pulls->push_back({v, row(x0, v) + std::min(1.0, way / whole.norm()) * whole, firmness * masses[v] / (h * h)});
+    pulls->push_back({v, row(x0, v) + std::min(1.0, farthest / whole.norm()) * whole, firmness * masses[v] / (h * h)});
   }
   return {[pulls](const Points& x) {
             double energy = 0;

@@ -11,15 +11,15 @@ namespace selvedge {
 struct Parting {
   Exemption left;                  // what is tangled still, and what is switched off: contact leaves it alone
   std::vector<Separation> gained;  // what the solve must not lose again
-  std::vector<char> carried;       // 1 for vertices that are drawn to where they are worn (carrying.hpp), or empty
+  std::vector<char> carried;       // 1 for vertices that are drawn to their skinned targets (carrying.hpp), or empty
   std::vector<char> waits;         // the same of what is tangled where an obstacle crosses itself: firmly
 };
 
 // In this order: what a limb has gone through, or has sunken in, is put on again (put_on.hpp); where that cannot be it
-// is drawn to where it is worn, and what else is tangled is parted (recovery.hpp); what has to wait for the body to be
-// free of itself is drawn to where it is worn meanwhile; and where untangling knows no way out, so is what has sunken
-// in. `clean`: nothing is tangled at the start, for cloth at least. Overwrites
-// the cloth's rows of `nodes`, at the start, and velocities v.
+// is drawn to its skinned targets, and what else is tangled is parted (recovery.hpp); what has to wait for the body to
+// be free of itself is drawn to its skinned targets meanwhile; and where untangling gains nothing, so is what has
+// sunken in. edge_length: the cloth's mean [m]. `clean`: nothing is tangled at the start, for cloth at least.
+// Overwrites the cloth's rows of `nodes`, at the start, and velocities v.
 Parting part_at_start(const ContactWorld&, SelfCrossings&, const Eigen::VectorXd& inverse_mass, double edge_length,
                       bool clean, const WornPlaces&, const RecoveryOptions&, Points& nodes, Points& v,
                       UntanglingBudget&);

@@ -8,13 +8,13 @@
 
 namespace selvedge {
 
-// Springs (carrying.hpp) take cloth near to where it is worn, but leave it a millimetre off, and so in the body
-// wherever it is worn that close. The last of the way is not left to them.
+// Springs (carrying.hpp) take cloth near to its skinned targets, but leave it a millimetre off, and so in the body
+// wherever it is worn that close. So cloth that is near is set to them.
 
 // Where cloth is taken in a step: by the body that wears it, or by obstacles that it was clean beside.
 struct WornPlaces {
   const Points* wanted;  // all nodes, with obstacles at the step's end
-  const Points* worn;    // where the cloth is worn then
+  const Points* worn;    // the cloth's skinned targets then, a row a vertex
   Points last_clean;     // all nodes when the cloth was clean last; empty: it never was
   double thickness;      // of contact [m]
   double h;              // of the step [s]
@@ -22,7 +22,7 @@ struct WornPlaces {
 
 enum class PutOn { nothing, too_far, no_place, done };
 
-// Puts the marked vertices of the cloth to where they are worn at the start of a step, untangled there, and has them
+// Puts the marked vertices of the cloth on their skinned targets at the start of a step, untangled there, and has them
 // move along with the obstacle's node that is nearest. Where they were clean last, carried along since
 // (carried_along.hpp), is a second place; the one with fewer crossing triangles is tried first. Cloth that is not
 // marked makes way, and keeps its velocity. `nodes`, at the start, and the cloth's velocities v are overwritten. Both

@@ -69,10 +69,10 @@ Separation on_four(Separation s) {
   return s;
 }
 
-// What the way to where the cloth should be asks of all that is to be parted: its two sides go against each other, or
-// vertices against an obstacle, in the direction that the way takes them apart, `least` far and at most by `reach` [m].
-// Where all vertices are lost nothing is asked.
-std::vector<Separation> pushes_along(const Points& way, const std::vector<char>& lost, const WorldSheets& sheets,
+// What the displacement to where the cloth should be asks of all that is to be parted: its two sides go against each
+// other, or vertices against an obstacle, in the direction in which it takes them apart, `least` far and at most by
+// `reach` [m]. Where all vertices are lost nothing is asked.
+std::vector<Separation> pushes_along(const Points& wanted, const std::vector<char>& lost, const WorldSheets& sheets,
                                      double shortest, double reach) {
   const Segments found = find_segments(sheets.views);
   const std::vector<Contour> contours = find_contours(sheets.views, found);
@@ -83,7 +83,7 @@ std::vector<Separation> pushes_along(const Points& way, const std::vector<char>&
     Vec3 apart = Vec3::Zero();
     bool hopeful = false;
     for (int i = 0; i < push.count; ++i) {
-      apart += push.weight[i] * row(way, push.vertex[i]);
+      apart += push.weight[i] * row(wanted, push.vertex[i]);
       hopeful = hopeful || lost.empty() || !lost[push.vertex[i]];
     }
     const double length = apart.norm();
@@ -163,17 +163,17 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
   const UntangleResult parted =
       (budget ? *budget : ample).untangle(*world.cloth, from, std::span(sheets.views).subspan(1), options);
   const std::vector<char> lost = tangled_at(world, nodes, parted);
-  const Points whole_way = parted.x - from;
-  Points way = whole_way;
+  const Points whole = parted.x - from;
+  Points wanted = whole;
   for (int v = 0; v < n; ++v)
-    if (!lost.empty() && lost[v]) way.row(v).setZero();
+    if (!lost.empty() && lost[v]) wanted.row(v).setZero();
   const std::size_t pairs = before.self.empty() ? 0 : pairs_within_cloth(world, nodes);
   for (int halving = 0; halving <= limits.max_halvings; ++halving, reach /= 2) {
     std::vector<Separation> gained =
-        pushes_along(whole_way, lost, sheets, limits.negligible_move * parted.mean_edge, reach);
+        pushes_along(whole, lost, sheets, limits.negligible_move * parted.mean_edge, reach);
     drop_let_through(options.let_through, gained);
     Points moved = nodes;
-    moved.topRows(n) += balanced_motion(*world.cloth, inverse_mass, gained, way, reach);
+    moved.topRows(n) += balanced_motion(*world.cloth, inverse_mass, gained, wanted, reach);
     Exemption left = stop_at_obstacles(world, before, from, moved);
     if (before.self.empty() ? !left.self.empty() : pairs_within_cloth(world, moved) > pairs) continue;
     nodes = std::move(moved);

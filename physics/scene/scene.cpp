@@ -17,7 +17,7 @@ RestTriangle flatten(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 double area(const RestTriangle& rest) {
   const Vec2 u = rest.col(1) - rest.col(0), v = rest.col(2) - rest.col(0);
-  return 0.5 * (u.x() * v.y() - u.y() * v.x());
+  return 0.5 * cross(u, v);
 }
 
 Eigen::VectorXd lumped_masses(const Scene& scene) {

@@ -8,7 +8,7 @@
 
 namespace selvedge {
 
-enum class MembraneModel { stvk, stable_neo_hookean, baraff_witkin };
+enum class MembraneModel { stvk, stable_neo_hookean, baraff_witkin };  // membrane.hpp has their sources
 enum class BendingModel { curvature, hinge };
 // Which length of its edge weighs a hinge: the rest shape's, or the present one, as in HOOD's and ContourCraft's
 // losses.
@@ -72,7 +72,7 @@ struct ContactSettings {
 struct Scene {
   std::vector<Cloth> cloths;
   Surface surface;
-  Points rest;  // rest positions, used where a length or an angle needs 3D (curved rest shapes)
+  Points rest;  // one row a vertex [m]; used where a length or an angle needs 3D (curved rest shapes)
   std::vector<RestTriangle> rest_triangle;  // one a triangle; the metric of the rest shape
   bool rest_is_flat = true;                 // no rest angles, no rest curvature
   std::vector<int> pins;                    // vertices with prescribed positions, ascending
@@ -82,8 +82,8 @@ struct Scene {
   Wind wind;
 };
 
-RestTriangle flatten(const Vec3& a, const Vec3& b, const Vec3& c);
-double area(const RestTriangle&);  // signed; positive for flatten()
+RestTriangle flatten(const Vec3& a, const Vec3& b, const Vec3& c);  // a in the origin, b on the u axis
+double area(const RestTriangle&);                                   // signed [m2]; positive for flatten()
 
 // Lumped mass of every vertex [kg]: a third of each triangle's rest area times its cloth's density.
 Eigen::VectorXd lumped_masses(const Scene&);
@@ -94,8 +94,8 @@ Eigen::VectorXd inverse_masses(const Scene&, int node_count);
 
 double smallest_altitude(const RestTriangle&);           // [m]; 0 of a triangle without extent
 double mean_edge_length(std::span<const RestTriangle>);  // [m]; 0 without triangles
-double mean_edge_length(const Scene&);                   // of all triangles at rest
+double mean_edge_length(const Scene&);                   // of all triangles at rest [m]
 
-std::vector<const Surface*> obstacle_surfaces(const Scene&);
+std::vector<const Surface*> obstacle_surfaces(const Scene&);  // of the scene, which must outlive them
 
 }  // namespace selvedge

@@ -19,8 +19,8 @@ namespace selvedge {
 struct State {
   double time = 0;  // [s]
   int frame = 0;
-  Points x, v;                    // cloth, all cloths on end
-  std::vector<Points> obstacles;  // where they are; may lag behind Drive::obstacles
+  Points x, v;                    // one row a vertex, cloth after cloth [m], [m/s]
+  std::vector<Points> obstacles;  // where they are [m]; may lag behind Drive::obstacles
   bool pinched = false;           // they do: cloth left them no room in the step that ended here
   bool clean = false;             // known to be free of intersections, by the audit of the step that ended here
   std::vector<int> cut_out;       // triangles that are out of the simulation, ascending (cut_out.hpp)
@@ -38,8 +38,8 @@ struct BodyFrame {
 
 // What the world imposes on a step, given at the step's END.
 struct Drive {
-  Points pins;                       // one row a Scene::pins entry
-  std::vector<Points> obstacles;     // wanted positions
+  Points pins;                       // one row a Scene::pins entry [m]
+  std::vector<Points> obstacles;     // wanted positions [m]
   Vec3 wind = Vec3::Zero();          // [m/s]
   Vec3 acceleration = Vec3::Zero();  // gravity [m/s2]
   Points worn;                       // one row a vertex: where the body that wears it takes it without forces, not a
@@ -72,7 +72,7 @@ struct CollisionReport {
   int contacts = 0;         // proximity pairs in the implicit solve, last substep
   int impulses = 0;         // impacts met with an impulse, all substeps
   int zones = 0;            // impact zones projected, all substeps
-  int halved_substeps = 0;  // substeps done again in two halves because zones did not settle
+  int halved_substeps = 0;  // substeps done again in two halves because zones did not converge
   int shortened = 0;        // zones whose motion was shortened toward the last clean state, once a halving
   int held_vertices = 0;    // cloth vertices in them, all substeps
   int passed_through = 0;   // pairs that met on their way by the audit of the motion, those left alone not counted

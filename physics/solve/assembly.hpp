@@ -31,6 +31,7 @@ struct Elastic {
 };
 Elastic make_elastic(const Scene&);
 
+// What elements write before it is summed. Kept between calls for its memory alone.
 struct AssemblyScratch {
   Points forces;
   PairBlocks pairs;

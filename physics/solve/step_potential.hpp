@@ -31,6 +31,7 @@ struct StepPotential {
   ContactLists lists;
 };
 
+// Kept between calls for its memory alone.
 struct StepScratch {
   AssemblyScratch assembly;
   std::vector<Vec3> contact_forces;
@@ -40,6 +41,8 @@ struct StepScratch {
 // The vertices that a step moves: with mass and not pinned.
 std::vector<char> free_vertices(const Scene&, const Eigen::VectorXd& masses);
 
+// Works out all of it at the start of the problem's step. slip_speed: below it lagged friction is viscous [m/s]. Keeps
+// pointers to the elements and the problem.
 void prepare(const Scene&, const Elastic&, const Eigen::VectorXd& masses, const StepProblem&, double slip_speed,
              StepScratch&, StepPotential&);
 

@@ -50,11 +50,11 @@ void WorkBound::unnamed_forces(const State& from, const State& to, const Drive& 
 Work WorkBound::operator()(const State& from, const State& to, const Drive& drive) {
   unnamed_forces(from, to, drive);
   Work work;
-  const Eigen::VectorXd way = (to.x - from.x).rowwise().norm();
-  for (int i = 0; i < way.size(); ++i) work.wind += wind_.row(i).norm() * way[i];
-  std::vector<char> held(static_cast<std::size_t>(way.size()), 0);
+  const Eigen::VectorXd distance = (to.x - from.x).rowwise().norm();
+  for (int i = 0; i < distance.size(); ++i) work.wind += wind_.row(i).norm() * distance[i];
+  std::vector<char> held(static_cast<std::size_t>(distance.size()), 0);
   for (const int pin : scene_.pins) {
-    work.pins += unnamed_[pin] * way[pin];
+    work.pins += unnamed_[pin] * distance[pin];
     held[pin] = 1;
   }
   if (!world_.self && world_.obstacles.empty()) return work;
@@ -63,7 +63,7 @@ Work WorkBound::operator()(const State& from, const State& to, const Drive& driv
   const double thickness = scene_.contact.thickness;
   PathPairs path;
   update_pairs(search_, thickness, nodes0, nodes1, path);
-  Eigen::VectorXd carried = Eigen::VectorXd::Zero(way.size()), pressed = carried;
+  Eigen::VectorXd carried = Eigen::VectorXd::Zero(distance.size()), pressed = carried;
   for (const NodePair& pair : path.pairs) {
     double moved = 0;
     for (const int node : pair.nodes)
@@ -77,11 +77,11 @@ Work WorkBound::operator()(const State& from, const State& to, const Drive& driv
       if (world_.is_cloth(node)) raise(pressed, node, p.rest_gap - p.gap);
   if (!from.clean) {
     const Exemption tangled = find_exemption(world_, nodes0);
-    for (int i = 0; i < way.size(); ++i)
+    for (int i = 0; i < distance.size(); ++i)
       if ((!tangled.self.empty() && tangled.self[i]) || (!tangled.body.empty() && tangled.body[i]))
-        pressed[i] = std::max(pressed[i], way[i]);
+        pressed[i] = std::max(pressed[i], distance[i]);
   }
-  for (int i = 0; i < way.size(); ++i) {
+  for (int i = 0; i < distance.size(); ++i) {
     if (held[i]) continue;
     work.obstacles += unnamed_[i] * carried[i];
     work.response += unnamed_[i] * pressed[i];

@@ -16,12 +16,11 @@ struct Work {
 
 // Bounds the work of a step by what its two ends show, whoever made it: a vertex moved by forces that nobody names has
 // felt R = m dv/dt - elastic - gravity - wind - damping, with the larger of the elastic forces at both ends.
-//   pins       |R| times the way of the pin
-//   obstacles  |R| times the way of the obstacle, at vertices that may have touched it on the way
-//   wind       the force of the air times the way of the vertex
-//   response   |R| times how far a vertex was pressed closer than the rest gap at the start, which is what pushing
-//   apart
-//              may give back; and |R| times its way where it started tangled
+//   pins       |R| times the displacement of the pin
+//   obstacles  |R| times the displacement of the obstacle, at vertices that may have touched it
+//   wind       the force of the air times the displacement of the vertex
+//   response   |R| times how far a vertex was pressed closer than the rest gap at the start, which pushing apart may
+//              give back; and |R| times its displacement where it started tangled
 // A cloth whose energy grows by more has it from nowhere. Holds caches and a reference to the scene.
 class WorkBound {
  public:

@@ -10,8 +10,6 @@ namespace {
 
 constexpr double position_rounding = 1e-14;  // relative, of positions that are added up over substeps
 
-double largest_coordinate(const Points& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0; }
-
 }  // namespace
 
 void finish_step(const Scene& scene, const State& from, const Drive& drive, double dt, StepEnd end, AuditMemory& audits,

@@ -15,6 +15,7 @@
 #include "physics/solve/contact_terms.hpp"
 #include "physics/solve/contour_potential.hpp"
 #include "physics/steppers/bounded_step.hpp"
+#include "physics/steppers/count_solve.hpp"
 #include "physics/steppers/finish_step.hpp"
 #include "physics/steppers/substeps.hpp"
 
@@ -118,10 +119,7 @@ std::vector<ContactTerm> IcmStepper::pushes(ContourPotential& contour, const Poi
 bool IcmStepper::minimise(const StepProblem& problem, Points& x, StepReport& report) {
   Stopwatch watch;
   const NewtonReport newton = solver_.solve(problem, x);
-  report.iterations += newton.iterations;
-  report.linear_iterations += newton.linear_iterations;
-  ++report.counts.solves;
-  report.counts.coarse_builds += newton.coarse_builds;
+  count_solve(newton, report);
   report.residual = solver_.imbalance(problem, x);
   if (!newton.converged) report.reason = Reason::not_converged;
   report.seconds.solve += watch.lap();

@@ -4,6 +4,7 @@
 
 #include "collision/geometry/stopwatch.hpp"
 #include "physics/scene/features.hpp"
+#include "physics/steppers/count_solve.hpp"
 
 namespace selvedge {
 
@@ -24,10 +25,7 @@ NewtonReport SubstepSolve::once(const StepProblem& problem, Points& x, StepRepor
   StepProblem bounded = problem;
   bounded.most_iterations = std::max(1, most_newton_ - report.iterations);
   const NewtonReport newton = solver_.solve(bounded, x);
-  report.iterations += newton.iterations;
-  report.linear_iterations += newton.linear_iterations;
-  ++report.counts.solves;
-  report.counts.coarse_builds += newton.coarse_builds;
+  count_solve(newton, report);
   report.out_of_newton = report.out_of_newton || (!newton.converged && report.iterations >= most_newton_);
   return newton;
 }
@@ -67,7 +65,8 @@ NewtonReport SubstepSolve::with_contact(Substep& s, StepProblem& problem, Points
         mistaken_friction(solved, contacts.terms, *problem.x0, x, creep) < options_.normal_change)
       return newton;
     const int least = friction ? 2 : 1;
-    // Where the iteration has not settled, normal forces change with it, and one more solve for their sake is as rough.
+    // Where the iteration has not converged, normal forces change with it, and one more solve for their sake is as
+    // rough.
     const bool bounded = change < options_.normal_change || !newton.converged;
     if (pass >= least && bounded && deepest(found, s.nodes) < deep_) return newton;
     const Timed timed(report.seconds.response);

@@ -56,6 +56,16 @@ std::string on_one_line(const std::string& error) {
   return end == std::string::npos ? error : error.substr(0, end) + "; " + error.substr(end + 3);
 }
 
+// An error tells whose overrides are wrong.
+Setup read_as(const CompareSetting& setting, const CompareScene& scene, bool short_form, const Kinds& kinds) {
+  try {
+    return read_compared(scene, short_form, setting.overrides, kinds);
+  } catch (const Error& error) {
+    throw Error(error.problem(), "setting `" + setting.name + "` on scene `" + scene.name + "`: " + error.where(),
+                error.cure());
+  }
+}
+
 // Reads every setup and makes every stepper once, so that what is wrong is said before hours of work.
 SceneWork open_scene(const CompareRequest& request, const Comparison& comparison, const CompareScene& scene,
                      const std::string& program) {
@@ -75,7 +85,7 @@ SceneWork open_scene(const CompareRequest& request, const Comparison& comparison
       work.keys.settings.emplace_back();
       continue;
     }
-    Setup setup = read_compared(scene, request.short_form, setting.overrides, comparison.kinds);
+    Setup setup = read_as(setting, scene, request.short_form, comparison.kinds);
     work.keys.settings.push_back(fmt::format(
         "{} {:016x} {:016x} {} {} {} {}", program, hash_of(setup.config), hash_of(whole_file(setting.weights)),
         Eigen::nbThreads(), comparison.judged_frames, comparison.limits.pairs, comparison.limits.seconds));

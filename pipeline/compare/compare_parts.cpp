@@ -7,18 +7,18 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/host/kept_row_json.hpp"
+#include "pipeline/host/numbers_json.hpp"
 
 namespace selvedge {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 double number_or_unknown(const Json& value) { return value.is_number() ? value.get<double>() : unknown; }
 
 Json numbers_of(const std::map<std::string, double>& values) {
   Json json = Json::object();
-  for (const auto& [name, value] : values) json[name] = finite_or_null(value);
+  for (const auto& [name, value] : values) json[name] = number_or_null(value);
   return json;
 }
 
@@ -59,9 +59,9 @@ std::optional<CompareFloor> read_floor(const std::string& text, const std::strin
 
 std::string part_json(const CompareErrors& e, const std::string& key) {
   return kept_row_json({{"trouble", e.trouble},
-                        {"algebraic", finite_or_null(e.algebraic)},
-                        {"algebraic_largest", finite_or_null(e.algebraic_largest)},
-                        {"temporal", finite_or_null(e.temporal)},
+                        {"algebraic", number_or_null(e.algebraic)},
+                        {"algebraic_largest", number_or_null(e.algebraic_largest)},
+                        {"temporal", number_or_null(e.temporal)},
                         {"measures", numbers_of(e.measures)}},
                        key);
 }
@@ -84,7 +84,7 @@ std::string part_json(const CompareRun& r, const std::string& key) {
                         {"linear", r.linear},
                         {"passed_through", r.passed_through},
                         {"pairs", r.pairs},
-                        {"lost", finite_or_null(r.lost)},
+                        {"lost", number_or_null(r.lost)},
                         {"end", r.end},
                         {"measures", numbers_of(r.measures)},
                         {"phases", numbers_of(r.phases)},

@@ -6,6 +6,7 @@
 
 #include "pipeline/compare/compare.hpp"
 #include "pipeline/formats/hdf5_handles.hpp"
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/version.hpp"
 
 namespace selvedge {
@@ -63,11 +64,8 @@ Json floor_json(const CompareFloor& f) {
 
 Json row_json(const CompareRow& row) {
   Json json = {{"scene", row.scene}, {"setting", row.setting}};
-  for (const Column& column : columns()) {
-    const double value = column.value(row);
-    json[column.name] = std::isfinite(value) ? Json(value) : Json(nullptr);
-  }
-  for (const auto& [name, value] : row.measures) json[name] = std::isfinite(value) ? Json(value) : Json(nullptr);
+  for (const Column& column : columns()) json[column.name] = number_or_null(column.value(row));
+  for (const auto& [name, value] : row.measures) json[name] = number_or_null(value);
   json["pairs_by_frame"] = row.pairs_by_frame;
   json["trouble"] = row.trouble;
   return json;

@@ -148,6 +148,8 @@ Comparison read_comparison(const std::filesystem::path& file, bool short_form,
   for (const Config& item : config["scenes"].items) {
     CompareScene scene = compared_scene_options().read(item);
     scene.file = file.parent_path() / item["file"].text();
+    if (!std::filesystem::exists(scene.file))
+      item["file"].fail("names the missing file " + scene.file.string(), "paths are relative to the comparison's file");
     scene.name = item["name"].given ? item["name"].text() : scene.file.stem().string();
     scenes.push_back(scene.name);
     comparison.scenes.push_back(std::move(scene));

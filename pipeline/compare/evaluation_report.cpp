@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/compare/evaluation.hpp"
+#include "pipeline/host/numbers_json.hpp"
 
 namespace selvedge {
 namespace {
@@ -13,8 +14,6 @@ using Json = nlohmann::ordered_json;
 std::string shown(double value, const char* format = "{:.1f}") {
   return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
 }
-
-Json known(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 std::string ratio_text(const PairedRatio& r) {
   return fmt::format("  {:<18} over {:<18} {:>7} [{}, {}] of {} sequences{}\n", r.row, r.baseline,
@@ -80,36 +79,36 @@ std::string evaluation_json(const Evaluation& e) {
     outfits.push_back({{"name", e.outfits[k]}, {"vertices", e.vertices[k]}});
   for (const EvaluatedRow& row : e.rows) {
     Json of_outfits = Json::array(), strains = Json::array(), left = Json::array();
-    for (const double pairs : row.pairs_of_outfit) of_outfits.push_back(known(pairs));
+    for (const double pairs : row.pairs_of_outfit) of_outfits.push_back(number_or_null(pairs));
     for (std::size_t k = 0; k < e.outfits.size(); ++k)
-      strains.push_back(
-          {{"mean", known(row.strain_of_outfit[k])}, {"percentile_99", known(row.strain_99_of_outfit[k])}});
-    for (const double part : row.left) left.push_back(known(part));
+      strains.push_back({{"mean", number_or_null(row.strain_of_outfit[k])},
+                         {"percentile_99", number_or_null(row.strain_99_of_outfit[k])}});
+    for (const double part : row.left) left.push_back(number_or_null(part));
     rows.push_back({{"row", row.row},
                     {"trouble", row.trouble},
                     {"sequences", row.sequences},
                     {"ended_early", row.failed},
-                    {"pairs", known(row.pairs)},
+                    {"pairs", number_or_null(row.pairs)},
                     {"pairs_of_outfit", of_outfits},
                     {"strain_of_outfit", strains},
-                    {"pairs_at_0", known(row.at_0)},
-                    {"pairs_at_50", known(row.at_50)},
-                    {"pairs_at_150", known(row.at_150)},
+                    {"pairs_at_0", number_or_null(row.at_0)},
+                    {"pairs_at_50", number_or_null(row.at_50)},
+                    {"pairs_at_150", number_or_null(row.at_150)},
                     {"left", left},
-                    {"frames_a_second", known(row.frames_a_second)},
-                    {"strain", known(row.strain)},
-                    {"strain_99", known(row.strain_99)},
-                    {"depth", known(row.depth)},
-                    {"kinetic_ratio", known(row.kinetic_ratio)},
-                    {"jitter_ratio", known(row.jitter_ratio)}});
+                    {"frames_a_second", number_or_null(row.frames_a_second)},
+                    {"strain", number_or_null(row.strain)},
+                    {"strain_99", number_or_null(row.strain_99)},
+                    {"depth", number_or_null(row.depth)},
+                    {"kinetic_ratio", number_or_null(row.kinetic_ratio)},
+                    {"jitter_ratio", number_or_null(row.jitter_ratio)}});
   }
   for (const PairedRatio& r : e.ratios)
     ratios.push_back({{"row", r.row},
                       {"over", r.baseline},
                       {"sequences", r.sequences},
-                      {"ratio", known(r.ratio)},
-                      {"low", known(r.low)},
-                      {"high", known(r.high)},
+                      {"ratio", number_or_null(r.ratio)},
+                      {"low", number_or_null(r.low)},
+                      {"high", number_or_null(r.high)},
                       {"apart", r.apart()}});
   for (const auto& [row, pairs] : e.by_frame) by_frame[row] = pairs;
   for (const auto& [row, of_outfits] : e.speeds)

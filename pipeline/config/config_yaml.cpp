@@ -14,7 +14,8 @@ YAML::Node loaded(const std::string& text, const std::string& where) {
   try {
     return YAML::Load(text);
   } catch (const YAML::Exception& e) {
-    throw Error("is not YAML: " + e.msg, e.mark.is_null() ? where : fmt::format("{}:{}", where, e.mark.line + 1), "");
+    throw Error("is not YAML: " + e.msg, e.mark.is_null() ? where : fmt::format("{}:{}", where, e.mark.line + 1),
+                "look there and in the lines before it: brackets and quotes that are not closed, tabs, other indents");
   }
 }
 
@@ -35,7 +36,8 @@ std::size_t item_index(const YAML::Node& list, const std::string& word, const st
               list.size() ? "items: " + joined(names) : "the list is empty or absent");
 }
 
-void assign(YAML::Node node, const Section& section, const std::vector<std::string>& words, std::size_t depth,
+// Items that `words` names become their indices in it.
+void assign(YAML::Node node, const Section& section, std::vector<std::string>& words, std::size_t depth,
             const YAML::Node& value, const std::string& where) {
   std::string path;
   for (std::size_t i = 0; i < depth; ++i) path += (i ? "." : "") + words[i];
@@ -51,7 +53,9 @@ void assign(YAML::Node node, const Section& section, const std::vector<std::stri
   std::size_t next = depth + 1;
   if (key->kind == Kind::sections) {
     if (!child.IsSequence()) child = YAML::Node(YAML::NodeType::Sequence);
-    child.reset(child[item_index(child, words[next], path.empty() ? key->name : path + "." + key->name, where)]);
+    const std::size_t item = item_index(child, words[next], path.empty() ? key->name : path + "." + key->name, where);
+    child.reset(child[item]);
+    words[next] = std::to_string(item);
     if (++next == words.size()) {
       child = value;
       return;
@@ -139,9 +143,11 @@ void apply_override(const std::string& assignment, YAML::Node root, const Sectio
     else
       words.back() += c;
   }
+  if (assignment.find_first_not_of(' ', equals + 1) == std::string::npos)
+    throw Error("has no value", where, "write `null` for the default, or \"\" for an empty text");
   const YAML::Node value = loaded(assignment.substr(equals + 1), where);
   assign(root, section, words, 0, value, where);
-  origin.overrides.push_back({assignment.substr(0, equals), where});
+  origin.overrides.push_back({fmt::format("{}", fmt::join(words, ".")), where});
 }
 
 Config read_config(const std::filesystem::path& path, const Section& section,
@@ -149,9 +155,9 @@ Config read_config(const std::filesystem::path& path, const Section& section,
   Origin origin{path.string(), {}};
   try {
     YAML::Node root = loaded(read_text_file(path, "configuration"), origin.file);
-    if (root.IsNull()) throw Error("is empty", origin.file, "docs/scene.md shows what belongs into a scene");
-    if (!root.IsMap())
-      throw Error("is not a list of `key: value`", origin.file, "allowed keys: " + joined(key_names(section)));
+    const std::string cure = "write `key: value`; allowed keys: " + joined(key_names(section));
+    if (root.IsNull()) throw Error("is empty", origin.file, cure);
+    if (!root.IsMap()) throw Error("is not a list of `key: value`", origin.file, cure);
     for (const std::string& assignment : overrides) apply_override(assignment, root, section, origin);
     return checked_section(root, section, "", origin.file, origin);
   } catch (const YAML::Exception& e) {

@@ -32,7 +32,7 @@ class Document {
       error = problem.what();
     }
     std::ranges::replace(error, '\n', ' ');
-    if (!good) fail("file", "is no glTF 2.0 that can be read (" + error + ")", "export it anew, as .glb");
+    if (!good) throw Error("is no glTF 2.0 that can be read (" + error + ")", file.string(), "export it anew, as .glb");
     for (const std::string& extension : model.extensionsRequired)
       if (extension != "KHR_mesh_quantization" && extension.find("_materials_") == std::string::npos &&
           extension.find("_texture_") == std::string::npos)

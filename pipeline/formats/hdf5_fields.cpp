@@ -132,6 +132,10 @@ void write_directions(const File& file, const std::string& name, const Eigen::Ma
   file.write_constant(name, H5T_NATIVE_DOUBLE, extents({rows.rows() / 3, 3, rows.cols()}), rows.data());
 }
 
+void check_out_name(const std::filesystem::path& out, const std::string& nouns) {
+  if (out.extension() != ".h5") throw Error("is no .h5 file", "--out " + out.string(), nouns + " are written in HDF5");
+}
+
 void write_form(const std::filesystem::path& path, const FileForm& form,
                 const std::function<void(const File&)>& fields) {
   std::filesystem::path beside = path;

@@ -55,6 +55,9 @@ void write_points(const File&, const std::string& name, const Points&);
 void write_sparse(const File&, const std::string& name, const SparseRows&);
 void write_directions(const File&, const std::string& name, const Eigen::MatrixXd&);
 
+// Throws Error for a name of an option --out that does not end in .h5, by which readers know our forms.
+void check_out_name(const std::filesystem::path& out, const std::string& nouns);
+
 // A file of that form, written beside and renamed: `fields` writes what comes after `format`. Several processes may
 // write the same file, as they do in the cache: it is the last one's.
 void write_form(const std::filesystem::path&, const FileForm&, const std::function<void(const File&)>& fields);

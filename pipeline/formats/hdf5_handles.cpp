@@ -31,6 +31,9 @@ std::string cure_for(const std::string& reason) {
       reason.find("quota") != std::string::npos)
     return "free some space or choose another folder; what was written is readable up to the last full frame";
   if (reason.find("No such file") != std::string::npos) return "check the path";
+  if (reason.find("signature not found") != std::string::npos)
+    return "this is no HDF5 file, or one that was cut off at its beginning: name a .h5 file of this program";
+  if (reason.find("truncated file") != std::string::npos) return "the end of the file is missing: copy it again";
   if (reason.find("ermission") != std::string::npos) return "check who may write there, or choose another folder";
   return "check that the file is one of this program and that its disk works";
 }

@@ -8,7 +8,9 @@
 #include <limits>
 #include <numbers>
 
+#include "collision/geometry/error.hpp"
 #include "collision/geometry/surface.hpp"
+#include "pipeline/config/config.hpp"
 
 namespace selvedge {
 namespace {
@@ -146,6 +148,23 @@ std::vector<NamedLoop> named_loops(const SkinnedSurface& skin, const BodyModel& 
     }
   }
   return all;
+}
+
+std::vector<int> pins_of(const Garment& garment, const std::vector<std::string>& groups) {
+  std::vector<int> pins;
+  std::vector<std::string> known;
+  for (const auto& [name, vertices] : garment.groups) known.push_back(name);
+  for (const std::string& group : groups) {
+    const auto found = std::ranges::find(known, group);
+    if (found == known.end())
+      throw Error("names the unknown group `" + group + "`", "--pin",
+                  "groups: " + joined(known) + suggestion(group, known));
+    const std::vector<int>& vertices = garment.groups[static_cast<std::size_t>(found - known.begin())].second;
+    pins.insert(pins.end(), vertices.begin(), vertices.end());
+  }
+  std::ranges::sort(pins);
+  pins.erase(std::unique(pins.begin(), pins.end()), pins.end());
+  return pins;
 }
 
 }  // namespace selvedge

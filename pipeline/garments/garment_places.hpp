@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/bodies/body.hpp"
+#include "pipeline/garments/garment.hpp"
 
 namespace selvedge {
 
@@ -17,5 +17,9 @@ struct NamedLoop {
 // Where the boundary loops of a garment lie, piece by piece, by its weights and its place in the body's zero pose.
 // Names that are `taken` are not given again.
 std::vector<NamedLoop> named_loops(const SkinnedSurface&, const BodyModel&, const std::vector<std::string>& taken);
+
+// The vertices of the groups that an option --pin names, ascending, each once. Throws Error for a group that the
+// garment has not.
+std::vector<int> pins_of(const Garment&, const std::vector<std::string>& groups);
 
 }  // namespace selvedge

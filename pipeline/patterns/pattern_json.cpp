@@ -220,7 +220,8 @@ Pattern pattern_of(const std::string& json, const std::string& file) {
   try {
     parsed = Json::parse(without_nan(json));
   } catch (const Json::exception& error) {
-    throw Error("is no JSON: " + std::string(error.what()), file, form_cure);
+    const std::string text = error.what();  // begins with the name of the exception, in brackets
+    throw Error("is no JSON: " + text.substr(text.find(' ') + 1), file, form_cure);
   }
   return PatternReader{file}.read(parsed);
 }

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "pipeline/formats/trajectory_row.hpp"
+#include "pipeline/host/numbers_json.hpp"
 
 namespace selvedge {
 namespace {
@@ -46,11 +47,6 @@ std::vector<std::pair<std::string, int>> verdict_counts(const RunSummary& s) {
   for (std::size_t k = 0; k < s.verdicts.size(); ++k)
     if (s.verdicts[k] > 0) counts.emplace_back(verdict_names()[k], s.verdicts[k]);
   return counts;
-}
-
-// JSON has no infinity.
-nlohmann::ordered_json finite_or_null(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
 }  // namespace
@@ -162,10 +158,10 @@ std::string summary_json(const RunSummary& s) {
       {"candidates", s.counts.candidates},
       {"audits", s.counts.audits},
       {"verdicts", verdicts},
-      {"max_residual", finite_or_null(s.max_residual)},
-      {"max_stretch", finite_or_null(s.max_stretch)},
+      {"max_residual", number_or_null(s.max_residual)},
+      {"max_stretch", number_or_null(s.max_stretch)},
       {"max_stretch_frame", s.max_stretch_frame},
-      {"min_stretch", finite_or_null(s.min_stretch)},
+      {"min_stretch", number_or_null(s.min_stretch)},
       {"self", s.self_audited ? "audited" : "not audited"},
       {"intersecting_pairs", s.worst_pairs},
       {"intersecting_pairs_worst_frame", s.worst_frame},
@@ -185,7 +181,7 @@ std::string summary_json(const RunSummary& s) {
       {"passed_through", s.passed_through},
       {"jumped", s.jumped},
       {"jumped_first_frame", s.first_jump_frame},
-      {"min_contact_gap", finite_or_null(s.min_contact_gap)},
+      {"min_contact_gap", number_or_null(s.min_contact_gap)},
       {"max_obstacle_lag", s.max_obstacle_lag},
       {"intersecting_pairs_wanted", s.worst_pairs_wanted},
       {"max_depth_wanted", s.max_depth_wanted},

@@ -86,7 +86,10 @@ std::vector<Garment> read_outfit(const Config& section, const std::filesystem::p
 
 Garment read_file(const Config& file, const std::filesystem::path& folder, const Performance& who,
                   std::vector<std::string>& warnings) {
-  Garment garment = read_garment(existing_path(file, folder));
+  const std::filesystem::path path = existing_path(file, folder);
+  if (path.extension() != ".h5")
+    file.fail("is no .h5 file", "`selvedge dress` makes a garment of a mesh that a body wears");
+  Garment garment = read_garment(path);
   check_fits(file, garment, who);
   if (!garment.made_for.empty() && garment.made_for != who.body.name)
     warnings.push_back(fmt::format("garment `{}` was made for the body `{}`, and `{}` is `{}`", garment.name,

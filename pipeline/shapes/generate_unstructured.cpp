@@ -15,8 +15,6 @@ Vec2 across(const Points2& uv, int from, int to, double period) {
   return d;
 }
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 double twice_area(const Points2& uv, const Triangles& triangles, int t, double period) {
   return cross(across(uv, triangles(t, 0), triangles(t, 1), period),
                across(uv, triangles(t, 0), triangles(t, 2), period));

@@ -12,10 +12,10 @@
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/run_scene.hpp"
 #include "pipeline/scene/make_stepper.hpp"
+#include "pipeline/suites/kept_run.hpp"
 #include "pipeline/suites/spoiled_weights.hpp"
 #include "pipeline/suites/stability_suite.hpp"
 #include "pipeline/suites/stability_watch.hpp"
-#include "pipeline/view/view.hpp"
 
 namespace selvedge {
 namespace {
@@ -86,15 +86,6 @@ void judge_row(const RunSummary& summary, const StabilityLimits& limits, Stabili
           fmt::format("still {} pairs and {} vertices inside what jumped", row.end_pairs, row.end_inside));
   fail_if(row.clean_start && row.jumped == 0 && summary.passed_through > 0,
           fmt::format("{} passed through", summary.passed_through));
-}
-
-// A page for those that failed; nothing is kept of the others.
-void keep_or_remove(const std::filesystem::path& folder, bool keep, std::ostream* log) {
-  if (!keep) {
-    std::filesystem::remove_all(folder);
-    return;
-  }
-  if (const auto trouble = write_page(folder); trouble && log) *log << "no page: " << *trouble << "\n";
 }
 
 // Absent: stopped before its end.

@@ -11,7 +11,7 @@
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/run_scene.hpp"
 #include "pipeline/scene/make_stepper.hpp"
-#include "pipeline/view/view.hpp"
+#include "pipeline/suites/kept_run.hpp"
 
 namespace selvedge {
 namespace {
@@ -138,15 +138,6 @@ std::optional<StressRow> run_repeat(const StressRequest& request, const Repeat& 
   return row;
 }
 
-// Only the first run of a scene and its first that failed are worth the disk; they get a page.
-void keep_or_remove(const Repeat& repeat, bool keep, std::ostream* log) {
-  if (!keep) {
-    std::filesystem::remove_all(repeat.run_folder());
-    return;
-  }
-  if (const auto trouble = write_page(repeat.run_folder()); trouble && log) *log << "no page: " << *trouble << "\n";
-}
-
 void write_tables(const StressRequest& request, const std::vector<StressRow>& rows) {
   write_file(request.out / "stress.json", stress_json(rows));
   write_file(request.out / "stress.csv", stress_csv(rows));
@@ -182,7 +173,8 @@ std::vector<StressRow> stress(const StressRequest& request) {
       if (!row) {
         row = run_repeat(request, repeat);
         if (!row) return rows;
-        keep_or_remove(repeat, k == 0 || (!row->passed() && !failed_before), request.log);
+        // The first run of a scene, and its first that failed.
+        keep_or_remove(repeat.run_folder(), k == 0 || (!row->passed() && !failed_before), request.log);
         write_file(repeat.row_file(), stress_row_json(*row, repeat.key));
       }
       failed_before = failed_before || !row->passed();

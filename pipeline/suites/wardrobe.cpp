@@ -8,6 +8,7 @@
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/stopwatch.hpp"
 #include "collision/search/intersections.hpp"
+#include "pipeline/config/config.hpp"
 #include "pipeline/garments/garment_make.hpp"
 #include "pipeline/garments/outfit.hpp"
 #include "pipeline/host/kept_rows.hpp"
@@ -16,7 +17,7 @@
 #include "pipeline/motions/clip_split.hpp"
 #include "pipeline/run/run_scene.hpp"
 #include "pipeline/scene/make_stepper.hpp"
-#include "pipeline/view/view.hpp"
+#include "pipeline/suites/kept_run.hpp"
 
 namespace selvedge {
 namespace {
@@ -44,11 +45,12 @@ std::vector<Wear> everything(const Wardrobe& wardrobe) {
 // Those with the names, in the order of the list; all where no name is given.
 template <class Item>
 std::vector<Item> chosen(const std::vector<Item>& all, const std::vector<std::string>& names, const char* what) {
-  std::string known;
-  for (const Item& item : all) known += (known.empty() ? "" : ", ") + item.name;
+  std::vector<std::string> known;
+  for (const Item& item : all) known.push_back(item.name);
   for (const std::string& name : names)
     if (std::none_of(all.begin(), all.end(), [&](const Item& item) { return item.name == name; }))
-      throw Error("is unknown: `" + name + "`", what, "one of " + known);
+      throw Error("there is no " + std::string(what) + " `" + name + "`", "wardrobe",
+                  "known: " + joined(known) + suggestion(name, known));
   std::vector<Item> found;
   for (const Item& item : all)
     if (names.empty() || std::find(names.begin(), names.end(), item.name) != names.end()) found.push_back(item);
@@ -158,13 +160,6 @@ std::optional<WardrobeRow> run_row(const WardrobeRequest& request, const Wear& w
   return row;
 }
 
-void keep_or_remove(const RowPlace& place, bool keep) {
-  if (keep)
-    write_view({place.folder}, place.folder / "view.html");
-  else
-    std::filesystem::remove_all(place.folder);
-}
-
 std::string log_line(const WardrobeRow& row) {
   std::string line =
       fmt::format("{} {}: {}, {} frames, {:.0f} ms each{}\n", row.wear, row.clip, row.passed() ? "passed" : "FAILED",
@@ -177,7 +172,7 @@ std::string log_line(const WardrobeRow& row) {
 
 std::vector<WardrobeRow> wardrobe(const WardrobeRequest& request) {
   const std::filesystem::path outfits = request.configs / "outfits.yaml", clips = request.configs / "clips.yaml";
-  const std::vector<Wear> wears = chosen(everything(read_wardrobe(outfits)), request.wear, "what is worn");
+  const std::vector<Wear> wears = chosen(everything(read_wardrobe(outfits)), request.wear, "garment or outfit");
   const std::vector<ClipEntry> all_clips = chosen(read_clip_split(clips), request.clips, "clip");
   make_folder(request.out);
   const std::string settings = whole_file(outfits) + whole_file(clips) +
@@ -196,7 +191,7 @@ std::vector<WardrobeRow> wardrobe(const WardrobeRequest& request) {
       if (!row) {
         row = run_row(request, wear, clip, place, bodies);
         if (!row) return rows;
-        keep_or_remove(place, !row->passed() || clip.name == all_clips.front().name);
+        keep_or_remove(place.folder, !row->passed() || clip.name == all_clips.front().name, request.log);
         write_file(place.file, wardrobe_row_json(*row, key));
       }
       rows.push_back(*row);

@@ -98,6 +98,7 @@ CcdQuery query_of(PairKind kind, const std::vector<Row>& r) {
 }
 
 PairKind kind_of(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) throw Error("there is no such file", file.string(), "check the path");
   for (auto folder = std::filesystem::absolute(file).parent_path(); folder.has_relative_path();
        folder = folder.parent_path()) {
     if (folder.filename() == "edge-edge") return PairKind::edge_edge;

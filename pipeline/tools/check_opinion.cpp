@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "collision/geometry/corners.hpp"
 #include "collision/search/obstacle.hpp"
 
 namespace selvedge {
@@ -13,13 +14,8 @@ namespace {
 using Pairs = std::vector<std::pair<int, int>>;
 using Corners = std::array<Vec3, 3>;
 
-Corners corners_of(const Surface& surface, const Points& x, int triangle) {
-  return {row(x, surface.triangles(triangle, 0)), row(x, surface.triangles(triangle, 1)),
-          row(x, surface.triangles(triangle, 2))};
-}
-
 // Triangle of all bodies on end.
-Corners corners_of(std::span<const AuditBody> bodies, int triangle) {
+Corners corners_in(std::span<const AuditBody> bodies, int triangle) {
   for (const AuditBody& body : bodies) {
     const int count = static_cast<int>(body.surface->triangles.rows());
     if (triangle < count) return corners_of(*body.surface, *body.points, triangle);
@@ -34,8 +30,6 @@ double gap_along(const Vec3& direction, const Corners& a, const Corners& b) {
       std::minmax({direction.dot(b[0] - a[0]), direction.dot(b[1] - a[0]), direction.dot(b[2] - a[0])});
   return std::max(b_lo - a_hi, a_lo - b_hi);
 }
-
-double largest_coordinate(const Points& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0; }
 
 Pairs pairs_with_bodies(const ObstacleModel& cloth, std::span<const AuditBody> bodies, bool& free) {
   Pairs all;
@@ -86,7 +80,7 @@ void add_opinion(const Surface& cloth, const Points& x, std::span<const AuditBod
     std::set_symmetric_difference(mine.begin(), mine.end(), fcl.begin(), fcl.end(), std::back_inserter(other));
     for (const auto& pair : other) {
       const Corners a = corners_of(cloth, x, pair.first);
-      const Corners b = with_body ? corners_of(bodies, pair.second) : corners_of(cloth, x, pair.second);
+      const Corners b = with_body ? corners_in(bodies, pair.second) : corners_of(cloth, x, pair.second);
       Disagreement d{frame, pair.first, pair.second, with_body};
       d.ours = std::binary_search(mine.begin(), mine.end(), pair);
       d.margin = std::abs(separation(a, b));

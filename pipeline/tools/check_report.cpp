@@ -3,19 +3,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/measures/run_measures.hpp"
 #include "pipeline/tools/check.hpp"
 
 namespace selvedge {
 namespace {
-
-nlohmann::ordered_json finite_or_null(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
-nlohmann::ordered_json value_or_null(const std::optional<double>& value) {
-  return value ? finite_or_null(*value) : nlohmann::ordered_json(nullptr);
-}
 
 nlohmann::ordered_json opinion_json(const Opinion& opinion) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
@@ -25,7 +18,7 @@ nlohmann::ordered_json opinion_json(const Opinion& opinion) {
                     {"other", d.second},
                     {"other_is_body", d.with_body},
                     {"intersect", d.ours},
-                    {"margin", finite_or_null(d.margin)},
+                    {"margin", number_or_null(d.margin)},
                     {"beyond_rounding", d.beyond}});
   return {{"intersecting_pairs_by_frame", opinion.pairs_by_frame},
           {"frames_not_free_of_bodies", opinion.frames_against_body},
@@ -63,16 +56,16 @@ std::string check_json(const CheckReport& r) {
                                  {"intersecting_pairs_by_frame", r.pairs_by_frame},
                                  {"vertex_sharing_pairs", r.worst_vertex_pairs},
                                  {"vertex_sharing_pairs_by_frame", r.vertex_pairs_by_frame},
-                                 {"min_gap", finite_or_null(r.min_gap)},
-                                 {"max_stretch", value_or_null(r.max_stretch)},
-                                 {"min_stretch", value_or_null(r.min_stretch)},
+                                 {"min_gap", number_or_null(r.min_gap)},
+                                 {"max_stretch", number_or_null(r.max_stretch)},
+                                 {"min_stretch", number_or_null(r.min_stretch)},
                                  {"nonfinite", r.nonfinite},
                                  {"degenerate_triangles", r.degenerate_triangles},
                                  {"inside_vertices", r.inside_vertices},
                                  {"warnings", r.warnings}};
   if (r.fcl) json["fcl"] = opinion_json(*r.fcl);
   if (r.volume) json["volume"] = volume_json(*r.volume);
-  for (const auto& [name, value] : r.measures) json["measures"][name] = finite_or_null(value);
+  for (const auto& [name, value] : r.measures) json["measures"][name] = number_or_null(value);
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -14,6 +14,7 @@
 #include "pipeline/bodies/body_smpl.hpp"
 #include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/config/config_units.hpp"
+#include "pipeline/formats/hdf5_fields.hpp"
 #include "pipeline/motions/rig_gltf.hpp"
 #include "pipeline/motions/t_pose.hpp"
 
@@ -49,8 +50,7 @@ BodyModel read(const BodyRequest& request, BodyReport& report) {
 }  // namespace
 
 BodyReport convert_body(const BodyRequest& request) {
-  if (request.out.extension() != ".h5")
-    throw Error("is no .h5 file", "--out " + request.out.string(), "bodies are written in HDF5");
+  h5::check_out_name(request.out, "bodies");
   BodyReport report;
   const BodyModel body = read(request, report);
   const Points& rest = body.skin.rest;

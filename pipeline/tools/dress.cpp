@@ -8,6 +8,7 @@
 #include "collision/audit/audit.hpp"
 #include "collision/geometry/distance.hpp"
 #include "collision/geometry/error.hpp"
+#include "pipeline/formats/hdf5_fields.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/garments/garment_places.hpp"
@@ -79,23 +80,6 @@ SkinnedSurface attached_in(const BodyPose& pose, const Points& x, const Triangle
   return skin;
 }
 
-std::vector<int> pins_of(const Garment& garment, const std::vector<std::string>& groups) {
-  std::vector<int> pins;
-  std::vector<std::string> known;
-  for (const auto& [name, vertices] : garment.groups) known.push_back(name);
-  for (const std::string& group : groups) {
-    const auto found = std::ranges::find(known, group);
-    if (found == known.end())
-      throw Error("names the unknown group `" + group + "`", "--pin",
-                  "groups: " + joined(known) + suggestion(group, known));
-    const std::vector<int>& vertices = garment.groups[static_cast<std::size_t>(found - known.begin())].second;
-    pins.insert(pins.end(), vertices.begin(), vertices.end());
-  }
-  std::ranges::sort(pins);
-  pins.erase(std::unique(pins.begin(), pins.end()), pins.end());
-  return pins;
-}
-
 // The mesh's groups, those of its boundaries, and pins.
 void add_groups(const DressRequest& request, const BodyModel& body, const Mesh& mesh, DressReport& report) {
   Garment& garment = report.garment;
@@ -147,6 +131,7 @@ void look_at(const Points& x, const Points& body, const BodyModel& model, DressR
 }  // namespace
 
 DressReport dress(const DressRequest& request) {
+  h5::check_out_name(request.out, "garments");
   const Mesh mesh = read_mesh(request.mesh);
   const Points x = metres_per_unit(request.unit) * mesh.x;
   const Performance who = read_wearer(request);

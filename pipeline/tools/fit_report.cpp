@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/meshes/setup_body.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/scene/config_scene.hpp"
@@ -187,21 +188,20 @@ std::string fit_text(const FitReport& report) {
 
 std::string fit_json(const FitReport& report) {
   using Json = nlohmann::ordered_json;
-  const auto or_null = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
   Json rows = Json::array();
   for (const FitRow& row : report.measures.rows)
     rows.push_back({{"region", row.region},
                     {"cloth", row.cloth},
                     {"vertices", row.vertices},
                     {"area", row.area},
-                    {"ease", or_null(row.ease)},
-                    {"least_ease", or_null(row.least_ease)},
+                    {"ease", number_or_null(row.ease)},
+                    {"least_ease", number_or_null(row.least_ease)},
                     {"gap", row.gap},
                     {"strain", row.strain},
                     {"strain_99", row.strain_99},
                     {"contact", row.contact},
-                    {"pressure", or_null(row.pressure)},
-                    {"pressure_99", or_null(row.pressure_99)}});
+                    {"pressure", number_or_null(row.pressure)},
+                    {"pressure_99", number_or_null(row.pressure_99)}});
   const Json all = {{"run", report.run},   {"body", report.body},       {"frame", report.frame},
                     {"time", report.time}, {"regions", report.regions}, {"rows", rows}};
   return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -2,16 +2,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/tools/push_mesh.hpp"
 
 namespace selvedge {
 namespace {
 
 nlohmann::ordered_json errors_as_json(const GarmentErrors& errors) {
-  const auto known = [](const std::optional<double>& value) {
-    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
-  };
-  return {{"mpve_mm", known(errors.vertex_error)},
+  return {{"mpve_mm", number_or_null(errors.vertex_error)},
           {"vfcp_percent", errors.vertices_inside},
           {"collision_free", errors.collision_free},
           {"judges_agree", errors.judges_agree},
@@ -19,8 +17,8 @@ nlohmann::ordered_json errors_as_json(const GarmentErrors& errors) {
           {"triangles_vertex_face", errors.vertex_face},
           {"triangles_edge_edge", errors.edge_edge},
           {"energy_m2", errors.energy},
-          {"laplacian_error_mm", known(errors.laplacian_error)},
-          {"overshoot_mm", known(errors.overshoot)}};
+          {"laplacian_error_mm", number_or_null(errors.laplacian_error)},
+          {"overshoot_mm", number_or_null(errors.overshoot)}};
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "collision/distance/signed_distance.hpp"
 #include "collision/geometry/error.hpp"
 #include "physics/energies/measures.hpp"
+#include "pipeline/formats/hdf5_fields.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
@@ -80,29 +81,19 @@ class SewingRecorder {
 };
 
 Garment garment_of(const PatternRequest& request, const Pattern& pattern, const SewnPattern& sewn,
-                   const BodyModel& body, std::vector<std::string>& known) {
+                   const BodyModel& body) {
   Garment garment;
   garment.name = pattern.name;
   garment.made_for = body.name;
   garment.skin = attached(sewn.x, sewn.triangles, body, Fit::loose);
   garment.flat = sewn.rest;
   garment.groups = sewn.groups;
-  for (const auto& [name, vertices] : garment.groups) known.push_back(name);
+  std::vector<std::string> taken;
+  for (const auto& [name, vertices] : garment.groups) taken.push_back(name);
   if (body.joints.size() > 1)
-    for (NamedLoop& loop : named_loops(garment.skin, body, known))
+    for (NamedLoop& loop : named_loops(garment.skin, body, taken))
       garment.groups.emplace_back(loop.name, loop.vertices);
-  known.clear();
-  for (const auto& [name, vertices] : garment.groups) known.push_back(name);
-  for (const std::string& pin : request.pins) {
-    const auto found = std::ranges::find(known, pin);
-    if (found == known.end())
-      throw Error("names the unknown group `" + pin + "`", "--pin",
-                  "groups: " + joined(known) + suggestion(pin, known));
-    const std::vector<int>& members = garment.groups[static_cast<std::size_t>(found - known.begin())].second;
-    garment.pins.insert(garment.pins.end(), members.begin(), members.end());
-  }
-  std::ranges::sort(garment.pins);
-  garment.pins.erase(std::unique(garment.pins.begin(), garment.pins.end()), garment.pins.end());
+  garment.pins = pins_of(garment, request.pins);
   return garment;
 }
 
@@ -132,6 +123,7 @@ void measure(const BodyModel& body, PatternReport& report) {
 }  // namespace
 
 PatternReport sew_garment(const PatternRequest& request) {
+  if (!is_mesh(request.out)) h5::check_out_name(request.out, "garments");
   const Pattern pattern = read_pattern(request.file);
   const PatternMesh mesh = pattern_mesh(pattern, request.edge);
   PatternReport report;
@@ -158,8 +150,7 @@ PatternReport sew_garment(const PatternRequest& request) {
   });
   if (recorder) recorder->close();
   measure(body, report);
-  std::vector<std::string> known;
-  report.garment = garment_of(request, pattern, report.sewn, body, known);
+  report.garment = garment_of(request, pattern, report.sewn, body);
   if (is_mesh(request.out))
     write_mesh(request.out, report.sewn.x, report.sewn.triangles);
   else

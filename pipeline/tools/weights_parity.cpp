@@ -12,6 +12,7 @@
 #include "learned/graph/make_graph.hpp"
 #include "learned/network/engine.hpp"
 #include "learned/network/packed_network.hpp"
+#include "pipeline/host/numbers_json.hpp"
 
 namespace selvedge {
 namespace {
@@ -170,7 +171,7 @@ std::string parity_json(const ParityReport& report) {
   for (const ParityRow& row : report.rows)
     rows.push_back({{"quantity", row.quantity},
                     {"unit", row.unit},
-                    {"difference", std::isfinite(row.difference) ? nlohmann::ordered_json(row.difference) : nullptr},
+                    {"difference", number_or_null(row.difference)},
                     {"limit", row.limit},
                     {"same", row.difference <= row.limit}});
   return nlohmann::ordered_json{{"network", report.network}, {"cloth_vertices", report.cloth_vertices},

@@ -13,8 +13,6 @@ constexpr double pi = std::numbers::pi;
 constexpr double radius = 0.15, support = 0.09;           // [m]
 constexpr double density = 0.2, g = 9.81, stretch = 1e3;  // [kg/m2], [m/s2], E h [N/m]
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 // Of all triangles seen from above, by counting squares.
 double shadow_area(const Points& x, const Triangles& triangles) {
   constexpr int cells = 600;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/validate/validate.hpp"
 
@@ -95,18 +96,17 @@ std::string validate_csv(const std::vector<ValidationRow>& rows) {
 
 std::string validate_json(const std::vector<ValidationRow>& rows) {
   using Json = nlohmann::ordered_json;
-  const auto optional = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
   Json list = Json::array();
   for (const ValidationRow& row : rows)
     list.push_back({{"case", row.name},
                     {"parameters", row.values},
                     {"quantity", row.quantity},
                     {"measured", row.measured},
-                    {"expected", optional(row.expected)},
+                    {"expected", number_or_null(row.expected)},
                     {"judged", judged_name(row.judged)},
                     {"bound", row.bound},
-                    {"error", optional(row.error)},
-                    {"order", optional(row.order)},
+                    {"error", number_or_null(row.error)},
+                    {"order", number_or_null(row.order)},
                     {"counts", row.counts},
                     {"passed", row.passed},
                     {"seconds", row.seconds}});

@@ -19,6 +19,11 @@ inline std::string whole(const std::filesystem::path& path) {
   return text.str();
 }
 
+inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+// The largest distance between rows of the same number.
+inline double farthest(const Points& a, const Points& b) { return (a - b).rowwise().norm().maxCoeff(); }
+
 // Where the open data lie; they may be absent.
 inline std::filesystem::path open_data() {
   const char* set = std::getenv("SELVEDGE_DATA");

@@ -97,7 +97,7 @@ std::string complaint(const fake::Folder& folder, const Change& change) {
   return "";
 }
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+using fake::has;
 
 }  // namespace
 

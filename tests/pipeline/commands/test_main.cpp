@@ -239,7 +239,15 @@ TEST_CASE("help stands in three groups, and a mistyped command names its neighbo
   const Ended mistyped = selvedge_program(folder, "simulat scene.yaml");
   REQUIRE(mistyped.status == 2);
   REQUIRE(mistyped.err.find("there is no command `simulat`; did you mean `simulate`?") != std::string::npos);
-  REQUIRE(selvedge_program(folder, "simulate").err.find("there is no command") == std::string::npos);
+  for (const std::string arguments : {"simulate", "info --jsn", "untangle a.obj --out b.obj --layers 1,b"}) {
+    const Ended refused = selvedge_program(folder, arguments);
+    const std::string command = arguments.substr(0, arguments.find(' '));
+    INFO(refused.err);
+    CHECK(refused.status == 2);
+    CHECK(refused.err.starts_with("selvedge: " + command + ": "));
+    CHECK(refused.err.find("cure: `selvedge " + command + " --help`") != std::string::npos);
+  }
+  CHECK(selvedge_program(folder, "simulate --help").out.find("--resume") != std::string::npos);
 }
 
 }  // namespace selvedge::test_main

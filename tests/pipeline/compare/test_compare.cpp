@@ -200,11 +200,13 @@ TEST_CASE("A comparison that cannot be made says why", "[compare]") {
   CHECK_THROWS_WITH(refused(scene), Contains("settings"));
   CHECK_THROWS_WITH(refused(scene + "settings: []\n"), Contains("settings") && Contains("empty"));
   CHECK_THROWS_WITH(refused(scene + "settings: [{name: a}, {name: a}]\n"), Contains("name `a`"));
-  CHECK_THROWS_WITH(refused(scene + "settings: [{name: a, set: [run.sbsteps=3]}]\n"), Contains("substeps"));
+  CHECK_THROWS_WITH(refused(scene + "settings: [{name: a, set: [run.sbsteps=3]}]\n"),
+                    Contains("setting `a` on scene `hanging`: --set run.sbsteps=3") && Contains("substeps"));
   CHECK_THROWS_WITH(refused(scene + "settings: [{name: a}]\nrepeat: 2\n"), Contains("repeats"));
   CHECK_THROWS_WITH(refused("scenes: [{file: hanging.yaml, horizon: 9}]\nsettings: [{name: a}]\n"),
                     Contains("horizon") && Contains("8 frames"));
-  CHECK_THROWS_WITH(refused("scenes: [{file: nowhere.yaml}]\nsettings: [{name: a}]\n"), Contains("nowhere.yaml"));
+  CHECK_THROWS_WITH(refused("scenes: [{file: nowhere.yaml}]\nsettings: [{name: a}]\n"),
+                    Contains("comparison.yaml:1: `scenes.0.file` names the missing file"));
 }
 
 TEST_CASE("The comparison of the conventional stepper is of small scenes, and runs in its short form", "[compare]") {

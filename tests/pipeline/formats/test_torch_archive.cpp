@@ -25,7 +25,7 @@ std::string archive_complaint(const Read& read) {
   return "";
 }
 
-bool says(const std::string& complaint, const std::string& part) { return complaint.find(part) != std::string::npos; }
+using fake::has;
 
 std::string content_of(const std::filesystem::path& path, const std::string& name) {
   return StoredArchive(path).bytes(name);
@@ -51,7 +51,7 @@ TEST_CASE("stored archive: entries come out with and without the wide records", 
     CHECK(content_of(path, "x/one") == "first");
     CHECK(content_of(path, "x/empty") == "");
     CHECK(StoredArchive(path).names() == std::vector<std::string>{"x/empty", "x/one"});
-    CHECK(says(archive_complaint([&] { content_of(path, "x/two"); }), "has no entry x/two"));
+    CHECK(has(archive_complaint([&] { content_of(path, "x/two"); }), "has no entry x/two"));
   }
   const auto npz = fake::write_npz(folder.path / "b.npz", {{"x", fake::npy<float>({2}, {1, 2})}});
   CHECK(content_of(npz, "x.npy") == fake::npy<float>({2}, {1, 2}));  // what libzip writes is read too
@@ -61,7 +61,7 @@ TEST_CASE("stored archive: compressed, encrypted, doubled and lying entries are 
   const fake::Folder folder("stored_refused");
   const auto packed = fake::write_npz(folder.path / "bomb.npz", {{"x", std::string(100'000'000, '\0')}}, true);
   CHECK(std::filesystem::file_size(packed) < 200'000);
-  CHECK(says(archive_complaint([&] { StoredArchive{packed}; }), "has a compressed entry, number 1 (method 8)"));
+  CHECK(has(archive_complaint([&] { StoredArchive{packed}; }), "has a compressed entry, number 1 (method 8)"));
 
   const std::string whole = fake::stored_zip({{"x/one", "first"}, {"x/two", "second"}}, false);
   const std::size_t directory = whole.find("PK\1\2"), end = whole.rfind("PK\5\6");
@@ -72,19 +72,19 @@ TEST_CASE("stored archive: compressed, encrypted, doubled and lying entries are 
     return archive_complaint([&] { content_of(path, "x/one"); });
   };
   CHECK(complaint_with(directory, 0x02014b50, 4) == "");  // nothing changed
-  CHECK(says(complaint_with(directory + 8, 1, 2), "encrypted entry"));
-  CHECK(says(complaint_with(directory + 10, 8, 2), "compressed entry"));
-  CHECK(says(complaint_with(directory + 16, 7, 4), "its checksum is another"));
-  CHECK(says(complaint_with(directory + 20, 6, 4), "claims 5 bytes of 6 stored ones"));
-  CHECK(says(complaint_with(directory + 42, 0xFFFFFFF0, 4), "is cut short"));
-  CHECK(says(complaint_with(directory + 42, 1, 4), "its header is missing"));
-  CHECK(says(complaint_with(directory + 28, 0xFFFF, 2), "damaged directory"));
-  CHECK(says(complaint_with(end + 10, 3, 2), "entry 3 of 3 is missing"));
-  CHECK(says(complaint_with(end + 10, 1, 2), "more in its directory than it says"));
-  CHECK(says(complaint_with(end + 12, 0xFFFFFF00, 4), "claims a directory of 4294967040 bytes"));
-  CHECK(says(complaint_with(end + 16, 0xFFFFFF00, 4), "does not lie before its end"));
-  CHECK(says(complaint_with(end + 20, 5, 2), "is no ZIP archive"));
-  CHECK(says(complaint_with(whole.find("x/one"), 'y', 1), "its header is of another"));
+  CHECK(has(complaint_with(directory + 8, 1, 2), "encrypted entry"));
+  CHECK(has(complaint_with(directory + 10, 8, 2), "compressed entry"));
+  CHECK(has(complaint_with(directory + 16, 7, 4), "its checksum is another"));
+  CHECK(has(complaint_with(directory + 20, 6, 4), "claims 5 bytes of 6 stored ones"));
+  CHECK(has(complaint_with(directory + 42, 0xFFFFFFF0, 4), "is cut short"));
+  CHECK(has(complaint_with(directory + 42, 1, 4), "its header is missing"));
+  CHECK(has(complaint_with(directory + 28, 0xFFFF, 2), "damaged directory"));
+  CHECK(has(complaint_with(end + 10, 3, 2), "entry 3 of 3 is missing"));
+  CHECK(has(complaint_with(end + 10, 1, 2), "more in its directory than it says"));
+  CHECK(has(complaint_with(end + 12, 0xFFFFFF00, 4), "claims a directory of 4294967040 bytes"));
+  CHECK(has(complaint_with(end + 16, 0xFFFFFF00, 4), "does not lie before its end"));
+  CHECK(has(complaint_with(end + 20, 5, 2), "is no ZIP archive"));
+  CHECK(has(complaint_with(whole.find("x/one"), 'y', 1), "its header is of another"));
 
   // An entry that claims 200 GB, with the wide size that it needs for that.
   std::string large = whole;
@@ -96,15 +96,15 @@ TEST_CASE("stored archive: compressed, encrypted, doubled and lying entries are 
   large.insert(directory + 46 + 5, wide);
   put(large, end + 20 + 12, end + 20 - directory, 4);
   const auto path = fake::write(folder, "large.zip", large);
-  CHECK(says(archive_complaint([&] { content_of(path, "x/one"); }), "claims 200000000000 bytes for x/one"));
+  CHECK(has(archive_complaint([&] { content_of(path, "x/one"); }), "claims 200000000000 bytes for x/one"));
   CHECK(content_of(path, "x/two") == "second");
 
   const auto twice = fake::write(folder, "twice.zip", fake::stored_zip({{"a", "1"}, {"a", "2"}}));
-  CHECK(says(archive_complaint([&] { StoredArchive{twice}; }), "two entries of one name"));
+  CHECK(has(archive_complaint([&] { StoredArchive{twice}; }), "two entries of one name"));
   std::string many = fake::stored_zip({{"a", "1"}});
   put(many, many.rfind("PK\6\6") + 32, std::uint64_t{1} << 40, 8);
   const auto claims = fake::write(folder, "many.zip", many);
-  CHECK(says(archive_complaint([&] { StoredArchive{claims}; }), "claims 1099511627776 entries"));
+  CHECK(has(archive_complaint([&] { StoredArchive{claims}; }), "claims 1099511627776 entries"));
   for (std::size_t length = 0; length < whole.size(); ++length) {
     const auto cut = fake::write(folder, "cut.zip", whole.substr(0, length));
     CHECK(archive_complaint([&] { StoredArchive{cut}; }) != "");
@@ -141,19 +141,17 @@ TEST_CASE("torch archive: what is no checkpoint is one error that names it", "[t
   };
   CHECK(complaint({{"b/data.pkl", tensor}, {"b/data/0", counted(12)}}) == "");
   CHECK(complaint({{"b/data.pkl", tensor}, {"b/data/0", counted(12)}, {"b/byteorder", "little"}}) == "");
-  CHECK(says(complaint({{"b/data.pkl", tensor}, {"b/data/0", counted(12)}, {"b/byteorder", "big"}}), "byte order"));
-  CHECK(says(complaint({{"b/data.pkl", tensor}}), "has no entry b/data/0"));
-  CHECK(
-      says(complaint({{"b/data.pkl", tensor}, {"b/data/0", counted(11)}}), "44 bytes in its storage 0 instead of 12"));
-  CHECK(
-      says(complaint({{"b/data.pkl", tensor}, {"b/data/0", counted(13)}}), "52 bytes in its storage 0 instead of 12"));
-  CHECK(says(complaint({{"b/x.pkl", tensor}}), "has 0 entries named data.pkl"));
-  CHECK(says(complaint({{"b/data.pkl", tensor}, {"c/data.pkl", tensor}}), "has 2 entries named data.pkl"));
-  CHECK(says(complaint({{"b/data.pkl",
-                         "\x80\x02"
-                         "cos\nsystem\n(X\2" +
-                             std::string(3, '\0') + "ls\x85R."}}),
-             "names the global os.system"));
+  CHECK(has(complaint({{"b/data.pkl", tensor}, {"b/data/0", counted(12)}, {"b/byteorder", "big"}}), "byte order"));
+  CHECK(has(complaint({{"b/data.pkl", tensor}}), "has no entry b/data/0"));
+  CHECK(has(complaint({{"b/data.pkl", tensor}, {"b/data/0", counted(11)}}), "44 bytes in its storage 0 instead of 12"));
+  CHECK(has(complaint({{"b/data.pkl", tensor}, {"b/data/0", counted(13)}}), "52 bytes in its storage 0 instead of 12"));
+  CHECK(has(complaint({{"b/x.pkl", tensor}}), "has 0 entries named data.pkl"));
+  CHECK(has(complaint({{"b/data.pkl", tensor}, {"c/data.pkl", tensor}}), "has 2 entries named data.pkl"));
+  CHECK(has(complaint({{"b/data.pkl",
+                        "\x80\x02"
+                        "cos\nsystem\n(X\2" +
+                            std::string(3, '\0') + "ls\x85R."}}),
+            "names the global os.system"));
   const std::string integers = PickleText()
                                    .global("torch._utils", "_rebuild_tensor_v2")
                                    .raw("((")
@@ -171,12 +169,12 @@ TEST_CASE("torch archive: what is no checkpoint is one error that names it", "[t
                                    .ordered_dict()
                                    .raw("tR")
                                    .finished();
-  CHECK(says(complaint({{"b/data.pkl", integers}, {"b/data/0", counted(12)}}), "holds integers, not float32"));
+  CHECK(has(complaint({{"b/data.pkl", integers}, {"b/data/0", counted(12)}}), "holds integers, not float32"));
   for (const std::string content : {"", "\x80\x02", "PK\5\6", "not a zip"}) {
     const auto path = fake::write(folder, "c.pth", content);
-    CHECK(says(archive_complaint([&] { TorchArchive{path}; }), "c.pth: is no ZIP archive"));
+    CHECK(has(archive_complaint([&] { TorchArchive{path}; }), "c.pth: is no ZIP archive"));
   }
-  CHECK(says(archive_complaint([&] { TorchArchive{folder.path / "nothing.pth"}; }), "is no file"));
+  CHECK(has(archive_complaint([&] { TorchArchive{folder.path / "nothing.pth"}; }), "is no file"));
 }
 
 }  // namespace selvedge::test_torch_archive

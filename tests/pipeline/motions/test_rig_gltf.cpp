@@ -146,7 +146,7 @@ TEST_CASE("glTF: what is wrong is named", "[rig_gltf]") {
     refused(file.glb(), words);
   };
   const std::string whole = good.glb();
-  refused("", "no glTF");
+  refused("", "bad.glb: is no glTF");
   refused("glTF", "no glTF");
   refused(whole.substr(0, whole.size() / 2), "no glTF");
   refused(whole.substr(0, whole.size() - 8), "no glTF");

@@ -12,6 +12,7 @@
 namespace selvedge::test_prepare {
 
 using Catch::Matchers::Contains;
+using fake::farthest;
 using fake::Folder;
 
 namespace {
@@ -28,8 +29,6 @@ Setup read(const Folder& folder, const std::string& cloth, const std::string& mo
 }
 
 const std::string draped = "{garment: skirt.h5, start: {from: draped, seconds: 0.35, hold: 0.15}}";
-
-double farthest(const Points& a, const Points& b) { return (a - b).rowwise().norm().maxCoeff(); }
 
 Audit audit_of(const Setup& setup) {
   const std::vector<AuditBody> bodies{{&setup.scene.obstacles[0].surface, &setup.initial.obstacles[0]}};

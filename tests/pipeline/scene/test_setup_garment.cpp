@@ -17,6 +17,7 @@
 namespace selvedge::test_setup_garment {
 
 using Catch::Matchers::Contains;
+using fake::farthest;
 using fake::Folder;
 
 namespace {
@@ -38,8 +39,6 @@ Setup read(const Folder& folder, const std::string& cloth, const std::string& bo
                                 "cloths:\n  - " + cloth + "\nobstacles:\n  - " + body + "\n" + more +
                                     "contact: {thickness: 3 mm}\nrun: {fps: 30, frames: 20}\n"));
 }
-
-double farthest(const Points& a, const Points& b) { return (a - b).rowwise().norm().maxCoeff(); }
 
 }  // namespace
 
@@ -190,6 +189,10 @@ TEST_CASE("What is wrong with a garment is named by file, line and cure", "[setu
              Contains("who wears it") && Contains("person, other"));
   CHECK_THAT(complaint("{garment: {on: person}}", person), Contains("file"));
   CHECK_THAT(complaint("{garment: shirt.h5}", person), Contains("missing file"));
+  fake::write(folder, "shirt.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  CHECK_THAT(complaint("{garment: shirt.obj}", person), Contains("scene.yaml:2") && Contains("`selvedge dress`"));
+  fake::write(folder, "text.h5", "no HDF5");
+  CHECK_THAT(complaint("{garment: text.h5}", person), Contains("text.h5") && Contains("this is no HDF5 file"));
   for (const std::string key :
        {"translate: [0, 1, 0]", "rotate: [0, 1, 0]", "scale: 2", "velocity: [1, 0, 0]", "copies: {count: 2}"})
     CHECK_THAT(complaint("{garment: band.h5, " + key + "}", person), Contains("where its body is"));

@@ -11,6 +11,7 @@
 namespace selvedge::test_dress {
 
 using Catch::Matchers::Contains;
+using fake::farthest;
 using fake::Folder;
 
 namespace {
@@ -34,8 +35,6 @@ std::filesystem::path write_grouped(const Folder& folder, const fake::Piece& pie
 
 // The mesh as the reader gives it back; decimals cost the last bits.
 Points as_read(const Folder& folder) { return read_mesh(folder.path / "mesh.obj").x; }
-
-double farthest(const Points& a, const Points& b) { return (a - b).rowwise().norm().maxCoeff(); }
 
 const std::vector<int>& members(const Garment& garment, const std::string& group) {
   for (const auto& [name, vertices] : garment.groups)
@@ -192,6 +191,8 @@ TEST_CASE("What is wrong with a request is named", "[dress]") {
   CHECK_THAT(complaint([](auto& r) { r.rotations = {"left_shoulder=0,1"}; }), Contains("three numbers"));
   CHECK_THAT(complaint([](auto& r) { r.rotations = {"left_shoulder=0,1,x"}; }), Contains("not a number"));
   CHECK_THAT(complaint([](auto& r) { r.unit = "ft"; }), Contains("--unit"));
+  CHECK_THAT(complaint([](auto& r) { r.out.replace_extension(".obj"); }), Contains("band.obj") && Contains(".h5"));
+  CHECK_THAT(complaint([](auto& r) { r.pins = {"waists"}; }), Contains("--pin") && Contains("did you mean `waist`"));
   CHECK_THAT(complaint([](auto& r) { r.mesh = "absent.obj"; }), Contains("absent.obj"));
   CHECK_FALSE(std::filesystem::exists(request.out));
 }

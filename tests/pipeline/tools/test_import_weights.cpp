@@ -32,7 +32,7 @@ std::string import_complaint(const std::filesystem::path& path) {
   return "";
 }
 
-bool says(const std::string& complaint, const std::string& part) { return complaint.find(part) != std::string::npos; }
+using fake::has;
 
 const CheckpointTensor& named(const std::vector<CheckpointTensor>& tensors, const std::string& name) {
   for (const CheckpointTensor& tensor : tensors)
@@ -261,16 +261,16 @@ TEST_CASE("import: a missing, extra or misshapen tensor is named", "[import_weig
       INFO(kind << ": " << tensors[k].name);
       auto missing = tensors, turned = tensors, renamed = tensors;
       missing.erase(missing.begin() + static_cast<std::ptrdiff_t>(k));
-      CHECK(says(complaint(missing), tensors[k].name + ": is missing"));
+      CHECK(has(complaint(missing), tensors[k].name + ": is missing"));
       turned[k].shape.push_back(1);
       const std::string about_shape = complaint(turned);
-      CHECK(says(about_shape, tensors[k].name + ": has the shape ["));
+      CHECK(has(about_shape, tensors[k].name + ": has the shape ["));
       renamed[k].name += "_2";
-      CHECK(says(complaint(renamed), tensors[k].name + ": is missing"));
+      CHECK(has(complaint(renamed), tensors[k].name + ": is missing"));
     }
     auto extra = tensors;
     extra.push_back({"model._learned_model.x.weight", {1}, {0}});
-    CHECK(says(complaint(extra), "model._learned_model.x.weight: has no place in a network of kind " + kind));
+    CHECK(has(complaint(extra), "model._learned_model.x.weight: has no place in a network of kind " + kind));
   }
 }
 
@@ -279,24 +279,24 @@ TEST_CASE("import: files of another kind are one error", "[import_weights]") {
   const auto complaint = [&](const std::vector<CheckpointTensor>& tensors) {
     return import_complaint(fake::write_checkpoint(folder.path / "x.pth", tensors));
   };
-  CHECK(says(complaint({{"conv1.weight", {2}, {1, 2}}}), "holds no network of HOOD or ContourCraft"));
-  CHECK(says(complaint({}), "holds no network of HOOD or ContourCraft"));
+  CHECK(has(complaint({{"conv1.weight", {2}, {1, 2}}}), "holds no network of HOOD or ContourCraft"));
+  CHECK(has(complaint({}), "holds no network of HOOD or ContourCraft"));
   auto shorter = fake::published_tensors("fine15", 2, 1);
-  std::erase_if(shorter, [](const CheckpointTensor& t) { return says(t.name, "processor_steps.14."); });
-  CHECK(says(complaint(shorter), "has 14 processor_steps; fine15 has 15 and fine48 has 48"));
+  std::erase_if(shorter, [](const CheckpointTensor& t) { return has(t.name, "processor_steps.14."); });
+  CHECK(has(complaint(shorter), "has 14 processor_steps; fine15 has 15 and fine48 has 48"));
 
   // A width without the numbers for it: nothing is allocated for what is only claimed.
   auto wide = fake::published_tensors("contourcraft", 2, 1);
   for (CheckpointTensor& tensor : wide)
     if (tensor.name == "model._learned_model.decoder.layers.0.weight") tensor.shape = {4096, 0}, tensor.numbers.clear();
-  CHECK(says(complaint(wide), "parameters; 64000000 are the most"));
+  CHECK(has(complaint(wide), "parameters; 64000000 are the most"));
 
   const fake::PickleText bare =
       fake::PickleText().raw("}(").text("model").ordered_dict().text("epoch").integer(3).raw("u");
   const auto path = fake::write(folder, "y.pth", fake::stored_zip({{"y/data.pkl", bare.finished()}}));
-  CHECK(says(import_complaint(path), "has no dictionary training_module; at its top are: model, epoch"));
+  CHECK(has(import_complaint(path), "has no dictionary training_module; at its top are: model, epoch"));
   const auto list = fake::write(folder, "z.pth", fake::stored_zip({{"z/data.pkl", "\x80\x02]."}}));
-  CHECK(says(import_complaint(list), "has no dictionary training_module"));
+  CHECK(has(import_complaint(list), "has no dictionary training_module"));
 }
 
 TEST_CASE("import: a fine-tuned file may hold materials; bare ones have no settings", "[import_weights]") {

@@ -56,7 +56,7 @@ std::string dump_complaint(const fake::Folder& folder, const fake::NpzEntries& a
   return "";
 }
 
-bool says(const std::string& complaint, const std::string& part) { return complaint.find(part) != std::string::npos; }
+using fake::has;
 
 }  // namespace
 
@@ -113,23 +113,23 @@ TEST_CASE("weights parity: dumps that are wrong are one error that names the arr
     if (name == "pred_pos") continue;  // read later
     auto arrays = small_step();
     arrays.erase(name);
-    CHECK(says(dump_complaint(folder, arrays), "step.npz: " + name + ": is missing"));
+    CHECK(has(dump_complaint(folder, arrays), "step.npz: " + name + ": is missing"));
   }
   const auto with = [&](const std::string& name, const std::string& bytes) {
     auto arrays = small_step();
     arrays[name] = bytes;
     return dump_complaint(folder, arrays);
   };
-  CHECK(says(with("cloth_velocity", fake::npy<float>({3, 3}, std::vector<float>(9, 0))), "instead of [4, 3]"));
-  CHECK(says(with("cloth_pos", fake::npy<float>({12}, std::vector<float>(12, 0))), "cloth_pos: has the shape [12]"));
-  CHECK(says(with("cloth_faces", fake::npy<std::int64_t>({1, 3}, {0, 1, 4})), "has 4, which is not in 0 to 3"));
-  CHECK(says(with("cloth_faces", fake::npy<std::int64_t>({1, 3}, {0, -1, 2})), "has -1"));
-  CHECK(says(with("cloth_faces", fake::npy<std::int64_t>({1, 3}, {0, 1, 1})), "one corner twice"));
-  CHECK(says(with("cloth_faces", fake::npy<std::int64_t>({4}, {0, 1, 2, 3})), "no rows of three"));
-  CHECK(says(with("cloth_vertex_type", fake::npy<std::int64_t>({3}, {0, 0, 0})), "has 3 values for 4 vertices"));
-  CHECK(says(with("timestep", fake::npy<float>({2}, {1, 1})), "has 2 numbers, not 1"));
-  CHECK(says(with("coarse0_edge_index", fake::npy<std::int64_t>({2, 1}, {0, 1})), "follows from no centre"));
-  CHECK(says(with("body_pos", fake::npy<float>({1, 3}, {0, 0, 0})), "body_prev_pos: is missing"));
+  CHECK(has(with("cloth_velocity", fake::npy<float>({3, 3}, std::vector<float>(9, 0))), "instead of [4, 3]"));
+  CHECK(has(with("cloth_pos", fake::npy<float>({12}, std::vector<float>(12, 0))), "cloth_pos: has the shape [12]"));
+  CHECK(has(with("cloth_faces", fake::npy<std::int64_t>({1, 3}, {0, 1, 4})), "has 4, which is not in 0 to 3"));
+  CHECK(has(with("cloth_faces", fake::npy<std::int64_t>({1, 3}, {0, -1, 2})), "has -1"));
+  CHECK(has(with("cloth_faces", fake::npy<std::int64_t>({1, 3}, {0, 1, 1})), "one corner twice"));
+  CHECK(has(with("cloth_faces", fake::npy<std::int64_t>({4}, {0, 1, 2, 3})), "no rows of three"));
+  CHECK(has(with("cloth_vertex_type", fake::npy<std::int64_t>({3}, {0, 0, 0})), "has 3 values for 4 vertices"));
+  CHECK(has(with("timestep", fake::npy<float>({2}, {1, 1})), "has 2 numbers, not 1"));
+  CHECK(has(with("coarse0_edge_index", fake::npy<std::int64_t>({2, 1}, {0, 1})), "follows from no centre"));
+  CHECK(has(with("body_pos", fake::npy<float>({1, 3}, {0, 0, 0})), "body_prev_pos: is missing"));
 }
 
 TEST_CASE("weights parity: a step of two triangles is taken", "[weights_parity]") {
@@ -164,9 +164,9 @@ TEST_CASE("weights: an imported checkpoint goes through its file unchanged, and 
   CHECK(info.nonfinite == 0);
   CHECK(info.constant_columns >= 1);  // node column 14 of the pack
   const std::string text = weights_info_text(info);
-  CHECK(says(text, "contourcraft"));
-  CHECK(says(text, "15 of attraction_edge, body_edge, coarse_edge3, mesh_edge, repulsion_edge"));
-  CHECK(says(text, "ccraft_w16.pth"));
+  CHECK(has(text, "contourcraft"));
+  CHECK(has(text, "15 of attraction_edge, body_edge, coarse_edge3, mesh_edge, repulsion_edge"));
+  CHECK(has(text, "ccraft_w16.pth"));
   const auto json = nlohmann::json::parse(weights_info_json(info));
   CHECK(json["parameters"] == 141867);
   CHECK(json["width"] == 16);

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace selvedge {
+
+// JSON has neither infinity nor NaN: null stands for a number that is not finite, or is not known.
+inline nlohmann::ordered_json number_or_null(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+inline nlohmann::ordered_json number_or_null(const std::optional<double>& value) {
+  return value ? number_or_null(*value) : nlohmann::ordered_json(nullptr);
+}
+
+}  // namespace selvedge
