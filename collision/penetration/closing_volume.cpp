@@ -92,8 +92,10 @@ class MovingClosing {
   }
 
   void pull_up(const ContourClosing::Way& way, const Vec3& by) {
-    const Vec3 normal = normal_of(closed_, x_, way), unit = normal.normalized();
-    const Vec3 across = (by - unit * unit.dot(by)) / normal.norm();
+    const Vec3 normal = normal_of(closed_, x_, way);
+    const double length = normal.norm();
+    if (length == 0) return;  // faces without area, or as much of them either way: nothing is up
+    const Vec3 unit = normal / length, across = (by - unit * unit.dot(by)) / length;
     for (const int face : way.end_faces) {
       const int a = surface_.triangles(face, 0), b = surface_.triangles(face, 1), c = surface_.triangles(face, 2);
       const Vec3 first = row(x_, b) - row(x_, a), second = row(x_, c) - row(x_, a),
