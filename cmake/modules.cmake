@@ -23,15 +23,15 @@ if(SELVEDGE_OPENMP)
   target_compile_options(selvedge_headers_parallel PRIVATE ${OpenMP_CXX_FLAGS})
 endif()
 
-# selvedge_module(NAME [ROOMS room...] LEFT_OUT stem... ALONE room... HEADERS header... OPTIONS option...
-#   PUBLIC library... PRIVATE library... [HEAVY source library]): the sources of this folder and of its rooms, but those
-# left out, as the library selvedge_NAME; with ROOMS, of these rooms only. The files of the rooms ALONE are not compiled
-# together. HEADERS are precompiled beside the common ones. Files with an OpenMP pragma are a target of their own,
-# selvedge_NAME_parallel, and so is the source that alone sees the heavy package, selvedge_NAME_heavy: all others have the
-# same flags in every build, so that a compile cache serves builds with these packages and without. OPTIONS are for
-# these others.
+# selvedge_module(NAME [ROOMS room...] LEFT_OUT stem... ALONE room... HEADERS header... HEADERS_OF module
+#   OPTIONS option... PUBLIC library... PRIVATE library... [HEAVY source library]): the sources of this folder and of its
+# rooms, but those left out, as the library selvedge_NAME; with ROOMS, of these rooms only. The files of the rooms ALONE are
+# not compiled together. HEADERS are precompiled beside the common ones; HEADERS_OF takes those of another module with the
+# same options. Files with an OpenMP pragma are a target of their own, selvedge_NAME_parallel, and so is the source that alone
+# sees the heavy package, selvedge_NAME_heavy: all others have the same flags in every build, so that a compile cache serves
+# builds with these packages and without. OPTIONS are for these others.
 function(selvedge_module name)
-  cmake_parse_arguments(module "" "" "ROOMS;LEFT_OUT;ALONE;HEADERS;OPTIONS;PUBLIC;PRIVATE;HEAVY" ${ARGN})
+  cmake_parse_arguments(module "" "HEADERS_OF" "ROOMS;LEFT_OUT;ALONE;HEADERS;OPTIONS;PUBLIC;PRIVATE;HEAVY" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
   if(module_ROOMS)
     list(JOIN module_ROOMS "|" rooms)
@@ -67,7 +67,9 @@ function(selvedge_module name)
   target_link_libraries(selvedge_${name} PUBLIC ${module_PUBLIC}
     PRIVATE ${module_PRIVATE} $<BUILD_INTERFACE:selvedge_warnings>)
   target_compile_options(selvedge_${name} PRIVATE ${module_OPTIONS})
-  if(module_HEADERS OR module_OPTIONS)
+  if(module_HEADERS_OF)
+    target_precompile_headers(selvedge_${name} REUSE_FROM selvedge_${module_HEADERS_OF})
+  elseif(module_HEADERS OR module_OPTIONS)
     target_precompile_headers(selvedge_${name} PRIVATE ${SELVEDGE_COMMON_HEADERS} ${module_HEADERS})
   else()
     target_precompile_headers(selvedge_${name} REUSE_FROM selvedge_headers_plain)

@@ -44,6 +44,29 @@ Pairs pairs_with_bodies(const ObstacleModel& cloth, std::span<const AuditBody> b
   return all;
 }
 
+double size_of(const Points& x, std::span<const AuditBody> bodies) {
+  double size = largest_coordinate(x);
+  for (const AuditBody& body : bodies) size = std::max(size, largest_coordinate(*body.points));
+  return size;
+}
+
+// Pairs of the cloth, with bodies or with itself, in one list but not in the other.
+std::vector<Disagreement> disagreements(const Surface& cloth, const Points& x, std::span<const AuditBody> bodies,
+                                        const Pairs& ours, const Pairs& fcl, bool with_body) {
+  Pairs other;
+  std::set_symmetric_difference(ours.begin(), ours.end(), fcl.begin(), fcl.end(), std::back_inserter(other));
+  const double size = size_of(x, bodies);
+  std::vector<Disagreement> all;
+  for (const auto& pair : other) {
+    const Corners a = corners_of(cloth, x, pair.first);
+    const Corners b = with_body ? corners_in(bodies, pair.second) : corners_of(cloth, x, pair.second);
+    const double margin = std::abs(separation(a, b));
+    all.push_back({0, pair.first, pair.second, with_body, std::binary_search(ours.begin(), ours.end(), pair), margin,
+                   margin > 1e-9 * size});
+  }
+  return all;
+}
+
 }  // namespace
 
 double separation(const Corners& a, const Corners& b) {
@@ -73,24 +96,20 @@ void add_opinion(const Surface& cloth, const Points& x, std::span<const AuditBod
   opinion.pairs_by_frame.push_back(static_cast<int>(self.size() + with_bodies.size()));
   opinion.frames_against_body += !free;
 
-  double size = largest_coordinate(x);
-  for (const AuditBody& body : bodies) size = std::max(size, largest_coordinate(*body.points));
-  const auto compare = [&](const Pairs& mine, const Pairs& fcl, bool with_body) {
-    Pairs other;
-    std::set_symmetric_difference(mine.begin(), mine.end(), fcl.begin(), fcl.end(), std::back_inserter(other));
-    for (const auto& pair : other) {
-      const Corners a = corners_of(cloth, x, pair.first);
-      const Corners b = with_body ? corners_in(bodies, pair.second) : corners_of(cloth, x, pair.second);
-      Disagreement d{frame, pair.first, pair.second, with_body};
-      d.ours = std::binary_search(mine.begin(), mine.end(), pair);
-      d.margin = std::abs(separation(a, b));
-      d.beyond = d.margin > 1e-9 * size;
-      opinion.beyond_rounding += d.beyond;
-      opinion.disagreements.push_back(d);
-    }
-  };
-  compare(ours.self_pairs, self, false);
-  compare(ours.obstacle_pairs, with_bodies, true);
+  std::vector<Disagreement> found = disagreements(cloth, x, bodies, ours.self_pairs, self, false);
+  for (const Disagreement& d : disagreements(cloth, x, bodies, ours.obstacle_pairs, with_bodies, true))
+    found.push_back(d);
+  for (Disagreement& d : found) {
+    d.frame = frame;
+    opinion.beyond_rounding += d.beyond;
+    opinion.disagreements.push_back(d);
+  }
+}
+
+bool agrees_on_bodies(const Surface& cloth, const Points& x, std::span<const AuditBody> bodies, const Pairs& ours) {
+  bool free = true;
+  const Pairs fcl = pairs_with_bodies(ObstacleModel(cloth.triangles, x), bodies, free);
+  return std::ranges::none_of(disagreements(cloth, x, bodies, ours, fcl, true), &Disagreement::beyond);
 }
 
 std::string opinion_text(const Opinion& o) {

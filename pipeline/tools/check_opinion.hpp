@@ -31,6 +31,11 @@ struct Opinion {
 void add_opinion(const Surface& cloth, const Points& x, std::span<const AuditBody> bodies, const Audit& ours, int frame,
                  Opinion&);
 
+// Whether FCL says the same of every pair of cloth and bodies, but for pairs within rounding. `ours`: the audit's
+// pairs, sorted, bodies' triangles numbered on end. Throws Error where the build has no FCL.
+bool agrees_on_bodies(const Surface& cloth, const Points& x, std::span<const AuditBody> bodies,
+                      const std::vector<std::pair<int, int>>& ours);
+
 // Widest gap along any direction in which two triangles can be told apart, negative where they intersect: the least
 // depth along one [m].
 double separation(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);

@@ -10,6 +10,7 @@
 #include "collision/geometry/error.hpp"
 #include "collision/search/intersections.hpp"
 #include "collision/search/obstacle.hpp"
+#include "pipeline/tools/check_opinion.hpp"
 
 namespace selvedge {
 namespace {
@@ -49,10 +50,11 @@ void count_kinds(const DistanceField& body, const Surface& garment, const Points
 
 void count_pairs(const DistanceField& body, const Surface& garment, const Points& x, GarmentErrors& errors) {
   IntersectionCache own, theirs;
-  errors.pairs = static_cast<int>(intersecting_pairs(garment, x, own, body.surface(), body.positions(), theirs).size());
-  if (!obstacle_available()) return;
-  const ObstacleModel cloth(garment.triangles, x), solid(body.surface().triangles, body.positions());
-  errors.judges_agree = collision_free(cloth, solid) == (errors.pairs == 0);
+  auto pairs = intersecting_pairs(garment, x, own, body.surface(), body.positions(), theirs);
+  std::ranges::sort(pairs);
+  errors.pairs = static_cast<int>(pairs.size());
+  const AuditBody solid{&body.surface(), &body.positions()};
+  if (obstacle_available()) errors.judges_agree = agrees_on_bodies(garment, x, {&solid, 1}, pairs);
 }
 
 // What happened to the vertices that were inside before.

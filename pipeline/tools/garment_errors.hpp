@@ -16,7 +16,7 @@ struct GarmentErrors {
   double vertices_inside = 0;             // VFCP: of the vertices, with f < -1e-6 m [%]
   bool collision_free = false;            // CFMP counts these: no pair of triangles meets, and nothing is inside
   int pairs = 0;                          // of garment and body triangles that meet, by exact signs
-  bool judges_agree = true;               // FCL, where the build has it, says the same of meeting at all
+  bool judges_agree = true;               // FCL, where the build has it, says the same of all pairs but for rounding
   int vertex_face = 0, edge_edge = 0;     // garment triangles with a crossing of this kind
   std::optional<double> laplacian_error;  // mean over the vertices that were inside before: of the difference of
                                           // x - mean of the ring [mm]

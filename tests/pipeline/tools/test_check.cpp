@@ -180,4 +180,28 @@ TEST_CASE("a pair on which FCL and exact signs differ is named, with how near it
         Approx(2));
 }
 
+TEST_CASE("FCL and exact signs may differ on cloth that touches a body within rounding, and nowhere else") {
+  if (!obstacle_available()) {
+    WARN("skipped: this build has no FCL");
+    return;
+  }
+  Triangles triangle(1, 3);
+  triangle << 0, 1, 2;
+  const Surface surface = make_surface(3, triangle);
+  Points cloth(3, 3), body(3, 3);
+  cloth << 0, 0, 0, 1, 0, 0, 0, 0, 1;
+  body << 0.2, -1, 0.2, 0.2, 1, 0.2, 0.2, 0, 0.9;
+  const std::vector<std::pair<int, int>> meets{{0, 0}}, none;
+  const AuditBody solid{&surface, &body};
+  const auto agrees = [&](const auto& ours) { return agrees_on_bodies(surface, cloth, {&solid, 1}, ours); };
+  CHECK(agrees(meets));
+  CHECK_FALSE(agrees(none));
+  body.col(1).array() += 1;  // an edge of the body ends on the cloth
+  CHECK(agrees(meets));
+  CHECK(agrees(none));
+  body.col(1).array() += 1e-3;
+  CHECK_FALSE(agrees(meets));
+  CHECK(agrees(none));
+}
+
 }  // namespace selvedge::test_check
