@@ -90,7 +90,9 @@ function(selvedge_module name)
   if(module_HEAVY)
     selvedge_objects(${name} selvedge_${name}_heavy ${heavy_source})
     target_link_libraries(selvedge_${name}_heavy PRIVATE ${module_PUBLIC} ${heavy_library})
-    target_link_libraries(selvedge_${name} PRIVATE $<BUILD_INTERFACE:$<LINK_ONLY:${heavy_library}>>
+    # Linked without its include folders, which are flags too.
+    get_target_property(linked ${heavy_library} INTERFACE_LINK_LIBRARIES)
+    target_link_libraries(selvedge_${name} PRIVATE $<BUILD_INTERFACE:${linked}>
       INTERFACE $<INSTALL_INTERFACE:selvedge::${heavy_library}>)
   endif()
 endfunction()

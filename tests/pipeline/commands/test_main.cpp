@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "tests/pipeline/fake_run.hpp"
+#include "tests/program.hpp"
 
 namespace selvedge::test_main {
 
@@ -25,8 +26,7 @@ std::string read_text(const std::filesystem::path& path) {
 
 Ended selvedge_program(const fake::Folder& folder, const std::string& arguments, const std::string& before = "") {
   const std::filesystem::path out = folder.path / "stdout", err = folder.path / "stderr";
-  const std::string command =
-      before + std::string(SELVEDGE_PROGRAM) + " " + arguments + " >" + out.string() + " 2>" + err.string();
+  const std::string command = before + tested_program() + " " + arguments + " >" + out.string() + " 2>" + err.string();
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
 }
@@ -202,7 +202,7 @@ TEST_CASE("a run that is interrupted ends with whole files and is resumed to the
     if (child == 0) {
       std::freopen("/dev/null", "w", stdout);
       std::freopen("/dev/null", "w", stderr);
-      execl(SELVEDGE_PROGRAM, "selvedge", "simulate", scene.c_str(), "--no-view", "--set", frames.c_str(), "--out",
+      execl(tested_program(), "selvedge", "simulate", scene.c_str(), "--no-view", "--set", frames.c_str(), "--out",
             out.c_str(), nullptr);
       _exit(127);
     }

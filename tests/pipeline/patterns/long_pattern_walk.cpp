@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/pipeline/files.hpp"
+#include "tests/program.hpp"
 
 namespace selvedge::long_pattern_walk {
 
@@ -19,7 +20,7 @@ obstacles:
 // Whether the program ends with status 0: what it made is clean.
 bool runs_well(const fake::Folder& folder, const std::string& arguments) {
   const std::string command =
-      "cd '" + folder.path.string() + "' && '" SELVEDGE_PROGRAM "' " + arguments + " > log 2>&1";
+      "cd '" + folder.path.string() + "' && '" + tested_program() + "' " + arguments + " > log 2>&1";
   const bool well = std::system(command.c_str()) == 0;
   INFO(fake::whole(folder.path / "log"));
   CHECK(well);
