@@ -5,7 +5,8 @@
 # cache has.
 set -euo pipefail
 root="$(cd "$(dirname "$0")/.." && pwd)"
-work="$1"
+mkdir -p "$1"
+work="$(cd "$1" && pwd)"
 rm -rf "$work"
 mkdir -p "$work/source"
 cp -r "$root"/{CMakeLists.txt,cmake,collision,physics,configs} "$work/source"
