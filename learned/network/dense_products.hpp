@@ -6,10 +6,10 @@
 
 namespace selvedge {
 
-// Products of matrices stored by rows. Eigen's product takes seconds to compile wherever it is used, so that it is
-// compiled here alone.
 using RowsView = Eigen::Ref<const FeatureRows>;
 
+// Products of matrices stored by rows. Eigen's product takes seconds to compile wherever it is used. So it is compiled
+// here alone.
 FeatureRows product(const RowsView& a, const RowsView& b);                                       // a b
 FeatureRows product_transposed(const RowsView& a, const RowsView& b);                            // a b^T
 void add_transposed_product(const RowsView& a, const RowsView& b, Eigen::Ref<FeatureRows> sum);  // sum += a^T b

@@ -31,12 +31,11 @@ double gap_along(const Vec3& direction, const Corners& a, const Corners& b) {
   return std::max(b_lo - a_hi, a_lo - b_hi);
 }
 
-Pairs pairs_with_bodies(const ObstacleModel& cloth, std::span<const AuditBody> bodies, bool& free) {
+Pairs pairs_with_bodies(const ObstacleModel& cloth, std::span<const AuditBody> bodies) {
   Pairs all;
   int first_number = 0;
   for (const AuditBody& body : bodies) {
     const ObstacleModel model(body.surface->triangles, *body.points);
-    free = collision_free(cloth, model) && free;
     for (const auto& [t, b] : obstacle_pairs(cloth, model)) all.emplace_back(t, first_number + b);
     first_number += static_cast<int>(body.surface->triangles.rows());
   }
@@ -91,10 +90,9 @@ void add_opinion(const Surface& cloth, const Points& x, std::span<const AuditBod
                  Opinion& opinion) {
   const ObstacleModel model(cloth.triangles, x);
   const Pairs self = obstacle_self_pairs(model, cloth.triangles);
-  bool free = true;
-  const Pairs with_bodies = pairs_with_bodies(model, bodies, free);
+  const Pairs with_bodies = pairs_with_bodies(model, bodies);
   opinion.pairs_by_frame.push_back(static_cast<int>(self.size() + with_bodies.size()));
-  opinion.frames_against_body += !free;
+  opinion.frames_against_body += !with_bodies.empty();
 
   std::vector<Disagreement> found = disagreements(cloth, x, bodies, ours.self_pairs, self, false);
   for (const Disagreement& d : disagreements(cloth, x, bodies, ours.obstacle_pairs, with_bodies, true))
@@ -107,8 +105,7 @@ void add_opinion(const Surface& cloth, const Points& x, std::span<const AuditBod
 }
 
 bool agrees_on_bodies(const Surface& cloth, const Points& x, std::span<const AuditBody> bodies, const Pairs& ours) {
-  bool free = true;
-  const Pairs fcl = pairs_with_bodies(ObstacleModel(cloth.triangles, x), bodies, free);
+  const Pairs fcl = pairs_with_bodies(ObstacleModel(cloth.triangles, x), bodies);
   return std::ranges::none_of(disagreements(cloth, x, bodies, ours, fcl, true), &Disagreement::beyond);
 }
 
