@@ -3,13 +3,18 @@
 #include <cmath>
 #include <numbers>
 
-#include "collision/geometry/solid_angle.hpp"
-
 namespace selvedge {
 namespace {
 
 constexpr double far_away = 2.5;  // in radii of a node: from there on it is a dipole
 constexpr double unclear = 0.1;   // of a sum with dipoles, about 1/2
+
+// Solid angle of the triangle whose corners lie at a, b, c from the viewer, positive seen from behind: in [-2 pi, 2
+// pi], at the ends on the triangle itself, where the sign means nothing (van Oosterom and Strackee 1983).
+double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double la = a.norm(), lb = b.norm(), lc = c.norm();
+  return 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+}
 
 // What one triangle adds to the winding number.
 double winding_of(const Surface& surface, const Points& x, int t, const Vec3& p) {

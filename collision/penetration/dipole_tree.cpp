@@ -1,52 +1,12 @@
 #include "collision/penetration/dipole_tree.hpp"
 
 #include <array>
-#include <cmath>
 #include <numbers>
 
-#include "collision/geometry/solid_angle.hpp"
+#include "collision/geometry/parallel.hpp"
 
 namespace selvedge {
 namespace {
-
-// The principal value: 0 from within the triangle's plane.
-double principal_angle(const std::array<Vec3, 3>& triangle, const Vec3& at) {
-  const Vec3 a = triangle[0] - at, b = triangle[1] - at, c = triangle[2] - at;
-  return a.dot(b.cross(c)) == 0 ? 0 : solid_angle(a, b, c);
-}
-
-double seen_from(const Vec3& moment, const Vec3& to) {
-  const double square = to.squaredNorm();
-  return moment.dot(to) / (square * std::sqrt(square));
-}
-
-// What a node adds at a point, if that is far enough away.
-bool add_node(const DipoleTree::SpreadDipole& node, const Vec3& at, double& sum) {
-  const Vec3 to = node.centre - at;
-  const double x = to[0], y = to[1], z = to[2], square = x * x + y * y + z * z;
-  if (!(square > node.reach_squared)) return false;
-  const std::array<double, 6>& s = node.spread;
-  const double spread = x * (s[0] * x + s[5] * y) + y * (s[1] * y + s[3] * z) + z * (s[2] * z + s[4] * x);
-  const double nearness = 1 / square;
-  sum += (node.moment.dot(to) + node.trace - 3 * nearness * spread) * (nearness * std::sqrt(nearness));
-  return true;
-}
-
-// The same of a face.
-bool add_face(const DipoleTree& tree, int item, const Vec3& at, double& sum) {
-  const DipoleTree::Dipole& dipole = tree.of_faces[item];
-  const Vec3 to = dipole.centre - at;
-  const double square = to.squaredNorm();
-  if (!(square > dipole.reach_squared)) return false;
-  if (square > 4 * dipole.reach_squared) {
-    sum += seen_from(dipole.moment, to);
-    return true;
-  }
-  const auto& [a, b, c] = tree.corners[item];
-  const Vec3 third = dipole.moment / 3;
-  sum += seen_from(third, (a + b) / 2 - at) + seen_from(third, (b + c) / 2 - at) + seen_from(third, (c + a) / 2 - at);
-  return true;
-}
 
 // About the origin of the surface.
 struct DipoleSum {
@@ -117,46 +77,26 @@ DipoleTree make_dipole_tree(const Surface& surface, const Points& x, const std::
   DipoleTree tree;
   tree.far = far;
   tree.faces = faces;
-  std::vector<Box> boxes;
-  for (const int t : faces) {
-    const auto at = [&](int k) { return row(x, surface.triangles(t, k)); };
-    tree.corners.push_back(turn[t] > 0 ? std::array{at(0), at(1), at(2)} : std::array{at(0), at(2), at(1)});
-    Box box = empty_box;
-    for (const Vec3& corner : tree.corners.back()) box = join(box, moving_point_box(corner, corner, 0));
-    boxes.push_back(box);
-  }
-  for (const std::array<Vec3, 3>& corner : tree.corners) {
-    DipoleTree::Dipole& dipole = tree.of_faces.emplace_back();
-    dipole.centre = (corner[0] + corner[1] + corner[2]) / 3;
-    dipole.moment = (corner[1] - corner[0]).cross(corner[2] - corner[0]) / (8 * std::numbers::pi);
-    for (const Vec3& at : corner)
+  tree.of_faces.resize(faces.size());
+  tree.corners.resize(faces.size());
+  std::vector<Box> boxes(faces.size(), empty_box);
+  parallel_for(static_cast<int>(faces.size()), 512, [&](int i) {
+    const int t = faces[i];
+    const auto corner = [&](int k) { return row(x, surface.triangles(t, k)); };
+    tree.corners[i] =
+        turn[t] > 0 ? std::array{corner(0), corner(1), corner(2)} : std::array{corner(0), corner(2), corner(1)};
+    const auto& [a, b, c] = tree.corners[i];
+    DipoleTree::Dipole& dipole = tree.of_faces[i];
+    dipole.centre = (a + b + c) / 3;
+    dipole.moment = (b - a).cross(c - a) / (8 * std::numbers::pi);
+    for (const Vec3& at : tree.corners[i]) {
       dipole.reach_squared = std::max(dipole.reach_squared, far * far * (at - dipole.centre).squaredNorm());
-  }
+      boxes[i] = join(boxes[i], moving_point_box(at, at, 0));
+    }
+  });
   tree.bvh = build_bvh(boxes);
   if (!faces.empty()) add_nodes(tree);
   return tree;
-}
-
-double winding_number(const DipoleTree& tree, const Vec3& at, int left_out) {
-  if (tree.faces.empty()) return 0;
-  double far = 0, angle = 0;
-  std::array<int, 128> stack;
-  int size = 0;
-  stack[size++] = 0;
-  while (size > 0) {
-    const DipoleTree::SpreadDipole& node = tree.nodes[stack[--size]];
-    if (add_node(node, at, far)) continue;
-    const int child = node.child;
-    if (child >= 0) {
-      stack[size++] = child;
-      stack[size++] = child + 1;
-      continue;
-    }
-    for (const int item : tree.bvh.leaves[~child].item)
-      if (item >= 0 && tree.faces[item] != left_out && !add_face(tree, item, at, far))
-        angle += principal_angle(tree.corners[item], at);
-  }
-  return far + angle / (4 * std::numbers::pi);
 }
 
 }  // namespace selvedge

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "collision/penetration/closed_surface.hpp"
@@ -36,7 +37,12 @@ struct DipoleTree {
 DipoleTree make_dipole_tree(const Surface&, const Points& x, const std::vector<int>& faces,
                             const std::vector<signed char>& turn, double far);
 
-// All triangles but face `left_out`: on that face the principal value.
-double winding_number(const DipoleTree&, const Vec3& at, int left_out = -1);
+struct WindingPoint {
+  Vec3 at = Vec3::Zero();
+  int left_out = -1;  // a face that does not count: on that face the winding number is its principal value
+};
+
+// At each point. The same bits in whatever order and company points come, and on any number of threads.
+std::vector<double> winding_numbers(const DipoleTree&, std::span<const WindingPoint>);
 
 }  // namespace selvedge

@@ -5,7 +5,6 @@
 #include <map>
 
 #include "collision/geometry/disjoint_sets.hpp"
-#include "collision/geometry/parallel.hpp"
 #include "collision/penetration/clipped_faces.hpp"
 #include "collision/penetration/dipole_tree.hpp"
 #include "collision/penetration/face_cells.hpp"
@@ -66,8 +65,7 @@ class GarmentWinding {
     for (const auto& pair : pairs)
       for (const int face : pair) add(face);
     while (!front.empty()) {
-      std::vector<WeighedFace> weighed(front.size());
-      parallel_for(static_cast<int>(front.size()), 8, [&](int i) { weighed[i] = weigh(front[i]); });
+      std::vector<WeighedFace> weighed = weigh(front);
       front.clear();
       for (const WeighedFace& face : weighed)
         for (std::size_t c = 0; c < face.cells.size(); ++c)
@@ -81,24 +79,36 @@ class GarmentWinding {
   }
 
  private:
-  WeighedFace weigh(int face) const {
-    WeighedFace result{face, {}, {}};
-    std::vector<FaceChord> chords;
-    if (const auto found = chords_.find(face); found != chords_.end())
-      for (const int s : found->second) {
-        const Segment& segment = found_.segments[s];
-        const auto p = weights_in(surface_, found_.crossings, face, segment.end[0]),
-                   q = weights_in(surface_, found_.crossings, face, segment.end[1]);
-        chords.push_back({Vec2(p[1], p[2]), Vec2(q[1], q[2])});
+  // What each cell of some faces weighs, by the winding number at its middle.
+  std::vector<WeighedFace> weigh(const std::vector<int>& faces) const {
+    std::vector<WeighedFace> weighed;
+    std::vector<WindingPoint> points;
+    for (const int face : faces) {
+      weighed.push_back({face, face_cells(chords_in(face)), {}});
+      for (const FaceCell& cell : weighed.back().cells) {
+        points.push_back({Vec3::Zero(), face});
+        for (int k = 0; k < 3; ++k) points.back().at += cell.middle[k] * row(x_, surface_.triangles(face, k));
       }
-    result.cells = face_cells(chords);
-    for (const FaceCell& cell : result.cells) {
-      Vec3 at = Vec3::Zero();
-      for (int k = 0; k < 3; ++k) at += cell.middle[k] * row(x_, surface_.triangles(face, k));
-      const double p = winding_number(tree_, at, face);
-      result.weights.push_back(winding_cost(p + 0.5) - winding_cost(p - 0.5));
     }
-    return result;
+    const std::vector<double> numbers = winding_numbers(tree_, points);
+    auto winding = numbers.begin();
+    for (WeighedFace& face : weighed)
+      for (std::size_t c = 0; c < face.cells.size(); ++c, ++winding)
+        face.weights.push_back(winding_cost(*winding + 0.5) - winding_cost(*winding - 0.5));
+    return weighed;
+  }
+
+  std::vector<FaceChord> chords_in(int face) const {
+    std::vector<FaceChord> chords;
+    const auto found = chords_.find(face);
+    if (found == chords_.end()) return chords;
+    for (const int s : found->second) {
+      const Segment& segment = found_.segments[s];
+      const auto p = weights_in(surface_, found_.crossings, face, segment.end[0]),
+                 q = weights_in(surface_, found_.crossings, face, segment.end[1]);
+      chords.push_back({Vec2(p[1], p[2]), Vec2(q[1], q[2])});
+    }
+    return chords;
   }
 
   const ClosedSurface& closed_;

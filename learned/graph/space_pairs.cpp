@@ -3,67 +3,96 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <compare>
 #include <cstdint>
+#include <numeric>
+#include <span>
 #include <tuple>
+
+#include "collision/geometry/parallel.hpp"
 
 namespace selvedge {
 namespace {
 
 constexpr double least_distance = 1e-7;  // [m]; what lies closer is one place
-constexpr int vertex_chunk = 256;
+constexpr int vertex_chunk = 1024, cell_chunk = 64;
 
-using HashedCell = std::array<std::int64_t, 3>;
+struct CellPlace {
+  std::int64_t i, j, k;
+  auto operator<=>(const CellPlace&) const = default;
+};
 
 // Vertices by the cells of an endless grid, which share a table.
 class HashedGrid {
  public:
-  HashedGrid(const Points& x, double edge) : mask_(std::bit_ceil(2 * static_cast<std::uint64_t>(x.rows()) + 1) - 1) {
-    const int count = static_cast<int>(x.rows());
-    cell_.resize(static_cast<std::size_t>(count));
-    begin_.assign(mask_ + 2, 0);
-    for (int v = 0; v < count; ++v) {
-      for (int k = 0; k < 3; ++k) cell_[v][k] = static_cast<std::int64_t>(std::floor(x(v, k) / edge));
-      ++begin_[bucket(cell_[v]) + 1];
-    }
-    for (std::size_t b = 1; b < begin_.size(); ++b) begin_[b] += begin_[b - 1];
-    std::vector<int> next(begin_.begin(), begin_.end() - 1);
-    entry_.resize(cell_.size());
-    for (int v = 0; v < count; ++v) entry_[next[bucket(cell_[v])]++] = {cell_[v], row(x, v), v};
-  }
-  // Calls visit(vertex, position) for the vertices of the 27 cells at that of a vertex.
-  template <class Visit>
-  void for_each_round(int vertex, const Visit& visit) const {
-    const HashedCell& own = cell_[vertex];
-    for (std::int64_t i = own[0] - 1; i <= own[0] + 1; ++i)
-      for (std::int64_t j = own[1] - 1; j <= own[1] + 1; ++j) {
-        const std::uint64_t line = mixed(mixed(0, i), j);
-        for (std::int64_t k = own[2] - 1; k <= own[2] + 1; ++k) {
-          const std::uint64_t b = bucket_of(mixed(line, k));
-          for (int e = begin_[b]; e < begin_[b + 1]; ++e) {
-            const HashedCell& cell = entry_[e].cell;
-            if (cell[0] == i && cell[1] == j && cell[2] == k) visit(entry_[e].vertex, entry_[e].x);
-          }
-        }
-      }
-  }
-
- private:
   struct Entry {
-    HashedCell cell;
     Vec3 x;
     int vertex;
   };
+  using Entries = std::span<const Entry>;
+  struct Cell {
+    CellPlace place;
+    int begin, end;  // of its entries, by vertex
+  };
+
+  HashedGrid(const Points& x, double edge) : mask_(std::bit_ceil(2 * static_cast<std::uint64_t>(x.rows()) + 1) - 1) {
+    const int count = static_cast<int>(x.rows());
+    std::vector<CellPlace> place(static_cast<std::size_t>(count));
+    std::vector<std::uint64_t> bucket(place.size());
+    parallel_for(chunks_of(count, vertex_chunk), 1, [&](int chunk) {
+      for (int v = chunk * vertex_chunk; v < std::min(count, (chunk + 1) * vertex_chunk); ++v) {
+        const auto along = [&](int axis) { return static_cast<std::int64_t>(std::floor(x(v, axis) / edge)); };
+        place[v] = {along(0), along(1), along(2)};
+        bucket[v] = bucket_of(place[v]);
+      }
+    });
+    std::vector<int> begin(mask_ + 2, 0), order(place.size());
+    for (const std::uint64_t b : bucket) ++begin[b + 1];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<int> next(begin.begin(), begin.end() - 1);
+    for (int v = 0; v < count; ++v) order[next[bucket[v]]++] = v;
+    begin_.reserve(begin.size());
+    for (std::size_t b = 0; b + 1 < begin.size(); ++b) {
+      begin_.push_back(static_cast<int>(cells_.size()));
+      std::sort(order.begin() + begin[b], order.begin() + begin[b + 1],
+                [&](int p, int q) { return std::tie(place[p], p) < std::tie(place[q], q); });
+      for (int e = begin[b]; e < begin[b + 1]; ++e) {
+        const bool opens = e == begin[b] || place[order[e]] != cells_.back().place;
+        if (opens) cells_.push_back({place[order[e]], e, e});
+        ++cells_.back().end;
+      }
+    }
+    begin_.push_back(static_cast<int>(cells_.size()));
+    entries_.resize(order.size());
+    for (std::size_t e = 0; e < order.size(); ++e) entries_[e] = {row(x, order[e]), order[e]};
+  }
+
+  const std::vector<Cell>& cells() const { return cells_; }
+  Entries entries(const Cell& cell) const { return Entries(entries_).subspan(cell.begin, cell.end - cell.begin); }
+
+  // The entries of the cells round a cell, of each two neighbours only one if `half`.
+  void list_round(const CellPlace& own, bool half, std::vector<Entries>& found) const {
+    found.clear();
+    for (int step = half ? 14 : 0; step < 27; ++step) {
+      const CellPlace place{own.i + step / 9 - 1, own.j + step / 3 % 3 - 1, own.k + step % 3 - 1};
+      const std::uint64_t b = bucket_of(place);
+      for (int c = begin_[b]; c < begin_[b + 1]; ++c)
+        if (step != 13 && cells_[c].place == place) found.push_back(entries(cells_[c]));
+    }
+  }
+
+ private:
   static std::uint64_t mixed(std::uint64_t hash, std::int64_t k) {
     return (hash ^ static_cast<std::uint64_t>(k)) * 0x9e3779b97f4a7c15u;
   }
-  std::uint64_t bucket_of(std::uint64_t hash) const { return (hash >> 32) & mask_; }
-  std::uint64_t bucket(const HashedCell& cell) const {
-    return bucket_of(mixed(mixed(mixed(0, cell[0]), cell[1]), cell[2]));
+  std::uint64_t bucket_of(const CellPlace& place) const {
+    return (mixed(mixed(mixed(0, place.i), place.j), place.k) >> 32) & mask_;
   }
+
   std::uint64_t mask_;
-  std::vector<HashedCell> cell_;  // of each vertex
-  std::vector<int> begin_;        // of each bucket
-  std::vector<Entry> entry_;      // by bucket, ascending
+  std::vector<int> begin_;      // of each bucket's cells
+  std::vector<Cell> cells_;     // by bucket
+  std::vector<Entry> entries_;  // by cell
 };
 
 struct NearVertex {
@@ -74,42 +103,56 @@ struct NearVertex {
   }
 };
 
-// Calls visit(vertex, squared distance) for each other vertex nearer than the radius.
-template <class Visit>
-void for_each_near(const HashedGrid& grid, const Points& x, int vertex, double radius, const Visit& visit) {
-  const Vec3 at = row(x, vertex);
-  grid.for_each_round(vertex, [&](int other, const Vec3& there) {
-    const double square = (there - at).squaredNorm();
-    if (other != vertex && square < radius * radius && square > least_distance * least_distance) visit(other, square);
-  });
-}
+// What the lists of pairs of a vertex need.
+struct PairLister {
+  const GraphScene& scene;
+  const SpaceOptions& options;
+  const SpaceSearch& search;
 
-bool is_wanted(const GraphScene& scene, const SpaceOptions& options, const SpaceSearch& search, int a, int b) {
-  const std::span<const int> joined = search.mesh.of(a);
-  if (!options.mesh_pairs && std::binary_search(joined.begin(), joined.end(), b)) return false;
-  return options.rest_pairs || (scene.rest.row(a) - scene.rest.row(b)).norm() >= search.radius;
-}
+  bool are_near(double square) const {
+    return square < search.radius * search.radius && square > least_distance * least_distance;
+  }
+  bool are_wanted(int a, int b) const {
+    if (!options.rest_pairs && (scene.rest.row(a) - scene.rest.row(b)).norm() < search.radius) return false;
+    const std::span<const int> joined = search.mesh.of(a);
+    return options.mesh_pairs || !std::binary_search(joined.begin(), joined.end(), b);
+  }
 
-// The pairs of a vertex with those behind it, ascending.
-void list_behind(const GraphScene& scene, const Points& x, const SpaceOptions& options, const SpaceSearch& search,
-                 const HashedGrid& grid, int v, std::vector<SpacePair>& list) {
-  const auto first = static_cast<std::ptrdiff_t>(list.size());
-  for_each_near(grid, x, v, search.radius, [&](int other, double) {
-    if (other > v && is_wanted(scene, options, search, v, other)) list.push_back({v, other});
-  });
-  std::sort(list.begin() + first, list.end());
-}
+  // The pairs of a vertex with some others.
+  void list_all(const HashedGrid::Entry& own, HashedGrid::Entries others, std::vector<SpacePair>& list) const {
+    for (const HashedGrid::Entry& other : others)
+      if (are_near((other.x - own.x).squaredNorm()) && are_wanted(own.vertex, other.vertex))
+        list.push_back({std::min(own.vertex, other.vertex), std::max(own.vertex, other.vertex)});
+  }
 
-// The pairs of a vertex with the nearest ones that are wanted among the nearest.
-void list_nearest(const GraphScene& scene, const Points& x, const SpaceOptions& options, const SpaceSearch& search,
-                  const HashedGrid& grid, int v, std::vector<SpacePair>& list) {
-  std::vector<NearVertex> near;
-  for_each_near(grid, x, v, search.radius, [&](int other, double square) { near.push_back({square, other}); });
-  std::sort(near.begin(), near.end());
-  near.resize(std::min(near.size(), static_cast<std::size_t>(options.nearest)));
-  for (const NearVertex& other : near)
-    if (is_wanted(scene, options, search, v, other.vertex))
-      list.push_back({std::min(v, other.vertex), std::max(v, other.vertex)});
+  // The pairs of a vertex with the nearest ones that are wanted among the nearest.
+  void list_nearest(const HashedGrid::Entry& own, const std::vector<HashedGrid::Entries>& round,
+                    std::vector<SpacePair>& list) const {
+    std::vector<NearVertex> near;
+    for (const HashedGrid::Entries& others : round)
+      for (const HashedGrid::Entry& other : others)
+        if (const double square = (other.x - own.x).squaredNorm(); are_near(square) && other.vertex != own.vertex)
+          near.push_back({square, other.vertex});
+    std::sort(near.begin(), near.end());
+    near.resize(std::min(near.size(), static_cast<std::size_t>(options.nearest)));
+    for (const auto& [square, other] : near)
+      if (are_wanted(own.vertex, other)) list.push_back({std::min(own.vertex, other), std::max(own.vertex, other)});
+  }
+};
+
+// Puts pairs in order, each once.
+std::vector<SpacePair> sorted_pairs(const std::vector<std::vector<SpacePair>>& lists, int vertices) {
+  std::vector<int> begin(static_cast<std::size_t>(vertices) + 1, 0);
+  for (const std::vector<SpacePair>& list : lists)
+    for (const SpacePair& pair : list) ++begin[pair[0] + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<SpacePair> pairs(static_cast<std::size_t>(begin.back()));
+  std::vector<int> next(begin.begin(), begin.end() - 1);
+  for (const std::vector<SpacePair>& list : lists)
+    for (const SpacePair& pair : list) pairs[next[pair[0]]++] = pair;
+  for (int v = 0; v < vertices; ++v) std::sort(pairs.begin() + begin[v], pairs.begin() + begin[v + 1]);
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
 }
 
 void keep_nearest(const Points& x, std::size_t most, SpacePairs& found) {
@@ -127,7 +170,7 @@ void keep_nearest(const Points& x, std::size_t most, SpacePairs& found) {
 
 SpacePairs find_space_pairs(const GraphScene& scene, const Points& x, const SpaceOptions& options,
                             SpaceSearch& search) {
-  const int vertices = scene.cloth.vertex_count, chunks = (vertices + vertex_chunk - 1) / vertex_chunk;
+  const int vertices = scene.cloth.vertex_count;
   if (search.radius == 0) {
     search.mesh = adjacency_of(vertices, scene.cloth.edges);
     search.radius =
@@ -136,21 +179,29 @@ SpacePairs find_space_pairs(const GraphScene& scene, const Points& x, const Spac
   SpacePairs found;
   if (!(search.radius > 0)) return found;
   const HashedGrid grid(x, search.radius);
+  const PairLister lister{scene, options, search};
+  const int cells = static_cast<int>(grid.cells().size()), chunks = chunks_of(cells, cell_chunk);
   search.lists.resize(static_cast<std::size_t>(chunks));
-#pragma omp parallel for schedule(dynamic)
-  for (int chunk = 0; chunk < chunks; ++chunk) {
-    std::vector<SpacePair>& list = search.lists[static_cast<std::size_t>(chunk)];
+  parallel_for(chunks, 1, [&](int chunk) {
+    std::vector<SpacePair>& list = search.lists[chunk];
     list.clear();
-    const auto list_of = options.nearest > 0 ? list_nearest : list_behind;
-    for (int v = chunk * vertex_chunk; v < std::min(vertices, (chunk + 1) * vertex_chunk); ++v)
-      list_of(scene, x, options, search, grid, v, list);
-  }
-  for (const std::vector<SpacePair>& list : search.lists)
-    found.pairs.insert(found.pairs.end(), list.begin(), list.end());
-  if (options.nearest > 0) {  // else they ascend, each once
-    std::sort(found.pairs.begin(), found.pairs.end());
-    found.pairs.erase(std::unique(found.pairs.begin(), found.pairs.end()), found.pairs.end());
-  }
+    std::vector<HashedGrid::Entries> round;
+    for (int c = chunk * cell_chunk; c < std::min(cells, (chunk + 1) * cell_chunk); ++c) {
+      const HashedGrid::Cell& cell = grid.cells()[c];
+      const HashedGrid::Entries own = grid.entries(cell);
+      grid.list_round(cell.place, options.nearest == 0, round);
+      if (options.nearest > 0) round.push_back(own);
+      for (std::size_t e = 0; e < own.size(); ++e) {
+        if (options.nearest > 0) {
+          lister.list_nearest(own[e], round, list);
+          continue;
+        }
+        lister.list_all(own[e], own.subspan(e + 1), list);
+        for (const HashedGrid::Entries& others : round) lister.list_all(own[e], others, list);
+      }
+    }
+  });
+  found.pairs = sorted_pairs(search.lists, vertices);
   keep_nearest(x, static_cast<std::size_t>(std::max(options.pairs_per_vertex, 0)) * static_cast<std::size_t>(vertices),
                found);
   return found;

@@ -1,6 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include <numbers>
+#include <numeric>
+#include <random>
 
 #include "collision/penetration/dipole_tree.hpp"
 #include "collision/penetration/face_cells.hpp"
@@ -37,6 +39,11 @@ Winding winding_of(const Solid& solid) {
   result.report = winding_loss(closed, x, segments, {}, &by_closed);
   result.gradient = by_cloth_positions(closed, by_closed);
   return result;
+}
+
+double winding_at(const DipoleTree& tree, const Vec3& at, int left_out = -1) {
+  const WindingPoint point{at, left_out};
+  return winding_numbers(tree, std::span(&point, 1))[0];
 }
 
 // By definition: the solid angles of all triangles, for tests.
@@ -113,11 +120,39 @@ TEST_CASE("winding: the tree is close to the definition", "[penetration]") {
   double worst = 0;
   for (int i = 0; i < 500; ++i) {
     const Vec3 at(place(random), place(random), place(random));
-    worst = std::max(worst, std::abs(winding_number(tree, at) - winding_by_definition(solid, at)));
+    worst = std::max(worst, std::abs(winding_at(tree, at) - winding_by_definition(solid, at)));
   }
   CHECK(worst < 0.02);
-  CHECK(winding_number(make_dipole_tree(surface, solid.x, faces, turn, 1e9), Vec3(0.1, 0.2, 0.3)) ==
+  CHECK(winding_at(make_dipole_tree(surface, solid.x, faces, turn, 1e9), Vec3(0.1, 0.2, 0.3)) ==
         Approx(winding_by_definition(solid, Vec3(0.1, 0.2, 0.3))).epsilon(1e-12));
+}
+
+TEST_CASE("winding: points do not depend on their company", "[penetration]") {
+  const Solid solid = both(ball(2), moved(skirt(0.02), Vec3(0.5, 0.2, 0.9)));
+  const Surface surface = solid.surface();
+  std::vector<int> faces(static_cast<std::size_t>(surface.triangles.rows()));
+  std::iota(faces.begin(), faces.end(), 0);
+  const std::vector<signed char> turn(faces.size(), 1);
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::vector<WindingPoint> points;  // on faces, near them and far from them, in any order
+  for (int i = 0; i < 203; ++i) {
+    const int face = static_cast<int>(random() % faces.size());
+    const double u = share(random) / 2, v = share(random) / 2, height = std::pow(10.0, -static_cast<double>(i % 5));
+    const Vec3 a = row(solid.x, surface.triangles(face, 0)), b = row(solid.x, surface.triangles(face, 1)) - a,
+               c = row(solid.x, surface.triangles(face, 2)) - a;
+    points.push_back({a + u * b + v * c + (i % 3 ? height : 0.0) * b.cross(c).normalized(), i % 3 ? -1 : face});
+  }
+  for (const double far : {2.0, 1e9}) {
+    const DipoleTree tree = make_dipole_tree(surface, solid.x, faces, turn, far);
+    const std::vector<double> together = winding_numbers(tree, points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      CHECK(together[i] == winding_at(tree, points[i].at, points[i].left_out));
+      Solid others = solid;
+      if (const int out = points[i].left_out; out >= 0) others.triangles.row(out).setConstant(others.triangles(out, 0));
+      if (far > 2) CHECK(together[i] == Approx(winding_by_definition(others, points[i].at)).margin(1e-11));
+    }
+  }
 }
 
 TEST_CASE("winding: cells of a face are what chords leave of it", "[penetration]") {
