@@ -47,7 +47,6 @@ class GarmentWinding {
         surface_(closed.surface),
         x_(x),
         found_(found),
-        turn_(turn),
         tree_(make_dipole_tree(surface_, x, faces, turn, far)) {}
 
   // The faces that count, and with them those round them, which do not.
@@ -115,7 +114,6 @@ class GarmentWinding {
   const Surface& surface_;
   const Points& x_;
   const Segments& found_;
-  const std::vector<signed char>& turn_;
   DipoleTree tree_;
   std::map<int, std::vector<int>> chords_;  // segments by face
 };
