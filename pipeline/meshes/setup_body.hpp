@@ -39,14 +39,14 @@ struct Performance {
   BodyModel body;
   Surface surface;  // of its skin
   Eigen::VectorXd shape;
-  Clip clip;                             // without poses: it stands in the zero pose
-  std::shared_ptr<const GiveWay> flesh;  // null: it passes through itself
-  bool fits_room = false;                // between its parts to what it wears
-  int garments = 0;                      // that it wears
-  Config section;                        // the obstacle's: how it is placed
-  Motion motion;                         // of what is placed
-  Clip before;                           // up to time 0, where the scene's time begins before it
-  double begins = 0;                     // when it does [s]
+  Clip clip;                                   // without poses: it stands in the zero pose
+  std::shared_ptr<const GiveWay> soft_tissue;  // null: it passes through itself
+  bool fits_room = false;                      // between its parts to what it wears
+  int garments = 0;                            // that it wears
+  Config section;                              // the obstacle's: how it is placed
+  Motion motion;                               // of what is placed
+  Clip before;                                 // up to time 0, where the scene's time begins before it
+  double begins = 0;                           // when it does [s]
   std::shared_ptr<PosedBodies> known = std::make_shared<PosedBodies>();  // where it was asked for, by time
 };
 
@@ -73,7 +73,7 @@ const PosedBody& posed_at(const Performance&, double time);
 // Where it has given way to itself, before it is placed; the last one is kept.
 const PosedSkin& skin_at(const Performance&, double time);
 
-// The body, giving way where it has flesh, where the scene has it at a time [s].
+// The body where the scene has it at a time [s], with its soft tissue deformed if it has any.
 Points body_at(const Performance&, double time);
 
 // Scaled, turned and moved as the body is.
