@@ -23,8 +23,8 @@ std::vector<double> thicknesses(const Surface& body, const Points& x, double mos
   std::vector<double> thickness(static_cast<std::size_t>(body.vertex_count), most);
   for (int v = 0; v < body.vertex_count; ++v)
     grid.for_each_near(row(x, v), most, [&](int w) {
-      const Vec3 way = row(x, v) - row(x, w);
-      const double distance = way.norm(), deep = way.dot(row(normals, v));
+      const Vec3 offset = row(x, v) - row(x, w);
+      const double distance = offset.norm(), deep = offset.dot(row(normals, v));
       if (distance < thickness[v] && deep > through * distance && row(normals, w).dot(row(normals, v)) < facing_cosine)
         thickness[v] = distance;
     });
@@ -47,8 +47,8 @@ Surface part_of(const Surface& body, const std::vector<int>& vertices) {
 }  // namespace
 
 // A body before it is posed.
-struct Flesh {
-  Flesh(Surface surface, const Points& rest, const GiveWayOptions& o)
+struct SoftTissue {
+  SoftTissue(Surface surface, const Points& rest, const GiveWayOptions& o)
       : body(std::move(surface)),
         shape(keep_shape(body, rest)),
         options(o),
@@ -56,8 +56,8 @@ struct Flesh {
         thickness(thicknesses(body, rest, reach, o.through)) {
     intersecting_pairs(body, rest, at_rest);
   }
-  Flesh(const Flesh&) = delete;  // the shape looks at the body
-  Flesh& operator=(const Flesh&) = delete;
+  SoftTissue(const SoftTissue&) = delete;  // the shape looks at the body
+  SoftTissue& operator=(const SoftTissue&) = delete;
 
   Surface body;
   KeptShape shape;
@@ -72,33 +72,33 @@ namespace {
 // A vertex and the one that it meets, on another part of the body.
 struct Meeting {
   int vertex, partner;
-  Vec3 apart;    // the way to go [unit]
+  Vec3 apart;    // the direction to go [unit]
   double least;  // distance along it [m]
   double share;  // of what is missing that the vertex goes
 };
 
 double gap_of(const Meeting& m, const Points& x) { return m.apart.dot(row(x, m.vertex) - row(x, m.partner)); }
 
-std::vector<Meeting> meetings(const Flesh& flesh, const Points& x) {
-  const Points &rest = flesh.shape.x0, normals = vertex_normals(flesh.body, x);
-  const std::vector<int> partner = facing_vertices({rest, flesh.thickness, flesh.reach}, x, normals);
+std::vector<Meeting> meetings(const SoftTissue& tissue, const Points& x) {
+  const Points &rest = tissue.shape.x0, normals = vertex_normals(tissue.body, x);
+  const std::vector<int> partner = facing_vertices({rest, tissue.thickness, tissue.reach}, x, normals);
   std::vector<Meeting> found;
-  for (int v = 0; v < flesh.body.vertex_count; ++v) {
+  for (int v = 0; v < tissue.body.vertex_count; ++v) {
     const int w = partner[v];
     if (w < 0) continue;
-    const Vec3 apart = (row(normals, w) - row(normals, v)).normalized(), way = row(x, v) - row(x, w);
-    const double gap = way.dot(apart), aside = (way - gap * apart).norm();
-    const double least = std::min(flesh.options.room, flesh.options.rest_room * (rest.row(v) - rest.row(w)).norm());
+    const Vec3 apart = (row(normals, w) - row(normals, v)).normalized(), offset = row(x, v) - row(x, w);
+    const double gap = offset.dot(apart), aside = (offset - gap * apart).norm();
+    const double least = std::min(tissue.options.room, tissue.options.rest_room * (rest.row(v) - rest.row(w)).norm());
     // What passes it by, an edge or more aside, is not over it; either goes half the way.
-    const double share = 0.5 * std::clamp(2 - aside / flesh.shape.edge_length[v], 0.0, 1.0);
+    const double share = 0.5 * std::clamp(2 - aside / tissue.shape.edge_length[v], 0.0, 1.0);
     if (gap < least && share > 0) found.push_back({v, w, apart, least, share});
   }
   return found;
 }
 
 // The marked vertices and what goes along with them, listed.
-std::vector<int> with_surroundings(const Flesh& flesh, const std::vector<char>& marked) {
-  const std::vector<char> near = within_rings(flesh.shape, marked, flesh.options.press_rings);
+std::vector<int> with_surroundings(const SoftTissue& tissue, const std::vector<char>& marked) {
+  const std::vector<char> near = within_rings(tissue.shape, marked, tissue.options.press_rings);
   std::vector<int> vertices;
   for (std::size_t v = 0; v < near.size(); ++v)
     if (near[v]) vertices.push_back(static_cast<int>(v));
@@ -107,21 +107,21 @@ std::vector<int> with_surroundings(const Flesh& flesh, const std::vector<char>& 
 
 // From x each vertex of a meeting goes its share, no farther from where it is skinned to than it may or is, and what
 // lies round it goes along, less and less.
-Points pressed(const Flesh& flesh, const Points& skinned, const Points& x, const std::vector<Meeting>& found) {
+Points pressed(const SoftTissue& tissue, const Points& skinned, const Points& x, const std::vector<Meeting>& found) {
   if (found.empty()) return x;
-  std::vector<char> meets(static_cast<std::size_t>(flesh.body.vertex_count), 0);
+  std::vector<char> meets(static_cast<std::size_t>(tissue.body.vertex_count), 0);
   for (const Meeting& m : found) meets[m.vertex] = 1;
-  const std::vector<int> moving = with_surroundings(flesh, meets);
+  const std::vector<int> moving = with_surroundings(tissue, meets);
   Points to = x;
-  for (int sweep = 0; sweep < flesh.options.press_sweeps; ++sweep) {
-    smooth_displacement(flesh.shape, x, moving, flesh.options.smoothing, to);
+  for (int sweep = 0; sweep < tissue.options.press_sweeps; ++sweep) {
+    smooth_displacement(tissue.shape, x, moving, tissue.options.smoothing, to);
     const Points from = to;
     for (const Meeting& m : found) {
       const double missing = m.least - gap_of(m, from);
       if (missing <= 0) continue;
-      const Vec3 at = row(skinned, m.vertex), way = row(from, m.vertex) + m.share * missing * m.apart - at;
-      const double most = std::max(flesh.options.most, (row(x, m.vertex) - at).norm());
-      to.row(m.vertex) = (at + way * std::min(1.0, most / way.norm())).transpose();
+      const Vec3 at = row(skinned, m.vertex), displacement = row(from, m.vertex) + m.share * missing * m.apart - at;
+      const double most = std::max(tissue.options.most, (row(x, m.vertex) - at).norm());
+      to.row(m.vertex) = (at + displacement * std::min(1.0, most / displacement.norm())).transpose();
     }
   }
   return to;
@@ -134,8 +134,8 @@ struct Place {
 };
 
 // What crosses and hangs together, along edges or by a pair, is one place.
-std::vector<Place> places_of(const Flesh& flesh, const Pairs& skinned, const Pairs& pressed) {
-  const Surface& body = flesh.body;
+std::vector<Place> places_of(const SoftTissue& tissue, const Pairs& skinned, const Pairs& pressed) {
+  const Surface& body = tissue.body;
   DisjointSets sets(body.vertex_count);
   std::vector<char> crosses(static_cast<std::size_t>(body.vertex_count), 0);
   for (const Pairs* pairs : {&skinned, &pressed})
@@ -144,7 +144,7 @@ std::vector<Place> places_of(const Flesh& flesh, const Pairs& skinned, const Pai
       for (const int t : {a, b})
         for (const int v : body.triangles.row(t)) crosses[v] = 1;
     }
-  const std::vector<char> near = within_rings(flesh.shape, crosses, flesh.options.mend_rings);
+  const std::vector<char> near = within_rings(tissue.shape, crosses, tissue.options.mend_rings);
   for (const auto& edge : body.edges.rowwise())
     if (near[edge[0]] && near[edge[1]]) sets.join(edge[0], edge[1]);
   std::vector<Place> places;
@@ -154,37 +154,37 @@ std::vector<Place> places_of(const Flesh& flesh, const Pairs& skinned, const Pai
     std::vector<char> core(near.size());
     for (int v = 0; v < body.vertex_count; ++v) core[v] = sets.root(v) == root;
     const auto left = std::ranges::count_if(pressed, is_here);
-    if (left > 0) places.push_back({with_surroundings(flesh, core), std::ranges::count_if(skinned, is_here), left});
+    if (left > 0) places.push_back({with_surroundings(tissue, core), std::ranges::count_if(skinned, is_here), left});
   }
   return places;
 }
 
 // A place untangled by itself, from where its vertices are now; none where it stays tangled or goes too far from x.
-std::optional<Points> mended(const Flesh& flesh, const Place& place, const Points& from, const Points& x) {
+std::optional<Points> mended(const SoftTissue& tissue, const Place& place, const Points& from, const Points& x) {
   UntangleOptions mending;
-  mending.iterations = flesh.options.mend_iterations;
-  mending.gap = flesh.options.mend_gap;
-  mending.far_limit = flesh.options.mend_far;
+  mending.iterations = tissue.options.mend_iterations;
+  mending.gap = tissue.options.mend_gap;
+  mending.far_limit = tissue.options.mend_far;
   const UntangleResult parted =
-      untangle(part_of(flesh.body, place.vertices), from(place.vertices, Eigen::all), {}, mending);
-  const double way = (parted.x - x(place.vertices, Eigen::all)).rowwise().norm().maxCoeff();
-  if (parted.pairs_after > 0 || way > flesh.options.overshoot * flesh.options.most) return {};
+      untangle(part_of(tissue.body, place.vertices), from(place.vertices, Eigen::all), {}, mending);
+  const double farthest = (parted.x - x(place.vertices, Eigen::all)).rowwise().norm().maxCoeff();
+  if (parted.pairs_after > 0 || farthest > tissue.options.overshoot * tissue.options.most) return {};
   return parted.x;
 }
 
 // Pressed more where there is less room than there should be: mending leaves hardly any, and what came from deep may
 // meet others than it met at first. What crosses by that in a spot, as the bottom of a fold does, is mended; more of it
 // is pressed less, or stays.
-Points opened(const Flesh& flesh, const Points& skinned, const Points& x, const std::vector<Meeting>& found,
+Points opened(const SoftTissue& tissue, const Points& skinned, const Points& x, const std::vector<Meeting>& found,
               const Pairs& left, IntersectionCache& cache) {
-  Points to = pressed(flesh, skinned, x, found);
-  for (int halving = 0; halving <= flesh.options.press_halvings; ++halving) {
-    const Pairs anew = intersecting_pairs(flesh.body, to, cache);
+  Points to = pressed(tissue, skinned, x, found);
+  for (int halving = 0; halving <= tissue.options.press_halvings; ++halving) {
+    const Pairs anew = intersecting_pairs(tissue.body, to, cache);
     if (anew.size() <= left.size()) return to;
-    const double share = halving < flesh.options.press_halvings ? 0.5 : 0;
-    for (const Place& place : places_of(flesh, left, anew)) {
+    const double share = halving < tissue.options.press_halvings ? 0.5 : 0;
+    for (const Place& place : places_of(tissue, left, anew)) {
       std::optional<Points> better;
-      if (place.pressed <= flesh.options.mend_spot) better = mended(flesh, place, to, skinned);
+      if (place.pressed <= tissue.options.mend_spot) better = mended(tissue, place, to, skinned);
       if (!better) {
         const Points from = x(place.vertices, Eigen::all);
         better = from + share * (to(place.vertices, Eigen::all) - from);
@@ -192,28 +192,28 @@ Points opened(const Flesh& flesh, const Points& skinned, const Points& x, const 
       to(place.vertices, Eigen::all) = *better;
     }
   }
-  return intersecting_pairs(flesh.body, to, cache).size() <= left.size() ? to : x;
+  return intersecting_pairs(tissue.body, to, cache).size() <= left.size() ? to : x;
 }
 
 // Meetings that leave next to no room, or are next to none through.
-std::vector<Meeting> pinches_of(const Flesh& flesh, const std::vector<Meeting>& found, const Points& x,
+std::vector<Meeting> pinches_of(const SoftTissue& tissue, const std::vector<Meeting>& found, const Points& x,
                                 const Points& to) {
-  const double pinched = flesh.options.pinched_part * flesh.options.room;
+  const double pinched = tissue.options.pinched_part * tissue.options.room;
   const auto moves = [&](int v) { return to.row(v) != x.row(v); };
   std::vector<Meeting> pinches = found;
   std::erase_if(pinches, [&](const Meeting& m) {
-    return std::abs(gap_of(m, to)) > pinched || m.least < flesh.options.room / 2 ||
+    return std::abs(gap_of(m, to)) > pinched || m.least < tissue.options.room / 2 ||
            !(moves(m.vertex) || moves(m.partner));
   });
   return pinches;
 }
 
 // Vertices of a body that move together: those that do along edges, and what meets.
-DisjointSets moved_together(const Flesh& flesh, const Points& from, const Points& to,
+DisjointSets moved_together(const SoftTissue& tissue, const Points& from, const Points& to,
                             std::initializer_list<const std::vector<Meeting>*> meetings) {
   const auto moves = [&](int v) { return to.row(v) != from.row(v); };
-  DisjointSets sets(flesh.body.vertex_count);
-  for (const auto& edge : flesh.body.edges.rowwise())
+  DisjointSets sets(tissue.body.vertex_count);
+  for (const auto& edge : tissue.body.edges.rowwise())
     if (moves(edge[0]) && moves(edge[1])) sets.join(edge[0], edge[1]);
   for (const std::vector<Meeting>* met : meetings)
     for (const Meeting& m : *met) sets.join(m.vertex, m.partner);
@@ -228,74 +228,74 @@ struct Pressed {
 
 // The body pressed from `once` to `twice`, but for what moves together into more pinches than it had: that stays, and
 // so does all if more than `most_pairs` would cross.
-Pressed where_it_opens(const Flesh& flesh, const Points& skinned, const Pressed& once, const Points& twice,
+Pressed where_it_opens(const SoftTissue& tissue, const Points& skinned, const Pressed& once, const Points& twice,
                        std::size_t most_pairs, IntersectionCache& cache) {
-  Pressed next{twice, meetings(flesh, twice)};
-  DisjointSets sets = moved_together(flesh, once.x, twice, {&once.close, &next.close});
-  Eigen::VectorXi more = Eigen::VectorXi::Zero(flesh.body.vertex_count);  // pinches, by set
-  for (const Meeting& m : pinches_of(flesh, once.close, skinned, once.x)) --more[sets.root(m.vertex)];
-  for (const Meeting& m : pinches_of(flesh, next.close, skinned, twice)) ++more[sets.root(m.vertex)];
+  Pressed next{twice, meetings(tissue, twice)};
+  DisjointSets sets = moved_together(tissue, once.x, twice, {&once.close, &next.close});
+  Eigen::VectorXi more = Eigen::VectorXi::Zero(tissue.body.vertex_count);  // pinches, by set
+  for (const Meeting& m : pinches_of(tissue, once.close, skinned, once.x)) --more[sets.root(m.vertex)];
+  for (const Meeting& m : pinches_of(tissue, next.close, skinned, twice)) ++more[sets.root(m.vertex)];
   if (more.maxCoeff() <= 0) return next;
-  for (int v = 0; v < flesh.body.vertex_count; ++v)
+  for (int v = 0; v < tissue.body.vertex_count; ++v)
     if (more[sets.root(v)] > 0) next.x.row(v) = once.x.row(v);
-  if (next.x == once.x || intersecting_pairs(flesh.body, next.x, cache).size() > most_pairs) return once;
-  next.close = meetings(flesh, next.x);
+  if (next.x == once.x || intersecting_pairs(tissue.body, next.x, cache).size() > most_pairs) return once;
+  next.close = meetings(tissue, next.x);
   return next;
 }
 
 // Where over some area next to no room is left between parts after all, cloth would be held by faces that touch, and
 // there is no place to put it. There what hangs together gives way less, so that the parts pass through each other.
-void let_through(const Flesh& flesh, const std::vector<Meeting>& pinches, const Points& x, Points& to) {
-  const double pinched = flesh.options.pinched_part * flesh.options.room;
-  if (static_cast<int>(pinches.size()) < flesh.options.many_pinched) return;
-  DisjointSets sets = moved_together(flesh, x, to, {&pinches});
-  Eigen::VectorXi count = Eigen::VectorXi::Zero(flesh.body.vertex_count);  // by set
-  Eigen::VectorXd share = Eigen::VectorXd::Ones(flesh.body.vertex_count);  // of its ways
+void let_through(const SoftTissue& tissue, const std::vector<Meeting>& pinches, const Points& x, Points& to) {
+  const double pinched = tissue.options.pinched_part * tissue.options.room;
+  if (static_cast<int>(pinches.size()) < tissue.options.many_pinched) return;
+  DisjointSets sets = moved_together(tissue, x, to, {&pinches});
+  Eigen::VectorXi count = Eigen::VectorXi::Zero(tissue.body.vertex_count);  // by set
+  Eigen::VectorXd share = Eigen::VectorXd::Ones(tissue.body.vertex_count);  // of its displacements
   for (const Meeting& m : pinches) {
     const double now = gap_of(m, to), skinned = gap_of(m, x);
     const int set = sets.root(m.vertex);
     ++count[set];
     if (now > skinned) share[set] = std::min(share[set], std::clamp((-pinched - skinned) / (now - skinned), 0.0, 1.0));
   }
-  for (int v = 0; v < flesh.body.vertex_count; ++v)
-    if (const int set = sets.root(v); count[set] >= flesh.options.many_pinched)
+  for (int v = 0; v < tissue.body.vertex_count; ++v)
+    if (const int set = sets.root(v); count[set] >= tissue.options.many_pinched)
       to.row(v) = (x.row(v) + share[set] * (to.row(v) - x.row(v))).eval();
 }
 
 }  // namespace
 
 GiveWay::GiveWay(Surface body, const Points& rest, const GiveWayOptions& options)
-    : flesh_(std::make_shared<const Flesh>(std::move(body), rest, options)) {}
+    : tissue_(std::make_shared<const SoftTissue>(std::move(body), rest, options)) {}
 
 // Pressed apart where parts meet. Where that does not do, mended place by place: from there, or as skinned, or else
 // left as it crosses less. Then pressed more for room, where no more of it would next to touch by that.
 Points GiveWay::operator()(const Points& x) const {
-  std::vector<Meeting> found = meetings(*flesh_, x);
-  Pressed body{pressed(*flesh_, x, x, found), {}};
-  IntersectionCache cache = flesh_->at_rest;
-  Pairs left = intersecting_pairs(flesh_->body, body.x, cache);
+  std::vector<Meeting> found = meetings(*tissue_, x);
+  Pressed body{pressed(*tissue_, x, x, found), {}};
+  IntersectionCache cache = tissue_->at_rest;
+  Pairs left = intersecting_pairs(tissue_->body, body.x, cache);
   if (!left.empty()) {
-    for (const Place& place : places_of(*flesh_, intersecting_pairs(flesh_->body, x, cache), left)) {
+    for (const Place& place : places_of(*tissue_, intersecting_pairs(tissue_->body, x, cache), left)) {
       std::optional<Points> better;
-      if (place.pressed <= flesh_->options.mend_pressed) better = mended(*flesh_, place, body.x, x);
-      if (!better && place.skinned <= flesh_->options.mend_skinned) better = mended(*flesh_, place, x, x);
+      if (place.pressed <= tissue_->options.mend_pressed) better = mended(*tissue_, place, body.x, x);
+      if (!better && place.skinned <= tissue_->options.mend_skinned) better = mended(*tissue_, place, x, x);
       if (!better && place.pressed > place.skinned) better = x(place.vertices, Eigen::all);
       if (better) body.x(place.vertices, Eigen::all) = *better;
     }
-    left = intersecting_pairs(flesh_->body, body.x, cache);
+    left = intersecting_pairs(tissue_->body, body.x, cache);
   }
-  body.close = body.x == x ? std::move(found) : meetings(*flesh_, body.x);
+  body.close = body.x == x ? std::move(found) : meetings(*tissue_, body.x);
   const auto is_tight = [&](const Meeting& m) {
-    return gap_of(m, body.x) < flesh_->options.tight_part * m.least &&
-           (row(body.x, m.vertex) - row(x, m.vertex)).norm() < flesh_->options.tight_part * flesh_->options.most;
+    return gap_of(m, body.x) < tissue_->options.tight_part * m.least &&
+           (row(body.x, m.vertex) - row(x, m.vertex)).norm() < tissue_->options.tight_part * tissue_->options.most;
   };
-  for (int press = 0; press < flesh_->options.presses && std::ranges::any_of(body.close, is_tight); ++press) {
-    const Points more = opened(*flesh_, x, body.x, body.close, left, cache);
-    Pressed next = where_it_opens(*flesh_, x, body, more, left.size(), cache);
+  for (int press = 0; press < tissue_->options.presses && std::ranges::any_of(body.close, is_tight); ++press) {
+    const Points more = opened(*tissue_, x, body.x, body.close, left, cache);
+    Pressed next = where_it_opens(*tissue_, x, body, more, left.size(), cache);
     if (next.x == body.x) break;
     body = std::move(next);
   }
-  let_through(*flesh_, pinches_of(*flesh_, body.close, x, body.x), x, body.x);
+  let_through(*tissue_, pinches_of(*tissue_, body.close, x, body.x), x, body.x);
   return body.x;
 }
 

@@ -10,7 +10,7 @@ struct GiveWayOptions {
   double room = 0.01;      // left between parts that come together, for cloth [m]; 0: they may just touch
   double most = 0.045;     // how far a vertex gives way [m]
   double rest_room = 0.3;  // Parts ask for at most this part of their distance at rest as room: a fold has a bottom.
-  double through = 0.7;    // A way leads through the body if its cosine with the normal is larger: skin curves round.
+  double through = 0.7;    // An offset leads through the body if its cosine with the normal is larger: skin curves.
 
   int press_sweeps = 12;    // Parts are pressed apart in this many sweeps,
   int press_rings = 6;      // and so many rings round them go along,
@@ -32,10 +32,10 @@ struct GiveWayOptions {
   int many_pinched = 20;      // They pass through each other where so many vertices pinch: cloth slips from fewer.
 };
 
-// A body's surface as it gives way, like flesh, where it would pass through itself: under the arms, between the thighs,
-// in the bends of limbs. Skinning knows nothing of that, and cloth between faces that have passed each other has no
-// place to be. Where more than `most` would be needed, a hand in the belly, the body still passes through itself:
-// but for single spots it leaves room or crosses, and does not merely touch.
+// A body's surface as it gives way, like soft tissue, where it would pass through itself: under the arms, between the
+// thighs, in the bends of limbs. Skinning knows nothing of that, and cloth between faces that have passed each other
+// has no place to be. Where more than `most` would be needed, a hand in the belly, the body still passes through
+// itself: but for single spots it leaves room or crosses, and does not merely touch.
 class GiveWay {
  public:
   // rest: the body where its parts are apart, as in the zero pose [m].
@@ -45,7 +45,7 @@ class GiveWay {
   Points operator()(const Points& x) const;
 
  private:
-  std::shared_ptr<const struct Flesh> flesh_;
+  std::shared_ptr<const struct SoftTissue> tissue_;
 };
 
 }  // namespace selvedge

@@ -14,8 +14,9 @@ struct AdamOptions {
   double learning_rate = 1e-3;
   RateSchedule schedule = RateSchedule::cosine;
   double beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8;
-  double clip_norm = 0;    // the gradient is scaled down to this norm; 0: it is not
-  double clip_median = 0;  // .. to this many times the median of the norms of the last steps; 0: it is not
+  double clip_norm = 0;  // the gradient is scaled down to this norm; 0: it is not
+  double clip_median =
+      0;  // the gradient is scaled down to this multiple of the median norm of the last steps; 0: it is not
 };
 
 // The state between steps. Moments have the shapes of the weights.
@@ -29,7 +30,7 @@ constexpr std::size_t median_window = 101;
 // Zero moments in the architecture's shapes.
 AdamState start_adam(const Architecture&);
 
-// The learning rate where `progress`, from 0 to 1, of the run is over.
+// The learning rate when the part `progress` of the run is over, from 0 to 1.
 double learning_rate_at(const AdamOptions&, double progress);
 
 struct AdamReport {

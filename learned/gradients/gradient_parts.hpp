@@ -7,8 +7,8 @@
 
 namespace selvedge {
 
-// Derivatives of some arrays of weights while they are summed up: each part of the work has its own sums, so that
-// several threads give the same bits; then the parts are added up in their order.
+// Sums up derivatives of arrays of weights. Each part of the work has sums of its own, and the parts are added in their
+// order at the end. So any number of threads gives the same bits.
 class GradientParts {
  public:
   // Forgets what was there. Memory is kept.

@@ -4,13 +4,13 @@
 
 namespace selvedge {
 
-// Which forces a network is shown as an input (docs/training.md).
+// Which forces are an input of a network (docs/training.md).
 struct ForceOptions {
   double contact_stiffness = 300;   // of a quadratic contact with the body [N/m]; 0: none
   double contact_thickness = 3e-3;  // [m]
   double contour_weight = 0;        // [N/m]; 0: contours are not looked for
-  double length = 1e-3;             // that is compressed to log 2 [m]; 0: none is
-  bool inertia = false;             // in a second pass, whose guess is not free flight
+  double length = 1e-3;             // length that is compressed to log 2 [m]; 0: no compression
+  bool inertia = false;             // include inertia: for a second pass, whose guess is not free flight
 };
 
 // -dE/dx at inputs.predicted, the guess, divided by the Jacobi diagonal m / dt^2 + sum of (2 mu + lambda) A |grad

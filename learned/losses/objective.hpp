@@ -14,11 +14,11 @@
 
 namespace selvedge {
 
-// One frame to be judged. The caller owns the arrays. Without a body, those of the body are all null.
+// The inputs of the losses for one frame. The caller owns the arrays. Without a body, the pointers to it are all null.
 struct LossInputs {
   const LossGarment* garment = nullptr;
   const Points* x = nullptr;          // now, as the losses of the model see it: HOOD after pinned vertices moved [m]
-  const Points* velocity = nullptr;   // that inertia goes on with [m/frame]
+  const Points* velocity = nullptr;   // of free motion, for the inertia [m/frame]
   const Points* predicted = nullptr;  // the next frame [m]
   const Surface* body = nullptr;
   const Points *body_previous = nullptr, *body_now = nullptr, *body_next = nullptr;
@@ -35,7 +35,7 @@ struct LossInputs {
 LossInputs loss_inputs(const LossGarment&, const GraphScene&, const GraphState&, const SeenPositions&,
                        const Points& predicted);
 
-// What is found before losses can be summed. It depends on the state, and only the last two on the prediction.
+// Contacts and crossings that the losses need. They depend on the state; only the last two depend on the prediction.
 struct LossMatches {
   std::vector<int> collision_face;  // of each vertex, -1: none
   std::vector<int> friction_before, friction_after;

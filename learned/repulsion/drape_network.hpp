@@ -4,11 +4,12 @@
 
 namespace selvedge {
 
-// A drape by a multi-layer perceptron of pose, shape and style (the baseline of Tan et al. 2022, table 6): it says how
-// far each vertex lies from the garment at rest in the body's zero pose, and skinning takes that into the pose:
-//   x_v = A_v (rest_v + mean_v + unit y_v) + b_v,
-// where y is what the perceptron says, and what a linear regression says if there is one. A graph network (their table
-// 5) says y by convolutions over the garment: its perceptron says what is on the coarsest of their levels.
+// Predicts a drape from pose, shape and style by a multi-layer perceptron (the baseline of Tan et al. 2022, table 6).
+// The perceptron gives the displacement of each vertex from the garment at rest in the body's zero pose, and skinning
+// takes that into the pose:
+//   x_v = A_v (rest_v + mean_v + unit y_v) + b_v.
+// y is the sum of the perceptron's output and of a linear regression, if there is one. In a graph network (their table
+// 5) the perceptron gives values on the coarsest level of the mesh, and convolutions over the garment give y from them.
 
 using VertexFrame = Eigen::Matrix<double, 3, 4>;  // (A, b)
 
@@ -39,16 +40,17 @@ struct DrapeShape {
 // Means and deviations are those of the cases, all of one garment, one at least (assert).
 DrapeNetwork make_drape_network(const DrapeShape&, std::span<const DrapeCase* const>, std::uint64_t seed);
 
-// Ridge regression of the cases' displacements on what the perceptron reads; `ridge` is over the mean square length of
-// that. `trust`, one an input or none at all, is how much of the displacement an input is expected to explain beside
-// the others: the ridge of its coefficients is over the square. What the perceptron says so far is not looked at.
+// Ridge regression of the cases' displacements on the perceptron's inputs. `ridge` is relative to the mean square
+// length of the inputs. `trust` is empty or has one number an input: the share of the displacement that this input is
+// expected to explain beside the others. The ridge of an input's coefficients is divided by the square of its trust.
+// The perceptron's own output is ignored.
 void fit_linear_part(std::span<const DrapeCase* const>, double ridge, std::span<const double> trust, DrapeNetwork&);
 
-// What the perceptron reads, a row a case.
+// The inputs of the perceptron, one row a case.
 FeatureRows drape_inputs(const DrapeNetwork&, std::span<const DrapeCase* const>);
 // y, a row a case.
 FeatureRows drape_outputs(const DrapeNetwork&, const FeatureRows& inputs);
-// Where the vertices come to by one row of these.
+// The positions of the vertices from one row of outputs.
 Points drape_positions(const DrapeNetwork&, const DrapeCase&, const FeatureRows& outputs, Eigen::Index row);
 Points drape_positions(const DrapeNetwork&, const DrapeCase&);
 // Derivative of a loss by the outputs of a case, from the one by the positions.

@@ -9,7 +9,7 @@
 
 namespace selvedge {
 
-// A network for drapes and the layer behind it. Networks of scales that it does without have no layers.
+// A network for drapes and the scales of the layer behind it. Unused scale networks have no layers.
 struct DrapeModel {
   DrapeNetwork drape;
   ScaleNetwork scale;
@@ -18,8 +18,8 @@ struct DrapeModel {
   bool has_neighbours() const { return !neighbours.end.layers.empty(); }
 };
 
-// Its trained parts by name: the perceptron, the networks of scales, then kernels and mixtures of the mesh layers.
-// Those of a model without them are left out.
+// The trained parts of a model by name: the perceptron, the scale networks, then kernels and mixtures of the mesh
+// layers. Absent parts are left out.
 struct DrapePart {
   std::string name;
   PlainNetwork* network;
@@ -32,16 +32,16 @@ struct DrapeRecipe {
   bool layer = false;  // with the model's scales, or `alpha` without them
   double alpha = 1;
   RepulsionOptions repulsion;  // without rechecks where a network is trained
-  RepulsionLossOptions loss;   // collision 0: there is no loss 9, and the judge is not asked
+  RepulsionLossOptions loss;   // collision 0: no loss 9, and `judge` is not called
 };
 
-// A drape to learn from, with two distances of its body: one for the layer, one for the loss.
+// A training drape with two distances of its body: `layer` is read by the layer, `judge` by the loss.
 struct DrapeLesson {
   const DrapeCase* drape = nullptr;
   AskDistance layer, judge;
 };
 
-// What the layer makes of positions; without one, the positions.
+// The positions after the layer; unchanged if the recipe has no layer.
 Repelled behind_drape(const DrapeModel&, const DrapeCase&, const Points& x, const Adjacency& ring,
                       const AskDistance& ask, const DrapeRecipe&);
 
@@ -54,13 +54,13 @@ struct DrapeGradients {
 DrapeGradients drape_gradients(const DrapeModel&, std::span<const DrapeLesson>, const Adjacency& ring,
                                const DrapeRecipe&);
 
-// Adam of each of a model's parts.
+// The optimiser: Adam for each part of a model.
 struct DrapeAdam {
   std::vector<PlainAdam> parts;
   double scale_rate = 1;  // times the rate, for the networks of scales
   double decay = 0;       // of the first part
 };
-// False: a gradient is not finite, and nothing has changed.
+// One step of the optimiser. False if a gradient is not finite; then nothing has changed.
 bool take_step(DrapeAdam&, const DrapeGradients&, double rate, DrapeModel&);
 
 }  // namespace selvedge

@@ -22,34 +22,34 @@ using AskScale = std::function<Scales(std::span<const int> vertices, std::span<c
 Scales constant_scale(std::span<const int> vertices, double alpha);
 
 struct RepulsionOptions {
-  // So often moved vertices are asked again, and those inside projected, to half the margin each time: a narrow place
-  // has no room for all of it. The paper: 0.
+  // How many times pushed vertices are queried again. Those still inside are projected, with half the margin each time,
+  // because a narrow gap has no room for all of it. The paper: 0.
   int recheck = 0;
   double deep = 0.03;  // deeper vertices take their neighbours' mean direction [m]; infinity: none does
   double margin = 0;   // added to every push [m]; the paper: 0
-  // No scale takes a vertex farther beyond the surface than this [m], however deep it was: networks of scales are asked
-  // for depths that they have not seen. The paper has no such bound.
+  // No scale takes a vertex farther out of the body than this [m], however deep it was. Scale networks are evaluated at
+  // depths that they were not trained on. The paper has no such bound.
   double most_beyond = std::numeric_limits<double>::infinity();
-  LayerOrder order = {};  // cloth over pushed vertices goes along; the paper: none does
+  LayerOrder order = {};  // cloth over pushed vertices moves with them; the paper: it does not
 };
 
 // One vertex that was moved.
 struct PushedVertex {
   int vertex = 0;
   double alpha = 1, slope = 0;    // the scale and its derivative by the distance [1/m]
-  bool bounded = false;           // by `most_beyond`: the network's scale has no say
+  bool bounded = false;           // `most_beyond` limits the push, so the scale has no influence
   SignedDistance at;              // where it was
-  Vec3 direction = Vec3::Zero();  // in which it went, unit length
+  Vec3 direction = Vec3::Zero();  // of the push, unit length
 };
 
 struct Repelled {
   Points x;
   std::vector<PushedVertex> pushed;  // ascending
   int deep = 0;                      // of them deeper than the options' `deep`
-  int torn = 0;                      // edges of the garment whose ends went over 90 degrees apart
-  int carried = 0;                   // vertices outside that went along
-  int projected = 0;                 // vertices that were still inside when asked again, all times
-  int inside = 0;                    // at the end, if it was asked again; else 0
+  int torn = 0;                      // edges whose ends were pushed in directions over 90 degrees apart
+  int carried = 0;                   // vertices outside that moved with pushed ones
+  int projected = 0;                 // vertices still inside at a recheck, sum over rechecks
+  int inside = 0;                    // vertices inside at the end, if there were rechecks; else 0
 };
 
 // `ring` joins neighbouring vertices; `order` needs gradients of unit length. Vertices marked in `held`, which may be

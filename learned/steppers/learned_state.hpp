@@ -10,27 +10,27 @@
 namespace selvedge {
 
 constexpr double learned_dt = 1.0 / 30;    // of a frame [s]; networks are trained with it
-constexpr double settling_time = 1.0 / 3;  // that the pass counts in which cloth falls to rest [s]
+constexpr double settling_time = 1.0 / 3;  // time step of the pass in which cloth falls to rest [s]
 
-// By the drive's acceleration and, where the scene has wind, by the wind on each triangle, V x 3 [m/s2]; v in m/s.
+// Acceleration by the drive and, in a scene with wind, by the wind on each triangle, V x 3 [m/s2]; v in m/s.
 Points free_acceleration(const Scene&, const Points& x, const Points& v, const Drive&);
 
-// Whether cloth is to see cloth: there are several, or contact of a cloth with itself is asked for.
+// Whether the graph has edges between cloths: if there are several cloths, or contact of a cloth with itself is on.
 bool sees_cloth_edges(const Scene&);
 
-// Whether a network has not made the state, so that its roll-out begins here: the state's memory is not a learned
-// stepper's, or of another scene.
+// Whether a roll-out begins at this state, because no network has made it: its memory is not a learned stepper's, or is
+// of another scene.
 bool begins_rollout(const State&);
 
-// What a network starts a frame from. This is the only place where velocities in m/s become displacements per frame:
-// a state that a network made keeps its own in State::memory, with where cloth and body were before; another state's
-// are v dt, and its cloth comes from x - v dt. The body goes from the state's obstacles to the drive's. Pinned vertices
-// have their target at the drive's pins, others where they are. The acceleration is that of gravity and of the wind on
-// each triangle.
+// The graph state from which a network starts a frame. This is the only place where velocities in m/s become
+// displacements per frame. A state that a network made keeps its displacements in State::memory, with the previous
+// positions of cloth and body. For another state they are v dt, and its previous positions are x - v dt. The body moves
+// from the state's obstacles to those of the drive. The target of pinned vertices is the drive's pins, that of other
+// vertices their position. The acceleration is that of gravity and of the wind on each triangle.
 GraphState graph_state(const Scene&, const State& from, const Drive&);
 
-// The frame that a network made of `state`; `seen` is where the network saw the cloth (seen_positions.hpp). Velocities
-// in m/s are what the network carries, and those of pinned vertices what they did.
+// The end of a network's frame. `seen` has the positions that the network read (seen_positions.hpp). Velocities in m/s
+// are those that the network carries; velocities of pinned vertices are their motion.
 StepEnd learned_end(const Scene&, const State& from, const Drive&, const GraphState&, const Points& seen,
                     const NextCloth&);
 

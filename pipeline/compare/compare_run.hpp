@@ -14,12 +14,12 @@ struct TimedRunOptions {
   std::filesystem::path trajectory{};  // where the run is kept; empty: nowhere
 };
 
-// One run of the scene with the time of each frame, and with what is measured between them. It ends
-// early where it exceeds a limit, and says so. Absent: stopped.
+// Runs the scene, times each frame, and measures between the frames. The run ends early if it exceeds a limit, and says
+// so. Absent if it was stopped.
 std::optional<CompareRun> timed_run(const Setup&, const TimedRunOptions&, const Stop&);
 
-// Whether every frame of a kept run is a network's own: nothing gated, responded to, pushed or made by somebody else
-// after the start. Says what is not so; empty: it is.
+// Checks that a network alone made every frame of a kept run after the start: none was gated, responded to, pushed or
+// made by another stepper. Returns the reason if it is not so, else an empty text.
 std::string trouble_of_bare_run(const std::filesystem::path& trajectory);
 
 }  // namespace selvedge

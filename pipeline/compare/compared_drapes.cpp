@@ -49,7 +49,7 @@ MeasuredDrapes describe_drapes(const ComparedDrapes& asked, const DrapeRun& run)
   return made;
 }
 
-// One way on some test drapes, a frame each, with the triangles marked that meet the body.
+// One method on some test drapes, a frame each, with the triangles marked that meet the body.
 ViewRun view_of(const DrapeRun& run, const std::string& name, const std::function<Points(DrapeBody&)>& positions,
                 const std::vector<std::size_t>& picked) {
   const DrapeWorld& world = run.lessons.set->world;
@@ -85,21 +85,24 @@ ViewRun view_of(const DrapeRun& run, const std::string& name, const std::functio
   return view;
 }
 
-// A page of the named ways that the run has, and of the truth; none where there are fewer than two.
-void write_ways(const DrapeRun& run, std::initializer_list<const char*> names, const std::filesystem::path& page) {
+// A page of the named methods that the run has, and of the truth; none where there are fewer than two.
+void write_method_page(const DrapeRun& run, std::initializer_list<const char*> names,
+                       const std::filesystem::path& page) {
   constexpr std::size_t most_picked = 8, most_bytes = 12'000'000;
   std::vector<std::size_t> picked;
   const std::size_t count = run.lessons.test.size();
   for (std::size_t k = 0; k < std::min(count, most_picked); ++k)
     picked.push_back(k * count / std::min(count, most_picked));
   std::vector<ViewRun> views;
-  const std::vector<DrapeWay> ways = measured_ways(run);
+  const std::vector<MeasuredMethod> methods = measured_methods(run);
   for (const char* name : names)
-    for (const DrapeWay& one : ways)
-      if (one.way.name == name)
+    for (const MeasuredMethod& one : methods)
+      if (one.method.name == name)
         views.push_back(view_of(
             run, name,
-            [&run, one](DrapeBody& body) { return way_positions(one.way, *one.model, run.options, run.lessons, body); },
+            [&run, one](DrapeBody& body) {
+              return method_positions(one.method, *one.model, run.options, run.lessons, body);
+            },
             picked));
   if (views.size() < 2) return;
   views.push_back(view_of(
@@ -132,16 +135,16 @@ std::optional<MeasuredDrapes> measured_drapes(const ComparedDrapes& asked, const
     return left_out;
   }
   MeasuredDrapes made = describe_drapes(asked, *run);
-  for (const DrapeWay& one : measured_ways(*run)) {
+  for (const MeasuredMethod& one : measured_methods(*run)) {
     if (stop && stop()) return {};
-    made.rows.push_back(measure_row(one.way, *one.model, run->options, run->lessons));
-    tell("measured " + one.way.name);
+    made.rows.push_back(measure_row(one.method, *one.model, run->options, run->lessons));
+    tell("measured " + one.method.name);
   }
   make_folder(views);
   try {
-    write_ways(*run, {"control", "control, smooth", "collision_loss", "learned", "hybrid"},
-               views / (asked.name + ".html"));
-    write_ways(*run, {"fixed_approximate", "approximate", "hybrid"}, views / (asked.name + "_scales.html"));
+    write_method_page(*run, {"control", "control, smooth", "collision_loss", "learned", "hybrid"},
+                      views / (asked.name + ".html"));
+    write_method_page(*run, {"fixed_approximate", "approximate", "hybrid"}, views / (asked.name + "_scales.html"));
   } catch (const Error& error) {
     tell(std::string("no page that shows it: ") + error.what());
   }

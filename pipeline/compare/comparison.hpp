@@ -15,7 +15,7 @@ struct CompareScene {
   std::vector<std::string> overrides;  // key=value
   int states = 4;                      // common states, spread over the run; 0: no references, no errors
   int horizon = 6;                     // frames from each of them
-  std::string outfit;                  // what it is counted with in an evaluation
+  std::string outfit;                  // group of the scene in an evaluation
   // Of a sequence:
   bool tangled = false;  // by the generator of training
 };
@@ -24,11 +24,12 @@ struct CompareScene {
 struct CompareSetting {
   std::string name;
   std::vector<std::string> overrides;
-  std::string stepper;            // in place of the scene's; empty: that
+  std::string stepper;            // replaces that of the scene; empty: the scene's
   std::filesystem::path weights;  // of its network; empty: none
 };
 
-// Outfits on clips, each a scene: as skinned in the clip's first frame, or tangled as training's third stage has it.
+// Sequences, an outfit on a clip each. They start as skinned in the first frame of the clip, or tangled by the
+// generator of the third training stage.
 struct SequenceOptions {
   std::string file;                         // the scene of them all, seen from the comparison file
   std::vector<std::string> outfits, clips;  // each outfit with each clip in turn
@@ -40,10 +41,10 @@ struct SequenceOptions {
 
 // Options of an evaluation's tables.
 struct EvaluationOptions {
-  std::string baseline;  // the row that the others are held against; empty: no evaluation
+  std::string baseline;  // the row to which the others are compared; empty: no evaluation
   int resamples = 10000;
   bool volume = false;   // of self-penetration too, on the runs kept
-  int left_frames = 50;  // over which what is left of the first pairs is shown
+  int left_frames = 50;  // frames of the plot of remaining initial pairs
 };
 
 // Which table of Tan et al. 2022 a run stands in: those of garments, table 5 (graph networks from scratch) or table 6

@@ -14,7 +14,7 @@ struct PairedRatio {
   std::string row, baseline;
   int sequences = 0;  // that both have
   double ratio = unknown, low = unknown, high = unknown;
-  // Of fewer than 6 sequences no 95 % can be told: even a coin falls on one side five times in 16.
+  // Fewer than 6 sequences cannot show 95 %: five fair coins all fall on one side once in 16 throws.
   bool apart() const { return sequences >= 6 && (low > 1 || high < 1); }
 };
 
@@ -48,7 +48,7 @@ struct Evaluation {
   std::vector<std::pair<std::string, std::vector<int>>> by_frame;
 };
 
-// What the finished rows say of the sequences, for people and as JSON. Rows without a result keep their trouble.
+// The evaluation of the finished rows, for people and as JSON. A row without a result keeps its trouble.
 Evaluation evaluated(const Comparison&, const std::vector<CompareFloor>&, const std::vector<CompareRow>&);
 std::string evaluation_text(const Evaluation&);
 std::string evaluation_json(const Evaluation&);

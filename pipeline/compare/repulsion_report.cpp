@@ -172,20 +172,20 @@ std::string times_table(const UsedDrapes& all) {
 }
 
 std::string edge_passes_table(const UsedDrapes& all) {
-  constexpr ReportedMethod ways[]{{"naive", "control, naive"},
-                                  {"fixed scale", "fixed"},
-                                  {"learned scale", "learned"},
-                                  {"neighbours", "neighbours"}};
+  constexpr ReportedMethod methods[]{{"naive", "control, naive"},
+                                     {"fixed scale", "fixed"},
+                                     {"learned scale", "learned"},
+                                     {"neighbours", "neighbours"}};
   std::string text = "Passes over edges (beyond the paper)\n";
   for (const MeasuredDrapes* one : all) {
     text += "  " + one->name + "\n" +
             fmt::format("  {:<28}{:>16}{:>16}{:>16}{:>14}{:>14}{:>14}{:>16}\n", "", "CFMP %, 0", "1", "3", "pairs, 0",
                         "1", "3", "MPVE mm, 1 - 0");
-    for (const ReportedMethod& way : ways) {
-      const std::string name = way.row;
+    for (const ReportedMethod& method : methods) {
+      const std::string name = method.row;
       const DrapeTableRow *none = find_row(*one, name), *single = find_row(*one, name + ", edges 1"),
                           *three = find_row(*one, name + ", edges 3");
-      text += fmt::format("  {:<28}", way.title);
+      text += fmt::format("  {:<28}", method.title);
       if (!none || !single || !three)
         text += fmt::format("  left out: the run has no row `{}`\n", name);
       else

@@ -6,14 +6,14 @@
 
 namespace selvedge {
 
-// What a row may take of a scene: one that cannot be measured must not hold up the others.
+// Limits of a row on a scene, so that a row that cannot be measured does not hold up the others.
 struct RowLimits {
-  int pairs = 10;      // intersecting pairs of cloth, a triangle, at the end of a frame; 0: any number
-  double seconds = 0;  // of a run, and of all frames from the common states together; 0: any time
+  int pairs = 10;      // intersecting pairs of cloth for each triangle, at the end of a frame; 0: no limit
+  double seconds = 0;  // for a run, and for all frames from the common states together; 0: no limit
 };
 
-// Intersecting pairs of cloth in the positions as a file stores them; and at the end of a step that was audited, also
-// where the run leaves out contact of cloth with itself: its own audit does not look at them then.
+// Intersecting pairs of cloth in the positions as a file stores them, or at the end of an audited step. The second one
+// also counts where contact of cloth with itself is off, because the step's own audit does not look there.
 int pairs_of_cloth(const Surface&, const Points& x);
 int pairs_of_cloth(const Scene&, const StepReport&, const Points& x);
 
@@ -23,9 +23,9 @@ class RowWatch {
   RowWatch(const RowLimits& limits, const Scene& scene) : limits_(limits), scene_(scene) {}  // keeps a reference
 
   bool out_of_time() const { return limits_.seconds > 0 && seconds_since(started_) > limits_.seconds; }
-  // For `simulate`: ends a step too. This must outlive it.
+  // The flag for `simulate`, which ends a step too. This object must outlive it.
   StopFlag stop_flag() const;
-  // After a frame; false: the row ends with it.
+  // Call after each frame. False ends the row.
   bool goes_on(const StepReport&, const Points& x);
   // Why the run that came to frame `last` of `frames` ended there; empty: by no limit.
   std::string trouble(int last, int frames) const;

@@ -33,7 +33,7 @@ RollMaker maker_of(const SequenceOptions& sequences, const Outfit& outfit) {
   samples.clips = sequences.clips;
   samples.shapes = shapes;
   samples.shape_spread = sequences.shape_spread;
-  samples.flesh = false;
+  samples.soft_tissue = false;
   samples.start = GarmentStart::tangled;
   maker.options.seed = sequences.seed;
   maker.world = make_training_world(samples, sequences.seed);

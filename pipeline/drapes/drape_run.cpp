@@ -59,26 +59,26 @@ DrapeRun open_drape_run(const std::filesystem::path& folder) {
   return run;
 }
 
-std::vector<DrapeWay> measured_ways(const DrapeRun& run) {
-  std::vector<DrapeWay> ways{{{"backbone"}, &run.backbone}};
+std::vector<MeasuredMethod> measured_methods(const DrapeRun& run) {
+  std::vector<MeasuredMethod> methods{{{"backbone"}, &run.backbone}};
   for (const auto& [row, model] : run.rows) {
-    ways.push_back({{row->name, row->layer ? row : nullptr}, &model});
+    methods.push_back({{row->name, row->layer ? row : nullptr}, &model});
     if (row->name == "control") {
-      ways.push_back({{"control, naive", nullptr, AfterDrape::naive}, &model});
-      ways.push_back({{"control, naive, edges 1", nullptr, AfterDrape::naive, 1}, &model});
-      ways.push_back({{"control, naive, edges 3", nullptr, AfterDrape::naive, 3}, &model});
-      ways.push_back({{"control, smooth", nullptr, AfterDrape::smooth}, &model});
+      methods.push_back({{"control, naive", nullptr, PostProcessing::naive}, &model});
+      methods.push_back({{"control, naive, edges 1", nullptr, PostProcessing::naive, 1}, &model});
+      methods.push_back({{"control, naive, edges 3", nullptr, PostProcessing::naive, 3}, &model});
+      methods.push_back({{"control, smooth", nullptr, PostProcessing::smooth}, &model});
       if (!run.distance.layers.empty()) {
-        ways.push_back({{"control, naive, approximate", nullptr, AfterDrape::naive, 0, true}, &model});
-        ways.push_back({{"control, smooth, approximate", nullptr, AfterDrape::smooth, 0, true}, &model});
+        methods.push_back({{"control, naive, approximate", nullptr, PostProcessing::naive, 0, true}, &model});
+        methods.push_back({{"control, smooth, approximate", nullptr, PostProcessing::smooth, 0, true}, &model});
       }
     }
     if (row->layer) {
-      ways.push_back({{row->name + ", edges 1", row, AfterDrape::nothing, 1}, &model});
-      ways.push_back({{row->name + ", edges 3", row, AfterDrape::nothing, 3}, &model});
+      methods.push_back({{row->name + ", edges 1", row, PostProcessing::nothing, 1}, &model});
+      methods.push_back({{row->name + ", edges 3", row, PostProcessing::nothing, 3}, &model});
     }
   }
-  return ways;
+  return methods;
 }
 
 }  // namespace selvedge

@@ -25,11 +25,12 @@ PlainNetwork read_distance_network(const std::filesystem::path&, int inputs);
 // has not come to its end.
 DrapeRun open_drape_run(const std::filesystem::path& folder);
 
-// All that is measured of a run: the backbone, every row, post-processing of the control, passes over edges.
-struct DrapeWay {
-  MeasuredWay way;
+// The rows of a run's table: the backbone, every row, post-processing of the control, and edge passes. Points into the
+// run.
+struct MeasuredMethod {
+  CollisionMethod method;
   const DrapeModel* model;
 };
-std::vector<DrapeWay> measured_ways(const DrapeRun&);
+std::vector<MeasuredMethod> measured_methods(const DrapeRun&);
 
 }  // namespace selvedge

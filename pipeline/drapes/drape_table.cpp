@@ -19,14 +19,14 @@ struct DrapeColumns {
 };
 
 // Takes one drape through the row's parts and times each of them.
-Points run_way(const MeasuredWay& way, const DrapeModel& model, const DrapeTrainingOptions& options,
-               const DrapeLessons& lessons, DrapeBody& body, EdgePassMemory& edges, Points& before,
-               DrapeColumns& columns) {
+Points apply_method(const CollisionMethod& method, const DrapeModel& model, const DrapeTrainingOptions& options,
+                    const DrapeLessons& lessons, DrapeBody& body, EdgePassMemory& edges, Points& before,
+                    DrapeColumns& columns) {
   constexpr double milliseconds = 1e3;
   Stopwatch watch;
   before = drape_positions(model.drape, body.sample.drape);
   columns.backbone_ms.push_back(milliseconds * watch.lap());
-  const bool by_network = way.by_network || (way.row && way.row->neural_layer);
+  const bool by_network = method.by_network || (method.row && method.row->neural_layer);
   double asking = 0;
   const AskDistance plain = by_network ? body.by_network() : body.accurate();
   const AskDistance timed = [&](const Points& at, std::vector<SignedDistance>& found) {
@@ -37,19 +37,20 @@ Points run_way(const MeasuredWay& way, const DrapeModel& model, const DrapeTrain
   body.faces.clear();
   Repelled made;
   made.x = before;
-  DrapeRecipe recipe = recipe_of(way.row ? *way.row : DrapeRow{}, options.layer);
+  DrapeRecipe recipe = recipe_of(method.row ? *method.row : DrapeRow{}, options.layer);
   recipe.repulsion.recheck = options.layer.recheck;
-  if (way.row) made = behind_drape(model, body.sample.drape, before, lessons.ring, timed, recipe);
-  if (way.after == AfterDrape::naive) {
+  if (method.row) made = behind_drape(model, body.sample.drape, before, lessons.ring, timed, recipe);
+  if (method.after == PostProcessing::naive) {
     recipe.layer = true;
     made = behind_drape({model.drape, {}, {}}, body.sample.drape, before, lessons.ring, timed, recipe);
-  } else if (way.after == AfterDrape::smooth) {
+  } else if (method.after == PostProcessing::smooth) {
     made.x = push_smoothly(before, lessons.ring, timed, {}).x;
   }
   columns.distance_ms.push_back(milliseconds * asking);
   columns.push_ms.push_back(milliseconds * (watch.lap() - asking));
-  if (way.edge_pass > 0)
-    pass_edges(*body.field, lessons.set->world.surface, {.rounds = way.edge_pass, .count = false}, made.x, {}, &edges);
+  if (method.edge_pass > 0)
+    pass_edges(*body.field, lessons.set->world.surface, {.rounds = method.edge_pass, .count = false}, made.x, {},
+               &edges);
   columns.edges_ms.push_back(milliseconds * watch.lap());
   columns.pushed.push_back(static_cast<double>(made.pushed.size()));
   for (const PushedVertex& pushed : made.pushed) columns.alphas.push_back(pushed.alpha);
@@ -67,23 +68,23 @@ std::string with_interval(const MeanOverModels& m, int digits) {
 
 }  // namespace
 
-Points way_positions(const MeasuredWay& way, const DrapeModel& model, const DrapeTrainingOptions& options,
-                     const DrapeLessons& lessons, DrapeBody& body) {
+Points method_positions(const CollisionMethod& method, const DrapeModel& model, const DrapeTrainingOptions& options,
+                        const DrapeLessons& lessons, DrapeBody& body) {
   EdgePassMemory edges;
   Points before;
   DrapeColumns columns;
-  return run_way(way, model, options, lessons, body, edges, before, columns);
+  return apply_method(method, model, options, lessons, body, edges, before, columns);
 }
 
-DrapeTableRow measure_row(const MeasuredWay& way, const DrapeModel& model, const DrapeTrainingOptions& options,
+DrapeTableRow measure_row(const CollisionMethod& method, const DrapeModel& model, const DrapeTrainingOptions& options,
                           DrapeLessons& lessons) {
   DrapeTableRow row;
-  row.name = way.name;
+  row.name = method.name;
   DrapeColumns columns;
   EdgePassMemory edges;
   for (const std::unique_ptr<DrapeBody>& body : lessons.test) {
     Points before;
-    const Points x = run_way(way, model, options, lessons, *body, edges, before, columns);
+    const Points x = apply_method(method, model, options, lessons, *body, edges, before, columns);
     const GarmentErrors errors =
         garment_errors(*body->field, lessons.set->world.surface, x, {&body->sample.drape.truth, &before});
     columns.vertex_error.push_back(*errors.vertex_error);

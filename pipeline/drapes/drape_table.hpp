@@ -5,14 +5,16 @@
 
 namespace selvedge {
 
-// What is done to one predicted drape when it is measured.
-enum class AfterDrape { nothing, naive, smooth };  // naive: scale 1, accurate; smooth: push_smoothly
-struct MeasuredWay {
+// Post-processing of a predicted drape. naive: a push of scale 1. smooth: push_smoothly.
+enum class PostProcessing { nothing, naive, smooth };
+
+// How collisions of a predicted drape are handled when a row of the table is measured.
+struct CollisionMethod {
   std::string name;
-  const DrapeRow* row = nullptr;  // the layer; null: none
-  AfterDrape after = AfterDrape::nothing;
+  const DrapeRow* row = nullptr;  // the row whose layer is behind the network; null: no layer
+  PostProcessing after = PostProcessing::nothing;
   int edge_pass = 0;        // rounds
-  bool by_network = false;  // distances of what is done afterwards; the layer's row knows its own
+  bool by_network = false;  // post-processing reads distances by a network; the layer reads those of its row
 };
 
 // Means over the test drapes with halves of their 95 % intervals.
@@ -29,12 +31,12 @@ struct DrapeTableRow {
   std::vector<std::pair<double, double>> ratio_and_alpha;
 };
 
-// Where a way takes one drape of the lessons.
-Points way_positions(const MeasuredWay&, const DrapeModel&, const DrapeTrainingOptions&, const DrapeLessons&,
-                     DrapeBody&);
+// The positions of one drape after the method.
+Points method_positions(const CollisionMethod&, const DrapeModel&, const DrapeTrainingOptions&, const DrapeLessons&,
+                        DrapeBody&);
 
-// Of every test drape. Distances that errors are told by are the accurate ones.
-DrapeTableRow measure_row(const MeasuredWay&, const DrapeModel&, const DrapeTrainingOptions&, DrapeLessons&);
+// Measures the method on every test drape. Errors are measured with accurate distances.
+DrapeTableRow measure_row(const CollisionMethod&, const DrapeModel&, const DrapeTrainingOptions&, DrapeLessons&);
 
 // A line a row: for people with intervals, and as CSV with everything.
 std::string drape_table_text(const std::vector<DrapeTableRow>&);

@@ -14,11 +14,12 @@ const Options<StageOptions>& stage_options() {
   using O = StageOptions;
   static const Options<O> table(
       "stage", "How long one network is trained.",
-      {integer("steps", &O::steps, at_least_one, "of Adam"),
-       integer("batch", &O::batch, at_least_one, "drapes a step; of the distance: see `bodies`"),
-       number("learning_rate", &O::learning_rate, Unit::none, positive, "at the start; to zero as half a cosine"),
+      {integer("steps", &O::steps, at_least_one, "steps of Adam"),
+       integer("batch", &O::batch, at_least_one, "drapes a step; the distance network takes `bodies` instead"),
+       number("learning_rate", &O::learning_rate, Unit::none, positive,
+              "rate at the start; it falls to zero as half a cosine"),
        number("weight_decay", &O::weight_decay, Unit::none, not_negative,
-              "of all parameters, times the rate, beside each step of Adam")});
+              "decay of the backbone's perceptron in each step, times the rate")});
   return table;
 }
 
@@ -30,9 +31,10 @@ Option<Struct> stage(std::string name, StageOptions Struct::*member, std::string
 const Options<MeshShape>& mesh_options() {
   using O = MeshShape;
   static const Options<O> table(
-      "mesh", "Convolutions over the garment's mesh.",
-      {integer("levels", &O::levels, at_least_one, "of pooling"),
-       integer("channels", &O::channels, at_least_one, "of the finest level; twice and four times as many above"),
+      "mesh", "Convolutions over the garment's mesh, of the backbone `gcnn`.",
+      {integer("levels", &O::levels, at_least_one, "levels of pooling"),
+       integer("channels", &O::channels, at_least_one,
+               "channels of the finest level; coarser ones have twice and four times as many"),
        integer("kernels", &O::kernels, at_least_one, "matrices that each edge mixes")});
   return table;
 }
@@ -40,14 +42,16 @@ const Options<MeshShape>& mesh_options() {
 const Options<BackboneOptions>& backbone_options() {
   using O = BackboneOptions;
   static const Options<O> table(
-      "backbone", "Pose, shape and style to a drape.",
+      "backbone", "The network that predicts a drape from pose, shape and style.",
       {choice("kind", &O::kind, {{"mlp", BackboneKind::perceptron}, {"gcnn", BackboneKind::mesh}},
-              "a perceptron; or one behind which convolutions with locally varying kernels go up to the garment"),
-       section(&O::mesh, mesh_options(), "of `gcnn`"), integer("layers", &O::layers, at_least_one, "of the perceptron"),
-       integer("width", &O::width, at_least_one, "of all but the last"),
-       flag("linear", &O::linear, "a linear regression of the drapes to train on is added to what it says"),
+              "`mlp`: a perceptron; `gcnn`: a perceptron for the coarsest level, and convolutions with locally varying "
+              "kernels up to the garment"),
+       section(&O::mesh, mesh_options(), "the convolutions of `gcnn`"),
+       integer("layers", &O::layers, at_least_one, "layers of the perceptron"),
+       integer("width", &O::width, at_least_one, "width of all layers except the last"),
+       flag("linear", &O::linear, "adds a linear regression of the training drapes to the perceptron's output"),
        number("least_carried", &O::least_carried, Unit::none, not_negative,
-              "joints that carry less of the garment, by its skin weights, are not read"),
+              "leaves out joints that carry a smaller share of the garment, by its skin weights"),
        stage("stage", &O::stage, "")});
   return table;
 }
@@ -55,15 +59,17 @@ const Options<BackboneOptions>& backbone_options() {
 const Options<DistanceOptions>& distance_options() {
   using O = DistanceOptions;
   static const Options<O> table(
-      "distance", "The body's signed distance by a network, of the rows `approximate` and `hybrid`.",
-      {text("weights", &O::weights, "of an earlier run, seen from the working folder; left out: it is trained"),
-       integer("layers", &O::layers, at_least_one, "before the last"), integer("width", &O::width, at_least_one, ""),
-       number("beta", &O::beta, Unit::none, positive, "of softplus"),
-       flag("bones", &O::bones, "it reads the point in each bone's frame; false: as it is"),
-       integer("bodies", &O::bodies, at_least_one, "of a batch"),
-       integer("points", &O::points, at_least_one, "of a body in a batch"),
-       number("noise", &O::noise, Unit::length, not_negative, "of points round surfaces, standard deviation"),
-       number("box", &O::box, Unit::length, positive, "edge of the cube that points are drawn in"),
+      "distance", "The network of the body's signed distance, for rows such as `approximate` and `hybrid`.",
+      {text("weights", &O::weights,
+            "file of an earlier run, seen from the working folder; left out: the network is trained"),
+       integer("layers", &O::layers, at_least_one, "number of layers before the last"),
+       integer("width", &O::width, at_least_one, "width of these layers"),
+       number("beta", &O::beta, Unit::none, positive, "sharpness of softplus"),
+       flag("bones", &O::bones, "the network reads the point in each bone's frame; false: in space"),
+       integer("bodies", &O::bodies, at_least_one, "bodies of a batch"),
+       integer("points", &O::points, at_least_one, "points of each body in a batch"),
+       number("noise", &O::noise, Unit::length, not_negative, "standard deviation of points round surfaces"),
+       number("box", &O::box, Unit::length, positive, "edge of the cube in which points are drawn"),
        stage("stage", &O::stage, "")});
   return table;
 }
@@ -72,20 +78,21 @@ const Options<LayerOptions>& layer_options() {
   using O = LayerOptions;
   static const Options<O> table(
       "layer", "The repulsive layer and the losses 7 to 9.",
-      {integer("latent", &O::latent, at_least_one, "M: of z and the layers of h; the paper: 1024"),
-       integer("per_vertex", &O::per_vertex, at_least_one, "D"),
-       number("unit", &O::unit, Unit::length, positive, "in which g reads distances"),
+      {integer("latent", &O::latent, at_least_one, "M, the width of z and of the layers of h; the paper: 1024"),
+       integer("per_vertex", &O::per_vertex, at_least_one, "D, the width of each vertex's latent"),
+       number("unit", &O::unit, Unit::length, positive, "unit in which g reads distances"),
        number("scale_rate", &O::scale_rate, Unit::none, positive,
-              "times the learning rate, of the networks of scales: they begin untrained"),
+              "factor on the learning rate of the scale networks, which begin untrained"),
        number("deep", &O::deep, Unit::length, positive, "deeper vertices take their neighbours' direction"),
        number("most_beyond", &O::most_beyond, Unit::length, positive,
               "no scale takes a vertex farther out of the body; the paper has no such bound"),
-       integer("recheck", &O::recheck, not_negative, "times pushed vertices are asked again where it is measured"),
+       integer("recheck", &O::recheck, not_negative, "number of rechecks of pushed vertices in measurements"),
        number("reconstruction", &O::reconstruction, Unit::none, not_negative, "weight of loss 8"),
        number("collision", &O::collision, Unit::none, not_negative, "weight of loss 9"),
-       number("loss_unit", &O::loss_unit, Unit::length, positive, "of lengths in the losses; the paper is silent"),
+       number("loss_unit", &O::loss_unit, Unit::length, positive,
+              "unit of lengths in the losses; the paper gives none"),
        choice("gradient", &O::gradient, {{"full", LayerGradient::full}, {"frozen", LayerGradient::frozen}},
-              "through the layer")});
+              "Jacobian of the layer: complete, or with a constant direction")});
   return table;
 }
 
@@ -95,17 +102,17 @@ const Options<DrapeTrainingOptions>& drape_training_options() {
   using O = DrapeTrainingOptions;
   static const Options<O> table(
       "drape training", "A training file with the key `drapes`.",
-      {text("description", "for people"), text("name", &O::name, "of the run; left out: the file's"),
+      {text("description", "a note for people; the program ignores it"),
+       text("name", &O::name, "name of the run; left out: that of the file"),
        needed(text("drapes", &O::drapes, "folder that `selvedge dataset` made, seen from the working folder")),
-       integer("seed", &O::seed, not_negative, "of all that is random"),
-       integer("validation_paths", &O::validation_paths, at_least_one,
-               "of those to train on, kept to see whether training has ended"),
-       texts("rows", &O::rows, "of the table, equally long from one checkpoint"),
+       integer("seed", &O::seed, not_negative, "seed of all random numbers"),
+       integer("validation_paths", &O::validation_paths, at_least_one, "training paths that are kept for validation"),
+       texts("rows", &O::rows, "rows of the table; all are trained equally long from one checkpoint"),
        flag("from_scratch", &O::from_scratch,
-            "rows begin where the backbone began, and are trained as it was; false: they go on from its end"),
-       section(&O::backbone, backbone_options(), ""), stage("fine_tuning", &O::fine_tuning, "of each row"),
+            "rows begin where the backbone began, and are trained as it was; false: they continue from its end"),
+       section(&O::backbone, backbone_options(), ""), stage("fine_tuning", &O::fine_tuning, "training of each row"),
        section(&O::layer, layer_options(), ""), section(&O::distance, distance_options(), ""),
-       number("checkpoint_minutes", &O::checkpoint_minutes, Unit::none, not_negative, "between checkpoints")});
+       number("checkpoint_minutes", &O::checkpoint_minutes, Unit::none, not_negative, "minutes between checkpoints")});
   return table;
 }
 

@@ -152,12 +152,12 @@ enum class PoseEnd { reached, rejected, stopped };
 PoseEnd go_on(PathMaker& maker, int number) {
   const DrapeOptions& options = maker.world.options;
   const BodyPose goal = next_pose(maker, number);
-  const Clip way{"way", 1, maker.world.body.joints, {maker.pose, goal}, {}};
+  const Clip transition{"transition", 1, maker.world.body.joints, {maker.pose, goal}, {}};
   bool rests = false;
   for (int k = 1; k <= options.move_frames + std::max(options.most_settle_frames, options.settle_frames); ++k) {
     if (maker.stop && maker.stop()) return PoseEnd::stopped;
     const double t = std::min(1.0, static_cast<double>(k) / options.move_frames);
-    maker.pose = t < 1 ? pose_at(way, t * t * (3 - 2 * t)) : goal;
+    maker.pose = t < 1 ? pose_at(transition, t * t * (3 - 2 * t)) : goal;
     if (!advance(maker, maker.pose)) return PoseEnd::rejected;
     rests = speed_of_fast_ones(maker.state.v) < options.rest_speed;
     if (rests && k >= options.move_frames + options.settle_frames) break;

@@ -55,9 +55,9 @@ bool train_all(DrapeTraining& training) {
 
 std::vector<DrapeTableRow> measure_all(DrapeTraining& training) {
   std::vector<DrapeTableRow> table;
-  for (const DrapeWay& one : measured_ways(training.run)) {
-    table.push_back(measure_row(one.way, *one.model, training.run.options, training.run.lessons));
-    if (training.stage.request.log) *training.stage.request.log << "measured: " << one.way.name << std::endl;
+  for (const MeasuredMethod& one : measured_methods(training.run)) {
+    table.push_back(measure_row(one.method, *one.model, training.run.options, training.run.lessons));
+    if (training.stage.request.log) *training.stage.request.log << "measured: " << one.method.name << std::endl;
   }
   return table;
 }

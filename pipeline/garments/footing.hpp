@@ -7,13 +7,13 @@
 
 namespace selvedge {
 
-// What each vertex of a worn surface stands on: the vertex of the body that is nearest where both are as made.
+// For each vertex of a worn surface the vertex of the body that is nearest in the rest pose: its foot.
 struct Footing {
   std::vector<int> foot;     // of the body's vertices
-  std::vector<double> part;  // of the gap before the foot, from which on a vertex that is farther out is squeezed
+  std::vector<double> part;  // share of the gap above the foot, beyond which a vertex is squeezed
 };
 
-// A body in a pose, as all that is worn on it looks it up.
+// A body in a pose, with a grid for the search from what is worn on it.
 struct PosedSkin {
   PosedSkin(const Surface& body, const Points& posed);
 
@@ -22,16 +22,16 @@ struct PosedSkin {
   Points x_in_order, normals_in_order;  // in the grid's order
 };
 
-// x is worn by the body at rest [m]; the body's own parts are apart there.
+// The footing of a surface x that is worn by the body at rest [m]. The parts of the body must be apart there.
 Footing footing_of(const Points& x, const PosedSkin& rest);
 
-// That of some vertices; none of none.
+// The footing of some of the vertices; empty if `Footing` is.
 Footing footing_of(const Footing&, const std::vector<int>& vertices);
 
-// Where x, worn by the body in that pose, would reach into another part of the body that has come near, or past the
-// middle of the gap between, it is squeezed: drawn to its feet, as far as leaves the order of layers and both sides
-// their half. What is farther from the body than 6 cm stays, and so does all where no part is nearer than it was at
-// rest.
+// Squeezes a surface x that is worn by the body in this pose. A vertex is moved towards its foot if it would reach into
+// another part of the body that has come near, or beyond the middle of the gap to it. The layers keep their order, and
+// each side keeps its half of the gap. A vertex that is farther than 6 cm from the body stays. Nothing moves unless a
+// part of the body is nearer than at rest.
 Points squeezed(const Footing&, const PosedSkin&, const Points& x);
 
 }  // namespace selvedge

@@ -10,7 +10,7 @@
 
 namespace selvedge {
 
-// How one cloth fits one region of a body. What no vertex or no section tells is absent.
+// The fit of one cloth in one region of a body. A value is absent if no vertex or no section gives it.
 struct FitRow {
   std::string region, cloth;
   int vertices = 0;                             // of the cloth, whose nearest point of the body lies in the region
@@ -28,12 +28,14 @@ struct FitMeasures {
   std::vector<int> row;                   // of each vertex: its place in rows, -1: nearest to no region
 };
 
-// Fit of a cloth that rests on a body, in one frame.
-//   Ease: seven planes across a region's axis cut the body, round whose section a tape is laid (its convex hull), and
-// the cloth, whose section is as long as it is at rest. Planes where the cloth does not go all round tell nothing.
-//   Pressure: what the skin bears is what the cloth's elastic forces and its weight leave unbalanced, along the outward
-// normal, over the area of a vertex: the contact forces of a state at rest, whoever made it. Inertia, damping and
-// pinned vertices are left out. Vertices nearer than `reach` [m] touch.
+// Measures how a cloth that rests on a body fits, in one frame.
+// * Ease: seven planes across the axis of a region cut the body and the cloth. The girth of the body is that of the
+// convex hull of its section, as a tape measures it; that of the cloth is the rest length of its section. A plane that
+// the cloth does not go round gives no ease.
+// * Pressure: the part of the cloth's elastic forces and weight that is not balanced, along the outward normal, over
+// the area of a vertex. In a state at rest it is the contact force, whichever stepper made the state. Inertia, damping
+// and pinned vertices are left out. Vertices nearer than `reach` [m] touch.
+//
 // Throws Error for positions that are not finite.
 FitMeasures measure_fit(const Scene&, const Points& x, const Vec3& gravity, const Surface& body, const Points& body_x,
                         const FitRegions&, double reach);

@@ -13,9 +13,9 @@ struct HoodLosses {
   double grad_norm = 0;  // mean over the vertices that are not pinned of |d total / d x_i| [N]
 };
 
-// What a frame is judged by. The potential is that of one frame of 1/30 s, whoever made the frame and in however many
-// steps: HOOD's energies with the scene's materials as networks see them (vertex_material), gravity and wind as the
-// drive has them, and the penalty of bodies closer than 2 mm. Cloth-cloth contact has no part in it.
+// The potential that measures a frame. It is that of one frame of 1/30 s, whichever stepper made the frame and in
+// however many steps: HOOD's energies with the scene's materials as networks read them (vertex_material), gravity and
+// wind of the drive, and the penalty of bodies closer than 2 mm. It has no contact of cloth with cloth.
 struct HoodJudge {
   LossGarment garment;
   Surface body;  // all obstacles
@@ -35,8 +35,8 @@ struct JudgedFrame {
 // The energies of `next` [J] and the norm of their gradient [N].
 HoodLosses hood_losses_of(HoodJudge&, const JudgedFrame&);
 
-// How far the frame's total is above the least that is found from it, and how large the mass-scaled residual is there:
-// sqrt(sum |g_i|^2 / m_i) [N/sqrt(kg)].
+// The excess of the frame's total over the minimum that is found from it, and the mass-scaled residual: sqrt(sum
+// |g_i|^2 / m_i) [N/sqrt(kg)].
 struct Suboptimality {
   double excess = 0;    // E(x) - E(x*) [J]
   double residual = 0;  // at x

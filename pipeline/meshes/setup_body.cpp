@@ -142,7 +142,8 @@ void forget(PosedBodies& known) {
 
 void leave_room(double room, Performance& who) {
   if (room > 0)
-    who.flesh = std::make_shared<GiveWay>(who.surface, shaped(who.body.skin, who.shape), GiveWayOptions{.room = room});
+    who.soft_tissue =
+        std::make_shared<GiveWay>(who.surface, shaped(who.body.skin, who.shape), GiveWayOptions{.room = room});
   forget(*who.known);
 }
 
@@ -179,7 +180,8 @@ Performance read_performance(const Config& section, const std::filesystem::path&
 void wear(int garments, Performance& who) {
   constexpr double a_garment = 0.005;  // [m]
   who.garments = garments;
-  if (who.flesh && who.fits_room && garments > 1) leave_room(GiveWayOptions{}.room + (garments - 1) * a_garment, who);
+  if (who.soft_tissue && who.fits_room && garments > 1)
+    leave_room(GiveWayOptions{}.room + (garments - 1) * a_garment, who);
 }
 
 Performances read_performances(const Config& obstacles, const std::filesystem::path& folder) {
@@ -216,7 +218,7 @@ const PosedBody& posed_at(const Performance& who, double time) {
   if (const auto found = at.find(time); found != at.end()) return found->second;
   if (!who.known->keeps_all && at.size() >= most) at.clear();
   PosedBody body{posed(who.body, who.shape, pose_at(who, time)), {}};
-  body.given = who.flesh ? (*who.flesh)(body.skinned) : body.skinned;
+  body.given = who.soft_tissue ? (*who.soft_tissue)(body.skinned) : body.skinned;
   return at.emplace(time, std::move(body)).first->second;
 }
 

@@ -14,39 +14,40 @@
 
 namespace selvedge {
 
-// How a clean start is grown: bodies come from the pose that their garments were made in, and hold still [s].
+// Times of a draped start [s]: of the motion from the pose in which the garments were made, and of the hold after it.
 struct Draping {
   double seconds = 1, hold = 0.5;
   bool operator==(const Draping&) const = default;
 };
 
-// A body before it is placed: as skinned, and where it has given way to itself [m].
+// The surface of a body before it is placed in the scene: skinned, and with deformed soft tissue [m].
 struct PosedBody {
   Points skinned, given;
 };
 
-// Of one body doing one thing. To give way takes time, and the obstacle and all garments ask for the same moments.
+// Poses of one performance by time. They are kept because soft tissue takes long, and the obstacle and all garments
+// need the same times.
 struct PosedBodies {
   std::map<double, PosedBody> at;
-  bool keeps_all = false;  // else those asked for last
+  bool keeps_all = false;  // false: only the last poses are kept
   double skin_at = 0;      // the moment of:
   std::optional<PosedSkin> skin;
 };
 
-// A body of a scene, what it does and where: the obstacle and the garments on it share it.
+// A body of a scene with its motion and placement. The obstacle and the garments on it share it.
 struct Performance {
   std::string name;  // the obstacle's
   BodyModel body;
   Surface surface;  // of its skin
   Eigen::VectorXd shape;
-  Clip clip;                             // without poses: it stands in the zero pose
-  std::shared_ptr<const GiveWay> flesh;  // null: it passes through itself
-  bool fits_room = false;                // between its parts to what it wears
-  int garments = 0;                      // that it wears
-  Config section;                        // the obstacle's: how it is placed
-  Motion motion;                         // of what is placed
-  Clip before;                           // up to time 0, where the scene's time begins before it
-  double begins = 0;                     // when it does [s]
+  Clip clip;                                   // without poses: it stands in the zero pose
+  std::shared_ptr<const GiveWay> soft_tissue;  // null: it passes through itself
+  bool fits_room = false;                      // between its parts to what it wears
+  int garments = 0;                            // that it wears
+  Config section;                              // the obstacle's: how it is placed
+  Motion motion;                               // of what is placed
+  Clip before;                                 // up to time 0, where the scene's time begins before it
+  double begins = 0;                           // when it does [s]
   std::shared_ptr<PosedBodies> known = std::make_shared<PosedBodies>();  // where it was asked for, by time
 };
 
@@ -57,23 +58,23 @@ Performances read_performances(const Config& obstacles, const std::filesystem::p
 // A `body` section by itself: model, shape and clip.
 Performance read_performance(const Config& body, const std::filesystem::path& folder);
 
-// Has it wear that many, and leave as much room between parts that come together as they ask for over each other,
-// unless the body's section says how much.
+// Sets the number of garments that the body wears. The room between its parts grows with it, unless the body's section
+// gives the room.
 void wear(int garments, Performance&);
 
-// Makes the scene's time begin that early, with that many seconds of the body's way from these rotations of its joints
-// into its pose at time 0, which it holds from then on.
+// Lets the scene's time begin before 0, at `begins`. The body moves from these rotations of its joints into its pose at
+// time 0 within `seconds`, and holds it from then on.
 void come_from(const Points& rotations, double begins, double seconds, Performance&);
 
 BodyPose pose_at(const Performance&, double time);
 
-// Before it is placed; kept in what the performance knows.
+// The body at a time before it is placed. The performance keeps it.
 const PosedBody& posed_at(const Performance&, double time);
 
-// Where it has given way to itself, before it is placed; the last one is kept.
+// The skin with deformed soft tissue before it is placed. The last one is kept.
 const PosedSkin& skin_at(const Performance&, double time);
 
-// The body, giving way where it has flesh, where the scene has it at a time [s].
+// The body where the scene has it at a time [s], with its soft tissue deformed if it has any.
 Points body_at(const Performance&, double time);
 
 // Scaled, turned and moved as the body is.

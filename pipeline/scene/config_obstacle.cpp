@@ -123,7 +123,8 @@ const Section& body_section() {
        with_words(
            number("room", Unit::length, not_negative, "auto",
                   "between parts of a moving body that come together, in the body's own metres, before `scale`: it "
-                  "gives way like flesh; `auto`: 1 cm, and 5 mm more for each garment that it wears beyond the first; "
+                  "gives way like soft tissue; `auto`: 1 cm, and 5 mm more for each garment that it wears beyond the "
+                  "first; "
                   "0: it passes through itself"),
            {"auto"})}};
   return table;

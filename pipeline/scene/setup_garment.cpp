@@ -116,7 +116,7 @@ std::vector<std::shared_ptr<const Wearing>> read_wearings(const Config& cloth, c
     if (!section["pins"].flag()) garment.pins.clear();
     SkinWeights skin;
     Footing footing;
-    if (who->flesh) {
+    if (who->soft_tissue) {
       skin = shares_of_body(garment.skin.rest, who->body, skin_width);
       footing = footing_of(garment.skin.rest, {who->surface, who->body.skin.rest});
     }
@@ -153,14 +153,14 @@ namespace {
 Points carried(const Wearing& wearing, double time) {
   const Performance& who = *wearing.by;
   Points x = worn(wearing.garment, who.body, who.shape, pose_at(who, time));
-  if (!who.flesh) return x;
+  if (!who.soft_tissue) return x;
   const PosedBody& body = posed_at(who, time);
   return x + wearing.skin * (body.given - body.skinned);
 }
 
 Points squeezed_at(const Wearing& wearing, const Footing& footing, double time, const Points& x) {
   const Performance& who = *wearing.by;
-  return who.flesh ? squeezed(footing, skin_at(who, time), x) : x;
+  return who.soft_tissue ? squeezed(footing, skin_at(who, time), x) : x;
 }
 
 }  // namespace

@@ -14,8 +14,8 @@ namespace selvedge {
 struct Wearing {
   Garment garment;
   std::shared_ptr<const Performance> by;
-  SkinWeights skin = {};  // in what shares each vertex goes along where the body gives way; none: nowhere
-  Footing footing = {};   // what each vertex is squeezed towards where parts of the body close on it; none: nothing is
+  SkinWeights skin = {};  // how each vertex follows displacements of soft tissue; empty: it does not
+  Footing footing = {};   // where each vertex is squeezed to between parts of the body; empty: nowhere
 };
 
 // The garment of a cloth's section, or those of its outfit; `folder` is the scene file's, warnings are added.
@@ -25,16 +25,17 @@ std::vector<std::shared_ptr<const Wearing>> read_wearings(const Config& cloth, c
 // Its rest shape on the body, with its groups, before the body is placed.
 Mesh rest_mesh(const Wearing&);
 
-// As skinned, where the scene has it at a time [s], and how fast it moves there, by the clip's next frame.
+// The skinned positions at a time [s], as placed, and their velocities, from the next frame of the clip.
 Points worn_at(const Wearing&, double time);
 Points worn_velocity(const Wearing&, double time);
 
-// Some of its vertices moved along with what of the body has given way to itself, and squeezed between parts of the
-// body that have come near each other: where pins are.
+// Target positions of pins: skinned, moved with the soft tissue, and squeezed between parts of the body that have come
+// near each other.
 Points held_at(const Wearing&, const std::vector<int>& vertices, double time);
 
-// Where cloth is drawn to: all as pins are, but not squeezed where it is all that the body wears. Layers need their
-// share of the gap; one alone is untangled from the skin, and what hangs over a raised knee would be drawn under it.
+// Target positions of cloth that is drawn to its skinned target: as held_at, but not squeezed if this is the only
+// garment on the body. Layers need their share of the gap. A single layer is untangled from the skin, and cloth that
+// hangs over a raised knee would be drawn under it.
 Points drawn_at(const Wearing&, double time);
 
 }  // namespace selvedge

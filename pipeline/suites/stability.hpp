@@ -24,12 +24,15 @@ struct StabilityRequest {
   std::function<bool()> stop;   // asked after every frame; true ends the suite
 };
 
-// Runs a suite of stiff and extreme cases. A run passes that ends without a rejected step and finite; whose energy
-// never grows by more than what pins, obstacles, wind and the response can have given it (physics/solve/work.hpp); that
-// comes to rest; whose iterations are bounded; and that stays clean if it started clean, or if an obstacle jumped is
-// clean in the end. A bare network has to stay finite or to reject a step; the rest is told. Leaves stability.txt,
-// stability.csv, stability.json and stability.md in `out`, and of each run that failed the trajectory and its page. A
-// run that the stepper does not take fails with the reason.
+// Runs a suite of stiff and extreme cases. A run passes if
+// * no step is rejected and all numbers are finite;
+// * the energy never grows by more than the work of pins, obstacles, wind and the response (physics/solve/work.hpp);
+// * it comes to rest;
+// * the numbers of iterations are bounded;
+// * it stays clean if it started clean, or is clean in the end if an obstacle jumped.
+// A bare network must only stay finite or reject a step; other findings are noted. A run that the stepper does not take
+// fails with the reason. Leaves stability.txt, stability.csv, stability.json and stability.md in `out`, and the
+// trajectory and page of each failed run.
 std::vector<StabilityRow> stability(const StabilityRequest&);
 
 // Whether every run passed.

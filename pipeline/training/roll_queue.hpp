@@ -10,8 +10,8 @@
 
 namespace selvedge {
 
-// Prepares roll-outs in a thread of its own, in the order in which they were asked for. Which they are depends on what
-// was asked for and never on time.
+// Prepares roll-outs in a thread of its own, in the order of the requests. The result depends on the requests alone,
+// never on time.
 class RollQueue {
  public:
   explicit RollQueue(RollMaker&);  // the maker is the thread's until the queue ends, but for `locked`
@@ -20,7 +20,7 @@ class RollQueue {
   RollQueue& operator=(const RollQueue&) = delete;
 
   void ask(const RollRequest&);
-  // The first of those that were asked for and not taken; waits until it is there. Throws what its preparation threw.
+  // The first request that was not taken yet; waits until it is prepared. Throws the error of its preparation.
   Roll take();
   // Not taken yet, the first one first.
   std::vector<RollRequest> waiting() const;

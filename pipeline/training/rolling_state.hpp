@@ -14,9 +14,9 @@ namespace selvedge {
 struct RollingState {
   Roll roll;
   int frame = 0, pass = 0;
-  GraphState now;                    // what the frame starts from; its guess and pass are those of the pass to come
+  GraphState now;                    // the start of the frame, with guess and number of the next pass
   bool over = true;                  // the roll-out has ended
-  std::unique_ptr<Safeguard> guard;  // of roll-outs that are advanced through it
+  std::unique_ptr<Safeguard> guard;  // filters the motion of the roll-out; null: there is none
   std::vector<char> body_left_out;   // faces of the body that meet others now or next; empty: none
   // Memory that is used again:
   GraphSearch search;
@@ -24,10 +24,10 @@ struct RollingState {
   GraphReport found;
 };
 
-// Begins a roll-out: at rest, out of the body, before a frame of 1/3 s; or as the clip moves.
+// Begins a roll-out: at rest and outside the body before a frame of 1/3 s, or with the motion of the clip.
 void begin_roll(Roll, RollingState&);
 
-// Goes on with a roll-out that was begun before, from what was kept of it.
+// What a checkpoint keeps of a roll-out, and how the roll-out continues from it.
 struct KeptRolling {
   int frame = 0, pass = 0;
   Points x, previous, velocity, guess;
@@ -52,16 +52,15 @@ struct FrameMaking {
 // The graph of the pass to come, raw. False: refused, for something is not finite.
 bool raw_graph_of(const FrameMaking&, const FeatureTables&, RollingState&, Graph&);
 
-// The pass gave `next`: goes on to the next pass, or with the frame's last one to the next frame. A roll-out is over
-// after its last frame, and where a free vertex is farther than `reset_distance` from the garment as worn, or is not
-// finite.
+// Takes the result of a pass, and proceeds to the next pass or frame. The roll-out ends after its last frame, or if a
+// free vertex is not finite or farther than `reset_distance` from the skinned garment.
 void take_pass(const FrameMaking&, const NextCloth& next, double reset_distance, RollingState&);
 
-// Lets the state's guard change the frame's last pass, where there is a guard. False: it gives the motion up.
+// Lets the guard of the state, if there is one, correct the last pass of the frame. False if it gives up.
 bool pass_guard(const FrameMaking&, RollingState&, NextCloth& next);
 
-// Steps of the gate: among base + t (next - base), with `count` values of t up to 1.2, the one with the least sum of
-// losses; base is where the cloth is without forces.
+// The gate: of the candidates base + t (next - base), with `count` values of t up to 1.2, returns the one with the
+// least loss. base is the motion without forces.
 NextCloth gated(const FrameMaking&, int count, const NextCloth& next, RollingState&);
 
 }  // namespace selvedge

@@ -15,7 +15,7 @@
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/run/progress.hpp"
-#include "pipeline/training/flesh_hdf5.hpp"
+#include "pipeline/training/soft_tissue_hdf5.hpp"
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
 #include "pipeline/training/training_tables.hpp"
 
@@ -75,7 +75,7 @@ void write_tables(const TrainingRun& run) {
 
 void save(TrainingRun& run) {
   run.history.seconds = run.seconds();
-  run.trainer->queue->locked([&] { write_flesh(cache_folder(), run.trainer->maker->world); });
+  run.trainer->queue->locked([&] { write_soft_tissue(cache_folder(), run.trainer->maker->world); });
   write_weights(run, "weights.h5");
   write_tables(run);
   write_training_checkpoint(run.folder / "checkpoint.h5", *run.trainer, run.history);

@@ -13,7 +13,7 @@
 #include "learned/network/weights_hdf5.hpp"
 #include "learned/network/widen_weights.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
-#include "pipeline/training/flesh_hdf5.hpp"
+#include "pipeline/training/soft_tissue_hdf5.hpp"
 
 namespace selvedge {
 namespace {
@@ -287,7 +287,7 @@ std::unique_ptr<Trainer> make_empty_trainer(const TrainingOptions& options) {
   trainer->pool.resize(static_cast<std::size_t>(options.pool.states));
   trainer->maker = std::make_unique<RollMaker>(
       RollMaker{options, trainer->architecture.features, make_training_world(options.samples, options.seed), {}});
-  read_flesh(cache_folder(), trainer->maker->world);
+  read_soft_tissue(cache_folder(), trainer->maker->world);
   trainer->queue = std::make_unique<RollQueue>(*trainer->maker);
   return trainer;
 }

@@ -79,7 +79,7 @@ const Options<SampleOptions>& sample_options() {
        flag("yaw", &O::yaw, "each roll-out turned about the vertical at random"),
        flag("mirror", &O::mirror, "every second roll-out left for right"),
        number("no_body_share", &O::no_body_share, Unit::none, from_0_to_1, "of roll-outs, without the body"),
-       flag("flesh", &O::flesh, "the body gives way where it would pass through itself"),
+       flag("flesh", &O::soft_tissue, "the body gives way where it would pass through itself"),
        choice("start", &O::start,
               {{"skinned", GarmentStart::skinned},
                {"untangle", GarmentStart::untangle},
@@ -87,7 +87,7 @@ const Options<SampleOptions>& sample_options() {
                {"tangled", GarmentStart::tangled}},
               "`skinned`: where the body takes the garment; `untangle`: the same, parted; `cut`: the same "
               "without the triangles that intersect, as released; `tangled`: without the gap between layers and with "
-              "flesh that does not give way"),
+              "soft tissue that does not give way"),
        section(&O::forces, force_sampling_options(), "")});
   return table;
 }

@@ -25,7 +25,7 @@ enum class GarmentStart {
   skinned,   // where the body takes the garment, maybe tangled
   untangle,  // the same, parted by minimised contours before the roll-out starts
   cut,       // the same without the triangles that intersect; vertices left alone go as the garment is worn
-  tangled    // skinned without layers' gaps and flesh, with shapes of a wide spread
+  tangled    // skinned without layers' gaps and soft tissue, with shapes of a wide spread
 };
 
 // How far a drawn material reaches, over the authors' ranges.
@@ -48,7 +48,7 @@ struct SampleOptions {
   double noise = 3e-3;             // of start positions [m]
   bool yaw = true, mirror = true;  // turned about the vertical, and left for right
   double no_body_share = 0;        // of roll-outs
-  bool flesh = true;               // the body gives way where it would pass through itself
+  bool soft_tissue = true;         // the body gives way where it would pass through itself
   GarmentStart start = GarmentStart::skinned;
   ForceSampling forces;
 };

@@ -324,7 +324,7 @@ Roll make_roll(RollMaker& maker, const RollRequest& request) {
   const bool looks = maker.options.samples.start == GarmentStart::tangled && request.cloth_contact && !request.sheet;
   const RollRequest at = looks ? tangled_place(maker, request, roll.pairs) : request;
   roll.scene = scene_of(maker, at);
-  const bool crosses_itself = request.with_body && !maker.options.samples.flesh;
+  const bool crosses_itself = request.with_body && !maker.options.samples.soft_tissue;
   IntersectionCache cache;
   for (int k = 0; k < request.frames + 2; ++k) {
     WornFrame frame = frame_of(maker, request, at, k);

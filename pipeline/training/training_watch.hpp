@@ -10,12 +10,12 @@ namespace selvedge {
 // A fixed state, and the optimum of its frame.
 struct FixedState {
   RollingState state;
-  double inertial = 0, optimum = 0;  // sums of losses where cloth goes on without forces, and at the least [J]
+  double inertial = 0, optimum = 0;  // loss of the motion without forces, and least loss [J]
   Points best;
-  bool worn = true;  // the garment as worn; false: after frames that were minimised
+  bool worn = true;  // the skinned garment; false: a state after minimised frames
 };
 
-// What a run is measured by. All of it is of the training split.
+// The states and the roll-out on which a run is measured. All of them are of the training split.
 struct TrainingWatch {
   std::vector<FixedState> states;
   Roll roll;

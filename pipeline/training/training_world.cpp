@@ -16,8 +16,8 @@
 namespace selvedge {
 namespace {
 
-constexpr double flesh_skin_width = 0.02;  // of the skin that a garment's vertex goes along with [m]
-constexpr double layer_room = 0.005;       // that a garment more takes between parts of the body [m]
+constexpr double tissue_skin_width = 0.02;  // of the skin that a garment's vertex goes along with [m]
+constexpr double layer_room = 0.005;        // that a garment more takes between parts of the body [m]
 
 std::vector<std::string> training_clip_names(const SampleOptions& options) {
   if (!options.clips.empty()) return options.clips;
@@ -38,7 +38,8 @@ TrainingWear dressed_wear(const std::string& name, const SampleOptions& options,
   cut.edge = options.edge;
   if (wear.garments.empty()) wear.garments.push_back(kept_garment(cache_folder(), name, body, cut));
   for (const Garment& garment : wear.garments)
-    wear.skin.push_back(options.flesh ? shares_of_body(garment.skin.rest, body, flesh_skin_width) : SkinWeights{});
+    wear.skin.push_back(options.soft_tissue ? shares_of_body(garment.skin.rest, body, tissue_skin_width)
+                                            : SkinWeights{});
   return wear;
 }
 
@@ -58,8 +59,8 @@ TrainingBody training_body(const TrainingWorld& world, const SampleOptions& opti
   const Points rest = shaped(world.body.skin, shape);
   std::size_t layers = 1;
   for (const TrainingWear& wear : world.wear) layers = std::max(layers, wear.garments.size());
-  if (options.flesh)
-    body.flesh = std::make_shared<GiveWay>(
+  if (options.soft_tissue)
+    body.soft_tissue = std::make_shared<GiveWay>(
         world.surface, rest,
         GiveWayOptions{.room = GiveWayOptions{}.room + static_cast<double>(layers - 1) * layer_room});
   const Points joints = smpl_joints(world.body, body.joints);
@@ -69,14 +70,14 @@ TrainingBody training_body(const TrainingWorld& world, const SampleOptions& opti
   return body;
 }
 
-const FleshMoves& flesh_moves(TrainingBody& body, int clip, int frame, const Points& skinned) {
-  std::map<int, FleshMoves>& known = body.given[static_cast<std::size_t>(clip)];
+const TissueDisplacements& tissue_displacements(TrainingBody& body, int clip, int frame, const Points& skinned) {
+  std::map<int, TissueDisplacements>& known = body.given[static_cast<std::size_t>(clip)];
   if (const auto found = known.find(frame); found != known.end()) return found->second;
-  const Points moves = (*body.flesh)(skinned)-skinned;
-  FleshMoves kept;
+  const Points moves = (*body.soft_tissue)(skinned)-skinned;
+  TissueDisplacements kept;
   for (int v = 0; v < moves.rows(); ++v)
     if (moves.row(v).cwiseAbs().maxCoeff() > 1e-7) kept.vertices.push_back(v);
-  kept.moves = moves(kept.vertices, Eigen::all).cast<float>();
+  kept.displacements = moves(kept.vertices, Eigen::all).cast<float>();
   return known.emplace(frame, std::move(kept)).first->second;
 }
 
@@ -107,10 +108,10 @@ WornFrame worn_frame(TrainingWorld& world, int wear, int body, int clip, int fra
   const JointTransforms transforms = joint_transforms(world.body, who.joints, pose);
   Points skinned = posed(world.body.skin, who.shape, pose, transforms);
   Points moves;
-  if (who.flesh) {
-    const FleshMoves& given = flesh_moves(who, clip, k, skinned);
+  if (who.soft_tissue) {
+    const TissueDisplacements& given = tissue_displacements(who, clip, k, skinned);
     moves = Points::Zero(skinned.rows(), 3);
-    moves(given.vertices, Eigen::all) = given.moves.cast<double>();
+    moves(given.vertices, Eigen::all) = given.displacements.cast<double>();
     skinned += moves;
   }
   WornFrame result;
@@ -122,7 +123,7 @@ WornFrame worn_frame(TrainingWorld& world, int wear, int body, int clip, int fra
   rows = 0;
   for (std::size_t g = 0; g < what.garments.size(); ++g) {
     Points x = posed(what.garments[g].skin, who.shape, pose, transforms);
-    if (who.flesh) x += what.skin[g] * moves;
+    if (who.soft_tissue) x += what.skin[g] * moves;
     result.cloth.middleRows(rows, x.rows()) = x.cast<float>();
     rows += x.rows();
   }

@@ -17,22 +17,22 @@ namespace selvedge {
 struct TrainingWear {
   std::string name;
   std::vector<Garment> garments;
-  std::vector<SkinWeights> skin;  // how each vertex follows the flesh's displacements; empty: it does not
+  std::vector<SkinWeights> skin;  // how each vertex follows the displacements of soft tissue; empty: it does not
 };
 
-// Displacements of the flesh in a pose. Vertices that do not move are left out.
-struct FleshMoves {
+// Displacements of the soft tissue in a pose. Vertices that do not move are left out.
+struct TissueDisplacements {
   std::vector<int> vertices;
-  PointsF moves;  // [m]
+  PointsF displacements;  // [m]
 };
 
 // A body of one shape and what it does. Frames are found when they are first asked for.
 struct TrainingBody {
   Eigen::VectorXd shape;
   Points joints;
-  std::shared_ptr<const GiveWay> flesh;          // null: it passes through itself
-  std::vector<Clip> clips;                       // made for this body's joints
-  std::vector<std::map<int, FleshMoves>> given;  // by clip and frame
+  std::shared_ptr<const GiveWay> soft_tissue;             // null: it passes through itself
+  std::vector<Clip> clips;                                // made for this body's joints
+  std::vector<std::map<int, TissueDisplacements>> given;  // by clip and frame
 };
 
 // Everything that samples are made of. One thread at a time.

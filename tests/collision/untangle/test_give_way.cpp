@@ -84,7 +84,7 @@ double farthest(const Points& a, const Points& b) { return (a - b).rowwise().nor
 
 }  // namespace
 
-TEST_CASE("flesh in the bend of a limb gives way", "[give_way]") {
+TEST_CASE("soft tissue in the bend of a limb gives way", "[give_way]") {
   const Arm rod = arm();
   const Points normals = vertex_normals(rod.surface, rod.straight);
   for (int v = 0; v < rod.surface.vertex_count; ++v) REQUIRE(row(normals, v).dot(row(rod.straight, v)) > 0);

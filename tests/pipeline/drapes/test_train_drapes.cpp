@@ -74,10 +74,10 @@ TEST_CASE("drapes: from a simulated set to the table, stopped and resumed on the
   const DrapeRun opened = open_drape_run(folder.path / "whole");
   DrapeLessons lessons = make_drape_lessons(opened.options.drapes, opened.options.validation_paths, true);
   use_network(opened.distance, lessons);
-  const std::vector<DrapeWay> ways = measured_ways(opened);
-  REQUIRE(ways.size() == whole.table.size());
-  for (std::size_t k = 0; k < ways.size(); ++k)
-    CHECK(measure_row(ways[k].way, *ways[k].model, opened.options, lessons).error_by_drape ==
+  const std::vector<MeasuredMethod> methods = measured_methods(opened);
+  REQUIRE(methods.size() == whole.table.size());
+  for (std::size_t k = 0; k < methods.size(); ++k)
+    CHECK(measure_row(methods[k].method, *methods[k].model, opened.options, lessons).error_by_drape ==
           whole.table[k].error_by_drape);
   std::filesystem::remove(folder.path / "whole" / "learned.h5");
   CHECK_THROWS_AS(open_drape_run(folder.path / "whole"), Error);

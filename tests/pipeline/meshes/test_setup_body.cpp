@@ -84,14 +84,14 @@ TEST_CASE("A clip that turns round goes backward, forward again, and then stands
 
 TEST_CASE("A body with a clip gives way where it would pass through itself, unless no room is asked for",
           "[setup_body]") {
-  const Folder folder("body_flesh");
-  const Setup flesh = with_body(folder, "{clip: walk}"), skinned = with_body(folder, "{clip: walk, room: 0}");
-  const Surface& surface = flesh.scene.obstacles.at(0).surface;
+  const Folder folder("body_soft_tissue");
+  const Setup soft = with_body(folder, "{clip: walk}"), skinned = with_body(folder, "{clip: walk, room: 0}");
+  const Surface& surface = soft.scene.obstacles.at(0).surface;
   const auto crossings = [&](const Points& x) { return audit(surface, x, {}).intersecting_pairs(); };
   for (const double time : {0.0, 1.1, 3.2}) {
     CHECK(crossings(body_at(skinned, time)) > 0);  // under the arms
-    CHECK(crossings(body_at(flesh, time)) == 0);
-    CHECK((body_at(flesh, time) - body_at(skinned, time)).rowwise().norm().maxCoeff() < 0.045);
+    CHECK(crossings(body_at(soft, time)) == 0);
+    CHECK((body_at(soft, time) - body_at(skinned, time)).rowwise().norm().maxCoeff() < 0.045);
   }
 }
 

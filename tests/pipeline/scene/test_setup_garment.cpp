@@ -65,7 +65,7 @@ TEST_CASE("A garment's pins go where its body goes, in its shape, clip, placemen
 }
 
 TEST_CASE("Where a body gives way to itself, the garment's pins go along", "[setup_garment]") {
-  const Folder folder("garment_flesh");
+  const Folder folder("garment_soft_tissue");
   const fake::Piece piece = write_band(folder);
   const Setup plain = read(folder, "{garment: band.h5}", "{name: person, body: {clip: squat, room: 0}}");
   const Setup setup = read(folder, "{garment: band.h5}", "{name: person, body: {clip: squat}}");

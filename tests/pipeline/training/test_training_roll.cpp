@@ -63,7 +63,7 @@ TEST_CASE("training rolls: no clip or garment of the validation split is in a wo
   for (const ClipEntry& entry : read_clip_split(config_folder() / "clips.yaml"))
     if (entry.validation) validation.insert(entry.name);
   REQUIRE(validation.size() == 8);
-  samples.flesh = false;
+  samples.soft_tissue = false;
   samples.edge = 0.045;
   const TrainingWorld world = make_training_world(samples, 1);
   CHECK(world.clip_names.size() == 30);

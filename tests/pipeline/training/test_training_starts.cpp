@@ -143,7 +143,7 @@ TEST_CASE("training starts: faces of the body that meet others now or next take 
   for (const Points* x : {&state.now.body, &state.now.body_target})
     for (const auto& [a, b] : intersecting_pairs(body, *x, cache))
       meets[static_cast<std::size_t>(a)] = meets[static_cast<std::size_t>(b)] = 1;
-  REQUIRE(std::ranges::count(meets, 1) > 0);  // the arms of the flesh that does not give way
+  REQUIRE(std::ranges::count(meets, 1) > 0);  // the arms, whose soft tissue does not give way
   CHECK(state.body_left_out == meets);
   const FrameMaking making = fake::tiny_making();
   const SeenPositions seen = seen_positions(state.roll.scene->rest, state.now, making.features);

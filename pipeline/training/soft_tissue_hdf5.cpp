@@ -1,4 +1,4 @@
-#include "pipeline/training/flesh_hdf5.hpp"
+#include "pipeline/training/soft_tissue_hdf5.hpp"
 
 #include <fmt/format.h>
 
@@ -11,15 +11,16 @@
 namespace selvedge {
 namespace {
 
-constexpr int flesh_recipe = 1;  // to be raised with every change of how bodies give way
+constexpr int soft_tissue_recipe = 1;  // to be raised with every change of how bodies give way
 
-const h5::FileForm flesh_form{"selvedge flesh 1", "flesh", "docs/training.md"};
+const h5::FileForm soft_tissue_form{"selvedge flesh 1", "flesh", "docs/training.md"};
 
 // Of the body as it is and of the clip's poses: another body or clip has another file.
-std::filesystem::path flesh_file(const std::filesystem::path& folder, const TrainingWorld& world,
-                                 const TrainingBody& body, std::size_t clip, std::size_t layers) {
+std::filesystem::path soft_tissue_file(const std::filesystem::path& folder, const TrainingWorld& world,
+                                       const TrainingBody& body, std::size_t clip, std::size_t layers) {
   const Clip& motion = body.clips[clip];
-  std::string text = fmt::format("{} {} {} {} {}", flesh_recipe, mannequin_recipe, world.body.name, layers, motion.fps);
+  std::string text =
+      fmt::format("{} {} {} {} {}", soft_tissue_recipe, mannequin_recipe, world.body.name, layers, motion.fps);
   for (const double s : body.shape) text += fmt::format(" {:a}", s);
   for (const BodyPose& pose : motion.poses)
     text.append(reinterpret_cast<const char*>(pose.rotations.data()),
@@ -34,21 +35,21 @@ std::size_t most_layers(const TrainingWorld& world) {
 }
 
 // All frames on end: number of a frame, how many vertices move in it, which, and how far.
-void write_clip(const std::filesystem::path& path, const std::map<int, FleshMoves>& given) {
+void write_clip(const std::filesystem::path& path, const std::map<int, TissueDisplacements>& given) {
   std::vector<int> frames, counts, vertices;
   Points moves(0, 3);
   Eigen::Index rows = 0;
-  for (const auto& [frame, known] : given) rows += known.moves.rows();
+  for (const auto& [frame, known] : given) rows += known.displacements.rows();
   moves.resize(rows, 3);
   rows = 0;
   for (const auto& [frame, known] : given) {
     frames.push_back(frame);
     counts.push_back(static_cast<int>(known.vertices.size()));
     vertices.insert(vertices.end(), known.vertices.begin(), known.vertices.end());
-    moves.middleRows(rows, known.moves.rows()) = known.moves.cast<double>();
-    rows += known.moves.rows();
+    moves.middleRows(rows, known.displacements.rows()) = known.displacements.cast<double>();
+    rows += known.displacements.rows();
   }
-  h5::write_form(path, flesh_form, [&](const h5::File& file) {
+  h5::write_form(path, soft_tissue_form, [&](const h5::File& file) {
     h5::write_integers(file, "frames", frames);
     h5::write_integers(file, "counts", counts);
     h5::write_integers(file, "vertices", vertices);
@@ -56,22 +57,23 @@ void write_clip(const std::filesystem::path& path, const std::map<int, FleshMove
   });
 }
 
-std::map<int, FleshMoves> read_clip(const std::filesystem::path& path, int body_vertices) {
-  const h5::Fields file(path, flesh_form);
+std::map<int, TissueDisplacements> read_clip(const std::filesystem::path& path, int body_vertices) {
+  const h5::Fields file(path, soft_tissue_form);
   const std::vector<int> frames = file.integers("frames"), counts = file.integers("counts"),
                          vertices = file.integers("vertices");
   const Points moves = file.points("moves");
-  std::map<int, FleshMoves> given;
+  std::map<int, TissueDisplacements> given;
   std::size_t at = 0;
   if (frames.size() != counts.size() || static_cast<Eigen::Index>(vertices.size()) != moves.rows())
     file.fail("counts", "does not fit the other fields");
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const auto count = static_cast<std::size_t>(std::max(counts[k], 0));
     if (count > vertices.size() - at) file.fail("counts", "asks for more vertices than there are");
-    FleshMoves& known = given[frames[k]];
+    TissueDisplacements& known = given[frames[k]];
     known.vertices.assign(vertices.begin() + static_cast<std::ptrdiff_t>(at),
                           vertices.begin() + static_cast<std::ptrdiff_t>(at + count));
-    known.moves = moves.middleRows(static_cast<Eigen::Index>(at), static_cast<Eigen::Index>(count)).cast<float>();
+    known.displacements =
+        moves.middleRows(static_cast<Eigen::Index>(at), static_cast<Eigen::Index>(count)).cast<float>();
     for (const int v : known.vertices)
       if (v < 0 || v >= body_vertices) file.fail("vertices", "names a vertex that the body lacks");
     at += count;
@@ -81,10 +83,10 @@ std::map<int, FleshMoves> read_clip(const std::filesystem::path& path, int body_
 
 }  // namespace
 
-void read_flesh(const std::filesystem::path& folder, TrainingWorld& world) {
+void read_soft_tissue(const std::filesystem::path& folder, TrainingWorld& world) {
   for (TrainingBody& body : world.bodies)
-    for (std::size_t clip = 0; body.flesh && clip < body.clips.size(); ++clip) {
-      const std::filesystem::path path = flesh_file(folder, world, body, clip, most_layers(world));
+    for (std::size_t clip = 0; body.soft_tissue && clip < body.clips.size(); ++clip) {
+      const std::filesystem::path path = soft_tissue_file(folder, world, body, clip, most_layers(world));
       if (!std::filesystem::exists(path)) continue;
       try {
         body.given[clip].merge(read_clip(path, world.surface.vertex_count));
@@ -93,10 +95,10 @@ void read_flesh(const std::filesystem::path& folder, TrainingWorld& world) {
     }
 }
 
-void write_flesh(const std::filesystem::path& folder, const TrainingWorld& world) {
+void write_soft_tissue(const std::filesystem::path& folder, const TrainingWorld& world) {
   for (const TrainingBody& body : world.bodies)
-    for (std::size_t clip = 0; body.flesh && clip < body.clips.size(); ++clip) {
-      const std::filesystem::path path = flesh_file(folder, world, body, clip, most_layers(world));
+    for (std::size_t clip = 0; body.soft_tissue && clip < body.clips.size(); ++clip) {
+      const std::filesystem::path path = soft_tissue_file(folder, world, body, clip, most_layers(world));
       std::size_t there = 0;
       try {
         if (std::filesystem::exists(path)) there = read_clip(path, world.surface.vertex_count).size();
