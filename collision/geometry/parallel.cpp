@@ -22,6 +22,12 @@ int most_threads() {
 #endif
 }
 
+void use_threads([[maybe_unused]] int count) {
+#ifdef _OPENMP
+  omp_set_num_threads(count);
+#endif
+}
+
 void parallel_for(int count, [[maybe_unused]] int grain, const std::function<void(int)>& body) {
 #pragma omp parallel for schedule(dynamic, grain)
   for (int i = 0; i < count; ++i) body(i);

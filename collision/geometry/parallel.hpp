@@ -12,6 +12,21 @@ bool has_openmp();  // whether the build has it
 // Most threads that a parallel loop uses here: 1 where the build has no OpenMP.
 int most_threads();
 
+// Parallel loops of the calling thread use at most so many threads from now on; nothing where the build has no OpenMP.
+void use_threads(int count);
+
+// The same for as long as it lives.
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int count) : before_(most_threads()) { use_threads(count); }
+  ~ThreadLimit() { use_threads(before_); }
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+ private:
+  int before_;
+};
+
 // How many tasks of `size` items `count` items make. Sums that are kept by task do not depend on the number of threads.
 constexpr int chunks_of(int count, int size) { return (count + size - 1) / size; }
 

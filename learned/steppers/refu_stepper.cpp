@@ -140,7 +140,9 @@ void RefuStepper::calm(const State& from, double dt, const Repelled& pushed, Sta
 
 StepReport RefuStepper::take_step(const State& from, const Drive& drive, double dt, State& to,
                                   const StepExtras& extras) {
-  StepReport report = inner_->step(from, drive, dt, to, extras);
+  StepExtras handed_on = extras;
+  handed_on.later = nullptr;
+  StepReport report = inner_->step(from, drive, dt, to, handed_on);
   const auto is_finite = [](const Points& x) { return x.allFinite(); };
   if (report.status != StepStatus::accepted || !is_finite(to.x) || !std::ranges::all_of(to.obstacles, is_finite))
     return report;

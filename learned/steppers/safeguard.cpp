@@ -42,7 +42,9 @@ class SafeguardedStepper final : public Stepper {
 
 StepReport SafeguardedStepper::step(const State& from, const Drive& drive, double dt, State& to,
                                     const StepExtras& extras) {
-  StepReport report = inner_->step(from, drive, dt, to, extras);
+  StepExtras handed_on = extras;
+  handed_on.later = nullptr;
+  StepReport report = inner_->step(from, drive, dt, to, handed_on);
   report.by = traits_.name;
   if (report.status != StepStatus::accepted) return report;
   Stopwatch watch;

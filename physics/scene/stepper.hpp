@@ -127,7 +127,8 @@ struct StepReport {  // starts as failure
   std::optional<Audit> audit;  // of the state that was made, rounded to float (step_audit.hpp); absent: not audited
 };
 
-struct AddedTerm;  // physics/solve/step_problem.hpp
+struct AddedTerm;    // physics/solve/step_problem.hpp
+struct LaterAudits;  // physics/steppers/step_audit.hpp
 
 // What another stepper may hand to a step beside the world. Traits say whether a stepper honours it, but for `stop`.
 struct StepExtras {
@@ -142,6 +143,10 @@ struct StepExtras {
   // Asked once a Newton iteration, untangling pass and impact zone; true: the step is rejected as `stopped`, and `to`
   // is junk. A stepper that has none of these hands it on, or is done soon.
   StopFlag stop = {};
+  // Where a step may leave its audits to the caller; null: it makes them itself. The state it makes then counts as
+  // clean, and what is made of that state is void unless the audits confirm it. A stepper that reads or changes what
+  // an inner one has made does not hand this on.
+  LaterAudits* later = nullptr;
   bool any() const { return guess || left_alone || added || wanted; }  // of what traits speak of
 };
 

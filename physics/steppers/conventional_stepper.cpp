@@ -248,10 +248,16 @@ Substep ConventionalStepper::begin_substep(const StepWork& work, const SubstepSt
 void ConventionalStepper::end_substep(StepWork& work, Substep&& s, SubstepState& now) {
   ++work.report.substeps;
   if (has_contact()) {
-    ++work.report.counts.audits;
-    const Timed timed(work.report.seconds.audit);
-    work.report.collision.passed_through +=
-        passed_through(contact_.world, work.left_alone, now.nodes, s.nodes, audited_);
+    const auto audit = [this](const Exemption& left_alone, const Points& from, const Points& to, StepReport& report) {
+      ++report.counts.audits;
+      const Timed timed(report.seconds.audit);
+      report.collision.passed_through += passed_through(contact_.world, left_alone, from, to, audited_);
+    };
+    if (work.extras.later)
+      work.extras.later->audits.push_back([audit, left_alone = work.left_alone, from = now.nodes,
+                                           to = s.nodes](StepReport& report) { audit(left_alone, from, to, report); });
+    else
+      audit(work.left_alone, now.nodes, s.nodes, work.report);
   }
   now.history = {};
   if (options_.integrator == Integrator::bdf2 && !s.touched)
@@ -374,7 +380,7 @@ StepReport ConventionalStepper::take_step(const State& from, const Drive& drive,
   StepEnd end{now.nodes.topRows(from.x.rows()), std::move(now.v), {}, blocks_of(now.history)};
   for (std::size_t k = 0; k < from.obstacles.size(); ++k)
     end.obstacles.push_back(now.nodes.middleRows(contact_.world.first_node[k], from.obstacles[k].rows()));
-  finish_step(scene_, from, drive, dt, std::move(end), audited_, to, report);
+  finish_step(scene_, from, drive, dt, std::move(end), audited_, to, report, extras.later);
   return report;
 }
 

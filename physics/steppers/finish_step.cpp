@@ -13,7 +13,7 @@ constexpr double position_rounding = 1e-14;  // relative, of positions that are 
 }  // namespace
 
 void finish_step(const Scene& scene, const State& from, const Drive& drive, double dt, StepEnd end, AuditMemory& audits,
-                 State& to, StepReport& report) {
+                 State& to, StepReport& report, LaterAudits* later) {
   report.status = StepStatus::accepted;
   double lag = 0, size = largest_coordinate(from.x);
   for (std::size_t k = 0; k < end.obstacles.size(); ++k) {
@@ -30,6 +30,13 @@ void finish_step(const Scene& scene, const State& from, const Drive& drive, doub
   to.cut_out = from.cut_out;
   to.memory = std::move(end.memory);
   report.collision.obstacle_lag = to.pinched ? lag : 0;
+  if (later) {
+    to.clean = true;
+    later->audits.push_back([&scene, drive, state = to, &audits](StepReport& found) mutable {
+      audit_state(scene, drive, state, audits, found);
+    });
+    return;
+  }
   try {
     audit_state(scene, drive, to, audits, report);
   } catch (const TooManyPairs&) {

@@ -12,9 +12,9 @@ struct StepEnd {
 };
 
 // The common end of every stepper: accepts the step, fills `to` as the contract in stepper.hpp asks for, and the report
-// with the lag of obstacles and with the audit of positions. A lag within rounding counts as none. A step whose audit
-// meets more pairs than it may look at is rejected.
+// with the lag of obstacles and with the audit of positions, which it leaves to `later` where that is given. A lag
+// within rounding counts as none. A step whose audit meets more pairs than it may look at is rejected.
 void finish_step(const Scene&, const State& from, const Drive&, double dt, StepEnd, AuditMemory&, State& to,
-                 StepReport&);
+                 StepReport&, LaterAudits* later = nullptr);
 
 }  // namespace selvedge

@@ -66,7 +66,7 @@ class RestingStepper final : public Stepper {
   Chosen still_ones(const State& from, const Rest& rest, const Drive& drive) const;
   bool wake(const State& from, const std::vector<Box>& moving, Chosen& resting) const;
   std::vector<Box> moving_boxes(const State& from, const Drive& drive, double dt, const Chosen& resting) const;
-  StepReport step_others(const State& from, const Drive& drive, double dt, const Chosen& resting, const StopFlag&,
+  StepReport step_others(const State& from, const Drive& drive, double dt, const Chosen& resting, const StepExtras&,
                          State& to);
   bool comes_near(const State& from, const State& to, Chosen& resting) const;
   Rest rest_after(Rest rest, const State& from, const State& to, const Drive& drive, double dt) const;
@@ -153,9 +153,9 @@ RestingStepper::Part& RestingStepper::part(const Chosen& resting) {
 }
 
 StepReport RestingStepper::step_others(const State& from, const Drive& drive, double dt, const Chosen& resting,
-                                       const StopFlag& stop, State& to) {
+                                       const StepExtras& extras, State& to) {
   const int count = static_cast<int>(std::ranges::count(resting, true));
-  if (count == 0) return whole_->step(from, drive, dt, to, {.stop = stop});
+  if (count == 0) return whole_->step(from, drive, dt, to, extras);
   to = from;
   to.time = from.time + dt;
   to.frame = from.frame + 1;
@@ -173,7 +173,7 @@ StepReport RestingStepper::step_others(const State& from, const Drive& drive, do
   Part& others = part(resting);
   State end;
   StepReport report =
-      others.stepper->step(state_of(others.part, from), drive_of(others.part, drive), dt, end, {.stop = stop});
+      others.stepper->step(state_of(others.part, from), drive_of(others.part, drive), dt, end, {.stop = extras.stop});
   report.resting = count;
   if (report.status != StepStatus::accepted) return report;
   put(others.part, end, to);
@@ -210,9 +210,9 @@ StepReport RestingStepper::step(const State& from, const Drive& drive, double dt
   Chosen resting = still_ones(from, rest, drive);
   while (any(resting) && wake(from, moving_boxes(from, drive, dt, resting), resting)) {
   }
-  StepReport report = step_others(from, drive, dt, resting, extras.stop, to);
+  StepReport report = step_others(from, drive, dt, resting, extras, to);
   while (report.status == StepStatus::accepted && any(resting) && comes_near(from, to, resting))
-    report = step_others(from, drive, dt, resting, extras.stop, to);
+    report = step_others(from, drive, dt, resting, extras, to);
   if (report.status == StepStatus::accepted) remember(rest_after(rest, from, to, drive, dt), to);
   return report;
 }

@@ -4,6 +4,7 @@
 
 #include "collision/audit/audit_motion.hpp"
 #include "collision/exact/penetration_depth.hpp"
+#include "collision/geometry/pair_budget.hpp"
 #include "collision/geometry/stopwatch.hpp"
 #include "collision/untangle/world_sheets.hpp"
 #include "physics/recovery/cut_out.hpp"
@@ -51,6 +52,15 @@ void audit_state(const Scene& scene, const Drive& drive, State& state, AuditMemo
           std::max(collision.depth_wanted, penetration_depth(scene.obstacles[k].surface, drive.obstacles[k], state.x));
   }
   report.seconds.audit += watch.lap();
+}
+
+bool confirm(const LaterAudits& later, StepReport& report) {
+  try {
+    for (const auto& audit : later.audits) audit(report);
+  } catch (const TooManyPairs&) {
+    return false;
+  }
+  return report.audit && report.audit->intersecting_pairs() == 0 && report.audit->inside_vertices == 0;
 }
 
 int passed_through(const ContactWorld& world, const Exemption& exemption, const Points& nodes0, const Points& nodes1,

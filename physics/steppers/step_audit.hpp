@@ -1,5 +1,8 @@
 #pragma once
 
+#include <functional>
+#include <vector>
+
 #include "collision/audit/audit.hpp"
 #include "collision/audit/audit_memory.hpp"
 #include "collision/contact/exemption.hpp"
@@ -18,6 +21,17 @@ Audit audit_positions(const Scene&, const Points& x, const std::vector<Points>& 
 // Of the state that a step made: sets `clean`, and in the report the audit, the intersecting pairs, those with
 // obstacles where the drive wanted them, the reason `penetrating` where any are left, and the seconds it took.
 void audit_state(const Scene&, const Drive&, State&, AuditMemory&, StepReport&);
+
+// Audits that a step has left to its caller (StepExtras::later), in the order in which the step would have made them.
+// They keep copies of what they look at, and the stepper's memories: one thread at a time may make them, beside any
+// step that leaves its audits too.
+struct LaterAudits {
+  std::vector<std::function<void(StepReport&)>> audits;
+};
+
+// Makes them: the report is as if the step had. False: the state is not clean, or its pairs are more than an audit may
+// look at, and the step has to be taken again with its audits in it.
+bool confirm(const LaterAudits&, StepReport&);
 
 // Of the state without the triangles that are cut out of it.
 Audit audit_uncut(const Scene&, const State&);

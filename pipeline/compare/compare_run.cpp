@@ -70,7 +70,7 @@ struct RunWatch {
   }
 
   void operator()(const FrameEvent& event) {
-    run.seconds.push_back(seconds_since(event.started));
+    run.seconds.push_back(event.seconds);
     const StepReport& report = event.report;
     run.substeps += report.substeps;
     run.newton += report.iterations;

@@ -24,6 +24,7 @@ void record_audit(const Audit& result, Frame& frame) {
 }  // namespace
 
 Frame record_frame(const Scene& scene, const EnergyTerms& terms, const FrameEvent& event) {
+  const Clock::time_point started = Clock::now();
   Frame frame;
   frame.time = event.state.time;
   frame.x = event.state.x.cast<float>();
@@ -41,7 +42,7 @@ Frame record_frame(const Scene& scene, const EnergyTerms& terms, const FrameEven
     frame.max_stretch = stretches.col(1).maxCoeff();
   }
   frame.energy = energies(scene, terms, x, event.state.v, event.drive.acceleration);
-  frame.seconds = seconds_since(event.started);
+  frame.seconds = event.seconds + seconds_since(started);
   return frame;
 }
 
@@ -50,7 +51,7 @@ Frame record_initial(const Scene& scene, const EnergyTerms& terms, const State& 
   report.status = StepStatus::accepted;
   report.by = "initial";
   report.collision.cut_out = static_cast<int>(state.cut_out.size());
-  return record_frame(scene, terms, {state, drive, report, Clock::now()});
+  return record_frame(scene, terms, {state, drive, report, 0});
 }
 
 }  // namespace selvedge
