@@ -6,30 +6,39 @@ namespace selvedge {
 namespace {
 
 constexpr int trial_frames = 3, most_kept_frames = 48;
-// Of the time with one beside. Less is no reason: where other programs use the cores, threads that step together wait
-// for each other at every loop, and one beside waits once a frame.
-constexpr double faster = 0.9;
+// Of the time with one beside. Less is no reason to have all threads step: where other programs use the cores, they
+// wait for each other at every loop, and one beside waits once a frame.
+constexpr double faster = 0.95;
 
 }  // namespace
 
-void Arrangement::change() {
-  beside_ = !beside_;
+void Arrangement::begin(Leg leg, bool beside) {
+  leg_ = leg;
+  beside_ = beside;
   frames_ = 0;
 }
 
-void Arrangement::took(double seconds) {
-  const double recent = frames_ == 0 ? seconds : std::min(seconds, before_);
-  before_ = seconds;
-  if (++frames_ < (trial_ ? trial_frames : kept_frames_)) return;
-  times_[beside_] = recent;
-  if (!trial_ || times_[!beside_] < 0) {
-    trial_ = true;
-    return change();
-  }
-  trial_ = false;
-  frames_ = 0;
+void Arrangement::choose(double after) {
+  const double own = (before_ + after) / 2;
+  const double all_step = beside_ ? other_ : own, one_beside = beside_ ? own : other_;
   kept_frames_ = std::min(2 * kept_frames_, most_kept_frames);
-  if (beside_ == (times_[0] < faster * times_[1])) change();
+  begin(Leg::kept, !(all_step < faster * one_beside));
+}
+
+void Arrangement::took(double seconds) {
+  const double recent = (seconds + last_) / 2;
+  last_ = seconds;
+  if (++frames_ < (leg_ == Leg::kept ? kept_frames_ : trial_frames)) return;
+  switch (leg_) {
+    case Leg::kept:
+      before_ = recent;
+      return begin(Leg::other, !beside_);
+    case Leg::other:
+      other_ = recent;
+      return begin(Leg::back, !beside_);
+    case Leg::back:
+      return choose(recent);
+  }
 }
 
 }  // namespace selvedge

@@ -117,12 +117,16 @@ TEST_CASE("winding: the tree is close to the definition", "[penetration]") {
   const DipoleTree tree = make_dipole_tree(surface, solid.x, faces, turn, 2);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> place(-1.5, 1.5);
-  double worst = 0;
+  double worst = 0, squares = 0;
   for (int i = 0; i < 500; ++i) {
-    const Vec3 at(place(random), place(random), place(random));
-    worst = std::max(worst, std::abs(winding_at(tree, at) - winding_by_definition(solid, at)));
+    Vec3 at;
+    for (int k = 0; k < 3; ++k) at[k] = place(random);  // in this order with every compiler
+    const double off = std::abs(winding_at(tree, at) - winding_by_definition(solid, at));
+    worst = std::max(worst, off);
+    squares += off * off;
   }
-  CHECK(worst < 0.02);
+  CHECK(std::sqrt(squares / 500) < 0.003);
+  CHECK(worst < 0.03);
   CHECK(winding_at(make_dipole_tree(surface, solid.x, faces, turn, 1e9), Vec3(0.1, 0.2, 0.3)) ==
         Approx(winding_by_definition(solid, Vec3(0.1, 0.2, 0.3))).epsilon(1e-12));
 }
