@@ -52,8 +52,8 @@ const Options<GuardOptions>& guard_options() {
   using O = GuardOptions;
   static const Options<O> table(
       "guard",
-      "Limits of a proposed step (docs/hybrid.md). A proposal that exceeds one is refused. Its acceleration is "
-      "measured from free flight without gravity.",
+      "Limits of a proposed step (docs/hybrid.md). A proposal that exceeds one is refused. Accelerations are relative "
+      "to free flight without gravity.",
       {number("acceleration", &O::acceleration, Unit::acceleration, positive, "Largest acceleration of a vertex."),
        number("mean_acceleration", &O::mean_acceleration, Unit::acceleration, positive,
               "Largest RMS acceleration of all vertices. It may be exceeded where `change_of_motion` is met."),
@@ -113,10 +113,10 @@ const Options<HybridOptions>& hybrid_options() {
            "longest_stretch", &O::longest_stretch, at_least_one,
            "Longest pause after a refusal, in frames without a proposal. Each refusal doubles the pause: 1, 2, 4, ..."),
        flag("stop_when_slow", &O::stop_when_slow,
-            "True: no proposals are made while they have cost more time than they have saved. Results then depend on "
-            "the clock."),
-       number("extra_time", &O::extra_time, Unit::none, not_negative,
-              "Share of the time so far that proposals may cost in all, with `stop_when_slow`."),
+            "True: no proposals are made while they take more time than they save. Results then depend on the clock."),
+       number(
+           "extra_time", &O::extra_time, Unit::none, not_negative,
+           "Share of the total time that proposals may lose against the conventional stepper, with `stop_when_slow`."),
        section(&O::guard, guard_options(), "Limits of a proposed step.")});
   return table;
 }
@@ -186,7 +186,7 @@ const Options<RecoveryOptions>& recovery_options() {
               "Fraction of the vertices of a component that are tangled and far from their target, above which a limb "
               "counts as having pierced it."),
        number("astray", &O::astray, Unit::none, not_negative,
-              "Distance from its skinned target at which a vertex counts as far, in mean edge lengths."),
+              "Distance from its skinned target above which a vertex counts as far, in mean edge lengths."),
        number("sunken_part", &O::sunken_part, Unit::none, not_negative,
               "Fraction of the vertices of a component that are tangled with a body, above which it counts as sunken "
               "in and is put on again."),
