@@ -49,8 +49,8 @@ const Options<Spring>& spring_options() {
        number("rest_length", Unit::length, not_negative, "",
               "Rest length. Default: `contact.thickness` for listed pairs, the initial distance for nearest ones."),
        number("stiffness", &Spring::stiffness, Unit::stiffness, positive,
-              "Stiffness of each spring. The default is ten times that of cotton: 2 N, a shirt that hangs on one "
-              "button, stretch a spring by 0.2 mm.")});
+              "Stiffness of each spring, by default ten times that of cotton. A load of 2 N, as of a shirt on one "
+              "button, then stretches it by 0.2 mm.")});
   return table;
 }
 
