@@ -19,8 +19,8 @@ const OptionRows<Material>& material_options() {
              "Young's modulus E of the cloth as a plate. With `thickness` and `poisson` it replaces `youngs_modulus`, "
              "and `bending` unless that is given."),
       number("thickness", Unit::length, positive, "",
-             "Thickness h of that plate: membrane stiffness E h, bending stiffness E h^3 / (12 (1 - nu^2)). It has no "
-             "influence on contact."),
+             "Thickness h of the cloth as a plate: membrane stiffness E h, bending stiffness E h^3 / (12 (1 - nu^2)). "
+             "It has no influence on contact."),
       number("poisson", Unit::none, {.low = 0, .high = 1, .high_in = false}, "", "Poisson's ratio in plane stress."),
       number("lame_mu", &O::lame_mu, Unit::stiffness, not_negative, "Membrane shear modulus times thickness."),
       number("lame_lambda", &O::lame_lambda, Unit::stiffness, not_negative,

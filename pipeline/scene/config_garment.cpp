@@ -9,8 +9,9 @@ const Options<GarmentOptions>& garment_options() {
   static const Options<GarmentOptions> table(
       "garment",
       "A garment that a body of the scene wears. It is resized to the body's shape and starts where skinning puts it "
-      "in the body's first pose. It has no placement of its own. Exactly one of file, cut and outfit defines it; a cut "
-      "or an outfit is made for the mannequin. An outfit gives one cloth for each of its garments, named after them.",
+      "in the body's first pose. It has the placement and motion of the body and no placement of its own. Exactly one "
+      "of file, cut and outfit defines it; a cut or an outfit needs the mannequin as body. An outfit gives one cloth "
+      "for each of its garments, named after them.",
       {path("file", "Garment file (.h5) made by `selvedge dress`."),
        with_words(text("cut", "Name of a garment that the program makes (docs/garments.md)."), garment_names()),
        texts("over", "Cuts that are worn under the `cut`, from the body outward."),

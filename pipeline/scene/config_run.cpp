@@ -72,12 +72,13 @@ const Options<GuardOptions>& guard_options() {
               "Largest RMS residual acceleration of patches of vertices: the gradient of the step's potential on a "
               "patch over its mass. Patches in contact are left out."),
        number("unexplained", &O::unexplained, Unit::none, positive,
-              "Largest ratio of that residual acceleration to the RMS acceleration of all vertices. It is tested where "
-              "`change_of_motion` is exceeded."),
+              "Largest ratio of the residual acceleration of patches to the RMS acceleration of all vertices. It is "
+              "tested where `change_of_motion` is exceeded."),
        number("imbalance", &O::imbalance, Unit::length, positive,
               "Largest RMS displacement by one Jacobi sweep on the step's potential, of vertices without contact."),
        number("decrement", &O::decrement, Unit::none, positive,
-              "Largest energy that this sweep would gain, in units of the cloth's weight times its mean edge length."),
+              "Largest energy that the sweep of `imbalance` would gain, in units of the cloth's weight times its mean "
+              "edge length."),
        integer("patch_size", &O::patch_size, at_least_one, "Approximate number of vertices in a patch."),
        number("still", &O::still, Unit::length, positive,
               "Lower bound of the RMS displacement that `change_of_motion` divides by. Slower cloth counts as still."),
@@ -146,7 +147,7 @@ const Options<RestingOptions>& resting_options() {
                                 {number("still_edges", &O::still_edges, Unit::none, not_negative,
                                         "Largest displacement of a vertex of a resting cloth, in mean edge lengths."),
                                  number("still_seconds", &O::still_seconds, Unit::time, positive,
-                                        "Time in which no vertex moves farther than that.")});
+                                        "Time in which no vertex moves farther than `still_edges`.")});
   return table;
 }
 
@@ -163,8 +164,8 @@ const Options<RecoveryOptions>& recovery_options() {
                "Number of crossing pairs for each triangle above which cloth is not untangled. Its own stiffness then "
                "has to open it."),
        integer("max_pair_passes", &O::max_pair_passes, at_least_one,
-               "Largest number of crossing pairs times passes in a step, where cloth crosses itself. It bounds the "
-               "time of untangling."),
+               "Largest product of crossing pairs and passes in a step, where cloth crosses itself. It bounds the time "
+               "of untangling."),
        number("useful_motions", &O::useful_motions, Unit::none, positive,
               "Longest displacement that untangling from obstacles looks for, in multiples of what `speed` allows in a "
               "step."),
@@ -181,7 +182,7 @@ const Options<RecoveryOptions>& recovery_options() {
        integer("placing_passes", &O::placing_passes, at_least_one,
                "Largest number of untangling passes when a garment is put on again."),
        integer("max_placing_pair_passes", &O::max_placing_pair_passes, at_least_one,
-               "Largest number of crossing pairs times those passes."),
+               "Largest product of crossing pairs and passes when a garment is put on again. It bounds the time."),
        number("pierced_part", &O::pierced_part, Unit::none, not_negative,
               "Fraction of the vertices of a component that are tangled and far from their target, above which a limb "
               "counts as having pierced it."),
@@ -199,7 +200,8 @@ const Options<RecoveryOptions>& recovery_options() {
               "Stiffness with which cloth is drawn to its skinned target, in masses over the time step squared, while "
               "the body does not cross itself."),
        number("crossing_stiffness", &O::crossing_stiffness, Unit::none, positive,
-              "The same stiffness for cloth that lies where the body crosses itself."),
+              "Stiffness with which cloth is drawn to its skinned target where the body crosses itself, in masses over "
+              "the time step squared."),
        number("push_softness", &O::push_softness, Unit::none, positive,
               "Distance over which the force sets in that keeps untangled cloth apart, in contact thicknesses.")});
   return table;

@@ -25,7 +25,7 @@ const Options<NewtonOptions>& newton_options() {
        number("far_energy", &O::far_energy, Unit::none, positive,
               "With contact, Newton goes on while a step gains more than this fraction of the potential."),
        integer("more_iterations", &O::more_iterations, at_least_one,
-               "Largest number of iterations by these two rules, in multiples of `max_newton`.")});
+               "Largest number of iterations by `stiff_allowance` and `far_energy`, in multiples of `max_newton`.")});
   return table;
 }
 
@@ -76,7 +76,7 @@ const Options<SubstepOptions>& substep_options() {
        integer("max_passes", &O::max_passes, at_least_one,
                "Largest number of solves of a substep after the first one."),
        integer("pinched_passes", &O::pinched_passes, at_least_one,
-               "The same number where obstacles leave the cloth no room."),
+               "Largest number of these solves where obstacles leave the cloth no room."),
        number("normal_change", &O::normal_change, Unit::none, positive,
               "Relative change of the lagged normal forces above which a substep is solved again."),
        integer("max_halvings", &O::max_halvings, not_negative,
@@ -84,7 +84,7 @@ const Options<SubstepOptions>& substep_options() {
        integer("halving_zone_rounds", &O::halving_zone_rounds, at_least_one,
                "Number of rounds of impact zones in a substep that may still be halved."),
        integer("pinched_zone_rounds", &O::pinched_zone_rounds, at_least_one,
-               "The same number where obstacles leave the cloth no room."),
+               "Number of rounds of impact zones where obstacles leave the cloth no room."),
        number("tearing", &O::tearing, Unit::none, positive,
               "Ratio of the potential after the contact response to the energy before it above which the response is "
               "refused."),
@@ -107,8 +107,8 @@ const Options<RoomOptions>& room_options() {
        integer("min_blocks", &O::min_blocks, at_least_one, "Smallest number of blocks."),
        integer("max_blocks", &O::max_blocks, at_least_one, "Largest number of blocks."),
        number("growing", &O::growing, Unit::none, positive,
-              "Push of a constraint in a sweep above which its multiplier counts as growing, in multiples of the least "
-              "distance of a pair."),
+              "Push of a constraint in a sweep above which its multiplier counts as growing, in multiples of the "
+              "minimum separation of pairs."),
        number("steady", &O::steady, Unit::none, positive,
               "Ratio of the growth of all multipliers in two blocks above which constraints count as contradictory. "
               "Obstacles then yield."),
@@ -132,9 +132,9 @@ const Options<ResolveOptions>& response_options() {
        integer("zone_sweeps", &O::zone_sweeps, at_least_one, "Number of Gauss-Seidel sweeps in an impact zone."),
        integer("yield_rounds", &O::yield_rounds, not_negative,
                "Number of rounds of the last resort in which obstacles yield to impact zones."),
-       number(
-           "yielding_mass", &O::yielding_mass, Unit::none, positive,
-           "Mass of their nodes in the first of these rounds, in mean masses of cloth vertices. Each round halves it."),
+       number("yielding_mass", &O::yielding_mass, Unit::none, positive,
+              "Mass of an obstacle node in the first of these rounds, in mean masses of cloth vertices. Each round "
+              "halves it."),
        integer("motion_halvings", &O::motion_halvings, not_negative,
                "How often the motion of an impact zone is halved before it is held still."),
        section(&O::room, room_options(), "How obstacles yield before the solve.")});
@@ -147,9 +147,9 @@ const OptionRows<ImplicitEulerOptions>& implicit_euler_options() {
       number("velocity_tolerance", &O::velocity_tolerance, Unit::speed, positive,
              "Newton ends when the RMS displacement of its step is below this times the time step, or meets "
              "`relative_tolerance`."),
-      number(
-          "relative_tolerance", &O::relative_tolerance, Unit::none, not_negative,
-          "Newton also ends when that displacement is below this fraction of the RMS displacement in the time step."),
+      number("relative_tolerance", &O::relative_tolerance, Unit::none, not_negative,
+             "Newton also ends when the RMS displacement of its step is below this fraction of the RMS displacement in "
+             "the time step."),
       integer("max_newton", &O::max_newton, at_least_one, "Largest number of Newton iterations in a solve."),
       choice("linear_solver", &O::linear_solver,
              {{"automatic", LinearSolver::automatic},

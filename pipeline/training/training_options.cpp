@@ -148,7 +148,7 @@ const Options<SpaceOptions>& space_options() {
       {number("radius", &O::radius, Unit::length, not_negative,
               "Distance within which two vertices get an edge. 0: there are no such edges."),
        number("radius_in_edges", &O::radius_in_edges, Unit::none, not_negative,
-              "Above 0: that distance in mean edge lengths of the mesh at rest, in place of `radius`."),
+              "Above 0: the radius in mean edge lengths of the mesh at rest, in place of `radius`."),
        flag("mesh_pairs", &O::mesh_pairs, "True: pairs that a mesh edge joins get an edge, too."),
        flag("rest_pairs", &O::rest_pairs, "True: pairs that are as near at rest get an edge, too."),
        integer("nearest", &O::nearest, not_negative,
