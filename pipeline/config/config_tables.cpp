@@ -9,8 +9,9 @@ Key unit_key() {
 
 std::vector<Key> placement_keys() {
   return {
-      number("scale", Unit::none, positive, "1",
-             "Factor on all lengths, applied before rotation and translation. The rest shape scales with it."),
+      number(
+          "scale", Unit::none, positive, "1",
+          "Factor on all lengths, applied before rotation and translation. The rest shape of a cloth scales with it."),
       vector("rotate", Unit::angle, "[0, 0, 0]",
              "Rotation about the origin, applied after the scale: the direction is the axis, the length is the angle."),
       vector("translate", Unit::length, "[0, 0, 0]", "Displacement, applied last.")};

@@ -158,7 +158,7 @@ const Options<RecoveryOptions>& recovery_options() {
       "A step that starts tangled first untangles the cloth, or puts a garment on its body again. Its skinned target "
       "is where skinning alone would put it.",
       {integer("untangling_passes", &O::untangling_passes, at_least_one,
-               "Largest number of untangling passes in a step. The next step goes on with it."),
+               "Largest number of untangling passes in a step. The next step continues."),
        number("speed", &O::speed, Unit::speed, positive, "Largest speed at which untangling moves a vertex."),
        integer("hopeless_pairs", &O::hopeless_pairs, at_least_one,
                "Number of crossing pairs for each triangle above which cloth is not untangled. Its own stiffness then "

@@ -20,8 +20,8 @@ const Options<NewtonOptions>& newton_options() {
        number("stiff", &O::stiff, Unit::none, positive,
               "Ratio of the mean stiffness to the mass over the time step squared above which cloth counts as stiff."),
        number("stiff_allowance", &O::stiff_allowance, Unit::none, positive,
-              "Tolerance of the energy of stiff cloth, as a displacement of that kinetic energy in multiples of the "
-              "usual tolerance. A smaller value takes more iterations."),
+              "Energy that the last step of stiff cloth may gain: that of a displacement of this many times the usual "
+              "tolerance against inertia. A smaller value takes more iterations."),
        number("far_energy", &O::far_energy, Unit::none, positive,
               "With contact, Newton goes on while a step gains more than this fraction of the potential."),
        integer("more_iterations", &O::more_iterations, at_least_one,
@@ -58,8 +58,8 @@ const Options<SubstepOptions>& substep_options() {
   static const Options<O> table(
       "substep", "How a step is divided into substeps, and how a substep alternates solves with the contact response.",
       {number("max_motion", &O::max_motion, Unit::none, positive,
-              "Largest displacement in a substep in mean edge lengths: of pairs that meet, with the stepper `icm` of "
-              "any vertex. A smaller value takes more substeps."),
+              "Largest displacement in a substep of pairs that meet (with `icm`: of any vertex), in mean edge lengths. "
+              "A smaller value takes more substeps."),
        number("max_slide", &O::max_slide, Unit::none, positive,
               "Largest slide of a touching pair in a substep, in mean edge lengths. Larger values may lock cloth that "
               "is pulled round a post."),
@@ -110,11 +110,12 @@ const Options<RoomOptions>& room_options() {
               "Push of a constraint in a sweep above which its multiplier counts as growing, in multiples of the "
               "minimum separation of pairs."),
        number("steady", &O::steady, Unit::none, positive,
-              "Ratio of the growth of all multipliers in two blocks above which constraints count as contradictory. "
-              "Obstacles then yield."),
+              "Ratio of the growth of all multipliers in a block to that in the block before, above which constraints "
+              "count as contradictory. Obstacles then yield."),
        integer("max_rounds", &O::max_rounds, at_least_one, "Largest number of searches for pairs."),
        number("few", &O::few, Unit::none, not_negative,
-              "Fraction of new constraints in a search that is left to the contact response."),
+              "Fraction of new constraints in a search below which no further search is made. The contact response "
+              "meets those."),
        number("steepest_lag", &O::steepest_lag, Unit::none, positive,
               "Largest difference in lag between two nodes of an obstacle, relative to their distance. It keeps a body "
               "from folding into itself.")});
