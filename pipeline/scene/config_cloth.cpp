@@ -7,40 +7,42 @@ using namespace table;
 const OptionRows<Material>& material_options() {
   using O = Material;
   static const OptionRows<O> rows{
-      number("density", &O::density, Unit::areal_density, positive, "mass per area"),
+      number("density", &O::density, Unit::areal_density, positive, "Mass per area."),
       choice("membrane", &O::membrane,
              {{"stvk", MembraneModel::stvk},
               {"stable_neo_hookean", MembraneModel::stable_neo_hookean},
               {"baraff_witkin", MembraneModel::baraff_witkin}},
-             "in-plane model"),
+             "Model of the in-plane (membrane) elasticity."),
       number("youngs_modulus", Unit::stiffness, not_negative, "",
-             "Young's modulus times thickness; with `poisson` in place of the Lame coefficients"),
-      number(
-          "modulus", Unit::pressure, not_negative, "",
-          "Young's modulus of a plate; with `thickness` and `poisson` in place of `youngs_modulus`, and of `bending` "
-          "unless that is given"),
+             "Young's modulus times thickness. With `poisson` it replaces the Lame coefficients."),
+      number("modulus", Unit::pressure, not_negative, "",
+             "Young's modulus E of the cloth as a plate. With `thickness` and `poisson` it replaces `youngs_modulus`, "
+             "and `bending` unless that is given."),
       number("thickness", Unit::length, positive, "",
-             "h of that plate: membrane E h, bending E h^3 / (12 (1 - nu^2)); it has no part in contact"),
-      number("poisson", Unit::none, {.low = 0, .high = 1, .high_in = false}, "", "Poisson's ratio, plane stress"),
-      number("lame_mu", &O::lame_mu, Unit::stiffness, not_negative, "membrane shear modulus, thickness included"),
+             "Thickness h of the cloth as a plate: membrane stiffness E h, bending stiffness E h^3 / (12 (1 - nu^2)). "
+             "It has no influence on contact."),
+      number("poisson", Unit::none, {.low = 0, .high = 1, .high_in = false}, "", "Poisson's ratio in plane stress."),
+      number("lame_mu", &O::lame_mu, Unit::stiffness, not_negative, "Membrane shear modulus times thickness."),
       number("lame_lambda", &O::lame_lambda, Unit::stiffness, not_negative,
-             "first Lame coefficient of the membrane, thickness included"),
-      number("warp", &O::warp, Unit::stiffness, not_negative, "baraff_witkin: stretch stiffness along u"),
-      number("weft", &O::weft, Unit::stiffness, not_negative, "baraff_witkin: stretch stiffness along v"),
-      number("shear", &O::shear, Unit::stiffness, not_negative, "baraff_witkin: shear stiffness"),
+             "First Lame coefficient of the membrane times thickness."),
+      number("warp", &O::warp, Unit::stiffness, not_negative, "Stretch stiffness along u, for `baraff_witkin`."),
+      number("weft", &O::weft, Unit::stiffness, not_negative, "Stretch stiffness along v, for `baraff_witkin`."),
+      number("shear", &O::shear, Unit::stiffness, not_negative, "Shear stiffness, for `baraff_witkin`."),
       choice("bending_model", &O::bending_model,
              {{"curvature", BendingModel::curvature}, {"hinge", BendingModel::hinge}},
-             "`curvature`: physical and independent of the mesh; `hinge`: dihedral angles, as in the papers"),
-      number("bending", &O::bending, Unit::bending, not_negative, "bending stiffness per width, of a plate"),
+             "`curvature` is physical and independent of the mesh. `hinge` penalises dihedral angles, as HOOD and "
+             "ContourCraft do."),
+      number("bending", &O::bending, Unit::bending, not_negative,
+             "Bending stiffness per width, as of a plate (flexural rigidity)."),
       number("hinge_bending", Unit::bending, not_negative, "",
-             "the papers' coefficient k of k l^2 / (4 (A0 + A1)) angle^2 / 2; makes bending_model hinge, in place of "
-             "`bending`"),
+             "Coefficient k of the hinge energy k l^2 / (4 (A0 + A1)) angle^2 / 2, for an edge of length l between "
+             "triangles of areas A0 and A1. It selects the model `hinge` and replaces `bending`."),
       choice("hinge_length", &O::hinge_length, {{"rest", HingeLength::rest}, {"current", HingeLength::current}},
-             "which length of its edge weighs a hinge; `current` is the loss of HOOD and ContourCraft"),
+             "Length l in the hinge energy: at rest or now. `current` is the loss of HOOD and ContourCraft."),
       number("stiffness_damping", &O::stiffness_damping, Unit::time, not_negative,
-             "Rayleigh: damping force is this times the stiffness times the velocity"),
+             "Rayleigh coefficient: the damping force is this times the stiffness times the velocity."),
       number("mass_damping", &O::mass_damping, Unit::rate, not_negative,
-             "Rayleigh: damping force is this times the mass times the velocity"),
+             "Rayleigh coefficient: the damping force is this times the mass times the velocity."),
   };
   return rows;
 }
@@ -50,13 +52,13 @@ namespace table {
 const Section& material_section() {
   static const Section table{
       "material",
-      "By name, by value, or by name with values that replace the named material's.",
+      "A material given by name, by values, or by a name and values that replace the named material's.",
       "name",
       {},
       std::vector<Key>{text("name",
-                            "a material file without its extension, looked for in `materials/` beside the "
-                            "scene file, beside its folder, and in the program's own"),
-                       path("file", "a material file")} +
+                            "Name of a material file without its extension. It is searched in `materials/` beside the "
+                            "scene file, beside the scene's folder, and in the program's own folder."),
+                       path("file", "Path of a material file.")} +
           keys_of(material_options())};
   return table;
 }
@@ -70,76 +72,83 @@ const Section& rest_section() {
       "from",
       {},
       {word("from", {"initial", "uv", "mesh"}, "initial",
-            "`initial`: as made or read; `uv`: the texture coordinates are the flat pattern; `mesh`: another file"),
-       number("uv_unit", Unit::length, positive, "1", "length of one unit of the texture coordinates"),
-       path("file", "for `mesh`: same vertices and faces as the cloth"), unit_key(),
+            "`initial` takes the shape as made or read. `uv` takes the texture coordinates as a flat pattern. `mesh` "
+            "takes the shape of `file`."),
+       number("uv_unit", Unit::length, positive, "1", "Length of one unit of the texture coordinates."),
+       path("file", "Mesh file for `from: mesh`, with the same vertices and faces as the cloth."), unit_key(),
        flag("flat", true,
-            "bending rests flat; false keeps the angles of the rest shape (all cloths of a scene alike)")}};
+            "True: rest angles are zero. False: they are the angles of the rest shape. All cloths of a scene need the "
+            "same value.")}};
   return table;
 }
 
 const Section& box_region_section() {
   static const Section table{"box_region",
-                             "",
+                             "A box with edges along the axes.",
                              "",
                              {},
-                             {needed(vector("min", Unit::length, "", "lowest corner")),
-                              needed(vector("max", Unit::length, "", "highest corner"))}};
+                             {needed(vector("min", Unit::length, "", "Lowest corner.")),
+                              needed(vector("max", Unit::length, "", "Highest corner."))}};
   return table;
 }
 
 const Section& pin_section() {
   static const Section table{
       "pin",
-      "Vertices that are held, or moved as prescribed. A vertex that two pins name obeys the first.",
+      "Vertices that are held in place or moved as prescribed. A vertex that two pins select obeys the first.",
       "",
       {"vertices", "box", "group"},
       selection_keys() +
-          std::vector<Key>{
-              section(motion_section(), "", "left out: at rest"),
-              with_words(text("follow",
-                              "`body`: of a garment, goes where the body takes it, skinned and giving way, in "
-                              "place of `motion`"),
-                         {"body"})}};
+          std::vector<Key>{section(motion_section(), "", "Motion of the vertices. Default: they are held in place."),
+                           with_words(text("follow",
+                                           "`body`: the vertices of a garment move with the skin of the body, soft "
+                                           "tissue included. It replaces `motion`."),
+                                      {"body"})}};
   return table;
 }
 
 const Section& copies_section() {
   static const Section table{
       "copies",
-      "The cloth several times, named name_0, name_1, ... Each copy lies where the one before would lie after a turn "
-      "about the middle of its bounding box and a move.",
+      "Copies of the cloth, named name_0, name_1, ... Each copy is the one before, rotated about the middle of its "
+      "bounding box and then moved.",
       "count",
       {},
-      {needed(integer("count", at_least_one, "", "how many in all")),
-       vector("translate", Unit::length, "[0, 0, 0]", "from copy to copy"),
-       vector("rotate", Unit::angle, "[0, 0, 0]", "from copy to copy: axis times angle")}};
+      {needed(integer("count", at_least_one, "", "Number of cloths in total.")),
+       vector("translate", Unit::length, "[0, 0, 0]", "Displacement from one copy to the next."),
+       vector("rotate", Unit::angle, "[0, 0, 0]",
+              "Rotation from one copy to the next: the direction is the axis, the length is the angle.")}};
   return table;
 }
 
 }  // namespace
 
 std::vector<Key> selection_keys() {
-  return {integers("vertices", not_negative, 1 << 30, "indices in the cloth, from 0"),
-          renamed(section(box_region_section(), "", "all vertices in a box of space, as placed"), "box"),
-          texts("group", "named groups of the cloth")};
+  return {integers("vertices", not_negative, 1 << 30, "Vertex indices in the cloth, from 0."),
+          renamed(section(box_region_section(), "", "All vertices that lie in a box when the cloth has been placed."),
+                  "box"),
+          texts("group", "Named vertex groups of the cloth.")};
 }
 
 const Section& cloth_section() {
   static const Section table{
       "cloth",
-      "Exactly one of rectangle, disc, tube, ribbon, tshirt, mesh and garment says where it comes from.",
+      "Exactly one of rectangle, disc, tube, ribbon, tshirt, mesh and garment gives the shape of the cloth.",
       "",
       {"rectangle", "disc", "tube", "ribbon", "tshirt", "mesh", "garment"},
-      std::vector<Key>{text("name", "left out: cloth0, cloth1, ...")} + sheet_keys() +
-          std::vector<Key>{section(mesh_section(), "", "a file"),
-                           section(garment_options().section, "", "what a body of the scene wears")} +
+      std::vector<Key>{text("name", "Name of the cloth. Default: cloth0, cloth1, ...")} + sheet_keys() +
+          std::vector<Key>{section(mesh_section(), "", "A mesh file."),
+                           section(garment_options().section, "", "A garment that a body of the scene wears.")} +
           placement_keys() +
-          std::vector<Key>{section(copies_section(), "", ""), section(start_options().section, "{}", ""),
-                           vector("velocity", Unit::speed, "[0, 0, 0]", "at the start"),
-                           section(material_section(), "{}", ""), section(rest_section(), "{}", ""),
-                           sections("seams", seam_section(), "[]", "sewn in themselves: panels that become a garment"),
-                           sections("pins", pin_section(), "[]", "")}};
+          std::vector<Key>{
+              section(copies_section(), "", "Copies of the cloth."),
+              section(start_options().section, "{}", "How the initial state differs from the cloth as placed."),
+              vector("velocity", Unit::speed, "[0, 0, 0]", "Velocity at the start."),
+              section(material_section(), "{}", "Density, stiffness and damping."),
+              section(rest_section(), "{}", "Rest shape."),
+              sections("seams", seam_section(), "[]",
+                       "Seams that join vertices of this cloth, as between the panels of a garment."),
+              sections("pins", pin_section(), "[]", "Vertices that are held or moved.")}};
   return table;
 }
 

@@ -8,21 +8,26 @@ using namespace table;
 const Options<GarmentOptions>& garment_options() {
   static const Options<GarmentOptions> table(
       "garment",
-      "A garment on a body of the scene: it is resized by the body's shape, starts where the body's first pose takes "
-      "it, and goes with the body's placement and motion, in place of a placement of its own. Exactly one of file, cut "
-      "and outfit says what it is; those by code are for the mannequin. An outfit is one cloth for each of its "
-      "garments, named after them.",
-      {path("file", "made by `selvedge dress` (.h5)"),
-       with_words(text("cut", "a garment by code, see docs/garments.md"), garment_names()),
-       texts("over", "of a `cut`: garments by code that are worn under it, from the body outward"),
-       number("edge", &GarmentOptions::edge, Unit::length, positive, "of a `cut`: length of its edges"),
-       text("outfit", "of `outfits.yaml` beside the scene or in the folder above it, else of configs/outfits.yaml"),
-       word("form", {"small", "full"}, "small", "of the outfit: for quick runs, or with all its vertices"),
+      "A garment that a body of the scene wears. It is resized to the body's shape and starts where skinning puts it "
+      "in the body's first pose. It has the placement and motion of the body and no placement of its own. Exactly one "
+      "of file, cut and outfit defines it; a cut or an outfit needs the mannequin as body. An outfit gives one cloth "
+      "for each of its garments, named after them.",
+      {path("file", "Garment file (.h5) made by `selvedge dress`."),
+       with_words(text("cut", "Name of a garment that the program makes (docs/garments.md)."), garment_names()),
+       texts("over", "Cuts that are worn under the `cut`, from the body outward."),
+       number("edge", &GarmentOptions::edge, Unit::length, positive, "Edge length of the `cut`."),
+       text("outfit",
+            "Name of an outfit. It is searched in `outfits.yaml` beside the scene, in the folder above, and in "
+            "configs/outfits.yaml."),
+       word("form", {"small", "full"}, "small",
+            "Resolution of the outfit: `small` is for quick runs, `full` has all vertices."),
        word("layers", {"over", "alone"}, "over",
-            "of an outfit: each garment made over those under it, or as if it were worn alone, so that they start in "
-            "each other"),
-       text("on", "name of the obstacle that wears it; left out: the only body"),
-       flag("pins", true, "whether the garment's own pins stay with the body, skinned and giving way")},
+            "How garments of the outfit are made: `over` those under them, or as if worn `alone`. With `alone` they "
+            "start intersecting."),
+       text("on", "Name of the obstacle that wears the garment. Default: the only body."),
+       flag("pins", true,
+            "True: the garment's own pins move with the skin of the body, soft tissue included. False: the garment has "
+            "no such pins.")},
       "file", {"file", "cut", "outfit"});
   return table;
 }
@@ -30,20 +35,23 @@ const Options<GarmentOptions>& garment_options() {
 const Options<Draping>& start_options() {
   static const Options<Draping> table(
       "start",
-      "How the start differs from the cloth as made and placed; the rest shape does not follow. A cloth that starts in "
-      "one point, where no force acts, is opened by small random displacements, and a warning says so.",
-      {vector("stretch", Unit::none, "[1, 1, 1]", "factors along x, y and z about the middle of its box; 0 flattens"),
-       number("crumple", Unit::length, not_negative, "0",
-              "random displacement of every vertex, at most, along each axis"),
-       integer("seed", not_negative, "1", "of what is random"),
-       word(
-           "from", {"skinned", "draped", "cut"}, "skinned",
-           "of a garment: where the body's first pose takes it, maybe tangled; or grown clean before time 0, while the "
-           "body comes from the pose that it was made in; or skinned, and what is tangled is cut out until it is free "
-           "(all garments of a scene alike)"),
-       number("seconds", &Draping::seconds, Unit::time, positive, "of a draped start: how long the body takes"),
-       number("hold", &Draping::hold, Unit::time, not_negative, "and holds its first pose, until time 0"),
-       flag("moving", true, "a garment starts as fast as the body takes it along; false: at rest")});
+      "How the initial state differs from the cloth as made and placed. The rest shape does not change. A cloth that "
+      "starts collapsed to one point, where no force acts, is opened by small random displacements, with a warning.",
+      {vector("stretch", Unit::none, "[1, 1, 1]",
+              "Scale factors along x, y and z about the middle of the bounding box. 0 flattens the cloth."),
+       number("crumple", Unit::length, not_negative, "0", "Largest random displacement of a vertex along each axis."),
+       integer("seed", not_negative, "1", "Random seed of the displacements."),
+       word("from", {"skinned", "draped", "cut"}, "skinned",
+            "How garments start, the same for all of a scene. `skinned`: where the body's first pose puts them, "
+            "possibly tangled. `draped`: free of intersections, after a simulation in which the body moves from the "
+            "pose that they were made in. `cut`: skinned, but tangled triangles take no part until they are free."),
+       number("seconds", &Draping::seconds, Unit::time, positive,
+              "Time in which the body moves to its first pose, for `draped`."),
+       number("hold", &Draping::hold, Unit::time, not_negative,
+              "Time for which the body then holds its first pose, until time 0, for `draped`."),
+       flag("moving", true,
+            "True: a garment starts with the velocity of the skinned body. False: it starts with the cloth's "
+            "`velocity`.")});
   return table;
 }
 

@@ -10,62 +10,80 @@ using namespace table;
 const Options<IcmOptions>& icm_options() {
   using O = IcmOptions;
   static const Options<O> table(
-      "icm", "Contours minimised together with the cloth's energy, without continuous detection and without learning.",
+      "icm",
+      "Minimises intersection contours together with the cloth's energy, without continuous collision detection and "
+      "without a network.",
       {integer("outer_iterations", &O::outer_iterations, at_least_one,
-               "a substep: pairs found anew, then a minimisation"),
+               "Outer iterations of a substep. Each finds contact pairs anew and then minimises."),
        number("contour_weight", &O::contour_weight, Unit::none, not_negative,
-              "of the contours' squared segment lengths, in mean vertex masses over the time step squared"),
+              "Weight of the sum of squared contour segment lengths, in mean vertex masses over the time step squared. "
+              "A larger value shortens contours faster."),
        choice("contour_gradient", &O::contour_gradient,
               {{"translational", ContourGradient::translational}, {"full", ContourGradient::full}},
-              "`translational`: edges are moved, not shortened"),
+              "Gradient of the contour energy. `translational` moves edges and does not shorten them; `full` is the "
+              "exact derivative."),
        number("push_speed", &O::push_speed, Unit::speed, not_negative,
-              "at which what contours enclose is asked back; 0: the contour energy alone"),
+              "Speed at which vertices that a contour encloses are pushed back. 0: the contour energy acts alone."),
        number("reach", &O::reach, Unit::length, not_negative,
-              "how far apart pairs may be that are kept from passing each other; the thickness at least"),
-       number("push_softness", &O::push_softness, Unit::none, positive, "over which a push sets in, in thicknesses")});
+              "Largest distance of pairs that are kept from passing each other. A value below the contact thickness "
+              "counts as the thickness."),
+       number("push_softness", &O::push_softness, Unit::none, positive,
+              "Distance over which the push sets in, in contact thicknesses.")});
   return table;
 }
 
 const Options<LearnedRun>& learned_options() {
   using O = LearnedRun;
   static const Options<O> table(
-      "learned", "A network makes the frames, at 30 a second. What passes through on the way stays and is reported.",
-      {path("weights", &O::weights, "weight file (`selvedge weights import`); seen from the scene file"),
+      "learned", "A network makes the frames, at 30 a second. Penetrations are not removed; they are reported.",
+      {path("weights", &O::weights,
+            "Weights of the network, a file that `selvedge train` or `selvedge weights import` writes. The path is "
+            "relative to the scene file."),
        flag("settle", &O::settle,
-            "the first frame begins with a pass in which the cloth falls to rest, as ContourCraft's training does; "
-            "HOOD always has one"),
-       choice(
-           "device", &O::device, network_devices(),
-           "what computes the network. `cpu`: the program's kernels; `libtorch`: libtorch on the CPU (`make torch`); "
-           "`cuda`: libtorch on a GPU; `auto`: `cuda` where there is one, else `cpu`")});
+            "True: the first frame begins with a pass of the network in which the cloth falls to rest, as in "
+            "ContourCraft's training. HOOD always has this pass."),
+       choice("device", &O::device, network_devices(),
+              "What computes the network. `cpu`: the program's kernels. `libtorch`: libtorch on the CPU (`make "
+              "torch`). `cuda`: libtorch on a GPU. `auto`: `cuda` where there is a GPU, else `cpu`.")});
   return table;
 }
 
 const Options<GuardOptions>& guard_options() {
   using O = GuardOptions;
   static const Options<O> table(
-      "guard", "What a proposal may do (docs/hybrid.md).",
-      {number("acceleration", &O::acceleration, Unit::acceleration, positive, "of a vertex in the step, at most"),
-       number("mean_acceleration", &O::mean_acceleration, Unit::acceleration, positive, "RMS of all vertices; or"),
+      "guard",
+      "Limits of a proposed step (docs/hybrid.md). A proposal that exceeds one is refused. Accelerations are relative "
+      "to free flight without gravity.",
+      {number("acceleration", &O::acceleration, Unit::acceleration, positive, "Largest acceleration of a vertex."),
+       number("mean_acceleration", &O::mean_acceleration, Unit::acceleration, positive,
+              "Largest RMS acceleration of all vertices. It may be exceeded where `change_of_motion` is met."),
        number("change_of_motion", &O::change_of_motion, Unit::none, not_negative,
-              "RMS change of the motion over the motion, whichever allows more"),
-       number("stretch", &O::stretch, Unit::none, positive, "largest of a triangle; or"),
+              "Largest RMS change of the displacement in a step, relative to the RMS displacement. It may be exceeded "
+              "where `mean_acceleration` is met."),
+       number("stretch", &O::stretch, Unit::none, positive,
+              "Largest principal stretch of a triangle, unless `stretch_growth` allows more."),
        number("stretch_growth", &O::stretch_growth, Unit::none, positive,
-              "over the largest at the start, whichever allows more"),
+              "Ratio of the largest stretch after the step to that before it. It counts where it allows more than "
+              "`stretch`."),
        number("energy_growth", &O::energy_growth, Unit::none, not_negative,
-              "of the elastic energy, in the cloth's weight times its mean edge"),
+              "Largest growth of the elastic energy in the step, in units of the cloth's weight times its mean edge "
+              "length."),
        number("patch_acceleration", &O::patch_acceleration, Unit::acceleration, positive,
-              "RMS of the force on patches of the cloth that contact cannot explain, over their mass"),
+              "Largest RMS residual acceleration of patches of vertices: the gradient of the step's potential on a "
+              "patch over its mass. Patches in contact are left out."),
        number("unexplained", &O::unexplained, Unit::none, positive,
-              "the same over the mean acceleration, where the motion changes by more than `change_of_motion`"),
+              "Largest ratio of the residual acceleration of patches to the RMS acceleration of all vertices. It is "
+              "tested where `change_of_motion` is exceeded."),
        number("imbalance", &O::imbalance, Unit::length, positive,
-              "RMS of how far a Jacobi sweep of the potential would move vertices that nothing touches"),
+              "Largest RMS displacement by one Jacobi sweep on the step's potential, of vertices without contact."),
        number("decrement", &O::decrement, Unit::none, positive,
-              "energy that this sweep would gain, in the cloth's weight times its mean edge"),
-       integer("patch_size", &O::patch_size, at_least_one, "vertices of a patch, about"),
-       number("still", &O::still, Unit::length, positive, "RMS motion in a step that counts as none"),
+              "Largest energy that the sweep of `imbalance` would gain, in units of the cloth's weight times its mean "
+              "edge length."),
+       integer("patch_size", &O::patch_size, at_least_one, "Approximate number of vertices in a patch."),
+       number("still", &O::still, Unit::length, positive,
+              "Lower bound of the RMS displacement that `change_of_motion` divides by. Slower cloth counts as still."),
        number("slight", &O::slight, Unit::acceleration, not_negative,
-              "mean acceleration that nothing has to explain")});
+              "Residual acceleration of patches that `unexplained` always admits.")});
   return table;
 }
 
@@ -73,108 +91,134 @@ const Options<HybridOptions>& hybrid_options() {
   using O = HybridOptions;
   static const Options<O> table(
       "hybrid",
-      "The network of `learned` proposes a step. A guard judges it, and where it refuses, the conventional stepper "
-      "takes the step from the same state.",
+      "The network of `learned` proposes a step, and a guard judges it. Where the guard refuses, the conventional "
+      "stepper takes the step from the same state.",
       {choice("mode", &O::mode,
               {{"fallback", HybridMode::fallback},
                {"corrected", HybridMode::corrected},
                {"refined", HybridMode::refined},
                {"gated", HybridMode::gated},
                {"after_k", HybridMode::after_k}},
-              "`fallback`: the proposal itself; `corrected`: its motion after the response to contact; `refined`: a "
-              "conventional solve begins at it; `gated`: corrected, after a line search of the step's potential; "
-              "`after_k`: gated, from where k Newton iterations come to"),
+              "How a proposal is used. `fallback`: as it is. `corrected`: after the contact response. `refined`: as "
+              "the first guess of a conventional solve. `gated`: as `corrected`, after a line search on the step's "
+              "potential. `after_k`: as `gated`, with a line search that starts after k Newton iterations."),
        or_word(integer("newton", &O::newton, at_least_one,
-                       "k of `after_k`, or most iterations of a solve of `refined`; `auto`: 2, or max_newton"),
+                       "Number k of Newton iterations of `after_k`, or the largest number in a solve of `refined`. "
+                       "`auto`: 2 for `after_k`, `max_newton` for `refined`."),
                "auto"),
-       integer("gate_steps", &O::gate_steps, at_least_one, "places where `gated` asks the potential"),
+       integer("gate_steps", &O::gate_steps, at_least_one,
+               "Number of points at which the line search of `gated` evaluates the potential."),
        integer("admitted_to_halve", &O::admitted_to_halve, at_least_one,
-               "proposals admitted in a row that halve the next stretch without one"),
-       integer("longest_stretch", &O::longest_stretch, at_least_one,
-               "frames without a proposal after several refusals: 1, 2, 4 .. of them"),
+               "Number of proposals that must be admitted in a row to halve the pause after the next refusal."),
+       integer(
+           "longest_stretch", &O::longest_stretch, at_least_one,
+           "Longest pause after a refusal, in frames without a proposal. Each refusal doubles the pause: 1, 2, 4, ..."),
        flag("stop_when_slow", &O::stop_when_slow,
-            "ask for no proposal where those have cost more time than they have saved; frames then depend on the "
-            "clock"),
-       number("extra_time", &O::extra_time, Unit::none, not_negative,
-              "what proposals may cost then, of the time so far"),
-       section(&O::guard, guard_options(), "when a proposal is admitted")});
+            "True: no proposals are made while they take more time than they save. Results then depend on the clock."),
+       number(
+           "extra_time", &O::extra_time, Unit::none, not_negative,
+           "Share of the total time that proposals may lose against the conventional stepper, with `stop_when_slow`."),
+       section(&O::guard, guard_options(), "Limits of a proposed step.")});
   return table;
 }
 
 const Options<RefuRun>& refu_options() {
   using O = RefuRun;
   static const Options<O> table(
-      "refu", "Vertices that a frame leaves inside a closed body are pushed out of it.",
-      {flag("on", &O::on, "after every frame of whatever stepper"),
+      "refu", "A repulsive layer (Tan et al. 2022) that pushes vertices out of closed bodies at the end of a frame.",
+      {flag("on", &O::on, "True: the layer acts after every frame, behind any stepper."),
        number("alpha", &O::alpha, Unit::none, {.low = 0, .high = 1000},
-              "how far, in multiples of the depth; what is still inside then is projected"),
+              "Length of the push, in multiples of the penetration depth. Vertices that are still inside are then "
+              "projected onto the surface."),
        path("weights", &O::weights,
-            "scales by what neighbours know instead (configs/weights/refu.h5); seen from the scene file"),
-       integer("edge_pass", &O::edge_pass, not_negative, "rounds that lift edges which still cross the body"),
+            "Weights of a network that predicts `alpha` for each vertex (configs/weights/refu.h5). The path is "
+            "relative to the scene file."),
+       integer("edge_pass", &O::edge_pass, not_negative,
+               "Number of rounds that move edges which still cross the body out of it."),
        number("order", &O::order, Unit::length, not_negative,
-              "height over the body up to which cloth goes along with what is pushed out under it, so that layers keep "
-              "their order; 0: none does")});
+              "Height above the body below which cloth moves with vertices that are pushed out beneath it, so that "
+              "layers keep their order. 0: it does not move with them.")});
   return table;
 }
 
 const Options<RestingOptions>& resting_options() {
   using O = RestingOptions;
-  static const Options<O> table(
-      "resting", "A cloth rests if it hardly moves for a while.",
-      {number("still_edges", &O::still_edges, Unit::none, not_negative, "largest motion of a vertex, in mean edges"),
-       number("still_seconds", &O::still_seconds, Unit::time, positive, "how long no vertex moves by more")});
+  static const Options<O> table("resting", "When a cloth counts as resting.",
+                                {number("still_edges", &O::still_edges, Unit::none, not_negative,
+                                        "Largest displacement of a vertex of a resting cloth, in mean edge lengths."),
+                                 number("still_seconds", &O::still_seconds, Unit::time, positive,
+                                        "Time in which no vertex moves farther than `still_edges`.")});
   return table;
 }
 
 const Options<RecoveryOptions>& recovery_options() {
   using O = RecoveryOptions;
   static const Options<O> table(
-      "recovery", "A step that starts tangled first untangles the cloth, or puts it on again.",
-      {integer("untangling_passes", &O::untangling_passes, at_least_one, "most of a step; the next one goes on"),
-       number("speed", &O::speed, Unit::speed, positive, "largest of a tangled vertex"),
+      "recovery",
+      "A step that starts tangled first untangles the cloth, or puts a garment on its body again. Its skinned target "
+      "is where skinning alone would put it.",
+      {integer("untangling_passes", &O::untangling_passes, at_least_one,
+               "Largest number of untangling passes in a step. The next step continues."),
+       number("speed", &O::speed, Unit::speed, positive, "Largest speed at which untangling moves a vertex."),
        integer("hopeless_pairs", &O::hopeless_pairs, at_least_one,
-               "crossing pairs a triangle, beyond which the cloth's own stiffness has to open it"),
-       integer("max_pair_passes", &O::max_pair_passes, at_least_one, "most crossing pairs times passes of a step"),
+               "Number of crossing pairs for each triangle above which cloth is not untangled. Its own stiffness then "
+               "has to open it."),
+       integer("max_pair_passes", &O::max_pair_passes, at_least_one,
+               "Largest product of crossing pairs and passes in a step, where cloth crosses itself. It bounds the time "
+               "of untangling."),
        number("useful_motions", &O::useful_motions, Unit::none, positive,
-              "displacements longer than this many times what a step can move are not looked for"),
-       integer("min_passes", &O::min_passes, at_least_one, "fewest passes, however short the step"),
-       integer("waiting_passes", &O::waiting_passes, at_least_one, "passes at a body that crosses itself"),
+              "Longest displacement that untangling from obstacles looks for, in multiples of what `speed` allows in a "
+              "step."),
+       integer("min_passes", &O::min_passes, at_least_one,
+               "Number of passes that `useful_motions` always leaves, however short the step."),
+       integer("waiting_passes", &O::waiting_passes, at_least_one,
+               "Largest number of passes while cloth lies where a body crosses itself."),
        integer("max_halvings", &O::max_halvings, not_negative,
-               "most halvings of a motion that makes cloth cross itself in more pairs"),
+               "How often an untangling motion is halved that makes more pairs of triangles cross."),
        number("negligible_move", &O::negligible_move, Unit::none, not_negative,
-              "a displacement that counts as none, in mean edges"),
+              "Displacement that counts as none, in mean edge lengths."),
        number("farthest_place", &O::farthest_place, Unit::length, not_negative,
-              "how far from where it is a vertex may be put on"),
-       integer("placing_passes", &O::placing_passes, at_least_one, "most passes where cloth is put on"),
+              "Largest distance that a vertex moves when a garment is put on again."),
+       integer("placing_passes", &O::placing_passes, at_least_one,
+               "Largest number of untangling passes when a garment is put on again."),
        integer("max_placing_pair_passes", &O::max_placing_pair_passes, at_least_one,
-               "most crossing pairs times passes there"),
+               "Largest product of crossing pairs and passes when a garment is put on again. It bounds the time."),
        number("pierced_part", &O::pierced_part, Unit::none, not_negative,
-              "part of a component that is tangled and astray, beyond which a limb has gone through it"),
-       number("astray", &O::astray, Unit::none, not_negative, "from its skinned target, in mean edges"),
+              "Fraction of the vertices of a component that are tangled and far from their target, above which a limb "
+              "counts as having pierced it."),
+       number("astray", &O::astray, Unit::none, not_negative,
+              "Distance from its skinned target above which a vertex counts as far, in mean edge lengths."),
        number("sunken_part", &O::sunken_part, Unit::none, not_negative,
-              "part of a component that is tangled, beyond which it has sunken into the body"),
+              "Fraction of the vertices of a component that are tangled with a body, above which it counts as sunken "
+              "in and is put on again."),
        number("long_limb", &O::long_limb, Unit::none, positive,
-              "how far a limb reaches beyond a contour, in the contour's radii"),
+              "Length of the part of a body beyond a closed contour, in radii of the contour, above which the contour "
+              "counts as pierced by a limb."),
        number("carrying_speed", &O::carrying_speed, Unit::speed, positive,
-              "largest at which cloth is drawn to its skinned target"),
+              "Largest speed at which cloth is drawn to its skinned target."),
        number("carrying_stiffness", &O::carrying_stiffness, Unit::none, positive,
-              "how much stiffer than its inertia it is drawn where the body is free of itself"),
+              "Stiffness with which cloth is drawn to its skinned target, in masses over the time step squared, while "
+              "the body does not cross itself."),
        number("crossing_stiffness", &O::crossing_stiffness, Unit::none, positive,
-              "how much stiffer it is drawn where the body is not"),
+              "Stiffness with which cloth is drawn to its skinned target where the body crosses itself, in masses over "
+              "the time step squared."),
        number("push_softness", &O::push_softness, Unit::none, positive,
-              "over which what keeps parted cloth parted sets in, in thicknesses")});
+              "Distance over which the force sets in that keeps untangled cloth apart, in contact thicknesses.")});
   return table;
 }
 
 const OptionRows<ConventionalOptions>& substep_count_options() {
   using O = ConventionalOptions;
-  static const OptionRows<O> rows{or_word(integer("substeps", &O::substeps, at_least_one,
-                                                  "time steps a frame; `auto`: from the speed of what touches"),
-                                          "auto"),
-                                  or_word(integer("min_substeps", &O::min_substeps, at_least_one,
-                                                  "fewest that `auto` takes; `auto`: 2 of a frame longer than 1/48 s"),
-                                          "auto"),
-                                  integer("max_substeps", &O::max_substeps, at_least_one, "most that `auto` takes")};
+  static const OptionRows<O> rows{
+      or_word(integer("substeps", &O::substeps, at_least_one,
+                      "Number of time steps in a frame. `auto` chooses it from the speed of what touches."),
+              "auto"),
+      or_word(
+          integer(
+              "min_substeps", &O::min_substeps, at_least_one,
+              "Smallest number of substeps that `auto` chooses. `auto`: 2 if a frame is longer than 1/48 s, else 1."),
+          "auto"),
+      integer("max_substeps", &O::max_substeps, at_least_one, "Largest number of substeps that `auto` chooses.")};
   return rows;
 }
 
@@ -184,26 +228,26 @@ const Options<RunOptions>& run_options() {
   using O = RunOptions;
   static const Options<O> table(
       "run", "",
-      OptionRows<O>{integer("frames", &O::frames, at_least_one, "how many"),
-                    number("fps", &O::fps, Unit::rate, positive, "frames a second"),
+      OptionRows<O>{integer("frames", &O::frames, at_least_one, "Number of frames."),
+                    number("fps", &O::fps, Unit::rate, positive, "Frames a second."),
                     word("quality", &O::quality, quality_names(),
-                         "values of other keys, which they override where they are given (docs/benchmarks.md)")} +
+                         "Preset for other keys, from fast to accurate (docs/benchmarks.md). A key that the file gives "
+                         "keeps its value.")} +
           inside(&O::conventional, substep_count_options()) +
-          OptionRows<O>{
-              word("stepper", &O::stepper, known_kinds().names(), "who makes the frames"),
-              flag("rest", &O::rest, "cloths that rest, with nothing moving near them, are left out of the work"),
-              section(&O::resting, resting_options(), "when a cloth rests"),
-              section(&O::recovery, recovery_options(), "what a step does that starts tangled"),
-              section(&O::icm, icm_options(), "of the stepper `icm`"),
-              section(&O::learned, learned_options(), "of the stepper `learned`"),
-              section(&O::hybrid, hybrid_options(), "of the stepper `hybrid`"),
-              section(&O::refu, refu_options(), "a repulsive layer behind the stepper")});
+          OptionRows<O>{word("stepper", &O::stepper, known_kinds().names(), "Method that makes the frames."),
+                        flag("rest", &O::rest, "True: a resting cloth is not simulated while nothing near it moves."),
+                        section(&O::resting, resting_options(), "When a cloth counts as resting."),
+                        section(&O::recovery, recovery_options(), "What a step does that starts tangled."),
+                        section(&O::icm, icm_options(), "Options of the stepper `icm`."),
+                        section(&O::learned, learned_options(), "Options of the stepper `learned`."),
+                        section(&O::hybrid, hybrid_options(), "Options of the stepper `hybrid`."),
+                        section(&O::refu, refu_options(), "Repulsive layer behind the stepper.")});
   return table;
 }
 
 const Options<RunOptions>& output_options() {
   static const Options<RunOptions> table(
-      "output", "", {path("folder", &RunOptions::output, "for the results; left out: chosen by the command")});
+      "output", "", {path("folder", &RunOptions::output, "Folder of the results. Default: the command chooses it.")});
   return table;
 }
 

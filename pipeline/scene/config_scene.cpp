@@ -9,12 +9,12 @@ namespace {
 using namespace table;
 
 const Section& wind_key_section() {
-  static const Section table{
-      "wind_key",
-      "",
-      "",
-      {},
-      {needed(number("time", Unit::time, any, "", "when")), needed(vector("velocity", Unit::speed, "", "of the air"))}};
+  static const Section table{"wind_key",
+                             "Velocity of the air at one time.",
+                             "",
+                             {},
+                             {needed(number("time", Unit::time, any, "", "Time of the keyframe.")),
+                              needed(vector("velocity", Unit::speed, "", "Velocity of the air."))}};
   return table;
 }
 
@@ -29,26 +29,31 @@ void collect(const Section& section, std::vector<const Section*>& found) {
 
 const Options<Wind>& wind_options() {
   static const Options<Wind> table(
-      "wind", "Air, moving or still. Left out: none, and no drag.",
-      {vector("velocity", Unit::speed, "[0, 0, 0]", "of the air"),
-       sections("keyframes", wind_key_section(), "[]", "velocities at ascending times, in place of `velocity`"),
-       interpolation_key(), number("drag", &Wind::drag, Unit::none, not_negative, "coefficient along the normal"),
-       number("lift", &Wind::lift, Unit::none, not_negative, "coefficient of the tangential part"),
-       number("air_density", &Wind::air_density, Unit::density, not_negative, "")});
+      "wind", "The air round the cloth, moving or still. Without this section there is no drag.",
+      {vector("velocity", Unit::speed, "[0, 0, 0]", "Velocity of the air."),
+       sections("keyframes", wind_key_section(), "[]", "Velocities at ascending times, in place of `velocity`."),
+       interpolation_key(),
+       number("drag", &Wind::drag, Unit::none, not_negative,
+              "Drag coefficient, of the velocity component normal to the cloth."),
+       number("lift", &Wind::lift, Unit::none, not_negative,
+              "Lift coefficient, of the velocity component tangential to the cloth."),
+       number("air_density", &Wind::air_density, Unit::density, not_negative, "Density of the air.")});
   return table;
 }
 
 const Options<ContactSettings>& contact_options() {
   using O = ContactSettings;
   static const Options<O> table(
-      "contact", "",
-      {number("thickness", &O::thickness, Unit::length, positive, "distance that resting layers keep"),
-       number("friction", &O::friction, Unit::none, not_negative, "coefficient, cloth on obstacle"),
-       number("self_friction", &O::self_friction, Unit::none, not_negative, "coefficient, cloth on cloth"),
-       flag("self", &O::self, "false leaves cloth-cloth contact out; the run is then labelled \"self: not audited\""),
+      "contact", "Contact of cloth with itself, with other cloths and with obstacles.",
+      {number("thickness", &O::thickness, Unit::length, positive,
+              "Distance that resting layers keep from each other and from obstacles."),
+       number("friction", &O::friction, Unit::none, not_negative, "Friction coefficient of cloth on obstacles."),
+       number("self_friction", &O::self_friction, Unit::none, not_negative, "Friction coefficient of cloth on cloth."),
+       flag("self", &O::self,
+            "False: contact of cloth with cloth is left out, and the run is labelled \"self: not audited\"."),
        flag("rigid_zones", &O::rigid_zones,
-            "true: cloth in an impact zone goes on as one rigid body, which settles at once but does not slide; zones "
-            "that lean on an obstacle are never rigid")});
+            "True: an impact zone that no obstacle takes part in moves as a rigid body. The cloth in it settles at "
+            "once, but does not slide.")});
   return table;
 }
 
@@ -58,18 +63,21 @@ const Section& scene_section() {
       "The whole file.",
       "",
       {},
-      {text("description", "for people"),
+      {text("description", "Free text for readers."),
        text("folder",
-            "where relative paths of files begin, relative to this file's folder; left out: that folder. The "
-            "config.yaml of a run names the scene's"),
-       needed(sections("cloths", cloth_section(), "", "at least one")),
-       sections("springs", spring_options().section, "[]", "buttons and stitches"),
-       sections("obstacles", obstacle_section(), "[]", ""), vector("gravity", Unit::acceleration, "[0, -9.81, 0]", ""),
-       section(wind_options().section, "", ""), section(contact_options().section, "{}", ""),
-       section(run_options().section, "{}", ""), section(solver_options().section, "{}", ""),
-       section(output_options().section, "{}", ""),
-       sections("outcome", outcome_section(), "[]", "what must come true, checked as the run goes"),
-       texts("short_form", "`key=value` overrides that make a shorter run of it (`selvedge stress --short`)")}};
+            "Folder that relative paths refer to, itself relative to this file's folder. Default: this file's folder. "
+            "In the config.yaml of a run it is the scene's folder."),
+       needed(sections("cloths", cloth_section(), "", "Cloths, at least one.")),
+       sections("springs", spring_options().section, "[]", "Buttons and stitches between vertices of cloths."),
+       sections("obstacles", obstacle_section(), "[]", "Bodies and surfaces that cloth collides with."),
+       vector("gravity", Unit::acceleration, "[0, -9.81, 0]", "Acceleration by gravity."),
+       section(wind_options().section, "", "Velocity, drag and lift of the air."),
+       section(contact_options().section, "{}", "Thickness and friction."),
+       section(run_options().section, "{}", "Frames, time steps and the stepper."),
+       section(solver_options().section, "{}", "Time integration, nonlinear and linear solver."),
+       section(output_options().section, "{}", "Where results are written."),
+       sections("outcome", outcome_section(), "[]", "Conditions that the run must meet, checked in each frame."),
+       texts("short_form", "`key=value` overrides that shorten the run (`selvedge stress --short`).")}};
   return table;
 }
 
@@ -79,7 +87,7 @@ std::shared_ptr<const SceneTable> scene_table(const Kinds& kinds) {
     if (key.name == "stepper") key.choices = kinds.names();
   for (const StepperKind& kind : kinds.all())
     if (kind.options)
-      table->run.keys.push_back(table::section(*kind.options, "{}", "of the stepper `" + kind.name + "`"));
+      table->run.keys.push_back(table::section(*kind.options, "{}", "Options of the stepper `" + kind.name + "`."));
   for (Key& key : table->scene.keys)
     if (key.section == &run_options().section) key.section = &table->run;
   return table;

@@ -7,15 +7,14 @@ namespace {
 
 Key pair_key() {
   return word("pair", {"listed", "nearest"}, "listed",
-              "`listed`: the first with the first and so on, as many on both sides; `nearest`: each of `from` with the "
-              "nearest of `to` at the start");
+              "`listed` pairs vertices in order, with the same number on both sides. `nearest` pairs each vertex of "
+              "`from` with the nearest of `to` at the start.");
 }
 
 const Section& seam_side_section() {
   static const Section table{
       "seam_side",
-      "Vertices of the cloth, in the order in which they are listed; those of a box or a group by "
-      "ascending index.",
+      "Vertices of the cloth in the order in which they are listed. Those of a box or a group are ordered by index.",
       "",
       {"vertices", "box", "group"},
       selection_keys()};
@@ -27,13 +26,13 @@ const Section& seam_side_section() {
 const Section& seam_section() {
   static const Section table{
       "seam",
-      "Vertices of the cloth that are sewn together in pairs: each pair becomes one vertex, where several meet all of "
-      "them become one. Triangles keep the rest shape that they have on their panels.",
+      "Vertices of the cloth that are sewn together in pairs. Each pair becomes one vertex, and pairs with a common "
+      "vertex become one vertex together. Triangles keep the rest shape that they have on their panels.",
       "",
       {"from", "file"},
-      {renamed(section(seam_side_section(), "", "one side of the seam"), "from"),
-       renamed(section(seam_side_section(), "", "the other side"), "to"), pair_key(),
-       path("file", "a text file with a pair of indices, from 0, a line; in place of `from` and `to`")}};
+      {renamed(section(seam_side_section(), "", "One side of the seam."), "from"),
+       renamed(section(seam_side_section(), "", "The other side of the seam."), "to"), pair_key(),
+       path("file", "Text file with one pair of vertex indices, from 0, on each line. It replaces `from` and `to`.")}};
   return table;
 }
 
@@ -43,15 +42,15 @@ const Options<Spring>& spring_options() {
   using namespace table;
   static const Options<Spring> table(
       "spring",
-      "Buttons and stitches: vertices of cloths, in pairs, that springs join. The order of vertices is that in which "
-      "they are listed; those of a box, a group or a whole cloth by ascending index.",
-      {needed(renamed(section(selection_section(), "", ""), "from")),
-       needed(renamed(section(selection_section(), "", ""), "to")), pair_key(),
+      "Buttons and stitches: springs that join vertices of cloths in pairs. Vertices are taken in the order in which "
+      "they are listed. Those of a box, a group or a whole cloth are ordered by index.",
+      {needed(renamed(section(selection_section(), "", "Vertices at one end of the springs."), "from")),
+       needed(renamed(section(selection_section(), "", "Vertices at the other end."), "to")), pair_key(),
        number("rest_length", Unit::length, not_negative, "",
-              "left out: `contact.thickness` for listed pairs, their distance at the start for nearest ones"),
+              "Rest length. Default: `contact.thickness` for listed pairs, the initial distance for nearest ones."),
        number("stiffness", &Spring::stiffness, Unit::stiffness, positive,
-              "of each; by default the 2 N of a shirt on one button stretch it by 0.2 mm, and cotton is ten times as "
-              "soft")});
+              "Stiffness of each spring, by default ten times that of cotton. A load of 2 N, as of a shirt on one "
+              "button, then stretches it by 0.2 mm.")});
   return table;
 }
 

@@ -11,8 +11,8 @@ const OptionRows<SheetOptions>& sheet_options() {
              {{"one_diagonal", Triangulation::one_diagonal},
               {"alternating", Triangulation::alternating},
               {"unstructured", Triangulation::unstructured}},
-             "how it is cut"),
-      integer("seed", &SheetOptions::seed, not_negative, "of the unstructured triangulation")};
+             "How the cloth is divided into triangles. `unstructured` has no preferred directions."),
+      integer("seed", &SheetOptions::seed, not_negative, "Random seed of the triangulation `unstructured`.")};
   return rows;
 }
 
@@ -20,14 +20,14 @@ const Options<TshirtShape>& tshirt_options() {
   using O = TshirtShape;
   static const Options<O> table(
       "tshirt",
-      "A front and a back joined at the sides, the shoulders and along the sleeves; upright, front to +z, centred at "
-      "the origin. Groups: hem, neck, cuffs, seams, front, back.",
-      {number("width", &O::width, Unit::length, positive, "of the body"),
-       number("length", &O::length, Unit::length, positive, "of the body"),
-       number("sleeve_length", &O::sleeve_length, Unit::length, positive, "beyond the body"),
-       number("sleeve_width", &O::sleeve_width, Unit::length, positive, ""),
-       number("neck", &O::neck, Unit::length, positive, "width of the opening"),
-       number("depth", &O::depth, Unit::length, positive, "from front to back, away from the seams"),
+      "A front and a back, joined at the sides, the shoulders and along the sleeves. It stands upright, centred at the "
+      "origin, with its front towards +z. Groups: hem, neck, cuffs, seams, front, back.",
+      {number("width", &O::width, Unit::length, positive, "Width of the body."),
+       number("length", &O::length, Unit::length, positive, "Length of the body."),
+       number("sleeve_length", &O::sleeve_length, Unit::length, positive, "Length of a sleeve beyond the body."),
+       number("sleeve_width", &O::sleeve_width, Unit::length, positive, "Width of a sleeve."),
+       number("neck", &O::neck, Unit::length, positive, "Width of the neck opening."),
+       number("depth", &O::depth, Unit::length, positive, "Distance from front to back, away from the seams."),
        bound(&O::edge, edge_key({}))});
   return table;
 }
@@ -38,42 +38,44 @@ namespace {
 const Section& rectangle_section() {
   static const Section table{
       "rectangle",
-      "Horizontal, normal up, centred at the origin. Groups: left, right, top (-z), bottom, boundary, center, "
-      "top_left, top_right, bottom_left, bottom_right.",
+      "A rectangular sheet: horizontal, normal up, centred at the origin. Groups: left, right, top (-z), bottom, "
+      "boundary, center, top_left, top_right, bottom_left, bottom_right.",
       "",
       {},
-      std::vector<Key>{pair("size", Unit::length, "[1, 1]", "along x and z"),
-                       integers("resolution", {.low = 2}, 2, "vertices along x and z; in place of `edge`"),
+      std::vector<Key>{pair("size", Unit::length, "[1, 1]", "Lengths along x and z."),
+                       integers("resolution", {.low = 2}, 2, "Number of vertices along x and z, in place of `edge`."),
                        edge_key("0.02"),
                        pair("grading", Unit::none, "[1, 1]",
-                            "last over first spacing of the vertices along x and z, in geometric steps")} +
+                            "Ratio of the last to the first vertex spacing along x and z. Spacings grow geometrically; "
+                            "not for `unstructured`.")} +
           keys_of(sheet_options())};
   return table;
 }
 
 const Section& disc_section() {
-  static const Section table{
-      "disc",
-      "Horizontal, normal up, centred at the origin. Groups: boundary, center.",
-      "",
-      {},
-      std::vector<Key>{number("radius", Unit::length, positive, "0.5", ""),
-                       integers("resolution", {.low = 1}, 1, "rings of vertices round the centre; in place of `edge`"),
-                       edge_key("0.02")} +
-          keys_of(sheet_options())};
+  static const Section table{"disc",
+                             "A round sheet: horizontal, normal up, centred at the origin. Groups: boundary, center.",
+                             "",
+                             {},
+                             std::vector<Key>{number("radius", Unit::length, positive, "0.5", "Radius of the disc."),
+                                              integers("resolution", {.low = 1}, 1,
+                                                       "Number of vertex rings round the centre, in place of `edge`."),
+                                              edge_key("0.02")} +
+                                 keys_of(sheet_options())};
   return table;
 }
 
 const Section& tube_section() {
   static const Section table{
       "tube",
-      "Round the y axis, centred at the origin, normals outward. Groups: top, bottom, boundary.",
+      "An open cylinder about the y axis, centred at the origin, normals outward. Groups: top, bottom, boundary.",
       "",
       {},
-      std::vector<Key>{
-          number("radius", Unit::length, positive, "0.2", ""), number("height", Unit::length, positive, "1", "along y"),
-          integers("resolution", {.low = 2}, 2, "vertices round (at least 6) and along; in place of `edge`"),
-          edge_key("0.02")} +
+      std::vector<Key>{number("radius", Unit::length, positive, "0.2", "Radius of the tube."),
+                       number("height", Unit::length, positive, "1", "Length along y."),
+                       integers("resolution", {.low = 2}, 2,
+                                "Number of vertices round (at least 6) and along the tube, in place of `edge`."),
+                       edge_key("0.02")} +
           keys_of(sheet_options())};
   return table;
 }
@@ -81,26 +83,30 @@ const Section& tube_section() {
 const Section& line_point_section() {
   static const Section table{
       "line_point",
-      "",
+      "A point of a ribbon's centre line.",
       "at",
       {},
-      {needed(vector("at", Unit::length, "", "where the middle of the ribbon is")),
-       vector("normal", Unit::none, "", "way the ribbon faces here; left out: the ribbon's `normal`")}};
+      {needed(vector("at", Unit::length, "", "Position of the middle of the ribbon.")),
+       vector("normal", Unit::none, "",
+              "Direction that the ribbon faces at this point. Default: the ribbon's `normal`.")}};
   return table;
 }
 
 const Section& ribbon_section() {
   static const Section table{
       "ribbon",
-      "A straight strip of cloth laid along a smooth line through points (centripetal Catmull-Rom). Its pattern is "
-      "flat, so a ribbon that is laid round a bend without room starts strained. Groups: start, end, middle, boundary.",
+      "A straight strip of cloth, laid along a smooth curve through points (centripetal Catmull-Rom). Its rest shape "
+      "is flat, so it starts strained where it cannot follow the curve without stretching. Groups: start, end, middle, "
+      "boundary.",
       "",
       {},
-      std::vector<Key>{needed(sections("line", line_point_section(), "", "at least two points, [x, y, z] each")),
-                       number("width", Unit::length, positive, "0.03", ""),
-                       vector("normal", Unit::none, "[0, 1, 0]", "way the ribbon faces"),
-                       integers("resolution", {.low = 2}, 2, "vertices along and across; in place of `edge`"),
-                       edge_key("0.005")} +
+      std::vector<Key>{
+          needed(
+              sections("line", line_point_section(), "", "Points of the centre line, at least two, each [x, y, z].")),
+          number("width", Unit::length, positive, "0.03", "Width of the ribbon."),
+          vector("normal", Unit::none, "[0, 1, 0]", "Direction that the ribbon faces."),
+          integers("resolution", {.low = 2}, 2, "Number of vertices along and across the ribbon, in place of `edge`."),
+          edge_key("0.005")} +
           keys_of(sheet_options())};
   return table;
 }
@@ -108,9 +114,9 @@ const Section& ribbon_section() {
 }  // namespace
 
 std::vector<Key> sheet_keys() {
-  return {section(rectangle_section(), "", "a sheet"), section(disc_section(), "", "a round sheet"),
-          section(tube_section(), "", "a sleeve"), section(ribbon_section(), "", "a strip along a line"),
-          section(tshirt_options().section, "", "a garment")};
+  return {section(rectangle_section(), "", "A rectangular sheet."), section(disc_section(), "", "A round sheet."),
+          section(tube_section(), "", "A cylinder with open ends."),
+          section(ribbon_section(), "", "A strip along a curve."), section(tshirt_options().section, "", "A T-shirt.")};
 }
 
 }  // namespace table

@@ -20,11 +20,12 @@ constexpr Range from_0_to_1{.low = 0, .high = 1};
 
 const Options<LossRamp>& ramp_options() {
   using O = LossRamp;
-  static const Options<O> table("ramp", "A number over the run, linear between beginning and end.",
-                                {number("from", &O::from, Unit::none, not_negative, "before the beginning"),
-                                 number("to", &O::to, Unit::none, not_negative, "from the end on"),
-                                 number("begin", &O::begin, Unit::none, from_0_to_1, "part of the run"),
-                                 number("end", &O::end, Unit::none, from_0_to_1, "part of the run")});
+  static const Options<O> table(
+      "ramp", "A number over the run that changes linearly between `begin` and `end`.",
+      {number("from", &O::from, Unit::none, not_negative, "Value up to `begin`."),
+       number("to", &O::to, Unit::none, not_negative, "Value from `end` on."),
+       number("begin", &O::begin, Unit::none, from_0_to_1, "Fraction of the run at which the change begins."),
+       number("end", &O::end, Unit::none, from_0_to_1, "Fraction of the run at which the change ends.")});
   return table;
 }
 
@@ -36,246 +37,293 @@ Option<Struct> ramp(std::string name, LossRamp Struct::*member, std::string abou
 const Options<VertexMaterial>& training_material_options() {
   using O = VertexMaterial;
   static const Options<O> table(
-      "material", "Isotropic, St. Venant-Kirchhoff.",
-      {number("density", &O::density, Unit::areal_density, positive, ""),
-       number("lame_mu", &O::lame_mu, Unit::stiffness, positive, "thickness included"),
-       number("lame_lambda", &O::lame_lambda, Unit::stiffness, not_negative, "thickness included"),
-       number("hinge_bending", &O::bending, Unit::bending, not_negative, "the papers' coefficient")});
+      "material", "An isotropic St. Venant-Kirchhoff material.",
+      {number("density", &O::density, Unit::areal_density, positive, "Mass per area."),
+       number("lame_mu", &O::lame_mu, Unit::stiffness, positive, "Membrane shear modulus times thickness."),
+       number("lame_lambda", &O::lame_lambda, Unit::stiffness, not_negative,
+              "First Lame coefficient of the membrane times thickness."),
+       number("hinge_bending", &O::bending, Unit::bending, not_negative,
+              "Coefficient k of the hinge energy, as `hinge_bending` of a scene.")});
   return table;
 }
 
 const Options<ForceSampling>& force_sampling_options() {
   using O = ForceSampling;
   static const Options<O> table(
-      "forces", "On the cloth beside gravity, of networks with inputs for accelerations; one a roll-out.",
+      "forces",
+      "Forces on the cloth beside gravity, one for each roll-out. The network needs inputs for accelerations.",
       {number("strongest", &O::strongest, Unit::acceleration, not_negative,
-              "the strength is uniform up to here, the direction on the sphere; 0: none"),
+              "Largest strength of the force, per mass. Strengths are uniform up to it, directions uniform on the "
+              "sphere. 0: no force."),
        number("wind_share", &O::wind_share, Unit::none, from_0_to_1,
-              "of roll-outs: a wind on each triangle, as strong on one that faces it"),
+              "Fraction of roll-outs in which the force is a wind on each triangle. A triangle that faces it at rest "
+              "gets the strength drawn."),
        number("sheet_share", &O::sheet_share, Unit::none, from_0_to_1,
-              "of roll-outs: of a hung sheet without a body, in place of a garment")});
+              "Fraction of roll-outs with a hanging sheet and no body, in place of a garment.")});
   return table;
 }
 
 const Options<SampleOptions>& sample_options() {
   using O = SampleOptions;
   static const Options<O> table(
-      "samples", "What a network is trained on. Nothing of the validation split is taken.",
-      {texts("garments", &O::garments, "by code, or outfits of outfits.yaml"),
-       number("edge", &O::edge, Unit::length, positive, "of the triangles of garments by code"),
-       texts("clips", &O::clips, "procedural; left out: all of the training split"),
-       integer("shapes", &O::shapes, at_least_one, "of the body; the first is the mean one"),
-       number("shape_spread", &O::shape_spread, Unit::none, not_negative, "standard deviations of the coefficients"),
-       section(&O::material, training_material_options(), "HOOD's where it is left out"),
+      "samples", "What a network is trained on. The validation split is not used.",
+      {texts("garments", &O::garments,
+             "Garments that the program makes (docs/garments.md), or outfits of outfits.yaml."),
+       number("edge", &O::edge, Unit::length, positive, "Edge length of garments that the program makes."),
+       texts("clips", &O::clips, "Procedural clips. Default: all of the training split."),
+       integer("shapes", &O::shapes, at_least_one, "Number of body shapes. The first is the mean shape."),
+       number("shape_spread", &O::shape_spread, Unit::none, not_negative,
+              "Spread of the body shapes, in standard deviations of the shape coefficients."),
+       section(&O::material, training_material_options(),
+               "Material of the garments. Values that are left out are HOOD's."),
        choice("sample_materials", &O::sample_materials,
               {{"none", MaterialSampling::none},
                {"garment", MaterialSampling::garment},
                {"vertex", MaterialSampling::vertex}},
-              "over the authors' ranges, anew for each roll-out: `garment`: one for each; `vertex`: two for each, "
-              "mixed over its rest shape; `none`: `material`"),
+              "Random materials of each roll-out, from the ranges of HOOD's authors. `garment`: one for each garment. "
+              "`vertex`: two for each garment, mixed over its rest shape. `none`: all have `material`."),
        number("still_share", &O::still_share, Unit::none, from_0_to_1,
-              "of roll-outs that begin at rest, with a frame of 1/3 s in which the cloth falls"),
-       number("noise", &O::noise, Unit::length, not_negative, "of start positions, standard deviation"),
-       flag("yaw", &O::yaw, "each roll-out turned about the vertical at random"),
-       flag("mirror", &O::mirror, "every second roll-out left for right"),
-       number("no_body_share", &O::no_body_share, Unit::none, from_0_to_1, "of roll-outs, without the body"),
-       flag("flesh", &O::soft_tissue, "the body gives way where it would pass through itself"),
+              "Fraction of roll-outs that begin at rest, with a first frame of 1/3 s in which the cloth falls."),
+       number("noise", &O::noise, Unit::length, not_negative, "Standard deviation of the noise on start positions."),
+       flag("yaw", &O::yaw, "True: each roll-out is rotated about the vertical by a random angle."),
+       flag("mirror", &O::mirror, "True: a random half of the roll-outs is mirrored left to right."),
+       number("no_body_share", &O::no_body_share, Unit::none, from_0_to_1, "Fraction of roll-outs without the body."),
+       flag("flesh", &O::soft_tissue,
+            "True: soft tissue of the body gives way where the body would pass through itself."),
        choice("start", &O::start,
               {{"skinned", GarmentStart::skinned},
                {"untangle", GarmentStart::untangle},
                {"cut", GarmentStart::cut},
                {"tangled", GarmentStart::tangled}},
-              "`skinned`: where the body takes the garment; `untangle`: the same, parted; `cut`: the same "
-              "without the triangles that intersect, as released; `tangled`: without the gap between layers and with "
-              "soft tissue that does not give way"),
-       section(&O::forces, force_sampling_options(), "")});
+              "How a garment starts. `skinned`: where skinning puts it. `untangle`: the same, untangled. `cut`: the "
+              "same without the triangles that intersect, as in ContourCraft's released code. `tangled`: layers "
+              "without a gap, on a body whose soft tissue does not give way."),
+       section(&O::forces, force_sampling_options(), "Random forces beside gravity.")});
   return table;
 }
 
 const Options<PoolOptions>& pool_options() {
   using O = PoolOptions;
   static const Options<O> table(
-      "pool", "How states are rolled out.",
-      {integer("states", &O::states, at_least_one,
-               "that are advanced one at a time at random; 1: one roll-out after another, as published"),
-       ramp("frames", &O::frames, "most frames of a roll-out"),
-       flag("random_length", &O::random_length, "a roll-out's length is random up to that"),
-       integer("passes", &O::passes, at_least_one, "runs of the network a frame, an optimiser step each"),
+      "pool", "The states from which samples are drawn, and how they are rolled out.",
+      {integer(
+           "states", &O::states, at_least_one,
+           "Number of states. Each step advances a random one of them. 1: one roll-out after another, as published."),
+       ramp("frames", &O::frames, "Largest number of frames in a roll-out."),
+       flag("random_length", &O::random_length,
+            "True: the length of a roll-out is random, up to `frames`. False: it is `frames`."),
+       integer("passes", &O::passes, at_least_one,
+               "Number of runs of the network in a frame. Each run is an optimiser step."),
        integer("gate", &O::gate, not_negative,
-               "how many factors of the network's correction, up to 1.2, are tried before a state is advanced, the "
-               "loss being of the whole correction; 0: it is taken as it is"),
+               "Number of factors from 0 to 1.2 on the network's correction, of which the best advances the state. The "
+               "loss is that of the whole correction. 0: the correction is taken as it is."),
        number("reset_distance", &O::reset_distance, Unit::length, positive,
-              "of a vertex from the skinned garment, at which a roll-out ends"),
-       number("long_share", &O::long_share, Unit::none, from_0_to_1, "of roll-outs that go on for `long_frames`"),
-       integer("long_frames", &O::long_frames, at_least_one, "of a long roll-out, or to the clip's end"),
+              "Distance of a vertex from its skinned target at which a roll-out ends."),
+       number("long_share", &O::long_share, Unit::none, from_0_to_1,
+              "Fraction of roll-outs that have `long_frames` frames."),
+       integer("long_frames", &O::long_frames, at_least_one,
+               "Number of frames in a long roll-out, or fewer where the clip ends."),
        flag("safeguarded", &O::safeguarded,
-            "states are advanced through Bridson's response, and left where that gives up"),
+            "True: states advance through Bridson's contact response. A roll-out ends where that gives up."),
        number("no_contact_share", &O::no_contact_share, Unit::none, from_0_to_1,
-              "of roll-outs without cloth-cloth edges and terms")});
+              "Fraction of roll-outs without edges and loss terms between cloth and cloth.")});
   return table;
 }
 
 const Options<ContactOptions>& training_contact_options() {
   using O = ContactOptions;
   static const Options<O> table(
-      "contact", "Which pairs of cloth see each other.",
-      {flag("edges", &O::edges, "of cloth with cloth, in the graph"),
-       flag("classify", &O::classify, "pairs repel or not by contours; false: all repel"),
-       flag("attraction", &O::attraction, "pairs that do not repel are edges; false: they are left out")});
+      "contact", "Pairs of cloth with cloth, in the graph and in the losses.",
+      {flag("edges", &O::edges, "True: the graph has world edges between cloth and cloth."),
+       flag("classify", &O::classify, "True: contours decide whether a pair repels. False: all pairs repel."),
+       flag("attraction", &O::attraction,
+            "True: pairs that do not repel get world edges, too. False: they get none.")});
   return table;
 }
 
 const Options<SpaceOptions>& space_options() {
   using O = SpaceOptions;
   static const Options<O> table(
-      "space", "Edges between vertices of cloth near each other, of networks that have them.",
-      {number("radius", &O::radius, Unit::length, not_negative, "0: there are none"),
+      "space", "World edges between cloth vertices that are near each other, for networks that have them.",
+      {number("radius", &O::radius, Unit::length, not_negative,
+              "Distance within which two vertices get an edge. 0: there are no such edges."),
        number("radius_in_edges", &O::radius_in_edges, Unit::none, not_negative,
-              "above 0: the radius in mean mesh edges at rest, in place of `radius`"),
-       flag("mesh_pairs", &O::mesh_pairs, "with pairs that a mesh edge joins"),
-       flag("rest_pairs", &O::rest_pairs, "with pairs that are as near at rest"),
+              "Above 0: the radius in mean edge lengths of the mesh at rest, in place of `radius`."),
+       flag("mesh_pairs", &O::mesh_pairs, "True: pairs that a mesh edge joins get an edge, too."),
+       flag("rest_pairs", &O::rest_pairs, "True: pairs that are as near at rest get an edge, too."),
        integer("nearest", &O::nearest, not_negative,
-               "above 0: only so many nearest of each vertex, and one direction (10: as released)"),
-       integer("pairs_per_vertex", &O::pairs_per_vertex, at_least_one,
-               "on average; those farthest apart beyond are left out and counted")});
+               "Above 0: each vertex has edges to so many nearest ones alone, in one direction. SENC's released code "
+               "has 10."),
+       integer(
+           "pairs_per_vertex", &O::pairs_per_vertex, at_least_one,
+           "Largest mean number of pairs of a vertex. Beyond it the pairs farthest apart are left out and counted.")});
   return table;
 }
 
 const Options<CollisionLoss>& collision_options() {
   using O = CollisionLoss;
   static const Options<O> table(
-      "collision", "With the body.",
-      {ramp("weight", &O::weight, "[N/m2], of the quadratic penalty [N/m]"),
-       number("thickness", &O::thickness, Unit::length, positive, "that cloth keeps from the body"),
+      "collision", "Penetration of the body: a penalty on the depth of vertices.",
+      {ramp("weight", &O::weight, "Weight [N/m2], or [N/m] for the quadratic penalty."),
+       number("thickness", &O::thickness, Unit::length, positive, "Distance that cloth keeps from the body."),
        choice("matching", &O::matching,
               {{"nearest_centroid", BodyMatching::nearest_centroid}, {"nearest_face", BodyMatching::nearest_face}},
-              "which face belongs to a vertex"),
-       number("radius", &O::radius, Unit::length, positive, "of `nearest_face`"),
-       choice("penalty", &O::penalty, {{"cubic", DepthPenalty::cubic}, {"quadratic", DepthPenalty::quadratic}}, "")});
+              "Face of the body that belongs to a vertex: that with the nearest centroid (HOOD), or the nearest one "
+              "within `radius` (ContourCraft)."),
+       number("radius", &O::radius, Unit::length, positive, "Search radius of `nearest_face`."),
+       choice("penalty", &O::penalty, {{"cubic", DepthPenalty::cubic}, {"quadratic", DepthPenalty::quadratic}},
+              "Power of the depth: the third, as published, or the second, which is softer.")});
   return table;
 }
 
 const Options<FrictionLoss>& friction_options() {
   using O = FrictionLoss;
   static const Options<O> table(
-      "friction", "On the body.",
-      {ramp("weight", &O::weight, ""), number("coefficient", &O::coefficient, Unit::none, not_negative, ""),
-       number("squared_radius", &O::squared_radius, Unit::none, positive, "of nearest centroids [m2]"),
+      "friction", "Friction on the body.",
+      {ramp("weight", &O::weight, "Weight of the term."),
+       number("coefficient", &O::coefficient, Unit::none, not_negative, "Friction coefficient."),
+       number("squared_radius", &O::squared_radius, Unit::none, positive,
+              "Squared distance from the nearest centroid of the body within which a vertex has friction [m2]."),
        choice("slope", &O::slope, {{"x", SlopeAxis::x}, {"y", SlopeAxis::y}, {"z", SlopeAxis::z}},
-              "the axis along which a slide has less friction; `z` as released, y being up")});
+              "Axis along which sliding has less friction. The released code takes `z`, although y is up.")});
   return table;
 }
 
 const Options<RepulsionLoss>& repulsion_options() {
   using O = RepulsionLoss;
   static const Options<O> table(
-      "repulsion", "Between layers of cloth, of pairs that repel.",
-      {ramp("weight", &O::weight, "[N/m2]"), number("thickness", &O::thickness, Unit::length, positive, ""),
-       number("correspondence", &O::correspondence, Unit::length, positive, "farther apart pairs take no part"),
-       number("pinned_factor", &O::pinned_factor, Unit::none, positive, "inside the cube, of pairs with a pin")});
+      "repulsion", "Repulsion between layers of cloth, for pairs that repel.",
+      {ramp("weight", &O::weight, "Weight [N/m2]."),
+       number("thickness", &O::thickness, Unit::length, positive,
+              "Repulsion thickness: the distance below which a pair repels."),
+       number("correspondence", &O::correspondence, Unit::length, positive,
+              "Distance above which a pair does not take part."),
+       number("pinned_factor", &O::pinned_factor, Unit::none, positive,
+              "Factor on the depth of pairs with a pinned vertex, before the depth is cubed.")});
   return table;
 }
 
 const Options<ContourLoss>& contour_options() {
   using O = ContourLoss;
   static const Options<O> table(
-      "contours", "Squared lengths of intersection contours.",
-      {ramp("weight", &O::weight, "[N/m]"),
+      "contours", "Sum of the squared segment lengths of intersection contours.",
+      {ramp("weight", &O::weight, "Weight [N/m]."),
        choice("gradient", &O::gradient,
               {{"translational", ContourGradient::translational}, {"full", ContourGradient::full}},
-              "`translational`: triangles are moved, not shortened"),
+              "`translational` moves triangles and does not shorten them. `full` is the derivative of the value."),
        choice("normal", &O::normal, {{"frozen", ContourNormal::frozen}, {"turning", ContourNormal::turning}},
-              "`frozen` as published; `turning`: the exact derivative")});
+              "`frozen` keeps the normals of faces constant, as published. `turning` is the exact derivative.")});
   return table;
 }
 
 const Options<PenetrationOptions>& region_options() {
   using O = PenetrationOptions;
   static const Options<O> table(
-      "regions", "Which volume contours enclose.",
+      "regions", "How contours bound volumes.",
       {choice("rule", &O::regions, {{"single", RegionRule::single}, {"parity", RegionRule::parity}},
-              "`single`: of each contour alone, as published; `parity`: of those with the same partner together"),
+              "`single` judges each contour alone, as published. `parity` judges all contours between the same two "
+              "components together."),
        choice("side", &O::smaller, {{"faces", SmallerSide::faces}, {"area", SmallerSide::area}},
-              "what the side that counts as inside has less of")});
+              "The side of a contour with fewer faces, or with less area, counts as inside.")});
   return table;
 }
 
 const Options<VolumeLoss>& volume_options() {
   using O = VolumeLoss;
   static const Options<O> table(
-      "volume", "What self-penetrating cloth encloses (Liao et al. 2024).",
-      {ramp("weight", &O::weight, "[J/m3] of 6 times the volume, as published 3e4; of `area` [J/m2]"),
+      "volume", "The volume that self-penetrating cloth encloses (Liao et al. 2024).",
+      {ramp("weight", &O::weight, "Weight of 6 times the volume [J/m3], 3e4 as published, or of the area [J/m2]."),
        choice("form", &O::form, {{"enclosed", VolumeForm::enclosed}, {"winding", VolumeForm::winding}},
-              "`enclosed`: holes closed by fans; `winding`: by winding numbers, without fans"),
-       section(&O::regions, region_options(), ""),
-       choice("measure", &O::measure, {{"volume", PenetrationMeasure::volume}, {"area", PenetrationMeasure::area}}, ""),
+              "`enclosed` closes the holes of garments by fans of triangles. `winding` uses winding numbers and needs "
+              "no fans."),
+       section(&O::regions, region_options(), "How contours bound volumes."),
+       choice("measure", &O::measure, {{"volume", PenetrationMeasure::volume}, {"area", PenetrationMeasure::area}},
+              "What is penalised: the volume of a region, or the area of its faces."),
        choice("crossings", &O::crossings,
               {{"exact", CrossingMotion::exact},
                {"frozen_on_edge", CrossingMotion::frozen_on_edge},
                {"frozen_on_face", CrossingMotion::frozen_on_face}},
-              "how they follow the vertices: `exact`: they slide; the others as published"),
+              "How crossings of edges and faces follow the vertices. `exact`: they slide in both. The others fix their "
+              "weights on the edge or the face, as published."),
        number("saturation", &O::saturation, Unit::volume, not_negative,
-              "of a region: up to here it is pressed on evenly, beyond its pressure falls as 1 / V; 0: nowhere, as "
-              "published; `area` and what a garment does to itself in the form `winding` have none")});
+              "Volume V of a region above which its pressure falls as 1 / V. 0: it never falls, as published. It does "
+              "not apply to `area`, nor in the form `winding` to what a garment does to itself.")});
   return table;
 }
 
 const Options<VertexRepulsionLoss>& vertex_repulsion_options() {
   using O = VertexRepulsionLoss;
-  static const Options<O> table("vertex_repulsion", "Of vertices that no edge joins (Liao et al. 2024, appendix A).",
-                                {ramp("weight", &O::weight, "[J/m] or [J/m2], by the power"),
-                                 number("distance", &O::distance, Unit::length, positive, "below which they repel"),
-                                 integer("power", &O::power, {.low = 1, .high = 2}, "of what lacks to that")});
+  static const Options<O> table(
+      "vertex_repulsion", "Repulsion between vertices that no edge joins (Liao et al. 2024, appendix A).",
+      {ramp("weight", &O::weight, "Weight [J/m], or [J/m2] for the power 2."),
+       number("distance", &O::distance, Unit::length, positive, "Distance below which two vertices repel."),
+       integer("power", &O::power, {.low = 1, .high = 2},
+               "Power of the amount by which two vertices are nearer than `distance`.")});
   return table;
 }
 
 const Options<LossOptions>& objective_options() {
   using O = LossOptions;
   static const Options<O> table(
-      "objective", "Weights of the terms over the run; a term whose weight is zero is left out.",
-      {ramp("stretching", &O::stretching, ""), ramp("bending", &O::bending, ""), ramp("gravity", &O::gravity, ""),
-       ramp("inertia", &O::inertia, ""), section(&O::collision, collision_options(), ""),
-       section(&O::friction, friction_options(), ""), section(&O::repulsion, repulsion_options(), ""),
-       section(&O::contours, contour_options(), ""), section(&O::volume, volume_options(), ""),
-       section(&O::vertex_repulsion, vertex_repulsion_options(), ""),
-       number("gravity_strength", &O::gravity_strength, Unit::none, not_negative, "against y [m/s2]"),
+      "objective", "Terms of the loss and their weights over the run. A term whose weight is zero is left out.",
+      {ramp("stretching", &O::stretching, "Weight of the membrane energy."),
+       ramp("bending", &O::bending, "Weight of the bending energy."),
+       ramp("gravity", &O::gravity, "Weight of the energy of gravity."),
+       ramp("inertia", &O::inertia, "Weight of the inertia term."),
+       section(&O::collision, collision_options(), "Penetration of the body."),
+       section(&O::friction, friction_options(), "Friction on the body."),
+       section(&O::repulsion, repulsion_options(), "Repulsion between layers of cloth."),
+       section(&O::contours, contour_options(), "Length of intersection contours."),
+       section(&O::volume, volume_options(), "Volume that self-penetrating cloth encloses."),
+       section(&O::vertex_repulsion, vertex_repulsion_options(), "Repulsion between vertices."),
+       number("gravity_strength", &O::gravity_strength, Unit::none, not_negative,
+              "Acceleration by gravity, against y [m/s2]."),
        number("relaxation_dt", &O::relaxation_dt, Unit::time, positive,
-              "of the inertia of a frame in which cloth falls to rest")});
+              "Time step of the inertia term in a frame in which cloth falls to rest.")});
   return table;
 }
 
 const Options<OptimiserOptions>& optimiser_options() {
   using O = OptimiserOptions;
   static const Options<O> table(
-      "optimiser", "Adam, one sample a step.",
-      {number("learning_rate", &O::learning_rate, Unit::none, positive, ""),
+      "optimiser", "Adam, with one sample in each step.",
+      {number("learning_rate", &O::learning_rate, Unit::none, positive, "Learning rate at the start."),
        choice("decay", &O::decay, {{"cosine", Decay::cosine}, {"halving", Decay::halving}, {"none", Decay::none}},
-              "of the learning rate: to zero over the run, or as published"),
-       integer("halving_steps", &O::halving_steps, at_least_one, "of the decay `halving`"),
-       number("floor", &O::floor, Unit::none, not_negative, "of the decay `halving`, added to the factor"),
-       flag("normalise_samples", &O::normalise_samples, "each sample's gradient is divided by its own size"),
-       flag("clip_median", &O::clip_median, "`clip` counts in running medians of the gradient's norm"),
-       number("clip", &O::clip, Unit::none, positive, "largest norm of a step's gradient"),
-       integer("warm_up", &O::warm_up, not_negative, "states that only feed the statistics of the inputs"),
-       flag("freeze_statistics", &O::freeze_statistics, "after the warm-up"),
-       number("decoder_scale", &O::decoder_scale, Unit::none, positive, "of the last layer's weights at the start")});
+              "How the learning rate decays: `cosine` goes to zero over the run, `halving` is as published."),
+       integer("halving_steps", &O::halving_steps, at_least_one,
+               "Number of steps after which `halving` halves the learning rate."),
+       number("floor", &O::floor, Unit::none, not_negative,
+              "Constant that `halving` adds to its factor on the learning rate."),
+       flag("normalise_samples", &O::normalise_samples,
+            "True: the gradient of each sample is divided by its own size."),
+       flag("clip_median", &O::clip_median, "True: `clip` is in running medians of the gradient's norm."),
+       number("clip", &O::clip, Unit::none, positive,
+              "Largest norm of the gradient in a step. A larger one is scaled down."),
+       integer("warm_up", &O::warm_up, not_negative,
+               "Number of states at the start that only feed the statistics of the inputs."),
+       flag("freeze_statistics", &O::freeze_statistics,
+            "True: the statistics of the inputs stay fixed after the warm-up."),
+       number("decoder_scale", &O::decoder_scale, Unit::none, positive,
+              "Factor on the initial weights of the decoder's last layer.")});
   return table;
 }
 
 const Options<WatchOptions>& watch_options() {
   using O = WatchOptions;
   static const Options<O> table(
-      "watch", "When a run writes and measures, all on the training split.",
-      {number("checkpoint_minutes", &O::checkpoint_minutes, Unit::none, not_negative, "between checkpoints"),
-       integer("measurements", &O::measurements, at_least_one, "of the run: roll-outs, and gaps on fixed states"),
-       integer("frames", &O::frames, at_least_one, "of a measuring roll-out"),
-       text("garment", &O::garment, "of the measuring roll-out; left out: the first"),
-       text("clip", &O::clip, "of the measuring roll-out"),
-       integer("fixed_states", &O::fixed_states, at_least_one, "of which the gap to the optimum is printed"),
+      "watch", "When a run writes and measures. All measurements are on the training split.",
+      {number("checkpoint_minutes", &O::checkpoint_minutes, Unit::none, not_negative, "Minutes between checkpoints."),
+       integer("measurements", &O::measurements, at_least_one,
+               "Number of measurements in the run: of roll-outs, and of the gap to the optimum on fixed states."),
+       integer("frames", &O::frames, at_least_one, "Number of frames in a measuring roll-out."),
+       text("garment", &O::garment, "Garment of the measuring roll-out. Default: the first one."),
+       text("clip", &O::clip, "Clip of the measuring roll-out."),
+       integer("fixed_states", &O::fixed_states, at_least_one,
+               "Number of fixed states whose gap to the optimum is measured."),
        integer("most_bad_samples", &O::most_bad_samples, at_least_one,
-               "without a finite loss, one after another, before the run stops"),
+               "Number of samples in a row without a finite loss after which the run stops."),
        number("keep_at", &O::keep_at, Unit::none, from_0_to_1,
-              "part of the run at which the weights are kept as `kept.h5`; 0: they are not")});
+              "Fraction of the run at which the weights are kept as `kept.h5`. 0: they are not kept.")});
   return table;
 }
 
@@ -317,26 +365,31 @@ const Options<TrainingOptions>& training_options() {
   using O = TrainingOptions;
   static const Options<O> table(
       "training", "The whole file.",
-      {text("description", "for people"),
-       path("base", "a training file whose values count where this one gives none; seen from this file"),
-       text("name", &O::name, "of the run; left out: the file's"),
-       word("architecture", &O::architecture, preset_names(), "of the network"),
+      {text("description", "Free text for readers."),
+       path("base", "Training file whose values apply where this one gives none. The path is relative to this file."),
+       text("name", &O::name, "Name of the run. Default: that of the file."),
+       word("architecture", &O::architecture, preset_names(), "Architecture of the network."),
        integer("width", &O::width, {.low = 0, .high = most_latents},
-               "of latents, in place of the architecture's; 0: its own"),
+               "Width of the latent vectors. 0: the architecture's own."),
        integer("message_steps", &O::message_steps, {.low = 0, .high = most_message_steps},
-               "in place of the architecture's; 0: its own"),
+               "Number of message passing steps. 0: the architecture's own."),
        number("contour_force", &O::contour_force, Unit::none, not_negative,
-              "weight of the contours in the force that the network is shown [N/m]; 0: they have no part in it"),
-       path("weights", &O::weights, "to start from, of an earlier stage; seen from this file"),
-       integer("seed", &O::seed, not_negative, "of all that is random"),
-       integer("steps", &O::steps, at_least_one, "of the optimiser, in all"),
+              "Weight of intersection contours in the force that is an input of the network [N/m]. 0: they have no "
+              "part in it."),
+       path("weights", &O::weights,
+            "Weights of an earlier stage to start from. The path is relative to this file. Default: random weights."),
+       integer("seed", &O::seed, not_negative, "Seed of all random numbers of the run."),
+       integer("steps", &O::steps, at_least_one, "Number of optimiser steps in all."),
        choice("device", &O::device, network_devices(),
-              "what goes forward and backward through the network, as `learned.device` of a scene: the rest of a step "
-              "stays on the CPU; a run may be resumed with another"),
-       section(&O::samples, sample_options(), ""), section(&O::pool, pool_options(), ""),
-       section(&O::contact, training_contact_options(), ""), section(&O::space, space_options(), ""),
-       section(&O::objective, objective_options(), ""), section(&O::optimiser, optimiser_options(), ""),
-       section(&O::watch, watch_options(), "")});
+              "What computes the network forward and backward, as `learned.device` of a scene. The rest of a step "
+              "stays on the CPU. A run may be resumed with another device."),
+       section(&O::samples, sample_options(), "What the network is trained on."),
+       section(&O::pool, pool_options(), "How states are rolled out."),
+       section(&O::contact, training_contact_options(), "Pairs of cloth with cloth."),
+       section(&O::space, space_options(), "World edges between cloth vertices."),
+       section(&O::objective, objective_options(), "Terms of the loss."),
+       section(&O::optimiser, optimiser_options(), "Optimiser and learning rate."),
+       section(&O::watch, watch_options(), "Checkpoints and measurements.")});
   return table;
 }
 
