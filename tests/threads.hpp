@@ -9,7 +9,10 @@
 namespace selvedge {
 
 // Runs `work` with that many threads (one where the build has no OpenMP).
-void with_threads(int threads, const std::function<void()>& work);
+inline void with_threads(int threads, const std::function<void()>& work) {
+  const ThreadLimit limit(threads);
+  work();
+}
 
 inline bool same_bits(const Points& a, const Points& b) {
   return a.rows() == b.rows() && std::memcmp(a.data(), b.data(), sizeof(double) * a.size()) == 0;

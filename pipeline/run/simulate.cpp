@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "collision/geometry/floating_point.hpp"
 #include "collision/geometry/parallel.hpp"
 #include "physics/steppers/step_audit.hpp"
 #include "pipeline/run/arrangement.hpp"
@@ -114,8 +115,10 @@ FoundBeside FrameLoop::make_and_look(const State& from, std::optional<MadeFrame>
   const Clock::time_point started = Clock::now();
   Drive drive = coming_drive(from.time + dt_);
   const double waited = seconds_since(started);
+  restore_standard_arithmetic();  // on all threads: the step begins with fewer
   std::atomic<bool> done = false;
   std::future<FoundBeside> beside = std::async(std::launch::async, [&, last = from.frame + 1 >= frames_] {
+    restore_standard_arithmetic();
     use_threads(1);
     FoundBeside found = look_beside(last ? std::nullopt : std::optional(from.time + dt_ + dt_));
     done = true;

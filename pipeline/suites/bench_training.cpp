@@ -2,16 +2,13 @@
 
 #include <fmt/format.h>
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 #include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <optional>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/parallel.hpp"
 #include "learned/gradients/adam.hpp"
 #include "learned/gradients/initial_weights.hpp"
 #include "pipeline/suites/bench_engine.hpp"
@@ -40,32 +37,11 @@ struct Laps {
   }
 };
 
-// Sets the number of threads during its lifetime.
-class ThreadCount {
- public:
-  explicit ThreadCount([[maybe_unused]] int threads) {
-#ifdef _OPENMP
-    before_ = omp_get_max_threads();
-    omp_set_num_threads(threads);
-#endif
-  }
-  ~ThreadCount() {
-#ifdef _OPENMP
-    omp_set_num_threads(before_);
-#endif
-  }
-  ThreadCount(const ThreadCount&) = delete;
-  ThreadCount& operator=(const ThreadCount&) = delete;
-
- private:
-  int before_ = 1;
-};
-
 }  // namespace
 
 TrainingTiming time_training(const std::string& preset, int side, int threads, int rounds,
                              const std::filesystem::path& torch_library) {
-  const ThreadCount count(threads);
+  const ThreadLimit limit(threads);
   const Architecture a = architecture_preset(preset);
   const Graph graph = sheet_graph(a, side);
   TrainingNetwork network = make_training_network(a, initial_weights(a, 1));

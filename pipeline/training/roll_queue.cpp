@@ -3,10 +3,7 @@
 #include <algorithm>
 
 #include "collision/geometry/floating_point.hpp"
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
+#include "collision/geometry/parallel.hpp"
 
 namespace selvedge {
 
@@ -47,9 +44,7 @@ std::vector<RollRequest> RollQueue::waiting() const {
 
 void RollQueue::work() {
   restore_standard_arithmetic();
-#ifdef _OPENMP
-  omp_set_num_threads(1);  // the other threads are training
-#endif
+  use_threads(1);  // the others are training
   std::unique_lock hold(mutex_);
   while (true) {
     const auto next = [this] { return std::ranges::find(places_, false, &Place::done); };
