@@ -102,9 +102,12 @@ std::vector<RestTriangle> read_flat(const h5::Fields& fields) {
   return flat;
 }
 
+constexpr int most_joints = 100000;  // a damaged file may ask for more memory than there is
+
 Eigen::Index read_joint_count(const h5::Fields& fields) {
   const std::vector<int> count = fields.integers("joint_count");
-  if (count.size() != 1 || count[0] < 1) fields.fail("joint_count", "is not one number above 0");
+  if (count.size() != 1 || count[0] < 1 || count[0] > most_joints)
+    fields.fail("joint_count", fmt::format("is not one number from 1 to {}", most_joints));
   return count[0];
 }
 

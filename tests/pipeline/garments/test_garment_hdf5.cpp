@@ -143,6 +143,7 @@ TEST_CASE("a garment's fields with wrong indices are refused, by field") {
   CHECK_THAT(complaint("joint_count", {4}), Contains("weights/indices"));
   CHECK_THAT(complaint("joint_count", {6}), Contains("pose_directions"));
   CHECK_THAT(complaint("joint_count", {5, 5}), Contains("joint_count"));
+  CHECK_THAT(complaint("joint_count", {2000000000}), Contains("from 1 to 100000"));
   CHECK_THAT(complaint("groups/begin", {0, 3, 5}), Contains("groups/begin"));
   CHECK_THAT(complaint("groups/begin", {0, 4, 3, 5}), Contains("groups/begin"));
   CHECK_THAT(complaint("groups/vertices", {0, 3, 40, 3, 39}), Contains("hem"));
