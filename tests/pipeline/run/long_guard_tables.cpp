@@ -79,7 +79,7 @@ struct Judge {
   ContactStage stage;
   GuardMeasures measures = {};
   AuditMemory audits = {};
-  int pairs = 0, inside = 0, passed = 0;  // at the end, and on the straight way there, where contact was looked at
+  int pairs = 0, inside = 0, passed = 0;  // at the end, and on the straight path there, where contact was looked at
 
   Verdict operator()(const RecordedStep& step, const Points& x) {
     const Verdict verdict = judge(

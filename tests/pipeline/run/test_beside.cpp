@@ -8,7 +8,7 @@
 #include "pipeline/run/arrangement.hpp"
 #include "pipeline/run/simulate.hpp"
 #include "pipeline/scene/make_stepper.hpp"
-#include "tests/pipeline/files.hpp"
+#include "tests/pipeline/run/sheet_over_ball.hpp"
 
 // What a run does beside its steps changes no frame.
 namespace selvedge::test_beside {
@@ -127,13 +127,7 @@ TEST_CASE("beside: a run ends where it would without", "[beside]") {
 
 TEST_CASE("beside: a scene has the same file on one thread and on two", "[beside]") {
   const fake::Folder folder("beside");
-  const Setup setup = read_setup(fake::write(folder, "scene.yaml",
-                                             "cloths:\n"
-                                             "  - rectangle: {size: [0.4, 0.4], resolution: 11}\n"
-                                             "    translate: [0, 0.13, 0]\n"
-                                             "    material: cotton\n"
-                                             "obstacles: [{sphere: {radius: 0.1}}]\n"
-                                             "run: {frames: 14}\n"));
+  const Setup setup = fake::sheet_over_ball(folder, 0.13, 14);
   const auto run = [&](int threads) {
     const ThreadLimit limit(threads);
     const std::filesystem::path out = folder.path / std::to_string(threads);

@@ -3,7 +3,7 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/checkpoint.hpp"
 #include "pipeline/scene/make_stepper.hpp"
-#include "tests/pipeline/files.hpp"
+#include "tests/pipeline/run/sheet_over_ball.hpp"
 
 namespace selvedge::test_resume {
 
@@ -22,13 +22,7 @@ State stepped(const Setup& setup, Stepper& stepper, const State& from) {
 // keeps may decide anything.
 TEST_CASE("A run that is resumed after any frame of an impact goes on with the same bits", "[resume]") {
   const fake::Folder folder("resume");
-  const Setup setup = read_setup(fake::write(folder, "scene.yaml",
-                                             "cloths:\n"
-                                             "  - rectangle: {size: [0.4, 0.4], resolution: 11}\n"
-                                             "    translate: [0, 0.5, 0]\n"
-                                             "    material: cotton\n"
-                                             "obstacles: [{sphere: {radius: 0.1}}]\n"
-                                             "run: {frames: 200}\n"));
+  const Setup setup = fake::sheet_over_ball(folder, 0.5, 200);
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
   State state = setup.initial;
   constexpr int before = 8, frames = 24;  // the ball is met in frame 9
