@@ -1,9 +1,11 @@
 #include "collision/contour/contour_regions.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include "collision/contour/edge_parity.hpp"
+#include "collision/contour/open_sides.hpp"
 #include "collision/exact/inside.hpp"
 
 namespace selvedge {
@@ -19,16 +21,6 @@ bool ends_outside(const Contour& contour, int side) {
 
 namespace {
 
-struct Key {
-  int sheet, component, partner_sheet, partner_component;
-  auto operator<=>(const Key&) const = default;
-};
-
-Key key_of(const Contour& contour, int side) {
-  const ContourSide &own = contour.sides[side], &other = contour.sides[1 - side];
-  return {own.sheet, own.component, other.sheet, other.component};
-}
-
 // A contour on one of its sides, or on both where both lie on the same component and belong together.
 struct Trace {
   const Contour* contour;
@@ -39,10 +31,10 @@ bool ends_at_vertex(const Contour& contour) {
   return contour.ends[0] == ContourEnd::vertex || contour.ends[1] == ContourEnd::vertex;
 }
 
-void add_traces(const Contour& contour, const Key& key, std::vector<Trace>& traces) {
+void add_traces(const Contour& contour, const LayerPair& key, std::vector<Trace>& traces) {
   const bool together = ends_at_vertex(contour) || contour.one_trace;
   std::array<bool, 2> here{};
-  for (int side = 0; side < 2; ++side) here[side] = key_of(contour, side) == key;
+  for (int side = 0; side < 2; ++side) here[side] = layers_of(contour, side) == key;
   if (here[0] && here[1] && together) {
     traces.push_back({&contour, {true, true}});
     return;
@@ -81,20 +73,32 @@ std::vector<char> colour_together(const Surface& surface, int component, const s
   return colours;
 }
 
+std::vector<int> either_of(const std::vector<int>& a, const std::vector<int>& b) {
+  std::vector<int> both;
+  std::ranges::set_union(a, b, std::back_inserter(both));
+  return both;
+}
+
 }  // namespace
 
-std::vector<Region> enclosed_regions(std::span<const SheetView> sheets, std::span<const Contour> contours) {
-  std::map<Key, std::vector<int>> groups;
+std::vector<Region> enclosed_regions(std::span<const SheetView> sheets, const Segments& found,
+                                     std::span<const Contour> contours) {
+  const OpenSides open = open_sides(sheets, found, contours);
+  std::map<LayerPair, std::vector<int>> groups;
   for (int c = 0; c < static_cast<int>(contours.size()); ++c)
     for (int side = 0; side < 2; ++side) {
-      std::vector<int>& group = groups[key_of(contours[c], side)];
+      std::vector<int>& group = groups[layers_of(contours[c], side)];
       if (group.empty() || group.back() != c) group.push_back(c);
     }
   std::vector<Region> regions;
   for (const auto& [key, group] : groups) {
     Region region{key.sheet, key.component, key.partner_sheet, key.partner_component, group, {}, true};
     std::vector<Trace> traces;
-    for (int c : group) add_traces(contours[c], key, traces);
+    for (int c : group)
+      if (!open.decided[c])
+        add_traces(contours[c], key, traces);
+      else
+        region.cut = false;
     const Surface& surface = *sheets[key.sheet].surface;
     const std::vector<char> colours = colour_together(surface, key.component, traces, region.cut);
     const bool closed_partner =
@@ -104,6 +108,8 @@ std::vector<Region> enclosed_regions(std::span<const SheetView> sheets, std::spa
                        : std::vector<char>();
     for (int v = 0; v < surface.vertex_count; ++v)
       if (closed_partner ? colours[v] >= 0 && in[v] : colours[v] == 1) region.vertices.push_back(v);
+    if (const auto wrong = open.wrong.find(key); wrong != open.wrong.end() && !closed_partner)
+      region.vertices = either_of(region.vertices, wrong->second);
     regions.push_back(std::move(region));
   }
   return regions;

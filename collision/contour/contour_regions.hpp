@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "collision/contour/contour.hpp"
+#include "collision/contour/segments.hpp"
 
 namespace selvedge {
 
@@ -21,6 +22,6 @@ struct Region {
 // Regions from all contours of a sheet with a partner together: their parity, the smaller part being inside. Contours
 // that spoil the colouring are left out of it, and `cut` says so. Against a closed obstacle the vertices of sheets[0]
 // are those inside it, whatever the contours. Regions without vertices are listed too.
-std::vector<Region> enclosed_regions(std::span<const SheetView> sheets, std::span<const Contour> contours);
+std::vector<Region> enclosed_regions(std::span<const SheetView> sheets, const Segments&, std::span<const Contour>);
 
 }  // namespace selvedge

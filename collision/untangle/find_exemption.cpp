@@ -32,7 +32,7 @@ Exemption find_exemption(const ContactWorld& world, const Points& nodes) {
     mark_triangle(marks_for(partner_sheet), n, *world.cloth, triangle);
   });
   if (exemption.cloth())
-    for (const Region& region : enclosed_regions(sheets.views, find_contours(sheets.views, found)))
+    for (const Region& region : enclosed_regions(sheets.views, found, find_contours(sheets.views, found)))
       if (region.sheet == 0 && (region.partner_sheet != 0 || world.self))
         for (const int v : region.vertices) mark(marks_for(region.partner_sheet), n, v);
   const std::vector<char> inside = inside_obstacles(sheets.views);

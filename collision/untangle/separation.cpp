@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 
 #include "collision/contour/contour_translation.hpp"
 #include "collision/exact/inside.hpp"
-#include "collision/geometry/distance.hpp"
-#include "collision/search/bvh.hpp"
+#include "collision/search/nearest_face.hpp"
 
 namespace selvedge {
 namespace {
@@ -208,75 +206,8 @@ Target target_of(const Setting& setting, const Patch& patch, std::span<const Reg
   return target;
 }
 
-struct Nearest {
-  int face = -1;
-  double squared_distance = std::numeric_limits<double>::infinity();
-  std::array<double, 3> weight{};
-};
-
-double squared_distance(const Box& box, const Vec3& p) {
-  double sum = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double out = std::max({static_cast<double>(box.lo[k]) - p[k], p[k] - static_cast<double>(box.hi[k]), 0.0});
-    sum += out * out;
-  }
-  return sum;
-}
-
-// Some faces of a sheet, in a tree.
-struct Faces {
-  int sheet = 0;
-  std::vector<int> faces;
-  Bvh bvh;
-};
-
-Faces make_faces(const Setting& setting, int sheet, std::vector<int> faces) {
-  const Surface& surface = *setting.sheets[sheet].surface;
-  const Points& x = *setting.sheets[sheet].x;
-  std::vector<Box> boxes;
-  for (const int t : faces) {
-    const auto box = [&](int k) {
-      return moving_point_box(row(x, surface.triangles(t, k)), row(x, surface.triangles(t, k)), 0);
-    };
-    boxes.push_back(hull(box(0), box(1), box(2)));
-  }
-  return {sheet, std::move(faces), build_bvh(boxes)};
-}
-
-void take_nearer(const Surface& surface, const Points& x, int t, int own_vertex, const Vec3& p, Nearest& nearest) {
-  const int i = surface.triangles(t, 0), j = surface.triangles(t, 1), k = surface.triangles(t, 2);
-  if (own_vertex == i || own_vertex == j || own_vertex == k) return;
-  const Closest closest = point_triangle(p, row(x, i), row(x, j), row(x, k));
-  if (closest.squared_distance < nearest.squared_distance)
-    nearest = {t, closest.squared_distance, {-closest.weights[1], -closest.weights[2], -closest.weights[3]}};
-}
-
-// The face nearest to p of those that do not have the vertex.
-Nearest nearest_of(const Setting& setting, const Faces& faces, int own_vertex, const Vec3& p) {
-  const Surface& surface = *setting.sheets[faces.sheet].surface;
-  const Points& x = *setting.sheets[faces.sheet].x;
-  Nearest nearest;
-  std::vector<int> stack;
-  if (!faces.faces.empty()) stack.push_back(0);
-  while (!stack.empty()) {
-    const Bvh::Node& node = faces.bvh.nodes[stack.back()];
-    stack.pop_back();
-    if (squared_distance(node.box, p) >= nearest.squared_distance) continue;
-    if (node.child >= 0) {
-      const double first = squared_distance(faces.bvh.nodes[node.child].box, p);
-      const double second = squared_distance(faces.bvh.nodes[node.child + 1].box, p);
-      stack.push_back(first < second ? node.child + 1 : node.child);
-      stack.push_back(first < second ? node.child : node.child + 1);
-      continue;
-    }
-    for (int item : faces.bvh.leaves[~node.child].item)
-      if (item >= 0) take_nearer(surface, x, faces.faces[item], own_vertex, p, nearest);
-  }
-  return nearest;
-}
-
 // A vertex toward the right side of its nearest point among the faces; none if it is there.
-void push_through(const Setting& setting, int vertex, int sheet, const Nearest& nearest, double sign,
+void push_through(const Setting& setting, int vertex, int sheet, const NearestFace& nearest, double sign,
                   std::vector<Separation>& separations) {
   if (nearest.face < 0) return;
   const Vec3 normal = sign * setting.smooth_normal(sheet, nearest.face, nearest.weight);
@@ -293,10 +224,11 @@ void push_patch(const Setting& setting, const Patch& patch, std::span<const Regi
   const Target target = target_of(setting, patch, regions, patches);
   if (target.sign == 0 || target.faces.empty()) return;
   const double sign = target.sign > 0 ? 1 : -1;
-  const Faces faces = make_faces(setting, target.sheet, target.faces);
+  const SheetView& sheet = setting.sheets[target.sheet];
+  const FaceTree faces = make_face_tree(*sheet.surface, *sheet.x, target.faces);
   for (int v : patch.vertices) {
     const int own = region.sheet == target.sheet ? v : -1;
-    const Nearest nearest = nearest_of(setting, faces, own, row(*setting.sheets[region.sheet].x, v));
+    const NearestFace nearest = nearest_face(faces, own, row(*setting.sheets[region.sheet].x, v));
     push_through(setting, v, target.sheet, nearest, sign, separations);
   }
 }
@@ -321,10 +253,10 @@ void push_out(const Setting& setting, std::vector<Separation>& separations) {
     if (std::find(in.begin(), in.end(), 1) == in.end()) continue;
     std::vector<int> all(setting.sheets[k].surface->triangles.rows());
     std::iota(all.begin(), all.end(), 0);
-    const Faces faces = make_faces(setting, k, std::move(all));
+    const FaceTree faces = make_face_tree(*setting.sheets[k].surface, *setting.sheets[k].x, std::move(all));
     for (int v = 0; v < static_cast<int>(in.size()); ++v)
       if (in[v] && setting.sheets[0].surface->vertex_owner[v] >= 0)
-        push_through(setting, v, k, nearest_of(setting, faces, -1, row(*setting.sheets[0].x, v)), 1, separations);
+        push_through(setting, v, k, nearest_face(faces, -1, row(*setting.sheets[0].x, v)), 1, separations);
   }
 }
 

@@ -70,7 +70,7 @@ Tangle tangle_of(std::span<const SheetView> sheets, Segments found, const KeptSh
   Tangle tangle;
   tangle.found = std::move(found);
   tangle.contours = find_contours(sheets, tangle.found);
-  tangle.regions = enclosed_regions(sheets, tangle.contours);
+  tangle.regions = enclosed_regions(sheets, tangle.found, tangle.contours);
   if (!layers.empty()) order_layers(sheets, tangle.found, tangle.contours, layers, tangle.regions);
   tangle.pairs = intersecting_pairs(tangle.found);
   for (const Segment& segment : tangle.found.segments) tangle.vertex_pairs += segment.at_vertex();

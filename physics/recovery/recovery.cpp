@@ -78,7 +78,7 @@ std::vector<Separation> pushes_along(const Points& wanted, const std::vector<cha
   const std::vector<Contour> contours = find_contours(sheets.views, found);
   std::vector<Separation> pushes;
   for (const Separation& s :
-       part_contours(sheets.views, found, contours, enclosed_regions(sheets.views, contours), {})) {
+       part_contours(sheets.views, found, contours, enclosed_regions(sheets.views, found, contours), {})) {
     Separation push = on_four(s);
     Vec3 apart = Vec3::Zero();
     bool hopeful = false;

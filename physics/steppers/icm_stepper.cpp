@@ -110,7 +110,7 @@ std::vector<ContactTerm> IcmStepper::pushes(ContourPotential& contour, const Poi
   const Segments& found = contour.segments(x);
   const std::vector<Contour> contours = find_contours(contour.sheets(), found);
   const auto separations =
-      part_contours(contour.sheets(), found, contours, enclosed_regions(contour.sheets(), contours),
+      part_contours(contour.sheets(), found, contours, enclosed_regions(contour.sheets(), found, contours),
                     {scene_.contact.thickness, options_.push_speed * h});
   return push_terms(separations, inverse_mass_, options_.push_softness * scene_.contact.thickness, h,
                     options_.substep.contact);

@@ -71,4 +71,12 @@ inline Sheet join(const Sheet& a, const Sheet& b) {
   return s;
 }
 
+// Two tubes that overlap for |x - 0.35| < 0.15: the second is inside of the first but for a third of the way round.
+// Their contours run from a boundary of the one to a boundary of the other.
+inline Sheet tucked() {
+  Sheet second = round_tube(24, 48, 0.37, [](double, double angle) { return 0.312 + 0.02 * std::cos(angle); });
+  second.x.col(0).array() += 0.7;
+  return join(round_tube(24, 48, 0, [](double, double) { return 0.32; }), second);
+}
+
 }  // namespace selvedge::testing

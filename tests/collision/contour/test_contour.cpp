@@ -33,7 +33,7 @@ struct Case {
     const std::array sheets{SheetView{&surface, &mesh.x}};
     segments = find_segments(sheets);
     contours = find_contours(sheets, segments);
-    regions = enclosed_regions(sheets, contours);
+    regions = enclosed_regions(sheets, segments, contours);
     std::size_t all = 0;
     for (const Contour& contour : contours) {
       all += contour.segments.size();
@@ -145,6 +145,34 @@ TEST_CASE("contour: sheet through a boundary cuts neither", "[contour]") {
   for (const Region& region : c.regions) {
     CHECK(region.vertices.empty());
     CHECK_FALSE(region.cut);
+  }
+}
+
+TEST_CASE("contour: of two layers that change places the smaller part of the way round is wrong, on both",
+          "[contour]") {
+  const Case c(testing::tucked());
+  REQUIRE(c.contours.size() == 2);
+  for (const Contour& contour : c.contours) {
+    CHECK(contour.end_side[0] != contour.end_side[1]);
+    CHECK_FALSE(contour.sides[0].cuts);
+    CHECK_FALSE(contour.sides[1].cuts);
+  }
+  const double radius = 0.32 * std::cos(std::numbers::pi / 48);
+  REQUIRE(c.regions.size() == 2);
+  for (const Region& region : c.regions) {
+    CHECK_FALSE(region.cut);
+    std::vector<char> wrong(c.surface.vertex_count, 0);
+    for (const int v : region.vertices) wrong[v] = 1;
+    for (int v = 0; v < c.surface.vertex_count; ++v) {
+      if (c.surface.component[v] != region.component) {
+        CHECK_FALSE(wrong[v]);
+        continue;
+      }
+      const Vec3 p = row(c.mesh.x, v);
+      const double outside = 0.312 + 0.02 * p.y() / p.tail<2>().norm() - 0.5 * (0.32 + radius);
+      if (std::abs(p.x() - 0.35) < 0.11 && std::abs(outside) > 0.004) CHECK((wrong[v] != 0) == (outside > 0));
+      if (std::abs(p.x() - 0.35) > 0.2) CHECK_FALSE(wrong[v]);
+    }
   }
 }
 
@@ -301,13 +329,14 @@ TEST_CASE("contour: cloth through a body that is an obstacle", "[contour]") {
   const Surface s0 = make_surface(static_cast<int>(cloth.x.rows()), cloth.triangles);
   const Surface s1 = make_surface(static_cast<int>(body.x.rows()), body.triangles);
   const std::array sheets{SheetView{&s0, &cloth.x}, SheetView{&s1, &body.x}};
-  const std::vector<Contour> contours = find_contours(sheets, find_segments(sheets));
+  const Segments found = find_segments(sheets);
+  const std::vector<Contour> contours = find_contours(sheets, found);
   REQUIRE(contours.size() == 1);
   CHECK(contours[0].sides[0].sheet == 0);
   CHECK(contours[0].sides[1].sheet == 1);
   CHECK(contours[0].sides[0].cuts);
   CHECK(contours[0].sides[1].cuts);
-  const std::vector<Region> regions = enclosed_regions(sheets, contours);
+  const std::vector<Region> regions = enclosed_regions(sheets, found, contours);
   REQUIRE(regions.size() == 2);
   for (const Region& region : regions) CHECK(region.vertices == contours[0].sides[region.sheet].inside);
 }

@@ -105,6 +105,21 @@ TEST_CASE("untangle: what is held stays, and the other side goes all of the way"
   CHECK(out.result.x.topRows(count) == level.x);
 }
 
+TEST_CASE("untangle: two layers that change places on the way round, one held at its boundary", "[untangle]") {
+  const testing::Sheet mesh = testing::tucked();
+  UntangleOptions options;
+  for (const bool hold : {false, true}) {
+    if (hold) {
+      options.held.assign(static_cast<std::size_t>(mesh.x.rows()), 0);
+      for (int v = 24 * 48; v < 25 * 48; ++v) options.held[v] = 1;
+    }
+    const UntangleOutcome out = untangled(mesh, options);
+    check_clean(out);
+    CHECK(out.result.iterations < 20);
+    if (hold) CHECK(out.result.x.middleRows(24 * 48, 48) == mesh.x.middleRows(24 * 48, 48));
+  }
+}
+
 TEST_CASE("untangle: a layer pushed through another over 30 % of its area", "[untangle]") {
   for (double depth : {0.04, 0.05}) {
     const testing::Sheet mesh = outfit(depth);
@@ -268,7 +283,7 @@ TEST_CASE("untangle: separations move the wrong side and keep to their step", "[
   const std::array sheets{SheetView{&surface, &mesh.x}};
   const Segments found = find_segments(sheets);
   const std::vector<Contour> contours = find_contours(sheets, found);
-  const std::vector<Region> regions = enclosed_regions(sheets, contours);
+  const std::vector<Region> regions = enclosed_regions(sheets, found, contours);
   const double gap = 0.001, step = 0.02;
   const std::vector<Separation> separations = part_contours(sheets, found, contours, regions, {gap, step});
   CHECK(separations.size() > found.crossings.size());

@@ -123,4 +123,20 @@ TEST_CASE("untangle: the open data", "[data]") {
   }
 }
 
+TEST_CASE("untangle: a shirt tucked into a skirt part of the way round, on a body") {
+  const std::filesystem::path given = fake::open_data().parent_path() / "cases" / "tucked_layers";
+  if (!std::filesystem::exists(given)) {
+    WARN("skipped: no " << given);
+    return;
+  }
+  const fake::Folder folder("untangle_tucked");
+  UntangleRequest request;
+  request.file = given / "both0.obj";
+  request.bodies = {given / "body0.obj"};
+  request.out = folder.path / "out.obj";
+  const UntangleReport report = untangle_mesh(request);
+  CHECK(report.result.pairs_before == 165);
+  CHECK(is_clean(report));
+}
+
 }  // namespace selvedge::test_untangle_mesh
