@@ -17,6 +17,9 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "MDD is read by turning its bytes round");
 
+constexpr double most_time = 1e6;  // of a sample [frames or s]: beyond it floats tell no two apart
+constexpr double uneven = 0.01;    // steps that differ by more are no steady rate
+
 // The numbers of a cache one after the other.
 struct CacheBytes {
   std::string file, bytes;
@@ -71,6 +74,13 @@ struct CacheBytes {
   }
 };
 
+void check_ascending(const CacheBytes& file, const std::vector<double>& times) {
+  for (std::size_t f = 1; f < times.size(); ++f)
+    if (!(times[f] > times[f - 1]))
+      file.fail(fmt::format("has sample {} at {}, after one at {}", f, times[f], times[f - 1]),
+                "write its samples in the order of time, each at its own");
+}
+
 PointCache read_pc2(CacheBytes file) {
   const std::string head("POINTCACHE2\0", 12);
   if (!file.bytes.starts_with(head)) file.fail("does not begin with POINTCACHE2", "give a .pc2 or .pc16 file");
@@ -78,11 +88,35 @@ PointCache read_pc2(CacheBytes file) {
   if (const auto version = file.next<std::int32_t>(); version != 1)
     file.fail(fmt::format("has version {}", version), "write version 1, which alone is read");
   const auto points = file.next<std::int32_t>();
-  file.next<float>();  // first frame
-  file.next<float>();  // frames a sample
+  const double first = file.next<float>(), sampling = file.next<float>();
   const auto frames = file.next<std::int32_t>();
   file.check_size(points, frames, file.at);
-  return {0, file.read(points, frames)};
+  if (!(std::abs(first) <= most_time))
+    file.fail(fmt::format("starts at frame {}", first), fmt::format("write a start frame of {:g} at most", most_time));
+  if (frames > 1 && !(sampling > 0 && sampling <= most_time))
+    file.fail(fmt::format("has a sampling rate of {} frames a sample", sampling), "write a number above 0");
+  PointCache cache;
+  for (std::int32_t f = 0; f < frames; ++f) cache.at.push_back(f == 0 ? first : first + f * sampling);
+  check_ascending(file, cache.at);
+  cache.frames = file.read(points, frames);
+  return cache;
+}
+
+// The times of a cache [s] as frames of their rate where that is steady, else as they are.
+void set_times(const CacheBytes& file, const std::vector<double>& times, PointCache& cache) {
+  for (const double time : times)
+    if (!(std::abs(time) <= most_time))
+      file.fail(fmt::format("has the time {} s", time), fmt::format("write times of {:g} s at most", most_time));
+  check_ascending(file, times);
+  cache.at = times;
+  if (times.size() == 1) return;
+  const double step = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  cache.fps = 1;
+  for (std::size_t f = 0; f < times.size(); ++f)
+    if (!(std::abs(times[f] - times.front() - static_cast<double>(f) * step) <= uneven * step)) return;
+  cache.fps = 1 / step;
+  const double first = std::round(1e4 * times.front() / step) / 1e4;  // floats have no more
+  for (std::size_t f = 0; f < times.size(); ++f) cache.at[f] = first + static_cast<double>(f);
 }
 
 PointCache read_mdd(CacheBytes file) {
@@ -91,13 +125,7 @@ PointCache read_mdd(CacheBytes file) {
   std::vector<double> times;
   for (std::int32_t f = 0; f < frames; ++f) times.push_back(file.next<float>());
   PointCache cache;
-  if (frames > 1) {
-    const double step = (times.back() - times.front()) / (frames - 1);
-    for (std::int32_t f = 0; f < frames; ++f)
-      if (!(step > 0) || !(std::abs(times[static_cast<std::size_t>(f)] - times.front() - f * step) <= 0.01 * step))
-        file.fail(fmt::format("has uneven times, at frame {}", f), "write it at a steady rate");
-    cache.fps = 1 / step;
-  }
+  set_times(file, times, cache);
   cache.frames = file.read(points, frames);
   return cache;
 }

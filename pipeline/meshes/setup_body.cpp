@@ -23,7 +23,7 @@
 namespace selvedge {
 namespace {
 
-constexpr double amass_fps = 30, gltf_fps = 60;
+constexpr double gltf_frames = 60;  // a second, by which a scene counts them: these files have none
 
 bool is_gltf(const std::filesystem::path& name) { return name.extension() == ".glb" || name.extension() == ".gltf"; }
 
@@ -58,14 +58,15 @@ void check_joints(const BodyModel& body, const Config& clip) {
 }
 
 // Rotations from SMPL's zero pose.
-Clip read_clip(const Config& section, const Measures& who, const std::filesystem::path& folder) {
+Clip read_clip(const Config& section, const Measures& who, const std::filesystem::path& folder,
+               std::vector<std::string>& warnings) {
   const Config& clip = section["clip"];
   const std::filesystem::path name(clip.text());
   for (const std::string key : {"joints", "rest_frame"})
     if (section[key].given && name.extension() != ".bvh")
       section[key].fail("is given for a clip that is no .bvh file", "leave it out");
   if (name.extension() == ".npz")
-    return read_amass(existing_path(clip, folder), amass_fps, row(who.joints, smpl::pelvis));
+    return read_amass(existing_path(clip, folder), row(who.joints, smpl::pelvis), warnings);
   if (name.extension() == ".bvh") {
     BvhOptions options;
     options.floor = who.floor;
@@ -83,20 +84,24 @@ Clip read_clip(const Config& section, const Measures& who, const std::filesystem
 }
 
 // An animation of the body's own skeleton, as it is.
-Clip own_animation(const Config& section, const Performance& who, const std::filesystem::path& folder) {
+Clip own_animation(const Config& section, const Performance& who, const std::filesystem::path& folder,
+                   std::vector<std::string>& warnings) {
   const Config &clip = section["clip"], &animation = section["animation"];
   const GltfRig rig = read_gltf_rig(existing_path(clip, folder));
   const Points ours = joint_positions(who.body, who.shape);
   if (rig.body.joints != who.body.joints || !(joint_positions(rig.body, {}) - ours).isZero(1e-3))
     clip.fail("moves another skeleton than the body's", "give the same file as `model`, or the body made of it");
-  return read_gltf_clip(rig, animation.given ? animation.text() : "", gltf_fps);
+  const std::string name = animation.given ? animation.text() : "";
+  return read_gltf_clip(rig, name, gltf_rate(rig, name, warnings));
 }
 
-void begin_later(const Config& first_frame, Clip& clip) {
-  const int first = first_frame.integer();
-  if (first >= static_cast<int>(clip.poses.size()))
-    first_frame.fail(fmt::format("is beyond the clip's {} frames", clip.poses.size()), "give one of its frames");
-  clip.poses.erase(clip.poses.begin(), clip.poses.begin() + first);
+// `fps` is the rate at which the scene counts the clip's frames.
+void begin_later(const Config& first_frame, double fps, Clip& clip) {
+  const double first = std::round(first_frame.integer() * clip.fps / fps);
+  if (first >= static_cast<double>(clip.poses.size()))
+    first_frame.fail(fmt::format("is beyond the clip's {:.0f} frames", std::floor(end_of(clip) * fps + 1e-6) + 1),
+                     "give one of its frames");
+  clip.poses.erase(clip.poses.begin(), clip.poses.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
 // Goes on where the clip ends: backward to its first pose, forward again, and so on.
@@ -109,7 +114,8 @@ void turn_round(int turns, Clip& clip) {
 
 // The clip by the body's own joints, from its own zero pose. A start with the arms down comes before the body's own
 // zero pose is accounted for, since it is said in SMPL's; the zero pose that cloth was fitted to is the body's own.
-Clip performed(const Config& section, const Performance& who, const std::filesystem::path& folder) {
+Clip performed(const Config& section, const Performance& who, const std::filesystem::path& folder,
+               std::vector<std::string>& warnings) {
   const double seconds = section["blend_in"].number();
   const bool from_zero = section["start_pose"].text() == "zero";
   const auto blended = [&](const Clip& clip, StartPose start, bool wanted) {
@@ -119,16 +125,16 @@ Clip performed(const Config& section, const Performance& who, const std::filesys
   if (section["animation"].given && !gltf)
     section["animation"].fail("is given for a clip that is no glTF file", "leave it out");
   if (gltf) {
-    Clip clip = own_animation(section, who, folder);
-    begin_later(section["first_frame"], clip);
+    Clip clip = own_animation(section, who, folder, warnings);
+    begin_later(section["first_frame"], gltf_frames, clip);
     turn_round(section["turns"].integer(), clip);
     return blended(clip, from_zero ? StartPose::zero : StartPose::arms_down, true);
   }
   check_joints(who.body, section["clip"]);
   const Points joints = joint_positions(who.body, who.shape);
   const std::optional<BodyPose> t = t_pose(who.body, joints);
-  Clip clip = read_clip(section, measured(who, joints, t), folder);
-  begin_later(section["first_frame"], clip);
+  Clip clip = read_clip(section, measured(who, joints, t), folder, warnings);
+  begin_later(section["first_frame"], clip.fps, clip);
   turn_round(section["turns"].integer(), clip);
   clip = blended(clip, StartPose::arms_down, !from_zero);
   if (t) clip = from_own_zero_pose(clip, who.body, joints, *t);
@@ -159,14 +165,14 @@ Performance read_performance(const Config& section, const std::filesystem::path&
     who.shape =
         Eigen::Map<const Eigen::VectorXd>(shape.numbers.data(), static_cast<Eigen::Index>(shape.numbers.size()));
   else if (of_smpl && clip.given && std::filesystem::path(clip.text()).extension() == ".npz")
-    who.shape = read_amass_shape(existing_path(clip, folder));
+    who.shape = read_amass_shape(existing_path(clip, folder), who.warnings);
   if (who.shape.size() > who.body.skin.shape_directions.cols())
     shape.fail("has more coefficients than the body has shapes",
                "give at most " + std::to_string(who.body.skin.shape_directions.cols()));
   for (const std::string key : {"joints", "rest_frame"})
     if (section[key].given && !clip.given) section[key].fail("is given without a clip", "name a .bvh file as `clip`");
   if (!clip.given) return who;
-  who.clip = performed(section, who, folder);
+  who.clip = performed(section, who, folder, who.warnings);
   for (std::size_t f = 0; f < who.clip.poses.size(); ++f)
     if (const BodyPose& pose = who.clip.poses[f];
         !pose.rotations.allFinite() || !(pose.translation.cwiseAbs().maxCoeff() <= farthest))
@@ -246,6 +252,7 @@ ObstaclePart obstacle_of(const std::shared_ptr<const Performance>& who) {
   part.obstacle.name = who->name;
   part.obstacle.surface = who->surface;
   part.obstacle.moving = !is_still(*who);
+  if (who->clip.poses.size() > 1) part.ends = end_of(who->clip);
   part.at = [who](double time) { return body_at(*who, time); };
   part.body = [who, joints = joint_positions(who->body, who->shape)](double time) {
     const BodyPose pose = pose_at(*who, time);

@@ -49,6 +49,7 @@ struct Performance {
   Clip before;                                 // up to time 0, where the scene's time begins before it
   double begins = 0;                           // when it does [s]
   std::shared_ptr<PosedBodies> known = std::make_shared<PosedBodies>();  // where it was asked for, by time
+  std::vector<std::string> warnings = {};                                // of what its files do not say, or say twice
 };
 
 // The bodies of a scene's obstacles, one an obstacle, null for what is none. `folder` is the scene file's.

@@ -63,12 +63,12 @@ Shape read_primitive(const Config& section) {
   return make_box(size, checked_edge(box, area));
 }
 
-Sequence one_frame(Points x, Triangles triangles) { return {{std::move(x)}, std::move(triangles), 1}; }
+Sequence one_frame(Points x, Triangles triangles) { return {{std::move(x)}, std::move(triangles), steady(1, 1)}; }
 
 // A body at rest is a sequence of one frame.
 Sequence read_body(const Config& section, const std::filesystem::path& folder, std::vector<std::string>& warnings) {
   if (section["sequence"].given) return read_sequence(section["sequence"], folder, warnings);
-  if (section["trajectory"].given) return read_recorded(section["trajectory"], folder);
+  if (section["trajectory"].given) return read_recorded(section["trajectory"], folder, warnings);
   if (const Config& file = section["mesh"]; file.given) {
     const Mesh mesh = read_mesh_section(file, folder);
     warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
@@ -99,6 +99,7 @@ ObstaclePart read_obstacle(const Config& section, std::size_t index, const std::
   part.obstacle.name = obstacle_name(section, index);
   part.obstacle.surface = make_surface(static_cast<int>(body->frames[0].rows()), body->triangles);
   part.obstacle.moving = body->frames.size() > 1 || !is_still(motion);
+  if (body->frames.size() > 1) part.ends = body->times.last();
   part.at = [body, motion](double time) { return moved(motion, sequence_at(*body, time), time); };
   return part;
 }

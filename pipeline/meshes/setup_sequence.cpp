@@ -7,6 +7,7 @@
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/read_point_cache.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/meshes/numbered_files.hpp"
 #include "pipeline/meshes/setup_motion.hpp"
 #include "pipeline/meshes/setup_obstacle.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
@@ -14,34 +15,39 @@
 namespace selvedge {
 namespace {
 
-// The number put in place of %d or %0Nd.
-std::string numbered(const Config& pattern, int number) {
-  const std::string& text = pattern.text();
-  const std::size_t begin = text.find('%');
-  std::size_t end = begin == std::string::npos ? begin : begin + 1;
-  std::size_t width = 0;
-  while (end < text.size() && std::isdigit(static_cast<unsigned char>(text[end])))
-    width = std::min<std::size_t>(10 * width + static_cast<std::size_t>(text[end++] - '0'), 20);
-  if (begin == std::string::npos || end >= text.size() || text[end] != 'd' || text.find('%', end) != std::string::npos)
-    pattern.fail("is `" + text + "`", "write one %d or %04d where the number goes");
-  std::string digits = std::to_string(number);
-  if (digits.size() < width) digits.insert(0, width - digits.size(), text[begin + 1] == '0' ? '0' : ' ');
-  return text.substr(0, begin) + digits + text.substr(end + 1);
+// The rate that the scene gives, or that the files have; where neither does, a warning says what is assumed.
+double rate_of(const Config& section, double own, std::size_t count, std::vector<std::string>& warnings) {
+  const Config& fps = section["fps"];
+  if (!fps.given && own > 0) return own;
+  if (!fps.given && count > 1)
+    warnings.push_back(
+        fmt::format("{}: its files do not say their rate; {:g} frames a second are assumed, which "
+                    "`fps` changes",
+                    section.where, fps.number()));
+  return fps.number();
 }
 
-std::vector<std::filesystem::path> sequence_files(const Config& section, const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files;
-  for (const std::string& name : section["files"].words) files.push_back(existing_path(section["files"], name, folder));
-  if (!section["pattern"].given) return files;
-  const Config &pattern = section["pattern"], &count = section["count"];
-  for (int number = section["first"].integer(); !count.given || files.size() < count.number(); ++number) {
-    const std::string name = numbered(pattern, number);
-    std::error_code ignored;
-    const bool exists = std::filesystem::exists(expanded_path(pattern, name, folder), ignored);
-    if (!exists && !count.given && !files.empty()) return files;
-    files.push_back(existing_path(pattern, name, folder));
+// Lets it begin where the scene says, or says where the files let it.
+void set_begin(const Config& section, SampleTimes& times, std::vector<std::string>& warnings) {
+  if (section["start"].given)
+    begin_at(section["start"].number(), times);
+  else
+    warn_of_begin(section.where + ": the sequence", "`start: 0 s` lets it begin at once", times, warnings);
+}
+
+// When the samples of a cache are. A rate of the scene takes the place of the file's.
+SampleTimes cache_times(const Config& section, const PointCache& cache, std::vector<std::string>& warnings) {
+  const double rate = rate_of(section, cache.fps, cache.at.size(), warnings);
+  SampleTimes times{cache.at, rate};
+  const double differs = std::abs(rate / cache.fps - 1);  // of a file without a rate: endless
+  if (section["fps"].given && cache.fps > 0 && differs > 1e-3) {
+    times = steady(cache.at.size(), rate);
+    warnings.push_back(fmt::format("{}: `fps` is {:g}, and the times of the file, {:.4g} s in {} frames, are not used",
+                                   section.where, rate, (cache.at.back() - cache.at.front()) / cache.fps,
+                                   cache.at.size()));
   }
-  return files;
+  set_begin(section, times, warnings);
+  return times;
 }
 
 // The positions of a point cache on the faces of a mesh.
@@ -55,18 +61,32 @@ Sequence cached_sequence(const Config& section, const std::filesystem::path& fol
     name.fail(fmt::format("has {} vertices, its mesh has {}", cache.frames.front().rows(), mesh.x.rows()),
               "give the mesh that it was made of");
   warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
-  const double unit = read_unit(section["unit"]), own = section["fps"].given ? 0 : cache.fps;
+  const double unit = read_unit(section["unit"]);
   for (Points& x : cache.frames) x *= unit;
-  return {std::move(cache.frames), mesh.triangles, own > 0 ? own : section["fps"].number()};
+  SampleTimes times = cache_times(section, cache, warnings);
+  return {std::move(cache.frames), mesh.triangles, std::move(times)};
+}
+
+// The files of a sequence and when they are: a number of a pattern is a frame, counted from the first one.
+std::vector<std::filesystem::path> sequence_files(const Config& section, const std::filesystem::path& folder,
+                                                  SampleTimes& times, std::vector<std::string>& warnings) {
+  std::vector<std::filesystem::path> files;
+  for (const std::string& name : section["files"].words) files.push_back(existing_path(section["files"], name, folder));
+  times.at = steady(files.size(), 1).at;
+  if (section["pattern"].given)
+    for (const NumberedFile& one : numbered_files(section, folder, warnings)) {
+      files.push_back(one.file);
+      times.at.push_back(one.number - section["first"].integer());
+    }
+  times.fps = rate_of(section, 0, files.size(), warnings);
+  set_begin(section, times, warnings);
+  return files;
 }
 
 }  // namespace
 
 Points sequence_at(const Sequence& sequence, double time) {
-  const double last = static_cast<double>(sequence.frames.size() - 1);
-  const double at = std::clamp(time * sequence.fps, 0.0, last);
-  const auto k = static_cast<std::size_t>(std::floor(at));
-  const double s = at - std::floor(at);
+  const auto [k, s] = place_of(sequence.times, time);
   if (s == 0) return sequence.frames[k];
   return (1 - s) * sequence.frames[k] + s * sequence.frames[k + 1];
 }
@@ -76,10 +96,9 @@ Sequence read_sequence(const Config& section, const std::filesystem::path& folde
     section["mesh"].fail("is given without a point cache", "give cache: FILE.pc2, .pc16 or .mdd, or leave it out");
   if (section["cache"].given) return cached_sequence(section, folder, warnings);
   Sequence sequence;
-  sequence.fps = section["fps"].number();
   const double unit = read_unit(section["unit"]);
   Mesh first;
-  for (const std::filesystem::path& file : sequence_files(section, folder)) {
+  for (const std::filesystem::path& file : sequence_files(section, folder, sequence.times, warnings)) {
     const Mesh mesh = read_mesh(file);
     if (sequence.frames.empty()) {
       first = mesh;
@@ -128,18 +147,29 @@ RecordedPart recorded_part(const Config& section, const TrajectoryInfo& info) {
 
 }  // namespace
 
-Sequence read_recorded(const Config& section, const std::filesystem::path& folder) {
+Sequence read_recorded(const Config& section, const std::filesystem::path& folder, std::vector<std::string>& warnings) {
   const std::filesystem::path file = existing_path(section["file"], folder);
   const TrajectoryReader reader(file);
   const RecordedPart part = recorded_part(section, reader.info());
-  if (reader.frame_count() == 0) throw Error("has no frames", file.string(), "used by " + section.where);
-  const double unit = read_unit(section["unit"]);
-  Sequence sequence{{}, part.triangles, reader.info().fps};
+  const double unit = read_unit(section["unit"]), fps = reader.info().fps;
+  Sequence sequence{{}, part.triangles, {{}, fps}};
   for (int f = 0; f < reader.frame_count(); ++f) {
     const Frame frame = reader.frame(f);
+    const double at = frame.time * fps, whole = std::round(at);
+    std::vector<double>& all = sequence.times.at;
+    all.push_back(std::abs(at - whole) < 1e-6 ? whole : at);
+    if (const std::size_t n = all.size(); n > 1 && !(all[n - 1] > all[n - 2])) {
+      if (frame.report.status != StepStatus::rejected)
+        throw Error(fmt::format("has frame {} at {} s, no later than the one before", f, frame.time), file.string(),
+                    "the file is damaged; write it again; used by " + section.where);
+      all.pop_back();  // it has the positions of the frame before
+      continue;
+    }
     const PointsF& x = part.obstacle >= 0 ? frame.obstacles[static_cast<std::size_t>(part.obstacle)] : frame.x;
     sequence.frames.push_back(unit * x.middleRows(part.first_vertex, part.vertex_count).cast<double>());
   }
+  if (sequence.frames.empty()) throw Error("has no frames", file.string(), "used by " + section.where);
+  set_begin(section, sequence.times, warnings);
   return sequence;
 }
 

@@ -82,24 +82,17 @@ BodyPose mirrored(const Clip& clip, double time) {
 
 }  // namespace
 
-BodyPose pose_at(const Clip& clip, double time) {
+double end_of(const Clip& clip) {
   check_has_poses(clip);
-  const double at = std::clamp(time * clip.fps, 0.0, static_cast<double>(clip.poses.size() - 1));
-  // Times of another rate that meet a frame do so up to rounding.
-  const double nearest = std::round(at);
-  if (std::abs(at - nearest) < 1e-9) return clip.poses[static_cast<std::size_t>(nearest)];
-  const auto k = static_cast<std::size_t>(std::floor(at));
-  return between(clip.poses[k], clip.poses[k + 1], at - std::floor(at));
+  return static_cast<double>(clip.poses.size() - 1) / clip.fps;
 }
 
-Clip resampled(const Clip& clip, double fps) {
+BodyPose pose_at(const Clip& clip, double time) {
   check_has_poses(clip);
-  if (!(fps > 0)) throw Error(fmt::format("cannot be resampled to {} frames a second", fps), "clip " + clip.name, "");
-  Clip result{clip.name, fps, clip.joints, {}, clip.shape};
-  const double frames = static_cast<double>(clip.poses.size() - 1) * fps / clip.fps;
-  const auto last = static_cast<int>(std::floor(frames + 1e-9));
-  for (int f = 0; f <= last; ++f) result.poses.push_back(pose_at(clip, f / fps));
-  return result;
+  constexpr double rounding = 1e-9;  // within which times of another rate meet a frame
+  const auto [k, share] = steady_place(clip.poses.size(), clip.fps, time);
+  if (share < rounding) return clip.poses[k];
+  return 1 - share < rounding ? clip.poses[k + 1] : between(clip.poses[k], clip.poses[k + 1], share);
 }
 
 BodyPose matched(const BodyPose& pose, const std::vector<std::string>& from, const std::vector<std::string>& to) {

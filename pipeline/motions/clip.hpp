@@ -4,10 +4,12 @@
 #include <vector>
 
 #include "pipeline/bodies/body.hpp"
+#include "pipeline/shapes/sample_times.hpp"
 
 namespace selvedge {
 
-// A motion of a body: poses at a steady rate. Joints are matched by name, Y is up, the ground is at y = 0 [m].
+// A motion of a body: poses at a steady rate, its file's own. Joints are matched by name, Y is up, the ground is at y =
+// 0 [m].
 struct Clip {
   std::string name;
   double fps = 30;
@@ -16,12 +18,11 @@ struct Clip {
   Eigen::VectorXd shape;  // that the file gives; empty: none
 };
 
+double end_of(const Clip&);  // when its last pose is [s]
+
 // The pose at a time [s] from the clip's start: spherical interpolation between poses, the ends are held. Throws Error
 // for a clip without poses.
 BodyPose pose_at(const Clip&, double time);
-
-// The same motion at another rate, from the first pose on; what is left beyond the last whole frame is dropped.
-Clip resampled(const Clip&, double fps);
 
 // The rotations of a pose in the order of other joints; joints that the clip lacks stay unrotated.
 BodyPose matched(const BodyPose&, const std::vector<std::string>& from, const std::vector<std::string>& to);

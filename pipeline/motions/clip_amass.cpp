@@ -61,21 +61,53 @@ double frame_rate(const Npz& npz) {
   return rate.values[0];
 }
 
-Eigen::VectorXd shape_of(const Npz& npz, int most) {
+// One body's: a row, or a row a frame.
+Eigen::MatrixXd shapes_of(const Npz& npz, int most) {
   if (!npz.has("betas")) return {};
   const NpyArray<double> betas = npz.numbers("betas");
-  const Eigen::VectorXd all =
-      Eigen::Map<const Eigen::VectorXd>(betas.values.data(), static_cast<Index>(betas.values.size()));
-  const bool one_row = betas.shape.size() == 1 || (betas.shape.size() == 2 && betas.shape[0] == 1);
-  if (!one_row || !all.allFinite()) fail(npz, "betas", "is no row of finite numbers", "the shape of one body");
-  return all.head(std::min<Index>(most, all.size()));
+  const Index rows = betas.shape.size() == 2 ? betas.shape[0] : 1, count = static_cast<Index>(betas.values.size());
+  const bool fits = betas.shape.size() == 1 || betas.shape.size() == 2;
+  if (!fits || rows < 1 || !std::ranges::all_of(betas.values, [](double value) { return std::isfinite(value); }))
+    fail(npz, "betas", fmt::format("has the shape ({}), or is not finite", fmt::join(betas.shape, ", ")),
+         "the shape of one body: a row of finite numbers, or one a frame");
+  if (const NpyArray<double> trans = rows > 1 ? npz.numbers("trans") : NpyArray<double>{};
+      rows > 1 && (trans.shape.empty() || trans.shape[0] != rows))
+    fail(npz, "betas", fmt::format("has {} rows", rows), "the shape of one body: one row, or one a frame");
+  return Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(betas.values.data(),
+                                                                                                  rows, count / rows)
+      .leftCols(std::min<Index>(most, count / rows));
+}
+
+Eigen::VectorXd first_row(const Eigen::MatrixXd& shapes) {
+  return shapes.rows() == 0 ? Eigen::VectorXd() : Eigen::VectorXd(shapes.row(0).transpose());
+}
+
+void warn_of_length(const Npz& npz, Index frames, double fps, std::vector<std::string>& warnings) {
+  if (!npz.has("mocap_time_length")) return;
+  const NpyArray<double> length = npz.numbers("mocap_time_length");
+  const double is = static_cast<double>(frames) / fps;
+  if (length.values.size() == 1 && std::abs(length.values[0] - is) <= 2 / fps) return;
+  warnings.push_back(fmt::format(
+      "{} is {} s, and {} frames at {:g} a second are {:.4g} s: the frames and their rate "
+      "are taken",
+      npz.place("mocap_time_length").text(), length.values.empty() ? 0 : length.values[0], frames, fps, is));
 }
 
 }  // namespace
 
-Eigen::VectorXd read_amass_shape(const std::filesystem::path& path, int most) { return shape_of(Npz(path), most); }
+Eigen::VectorXd read_amass_shape(const std::filesystem::path& path, std::vector<std::string>& warnings, int most) {
+  const Npz npz(path);
+  const Eigen::MatrixXd shapes = shapes_of(npz, most);
+  if (shapes.rows() > 1)
+    if (const double differs = (shapes.rowwise() - shapes.row(0)).cwiseAbs().maxCoeff(); differs > 1e-6)
+      warnings.push_back(
+          fmt::format("{} changes from frame to frame, by {:.3g} at most; a body keeps its shape, which "
+                      "is that of frame 0",
+                      npz.place("betas").text(), differs));
+  return first_row(shapes);
+}
 
-Clip read_amass(const std::filesystem::path& path, double fps, const Vec3& pelvis, int shapes) {
+Clip read_amass(const std::filesystem::path& path, const Vec3& pelvis, std::vector<std::string>& warnings, int shapes) {
   const Npz npz(path);
   const std::vector<Part> parts = rotation_parts(npz);
   const NpyArray<double> trans = table(npz, "trans", -1, 3);
@@ -96,7 +128,8 @@ Clip read_amass(const std::filesystem::path& path, double fps, const Vec3& pelvi
 
   std::vector<std::string> names = smpl_joint_names(static_cast<int>(joints == 22 ? 24 : joints));
   names.resize(static_cast<std::size_t>(joints));
-  Clip clip{path.stem().string(), frame_rate(npz), std::move(names), {}, shape_of(npz, shapes)};
+  Clip clip{path.stem().string(), frame_rate(npz), std::move(names), {}, first_row(shapes_of(npz, shapes))};
+  warn_of_length(npz, frames, clip.fps, warnings);
   Mat3 y_up;
   y_up << 1, 0, 0, 0, 0, 1, 0, -1, 0;
   for (Index f = 0; f < frames; ++f) {
@@ -106,7 +139,7 @@ Clip read_amass(const std::filesystem::path& path, double fps, const Vec3& pelvi
     pose.translation = y_up * (pelvis + at) - pelvis;
     clip.poses.push_back(std::move(pose));
   }
-  return resampled(clip, fps);
+  return clip;
 }
 
 }  // namespace selvedge

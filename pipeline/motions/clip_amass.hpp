@@ -7,16 +7,17 @@
 // Motions of the AMASS archive (Mahmood et al. 2019) and what else is stored like them, .npz:
 // SMPL+H: poses (frames x 156), trans, betas, mocap_framerate;
 // SMPL-X: root_orient, pose_body, pose_hand, pose_jaw, pose_eye, trans, betas, mocap_frame_rate.
-// poses of 72 (SMPL) and 165 (SMPL-X) columns are read too.
+// poses of 72 (SMPL) and 165 (SMPL-X) columns are read too, and betas with a row a frame.
 namespace selvedge {
 
-// The first coefficients of betas, at most so many.
-Eigen::VectorXd read_amass_shape(const std::filesystem::path&, int most = 10);
+// The first coefficients of betas, at most so many. Of betas with a row a frame it is the first row; where the others
+// differ a warning says so, because a body keeps its shape.
+Eigen::VectorXd read_amass_shape(const std::filesystem::path&, std::vector<std::string>& warnings, int most = 10);
 
-// The motion at a frame rate, by the names of `smpl_joint_names`, with the shape as above. Files are Z up: (x, y, z)
-// becomes (x, z, -y), for which the root's joint of the shaped body in the zero pose is needed (`pelvis`, the first row
-// of `joint_positions`), because bodies turn about it. Frames between the file's come by spherical interpolation.
-// Throws Error with file and field.
-Clip read_amass(const std::filesystem::path&, double fps, const Vec3& pelvis, int shapes = 10);
+// The motion at the file's frame rate, by the names of `smpl_joint_names`, with the shape as above. Files are Z up:
+// (x, y, z) becomes (x, z, -y), for which the root's joint of the shaped body in the zero pose is needed (`pelvis`, the
+// first row of `joint_positions`), because bodies turn about it. A length (mocap_time_length) that is not that of the
+// frames is warned of. Throws Error with file and field.
+Clip read_amass(const std::filesystem::path&, const Vec3& pelvis, std::vector<std::string>& warnings, int shapes = 10);
 
 }  // namespace selvedge

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/factorisations.hpp"
@@ -251,6 +252,29 @@ GltfRig read_gltf_rig(const std::filesystem::path& path) {
   body.regressor = exact_regressor(body, joints, rig.file);
   check_body(body, rig.file);
   return rig;
+}
+
+double gltf_rate(const GltfRig& rig, const std::string& name, std::vector<std::string>& warnings) {
+  constexpr int least = 60, most = 240;
+  const GltfAnimation& animation = animation_named(rig, name);
+  const std::string noun = rig.file + ": animation `" + animation.name + "`";
+  double begin = animation.tracks.empty() ? 0 : std::numeric_limits<double>::infinity();
+  for (const GltfTrack& track : animation.tracks) begin = std::min(begin, track.times[0]);
+  warn_of_begin(noun, "first_frame: " + fmt::format("{:.0f}", std::ceil(begin * least)) + " leaves that out",
+                {{begin, begin + 1}, 1}, warnings);
+  const auto meets = [&](int rate) {
+    return std::ranges::all_of(animation.tracks, [&](const GltfTrack& track) {
+      const Eigen::ArrayXd at = rate * track.times.array();
+      return (at - at.round()).abs().maxCoeff() < 1e-3;
+    });
+  };
+  for (int rate = least; rate <= most; ++rate)
+    if (meets(rate)) return rate;
+  warnings.push_back(
+      fmt::format("{} has keys at no steady rate: it is taken {} times a second, and between these it "
+                  "moves steadily",
+                  noun, most));
+  return most;
 }
 
 Clip read_gltf_clip(const GltfRig& rig, const std::string& name, double fps) {

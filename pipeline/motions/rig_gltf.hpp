@@ -29,7 +29,11 @@ GltfRig read_gltf_rig(const std::filesystem::path&);
 // One of the file's animations as rotations from the body's zero pose, by the body's joints; `name` empty: the first.
 // Deformed by the body's skin the surface moves as the file says. Throws Error, naming joint and time, where a joint
 // is scaled or moves against its parent by over a centimetre: bones keep their lengths; and for a name that the file
-// has not.
+// has not. Its time 0 is the file's.
 Clip read_gltf_clip(const GltfRig&, const std::string& name, double fps);
+
+// Poses a second at which no key of an animation lies between two poses: 60 or the next number that is enough. Says
+// where there is none up to 240, and where the animation begins later than at time 0.
+double gltf_rate(const GltfRig&, const std::string& name, std::vector<std::string>& warnings);
 
 }  // namespace selvedge

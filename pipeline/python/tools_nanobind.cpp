@@ -178,6 +178,7 @@ nb::dict read_cache(const std::filesystem::path& file) {
   for (const Points& frame : cache.frames) x.append(copy_of(frame));
   nb::dict result;
   result["fps"] = cache.fps;
+  result["at"] = cache.at;
   result["x"] = x;
   return result;
 }
@@ -204,8 +205,8 @@ void bind_tools(nb::module_& module) {
              "A run's run.h5: triangles, m x 3; fps; time, a list [s]; x, a list of n x 3 [m], one a frame.");
   module.def(
       "read_cache", &read_cache, "file"_a,
-      "A point cache, .pc2, .pc16 (half floats, as CLOTH3D has them) or .mdd: fps, 0 where it does not say; x, a "
-      "list of n x 3 in the file's unit, one a frame.");
+      "A point cache, .pc2, .pc16 (half floats, as CLOTH3D has them) or .mdd: fps, 0 where it does not say; at, when "
+      "each sample is, in frames of that rate; x, a list of n x 3 in the file's unit, one a sample.");
   module.def("compare", &compare_file, "file"_a, "kinds"_a = nb::dict(), "out"_a = std::filesystem::path("out/compare"),
              "overrides"_a = std::vector<std::string>{}, "short"_a = false,
              "Runs a comparison file (YAML), whose settings may name steppers of kinds, name to subclass of Stepper. "

@@ -63,21 +63,29 @@ const Section& revolution_section() {
   return table;
 }
 
+Key start_key() {
+  return number("start", Unit::time, any, "",
+                "Time at which its first frame is shown. Default: what the file says (the start frame of a .pc2 or "
+                ".pc16, the first time of a .mdd or of a run), else 0.");
+}
+
 const Section& sequence_section() {
-  static const Section table{"sequence",
-                             "One mesh for each frame, all with the same faces. Positions between frames are "
-                             "interpolated linearly, and the last frame is held.",
-                             "",
-                             {"pattern", "files", "cache"},
-                             {path("pattern", "Path of the mesh files, with one %d or %0Nd for the frame number."),
-                              integer("first", not_negative, "0", "First frame number of `pattern`."),
-                              integer("count", at_least_one, "", "Number of frames. Default: as many as there are."),
-                              texts("files", "Paths of the mesh files."),
-                              path("cache", "Point cache: .pc2, .pc16 (half floats, as CLOTH3D has them) or .mdd."),
-                              path("mesh", "Mesh file whose faces the cache moves."),
-                              number("fps", Unit::rate, positive, "30",
-                                     "Frames a second of the sequence. Default: those of a .mdd file, else 30."),
-                              unit_key()}};
+  static const Section table{
+      "sequence",
+      "One mesh for each frame, all with the same faces. Positions between frames are "
+      "interpolated linearly, and the first and the last frame are held.",
+      "",
+      {"pattern", "files", "cache"},
+      {path("pattern", "Path of the mesh files, with one %d or %0Nd for the frame number."),
+       integer("first", not_negative, "0", "First frame number of `pattern`."),
+       integer("count", at_least_one, "", "Number of frames, missing ones included. Default: as many as there are."),
+       texts("files", "Paths of the mesh files."),
+       path("cache", "Point cache: .pc2, .pc16 (half floats, as CLOTH3D has them) or .mdd."),
+       path("mesh", "Mesh file whose faces the cache moves."),
+       number("fps", Unit::rate, positive, "30",
+              "Frames a second of the sequence. Default: those of a .mdd file, else 30, with a "
+              "warning."),
+       start_key(), unit_key()}};
   return table;
 }
 
@@ -90,7 +98,7 @@ const Section& trajectory_section() {
                               text("part",
                                    "Name of the cloth or obstacle in that run. Default: the only obstacle or, without "
                                    "obstacles, the only cloth."),
-                              unit_key()}};
+                              start_key(), unit_key()}};
   return table;
 }
 
@@ -128,7 +136,9 @@ const Section& body_section() {
        integer("rest_frame", not_negative, "",
                "Frame of a .bvh clip in which the figure stands upright with its feet flat. Default: the file's zero "
                "pose, or its first frame if that is no standing pose."),
-       integer("first_frame", not_negative, "0", "Frame of the clip at which the motion begins."),
+       integer("first_frame", not_negative, "0",
+               "Frame of the clip, at its own rate, at which the motion begins. In a glTF animation: sixtieths of a "
+               "second."),
        integer("turns", {.low = 0, .high = 100}, "0",
                "How often the motion reverses at an end of the clip. 1: forward and backward. 0: the body keeps the "
                "last pose."),

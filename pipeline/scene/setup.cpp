@@ -212,6 +212,8 @@ SceneParts read_parts(Config& config, const std::filesystem::path& folder, doubl
     wear(static_cast<int>(std::ranges::count_if(parts.cloths, worn)), *who);
   }
   parts.begin_frame = -begin_draped(parts.bodies, fps, parts.cloths);
+  for (const auto& who : parts.bodies)
+    if (who) parts.obstacle_warnings.insert(parts.obstacle_warnings.end(), who->warnings.begin(), who->warnings.end());
   parts.obstacles = read_all_obstacles(config["obstacles"], folder, parts.bodies, parts.obstacle_warnings);
   return parts;
 }
@@ -323,3 +325,7 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
 }
 
 }  // namespace selvedge
+  for (const ObstaclePart& part : parts.obstacles)
+    if (part.ends)
+      warn_of_end("the motion of obstacle `" + part.obstacle.name + "`", *part.ends, setup.run.fps, setup.run.frames,
+                  setup.warnings);

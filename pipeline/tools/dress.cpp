@@ -141,6 +141,10 @@ DressReport dress(const DressRequest& request) {
   garment.name = request.mesh.stem().string();
   garment.made_for = who.body.name;
   garment.made_in = read_pose(request, who);
+  report.warnings.insert(report.warnings.end(), who.warnings.begin(), who.warnings.end());
+  if (request.pose && !who.clip.poses.empty() && request.time > end_of(who.clip))
+    report.warnings.push_back(fmt::format("{} ends at {:.4g} s, before {:.4g} s: its last pose is taken", *request.pose,
+                                          end_of(who.clip), request.time));
   garment.skin = attached_in(garment.made_in, x, mesh.triangles, who, request.fit == "tight" ? Fit::tight : Fit::loose);
   add_groups(request, who.body, mesh, report);
   report.reposed = (rest_shape(garment, who.body, who.shape) - x).rowwise().norm().maxCoeff();

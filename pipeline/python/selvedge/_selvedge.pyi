@@ -51,6 +51,7 @@ class Trajectory(TypedDict):
 
 class Cache(TypedDict):
     fps: float
+    at: list[float]
     x: list[Numbers]
 
 class Scene:

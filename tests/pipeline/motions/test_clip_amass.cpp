@@ -68,14 +68,15 @@ TEST_CASE("clip_amass: SMPL+H files in both precisions", "[clip]") {
   const fake::Folder folder("amass_h");
   const auto check = [&](const fake::NpzEntries& entries, double tolerance, bool compressed) {
     const auto path = fake::write_npz(folder.path / "walk_poses.npz", entries, compressed);
-    const Clip clip = read_amass(path, 30, pelvis);
-    CHECK((clip.name == "walk_poses" && clip.fps == 30 && clip.joints == smpl_joint_names(52)));
-    REQUIRE(clip.poses.size() == 3);  // frames 0, 4 and 8 of 10
-    for (std::size_t f = 0; f < 3; ++f) check_rotations(clip, f, 4 * f, tolerance);
+    std::vector<std::string> warnings;
+    const Clip clip = read_amass(path, pelvis, warnings);
+    CHECK((clip.name == "walk_poses" && clip.fps == 120 && clip.joints == smpl_joint_names(52)));
+    REQUIRE(clip.poses.size() == 10);
+    for (std::size_t f = 0; f < 10; ++f) check_rotations(clip, f, f, tolerance);
     REQUIRE(clip.shape.size() == 10);
     CHECK(clip.shape[9] == 2.25);
-    CHECK(read_amass_shape(path, 16).size() == 16);
-    CHECK(read_amass(path, 120, pelvis).poses.size() == 10);
+    CHECK(read_amass_shape(path, warnings, 16).size() == 16);
+    CHECK(warnings.empty());
   };
   check(smplh<double>(10), 1e-12, false);
   check(smplh<float>(10), 1e-6, true);
@@ -84,10 +85,12 @@ TEST_CASE("clip_amass: SMPL+H files in both precisions", "[clip]") {
 TEST_CASE("clip_amass: SMPL-X files", "[clip]") {
   const fake::Folder folder("amass_x");
   const auto path = fake::write_npz(folder.path / "x.npz", smplx<float>(7));
-  const Clip clip = read_amass(path, 30, pelvis);
+  std::vector<std::string> warnings;
+  const Clip clip = read_amass(path, pelvis, warnings);
   CHECK(clip.joints == smpl_joint_names(55));
-  REQUIRE(clip.poses.size() == 4);
-  check_rotations(clip, 3, 6, 1e-6);
+  REQUIRE(clip.poses.size() == 7);
+  CHECK(clip.fps == 60);
+  check_rotations(clip, 6, 6, 1e-6);
   // On SMPL's joints hands are dropped.
   const BodyPose pose = matched(clip.poses[1], clip.joints, smpl_joint_names(24));
   CHECK(pose.rotations.topRows(22) == clip.poses[1].rotations.topRows(22));
@@ -96,12 +99,12 @@ TEST_CASE("clip_amass: SMPL-X files", "[clip]") {
   // Without hands and face only the body is there.
   fake::NpzEntries body = smplx<double>(2);
   for (const std::string name : {"pose_hand", "pose_jaw", "pose_eye", "betas"}) body.erase(name);
-  const Clip bare = read_amass(fake::write_npz(folder.path / "b.npz", body), 60, pelvis);
+  const Clip bare = read_amass(fake::write_npz(folder.path / "b.npz", body), pelvis, warnings);
   CHECK((bare.joints.size() == 22 && bare.joints.back() == "right_wrist" && bare.shape.size() == 0));
   fake::NpzEntries all = smplx<double>(2);
   all["poses"] = table<double>(2, 165);
   for (const std::string name : {"root_orient", "pose_body"}) all.erase(name);
-  const Clip one = read_amass(fake::write_npz(folder.path / "o.npz", all), 60, pelvis);
+  const Clip one = read_amass(fake::write_npz(folder.path / "o.npz", all), pelvis, warnings);
   CHECK(one.joints == smpl_joint_names(55));
   check_rotations(one, 1, 1, 1e-12);
 }
@@ -117,7 +120,8 @@ TEST_CASE("clip_amass: Z up becomes Y up about the pelvis", "[clip]") {
   entries["poses"] = fake::npy<double>({1, 72}, poses);
   entries["trans"] = fake::npy<double>({1, 3}, {0.3, -2, 0.1});
   const Points joints = fake::skeleton();
-  const Clip clip = read_amass(fake::write_npz(folder.path / "u.npz", entries), 30, row(joints, 0));
+  std::vector<std::string> warnings;
+  const Clip clip = read_amass(fake::write_npz(folder.path / "u.npz", entries), row(joints, 0), warnings);
   REQUIRE(clip.joints == smpl_joint_names(24));
   BodyPose theirs{Points::Zero(24, 3), Vec3(0.3, -2, 0.1)};
   theirs.rotations.row(0) = upright.transpose();
@@ -131,7 +135,8 @@ TEST_CASE("clip_amass: what is missing or wrong is named", "[clip]") {
   const fake::Folder folder("amass_bad");
   const auto fails = [&](const fake::NpzEntries& entries, const std::string& what) {
     INFO(what);
-    CHECK_THROWS_WITH(read_amass(fake::write_npz(folder.path / "bad.npz", entries), 30, pelvis),
+    std::vector<std::string> warnings;
+    CHECK_THROWS_WITH(read_amass(fake::write_npz(folder.path / "bad.npz", entries), pelvis, warnings),
                       Catch::Contains("bad.npz") && Catch::Contains(what));
   };
   const auto with = [](fake::NpzEntries entries, const std::string& name, const std::string& bytes) {
@@ -152,7 +157,8 @@ TEST_CASE("clip_amass: what is missing or wrong is named", "[clip]") {
   fails(with(h, "mocap_framerate", ""), "mocap_frame");
   fails(with(h, "mocap_framerate", fake::npy<double>({}, {0.0})), "frame rate");
   fails(with(h, "mocap_framerate", fake::npy<double>({2}, {30.0, 30.0})), "frame rate");
-  fails(with(h, "betas", table<double>(5, 10)), "betas");
+  fails(with(h, "betas", table<double>(4, 10)), "4 rows");
+  fails(with(h, "betas", fake::npy<double>({1, 1, 10}, std::vector<double>(10, 0.0))), "betas");
   fails(with(x, "pose_body", ""), "pose_body");
   fails(with(x, "pose_body", table<double>(5, 66)), "pose_body");
   fails(with(x, "pose_hand", table<double>(4, 90)), "pose_hand");
@@ -160,7 +166,39 @@ TEST_CASE("clip_amass: what is missing or wrong is named", "[clip]") {
   bad[7] = NAN;
   fails(with(h, "trans", fake::npy<double>({5, 3}, bad)), "finite");
   fails(with(h, "poses", fake::npy_of("'|O'", false, "(5, 156)", "pickle")), "poses");
-  CHECK_THROWS_AS(read_amass(folder.path / "none.npz", 30, pelvis), Error);
+  std::vector<std::string> warnings;
+  CHECK_THROWS_AS(read_amass(folder.path / "none.npz", pelvis, warnings), Error);
+}
+
+TEST_CASE("clip_amass: of shapes by frame the first is taken, and that others differ is said", "[clip]") {
+  const fake::Folder folder("amass_betas");
+  fake::NpzEntries entries = smplh<double>(3);
+  const auto shape = [&](const std::string& betas, std::vector<std::string>& warnings) {
+    entries["betas"] = betas;
+    const auto path = fake::write_npz(folder.path / "b.npz", entries);
+    CHECK(read_amass(path, pelvis, warnings).shape.size() == 2);
+    return read_amass_shape(path, warnings);
+  };
+  std::vector<std::string> none, said;
+  CHECK(shape(fake::npy<double>({3, 2}, {1, 2, 1, 2, 1, 2}), none) == Eigen::Vector2d(1, 2));
+  CHECK(none.empty());
+  CHECK(shape(fake::npy<double>({3, 2}, {1, 2, 1, 2.5, 1, 2}), said) == Eigen::Vector2d(1, 2));
+  REQUIRE(said.size() == 1);
+  CHECK_THAT(said[0], Catch::Contains("betas") && Catch::Contains("by 0.5") && Catch::Contains("frame 0"));
+}
+
+TEST_CASE("clip_amass: a length that its frames do not have is said", "[clip]") {
+  const fake::Folder folder("amass_length");
+  fake::NpzEntries entries = smplh<double>(240);  // 2 s
+  const auto warnings = [&](double seconds) {
+    entries["mocap_time_length"] = fake::npy<double>({}, {seconds});
+    std::vector<std::string> all;
+    read_amass(fake::write_npz(folder.path / "l.npz", entries), pelvis, all);
+    return all;
+  };
+  CHECK(warnings(2).empty());
+  REQUIRE(warnings(8).size() == 1);
+  CHECK_THAT(warnings(8)[0], Catch::Contains("is 8 s") && Catch::Contains("are 2 s"));
 }
 
 }  // namespace selvedge::test_clip_amass

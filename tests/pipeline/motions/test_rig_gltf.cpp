@@ -80,6 +80,28 @@ TEST_CASE("glTF: a rigged body and its motion come back from below an armature o
   CHECK_THROWS_WITH(read_gltf_clip(rig, "walk", 30), Contains("no animation `walk`") && Contains("swing"));
 }
 
+TEST_CASE("glTF: an animation is taken at a rate that meets its keys, and a late begin is said", "[rig_gltf]") {
+  const Folder folder("gltf_rate");
+  const BodyModel body = fake::body(6, 40, 0, false);
+  const auto rate = [&](double fps, double later, std::vector<std::string>& warnings) {
+    Clip clip = some_motion(6, 5);
+    clip.fps = fps;
+    GltfRig rig = read_gltf_rig(fake::write(folder, "rig.glb", fake::gltf_of(body, clip, body.joints).glb()));
+    for (GltfTrack& track : rig.scene.animations[0].tracks) track.times.array() += later;
+    return gltf_rate(rig, "", warnings);
+  };
+  std::vector<std::string> warnings;
+  CHECK(rate(30, 0, warnings) == 60);
+  CHECK(rate(24, 0, warnings) == 72);
+  CHECK(rate(25, 0, warnings) == 75);
+  CHECK(warnings.empty());
+  CHECK(rate(24, 1.0 / 24, warnings) == 72);
+  REQUIRE(warnings.size() == 1);
+  CHECK_THAT(warnings[0], Contains("begins at 0.04167 s") && Contains("first_frame: 3"));
+  CHECK(rate(101.7, 0, warnings) == 240);
+  CHECK_THAT(warnings.back(), Contains("no steady rate"));
+}
+
 TEST_CASE("glTF: a person's joints get SMPL's names, and scenes play the file's animation", "[rig_gltf]") {
   const Folder folder("gltf_person");
   const BodyModel whole = make_mannequin();

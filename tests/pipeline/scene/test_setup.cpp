@@ -316,6 +316,7 @@ TEST_CASE("Mesh sequences move linearly, and must keep their faces", "[setup]") 
                     Contains("b_009.obj") && Contains("faces"));
   CHECK_NOTHROW(read(folder, scene + "{pattern: b_%03d.obj, first: 7, count: 2}}]\n"));
   CHECK_THROWS_WITH(read(folder, scene + "{pattern: b_%03d.obj, first: 7, count: 4}}]\n"), Contains("b_0"));
+  CHECK_THROWS_WITH(read(folder, scene + "{pattern: b_%03d.obj}}]\n"), Contains("b_000.obj") && Contains("first: 7"));
 }
 
 TEST_CASE("An earlier run's cloth or obstacle is an obstacle", "[setup]") {
