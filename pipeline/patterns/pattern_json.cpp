@@ -36,7 +36,7 @@ std::string without_nan(const std::string& text) {
 
 struct PatternReader {
   const std::string& file;
-  double unit = 1;  // metres
+  double unit = std::numeric_limits<double>::quiet_NaN();  // metres
   bool relative_curves = true;
 
   [[noreturn]] void fail(const std::string& where, const std::string& what, const std::string& cure = form_cure) const {
@@ -198,10 +198,13 @@ struct PatternReader {
   Pattern read(const Json& json) {
     const Json& body = member(json, "pattern", "the file");
     if (const auto properties = json.find("properties"); properties != json.end() && properties->is_object()) {
-      if (const auto units = properties->find("units_in_meter"); units != properties->end())
+      if (const auto units = properties->find("units_in_meter"); units != properties->end() && !units->is_null())
         unit = 1 / number(*units, "properties", "`units_in_meter`");
       relative_curves = text(*properties, "curvature_coords", "properties") != "absolute";
     }
+    if (std::isnan(unit))
+      fail("properties", "has no `units_in_meter`, so that the unit of its lengths is not known",
+           "give it: 100 where they are in centimetres, 1 where they are in metres");
     if (!(unit > 0 && std::isfinite(unit))) fail("properties", "`units_in_meter` is not positive");
     Pattern pattern;
     const Json& panels = member(body, "panels", "pattern");

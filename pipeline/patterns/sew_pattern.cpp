@@ -19,7 +19,8 @@ constexpr double first_stiffness = 30, last_stiffness = 2e4;  // of a stitch, wh
 constexpr double sewn_stiffer = 30;  // in bending, while panels are sewn: it keeps them from folding
 constexpr double facing = 0.01;      // length of stitches at which edges find their places [m]
 constexpr int facing_frames = 8, shutting_frames = 10, most_shut_frames = 10, flattening_frames = 8;
-constexpr int least_draping = 15;  // frames: what begins to fall is slow and not at rest
+constexpr double round_body = 0.25;  // of the extent of a garment that is about to fall on the body: how near that is
+constexpr int least_draping = 15;    // frames: what begins to fall is slow and not at rest
 
 // Panels with some stitches joined: of each vertex its number, and how many there are.
 struct Joining {
@@ -99,9 +100,7 @@ struct Sewing {
       result.rejected = true;
       return {};
     }
-    const Eigen::VectorXd moved = (next.x - state.x).rowwise().norm();
-    const double share =
-        static_cast<double>((moved.array() > options.resting_motion).count()) / static_cast<double>(moved.size());
+    const double share = moving_share(next.x - state.x, 1 / options.fps);
     state = std::move(next);
     if (seen) {
       const Points x = spread(state.x, joining);
@@ -155,6 +154,7 @@ struct Sewing {
     const Joining joining = join(mesh, [](std::size_t) { return true; });
     for (std::size_t s = 0; s < mesh.sewn.size(); ++s) result.gaps.push_back(gap(closed, s));
     const Points joined = means(closed, joining);
+    result.watch.part = worn_part(joined, body, round_body);
     result.joined_by = (spread(joined, joining) - closed).rowwise().norm().maxCoeff();
     Scene flat = scene_of(mesh, joining, body_triangles, body.rows(), options, sewn_stiffer);
     State state = first_state(flat, joined, {body});
@@ -175,7 +175,9 @@ struct Sewing {
       if (!share) break;
       result.draping_frames = frame;
       result.moving_share = *share;
-      if (frame >= least_draping && state.clean && *share < options.resting_share) break;
+      result.watch.see(state.frame, state.x, body);
+      if (result.watch.left_in >= 0) break;
+      if (frame >= least_draping && state.clean && *share < resting_share) break;
     }
     result.x = state.x;
     result.triangles = scene.surface.triangles;

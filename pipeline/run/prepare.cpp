@@ -4,6 +4,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
+#include "pipeline/garments/garment_rest.hpp"
 #include "pipeline/run/simulate.hpp"
 
 namespace selvedge {
@@ -29,9 +30,14 @@ bool prepare(Setup& setup, const std::function<bool()>& stop, Progress* progress
     throw Error(fmt::format("cannot be draped: a step is rejected {} frames before time 0", -state.frame),
                 setup.file.string(), "let the body come more slowly (start.seconds), or start from: skinned");
   const Audit audit = last.audit.value_or(Audit{});
-  setup.prepared = fmt::format("draped in {} frames, {}; {} pairs, {} vertices inside, fastest vertex {:.2g} m/s",
+  const double moving = moving_share(state.v, 1);
+  setup.prepared = fmt::format("draped in {} frames, {}; {} pairs, {} vertices inside, fastest vertex {:.2g} m/s, {}",
                                frames, duration_text(seconds_since(started)), audit.intersecting_pairs(),
-                               audit.inside_vertices, state.v.rowwise().norm().maxCoeff());
+                               audit.inside_vertices, state.v.rowwise().norm().maxCoeff(),
+                               moving < resting_share ? std::string("at rest")
+                                                      : fmt::format("not at rest: {:.0f} % of the vertices are faster "
+                                                                    "than {:g} mm/s",
+                                                                    100 * moving, 1000 * resting_speed));
   state.time = 0;
   state.v = setup.velocity;
   state.memory.clear();

@@ -57,12 +57,18 @@ struct Recorder {
   RunSummary& summary;
   TrajectoryWriter writer;
   EnergyTerms terms;
+  std::vector<WornCloth> worn = setup.worn;
   std::string under = resumed_under(setup);
   int next = 0;
   Clock::time_point last_checkpoint = Clock::now();
 
   void add(const Frame& frame) {
     writer.append(frame);
+    for (WornCloth& one : worn) {
+      const Cloth& cloth = setup.scene.cloths[static_cast<std::size_t>(one.cloth)];
+      one.watch.see(next, frame.x.middleRows(cloth.first_vertex, cloth.vertex_count).cast<double>(),
+                    frame.obstacles[static_cast<std::size_t>(one.obstacle)].cast<double>());
+    }
     add_frame(summary, next++, frame);
   }
 
@@ -148,6 +154,8 @@ RunSummary run_scene(const Setup& setup, Stepper& stepper, const RunRequest& req
   if (request.progress) request.progress->end();
 
   recorder.writer.close();
+  for (WornCloth& one : recorder.worn)
+    if (one.watch.left_in >= 0) summary.slid_off.push_back(std::move(one.watch));
   finish(summary, last, state.frame);
   if (summary.end == RunEnd::finished) std::filesystem::remove(saved);
   write_xdmf(file);

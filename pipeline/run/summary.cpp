@@ -126,7 +126,7 @@ double worst_milliseconds(const RunSummary& summary) {
 
 bool is_clean(const RunSummary& summary) {
   return summary.end == RunEnd::finished && summary.pairs == 0 && summary.worst_inside == 0 && summary.nonfinite == 0 &&
-         summary.passed_through == 0 && summary.jumped == 0 && summary.cut_out_at_end == 0;
+         summary.passed_through == 0 && summary.jumped == 0 && summary.cut_out_at_end == 0 && summary.slid_off.empty();
 }
 
 std::string summary_json(const RunSummary& s) {
@@ -135,6 +135,9 @@ std::string summary_json(const RunSummary& s) {
   for (const auto& [name, milliseconds] : phases_in_milliseconds(s)) phases[name] = milliseconds;
   for (const auto& [name, frames] : verdict_counts(s)) verdicts[name] = frames;
   for (const PlanLine& line : s.left_out) left_out.push_back({{"feature", line.feature}, {"why", line.why}});
+  nlohmann::ordered_json slid_off = nlohmann::ordered_json::array();
+  for (const WornWatch& one : s.slid_off)
+    slid_off.push_back({{"garment", one.garment}, {"body", one.body}, {"frame", one.left_in}});
   const nlohmann::ordered_json json = {
       {"program_version", s.program_version},
       {"scene", s.scene},
@@ -169,6 +172,7 @@ std::string summary_json(const RunSummary& s) {
       {"vertex_sharing_pairs_all_frames", s.vertex_pairs},
       {"inside_vertices", s.worst_inside},
       {"nonfinite", s.nonfinite},
+      {"slid_off", slid_off},
       {"cut_out_triangles", s.cut_out_at_start},
       {"cut_out_triangles_at_end", s.cut_out_at_end},
       {"cut_out_last_frame", s.last_cut_frame},
@@ -224,6 +228,7 @@ std::string summary_text(const RunSummary& s) {
   if (!s.self_audited) add("self", "not audited");
   if (s.vertex_pairs > 0) add("cross at a vertex", fmt::format("{} pairs over all frames", s.vertex_pairs));
   if (s.worst_inside > 0) add("inside obstacles", fmt::format("{} vertices in the worst frame", s.worst_inside));
+  for (const WornWatch& one : s.slid_off) add("slid off", slid_off_text(one));
   if (s.nonfinite > 0) add("not finite", fmt::format("{} vertices over all frames", s.nonfinite));
   if (s.max_contacts > 0 || s.impulses > 0 || s.zones > 0)  // a network looks for none
     add("contacts", fmt::format("{} at most; {} impulses, {} zones", s.max_contacts, s.impulses, s.zones));

@@ -7,6 +7,7 @@
 
 #include "physics/scene/features.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/garments/worn_part.hpp"
 
 namespace selvedge {
 
@@ -32,6 +33,7 @@ struct RunSummary {
   long pairs = 0, vertex_pairs = 0;  // over all frames
   int worst_pairs = 0, worst_frame = 0, worst_inside = 0;
   int cut_out_at_start = 0, cut_out_at_end = 0, last_cut_frame = -1;  // triangles; -1: none is ever
+  std::vector<WornWatch> slid_off;                                    // garments that have left their bodies by the end
   long nonfinite = 0;
   int max_contacts = 0;
   long impulses = 0, zones = 0, halved_substeps = 0, shortened = 0, held_vertices = 0, passed_through = 0;
@@ -55,7 +57,8 @@ double median_milliseconds(const RunSummary&);
 double worst_milliseconds(const RunSummary&);
 
 // Ran to its end, and every frame finite, without intersecting pairs, without vertices inside obstacles, reached by a
-// motion in which nothing passed through and no obstacle jumped, with nothing left that is cut out.
+// motion in which nothing passed through and no obstacle jumped, with nothing left that is cut out, and no garment that
+// has left its body.
 bool is_clean(const RunSummary&);
 
 std::string summary_json(const RunSummary&);

@@ -276,6 +276,28 @@ JoinedScene join_scene(const Config& config, const SceneParts& parts, double beg
   return joined;
 }
 
+// The garments on their bodies when the scene's time begins. One that is not on its body is warned of, and not watched.
+std::vector<WornCloth> worn_cloths(const SceneParts& parts, const JoinedScene& joined, double begin_time,
+                                   std::vector<std::string>& warnings) {
+  std::vector<WornCloth> all;
+  for (std::size_t c = 0; c < parts.cloths.size(); ++c) {
+    const auto& worn = parts.cloths[c].worn;
+    if (!worn || worn->garment.skin.rest.rows() == 0) continue;
+    const auto o = static_cast<std::size_t>(
+        std::ranges::find_if(parts.bodies, [&](const auto& who) { return who == worn->by; }) - parts.bodies.begin());
+    WornWatch watch{parts.cloths[c].name, parts.obstacles[o].obstacle.name, {}};
+    watch.part = worn_part(worn_at(*worn, begin_time), joined.start.obstacles[o]);
+    if (watch.part.places.empty())
+      warnings.push_back(
+          fmt::format("garment `{}` is not worn: hardly a vertex lies on its body `{}`, so that it is "
+                      "not known whether it leaves it",
+                      watch.garment, watch.body));
+    else
+      all.push_back({static_cast<int>(c), static_cast<int>(o), std::move(watch)});
+  }
+  return all;
+}
+
 // The state when the scene's time begins, with the velocity of time 0.
 State begin_state(const SceneParts& parts, const JoinedScene& joined, double begin_time) {
   State state = first_state(joined.scene, joined.x, joined.start.obstacles);
@@ -308,12 +330,17 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
   const double begin_time = parts.begin_frame / setup.run.fps;
   JoinedScene joined = join_scene(config, parts, begin_time);
   setup.initial = begin_state(parts, joined, begin_time);
+  setup.worn = worn_cloths(parts, joined, begin_time, joined.warnings);
   setup.velocity = setup.initial.v;
   if (parts.begin_frame < 0) setup.initial.v.setZero();
   setup.scene = std::move(joined.scene);
   setup.drive_at = std::move(joined.drive_at);
   setup.followers = std::move(joined.followers);
   setup.warnings = std::move(joined.warnings);
+  for (const ObstaclePart& part : parts.obstacles)
+    if (part.ends)
+      warn_of_end("the motion of obstacle `" + part.obstacle.name + "`", *part.ends, setup.run.fps, setup.run.frames,
+                  setup.warnings);
   if (std::ranges::any_of(parts.cloths, &ClothPart::cut))
     setup.prepared =
         fmt::format("cut: {} of {} triangles out", setup.initial.cut_out.size(), setup.scene.surface.triangles.rows());
@@ -325,7 +352,3 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
 }
 
 }  // namespace selvedge
-  for (const ObstaclePart& part : parts.obstacles)
-    if (part.ends)
-      warn_of_end("the motion of obstacle `" + part.obstacle.name + "`", *part.ends, setup.run.fps, setup.run.frames,
-                  setup.warnings);

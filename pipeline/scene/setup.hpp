@@ -10,6 +10,7 @@
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
 #include "physics/steppers/following_stepper.hpp"
+#include "pipeline/garments/worn_part.hpp"
 #include "pipeline/scene/kinds.hpp"
 #include "pipeline/scene/outcome.hpp"
 #include "pipeline/scene/run_options.hpp"
@@ -18,6 +19,12 @@ namespace selvedge {
 
 struct PosedBodies;
 struct SceneTable;
+
+// A garment of a scene: where it is on its body, and whether it still is.
+struct WornCloth {
+  int cloth = 0, obstacle = 0;
+  WornWatch watch;
+};
 
 // A scene file, read: everything a run needs.
 struct Setup {
@@ -33,6 +40,7 @@ struct Setup {
   std::vector<std::shared_ptr<PosedBodies>> bodies;  // of each obstacle, null for what is no body: what drive_at knows
   std::vector<Follower> followers;                   // vertices without mass that go with others, all of them pins
   std::vector<Outcome> outcomes;                     // what must come true
+  std::vector<WornCloth> worn;                       // garments on their bodies, by where skinning has them at first
   std::vector<std::string> short_form;               // overrides that make a shorter run of the scene
   StepperKind kind;                                  // of the stepper; without a maker: the known one of run.stepper
   Config kind_options;                               // what the file gives for it

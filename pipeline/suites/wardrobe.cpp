@@ -119,6 +119,7 @@ std::vector<std::string> failures_of(const WardrobeRow& row, const RunSummary& s
   fail_if(row.body_pairs > 0, fmt::format("{} pairs of cloth with the body", row.body_pairs));
   fail_if(row.lag > least_body_lag, fmt::format("the body lags by {:.2g} m", row.lag));
   fail_if(row.depth > most_depth, fmt::format("a vertex is {:.2g} m deep in the body", row.depth));
+  for (const WornWatch& one : summary.slid_off) all.push_back(slid_off_text(one));
   return all;
 }
 

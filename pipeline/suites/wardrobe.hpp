@@ -40,7 +40,8 @@ struct WardrobeRow {
 };
 
 // Dresses the mannequin in each garment and small outfit by code and takes it through each procedural clip, from its
-// zero pose on. Passes: to the end without a rejected step; no intersecting pair of cloth in any frame; and, in frames
+// zero pose on. Passes: to the end without a rejected step, every garment still on the body (worn_part.hpp); no
+// intersecting pair of cloth in any frame; and, in frames
 // that are not excused, none with the body, no obstacle lag, and no vertex deeper than 1 mm. A row that finished is not
 // run again by the same program and settings. Leaves in `out` wardrobe.json, .csv and .txt, and the trajectory and page
 // of each row that failed and of each garment's first clip.

@@ -12,6 +12,7 @@
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/garments/garment_places.hpp"
+#include "pipeline/garments/worn_part.hpp"
 #include "pipeline/meshes/setup_body.hpp"
 #include "pipeline/scene/config_scene.hpp"
 
@@ -123,7 +124,10 @@ void look_at(const Points& x, const Points& body, const BodyModel& model, DressR
   report.body_pairs = static_cast<int>(found.obstacle_pairs.size());
   if (cloth.nonmanifold_edges > 0)
     report.warnings.push_back(fmt::format("{} edges of more than two triangles", cloth.nonmanifold_edges));
-  if (report.mean_distance > far_away)
+  report.on_body = !worn_part(x, body).places.empty();
+  if (!report.on_body)
+    report.warnings.emplace_back("is not worn: hardly a vertex lies on the body; are unit, pose and body right?");
+  else if (report.mean_distance > far_away)
     report.warnings.push_back(
         fmt::format("lies {:.2g} m from the body on average: are unit, pose and body right?", report.mean_distance));
 }
@@ -137,14 +141,14 @@ DressReport dress(const DressRequest& request) {
   const Performance who = read_wearer(request);
   DressReport report;
   report.warnings = mesh.warnings;
-  Garment& garment = report.garment;
-  garment.name = request.mesh.stem().string();
-  garment.made_for = who.body.name;
-  garment.made_in = read_pose(request, who);
   report.warnings.insert(report.warnings.end(), who.warnings.begin(), who.warnings.end());
   if (request.pose && !who.clip.poses.empty() && request.time > end_of(who.clip))
     report.warnings.push_back(fmt::format("{} ends at {:.4g} s, before {:.4g} s: its last pose is taken", *request.pose,
                                           end_of(who.clip), request.time));
+  Garment& garment = report.garment;
+  garment.name = request.mesh.stem().string();
+  garment.made_for = who.body.name;
+  garment.made_in = read_pose(request, who);
   garment.skin = attached_in(garment.made_in, x, mesh.triangles, who, request.fit == "tight" ? Fit::tight : Fit::loose);
   add_groups(request, who.body, mesh, report);
   report.reposed = (rest_shape(garment, who.body, who.shape) - x).rowwise().norm().maxCoeff();
@@ -153,6 +157,8 @@ DressReport dress(const DressRequest& request) {
   return report;
 }
 
-bool is_clean(const DressReport& report) { return report.self_pairs + report.body_pairs + report.inside_vertices == 0; }
+bool is_clean(const DressReport& report) {
+  return report.on_body && report.self_pairs + report.body_pairs + report.inside_vertices == 0;
+}
 
 }  // namespace selvedge

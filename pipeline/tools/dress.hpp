@@ -28,6 +28,7 @@ struct DressReport {
   std::vector<std::string> pinned;  // groups
   double reposed = 0;               // largest distance of the garment, put into the pose again, from the mesh [m]
   double least_distance = 0, mean_distance = 0;  // from vertices to the body's surface [m]
+  bool on_body = true;                           // as worn_part.hpp has it
   int inside_vertices = 0;                       // in a closed body
   int self_pairs = 0, body_pairs = 0;            // intersecting triangles, with itself and with the body
   std::vector<std::string> warnings;
@@ -37,7 +38,7 @@ struct DressReport {
 // groups of the mesh and of its boundaries, pins; and writes it. Throws Error for what cannot be read or written.
 DressReport dress(const DressRequest&);
 
-// No pairs, and nothing inside the body.
+// On the body, without pairs, and nothing inside the body.
 bool is_clean(const DressReport&);
 
 std::string dress_json(const DressReport&);

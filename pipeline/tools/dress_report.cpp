@@ -22,6 +22,7 @@ std::string dress_json(const DressReport& report) {
                                        {"pins", garment.pins.size()},
                                        {"least_distance", report.least_distance},
                                        {"mean_distance", report.mean_distance},
+                                       {"on_body", report.on_body},
                                        {"inside_vertices", report.inside_vertices},
                                        {"self_pairs", report.self_pairs},
                                        {"body_pairs", report.body_pairs},

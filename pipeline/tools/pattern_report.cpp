@@ -35,6 +35,10 @@ std::string pattern_json(const PatternReport& report) {
                  {"largest_gap", report.largest_gap},
                  {"joined_by", sewn.joined_by},
                  {"moving_share", sewn.moving_share},
+                 {"at_rest", sewn.moving_share < resting_share},
+                 {"slid_off_in", sewn.watch.left_in},
+                 {"body_raised", report.raised},
+                 {"faults", faults_of(report)},
                  {"body_moved", sewn.body_moved},
                  {"median_distance", report.median_distance},
                  {"strain_99", report.strain_99},
@@ -62,7 +66,8 @@ std::string pattern_text(const PatternReport& report) {
     add("group " + name, fmt::format("{} vertices", vertices.size()));
   add("gaps before joining", fmt::format("{:.3g} mm at most; joining moved vertices by {:.3g} mm",
                                          1e3 * report.largest_gap, 1e3 * sewn.joined_by));
-  add("at rest", fmt::format("{:.3g} % of vertices move in the last frame", 100 * sewn.moving_share));
+  add(sewn.moving_share < resting_share ? "at rest" : "not at rest",
+      fmt::format("{:.3g} % of vertices move in the last frame", 100 * sewn.moving_share));
   add("intersecting pairs", fmt::format("{} with itself, {} with the body", report.self_pairs, report.body_pairs));
   add("inside the body", fmt::format("{} vertices", report.inside_vertices));
   add("body parted from itself", fmt::format("by {:.3g} mm at most", 1e3 * sewn.body_moved));
@@ -70,7 +75,8 @@ std::string pattern_text(const PatternReport& report) {
   add("strain", fmt::format("{:.3g} % in the 99th percentile", 100 * report.strain_99));
   add("frames",
       fmt::format("{} of sewing, {} of draping, {:.3g} s", sewn.closing_frames, sewn.draping_frames, sewn.seconds));
-  if (sewn.rejected) add("rejected", "a step found no finite end");
+  if (report.raised > 0) add("floor", fmt::format("the soles of the body, {:.3g} m below its origin", report.raised));
+  for (const std::string& fault : faults_of(report)) add("not good", fault);
   return text;
 }
 

@@ -16,6 +16,7 @@
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/garments/garment_places.hpp"
 #include "pipeline/meshes/setup_body.hpp"
+#include "pipeline/patterns/stand_round.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/materials.hpp"
 
@@ -125,7 +126,7 @@ void measure(const BodyModel& body, PatternReport& report) {
 PatternReport sew_garment(const PatternRequest& request) {
   if (!is_mesh(request.out)) h5::check_out_name(request.out, "garments");
   const Pattern pattern = read_pattern(request.file);
-  const PatternMesh mesh = pattern_mesh(pattern, request.edge);
+  PatternMesh mesh = pattern_mesh(pattern, request.edge);
   PatternReport report;
   report.panels = static_cast<int>(pattern.panels.size());
   report.seams = static_cast<int>(pattern.seams.size());
@@ -137,6 +138,9 @@ PatternReport sew_garment(const PatternRequest& request) {
     return report;
   }
   const BodyModel body = body_to_sew_on(request);
+  report.raised = below_floor(body.skin.rest);
+  mesh.placed.col(1).array() -= report.raised;
+  check_stands_round(mesh, body.skin.rest, request.file.string());
   SewingOptions options;
   Config material =
       read_values(table::material_section(), {{"name", "--material " + request.material, {request.material}}});
@@ -148,6 +152,8 @@ PatternReport sew_garment(const PatternRequest& request) {
     if (recorder) recorder->add(frame);
     if (request.progress) request.progress(frame);
   });
+  report.sewn.watch.garment = pattern.name;
+  report.sewn.watch.body = body.name;
   if (recorder) recorder->close();
   measure(body, report);
   report.garment = garment_of(request, pattern, report.sewn, body);
@@ -158,8 +164,23 @@ PatternReport sew_garment(const PatternRequest& request) {
   return report;
 }
 
+std::vector<std::string> faults_of(const PatternReport& report) {
+  const SewnPattern& sewn = report.sewn;
+  std::vector<std::string> all;
+  if (sewn.rejected) all.emplace_back("a step found no finite end");
+  if (sewn.watch.part.places.empty())
+    all.emplace_back("the garment is not on the body where its stitches have closed: it is sewn round nothing");
+  else if (sewn.watch.left_in >= 0)
+    all.push_back(slid_off_text(sewn.watch) +
+                  ": nothing holds it there; is it too wide, or has the body another shape?");
+  else if (!sewn.rejected && sewn.moving_share >= resting_share)
+    all.push_back(fmt::format("the garment never came to rest: {:.3g} % of its vertices move in the last frame",
+                              100 * sewn.moving_share));
+  return all;
+}
+
 bool is_clean(const PatternReport& report) {
-  return report.self_pairs + report.body_pairs + report.inside_vertices == 0 && !report.sewn.rejected;
+  return report.self_pairs + report.body_pairs + report.inside_vertices == 0 && faults_of(report).empty();
 }
 
 }  // namespace selvedge

@@ -27,6 +27,7 @@ struct PatternReport {
   int panels = 0, seams = 0, stitches = 0;
   double least_angle = 0;              // of a triangle, as cut [rad]
   double area = 0;                     // of the cloth [m2]
+  double raised = 0;                   // by which the body stands higher than given, on the pattern's floor [m]
   SewnPattern sewn;                    // not with `flat`
   double largest_gap = 0;              // of a stitch before it was joined [m]
   double median_distance = 0;          // from vertices to the body's surface [m]
@@ -37,10 +38,16 @@ struct PatternReport {
 };
 
 // Cuts a pattern, sews it on a body that stands in its zero pose and mean shape, and writes the garment. A body that is
-// a mesh has one joint, named `root`. Throws Error for what cannot be read or written.
+// a mesh has one joint, named `root`. A body that reaches below the floor on which patterns have it stand is sewn on as
+// if it stood there; what is written is on the body as it is given. Throws Error for what cannot be read or written,
+// and for panels that do not stand round the body.
 PatternReport sew_garment(const PatternRequest&);
 
-// At rest, seams closed, without pairs, and nothing inside the body.
+// What is wrong with the garment, a sentence each: it was never on the body, it has slid off, it never came to rest, a
+// step was rejected.
+std::vector<std::string> faults_of(const PatternReport&);
+
+// Without faults, and without pairs, with nothing inside the body.
 bool is_clean(const PatternReport&);
 
 std::string pattern_json(const PatternReport&);
