@@ -36,27 +36,40 @@ std::vector<RestTriangle> flattened(const Points& rest, const Triangles& triangl
   return flat;
 }
 
+void add_cloths(Scene& scene, const std::vector<NewCloth>& added) {
+  std::vector<std::string> names;
+  for (const NewCloth& one : added) {
+    const std::string& name = names.emplace_back(named(one.name, "cloth", scene.cloths.size() + names.size()));
+    check_triangles(static_cast<int>(one.rest.rows()), one.triangles, name);
+    require(one.rest.allFinite(), "a rest position is not finite", name, "");
+    require(one.metric.empty() || std::ssize(one.metric) == one.triangles.rows(),
+            "there are not as many rest shapes as triangles", name, "give one a triangle, or none");
+  }
+  Eigen::Index vertices = scene.rest.rows(), triangles = scene.surface.triangles.rows();
+  Points rest = std::move(scene.rest);
+  Triangles joined = std::move(scene.surface.triangles);
+  for (const NewCloth& one : added) vertices += one.rest.rows(), triangles += one.triangles.rows();
+  Eigen::Index vertex = rest.rows(), triangle = joined.rows();
+  rest.conservativeResize(vertices, 3);
+  joined.conservativeResize(triangles, 3);
+  for (std::size_t k = 0; k < added.size(); ++k) {
+    const NewCloth& one = added[k];
+    scene.cloths.push_back({names[k], one.material, static_cast<int>(vertex), static_cast<int>(one.rest.rows()),
+                            static_cast<int>(triangle), static_cast<int>(one.triangles.rows())});
+    const std::vector<RestTriangle> own = one.metric.empty() ? flattened(one.rest, one.triangles) : one.metric;
+    scene.rest_triangle.insert(scene.rest_triangle.end(), own.begin(), own.end());
+    rest.middleRows(vertex, one.rest.rows()) = one.rest;
+    joined.middleRows(triangle, one.triangles.rows()) = (one.triangles.array() + static_cast<int>(vertex)).matrix();
+    vertex += one.rest.rows();
+    triangle += one.triangles.rows();
+  }
+  scene.rest = std::move(rest);
+  scene.surface = make_surface(static_cast<int>(vertices), joined);
+}
+
 int add_cloth(Scene& scene, const Points& rest, const Triangles& triangles, const Material& material,
               const std::string& name, const std::vector<RestTriangle>& metric) {
-  Cloth cloth{named(name, "cloth", scene.cloths.size()),
-              material,
-              scene.surface.vertex_count,
-              static_cast<int>(rest.rows()),
-              static_cast<int>(scene.surface.triangles.rows()),
-              static_cast<int>(triangles.rows())};
-  check_triangles(cloth.vertex_count, triangles, cloth.name);
-  require(rest.allFinite(), "a rest position is not finite", cloth.name, "");
-  require(metric.empty() || std::ssize(metric) == triangles.rows(), "there are not as many rest shapes as triangles",
-          cloth.name, "give one a triangle, or none");
-  const std::vector<RestTriangle> own = metric.empty() ? flattened(rest, triangles) : metric;
-  scene.rest_triangle.insert(scene.rest_triangle.end(), own.begin(), own.end());
-  Points all(scene.rest.rows() + rest.rows(), 3);
-  all << scene.rest, rest;
-  Triangles joined(cloth.first_triangle + cloth.triangle_count, 3);
-  joined << scene.surface.triangles, (triangles.array() + cloth.first_vertex).matrix();
-  scene.rest = all;
-  scene.surface = make_surface(static_cast<int>(all.rows()), joined);
-  scene.cloths.push_back(cloth);
+  add_cloths(scene, {{rest, triangles, material, name, metric}});
   return static_cast<int>(scene.cloths.size()) - 1;
 }
 

@@ -13,6 +13,18 @@ namespace selvedge {
 // Rest shapes of triangles in space, each flattened into its own plane.
 std::vector<RestTriangle> flattened(const Points& rest, const Triangles&);
 
+// A cloth that add_cloths appends; `metric` may be empty.
+struct NewCloth {
+  const Points& rest;
+  const Triangles& triangles;
+  const Material& material;
+  const std::string& name;
+  const std::vector<RestTriangle>& metric;
+};
+
+// Appends cloths, as add_cloth does one after the other.
+void add_cloths(Scene&, const std::vector<NewCloth>&);
+
 // Appends a cloth of n x 3 rest positions [m] and triangles of its own vertices; returns its number. `metric` are the
 // rest shapes of its triangles, in place of the flattened ones. Without a name it is called cloth0, cloth1, ... Curved
 // rest shapes bend back to themselves only where Scene::rest_is_flat is unset.

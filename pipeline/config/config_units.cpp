@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/host/bounds.hpp"
 
 namespace selvedge {
 namespace {
@@ -60,12 +61,12 @@ double largest_sensible(Unit unit) {
     case Unit::length:
     case Unit::speed:
     case Unit::acceleration:
-      return 1e6;
+      return largest_length;
     case Unit::angle:
       return 1e7;
     case Unit::time:
     case Unit::rate:
-      return 1e9;
+      return largest_time;
     case Unit::areal_density:
       return 1e9;
     case Unit::density:

@@ -5,29 +5,113 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
+#include "pipeline/host/bounds.hpp"
+#include "pipeline/host/read_file.hpp"
 
 namespace selvedge {
 namespace {
 
 using Numbers = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+// A hexadecimal digit's value; -1 for anything else.
+int hex_value(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+}
+
+// The path that a relative URI stands for.
+std::string percent_decoded(const std::string& uri) {
+  std::string path;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    const bool escape = uri[i] == '%' && i + 2 < uri.size() && hex_value(uri[i + 1]) >= 0 && hex_value(uri[i + 2]) >= 0;
+    path += escape ? static_cast<char>(16 * hex_value(uri[i + 1]) + hex_value(uri[i + 2])) : uri[i];
+    if (escape) i += 2;
+  }
+  return path;
+}
+
+// The JSON of a glTF file, which is the first chunk of a binary one.
+std::string_view json_of(std::string_view bytes) {
+  constexpr std::size_t header = 20;
+  if (!bytes.starts_with("glTF") || bytes.size() < header) return bytes;
+  std::uint32_t length = 0;
+  std::memcpy(&length, bytes.data() + 12, sizeof length);
+  return bytes.substr(header, length);
+}
+
+// The files that a glTF file may open: its buffers, below its own folder. By the names under which the package asks
+// for them; whatever else it asks for, an image, is not there.
+class BufferFiles {
+ public:
+  BufferFiles(const std::filesystem::path& file, std::string_view bytes) {
+    const auto json = nlohmann::json::parse(json_of(bytes), nullptr, false);
+    if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return;
+    for (std::size_t i = 0; i < json["buffers"].size(); ++i) {
+      const auto& buffer = json["buffers"][i];
+      if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
+      const std::string uri = buffer["uri"];
+      if (uri.starts_with("data:")) continue;
+      std::string asked = uri;
+      std::ranges::replace(asked, '+', ' ');  // as the package decodes it
+      files_[percent_decoded(asked)] =
+          path_below(file.parent_path(), percent_decoded(uri), file.string() + ": buffer " + std::to_string(i));
+    }
+  }
+
+  tinygltf::FsCallbacks callbacks() {
+    tinygltf::FsCallbacks calls{};
+    calls.FileExists = [](const std::string& name, void* self) { return of(self).contains(name); };
+    calls.ExpandFilePath = [](const std::string& name, void*) { return name; };
+    calls.ReadWholeFile = [](std::vector<unsigned char>* bytes, std::string*, const std::string& name, void* self) {
+      const std::string text = read_file(of(self).at(name), "buffer");
+      bytes->assign(text.begin(), text.end());
+      return true;
+    };
+    calls.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+      return false;
+    };
+    calls.user_data = this;
+    return calls;
+  }
+
+ private:
+  using Files = std::map<std::string, std::filesystem::path>;
+  static const Files& of(void* self) { return static_cast<BufferFiles*>(self)->files_; }
+  Files files_;
+};
+
 // The file as the package has parsed it. Nothing in it can be trusted: indices and sizes are checked where they are
 // used.
 class Document {
  public:
   explicit Document(const std::filesystem::path& file) : file_(file) {
+    const std::string bytes = read_file(file, "glTF");
+    refuse_too_many(static_cast<double>(bytes.size()), std::numeric_limits<int>::max(), "bytes", file.string(),
+                    "export less of it");
+    BufferFiles buffers(file, bytes);
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader([](auto...) { return true; }, nullptr);  // images are of no use here
+    loader.SetFsCallbacks(buffers.callbacks());
     std::string error, warning;
     bool good = false;
+    const auto size = static_cast<unsigned>(bytes.size());
     try {
-      good = file.extension() == ".glb" ? loader.LoadBinaryFromFile(&model, &error, &warning, file.string())
-                                        : loader.LoadASCIIFromFile(&model, &error, &warning, file.string());
+      good = file.extension() == ".glb"
+                 ? loader.LoadBinaryFromMemory(&model, &error, &warning,
+                                               reinterpret_cast<const unsigned char*>(bytes.data()), size)
+                 : loader.LoadASCIIFromString(&model, &error, &warning, bytes.data(), size, "");
+    } catch (const Error&) {
+      throw;
     } catch (const std::exception& problem) {
       error = problem.what();
     }

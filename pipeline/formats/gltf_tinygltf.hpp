@@ -49,7 +49,8 @@ struct GltfScene {
 };
 
 // Reads a rigged mesh, glTF 2.0 (.glb, or .gltf with what it names beside it). Vertices that differ only in texture or
-// normal are joined, so that what was closed is closed. Images are not read. Throws Error, naming the file and the part
+// normal are joined, so that what was closed is closed. Of other files only buffers are opened, and only below the
+// file's own folder; images never. Throws Error, naming the file and the part
 // of it: no skin or several that are used, no triangles, compressed or sparse data, numbers that lie outside of their
 // buffers or are not finite, weights that are all zero.
 GltfScene read_gltf(const std::filesystem::path&);

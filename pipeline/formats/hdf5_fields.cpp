@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "collision/geometry/error.hpp"
 
@@ -28,14 +27,10 @@ void Fields::fail(const std::string& field, const std::string& what) const {
   throw Error(what, file_.path().string() + ": " + field, "write it as " + form_.page + " says");
 }
 
-// The shape of a field with `rank` extents, small enough to be one of ours.
+// The shape of a field with `rank` extents.
 std::vector<Eigen::Index> Fields::shape_of(const std::string& field, std::size_t rank) const {
   if (!file_.has(field)) fail(field, "is missing");
   const std::vector<hsize_t> shape = file_.shape_of(field, rank);
-  hsize_t count = 1;
-  for (const hsize_t extent : shape)
-    if (__builtin_mul_overflow(count, extent, &count) || count > std::numeric_limits<std::int32_t>::max())
-      fail(field, "is larger than a " + form_.noun + " can be");
   return {shape.begin(), shape.end()};
 }
 

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/host/bounds.hpp"
 
 namespace selvedge::h5 {
 namespace {
@@ -160,11 +161,29 @@ Handle File::make_growing(const std::string& name, hid_t type, const std::vector
       H5Dclose};
 }
 
-Handle File::open_dataset(const std::string& name) const {
-  return {check(H5Dopen2(id(), name.c_str(), H5P_DEFAULT), "find " + name), H5Dclose};
+namespace {
+
+// A way to datasets and links that leads into no other file.
+Handle within_the_file(hid_t kind) {
+  Handle access(H5Pcreate(kind), H5Pclose);
+  H5Pset_elink_cb(
+      access.id(),
+      [](const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) -> herr_t { return -1; },
+      nullptr);
+  return access;
 }
 
-bool File::has(const std::string& name) const { return H5Lexists(id(), name.c_str(), H5P_DEFAULT) > 0; }
+}  // namespace
+
+Handle File::open_dataset(const std::string& name) const {
+  const Handle access = within_the_file(H5P_DATASET_ACCESS);
+  return {check(H5Dopen2(id(), name.c_str(), access.id()), "find " + name), H5Dclose};
+}
+
+bool File::has(const std::string& name) const {
+  const Handle access = within_the_file(H5P_LINK_ACCESS);
+  return H5Lexists(id(), name.c_str(), access.id()) > 0;
+}
 
 std::vector<hsize_t> File::shape(hid_t dataset) const {
   const Handle space(check(H5Dget_space(dataset), "read a shape"), H5Sclose);
@@ -200,7 +219,11 @@ std::vector<hsize_t> File::shape_of(const std::string& name, std::size_t rank, b
   const std::vector<hsize_t> found = shape(dataset.id());
   if (found.size() != rank)
     fail(name, "has " + std::to_string(found.size()) + " dimensions, not " + std::to_string(rank));
-  if (!growing) check_stored(dataset.id(), name);
+  if (growing) return found;
+  check_stored(dataset.id(), name);
+  double count = 1;
+  for (const hsize_t extent : found) count *= static_cast<double>(extent);
+  refuse_too_many(count, most_numbers, "values", path_.string() + ": " + name, "write less into it");
   return found;
 }
 

@@ -8,9 +8,6 @@
 
 namespace selvedge {
 
-// Coordinates beyond this, in whatever unit, are no mesh: products of five of them stay finite.
-inline constexpr double farthest_coordinate = 1e18;
-
 // A triangle mesh as a file has it.
 struct Mesh {
   Points x;

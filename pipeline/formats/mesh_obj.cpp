@@ -11,6 +11,7 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/config/config_units.hpp"
 #include "pipeline/formats/polygon.hpp"
+#include "pipeline/host/bounds.hpp"
 
 namespace selvedge {
 namespace {
@@ -64,7 +65,8 @@ void read_coordinates(Parser& p, const std::vector<std::string_view>& words, std
     if (!std::isfinite(*value))
       p.fail(fmt::format("has a coordinate that is not finite ({})", words[k]), "repair the file where it was made");
     if (std::abs(*value) > farthest_coordinate)
-      p.fail(fmt::format("has the absurd coordinate {}", words[k]), "repair the file where it was made");
+      p.fail(fmt::format("has the absurd coordinate {}; {:g} is the largest", words[k], farthest_coordinate),
+             "repair the file where it was made");
     into.push_back(*value);
   }
 }

@@ -11,6 +11,7 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/config/config_units.hpp"
 #include "pipeline/formats/polygon.hpp"
+#include "pipeline/host/bounds.hpp"
 
 namespace selvedge {
 namespace {
@@ -216,7 +217,8 @@ void read_vertices(Reader& r, const Element& element, Mesh& mesh) {
       r.fail(fmt::format("vertex {} is not finite", i), "repair the file where it was made");
     if (mesh.x.row(i).cwiseAbs().maxCoeff() > farthest_coordinate ||
         (mesh.uv.rows() > 0 && mesh.uv.row(i).cwiseAbs().maxCoeff() > farthest_coordinate))
-      r.fail(fmt::format("vertex {} has an absurd coordinate: {}", i, fmt::join(values, " ")),
+      r.fail(fmt::format("vertex {} has an absurd coordinate: {}; {:g} is the largest", i, fmt::join(values, " "),
+                         farthest_coordinate),
              "repair the file where it was made");
   }
 }

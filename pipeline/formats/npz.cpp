@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/host/bounds.hpp"
 
 namespace selvedge {
 namespace {
@@ -29,6 +30,7 @@ std::size_t plausible_size(const zip_stat_t& entry, std::uintmax_t file_size, co
   if (entry.comp_size > file_size || entry.size / most_by_byte > entry.comp_size)
     throw Error(fmt::format("claims {} bytes of {} compressed ones", entry.size, entry.comp_size), place.text(),
                 damaged_cure());
+  refuse_too_many(static_cast<double>(entry.size), most_numbers, "bytes", place.text(), "save less in one array");
   return entry.size;
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/host/bounds.hpp"
 #include "pipeline/host/read_file.hpp"
 
 namespace selvedge {
@@ -57,6 +58,7 @@ struct CacheBytes {
       fail(fmt::format("has {} bytes, {} points in {} frames take {:.0f}", bytes.size(), points, frames, whole),
            half ? "write it anew, as half floats: it is cut short, or has others"
                 : "write it anew, as 32-bit floats: it is cut short, or has others");
+    refuse_too_many(3.0 * points * frames, most_numbers, "coordinates", file, "write fewer points or frames");
   }
 
   std::vector<Points> read(std::int32_t points, std::int32_t frames) {

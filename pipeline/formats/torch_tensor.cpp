@@ -10,7 +10,7 @@ namespace selvedge {
 namespace {
 
 constexpr std::size_t most_dimensions = 8;
-constexpr std::int64_t most_numbers = (std::int64_t{1} << 31) - 1;  // of one storage
+constexpr std::int64_t largest_storage = (std::int64_t{1} << 31) - 1;  // of one storage
 
 template <class T>
 const T* item(const Pickle& pickle, const PickleTuple& tuple, std::size_t k) {
@@ -30,7 +30,7 @@ std::vector<std::int64_t> extents(const Pickle& pickle, const PickleTuple& tuple
   for (std::size_t k = 0; k < tuple.items.size(); ++k) {
     const auto* number = item<std::int64_t>(pickle, tuple, k);
     if (!number) refuse_pickle(fmt::format("has a tensor whose {} is no integer", noun), where);
-    if (*number < 0 || *number > most_numbers)
+    if (*number < 0 || *number > largest_storage)
       refuse_pickle(fmt::format("has a tensor with a {} of {}", noun, *number), where);
     numbers.push_back(*number);
   }
@@ -51,7 +51,7 @@ TorchStorage torch_storage(const Pickle& pickle, const PickleTuple& id, const st
   if (*type != PickleGlobal::float_storage && *type != PickleGlobal::long_storage)
     refuse_pickle("has a storage of a type that holds no numbers", where);
   if (!is_number_key(*key)) refuse_pickle("has a storage under the key " + shown(*key), where);
-  if (*count < 0 || *count > most_numbers) refuse_pickle(fmt::format("has a storage of {} numbers", *count), where);
+  if (*count < 0 || *count > largest_storage) refuse_pickle(fmt::format("has a storage of {} numbers", *count), where);
   return {*type == PickleGlobal::float_storage ? TorchNumber::float32 : TorchNumber::int64, *key, *count};
 }
 

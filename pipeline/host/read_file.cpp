@@ -1,10 +1,12 @@
 #include "pipeline/host/read_file.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 #include <string_view>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/host/bounds.hpp"
 
 namespace selvedge {
 
@@ -12,6 +14,8 @@ std::string read_file(const std::filesystem::path& path, const std::string& noun
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored))
     throw Error("is a folder", path.string(), "name the " + noun + " file in it");
+  const std::uintmax_t size = std::filesystem::file_size(path, ignored);
+  if (!ignored) refuse_too_many(static_cast<double>(size), most_file_bytes, "bytes", path.string(), "split the file");
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
   if (in) text << in.rdbuf();
@@ -27,6 +31,21 @@ std::string read_text_file(const std::filesystem::path& path, const std::string&
       throw Error("is written in UTF-16 or UTF-32", path.string(), "save the " + noun + " file as UTF-8");
   if (text.starts_with("\xEF\xBB\xBF"sv)) text.erase(0, 3);
   return text;
+}
+
+std::filesystem::path path_below(const std::filesystem::path& folder, const std::string& named,
+                                 const std::string& where) {
+  const std::filesystem::path given(named);
+  std::error_code ignored;
+  const std::filesystem::path home = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, ignored);
+  const std::filesystem::path real = std::filesystem::weakly_canonical(home / given, ignored);
+  const auto [end, unused] = std::mismatch(home.begin(), home.end(), real.begin(), real.end());
+  if (given.empty() || given.is_absolute() || end != home.end() || real == home)
+    throw Error("names the file `" + named + "`, which is not below the folder of the file that names it", where,
+                "put it there, and name it by that path");
+  if (std::filesystem::exists(real) && !std::filesystem::is_regular_file(real, ignored))
+    throw Error("names `" + named + "`, which is no regular file", where, "name a file");
+  return real;
 }
 
 }  // namespace selvedge

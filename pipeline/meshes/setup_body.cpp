@@ -11,6 +11,7 @@
 #include "pipeline/bodies/body_smpl.hpp"
 #include "pipeline/bodies/mannequin.hpp"
 #include "pipeline/bodies/smpl_joints.hpp"
+#include "pipeline/host/bounds.hpp"
 #include "pipeline/meshes/setup_mesh.hpp"
 #include "pipeline/meshes/setup_motion.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
@@ -175,9 +176,9 @@ Performance read_performance(const Config& section, const std::filesystem::path&
   who.clip = performed(section, who, folder, who.warnings);
   for (std::size_t f = 0; f < who.clip.poses.size(); ++f)
     if (const BodyPose& pose = who.clip.poses[f];
-        !pose.rotations.allFinite() || !(pose.translation.cwiseAbs().maxCoeff() <= farthest))
+        !pose.rotations.allFinite() || !(pose.translation.cwiseAbs().maxCoeff() <= largest_length))
       clip.fail(fmt::format("moves the body absurdly far in frame {}", f),
-                fmt::format("repair it where it was made; up to {:g} m are allowed", farthest));
+                fmt::format("repair it where it was made; up to {:g} m are allowed", largest_length));
   who.fits_room = section["room"].numbers.empty();
   leave_room(who.fits_room ? GiveWayOptions{}.room : section["room"].number(), who);
   return who;

@@ -4,6 +4,7 @@
 
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
+#include "pipeline/host/bounds.hpp"
 #include "pipeline/meshes/setup_motion.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
 
@@ -25,10 +26,10 @@ Mesh read_mesh_section(const Config& section, const std::filesystem::path& folde
 
 void refuse_far(const Config& at, const std::string& noun, const Points& x) {
   for (Eigen::Index v = 0; v < x.rows(); ++v)
-    if (!(x.row(v).cwiseAbs().maxCoeff() <= farthest))
+    if (!(x.row(v).cwiseAbs().maxCoeff() <= largest_length))
       at.fail(fmt::format("puts vertex {} of {} at [{:.4g}, {:.4g}, {:.4g}] m", v, noun, x(v, 0), x(v, 1), x(v, 2)),
               fmt::format("repair it where it was made, or give its unit; up to {:g} m from the origin is allowed",
-                          farthest));
+                          largest_length));
 }
 
 void warn_of_extent(const Config& at, const std::string& noun, double largest, const Points& x,

@@ -10,9 +10,8 @@ namespace selvedge {
 // The mesh that a `mesh` section names, in metres, welded where it says so. `folder` is the scene file's.
 Mesh read_mesh_section(const Config& section, const std::filesystem::path& folder);
 
-// Throws Error, naming the vertex and where it is, for a position that is not finite or farther than `farthest` from
-// the origin. `at` is what the positions were read by, `noun` what they are of.
-inline constexpr double farthest = 1e6;  // [m]
+// Throws Error, naming the vertex and where it is, for a position that is not finite or farther from the origin than
+// bounds.hpp allows. `at` is what the positions were read by, `noun` what they are of.
 void refuse_far(const Config& at, const std::string& noun, const Points& x);
 
 // A warning where something read from a file, as placed, is larger than `largest` or smaller than a centimetre: files

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/host/bounds.hpp"
 #include "pipeline/meshes/setup_mesh.hpp"
 #include "pipeline/meshes/setup_motion.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
@@ -13,12 +14,11 @@
 namespace selvedge {
 namespace {
 
-constexpr double most_vertices = 2e7;
-
 double checked_edge(const Config& shape, double area) {
   const double edge = shape["edge"].number();
-  if (vertices_for(area, edge) > most_vertices)
-    shape["edge"].fail(fmt::format("asks for about {:.3g} vertices", vertices_for(area, edge)), "choose a longer edge");
+  if (const double count = vertices_for(area, edge); !(count <= most_vertices))
+    shape["edge"].fail(fmt::format("asks for about {:.3g} vertices; {} are the most", count, most_vertices),
+                       "choose a longer edge");
   return edge;
 }
 

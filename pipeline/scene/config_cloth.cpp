@@ -1,5 +1,7 @@
 #include "pipeline/scene/config_scene.hpp"
 
+#include "pipeline/host/bounds.hpp"
+
 namespace selvedge {
 
 using namespace table;
@@ -114,7 +116,7 @@ const Section& copies_section() {
       "bounding box and then moved.",
       "count",
       {},
-      {needed(integer("count", at_least_one, "", "Number of cloths in total.")),
+      {needed(integer("count", {.low = 1, .high = most_parts}, "", "Number of cloths in total.")),
        vector("translate", Unit::length, "[0, 0, 0]", "Displacement from one copy to the next."),
        vector("rotate", Unit::angle, "[0, 0, 0]",
               "Rotation from one copy to the next: the direction is the axis, the length is the angle.")}};

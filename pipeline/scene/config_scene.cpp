@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "pipeline/host/bounds.hpp"
+
 // Rows that are bound to a member have its default; a default that is written here has its only place here.
 namespace selvedge {
 namespace {
@@ -45,7 +47,7 @@ const Options<ContactSettings>& contact_options() {
   using O = ContactSettings;
   static const Options<O> table(
       "contact", "Contact of cloth with itself, with other cloths and with obstacles.",
-      {number("thickness", &O::thickness, Unit::length, positive,
+      {number("thickness", &O::thickness, Unit::length, {.low = 0, .high = largest_thickness, .low_in = false},
               "Distance that resting layers keep from each other and from obstacles."),
        number("friction", &O::friction, Unit::none, not_negative, "Friction coefficient of cloth on obstacles."),
        number("self_friction", &O::self_friction, Unit::none, not_negative, "Friction coefficient of cloth on cloth."),

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "physics/scene/make_scene.hpp"
+#include "pipeline/host/bounds.hpp"
 #include "pipeline/meshes/setup_mesh.hpp"
 #include "pipeline/meshes/setup_motion.hpp"
 #include "pipeline/meshes/setup_obstacle.hpp"
@@ -73,10 +74,11 @@ Points stacked(const std::vector<ClothPart>& parts, Points ClothPart::*rows) {
 }
 
 void add_cloths(const std::vector<ClothPart>& parts, Scene& scene) {
-  for (const ClothPart& part : parts) {
-    add_cloth(scene, part.rest, part.mesh.triangles, part.material, part.name, part.rest_triangle);
-    scene.rest_is_flat = part.rest_is_flat;
-  }
+  std::vector<NewCloth> cloths;
+  for (const ClothPart& part : parts)
+    cloths.push_back({part.rest, part.mesh.triangles, part.material, part.name, part.rest_triangle});
+  add_cloths(scene, cloths);
+  scene.rest_is_flat = parts.back().rest_is_flat;
 }
 
 // Vertices without mass cannot move freely: they stay where they are, unless they follow others.
@@ -167,11 +169,17 @@ std::vector<ClothPart> read_all_cloths(Config& list, const std::filesystem::path
   if (list.items.empty()) list.fail("is empty", "give at least one cloth");
   std::vector<ClothPart> parts;
   std::vector<std::string> names;
+  Eigen::Index vertices = 0;
   for (std::size_t c = 0; c < list.items.size(); ++c) {
     for (ClothPart& part : read_cloths(list.items[c], fmt::format("cloth{}", c), folder, bodies, warnings)) {
       take_name(list.items[c], part.name, names);
+      vertices += part.mesh.x.rows();
       parts.push_back(std::move(part));
     }
+    if (vertices > most_vertices || std::ssize(parts) > most_parts)
+      list.items[c].fail(fmt::format("brings the scene to {} cloths of {} vertices; {} of {} are the most",
+                                     parts.size(), vertices, most_parts, most_vertices),
+                         "give fewer cloths, or coarser ones");
     const auto garment = std::ranges::find_if(parts, [](const ClothPart& part) { return part.worn != nullptr; });
     if (parts.back().worn && (parts.back().draping != garment->draping || parts.back().cut != garment->cut))
       list.items[c].fail("starts otherwise than the first garment", "give all garments of a scene the same `start`");

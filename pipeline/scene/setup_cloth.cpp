@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/formats/mesh_weld.hpp"
+#include "pipeline/host/bounds.hpp"
 #include "pipeline/meshes/setup_mesh.hpp"
 #include "pipeline/meshes/setup_motion.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
@@ -132,7 +133,11 @@ std::vector<ClothPart> read_copies(const Config& section, const std::filesystem:
   read_shape(section, folder, warnings, part);
   const Config& copies = section["copies"];
   if (!copies.given) return {part};
-  std::vector<ClothPart> parts(static_cast<std::size_t>(copies["count"].integer()), part);
+  const int count = copies["count"].integer();
+  if (const auto vertices = static_cast<std::int64_t>(count) * part.mesh.x.rows(); vertices > most_vertices)
+    copies["count"].fail(fmt::format("asks for {} vertices; {} are the most", vertices, most_vertices),
+                         "make fewer copies, or coarser ones");
+  std::vector<ClothPart> parts(static_cast<std::size_t>(count), part);
   for (std::size_t k = 0; k < parts.size(); ++k) {
     parts[k].name = fmt::format("{}_{}", part.name, k);
     parts[k].mesh.x = copied(copies, part.mesh.x, static_cast<int>(k));

@@ -5,14 +5,13 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/host/bounds.hpp"
 #include "pipeline/meshes/setup_mesh.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/shapes/generate.hpp"
 
 namespace selvedge {
 namespace {
-
-constexpr double most_sheet_vertices = 2e7;
 
 SheetOptions options_of(const Config& shape) {
   SheetOptions options;
@@ -21,8 +20,9 @@ SheetOptions options_of(const Config& shape) {
 }
 
 void check_count(const Config& shape, double vertices) {
-  if (vertices > most_sheet_vertices)
-    shape.fail(fmt::format("would have {:.3g} vertices", vertices), "choose a lower resolution or a longer edge");
+  if (!(vertices <= most_vertices))
+    shape.fail(fmt::format("asks for {:.3g} vertices; {} are the most", vertices, most_vertices),
+               "choose a lower resolution or a longer edge");
 }
 
 // Vertices along both sides, from `resolution` or the edge length.

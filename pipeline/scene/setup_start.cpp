@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "physics/recovery/cut_out.hpp"
+#include "pipeline/host/bounds.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/shapes/random_shifts.hpp"
 
@@ -86,13 +87,19 @@ void apply_start(const Config& section, ClothPart& part, std::vector<std::string
   if (x.rows() == 0) return;
   const auto seed = static_cast<std::uint64_t>(section["seed"].number());
   const Vec3 stretch = section["stretch"].vector();
+  const auto extent_of = [&] { return (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm(); };
+  const double before = extent_of();
   const double crumple = section["crumple"].number(), edge = mean_edge_length(part.rest_triangle);
   if (stretch != Vec3::Ones()) {
     const Eigen::RowVector3d middle = 0.5 * (x.colwise().minCoeff() + x.colwise().maxCoeff());
     x = ((x.rowwise() - middle) * stretch.asDiagonal()).rowwise() + middle;
   }
   if (crumple > 0) x += crumple * random_shifts(x.rows(), seed);
-  const double extent = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
+  const double extent = extent_of();
+  if (!(extent <= most_start_stretch * std::max(before, edge)))
+    section.fail(fmt::format("draws the cloth `{}` out from {:.3g} to {:.3g} m, and {:g} times is the most", part.name,
+                             before, extent, most_start_stretch),
+                 "give a smaller `stretch` or `crumple`");
   if (x.rows() < 2 || extent > one_point * edge) return;
   x += opening * edge * random_shifts(x.rows(), seed);
   warnings.push_back(

@@ -216,6 +216,7 @@ TEST_CASE("Bad PLY files are refused with file and place", "[mesh_io]") {
       {replaced("\r\n1 0 0 1 0", "\r\n1 nan 0 1 0"), {"a.ply:13", "not finite"}},
       {replaced("\r\n1 0 0 1 0", "\r\n1 q 0 1 0"), {"a.ply:13", "`q`"}},
       {replaced("\r\n1 0 0 1 0", "\r\n1 1e300 0 1 0"), {"a.ply:13", "absurd", "1e+300"}},
+      {replaced("\r\n1 0 0 1 0", "\r\n1 1e18 0 1 0"), {"a.ply:13", "absurd", "1e+18", "1e+09 is the largest"}},
       {replaced("4 0 1 2 3", "4 0 1 2 7"), {"face 0", "vertex 7"}},
       {replaced("4 0 1 2 3", "4 0 1 2 -1"), {"-1"}},
       {replaced("4 0 1 2 3", "2 0 1"), {"2 corners"}},

@@ -199,6 +199,24 @@ TEST_CASE("an archive that is damaged is refused") {
   }
 }
 
+TEST_CASE("an array that claims more than is read is refused before memory is taken") {
+  const fake::Folder folder("npz_large");
+  // Incompressible enough for the size that is put in place of the true one.
+  std::vector<double> noise(50'000);
+  std::uint64_t state = 1;
+  for (double& x : noise) x = static_cast<double>((state = state * 6364136223846793005u + 1442695040888963407u) >> 11);
+  const auto path = fake::write_npz(folder.path / "a.npz", {{"x", fake::npy<double>({50'000}, noise)}}, true);
+  std::string bytes = fake::whole(path);
+  const std::size_t entry = bytes.rfind("PK\x01\x02");
+  REQUIRE(entry != std::string::npos);
+  const std::uint32_t claimed = 300'000'000;
+  std::memcpy(bytes.data() + entry + 24, &claimed, sizeof claimed);
+  const std::string message = error_of([&] { Npz(fake::write(folder, "b.npz", bytes)).numbers("x"); });
+  INFO(message);
+  CHECK(has(message, "b.npz: x"));
+  CHECK(has(message, "asks for 3e+08 bytes; 268435456 are the most"));
+}
+
 TEST_CASE("an array that is not asked for is never looked at") {
   const fake::Folder folder("npz_skipped");
   const Npz npz(fake::write_npz(folder.path / "a.npz", {{"broken", "no array"},

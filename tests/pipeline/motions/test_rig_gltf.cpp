@@ -1,3 +1,5 @@
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 
 #include "collision/geometry/error.hpp"
@@ -151,6 +153,36 @@ TEST_CASE("glTF: a person's joints get SMPL's names, and scenes play the file's 
   CHECK_NOTHROW(scene("{model: person.glb, clip: squat, blend_in: 1}"));  // by SMPL's names
   CHECK_THROWS_WITH(scene("{model: mannequin, clip: person.glb}"), Contains("another skeleton"));
   CHECK_THROWS_WITH(scene("{model: person.glb, clip: walk, animation: walk}"), Contains("no glTF file"));
+}
+
+TEST_CASE("glTF: buffers are opened below the file's folder, nothing else is", "[rig_gltf]") {
+  const Folder folder("gltf_paths");
+  const BodyModel body = fake::body(4, 12, 0, false);
+  const fake::GltfFile good = fake::gltf_of(body, some_motion(4, 3), body.joints);
+  const std::filesystem::path own = folder.path / "own";
+  std::filesystem::create_directories(own / "sub");
+  fake::write(folder, "outside.bin", good.bytes);
+  fake::write(folder, "own/sub/a b.bin", good.bytes);
+  std::filesystem::create_symlink("../outside.bin", own / "link.bin");
+  REQUIRE(::mkfifo((own / "pipe.bin").c_str(), 0600) == 0);
+  const auto read = [&](const std::string& uri, const std::string& image = "") {
+    fake::GltfFile file = good;
+    file.json["buffers"] = {{{"byteLength", good.bytes.size()}, {"uri", uri}}};
+    if (!image.empty()) file.json["images"] = {{{"uri", image}}};
+    return read_gltf(fake::write(folder, "own/a.gltf", file.json.dump()));
+  };
+  for (const std::string uri : {"sub/a b.bin", "sub/a%20b.bin", "sub/../sub/a b.bin", "./sub/a%20%62.bin"})
+    CHECK(read(uri).mesh.x.rows() == 12);
+  for (const std::string uri : {"../outside.bin", "sub/../../outside.bin", "%2e%2e/outside.bin", "..%2Foutside.bin",
+                                "link.bin", "/etc/passwd", "pipe.bin", "sub", "."}) {
+    INFO(uri);
+    CHECK_THROWS_WITH(read(uri), Contains("a.gltf: buffer 0") && Contains("names"));
+  }
+  CHECK_THROWS_WITH(read((folder.path / "outside.bin").string()), Contains("outside.bin`, which is not below"));
+  CHECK_THROWS_WITH(read("absent.bin"), Contains("absent.bin"));
+  // An image is never opened: one that is a pipe would never end.
+  for (const std::string image : {"pipe.bin", "../outside.bin", "/etc/passwd"})
+    CHECK(read("sub/a b.bin", image).mesh.x.rows() == 12);
 }
 
 TEST_CASE("glTF: what is wrong is named", "[rig_gltf]") {

@@ -377,6 +377,23 @@ TEST_CASE("A start may be stretched, flattened and crumpled; the rest shape stay
   CHECK(moved.cwiseAbs().maxCoeff() > 0.09);
   CHECK(crumpled.initial.x != read(folder, cloth + "{crumple: 10 cm, seed: 4}}]").initial.x);
   CHECK(metric_error(crumpled.scene, made.initial.x) < 1e-12);
+  for (const std::string start : {"{stretch: [1, 1, 1e9]}", "{crumple: 1 km}", "{stretch: [-1e5, 1, 1]}"})
+    CHECK_THROWS_WITH(read(folder, cloth + start + "}]"), Contains("start") && Contains("10 times is the most"));
+}
+
+TEST_CASE("What no machine can hold is refused before memory is taken", "[setup]") {
+  const Folder folder("too_large");
+  const auto refused = [&](const std::string& text, const std::string& words) {
+    INFO(text);
+    CHECK_THROWS_WITH(read(folder, text), Contains(words));
+  };
+  refused("cloths: [{rectangle: {size: 0.1, resolution: 3}, copies: {count: 1000000000}}]", "10000");
+  refused("cloths: [{rectangle: {size: 0.1, resolution: 100}, copies: {count: 9000}}]",
+          "asks for 90000000 vertices; 4000000 are the most");
+  refused("cloths: [{rectangle: {size: 1, edge: 1e-6}}]", "4000000 are the most");
+  refused("cloths: [{rectangle: {size: 1, resolution: 3}}]\nobstacles: [{sphere: {radius: 1, edge: 1e-5}}]",
+          "4000000 are the most");
+  refused("cloths: [{rectangle: {size: 1, resolution: 3}}]\ncontact: {thickness: 100 m}", "thickness");
 }
 
 TEST_CASE("A cloth that starts in one point is opened, and a warning says so", "[setup]") {
