@@ -215,9 +215,9 @@ struct Found {
 
 Found drop_on(const Union& u) {
   const double dt = 1.0 / 30;
-  const int frames = 20;
+  const int frames = 16;
   const Points at_start = u.points(0);
-  World w = make_world(sheet(14, 0.5, at_start.col(1).maxCoeff() + 0.02));
+  World w = make_world(sheet(11, 0.5, at_start.col(1).maxCoeff() + 0.02));
   Sheet body = u.shells.front().mesh;
   for (std::size_t k = 1; k < u.shells.size(); ++k) body = join(body, u.shells[k].mesh);
   body.x = at_start;

@@ -320,7 +320,7 @@ TEST_CASE("recovery: a tangled cloth is put through no floor", "[recovery]") {
   }
 }
 
-TEST_CASE("recovery: left alone is what is tangled with cloth wholly, and with an obstacle at one vertex",
+TEST_CASE("recovery: left alone is what is tangled with cloth wholly, and with an obstacle at one vertex or caught",
           "[recovery]") {
   World w = make_world(sheet(2, 0.4, 0));
   add_obstacle(w, block({0, -0.2, 0}, 0.06));
@@ -341,7 +341,10 @@ TEST_CASE("recovery: left alone is what is tangled with cloth wholly, and with a
   exemption.off[9] = exemption.off[10] = 1;
   CHECK_FALSE(exemption.leaves_alone(world, {0, 9, 10, 11}));
   exemption.off[11] = 1;
+  CHECK_FALSE(exemption.leaves_alone(world, {0, 9, 10, 11}));  // it comes from outside
+  exemption.off[0] = 1;                                        // it is caught
   CHECK(exemption.leaves_alone(world, {0, 9, 10, 11}));
+  CHECK_FALSE(exemption.leaves_alone(world, {0, 9, 10, 12}));
 }
 
 TEST_CASE("recovery: a body that jumps farther than its size is not swept along, and what it lands on gets clean",
