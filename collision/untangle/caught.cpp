@@ -50,10 +50,7 @@ class Closing {
         end_(make_face_tree(surface, x1, faces)) {}
 
   bool is_near(const Vec3& p, double within) const {
-    return start_
-               .nearest(
-                   p, [](int) { return true; }, within)
-               .face >= 0;
+    return nearest_face(start_, p, within, [](int) { return true; }).face >= 0;
   }
 
   // A face that p is carried through, and where it is carried.
