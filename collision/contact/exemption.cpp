@@ -11,9 +11,10 @@ int Exemption::cloth_vertices() const {
   return count;
 }
 
-// Of cloth with cloth a pair is left alone where all of it is tangled: what is clean of each other stays so.
+// Of cloth with cloth a pair is left alone where all of it is tangled: what is clean of each other stays so. With an
+// obstacle one vertex that is tangled is enough, or one that is caught where all of the obstacle's are off.
 bool Exemption::leaves_alone(const ContactWorld& world, const std::array<int, 4>& nodes) const {
-  bool self_alone = !self.empty(), body_alone = false, all_cloth = true, all_off = !off.empty();
+  bool self_alone = !self.empty(), body_alone = false, all_cloth = true, all_off = !off.empty(), any_caught = false;
   for (const int node : nodes) {
     if (!world.is_cloth(node)) {
       all_cloth = false;
@@ -22,8 +23,9 @@ bool Exemption::leaves_alone(const ContactWorld& world, const std::array<int, 4>
     }
     self_alone = self_alone && self[node];
     body_alone = body_alone || (!body.empty() && body[node]);
+    any_caught = any_caught || (!off.empty() && off[node]);
   }
-  return all_cloth ? self_alone : body_alone || all_off;
+  return all_cloth ? self_alone : body_alone || (all_off && any_caught);
 }
 
 std::vector<char> either(std::vector<char> a, const std::vector<char>& b) {

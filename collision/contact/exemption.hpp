@@ -13,7 +13,7 @@ struct Exemption {
   std::vector<char> self;  // of the cloth's vertices: on or inside a contour of the cloth with itself
   std::vector<char> body;  // of the cloth's vertices: on a contour with an obstacle, or inside a closed one
   std::vector<char>
-      off;  // of all nodes: an obstacle's, where it crosses itself or is buried in itself (buried.hpp), or next to it
+      off;  // of all nodes: caught ones of the cloth, and the obstacle's where it crosses itself there (caught.hpp)
 
   bool cloth() const { return !self.empty() || !body.empty(); }
   int cloth_vertices() const;  // how many of them

@@ -1,43 +1,68 @@
 #include "collision/contour/buried.hpp"
 
+#include <array>
+
 #include "collision/exact/inside.hpp"
+#include "collision/geometry/corners.hpp"
 #include "collision/geometry/disjoint_sets.hpp"
 
 namespace selvedge {
 namespace {
 
-constexpr double little = 1e-3;  // how far before and behind a vertex, in mean edge lengths
-constexpr int speakers = 9;      // vertices that are asked for their piece, about
+constexpr double little = 1e-3;  // how far before and behind a triangle, in mean edge lengths
+constexpr int speakers = 9;      // triangles that are asked for their piece, about
 
-// What hangs together along edges between vertices that are not marked.
-DisjointSets pieces_between(const std::vector<char>& marked, const Surface& surface) {
-  DisjointSets pieces(surface.vertex_count);
-  for (const auto& edge : surface.edges.rowwise())
-    if (!marked[edge[0]] && !marked[edge[1]]) pieces.join(edge[0], edge[1]);
+std::vector<char> crossing_triangles(const Surface& surface, const Segments& found) {
+  std::vector<char> crossing(static_cast<std::size_t>(surface.triangles.rows()), 0);
+  for (const Segment& segment : found.segments)
+    for (const int t : segment.triangle) crossing[t] = 1;
+  return crossing;
+}
+
+// What hangs together along edges of triangles that do not cross: nothing comes through there.
+DisjointSets pieces_between(const std::vector<char>& crossing, const Surface& surface) {
+  DisjointSets pieces(static_cast<int>(surface.triangles.rows()));
+  for (const auto& [a, b] : surface.edge_triangles)
+    if (b >= 0 && !crossing[a] && !crossing[b]) pieces.join(a, b);
   return pieces;
 }
 
 }  // namespace
 
-std::vector<char> buried_vertices(const Surface& surface, const Points& x, const Segments& found) {
-  std::vector<char> marked(static_cast<std::size_t>(surface.vertex_count), 0);
-  for (const Segment& segment : found.segments)
-    for (const int t : segment.triangle)
-      for (const int v : surface.triangles.row(t)) marked[v] = 1;
-  if (found.segments.empty() || !is_closed(surface)) return marked;
-  DisjointSets pieces = pieces_between(marked, surface);
+std::vector<char> buried_triangles(const Surface& surface, const Points& x, const Segments& found) {
+  std::vector<char> buried(static_cast<std::size_t>(surface.triangles.rows()), 0);
+  if (found.segments.empty() && surface.component_count < 2) return buried;
+  const std::vector<char> crossing = crossing_triangles(surface, found);
+  DisjointSets pieces = pieces_between(crossing, surface);
   const std::vector<int> piece = pieces.numbers();
-  std::vector<int> size(static_cast<std::size_t>(pieces.count()), 0), seen(size), voices(size);
+  std::vector<int> size(static_cast<std::size_t>(pieces.count()), 0), seen(size);
   for (const int p : piece) ++size[p];
   std::vector<int> asked;
-  for (int v = 0; v < surface.vertex_count; ++v)
-    if (!marked[v] && seen[piece[v]]++ % (1 + size[piece[v]] / speakers) == 0) asked.push_back(v);
-  const Points at = x(asked, Eigen::all);
-  const Points away = little * mean_edge(surface, x) * vertex_normals(surface, x)(asked, Eigen::all);
-  const std::vector<int> before = winding_numbers(surface, x, at + away);
-  const std::vector<int> behind = winding_numbers(surface, x, at - away);
-  for (std::size_t i = 0; i < asked.size(); ++i) voices[piece[asked[i]]] += before[i] != 0 && behind[i] != 0 ? 1 : -1;
-  for (int v = 0; v < surface.vertex_count; ++v) marked[v] = marked[v] || voices[piece[v]] > 0;
+  for (int t = 0; t < static_cast<int>(buried.size()); ++t)
+    if (!crossing[t] && seen[piece[t]]++ % (1 + size[piece[t]] / speakers) == 0) asked.push_back(t);
+  Points before(static_cast<Eigen::Index>(asked.size()), 3), behind(before);
+  const double away = little * mean_edge(surface, x);
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    const std::array<Vec3, 3> at = corners_of(surface, x, asked[i]);
+    const Vec3 middle = (at[0] + at[1] + at[2]) / 3, normal = (at[1] - at[0]).cross(at[2] - at[0]).normalized();
+    before.row(static_cast<Eigen::Index>(i)) = (middle + away * normal).transpose();
+    behind.row(static_cast<Eigen::Index>(i)) = (middle - away * normal).transpose();
+  }
+  const std::vector<char> in_front = inside(surface, x, before), in_back = inside(surface, x, behind);
+  std::vector<char> faces_outside(size.size(), 0);
+  for (std::size_t i = 0; i < asked.size(); ++i)
+    if (!in_front[i] || !in_back[i]) faces_outside[piece[asked[i]]] = 1;
+  for (std::size_t t = 0; t < buried.size(); ++t) buried[t] = !crossing[t] && !faces_outside[piece[t]];
+  return buried;
+}
+
+std::vector<char> buried_vertices(const Surface& surface, const Points& x, const Segments& found) {
+  std::vector<char> marked(static_cast<std::size_t>(surface.vertex_count), 0);
+  if (found.segments.empty()) return marked;
+  const std::vector<char> crossing = crossing_triangles(surface, found), buried = buried_triangles(surface, x, found);
+  for (std::size_t t = 0; t < buried.size(); ++t)
+    if (crossing[t] || buried[t])
+      for (const int v : surface.triangles.row(static_cast<Eigen::Index>(t))) marked[v] = 1;
   return marked;
 }
 

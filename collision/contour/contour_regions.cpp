@@ -7,6 +7,7 @@
 #include "collision/contour/edge_parity.hpp"
 #include "collision/contour/open_sides.hpp"
 #include "collision/exact/inside.hpp"
+#include "collision/geometry/closed_shells.hpp"
 
 namespace selvedge {
 
@@ -101,8 +102,8 @@ std::vector<Region> enclosed_regions(std::span<const SheetView> sheets, const Se
         region.cut = false;
     const Surface& surface = *sheets[key.sheet].surface;
     const std::vector<char> colours = colour_together(surface, key.component, traces, region.cut);
-    const bool closed_partner =
-        key.sheet == 0 && key.partner_sheet > 0 && is_closed(*sheets[key.partner_sheet].surface);
+    const bool closed_partner = key.sheet == 0 && key.partner_sheet > 0 &&
+                                closed_shells(*sheets[key.partner_sheet].surface)[key.partner_component];
     const std::vector<char> in =
         closed_partner ? inside(*sheets[key.partner_sheet].surface, *sheets[key.partner_sheet].x, *sheets[0].x)
                        : std::vector<char>();

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "collision/exact/orientation.hpp"
+#include "collision/geometry/closed_shells.hpp"
 
 namespace selvedge {
 namespace {
@@ -14,7 +16,7 @@ struct Grid {
   Vec3 lo, hi;
   int cells = 1;  // a side
   Vec2 per_length;
-  std::vector<int> begin, triangles;  // those over cell c are triangles[begin[c] .. begin[c + 1])
+  std::vector<int> begin, triangles;  // of closed shells; those over cell c are triangles[begin[c] .. begin[c + 1])
 
   Vec2 flat(const Vec3& p) const { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
 
@@ -35,10 +37,14 @@ void for_each_cell(const Grid& grid, const Surface& surface, const Points& x, in
     for (int j = first[1]; j <= last[1]; ++j) visit(i * grid.cells + j);
 }
 
-Grid make_grid(const Surface& surface, const Points& x) {
+// Of the triangles of closed shells; there must be some.
+Grid make_grid(const Surface& surface, const Points& x, const std::vector<char>& closed) {
   Grid grid;
-  grid.lo = grid.hi = row(x, surface.triangles(0, 0));
+  grid.lo.setConstant(std::numeric_limits<double>::infinity());
+  grid.hi = -grid.lo;
+  const auto counts = [&](int t) { return closed[surface.component[surface.triangles(t, 0)]] != 0; };
   for (int index : surface.triangles.reshaped()) {
+    if (!closed[surface.component[index]]) continue;
     grid.lo = grid.lo.cwiseMin(row(x, index));
     grid.hi = grid.hi.cwiseMax(row(x, index));
   }
@@ -50,12 +56,13 @@ Grid make_grid(const Surface& surface, const Points& x) {
   for (int k = 0; k < 2; ++k) grid.per_length[k] = size[k] > 0 ? grid.cells / size[k] : 0;
 
   grid.begin.assign(grid.cells * grid.cells + 1, 0);
-  for (int t = 0; t < count; ++t) for_each_cell(grid, surface, x, t, [&](int cell) { ++grid.begin[cell + 1]; });
+  for (int t = 0; t < count; ++t)
+    if (counts(t)) for_each_cell(grid, surface, x, t, [&](int cell) { ++grid.begin[cell + 1]; });
   for (int c = 0; c < grid.cells * grid.cells; ++c) grid.begin[c + 1] += grid.begin[c];
   grid.triangles.resize(grid.begin.back());
   std::vector<int> next(grid.begin.begin(), grid.begin.end() - 1);
   for (int t = 0; t < count; ++t)
-    for_each_cell(grid, surface, x, t, [&](int cell) { grid.triangles[next[cell]++] = t; });
+    if (counts(t)) for_each_cell(grid, surface, x, t, [&](int cell) { grid.triangles[next[cell]++] = t; });
   return grid;
 }
 
@@ -102,8 +109,10 @@ int winding_number(const Grid& grid, const Surface& surface, const Points& x, co
 }  // namespace
 
 std::vector<int> winding_numbers(const Surface& surface, const Points& x, const Points& points) {
-  const Grid grid = make_grid(surface, x);
   std::vector<int> result(points.rows(), 0);
+  const std::vector<char> closed = closed_shells(surface);
+  if (std::ranges::find(closed, 1) == closed.end()) return result;
+  const Grid grid = make_grid(surface, x, closed);
   const int count = static_cast<int>(points.rows());
 #pragma omp parallel for schedule(dynamic, 256)
   for (int i = 0; i < count; ++i) result[i] = winding_number(grid, surface, x, row(points, i));
@@ -113,7 +122,7 @@ std::vector<int> winding_numbers(const Surface& surface, const Points& x, const 
 std::vector<char> inside(const Surface& surface, const Points& x, const Points& points) {
   const std::vector<int> winding = winding_numbers(surface, x, points);
   std::vector<char> result(winding.size());
-  std::ranges::transform(winding, result.begin(), [](int number) { return number % 2 != 0; });
+  std::ranges::transform(winding, result.begin(), [](int number) { return number != 0; });
   return result;
 }
 

@@ -17,9 +17,8 @@ double squared_distance(const Box& box, const Vec3& p) {
   return sum;
 }
 
-void take_nearer(const Surface& surface, const Points& x, int t, int own_vertex, const Vec3& p, NearestFace& nearest) {
+void take_nearer(const Surface& surface, const Points& x, int t, const Vec3& p, NearestFace& nearest) {
   const int i = surface.triangles(t, 0), j = surface.triangles(t, 1), k = surface.triangles(t, 2);
-  if (own_vertex == i || own_vertex == j || own_vertex == k) return;
   const Closest closest = point_triangle(p, row(x, i), row(x, j), row(x, k));
   if (closest.squared_distance < nearest.squared_distance)
     nearest = {t, closest.squared_distance, {-closest.weights[1], -closest.weights[2], -closest.weights[3]}};
@@ -39,7 +38,15 @@ FaceTree make_face_tree(const Surface& surface, const Points& x, std::vector<int
 }
 
 NearestFace nearest_face(const FaceTree& tree, int own_vertex, const Vec3& p) {
+  return nearest_face(tree, p, std::numeric_limits<double>::infinity(), [&](int t) {
+    const auto corners = tree.surface->triangles.row(t);
+    return corners[0] != own_vertex && corners[1] != own_vertex && corners[2] != own_vertex;
+  });
+}
+
+NearestFace nearest_face(const FaceTree& tree, const Vec3& p, double within, const std::function<bool(int)>& counts) {
   NearestFace nearest;
+  nearest.squared_distance = within * within;
   std::vector<int> stack;
   if (!tree.faces.empty()) stack.push_back(0);
   while (!stack.empty()) {
@@ -54,7 +61,7 @@ NearestFace nearest_face(const FaceTree& tree, int own_vertex, const Vec3& p) {
       continue;
     }
     for (const int item : tree.bvh.leaves[~node.child].item)
-      if (item >= 0) take_nearer(*tree.surface, *tree.x, tree.faces[item], own_vertex, p, nearest);
+      if (item >= 0 && counts(tree.faces[item])) take_nearer(*tree.surface, *tree.x, tree.faces[item], p, nearest);
   }
   return nearest;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -27,5 +28,8 @@ struct NearestFace {
 
 // The face nearest to p of those that do not have the vertex own_vertex, which may be -1.
 NearestFace nearest_face(const FaceTree&, int own_vertex, const Vec3& p);
+
+// The same of those that `counts` says yes to, nearer than `within` [m].
+NearestFace nearest_face(const FaceTree&, const Vec3& p, double within, const std::function<bool(int face)>& counts);
 
 }  // namespace selvedge

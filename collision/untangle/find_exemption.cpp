@@ -1,6 +1,5 @@
 #include "collision/untangle/find_exemption.hpp"
 
-#include "collision/contour/buried.hpp"
 #include "collision/contour/contour_regions.hpp"
 #include "collision/contour/find_contours.hpp"
 #include "collision/untangle/separation.hpp"
@@ -39,22 +38,6 @@ Exemption find_exemption(const ContactWorld& world, const Points& nodes) {
   for (int v = 0; v < n; ++v)
     if (inside[v]) mark(exemption.body, n, v);
   return exemption;
-}
-
-void switch_off(const ContactWorld& world, int obstacle, const Points& nodes, Exemption& exemption) {
-  const Surface& body = *world.obstacles[obstacle];
-  const int first = world.first_node[obstacle];
-  const Points x = nodes.middleRows(first, body.vertex_count);
-  const std::vector<SheetView> view{{&body, &x}};
-  const Segments found = find_segments(view);
-  if (found.segments.empty()) return;
-  const std::vector<char> crossed = buried_vertices(body, x, found);
-  // The margin: every triangle at a crossed vertex.
-  for (int t = 0; t < body.triangles.rows(); ++t) {
-    const auto corners = body.triangles.row(t);
-    if (crossed[corners(0)] || crossed[corners(1)] || crossed[corners(2)])
-      mark_triangle(exemption.off, world.node_count, body, t, first);
-  }
 }
 
 }  // namespace selvedge

@@ -7,6 +7,7 @@
 
 #include "collision/contour/contour_translation.hpp"
 #include "collision/exact/inside.hpp"
+#include "collision/geometry/closed_shells.hpp"
 #include "collision/search/nearest_face.hpp"
 
 namespace selvedge {
@@ -141,7 +142,7 @@ bool meets_closed_obstacle(const Setting& setting, const Contour& contour) {
 }
 
 bool against_closed_obstacle(const Setting& setting, const Region& region) {
-  return region.partner_sheet != 0 && is_closed(*setting.sheets[region.partner_sheet].surface);
+  return region.partner_sheet != 0 && setting.closed[region.partner_sheet][region.partner_component];
 }
 
 void part_crossings(const Setting& setting, int number, const PatchOf& patch_of, std::vector<Patch>& patches,
@@ -233,27 +234,21 @@ void push_patch(const Setting& setting, const Patch& patch, std::span<const Regi
   }
 }
 
-std::vector<char> closed_components(const Surface& surface) {
-  std::vector<char> closed(surface.component_count, surface.nonmanifold_edges == 0);
-  for (int e = 0; e < surface.edges.rows(); ++e)
-    if (surface.edge_triangles[e][1] < 0) closed[surface.component[surface.edges(e, 0)]] = 0;
-  return closed;
-}
-
 // Vertices of the cloth inside a closed obstacle.
 std::vector<char> inside_obstacle(std::span<const SheetView> sheets, int obstacle) {
   const Surface& surface = *sheets[obstacle].surface;
-  if (!is_closed(surface)) return std::vector<char>(sheets[0].surface->vertex_count, 0);
   return inside(surface, *sheets[obstacle].x, *sheets[0].x);
 }
 
-void push_out(const Setting& setting, std::vector<Separation>& separations) {
+void push_out(const Setting& setting, std::span<const std::vector<char>> buried, std::vector<Separation>& separations) {
   for (int k = 1; k < static_cast<int>(setting.sheets.size()); ++k) {
     const std::vector<char> in = inside_obstacle(setting.sheets, k);
     if (std::find(in.begin(), in.end(), 1) == in.end()) continue;
-    std::vector<int> all(setting.sheets[k].surface->triangles.rows());
+    const SheetView& obstacle = setting.sheets[k];
+    std::vector<int> all(obstacle.surface->triangles.rows());
     std::iota(all.begin(), all.end(), 0);
-    const FaceTree faces = make_face_tree(*setting.sheets[k].surface, *setting.sheets[k].x, std::move(all));
+    std::erase_if(all, [&](int t) { return !buried.empty() && buried[static_cast<std::size_t>(k) - 1][t]; });
+    const FaceTree faces = make_face_tree(*obstacle.surface, *obstacle.x, std::move(all));
     for (int v = 0; v < static_cast<int>(in.size()); ++v)
       if (in[v] && setting.sheets[0].surface->vertex_owner[v] >= 0)
         push_through(setting, v, k, nearest_face(faces, -1, row(*setting.sheets[0].x, v)), 1, separations);
@@ -264,7 +259,7 @@ Setting make_setting(std::span<const SheetView> sheets, const Segments& found, s
                      std::span<const Region> regions, const SeparationLengths& lengths) {
   Setting setting{sheets, found, contours, lengths, {}, {}, {}, {}};
   for (const SheetView& sheet : sheets) {
-    setting.closed.push_back(closed_components(*sheet.surface));
+    setting.closed.push_back(closed_shells(*sheet.surface));
     setting.normals.push_back(vertex_normals(*sheet.surface, *sheet.x));
   }
   for (int r = 0; r < static_cast<int>(regions.size()); ++r) {
@@ -308,7 +303,7 @@ void order_layers(std::span<const SheetView> sheets, const Segments& found, std:
 
 std::vector<Separation> part_contours(std::span<const SheetView> sheets, const Segments& found,
                                       std::span<const Contour> contours, std::span<const Region> regions,
-                                      const SeparationLengths& lengths) {
+                                      const SeparationLengths& lengths, std::span<const std::vector<char>> buried) {
   const Setting setting = make_setting(sheets, found, contours, regions, lengths);
   PatchOf patch_of;
   std::vector<Patch> patches = find_patches(setting, regions, patch_of);
@@ -318,7 +313,7 @@ std::vector<Separation> part_contours(std::span<const SheetView> sheets, const S
   for (const Patch& patch : patches)
     if (regions[patch.region].sheet == 0 && !against_closed_obstacle(setting, regions[patch.region]))
       push_patch(setting, patch, regions, patches, separations);
-  push_out(setting, separations);
+  push_out(setting, buried, separations);
   return separations;
 }
 

@@ -30,8 +30,10 @@ void order_layers(std::span<const SheetView> sheets, const Segments&, std::span<
 
 // What the cloth (sheets[0]) would have to do to lose its contours: vertices on the wrong side go toward the right one
 // by at most a step, the two sides of contours without such vertices apart along the averaged translational gradient.
+// `buried`: of each obstacle, by triangle, what does not face its outside (buried.hpp): nothing is pushed out to that.
 std::vector<Separation> part_contours(std::span<const SheetView> sheets, const Segments&, std::span<const Contour>,
-                                      std::span<const Region>, const SeparationLengths&);
+                                      std::span<const Region>, const SeparationLengths&,
+                                      std::span<const std::vector<char>> buried = {});
 
 // 1 at vertices of the cloth inside a closed obstacle; isolated ones count nowhere.
 std::vector<char> inside_obstacles(std::span<const SheetView> sheets);

@@ -5,6 +5,7 @@
 #include <deque>
 #include <limits>
 
+#include "collision/contour/buried.hpp"
 #include "collision/contour/find_contours.hpp"
 #include "collision/geometry/floating_point.hpp"
 #include "collision/search/bvh.hpp"
@@ -39,9 +40,11 @@ std::vector<SheetView> with_cloth(const Surface& cloth, const Points& x, std::sp
   return sheets;
 }
 
-// Obstacles with a tree each: they stand still while it is asked again and again what meets them.
+// Obstacles with a tree each, and what of them does not face the outside: they stand still while it is asked again and
+// again what meets them.
 struct Standing {
   std::vector<Bvh> trees;
+  std::vector<std::vector<char>> buried;
   std::vector<SheetView> views;
 
   explicit Standing(std::span<const SheetView> obstacles) : views(obstacles.begin(), obstacles.end()) {
@@ -50,7 +53,10 @@ struct Standing {
       triangle_boxes(*obstacle.surface, *obstacle.x, *obstacle.x, 0, boxes);
       trees.push_back(build_bvh(boxes));
     }
-    for (std::size_t k = 0; k < trees.size(); ++k) views[k].tree = &trees[k];
+    for (std::size_t k = 0; k < trees.size(); ++k) {
+      views[k].tree = &trees[k];
+      buried.push_back(buried_triangles(*views[k].surface, *views[k].x, find_segments({&views[k], 1})));
+    }
   }
   Standing(const Standing&) = delete;  // the views look at the trees
   Standing& operator=(const Standing&) = delete;
@@ -268,9 +274,10 @@ struct Attempt {
 };
 
 // From the input on. wide: nothing at a contour repels anything.
-Attempt attempt(const KeptShape& shape, std::span<const SheetView> obstacles, const Tangle& input, Freedom freedom,
-                bool wide, Repulsion& repulsion, const UntangleOptions& options) {
+Attempt attempt(const KeptShape& shape, const Standing& standing, const Tangle& input, Freedom freedom, bool wide,
+                Repulsion& repulsion, const UntangleOptions& options) {
   const Surface& cloth = *shape.surface;
+  const std::span<const SheetView> obstacles = standing.views;
   const double gap = options.gap * shape.mean_edge, reach = options.horizon * shape.mean_edge;
   Attempt best{shape.x0, input, {}, 0};
   Points x = shape.x0;
@@ -292,7 +299,7 @@ Attempt attempt(const KeptShape& shape, std::span<const SheetView> obstacles, co
     Tangle after;
     for (int shorter = 0; shorter < 3; ++shorter, step *= 0.4) {
       std::vector<Separation> separations =
-          part_contours(sheets, tangle.found, tangle.contours, tangle.regions, {gap, step});
+          part_contours(sheets, tangle.found, tangle.contours, tangle.regions, {gap, step}, standing.buried);
       drop_let_through(options.let_through, separations);
       next = propose(shape, freedom, separations, repulsions, options, x);
       after = keep_clean(shape, freedom, obstacles, tangled, options, x, next);
@@ -327,10 +334,10 @@ UntangleResult untangle(const Surface& cloth, const Points& x, std::span<const S
   const Freedom freedom = make_freedom(shape, tangled, options);
   Repulsion repulsion(cloth, obstacles, shape);
   // Two opinions of what repulsion keeps apart near a contour: where the one gets stuck the other may not.
-  Attempt best = attempt(shape, obstacles, input, freedom, false, repulsion, options);
+  Attempt best = attempt(shape, standing, input, freedom, false, repulsion, options);
   int iterations = best.iterations;
   if (!best.tangle.clean() && options.second_opinion) {
-    Attempt other = attempt(shape, obstacles, input, freedom, true, repulsion, options);
+    Attempt other = attempt(shape, standing, input, freedom, true, repulsion, options);
     iterations += other.iterations;
     if (other.tangle.better_than(best.tangle)) best = std::move(other);
   }

@@ -44,7 +44,7 @@ Parting part_at_start(const ContactWorld& world, SelfCrossings& self_crossings, 
     untouched = hopeless(world, nodes, options);
     parting.left = untouched ? *untouched : find_exemption(world, nodes);
   }
-  self_crossings.switch_off(nodes, wanted, parting.left);
+  self_crossings.switch_off(nodes, wanted, worn, parting.left);
   std::vector<char> pierced, sunken;
   if (!untouched)
     pierced = pierced_vertices(world, parting.left, nodes, wanted, worn, options.astray * edge_length, options);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "collision/contour/find_contours.hpp"
+#include "collision/untangle/caught.hpp"
 #include "collision/untangle/find_exemption.hpp"
 #include "collision/untangle/let_through.hpp"
 #include "collision/untangle/untangle.hpp"
@@ -201,13 +202,13 @@ bool SelfCrossings::crosses(int obstacle, const Points& nodes, Known& known) {
   return known.crosses;
 }
 
-void SelfCrossings::switch_off(const Points& from, const Points& to, Exemption& exemption) {
+void SelfCrossings::switch_off(const Points& from, const Points& to, const Points& worn, Exemption& exemption) {
   for (std::size_t k = 0; k < known_.size(); ++k) {
     const int obstacle = static_cast<int>(k);
     auto& [start, end] = known_[k];
     std::swap(start, end);  // a step begins where the last one ended
-    if (crosses(obstacle, from, start)) selvedge::switch_off(world_, obstacle, from, exemption);
-    if (crosses(obstacle, to, end)) selvedge::switch_off(world_, obstacle, to, exemption);
+    const bool before = crosses(obstacle, from, start), after = crosses(obstacle, to, end);
+    if (before || after) selvedge::switch_off(world_, obstacle, from, to, worn, exemption);
   }
 }
 

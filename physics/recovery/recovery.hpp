@@ -33,11 +33,12 @@ Recovery recover(const ContactWorld&, const Eigen::VectorXd& inverse_mass, doubl
                  const std::vector<char>& carried, Points& nodes, UntanglingBudget* = nullptr,
                  const RecoveryOptions& = {});
 
-// Which obstacles cross themselves, in the positions of a step's start or end. Remembers what it was asked last.
+// Which obstacles cross themselves, in the positions of a step's start or end, and what cloth is caught there
+// (caught.hpp). Remembers what it was asked last.
 class SelfCrossings {
  public:
   explicit SelfCrossings(const ContactWorld& world);  // keeps a reference
-  void switch_off(const Points& from, const Points& to, Exemption&);
+  void switch_off(const Points& from, const Points& to, const Points& worn, Exemption&);
 
  private:
   struct Known {

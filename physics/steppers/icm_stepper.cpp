@@ -149,7 +149,7 @@ bool IcmStepper::substep(const SubstepState& now, const Points& pins, const Driv
   for (int k = 0; k < options_.outer_iterations; ++k) {
     Stopwatch watch;
     Exemption exemption = find_exemption(world_, at);
-    self_crossings_.switch_off(now.nodes, nodes1, exemption);
+    self_crossings_.switch_off(now.nodes, nodes1, {}, exemption);
     if (k == 0) work.exemption = exemption;
     find_pairs(now.nodes, at, nodes1, h, exemption, work, report);
     if (k == 0 && !work.repulsion.empty())

@@ -4,12 +4,16 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "collision/geometry/welded_surface.hpp"
 #include "pipeline/bodies/body_hdf5.hpp"
 #include "pipeline/bodies/body_smpl.hpp"
 #include "pipeline/bodies/mannequin.hpp"
+#include "pipeline/bodies/skin_places.hpp"
 #include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/meshes/setup_mesh.hpp"
@@ -161,6 +165,8 @@ Performance read_performance(const Config& section, const std::filesystem::path&
   Performance who;
   who.body = read_model(section["model"], folder);
   who.surface = make_surface(static_cast<int>(who.body.skin.rest.rows()), who.body.skin.triangles);
+  if (std::optional<WeldedSurface> welded = welded_surface(who.surface, same_places(who.body.skin)))
+    std::tie(who.surface, who.joined) = std::pair(std::move(welded->surface), std::move(welded->joined));
   const bool of_smpl = std::filesystem::path(section["model"].text()).extension() == ".npz";
   if (shape.given)
     who.shape =
@@ -226,6 +232,7 @@ const PosedBody& posed_at(const Performance& who, double time) {
   if (!who.known->keeps_all && at.size() >= most) at.clear();
   PosedBody body{posed(who.body, who.shape, pose_at(who, time)), {}};
   body.given = who.soft_tissue ? (*who.soft_tissue)(body.skinned) : body.skinned;
+  hold_together(who.joined, body.given);
   return at.emplace(time, std::move(body)).first->second;
 }
 

@@ -38,7 +38,8 @@ struct PosedBodies {
 struct Performance {
   std::string name;  // the obstacle's
   BodyModel body;
-  Surface surface;  // of its skin
+  Surface surface;          // of its skin, welded (welded_surface.hpp)
+  std::vector<int> joined;  // of each vertex the one that stands for it in `surface`; empty: none is joined
   Eigen::VectorXd shape;
   Clip clip;                                   // without poses: it stands in the zero pose
   std::shared_ptr<const GiveWay> soft_tissue;  // null: it passes through itself

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "collision/geometry/same_places.hpp"
+#include "collision/geometry/welded_surface.hpp"
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/meshes/setup_mesh.hpp"
 #include "pipeline/meshes/setup_motion.hpp"
@@ -98,6 +100,10 @@ ObstaclePart read_obstacle(const Config& section, std::size_t index, const std::
   ObstaclePart part;
   part.obstacle.name = obstacle_name(section, index);
   part.obstacle.surface = make_surface(static_cast<int>(body->frames[0].rows()), body->triangles);
+  if (std::optional<WeldedSurface> welded = welded_surface(part.obstacle.surface, same_places(body->frames))) {
+    for (Points& frame : body->frames) hold_together(welded->joined, frame);
+    part.obstacle.surface = std::move(welded->surface);
+  }
   part.obstacle.moving = body->frames.size() > 1 || !is_still(motion);
   if (body->frames.size() > 1) part.ends = body->times.last();
   part.at = [body, motion](double time) { return moved(motion, sequence_at(*body, time), time); };

@@ -4,8 +4,11 @@
 #include <nanobind/stl/vector.h>
 
 #include <memory>
+#include <optional>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/same_places.hpp"
+#include "collision/geometry/welded_surface.hpp"
 #include "physics/scene/make_scene.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
@@ -57,9 +60,18 @@ class World {
   int add_obstacle_arrays(const nb::handle& x, const nb::handle& triangles, const std::string& name) {
     must_be_open();
     obstacles_.push_back(points_of(x, "obstacle `" + name + "`, x"));
-    return add_obstacle(setup_.scene, static_cast<int>(obstacles_.back().rows()),
-                        triangles_of(triangles, obstacles_.back().rows(), "obstacle `" + name + "`, triangles"), true,
-                        name);
+    const int number = add_obstacle(
+        setup_.scene, static_cast<int>(obstacles_.back().rows()),
+        triangles_of(triangles, obstacles_.back().rows(), "obstacle `" + name + "`, triangles"), true, name);
+    joined_.emplace_back();
+    Surface& surface = setup_.scene.obstacles.back().surface;
+    if (!obstacles_.back().allFinite()) return number;
+    if (std::optional<WeldedSurface> welded = welded_surface(surface, same_places(obstacles_.back()))) {
+      surface = std::move(welded->surface);
+      joined_.back() = std::move(welded->joined);
+      hold_together(joined_.back(), obstacles_.back());
+    }
+    return number;
   }
 
   void move_obstacle(int number, const nb::handle& x) {
@@ -69,6 +81,14 @@ class World {
     Points to = points_of(x, where);
     if (to.rows() != obstacles_[static_cast<std::size_t>(number)].rows())
       throw Error("has " + std::to_string(to.rows()) + " rows, not as many as before", where, "give every vertex");
+    const std::vector<int>& joined = joined_[static_cast<std::size_t>(number)];
+    const std::vector<int> places = joined.empty() ? joined : same_places(to);
+    for (std::size_t v = 0; v < places.size(); ++v)
+      if (places[v] != places[static_cast<std::size_t>(joined[v])])
+        throw Error("opens a seam: vertex " + std::to_string(v) + " leaves vertex " + std::to_string(joined[v]) +
+                        ", where it lay when the obstacle was added",
+                    where, "add parts that come apart as obstacles of their own");
+    hold_together(joined, to);
     obstacles_[static_cast<std::size_t>(number)] = std::move(to);
   }
 
@@ -146,6 +166,7 @@ class World {
   MakeStepper make_;  // of a scene from arrays
   Points x_;
   std::vector<Points> obstacles_;
+  std::vector<std::vector<int>> joined_;  // of each obstacle (welded_surface.hpp)
   State state_;
   std::unique_ptr<Stepper> stepper_;
   int pairs_ = -1;

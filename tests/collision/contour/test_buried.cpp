@@ -44,11 +44,21 @@ std::vector<char> inside(const Sheet& body, const Points& points) {
   return inside(make_surface(static_cast<int>(body.x.rows()), body.triangles), body.x, points);
 }
 
-// Vertices of triangles that cross, alone: what an open surface gives, for it buries nothing.
-std::vector<char> crossing(Sheet s) {
-  const Eigen::Index last = s.triangles.rows() - 1;
-  s.triangles.conservativeResize(last, 3);
-  return buried(s);
+// Vertices of triangles that cross, alone.
+std::vector<char> crossing(const Sheet& s) {
+  const Surface surface = make_surface(static_cast<int>(s.x.rows()), s.triangles);
+  const std::vector<SheetView> view{{&surface, &s.x}};
+  std::vector<char> marked(static_cast<std::size_t>(s.x.rows()), 0);
+  for (const Segment& segment : find_segments(view).segments)
+    for (const int t : segment.triangle)
+      for (const int v : s.triangles.row(t)) marked[v] = 1;
+  return marked;
+}
+
+std::vector<char> buried_faces(const Sheet& s) {
+  const Surface surface = make_surface(static_cast<int>(s.x.rows()), s.triangles);
+  const std::vector<SheetView> view{{&surface, &s.x}};
+  return buried_triangles(surface, s.x, find_segments(view));
 }
 
 // Every vertex that lies in another part is buried, and of the others those of crossing triangles alone.
@@ -82,6 +92,26 @@ TEST_CASE("buried: nothing where nothing crosses", "[buried]") {
   CHECK(std::ranges::count(none, 1) == 0);
 }
 
+TEST_CASE("buried: no triangle that faces the outside, and open shells bury nothing", "[buried]") {
+  const Sheet thick = ring(0.3, {0, 0, 0}), other = ring(0.28, {0.9, 0.013, 0.007}),
+              within = ring(0.1, {0.011, 0.02, 0});
+  const Sheet all = join(join(thick, other), within);
+  const std::vector<char> faces = buried_faces(all);
+  const std::vector<char> in_thick = inside(thick, all.x), in_other = inside(other, all.x);
+  const int first = static_cast<int>(thick.triangles.rows()), last = first + static_cast<int>(other.triangles.rows());
+  for (int t = 0; t < all.triangles.rows(); ++t)
+    for (const int v : all.triangles.row(t))
+      if (faces[t]) CHECK((t < first ? in_other[v] : t < last ? in_thick[v] : in_thick[v] || in_other[v]));
+  const std::vector<char> whole = buried_faces(join(thick, within));  // nothing crosses
+  CHECK(std::ranges::count(whole, 1) == within.triangles.rows());
+  Sheet open = thick;
+  open.triangles.conservativeResize(open.triangles.rows() - 1, 3);
+  Sheet open_other = other;
+  open_other.triangles.conservativeResize(other.triangles.rows() - 1, 3);
+  const std::vector<char> none = buried_faces(join(open, open_other));
+  CHECK(std::ranges::count(none, 1) == 0);
+}
+
 TEST_CASE("winding numbers: how many parts a point is in, with their orientation", "[buried]") {
   const Sheet a = ring(0.3, {0, 0, 0}), b = ring(0.28, {0.9, 0.013, 0.007});
   Sheet both = join(a, b);
@@ -91,7 +121,7 @@ TEST_CASE("winding numbers: how many parts a point is in, with their orientation
     return winding_numbers(make_surface(static_cast<int>(both.x.rows()), both.triangles), both.x, points);
   };
   CHECK(winding() == std::vector<int>{0, 1, 2, 1});
-  CHECK(inside(both, points) == std::vector<char>{0, 1, 0, 1});
+  CHECK(inside(both, points) == std::vector<char>{0, 1, 1, 1});
   both.triangles.col(0).swap(both.triangles.col(1));
   CHECK(winding() == std::vector<int>{0, -1, -2, -1});
 }

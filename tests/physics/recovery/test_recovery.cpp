@@ -1,6 +1,8 @@
+#include <numbers>
 #include <random>
 
 #include "collision/audit/audit.hpp"
+#include "collision/untangle/caught.hpp"
 #include "collision/untangle/find_exemption.hpp"
 #include "collision/untangle/untangle.hpp"
 #include "physics/energies/measures.hpp"
@@ -93,22 +95,61 @@ TEST_CASE("recovery: a clean start is left as it is", "[recovery]") {
   CHECK(nodes == before);
 }
 
-TEST_CASE("recovery: a body that crosses itself is switched off there and nowhere else", "[recovery]") {
+TEST_CASE("recovery: a still body that crosses itself keeps what comes from outside out", "[recovery]") {
   World w = make_world(sheet(12, 0.5, 0.12));
   // Two blocks that overlap at their corners: one obstacle of two closed parts.
   add_obstacle(w, testing::join(block({-0.05, 0, 0}, 0.06), block({0.05, 0.011, 0.013}, 0.06)));
   const ContactWorld world = with_its_obstacle(w);
-  const Points nodes = gather_nodes(w.state.x, w.state.obstacles);
+  Points nodes = gather_nodes(w.state.x, w.state.obstacles), turned = nodes;
   SelfCrossings crossings(world);
   Exemption exemption;
-  crossings.switch_off(nodes, nodes, exemption);
-  REQUIRE_FALSE(exemption.off.empty());
-  CHECK_FALSE(exemption.cloth());
-  CHECK(std::count(exemption.off.begin(), exemption.off.begin() + w.scene.surface.vertex_count, 1) == 0);
+  crossings.switch_off(nodes, nodes, {}, exemption);
+  // Nor where it moves as one, however far.
+  const Mat3 turn = Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  turned.bottomRows(16) =
+      ((nodes.bottomRows(16) * turn.transpose()).rowwise() + Eigen::RowVector3d(0.1, 0.2, 0)).eval();
+  crossings.switch_off(nodes, turned, {}, exemption);
+  CHECK_FALSE(exemption.any());
   const testing::Run r = testing::run(w, 30);
   CHECK(r.state.x.allFinite());
   CHECK(r.held == 0);
   CHECK(r.passed_through == 0);
+  CHECK(r.pairs == 0);
+  CHECK(r.left_alone == 0);
+}
+
+TEST_CASE("recovery: cloth between parts that pass through each other is caught, and no other is", "[recovery]") {
+  const testing::Sheet upright = testing::tilted(sheet(6, 0.06, 0), 0.5 * std::numbers::pi);  // in the plane x = 0
+  testing::Sheet cloths = testing::join(upright, sheet(6, 0.2, 0.075));                       // and one on top
+  World w = make_world(cloths);
+  const testing::Sheet left = block({-0.07, 0, 0}, 0.06), right = block({0.07, 0.007, 0.009}, 0.06);
+  add_obstacle(w, testing::join(left, right));
+  const ContactWorld world = with_its_obstacle(w);
+  const Points nodes = gather_nodes(w.state.x, w.state.obstacles);
+  Points together = nodes;
+  const Eigen::Index first = world.first_node[0];
+  together.middleRows(first, 8).col(0).array() += 0.02;
+  together.middleRows(first + 8, 8).col(0).array() -= 0.02;
+  SelfCrossings crossings(world);
+  Exemption exemption;
+  crossings.switch_off(nodes, together, {}, exemption);
+  const auto count = upright.x.rows();
+  REQUIRE(exemption.off.size() == static_cast<std::size_t>(nodes.rows()));
+  CHECK(std::count(exemption.off.begin(), exemption.off.begin() + count, 1) == count);
+  CHECK(std::count(exemption.off.begin() + count, exemption.off.begin() + cloths.x.rows(), 1) == 0);
+  CHECK(switched_off(world, exemption)[0] > 0);
+  // A pair is left alone for what is caught alone.
+  const int body = static_cast<int>(first);
+  CHECK(exemption.leaves_alone(world, {0, body + 1, body + 3, body + 5}));
+  CHECK_FALSE(exemption.leaves_alone(world, {static_cast<int>(count), body + 1, body + 3, body + 5}));
+  // Blocks that move into each other elsewhere catch nothing.
+  Points apart = nodes;
+  apart.topRows(cloths.x.rows()).col(1).array() += 0.2;
+  Points apart_together = together;
+  apart_together.topRows(cloths.x.rows()) = apart.topRows(cloths.x.rows());
+  Exemption nothing;
+  crossings.switch_off(apart, apart_together, {}, nothing);
+  CHECK_FALSE(nothing.any());
 }
 
 TEST_CASE("recovery: all that is tangled with a body that crosses itself is drawn to where it is worn", "[recovery]") {
@@ -279,7 +320,7 @@ TEST_CASE("recovery: a tangled cloth is put through no floor", "[recovery]") {
   }
 }
 
-TEST_CASE("recovery: left alone is what is tangled with cloth wholly, and with an obstacle at one vertex",
+TEST_CASE("recovery: left alone is what is tangled with cloth wholly, and with an obstacle at one vertex or caught",
           "[recovery]") {
   World w = make_world(sheet(2, 0.4, 0));
   add_obstacle(w, block({0, -0.2, 0}, 0.06));
@@ -300,7 +341,10 @@ TEST_CASE("recovery: left alone is what is tangled with cloth wholly, and with a
   exemption.off[9] = exemption.off[10] = 1;
   CHECK_FALSE(exemption.leaves_alone(world, {0, 9, 10, 11}));
   exemption.off[11] = 1;
+  CHECK_FALSE(exemption.leaves_alone(world, {0, 9, 10, 11}));  // it comes from outside
+  exemption.off[0] = 1;                                        // it is caught
   CHECK(exemption.leaves_alone(world, {0, 9, 10, 11}));
+  CHECK_FALSE(exemption.leaves_alone(world, {0, 9, 10, 12}));
 }
 
 TEST_CASE("recovery: a body that jumps farther than its size is not swept along, and what it lands on gets clean",

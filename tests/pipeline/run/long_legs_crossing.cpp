@@ -49,7 +49,8 @@ TEST_CASE("legs that go through each other in wide trousers: what they carry nei
     const StepReport report = stepper->step(state, setup.drive_at(state.time + dt), dt, to);
     REQUIRE(report.status == StepStatus::accepted);
     Exemption exemption;
-    crossings.switch_off(gather_nodes(state.x, {state.obstacles[0]}), gather_nodes(to.x, {to.obstacles[0]}), exemption);
+    crossings.switch_off(gather_nodes(state.x, {state.obstacles[0]}), gather_nodes(to.x, {to.obstacles[0]}),
+                         setup.drive_at(state.time + dt).worn, exemption);
     const bool crosses = !exemption.off.empty();
     if (crosses && to.frame < 103) {
       ++frames;
