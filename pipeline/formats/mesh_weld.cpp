@@ -1,18 +1,12 @@
 #include "pipeline/formats/mesh_weld.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 
-#include <fmt/format.h>
-
-#include "collision/geometry/disjoint_sets.hpp"
+#include "collision/geometry/same_places.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 
 namespace selvedge {
 namespace {
-
-constexpr double same_place = 1e-6;  // in diagonals of the box
 
 void renumber(const std::vector<int>& numbers, int count, Mesh& mesh) {
   Points x(count, 3);
@@ -30,41 +24,6 @@ void renumber(const std::vector<int>& numbers, int count, Mesh& mesh) {
 }
 
 }  // namespace
-
-std::vector<int> same_places(const Points& x) {
-  const int n = static_cast<int>(x.rows());
-  DisjointSets sets(n);
-  const Eigen::RowVector3d low = x.colwise().minCoeff(), high = x.colwise().maxCoeff();
-  const double near = same_place * (high - low).norm();
-  // Sorted by cubes of that edge, whose neighbours are looked up. Their numbers stay exact in doubles.
-  using Cube = std::array<double, 3>;
-  const auto cube_of = [&](int v) {
-    Cube cube{};
-    for (int k = 0; k < 3 && near > 0; ++k) cube[static_cast<std::size_t>(k)] = std::floor((x(v, k) - low[k]) / near);
-    return cube;
-  };
-  std::vector<std::pair<Cube, int>> sorted;
-  for (int v = 0; v < n; ++v) sorted.emplace_back(cube_of(v), v);
-  std::sort(sorted.begin(), sorted.end());
-  for (int v = 0; v < n; ++v) {
-    const Cube own = cube_of(v);
-    for (int dx = -1; dx <= 1; ++dx)
-      for (int dy = -1; dy <= 1; ++dy) {
-        // A column of three cubes lies side by side.
-        const Cube first{own[0] + dx, own[1] + dy, own[2] - 1};
-        auto entry = std::lower_bound(sorted.begin(), sorted.end(), std::pair(first, -1));
-        for (; entry != sorted.end() && entry->first[0] == first[0] && entry->first[1] == first[1] &&
-               entry->first[2] <= own[2] + 1;
-             ++entry) {
-          if (sets.root(entry->second) == sets.root(v)) continue;
-          if ((x.row(entry->second) - x.row(v)).norm() <= near) sets.join(entry->second, v);
-        }
-      }
-  }
-  std::vector<int> places(static_cast<std::size_t>(n));
-  for (int v = 0; v < n; ++v) places[static_cast<std::size_t>(v)] = sets.root(v);
-  return places;
-}
 
 int coincident_vertices(const Points& x) {
   const std::vector<int> places = same_places(x);

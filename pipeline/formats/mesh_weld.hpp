@@ -4,11 +4,7 @@
 
 namespace selvedge {
 
-// Of each vertex the lowest one that lies where it does: within a millionth of the box's diagonal, and the same for
-// chains of such. Positions must be finite.
-std::vector<int> same_places(const Points& x);
-
-// How many vertices lie where a lower one does.
+// How many vertices lie where a lower one does (same_places.hpp).
 int coincident_vertices(const Points& x);
 
 // Joins vertices that lie at one place: the lowest of them stays, vertices are numbered anew in their order, triangles

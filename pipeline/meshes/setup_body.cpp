@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/bodies/body_hdf5.hpp"
+#include "pipeline/bodies/body_outward.hpp"
 #include "pipeline/bodies/body_smpl.hpp"
 #include "pipeline/bodies/mannequin.hpp"
 #include "pipeline/bodies/smpl_joints.hpp"
@@ -160,6 +161,7 @@ Performance read_performance(const Config& section, const std::filesystem::path&
   const Config &clip = section["clip"], &shape = section["shape"];
   Performance who;
   who.body = read_model(section["model"], folder);
+  turn_outward(section["model"].text(), who.body, who.warnings);
   who.surface = make_surface(static_cast<int>(who.body.skin.rest.rows()), who.body.skin.triangles);
   const bool of_smpl = std::filesystem::path(section["model"].text()).extension() == ".npz";
   if (shape.given)

@@ -1,0 +1,116 @@
+#include "collision/geometry/welded_surface.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "collision/geometry/disjoint_sets.hpp"
+
+namespace selvedge {
+namespace {
+
+using Corners = std::array<int, 3>;
+
+Corners corners_of(const Surface& surface, int t) {
+  return {surface.triangles(t, 0), surface.triangles(t, 1), surface.triangles(t, 2)};
+}
+
+// The faces to keep, ascending.
+std::vector<int> kept_faces(const Surface& surface, const std::vector<int>& places) {
+  std::vector<std::pair<Corners, int>> faces;
+  for (int t = 0; t < surface.triangles.rows(); ++t) {
+    Corners at = corners_of(surface, t);
+    for (int& v : at) v = places[v];
+    if (at[0] == at[1] || at[1] == at[2] || at[2] == at[0]) continue;
+    std::ranges::rotate(at, std::ranges::min_element(at));
+    faces.emplace_back(at, t);
+  }
+  std::ranges::sort(faces);
+  const auto repeated = std::ranges::unique(faces, {}, [](const auto& face) { return face.first; });
+  faces.erase(repeated.begin(), repeated.end());
+  std::vector<int> kept;
+  for (const auto& face : faces) kept.push_back(face.second);
+  std::ranges::sort(kept);
+  return kept;
+}
+
+// An edge of a face between two places, the lower one first.
+struct PlacedEdge {
+  std::array<int, 2> places, vertices;
+};
+
+std::vector<PlacedEdge> placed_edges(const Surface& surface, const std::vector<int>& kept,
+                                     const std::vector<int>& places) {
+  std::vector<PlacedEdge> edges;
+  for (const int t : kept)
+    for (int k = 0; k < 3; ++k) {
+      int a = surface.triangles(t, k), b = surface.triangles(t, (k + 1) % 3);
+      if (places[b] < places[a]) std::swap(a, b);
+      edges.push_back({{places[a], places[b]}, {a, b}});
+    }
+  std::ranges::stable_sort(edges, {}, &PlacedEdge::places);
+  return edges;
+}
+
+// Faces of each edge.
+std::vector<int> face_counts(const Surface& surface) {
+  std::vector<int> count(static_cast<std::size_t>(surface.edges.rows()), 0);
+  for (const int edge : surface.triangle_edges.reshaped()) ++count[edge];
+  return count;
+}
+
+// The kept faces between joined vertices.
+WeldedSurface joined_at(const Surface& surface, const std::vector<int>& kept, DisjointSets& sets) {
+  WeldedSurface result;
+  for (int v = 0; v < surface.vertex_count; ++v) result.joined.push_back(sets.root(v));
+  Triangles triangles(static_cast<Eigen::Index>(kept.size()), 3);
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      triangles(static_cast<Eigen::Index>(i), k) = result.joined[surface.triangles(kept[i], k)];
+  result.surface = make_surface(surface.vertex_count, triangles);
+  return result;
+}
+
+// Bars the places at the ends of edges that have got more than two faces. True where there are such.
+bool bar_crowded(const Surface& before, const std::vector<int>& kept, const Surface& after,
+                 const std::vector<int>& places, std::vector<char>& barred) {
+  if (after.nonmanifold_edges == 0) return false;
+  const std::vector<int> had = face_counts(before), has = face_counts(after);
+  bool found = false;
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const int now = has[after.triangle_edges(static_cast<Eigen::Index>(i), k)];
+      if (now <= 2 || now <= had[before.triangle_edges(kept[i], k)]) continue;
+      for (const int v : {before.triangles(kept[i], k), before.triangles(kept[i], (k + 1) % 3)}) {
+        found = found || !barred[places[v]];
+        barred[places[v]] = 1;
+      }
+    }
+  return found;
+}
+
+}  // namespace
+
+std::optional<WeldedSurface> welded_surface(const Surface& surface, const std::vector<int>& places) {
+  const std::vector<int> kept = kept_faces(surface, places);
+  const std::vector<PlacedEdge> edges = placed_edges(surface, kept, places);
+  std::vector<char> barred(places.size(), 0);
+  for (;;) {
+    DisjointSets sets(surface.vertex_count);
+    for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
+      while (end < edges.size() && edges[end].places == edges[begin].places) ++end;
+      for (std::size_t k = 0; k < 2 && end - begin == 2; ++k)
+        if (!barred[edges[begin].places[k]]) sets.join(edges[begin].vertices[k], edges[begin + 1].vertices[k]);
+    }
+    if (sets.count() == surface.vertex_count && std::ssize(kept) == surface.triangles.rows()) return {};
+    WeldedSurface result = joined_at(surface, kept, sets);
+    if (!bar_crowded(surface, kept, result.surface, places, barred)) return result;
+  }
+}
+
+void hold_together(const WeldedSurface& welded, Points& x) {
+  for (std::size_t v = 0; v < welded.joined.size(); ++v)
+    if (const int to = welded.joined[v]; to != static_cast<int>(v)) x.row(static_cast<Eigen::Index>(v)) = x.row(to);
+}
+
+}  // namespace selvedge
