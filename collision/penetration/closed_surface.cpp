@@ -4,6 +4,7 @@
 #include <string>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/turned_alike.hpp"
 
 namespace selvedge {
 namespace {
@@ -43,48 +44,14 @@ std::vector<int> garments_of_triangles(const Surface& cloth, const Surface& clos
   return garment;
 }
 
-int corner_at_edge(const Surface& surface, int triangle, int edge) {
-  const auto& edges = surface.triangle_edges;
-  return edges(triangle, 0) == edge ? 0 : edges(triangle, 1) == edge ? 1 : 2;
-}
-
-// Do both triangles of an edge run along it from the same end?
-bool same_direction(const Surface& surface, int edge, int a, int b) {
-  const int i = corner_at_edge(surface, a, edge), j = corner_at_edge(surface, b, edge);
-  return surface.triangles(a, i) == surface.triangles(b, j);
-}
-
-// Sets `turn` and `orientable`, neighbour by neighbour.
+// Sets `turn` and `orientable`.
 void turn_alike(ClosedSurface& closed) {
   const Surface& surface = closed.surface;
-  const int count = static_cast<int>(surface.triangles.rows());
-  std::vector<int> uses(static_cast<std::size_t>(surface.edges.rows()), 0);
-  for (const int edge : surface.triangle_edges.reshaped()) ++uses[edge];
-  closed.turn.assign(static_cast<std::size_t>(count), 0);
+  TurnedAlike alike = turned_alike(surface);
   closed.orientable.assign(static_cast<std::size_t>(surface.component_count), 1);
-  for (int seed = 0; seed < count; ++seed) {
-    if (closed.turn[seed] != 0) continue;
-    closed.turn[seed] = 1;
-    for (std::vector<int> stack{seed}; !stack.empty();) {
-      const int t = stack.back();
-      stack.pop_back();
-      for (int k = 0; k < 3; ++k) {
-        const int edge = surface.triangle_edges(t, k);
-        const auto [first, second] = surface.edge_triangles[edge];
-        const int next = first == t ? second : first;
-        char& orientable = closed.orientable[surface.component[surface.triangles(t, 0)]];
-        if (uses[edge] > 2) orientable = 0;
-        if (next < 0 || next == t) continue;
-        const int wanted = same_direction(surface, edge, t, next) ? -closed.turn[t] : closed.turn[t];
-        if (closed.turn[next] == 0) {
-          closed.turn[next] = static_cast<signed char>(wanted);
-          stack.push_back(next);
-        } else if (closed.turn[next] != wanted) {
-          orientable = 0;
-        }
-      }
-    }
-  }
+  for (int t = 0; t < surface.triangles.rows(); ++t)
+    if (!alike.orientable[alike.part[t]]) closed.orientable[surface.component[surface.triangles(t, 0)]] = 0;
+  closed.turn = std::move(alike.turn);
 }
 
 }  // namespace

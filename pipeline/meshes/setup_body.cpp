@@ -11,6 +11,7 @@
 
 #include "collision/geometry/welded_surface.hpp"
 #include "pipeline/bodies/body_hdf5.hpp"
+#include "pipeline/bodies/body_outward.hpp"
 #include "pipeline/bodies/body_smpl.hpp"
 #include "pipeline/bodies/mannequin.hpp"
 #include "pipeline/bodies/skin_places.hpp"
@@ -164,6 +165,7 @@ Performance read_performance(const Config& section, const std::filesystem::path&
   const Config &clip = section["clip"], &shape = section["shape"];
   Performance who;
   who.body = read_model(section["model"], folder);
+  turn_outward(section["model"].text(), who.body, who.warnings);
   who.surface = make_surface(static_cast<int>(who.body.skin.rest.rows()), who.body.skin.triangles);
   if (std::optional<WeldedSurface> welded = welded_surface(who.surface, same_places(who.body.skin)))
     std::tie(who.surface, who.joined) = std::pair(std::move(welded->surface), std::move(welded->joined));

@@ -11,6 +11,7 @@
 #include "pipeline/meshes/setup_mesh.hpp"
 #include "pipeline/meshes/setup_motion.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/shapes/outward_mesh.hpp"
 #include "pipeline/shapes/primitives.hpp"
 
 namespace selvedge {
@@ -67,16 +68,23 @@ Shape read_primitive(const Config& section) {
 
 Sequence one_frame(Points x, Triangles triangles) { return {{std::move(x)}, std::move(triangles), steady(1, 1)}; }
 
-// A body at rest is a sequence of one frame.
+// A body at rest is a sequence of one frame. Its closed shells face outwards.
 Sequence read_body(const Config& section, const std::filesystem::path& folder, std::vector<std::string>& warnings) {
   if (section["sequence"].given) return read_sequence(section["sequence"], folder, warnings);
-  if (section["trajectory"].given) return read_recorded(section["trajectory"], folder, warnings);
+  if (const Config& run = section["trajectory"]; run.given) {
+    Sequence recorded = read_recorded(run, folder, warnings);
+    for (const Points& frame : recorded.frames) refuse_far(run, "the recorded obstacle", frame);
+    turn_outward(run["file"].text(), {}, recorded.frames, same_places(recorded.frames), recorded.triangles, warnings);
+    return recorded;
+  }
   if (const Config& file = section["mesh"]; file.given) {
-    const Mesh mesh = read_mesh_section(file, folder);
+    Mesh mesh = read_mesh_section(file, folder);
     warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
+    turn_outward(file["file"].text(), mesh, warnings);
     return one_frame(mesh.x, mesh.triangles);
   }
   Shape shape = read_primitive(section);
+  turn_outward("obstacle", {}, {&shape.x, 1}, same_places(shape.x), shape.triangles, warnings);
   return one_frame(std::move(shape.x), std::move(shape.triangles));
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/same_places.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/read_point_cache.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
@@ -11,6 +12,7 @@
 #include "pipeline/meshes/setup_motion.hpp"
 #include "pipeline/meshes/setup_obstacle.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/shapes/outward_mesh.hpp"
 
 namespace selvedge {
 namespace {
@@ -50,12 +52,17 @@ SampleTimes cache_times(const Config& section, const PointCache& cache, std::vec
   return times;
 }
 
+// What a sequence of files is called, for people.
+std::string sequence_name(const Config& section) {
+  return section["pattern"].given ? section["pattern"].text() : section["files"].words.front();
+}
+
 // The positions of a point cache on the faces of a mesh.
 Sequence cached_sequence(const Config& section, const std::filesystem::path& folder,
                          std::vector<std::string>& warnings) {
   const Config& name = section["cache"];
   if (!section["mesh"].given) name.fail("is given without a mesh", "give the faces: mesh: FILE.obj");
-  const Mesh mesh = read_mesh(existing_path(section["mesh"], folder));
+  Mesh mesh = read_mesh(existing_path(section["mesh"], folder));
   PointCache cache = read_point_cache(existing_path(name, folder));
   if (cache.frames.front().rows() != mesh.x.rows())
     name.fail(fmt::format("has {} vertices, its mesh has {}", cache.frames.front().rows(), mesh.x.rows()),
@@ -63,6 +70,7 @@ Sequence cached_sequence(const Config& section, const std::filesystem::path& fol
   warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
   const double unit = read_unit(section["unit"]);
   for (Points& x : cache.frames) x *= unit;
+  turn_outward(section["mesh"].text(), mesh.groups, cache.frames, same_places(cache.frames), mesh.triangles, warnings);
   SampleTimes times = cache_times(section, cache, warnings);
   return {std::move(cache.frames), mesh.triangles, std::move(times)};
 }
@@ -113,6 +121,8 @@ Sequence read_sequence(const Config& section, const std::filesystem::path& folde
     }
     sequence.frames.push_back(unit * mesh.x);
   }
+  turn_outward(sequence_name(section), first.groups, sequence.frames, same_places(sequence.frames), sequence.triangles,
+               warnings);
   return sequence;
 }
 

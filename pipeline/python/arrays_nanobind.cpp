@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/same_places.hpp"
+#include "pipeline/shapes/outward_mesh.hpp"
 
 namespace selvedge {
 namespace {
@@ -66,6 +68,18 @@ Triangles triangles_of(const nb::handle& array, Eigen::Index vertices, const std
       triangles(t, k) = static_cast<int>(v);
     }
   return triangles;
+}
+
+void warn(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings)
+    if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) < 0) throw nb::python_error();
+}
+
+void turn_outward_warning(const std::string& name, const Points& x, Triangles& triangles) {
+  std::vector<std::string> warnings;
+  if (x.rows() > 0 && triangles.rows() > 0 && x.allFinite())
+    turn_outward(name, {}, {&x, 1}, same_places(x), triangles, warnings);
+  warn(warnings);
 }
 
 nb::ndarray<nb::numpy, double, nb::shape<-1, 3>> view_of(Points& points, const nb::handle& owner) {

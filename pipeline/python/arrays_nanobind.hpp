@@ -18,6 +18,12 @@ Points points_of(const nanobind::handle& array, const std::string& where, NotFin
 // The same of vertex indices, m x 3 whole numbers of 0 .. vertices - 1.
 Triangles triangles_of(const nanobind::handle& array, Eigen::Index vertices, const std::string& where);
 
+// As Python's UserWarning, one each. Throws what Python raises where its filters make errors of warnings.
+void warn(const std::vector<std::string>& warnings);
+
+// Turns the closed shells of a surface outwards (outward_mesh.hpp), and warns as `warn` does.
+void turn_outward_warning(const std::string& name, const Points& x, Triangles&);
+
 // A view of points that `owner` holds: numpy reads and writes them where they are, and keeps the owner alive.
 nanobind::ndarray<nanobind::numpy, double, nanobind::shape<-1, 3>> view_of(Points&, const nanobind::handle& owner);
 

@@ -34,6 +34,7 @@ class World {
 
   World(const std::filesystem::path& file, const std::vector<std::string>& overrides, const nb::dict& kinds)
       : setup_(read_setup(file, overrides, kinds_with(kinds, held_))) {
+    warn(setup_.warnings);
     prepare(setup_);
     state_ = setup_.initial;
     stepper_ = make_stepper(setup_);
@@ -59,13 +60,14 @@ class World {
 
   int add_obstacle_arrays(const nb::handle& x, const nb::handle& triangles, const std::string& name) {
     must_be_open();
-    obstacles_.push_back(points_of(x, "obstacle `" + name + "`, x"));
-    const int number = add_obstacle(
-        setup_.scene, static_cast<int>(obstacles_.back().rows()),
-        triangles_of(triangles, obstacles_.back().rows(), "obstacle `" + name + "`, triangles"), true, name);
+    const std::string noun = "obstacle `" + name + "`";
+    obstacles_.push_back(points_of(x, noun + ", x"));
+    Triangles faces = triangles_of(triangles, obstacles_.back().rows(), noun + ", triangles");
+    if (obstacles_.back().allFinite()) turn_outward_warning(noun, obstacles_.back(), faces);
+    const int number = add_obstacle(setup_.scene, static_cast<int>(obstacles_.back().rows()), faces, true, name);
     joined_.emplace_back();
-    Surface& surface = setup_.scene.obstacles.back().surface;
     if (!obstacles_.back().allFinite()) return number;
+    Surface& surface = setup_.scene.obstacles.back().surface;
     if (std::optional<WeldedSurface> welded = welded_surface(surface, same_places(obstacles_.back()))) {
       surface = std::move(welded->surface);
       joined_.back() = std::move(welded->joined);

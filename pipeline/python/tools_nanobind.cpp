@@ -32,22 +32,26 @@ std::vector<SheetView> sheets_of(const Meshes& meshes) {
   return sheets;
 }
 
-// Arrays as a mesh of its own, at the end of the list.
-void add_mesh(const nb::handle& x, const nb::handle& triangles, const std::string& before, Meshes& meshes) {
+// Arrays as a mesh of its own, at the end of the list. `body`: what it is called if its closed shells are to face
+// outwards; empty: it is a cloth.
+void add_mesh(const nb::handle& x, const nb::handle& triangles, const std::string& before, const std::string& body,
+              Meshes& meshes) {
   meshes.points.push_back(points_of(x, before + "x"));
   const Eigen::Index n = meshes.points.back().rows();
-  meshes.surfaces.push_back(make_surface(static_cast<int>(n), triangles_of(triangles, n, before + "triangles")));
+  Triangles faces = triangles_of(triangles, n, before + "triangles");
+  if (!body.empty()) turn_outward_warning(body, meshes.points.back(), faces);
+  meshes.surfaces.push_back(make_surface(static_cast<int>(n), faces));
 }
 
 // The cloth, then the bodies.
 Meshes meshes_of(const nb::handle& x, const nb::handle& triangles, const nb::list& bodies) {
   Meshes meshes;
-  add_mesh(x, triangles, "", meshes);
+  add_mesh(x, triangles, "", "", meshes);
   for (const nb::handle body : bodies) {
     const std::string where = "body " + std::to_string(meshes.points.size() - 1);
     if (!nb::isinstance<nb::sequence>(body) || nb::len(body) != 2)
       throw Error("is no pair", where, "give (x, triangles) for every body");
-    add_mesh(body[0], body[1], where + ", ", meshes);
+    add_mesh(body[0], body[1], where + ", ", where, meshes);
   }
   return meshes;
 }
@@ -116,7 +120,8 @@ nb::list contours_of_arrays(const nb::handle& x, const nb::handle& triangles, co
 
 nb::dict distance_of_arrays(const nb::handle& points, const nb::handle& x, const nb::handle& triangles) {
   const Points at = points_of(points, "points");
-  const Meshes meshes = meshes_of(x, triangles, nb::list());
+  Meshes meshes;
+  add_mesh(x, triangles, "", "the surface", meshes);
   DistanceField field(meshes.surfaces[0]);
   field.move_to(meshes.points[0]);
   const std::vector<SignedDistance> found = field.ask(at);

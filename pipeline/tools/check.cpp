@@ -12,6 +12,7 @@
 #include "physics/scene/make_scene.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/shapes/outward_mesh.hpp"
 #include "pipeline/tools/check_measures.hpp"
 
 namespace selvedge {
@@ -36,6 +37,7 @@ void add_body_files(const CheckRequest& request, Bodies& bodies, CheckReport& re
   for (const std::filesystem::path& file : request.bodies) {
     Mesh mesh = read_mesh(file);
     for (const std::string& warning : mesh.warnings) report.warnings.push_back(file.string() + ": " + warning);
+    turn_outward(file.string(), mesh, report.warnings);
     const int vertex_count = static_cast<int>(mesh.x.rows());
     bodies.add(vertex_count, mesh.triangles, std::move(mesh.x));
   }

@@ -11,6 +11,7 @@
 #include "pipeline/bodies/body_hdf5.hpp"
 #include "pipeline/bodies/body_jointed.hpp"
 #include "pipeline/bodies/body_makehuman.hpp"
+#include "pipeline/bodies/body_outward.hpp"
 #include "pipeline/bodies/body_smpl.hpp"
 #include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/config/config_units.hpp"
@@ -52,7 +53,8 @@ BodyModel read(const BodyRequest& request, BodyReport& report) {
 BodyReport convert_body(const BodyRequest& request) {
   h5::check_out_name(request.out, "bodies");
   BodyReport report;
-  const BodyModel body = read(request, report);
+  BodyModel body = read(request, report);
+  turn_outward(request.file.string(), body, report.warnings);
   const Points& rest = body.skin.rest;
   const Points joints = joint_positions(body, {});
   report.out = request.out;
@@ -75,9 +77,9 @@ BodyReport convert_body(const BodyRequest& request) {
 
 std::string body_json(const BodyReport& r) {
   const nlohmann::ordered_json json = {
-      {"body", r.out.string()}, {"vertices", r.vertices}, {"triangles", r.triangles},  {"closed", r.closed},
-      {"joints", r.joints},     {"shapes", r.shapes},     {"height", r.height},        {"arms_off", r.arms_off},
-      {"t_pose", r.t_pose},     {"lacks", r.lacks},       {"animations", r.animations}};
+      {"body", r.out.string()}, {"vertices", r.vertices}, {"triangles", r.triangles},   {"closed", r.closed},
+      {"joints", r.joints},     {"shapes", r.shapes},     {"height", r.height},         {"arms_off", r.arms_off},
+      {"t_pose", r.t_pose},     {"lacks", r.lacks},       {"animations", r.animations}, {"warnings", r.warnings}};
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -96,6 +98,7 @@ std::string body_text(const BodyReport& r) {
   else
     add("zero pose", fmt::format("no joint `{}`: only its own animations move it", r.lacks));
   if (!r.animations.empty()) add("animations", fmt::format("{}", fmt::join(r.animations, ", ")));
+  for (const std::string& warning : r.warnings) add("warning", warning);
   add("body", r.out.string());
   return text;
 }

@@ -23,6 +23,7 @@ struct BodyReport {
   bool t_pose = false;  // as near to it that clips turn from the zero pose
   std::string lacks;    // a joint of SMPL's that is not there, so that only its own animations move it; empty: none
   std::vector<std::string> animations;  // of a glTF file
+  std::vector<std::string> warnings;
 };
 
 // Reads a body by its extension and writes it for scenes to use. Throws Error with what is missing in the request, and

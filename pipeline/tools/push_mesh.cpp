@@ -8,6 +8,7 @@
 #include "learned/repulsion/repulsive_layer.hpp"
 #include "learned/repulsion/smooth_push.hpp"
 #include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/shapes/outward_mesh.hpp"
 
 namespace selvedge {
 namespace {
@@ -61,9 +62,11 @@ void push_by(const PushRequest& request, const DistanceField& body, const Surfac
 
 PushReport push_mesh(const PushRequest& request) {
   PushReport report;
-  const Mesh mesh = read_mesh(request.file), solid = read_mesh(request.body);
-  for (const Mesh* read : {&mesh, &solid})
+  const Mesh mesh = read_mesh(request.file);
+  Mesh solid = read_mesh(request.body);
+  for (const Mesh* read : std::initializer_list<const Mesh*>{&mesh, &solid})
     report.warnings.insert(report.warnings.end(), read->warnings.begin(), read->warnings.end());
+  turn_outward(request.body.string(), solid, report.warnings);
   const Surface garment = make_surface(static_cast<int>(mesh.x.rows()), mesh.triangles);
   const Surface surface = make_surface(static_cast<int>(solid.x.rows()), solid.triangles);
   const std::optional<Mesh> truth = request.truth ? std::optional(read_truth(request, mesh)) : std::nullopt;

@@ -19,6 +19,7 @@
 #include "pipeline/patterns/stand_round.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/materials.hpp"
+#include "pipeline/shapes/outward_mesh.hpp"
 
 namespace selvedge {
 namespace {
@@ -26,8 +27,10 @@ namespace {
 bool is_mesh(const std::filesystem::path& file) { return file.extension() == ".obj" || file.extension() == ".ply"; }
 
 // A body of one joint, which carries all of it.
-BodyModel body_of_mesh(const std::filesystem::path& file) {
-  const Mesh mesh = read_mesh(file);
+BodyModel body_of_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+  Mesh mesh = read_mesh(file);
+  warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
+  turn_outward(file.string(), mesh, warnings);
   BodyModel body;
   body.name = file.stem().string();
   body.skin.rest = mesh.x;
@@ -42,10 +45,12 @@ BodyModel body_of_mesh(const std::filesystem::path& file) {
   return body;
 }
 
-BodyModel body_to_sew_on(const PatternRequest& request) {
-  if (is_mesh(request.body)) return body_of_mesh(request.body);
-  return read_performance(read_values(table::body_section(), {{"model", "--body " + request.body, {request.body}}}), {})
-      .body;
+BodyModel body_to_sew_on(const PatternRequest& request, std::vector<std::string>& warnings) {
+  if (is_mesh(request.body)) return body_of_mesh(request.body, warnings);
+  Performance who =
+      read_performance(read_values(table::body_section(), {{"model", "--body " + request.body, {request.body}}}), {});
+  warnings.insert(warnings.end(), who.warnings.begin(), who.warnings.end());
+  return std::move(who.body);
 }
 
 // Frames of the sewing as a trajectory of the panels, which has one topology.
@@ -137,7 +142,7 @@ PatternReport sew_garment(const PatternRequest& request) {
     write_mesh(request.out, mesh.placed, mesh.triangles);
     return report;
   }
-  const BodyModel body = body_to_sew_on(request);
+  const BodyModel body = body_to_sew_on(request, report.warnings);
   report.raised = below_floor(body.skin.rest);
   mesh.placed.col(1).array() -= report.raised;
   check_stands_round(mesh, body.skin.rest, request.file.string());

@@ -7,6 +7,7 @@
 #include "pipeline/config/config_units.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/run/simulate.hpp"
+#include "pipeline/shapes/outward_mesh.hpp"
 #include "pipeline/tools/check.hpp"
 
 namespace selvedge {
@@ -22,8 +23,11 @@ std::vector<Body> read_bodies(const UntangleRequest& request, UntangleReport& re
   for (const std::filesystem::path& file : request.bodies) {
     Mesh mesh = read_mesh(file);
     report.warnings.insert(report.warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
+    const std::size_t said = report.warnings.size();
+    turn_outward(file.string(), mesh, report.warnings);
     Surface surface = make_surface(static_cast<int>(mesh.x.rows()), mesh.triangles);
-    if (!is_closed(surface)) report.warnings.push_back(file.string() + ": is open, so that nothing can be inside it");
+    if (!is_closed(surface) && report.warnings.size() == said)
+      report.warnings.push_back(file.string() + ": is open, so that nothing can be inside it");
     bodies.push_back({std::move(surface), std::move(mesh.x)});
   }
   return bodies;
