@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "collision/exact/orientation.hpp"
+#include "collision/geometry/stop_scope.hpp"
 
 namespace selvedge {
 namespace {
@@ -105,8 +106,11 @@ std::vector<int> winding_numbers(const Surface& surface, const Points& x, const 
   const Grid grid = make_grid(surface, x);
   std::vector<int> result(points.rows(), 0);
   const int count = static_cast<int>(points.rows());
+  StopPoll stop;
 #pragma omp parallel for schedule(dynamic, 256)
-  for (int i = 0; i < count; ++i) result[i] = winding_number(grid, surface, x, row(points, i));
+  for (int i = 0; i < count; ++i)
+    if (!stop.wanted()) result[i] = winding_number(grid, surface, x, row(points, i));
+  stop.check();
   return result;
 }
 
