@@ -87,7 +87,7 @@ TEST_CASE("every long phase of a step asks whether to stop, and ends where it is
 }
 
 TEST_CASE("a step of a soup of coincident vertices ends wherever it is stopped", "[stop_phases]") {
-  World w = make_world(soup(8));
+  World w = make_world(soup(4));
   const testing::Solid ball = testing::ball(10);
   add_obstacle(w, {Points(0.3 * ball.x), ball.surface.triangles});
   const auto stepper = testing::conventional(w.scene);
