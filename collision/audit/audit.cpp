@@ -11,6 +11,7 @@
 #include "collision/audit/moving_pair.hpp"
 #include "collision/geometry/distance.hpp"
 #include "collision/geometry/floating_point.hpp"
+#include "collision/geometry/stop_scope.hpp"
 
 namespace selvedge {
 namespace {
@@ -117,7 +118,7 @@ void judge_body_pair(const Triangle& a, const Triangle& c, Audit& found) {
   if (intersect(a, c)) found.obstacle_pairs.emplace_back(a.number, c.number);
 }
 
-void audit_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, bool with_self, PairBudget& budget,
+void audit_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, bool with_self, AuditBudget& budget,
                 Audit& found) {
   visit_pairs(
       cell, cloth.boxes, bodies.boxes, with_self, budget,
@@ -174,7 +175,7 @@ double squared_box_gap(const ExactBox& a, const ExactBox& b, double margin) {
 
 // Least squared gap of the pairs in a cell, or `bound` if none is nearer.
 double gap_in_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, double margin, double bound,
-                   PairBudget& budget) {
+                   AuditBudget& budget) {
   double least = bound;
   const auto take = [&](const Soup& second, int a, int b) {
     // A little slack for the rounding of the margins: passing over a pair must never change the result.
@@ -204,9 +205,10 @@ Audit audit_listed(const Surface& cloth, const Points& x, std::span<const AuditB
   constexpr int at_once = 256;
   const int of_self = static_cast<int>(self_pairs.size()), count = of_self + static_cast<int>(body_pairs.size());
   std::vector<Audit> found(static_cast<std::size_t>((count + at_once - 1) / at_once));
+  StopPoll stop;
 #pragma omp parallel for schedule(static)
   for (int k = 0; k < static_cast<int>(found.size()); ++k)
-    for (int i = k * at_once; i < std::min(count, (k + 1) * at_once); ++i) {
+    for (int i = k * at_once, end = stop.wanted() ? 0 : std::min(count, (k + 1) * at_once); i < end; ++i) {
       const auto& [a, b] = i < of_self ? self_pairs[i] : body_pairs[i - of_self];
       const Triangle mine = triangle_of(cloth, x, a, 0);
       if (i < of_self) {
@@ -218,6 +220,7 @@ Audit audit_listed(const Surface& cloth, const Points& x, std::span<const AuditB
       for (; t >= body->surface->triangles.rows(); ++body) t -= static_cast<int>(body->surface->triangles.rows());
       judge_body_pair(mine, triangle_of(*body->surface, *body->points, t, b - t), found[k]);
     }
+  stop.check();
   return joined_and_sorted(found);
 }
 
@@ -263,7 +266,7 @@ Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> ob
   const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, self);
   const int count = static_cast<int>(cells.size());
   std::vector<Audit> found(cells.size());
-  PairBudget budget(mine.boxes.size() + others.boxes.size());
+  AuditBudget budget(mine.boxes.size() + others.boxes.size());
 #pragma omp parallel for schedule(dynamic, 4)
   for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, budget, found[r]);
   budget.check();
@@ -282,7 +285,7 @@ double min_gap(const Surface& cloth, const Points& x, std::span<const AuditBody>
   const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, true);
   const int count = static_cast<int>(cells.size());
   std::vector<double> least(cells.size());
-  PairBudget budget(mine.boxes.size() + others.boxes.size());
+  AuditBudget budget(mine.boxes.size() + others.boxes.size());
 #pragma omp parallel for schedule(dynamic, 4)
   for (int r = 0; r < count; ++r) least[r] = gap_in_cell(cells[r], mine, others, margin, horizon * horizon, budget);
   budget.check();

@@ -63,7 +63,7 @@ struct Ray {
 void trace(std::vector<Ray>& rays, std::span<const ExactBox> faces, const Surface& body, const Points& y) {
   std::vector<ExactBox> boxes;
   for (const Ray& ray : rays) boxes.push_back(box_of({ray.from, ray.to}));
-  PairBudget budget(boxes.size() + faces.size());
+  AuditBudget budget(boxes.size() + faces.size());
   for (const Cell& cell : bisect(boxes, faces, false))
     visit_pairs(
         cell, boxes, faces, false, budget, [](int, int) {},

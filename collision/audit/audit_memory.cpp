@@ -159,7 +159,7 @@ bool measure(AuditMemory& memory, const Surface& cloth, std::span<const MovingBo
   const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, self);
   const int count = static_cast<int>(cells.size());
   std::vector<std::vector<AuditMemory::Pair>> found_self(cells.size()), found_body(cells.size());
-  PairBudget budget(mine.boxes.size() + others.boxes.size());
+  AuditBudget budget(mine.boxes.size() + others.boxes.size());
 #pragma omp parallel for schedule(dynamic, 4)
   for (int c = 0; c < count; ++c) {
     const auto keep = [&](std::vector<AuditMemory::Pair>& list, AuditMemory::Pair pair) {

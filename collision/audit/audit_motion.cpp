@@ -6,6 +6,7 @@
 #include "collision/audit/bisection.hpp"
 #include "collision/audit/moving_pair.hpp"
 #include "collision/geometry/floating_point.hpp"
+#include "collision/geometry/stop_scope.hpp"
 
 namespace selvedge {
 namespace {
@@ -193,7 +194,7 @@ struct Found {
 
 // reach: as of MotionEnd.
 void audit_cell(const Cell& cell, const Side& cloth, const Side& bodies, bool self, int max_halvings, double reach,
-                PairBudget& budget, Found& found) {
+                AuditBudget& budget, Found& found) {
   visit_pairs(
       cell, cloth.boxes, bodies.boxes, self, budget,
       [&](int a, int b) {
@@ -224,10 +225,13 @@ std::vector<PassedPair> passed_of(const AuditQuestions& questions, const MovingB
   const auto face = [](const MovingBody& body, int t, int first_node) {
     return Side::Face{body.surface, body.x0, body.x1, t, first_node, t};
   };
-  for (const AuditMemory::Pair& pair : questions.self_pairs)
+  for (const AuditMemory::Pair& pair : questions.self_pairs) {
+    check_stop();
     PairAudit{face(cloth, std::min(pair.a, pair.b), 0), face(cloth, std::max(pair.a, pair.b), 0), max_halvings,
               passed}();
+  }
   for (const AuditMemory::Pair& pair : questions.body_pairs) {
+    check_stop();
     const MovingBody* body = bodies.data();
     int t = pair.b, first_node = cloth.surface->vertex_count;
     for (; t >= body->surface->triangles.rows(); ++body) {
@@ -268,7 +272,7 @@ MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x
   const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, self);
   const int count = static_cast<int>(cells.size());
   std::vector<Found> parts(cells.size());
-  PairBudget budget(mine.boxes.size() + others.boxes.size());
+  AuditBudget budget(mine.boxes.size() + others.boxes.size());
 #pragma omp parallel for schedule(dynamic, 4)
   for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, max_halvings, reach, budget, parts[r]);
   budget.check();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "collision/geometry/pair_budget.hpp"
+#include "collision/geometry/stop_scope.hpp"
 
 namespace selvedge {
 
@@ -31,12 +32,29 @@ struct Cell {
 // two of `first` (where within_first) or of one of `first` and one of `second`, are left out.
 std::vector<Cell> bisect(std::span<const ExactBox> first, std::span<const ExactBox> second, bool within_first);
 
+// What an audit may look at. It ends, too, where the flag of the thread's scope asks for that.
+class AuditBudget {
+ public:
+  explicit AuditBudget(std::int64_t triangles) : pairs_(triangles) {}
+  bool add(std::int64_t pairs) { return pairs_.add(pairs) && !stop_.wanted(); }
+  bool exceeded() const { return pairs_.exceeded() || stop_.was_wanted(); }
+  // Throws Stopped or TooManyPairs if it has ended.
+  void check() const {
+    stop_.check();
+    pairs_.check();
+  }
+
+ private:
+  PairBudget pairs_;
+  StopPoll stop_;
+};
+
 // Calls self(a, b) for the pairs of two of `first` (where within_first) and other(a, c) for those of one of `first` and
 // one of `second` that belong to the cell. Boxes are those given to bisect. Each pair is taken from the budget, and
 // every eight comparisons of boxes; once it is spent, here or elsewhere, some pairs are not visited.
 template <typename Self, typename Other>
 void visit_pairs(const Cell& cell, std::span<const ExactBox> first, std::span<const ExactBox> second, bool within_first,
-                 PairBudget& budget, Self&& self, Other&& other);
+                 AuditBudget& budget, Self&& self, Other&& other);
 
 // What was found in each cell, joined list by list.
 template <typename Found, typename... Lists>
@@ -87,7 +105,7 @@ int sweep_axis(const Cell&, std::span<const ExactBox> first);
 
 template <typename Self, typename Other>
 void visit_pairs(const Cell& cell, std::span<const ExactBox> first, std::span<const ExactBox> second, bool within_first,
-                 PairBudget& budget, Self&& self, Other&& other) {
+                 AuditBudget& budget, Self&& self, Other&& other) {
   const int axis = sweep_axis(cell, first);
   const Sweep mine(first, cell.first, axis), theirs(second, cell.second, axis);
   constexpr std::int64_t told_at_once = 1 << 12;

@@ -5,6 +5,7 @@
 
 #include "collision/contact/contact_normal.hpp"
 #include "collision/geometry/distance.hpp"
+#include "collision/geometry/stop_scope.hpp"
 
 namespace selvedge {
 namespace {
@@ -21,8 +22,10 @@ std::vector<Proximity> close_pairs(const ContactWorld& world, std::span<const No
   constexpr int chunk = 8192;
   const int chunks = (static_cast<int>(candidates.size()) + chunk - 1) / chunk;
   std::vector<std::vector<Proximity>> found(chunks);
+  StopPoll stop;
 #pragma omp parallel for schedule(dynamic)
-  for (int c = 0; c < chunks; ++c)
+  for (int c = 0; c < chunks; ++c) {
+    if (stop.wanted()) continue;
     for (const NodePair& pair :
          candidates.subspan(c * chunk, std::min<std::size_t>(chunk, candidates.size() - c * chunk))) {
       const Closest near = closest(pair, x);
@@ -35,6 +38,8 @@ std::vector<Proximity> close_pairs(const ContactWorld& world, std::span<const No
       for (int i = 0; i < 4; ++i) between += near.weights[i] * row(x, pair.nodes[i]);
       found[c].push_back({pair, near.weights, between.normalized(), gap, keep});
     }
+  }
+  stop.check();
   std::vector<Proximity> all;
   for (const auto& list : found) all.insert(all.end(), list.begin(), list.end());
   std::sort(all.begin(), all.end(), [](const Proximity& a, const Proximity& b) { return a.pair < b.pair; });

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "collision/contact/resolution.hpp"
+#include "collision/geometry/stop_scope.hpp"
 
 namespace selvedge {
 namespace {
@@ -31,9 +32,10 @@ std::vector<Impact> impacts_of(const PathPairs& path, const Eigen::VectorXd& inv
   const PathMotion motion(path, x0, x1);
   const int count = static_cast<int>(path.pairs.size()), chunks = (count + chunk - 1) / chunk;
   std::vector<std::vector<Impact>> found(chunks);
+  StopPoll stop;
 #pragma omp parallel for schedule(dynamic)
   for (int c = 0; c < chunks; ++c)
-    for (int i = c * chunk; i < std::min((c + 1) * chunk, count); ++i) {
+    for (int i = c * chunk, end = stop.wanted() ? 0 : std::min((c + 1) * chunk, count); i < end; ++i) {
       const NodePair& pair = path.pairs[i];
       const auto any = [&](auto&& test) { return std::any_of(pair.nodes.begin(), pair.nodes.end(), test); };
       if (!moved.empty() && !any([&](int n) { return moved[n] != 0; })) continue;
@@ -44,6 +46,7 @@ std::vector<Impact> impacts_of(const PathPairs& path, const Eigen::VectorXd& inv
         impact = find_impact(pair, x0, x1, own, normals_of);
       if (impact) found[c].push_back(*impact);
     }
+  stop.check();
   std::vector<Impact> all;
   for (const auto& list : found) all.insert(all.end(), list.begin(), list.end());
   std::sort(all.begin(), all.end(), [](const Impact& a, const Impact& b) { return a.pair < b.pair; });

@@ -7,6 +7,7 @@
 #include "collision/contact/contact_normal.hpp"
 #include "collision/geometry/distance.hpp"
 #include "collision/geometry/factorisations.hpp"
+#include "collision/geometry/stop_scope.hpp"
 
 namespace selvedge {
 namespace {
@@ -102,6 +103,7 @@ double project_zone(std::span<Impact*> impacts, const Eigen::VectorXd& inverse_m
       if (violation > 0.9 * earlier) break;
       if (sweep > 0) earlier = violation;
     }
+    check_stop();
     violation = 0;
     for (Impact* impact : impacts) {
       const double give = compliance(*impact, inverse_mass);

@@ -7,6 +7,7 @@
 #include "collision/exact/symbolic_orientation.hpp"
 #include "collision/exact/triangle_pair.hpp"
 #include "collision/geometry/corners.hpp"
+#include "collision/geometry/stop_scope.hpp"
 #include "collision/search/bvh_traversal.hpp"
 #include "collision/search/intersections.hpp"
 
@@ -264,13 +265,16 @@ Segments find_segments(std::span<const SheetView> sheets) {
   const std::vector<Candidate> tested = candidates(sheets);
   const int count = static_cast<int>(tested.size());
   std::vector<std::optional<PairResult>> results(tested.size());
+  StopPoll stop;
 #pragma omp parallel for schedule(dynamic, 256)
   for (int i = 0; i < count; ++i) {
+    if (stop.wanted()) continue;
     const Candidate& pair = tested[i];
     PairResult result =
         cross(sheets, make_face(sheets, first_rank, 0, pair.a), make_face(sheets, first_rank, pair.sheet, pair.b));
     if (!result.crossings.empty() || result.touching) results[i] = std::move(result);
   }
+  stop.check();
 
   Segments found;
   std::vector<Crossing> all;

@@ -6,6 +6,7 @@
 
 #include "collision/exact/orientation.hpp"
 #include "collision/geometry/closed_shells.hpp"
+#include "collision/geometry/stop_scope.hpp"
 
 namespace selvedge {
 namespace {
@@ -114,8 +115,11 @@ std::vector<int> winding_numbers(const Surface& surface, const Points& x, const 
   if (std::ranges::find(closed, 1) == closed.end()) return result;
   const Grid grid = make_grid(surface, x, closed);
   const int count = static_cast<int>(points.rows());
+  StopPoll stop;
 #pragma omp parallel for schedule(dynamic, 256)
-  for (int i = 0; i < count; ++i) result[i] = winding_number(grid, surface, x, row(points, i));
+  for (int i = 0; i < count; ++i)
+    if (!stop.wanted()) result[i] = winding_number(grid, surface, x, row(points, i));
+  stop.check();
   return result;
 }
 

@@ -1,5 +1,7 @@
 #include "collision/geometry/parallel.hpp"
 
+#include "collision/geometry/stop_scope.hpp"
+
 #ifdef _OPENMP
 #include <omp.h>
 #endif
@@ -29,8 +31,11 @@ void use_threads([[maybe_unused]] int count) {
 }
 
 void parallel_for(int count, [[maybe_unused]] int grain, const std::function<void(int)>& body) {
+  StopPoll stop;
 #pragma omp parallel for schedule(dynamic, grain)
-  for (int i = 0; i < count; ++i) body(i);
+  for (int i = 0; i < count; ++i)
+    if (!stop.wanted()) body(i);
+  stop.check();
 }
 
 }  // namespace selvedge

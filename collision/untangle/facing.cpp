@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "collision/geometry/cell_grid.hpp"
+#include "collision/geometry/stop_scope.hpp"
 
 namespace selvedge {
 namespace {
@@ -144,11 +145,13 @@ int facing_vertex(const PosedCubes& posed, int v, const std::vector<int>& near) 
 std::vector<int> facing_vertices(const FacingBody& body, const Points& x, const Points& normals) {
   const PosedCubes posed(body, x, normals);
   std::vector<int> partner(static_cast<std::size_t>(x.rows()));
+  StopPoll stop;
 #pragma omp parallel
   {
     std::vector<int> in_cubes, near;  // groups
 #pragma omp for schedule(dynamic, 16)
     for (int c = 0; c < static_cast<int>(posed.filled.size()); ++c) {
+      if (stop.wanted()) continue;
       in_cubes.clear();
       posed.grid.for_each_cube_around(posed.filled[c], cubes_away, [&](int cube) {
         const int other = posed.place[cube];
@@ -166,6 +169,7 @@ std::vector<int> facing_vertices(const FacingBody& body, const Points& x, const 
       }
     }
   }
+  stop.check();
   return partner;
 }
 

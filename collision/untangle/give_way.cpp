@@ -6,6 +6,7 @@
 
 #include "collision/geometry/cell_grid.hpp"
 #include "collision/geometry/disjoint_sets.hpp"
+#include "collision/geometry/stop_scope.hpp"
 #include "collision/search/intersections.hpp"
 #include "collision/untangle/facing.hpp"
 #include "collision/untangle/kept_shape.hpp"
@@ -114,6 +115,7 @@ Points pressed(const SoftTissue& tissue, const Points& skinned, const Points& x,
   const std::vector<int> moving = with_surroundings(tissue, meets);
   Points to = x;
   for (int sweep = 0; sweep < tissue.options.press_sweeps; ++sweep) {
+    check_stop();
     smooth_displacement(tissue.shape, x, moving, tissue.options.smoothing, to);
     const Points from = to;
     for (const Meeting& m : found) {
@@ -150,6 +152,7 @@ std::vector<Place> places_of(const SoftTissue& tissue, const Pairs& skinned, con
   std::vector<Place> places;
   for (int root = 0; root < body.vertex_count; ++root) {
     if (!near[root] || sets.root(root) != root) continue;
+    check_stop();
     const auto is_here = [&](const auto& pair) { return sets.root(body.triangles(pair.first, 0)) == root; };
     std::vector<char> core(near.size());
     for (int v = 0; v < body.vertex_count; ++v) core[v] = sets.root(v) == root;

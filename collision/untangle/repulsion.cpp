@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "collision/geometry/distance.hpp"
+#include "collision/geometry/stop_scope.hpp"
 
 namespace selvedge {
 namespace {
@@ -54,7 +55,9 @@ std::vector<Separation> Repulsion::find(const Points& x, const std::vector<char>
   const Points nodes = gather_nodes(x, obstacle_points_);
   search_.find(nodes, nodes, horizon, pairs_);
   std::vector<Separation> separations;
-  for (const NodePair& pair : pairs_) {
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    if (k % 4096 == 0) check_stop();
+    const NodePair& pair = pairs_[k];
     if (!is_movable(pair, reach) || !is_clear(pair, tangled, wide)) continue;
     const Closest now = closest(pair, nodes);
     const double distance = std::sqrt(now.squared_distance);

@@ -8,6 +8,7 @@
 #include "collision/contour/buried.hpp"
 #include "collision/contour/find_contours.hpp"
 #include "collision/geometry/floating_point.hpp"
+#include "collision/geometry/stop_scope.hpp"
 #include "collision/search/bvh.hpp"
 #include "collision/untangle/kept_shape.hpp"
 #include "collision/untangle/let_through.hpp"
@@ -181,6 +182,7 @@ Points propose(const KeptShape& shape, const Freedom& freedom, std::span<const S
   const StretchRange range{options.least_stretch, options.largest_stretch};
   Points x = from;
   for (int i = 0; i < options.sweeps; ++i) {
+    check_stop();
     smooth_displacement(shape, shape.x0, freedom.vertices, 0.3, x);
     limit_stretch(shape, freedom.triangles, freedom.reach, range, x);
     satisfy(repulsions, freedom.reach, x);
@@ -188,6 +190,7 @@ Points propose(const KeptShape& shape, const Freedom& freedom, std::span<const S
     limit_displacement(shape, freedom.vertices, freedom.reach, x);
   }
   for (int i = 0; i < 10; ++i) {
+    check_stop();
     limit_stretch(shape, freedom.triangles, freedom.reach, range, x);
     limit_displacement(shape, freedom.vertices, freedom.reach, x);
   }

@@ -1,13 +1,13 @@
 #include "learned/network/weights_hdf5.hpp"
 
 #include <hdf5.h>
-#include <unistd.h>
 
 #include <Eigen/Core>
 #include <cstring>
 #include <memory>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/path_beside.hpp"
 #include "learned/network/architecture_text.hpp"
 #include "learned/network/weight_seal.hpp"
 
@@ -175,7 +175,7 @@ void require_half_range(const WeightFile& content, const std::string& where) {
 void write_content(const std::filesystem::path& path, const WeightFile& content, WeightStorage storage) {
   const PropertyId creation(H5Pcreate(H5P_FILE_CREATE));
   H5Pset_userblock(creation.id, seal_bytes);
-  const WeightStore store{FileId(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id, H5P_DEFAULT)), path.string()};
+  const WeightStore store{FileId(H5Fcreate(path.c_str(), H5F_ACC_EXCL, creation.id, H5P_DEFAULT)), path.string()};
   if (store.file.id < 0) throw Error("cannot make the file", path.string(), "check the folder and who may write there");
   write_texts(store, "format", {form_name});
   write_texts(store, "version", {content.version});
@@ -217,7 +217,7 @@ void write_weight_file(const std::filesystem::path& path, const WeightFile& cont
   check_weights(content.architecture, content.weights, path.string());
   if (storage == WeightStorage::half) require_half_range(content, path.string());
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  const FileBeside beside{path.string() + ".part" + std::to_string(getpid())};
+  const FileBeside beside{path_beside(path)};
   write_content(beside.path, content, storage);
   write_seal(beside.path);
   std::error_code error;

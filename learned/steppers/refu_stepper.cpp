@@ -43,7 +43,7 @@ class RefuStepper final : public Stepper {
 
   const StepperTraits& traits() const override { return inner_->traits(); }
   StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override {
-    return bounded_step(traits().name, [&] { return take_step(from, drive, dt, to, extras); });
+    return bounded_step(traits().name, extras.stop, [&] { return take_step(from, drive, dt, to, extras); });
   }
 
  private:

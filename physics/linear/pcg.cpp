@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 
 #include "collision/geometry/parallel.hpp"
+#include "collision/geometry/stop_scope.hpp"
 
 namespace selvedge {
 namespace {
@@ -254,6 +255,7 @@ PcgReport pcg(PcgMatrix<Real>& a, const Preconditioner<Real>& precondition, doub
   v.partial_rz.assign(chunks, 0.0);
   v.partial_pq.assign(chunks, 0.0);
   PcgReport report;
+  StopPoll stop;
 #pragma omp parallel if (chunks > small)
   {
     // Every thread keeps the scalars for itself and gets the same bits.
@@ -269,9 +271,11 @@ PcgReport pcg(PcgMatrix<Real>& a, const Preconditioner<Real>& precondition, doub
       }
       if (rz <= goal) own.end = PcgEnd::converged;
       if (rz <= goal || own.iterations == max_iterations) break;
+      stop.wanted();  // before the threads meet, so that all of them know the same after it
 #pragma omp for schedule(static)
       for (int c = 0; c < chunks; ++c)
         turn(static_cast<Real>(keep), v.z.data(), v.p.data(), c * pcg_chunk, std::min(rows, (c + 1) * pcg_chunk));
+      if (stop.was_wanted()) break;
       a.multiply(v.p, v.q, v.partial_pq);
       const double pq = sum(v.partial_pq);
       if (!(pq > 0) || !std::isfinite(pq)) {
@@ -297,6 +301,7 @@ PcgReport pcg(PcgMatrix<Real>& a, const Preconditioner<Real>& precondition, doub
 #pragma omp single
     report = own;
   }
+  stop.check();
   return report;
 }
 

@@ -1,25 +1,31 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "collision/geometry/pair_budget.hpp"
+#include "collision/geometry/stop_scope.hpp"
 #include "physics/scene/stepper.hpp"
 
 namespace selvedge {
 
 // The report of `take`, which takes a step; where one of its searches meets more pairs than it may look at
-// (pair_budget.hpp), that of a rejected step.
+// (pair_budget.hpp), or `stop` ends one (stop_scope.hpp), that of a rejected step.
 template <class Take>
-StepReport bounded_step(const std::string& by, Take&& take) {
+StepReport bounded_step(const std::string& by, const StopFlag& stop, Take&& take) {
+  StepReport rejected;
+  rejected.by = by;
+  rejected.status = StepStatus::rejected;
+  std::optional<StopScope> scope;
+  if (stop) scope.emplace(stop);
   try {
     return take();
   } catch (const TooManyPairs&) {
-    StepReport report;
-    report.by = by;
-    report.status = StepStatus::rejected;
-    report.reason = Reason::too_many_pairs;
-    return report;
+    rejected.reason = Reason::too_many_pairs;
+  } catch (const Stopped&) {
+    rejected.reason = Reason::stopped;
   }
+  return rejected;
 }
 
 }  // namespace selvedge

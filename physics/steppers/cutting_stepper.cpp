@@ -19,7 +19,7 @@ class CuttingStepper final : public Stepper {
   const StepperTraits& traits() const override { return whole_->traits(); }
   StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override {
     if (from.cut_out.empty()) return whole_->step(from, drive, dt, to, extras);
-    return bounded_step(traits().name, [&] { return step_cut(from, drive, dt, extras.stop, to); });
+    return bounded_step(traits().name, extras.stop, [&] { return step_cut(from, drive, dt, extras.stop, to); });
   }
 
  private:

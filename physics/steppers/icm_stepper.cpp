@@ -57,7 +57,7 @@ class IcmStepper final : public Stepper {
 
   const StepperTraits& traits() const override { return traits_; }
   StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override {
-    return bounded_step(traits_.name, [&] { return take_step(from, drive, dt, to, extras); });
+    return bounded_step(traits_.name, extras.stop, [&] { return take_step(from, drive, dt, to, extras); });
   }
 
  private:

@@ -125,7 +125,7 @@ StepReport RecoveringStepper::step(const State& from, const Drive& drive, double
     report.collision.jumped = restart->jumped;
     return report;
   }
-  StepReport report = bounded_step(traits().name, [&] {
+  StepReport report = bounded_step(traits().name, extras.stop, [&] {
     return has_contact_ ? step_parted(from, drive, dt, to, extras) : inner_->step(from, drive, dt, to, extras);
   });
   if (report.status == StepStatus::accepted && !to.clean && drive.worn.rows() > 0)

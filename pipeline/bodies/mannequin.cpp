@@ -34,7 +34,7 @@ BodyModel make_mannequin() {
 
 BodyModel kept_mannequin(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / ("mannequin-" + std::to_string(mannequin_recipe) + ".h5");
-  if (std::filesystem::exists(file)) {
+  if (!folder.empty() && std::filesystem::exists(file)) {
     try {
       BodyModel body = read_body(file);
       if (body.name == mannequin_name()) return body;
@@ -42,7 +42,7 @@ BodyModel kept_mannequin(const std::filesystem::path& folder) {
     }
   }
   BodyModel body = make_mannequin();
-  write_cached(file, [&] { write_body(file, body); });
+  if (!folder.empty()) write_cached(file, [&] { write_body(file, body); });
   return body;
 }
 

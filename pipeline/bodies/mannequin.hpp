@@ -22,8 +22,8 @@ BodyModel make_mannequin();
 // To be raised with every change of what make_mannequin makes, so that no file of an older one is used.
 constexpr int mannequin_recipe = 1;
 
-// The mannequin of a file in the folder, which is made and written where there is none or none that can be read.
-// Throws Error if it cannot be written.
+// The mannequin of a file in the folder, which is made and written where there is none or none that can be read;
+// made anew for an empty path. Throws Error if it cannot be written.
 BodyModel kept_mannequin(const std::filesystem::path& folder);
 
 }  // namespace selvedge

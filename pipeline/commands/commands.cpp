@@ -7,6 +7,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "collision/geometry/stop_scope.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/host/folder_lock.hpp"
 #include "pipeline/host/interrupt.hpp"
@@ -55,7 +56,8 @@ void warn_of_training() {
 }
 
 // Makes the page and says where it is, or why it is not.
-std::string page_text(const std::filesystem::path& out) {
+std::string page_text(const std::filesystem::path& out, const RunSummary& summary) {
+  if (summary.end == RunEnd::interrupted) return "not made of a run that was stopped: `selvedge view` makes one";
   const std::optional<std::string> trouble = write_page(out);
   return trouble ? "not made: " + *trouble : (out / "view.html").string();
 }
@@ -98,11 +100,18 @@ int simulate_command(const SimulateArguments& arguments, bool json) {
   request.progress = &progress;
   request.stop = request.interrupt = InterruptWatch::interrupted;
   OutcomeWatch outcome(setup.scene, setup.outcomes, setup.run.frames / setup.run.fps);
-  outcome(setup.initial, setup.drive_at(0));
   request.observe = [&](const FrameEvent& event) { outcome(event.state, event.drive); };
-  const RunSummary summary = run_scene(setup, *stepper, request);
+  RunSummary summary;
+  try {
+    const StopScope scope(request.interrupt);
+    outcome(setup.initial, setup.drive_at(0));
+    summary = run_scene(setup, *stepper, request);
+  } catch (const Stopped&) {
+    people(json) << "stopped before the first frame\n";
+    return 1;
+  }
   people(json) << summary_text(summary) << fmt::format("{:<20}{}\n", "trajectory", (request.out / "run.h5").string());
-  if (arguments.view) people(json) << fmt::format("{:<20}{}\n", "page to look at", page_text(request.out));
+  if (arguments.view) people(json) << fmt::format("{:<20}{}\n", "page to look at", page_text(request.out, summary));
   const bool came_true = arguments.resume || report_outcome(setup.outcomes, outcome.results(), people(json));
   if (summary.end == RunEnd::interrupted) people(json) << "go on with --resume and the same arguments\n";
   if (json) std::cout << summary_json(summary);

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "collision/geometry/path_beside.hpp"
 #include "pipeline/compare/compare.hpp"
 #include "pipeline/formats/hdf5_handles.hpp"
 #include "pipeline/host/numbers_json.hpp"
@@ -140,8 +141,7 @@ std::string compare_json(const CompareResult& result) {
 }
 
 void write_compare_hdf5(const std::filesystem::path& path, const CompareResult& result) {
-  std::filesystem::path beside = path;
-  beside += ".part";
+  const std::filesystem::path beside = path_beside(path);
   h5::File file = h5::File::create(beside);
   const h5::Handle rows = file.make_group("rows"), scenes = file.make_group("scenes");
   std::vector<std::string> scene, setting, trouble, names;

@@ -1,38 +1,52 @@
 #include "pipeline/formats/checkpoint.hpp"
 
-#include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/path_beside.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
 #include "pipeline/formats/hdf5_handles.hpp"
 
 namespace selvedge {
 namespace {
 
-[[noreturn]] void throw_unfit(const h5::File& file, const std::string& what) {
-  throw Error(what, file.path().string(), "the checkpoint is damaged; run without --resume");
+constexpr double farthest_place = 1e6, fastest = 1e9, longest_run = 1e9;  // [m], [m/s], [s]: no scene goes so far
+
+[[noreturn]] void throw_unfit(const std::filesystem::path& file, const std::string& field, const std::string& what) {
+  throw Error(what, file.string() + ": " + field, "run without --resume");
 }
 
-Points read_points(const h5::File& file, const std::string& name) {
+void check_rows(const h5::File& file, const std::string& name, const Points& points, double most) {
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    if (!(points.row(i).cwiseAbs().maxCoeff() <= most) || !points.row(i).allFinite())
+      throw_unfit(file.path(), name,
+                  fmt::format("row {} is ({:g}, {:g}, {:g}), and {:g} is the most", i, points(i, 0), points(i, 1),
+                              points(i, 2), most));
+}
+
+Points read_points(const h5::File& file, const std::string& name, double most) {
   const std::vector<hsize_t> shape = file.shape_of(name, 2);
   if (shape[1] != 3 || shape[0] > std::numeric_limits<std::int32_t>::max())
-    throw_unfit(file, name + " has an unexpected shape");
+    throw_unfit(file.path(), name, fmt::format("is {} x {}, not rows of 3", shape[0], shape[1]));
   Points points(static_cast<Eigen::Index>(shape[0]), 3);
   file.read_all(name, H5T_NATIVE_DOUBLE, shape, points.data());
+  check_rows(file, name, points, most);
   return points;
 }
 
-double read_value(const h5::File& file, const std::string& name) {
+double read_time(const h5::File& file) {
   double value = 0;
-  file.read_all(name, H5T_NATIVE_DOUBLE, {1}, &value);
-  if (!std::isfinite(value)) throw_unfit(file, name + " is not finite");
+  file.read_all("time", H5T_NATIVE_DOUBLE, {1}, &value);
+  if (!(value >= 0 && value <= longest_run)) throw_unfit(file.path(), "time", fmt::format("is {:g} s", value));
   return value;
 }
 
-int read_whole(const h5::File& file, const std::string& name) {
+int read_whole(const h5::File& file, const std::string& name, int most) {
   int value = 0;
   file.read_all(name, H5T_NATIVE_INT, {1}, &value);
+  if (value < 0 || value > most) throw_unfit(file.path(), name, fmt::format("is {}, not from 0 to {}", value, most));
   return value;
 }
 
@@ -40,7 +54,8 @@ std::string numbered(const std::string& name, std::size_t k) { return name + std
 
 std::vector<Points> read_all(const h5::File& file, const std::string& name) {
   std::vector<Points> all;
-  while (file.has(numbered(name, all.size()))) all.push_back(read_points(file, numbered(name, all.size())));
+  while (file.has(numbered(name, all.size())))
+    all.push_back(read_points(file, numbered(name, all.size()), farthest_place));
   return all;
 }
 
@@ -80,16 +95,17 @@ MemoryRows read_rows(const h5::File& file, const std::string& name) {
 
 Memory read_memory(const h5::File& file) {
   if (!file.has("memory_rows_of"))
-    throw Error("the checkpoint is of an earlier version of this program", file.path().string(),
-                "run without --resume");
+    throw_unfit(file.path(), "memory_rows_of", "is missing: an earlier version of this program wrote the checkpoint");
   const std::vector<int> rows_of = read_integers(file, "memory_rows_of");
   if (rows_of.empty()) return {};
   const std::vector<std::string> names = file.read_texts("memory_names");
   const std::vector<int> positions = read_integers(file, "memory_positions");
   if (names.size() != rows_of.size() || names.size() != positions.size())
-    throw_unfit(file, "memory_names has an unexpected shape");
+    throw_unfit(file.path(), "memory_names",
+                fmt::format("has {} names for {} blocks and {} marks", names.size(), rows_of.size(), positions.size()));
   for (const int rows : rows_of)
-    if (rows < 0 || rows > static_cast<int>(RowsOf::cloths)) throw_unfit(file, "memory_rows_of has an unknown kind");
+    if (rows < 0 || rows > static_cast<int>(RowsOf::cloths))
+      throw_unfit(file.path(), "memory_rows_of", fmt::format("has the unknown kind {}", rows));
   Memory memory;
   for (std::size_t k = 0; k < names.size(); ++k)
     memory.push_back(
@@ -97,49 +113,47 @@ Memory read_memory(const h5::File& file) {
   return memory;
 }
 
-// Arrays of vertices are of as many as there are, and what a step goes on from is finite.
-void check_whole(const h5::File& file, const State& state) {
-  bool same = state.v.rows() == state.x.rows(), finite = state.x.allFinite() && state.v.allFinite();
-  for (const MemoryBlock& block : state.memory) {
-    same = same && (block.rows_of != RowsOf::vertices || block.rows.rows() == state.x.rows());
-    finite = finite && block.rows.allFinite();
-  }
-  if (!same) throw_unfit(file, "has arrays of different numbers of vertices");
-  for (const Points& x : state.obstacles) finite = finite && x.allFinite();
-  if (!finite) throw_unfit(file, "has values that are not finite");
-  for (std::size_t k = 0; k < state.cut_out.size(); ++k)
-    if (state.cut_out[k] < 0 || (k > 0 && state.cut_out[k] <= state.cut_out[k - 1]))
-      throw_unfit(file, "cut_out does not ascend");
+std::vector<int> read_cut_out(const h5::File& file) {
+  std::vector<int> triangles = read_integers(file, "cut_out");
+  for (std::size_t k = 0; k < triangles.size(); ++k)
+    if (triangles[k] < 0 || (k > 0 && triangles[k] <= triangles[k - 1]))
+      throw_unfit(file.path(), "cut_out", fmt::format("does not ascend at its entry {}, {}", k, triangles[k]));
+  return triangles;
 }
 
-// How many rows a block has in this scene; -1 where any number will do.
-Eigen::Index rows_in(const Scene& scene, RowsOf rows_of) {
-  switch (rows_of) {
-    case RowsOf::vertices:
-      return scene.surface.vertex_count;
-    case RowsOf::triangles:
-      return scene.surface.triangles.rows();
-    case RowsOf::cloths:
-      return static_cast<Eigen::Index>(scene.cloths.size());
-    case RowsOf::obstacle_vertices: {
-      Eigen::Index count = 0;
-      for (const Obstacle& obstacle : scene.obstacles) count += obstacle.surface.vertex_count;
-      return count;
-    }
-    case RowsOf::none:
-      break;
+void write_inputs(const h5::File& file, const RunInputs& inputs) {
+  file.write_text("config", inputs.config);
+  file.write_constant("scene_hash", H5T_NATIVE_UINT64, {1}, &inputs.scene);
+  std::vector<std::string> names;
+  std::vector<std::uint64_t> hashes;
+  for (const InputFile& input : inputs.files) {
+    names.push_back(input.name);
+    hashes.push_back(input.hash);
   }
-  return -1;
+  if (!names.empty()) file.write_texts("input_names", names);
+  file.write_constant("input_hashes", H5T_NATIVE_UINT64, {hashes.size()}, hashes.data());
+}
+
+void read_inputs(const h5::File& file, Checkpoint& read) {
+  read.inputs.config = file.read_text("config");
+  read.knows_files = file.has("input_hashes");
+  if (!read.knows_files) return;
+  file.read_all("scene_hash", H5T_NATIVE_UINT64, {1}, &read.inputs.scene);
+  std::vector<std::uint64_t> hashes(file.shape_of("input_hashes", 1)[0]);
+  file.read_all("input_hashes", H5T_NATIVE_UINT64, {hashes.size()}, hashes.data());
+  const std::vector<std::string> names = hashes.empty() ? std::vector<std::string>{} : file.read_texts("input_names");
+  if (names.size() != hashes.size())
+    throw_unfit(file.path(), "input_names", fmt::format("has {} names for {} files", names.size(), hashes.size()));
+  for (std::size_t k = 0; k < names.size(); ++k) read.inputs.files.push_back({names[k], hashes[k]});
 }
 
 }  // namespace
 
-void write_checkpoint(const std::filesystem::path& path, const State& state, const std::string& config) {
-  std::filesystem::path beside = path;
-  beside += ".part";
+void write_checkpoint(const std::filesystem::path& path, const State& state, const RunInputs& inputs) {
+  const std::filesystem::path beside = path_beside(path);
   h5::File file = h5::File::create(beside);
   try {
-    file.write_text("config", config);
+    write_inputs(file, inputs);
     file.write_constant("time", H5T_NATIVE_DOUBLE, {1}, &state.time);
     file.write_constant("frame", H5T_NATIVE_INT, {1}, &state.frame);
     const int pinched = state.pinched, clean = state.clean;
@@ -160,40 +174,42 @@ void write_checkpoint(const std::filesystem::path& path, const State& state, con
   std::filesystem::rename(beside, path);
 }
 
-State read_checkpoint(const std::filesystem::path& path, const std::string& config) {
+Checkpoint read_checkpoint(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path))
     throw Error("there is nothing to resume: no checkpoint", path.string(),
                 "run without --resume; a run that ended has none, one that was stopped early may not yet have one");
   const h5::File file = h5::File::open(path);
-  if (file.read_text("config") != config)
-    throw Error("the checkpoint was made under another configuration", path.string(),
-                "resume with the same scene file, weights and --set, or run without --resume");
-  State state;
-  state.time = read_value(file, "time");
-  state.frame = read_whole(file, "frame");
-  state.pinched = read_whole(file, "pinched") != 0;
-  state.clean = read_whole(file, "clean") != 0;
-  state.x = read_points(file, "x");
-  state.v = read_points(file, "v");
+  Checkpoint read;
+  read_inputs(file, read);
+  State& state = read.state;
+  state.time = read_time(file);
+  state.frame = read_whole(file, "frame", std::numeric_limits<int>::max());
+  state.pinched = read_whole(file, "pinched", 1) != 0;
+  state.clean = read_whole(file, "clean", 1) != 0;
+  state.x = read_points(file, "x", farthest_place);
+  state.v = read_points(file, "v", fastest);
   state.obstacles = read_all(file, "obstacle_");
   state.memory = read_memory(file);
-  state.cut_out = read_integers(file, "cut_out");
-  check_whole(file, state);
-  return state;
+  state.cut_out = read_cut_out(file);
+  return read;
 }
 
 void check_fits(const std::filesystem::path& path, const State& state, const Scene& scene) {
-  bool fits = state.x.rows() == scene.surface.vertex_count && state.obstacles.size() == scene.obstacles.size();
-  for (std::size_t k = 0; fits && k < scene.obstacles.size(); ++k)
-    fits = state.obstacles[k].rows() == scene.obstacles[k].surface.vertex_count;
-  for (const MemoryBlock& block : state.memory) {
-    const Eigen::Index rows = rows_in(scene, block.rows_of);
-    fits = fits && (rows < 0 || block.rows.rows() == rows);
-  }
-  if (!state.cut_out.empty()) fits = fits && state.cut_out.back() < scene.surface.triangles.rows();
-  if (!fits)
-    throw Error("the checkpoint is of another scene", path.string(),
-                "a mesh or body that the scene names has changed: run without --resume");
+  const auto rows = [&](const std::string& field, Eigen::Index found, Eigen::Index wanted, const std::string& of) {
+    if (found != wanted) throw_unfit(path, field, fmt::format("has {} rows, {} has {} vertices", found, of, wanted));
+  };
+  rows("x", state.x.rows(), scene.surface.vertex_count, "the cloth of the scene");
+  rows("v", state.v.rows(), scene.surface.vertex_count, "the cloth of the scene");
+  if (state.obstacles.size() != scene.obstacles.size())
+    throw_unfit(path, "obstacle_*",
+                fmt::format("are {} obstacles, the scene has {}", state.obstacles.size(), scene.obstacles.size()));
+  for (std::size_t k = 0; k < scene.obstacles.size(); ++k)
+    rows(numbered("obstacle_", k), state.obstacles[k].rows(), scene.obstacles[k].surface.vertex_count,
+         "obstacle `" + scene.obstacles[k].name + "` of the scene");
+  if (!state.cut_out.empty() && state.cut_out.back() >= scene.surface.triangles.rows())
+    throw_unfit(path, "cut_out",
+                fmt::format("names triangle {}, the cloth of the scene has {}", state.cut_out.back(),
+                            scene.surface.triangles.rows()));
 }
 
 }  // namespace selvedge

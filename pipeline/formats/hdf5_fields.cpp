@@ -1,12 +1,11 @@
 #include "pipeline/formats/hdf5_fields.hpp"
 
-#include <unistd.h>
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/path_beside.hpp"
 
 namespace selvedge::h5 {
 namespace {
@@ -133,8 +132,7 @@ void check_out_name(const std::filesystem::path& out, const std::string& nouns) 
 
 void write_form(const std::filesystem::path& path, const FileForm& form,
                 const std::function<void(const File&)>& fields) {
-  std::filesystem::path beside = path;
-  beside += fmt::format(".{}.part", ::getpid());
+  const std::filesystem::path beside = path_beside(path);
   try {
     File file = File::create(beside);
     file.write_text("format", form.format);

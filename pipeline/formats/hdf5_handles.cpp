@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <memory>
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/host/bounds.hpp"
@@ -80,7 +81,7 @@ Handle text_type(std::size_t length) {
 File File::create(const std::filesystem::path& path) {
   silence();
   const Handle access = file_access(), creation = file_creation();
-  const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id());
+  const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_EXCL, creation.id(), access.id());
   return {path, Handle(checked(id, path, "make the file"), H5Fclose)};
 }
 
@@ -214,6 +215,51 @@ void File::check_stored(hid_t dataset, const std::string& name) const {
     fail(name, "declares " + std::to_string(wanted) + " bytes, of which " + std::to_string(stored) + " are stored");
 }
 
+namespace {
+
+std::string type_text(hid_t type) {
+  const std::string bits = std::to_string(8 * H5Tget_size(type)) + "-bit ";
+  switch (H5Tget_class(type)) {
+    case H5T_INTEGER:
+      return bits + "integers";
+    case H5T_FLOAT:
+      return bits + "floating-point numbers";
+    case H5T_STRING:
+      return "texts";
+    case H5T_COMPOUND:
+      return "rows of named columns";
+    default:
+      return "values of another kind";
+  }
+}
+
+// The name of a dataset in its file.
+std::string name_of(hid_t dataset) {
+  std::string name(static_cast<std::size_t>(std::max<ssize_t>(H5Iget_name(dataset, nullptr, 0), 0)), '\0');
+  if (!name.empty()) H5Iget_name(dataset, name.data(), name.size() + 1);
+  return name.starts_with('/') ? name.substr(1) : name;
+}
+
+}  // namespace
+
+// Columns that the file lacks are left as they are.
+void File::check_type(hid_t dataset, hid_t wanted, const std::string& name) const {
+  const Handle found(check(H5Dget_type(dataset), "read the type of " + name), H5Tclose);
+  if (H5Tget_class(found.id()) != H5Tget_class(wanted))
+    fail(name, "holds " + type_text(found.id()) + ", not " + type_text(wanted));
+  if (H5Tget_class(wanted) != H5T_COMPOUND) return;
+  for (int k = 0; k < H5Tget_nmembers(wanted); ++k) {
+    const auto at = static_cast<unsigned>(k);
+    const std::unique_ptr<char, herr_t (*)(void*)> column(H5Tget_member_name(wanted, at), H5free_memory);
+    const int there = H5Tget_member_index(found.id(), column.get());
+    if (there < 0) continue;
+    const Handle own(H5Tget_member_type(wanted, at), H5Tclose),
+        its(H5Tget_member_type(found.id(), static_cast<unsigned>(there)), H5Tclose);
+    if (H5Tget_class(own.id()) != H5Tget_class(its.id()))
+      fail(name + ", column " + column.get(), "holds " + type_text(its.id()) + ", not " + type_text(own.id()));
+  }
+}
+
 std::vector<hsize_t> File::shape_of(const std::string& name, std::size_t rank, bool growing) const {
   const Handle dataset = open_dataset(name);
   const std::vector<hsize_t> found = shape(dataset.id());
@@ -268,6 +314,7 @@ void File::read_all(const std::string& name, hid_t type, const std::vector<hsize
   const Handle dataset = open_dataset(name);
   const std::vector<hsize_t> found = shape(dataset.id());
   if (found != wanted) fail(name, "is " + shape_text(found) + ", not " + shape_text(wanted));
+  check_type(dataset.id(), type, name);
   if (std::find(wanted.begin(), wanted.end(), hsize_t{0}) != wanted.end()) return;
   check_stored(dataset.id(), name);
   check(H5Dread(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "read " + name);
@@ -308,11 +355,11 @@ void File::read_rows(hid_t dataset, hid_t type, const std::vector<hsize_t>& row_
   if (count == 0) return;
   const std::vector<hsize_t> extent = shape(dataset);
   if (extent.empty() || !std::equal(extent.begin() + 1, extent.end(), row_shape.begin(), row_shape.end()))
-    throw Error("has rows of another shape than " + shape_text(row_shape), path_.string(),
-                "the file is damaged or is none of this program; write it again");
+    fail(name_of(dataset), "is " + shape_text(extent) + ", not rows of " + shape_text(row_shape));
+  check_type(dataset, type, name_of(dataset));
   if (extent[0] < count || first > extent[0] - count)
-    throw Error("the file ends before row " + std::to_string(first) + " + " + std::to_string(count), path_.string(),
-                "write it again");
+    fail(name_of(dataset), "has " + std::to_string(extent[0]) + " rows, and rows " + std::to_string(first) + " to " +
+                               std::to_string(first + count - 1) + " are asked for");
   const Rows rows = select_rows(dataset, extent, first, count);
   check(H5Dread(dataset, type, rows.memory.id(), rows.file.id(), H5P_DEFAULT, data), "read");
 }

@@ -43,8 +43,8 @@ Handle text_type(std::size_t length);  // fixed length, padded with zeros; `leng
 // A file and the calls on it that may fail, each turned into an Error that names the file.
 class File {
  public:
-  static File create(const std::filesystem::path&);
-  static File open(const std::filesystem::path&);  // SWMR read: also what a killed writer has left
+  static File create(const std::filesystem::path&);  // one that is not there yet: take a path_beside, and rename it
+  static File open(const std::filesystem::path&);    // SWMR read: also what a killed writer has left
 
   hid_t id() const { return handle_.id(); }
   const std::filesystem::path& path() const { return path_; }
@@ -69,9 +69,10 @@ class File {
   bool has(const std::string& name) const;
   std::vector<hsize_t> shape(hid_t dataset) const;
 
-  // What is read may have been written by anyone: shapes are checked before anything is, and values must be in the
-  // file. Throws Error with file, field and sizes for another shape, for more values than what is stored can hold, for
-  // values that lie in other files, and for what HDF5 cannot read.
+  // What is read may have been written by anyone: shapes and types are checked before anything is, and values must be
+  // in the file. Throws Error with file, field and sizes for another shape, for another class of numbers (integers are
+  // no floating-point numbers, which HDF5 would convert), for more values than what is stored can hold, for values that
+  // lie in other files, and for what HDF5 cannot read.
   // The shape of a dataset with `rank` extents; `growing` ones may be ahead of what is stored.
   std::vector<hsize_t> shape_of(const std::string& name, std::size_t rank, bool growing = false) const;
   std::string read_text(const std::string& name) const;  // the only one, or the first
@@ -88,6 +89,7 @@ class File {
   File(std::filesystem::path path, Handle handle) : path_(std::move(path)), handle_(std::move(handle)) {}
   [[noreturn]] void fail(const std::string& name, const std::string& what) const;
   void check_stored(hid_t dataset, const std::string& name) const;
+  void check_type(hid_t dataset, hid_t wanted, const std::string& name) const;
   std::filesystem::path path_;
   Handle handle_;
 };

@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/path_beside.hpp"
 #include "pipeline/formats/trajectory_row.hpp"
 #include "pipeline/host/version.hpp"
 
@@ -139,8 +140,7 @@ void TrajectoryWriter::Impl::set(const h5::Handle& flag, std::int64_t value) {
 
 // The file takes its name only once it is open for SWMR, so that a file of that name can always be opened.
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const TrajectoryInfo& info) {
-  std::filesystem::path beside = path;
-  beside += ".part";
+  const std::filesystem::path beside = path_beside(path);
   try {
     impl_ = std::make_unique<Impl>(beside, info);
     impl_->make_datasets();

@@ -142,6 +142,7 @@ TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) {
                                   rows_of(r.file, "frames/report", {}, true));
   if (frames < 0 || static_cast<hsize_t>(frames) > stored)
     throw_damaged(r.file, "counts " + std::to_string(frames) + " frames and has " + std::to_string(stored));
+  rows_of(r.file, "frames/bad_triangles", {}, true);
   r.frames = static_cast<int>(frames);
   r.report = r.file.open_dataset("frames/report");
   r.x = r.file.open_dataset("frames/x");

@@ -14,7 +14,7 @@ Garment kept_garment(const std::filesystem::path& folder, const std::string& nam
       fmt::format("{}-{}-{}-{:.9g}-{:.9g}", name, mannequin_recipe, garment_recipe, options.edge, options.gap);
   for (const std::string& inner : under) stem += "-" + inner;
   const std::filesystem::path file = folder / "garments" / (stem + ".h5");
-  if (std::filesystem::exists(file)) {
+  if (!folder.empty() && std::filesystem::exists(file)) {
     try {
       Garment garment = read_garment(file);
       if (garment.name == name && garment.made_for == mannequin.name) return garment;
@@ -22,7 +22,7 @@ Garment kept_garment(const std::filesystem::path& folder, const std::string& nam
     }
   }
   Garment garment = make_garment(name, mannequin, options, under);
-  write_cached(file, [&] { write_garment(file, garment); });
+  if (!folder.empty()) write_cached(file, [&] { write_garment(file, garment); });
   return garment;
 }
 

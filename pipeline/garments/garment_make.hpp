@@ -25,8 +25,8 @@ Garment make_garment(const std::string& name, const BodyModel& mannequin, const 
 // To be raised with every change of what make_garment makes, so that no file of an older one is used.
 constexpr int garment_recipe = 3;
 
-// The same from a file in the folder, which is made and written where there is none or none that can be read. Throws
-// Error as well if it cannot be written.
+// The same from a file in the folder, which is made and written where there is none or none that can be read; made
+// anew for an empty path. Throws Error as well if it cannot be written.
 Garment kept_garment(const std::filesystem::path& folder, const std::string& name, const BodyModel& mannequin,
                      const GarmentOptions& = {}, std::span<const std::string> under = {});
 

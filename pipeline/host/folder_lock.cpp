@@ -23,16 +23,32 @@ std::string holder_of(int descriptor) {
 // Whether the path still names the open file: who held it before may have removed it since.
 bool is_named(int descriptor, const std::filesystem::path& path) {
   struct stat open = {}, named = {};
-  return ::fstat(descriptor, &open) == 0 && ::stat(path.c_str(), &named) == 0 && open.st_ino == named.st_ino &&
+  return ::fstat(descriptor, &open) == 0 && ::lstat(path.c_str(), &named) == 0 && open.st_ino == named.st_ino &&
          open.st_dev == named.st_dev;
+}
+
+// Whether what is written there is in no other file: a plain file of one name.
+bool is_own(int descriptor) {
+  struct stat open = {};
+  return ::fstat(descriptor, &open) == 0 && S_ISREG(open.st_mode) && open.st_nlink <= 1;
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& lock) {
+  throw Error("is a link or no plain file, and what it leads to would be overwritten", lock.string(),
+              "remove it, or choose another --out");
 }
 
 }  // namespace
 
 FolderLock::FolderLock(const std::filesystem::path& folder) : file_(folder / "run.lock") {
   for (;;) {
-    const int descriptor = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    const int descriptor = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0644);
+    if (descriptor < 0 && errno == ELOOP) refuse(file_);
     if (descriptor < 0) return;  // what cannot be written fails where it is written, with its reason
+    if (!is_own(descriptor)) {
+      ::close(descriptor);
+      refuse(file_);
+    }
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
       const bool held = errno == EWOULDBLOCK;
       const std::string holder = holder_of(descriptor);

@@ -9,7 +9,8 @@ namespace selvedge {
 // nothing is locked.
 class FolderLock {
  public:
-  // Throws Error, naming the process, where another one holds the folder, which must exist.
+  // Throws Error, naming the process, where another one holds the folder, which must exist, and where `run.lock` is a
+  // link or no plain file.
   explicit FolderLock(const std::filesystem::path& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;

@@ -15,6 +15,8 @@ bool make_plot(const std::filesystem::path& folder, const std::string& name, con
   write_file(folder / (name + ".gnuplot"),
              fmt::format("set terminal svg size {} font 'sans,11'\nset grid\nset key left top\nset output '{}.svg'\n{}",
                          size, name, body));
+  std::error_code ignored;
+  std::filesystem::remove(folder / (name + ".svg"), ignored);  // gnuplot would follow a link
   const std::string command = fmt::format("cd '{}' && gnuplot {}.gnuplot", folder.string(), name);
   return std::system(command.c_str()) == 0;
 }

@@ -4,30 +4,30 @@
 #include <system_error>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/path_beside.hpp"
 
 namespace selvedge {
 
-GrowingFile::GrowingFile(const std::filesystem::path& path) : path_(path), beside_(path) {
-  beside_ += ".part";
-  stream_.open(beside_, std::ios::binary | std::ios::trunc);
+GrowingFile::GrowingFile(const std::filesystem::path& path)
+    : path_(path), beside_(path_beside(path)), stream_(std::fopen(beside_.c_str(), "wbxe"), std::fclose) {
+  if (!stream_) failed_ = errno;
 }
 
 GrowingFile::~GrowingFile() {
-  if (kept_) return;
-  stream_.close();
+  if (kept_ || failed_ == EEXIST) return;
+  stream_.reset();
   std::error_code ignored;
   std::filesystem::remove(beside_, ignored);
 }
 
 void GrowingFile::write(std::string_view content) {
-  stream_.write(content.data(), static_cast<std::streamsize>(content.size()));
+  if (stream_ && failed_ == 0 && std::fwrite(content.data(), 1, content.size(), stream_.get()) != content.size())
+    failed_ = errno;
 }
 
 void GrowingFile::keep() {
-  std::error_code error;
-  stream_.flush();
-  if (!stream_) error = std::error_code(errno, std::generic_category());
-  stream_.close();
+  if (stream_ && std::fclose(stream_.release()) != 0 && failed_ == 0) failed_ = errno;
+  std::error_code error(failed_, std::generic_category());
   if (!error) std::filesystem::rename(beside_, path_, error);
   if (error)
     throw Error("cannot write (" + error.message() + ")", path_.string(),

@@ -1,13 +1,14 @@
 #pragma once
 
+#include <cstdio>
 #include <filesystem>
-#include <fstream>
+#include <memory>
 #include <string_view>
 
 namespace selvedge {
 
 // A file that is written in parts, beside its place, and takes its name when it is kept: a reader sees the old file or
-// the new one, never half of it. What is not kept is removed.
+// the new one, never half of it, and a link that has its name is replaced, not followed. What is not kept is removed.
 class GrowingFile {
  public:
   explicit GrowingFile(const std::filesystem::path&);
@@ -19,7 +20,8 @@ class GrowingFile {
 
  private:
   std::filesystem::path path_, beside_;
-  std::ofstream stream_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream_;  // null: it could not be made, or is closed
+  int failed_ = 0;                                          // errno of what went wrong first
   bool kept_ = false;
 };
 

@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <sstream>
+#include <vector>
 
 namespace selvedge {
 
@@ -13,9 +14,19 @@ std::string whole_file(const std::filesystem::path& path) {
   return text.str();
 }
 
-std::uint64_t hash_of(const std::string& text) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+std::uint64_t hash_of(std::string_view text, std::uint64_t before) {
+  for (const char c : text) before = (before ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return before;
+}
+
+std::uint64_t hash_of_file(const std::filesystem::path& path) {
+  std::uint64_t hash = hash_of("");
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return hash;
+  std::ifstream in(path, std::ios::binary);
+  std::vector<char> part(1 << 20);
+  while (in.read(part.data(), std::ssize(part)) || in.gcount() > 0)
+    hash = hash_of({part.data(), static_cast<std::size_t>(in.gcount())}, hash);
   return hash;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace selvedge {
 
@@ -10,7 +11,9 @@ namespace selvedge {
 // The same command then goes on where it was stopped, and another program or setting runs anew.
 
 std::string whole_file(const std::filesystem::path&);  // empty where there is none
-std::uint64_t hash_of(const std::string&);             // Fowler, Noll and Vo's 64-bit hash, variant 1a
-std::string program_key();                             // of this program's own file
+// Fowler, Noll and Vo's 64-bit hash, variant 1a; `before`: of what comes before the bytes.
+std::uint64_t hash_of(std::string_view, std::uint64_t before = 0xcbf29ce484222325u);
+std::uint64_t hash_of_file(const std::filesystem::path&);  // of its bytes; that of no bytes where there is no file
+std::string program_key();                                 // of this program's own file
 
 }  // namespace selvedge

@@ -1,6 +1,8 @@
 #include "pipeline/meshes/setup_paths.hpp"
 
 #include <dlfcn.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <cstdlib>
 
@@ -40,10 +42,24 @@ fs::path files_folder(const Config& scene, const fs::path& file) {
   return place;
 }
 
+namespace {
+
+// Whether another user may have put files there.
+bool is_shared(const fs::path& folder) {
+  struct stat found = {};
+  if (::stat(folder.c_str(), &found) != 0) return false;
+  return found.st_uid != ::geteuid() || (found.st_mode & S_IWOTH) != 0;
+}
+
+}  // namespace
+
 fs::path cache_folder() {
   for (const auto& [name, below] : {std::pair{"XDG_CACHE_HOME", ""}, std::pair{"HOME", ".cache"}})
-    if (const char* value = std::getenv(name); value && *value) return fs::path(value) / below / "selvedge";
-  return fs::temp_directory_path() / "selvedge";
+    if (const char* value = std::getenv(name); value && *value) {
+      const fs::path folder = fs::path(value) / below / "selvedge";
+      return is_shared(folder) ? fs::path() : folder;
+    }
+  return {};
 }
 
 namespace {

@@ -19,8 +19,8 @@ std::vector<std::filesystem::path> config_folders(const std::filesystem::path& f
 // `name` in the first of these that has it, or else in the last.
 std::filesystem::path config_near(const std::filesystem::path& folder, const std::string& name);
 
-// Where what is made once is kept: selvedge in XDG_CACHE_HOME, else in the user's .cache, else in the system's folder
-// for temporary files.
+// Where what is made once is kept: selvedge in XDG_CACHE_HOME, else in the user's .cache. Empty where the environment
+// has neither, and where another user may write there: nothing is kept then, for others could put files there.
 std::filesystem::path cache_folder();
 
 // Where the relative paths of a scene file begin: its `folder`, or its own. Throws Error where that is not there.

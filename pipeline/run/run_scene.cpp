@@ -7,16 +7,17 @@
 #include <optional>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/stop_scope.hpp"
 #include "pipeline/config/config.hpp"
-#include "pipeline/formats/checkpoint.hpp"
 #include "pipeline/formats/trajectory_row.hpp"
 #include "pipeline/formats/xdmf.hpp"
 #include "pipeline/host/folder_lock.hpp"
-#include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/peak_memory.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/run/record_frame.hpp"
+#include "pipeline/run/resume.hpp"
+#include "pipeline/run/run_inputs.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 
 namespace selvedge {
@@ -39,26 +40,15 @@ RunSummary empty_summary(const Setup& setup, const Stepper& stepper) {
   return summary;
 }
 
-// What a run may be resumed under: its configuration, and the weights that make its frames.
-std::string resumed_under(const Setup& setup) {
-  std::vector<std::string> files;
-  if (runs_network(setup)) files.push_back(setup.run.learned.weights);
-  if (setup.run.refu.on && !setup.run.refu.weights.empty()) files.push_back(setup.run.refu.weights);
-  std::string text = setup.config;
-  for (const std::string& file : files)
-    text += fmt::format("# {} {:016x}\n", file, hash_of(whole_file(setup.file.parent_path() / file)));
-  return text;
-}
-
 // The sink of a run: trajectory, summary, checkpoints.
 struct Recorder {
   const Setup& setup;
   const RunRequest& request;
   RunSummary& summary;
+  const RunInputs& inputs;
   TrajectoryWriter writer;
   EnergyTerms terms;
   std::vector<WornCloth> worn = setup.worn;
-  std::string under = resumed_under(setup);
   int next = 0;
   Clock::time_point last_checkpoint = Clock::now();
 
@@ -73,7 +63,7 @@ struct Recorder {
   }
 
   void checkpoint(const State& state) {
-    write_checkpoint(request.out / "checkpoint.h5", state, under);
+    write_checkpoint(request.out / "checkpoint.h5", state, inputs);
     last_checkpoint = Clock::now();
   }
 
@@ -88,11 +78,16 @@ struct Recorder {
 };
 
 // Frames up to the checkpoint's, from the file that the interrupted run has left.
-void copy_frames(const std::filesystem::path& old_file, int last_frame, Recorder& recorder) {
-  const TrajectoryReader reader(old_file);
-  if (reader.frame_count() <= last_frame)
-    throw Error("the trajectory ends before the checkpoint", old_file.string(), "run without --resume");
-  for (int i = 0; i <= last_frame; ++i) recorder.add(reader.frame(i));
+void copy_frames(const ResumedRun& resumed, const std::filesystem::path& folder, Recorder& recorder) {
+  try {
+    for (int i = 0; i <= resumed.state.frame; ++i) {
+      check_stop();
+      recorder.add(resumed_frame(resumed, i, folder));
+    }
+  } catch (...) {
+    std::filesystem::remove(folder / "resumed.h5");
+    throw;
+  }
 }
 
 // What an earlier run left must not pass for this one's if it fails.
@@ -125,23 +120,26 @@ std::string config_in(const std::filesystem::path& out, const Setup& setup) {
 
 RunSummary run_scene(const Setup& setup, Stepper& stepper, const RunRequest& request) {
   assert(request.resume || setup.initial.frame >= 0);
+  const StopScope scope(request.interrupt);
   make_folder(request.out);
   std::optional<FolderLock> lock;
   if (!request.locked) lock.emplace(request.out);
   const std::filesystem::path file = request.out / "run.h5", saved = request.out / "checkpoint.h5";
-  State state = request.resume ? read_checkpoint(saved, resumed_under(setup)) : setup.initial;
-  if (request.resume) check_fits(saved, state, setup.scene);
+  ResumedRun resumed;
+  if (request.resume) resumed = read_resumed(request.out, setup, stepper.traits(), run_inputs(setup));
+  State state = request.resume ? resumed.state : setup.initial;
   remove_results(request);
+  const RunInputs inputs = request.resume ? resumed.inputs : run_inputs(setup);
   write_file(request.out / "config.yaml", config_in(request.out, setup));
 
   // A resumed run writes beside the old file until all that is kept of it has been copied.
   const std::filesystem::path first_file = request.resume ? request.out / "resumed.h5" : file;
   RunSummary summary = empty_summary(setup, stepper);
   const TrajectoryInfo info = trajectory_info(setup.scene, setup.config, stepper.traits().name, setup.run.fps);
-  Recorder recorder{setup, request, summary, TrajectoryWriter(first_file, info),
-                    energy_terms(setup.scene, stepper.traits())};
+  Recorder recorder{
+      setup, request, summary, inputs, TrajectoryWriter(first_file, info), energy_terms(setup.scene, stepper.traits())};
   if (request.resume) {
-    copy_frames(file, state.frame, recorder);
+    copy_frames(resumed, request.out, recorder);
     std::filesystem::rename(first_file, file);
   } else {
     recorder.add(record_initial(setup.scene, recorder.terms, state, setup.drive_at(state.time)));

@@ -16,7 +16,7 @@ struct RunRequest {
   double checkpoint_seconds = 30;  // between checkpoints
   Progress* progress = nullptr;
   std::function<bool()> stop;  // asked after every frame; true ends the run cleanly
-  StopFlag interrupt;          // asked within steps (StepExtras): true ends the run at the last whole frame
+  StopFlag interrupt;          // asked within steps: true ends the run at its last whole frame (before one: Stopped)
   std::function<void(const FrameEvent&)> observe;  // shown every frame, outside the measured time
 };
 

@@ -8,6 +8,7 @@
 
 #include "collision/geometry/floating_point.hpp"
 #include "collision/geometry/parallel.hpp"
+#include "collision/geometry/stop_scope.hpp"
 #include "physics/steppers/step_audit.hpp"
 #include "pipeline/run/arrangement.hpp"
 
@@ -37,16 +38,28 @@ class FrameLoop {
       : stepper_(stepper), drive_at_(drive_at), dt_(dt), frames_(frames), state_(state), sink_(sink), stop_(stop) {}
 
   StepReport run() {
-    for (bool goes_on = true; goes_on;) {
-      const Clock::time_point started = Clock::now();
-      goes_on = next_frame();
-      if (threads_ > 1) arrangement_.took(seconds_since(started));
+    const StopScope scope(asked_);  // drives and audits that this thread makes end, too
+    try {
+      for (bool goes_on = true; goes_on;) {
+        const Clock::time_point started = Clock::now();
+        goes_on = next_frame();
+        if (threads_ > 1) arrangement_.took(seconds_since(started));
+      }
+    } catch (const Stopped&) {
+      last_ = {};
+      last_.by = stepper_.traits().name;
+      last_.status = StepStatus::rejected;
+      last_.reason = Reason::stopped;
     }
     return std::move(last_);
   }
 
  private:
   bool next_frame();
+  bool asks_to_stop() {
+    if (stopped(stop_)) stopping_ = true;
+    return stopping_;
+  }
   MadeFrame make(const State& from, Drive drive, bool leave_audits, const StopFlag& stop);
   MadeFrame make_again(Drive drive, double seconds);
   FoundBeside look_beside(std::optional<double> time_after);
@@ -63,6 +76,8 @@ class FrameLoop {
   State& state_;  // the last one that the sink has seen
   const FrameSink& sink_;
   const StopFlag& stop_;
+  std::atomic<bool> stopping_ = false;  // what it said last, for the thread beside
+  StopFlag asked_ = stop_ ? [this] { return asks_to_stop(); } : StopFlag();
   int threads_ = most_threads();
   Arrangement arrangement_;
   std::optional<MadeFrame> waiting_;  // the frame after it, for its verdict
@@ -90,7 +105,7 @@ MadeFrame FrameLoop::make(const State& from, Drive drive, bool leave_audits, con
 
 // A frame once more, after what was in vain.
 MadeFrame FrameLoop::make_again(Drive drive, double seconds) {
-  MadeFrame made = make(state_, std::move(drive), false, stop_);
+  MadeFrame made = make(state_, std::move(drive), false, asked_);
   made.seconds += seconds;
   return made;
 }
@@ -120,6 +135,8 @@ FoundBeside FrameLoop::make_and_look(const State& from, std::optional<MadeFrame>
   std::future<FoundBeside> beside = std::async(std::launch::async, [&, last = from.frame + 1 >= frames_] {
     restore_standard_arithmetic();
     use_threads(1);
+    const StopFlag told = [this] { return stopping_.load(); };
+    const StopScope scope(told);
     FoundBeside found = look_beside(last ? std::nullopt : std::optional(from.time + dt_ + dt_));
     done = true;
     return found;
@@ -128,11 +145,12 @@ FoundBeside FrameLoop::make_and_look(const State& from, std::optional<MadeFrame>
     const ThreadLimit limit(threads_ - 1);
     made = make(from, std::move(drive), from.clean, [&] {  // asked again and again: what is left is for all threads
       if (done) use_threads(threads_);
-      return stopped(stop_);
+      return asks_to_stop();
     });
   }
   made->seconds += waited;
   const Clock::time_point made_at = Clock::now();
+  while (stop_ && beside.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) asks_to_stop();
   FoundBeside found = beside.get();
   if (waiting_) waiting_->seconds += found.report.seconds.audit = seconds_since(made_at);
   return found;
@@ -142,7 +160,7 @@ MadeFrame FrameLoop::make_alone() {
   const Clock::time_point started = Clock::now();
   Drive drive = coming_drive(state_.time + dt_);
   const double waited = seconds_since(started);
-  MadeFrame made = make(state_, std::move(drive), false, stop_);
+  MadeFrame made = make(state_, std::move(drive), false, asked_);
   made.seconds += waited;
   return made;
 }
@@ -153,6 +171,8 @@ bool FrameLoop::hand_over(MadeFrame& made) {
   if (last_.reason == Reason::stopped) return false;
   const bool accepted = last_.status == StepStatus::accepted;
   if (accepted) std::swap(state_, made.state);
+  const StopFlag nobody;
+  const StopScope whole(nobody);  // what the sink begins with a frame, it ends
   return sink_({state_, made.drive, last_, made.seconds}) && accepted;
 }
 

@@ -16,9 +16,10 @@ std::filesystem::path mark_path() { return cache_folder() / "training-running"; 
 
 // A lock on a file: the system lets go of it when the process ends.
 RunningMark::RunningMark(const std::filesystem::path& configuration) {
+  if (cache_folder().empty()) return;
   std::error_code ignored;
   std::filesystem::create_directories(cache_folder(), ignored);
-  file_ = open(mark_path().c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  file_ = open(mark_path().c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0644);
   if (file_ < 0) return;
   if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
     other_ = whole_file(mark_path());
@@ -37,7 +38,8 @@ RunningMark::~RunningMark() {
 }
 
 std::optional<std::string> running_training() {
-  const int file = open(mark_path().c_str(), O_RDONLY | O_CLOEXEC);
+  if (cache_folder().empty()) return std::nullopt;
+  const int file = open(mark_path().c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   if (file < 0) return std::nullopt;
   const bool free = flock(file, LOCK_SH | LOCK_NB) == 0;
   close(file);

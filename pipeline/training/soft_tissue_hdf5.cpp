@@ -85,7 +85,7 @@ std::map<int, TissueDisplacements> read_clip(const std::filesystem::path& path, 
 
 void read_soft_tissue(const std::filesystem::path& folder, TrainingWorld& world) {
   for (TrainingBody& body : world.bodies)
-    for (std::size_t clip = 0; body.soft_tissue && clip < body.clips.size(); ++clip) {
+    for (std::size_t clip = 0; !folder.empty() && body.soft_tissue && clip < body.clips.size(); ++clip) {
       const std::filesystem::path path = soft_tissue_file(folder, world, body, clip, most_layers(world));
       if (!std::filesystem::exists(path)) continue;
       try {
@@ -97,7 +97,7 @@ void read_soft_tissue(const std::filesystem::path& folder, TrainingWorld& world)
 
 void write_soft_tissue(const std::filesystem::path& folder, const TrainingWorld& world) {
   for (const TrainingBody& body : world.bodies)
-    for (std::size_t clip = 0; body.soft_tissue && clip < body.clips.size(); ++clip) {
+    for (std::size_t clip = 0; !folder.empty() && body.soft_tissue && clip < body.clips.size(); ++clip) {
       const std::filesystem::path path = soft_tissue_file(folder, world, body, clip, most_layers(world));
       std::size_t there = 0;
       try {

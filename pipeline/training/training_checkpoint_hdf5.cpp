@@ -1,6 +1,9 @@
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -54,6 +57,12 @@ struct FieldsIn {
   void add(const std::string& name, const std::string& bytes) {
     sum = hash_of(fmt::format("{:016x} {} ", sum, name) + bytes);
   }
+  // A count that was written as a floating-point number.
+  std::int64_t whole(const std::string& name, double value, double most) const {
+    if (!(value >= 0 && value <= most) || value != std::floor(value))
+      fail(fmt::format("`{}` has the value {:g}, not a whole number from 0 to {:g}", name, value, most));
+    return static_cast<std::int64_t>(value);
+  }
   std::size_t length(const std::string& name) const {
     if (!file.has(name)) fail("the field `" + name + "` is missing");
     return static_cast<std::size_t>(file.shape_of(name, 1)[0]);
@@ -81,6 +90,8 @@ struct FieldsIn {
   Points points(const std::string& name) {
     const std::vector<double> values = numbers(name);
     if (values.size() % 3 != 0) fail("the field `" + name + "` has no rows of three");
+    if (!std::ranges::all_of(values, [](double v) { return std::abs(v) <= 1e6; }))
+      fail("the field `" + name + "` has values that are not finite or absurdly large");
     return Eigen::Map<const Points>(values.data(), static_cast<Eigen::Index>(values.size() / 3), 3);
   }
 };
@@ -104,13 +115,18 @@ std::vector<double> numbers_of(const RollRequest& r) {
           r.force.z()};
 }
 
-RollRequest request_of(const FieldsIn& in, const TrainingWorld& world, const double* n) {
-  RollRequest r{static_cast<std::uint64_t>(n[0]),
-                int(n[1]),
-                int(n[2]),
-                int(n[3]),
-                int(n[4]),
-                int(n[5]),
+constexpr std::size_t request_numbers = 16;
+
+RollRequest request_of(const FieldsIn& in, const TrainingWorld& world, std::span<const double> n) {
+  const auto integer = [&](std::size_t k) { return static_cast<int>(in.whole("roll-out", n[k], 1e9)); };
+  if (!std::ranges::all_of(n.first(request_numbers), [](double v) { return std::isfinite(v); }))
+    in.fail("has a roll-out of numbers that are not finite");
+  RollRequest r{static_cast<std::uint64_t>(in.whole("roll-out", n[0], 1e15)),
+                integer(1),
+                integer(2),
+                integer(3),
+                integer(4),
+                integer(5),
                 n[6] != 0,
                 n[7] != 0,
                 n[8] != 0,
@@ -119,13 +135,11 @@ RollRequest request_of(const FieldsIn& in, const TrainingWorld& world, const dou
                 n[11] != 0,
                 n[12] != 0,
                 {n[13], n[14], n[15]}};
-  const bool known = r.wear >= 0 && r.wear < int(world.wear.size()) && r.body >= 0 &&
-                     r.body < int(world.bodies.size()) && r.clip >= 0 && r.clip < int(world.clip_names.size()) &&
-                     r.frames >= 1 && r.frames < 100000;
+  const bool known = r.wear < int(world.wear.size()) && r.body < int(world.bodies.size()) &&
+                     r.clip < int(world.clip_names.size()) && r.frames >= 1 && r.frames < 100000;
   if (!known) in.fail("names a roll-out that the configuration does not have");
   return r;
 }
-constexpr std::size_t request_numbers = 16;
 
 std::vector<float> all_weights(const Architecture& architecture, NetworkWeights weights) {
   std::vector<float> all;
@@ -178,7 +192,8 @@ AdamState read_adam(FieldsIn& in, const Architecture& architecture) {
   std::vector<NamedFloats> arrays;
   std::size_t at = 0, begin = 0;
   for (const double size : sizes) {
-    const std::size_t end = names.find('\n', begin), count = static_cast<std::size_t>(size);
+    const std::size_t end = names.find('\n', begin),
+                      count = static_cast<std::size_t>(in.whole("adam_sizes", size, 1e12));
     if (end == std::string::npos || count > values.size() - at) in.fail("has a damaged state of the optimiser");
     arrays.push_back(
         {names.substr(begin, end - begin),
@@ -222,23 +237,28 @@ void read_pool(FieldsIn& in, Trainer& trainer) {
     if (numbers.size() != request_numbers + 3) in.fail("the field `" + name + "roll` has another length");
     if (numbers[request_numbers] != 0) continue;
     going.push_back(k);
-    trainer.queue->ask(request_of(in, trainer.maker->world, numbers.data()));
-    states[k] = {int(numbers[request_numbers + 1]), int(numbers[request_numbers + 2]), in.points(name + "x"),
-                 in.points(name + "previous"),      in.points(name + "velocity"),      in.points(name + "guess")};
+    trainer.queue->ask(request_of(in, trainer.maker->world, numbers));
+    const auto integer = [&](std::size_t n) { return int(in.whole(name + "roll", numbers[request_numbers + n], 1e9)); };
+    states[k] = {integer(1),
+                 integer(2),
+                 in.points(name + "x"),
+                 in.points(name + "previous"),
+                 in.points(name + "velocity"),
+                 in.points(name + "guess")};
   }
   for (const std::size_t k : going) {
     Roll roll = trainer.queue->take();
     const Eigen::Index rows = roll.start.rows();
     const KeptRolling& from = states[k];
     if (from.x.rows() != rows || from.previous.rows() != rows || from.velocity.rows() != rows ||
-        (from.guess.rows() != rows && from.guess.rows() != 0) || from.frame < 0 || from.frame >= roll.request.frames ||
-        from.pass < 0 || from.pass >= trainer.architecture.passes)
+        (from.guess.rows() != rows && from.guess.rows() != 0) || from.frame >= roll.request.frames ||
+        from.pass >= trainer.architecture.passes)
       in.fail("has a state that does not fit its garment");
     resume_roll(std::move(roll), from, trainer.pool[k]);
     set_guard(trainer.options, trainer.pool[k]);
   }
   for (std::size_t k = 0; k + request_numbers <= waiting.size(); k += request_numbers)
-    trainer.queue->ask(request_of(in, trainer.maker->world, waiting.data() + k));
+    trainer.queue->ask(request_of(in, trainer.maker->world, std::span(waiting).subspan(k)));
 }
 
 void write_counts(FieldsOut& out, const Trainer& trainer, const TrainingHistory& history) {
@@ -254,8 +274,8 @@ void write_counts(FieldsOut& out, const Trainer& trainer, const TrainingHistory&
 void read_counts(FieldsIn& in, Trainer& trainer, TrainingHistory& history) {
   const std::vector<double> c = in.numbers("counts");
   if (c.size() != 7) in.fail("the field `counts` has another length");
-  trainer.counts = {long(c[0]), static_cast<std::uint64_t>(c[1]), long(c[2]), long(c[3]), long(c[4]), long(c[5]),
-                    long(c[6])};
+  const auto count = [&](std::size_t k) { return in.whole("counts", c[k], 1e15); };
+  trainer.counts = {count(0), static_cast<std::uint64_t>(count(1)), count(2), count(3), count(4), count(5), count(6)};
   trainer.random.state = std::strtoull(in.text("random").c_str(), nullptr, 16);
   history.steps = in.text("steps");
   history.measures = in.text("measures");
@@ -263,7 +283,7 @@ void read_counts(FieldsIn& in, Trainer& trainer, TrainingHistory& history) {
   if (h.size() != 3) in.fail("the field `history` has another length");
   history.seconds = h[0];
   history.best_score = h[1];
-  history.best_step = long(h[2]);
+  history.best_step = in.whole("history", h[2], 1e15);
 }
 
 // The device is left out: a run may go on with another.

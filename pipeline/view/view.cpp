@@ -1,9 +1,9 @@
 #include "pipeline/view/view.hpp"
 
-#include <fstream>
 #include <memory>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/host/write_file.hpp"
 
 namespace selvedge {
 namespace {
@@ -31,18 +31,7 @@ void write_view(const std::vector<std::filesystem::path>& runs, const std::files
 
 void write_view_page(const std::vector<ViewRun>& runs, const std::filesystem::path& html, const ViewOptions& options) {
   const std::string page = view_page(runs, options);
-  std::filesystem::path beside = html;
-  beside += ".part";
-  std::ofstream out(beside, std::ios::binary);
-  out.write(page.data(), static_cast<std::streamsize>(page.size()));
-  out.close();
-  std::error_code failed;
-  if (out) std::filesystem::rename(beside, html, failed);
-  if (!out || failed) {
-    std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
-    throw Error("the page could not be written", html.string(), "give a folder that exists and has room");
-  }
+  write_file(html, page);
 }
 
 void write_view(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& html) {

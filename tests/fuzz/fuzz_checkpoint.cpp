@@ -1,4 +1,6 @@
+#include "collision/geometry/error.hpp"
 #include "pipeline/formats/checkpoint.hpp"
+#include "pipeline/run/memory_forms.hpp"
 #include "tests/fuzz/valid_hdf5.hpp"
 #include "tests/pipeline/fake_run.hpp"
 
@@ -20,8 +22,12 @@ State state_of_run() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const Scene scene = fake::scene();
-  const auto write = [](const std::filesystem::path& path) { write_checkpoint(path, state_of_run(), "run: {}\n"); };
+  const auto write = [](const std::filesystem::path& path) {
+    write_checkpoint(path, state_of_run(), {"run: {}\n", {{"c.obj", 7}}, 9});
+  };
   return fuzz::with_altered_file(data, size, write, [](const std::filesystem::path& path) {
-    check_fits(path, read_checkpoint(path, "run: {}\n"), scene);
+    const State state = read_checkpoint(path).state;
+    check_fits(path, state, scene);
+    if (const auto problem = misfit(state.memory, scene)) throw Error(*problem, path.string(), "");
   });
 }

@@ -198,8 +198,8 @@ TEST_CASE("a checkpoint keeps every bit") {
                     {"other.nothing", MemoryRows(0, 3), RowsOf::obstacle_vertices},
                     {"other.wide", MemoryRows::Constant(3, 5, 0.1), RowsOf::none}};
   }
-  write_checkpoint(folder.path / "c.h5", state, "a: 1\n");
-  const State read = read_checkpoint(folder.path / "c.h5", "a: 1\n");
+  write_checkpoint(folder.path / "c.h5", state, {"a: 1\n", {}, 0});
+  const State read = read_checkpoint(folder.path / "c.h5").state;
   REQUIRE(read.frame == state.frame);
   REQUIRE(read.time == state.time);
   REQUIRE(read.x == state.x);

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <atomic>
+#include <exception>
+#include <thread>
+
+#include "collision/geometry/stop_flag.hpp"
+
+namespace selvedge {
+
+// Thrown by a search, an audit or another loop that has asked the flag of its thread's scope. It has no result.
+class Stopped : public std::exception {
+ public:
+  const char* what() const noexcept override { return "stopped"; }
+};
+
+// For as long as it lives, long loops of the calling thread ask this flag and throw Stopped once it is true. An empty
+// flag: nobody is asked. The flag is asked by this thread alone.
+class StopScope {
+ public:
+  explicit StopScope(const StopFlag&);  // which must outlive it
+  ~StopScope();
+  StopScope(const StopScope&) = delete;
+  StopScope& operator=(const StopScope&) = delete;
+
+ private:
+  const StopFlag* before_;
+};
+
+// Throws Stopped if the flag of the thread's scope is true: for loops of one thread.
+void check_stop();
+
+// The same for a loop that several threads share: all of them call wanted() now and then, and the thread that has made
+// the poll calls check() when they are through.
+class StopPoll {
+ public:
+  StopPoll();
+  bool wanted() {
+    if (was_wanted()) return true;
+    if (!flag_ || std::this_thread::get_id() != owner_ || !(*flag_)()) return false;
+    wanted_.store(true, std::memory_order_relaxed);
+    return true;
+  }
+  bool was_wanted() const { return wanted_.load(std::memory_order_relaxed); }
+  void check() const {
+    if (was_wanted()) throw Stopped();
+  }
+
+ private:
+  const StopFlag* flag_;  // null: nobody is asked
+  std::thread::id owner_ = std::this_thread::get_id();
+  std::atomic<bool> wanted_ = false;
+};
+
+}  // namespace selvedge

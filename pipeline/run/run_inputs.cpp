@@ -1,0 +1,134 @@
+#include "pipeline/run/run_inputs.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/host/kept_rows.hpp"
+#include "pipeline/meshes/setup_paths.hpp"
+
+namespace selvedge {
+namespace {
+
+namespace fs = std::filesystem;
+
+// All texts of a tree.
+void add_texts(const YAML::Node& node, std::vector<std::string>& texts) {
+  if (node.IsScalar()) texts.push_back(node.Scalar());
+  if (node.IsSequence())
+    for (const YAML::Node& item : node) add_texts(item, texts);
+  if (node.IsMap())
+    for (const auto& pair : node) add_texts(pair.second, texts);
+}
+
+// The files of a folder whose names are `name` with digits, or blanks, in the place of its %d or %0Nd.
+std::vector<fs::path> numbered_files(const fs::path& name) {
+  const std::string text = name.filename().string();
+  const std::size_t begin = text.find('%'), end = text.find('d', begin);
+  std::vector<fs::path> files;
+  if (begin == std::string::npos || end == std::string::npos) return files;
+  const std::string before = text.substr(0, begin), after = text.substr(end + 1);
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(name.parent_path(), ignored)) {
+    const std::string found = entry.path().filename().string();
+    if (found.size() <= before.size() + after.size() || !found.starts_with(before) || !found.ends_with(after)) continue;
+    const std::string number = found.substr(before.size(), found.size() - before.size() - after.size());
+    if (number.find_first_not_of(" 0123456789") == std::string::npos) files.push_back(name.parent_path() / found);
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+// The files that a .gltf file has its numbers in.
+std::vector<fs::path> gltf_buffers(const fs::path& file) {
+  std::vector<fs::path> buffers;
+  std::ifstream in(file);
+  const nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
+  if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return buffers;
+  for (const nlohmann::json& buffer : json["buffers"])
+    if (buffer.is_object() && buffer.contains("uri") && buffer["uri"].is_string())
+      if (const std::string uri = buffer["uri"]; !uri.starts_with("data:")) buffers.push_back(file.parent_path() / uri);
+  return buffers;
+}
+
+// What a value of the scene may name, whether or not it is there.
+std::vector<fs::path> named_files(const std::string& text, const fs::path& folder) {
+  if (text.find('.') == std::string::npos || text.size() > 4096) return {};
+  fs::path path;
+  try {
+    path = expanded_path(Config{}, text, folder);
+  } catch (const Error&) {
+    return {};
+  }
+  if (path.filename().string().find('%') != std::string::npos) return numbered_files(path);
+  std::vector<fs::path> files{path};
+  if (path.extension() == ".gltf")
+    for (fs::path& buffer : gltf_buffers(path)) files.push_back(std::move(buffer));
+  return files;
+}
+
+fs::path folder_of(const Setup& setup, const YAML::Node& config) {
+  const YAML::Node folder = config["folder"];
+  return folder && folder.IsScalar() ? fs::path(folder.Scalar()) : setup.file.parent_path();
+}
+
+std::vector<InputFile> input_files(const Setup& setup) {
+  const YAML::Node config = YAML::Load(setup.config);
+  if (!config.IsMap()) return {};
+  std::vector<std::string> texts;
+  add_texts(config, texts);
+  const fs::path folder = folder_of(setup, config);
+  std::set<std::string> seen;
+  std::vector<InputFile> files;
+  std::error_code ignored;
+  for (const std::string& text : texts)
+    for (const fs::path& file : named_files(text, folder)) {
+      const std::string name = (folder.empty() ? file : file.lexically_proximate(folder)).string();
+      if (fs::is_regular_file(file, ignored) && seen.insert(name).second) files.push_back({name, hash_of_file(file)});
+    }
+  return files;
+}
+
+// A hash of arrays, one after the other, with their sizes.
+struct ArraysHash {
+  std::uint64_t hash = hash_of("");
+
+  void add(const void* data, std::size_t bytes) {
+    hash = hash_of({reinterpret_cast<const char*>(&bytes), sizeof bytes}, hash);
+    hash = hash_of({static_cast<const char*>(data), bytes}, hash);
+  }
+  template <class Matrix>
+  void matrix(const Matrix& values) {
+    add(values.data(), sizeof(typename Matrix::Scalar) * static_cast<std::size_t>(values.size()));
+  }
+  template <class Value>
+  void list(const std::vector<Value>& values) {
+    add(values.data(), sizeof(Value) * values.size());
+  }
+};
+
+// No file of the scene tells of what code makes, or the program keeps in its cache.
+std::uint64_t scene_hash(const Setup& setup) {
+  ArraysHash all;
+  all.matrix(setup.scene.rest);
+  all.matrix(setup.scene.surface.triangles);
+  all.list(setup.scene.rest_triangle);
+  all.list(setup.scene.pins);
+  for (const Spring& spring : setup.scene.springs) all.matrix(Eigen::Vector2d(spring.rest_length, spring.stiffness));
+  for (const Obstacle& obstacle : setup.scene.obstacles) all.matrix(obstacle.surface.triangles);
+  const Drive begin = setup.drive_at(0);
+  all.matrix(begin.pins);
+  all.matrix(begin.worn);
+  for (const Points& obstacle : begin.obstacles) all.matrix(obstacle);
+  return all.hash;
+}
+
+}  // namespace
+
+RunInputs run_inputs(const Setup& setup) { return {setup.config, input_files(setup), scene_hash(setup)}; }
+
+}  // namespace selvedge
