@@ -197,9 +197,9 @@ TEST_CASE("A file whose aliases stand for more than memory holds is refused", "[
   const Folder folder("config_aliases");
   std::string vertices = "0", pins, cloths;
   for (int k = 0; k < 300; ++k) vertices += ", 1", pins += ", *p", cloths += "  - *c\n";
-  const auto file = fake::write(folder, "aliases.yaml",
-                                "cloths:\n  - &c {rectangle: {resolution: 3}, pins: [&p {vertices: [" + vertices + "]}" +
-                                    pins + "]}\n" + cloths);
+  const auto file = fake::write(
+      folder, "aliases.yaml",
+      "cloths:\n  - &c {rectangle: {resolution: 3}, pins: [&p {vertices: [" + vertices + "]}" + pins + "]}\n" + cloths);
   CHECK_THROWS_WITH(read_config(file, scene_section()), Contains("aliases.yaml") && Contains("4000000 values"));
   CHECK_THROWS_WITH(
       read_config(fake::write(folder, "deep.yaml", "description: " + std::string(300, '[') + std::string(300, ']')),
