@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "collision/geometry/error.hpp"
+#include "physics/scene/scene_numbers.hpp"
 
 namespace selvedge {
 namespace {
@@ -41,7 +42,8 @@ void add_cloths(Scene& scene, const std::vector<NewCloth>& added) {
   for (const NewCloth& one : added) {
     const std::string& name = names.emplace_back(named(one.name, "cloth", scene.cloths.size() + names.size()));
     check_triangles(static_cast<int>(one.rest.rows()), one.triangles, name);
-    require(one.rest.allFinite(), "a rest position is not finite", name, "");
+    check_positions(one.rest, "cloth `" + name + "`, x");
+    check_numbers(one.material, "cloth `" + name + "`, material");
     require(one.metric.empty() || std::ssize(one.metric) == one.triangles.rows(),
             "there are not as many rest shapes as triangles", name, "give one a triangle, or none");
   }
@@ -90,10 +92,12 @@ State first_state(const Scene& scene, const Points& x, const std::vector<Points>
   for (std::size_t k = 0; k < obstacles.size(); ++k)
     require(obstacles[k].rows() == scene.obstacles[k].surface.vertex_count,
             "the obstacle " + scene.obstacles[k].name + " has another number of vertices", "first state", "");
+  check_scene(scene);
   State state;
   state.x = x;
   state.v = Points::Zero(x.rows(), 3);
   state.obstacles = obstacles;
+  check_state(scene, state);
   return state;
 }
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "physics/scene/scene_numbers.hpp"
+
 namespace selvedge {
 
 PhaseTimes& PhaseTimes::operator+=(const PhaseTimes& other) {
@@ -25,6 +27,8 @@ StepCounts& StepCounts::operator+=(const StepCounts& other) {
   return *this;
 }
 
-bool StepperTraits::accepts(double dt) const { return dt > 0 && (!only_dt || std::abs(dt - *only_dt) <= 1e-9); }
+bool StepperTraits::accepts(double dt) const {
+  return is_time_step(dt) && (!only_dt || std::abs(dt - *only_dt) <= 1e-9);
+}
 
 }  // namespace selvedge

@@ -8,6 +8,7 @@
 #include "collision/geometry/floating_point.hpp"
 #include "collision/geometry/stopwatch.hpp"
 #include "physics/scene/features.hpp"
+#include "physics/scene/scene_numbers.hpp"
 #include "physics/solve/bdf2.hpp"
 #include "physics/solve/contact_terms.hpp"
 #include "physics/steppers/bounded_step.hpp"
@@ -58,6 +59,7 @@ class ConventionalStepper final : public Stepper {
 
   const StepperTraits& traits() const override { return traits_; }
   StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override {
+    check_time_step(dt, "stepper `" + traits_.name + "`");
     return bounded_step(traits_.name, extras.stop, [&] { return take_step(from, drive, dt, to, extras); });
   }
 

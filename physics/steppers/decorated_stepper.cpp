@@ -2,11 +2,13 @@
 
 #include <utility>
 
+#include "physics/scene/scene_numbers.hpp"
 #include "physics/steppers/cutting_stepper.hpp"
 
 namespace selvedge {
 
 std::unique_ptr<Stepper> decorated(const Scene& scene, const MakeStepper& bare, const Decorations& wanted) {
+  check_scene(scene);
   const MakeStepper make = [bare, recovery = wanted.recovery](const Scene& part) {
     std::unique_ptr<Stepper> stepper = bare(part);
     return stepper->traits().honours_extras ? make_recovering_stepper(part, std::move(stepper), recovery)

@@ -12,6 +12,7 @@
 #include "collision/untangle/separation.hpp"
 #include "physics/recovery/recovery.hpp"
 #include "physics/scene/features.hpp"
+#include "physics/scene/scene_numbers.hpp"
 #include "physics/solve/contact_terms.hpp"
 #include "physics/solve/contour_potential.hpp"
 #include "physics/steppers/bounded_step.hpp"
@@ -57,6 +58,7 @@ class IcmStepper final : public Stepper {
 
   const StepperTraits& traits() const override { return traits_; }
   StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override {
+    check_time_step(dt, "stepper `" + traits_.name + "`");
     return bounded_step(traits_.name, extras.stop, [&] { return take_step(from, drive, dt, to, extras); });
   }
 

@@ -6,6 +6,7 @@
 
 #include "pipeline/compare/compare.hpp"
 #include "pipeline/compare/evaluation.hpp"
+#include "pipeline/host/html_text.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/measures/run_measures.hpp"
 #include "pipeline/tools/info.hpp"
@@ -168,7 +169,8 @@ std::string scene_section(const CompareFloor& floor, const CompareResult& result
   html += rows_table(rows, floor.states > 0) + break_even(rows);
   if (std::filesystem::path view = result.views / (floor.scene + ".html");
       !result.views.empty() && std::filesystem::exists(view))
-    html += fmt::format("<p><a href='views/{0}.html'>{0} side by side</a></p>\n", html_text(floor.scene));
+    html += fmt::format("<p><a href='views/{}.html'>{} side by side</a></p>\n", url_text(floor.scene),
+                        html_text(floor.scene));
   return html;
 }
 
@@ -204,7 +206,7 @@ std::string repulsion_section(const Comparison& comparison, const CompareResult&
     for (const auto& [file, about] : {std::pair{one.name, "ways to handle collisions (figures 1, 4, 10 to 13)"},
                                       std::pair{one.name + "_scales", "fixed and predicted scales (figure 5)"}})
       if (std::filesystem::exists(result.views / (file + ".html")))
-        html += fmt::format("<p><a href='views/{0}.html'>{0}</a>: {1}</p>\n", html_text(file), about);
+        html += fmt::format("<p><a href='views/{}.html'>{}</a>: {}</p>\n", url_text(file), html_text(file), about);
   return html + result.repulsion_figures;
 }
 

@@ -21,8 +21,9 @@ std::string points_of(const CompareResult& result, const std::string& scene, Err
   std::sort(kept.begin(), kept.end(), [](const CompareRow* a, const CompareRow* b) { return a->ms < b->ms; });
   std::string text;
   for (const CompareRow* row : kept) {
-    std::string name = row->setting;  // gnuplot reads an underscore as a subscript
-    for (std::size_t at = 0; (at = name.find_first_of("_\"", at)) != std::string::npos; ++at) name[at] = ' ';
+    std::string name = row->setting;  // gnuplot reads an underscore as a subscript, and lines one by one
+    std::ranges::replace_if(
+        name, [](unsigned char c) { return c < ' ' || c == '_' || c == '"' || c == '\\'; }, ' ');
     text += fmt::format("{:.6g} {:.6g} \"{}\"\n", row->ms, error(*row), name);
   }
   return text;

@@ -111,10 +111,14 @@ const Options<Comparison>& comparison_options() {
 }
 
 void check_names(const Config& list, const std::vector<std::string>& names) {
-  for (std::size_t k = 0; k < names.size(); ++k)
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const bool controls = std::ranges::any_of(names[k], [](unsigned char c) { return c < ' '; });
+    if (controls || names[k].find('/') != std::string::npos)
+      list.items[k].fail("has the name `" + names[k] + "`, which no file can have", "leave `/` and line breaks out");
     if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(k), names[k]) !=
         names.begin() + static_cast<std::ptrdiff_t>(k))
       list.items[k].fail("has the name `" + names[k] + "` of another", "give every one its own name");
+  }
 }
 
 CompareSetting read_setting(const Config& item, const std::filesystem::path& weights_folder) {

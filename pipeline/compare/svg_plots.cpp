@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "pipeline/host/html_text.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -81,13 +83,6 @@ std::string mark_svg(const PlotPoint& point, double x, double y, std::size_t num
 }
 
 }  // namespace
-
-std::string html_text(const std::string& text) {
-  std::string result;
-  for (const char c : text)
-    result += c == '<' ? std::string("&lt;") : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
-  return result;
-}
 
 std::string scatter_svg(const std::string& title, const std::string& x_name, const std::string& y_name,
                         const std::vector<PlotPoint>& points, double floor) {

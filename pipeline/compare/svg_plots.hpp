@@ -31,6 +31,4 @@ std::string curves_svg(const std::string& title, const std::string& x_name, cons
 std::string bars_svg(const std::string& title, const std::string& x_name, const std::vector<std::string>& labels,
                      const std::vector<PlotCurve>& bars);
 
-std::string html_text(const std::string&);  // with <, > and & as text
-
 }  // namespace selvedge

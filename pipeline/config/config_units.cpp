@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/host/bounds.hpp"
+#include "physics/scene/scene_numbers.hpp"
 
 namespace selvedge {
 namespace {
@@ -61,21 +61,21 @@ double largest_sensible(Unit unit) {
     case Unit::length:
     case Unit::speed:
     case Unit::acceleration:
-      return largest_length;
+      return limits::farthest;
     case Unit::angle:
       return 1e7;
     case Unit::time:
     case Unit::rate:
-      return largest_time;
+      return limits::longest;
     case Unit::areal_density:
-      return 1e9;
+      return limits::heaviest;
     case Unit::density:
     case Unit::volume:
       return 1e12;
     case Unit::stiffness:
     case Unit::bending:
     case Unit::pressure:
-      return 1e18;
+      return limits::stiffest;
     case Unit::none:
       break;
   }

@@ -110,6 +110,21 @@ void emit(YAML::Emitter& out, const Config& config) {
   out << YAML::EndMap;
 }
 
+constexpr int most_values = 4'000'000, deepest = 200;  // of a file
+
+// Takes what a reader of the tree comes to from `left`, aliases as often as they stand there: a few thousand bytes of
+// them can stand for more values than any machine holds.
+void count_values(const YAML::Node& node, const std::string& file, int depth, int& left) {
+  if (--left < 0)
+    throw Error(fmt::format("has more than {} values, with what its aliases repeat", most_values), file,
+                "leave aliases (`*name`) of aliases out, or put lists into files of their own");
+  if (depth > deepest) throw Error(fmt::format("is nested more than {} deep", deepest), file, "nest less");
+  if (node.IsSequence())
+    for (const YAML::Node& item : node) count_values(item, file, depth + 1, left);
+  if (node.IsMap())
+    for (const auto& pair : node) count_values(pair.second, file, depth + 1, left);
+}
+
 }  // namespace
 
 std::string Origin::of(const YAML::Node& node, const std::string& path, const std::string& parent) const {
@@ -158,6 +173,8 @@ Config read_config(const std::filesystem::path& path, const Section& section,
     const std::string cure = "write `key: value`; allowed keys: " + joined(key_names(section));
     if (root.IsNull()) throw Error("is empty", origin.file, cure);
     if (!root.IsMap()) throw Error("is not a list of `key: value`", origin.file, cure);
+    int left = most_values;
+    count_values(root, origin.file, 0, left);
     for (const std::string& assignment : overrides) apply_override(assignment, root, section, origin);
     return checked_section(root, section, "", origin.file, origin);
   } catch (const YAML::Exception& e) {

@@ -260,6 +260,7 @@ NpyArray<std::string> npy_texts(std::string_view bytes, const NpyPlace& place) {
     throw Error(fmt::format("has values of type {}, not texts", header.type), place.text(), "save it as text");
   const std::size_t unit = header.type[kind] == 'U' ? 4 : 1;
   if (length > bytes.size()) fail_broken("is shorter than one of its texts", place);
+  if (length == 0 && header.count > 0) fail_broken("has texts of no length", place);
   const std::string_view values = values_of(bytes, header, unit * length, place);
   return in_c_order<std::string>(header, [&](std::size_t i) {
     const std::string_view padded = values.substr(i * unit * length, unit * length);

@@ -2,25 +2,11 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/host/html_text.hpp"
 #include "pipeline/host/write_file.hpp"
 
 namespace selvedge {
 namespace {
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&')
-      result += "&amp;";
-    else if (c == '<')
-      result += "&lt;";
-    else if (c == '"')
-      result += "&quot;";
-    else
-      result += c;
-  }
-  return result;
-}
 
 // One mesh at one time: row `row` of the array `points`, which has `rows` of them.
 std::string grid(const std::string& name, const std::string& h5, const std::string& triangles,
@@ -38,7 +24,7 @@ std::string grid(const std::string& name, const std::string& h5, const std::stri
      </Geometry>
     </Grid>
 )",
-                     fmt::arg("name", escaped(name)), fmt::arg("h5", escaped(h5)), fmt::arg("triangles", triangles),
+                     fmt::arg("name", html_text(name)), fmt::arg("h5", html_text(h5)), fmt::arg("triangles", triangles),
                      fmt::arg("m", triangle_count), fmt::arg("points", points), fmt::arg("n", vertices),
                      fmt::arg("row", row), fmt::arg("rows", rows));
 }

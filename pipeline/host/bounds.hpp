@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string>
 
+#include "physics/scene/scene_numbers.hpp"
+
 namespace selvedge {
 
 // What a scene and its files may ask for. It is judged before memory is taken: a few bytes of a file can ask for more
@@ -13,11 +15,11 @@ inline constexpr std::int64_t most_numbers = std::int64_t{1} << 28;  // of one a
 inline constexpr std::int64_t most_file_bytes = std::int64_t{1} << 31;
 
 // What numbers may be. Beyond these nothing is meant that a scene could show, and doubles lose what matters.
-inline constexpr double farthest_coordinate = 1e9;  // of a mesh file, in the unit of the file
-inline constexpr double largest_length = 1e6;       // from the origin, and the largest length [m]
-inline constexpr double largest_thickness = 1;      // contact thickness [m]
-inline constexpr double most_start_stretch = 10;    // by which a start draws a cloth out
-inline constexpr double largest_time = 1e9;         // time [s]
+inline constexpr double farthest_coordinate = 1e9;             // of a mesh file, in the unit of the file
+inline constexpr double largest_length = limits::farthest;     // from the origin, and the largest length [m]
+inline constexpr double largest_thickness = limits::thickest;  // contact thickness [m]
+inline constexpr double most_start_stretch = 10;               // by which a start draws a cloth out
+inline constexpr double largest_time = limits::longest;        // time [s]
 
 // Throws Error with the count and the bound where `count` is above `most`, or is not a number. `noun` is what is
 // counted: "vertices".

@@ -155,6 +155,7 @@ void read_motion(Reader& r, BvhFile& bvh) {
   const std::size_t left = r.tokens.size() - r.next,
                     wanted = static_cast<std::size_t>(frames) * static_cast<std::size_t>(columns);
   if (frames == 0) r.fail(time_line, "has no frames", "export the motion with its frames");
+  if (columns == 0) r.fail(time_line, "has no channels", "export the motion with its joints' channels");
   if (left != wanted)
     r.fail(r.tokens.back().line,
            fmt::format("has {} numbers of motion, {} frames of {} channels need {}", left, frames, columns, wanted),

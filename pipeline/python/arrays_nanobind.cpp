@@ -6,6 +6,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/same_places.hpp"
+#include "physics/scene/scene_numbers.hpp"
 #include "pipeline/shapes/outward_mesh.hpp"
 
 namespace selvedge {
@@ -48,9 +49,7 @@ Points points_of(const nb::handle& array, const std::string& where, NotFinite no
   const nb::object rows = as_rows(array, "float64", "fiu", where);
   const auto view = nb::cast<nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>>(rows);
   Points points = Eigen::Map<const Points>(view.data(), static_cast<Eigen::Index>(view.shape(0)), 3);
-  for (Eigen::Index v = 0; v < points.rows() && not_finite == NotFinite::refused; ++v)
-    if (!points.row(v).allFinite())
-      throw Error("is not finite in row " + std::to_string(v), where, "leave NaN and infinity out");
+  if (not_finite == NotFinite::refused) check_positions(points, where);
   return points;
 }
 

@@ -10,6 +10,7 @@
 #include "collision/geometry/same_places.hpp"
 #include "collision/geometry/welded_surface.hpp"
 #include "physics/scene/make_scene.hpp"
+#include "physics/scene/scene_numbers.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
 #include "pipeline/python/bindings_nanobind.hpp"
@@ -46,9 +47,8 @@ class World {
     const Points points = points_of(x, "cloth `" + name + "`, x");
     Material material;
     material.density = density;
-    material.lame_mu = youngs_modulus / (2 * (1 + poisson));
-    material.lame_lambda = youngs_modulus * poisson / (1 - poisson * poisson);
     material.bending = bending;
+    set_elasticity({youngs_modulus, poisson}, "cloth `" + name + "`, material", material);
     const int number =
         add_cloth(setup_.scene, points, triangles_of(triangles, points.rows(), "cloth `" + name + "`, triangles"),
                   material, name);
@@ -97,6 +97,7 @@ class World {
   // One step; false where it was rejected, which leaves everything as it was.
   bool step() {
     begin();
+    check_state(setup_.scene, state_);  // whose arrays Python may have written to
     const double dt = 1 / setup_.run.fps;
     State next;
     const StepReport report = stepper_->step(state_, drive_at(state_.time + dt), dt, next);

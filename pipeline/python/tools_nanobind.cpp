@@ -72,6 +72,7 @@ nb::dict check_arrays(const nb::handle& x, const nb::handle& triangles, const nb
 nb::tuple untangle_arrays(const nb::handle& x, const nb::handle& triangles, const nb::list& bodies, int iterations) {
   const Meshes meshes = meshes_of(x, triangles, bodies);
   const std::vector<SheetView> sheets = sheets_of(meshes);
+  if (iterations < 0) throw Error("is " + std::to_string(iterations), "untangle, iterations", "give 0 or more");
   UntangleOptions options;
   options.iterations = iterations;
   const UntangleResult result = untangle(meshes.surfaces[0], meshes.points[0], std::span(sheets).subspan(1), options);

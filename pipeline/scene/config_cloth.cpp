@@ -9,13 +9,13 @@ using namespace table;
 const OptionRows<Material>& material_options() {
   using O = Material;
   static const OptionRows<O> rows{
-      number("density", &O::density, Unit::areal_density, positive, "Mass per area."),
+      number("density", &O::density, Unit::areal_density, range_of(&O::density), "Mass per area."),
       choice("membrane", &O::membrane,
              {{"stvk", MembraneModel::stvk},
               {"stable_neo_hookean", MembraneModel::stable_neo_hookean},
               {"baraff_witkin", MembraneModel::baraff_witkin}},
              "Model of the in-plane (membrane) elasticity."),
-      number("youngs_modulus", Unit::stiffness, not_negative, "",
+      number("youngs_modulus", Unit::stiffness, range_of(&Elasticity::youngs_modulus), "",
              "Young's modulus times thickness. With `poisson` it replaces the Lame coefficients."),
       number("modulus", Unit::pressure, not_negative, "",
              "Young's modulus E of the cloth as a plate. With `thickness` and `poisson` it replaces `youngs_modulus`, "
@@ -23,27 +23,27 @@ const OptionRows<Material>& material_options() {
       number("thickness", Unit::length, positive, "",
              "Thickness h of the cloth as a plate: membrane stiffness E h, bending stiffness E h^3 / (12 (1 - nu^2)). "
              "It has no influence on contact."),
-      number("poisson", Unit::none, {.low = 0, .high = 1, .high_in = false}, "", "Poisson's ratio in plane stress."),
-      number("lame_mu", &O::lame_mu, Unit::stiffness, not_negative, "Membrane shear modulus times thickness."),
-      number("lame_lambda", &O::lame_lambda, Unit::stiffness, not_negative,
+      number("poisson", Unit::none, range_of(&Elasticity::poisson), "", "Poisson's ratio in plane stress."),
+      number("lame_mu", &O::lame_mu, Unit::stiffness, range_of(&O::lame_mu), "Membrane shear modulus times thickness."),
+      number("lame_lambda", &O::lame_lambda, Unit::stiffness, range_of(&O::lame_lambda),
              "First Lame coefficient of the membrane times thickness."),
-      number("warp", &O::warp, Unit::stiffness, not_negative, "Stretch stiffness along u, for `baraff_witkin`."),
-      number("weft", &O::weft, Unit::stiffness, not_negative, "Stretch stiffness along v, for `baraff_witkin`."),
-      number("shear", &O::shear, Unit::stiffness, not_negative, "Shear stiffness, for `baraff_witkin`."),
+      number("warp", &O::warp, Unit::stiffness, range_of(&O::warp), "Stretch stiffness along u, for `baraff_witkin`."),
+      number("weft", &O::weft, Unit::stiffness, range_of(&O::weft), "Stretch stiffness along v, for `baraff_witkin`."),
+      number("shear", &O::shear, Unit::stiffness, range_of(&O::shear), "Shear stiffness, for `baraff_witkin`."),
       choice("bending_model", &O::bending_model,
              {{"curvature", BendingModel::curvature}, {"hinge", BendingModel::hinge}},
              "`curvature` is physical and independent of the mesh. `hinge` penalises dihedral angles, as HOOD and "
              "ContourCraft do."),
-      number("bending", &O::bending, Unit::bending, not_negative,
+      number("bending", &O::bending, Unit::bending, range_of(&O::bending),
              "Bending stiffness per width, as of a plate (flexural rigidity)."),
-      number("hinge_bending", Unit::bending, not_negative, "",
+      number("hinge_bending", Unit::bending, range_of(&O::bending), "",
              "Coefficient k of the hinge energy k l^2 / (4 (A0 + A1)) angle^2 / 2, for an edge of length l between "
              "triangles of areas A0 and A1. It selects the model `hinge` and replaces `bending`."),
       choice("hinge_length", &O::hinge_length, {{"rest", HingeLength::rest}, {"current", HingeLength::current}},
              "Length l in the hinge energy: at rest or now. `current` is the loss of HOOD and ContourCraft."),
-      number("stiffness_damping", &O::stiffness_damping, Unit::time, not_negative,
+      number("stiffness_damping", &O::stiffness_damping, Unit::time, range_of(&O::stiffness_damping),
              "Rayleigh coefficient: the damping force is this times the stiffness times the velocity."),
-      number("mass_damping", &O::mass_damping, Unit::rate, not_negative,
+      number("mass_damping", &O::mass_damping, Unit::rate, range_of(&O::mass_damping),
              "Rayleigh coefficient: the damping force is this times the mass times the velocity."),
   };
   return rows;

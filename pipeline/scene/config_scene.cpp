@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "pipeline/host/bounds.hpp"
-
 // Rows that are bound to a member have its default; a default that is written here has its only place here.
 namespace selvedge {
 namespace {
@@ -35,11 +33,11 @@ const Options<Wind>& wind_options() {
       {vector("velocity", Unit::speed, "[0, 0, 0]", "Velocity of the air."),
        sections("keyframes", wind_key_section(), "[]", "Velocities at ascending times, in place of `velocity`."),
        interpolation_key(),
-       number("drag", &Wind::drag, Unit::none, not_negative,
+       number("drag", &Wind::drag, Unit::none, range_of(&Wind::drag),
               "Drag coefficient, of the velocity component normal to the cloth."),
-       number("lift", &Wind::lift, Unit::none, not_negative,
+       number("lift", &Wind::lift, Unit::none, range_of(&Wind::lift),
               "Lift coefficient, of the velocity component tangential to the cloth."),
-       number("air_density", &Wind::air_density, Unit::density, not_negative, "Density of the air.")});
+       number("air_density", &Wind::air_density, Unit::density, range_of(&Wind::air_density), "Density of the air.")});
   return table;
 }
 
@@ -47,10 +45,12 @@ const Options<ContactSettings>& contact_options() {
   using O = ContactSettings;
   static const Options<O> table(
       "contact", "Contact of cloth with itself, with other cloths and with obstacles.",
-      {number("thickness", &O::thickness, Unit::length, {.low = 0, .high = largest_thickness, .low_in = false},
+      {number("thickness", &O::thickness, Unit::length, range_of(&O::thickness),
               "Distance that resting layers keep from each other and from obstacles."),
-       number("friction", &O::friction, Unit::none, not_negative, "Friction coefficient of cloth on obstacles."),
-       number("self_friction", &O::self_friction, Unit::none, not_negative, "Friction coefficient of cloth on cloth."),
+       number("friction", &O::friction, Unit::none, range_of(&O::friction),
+              "Friction coefficient of cloth on obstacles."),
+       number("self_friction", &O::self_friction, Unit::none, range_of(&O::self_friction),
+              "Friction coefficient of cloth on cloth."),
        flag("self", &O::self,
             "False: contact of cloth with cloth is left out, and the run is labelled \"self: not audited\"."),
        flag("rigid_zones", &O::rigid_zones,

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "physics/scene/scene.hpp"
+#include "physics/scene/scene_numbers.hpp"
 #include "pipeline/config/options.hpp"
 #include "pipeline/garments/garment_make.hpp"
 #include "pipeline/meshes/setup_body.hpp"
@@ -25,6 +25,14 @@ const Section& material_file_section();
 std::vector<const Section*> scene_sections();
 // All of them as Markdown: the second half of docs/scene.md.
 std::string scene_reference();
+
+// What a number of a scene may be, as physics has it.
+template <class Struct>
+Range range_of(double Struct::*member) {
+  for (const NumberField<Struct>& field : number_fields<Struct>())
+    if (field.member == member) return {field.low, field.high, field.low_in, field.high_in};
+  return {};
+}
 
 // Sections that are bound to structs, in part or whole.
 const Options<RunOptions>& run_options();

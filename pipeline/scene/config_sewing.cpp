@@ -46,9 +46,9 @@ const Options<Spring>& spring_options() {
       "they are listed. Those of a box, a group or a whole cloth are ordered by index.",
       {needed(renamed(section(selection_section(), "", "Vertices at one end of the springs."), "from")),
        needed(renamed(section(selection_section(), "", "Vertices at the other end."), "to")), pair_key(),
-       number("rest_length", Unit::length, not_negative, "",
+       number("rest_length", Unit::length, range_of(&Spring::rest_length), "",
               "Rest length. Default: `contact.thickness` for listed pairs, the initial distance for nearest ones."),
-       number("stiffness", &Spring::stiffness, Unit::stiffness, positive,
+       number("stiffness", &Spring::stiffness, Unit::stiffness, range_of(&Spring::stiffness),
               "Stiffness of each spring, by default ten times that of cotton. A load of 2 N, as of a shirt on one "
               "button, then stretches it by 0.2 mm.")});
   return table;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "physics/scene/scene_numbers.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/scene/config_scene.hpp"
 
@@ -39,8 +40,7 @@ void apply_elastic(const Config& section, Material& material) {
       section[lame].fail("is given beside youngs_modulus or modulus, and poisson", "give one pair or the other");
   const double nu = poisson.number(), h = modulus.given ? thickness.number() : 0;
   const double e = modulus.given ? modulus.number() * h : young.number();
-  material.lame_mu = e / (2 * (1 + nu));
-  material.lame_lambda = e * nu / (1 - nu * nu);
+  set_elasticity({e, nu}, section.where, material);
   if (modulus.given && !section["bending"].given && !section["hinge_bending"].given)
     material.bending = e * h * h / (12 * (1 - nu * nu));
 }

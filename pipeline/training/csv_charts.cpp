@@ -7,16 +7,12 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/host/html_text.hpp"
+
 namespace selvedge {
 namespace {
 
 constexpr std::array colours{"#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#8c564b", "#17becf", "#7f7f7f"};
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) result += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
-  return result;
-}
 
 }  // namespace
 
@@ -59,7 +55,7 @@ std::string chart(const std::string& title, const std::vector<double>& x, const 
   if (low > high) return "";
   if (high - low < 1e-12) high = low + 1;
   std::string svg =
-      fmt::format("<figure><figcaption>{}</figcaption><svg width='{}' height='{}'>", title, width, height);
+      fmt::format("<figure><figcaption>{}</figcaption><svg width='{}' height='{}'>", html_text(title), width, height);
   const auto place_y = [&](double y) { return height - bottom - (y - low) / (high - low) * (height - bottom - top); };
   for (int k = 0; k <= 4; ++k) {
     const double y = low + (high - low) * k / 4;
@@ -79,7 +75,7 @@ std::string chart(const std::string& title, const std::vector<double>& x, const 
   }
   svg += "</svg><p>";
   for (std::size_t c = 0; c < curves.size(); ++c)
-    svg += fmt::format("<span style='color:{}'>{}</span> ", colours[c % colours.size()], curves[c].name);
+    svg += fmt::format("<span style='color:{}'>{}</span> ", colours[c % colours.size()], html_text(curves[c].name));
   return svg + "</p></figure>\n";
 }
 
@@ -97,11 +93,11 @@ std::string page_head(const std::string& title) {
       "<style>body{{font:13px sans-serif;margin:16px}}figure{{display:inline-block;margin:8px}}"
       "svg text{{font-size:10px}}figcaption{{font-weight:bold}}pre{{background:#f4f4f4;padding:8px}}</style>"
       "<h1>{0}</h1>\n",
-      escaped(title));
+      html_text(title));
 }
 
 std::string page_text(const std::string& heading, const std::string& text) {
-  return "<h2>" + escaped(heading) + "</h2><pre>" + escaped(text) + "</pre>\n";
+  return "<h2>" + html_text(heading) + "</h2><pre>" + html_text(text) + "</pre>\n";
 }
 
 }  // namespace selvedge

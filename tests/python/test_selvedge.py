@@ -84,6 +84,60 @@ def test_bad_arrays_say_what_and_where(x, triangles, words):
     assert isinstance(error.value, ValueError)
 
 
+@pytest.mark.parametrize(
+    "name, value",
+    [
+        ("density", -3),
+        ("density", 0),
+        ("density", np.nan),
+        ("density", np.inf),
+        ("youngs_modulus", -1),
+        ("youngs_modulus", 1e300),
+        ("poisson", 2),
+        ("poisson", 1),
+        ("poisson", -0.5),
+        ("bending", -1e-9),
+        ("bending", np.nan),
+    ],
+)
+def test_numbers_that_no_material_has_are_refused(name, value):
+    scene = selvedge.Scene()
+    with pytest.raises(selvedge.Error) as error:
+        scene.add_cloth(*sheet(3), name="c", **{name: value})
+    assert "cloth `c`, material" in str(error.value) and f"{name} is {value:g}" in str(error.value), str(error.value)
+    assert "allowed: " in str(error.value)
+    with pytest.raises(selvedge.Error, match="no cloth"):
+        scene.step()
+
+
+def test_positions_beyond_what_a_scene_can_show_are_refused():
+    x, triangles = sheet(3)
+    far = x.copy()
+    far[4, 1] = 1e18
+    with pytest.raises(selvedge.Error, match="row 4"):
+        selvedge.Scene().add_cloth(far, triangles)
+    with pytest.raises(selvedge.Error, match="row 4"):
+        selvedge.Scene().add_obstacle(far, triangles)
+    with pytest.raises(selvedge.Error, match="row 4"):
+        selvedge.untangle(far, triangles)
+    scene = falling()
+    with pytest.raises(selvedge.Error, match="row 0"):
+        scene.move_obstacle(0, [[1e30, 0, 0]] * 4)
+    scene.x[5, 0] = np.nan
+    with pytest.raises(selvedge.Error, match="x.*row 5"):
+        scene.step()
+    scene.x[5, 0] = 0
+    scene.v[6, 2] = 1e200
+    with pytest.raises(selvedge.Error, match="v.*row 6"):
+        scene.step()
+
+
+@pytest.mark.parametrize("frames", [-1, 2.5, np.nan, "3"])
+def test_frames_are_a_whole_number(frames):
+    with pytest.raises(selvedge.Error, match="frames is"):
+        selvedge.simulate(falling(), frames)
+
+
 def test_a_scene_without_cloth_and_a_late_cloth_are_refused():
     with pytest.raises(selvedge.Error, match="no cloth"):
         selvedge.Scene().step()

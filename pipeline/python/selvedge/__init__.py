@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from typing import Callable
 
 from ._selvedge import Error, Scene, check, compare, contours, distance, read_cache, read_trajectory, untangle
@@ -32,7 +33,12 @@ __all__ = [
 def simulate(scene: Scene, frames: int | None = None, callback: Callable[[Scene], bool | None] | None = None) -> int:
     """Steps to that frame (the scene file's by default), or until a step is rejected or the callback, which is called
     with the scene after every frame, returns False. Returns the frame that was reached."""
-    frames = scene.frames if frames is None else frames
+    try:
+        frames = scene.frames if frames is None else operator.index(frames)
+    except TypeError:
+        raise Error(f"simulate: frames is {frames!r}\n  cure: give a whole number") from None
+    if frames < 0:
+        raise Error(f"simulate: frames is {frames}\n  cure: give 0 or more")
     while scene.frame < frames and scene.step():
         if callback is not None and callback(scene) is False:
             break

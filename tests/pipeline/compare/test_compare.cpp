@@ -98,6 +98,33 @@ TEST_CASE("The efficient front ends where the floor is, and leaves out what is n
   CHECK(fronts(1));  // scenes are not compared
 }
 
+TEST_CASE("Names on a comparison's page are text, whatever is in them", "[compare]") {
+  const Folder folder("compare_names");
+  const std::string name = "'><script>\"&";
+  CompareResult result;
+  result.floors.emplace_back().scene = name;
+  result.rows = {row(1, 2)};
+  result.rows[0].scene = name;
+  result.rows[0].setting = "<i>'";
+  result.views = folder.path;
+  fake::write(folder, name + ".html", "");
+  const std::string page = compare_page(Comparison{}, result);
+  CHECK_FALSE(fake::has(page, "<script"));
+  CHECK_FALSE(fake::has(page, "<i>"));
+  CHECK(
+      fake::has(page, "<a href='views/%27%3E%3Cscript%3E%22%26.html'>&#39;&gt;&lt;script&gt;&quot;&amp; side by side"));
+}
+
+TEST_CASE("A comparison's names are names of files", "[compare]") {
+  const Folder folder("compare_names");
+  fake::write(folder, "hanging.yaml", hanging);
+  for (const char* name : {"../up", "a/b", "\"a\\nb\""})
+    CHECK_THROWS_WITH(read_comparison(fake::write(
+                          folder, "names.yaml",
+                          "scenes: [{file: hanging.yaml, name: " + std::string(name) + "}]\nsettings: [{name: a}]\n")),
+                      Contains("scenes.0") && Contains("no file can have"));
+}
+
 TEST_CASE("A comparison measures errors, times and energy, and is not done twice", "[compare]") {
   const Folder folder("compare");
   CompareRequest request = small_request(folder);

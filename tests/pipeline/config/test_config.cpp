@@ -193,6 +193,20 @@ TEST_CASE("Files that are no scenes are refused", "[config]") {
   CHECK_THROWS_AS(read_setup(folder.path), Error);
 }
 
+TEST_CASE("A file whose aliases stand for more than memory holds is refused", "[config]") {
+  const Folder folder("config_aliases");
+  std::string vertices = "0", pins, cloths;
+  for (int k = 0; k < 300; ++k) vertices += ", 1", pins += ", *p", cloths += "  - *c\n";
+  const auto file = fake::write(
+      folder, "aliases.yaml",
+      "cloths:\n  - &c {rectangle: {resolution: 3}, pins: [&p {vertices: [" + vertices + "]}" + pins + "]}\n" + cloths);
+  CHECK_THROWS_WITH(read_config(file, scene_section()), Contains("aliases.yaml") && Contains("4000000 values"));
+  CHECK_THROWS_WITH(
+      read_config(fake::write(folder, "deep.yaml", "description: " + std::string(300, '[') + std::string(300, ']')),
+                  scene_section()),
+      Contains("deep.yaml") && Contains("200 deep"));
+}
+
 TEST_CASE("No beginning of a scene file crashes", "[config]") {
   const std::string scene = whole(std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs/bench/tube.yaml");
   for (std::size_t length = 0; length < scene.size(); length += 3) {

@@ -167,6 +167,7 @@ TEST_CASE("what is no array or not whole is refused with its reason") {
   CHECK_THROWS_AS(npy_integers(fake::npy<double>({1}, {0.5}), place), Error);
   CHECK_THROWS_AS(npy_integers(fake::npy<double>({1}, {std::numeric_limits<double>::quiet_NaN()}), place), Error);
   CHECK_THROWS_AS(npy_texts(fake::npy_of("'<U99999999999999999'", false, "(1,)", eight), place), Error);
+  CHECK_THROWS_AS(npy_texts(fake::npy_of("'<U0'", false, "(999999999999999999,)", ""), place), Error);
 }
 
 TEST_CASE("an archive that is damaged is refused") {

@@ -193,6 +193,8 @@ TEST_CASE("clip_bvh: errors name file and line", "[clip]") {
   fails(broken("Frames: 2", "Frames: 3"), "17", "18 numbers");
   fails(broken("Frames: 2", "Frames: 0"), "15", "no frames");
   fails(broken("0.0416667", "0"), "15", "time of a frame");
+  // A hundred million frames of nothing are as many poses.
+  fails("HIERARCHY ROOT a { OFFSET 0 0 0 CHANNELS 0 }\nMOTION Frames: 100000000 Frame Time: 1\n", "2", "no channels");
   fails(broken("30 10 20", "30 x 20"), "17", "`x`");
   fails(two_joints.substr(0, 120), "6", "ends");
   CHECK_THROWS_AS(read_bvh("/nowhere.bvh"), Error);

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "physics/scene/scene.hpp"
+
+namespace selvedge {
+
+struct State;
+
+// What the numbers of a scene may be, whoever gives them: a scene file, Python, or C++ that fills a Scene. Beyond these
+// bounds nothing is meant that a scene could show, and doubles lose what matters.
+namespace limits {
+inline constexpr double farthest = 1e6;   // from the origin, and the largest length [m]
+inline constexpr double thickest = 1;     // contact thickness [m]
+inline constexpr double longest = 1e9;    // time [s]
+inline constexpr double heaviest = 1e9;   // mass per area [kg/m2]
+inline constexpr double stiffest = 1e18;  // [N/m], [N m], [Pa]
+}  // namespace limits
+
+// In place of the Lame coefficients, in plane stress.
+struct Elasticity {
+  double youngs_modulus = 0;  // times thickness [N/m]
+  double poisson = 0;
+};
+
+// A number of a struct and what it may be.
+template <class Struct>
+struct NumberField {
+  const char* name;
+  double Struct::*member;
+  double low, high;
+  bool low_in = true, high_in = true;  // whether the end itself is allowed
+  bool has(double value) const {       // never NaN
+    return (low_in ? value >= low : value > low) && (high_in ? value <= high : value < high);
+  }
+};
+
+// Every number of Material, Elasticity, ContactSettings, Wind or Spring.
+template <class Struct>
+std::span<const NumberField<Struct>> number_fields();
+
+// Each throws Error, naming `where`, the field, its value and what is allowed.
+[[noreturn]] void refuse_number(const std::string& field, double value, double low, double high, bool low_in,
+                                bool high_in, const std::string& where);
+
+template <class Struct>
+void check_numbers(const Struct& all, const std::string& where) {
+  for (const NumberField<Struct>& field : number_fields<Struct>())
+    if (const double value = all.*field.member; !field.has(value))
+      refuse_number(field.name, value, field.low, field.high, field.low_in, field.high_in, where);
+}
+
+// A time step [s]: above 0, up to limits::longest.
+bool is_time_step(double dt);
+void check_time_step(double dt, const std::string& where);
+
+// Positions [m], or velocities [m/s], that are finite and nowhere beyond limits::farthest.
+void check_positions(const Points&, const std::string& where, const std::string& unit = "m");
+
+// Sets the Lame coefficients.
+void set_elasticity(const Elasticity&, const std::string& where, Material&);
+
+// Numbers of materials, contact, wind and springs; rest positions; indices of pins and springs.
+void check_scene(const Scene&);
+
+// Positions and velocities of cloths and obstacles, as many as the scene has.
+void check_state(const Scene&, const State&);
+
+}  // namespace selvedge
