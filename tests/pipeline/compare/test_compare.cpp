@@ -119,9 +119,10 @@ TEST_CASE("A comparison's names are names of files", "[compare]") {
   const Folder folder("compare_names");
   fake::write(folder, "hanging.yaml", hanging);
   for (const char* name : {"../up", "a/b", "\"a\\nb\""})
-    CHECK_THROWS_WITH(read_comparison(fake::write(
-                          folder, "names.yaml",
-                          "scenes: [{file: hanging.yaml, name: " + std::string(name) + "}]\nsettings: [{name: a}]\n")),
+    CHECK_THROWS_WITH(read_comparison(fake::write(folder, "names.yaml",
+                                                  "scenes: [{file: hanging.yaml, name: " + std::string(name) +
+                                                      "}]\nsettings: [{name: a}]\n"),
+                                      false),
                       Contains("scenes.0") && Contains("no file can have"));
 }
 
