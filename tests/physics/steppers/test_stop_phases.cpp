@@ -5,6 +5,7 @@
 #include "collision/contact/proximity.hpp"
 #include "collision/contour/segments.hpp"
 #include "collision/exact/inside.hpp"
+#include "collision/geometry/parallel.hpp"
 #include "collision/geometry/stop_scope.hpp"
 #include "collision/search/intersections.hpp"
 #include "collision/untangle/give_way.hpp"
@@ -34,6 +35,7 @@ Sheet soup(int n) {
 }  // namespace
 
 TEST_CASE("every long phase of a step asks whether to stop, and ends where it is told to", "[stop_phases]") {
+  const ThreadLimit one(1);  // how often many threads ask depends on who takes which part of a loop
   const Sheet cloth = soup(12);
   const Surface surface = cloth.surface();
   const testing::Solid ball = testing::ball(12);
@@ -87,6 +89,7 @@ TEST_CASE("every long phase of a step asks whether to stop, and ends where it is
 }
 
 TEST_CASE("a step of a soup of coincident vertices ends wherever it is stopped", "[stop_phases]") {
+  const ThreadLimit one(1);  // how often many threads ask depends on who takes which part of a loop
   World w = make_world(soup(4));
   const testing::Solid ball = testing::ball(10);
   add_obstacle(w, {Points(0.3 * ball.x), ball.surface.triangles});

@@ -65,8 +65,7 @@ TEST_CASE("A learned run is not resumed with other weights under the same name",
     REQUIRE(run(setup, folder.path / stepper, false, 2).frames == 2);
     std::filesystem::rename(folder.path / "w.h5", folder.path / "kept.h5");
     write_network(folder, "w.h5", "hood_cvpr");
-    CHECK_THROWS_WITH(run(setup, folder.path / stepper, true),
-                      Contains("another configuration") && Contains("weights"));
+    CHECK_THROWS_WITH(run(setup, folder.path / stepper, true), Contains("w.h5") && Contains("has changed"));
     std::filesystem::rename(folder.path / "kept.h5", folder.path / "w.h5");
     CHECK(run(setup, folder.path / stepper, true).frames == 5);
   }
