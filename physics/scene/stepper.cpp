@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "physics/scene/scene_numbers.hpp"
-
 namespace selvedge {
 
 PhaseTimes& PhaseTimes::operator+=(const PhaseTimes& other) {
@@ -28,7 +26,7 @@ StepCounts& StepCounts::operator+=(const StepCounts& other) {
 }
 
 bool StepperTraits::accepts(double dt) const {
-  return is_time_step(dt) && (!only_dt || std::abs(dt - *only_dt) <= 1e-9);
+  return dt > 0 && std::isfinite(dt) && (!only_dt || std::abs(dt - *only_dt) <= 1e-9);
 }
 
 }  // namespace selvedge

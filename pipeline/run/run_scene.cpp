@@ -17,7 +17,7 @@
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/run/record_frame.hpp"
 #include "pipeline/run/resume.hpp"
-#include "pipeline/run/run_inputs.hpp"
+#include "pipeline/run/run_inputs_yaml.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 
 namespace selvedge {

@@ -4,7 +4,7 @@
 #include "pipeline/formats/checkpoint.hpp"
 #include "pipeline/formats/hdf5_handles.hpp"
 #include "pipeline/run/memory_forms.hpp"
-#include "pipeline/run/run_inputs.hpp"
+#include "pipeline/run/run_inputs_yaml.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "tests/pipeline/run/sheet_over_ball.hpp"
 

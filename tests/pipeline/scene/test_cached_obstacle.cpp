@@ -13,12 +13,21 @@ using fake::Folder;
 
 namespace {
 
+Points corners() {
+  Points x(4, 3);
+  x << 0, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0, 1;
+  return x;
+}
+
+// Four corners that rise along all axes.
+Points moved(double by) { return corners().array() + by; }
+
 AnimatedSurfaces some_run() {
   AnimatedSurfaces run;
   run.fps = 24;
   run.frame_count = 5;
   run.surfaces.push_back({"sheet", Triangles::Zero(1, 3), 4});
-  run.frame = [](int i) { return std::vector<PointsF>{PointsF::Constant(4, 3, 0.1f * static_cast<float>(i))}; };
+  run.frame = [](int i) { return std::vector<PointsF>{moved(0.1 * i).cast<float>()}; };
   return run;
 }
 
@@ -39,8 +48,7 @@ TEST_CASE("Point caches that the exports write come back", "[setup]") {
 
 TEST_CASE("An obstacle follows a point cache on the faces of a mesh", "[setup]") {
   const Folder folder("cache_scene");
-  Points x(4, 3);
-  x << 0, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0, 1;
+  const Points x = corners();
   Triangles triangles(2, 3);
   triangles << 0, 1, 2, 2, 1, 3;
   write_obj(folder.path / "floor.obj", x, triangles);
@@ -53,11 +61,8 @@ TEST_CASE("An obstacle follows a point cache on the faces of a mesh", "[setup]")
   };
   const Setup setup = scene("cache: floor.mdd, mesh: floor.obj, unit: cm");
   CHECK(setup.scene.obstacles[0].surface.triangles == triangles);
-  CHECK(setup.drive_at(2.5 / 24).obstacles[0].isApprox(Points::Constant(4, 3, 0.0025), 1e-6));
-  CHECK(scene("cache: floor.mdd, mesh: floor.obj, fps: 12")
-            .drive_at(1.0 / 12)
-            .obstacles[0]
-            .isApprox(Points::Constant(4, 3, 0.1), 1e-6));
+  CHECK(setup.drive_at(2.5 / 24).obstacles[0].isApprox(0.01 * moved(0.25), 1e-6));
+  CHECK(scene("cache: floor.mdd, mesh: floor.obj, fps: 12").drive_at(1.0 / 12).obstacles[0].isApprox(moved(0.1), 1e-6));
   CHECK_THROWS_WITH(scene("cache: floor.mdd"), Contains("without a mesh"));
   CHECK_THROWS_WITH(scene("pattern: floor.obj, mesh: floor.obj"), Contains("without a point cache"));
   write_obj(folder.path / "other.obj", x.topRows(3), triangles.topRows(1));

@@ -1,4 +1,4 @@
-#include "pipeline/run/run_inputs.hpp"
+#include "pipeline/run/run_inputs_yaml.hpp"
 
 #include <yaml-cpp/yaml.h>
 
