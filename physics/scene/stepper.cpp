@@ -25,8 +25,10 @@ StepCounts& StepCounts::operator+=(const StepCounts& other) {
   return *this;
 }
 
+constexpr double longest_step = 1e9;  // [s], as scene_numbers.hpp has it
+
 bool StepperTraits::accepts(double dt) const {
-  return dt > 0 && std::isfinite(dt) && (!only_dt || std::abs(dt - *only_dt) <= 1e-9);
+  return dt > 0 && dt <= longest_step && (!only_dt || std::abs(dt - *only_dt) <= 1e-9);
 }
 
 }  // namespace selvedge

@@ -64,13 +64,17 @@ TEST_CASE("stop: wherever a step is ended it is rejected as stopped, soon, and i
   const int polls = step_until(*testing::conventional(w.scene), w, from, 1 << 30).polls;
   REQUIRE(polls > 20);
   const std::unique_ptr<Stepper> stepper = testing::conventional(w.scene);
+  int stopped = 0;
   for (int k = 1; k <= polls; k += std::max(1, polls / 12)) {
     const Polled p = step_until(*stepper, w, from, k);
     INFO("poll " << k << " of " << polls);
+    if (p.polls < k) continue;  // what the stepper has kept from the last step spared it some
+    ++stopped;
     CHECK(p.report.status == StepStatus::rejected);
     CHECK(p.report.reason == Reason::stopped);
     CHECK(p.after <= 8);
   }
+  CHECK(stopped >= 10);
   // What was begun leaves no trace: the next step has the bits of a new stepper's.
   CHECK(step_until(*stepper, w, from, 1 << 30).to.x ==
         step_until(*testing::conventional(w.scene), w, from, 1 << 30).to.x);
