@@ -22,6 +22,8 @@ StepCounts& StepCounts::operator+=(const StepCounts& other) {
   searches += other.searches;
   candidates += other.candidates;
   audits += other.audits;
+  swept += other.swept;
+  projected += other.projected;
   return *this;
 }
 

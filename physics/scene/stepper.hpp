@@ -65,6 +65,8 @@ struct StepCounts {
   int searches = 0;             // for pairs that come near each other, in part or whole
   std::int64_t candidates = 0;  // pairs whose boxes those found to overlap
   int audits = 0;               // of a motion or of positions
+  std::int64_t swept = 0;       // pairs whose paths were tested for a first contact
+  std::int64_t projected = 0;   // vertices that impact zones moved, once a projection
   StepCounts& operator+=(const StepCounts&);
 };
 
@@ -118,12 +120,16 @@ struct StepReport {  // starts as failure
   // Its budget of them ran out: solves that came later are rough; what is tangled still (left_alone) waits for the
   // next.
   bool out_of_newton = false, out_of_untangling = false;
+  bool out_of_response = false;  // impulses and impact zones used up theirs: later motion was shortened at once
   int linear_iterations = 0;
   double residual = 0;  // largest force imbalance at the last substep's end [N]
   double unsolved = 0;  // bound of the RMS distance from where exact solves would end, summed over substeps [m]
   PhaseTimes seconds;
   StepCounts counts;
   CollisionReport collision;
+  // Of each obstacle: triangles that contact leaves alone somewhere in the step, for they cross others of it or are next
+  // to such; empty: none of any.
+  std::vector<int> switched_off;
   std::optional<Audit> audit;  // of the state that was made, rounded to float (step_audit.hpp); absent: not audited
 };
 
