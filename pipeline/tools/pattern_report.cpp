@@ -33,6 +33,7 @@ std::string pattern_json(const PatternReport& report) {
                  {"body_pairs", report.body_pairs},
                  {"inside_vertices", report.inside_vertices},
                  {"largest_gap", report.largest_gap},
+                 {"open_stitches", report.open_stitches},
                  {"joined_by", sewn.joined_by},
                  {"moving_share", sewn.moving_share},
                  {"at_rest", sewn.moving_share < resting_share},

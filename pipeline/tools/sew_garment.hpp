@@ -30,6 +30,7 @@ struct PatternReport {
   double raised = 0;                   // by which the body stands higher than given, on the pattern's floor [m]
   SewnPattern sewn;                    // not with `flat`
   double largest_gap = 0;              // of a stitch before it was joined [m]
+  int open_stitches = 0;               // whose gap was larger than 5 mm then
   double median_distance = 0;          // from vertices to the body's surface [m]
   double strain_99 = 0;                // 99th percentile of the largest strain of a triangle
   int self_pairs = 0, body_pairs = 0;  // intersecting triangles, with itself and with the body as given
@@ -43,8 +44,8 @@ struct PatternReport {
 // and for panels that do not stand round the body.
 PatternReport sew_garment(const PatternRequest&);
 
-// What is wrong with the garment, a sentence each: it was never on the body, it has slid off, it never came to rest, a
-// step was rejected.
+// What is wrong with the garment, a sentence each: stitches never closed, it was never on the body, it has slid off, it
+// never came to rest, a step was rejected.
 std::vector<std::string> faults_of(const PatternReport&);
 
 // Without faults, and without pairs, with nothing inside the body.

@@ -57,9 +57,9 @@ TEST_CASE("What files do not say of their time is said, and so is where they end
   for (const int number : {0, 1, 2}) write_frame(folder, number);
   const std::string files = "files: [f0.obj, f1.obj, f2.obj]";
   CHECK_THAT(warnings_of(with(folder, "sequence: {" + files + "}")), Contains("30 frames a second are assumed"));
-  CHECK_THAT(warnings_of(with(folder, "sequence: {" + files + ", fps: 10}", "{frames: 6}")), !Contains("slab"));
-  const Setup longer = with(folder, "sequence: {" + files + ", fps: 10}", "{frames: 7}");
-  CHECK_THAT(warnings_of(longer), Contains("`slab` ends at 0.2 s: from frame 6 of 7"));
+  CHECK_THAT(warnings_of(with(folder, "sequence: {" + files + ", fps: 10}", "{frames: 7}")), !Contains("slab"));
+  const Setup longer = with(folder, "sequence: {" + files + ", fps: 10}", "{frames: 8}");
+  CHECK_THAT(warnings_of(longer), Contains("`slab` ends at 0.2 s: from frame 6 of 8"));
   const Setup later = with(folder, "sequence: {" + files + ", fps: 10, start: 1 s}", "{frames: 36}");
   CHECK(height(later, 1) == 0);
   CHECK(height(later, 1.15) == Approx(1.5));

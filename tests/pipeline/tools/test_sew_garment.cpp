@@ -53,6 +53,15 @@ TEST_CASE("A skirt that is too wide has slid off, which is said with the frame",
   CHECK_THAT(pattern_text(report), Contains("`skirt` has slid off its body") && Contains("in frame"));
 }
 
+TEST_CASE("A skirt that is too narrow to close round the body is not good, whatever else it is", "[sew_garment]") {
+  const fake::Folder folder("sewn_narrow");
+  const PatternReport report = sewn(folder, 12, 8);
+  CHECK(report.open_stitches > 0);
+  CHECK(report.largest_gap > 5e-3);
+  CHECK_FALSE(is_clean(report));
+  CHECK_THAT(pattern_text(report), Contains("never closed"));
+}
+
 TEST_CASE("Patterns of other people that lie nowhere are refused or said to be off", "[sew_garment][.long]") {
   const std::filesystem::path cases = fake::open_data() / ".." / "cases" / "pattern_result";
   if (!std::filesystem::exists(cases)) {
