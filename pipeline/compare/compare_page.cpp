@@ -45,6 +45,7 @@ constexpr PageColumn page_columns[]{{"temporal_1", "temporal 1 [mm]", 1000, "{:.
                                     {"strain_99", "p99 [%]", 100, "{:.1f}"},
                                     {"kinetic", "kinetic [J]", 1, "{:.3g}"},
                                     {"pairs_mean", "pairs", 1, "{:.1f}"},
+                                    {"body_pairs_mean", "pairs with bodies", 1, "{:.1f}"},
                                     {"pairs_end", "at end", 1, "{:.0f}"},
                                     {"depth", "depth [mm]", 1000, "{:.2f}"},
                                     {"jitter", "jitter [mm]", 1000, "{:.2f}"},

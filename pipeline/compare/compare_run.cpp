@@ -86,6 +86,7 @@ struct RunWatch {
     if (report.audit) {
       frame.pairs = pairs_of_cloth(setup.scene, report, state.x);
       run.pairs = std::max(run.pairs, frame.pairs);
+      frame.body_pairs = static_cast<int>(report.audit->obstacle_pairs.size());
       frame.meets_body = !report.audit->obstacle_pairs.empty() || report.audit->inside_vertices > 0;
     }
     const bool may_be_inside = !report.audit || report.audit->inside_vertices > 0 || state.pinched;

@@ -107,6 +107,7 @@ EvaluatedRow described(const Comparison& comparison, const Evaluation& evaluatio
     row.strain_99_of_outfit.push_back(mean_over(of_outfit, strain_99));
   }
   row.pairs = mean_over(rows, pairs);
+  row.body_pairs = mean_over(rows, [](const CompareRow& r) { return measure_of(r, "body_pairs_mean"); });
   describe_tangled(rows, comparison.evaluation.left_frames, row);
   std::vector<double> ms;
   for (const CompareRow* one : rows) ms.push_back(one->ms);

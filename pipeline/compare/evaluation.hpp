@@ -29,7 +29,7 @@ struct EvaluatedRow {
   int sequences = 0, failed = 0;
   // Means over frames and sequences, in the order of Evaluation::outfits.
   std::vector<double> pairs_of_outfit, strain_of_outfit, strain_99_of_outfit;
-  double pairs = unknown;                                    // over all
+  double pairs = unknown, body_pairs = unknown;              // over all: of cloth, and of cloth with bodies
   double at_0 = unknown, at_50 = unknown, at_150 = unknown;  // pairs in these frames, of tangled sequences
   std::vector<double> left;
   double frames_a_second = unknown;  // median

@@ -41,10 +41,13 @@ std::string strain_by_outfit(const Evaluation& e) {
 
 std::string evaluation_text(const Evaluation& e) {
   std::string text =
-      "evaluation: intersecting pairs of cloth, mean over frames and sequences\n  " + fmt::format("{:<18}", "");
+      "evaluation: intersecting pairs of cloth, mean over frames and sequences; `body`: those of cloth with bodies\n "
+      " " +
+      fmt::format("{:<18}", "");
   for (std::size_t k = 0; k < e.outfits.size(); ++k)
     text += fmt::format(" {:>14}", fmt::format("{} ({})", e.outfits[k], e.vertices[k]));
-  text += fmt::format(" {:>10} {:>9} {:>8} {:>8} {:>8}\n", "all", "sequences", "at 0", "at 50", "at 150");
+  text +=
+      fmt::format(" {:>10} {:>10} {:>9} {:>8} {:>8} {:>8}\n", "all", "body", "sequences", "at 0", "at 50", "at 150");
   for (const EvaluatedRow& row : e.rows) {
     text += fmt::format("  {:<18}", row.row);
     if (row.sequences == 0) {
@@ -52,8 +55,8 @@ std::string evaluation_text(const Evaluation& e) {
       continue;
     }
     for (const double pairs : row.pairs_of_outfit) text += fmt::format(" {:>14}", shown(pairs));
-    text += fmt::format(" {:>10} {:>9} {:>8} {:>8} {:>8}{}\n", shown(row.pairs), row.sequences, shown(row.at_0),
-                        shown(row.at_50), shown(row.at_150),
+    text += fmt::format(" {:>10} {:>10} {:>9} {:>8} {:>8} {:>8}{}\n", shown(row.pairs), shown(row.body_pairs),
+                        row.sequences, shown(row.at_0), shown(row.at_50), shown(row.at_150),
                         row.failed > 0 ? fmt::format("  {} ended early", row.failed) : "");
   }
   text += fmt::format("  \"at\" are means over the {} sequences that start tangled\n", e.tangled);
@@ -89,6 +92,7 @@ std::string evaluation_json(const Evaluation& e) {
                     {"sequences", row.sequences},
                     {"ended_early", row.failed},
                     {"pairs", number_or_null(row.pairs)},
+                    {"body_pairs", number_or_null(row.body_pairs)},
                     {"pairs_of_outfit", of_outfits},
                     {"strain_of_outfit", strains},
                     {"pairs_at_0", number_or_null(row.at_0)},

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "collision/geometry/error.hpp"
+#include "learned/network/weights_hdf5.hpp"
 #include "pipeline/garments/outfit.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/training/training_roll.hpp"
@@ -46,6 +47,21 @@ std::string list_text(const Eigen::VectorXd& values) {
   return text + "]";
 }
 
+// Training draws its bodies from its seed as `make_tangled` does from that of the sequences. A bare network that has
+// seen them would be judged by what it has learned from.
+void check_bodies_unseen(const Comparison& comparison) {
+  const std::string seed = std::to_string(comparison.sequences.seed);
+  for (const CompareSetting& setting : comparison.settings) {
+    if (setting.stepper != "learned" || !std::filesystem::exists(setting.weights)) continue;
+    for (const auto& [name, value] : read_weight_file(setting.weights).origin)
+      if (name == "seed" && value == seed)
+        throw Error(fmt::format("`sequences.seed` {} is the seed with which {} was trained: the row `{}` would start "
+                                "from bodies of its training",
+                                seed, setting.weights.filename().string(), setting.name),
+                    comparison.file.string(), "give another `sequences.seed`");
+  }
+}
+
 void make_tangled(const SequenceOptions& sequences, RollMaker& maker, int number, int clip, CompareScene& scene) {
   RollRequest asked;
   asked.number = 2 * static_cast<std::uint64_t>(number);  // even ones are looked for
@@ -70,6 +86,7 @@ void add_sequences(Comparison& comparison) {
   const SequenceOptions& sequences = comparison.sequences;
   if (sequences.outfits.empty() || sequences.clips.empty() || sequences.file.empty())
     throw Error("`sequences` lacks its scene file, outfits or clips", comparison.file.string(), "give all three");
+  if (sequences.tangled > 0) check_bodies_unseen(comparison);
   const auto outfits = static_cast<int>(sequences.outfits.size()), clips = static_cast<int>(sequences.clips.size());
   std::vector<std::optional<RollMaker>> makers(sequences.outfits.size());
   int tangled = 0;

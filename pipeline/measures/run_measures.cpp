@@ -19,6 +19,7 @@ constexpr MeasureMeaning meanings[]{
     {"strain_most", "the largest of all frames"},
     {"kinetic", "kinetic energy [J]"},
     {"pairs_mean", "intersecting pairs of cloth triangles that share no vertex, a frame"},
+    {"body_pairs_mean", "intersecting pairs of a cloth's and an obstacle's triangle, a frame"},
     {"pairs_end", "in the last frame"},
     {"pairs_start", "where the run starts"},
     {"depth", "of the deepest cloth vertex in a closed body, largest of all frames [m]"},
@@ -90,6 +91,7 @@ void RunMeasures::add(MeasuredFrame frame) {
   sums_["strain_99"] += strain.p99;
   sums_["kinetic"] += frame.kinetic;
   sums_["pairs_mean"] += frame.pairs;
+  sums_["body_pairs_mean"] += frame.body_pairs;
   sums_["collision_percent"] += collision_percent(judge_.body, frame.body, frame.x);
   sums_["static_share"] += static_share(last_.now, frame.x);
   mosts_["strain_most"] = std::max(mosts_["strain_most"], strain.most);

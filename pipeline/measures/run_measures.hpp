@@ -15,6 +15,7 @@ struct MeasuredFrame {
   Points body;              // of all obstacles, on end [m]; empty where there are none
   Points acceleration;      // of the cloth by all forces without contact [m/s2]
   int pairs = 0;            // of cloth triangles that intersect and share no vertex
+  int body_pairs = 0;       // of a cloth's and an obstacle's triangle that intersect
   bool meets_body = false;  // a triangle of the cloth meets an obstacle, or a vertex lies in a closed one
   double depth = 0;         // of the deepest cloth vertex in a closed obstacle [m]
   bool crossed = false;     // an obstacle passes through itself

@@ -97,6 +97,17 @@ std::optional<VolumeCheck> volume_check(const CheckRequest& request, const Surfa
   return VolumeCheck(surface, garments_of_vertices(first_vertex));
 }
 
+// The first frame of a trajectory was put, and its fans are measured at rest.
+std::optional<VolumeCheck> volume_check(const CheckRequest& request, const Surface& surface, const TrajectoryInfo& info,
+                                        CheckReport& report) {
+  auto volume = volume_check(request, surface, info.cloth_first_vertex, report);
+  if (volume) {
+    report.volume->first_made = 1;
+    report.volume->of_fans = volume->of_fans(info.rest);
+  }
+  return volume;
+}
+
 std::vector<RestTriangle> read_rest(const std::filesystem::path& file, const Triangles& triangles) {
   const Mesh mesh = read_mesh(file);
   if (!same_triangles(mesh.triangles, triangles))
@@ -128,7 +139,7 @@ void check_trajectory(const CheckRequest& request, CheckReport& report) {
   Bodies bodies;
   for (const TrajectoryInfo::Body& body : info.obstacles) bodies.add(body.vertex_count, body.triangles, Points());
   add_body_files(request, bodies, report);
-  const auto volume = volume_check(request, scene.surface, info.cloth_first_vertex, report);
+  const auto volume = volume_check(request, scene.surface, info, report);
   int last_cut = -1;
   for (int i = 0; i < reader.frame_count(); ++i) {
     const Frame frame = reader.frame(i);
@@ -151,7 +162,8 @@ void check_mesh(const CheckRequest& request, CheckReport& report) {
   add_body_files(request, bodies, report);
   const Scene scene = rest_scene(static_cast<int>(mesh.x.rows()), mesh.triangles,
                                  request.rest ? read_rest(*request.rest, mesh.triangles) : std::vector<RestTriangle>());
-  check_frame(scene, mesh.x, bodies, request.horizon, volume_check(request, scene.surface, {}, report), report);
+  check_frame(scene, mesh.x, bodies, request.horizon, volume_check(request, scene.surface, std::vector<int>(), report),
+              report);
   report.vertices = scene.surface.vertex_count;
   report.triangles = static_cast<int>(mesh.triangles.rows());
   report.bodies = static_cast<int>(bodies.surfaces.size());

@@ -27,7 +27,9 @@ nlohmann::ordered_json opinion_json(const Opinion& opinion) {
 }
 
 nlohmann::ordered_json volume_json(const VolumeFindings& findings) {
-  return {{"mean_loss", findings.mean_loss()},
+  return {{"mean_net_loss", findings.mean_net_loss()},
+          {"mean_loss", findings.mean_loss()},
+          {"loss_of_fans", findings.of_fans},
           {"share_above_0.1", findings.share_above(0.1)},
           {"share_above_0.01", findings.share_above(0.01)},
           {"loss_by_frame", findings.loss_by_frame},

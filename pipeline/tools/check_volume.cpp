@@ -11,15 +11,31 @@
 
 namespace selvedge {
 
-double VolumeFindings::mean_loss() const {
-  if (loss_by_frame.empty()) return 0;
-  return std::accumulate(loss_by_frame.begin(), loss_by_frame.end(), 0.0) / static_cast<double>(loss_by_frame.size());
+namespace {
+
+double mean_of(const std::vector<double>& values) {
+  if (values.empty()) return 0;
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-double VolumeFindings::share_above(double loss) const {
-  if (loss_by_frame.empty()) return 0;
-  const auto above = std::ranges::count_if(loss_by_frame, [loss](double one) { return one > loss; });
-  return static_cast<double>(above) / static_cast<double>(loss_by_frame.size());
+}  // namespace
+
+double VolumeFindings::mean_loss() const { return mean_of(loss_by_frame); }
+
+std::vector<double> VolumeFindings::net_losses() const {
+  std::vector<double> net;
+  for (std::size_t k = first_made; k < loss_by_frame.size(); ++k)
+    net.push_back(std::max(0.0, loss_by_frame[k] - of_fans));
+  return net;
+}
+
+double VolumeFindings::mean_net_loss() const { return mean_of(net_losses()); }
+
+double VolumeFindings::share_above(double net_loss) const {
+  const std::vector<double> net = net_losses();
+  if (net.empty()) return 0;
+  const auto above = std::ranges::count_if(net, [net_loss](double one) { return one > net_loss; });
+  return static_cast<double>(above) / static_cast<double>(net.size());
 }
 
 VolumeCheck::VolumeCheck(const Surface& cloth, std::span<const int> garments)
@@ -43,6 +59,16 @@ void VolumeCheck::add(const Points& x, VolumeFindings& findings) const {
   findings.unassigned += count(ContourVolume::unassigned);
 }
 
+double VolumeCheck::of_fans(const Points& rest) const {
+  const Points at = closed_positions(closed_, rest);
+  Segments segments;
+  const Penetration found = find_penetration(closed_, at, {}, &segments);
+  const bool cloth_crosses = std::ranges::any_of(segments.segments, [&](const Segment& s) {
+    return !closed_.is_fan(s.triangle[0]) && !closed_.is_fan(s.triangle[1]);
+  });
+  return cloth_crosses ? 0 : penetration_loss(closed_, at, found);
+}
+
 std::vector<int> garments_of_vertices(std::span<const int> first_vertex) {
   std::vector<int> garments;
   for (std::size_t cloth = 0; cloth + 1 < first_vertex.size(); ++cloth)
@@ -56,6 +82,8 @@ VolumeFindings volume_findings(const std::filesystem::path& trajectory) {
   const VolumeCheck check(make_surface(static_cast<int>(info.rest.rows()), info.triangles),
                           garments_of_vertices(info.cloth_first_vertex));
   VolumeFindings findings;
+  findings.first_made = 1;
+  findings.of_fans = check.of_fans(info.rest);
   for (int i = 0; i < reader.frame_count(); ++i) {
     const Points x = reader.frame(i).x.cast<double>();
     if (!x.allFinite()) throw Error(fmt::format("frame {} is not finite", i), trajectory.string(), "");
@@ -68,11 +96,13 @@ std::string volume_text(const VolumeFindings& f) {
   const auto worst = std::ranges::max_element(f.volume_by_frame);
   const double most = worst == f.volume_by_frame.end() ? 0 : *worst;
   return fmt::format(
-      "mean L_sc {:.4g} J, above 0.1 in {:.2f} %, above 0.01 in {:.2f} % of the frames; at most {:.4g} cm3, in frame "
-      "{}; "
+      "mean L_sc {:.4g} J, above 0.1 in {:.2f} %, above 0.01 in {:.2f} % of the frames that were made, less {:.4g} J "
+      "of "
+      "the fans at rest; {:.4g} J as published, of all frames; at most {:.4g} cm3, in frame {}; "
       "{} contours: {} enclose a volume, {} open, {} not orientable, {} unassigned; {} holes closed",
-      f.mean_loss(), 100 * f.share_above(0.1), 100 * f.share_above(0.01), 1e6 * most, worst - f.volume_by_frame.begin(),
-      f.contours, f.enclosed, f.open, f.not_orientable, f.unassigned, f.closed_holes);
+      f.mean_net_loss(), 100 * f.share_above(0.1), 100 * f.share_above(0.01), f.of_fans, f.mean_loss(), 1e6 * most,
+      worst - f.volume_by_frame.begin(), f.contours, f.enclosed, f.open, f.not_orientable, f.unassigned,
+      f.closed_holes);
 }
 
 }  // namespace selvedge

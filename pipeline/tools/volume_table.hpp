@@ -27,10 +27,11 @@ struct VolumeSummary {
   std::string row, group;
   int sequences = 0;
   long frames = 0;
-  MeanInterval loss, above_tenth, above_hundredth;           // mean L_sc [J], parts of the frames above 0.1 and 0.01
+  MeanInterval loss, above_tenth, above_hundredth;           // net L_sc [J], parts of the frames above 0.1 and 0.01
+  MeanInterval loss_as_published;                            // with the start and the fans [J]
   MeanInterval volume;                                       // a frame [m^3]
   MeanInterval pairs, contours, enclosed, open, unassigned;  // a frame; what is not orientable counts as unassigned
-  MeanInterval ratio;  // to the baseline: geometric mean of (L_sc + 1e-3) / (its L_sc + 1e-3) over common sequences
+  MeanInterval ratio;  // to the baseline: geometric mean of (net L_sc + 1e-3) / (its + 1e-3) over common sequences
   double frames_a_second = 0;
 };
 
@@ -42,7 +43,7 @@ std::vector<VolumeSummary> volume_summaries(const std::vector<VolumeSequence>&, 
 // Tables 1 and 4 of Liao et al. 2024, a group after another.
 std::string volume_table(const std::vector<VolumeSummary>&, const std::string& baseline);
 
-// L_sc by frame, means over the sequences of a row and group; a line a frame, a column a row.
+// L_sc by frame as published, means over the sequences of a row and group; a line a frame, a column a row.
 std::string volume_by_frame_csv(const std::vector<VolumeSequence>&, const std::string& group);
 
 }  // namespace selvedge

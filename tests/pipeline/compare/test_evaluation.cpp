@@ -3,7 +3,10 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+
+#include "pipeline/compare/sequences.hpp"
 
 namespace selvedge::test_evaluation {
 namespace {
@@ -62,6 +65,8 @@ TEST_CASE("evaluation: tables by hand", "[evaluation]") {
   rows[1].measures["kinetic"] = 1;
   rows[1].measures["strain"] = 0.03;
   rows[3].measures["strain"] = 0.05;
+  rows[1].measures["body_pairs_mean"] = 400;
+  rows[3].measures["body_pairs_mean"] = 100;
   CompareRow absent;
   absent.scene = "a";
   absent.setting = "absent";
@@ -78,6 +83,7 @@ TEST_CASE("evaluation: tables by hand", "[evaluation]") {
   REQUIRE(found.rows.size() == 3);
   CHECK(found.rows[0].pairs == Approx(2.5));  // (5 + 0) / 2
   CHECK(found.rows[1].pairs == Approx(6.5));  // (10 + 3) / 2
+  CHECK(found.rows[1].body_pairs == Approx(250));
   CHECK(found.rows[1].left == std::vector<double>{1, 0.75, 0.25});
   CHECK(found.rows[1].at_0 == 20);
   CHECK(std::isnan(found.rows[1].at_50));
@@ -90,9 +96,22 @@ TEST_CASE("evaluation: tables by hand", "[evaluation]") {
   CHECK(evaluation_text(found).find("no weight file") != std::string::npos);
   const auto json = nlohmann::json::parse(evaluation_json(found));
   CHECK(json["rows"][1]["pairs_of_outfit"][0] == 6.5);
+  CHECK(json["rows"][1]["body_pairs"] == 250);
   CHECK(json["rows"][1]["strain_of_outfit"][0]["mean"].get<double>() == Approx(0.04));
   CHECK(evaluation_text(found).find("4.00 (-)") != std::string::npos);
   CHECK(json["by_frame"]["hood"][1] == 15);
+}
+
+TEST_CASE("evaluation: bodies of tangled starts are not those with which a bare network was trained", "[evaluation]") {
+  const std::filesystem::path configs = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs";
+  const auto with_seed = [&](const std::string& seed) {
+    Comparison comparison = read_comparison(configs / "evaluation" / "contourcraft.yaml", true,
+                                            {"sequences.seed=" + seed, "sequences.count=2", "sequences.tangled=2"});
+    add_sequences(comparison);
+    return comparison.scenes.size();
+  };
+  CHECK_THROWS_WITH(with_seed("1"), Catch::Contains("bodies of its training") && Catch::Contains("sequences.seed"));
+  CHECK(with_seed("2811") == 2);
 }
 
 }  // namespace selvedge::test_evaluation

@@ -157,6 +157,7 @@ TEST_CASE("measures: a run is counted frame by frame, from its start", "[measure
     frame.x.col(1).array() += 0.01 * f;
     frame.acceleration = Points::Zero(3, 3);
     frame.pairs = 4 - f;
+    frame.body_pairs = 2 * f;
     frame.meets_body = f == 1;
     frame.depth = f == 2 ? 0.002 : 0;
     frame.kinetic = f;
@@ -165,6 +166,7 @@ TEST_CASE("measures: a run is counted frame by frame, from its start", "[measure
   const std::map<std::string, double> values = measures.values();
   CHECK(measures.pairs_by_frame() == std::vector<int>{5, 3, 2, 1});
   CHECK(values.at("pairs_mean") == Approx(2));
+  CHECK(values.at("body_pairs_mean") == Approx(4));
   CHECK(values.at("pairs_start") == 5);
   CHECK(values.at("pairs_end") == 1);
   CHECK(values.at("collision_free_frames") == Approx(200.0 / 3));

@@ -42,4 +42,28 @@ TEST_CASE("check --volume: flat pieces that cross, their boundaries closed, encl
   CHECK(report.volume->volume_by_frame[0] == Approx(0).margin(1e-15));
 }
 
+TEST_CASE("check --volume: a fan that goes through its own clean garment at rest is known") {
+  // A tube of square rings whose upper hem is rolled outwards and down on one side: no cloth crosses, but the fan
+  // across that hem goes through the wall.
+  const auto ring = [](double half, double left, double right) {
+    Points x(4, 3);
+    x << -half, left, -half, half, right, -half, half, right, half, -half, left, half;
+    return x;
+  };
+  Points x(16, 3);
+  x << ring(0.1, 0, 0), ring(0.1, 0.3, 0.3), ring(0.12, 0.3, 0.3), ring(0.14, 0.05, 0.3);
+  Triangles triangles(24, 3);
+  int t = 0;
+  for (int k = 0; k < 3; ++k)
+    for (int j = 0; j < 4; ++j) {
+      const int a = 4 * k + j, b = 4 * k + (j + 1) % 4;
+      triangles.row(t++) << a, b, b + 4;
+      triangles.row(t++) << a, b + 4, a + 4;
+    }
+  const VolumeCheck rolled(make_surface(16, triangles));
+  CHECK(rolled.of_fans(x) > 0);
+  x.bottomRows(4) = ring(0.14, 0.32, 0.32);
+  CHECK(rolled.of_fans(x) == 0);
+}
+
 }  // namespace selvedge::test_check_volume

@@ -43,6 +43,7 @@ TEST_CASE("volume table: means over sequences, shares of frames, and how a row s
   CHECK(hood.pairs.mean == 3);
   CHECK(hood.unassigned.mean == 1);
   CHECK(hood.ratio.mean == Approx(1));
+  CHECK(hood.loss_as_published.mean == hood.loss.mean);
   // The sequence that the baseline lacks takes no part in the ratio.
   CHECK(senc.sequences == 17);
   CHECK(senc.ratio.mean == Approx(0.254).margin(0.005));
@@ -51,6 +52,17 @@ TEST_CASE("volume table: means over sequences, shares of frames, and how a row s
   CHECK(volume_summaries(all, "hood", 500)[1].loss.low == senc.loss.low);
   CHECK(volume_by_frame_csv(all, "tshirt").substr(0, 16) == "frame,hood,senc\n");
   CHECK(volume_summaries({}, "hood").empty());
+}
+
+TEST_CASE("volume table: the start and the fans at rest count as published alone", "[tools]") {
+  VolumeSequence one = sequence("senc", "one", {0.47, 0.022, 0.03, 0.01});
+  one.found.first_made = 1;
+  one.found.of_fans = 0.022;
+  CHECK(one.found.net_losses() == std::vector<double>{0, 0.03 - 0.022, 0});
+  CHECK(one.found.share_above(0.005) == Approx(1.0 / 3));
+  const VolumeSummary summary = volume_summaries({one}, "senc", 10)[0];
+  CHECK(summary.loss.mean == Approx(0.008 / 3));
+  CHECK(summary.loss_as_published.mean == Approx(0.133));
 }
 
 }  // namespace selvedge::test_volume_table
