@@ -35,21 +35,57 @@ Slide slide_of(const Vec3& t, SlopeAxis axis) {
   return {factor * length, factor * along + turning * (up - cosine * along)};
 }
 
+int vertices_in(const std::array<int, 3>& sample) { return sample[1] < 0 ? 1 : sample[2] < 0 ? 2 : 3; }
+
+// No loss has what has no mass.
+bool has_mass(const LossGarment& garment, const std::array<int, 3>& sample) {
+  for (int i = 0; i < vertices_in(sample); ++i)
+    if (!(garment.mass[static_cast<std::size_t>(sample[static_cast<std::size_t>(i)])] > 0)) return false;
+  return true;
+}
+
 }  // namespace
+
+std::vector<std::array<int, 3>> cloth_samples(const LossGarment& garment, ClothSamples which) {
+  std::vector<std::array<int, 3>> samples;
+  const Surface& surface = garment.surface;
+  for (int v = 0; v < surface.vertex_count; ++v) samples.push_back({v, -1, -1});
+  if (which != ClothSamples::vertices)
+    for (const auto& ends : surface.edges.rowwise()) samples.push_back({ends[0], ends[1], -1});
+  if (which == ClothSamples::faces)
+    for (const auto& corners : surface.triangles.rowwise()) samples.push_back({corners[0], corners[1], corners[2]});
+  return samples;
+}
+
+Points sample_points(const std::vector<std::array<int, 3>>& samples, const Points& x) {
+  Points at(static_cast<Eigen::Index>(samples.size()), 3);
+  for (Eigen::Index k = 0; k < at.rows(); ++k) {
+    const std::array<int, 3>& of = samples[static_cast<std::size_t>(k)];
+    const int count = vertices_in(of);
+    at.row(k) = x.row(of[0]);
+    for (int i = 1; i < count; ++i) at.row(k) += x.row(of[static_cast<std::size_t>(i)]);
+    at.row(k) /= count;
+  }
+  return at;
+}
 
 double collision_loss(const LossGarment& garment, const CollisionLoss& options, const std::vector<int>& face,
                       const Surface& body, const Points& body_next, const Points& x, Points* gradient) {
   const bool cubic = options.penalty == DepthPenalty::cubic;
+  const std::vector<std::array<int, 3>> samples = cloth_samples(garment, options.samples);
+  const Points points = sample_points(samples, x);
   double sum = 0;
-  for (Eigen::Index v = 0; v < x.rows(); ++v) {
-    const auto at = static_cast<std::size_t>(v);
-    if (face[at] < 0 || !(garment.mass[at] > 0)) continue;
-    const BodyPlane plane = plane_of_body(body, body_next, face[at]);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (face[k] < 0 || !has_mass(garment, samples[k])) continue;
+    const BodyPlane plane = plane_of_body(body, body_next, face[k]);
     if (!plane.has_area) continue;
-    const double depth = options.thickness - (x.row(v).transpose() - plane.centroid).dot(plane.normal);
+    const double depth = options.thickness - (row(points, static_cast<int>(k)) - plane.centroid).dot(plane.normal);
     if (!(depth > 0)) continue;
     sum += cubic ? depth * depth * depth : 0.5 * depth * depth;
-    if (gradient) gradient->row(v) -= (cubic ? 3 * depth * depth : depth) * plane.normal.transpose();
+    if (!gradient) continue;
+    const int count = vertices_in(samples[k]);
+    const Vec3 push = (cubic ? 3 * depth * depth : depth) / count * plane.normal;
+    for (int i = 0; i < count; ++i) gradient->row(samples[k][static_cast<std::size_t>(i)]) -= push.transpose();
   }
   return sum;
 }

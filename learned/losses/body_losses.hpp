@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "learned/losses/loss_garment.hpp"
@@ -11,8 +12,12 @@ namespace selvedge {
 // (learned/graph/nearest_faces.hpp), and no part of the derivative; nor are faces without area. Each returns its value
 // and adds the derivative by the cloth's positions x where `gradient` is not null.
 
-// Sum of p^3 [m^3] or p^2 / 2 [m^2], p = max(eps - d, 0), d the distance of x from the plane through the face's
-// centroid where the body will be (parity README, 13).
+// The samples of the options: the vertices of each, -1 behind them. They lie in the mean of these.
+std::vector<std::array<int, 3>> cloth_samples(const LossGarment&, ClothSamples);
+Points sample_points(const std::vector<std::array<int, 3>>& samples, const Points& x);
+
+// Over the samples, of which each has a face: the sum of p^3 [m^3] or p^2 / 2 [m^2], p = max(eps - d, 0), d the
+// distance of the sample from the plane through the face's centroid where the body will be (parity README, 13).
 double collision_loss(const LossGarment&, const CollisionLoss&, const std::vector<int>& face, const Surface& body,
                       const Points& body_next, const Points& x, Points* gradient);
 

@@ -12,6 +12,7 @@ LossOptions losses_of_forces(const LossOptions& options, const ForceOptions& for
   LossOptions soft = options;
   soft.collision.weight = {force.contact_stiffness, force.contact_stiffness};
   soft.collision.penalty = DepthPenalty::quadratic;
+  soft.collision.samples = ClothSamples::vertices;  // as in a run, which has no loss
   soft.collision.thickness = force.contact_thickness;
   soft.contours.weight = {force.contour_weight, force.contour_weight};
   soft.friction.weight = soft.repulsion.weight = never;

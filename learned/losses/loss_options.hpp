@@ -21,12 +21,18 @@ enum class BodyMatching { nearest_centroid, nearest_face };
 // The penalty of a depth p = max(eps - d, 0): w p^3 [w in N/m^2], as published, or the softer w p^2 / 2 [w in N/m].
 enum class DepthPenalty { cubic, quadratic };
 
+// Places of the cloth that are kept out of the body: its vertices, as published; the middles of its edges too; the
+// centroids of its triangles too. Each counts as a vertex does. Edges between vertices that are outside cut a round
+// arm.
+enum class ClothSamples { vertices, edges, faces };
+
 struct CollisionLoss {
   LossRamp weight{5e3, 5e5, 1.0 / 3, 1};
   double thickness = 2e-3;  // eps [m]
   BodyMatching matching = BodyMatching::nearest_centroid;
   double radius = 3e-2;  // of nearest_face [m]
   DepthPenalty penalty = DepthPenalty::cubic;
+  ClothSamples samples = ClothSamples::vertices;
 };
 
 // The axis whose share in the slide slackens friction: the released code takes z in a world where y is up.

@@ -98,11 +98,13 @@ void find_of_prediction(const LossInputs& in, const LossOptions& options, LossSe
 void find_of_state(const LossInputs& in, const LossOptions& options, LossSearch& search) {
   if (!has_body(in)) return;
   const CollisionLoss& collision = options.collision;
-  if (weight_now(collision.weight, in) != 0)
+  if (weight_now(collision.weight, in) != 0) {
+    const Points points = sample_points(cloth_samples(*in.garment, collision.samples), *in.x);
     search.matches.collision_face =
         collision.matching == BodyMatching::nearest_centroid
-            ? nearest_centroids(*in.body, *in.body_now, left_out_of(in), *in.x, search.collision)
-            : nearest_faces(*in.body, *in.body_now, left_out_of(in), collision.radius, *in.x, search.collision);
+            ? nearest_centroids(*in.body, *in.body_now, left_out_of(in), points, search.collision)
+            : nearest_faces(*in.body, *in.body_now, left_out_of(in), collision.radius, points, search.collision);
+  }
   if (weight_now(options.friction.weight, in) != 0)
     search.matches.friction_before =
         nearest_centroids(*in.body, *in.body_previous, left_out_of(in), *in.x, search.before);
@@ -147,10 +149,12 @@ std::vector<LossTerm> add_checked(const LossInputs& in, const LossOptions& optio
   return terms;
 }
 
-void check_match(const std::vector<int>& faces, const LossInputs& in, const LossRamp& ramp) {
+void check_match(const std::vector<int>& faces, const LossInputs& in, const LossRamp& ramp,
+                 ClothSamples samples = ClothSamples::vertices) {
   if (!has_body(in) || weight_now(ramp, in) == 0) return;
-  if (faces.size() != static_cast<std::size_t>(in.garment->surface.vertex_count))
-    throw Error("there is not a face of the body, or none, for each vertex", "matches of the losses", "");
+  if (faces.size() != cloth_samples(*in.garment, samples).size())
+    throw Error("there is not a face of the body, or none, for each vertex or other sample", "matches of the losses",
+                "");
 }
 
 }  // namespace
@@ -183,7 +187,7 @@ std::vector<LossTerm> add_losses(const LossInputs& in, const LossOptions& option
                                  Points* gradient) {
   check_inputs(in);
   if (gradient) check_rows(gradient, in.garment->surface.vertex_count, "gradients");
-  check_match(matches.collision_face, in, options.collision.weight);
+  check_match(matches.collision_face, in, options.collision.weight, options.collision.samples);
   check_match(matches.friction_before, in, options.friction.weight);
   check_match(matches.friction_after, in, options.friction.weight);
   return add_checked(in, options, matches, gradient);

@@ -37,7 +37,7 @@ LossInputs loss_inputs(const LossGarment&, const GraphScene&, const GraphState&,
 
 // Contacts and crossings that the losses need. They depend on the state; only the last two depend on the prediction.
 struct LossMatches {
-  std::vector<int> collision_face;  // of each vertex, -1: none
+  std::vector<int> collision_face;  // of each sample of the cloth (CollisionLoss::samples), -1: none
   std::vector<int> friction_before, friction_after;
   Segments crossings;  // of the predicted cloth with itself
 };

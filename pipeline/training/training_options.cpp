@@ -172,7 +172,11 @@ const Options<CollisionLoss>& collision_options() {
               "within `radius` (ContourCraft)."),
        number("radius", &O::radius, Unit::length, positive, "Search radius of `nearest_face`."),
        choice("penalty", &O::penalty, {{"cubic", DepthPenalty::cubic}, {"quadratic", DepthPenalty::quadratic}},
-              "Power of the depth: the third, as published, or the second, which is softer.")});
+              "Power of the depth: the third, as published, or the second, which is softer."),
+       choice("samples", &O::samples,
+              {{"vertices", ClothSamples::vertices}, {"edges", ClothSamples::edges}, {"faces", ClothSamples::faces}},
+              "What is kept out of the body: `vertices` of the cloth, as published; `edges`: the middles of its edges "
+              "too; `faces`: the centroids of its triangles too.")});
   return table;
 }
 

@@ -142,6 +142,26 @@ TEST_CASE("losses: a vertex in and above a body, by hand", "[losses]") {
   CHECK(gradient(0, 1) == Approx(-3e-3));
 }
 
+TEST_CASE("losses: an edge whose ends are outside of the body is kept out in its middle", "[losses]") {
+  const LossGarment garment = triangle_garment({});
+  CollisionLoss options;
+  options.thickness = 0;
+  Points x = legs(0.1, 0.1), gradient = Points::Zero(3, 3);
+  x.col(1) << 4e-3, -10e-3, 8e-3;  // the middles of edges 01 and 12 are 3 and 1 mm deep, that of 02 is outside
+  const std::vector<std::array<int, 3>> samples = cloth_samples(garment, ClothSamples::faces);
+  REQUIRE(samples.size() == 7);
+  CHECK(samples[3] == std::array<int, 3>{0, 1, -1});
+  CHECK(sample_points(samples, x)(6, 1) == Approx(2e-3 / 3));
+  const std::vector<int> faces{0, -1, 0, 0, 0, 0};  // vertex 1 has none
+  options.samples = ClothSamples::edges;
+  options.penalty = DepthPenalty::quadratic;
+  CHECK(collision_loss(garment, options, faces, floor_surface(), floor_points(), x, &gradient) ==
+        Approx(0.5 * (9e-6 + 1e-6)));
+  CHECK(gradient(0, 1) == Approx(-1.5e-3));
+  CHECK(gradient(1, 1) == Approx(-2e-3));
+  CHECK(gradient(2, 1) == Approx(-0.5e-3));
+}
+
 TEST_CASE("losses: sliding on a body that moves, by hand", "[losses]") {
   VertexMaterial material;
   material.density = 6;
@@ -206,6 +226,9 @@ TEST_CASE("losses: gradients are those of the values", "[losses]") {
     for (const DepthPenalty penalty : {DepthPenalty::cubic, DepthPenalty::quadratic}) {
       options.friction.slope = axis;
       options.collision.penalty = penalty;
+      options.collision.samples = axis == SlopeAxis::x   ? ClothSamples::faces
+                                  : axis == SlopeAxis::y ? ClothSamples::edges
+                                                         : ClothSamples::vertices;
       LossSearch search;
       find_matches(in, options, search);
       REQUIRE(search.matches.crossings.segments.size() > 3);
