@@ -23,7 +23,7 @@ git ls-files -z | xargs -0 cp -p --parents -t "$folder/source"
 CMAKE_BUILD_PARALLEL_LEVEL="${JOBS:-$(nproc)}" "$folder/empty/bin/pip" wheel --no-deps -w "$folder/wheels" "$folder/source"
 "$folder/empty/bin/pip" -q install "$folder"/wheels/*.whl pytest
 mkdir -p "$folder/tests"
-cp --parents -r -t "$folder/tests" tests/python README.md docs/python.md
+cp --parents -r -t "$folder/tests" tests/python README.md docs configs/weights
 
 mv "$folder/source" "$folder/moved"
 trap 'mv "$folder/moved" "$folder/source"' EXIT
