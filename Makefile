@@ -28,7 +28,7 @@ program:
 	@$(MAKE) --no-print-directory build/release/configured
 	@cmake --build --preset release --parallel $(JOBS) --target selvedge
 
-DEMO := $(PROGRAM) simulate configs/demo.yaml --weights configs/weights/contourcraft.h5
+DEMO := $(PROGRAM) simulate configs/demo.yaml --weights configs/weights/contourcraft_shown.h5
 demo: program  ## Build the program, simulate configs/demo.yaml by three steppers, make the page that shows them
 	@$(PROGRAM) simulate configs/demo.yaml --out out/demo/conventional
 	@$(DEMO) --stepper learned --out out/demo/learned || [ $$? -eq 1 ]  # 1: its cloth intersects; the page shows where

@@ -74,6 +74,23 @@ TEST_CASE("training options: ablations differ from their base by what they are n
   CHECK_FALSE(without.contact.attraction);
   CHECK(distorting.objective.contours.gradient == ContourGradient::full);
   CHECK(full.objective.contours.gradient == ContourGradient::translational);
+  // Rows that are compared differ in the loss alone, or in what the network is shown alone.
+  const auto written = [](TrainingOptions options, double weight, double shown) {
+    options.name = "row";
+    options.objective.contours.weight.to = weight;
+    options.contour_force = shown;
+    return training_yaml(options);
+  };
+  CHECK(full.contour_force == 0);
+  CHECK(without.contour_force == 0);
+  for (const char* name : {"contourcraft_control", "contourcraft_only_shown", "contourcraft_shown"})
+    CHECK(written(read(name), 0, 0) == written(full, 0, 0));
+  CHECK(written(read("contourcraft_control"), 300, 0) == written(full, 300, 0));
+  CHECK(read("contourcraft_control").objective.contours.weight.to == 0);
+  CHECK(read("contourcraft_only_shown").objective.contours.weight.to == 0);
+  CHECK(read("contourcraft_only_shown").contour_force == read("contourcraft_shown").contour_force);
+  CHECK(read("contourcraft_shown").contour_force == 30);
+  CHECK(read("contourcraft_shown").objective.contours.weight.to == full.objective.contours.weight.to);
   // All from one base: what none of them names is the same.
   for (const TrainingOptions* options : {&repulsive, &full, &without, &distorting}) {
     CHECK(options->architecture == hood.architecture);
