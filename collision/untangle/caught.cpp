@@ -126,6 +126,12 @@ void catch_anew(const Surface& body, const Points& x1, const Closing& closing, c
 
 }  // namespace
 
+std::vector<int> may_be_off(const Surface& surface, const Points& x) {
+  std::vector<char> off(static_cast<std::size_t>(surface.vertex_count), 0);
+  add_crossing(surface, x, off);
+  return faces_of(surface, off);
+}
+
 bool keeps_shape(const Surface& surface, const Points& x0, const Points& x1) {
   if (x0 == x1) return true;
   const Eigen::Matrix4d motion = Eigen::umeyama(x0.transpose(), x1.transpose(), false);

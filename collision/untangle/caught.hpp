@@ -17,6 +17,9 @@ namespace selvedge {
 void switch_off(const ContactWorld&, int obstacle, const Points& from, const Points& to, const Points& worn,
                 Exemption& exemption);
 
+// Triangles of a surface at x that switch_off can mark: they cross, are buried, or are next to such.
+std::vector<int> may_be_off(const Surface&, const Points& x);
+
 // Triangles that are off of each obstacle.
 std::vector<int> switched_off(const ContactWorld&, const Exemption&);
 

@@ -8,6 +8,7 @@
 #include "collision/contour/find_contours.hpp"
 #include "collision/geometry/floating_point.hpp"
 #include "collision/geometry/stopwatch.hpp"
+#include "collision/untangle/caught.hpp"
 #include "collision/untangle/find_exemption.hpp"
 #include "collision/untangle/separation.hpp"
 #include "physics/recovery/recovery.hpp"
@@ -187,6 +188,7 @@ StepReport IcmStepper::take_step(const State& from, const Drive& drive, double d
                           : substeps_for_speed(from, drive, dt, edge_length_, options_.max_substeps, options_.substep);
   SubstepState now{gather_nodes(from.x, from.obstacles), from.v};
   const Points wanted = gather_nodes(from.x, drive.obstacles);
+  Exemption all;  // of the substeps, by what is off
   if (has_contact() && !from.clean && now.nodes.allFinite())
     report.collision.pairs_before = audit_positions(scene_, from.x, from.obstacles).intersecting_pairs();
   for (int s = 0; s < planned; ++s) {
@@ -211,8 +213,10 @@ StepReport IcmStepper::take_step(const State& from, const Drive& drive, double d
       report.seconds.audit += watch.lap();
     }
     if (s == 0) report.collision.left_alone = work.exemption.cloth_vertices();
+    all.off = either(std::move(all.off), work.exemption.off);
     now.nodes = std::move(next);
   }
+  if (!all.off.empty()) report.switched_off = switched_off(world_, all);
   finish_step(scene_, from, drive, dt, {now.nodes.topRows(n), std::move(now.v), drive.obstacles}, audited_, to, report);
   return report;
 }

@@ -4,6 +4,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/stopwatch.hpp"
+#include "collision/untangle/caught.hpp"
 #include "physics/recovery/carrying.hpp"
 #include "physics/recovery/parting.hpp"
 #include "physics/scene/features.hpp"
@@ -93,6 +94,7 @@ StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive,
     report.seconds.response += parted;
     report.untangling += budget.used;
     report.out_of_untangling = report.out_of_untangling || budget.ran_out;
+    if (!parting.left.off.empty()) report.switched_off = switched_off(world_, parting.left);
     return report;
   };
   if (stopped(extras.stop)) return add_parting(stopped_report(traits().name));

@@ -77,7 +77,7 @@ struct TrajectoryWriter::Impl {
   h5::File file;
   TrajectoryInfo info;
   h5::Handle row_type = row_memory_type(), by_type = h5::text_type(by_name_bytes);
-  h5::Handle complete, closed, report, by, x, bad;
+  h5::Handle complete, closed, report, by, x, bad, switched_off;
   std::vector<h5::Handle> obstacles;
   std::vector<PointsF> still;  // of each obstacle where the first frame has it; empty once it has been elsewhere
   std::vector<std::string> by_names;
@@ -107,6 +107,8 @@ void TrajectoryWriter::Impl::make_datasets() {
   report = file.make_growing("frames/report", row_file_type().id(), {}, report_chunk);
   x = file.make_growing("frames/x", H5T_NATIVE_FLOAT, {static_cast<hsize_t>(info.rest.rows()), 3}, 1);
   bad = file.make_growing("frames/bad_triangles", H5T_NATIVE_INT32, {}, bad_chunk);
+  if (!info.obstacles.empty())
+    switched_off = file.make_growing("frames/switched_off", H5T_NATIVE_INT32, {info.obstacles.size()}, report_chunk);
 
   const h5::Handle obstacles_group = file.make_group("obstacles");
   for (std::size_t k = 0; k < info.obstacles.size(); ++k) {
@@ -174,6 +176,9 @@ void TrajectoryWriter::Impl::append(const Frame& frame) {
   file.write_rows(x.id(), H5T_NATIVE_FLOAT, frames, 1, frame.x.data());
   for (std::size_t k = 0; k < obstacles.size(); ++k) append_obstacle(k, frame.obstacles[k]);
   file.write_rows(bad.id(), H5T_NATIVE_INT32, bad_length, frame.bad_triangles.size(), frame.bad_triangles.data());
+  std::vector<std::int32_t> off = frame.report.switched_off;
+  off.resize(obstacles.size(), 0);
+  if (!off.empty()) file.write_rows(switched_off.id(), H5T_NATIVE_INT32, frames, 1, off.data());
   const TrajectoryRow row = row_of(frame, code_of(frame.report.by), bad_length);
   file.write_rows(report.id(), row_type.id(), frames, 1, &row);
   file.flush();
@@ -183,7 +188,7 @@ void TrajectoryWriter::Impl::append(const Frame& frame) {
 
 void TrajectoryWriter::Impl::close() {
   set(closed, 1);
-  for (h5::Handle* handle : {&complete, &closed, &report, &by, &x, &bad}) handle->reset();
+  for (h5::Handle* handle : {&complete, &closed, &report, &by, &x, &bad, &switched_off}) handle->reset();
   obstacles.clear();
   file.close();
 }

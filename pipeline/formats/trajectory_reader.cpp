@@ -114,6 +114,7 @@ struct TrajectoryReader::Impl {
   h5::File file;
   TrajectoryInfo info;
   h5::Handle row_type = row_memory_type(), report, x, bad;
+  h5::Handle switched_off;  // not in older files
   std::vector<h5::Handle> obstacles;
   std::vector<std::string> by_names;
   int frames = 0;
@@ -147,6 +148,11 @@ TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) {
   r.report = r.file.open_dataset("frames/report");
   r.x = r.file.open_dataset("frames/x");
   r.bad = r.file.open_dataset("frames/bad_triangles");
+  if (r.file.has("frames/switched_off")) {
+    if (rows_of(r.file, "frames/switched_off", {r.info.obstacles.size()}, true) < static_cast<hsize_t>(frames))
+      throw_damaged(r.file, "frames/switched_off has fewer rows than there are frames");
+    r.switched_off = r.file.open_dataset("frames/switched_off");
+  }
   for (std::size_t k = 0; k < r.info.obstacles.size(); ++k)
     r.obstacles.push_back(r.file.open_dataset("obstacles/" + std::to_string(k) + "/x"));
 }
@@ -174,6 +180,11 @@ Frame TrajectoryReader::frame(int index) const {
   for (std::size_t k = 0; k < r.obstacles.size(); ++k)
     frame.obstacles.push_back(
         r.read_points(r.obstacles[k], r.info.obstacles[k].moving ? index : 0, r.info.obstacles[k].vertex_count));
+  if (row.switched_off > 0 && r.switched_off.id() >= 0) {
+    std::vector<int>& off = frame.report.switched_off;
+    off.resize(r.obstacles.size());
+    r.file.read_rows(r.switched_off.id(), H5T_NATIVE_INT32, {off.size()}, static_cast<hsize_t>(index), 1, off.data());
+  }
   if (row.bad_count < 0 || row.bad_count > r.info.triangles.rows() || row.bad_begin < 0)
     throw_damaged(r.file, "frame " + std::to_string(index) + " marks more triangles than there are");
   frame.bad_triangles.resize(row.bad_count);

@@ -1,6 +1,7 @@
 #include "pipeline/formats/trajectory_row.hpp"
 
 #include <cstddef>
+#include <numeric>
 
 namespace selvedge {
 namespace {
@@ -27,6 +28,11 @@ std::vector<Column> columns() {
           {"iterations", offsetof(Row, iterations), whole},
           {"linear_iterations", offsetof(Row, linear_iterations), whole},
           {"residual", offsetof(Row, residual), real},
+          {"unsolved", offsetof(Row, unsolved), real},
+          {"untangling", offsetof(Row, untangling), whole},
+          {"out_of_newton", offsetof(Row, out_of_newton), whole},
+          {"out_of_untangling", offsetof(Row, out_of_untangling), whole},
+          {"out_of_response", offsetof(Row, out_of_response), whole},
           {"solve_seconds", offsetof(Row, phase.solve), real},
           {"broad_phase_seconds", offsetof(Row, phase.broad_phase), real},
           {"ccd_seconds", offsetof(Row, phase.ccd), real},
@@ -49,6 +55,8 @@ std::vector<Column> columns() {
           {"passed_through", offsetof(Row, collision.passed_through), whole},
           {"left_alone", offsetof(Row, collision.left_alone), whole},
           {"cut_out", offsetof(Row, collision.cut_out), whole},
+          {"switched_off", offsetof(Row, switched_off), whole},
+          {"pushed_out", offsetof(Row, collision.pushed_out), whole},
           {"jumped", offsetof(Row, collision.jumped), whole},
           {"contact_gap", offsetof(Row, collision.min_gap), real},
           {"obstacle_lag", offsetof(Row, collision.obstacle_lag), real},
@@ -104,6 +112,12 @@ TrajectoryRow row_of(const Frame& frame, int by, std::int64_t bad_begin) {
   row.phase = report.seconds;
   row.counts = report.counts;
   row.collision = report.collision;
+  row.switched_off = std::accumulate(report.switched_off.begin(), report.switched_off.end(), 0);
+  row.untangling = report.untangling;
+  row.out_of_newton = report.out_of_newton;
+  row.out_of_untangling = report.out_of_untangling;
+  row.out_of_response = report.out_of_response;
+  row.unsolved = report.unsolved;
   row.self_pairs = frame.self_pairs;
   row.vertex_pairs = frame.vertex_pairs;
   row.obstacle_pairs = frame.obstacle_pairs;
@@ -138,6 +152,11 @@ void fill_from_row(const TrajectoryRow& row, const std::vector<std::string>& nam
   report.seconds = row.phase;
   report.counts = row.counts;
   report.collision = row.collision;
+  report.untangling = row.untangling;
+  report.out_of_newton = row.out_of_newton != 0;
+  report.out_of_untangling = row.out_of_untangling != 0;
+  report.out_of_response = row.out_of_response != 0;
+  report.unsolved = row.unsolved;
   frame.self_pairs = row.self_pairs;
   frame.vertex_pairs = row.vertex_pairs;
   frame.obstacle_pairs = row.obstacle_pairs;

@@ -19,6 +19,8 @@ struct TrajectoryRow {
   PhaseTimes phase;
   StepCounts counts;
   CollisionReport collision;
+  std::int32_t switched_off, untangling, out_of_newton, out_of_untangling, out_of_response;
+  double unsolved;
   std::int32_t self_pairs, vertex_pairs, obstacle_pairs, inside_vertices, nonfinite;
   double max_stretch, min_stretch;
   double kinetic_energy, gravity_energy, membrane_energy, bending_energy, spring_energy;

@@ -33,6 +33,7 @@ RunSummary empty_summary(const Setup& setup, const Stepper& stepper) {
   summary.triangles = static_cast<int>(setup.scene.surface.triangles.rows());
   summary.frames_wanted = setup.run.frames;
   summary.self_audited = setup.scene.contact.self;
+  for (const Obstacle& obstacle : setup.scene.obstacles) summary.switched_off.push_back({obstacle.name});
   for (const PlanLine& line : plan_lines(setup.scene))
     if (!line.in) summary.left_out.push_back(line);
   for (const PlanLine& line : ignored_lines(setup.scene, stepper.traits())) summary.left_out.push_back(line);

@@ -49,6 +49,54 @@ std::vector<std::pair<std::string, int>> verdict_counts(const RunSummary& s) {
   return counts;
 }
 
+void add_labels(const StepReport& report, int index, RunSummary& summary) {
+  for (std::size_t k = 0; k < std::min(report.switched_off.size(), summary.switched_off.size()); ++k) {
+    RunSummary::SwitchedOff& obstacle = summary.switched_off[k];
+    if (report.switched_off[k] == 0) continue;
+    if (obstacle.frames++ == 0) obstacle.first_frame = index;
+    obstacle.most = std::max(obstacle.most, report.switched_off[k]);
+  }
+  summary.pushed_out += report.collision.pushed_out;
+  summary.untangling += report.untangling;
+  summary.out_of_newton += report.out_of_newton;
+  summary.out_of_untangling += report.out_of_untangling;
+  summary.out_of_response += report.out_of_response;
+  summary.max_unsolved = std::max(summary.max_unsolved, report.unsolved);
+}
+
+nlohmann::ordered_json switched_off_json(const RunSummary& s) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const RunSummary::SwitchedOff& one : s.switched_off)
+    if (one.frames > 0)
+      all.push_back({{"obstacle", one.obstacle},
+                     {"most_triangles", one.most},
+                     {"frames", one.frames},
+                     {"first_frame", one.first_frame}});
+  return all;
+}
+
+// What contact left alone and what budgets ended, a label and a sentence each.
+std::vector<std::pair<const char*, std::string>> label_lines(const RunSummary& s) {
+  std::vector<std::pair<const char*, std::string>> lines;
+  for (const RunSummary::SwitchedOff& one : s.switched_off)
+    if (one.frames > 0)
+      lines.emplace_back("switched off",
+                         fmt::format("up to {} triangles of `{}`, in {} frame{}, first in {}: it crosses itself there, "
+                                     "and cloth that its parts catch is let through",
+                                     one.most, one.obstacle, one.frames, one.frames == 1 ? "" : "s", one.first_frame));
+  if (s.pushed_out > 0)
+    lines.emplace_back("pushed out", fmt::format("{} vertices over all frames, by the repulsive layer", s.pushed_out));
+  if (s.out_of_newton > 0)
+    lines.emplace_back("out of Newton", fmt::format("{} frames: later solves were rough, {:.2g} m off at most",
+                                                    s.out_of_newton, s.max_unsolved));
+  if (s.out_of_untangling > 0)
+    lines.emplace_back("out of untangling",
+                       fmt::format("{} frames: what was tangled still waited for the next", s.out_of_untangling));
+  if (s.out_of_response > 0)
+    lines.emplace_back("out of response", fmt::format("{} frames: later motion was shortened", s.out_of_response));
+  return lines;
+}
+
 }  // namespace
 
 void add_frame(RunSummary& summary, int index, const Frame& frame) {
@@ -93,6 +141,7 @@ void add_frame(RunSummary& summary, int index, const Frame& frame) {
   summary.passed_through += collision.passed_through;
   summary.jumped += collision.jumped;
   if (collision.jumped > 0 && summary.first_jump_frame < 0) summary.first_jump_frame = index;
+  add_labels(report, index, summary);
   summary.worst_pairs_wanted = std::max(summary.worst_pairs_wanted, collision.pairs_wanted);
   summary.max_depth_wanted = std::max(summary.max_depth_wanted, collision.depth_wanted);
   summary.max_obstacle_lag = std::max(summary.max_obstacle_lag, collision.obstacle_lag);
@@ -189,6 +238,13 @@ std::string summary_json(const RunSummary& s) {
       {"max_obstacle_lag", s.max_obstacle_lag},
       {"intersecting_pairs_wanted", s.worst_pairs_wanted},
       {"max_depth_wanted", s.max_depth_wanted},
+      {"switched_off", switched_off_json(s)},
+      {"pushed_out", s.pushed_out},
+      {"untangling_passes", s.untangling},
+      {"out_of_newton_frames", s.out_of_newton},
+      {"out_of_untangling_frames", s.out_of_untangling},
+      {"out_of_response_frames", s.out_of_response},
+      {"max_unsolved", number_or_null(s.max_unsolved)},
       {"left_out", left_out},
       {"warnings", s.warnings}};
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
@@ -244,6 +300,7 @@ std::string summary_text(const RunSummary& s) {
   if (s.max_obstacle_lag > 0)
     add("obstacles lag", fmt::format("{:.2g} m at most; where they were wanted {} pairs and {:.2g} m deep at worst",
                                      s.max_obstacle_lag, s.worst_pairs_wanted, s.max_depth_wanted));
+  for (const auto& [label, sentence] : label_lines(s)) add(label, sentence);
   add("left out", out.empty() ? "nothing" : out);
   for (const std::string& warning : s.warnings) add("warning", warning);
   return text;

@@ -6,6 +6,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "collision/search/intersections.hpp"
+#include "collision/untangle/caught.hpp"
 #include "learned/steppers/learned_plan.hpp"
 #include "learned/steppers/learned_stepper.hpp"
 #include "physics/linear/linear_solver.hpp"
@@ -73,6 +75,58 @@ void append_common_lines(const Setup& setup, std::vector<PlanLine>& lines) {
   if (!setup.initial.cut_out.empty()) lines.push_back({"cut start", true, setup.prepared + " until they are free"});
 }
 
+constexpr int frames_looked_at = 24;  // of a run, evenly, beside its start
+
+// Where an obstacle crosses itself in the frames that are looked at.
+struct OwnCrossing {
+  int frames = 0, pairs = 0, worst_frame = 0, triangles = 0;
+  bool keeps_shape = true;
+
+  void look(const Surface& surface, const Points& start, const Points& x, int frame, IntersectionCache& cache) {
+    keeps_shape = keeps_shape && selvedge::keeps_shape(surface, start, x);
+    const int found = static_cast<int>(intersecting_pairs(surface, x, cache).size());
+    frames += found > 0;
+    if (found <= pairs) return;
+    pairs = found;
+    worst_frame = frame;
+    triangles = static_cast<int>(may_be_off(surface, x).size());
+  }
+};
+
+std::string text_of(const OwnCrossing& found, const std::string& name, int looked) {
+  const std::string where =
+      fmt::format("`{}` crosses itself in {} of {} frames looked at, in {} pairs in frame {}: ", name, found.frames,
+                  looked, found.pairs, found.worst_frame);
+  return where + (found.keeps_shape
+                      ? "it keeps its shape, so that contact with its outside stays on"
+                      : fmt::format("up to {} of its triangles can be switched off, for cloth that its parts catch",
+                                    found.triangles));
+}
+
+// What contact can switch off, by obstacle.
+void append_crossing_lines(const Setup& setup, std::vector<PlanLine>& lines) {
+  const std::size_t count = setup.scene.obstacles.size();
+  if (count == 0) return;
+  std::vector<OwnCrossing> found(count);
+  std::vector<IntersectionCache> caches(count);
+  const int steps = std::min(frames_looked_at, setup.run.frames);
+  const std::vector<Points> start = setup.drive_at(0).obstacles;
+  for (int i = 0; i <= steps; ++i) {
+    const int frame = steps > 0 ? static_cast<int>(std::int64_t{setup.run.frames} * i / steps) : 0;
+    const std::vector<Points> now = i == 0 ? start : setup.drive_at(frame / setup.run.fps).obstacles;
+    for (std::size_t k = 0; k < count; ++k)
+      found[k].look(setup.scene.obstacles[k].surface, start[k], now[k], frame, caches[k]);
+  }
+  const std::size_t before = lines.size();
+  for (std::size_t k = 0; k < count; ++k)
+    if (found[k].frames > 0)
+      lines.push_back(
+          {"switching off", !found[k].keeps_shape, text_of(found[k], setup.scene.obstacles[k].name, steps + 1)});
+  if (lines.size() == before)
+    lines.push_back(
+        {"switching off", false, fmt::format("no obstacle crosses itself in {} frames looked at", steps + 1)});
+}
+
 // What the scene needs, and what the stepper does without.
 std::vector<PlanLine> lines_of(const Setup& setup) {
   if (setup.run.stepper == "learned") {
@@ -81,6 +135,7 @@ std::vector<PlanLine> lines_of(const Setup& setup) {
     return lines;
   }
   std::vector<PlanLine> lines = plan_lines(setup.scene);
+  append_crossing_lines(setup, lines);
   lines.push_back({"quality", true, setup.quality});
   lines.push_back({"linear solver", true, linear_solver_of(setup)});
   const bool hybrid = setup.run.stepper == "hybrid", rest = setup.run.rest && !hybrid;

@@ -34,6 +34,13 @@ function chipsOf(run, frame, marked) {
   if (!run.selfAudited) chips.push(["self: not audited", "warn"]);
   if (at("vertexPairs")) chips.push([`${plural(at("vertexPairs"), "pair")} crossing at a shared vertex`, "warn"]);
   if (at("inside")) chips.push([`${plural(at("inside"), "vertex")} inside an obstacle`, "bad"]);
+  at("switchedOff").forEach((count, b) => {
+    if (count) chips.push([`${plural(count, "triangle")} of ${run.obstacles[b].name} switched off`, "warn"]);
+  });
+  if (at("pushedOut")) chips.push([`${plural(at("pushedOut"), "vertex")} pushed out`, ""]);
+  if (at("outOfNewton")) chips.push(["out of Newton iterations", "warn"]);
+  if (at("outOfUntangling")) chips.push(["out of untangling passes", "warn"]);
+  if (at("outOfResponse")) chips.push(["out of response", "warn"]);
   if (at("fellBack")) chips.push([`fell back${reason ? `: ${reason}` : ""}`, "warn"]);
   else if (reason) chips.push([reason, "warn"]);
   if (at("by") && at("by") !== run.stepper) chips.push([`by ${at("by")}`, ""]);

@@ -69,6 +69,11 @@ struct Series {
     add("by", f.report.by);
     add("reason", reason_names()[static_cast<std::size_t>(f.report.reason)]);
     add("fellBack", f.report.fell_back);
+    add("switchedOff", f.report.switched_off);
+    add("pushedOut", f.report.collision.pushed_out);
+    add("outOfNewton", f.report.out_of_newton);
+    add("outOfUntangling", f.report.out_of_untangling);
+    add("outOfResponse", f.report.out_of_response);
   }
 };
 

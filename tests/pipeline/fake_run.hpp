@@ -75,6 +75,13 @@ inline Frame frame(const Scene& scene, int index) {
   frame.report.residual = 0.5 * index;
   frame.report.seconds = {1, 2, 3, 4, 5.0 + index};
   frame.report.collision.contacts = 7 * index;
+  frame.report.collision.pushed_out = index % 4;
+  frame.report.untangling = 3 * index;
+  frame.report.out_of_newton = index % 2 == 1;
+  frame.report.out_of_untangling = index % 3 == 1;
+  frame.report.out_of_response = index % 5 == 1;
+  frame.report.unsolved = 1e-6 * index;
+  if (index % 3 > 0) frame.report.switched_off = {index % 2, index};
   frame.self_pairs = index;
   frame.max_stretch = 1 + 0.1 * index;
   frame.energy = {1.0 * index, 2, 3, 4, 5};

@@ -7,6 +7,7 @@
 #include "collision/untangle/untangle.hpp"
 #include "physics/energies/measures.hpp"
 #include "physics/recovery/recovery.hpp"
+#include "physics/steppers/icm_stepper.hpp"
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_recovery {
@@ -137,7 +138,15 @@ TEST_CASE("recovery: cloth between parts that pass through each other is caught,
   REQUIRE(exemption.off.size() == static_cast<std::size_t>(nodes.rows()));
   CHECK(std::count(exemption.off.begin(), exemption.off.begin() + count, 1) == count);
   CHECK(std::count(exemption.off.begin() + count, exemption.off.begin() + cloths.x.rows(), 1) == 0);
-  CHECK(switched_off(world, exemption)[0] > 0);
+  const std::vector<int> counted = switched_off(world, exemption);
+  CHECK(counted[0] > 0);
+  CHECK(may_be_off(w.scene.obstacles[0].surface, together.bottomRows(16)).size() >=
+        static_cast<std::size_t>(counted[0]));
+  w.drive.obstacles = {together.bottomRows(16)};
+  State to;
+  CHECK(make_recovering_conventional_stepper(w.scene, {})->step(w.state, w.drive, 1.0 / 30, to).switched_off ==
+        counted);
+  CHECK(make_icm_stepper(w.scene, {})->step(w.state, w.drive, 1.0 / 30, to).switched_off[0] > 0);
   // A pair is left alone for what is caught alone.
   const int body = static_cast<int>(first);
   CHECK(exemption.leaves_alone(world, {0, body + 1, body + 3, body + 5}));

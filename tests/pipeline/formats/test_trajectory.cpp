@@ -28,6 +28,13 @@ void require_same(const Frame& a, const Frame& b) {
   REQUIRE(a.report.seconds.audit == b.report.seconds.audit);
   REQUIRE(a.report.collision.contacts == b.report.collision.contacts);
   REQUIRE(a.report.collision.min_gap == b.report.collision.min_gap);
+  REQUIRE(a.report.switched_off == b.report.switched_off);
+  REQUIRE(a.report.collision.pushed_out == b.report.collision.pushed_out);
+  REQUIRE(a.report.untangling == b.report.untangling);
+  REQUIRE(a.report.out_of_newton == b.report.out_of_newton);
+  REQUIRE(a.report.out_of_untangling == b.report.out_of_untangling);
+  REQUIRE(a.report.out_of_response == b.report.out_of_response);
+  REQUIRE(a.report.unsolved == b.report.unsolved);
   REQUIRE(a.self_pairs == b.self_pairs);
   REQUIRE(a.max_stretch == b.max_stretch);
   REQUIRE(a.energy.kinetic == b.energy.kinetic);
@@ -147,9 +154,26 @@ TEST_CASE("every field of a trajectory is checked before it is read") {
   CHECK_THAT(refusal("cloth/first_vertex", H5T_NATIVE_INT32, {2}, whole.data()), Catch::Contains("first_vertex"));
   CHECK_THAT(refusal("cloth/names", h5::text_type(4).id(), {4, 4}, whole.data()), Catch::Contains("2 dimensions"));
   CHECK_THAT(refusal("frames/bad_triangles", H5T_NATIVE_INT32, {8, 8}, whole.data()), Catch::Contains("2 dimensions"));
+  CHECK_THAT(refusal("frames/switched_off", H5T_NATIVE_INT32, {3, 3}, whole.data()), Catch::Contains("switched_off"));
+  CHECK_THAT(refusal("frames/switched_off", H5T_NATIVE_INT32, {1, 2}, whole.data()), Catch::Contains("fewer rows"));
   CHECK_THAT(refusal("frames/report", H5T_NATIVE_INT32, {3, 3}, whole.data()), Catch::Contains("frames/report"));
   CHECK_THAT(refusal("obstacles/0/x", H5T_NATIVE_FLOAT, {0, 2000000000, 3}, nullptr), Catch::Contains("obstacles/0/x"));
   CHECK_THAT(refusal("frames_complete", H5T_NATIVE_INT32, {1}, whole.data()), Catch::Contains("1000000 frames"));
+}
+
+TEST_CASE("a trajectory of a program that did not count what is switched off can be read") {
+  const fake::Folder folder("older");
+  const Scene scene = fake::scene();
+  const std::filesystem::path path = folder.path / "run.h5";
+  TrajectoryWriter writer(path, trajectory_info(scene, "", "conventional", 30));
+  for (int i = 0; i < 3; ++i) writer.append(fake::frame(scene, i));
+  writer.close();
+  h5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+  H5Ldelete(file.id(), "frames/switched_off", H5P_DEFAULT);
+  file.reset();
+  const TrajectoryReader reader(path);
+  CHECK(reader.frame(2).report.switched_off.empty());
+  CHECK(reader.frame(2).report.untangling == 6);
 }
 
 TEST_CASE("what is no trajectory is refused with a clear error") {

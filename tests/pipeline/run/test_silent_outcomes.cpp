@@ -1,7 +1,9 @@
+#include <fmt/format.h>
 #include <catch2/catch.hpp>
 
 #include "pipeline/scene/make_stepper.hpp"
 #include "pipeline/tools/check.hpp"
+#include "pipeline/tools/plan.hpp"
 #include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_silent_outcomes {
@@ -62,6 +64,64 @@ TEST_CASE("Where pins drive cloth into a still wall the file shows what was simu
   CHECK(pairs == ran.summary.pairs);
   CHECK(ran.found.inside_vertices == ran.summary.worst_inside);
   CHECK(ran.summary.max_obstacle_lag > 0);  // or the scene shows nothing
+}
+
+// Two blocks of one obstacle, their triangles outwards, -at and at on the x axis.
+std::string two_blocks(double at) {
+  std::string text;
+  for (const double x : {-at, at})
+    for (int v = 0; v < 8; ++v)
+      text += fmt::format("v {} {} {}\n", x + (v & 1 ? 0.06 : -0.06), (v & 2 ? 0.06 : -0.06) + 0.1 * x,
+                          (v & 4 ? 0.06 : -0.06) + 0.15 * x);
+  const int corners[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                              {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  for (const int first : {1, 9})
+    for (const auto& t : corners) text += fmt::format("f {} {} {}\n", t[0] + first, t[1] + first, t[2] + first);
+  return text;
+}
+
+std::string between_blocks(const fake::Folder& folder) {
+  for (int f = 0; f < 6; ++f) fake::write(folder, fmt::format("b_{}.obj", f), two_blocks(0.075 - 0.006 * f));
+  return "cloths: [{rectangle: {size: [0.05, 0.05], resolution: 5}, rotate: [0, 0, 90 deg]}]\n"
+         "obstacles: [{name: blocks, sequence: {pattern: b_%d.obj, count: 6, fps: 30}}]\n"
+         "gravity: [0, 0, 0]\n"
+         "run: {frames: 5}\n";
+}
+
+TEST_CASE("What contact switches off is said by obstacle: in the file, the summary and the plan", "[silent_outcomes]") {
+  const fake::Folder folder("switched_off");
+  const Ran ran = run_and_check(folder, between_blocks(folder));
+  REQUIRE(ran.summary.switched_off.size() == 1);
+  const RunSummary::SwitchedOff& blocks = ran.summary.switched_off[0];
+  CHECK(blocks.frames > 0);
+  CHECK(blocks.most > 0);
+  int frames = 0, most = 0;
+  const TrajectoryReader reader(folder.path / "out" / "run.h5");
+  for (int i = 0; i < reader.frame_count(); ++i)
+    for (const int off : reader.frame(i).report.switched_off) {
+      frames += off > 0;
+      most = std::max(most, off);
+    }
+  CHECK(frames == blocks.frames);
+  CHECK(most == blocks.most);
+  CHECK_THAT(summary_text(ran.summary), Catch::Contains(fmt::format("up to {} triangles of `blocks`", most)));
+  CHECK_THAT(summary_json(ran.summary), Catch::Contains("\"obstacle\": \"blocks\""));
+  CHECK_THAT(plan_text(read_setup(folder.path / "scene.yaml")),
+             Catch::Contains("in   switching off") && Catch::Contains("can be switched off"));
+}
+
+TEST_CASE("A still obstacle of parts that overlap has nothing switched off, and the plan says so",
+          "[silent_outcomes]") {
+  const fake::Folder folder("nothing_off");
+  fake::write(folder, "union.obj", two_blocks(0.05));
+  const Ran ran = run_and_check(folder,
+                                "cloths: [{rectangle: {size: [0.3, 0.3], resolution: 7}, translate: [0, 0.08, 0]}]\n"
+                                "obstacles: [{name: union, mesh: union.obj}]\n"
+                                "run: {frames: 3}\n");
+  CHECK(ran.summary.switched_off.at(0).frames == 0);
+  CHECK_THAT(summary_json(ran.summary), Catch::Contains("\"switched_off\": []"));
+  CHECK_THAT(plan_text(read_setup(folder.path / "scene.yaml")),
+             Catch::Contains("out  switching off") && Catch::Contains("keeps its shape"));
 }
 
 }  // namespace selvedge::test_silent_outcomes
