@@ -125,6 +125,11 @@ void body_options(CLI::App& command, BodyRequest& request) {
   command.add_option("--weights", request.weights, "of the mesh, as MakeHuman has them (.mhw)");
   command.add_option("--joints", request.joints, "where the joints of a mesh are that has neither (.yaml)");
   command.add_option("--unit", request.unit, "of the mesh: m, dm, cm, mm");
+  command
+      .add_option("--mesh", request.meshes.only, "mesh of glTF, or group, that becomes the body; may be given again")
+      ->allow_extra_args(false);
+  command.add_option("--without", request.meshes.without, "mesh or group that does not; may be given again")
+      ->allow_extra_args(false);
   command.add_option("--out", request.out, "where the body goes (.h5)")->required();
 }
 

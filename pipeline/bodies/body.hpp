@@ -7,6 +7,7 @@
 #include <Eigen/SparseCore>
 
 #include "collision/geometry/points.hpp"
+#include "pipeline/formats/mesh.hpp"
 
 namespace selvedge {
 
@@ -28,6 +29,7 @@ struct BodyModel {
   std::vector<std::string> joints;  // names, the root first
   std::vector<int> parents;         // of joints, each before its children; -1 for the root
   SkinWeights regressor;            // joints x n: joints from the shaped surface
+  NamedVertices meshes = {};        // that its file was made of, where it names them
 };
 
 // One pose of a body.

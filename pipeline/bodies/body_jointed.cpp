@@ -72,11 +72,11 @@ void check_inside(const BodyModel& body, const Surface& surface, const Points& j
 
 }  // namespace
 
-BodyModel read_jointed(const std::filesystem::path& mesh_file, const std::filesystem::path& joints_file,
-                       double metres) {
+BodyModel read_jointed(const std::filesystem::path& mesh_file, const std::filesystem::path& joints_file, double metres,
+                       const NameChoice& choice) {
   Mesh mesh = read_mesh(mesh_file);
   mesh.x *= metres;
-  const BodyPart part = body_part(mesh, mesh_file);
+  const BodyPart part = body_part(mesh, mesh_file, choice);
   const Config file = read_config(joints_file, file_section());
   BodyModel body = body_without_rig(mesh, part, mesh_file);
   const Surface surface = make_surface(static_cast<int>(part.vertices.size()), part.triangles);

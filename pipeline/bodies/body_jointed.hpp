@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "pipeline/bodies/body.hpp"
+#include "pipeline/config/name_choice.hpp"
 
 namespace selvedge {
 
@@ -12,6 +13,7 @@ namespace selvedge {
 // origin are the mesh's. No shapes, no pose directions. `metres`: of one unit of the mesh; joints are in metres or have
 // their units. Throws Error with file and line: as the readers do, for a joint outside the body where it is closed, and
 // for one that nothing bends at.
-BodyModel read_jointed(const std::filesystem::path& mesh, const std::filesystem::path& joints, double metres);
+BodyModel read_jointed(const std::filesystem::path& mesh, const std::filesystem::path& joints, double metres,
+                       const NameChoice& = {});
 
 }  // namespace selvedge

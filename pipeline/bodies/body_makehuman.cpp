@@ -149,11 +149,11 @@ std::optional<Vec3> reference(const Rig& rig, const std::string& joint, const Po
 }  // namespace
 
 BodyModel read_makehuman(const fs::path& mesh_file, const fs::path& skeleton, const fs::path& weights_file,
-                         double metres) {
+                         double metres, const NameChoice& choice) {
   Mesh mesh = read_mesh(mesh_file);
   mesh.x *= metres;
   const Rig rig{skeleton, read_rig_bones(skeleton)};
-  const BodyPart part = body_part(mesh, mesh_file);
+  const BodyPart part = body_part(mesh, mesh_file, choice);
   BodyModel body = body_without_rig(mesh, part, mesh_file);
   body.skin.weights = folded(read_rig_weights(weights_file, rig.bones), rig.joints(), part, weights_file);
   check_order(make_surface(static_cast<int>(body.skin.rest.rows()), part.triangles), body.skin.weights, mesh_file,

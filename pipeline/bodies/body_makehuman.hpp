@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "pipeline/bodies/body.hpp"
+#include "pipeline/config/name_choice.hpp"
 
 namespace selvedge {
 
@@ -16,6 +17,6 @@ namespace selvedge {
 // wrong: as read_rig_bones and read_rig_weights, for a missing bone, a vertex without weights, a mesh in which the
 // vertices are not in the order of the weights, and a joint outside the vertices that move with it.
 BodyModel read_makehuman(const std::filesystem::path& mesh, const std::filesystem::path& skeleton,
-                         const std::filesystem::path& weights, double metres);
+                         const std::filesystem::path& weights, double metres, const NameChoice& = {});
 
 }  // namespace selvedge

@@ -11,6 +11,8 @@
 #include <optional>
 #include <string_view>
 
+#include <fmt/format.h>
+
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
@@ -323,6 +325,28 @@ void add_primitive(const Document& file, const tinygltf::Primitive& primitive, c
   add_weights(file, primitive, part, first, count, joints, weights);
 }
 
+// The meshes that a skin deforms and that are chosen, each a group by its name. Returns the names of all that there
+// are.
+std::vector<std::string> add_meshes(const Document& file, int skin, const NameChoice& choice, GltfScene& scene,
+                                    std::vector<Eigen::Triplet<double>>& weights) {
+  std::vector<std::string> names;
+  for (const tinygltf::Node& node : file.model.nodes) {
+    if (node.mesh < 0 || node.skin != skin) continue;
+    const tinygltf::Mesh& mesh = file.entry(file.model.meshes, node.mesh, "node `" + node.name + "`");
+    names.push_back(name_or(mesh.name.empty() ? node.name : mesh.name, "mesh", static_cast<std::size_t>(node.mesh)));
+    const std::string& name = names.back();
+    if (!choice.takes(name)) continue;
+    const auto first = static_cast<int>(scene.mesh.x.rows());
+    for (std::size_t p = 0; p < mesh.primitives.size(); ++p)
+      add_primitive(file, mesh.primitives[p], fmt::format("mesh `{}`, primitive {}", name, p),
+                    static_cast<int>(scene.joints.size()), weights, scene.mesh);
+    auto group = std::ranges::find(scene.mesh.groups, name, &NamedVertices::value_type::first);
+    if (group == scene.mesh.groups.end()) group = scene.mesh.groups.insert(group, {name, {}});
+    for (int v = first; v < static_cast<int>(scene.mesh.x.rows()); ++v) group->second.push_back(v);
+  }
+  return names;
+}
+
 // Vertices at one place become one, with the weights of the lowest.
 void join_vertices(const Document& file, const std::string& name, GltfScene& scene,
                    const std::vector<Eigen::Triplet<double>>& weights) {
@@ -385,7 +409,7 @@ GltfAnimation animation_of(const Document& file, const std::vector<int>& place, 
 
 }  // namespace
 
-GltfScene read_gltf(const std::filesystem::path& path) {
+GltfScene read_gltf(const std::filesystem::path& path, const NameChoice& choice) {
   if (!std::filesystem::exists(path)) throw Error("is not there", path.string(), "check the path");
   const Document file(path);
   GltfScene scene;
@@ -403,13 +427,7 @@ GltfScene read_gltf(const std::filesystem::path& path) {
       scene.inverse_bind[static_cast<std::size_t>(j)] = Eigen::Map<const Eigen::Matrix4d>(all.data() + 16 * j);
   }
   std::vector<Eigen::Triplet<double>> weights;
-  for (const tinygltf::Node& node : file.model.nodes) {
-    if (node.mesh < 0 || node.skin != number) continue;
-    const tinygltf::Mesh& mesh = file.entry(file.model.meshes, node.mesh, "node `" + node.name + "`");
-    for (std::size_t p = 0; p < mesh.primitives.size(); ++p)
-      add_primitive(file, mesh.primitives[p], "mesh `" + mesh.name + "`, primitive " + std::to_string(p), joints,
-                    weights, scene.mesh);
-  }
+  choice.check(add_meshes(file, number, choice, scene, weights), path.string());
   join_vertices(file, path.filename().string(), scene, weights);
   for (std::size_t a = 0; a < file.model.animations.size(); ++a)
     scene.animations.push_back(animation_of(file, place, a));

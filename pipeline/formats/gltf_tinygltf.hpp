@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/SparseCore>
 
+#include "pipeline/config/name_choice.hpp"
 #include "pipeline/formats/mesh.hpp"
 
 namespace selvedge {
@@ -43,7 +44,7 @@ struct GltfScene {
   std::vector<GltfNode> nodes;                           // parents first
   std::vector<int> joints;                               // of the skin: nodes
   std::vector<Eigen::Matrix4d> inverse_bind;             // of each joint: from the mesh's space to the joint's
-  Mesh mesh;                                             // all that the skin deforms, as stored
+  Mesh mesh;                                             // what the skin deforms, as stored; groups: the meshes
   Eigen::SparseMatrix<double, Eigen::RowMajor> weights;  // vertices x joints, rows sum to 1
   std::vector<GltfAnimation> animations;
 };
@@ -52,7 +53,7 @@ struct GltfScene {
 // normal are joined, so that what was closed is closed. Of other files only buffers are opened, and only below the
 // file's own folder; images never. Throws Error, naming the file and the part
 // of it: no skin or several that are used, no triangles, compressed or sparse data, numbers that lie outside of their
-// buffers or are not finite, weights that are all zero.
-GltfScene read_gltf(const std::filesystem::path&);
+// buffers or are not finite, weights that are all zero; a choice of meshes that it has not, or that leaves none.
+GltfScene read_gltf(const std::filesystem::path&, const NameChoice& = {});
 
 }  // namespace selvedge

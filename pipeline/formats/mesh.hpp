@@ -8,13 +8,16 @@
 
 namespace selvedge {
 
+// Parts of a mesh: names, and the vertices of each, ascending.
+using NamedVertices = std::vector<std::pair<std::string, std::vector<int>>>;
+
 // A triangle mesh as a file has it.
 struct Mesh {
   Points x;
   Triangles triangles;  // of the polygons (polygon.hpp); degenerate and duplicate ones removed, counted in warnings
   Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> uv;  // texture vertices (OBJ vt), may be empty
   Triangles uv_triangles;                                        // corner -> row of uv; empty where a face has none
-  std::vector<std::pair<std::string, std::vector<int>>> groups;  // OBJ g / o: name and its vertices
+  NamedVertices groups;                                          // OBJ g / o, meshes of glTF
   std::vector<int> corners, corner_begin;  // vertices of the polygons as read, and where each begins; empty: none was
   std::vector<int> welded;  // of each vertex as read: its number once coincident ones are joined; empty: none are
   std::vector<std::string> warnings;

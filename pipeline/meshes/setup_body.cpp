@@ -178,6 +178,7 @@ Performance read_performance(const Config& section, const std::filesystem::path&
   if (who.shape.size() > who.body.skin.shape_directions.cols())
     shape.fail("has more coefficients than the body has shapes",
                "give at most " + std::to_string(who.body.skin.shape_directions.cols()));
+  warn_of_crossings(section["model"].text(), own_crossings(who.body, who.shape), who.warnings);
   for (const std::string key : {"joints", "rest_frame"})
     if (section[key].given && !clip.given) section[key].fail("is given without a clip", "name a .bvh file as `clip`");
   if (!clip.given) return who;

@@ -12,6 +12,7 @@
 #include "pipeline/meshes/setup_motion.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/shapes/outward_mesh.hpp"
+#include "pipeline/shapes/own_crossings.hpp"
 #include "pipeline/shapes/primitives.hpp"
 
 namespace selvedge {
@@ -74,13 +75,16 @@ Sequence read_body(const Config& section, const std::filesystem::path& folder, s
   if (const Config& run = section["trajectory"]; run.given) {
     Sequence recorded = read_recorded(run, folder, warnings);
     for (const Points& frame : recorded.frames) refuse_far(run, "the recorded obstacle", frame);
-    turn_outward(run["file"].text(), {}, recorded.frames, same_places(recorded.frames), recorded.triangles, warnings);
+    const std::vector<int> places = same_places(recorded.frames);
+    turn_outward(run["file"].text(), {}, recorded.frames, places, recorded.triangles, warnings);
+    warn_of_crossings(run["file"].text(), own_crossings({}, recorded.frames[0], recorded.triangles, places), warnings);
     return recorded;
   }
   if (const Config& file = section["mesh"]; file.given) {
     Mesh mesh = read_mesh_section(file, folder);
     warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
     turn_outward(file["file"].text(), mesh, warnings);
+    warn_of_crossings(file["file"].text(), mesh, warnings);
     return one_frame(mesh.x, mesh.triangles);
   }
   Shape shape = read_primitive(section);

@@ -13,6 +13,7 @@
 #include "pipeline/meshes/setup_obstacle.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/shapes/outward_mesh.hpp"
+#include "pipeline/shapes/own_crossings.hpp"
 
 namespace selvedge {
 namespace {
@@ -70,7 +71,10 @@ Sequence cached_sequence(const Config& section, const std::filesystem::path& fol
   warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
   const double unit = read_unit(section["unit"]);
   for (Points& x : cache.frames) x *= unit;
-  turn_outward(section["mesh"].text(), mesh.groups, cache.frames, same_places(cache.frames), mesh.triangles, warnings);
+  const std::vector<int> places = same_places(cache.frames);
+  turn_outward(section["mesh"].text(), mesh.groups, cache.frames, places, mesh.triangles, warnings);
+  warn_of_crossings(section["mesh"].text(), own_crossings(mesh.groups, cache.frames[0], mesh.triangles, places),
+                    warnings);
   SampleTimes times = cache_times(section, cache, warnings);
   return {std::move(cache.frames), mesh.triangles, std::move(times)};
 }
@@ -121,8 +125,10 @@ Sequence read_sequence(const Config& section, const std::filesystem::path& folde
     }
     sequence.frames.push_back(unit * mesh.x);
   }
-  turn_outward(sequence_name(section), first.groups, sequence.frames, same_places(sequence.frames), sequence.triangles,
-               warnings);
+  const std::string name = sequence_name(section);
+  const std::vector<int> places = same_places(sequence.frames);
+  turn_outward(name, first.groups, sequence.frames, places, sequence.triangles, warnings);
+  warn_of_crossings(name, own_crossings(first.groups, sequence.frames[0], sequence.triangles, places), warnings);
   return sequence;
 }
 

@@ -212,8 +212,8 @@ BodyPose animated_pose(const GltfRig& rig, const Points& zero, const GltfAnimati
 
 }  // namespace
 
-GltfRig read_gltf_rig(const std::filesystem::path& path) {
-  GltfRig rig{path.string(), read_gltf(path), {}, {}};
+GltfRig read_gltf_rig(const std::filesystem::path& path, const NameChoice& choice) {
+  GltfRig rig{path.string(), read_gltf(path, choice), {}, {}};
   const GltfScene& scene = rig.scene;
   const std::vector<int> parents = parents_among(scene);
   rig.joints = kept_joints(scene, parents, rig.file);
@@ -227,6 +227,7 @@ GltfRig read_gltf_rig(const std::filesystem::path& path) {
   const Eigen::Matrix<double, 3, 4> placed = rig.placed.topRows<3>();
   body.skin.rest = scene.mesh.x.rowwise().homogeneous() * placed.transpose();
   body.skin.triangles = scene.mesh.triangles;
+  body.meshes = scene.mesh.groups;
   std::vector<int> place(scene.joints.size(), 0);  // of a joint that is left out: the root
   std::vector<std::string> names;
   Points joints(static_cast<Eigen::Index>(rig.joints.size()), 3);

@@ -24,7 +24,7 @@ struct GltfRig {
 // as glTF is. Joints without weights above the first that branches or has some are left out; the others have SMPL's
 // names where the rig's are known (matched_joints of clip_bvh.hpp). No shapes, no pose directions. The regressor gives
 // each joint its place. Throws Error as read_gltf does, and for a skin that is scaled unevenly or has several roots.
-GltfRig read_gltf_rig(const std::filesystem::path&);
+GltfRig read_gltf_rig(const std::filesystem::path&, const NameChoice& = {});
 
 // One of the file's animations as rotations from the body's zero pose, by the body's joints; `name` empty: the first.
 // Deformed by the body's skin the surface moves as the file says. Throws Error, naming joint and time, where a joint

@@ -8,9 +8,6 @@
 
 namespace selvedge {
 
-// Parts of a mesh, names and vertices, as Mesh::groups has them.
-using NamedVertices = std::vector<std::pair<std::string, std::vector<int>>>;
-
 // Every mesh that becomes an obstacle or a body goes through here: its closed shells are turned outwards
 // (outward_faces.hpp). Warnings say, by `name` (the file's) and mesh, what was turned, what is taken for a cavity, and
 // what has no inside though it is meant to: what is nearly closed, or closed but for edges of many triangles.

@@ -29,11 +29,15 @@ BodyModel read(const BodyRequest& request, BodyReport& report) {
   if (extension == ".glb" || extension == ".gltf") {
     if (request.unit != "m")
       throw Error("is given for glTF, which is in metres", "--unit " + request.unit, "leave it out");
-    GltfRig rig = read_gltf_rig(request.file);
+    GltfRig rig = read_gltf_rig(request.file, request.meshes);
     for (const GltfAnimation& animation : rig.scene.animations) report.animations.push_back(animation.name);
     return std::move(rig.body);
   }
-  if (extension == ".npz") return read_smpl(request.file);
+  if (extension == ".npz") {
+    if (request.meshes.any())
+      throw Error("has no meshes by name", request.file.string(), "leave --mesh and --without out");
+    return read_smpl(request.file);
+  }
   if (extension != ".obj" && extension != ".ply")
     throw Error("is neither a mesh (.obj, .ply), a model of the SMPL family (.npz) nor glTF (.glb, .gltf)",
                 request.file.string(), "write other bodies in HDF5 yourself, see docs/bodies.md");
@@ -41,11 +45,11 @@ BodyModel read(const BodyRequest& request, BodyReport& report) {
   const bool rigged = !request.skeleton.empty() || !request.weights.empty();
   if (!request.joints.empty() && rigged)
     throw Error("has its joints twice", request.file.string(), "give --joints, or --skeleton and --weights");
-  if (!request.joints.empty()) return read_jointed(request.file, request.joints, metres);
+  if (!request.joints.empty()) return read_jointed(request.file, request.joints, metres, request.meshes);
   if (request.skeleton.empty() || request.weights.empty())
     throw Error("is a mesh without a skeleton or weights", request.file.string(),
                 "give --skeleton and --weights, or --joints");
-  return read_makehuman(request.file, request.skeleton, request.weights, metres);
+  return read_makehuman(request.file, request.skeleton, request.weights, metres, request.meshes);
 }
 
 }  // namespace
@@ -71,15 +75,24 @@ BodyReport convert_body(const BodyRequest& request) {
     report.arms_off = arms_off_t_pose(smpl_joints(body, joints));
     report.t_pose = !t_pose(body, joints);
   }
+  for (const auto& [name, vertices] : body.meshes) report.meshes.push_back(name);
+  report.crossings = own_crossings(body, {});
   write_body(request.out, body);
   return report;
 }
 
 std::string body_json(const BodyReport& r) {
-  const nlohmann::ordered_json json = {
-      {"body", r.out.string()}, {"vertices", r.vertices}, {"triangles", r.triangles},   {"closed", r.closed},
-      {"joints", r.joints},     {"shapes", r.shapes},     {"height", r.height},         {"arms_off", r.arms_off},
-      {"t_pose", r.t_pose},     {"lacks", r.lacks},       {"animations", r.animations}, {"warnings", r.warnings}};
+  nlohmann::ordered_json own = nlohmann::ordered_json::array();
+  for (const OwnCrossings::Between& one : r.crossings.between)
+    own.push_back({{"mesh", one.a}, {"with", one.b}, {"pairs", one.pairs}});
+  const nlohmann::ordered_json json = {{"body", r.out.string()},     {"vertices", r.vertices},
+                                       {"triangles", r.triangles},   {"closed", r.closed},
+                                       {"joints", r.joints},         {"shapes", r.shapes},
+                                       {"height", r.height},         {"arms_off", r.arms_off},
+                                       {"t_pose", r.t_pose},         {"lacks", r.lacks},
+                                       {"animations", r.animations}, {"meshes", r.meshes},
+                                       {"own_pairs", own},           {"own_pairs_counted", !r.crossings.too_many},
+                                       {"warnings", r.warnings}};
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -98,6 +111,9 @@ std::string body_text(const BodyReport& r) {
   else
     add("zero pose", fmt::format("no joint `{}`: only its own animations move it", r.lacks));
   if (!r.animations.empty()) add("animations", fmt::format("{}", fmt::join(r.animations, ", ")));
+  if (r.meshes.size() > 1) add("meshes", fmt::format("{}", fmt::join(r.meshes, ", ")));
+  const std::string crossings = crossings_text(r.crossings);
+  add("crosses itself", crossings.empty() ? "nowhere in its zero pose" : "in its zero pose in " + crossings);
   for (const std::string& warning : r.warnings) add("warning", warning);
   add("body", r.out.string());
   return text;

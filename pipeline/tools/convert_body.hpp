@@ -4,6 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/config/name_choice.hpp"
+#include "pipeline/shapes/own_crossings.hpp"
+
 namespace selvedge {
 
 struct BodyRequest {
@@ -12,6 +15,7 @@ struct BodyRequest {
   std::string unit = "m";                   // of the mesh
   std::filesystem::path out;                // our HDF5 form (.h5)
   std::filesystem::path joints{};           // or where its joints are (.yaml)
+  NameChoice meshes{};                      // of glTF, or groups of the mesh: which become the body
 };
 
 struct BodyReport {
@@ -23,6 +27,8 @@ struct BodyReport {
   bool t_pose = false;  // as near to it that clips turn from the zero pose
   std::string lacks;    // a joint of SMPL's that is not there, so that only its own animations move it; empty: none
   std::vector<std::string> animations;  // of a glTF file
+  std::vector<std::string> meshes;      // that the body is made of, where its file names them
+  OwnCrossings crossings;               // in the zero pose
   std::vector<std::string> warnings;
 };
 

@@ -20,6 +20,7 @@
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/materials.hpp"
 #include "pipeline/shapes/outward_mesh.hpp"
+#include "pipeline/shapes/own_crossings.hpp"
 
 namespace selvedge {
 namespace {
@@ -34,6 +35,7 @@ BodyModel body_of_mesh(const std::filesystem::path& file, std::vector<std::strin
   Mesh mesh = read_mesh(file);
   warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
   turn_outward(file.string(), mesh, warnings);
+  warn_of_crossings(file.string(), mesh, warnings);
   BodyModel body;
   body.name = file.stem().string();
   body.skin.rest = mesh.x;

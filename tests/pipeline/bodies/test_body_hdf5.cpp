@@ -24,6 +24,7 @@ void check_same(const BodyModel& a, const BodyModel& b) {
   CHECK(a.name == b.name);
   CHECK(a.joints == b.joints);
   CHECK(a.parents == b.parents);
+  CHECK(a.meshes == b.meshes);
   CHECK(a.skin.rest == b.skin.rest);
   CHECK(a.skin.triangles == b.skin.triangles);
   CHECK(a.skin.shape_directions == b.skin.shape_directions);

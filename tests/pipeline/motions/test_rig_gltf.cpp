@@ -4,6 +4,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/bodies/body_hdf5.hpp"
+#include "pipeline/bodies/body_outward.hpp"
 #include "pipeline/bodies/mannequin.hpp"
 #include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/motions/clip_procedural.hpp"
@@ -43,6 +44,30 @@ void same_poses(const BodyModel& body, const Clip& clip, const GltfRig& rig, con
   }
 }
 
+// One more mesh of the same skin, which lies in the same space.
+void add_mesh(const BodyModel& body, const std::string& name, fake::GltfFile& file) {
+  const fake::GltfFile own = fake::gltf_of(body, {}, body.joints);
+  nlohmann::ordered_json mesh = own.json["meshes"][0];
+  const std::size_t accessors = file.json["accessors"].size(), views = file.json["bufferViews"].size();
+  for (nlohmann::ordered_json view : own.json["bufferViews"]) {
+    view["byteOffset"] = view["byteOffset"].get<std::size_t>() + file.bytes.size();
+    file.json["bufferViews"].push_back(view);
+  }
+  for (nlohmann::ordered_json accessor : own.json["accessors"]) {
+    accessor["bufferView"] = accessor["bufferView"].get<std::size_t>() + views;
+    file.json["accessors"].push_back(accessor);
+  }
+  for (nlohmann::ordered_json& primitive : mesh["primitives"]) {
+    for (auto& [what, number] : primitive["attributes"].items()) number = number.get<std::size_t>() + accessors;
+    primitive["indices"] = primitive["indices"].get<std::size_t>() + accessors;
+  }
+  mesh["name"] = name;
+  file.json["meshes"].push_back(mesh);
+  file.json["nodes"].push_back({{"name", name}, {"mesh", 1}, {"skin", 0}});
+  file.json["scenes"][0]["nodes"].push_back(file.json["nodes"].size() - 1);
+  file.bytes += own.bytes;
+}
+
 std::vector<std::string> mixamo_names() {
   std::vector<std::string> names = {"Hips"};
   for (const char* name :
@@ -80,6 +105,42 @@ TEST_CASE("glTF: a rigged body and its motion come back from below an armature o
   same_poses(body, clip, rig, read_gltf_clip(rig, "", 30), 1e-5);
   CHECK(read_gltf_clip(rig, "swing", 60).poses.size() == 9);  // 4 / 30 s, both ends
   CHECK_THROWS_WITH(read_gltf_clip(rig, "walk", 30), Contains("no animation `walk`") && Contains("swing"));
+}
+
+TEST_CASE("glTF: the meshes of a body are chosen by name, and its file keeps them", "[rig_gltf]") {
+  const Folder folder("gltf_meshes");
+  const BodyModel body = fake::body(6, 40, 0, false);
+  BodyModel inner = body;
+  inner.skin.rest.array() *= 0.5;
+  fake::GltfFile file = fake::gltf_of(body, {}, body.joints);
+  add_mesh(inner, "joints", file);
+  const auto path = fake::write(folder, "rig.glb", file.glb());
+  BodyRequest request{path, {}, {}, "m", folder.path / "body.h5"};
+  const BodyReport all = convert_body(request);
+  CHECK(all.meshes == std::vector<std::string>{"skin", "joints"});
+  CHECK(all.vertices == 80);
+  REQUIRE_FALSE(all.crossings.between.empty());  // random triangles
+  const auto text = std::ranges::find_if(all.crossings.between, [](const auto& one) { return one.a != one.b; });
+  CHECK(text != all.crossings.between.end());
+  const BodyModel read = read_body(request.out);
+  REQUIRE(read.meshes.size() == 2);
+  CHECK(read.meshes[1].first == "joints");
+  CHECK(read.meshes[1].second.size() == 40);
+  CHECK(own_crossings(read, {}).pairs() == all.crossings.pairs());
+  CHECK_THAT(body_text(all), Contains("crosses itself") && Contains("`skin` with `joints`"));
+  CHECK_THAT(body_json(all), Contains("\"own_pairs\"") && Contains("\"with\": \"joints\""));
+
+  request.meshes.without = {"joints"};
+  const BodyReport without = convert_body(request);
+  request.meshes = {{"skin"}, {}};
+  const BodyReport only = convert_body(request);
+  CHECK(without.vertices == 40);
+  CHECK(without.crossings.pairs() == only.crossings.pairs());
+  CHECK(without.crossings.pairs() < all.crossings.pairs());
+  request.meshes = {{}, {"Joints"}};
+  CHECK_THROWS_WITH(convert_body(request), Contains("no mesh `Joints`") && Contains("skin, joints"));
+  request.meshes = {{}, {"skin", "joints"}};
+  CHECK_THROWS_WITH(convert_body(request), Contains("no triangles"));
 }
 
 TEST_CASE("glTF: an animation is taken at a rate that meets its keys, and a late begin is said", "[rig_gltf]") {

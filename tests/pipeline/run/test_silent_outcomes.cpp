@@ -119,6 +119,8 @@ TEST_CASE("A still obstacle of parts that overlap has nothing switched off, and 
                                 "obstacles: [{name: union, mesh: union.obj}]\n"
                                 "run: {frames: 3}\n");
   CHECK(ran.summary.switched_off.at(0).frames == 0);
+  REQUIRE(ran.summary.warnings.size() == 1);
+  CHECK_THAT(ran.summary.warnings[0], Catch::Contains("union.obj: crosses itself in"));
   CHECK_THAT(summary_json(ran.summary), Catch::Contains("\"switched_off\": []"));
   CHECK_THAT(plan_text(read_setup(folder.path / "scene.yaml")),
              Catch::Contains("out  switching off") && Catch::Contains("keeps its shape"));
