@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "collision/exact/outward_faces.hpp"
 #include "collision/geometry/same_places.hpp"
 #include "collision/geometry/welded_surface.hpp"
 #include "physics/scene/make_scene.hpp"
@@ -137,6 +138,13 @@ void split(const Vec3& normal, Sheet& mesh) {
   mesh.x = x;
 }
 
+// All faces inside out, as a file may have a mirrored part.
+void flip(Sheet& mesh) {
+  const Triangles as_given = mesh.triangles;
+  mesh.triangles.col(1) = as_given.col(2);
+  mesh.triangles.col(2) = as_given.col(1);
+}
+
 // A patch of faces again, with vertices of its own.
 void copy_patch(Dice& dice, Sheet& mesh) {
   Sheet patch{mesh.x, mesh.triangles.middleRows(dice.index(20), 12)};
@@ -195,6 +203,7 @@ Union random_union(unsigned seed) {
     if (dice.one_in(3)) copy_patch(dice, s.mesh);
     u.shells.push_back(s);
   }
+  if (!dice.one_in(3)) flip(u.shells[static_cast<std::size_t>(dice.index(count))].mesh);
   u.moves = static_cast<Moves>(dice.index(3));
   u.speed = Vec3(dice.number(-0.3, 0.3), dice.number(-0.1, 0.3), dice.number(-0.3, 0.3));
   u.spin = dice.number(-2, 2);
@@ -213,28 +222,40 @@ struct Found {
   int inside = 0, pairs = 0, rejected = 0, moving_frames = 0;
 };
 
+// The surface as reading makes an obstacle of it: closed shells face outwards, and seams are welded.
+struct Read {
+  Surface surface;
+  std::vector<int> together;  // vertices that are held together, as welded_surface has them
+};
+
+Read as_read(const Union& u, double dt, int frames) {
+  Sheet body = u.shells.front().mesh;
+  for (std::size_t k = 1; k < u.shells.size(); ++k) body = join(body, u.shells[k].mesh);
+  std::vector<Points> sequence;
+  for (int frame = 0; frame <= frames; ++frame) sequence.push_back(u.points(frame * dt));
+  const std::vector<int> places = same_places(sequence);
+  const OutwardFaces outward = face_outward(body.triangles, sequence, places);
+  Read read{make_surface(static_cast<int>(body.x.rows()), outward.triangles), {}};
+  if (std::optional<WeldedSurface> welded = welded_surface(read.surface, places))
+    read = {std::move(welded->surface), std::move(welded->joined)};
+  return read;
+}
+
 Found drop_on(const Union& u) {
   const double dt = 1.0 / 30;
   const int frames = 16;
   const Points at_start = u.points(0);
   World w = make_world(sheet(11, 0.5, at_start.col(1).maxCoeff() + 0.02));
-  Sheet body = u.shells.front().mesh;
-  for (std::size_t k = 1; k < u.shells.size(); ++k) body = join(body, u.shells[k].mesh);
-  body.x = at_start;
-  add_obstacle(w, body);
-  Obstacle& obstacle = w.scene.obstacles[0];
-  obstacle.moving = u.moves != Moves::still;
-  std::vector<int> together;
-  if (std::optional<WeldedSurface> welded = welded_surface(obstacle.surface, same_places(at_start))) {
-    obstacle.surface = std::move(welded->surface);
-    together = std::move(welded->joined);
-  }
+  const Read body = as_read(u, dt, frames);
+  add_obstacle(w, {at_start, body.surface.triangles});
+  w.scene.obstacles[0].surface = body.surface;
+  w.scene.obstacles[0].moving = u.moves != Moves::still;
   const auto stepper = make_recovering_conventional_stepper(w.scene, {});
   State state = w.state;
   Drive drive = w.drive;
   const auto place = [&](double time) {
     Points x = u.points(time);
-    hold_together(together, x);
+    hold_together(body.together, x);
     return x;
   };
   state.obstacles[0] = place(0);
