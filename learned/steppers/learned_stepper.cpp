@@ -15,6 +15,7 @@
 #include "learned/steppers/learned_state.hpp"
 #include "learned/steppers/shown_force.hpp"
 #include "physics/scene/features.hpp"
+#include "physics/solve/energy_balance.hpp"
 #include "physics/steppers/bounded_step.hpp"
 
 namespace selvedge {
@@ -41,7 +42,8 @@ class LearnedStepper final : public Stepper {
         rest_(make_rest_graph(graph_scene_, features_, options.centres)),
         world_(
             make_contact_world(scene.surface, obstacle_surfaces(scene), features_of(scene).self_contact, &scene.rest)),
-        traits_(learned_traits(architecture)) {}
+        traits_(learned_traits(architecture)),
+        energy_(scene, traits_) {}
 
   const StepperTraits& traits() const override { return traits_; }
   StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override {
@@ -68,6 +70,7 @@ class LearnedStepper final : public Stepper {
   RestGraph rest_;
   ContactWorld world_;
   StepperTraits traits_;
+  EnergyBalance energy_;
   // Memory that is used again:
   GraphSearch search_;
   Graph graph_;
@@ -169,6 +172,7 @@ StepReport LearnedStepper::take_step(const State& from, const Drive& drive, doub
   StepEnd end = learned_end(scene_, from, drive, state, seen_positions(rest_, state, features_).x, next);
   audit_way(from, end, report);
   finish_step(scene_, from, drive, dt, std::move(end), audited_, to, report);
+  energy_.label(from, drive, to, report);
   return report;
 }
 

@@ -11,6 +11,7 @@
 #include "physics/scene/scene_numbers.hpp"
 #include "physics/solve/bdf2.hpp"
 #include "physics/solve/contact_terms.hpp"
+#include "physics/solve/energy_balance.hpp"
 #include "physics/steppers/bounded_step.hpp"
 #include "physics/steppers/contact_stage.hpp"
 #include "physics/steppers/finish_step.hpp"
@@ -51,6 +52,7 @@ class ConventionalStepper final : public Stepper {
         features_(features_of(scene)),
         contact_(scene, options.resolve),
         solve_(scene, options.implicit_euler, options.substep, contact_),
+        energy_(scene),
         edge_length_(mean_edge_length(scene)),
         traits_{.name = "conventional",
                 .past_frames = options.integrator == Integrator::bdf2 ? 1 : 0,
@@ -87,6 +89,7 @@ class ConventionalStepper final : public Stepper {
   Features features_;
   ContactStage contact_;
   SubstepSolve solve_;
+  EnergyBalance energy_;
   double edge_length_;
   StepperTraits traits_;
   AuditMemory audited_;
@@ -383,6 +386,7 @@ StepReport ConventionalStepper::take_step(const State& from, const Drive& drive,
   for (std::size_t k = 0; k < from.obstacles.size(); ++k)
     end.obstacles.push_back(now.nodes.middleRows(contact_.world.first_node[k], from.obstacles[k].rows()));
   finish_step(scene_, from, drive, dt, std::move(end), audited_, to, report, extras.later);
+  if (!extras.added) energy_.label(from, drive, to, report);  // what recovers a cloth does work that nobody bounds
   return report;
 }
 

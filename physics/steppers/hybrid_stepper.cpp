@@ -8,6 +8,7 @@
 #include "collision/geometry/floating_point.hpp"
 #include "collision/geometry/pair_budget.hpp"
 #include "collision/geometry/stopwatch.hpp"
+#include "physics/solve/energy_balance.hpp"
 #include "physics/steppers/finish_step.hpp"
 #include "physics/steppers/proposal_line_search.hpp"
 #include "physics/steppers/proposal_times.hpp"
@@ -63,6 +64,7 @@ class HybridStepper final : public Stepper {
         options_(options),
         guard_(scene, options.guard),
         contact_(scene),
+        energy_(scene),
         traits_(joint_traits(parts_)),
         clock_(clock_of(parts_)) {
     if (options.mode == HybridMode::gated || options.mode == HybridMode::after_k)
@@ -84,6 +86,7 @@ class HybridStepper final : public Stepper {
   Verdict may_ask(const State& from, const Drive&, const ProposalTrust&, bool has_history) const;
   Verdict propose(Work&);
   Verdict propose_within_budget(Work&);
+  bool gains_energy(Verdict, Work&);
   Verdict propose_step(Work&);
   std::optional<Points> proposed_positions(Work&);
   Verdict correct(Work&, Points x);
@@ -97,6 +100,7 @@ class HybridStepper final : public Stepper {
   HybridOptions options_;
   Guard guard_;
   ContactStage contact_;
+  EnergyBalance energy_;
   std::optional<ProposalLineSearch> line_;
   StepperTraits traits_;
   AuditMemory audited_;
@@ -213,10 +217,19 @@ Verdict HybridStepper::propose(Work& work) {
 // What comes near more than can be searched is taken for what crosses.
 Verdict HybridStepper::propose_within_budget(Work& work) {
   try {
-    return propose(work);
+    const Verdict verdict = propose(work);
+    return gains_energy(verdict, work) ? Verdict::energy_gain : verdict;
   } catch (const TooManyPairs&) {
     return Verdict::penetrating;
   }
+}
+
+// Of a step that was made. Who solves judges it himself, and so does a network, but by the forces that it knows.
+bool HybridStepper::gains_energy(Verdict verdict, Work& work) {
+  if (verdict != Verdict::admitted && verdict != Verdict::refined) return false;
+  if (work.report.reason == Reason::energy_gain) return true;
+  const Timed timed(work.report.seconds.guard);
+  return verdict == Verdict::admitted && energy_(work.from, work.drive, work.to).from_nowhere();
 }
 
 void HybridStepper::take_parent_step(Work& work) {

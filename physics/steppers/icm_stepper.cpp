@@ -16,6 +16,7 @@
 #include "physics/scene/scene_numbers.hpp"
 #include "physics/solve/contact_terms.hpp"
 #include "physics/solve/contour_potential.hpp"
+#include "physics/solve/energy_balance.hpp"
 #include "physics/steppers/bounded_step.hpp"
 #include "physics/steppers/count_solve.hpp"
 #include "physics/steppers/finish_step.hpp"
@@ -55,6 +56,7 @@ class IcmStepper final : public Stepper {
         mean_mass_(mean_mass(inverse_mass_)),
         edge_length_(mean_edge_length(scene)),
         solver_(scene, options.implicit_euler),
+        energy_(scene),
         self_crossings_(world_) {}
 
   const StepperTraits& traits() const override { return traits_; }
@@ -80,6 +82,7 @@ class IcmStepper final : public Stepper {
   Eigen::VectorXd inverse_mass_;
   double mean_mass_, edge_length_;
   ImplicitEuler solver_;
+  EnergyBalance energy_;
   AuditMemory audited_;
   SelfCrossings self_crossings_;
   StepperTraits traits_{"icm"};
@@ -218,6 +221,10 @@ StepReport IcmStepper::take_step(const State& from, const Drive& drive, double d
   }
   if (!all.off.empty()) report.switched_off = switched_off(world_, all);
   finish_step(scene_, from, drive, dt, {now.nodes.topRows(n), std::move(now.v), drive.obstacles}, audited_, to, report);
+  if (report.status == StepStatus::accepted && energy_(from, drive, to).from_nowhere()) {
+    report.status = StepStatus::rejected;
+    report.reason = Reason::energy_gain;
+  }
   return report;
 }
 

@@ -56,6 +56,7 @@ void add_labels(const StepReport& report, int index, RunSummary& summary) {
     if (obstacle.frames++ == 0) obstacle.first_frame = index;
     obstacle.most = std::max(obstacle.most, report.switched_off[k]);
   }
+  if (report.reason == Reason::energy_gain && summary.energy_gains++ == 0) summary.first_gain_frame = index;
   summary.pushed_out += report.collision.pushed_out;
   summary.untangling += report.untangling;
   summary.out_of_newton += report.out_of_newton;
@@ -234,6 +235,8 @@ std::string summary_json(const RunSummary& s) {
       {"passed_through", s.passed_through},
       {"jumped", s.jumped},
       {"jumped_first_frame", s.first_jump_frame},
+      {"energy_gains", s.energy_gains},
+      {"energy_gains_first_frame", s.first_gain_frame},
       {"min_contact_gap", number_or_null(s.min_contact_gap)},
       {"max_obstacle_lag", s.max_obstacle_lag},
       {"intersecting_pairs_wanted", s.worst_pairs_wanted},
@@ -297,6 +300,9 @@ std::string summary_text(const RunSummary& s) {
         fmt::format("{} obstacles, first in frame {}: too fast for a sweep, so what they passed is not known; "
                     "give more frames a second or substeps",
                     s.jumped, s.first_jump_frame));
+  if (s.energy_gains > 0)
+    add("energy from nowhere", fmt::format("in {} frames, first in frame {}: more than pins, obstacles and wind gave",
+                                           s.energy_gains, s.first_gain_frame));
   if (s.max_obstacle_lag > 0)
     add("obstacles lag", fmt::format("{:.2g} m at most; where they were wanted {} pairs and {:.2g} m deep at worst",
                                      s.max_obstacle_lag, s.worst_pairs_wanted, s.max_depth_wanted));

@@ -39,6 +39,8 @@ struct RunSummary {
   long impulses = 0, zones = 0, halved_substeps = 0, shortened = 0, held_vertices = 0, passed_through = 0;
   long jumped = 0;            // obstacles that were put where they were wanted without a sweep, over all frames
   int first_jump_frame = -1;  // -1: none ever was
+  long energy_gains = 0;      // frames whose energy grew by more than what gave some (energy_balance.hpp)
+  int first_gain_frame = -1;  // -1: none did
   double max_obstacle_lag = 0, max_depth_wanted = 0, max_residual = 0;
   int worst_pairs_wanted = 0;  // against obstacles where they were wanted
   double min_contact_gap = std::numeric_limits<double>::infinity();

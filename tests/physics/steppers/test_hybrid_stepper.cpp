@@ -65,6 +65,22 @@ class CountedStepper final : public Stepper {
   std::function<void()> count_;
 };
 
+// The conventional stepper's steps, at twice the velocity: positions alone do not tell.
+class HastyProposer final : public Stepper {
+ public:
+  explicit HastyProposer(const Scene& scene) : solver_(make_recovering_conventional_stepper(scene)) {}
+  const StepperTraits& traits() const override { return traits_; }
+  StepReport step(const State& from, const Drive& drive, double h, State& to, const StepExtras& extras) override {
+    const StepReport report = solver_->step(from, drive, h, to, extras);
+    to.v *= 2;
+    return report;
+  }
+
+ private:
+  std::unique_ptr<Stepper> solver_;
+  StepperTraits traits_{"hasty"};
+};
+
 Points as_solved(const State&, const Points& solved) { return solved; }
 Points nowhere(const State& from, const Points&) {
   return Points::Constant(from.x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
@@ -158,6 +174,25 @@ TEST_CASE("hybrid: whatever is proposed, in every mode, the cloth stays finite a
       CHECK(seen.state.clean);
       if (mode == HybridMode::fallback && name != "frozen") CHECK(seen.fell_back > 0);
     }
+}
+
+TEST_CASE("hybrid: a proposal whose energy comes from nowhere is refused", "[hybrid]") {
+  const World w = testing::swinging_sheet();
+  State state = w.state, to;
+  const auto solver = make_recovering_conventional_stepper(w.scene);
+  for (int f = 0; f < 5; ++f) {
+    solver->step(state, w.drive, dt, to);
+    std::swap(state, to);
+  }
+  const auto stepper = make_hybrid_stepper(
+      w.scene, {std::make_unique<HastyProposer>(w.scene), make_recovering_conventional_stepper(w.scene), {}, {}}, {});
+  const StepReport report = stepper->step(state, w.drive, dt, to);
+  CHECK(report.verdict == Verdict::energy_gain);
+  CHECK(report.by == "hybrid: conventional");
+  CHECK(report.reason == Reason::none);
+  State solved;
+  solver->step(state, w.drive, dt, solved);
+  CHECK(same_bits(to.v, solved.v));
 }
 
 TEST_CASE("hybrid: refused proposals wait for longer and longer, and come back", "[hybrid]") {

@@ -1,0 +1,69 @@
+#include "physics/solve/energy_balance.hpp"
+
+#include <algorithm>
+
+#include "physics/scene/features.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr const char* block = "energy.from_nowhere";
+constexpr double tolerated_part = 0.3;  // of the unit of energy (below); demo, walks, wind and piles: at most 0.2
+constexpr double slight = 0.05;         // of it, where something moves: not worth to ask how much that gave
+constexpr double earth = 9.81;          // weighs cloth where nothing falls [m/s2]
+
+double gained_before(const State& state) {
+  const MemoryRows* rows = find_rows(state.memory, block, 1);
+  return rows && rows->cols() == 1 ? (*rows)(0, 0) : 0;
+}
+
+void remember(double nowhere, State& state) {
+  Memory blocks;
+  if (nowhere > 0) blocks.push_back({block, MemoryRows::Constant(1, 1, nowhere)});
+  replace_blocks("energy", std::move(blocks), state.memory);
+}
+
+// Whether anything can have given energy: a pin or an obstacle that moved, or wind.
+bool is_driven(const Scene& scene, const State& from, const State& to, const Drive& drive) {
+  return !drive.wind.isZero(0) || from.obstacles != to.obstacles ||
+         std::ranges::any_of(scene.pins, [&](int pin) { return from.x.row(pin) != to.x.row(pin); });
+}
+
+}  // namespace
+
+EnergyBalance::EnergyBalance(const Scene& scene, const StepperTraits& traits)
+    : scene_(without_ignored(scene, traits)), terms_(energy_terms(scene_)), edge_length_(mean_edge_length(scene_)) {}
+
+// Of the two states of a step the first is the second one of the step before, as a rule.
+Energies EnergyBalance::energies_of(const State& state, const Vec3& acceleration) {
+  const bool known = last_.x.rows() == state.x.rows() && last_.v.rows() == state.v.rows() && last_.x == state.x &&
+                     last_.v == state.v && last_.acceleration == acceleration;
+  if (!known) last_ = {state.x, state.v, acceleration, energies(scene_, terms_, state.x, state.v, acceleration)};
+  return last_.energies;
+}
+
+double EnergyBalance::work_of(const State& from, const State& to, const Drive& drive) {
+  if (!work_) work_.emplace(scene_);
+  const Work work = (*work_)(from, to, drive);
+  return work.pins + work.obstacles + work.wind;
+}
+
+EnergyGain EnergyBalance::operator()(const State& from, const Drive& drive, State& to) {
+  const Energies before = energies_of(from, drive.acceleration), after = energies_of(to, drive.acceleration);
+  const double gained = gained_before(from), weight = terms_.masses.sum() * std::max(earth, drive.acceleration.norm());
+  const double unit = std::max(0.0, before.total() - before.gravity - gained) + weight * edge_length_;
+  EnergyGain books{.gain = after.total() - before.total(), .tolerated = tolerated_part * unit};
+  const bool driven = is_driven(scene_, from, to, drive);
+  if (driven && books.gain > 0) books.work = books.gain > slight * unit ? work_of(from, to, drive) : books.gain;
+  const double nowhere = gained + (books.gain > 0 ? std::max(books.gain - books.work, 0.0) : books.gain);
+  books.nowhere = nowhere < 0 ? 0 : nowhere;  // what is no number stays none
+  remember(books.from_nowhere() ? 0 : books.nowhere, to);
+  return books;
+}
+
+void EnergyBalance::label(const State& from, const Drive& drive, State& to, StepReport& report) {
+  if (report.status != StepStatus::accepted || report.reason == Reason::penetrating) return;
+  if ((*this)(from, drive, to).from_nowhere()) report.reason = Reason::energy_gain;
+}
+
+}  // namespace selvedge

@@ -1,0 +1,87 @@
+#include "physics/solve/energy_balance.hpp"
+
+#include "tests/physics/worlds.hpp"
+
+namespace selvedge::test_energy_balance {
+
+using testing::make_world;
+using testing::sheet;
+using testing::World;
+
+namespace {
+
+constexpr double dt = 1.0 / 60;
+
+// The sheet as it is, moved and with a speed.
+State moved(const World& w, double up, double speed) {
+  State to = w.state;
+  to.time = dt;
+  to.x.col(1).array() += up;
+  to.v.col(1).setConstant(speed);
+  return to;
+}
+
+EnergyGain judged(const World& w, State to) { return EnergyBalance(w.scene)(w.state, w.drive, to); }
+
+}  // namespace
+
+TEST_CASE("energy balance: speed and height from nowhere, and a little of them", "[energy_balance]") {
+  const World w = make_world(sheet(6, 0.4, 0));
+  const double weight = 9.81 * lumped_masses(w.scene).sum(), edge = mean_edge_length(w.scene);
+  const EnergyGain lifted = judged(w, moved(w, edge, 0));
+  CHECK(lifted.gain == Approx(weight * edge));
+  CHECK(lifted.work == 0);
+  CHECK(lifted.from_nowhere());
+  CHECK(judged(w, moved(w, 0, 3)).from_nowhere());
+  CHECK_FALSE(judged(w, moved(w, 0.1 * edge, 0)).from_nowhere());
+  CHECK_FALSE(judged(w, moved(w, -1, 4)).from_nowhere());
+  CHECK(judged(w, moved(w, 0, 1e200)).from_nowhere());  // as far as not to be a number
+}
+
+TEST_CASE("energy balance: little by little is found out, and what is lost again is no gain", "[energy_balance]") {
+  const World w = make_world(sheet(6, 0.4, 0));
+  EnergyBalance balance(w.scene);
+  const double edge = mean_edge_length(w.scene);
+  const auto found = [&](const std::vector<double>& heights) {
+    State from = w.state;
+    std::vector<bool> steps;
+    for (const double height : heights) {
+      State to = moved(w, height * edge, 0);
+      steps.push_back(balance(from, w.drive, to).from_nowhere());
+      from = to;
+    }
+    return steps;
+  };
+  using Found = std::vector<bool>;
+  CHECK(found({0.1, 0.2, 0.29, 0.31, 0.4}) == Found{false, false, false, true, false});
+  CHECK(found({0.2, 0, 0.2, 0, 0.2, 0.25}) == Found(6, false));
+  CHECK(found({-1, -0.8, -0.6}) == Found{false, false, true});
+}
+
+TEST_CASE("energy balance: what pins do is no gain from nowhere", "[energy_balance]") {
+  World w = make_world(sheet(6, 0.4, 0));
+  for (int i = 0; i < w.state.x.rows(); ++i) w.scene.pins.push_back(i);
+  const EnergyGain lifted = judged(w, moved(w, 0.3, 3));
+  CHECK(lifted.work > lifted.gain);
+  CHECK_FALSE(lifted.from_nowhere());
+  CHECK(lifted.nowhere == 0);
+}
+
+TEST_CASE("energy balance: the label stands on accepted steps that cross nothing", "[energy_balance]") {
+  const World w = make_world(sheet(6, 0.4, 0));
+  const auto labelled = [&](StepStatus status, Reason reason, double speed) {
+    StepReport report;
+    report.status = status;
+    report.reason = reason;
+    State to = moved(w, 0, speed);
+    EnergyBalance(w.scene).label(w.state, w.drive, to, report);
+    return report.reason;
+  };
+  CHECK(labelled(StepStatus::accepted, Reason::none, 3) == Reason::energy_gain);
+  CHECK(labelled(StepStatus::accepted, Reason::not_converged, 3) == Reason::energy_gain);
+  CHECK(labelled(StepStatus::accepted, Reason::penetrating, 3) == Reason::penetrating);
+  CHECK(labelled(StepStatus::rejected, Reason::stopped, 3) == Reason::stopped);
+  CHECK(labelled(StepStatus::accepted, Reason::none, 0) == Reason::none);
+}
+
+}  // namespace selvedge::test_energy_balance

@@ -1,0 +1,75 @@
+#include "physics/energies/measures.hpp"
+#include "pipeline/run/simulate.hpp"
+#include "pipeline/scene/make_stepper.hpp"
+#include "tests/pipeline/files.hpp"
+
+// Scenes whose energy grew from nowhere without a word (issue 51), and scenes where all of it is explained.
+namespace selvedge::test_energy_gain {
+
+namespace {
+
+struct Reasons {
+  std::vector<int> gains;  // frames with the reason `energy_gain`
+  StepReport last;
+  double energy = 0;  // at the end [J]
+};
+
+Reasons run(const std::filesystem::path& file, std::vector<std::string> overrides) {
+  const Setup setup = read_setup(file, overrides);
+  State state = setup.initial;
+  Reasons seen;
+  seen.last = simulate(*make_stepper(setup), setup.drive_at, 1 / setup.run.fps, setup.run.frames, state,
+                       [&](const FrameEvent& event) {
+                         if (event.report.reason == Reason::energy_gain) seen.gains.push_back(event.state.frame);
+                         return true;
+                       });
+  seen.energy = energies(setup.scene, state.x, state.v, setup.drive_at(0).acceleration).total();
+  return seen;
+}
+
+std::optional<std::filesystem::path> case_file(const std::string& name) {
+  const std::filesystem::path file =
+      std::filesystem::path(SELVEDGE_SOURCE_DIR) / ".." / "shared" / "cases" / std::filesystem::path(name);
+  if (std::filesystem::exists(file)) return file;
+  WARN("skipped: " << file << " is not there");
+  return std::nullopt;
+}
+
+}  // namespace
+
+TEST_CASE("energy gain: icm rejects what springs of 1 m threw about; the conventional stepper has nothing to hide",
+          "[energy_gain]") {
+  const auto file = case_file("icm_energy/springs_1m.yaml");
+  if (!file) return;
+  const Reasons icm = run(*file, {"run.stepper=icm"});
+  CHECK(icm.last.status == StepStatus::rejected);
+  CHECK(icm.last.reason == Reason::energy_gain);
+  CHECK(icm.energy < 12);
+  const Reasons conventional = run(*file, {});
+  CHECK(conventional.last.status == StepStatus::accepted);
+  CHECK(conventional.gains.empty());
+}
+
+TEST_CASE("energy gain: frames in which the contact of needles lifts them say so", "[energy_gain]") {
+  const auto file = case_file("needles/needles.yaml");
+  if (!file) return;
+  const Reasons needles = run(*file, {"run.frames=6"});
+  CHECK(needles.last.status == StepStatus::accepted);
+  CHECK_FALSE(needles.gains.empty());
+}
+
+TEST_CASE("energy gain: none in cloth that drops, hangs, or flies, by the steppers that solve", "[energy_gain]") {
+  const std::filesystem::path configs = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs";
+  for (const char* stepper : {"conventional", "icm"})
+    for (const auto& [file, resolution] : std::vector<std::pair<std::string, std::string>>{
+             {"bench/drop.yaml", "cloths.sheet.rectangle.resolution=13"},
+             {"bench/hang.yaml", "cloths.sheet.rectangle.resolution=13"},
+             {"compare/flag.yaml", "cloths.flag.rectangle.resolution=[12, 8]"}}) {
+      INFO(stepper << " " << file);
+      const Reasons seen = run(configs / file, {resolution, "run.frames=40", std::string("run.stepper=") + stepper});
+      CHECK(seen.last.status == StepStatus::accepted);
+      CHECK(seen.gains.empty());
+    }
+}
+
+}  // namespace selvedge::test_energy_gain
