@@ -60,8 +60,11 @@ inline bool same_state(const State& a, const State& b) {
   bool same = a.time == b.time && a.frame == b.frame && same_points(a.x, b.x) && same_points(a.v, b.v) &&
               a.obstacles.size() == b.obstacles.size() && a.memory.size() == b.memory.size() && a.clean == b.clean;
   for (std::size_t k = 0; same && k < a.obstacles.size(); ++k) same = same_points(a.obstacles[k], b.obstacles[k]);
-  for (std::size_t k = 0; same && k < a.memory.size(); ++k)
-    same = a.memory[k].name == b.memory[k].name && same_points(a.memory[k].rows, b.memory[k].rows);
+  for (std::size_t k = 0; same && k < a.memory.size(); ++k) {
+    const MemoryRows &one = a.memory[k].rows, &other = b.memory[k].rows;
+    same = a.memory[k].name == b.memory[k].name && one.rows() == other.rows() && one.cols() == other.cols() &&
+           (one.array() == other.array()).all();
+  }
   return same;
 }
 

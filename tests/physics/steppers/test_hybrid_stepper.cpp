@@ -184,8 +184,11 @@ TEST_CASE("hybrid: a proposal whose energy comes from nowhere is refused", "[hyb
     solver->step(state, w.drive, dt, to);
     std::swap(state, to);
   }
+  HybridOptions options;
+  options.mode = HybridMode::fallback;  // the proposal with its own velocities
   const auto stepper = make_hybrid_stepper(
-      w.scene, {std::make_unique<HastyProposer>(w.scene), make_recovering_conventional_stepper(w.scene), {}, {}}, {});
+      w.scene, {std::make_unique<HastyProposer>(w.scene), make_recovering_conventional_stepper(w.scene), {}, {}},
+      options);
   const StepReport report = stepper->step(state, w.drive, dt, to);
   CHECK(report.verdict == Verdict::energy_gain);
   CHECK(report.by == "hybrid: conventional");

@@ -62,11 +62,11 @@ TEST_CASE("energy gain: none in cloth that drops, hangs, or flies, by the steppe
   const std::filesystem::path configs = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs";
   for (const char* stepper : {"conventional", "icm"})
     for (const auto& [file, resolution] : std::vector<std::pair<std::string, std::string>>{
-             {"bench/drop.yaml", "cloths.sheet.rectangle.resolution=13"},
-             {"bench/hang.yaml", "cloths.sheet.rectangle.resolution=13"},
-             {"compare/flag.yaml", "cloths.flag.rectangle.resolution=[12, 8]"}}) {
+             {"bench/drop.yaml", "cloths.sheet.rectangle.resolution=11"},
+             {"bench/hang.yaml", "cloths.sheet.rectangle.resolution=11"},
+             {"compare/flag.yaml", "cloths.flag.rectangle.resolution=[9, 6]"}}) {
       INFO(stepper << " " << file);
-      const Reasons seen = run(configs / file, {resolution, "run.frames=40", std::string("run.stepper=") + stepper});
+      const Reasons seen = run(configs / file, {resolution, "run.frames=16", std::string("run.stepper=") + stepper});
       CHECK(seen.last.status == StepStatus::accepted);
       CHECK(seen.gains.empty());
     }
