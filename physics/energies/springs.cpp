@@ -36,4 +36,12 @@ std::vector<int> joined_by_springs(std::span<const Spring> springs, std::span<co
   return joined;
 }
 
+std::vector<int> joined_components(const Scene& scene) {
+  const std::vector<int>& component = scene.surface.component;
+  const std::vector<int> joined = joined_by_springs(scene.springs, component, scene.surface.component_count);
+  std::vector<int> of_vertex;
+  for (const int c : component) of_vertex.push_back(joined[c]);
+  return of_vertex;
+}
+
 }  // namespace selvedge

@@ -22,4 +22,7 @@ double spring_derivatives(const Spring&, const Points& x, Vec6& gradient, Mat6* 
 // springs join it to, over others perhaps; itself where they join it to none.
 std::vector<int> joined_by_springs(std::span<const Spring>, std::span<const int> part_of_vertex, int parts);
 
+// Of each vertex the connected component, those that springs join taken as one.
+std::vector<int> joined_components(const Scene&);
+
 }  // namespace selvedge

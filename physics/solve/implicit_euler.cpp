@@ -56,15 +56,6 @@ Vertices rest_vertices(const Scene& scene) {
   return {scene.rest, adjacency_of(scene.surface.vertex_count, scene.surface.edges), rims(scene.rest, open)};
 }
 
-// Of each vertex the connected component, those that springs join taken as one.
-std::vector<int> joined_components(const Scene& scene) {
-  const std::vector<int>& component = scene.surface.component;
-  const std::vector<int> joined = joined_by_springs(scene.springs, component, scene.surface.component_count);
-  std::vector<int> of_vertex;
-  for (const int c : component) of_vertex.push_back(joined[c]);
-  return of_vertex;
-}
-
 // Components that nothing holds or touches.
 std::vector<char> drifting_components(const Scene& scene, const std::vector<int>& component,
                                       const StepPotential& step) {

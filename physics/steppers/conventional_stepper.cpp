@@ -12,6 +12,7 @@
 #include "physics/solve/bdf2.hpp"
 #include "physics/solve/contact_terms.hpp"
 #include "physics/solve/energy_balance.hpp"
+#include "physics/solve/euler_torque.hpp"
 #include "physics/steppers/bounded_step.hpp"
 #include "physics/steppers/contact_stage.hpp"
 #include "physics/steppers/finish_step.hpp"
@@ -52,6 +53,7 @@ class ConventionalStepper final : public Stepper {
         features_(features_of(scene)),
         contact_(scene, options.resolve),
         solve_(scene, options.implicit_euler, options.substep, contact_),
+        euler_torque_(scene),
         energy_(scene),
         edge_length_(mean_edge_length(scene)),
         traits_{.name = "conventional",
@@ -71,6 +73,8 @@ class ConventionalStepper final : public Stepper {
   ResolveOptions resolve_options(const StepWork&) const;
   StepProblem problem_of(const StepWork&, const StepStart&, const Points& pins, const AddedTerm&) const;
   bool continues_history(const Substep&) const;
+  void note_imbalance(const StepProblem&, const Points& x, Substep&, StepReport&);
+  void set_velocities(const StepProblem&, const Points& x, Substep&) const;
   bool solve_freely(StepWork&, Substep&, const StepStart&);
   bool yield_obstacles(StepWork&, const std::vector<Proximity>&, Substep&);
   bool torn(const StepProblem&, const Points& x, const Points& after);
@@ -89,6 +93,7 @@ class ConventionalStepper final : public Stepper {
   Features features_;
   ContactStage contact_;
   SubstepSolve solve_;
+  EulerTorque euler_torque_;
   EnergyBalance energy_;
   double edge_length_;
   StepperTraits traits_;
@@ -125,6 +130,18 @@ bool ConventionalStepper::continues_history(const Substep& s) const {
   return true;
 }
 
+void ConventionalStepper::note_imbalance(const StepProblem& problem, const Points& x, Substep& s, StepReport& report) {
+  s.unbalanced = solve_.solver().gradient(problem, x);
+  report.residual = largest_row(s.unbalanced);
+}
+
+// By what the positions did, and without the torque that implicit Euler adds of itself.
+void ConventionalStepper::set_velocities(const StepProblem& problem, const Points& x, Substep& s) const {
+  s.v = (x - *problem.x0) / problem.h;
+  const bool euler = problem.h == s.h;
+  if (euler) euler_torque_.take_back(problem, x, s.unbalanced, s.v);
+}
+
 // The substep without contact. False, with `s` as it was, if it runs into something or is not finite.
 bool ConventionalStepper::solve_freely(StepWork& work, Substep& s, const StepStart& start) {
   const int n = scene_.surface.vertex_count;
@@ -136,9 +153,9 @@ bool ConventionalStepper::solve_freely(StepWork& work, Substep& s, const StepSta
   nodes.topRows(n) = x;
   if (has_contact() && !solve_.impacts(s.start.nodes, nodes, work.report).empty()) return false;
   work.report.unsolved += newton.left;
-  work.report.residual = solve_.solver().imbalance(problem, x);
+  note_imbalance(problem, x, s, work.report);
   s.nodes = std::move(nodes);
-  s.v = (x - start.x) / start.h;
+  set_velocities(problem, x, s);
   return true;
 }
 
@@ -201,7 +218,7 @@ SubstepOutcome ConventionalStepper::respond(StepWork& work, Substep& s, const St
     stop_short(work, wanted, s);
   }
   work.report.unsolved += newton.left;
-  s.v = (s.nodes.topRows(n) - *problem.x0) / s.h;
+  set_velocities(problem, s.nodes.topRows(n), s);
   s.touched = s.touched || !contacts.terms.empty() || resolved.impulses + resolved.zones > 0;
   return SubstepOutcome::clean;
 }
@@ -231,7 +248,7 @@ SubstepOutcome ConventionalStepper::substep(StepWork& work, Substep& s) {
   work.report.collision.contacts = static_cast<int>(contacts.terms.size());
   {
     const Timed timed(work.report.seconds.solve);
-    work.report.residual = solve_.solver().imbalance(problem, x);
+    note_imbalance(problem, x, s, work.report);
   }
   return respond(work, s, problem, newton, contacts, x);
 }

@@ -17,6 +17,7 @@
 #include "physics/solve/contact_terms.hpp"
 #include "physics/solve/contour_potential.hpp"
 #include "physics/solve/energy_balance.hpp"
+#include "physics/solve/euler_torque.hpp"
 #include "physics/steppers/bounded_step.hpp"
 #include "physics/steppers/count_solve.hpp"
 #include "physics/steppers/finish_step.hpp"
@@ -41,6 +42,7 @@ struct IcmWork {
   std::vector<NodePair> held;          // that have a term, sorted
   std::vector<ContactTerm> repulsion;  // their terms
   Exemption exemption;                 // at the start
+  Points v, unbalanced;                // at the end [m/s], and the forces that the last solve left [N]
   const StopFlag* stop = nullptr;
 };
 
@@ -56,6 +58,7 @@ class IcmStepper final : public Stepper {
         mean_mass_(mean_mass(inverse_mass_)),
         edge_length_(mean_edge_length(scene)),
         solver_(scene, options.implicit_euler),
+        euler_torque_(scene),
         energy_(scene),
         self_crossings_(world_) {}
 
@@ -71,7 +74,8 @@ class IcmStepper final : public Stepper {
   void find_pairs(const Points& nodes0, const Points& at, const Points& nodes1, double h, const Exemption&, IcmWork&,
                   StepReport&);
   std::vector<ContactTerm> pushes(ContourPotential&, const Points& x, double h) const;
-  bool minimise(const StepProblem&, Points& x, StepReport&);
+  bool minimise(const StepProblem&, Points& x, IcmWork&, StepReport&);
+  void end_substep(const StepProblem&, const Points& x, Points& nodes1, IcmWork&);
   bool substep(const SubstepState&, const Points& pins, const Drive&, double h, Points& nodes1, IcmWork&, StepReport&);
 
   const Scene& scene_;
@@ -82,6 +86,7 @@ class IcmStepper final : public Stepper {
   Eigen::VectorXd inverse_mass_;
   double mean_mass_, edge_length_;
   ImplicitEuler solver_;
+  EulerTorque euler_torque_;
   EnergyBalance energy_;
   AuditMemory audited_;
   SelfCrossings self_crossings_;
@@ -122,14 +127,22 @@ std::vector<ContactTerm> IcmStepper::pushes(ContourPotential& contour, const Poi
                     options_.substep.contact);
 }
 
-bool IcmStepper::minimise(const StepProblem& problem, Points& x, StepReport& report) {
+bool IcmStepper::minimise(const StepProblem& problem, Points& x, IcmWork& work, StepReport& report) {
   Stopwatch watch;
   const NewtonReport newton = solver_.solve(problem, x);
   count_solve(newton, report);
-  report.residual = solver_.imbalance(problem, x);
+  work.unbalanced = solver_.gradient(problem, x);
+  report.residual = largest_row(work.unbalanced);
   if (!newton.converged) report.reason = Reason::not_converged;
   report.seconds.solve += watch.lap();
   return newton.finite && !newton.stopped && x.allFinite();
+}
+
+// Velocities are what the positions did, without the torque that implicit Euler adds of itself.
+void IcmStepper::end_substep(const StepProblem& problem, const Points& x, Points& nodes1, IcmWork& work) {
+  nodes1.topRows(x.rows()) = x;
+  work.v = (x - *problem.x0) / problem.h;
+  euler_torque_.take_back(problem, x, work.unbalanced, work.v);
 }
 
 // nodes1 comes with obstacles where they are to end and the cloth at its first guess. False: not finite, or stopped.
@@ -141,9 +154,9 @@ bool IcmStepper::substep(const SubstepState& now, const Points& pins, const Driv
   StepProblem problem{h, &x0, &now.v, &pins, drive.acceleration, drive.wind, {}, 1};
   problem.stop = work.stop;
   if (!has_contact()) {
-    const bool finite = minimise(problem, x, report);
-    nodes1.topRows(n) = x;
-    return finite;
+    if (!minimise(problem, x, work, report)) return false;
+    end_substep(problem, x, nodes1, work);
+    return true;
   }
   ContourPotential contour(world_, nodes1, options_.contour_weight * mean_mass_ / (h * h), options_.contour_gradient);
   const AddedTerm added{[&](const Points& at) { return contour.value(at); },
@@ -164,14 +177,14 @@ bool IcmStepper::substep(const SubstepState& now, const Points& pins, const Driv
     terms.insert(terms.end(), work.repulsion.begin(), work.repulsion.end());
     report.seconds.response += watch.lap();
     problem.contacts = terms;
-    if (!minimise(problem, x, report)) return false;
+    if (!minimise(problem, x, work, report)) return false;
     at = nodes1;
     at.topRows(n) = x;
     lag_normal_forces(work.repulsion, x);
     raise_stiffness(work.repulsion, x);
   }
   report.collision.contacts = static_cast<int>(work.repulsion.size());
-  nodes1.topRows(n) = x;
+  end_substep(problem, x, nodes1, work);
   return true;
 }
 
@@ -208,7 +221,7 @@ StepReport IcmStepper::take_step(const State& from, const Drive& drive, double d
       return report;
     }
     ++report.substeps;
-    now.v = (next.topRows(n) - now.nodes.topRows(n)) / h;
+    now.v = std::move(work.v);
     if (has_contact()) {
       Stopwatch watch;
       ++report.counts.audits;

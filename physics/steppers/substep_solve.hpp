@@ -20,6 +20,7 @@ struct Substep {
   SubstepAttempt attempt;
   int max_parts;                      // that it may be cut into
   Points nodes, v = {};               // at its end; at first obstacles where they are to be, and the cloth at a guess
+  Points unbalanced = {};             // forces that the last solve left at its end [N]
   bool touched = false;               // something was near, met, or left alone
   bool pinched = false;               // obstacles leave the cloth no room
   int parts = 1;                      // that it should be cut into

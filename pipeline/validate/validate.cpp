@@ -167,8 +167,8 @@ std::string log_line(const ValidationRow& row) {
 const std::vector<ValidationCase>& validation_cases() {
   static const std::vector<ValidationCase> all = [] {
     std::vector<ValidationCase> joined;
-    for (const auto& some :
-         {bending_cases(), shell_cases(), membrane_cases(), motion_cases(), friction_cases(), drape_cases()})
+    for (const auto& some : {bending_cases(), shell_cases(), membrane_cases(), motion_cases(), turning_cases(),
+                             friction_cases(), drape_cases()})
       joined.insert(joined.end(), some.begin(), some.end());
     return joined;
   }();

@@ -49,6 +49,7 @@ std::vector<ValidationCase> bending_cases();   // cantilever, hinge, greenhill, 
 std::vector<ValidationCase> shell_cases();     // end_shear, end_moment
 std::vector<ValidationCase> membrane_cases();  // catenary, hanging, stretch
 std::vector<ValidationCase> motion_cases();    // vibration
+std::vector<ValidationCase> turning_cases();   // pin, turn
 std::vector<ValidationCase> friction_cases();  // incline, capstan
 std::vector<ValidationCase> drape_cases();     // drape
 

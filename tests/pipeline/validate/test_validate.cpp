@@ -97,9 +97,10 @@ TEST_CASE("physics has its known answers, in the short form") {
   ValidateRequest request;
   request.short_form = true;
   request.out = folder.path;
-  request.cases = {"cantilever", "greenhill", "lateral", "end_shear", "hanging", "stretch", "catenary", "incline"};
+  request.cases = {"cantilever", "greenhill", "lateral", "end_shear", "hanging",
+                   "stretch",    "catenary",  "incline", "pin",       "turn"};
   const std::vector<ValidationRow> rows = validate(request);
-  CHECK(rows.size() >= 13);
+  CHECK(rows.size() >= 17);
   for (const ValidationRow& row : rows) {
     CAPTURE(row.name, row.parameters, row.quantity, row.measured, row.bound);
     CHECK((row.passed || !row.counts));
