@@ -56,6 +56,7 @@ struct ContourLoss {
   LossRamp weight{0, 0};
   ContourGradient gradient = ContourGradient::translational;
   ContourNormal normal = ContourNormal::frozen;  // frozen as released; turning: the exact derivative
+  double share = 0;  // of a sample's gradient, held in training whatever the weight (held_share.hpp); 0: not held
 };
 
 // enclosed: of all crossings, garments closed by fans (Liao et al. 2024). winding: what each garment does to itself is

@@ -9,6 +9,7 @@
 #include "learned/gradients/initial_weights.hpp"
 #include "learned/graph/integration.hpp"
 #include "learned/graph/warm_up.hpp"
+#include "learned/losses/held_share.hpp"
 #include "learned/network/architecture_text.hpp"
 #include "learned/network/weights_hdf5.hpp"
 #include "learned/network/widen_weights.hpp"
@@ -240,7 +241,8 @@ void learn(Trainer& trainer, const FrameMaking& making, RollingState& state, Ste
   next = integrate(scene.rest, state.now, making.features, trainer.network.weights.tables.output, output);
   const SeenPositions seen = seen_positions(scene.rest, state.now, making.features);
   Points gradient = Points::Zero(next.x.rows(), 3);
-  record.terms = add_losses(inputs_of(state, seen, next.x, making.progress), making.losses, state.losses, &gradient);
+  record.terms =
+      add_losses_with_share(inputs_of(state, seen, next.x, making.progress), making.losses, state.losses, gradient);
   record.sum = sum_of(record.terms);
   FeatureRows d_output;
   if (!output.allFinite() || !are_finite(record.terms) || !output_gradient(trainer, state, gradient, d_output)) {

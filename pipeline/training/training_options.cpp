@@ -216,7 +216,10 @@ const Options<ContourLoss>& contour_options() {
               {{"translational", ContourGradient::translational}, {"full", ContourGradient::full}},
               "`translational` moves triangles and does not shorten them. `full` is the derivative of the value."),
        choice("normal", &O::normal, {{"frozen", ContourNormal::frozen}, {"turning", ContourNormal::turning}},
-              "`frozen` keeps the normals of faces constant, as published. `turning` is the exact derivative.")});
+              "`frozen` keeps the normals of faces constant, as published. `turning` is the exact derivative."),
+       number("share", &O::share, Unit::none, {.low = 0, .high = 0.99},
+              "Share of the term in the gradient of each sample that has contours, whatever the weight, which must not "
+              "be 0. 0: as the weight has it.")});
   return table;
 }
 

@@ -2,6 +2,7 @@
 
 #include "learned/losses/body_losses.hpp"
 #include "learned/losses/cloth_losses.hpp"
+#include "learned/losses/held_share.hpp"
 #include "tests/learned/loss_scenes.hpp"
 
 namespace selvedge::test_losses {
@@ -262,6 +263,31 @@ TEST_CASE("losses: gradients are those of the values", "[losses]") {
         CHECK(norm == Approx(gradient.bottomRows(gradient.rows() - 1).norm()));  // the first vertex is pinned
       }
     }
+}
+
+TEST_CASE("losses: contours have the share of the gradient that is asked for, whatever their weight", "[losses]") {
+  const LossScene scene;
+  LossInputs in = scene.inputs();
+  LossOptions options = all_losses();
+  LossSearch search;
+  LossOptions without = options;
+  without.contours.weight = {0, 0};
+  Points others = Points::Zero(scene.x.rows(), 3), plain = others, first = others, second = others;
+  add_losses(in, without, search, &others);
+  const std::vector<LossTerm> as_weighted = add_losses_with_share(in, options, search, plain);
+  Points expected = Points::Zero(scene.x.rows(), 3);
+  add_losses(in, options, search, &expected);
+  CHECK(plain == expected);
+  options.contours.share = 0.3;
+  const std::vector<LossTerm> held = add_losses_with_share(in, options, search, first);
+  options.contours.weight = {1e-3, 1e-3};
+  add_losses_with_share(in, options, search, second);
+  CHECK((first - second).norm() < 1e-9 * first.norm());
+  CHECK(inverse_mass_norm(*in.garment, first - others) / inverse_mass_norm(*in.garment, others) ==
+        Approx(0.3 / 0.7).epsilon(1e-6));
+  REQUIRE(held.back().name == "contours");
+  CHECK(held.back().value / as_weighted.back().value == Approx(held.back().weight / as_weighted.back().weight));
+  CHECK(add_losses_with_share(in, without, search, second).back().name != "contours");
 }
 
 TEST_CASE("losses: the appendix' plane case: a triangle through a plane that stands still", "[losses]") {
