@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "collision/geometry/stop_scope.hpp"
 #include "learned/network/engine_kernels.hpp"
 #include "learned/network/graph_plan.hpp"
 #include "learned/network/latent_rows.hpp"
@@ -286,6 +287,7 @@ FeatureRows infer(const PackedNetwork& network, const Graph& graph, LatentTrace*
   encode(pass, trace != nullptr);
   if (trace) *trace = {{copy_nodes(pass)}, copy_edges(pass), {}};
   for (std::size_t step = 0; step < a.steps.size(); ++step) {
+    check_stop();
     pass_messages(pass, step);
     if (trace) trace->nodes.push_back(copy_nodes(pass));
   }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/stop_scope.hpp"
 #include "physics/linear/cholesky.hpp"
 #include "physics/linear/lower_triangle.hpp"
 #include "physics/linear/multigrid.hpp"
@@ -98,6 +99,7 @@ struct LinearSystemSolver::Impl {
 
 bool LinearSystemSolver::Impl::solve_direct(const LinearSystem& system, std::span<const Mat3> diagonal,
                                             const Points& right, Points& x) {
+  check_stop();
   if (update_pattern(system, lower) && !cholesky.analyse(lower.size(), lower.column_begin, lower.row)) {
     lower = {};
     return false;
@@ -107,6 +109,7 @@ bool LinearSystemSolver::Impl::solve_direct(const LinearSystem& system, std::spa
   packed_solution.resize(lower.size());
   for (std::size_t b = 0; b < lower.vertex.size(); ++b)
     for (int k = 0; k < 3; ++k) packed_right[3 * b + k] = right(lower.vertex[b], k);
+  check_stop();
   if (!cholesky.factor(lower.value) || !cholesky.solve(packed_right, packed_solution)) return false;
   x.setZero(right.rows(), 3);
   for (std::size_t b = 0; b < lower.vertex.size(); ++b)

@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 
 #include "collision/geometry/parallel.hpp"
+#include "collision/geometry/stop_scope.hpp"
 #include "physics/linear/galerkin.hpp"
 
 namespace selvedge {
@@ -128,6 +129,7 @@ Multigrid::Multigrid(const Vertices& vertices, std::span<const char> free) : imp
   Vertices here = vertices;
   std::vector<char> here_free(free.begin(), free.end());
   for (;;) {
+    check_stop();
     Level& level = impl_->levels.emplace_back();
     level.rows = here.graph.vertex_count();
     if (level.rows <= coarsest || impl_->levels.size() == most_levels) break;
@@ -324,6 +326,7 @@ void Multigrid::fill_finest(const LinearSystem& system, std::span<const Mat3> di
 bool Multigrid::fill(const LinearSystem& system, std::span<const Mat3> diagonal, PcgMatrix<float>& fine) {
   Impl& impl = *impl_;
   if (impl.levels.size() < 2) return false;
+  check_stop();
   impl.fine = &fine;
   const bool first = !impl.patterns;
   if (first) impl.make_patterns(system);

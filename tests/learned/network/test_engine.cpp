@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/stop_scope.hpp"
 #include "learned/network/engine_bench.hpp"
 #include "learned/network/packed_network.hpp"
 #include "tests/learned/random_graph.hpp"
@@ -52,6 +53,17 @@ FeatureRows infer_on(int threads, const PackedNetwork& network, const Graph& gra
 }
 
 }  // namespace
+
+TEST_CASE("engine: asks between steps of messages whether to stop", "[learned]") {
+  const Architecture a = with_size("hood", 16, 15);
+  const auto network = pack_network(a, random_weights(a, 5));
+  const Graph graph = random_graph(a, 50, 20, 150, 1);
+  int asked = 0;
+  const StopFlag stop = [&] { return ++asked == 4; };
+  const StopScope scope(stop);
+  CHECK_THROWS_AS(infer(*network, graph), Stopped);
+  CHECK(asked == 4);
+}
 
 TEST_CASE("engine: every instruction set computes what the definition says", "[learned]") {
   for (const InstructionSet set : all_sets) {

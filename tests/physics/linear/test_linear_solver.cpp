@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/stop_scope.hpp"
 #include "physics/linear/cholesky.hpp"
 #include "physics/linear/linear_solver.hpp"
 #include "physics/linear/pcg.hpp"
@@ -261,6 +262,27 @@ TEST_CASE("CHOLMOD asked for where it is absent is an error", "[linear_solver]")
   else
     CHECK_THROWS_AS(solver(LinearSolver::cholmod, 10), Error);
   CHECK(solver(LinearSolver::automatic, 40) == LinearSolver::multigrid);
+}
+
+TEST_CASE("Coarse levels and factorisations ask whether to stop, and a solver that was stopped solves the next time",
+          "[linear_solver]") {
+  const Example e = make_example(30, 1e3, true, true);
+  for (const LinearSolver method : {LinearSolver::multigrid, LinearSolver::cholmod}) {
+    if (method == LinearSolver::cholmod && !Cholesky::available()) continue;
+    LinearReport whole;
+    const Points x = solve(e, method, 1e-8, whole);
+    LinearSystemSolver solver(method, e.vertices(), e.free);
+    Points after;
+    for (int at = 1; at <= 2; ++at) {  // before it is built, and on the way
+      int asked = 0;
+      const StopFlag stop = [&] { return ++asked >= at; };
+      const StopScope scope(stop);
+      CHECK_THROWS_AS(solver.solve(e.system(), e.blocks, e.right, 1e-8, 3000, after), Stopped);
+      CHECK(asked == at);
+    }
+    REQUIRE(solver.solve(e.system(), e.blocks, e.right, 1e-8, 3000, after).converged);
+    CHECK(after == x);
+  }
 }
 
 TEST_CASE("CHOLMOD starts no threads of its own", "[linear_solver]") {
