@@ -33,4 +33,15 @@ Points gather_nodes(const Points& cloth, const std::vector<Points>& obstacles) {
   return nodes;
 }
 
+std::vector<char> obstacles_in_motion(const ContactWorld& world, const Points& x0, const Points& x1) {
+  std::vector<char> moving(world.obstacles.size());
+  for (std::size_t k = 0; k < moving.size(); ++k) {
+    const auto of_it = [&](const Points& x) {
+      return x.middleRows(world.first_node[k], world.obstacles[k]->vertex_count);
+    };
+    moving[k] = of_it(x0) != of_it(x1);
+  }
+  return moving;
+}
+
 }  // namespace selvedge

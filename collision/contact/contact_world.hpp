@@ -26,4 +26,7 @@ ContactWorld make_contact_world(const Surface& cloth, std::vector<const Surface*
 // Positions of all nodes in that numbering.
 Points gather_nodes(const Points& cloth, const std::vector<Points>& obstacles);
 
+// By obstacle, 1 where a node of it is not at x1 where it is at x0. One that stands still does not give way.
+std::vector<char> obstacles_in_motion(const ContactWorld&, const Points& x0, const Points& x1);
+
 }  // namespace selvedge

@@ -14,8 +14,11 @@ void join_nodes(DisjointSets& sets, const Impact& impact, const auto& belongs) {
 }  // namespace
 
 std::vector<Impact> yield_rounds(Resolution& r, std::vector<Impact> impacts) {
+  const std::vector<char> moving = obstacles_in_motion(r.world, r.x0, r.x1);
+  if (std::ranges::count(moving, 1) == 0) return impacts;
   double inverse = mean_inverse_mass(r.inverse_mass) / r.options.yielding_mass;
-  for (int round = 0; !impacts.empty() && !r.stopped() && round < r.options.yield_rounds; ++round, inverse *= 2) {
+  for (int round = 0; !impacts.empty() && !r.stopped() && !r.spent() && round < r.options.yield_rounds;
+       ++round, inverse *= 2) {
     std::vector<char> stuck(r.world.node_count, 0);
     for (const Impact& impact : impacts)
       for (const int node : impact.pair.nodes)
@@ -27,7 +30,7 @@ std::vector<Impact> yield_rounds(Resolution& r, std::vector<Impact> impacts) {
     std::vector<int> yielding;
     const auto collect = [&](const Impact& impact) {
       for (const int node : impact.pair.nodes)
-        if (!r.world.is_cloth(node)) yielding.push_back(node);
+        if (const int k = r.world.obstacle_of(node); k >= 0 && moving[k]) yielding.push_back(node);
     };
     for (const Impact& impact : impacts) collect(impact);
     for (const Impact& impact : r.impacts)
@@ -47,7 +50,8 @@ bool shorten_rounds(Resolution& r, std::vector<Impact> impacts) {
   bool clean = true;
   const auto moves = [&r](int node) { return r.x0.row(node) != r.x1.row(node); };
   const auto belongs = [&](int node) { return r.is_free(node) || moves(node); };
-  while (!impacts.empty() && !r.stopped()) {
+  for (int round = 0; !impacts.empty() && !r.stopped(); ++round) {
+    const bool spent = r.spent(), all = spent && round >= r.options.holding_rounds;
     std::vector<char> hit(r.world.node_count, 0);
     for (const Impact& impact : impacts) join_nodes(sets, impact, belongs);
     for (const Impact& impact : impacts)
@@ -60,12 +64,12 @@ bool shorten_rounds(Resolution& r, std::vector<Impact> impacts) {
     }
     for (int node = 0; node < r.world.node_count; ++node) {
       const int root = sets.root(node);
-      if (!hit[root]) continue;
+      if (!hit[root] && !all) continue;
       halved[node] = most[root] + 1;
-      const double kept = halved[node] > r.options.motion_halvings ? 0 : 0.5;
+      const double kept = spent || halved[node] > r.options.motion_halvings ? 0 : 0.5;
       r.x1.row(node) = r.x0.row(node) + kept * (r.x1.row(node) - r.x0.row(node)).eval();
       r.moved[node] = 1;
-      if (node == root) ++r.report.shortened;
+      if (node == root && hit[root]) ++r.report.shortened;
     }
     r.report.response += r.watch.lap();
     impacts = new_impacts(r);

@@ -27,6 +27,7 @@ struct Resolution {
   double violation = 0;  // left by the last round of zones, at most [m]
 
   bool is_free(int node) const { return inverse_mass[node] > 0; }
+  bool spent() { return report.out_of_work = report.out_of_work || report.work.reaches(options.most); }
   bool stopped() { return report.stopped = report.stopped || selvedge::stopped(options.stop); }
 };
 
@@ -42,6 +43,7 @@ std::vector<Impact> yield_rounds(Resolution&, std::vector<Impact>);
 
 // Halves the motion of every node of a zone that still has an impact, and holds it still after some rounds. Each round
 // holds more, so it ends: when nothing moves any more there is nothing left to meet. False if something met even so.
+// Where there is no work left zones are held still at once, and after some rounds everything is.
 bool shorten_rounds(Resolution&, std::vector<Impact>);
 
 }  // namespace selvedge

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "collision/contact/resolution.hpp"
@@ -25,21 +26,26 @@ class Separations {
 };
 
 // Impacts of the pairs that have a free node and a node in `moved` (empty: every node), sorted by pair.
+// Adds how many paths were tested to `swept`.
 std::vector<Impact> impacts_of(const PathPairs& path, const Eigen::VectorXd& inverse_mass,
-                               const std::vector<char>& moved, const Separations& separation, const Points& x0,
-                               const Points& x1, const ContactWorld* normals_of) {
+                               const std::vector<char>& moved, const std::vector<char>* only,
+                               const Separations& separation, const Points& x0, const Points& x1,
+                               const ContactWorld* normals_of, std::int64_t& swept) {
   constexpr int chunk = 4096;
   const PathMotion motion(path, x0, x1);
   const int count = static_cast<int>(path.pairs.size()), chunks = (count + chunk - 1) / chunk;
   std::vector<std::vector<Impact>> found(chunks);
+  std::vector<std::int64_t> tested(chunks, 0);
   StopPoll stop;
 #pragma omp parallel for schedule(dynamic)
   for (int c = 0; c < chunks; ++c)
     for (int i = c * chunk, end = stop.wanted() ? 0 : std::min((c + 1) * chunk, count); i < end; ++i) {
       const NodePair& pair = path.pairs[i];
       const auto any = [&](auto&& test) { return std::any_of(pair.nodes.begin(), pair.nodes.end(), test); };
+      if (only && any([&](int n) { return (*only)[n] == 0; })) continue;
       if (!moved.empty() && !any([&](int n) { return moved[n] != 0; })) continue;
       if (!motion.may_come_within(i, separation.most()) || !any([&](int n) { return inverse_mass[n] > 0; })) continue;
+      ++tested[c];
       auto impact = find_impact(pair, x0, x1, separation.most(), normals_of);
       if (!impact) continue;
       if (const double own = separation(pair); own < separation.most())
@@ -47,6 +53,7 @@ std::vector<Impact> impacts_of(const PathPairs& path, const Eigen::VectorXd& inv
       if (impact) found[c].push_back(*impact);
     }
   stop.check();
+  swept = std::accumulate(tested.begin(), tested.end(), swept);
   std::vector<Impact> all;
   for (const auto& list : found) all.insert(all.end(), list.begin(), list.end());
   std::sort(all.begin(), all.end(), [](const Impact& a, const Impact& b) { return a.pair < b.pair; });
@@ -97,6 +104,13 @@ bool rigidify(Resolution& r, std::span<Impact* const> impacts) {
   return true;
 }
 
+// Sweeps of a zone of so many impacts that what is left of the work has room for.
+int most_sweeps(const Resolution& r, std::size_t impacts) {
+  const std::int64_t left = std::max<std::int64_t>(0, r.options.most.projected - r.report.work.projected);
+  const std::int64_t sweeps = left / static_cast<std::int64_t>(4 * impacts) + 1;
+  return static_cast<int>(std::min<std::int64_t>(r.options.zone_sweeps, sweeps));
+}
+
 }  // namespace
 
 std::vector<Impact> new_impacts(Resolution& r) {
@@ -104,7 +118,8 @@ std::vector<Impact> new_impacts(Resolution& r) {
   // What a list gains by being mended has a node that strayed in this round, which is marked.
   if (update_pairs(r.search, r.options.thickness, r.x0, r.x1, r.path)) std::fill(r.moved.begin(), r.moved.end(), 1);
   r.report.broad_phase += r.watch.lap();
-  auto impacts = impacts_of(r.path, r.inverse_mass, r.moved, {r.world, r.options}, r.x0, r.x1, &r.world);
+  auto impacts = impacts_of(r.path, r.inverse_mass, r.moved, r.options.only, {r.world, r.options}, r.x0, r.x1, &r.world,
+                            r.report.work.swept);
   for (Impact& impact : impacts) impact.friction = friction_of(r, impact.pair);
   std::fill(r.moved.begin(), r.moved.end(), 0);
   r.report.ccd += r.watch.lap();
@@ -126,9 +141,14 @@ void zone_round(Resolution& r, const std::vector<Impact>& fresh) {
   for (auto& [root, impacts] : touched) {
     if (r.stopped()) return;
     r.report.largest_zone = std::max(r.report.largest_zone, free_nodes(r, impacts));
-    if (!r.options.rigid_zones || !rigidify(r, impacts))
-      r.violation = std::max(r.violation, project_zone(impacts, r.inverse_mass, r.x0, r.x1, r.options.zone_sweeps,
-                                                       0.1 * r.options.separation));
+    if (r.options.rigid_zones && rigidify(r, impacts)) {
+      r.report.work.projected += free_nodes(r, impacts);
+    } else {
+      const Projection projection =
+          project_zone(impacts, r.inverse_mass, r.x0, r.x1, most_sweeps(r, impacts.size()), 0.1 * r.options.separation);
+      r.violation = std::max(r.violation, projection.violation);
+      r.report.work.projected += projection.moved;
+    }
     for (const Impact* impact : impacts) mark_free(r, *impact);
   }
   r.report.zones += static_cast<int>(touched.size());
@@ -140,7 +160,8 @@ std::vector<Impact> find_impacts(PairSearch& search, const Eigen::VectorXd& inve
   Stopwatch watch;
   update_pairs(search, options.thickness, x0, x1, path);
   times.broad_phase += watch.lap();
-  auto impacts = impacts_of(path, inverse_mass, {}, {search.world(), options}, x0, x1, nullptr);
+  auto impacts =
+      impacts_of(path, inverse_mass, {}, options.only, {search.world(), options}, x0, x1, nullptr, times.work.swept);
   times.ccd += watch.lap();
   return impacts;
 }
@@ -156,8 +177,8 @@ ResolveReport resolve(PairSearch& search, const ContactWorld& world, const Eigen
   std::vector<Impact> impacts = new_impacts(r);
   r.report.found = static_cast<int>(impacts.size());
   bool contradictory = false;  // zones ask for what cannot be, and more rounds do not change that
-  for (int round = 0;
-       !impacts.empty() && !contradictory && !r.stopped() && round < options.impulse_rounds + options.zone_rounds;
+  for (int round = 0; !impacts.empty() && !contradictory && !r.stopped() && !r.spent() &&
+                      round < options.impulse_rounds + options.zone_rounds;
        ++round) {
     const double before = r.violation;
     if (round < options.impulse_rounds)

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <limits>
+#include <vector>
+
 #include "collision/geometry/stop_flag.hpp"
 
 namespace selvedge {
@@ -17,6 +21,22 @@ struct RoomOptions {
   double steepest_lag = 0.5;  // Lag changes by at most this much of the distance between two nodes of a body.
 };
 
+// Work of a response, counted: no clock and no other program on the machine changes it.
+struct ResponseWork {
+  std::int64_t swept = 0;      // pairs whose paths were tested for a first contact
+  std::int64_t projected = 0;  // vertices that impact zones moved, once a projection of an impact
+
+  ResponseWork& operator+=(const ResponseWork& other) {
+    swept += other.swept;
+    projected += other.projected;
+    return *this;
+  }
+  bool reaches(const ResponseWork& most) const { return swept >= most.swept || projected >= most.projected; }
+};
+
+constexpr ResponseWork unbounded_work{std::numeric_limits<std::int64_t>::max(),
+                                      std::numeric_limits<std::int64_t>::max()};
+
 struct ResolveOptions {
   double thickness = 2e-3;   // distance that resting layers keep [m]
   double separation = 2e-4;  // no pair that started farther apart comes closer [m]; the same part of their rest
@@ -25,13 +45,16 @@ struct ResolveOptions {
   int impulse_rounds = 4;  // rounds of single impulses before zones
   int zone_rounds = 30;    // rounds of impact zones before the last resort
   int zone_sweeps = 200;
-  bool rigid_zones = false;    // zones of free nodes go on as rigid bodies
-  bool last_resort = true;     // false: leave what zones do not solve, and say that it is not clean
-  int yield_rounds = 20;       // last resort, first part: obstacles give way
-  double yielding_mass = 1e3;  // of their nodes in its first round, in mean cloth vertices; halved in each
-  int motion_halvings = 4;     // last resort, second part: of a motion, before it is held still
+  bool rigid_zones = false;                 // zones of free nodes go on as rigid bodies
+  bool last_resort = true;                  // false: leave what zones do not solve, and say that it is not clean
+  int yield_rounds = 20;                    // last resort, first part: obstacles give way
+  double yielding_mass = 1e3;               // of their nodes in its first round, in mean cloth vertices; halved in each
+  int motion_halvings = 4;                  // last resort, second part: of a motion, before it is held still
+  int holding_rounds = 8;                   // rounds of zones held still before everything is, where no work is left
+  const std::vector<char>* only = nullptr;  // by node: pairs of which a node is 0 are left alone; null: none is
   RoomOptions room;
-  StopFlag stop = {};  // asked once a zone and a round: true ends it, not clean
+  ResponseWork most = unbounded_work;  // once it is done, the last resort holds still what meets even so
+  StopFlag stop = {};                  // asked once a zone and a round: true ends it, not clean
 };
 
 // What resolve did.
@@ -39,10 +62,12 @@ struct ResolveReport {
   bool clean = false;    // the last test of all pairs found no impact
   bool stopped = false;  // by the flag: x1 is junk
   int impulses = 0, zones = 0;
-  int largest_zone = 0;                           // nodes of it that are free
-  int found = 0;                                  // impacts of the motion as it was asked for
-  int shortened = 0;                              // zones whose motion was shortened, once a halving
-  int held = 0;                                   // cloth vertices in them
+  int largest_zone = 0;  // nodes of it that are free
+  int found = 0;         // impacts of the motion as it was asked for
+  int shortened = 0;     // zones whose motion was shortened, once a halving
+  int held = 0;          // cloth vertices in them
+  ResponseWork work;
+  bool out_of_work = false;                       // it was all that there may be
   double broad_phase = 0, ccd = 0, response = 0;  // [s]
 };
 

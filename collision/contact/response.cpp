@@ -94,16 +94,20 @@ void apply_impulse(Impact& impact, const Eigen::VectorXd& inverse_mass, const Po
   if (length > 0) push(impact, inverse_mass, -std::min(impact.friction * normal_impulse / length, 1 / give) * slip, x1);
 }
 
-double project_zone(std::span<Impact*> impacts, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1,
-                    int max_sweeps, double tolerance) {
+Projection project_zone(std::span<Impact*> impacts, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1,
+                        int max_sweeps, double tolerance) {
   constexpr int patience = 25;  // sweeps; impacts that contradict each other never come nearer to their targets
   double violation = 0, earlier = std::numeric_limits<double>::infinity();
+  std::int64_t free = 0, moved = 0;
+  for (const Impact* impact : impacts)
+    free += std::ranges::count_if(impact->pair.nodes, [&](int node) { return inverse_mass[node] > 0; });
   for (int sweep = 0; sweep < max_sweeps; ++sweep) {
     if (sweep % patience == 0) {
       if (violation > 0.9 * earlier) break;
       if (sweep > 0) earlier = violation;
     }
     check_stop();
+    moved += free;
     violation = 0;
     for (Impact* impact : impacts) {
       const double give = compliance(*impact, inverse_mass);
@@ -120,7 +124,7 @@ double project_zone(std::span<Impact*> impacts, const Eigen::VectorXd& inverse_m
     }
     if (violation < tolerance) break;
   }
-  return violation;
+  return {violation, moved};
 }
 
 Vec3 angular_velocity(const Mat3& inertia, const Vec3& momentum) {

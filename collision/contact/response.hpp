@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -37,12 +38,16 @@ double mean_inverse_mass(const Eigen::VectorXd&);  // of the nodes that are free
 // slip over the step what Coulomb friction allows (all of it where it sticks).
 void apply_impulse(Impact&, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1);
 
+struct Projection {
+  double violation = 0;    // largest that remains [m]
+  std::int64_t moved = 0;  // free nodes of the impacts, once a sweep
+};
+
 // Inelastic impact zone (Harmon et al. 2008, with inequalities): the smallest mass-weighted change of x1 that brings
 // every impact to its target, by projected Gauss-Seidel on the multipliers, which start from their last values. Sliding
-// is kept but for Coulomb friction: no more than the normal impulse of the same pair allows. Returns the largest
-// remaining violation [m].
-double project_zone(std::span<Impact*> impacts, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1,
-                    int max_sweeps, double tolerance);
+// is kept but for Coulomb friction: no more than the normal impulse of the same pair allows.
+Projection project_zone(std::span<Impact*> impacts, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1,
+                        int max_sweeps, double tolerance);
 
 // The angular velocity with that angular momentum [kg m2 / s over kg m2]. Nodes on a line have no inertia about it, and
 // turn about it at no speed.

@@ -17,6 +17,7 @@ struct Squeeze {
   Eigen::VectorXd& inverse_mass;
   ResolveReport& report;
   double light = 0;               // inverse mass of a node that gives way
+  std::vector<char> moving;       // by obstacle: what stands still does not give way
   std::vector<char> yields;       // by node
   std::vector<Impact> demands{};  // first those of pairs near the start
   std::size_t near = 0;
@@ -52,7 +53,7 @@ std::vector<double> press(Squeeze& s, const Points& trial) {
   double sum = 0;
   for (int b = 0; b < room.max_blocks && !stopped(s.options.stop); ++b) {
     for (std::size_t k = 0; k < growth.size(); ++k) growth[k] = -s.demands[k].multiplier;
-    project_zone(all, s.inverse_mass, s.x0, s.x, room.sweeps, tolerance);
+    s.report.work.projected += project_zone(all, s.inverse_mass, s.x0, s.x, room.sweeps, tolerance).moved;
     const double before = sum;
     sum = 0;
     for (std::size_t k = 0; k < growth.size(); ++k) {
@@ -80,7 +81,7 @@ bool give_way(Squeeze& s, const std::vector<double>& growth, Points& trial) {
     const double spare = std::max(0.0, s.start_gap(demand.pair) - s.distance());
     for (int i = 0; i < 4; ++i) {
       const int node = demand.pair.nodes[i];
-      if (s.world.is_cloth(node)) continue;
+      if (const int body = s.world.obstacle_of(node); body < 0 || !s.moving[body]) continue;
       any = any || !s.yields[node];
       s.yields[node] = 1;
       s.inverse_mass[node] = s.light;
@@ -137,7 +138,9 @@ bool make_room(PairSearch& search, const ContactWorld& world, const ResolveOptio
             inverse_mass,
             report,
             mean_inverse_mass(inverse_mass) / options.room.obstacle_mass,
+            obstacles_in_motion(world, x0, x1),
             std::vector<char>(world.node_count, 0)};
+  if (std::ranges::count(s.moving, 1) == 0) return false;
   for (const Proximity& p : near) s.demands.push_back({p.pair, p.weights, p.normal, 0, std::min(s.distance(), p.gap)});
   s.near = s.demands.size();
   Points trial = x1;

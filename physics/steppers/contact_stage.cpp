@@ -1,25 +1,35 @@
 #include "physics/steppers/contact_stage.hpp"
 
+#include <algorithm>
+
 #include "physics/scene/features.hpp"
 
 namespace selvedge {
 namespace {
 
-ResolveOptions resolve_options(const ContactSettings& contact, ResolveOptions options) {
+ResolveOptions resolve_options(const Scene& scene, ResolveOptions options) {
+  const ContactSettings& contact = scene.contact;
   options.thickness = contact.thickness;
   options.separation = 0.1 * contact.thickness;
   options.friction = contact.friction;
   options.self_friction = contact.self_friction;
   options.rigid_zones = contact.rigid_zones;
+  const ResponseWork most = most_response(scene.surface.vertex_count);
+  options.most = {std::min(options.most.swept, most.swept), std::min(options.most.projected, most.projected)};
   return options;
 }
 
 }  // namespace
 
+ResponseWork most_response(int cloth_vertices) {
+  const std::int64_t n = cloth_vertices;
+  return {500'000 + 2'000 * n, 5'000'000 + 20'000 * n};
+}
+
 ContactStage::ContactStage(const Scene& scene, const ResolveOptions& limits)
     : world(make_contact_world(scene.surface, obstacle_surfaces(scene), features_of(scene).self_contact, &scene.rest)),
       search(world),
-      options(resolve_options(scene.contact, limits)),
+      options(resolve_options(scene, limits)),
       inverse_mass(inverse_masses(scene, world.node_count)) {}
 
 void ContactStage::leave_alone(const Exemption* exemption) {
@@ -34,6 +44,9 @@ void add(const ResolveReport& resolved, StepReport& report) {
   report.collision.zones += resolved.zones;
   report.collision.shortened += resolved.shortened;
   report.collision.held_vertices += resolved.held;
+  report.counts.swept += resolved.work.swept;
+  report.counts.projected += resolved.work.projected;
+  report.out_of_response = report.out_of_response || resolved.out_of_work;
   report.seconds.broad_phase += resolved.broad_phase;
   report.seconds.ccd += resolved.ccd;
   report.seconds.response += resolved.response;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "collision/contact/pins_give_way.hpp"
 #include "collision/contact/room.hpp"
 #include "collision/geometry/floating_point.hpp"
 #include "collision/geometry/stopwatch.hpp"
@@ -76,6 +77,7 @@ class ConventionalStepper final : public Stepper {
   void note_imbalance(const StepProblem&, const Points& x, Substep&, StepReport&);
   void set_velocities(const StepProblem&, const Points& x, Substep&) const;
   bool solve_freely(StepWork&, Substep&, const StepStart&);
+  void hold_pins(StepWork&, Substep&, Points& pins);
   bool yield_obstacles(StepWork&, const std::vector<Proximity>&, Substep&);
   bool torn(const StepProblem&, const Points& x, const Points& after);
   void stop_short(StepWork&, const Points& wanted, Substep&);
@@ -103,6 +105,8 @@ class ConventionalStepper final : public Stepper {
 ResolveOptions ConventionalStepper::resolve_options(const StepWork& work) const {
   ResolveOptions options = contact_.options;
   options.stop = work.extras.stop;
+  options.most.swept -= work.report.counts.swept;
+  options.most.projected -= work.report.counts.projected;
   return options;
 }
 
@@ -159,6 +163,20 @@ bool ConventionalStepper::solve_freely(StepWork& work, Substep& s, const StepSta
   return true;
 }
 
+// Pins that would be driven into what cannot move give way, and the report says that their motion was shortened.
+void ConventionalStepper::hold_pins(StepWork& work, Substep& s, Points& pins) {
+  Points nodes = s.nodes;
+  ResolveReport report;
+  const int held = pins_give_way(contact_.search, contact_.world, scene_.pins, resolve_options(work), s.start.nodes,
+                                 nodes, contact_.path, report);
+  add(report, work.report);
+  if (held == 0) return;
+  ++work.report.collision.shortened;
+  work.report.collision.held_vertices += held;
+  pins = pinned_rows(scene_, nodes);
+  for (const int pin : scene_.pins) s.nodes.row(pin) = nodes.row(pin);
+}
+
 // Obstacles that leave no room give way, where that is looked for. False: they were to, but there is room for all.
 bool ConventionalStepper::yield_obstacles(StepWork& work, const std::vector<Proximity>& near, Substep& s) {
   s.inverse_mass = contact_.inverse_mass;
@@ -207,9 +225,19 @@ SubstepOutcome ConventionalStepper::respond(StepWork& work, Substep& s, const St
   if (!options.last_resort) options.zone_rounds = options_.substep.halving_zone_rounds;
   if (s.pinched) options.zone_rounds = options_.substep.pinched_zone_rounds;
   const Points wanted = s.nodes;
-  const ResolveReport resolved =
-      resolve(contact_.search, contact_.world, s.inverse_mass, options, s.start.nodes, s.nodes, contact_.path);
-  add(resolved, work.report);
+  const auto resolve_wanted = [&] {
+    options.most = resolve_options(work).most;
+    s.nodes = wanted;
+    const ResolveReport resolved =
+        resolve(contact_.search, contact_.world, s.inverse_mass, options, s.start.nodes, s.nodes, contact_.path);
+    add(resolved, work.report);
+    return resolved;
+  };
+  ResolveReport resolved = resolve_wanted();
+  if (resolved.out_of_work && !options.last_resort) {  // another attempt has nothing left to be made of
+    options.last_resort = true;
+    resolved = resolve_wanted();
+  }
   if (resolved.stopped) return SubstepOutcome::stopped;
   if (!s.nodes.allFinite()) return SubstepOutcome::not_finite;
   if (!resolved.clean && !options.last_resort) return SubstepOutcome::zones_not_converged;
@@ -315,8 +343,10 @@ bool ConventionalStepper::advance(StepWork& work, SubstepState& now, Stretch who
                    stretch.parts};
     std::optional<Substep> s;
     const auto attempt = [&](SubstepAttempt kind) {
+      const bool first = !s;
       s.emplace(begin_substep(work, now, target, kind, time_left));
       try {
+        if (first && has_contact()) hold_pins(work, *s, target.pins);
         return substep(work, *s);
       } catch (const TooManyPairs&) {  // half of the motion may not come near so much
         update_pairs(contact_.search, contact_.options.thickness, now.nodes, now.nodes, contact_.path);

@@ -60,7 +60,7 @@ NewtonReport SubstepSolve::with_contact(Substep& s, StepProblem& problem, Points
     const auto found = impacts(nodes0, s.nodes, report);
     if (pass == 0)
       s.parts = parts_for_distance(farthest_past(found, nodes0, s.nodes), edge_length_, s.max_parts, options_);
-    if (s.parts > 1 || report.out_of_newton) return newton;
+    if (s.parts > 1 || report.out_of_newton || report.out_of_response) return newton;
     if (calm && mean_touching(contacts.terms, x - *problem.x0) < creep && deepest(found, s.nodes) < deep_ &&
         mistaken_friction(solved, contacts.terms, *problem.x0, x, creep) < options_.normal_change)
       return newton;

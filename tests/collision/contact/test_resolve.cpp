@@ -139,6 +139,51 @@ TEST_CASE("resolve: plates that close on cloth give way to it, and the cloth goe
   CHECK((x1 - c.x1).bottomRows(18).rowwise().norm().maxCoeff() > 0.01);
 }
 
+TEST_CASE("resolve: a plate that stands still does not give way, and one that closes on it does", "[resolve]") {
+  const auto cloth = sheet(4, 0.1, 0), plate = sheet(2, 0.3, 0);
+  const Surface surface = make_surface(9, plate.triangles);
+  Case c{make_surface(25, cloth.triangles), {surface, surface}, {}, {}, {}};
+  Points low = plate.x, high = plate.x;
+  low.col(1).array() -= 0.02;
+  high.col(1).array() += 0.02;
+  c.x0 = gather_nodes(cloth.x, {low, high});
+  high.col(1).array() -= 0.05;
+  c.x1 = gather_nodes(cloth.x, {low, high});
+  c.inverse_mass = Eigen::VectorXd::Zero(c.x0.rows());
+  c.inverse_mass.head(25).setConstant(1e4);
+  Points x1 = c.x1;
+  PathPairs candidates;
+  CHECK(run(c, x1, candidates).clean);
+  CHECK(pairs_on_the_way(c, x1) == 0);
+  CHECK(x1.middleRows(25, 9) == c.x0.middleRows(25, 9));
+  CHECK((x1 - c.x1).bottomRows(9).rowwise().norm().maxCoeff() > 0.01);
+}
+
+TEST_CASE("resolve: where its work is done what still meets is held, clean, and it says so", "[resolve]") {
+  const Case c = crossing(0.3);
+  ResolveOptions options;
+  options.impulse_rounds = 0;
+  Points x1 = c.x1;
+  PathPairs whole_path;
+  const ResolveReport whole = run(c, x1, whole_path, options);
+  CHECK_FALSE(whole.out_of_work);
+  REQUIRE(whole.work.swept > 1000);
+  REQUIRE(whole.work.projected > 10000);
+  for (const ResponseWork& most : {ResponseWork{0, 0}, ResponseWork{whole.work.swept / 3, unbounded_work.projected},
+                                   ResponseWork{unbounded_work.swept, whole.work.projected / 3}}) {
+    options.most = most;
+    x1 = c.x1;
+    PathPairs path;
+    const ResolveReport report = run(c, x1, path, options);
+    CHECK(report.out_of_work);
+    CHECK(report.clean);
+    CHECK(report.held > 0);
+    CHECK(report.work.projected < whole.work.projected);
+    CHECK(pairs_on_the_way(c, x1) == 0);
+    if (most.projected == 0) CHECK(report.work.projected == 0);
+  }
+}
+
 TEST_CASE("resolve: plates that leave room do not lag", "[resolve]") {
   const auto cloth = sheet(4, 0.1, 0), plate = sheet(2, 0.3, 0);
   Case c{make_surface(25, cloth.triangles), {make_surface(9, plate.triangles)}, {}, {}, {}};

@@ -76,7 +76,7 @@ TEST_CASE("response: a zone meets all its impacts with the least change, and onl
   Impact below = find_impact({PairKind::vertex_face, {4, 1, 2, 3}}, x0, x1, 0.01).value();
   std::vector<Impact*> zone{&above, &below};
   const Points before = x1;
-  const double violation = project_zone(zone, inverse_mass, x0, x1, 500, 1e-10);
+  const double violation = project_zone(zone, inverse_mass, x0, x1, 500, 1e-10).violation;
   CHECK(violation < 1e-10);
   CHECK(above.multiplier > 0);
   CHECK(below.multiplier > 0);

@@ -99,6 +99,66 @@ TEST_CASE("conventional stepper: plates that close on cloth lag, leave it clean,
   CHECK(worst_lag < 0.01);
 }
 
+// A sheet of which the first row is pinned and driven into what lies below it, by `depth` in so many frames and back.
+struct Drawn {
+  int out_of_response = 0, pairs = 0, shortened = 0;
+  std::int64_t swept = 0, projected = 0;  // of a frame, at most
+  double lag = 0, off = 0;                // obstacles; pins in the last frame [m]
+  Points lowest;                          // pins where they were lowest
+};
+
+Drawn drawn(World w, int pinned, double depth, int frames, const ConventionalOptions& options = {}) {
+  for (int k = pinned - 1; k >= 0; --k) w.scene.pins.insert(w.scene.pins.begin(), k);
+  w.drive = at_rest(w.scene, w.state);
+  const Points start = w.drive.pins;
+  const auto stepper = make_recovering_conventional_stepper(w.scene, options);
+  Drawn d;
+  State state = w.state, to;
+  for (int f = 1; f <= 2 * frames; ++f) {
+    w.drive.pins = start;
+    w.drive.pins.topRows(pinned).col(1).array() -= depth * (1 - std::abs(f - frames) / double(frames));
+    const StepReport report = stepper->step(state, w.drive, 1.0 / 30, to);
+    REQUIRE(report.status == StepStatus::accepted);
+    d.out_of_response += report.out_of_response;
+    d.pairs += report.collision.pairs_after + report.collision.passed_through;
+    d.shortened += report.collision.shortened;
+    d.lag = std::max(d.lag, report.collision.obstacle_lag);
+    d.swept = std::max(d.swept, report.counts.swept);
+    d.projected = std::max(d.projected, report.counts.projected);
+    state = to;
+    if (f == frames) d.lowest = state.x.topRows(pinned);
+  }
+  d.off = (state.x.topRows(pinned) - start.topRows(pinned)).rowwise().norm().maxCoeff();
+  return d;
+}
+
+TEST_CASE("conventional stepper: pins that are driven through a wall that stands still give way to it, in few counts",
+          "[conventional_stepper]") {
+  World w = make_world(testing::sheet(8, 0.2, 0.04));
+  add_obstacle(w, testing::sheet(2, 1, 0));
+  const Drawn d = drawn(w, 9, 0.2, 6);
+  CHECK(d.pairs == 0);
+  CHECK(d.lag == 0);
+  CHECK(d.shortened > 0);  // the report says so
+  CHECK(d.out_of_response == 0);
+  CHECK(d.lowest.col(1).minCoeff() > 0);
+  CHECK(d.off < 1e-9);
+  CHECK(d.swept < 20000);
+}
+
+TEST_CASE("conventional stepper: pins that cannot all be where they are wanted are bounded in counts, and clean",
+          "[conventional_stepper]") {
+  World w = make_world(testing::join(testing::sheet(5, 0.2, 0.04), testing::sheet(5, 0.3, 0)));
+  for (int v = 36; v < 72; ++v) w.scene.pins.push_back(v);
+  ConventionalOptions options;
+  options.resolve.most = {1000, 1000};
+  const Drawn d = drawn(w, 6, 0.3, 4, options);
+  CHECK(d.out_of_response > 0);
+  CHECK(d.pairs == 0);
+  CHECK(d.shortened > 0);
+  CHECK(d.projected < 2 * options.resolve.most.projected);
+}
+
 TEST_CASE("conventional stepper: caches carry no state", "[conventional_stepper]") {
   const World w = folding_world(10);
   const Run kept = run(w, 20), dropped = run(w, 20, 3);

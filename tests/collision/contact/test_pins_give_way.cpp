@@ -1,0 +1,79 @@
+#include <catch2/catch.hpp>
+
+#include <numeric>
+
+#include "collision/audit/audit.hpp"
+#include "collision/contact/pins_give_way.hpp"
+#include "tests/collision/sheets.hpp"
+
+namespace selvedge::test_pins_give_way {
+
+using testing::join;
+using testing::Sheet;
+using testing::sheet;
+
+namespace {
+
+struct Moved {
+  Points x1, wanted;
+  int pins = 0, searches = 0, crossing = 0;  // of all triangles with each other at the end
+};
+
+// All vertices of the first sheet are pinned, and move by `way`; the second is an obstacle, or a cloth pinned too.
+Moved moved(const Vec3& way, const Vec3& way_of_other, bool obstacle) {
+  const Sheet cloth = sheet(4, 0.1, 0.01), other = sheet(2, 0.3, 0);
+  const Sheet both = join(cloth, other);
+  const Surface first = obstacle ? cloth.surface() : both.surface(), second = other.surface();
+  const ContactWorld world =
+      make_contact_world(first, obstacle ? std::vector<const Surface*>{&second} : std::vector<const Surface*>{}, true);
+  Moved m{both.x, {}};
+  m.x1.topRows(25).rowwise() += way.transpose();
+  m.x1.bottomRows(9).rowwise() += way_of_other.transpose();
+  m.wanted = m.x1;
+  std::vector<int> pins(static_cast<std::size_t>(first.vertex_count));
+  std::iota(pins.begin(), pins.end(), 0);
+  PairSearch search(world);
+  PathPairs path;
+  ResolveReport report;
+  m.pins = pins_give_way(search, world, pins, {}, both.x, m.x1, path, report);
+  m.searches = search.tally().searches;
+  m.crossing = audit(both.surface(), m.x1, {}).intersecting_pairs();
+  return m;
+}
+
+const Vec3 still = Vec3::Zero();
+
+}  // namespace
+
+TEST_CASE("pins that are driven into an obstacle that stands still slide along it", "[pins_give_way]") {
+  const Moved m = moved({0.03, -0.05, 0}, still, true);
+  CHECK(m.pins == 25);
+  CHECK(m.crossing == 0);
+  CHECK(m.x1.bottomRows(9) == m.wanted.bottomRows(9));
+  CHECK(m.x1.topRows(25).col(1).minCoeff() > 1e-4);
+  CHECK(m.x1.topRows(25).col(1).maxCoeff() < 2e-3);
+  CHECK((m.x1 - m.wanted).topRows(25).col(0).cwiseAbs().maxCoeff() < 1e-9);
+}
+
+TEST_CASE("pins whose way is free, or that meet what moves, are left as they are", "[pins_give_way]") {
+  const Moved away = moved({0, 0.05, 0}, still, true), along = moved({0, -0.004, 0}, still, true),
+              met = moved({0, -0.05, 0}, {0, 1e-3, 0}, true), rests = moved(still, still, true);
+  for (const Moved* m : {&away, &along, &met, &rests}) {
+    CHECK(m->pins == 0);
+    CHECK(m->x1 == m->wanted);
+  }
+  CHECK(away.searches == 0);
+  CHECK(met.searches == 0);
+}
+
+TEST_CASE("pins of two cloths that are driven through each other meet, and those at rest stay", "[pins_give_way]") {
+  const Moved one = moved({0, -0.05, 0}, still, false), two = moved({0, -0.05, 0}, {0, 0.05, 0}, false);
+  CHECK(one.pins == 25);
+  CHECK(one.crossing == 0);
+  CHECK(one.x1.bottomRows(9) == one.wanted.bottomRows(9));
+  CHECK(one.x1.topRows(25).col(1).minCoeff() > 1e-4);
+  CHECK(two.pins > 9);
+  CHECK(two.crossing == 0);
+}
+
+}  // namespace selvedge::test_pins_give_way
