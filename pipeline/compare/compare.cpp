@@ -12,6 +12,7 @@
 #include "pipeline/compare/comparison.hpp"
 #include "pipeline/compare/evaluation.hpp"
 #include "pipeline/compare/sequences.hpp"
+#include "pipeline/compare/training_sequences.hpp"
 #include "pipeline/compare/volume_report.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/write_file.hpp"
@@ -361,7 +362,11 @@ bool report_drapes(const CompareRequest& request, const Comparison& comparison, 
 
 CompareResult compare(const CompareRequest& request) {
   Comparison comparison = read_comparison(request.file, request.short_form, request.overrides);
-  if (comparison.sequences.count > 0) add_sequences(comparison);
+  if (!comparison.sequences.training.empty())
+    add_training_sequences(comparison);
+  else if (comparison.sequences.count > 0)
+    add_sequences(comparison);
+  if (!comparison.split_text.empty()) say(request, comparison.split_text);
   comparison.kinds = request.kinds;
   const std::string program = program_key();
   make_folder(request.out);

@@ -45,7 +45,11 @@ const Options<SequenceOptions>& sequence_options() {
        integer("tangled", &O::tangled, not_negative, "of them: every second one, up to this number"),
        integer("frames", &O::frames, at_least_one, ""), integer("seed", &O::seed, not_negative, "of tangled starts"),
        number("shape_spread", &O::shape_spread, Unit::none, not_negative,
-              "of the bodies of tangled ones, in standard deviations")});
+              "of the bodies of tangled ones, in standard deviations"),
+       text("training", &O::training,
+            "training file; in place of outfits and clips the sequences are those of its people whom `split` names"),
+       word("split", &O::split, {"training", "validation", "test"},
+            "of `training`: what is worn, a clip or a person is of it, and nothing is of a later one")});
   return table;
 }
 
@@ -175,7 +179,8 @@ Comparison read_comparison(const std::filesystem::path& file, bool short_form,
   check_names(config["scenes"], scenes);
   check_names(config["settings"], settings);
   if (settings.empty()) config["settings"].fail("is empty", "give at least one");
-  if (comparison.scenes.empty() && comparison.sequences.count == 0 && comparison.drapes.empty())
+  const bool sequences = comparison.sequences.count > 0 || !comparison.sequences.training.empty();
+  if (comparison.scenes.empty() && !sequences && comparison.drapes.empty())
     config["scenes"].fail("is empty", "give at least one, or `sequences`, or `drapes`");
   const std::string& baseline = comparison.evaluation.baseline;
   if (!baseline.empty() && std::ranges::find(settings, baseline) == settings.end())

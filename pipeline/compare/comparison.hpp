@@ -37,6 +37,8 @@ struct SequenceOptions {
   int frames = 150;
   std::uint64_t seed = 1;
   double shape_spread = 3;  // of the bodies of tangled ones [standard deviations]
+  std::string training;     // file whose people are compared on, seen from the comparison file; empty: outfits
+  std::string split = "test";
 };
 
 // Options of an evaluation's tables.
@@ -69,6 +71,7 @@ struct Comparison {
   std::vector<std::string> algebraic;  // and of the algebraic one
   Kinds kinds = known_kinds();         // of steppers
   SequenceOptions sequences;
+  std::string split_text;  // what sequences of a training file are of; empty: there are none
   EvaluationOptions evaluation;
   RowLimits limits;
   std::string weights_folder;  // seen from the file

@@ -75,7 +75,7 @@ void make_tangled(const SequenceOptions& sequences, RollMaker& maker, int number
   scene.name = fmt::format("{}_tangled_{}", scene.outfit, number);
   scene.overrides.insert(scene.overrides.end(),
                          {"cloths.0.garment.layers=alone", "obstacles.person.body.room=0",
-                          "obstacles.person.body.clip=" + maker.world.clip_names[which],
+                          "obstacles.person.body.clip=" + maker.world.bodies[body].clips[which].name,
                           "obstacles.person.body.shape=" + list_text(maker.world.bodies[body].shape),
                           fmt::format("obstacles.person.body.first_frame={}", at.first_frame)});
 }

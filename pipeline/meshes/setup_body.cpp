@@ -153,6 +153,7 @@ void forget(PosedBodies& known) {
 }
 
 void leave_room(double room, Performance& who) {
+  who.soft_tissue = nullptr;
   if (room > 0)
     who.soft_tissue =
         std::make_shared<GiveWay>(who.surface, shaped(who.body.skin, who.shape), GiveWayOptions{.room = room});
@@ -161,17 +162,25 @@ void leave_room(double room, Performance& who) {
 
 }  // namespace
 
-Performance read_performance(const Config& section, const std::filesystem::path& folder) {
-  const Config &clip = section["clip"], &shape = section["shape"];
+Performance read_figure(const Config& section, const std::filesystem::path& folder) {
   Performance who;
   who.body = read_model(section["model"], folder);
   turn_outward(section["model"].text(), who.body, who.warnings);
   who.surface = make_surface(static_cast<int>(who.body.skin.rest.rows()), who.body.skin.triangles);
   if (std::optional<WeldedSurface> welded = welded_surface(who.surface, same_places(who.body.skin)))
     std::tie(who.surface, who.joined) = std::pair(std::move(welded->surface), std::move(welded->joined));
+  return who;
+}
+
+void perform(const Config& section, const std::filesystem::path& folder, Performance& who) {
+  const Config &clip = section["clip"], &shape = section["shape"];
   const bool of_smpl = std::filesystem::path(section["model"].text()).extension() == ".npz";
+  who.shape.resize(0);
+  who.said.resize(0);
+  who.clip = {};
+  leave_room(0, who);
   if (shape.given)
-    who.shape =
+    who.shape = who.said =
         Eigen::Map<const Eigen::VectorXd>(shape.numbers.data(), static_cast<Eigen::Index>(shape.numbers.size()));
   else if (of_smpl && clip.given && std::filesystem::path(clip.text()).extension() == ".npz")
     who.shape = read_amass_shape(existing_path(clip, folder), who.warnings);
@@ -181,7 +190,7 @@ Performance read_performance(const Config& section, const std::filesystem::path&
   warn_of_crossings(section["model"].text(), own_crossings(who.body, who.shape), who.warnings);
   for (const std::string key : {"joints", "rest_frame"})
     if (section[key].given && !clip.given) section[key].fail("is given without a clip", "name a .bvh file as `clip`");
-  if (!clip.given) return who;
+  if (!clip.given) return;
   who.clip = performed(section, who, folder, who.warnings);
   for (std::size_t f = 0; f < who.clip.poses.size(); ++f)
     if (const BodyPose& pose = who.clip.poses[f];
@@ -190,6 +199,11 @@ Performance read_performance(const Config& section, const std::filesystem::path&
                 fmt::format("repair it where it was made; up to {:g} m are allowed", largest_length));
   who.fits_room = section["room"].numbers.empty();
   leave_room(who.fits_room ? GiveWayOptions{}.room : section["room"].number(), who);
+}
+
+Performance read_performance(const Config& section, const std::filesystem::path& folder) {
+  Performance who = read_figure(section, folder);
+  perform(section, folder, who);
   return who;
 }
 

@@ -41,6 +41,7 @@ struct Performance {
   Surface surface;          // of its skin, welded (welded_surface.hpp)
   std::vector<int> joined;  // of each vertex the one that stands for it in `surface`; empty: none is joined
   Eigen::VectorXd shape;
+  Eigen::VectorXd said;                        // the shape that its section gives; empty: none
   Clip clip;                                   // without poses: it stands in the zero pose
   std::shared_ptr<const GiveWay> soft_tissue;  // null: it passes through itself
   bool fits_room = false;                      // between its parts to what it wears
@@ -59,6 +60,10 @@ Performances read_performances(const Config& obstacles, const std::filesystem::p
 
 // A `body` section by itself: model, shape and clip.
 Performance read_performance(const Config& body, const std::filesystem::path& folder);
+// The same in two parts: the model, which stands in its zero pose, and what it does: shape, clip and room, in place of
+// what it did before.
+Performance read_figure(const Config& body, const std::filesystem::path& folder);
+void perform(const Config& body, const std::filesystem::path& folder, Performance&);
 
 // Sets the number of garments that the body wears. The room between its parts grows with it, unless the body's section
 // gives the room.

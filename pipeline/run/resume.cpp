@@ -39,23 +39,6 @@ void check_config(const std::filesystem::path& file, const std::string& before, 
            "resume with the same scene file and --set, or run without --resume");
 }
 
-void check_files(const std::filesystem::path& file, const std::vector<InputFile>& before,
-                 const std::vector<InputFile>& now) {
-  const std::string cure = "put back the file that the run began with, or run without --resume";
-  for (const InputFile& input : now) {
-    const auto old = std::ranges::find(before, input.name, &InputFile::name);
-    if (old == before.end())
-      refuse(file, "input_names", "the run did not begin with the file `" + input.name + "`, which the scene reads",
-             cure);
-    if (old->hash != input.hash)
-      refuse(file, "input_hashes", "the file `" + input.name + "` has changed since the run began", cure);
-  }
-  for (const InputFile& input : before)
-    if (std::ranges::find(now, input.name, &InputFile::name) == now.end())
-      refuse(file, "input_names", "the run began with the file `" + input.name + "`, which the scene does not read",
-             cure);
-}
-
 void check_moment(const std::filesystem::path& file, const State& state, const RunOptions& run) {
   if (state.frame > run.frames)
     refuse(file, "frame", fmt::format("is {}, the run has {} frames", state.frame, run.frames));
@@ -136,12 +119,29 @@ void check_last_frame(const std::filesystem::path& file, const TrajectoryReader&
 
 }  // namespace
 
+void check_input_files(const std::filesystem::path& file, const std::vector<InputFile>& before,
+                       const std::vector<InputFile>& now, const std::string& reader) {
+  const std::string cure = "put back the file that the run began with, or run without --resume";
+  for (const InputFile& input : now) {
+    const auto old = std::ranges::find(before, input.name, &InputFile::name);
+    if (old == before.end())
+      refuse(file, "input_names",
+             "the run did not begin with the file `" + input.name + "`, which " + reader + " reads", cure);
+    if (old->hash != input.hash)
+      refuse(file, "input_hashes", "the file `" + input.name + "` has changed since the run began", cure);
+  }
+  for (const InputFile& input : before)
+    if (std::ranges::find(now, input.name, &InputFile::name) == now.end())
+      refuse(file, "input_names",
+             "the run began with the file `" + input.name + "`, which " + reader + " does not read", cure);
+}
+
 ResumedRun read_resumed(const std::filesystem::path& folder, const Setup& setup, const StepperTraits& traits,
                         const RunInputs& inputs) {
   const std::filesystem::path saved = folder / "checkpoint.h5", file = folder / "run.h5";
   Checkpoint checkpoint = read_checkpoint(saved);
   check_config(saved, checkpoint.inputs.config, inputs.config);
-  if (checkpoint.knows_files) check_files(saved, checkpoint.inputs.files, inputs.files);
+  if (checkpoint.knows_files) check_input_files(saved, checkpoint.inputs.files, inputs.files, "the scene");
   check_fits(saved, checkpoint.state, setup.scene);
   if (const auto problem = misfit(checkpoint.state.memory, setup.scene)) refuse(saved, "memory_*", *problem);
   check_moment(saved, checkpoint.state, setup.run);

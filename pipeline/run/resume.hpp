@@ -21,6 +21,11 @@ struct ResumedRun {
 // another run.
 ResumedRun read_resumed(const std::filesystem::path& folder, const Setup&, const StepperTraits&, const RunInputs&);
 
+// Throws Error, naming the checkpoint's field and the input, where the files that a run began with are not those that
+// `reader` reads now: "the scene".
+void check_input_files(const std::filesystem::path& checkpoint, const std::vector<InputFile>& before,
+                       const std::vector<InputFile>& now, const std::string& reader);
+
 // The frame of that number, which no other must follow. Throws Error where it holds positions that are not finite.
 Frame resumed_frame(const ResumedRun&, int index, const std::filesystem::path& folder);
 

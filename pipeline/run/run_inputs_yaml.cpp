@@ -81,16 +81,7 @@ std::vector<InputFile> input_files(const Setup& setup) {
   if (!config.IsMap()) return {};
   std::vector<std::string> texts;
   add_texts(config, texts);
-  const fs::path folder = folder_of(setup, config);
-  std::set<std::string> seen;
-  std::vector<InputFile> files;
-  std::error_code ignored;
-  for (const std::string& text : texts)
-    for (const fs::path& file : named_files(text, folder)) {
-      const std::string name = (folder.empty() ? file : file.lexically_proximate(folder)).string();
-      if (fs::is_regular_file(file, ignored) && seen.insert(name).second) files.push_back({name, hash_of_file(file)});
-    }
-  return files;
+  return hashed_files(texts, folder_of(setup, config));
 }
 
 // A hash of arrays, one after the other, with their sizes.
@@ -128,6 +119,18 @@ std::uint64_t scene_hash(const Setup& setup) {
 }
 
 }  // namespace
+
+std::vector<InputFile> hashed_files(const std::vector<std::string>& texts, const fs::path& folder) {
+  std::set<std::string> seen;
+  std::vector<InputFile> files;
+  std::error_code ignored;
+  for (const std::string& text : texts)
+    for (const fs::path& file : named_files(text, folder)) {
+      const std::string name = (folder.empty() ? file : file.lexically_proximate(folder)).string();
+      if (fs::is_regular_file(file, ignored) && seen.insert(name).second) files.push_back({name, hash_of_file(file)});
+    }
+  return files;
+}
 
 RunInputs run_inputs(const Setup& setup) { return {setup.config, input_files(setup), scene_hash(setup)}; }
 

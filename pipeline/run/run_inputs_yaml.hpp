@@ -10,4 +10,8 @@ namespace selvedge {
 // code have made of them. Asks for the drive at time 0.
 RunInputs run_inputs(const Setup&);
 
+// The files that texts name, seen from the folder, each once with a hash of its bytes; of a .gltf file also those that
+// it names. Texts that name no file are left out.
+std::vector<InputFile> hashed_files(const std::vector<std::string>& texts, const std::filesystem::path& folder);
+
 }  // namespace selvedge

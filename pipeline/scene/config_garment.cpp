@@ -12,7 +12,11 @@ const Options<GarmentOptions>& garment_options() {
       "in the body's first pose. It has the placement and motion of the body and no placement of its own. Exactly one "
       "of file, cut and outfit defines it; a cut or an outfit needs the mannequin as body. An outfit gives one cloth "
       "for each of its garments, named after them.",
-      {path("file", "Garment file (.h5) made by `selvedge dress`."),
+      {path("file",
+            "Garment file (.h5) made by `selvedge dress` or `selvedge pattern`, or a mesh (.obj, .ply) where the body "
+            "wears it in its zero pose, in the `shape` that the body is given, else in the mean one."),
+       unit_key(),
+       word("fit", {"loose", "tight"}, "loose", "How a mesh follows the body, as `--fit` of `selvedge dress`."),
        with_words(text("cut", "Name of a garment that the program makes (docs/garments.md)."), garment_names()),
        texts("over", "Cuts that are worn under the `cut`, from the body outward."),
        number("edge", &GarmentOptions::edge, Unit::length, positive, "Edge length of the `cut`."),

@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/garments/garment_dressed.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/garments/outfit.hpp"
+#include "pipeline/garments/worn_part.hpp"
+#include "pipeline/meshes/setup_mesh.hpp"
+#include "pipeline/meshes/setup_motion.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/scene/config_scene.hpp"
 
@@ -84,11 +89,33 @@ std::vector<Garment> read_outfit(const Config& section, const std::filesystem::p
             "outfits: " + joined(known) + suggestion(name.text(), known));
 }
 
-Garment read_file(const Config& file, const std::filesystem::path& folder, const Performance& who,
+bool is_mesh(const std::filesystem::path& name) { return name.extension() == ".obj" || name.extension() == ".ply"; }
+
+// A mesh that lies where the body wears it in its zero pose and the shape that its section gives.
+Garment read_dressed(const Config& section, const std::filesystem::path& file, const Performance& who,
+                     std::vector<std::string>& warnings) {
+  Mesh mesh = read_mesh(file);
+  mesh.x *= read_unit(section["unit"]);
+  refuse_far(section["file"], "mesh " + file.string(), mesh.x);
+  warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
+  if (worn_part(mesh.x, shaped(who.body.skin, who.said)).places.empty())
+    section["file"].fail("is not worn: hardly a vertex lies on the body in its zero pose",
+                         "give its `unit`, or make the garment with `selvedge dress`, which takes poses");
+  const Dressing how{who.said, {}, section["fit"].text() == "tight" ? Fit::tight : Fit::loose, {}};
+  Garment garment = dressed(mesh, who.body, how).garment;
+  garment.name = file.stem().string();
+  return garment;
+}
+
+Garment read_file(const Config& section, const std::filesystem::path& folder, const Performance& who,
                   std::vector<std::string>& warnings) {
+  const Config& file = section["file"];
   const std::filesystem::path path = existing_path(file, folder);
+  if (is_mesh(path)) return read_dressed(section, path, who, warnings);
   if (path.extension() != ".h5")
-    file.fail("is no .h5 file", "`selvedge dress` makes a garment of a mesh that a body wears");
+    file.fail("is no .h5, .obj or .ply file", "`selvedge dress` makes a garment of a mesh that a body wears");
+  if (read_unit(section["unit"]) != 1 || section["fit"].text() != "loose")
+    file.fail("is a garment file, which has its own unit and fit", "leave `unit` and `fit` out");
   Garment garment = read_garment(path);
   check_fits(file, garment, who);
   if (!garment.made_for.empty() && garment.made_for != who.body.name)
@@ -99,21 +126,26 @@ Garment read_file(const Config& file, const std::filesystem::path& folder, const
 
 }  // namespace
 
+std::vector<Garment> read_garments(const Config& section, const std::filesystem::path& folder, const Performance& who,
+                                   std::vector<std::string>& warnings) {
+  std::vector<Garment> garments;
+  if (section["outfit"].given)
+    garments = read_outfit(section, folder, who);
+  else
+    garments.push_back(section["cut"].given ? read_cut(section, who) : read_file(section, folder, who, warnings));
+  for (Garment& garment : garments)
+    if (!section["pins"].flag()) garment.pins.clear();
+  return garments;
+}
+
 std::vector<std::shared_ptr<const Wearing>> read_wearings(const Config& cloth, const std::filesystem::path& folder,
                                                           const Performances& bodies,
                                                           std::vector<std::string>& warnings) {
   const Config& section = cloth["garment"];
   check_placed_by_body(cloth);
   const auto who = wearer(section, bodies);
-  std::vector<Garment> garments;
-  if (section["outfit"].given)
-    garments = read_outfit(section, folder, *who);
-  else
-    garments.push_back(section["cut"].given ? read_cut(section, *who)
-                                            : read_file(section["file"], folder, *who, warnings));
   std::vector<std::shared_ptr<const Wearing>> worn;
-  for (Garment& garment : garments) {
-    if (!section["pins"].flag()) garment.pins.clear();
+  for (Garment& garment : read_garments(section, folder, *who, warnings)) {
     SkinWeights skin;
     Footing footing;
     if (who->soft_tissue) {

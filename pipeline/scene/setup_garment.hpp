@@ -18,6 +18,11 @@ struct Wearing {
   Footing footing = {};   // where each vertex is squeezed to between parts of the body; empty: nowhere
 };
 
+// What a `garment` section by itself names, for a body that wears it: a garment, or those of an outfit. `folder` is the
+// file's; warnings are added. Throws Error for files that are missing or do not fit the body.
+std::vector<Garment> read_garments(const Config& garment, const std::filesystem::path& folder, const Performance&,
+                                   std::vector<std::string>& warnings);
+
 // The garment of a cloth's section, or those of its outfit; `folder` is the scene file's, warnings are added.
 std::vector<std::shared_ptr<const Wearing>> read_wearings(const Config& cloth, const std::filesystem::path& folder,
                                                           const Performances&, std::vector<std::string>& warnings);

@@ -10,8 +10,8 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
 #include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/garments/garment_dressed.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
-#include "pipeline/garments/garment_places.hpp"
 #include "pipeline/garments/worn_part.hpp"
 #include "pipeline/meshes/setup_body.hpp"
 #include "pipeline/scene/config_scene.hpp"
@@ -67,34 +67,6 @@ Points body_in(const Performance& who, const BodyPose& pose) {
   return pose.rotations.rows() == 0 ? shaped(who.body.skin, who.shape) : posed(who.body, who.shape, pose);
 }
 
-// The garment that is `x` on the body as it stands there: attached to the body's surface in that pose, then put into
-// the zero pose and shape.
-SkinnedSurface attached_in(const BodyPose& pose, const Points& x, const Triangles& triangles, const Performance& who,
-                           Fit fit) {
-  BodyModel there = who.body;
-  there.skin.rest = body_in(who, pose);
-  SkinnedSurface skin = attached(x, triangles, there, fit);
-  const BodyPose zero{Points::Zero(static_cast<Eigen::Index>(who.body.joints.size()), 3)};
-  const BodyPose& stands = pose.rotations.rows() == 0 ? zero : pose;
-  skin.rest =
-      unposed(skin, who.shape, stands, joint_transforms(who.body, joint_positions(who.body, who.shape), stands));
-  return skin;
-}
-
-// The mesh's groups, those of its boundaries, and pins.
-void add_groups(const DressRequest& request, const BodyModel& body, const Mesh& mesh, DressReport& report) {
-  Garment& garment = report.garment;
-  garment.groups = mesh.groups;
-  std::vector<std::string> taken;
-  for (const auto& [name, vertices] : mesh.groups) taken.push_back(name);
-  for (NamedLoop& loop : named_loops(garment.skin, body, taken)) {
-    if (loop.holds_up && request.pins.empty()) report.pinned.push_back(loop.name);
-    garment.groups.emplace_back(loop.name, std::move(loop.vertices));
-  }
-  if (request.pins != std::vector<std::string>{"none"} && !request.pins.empty()) report.pinned = request.pins;
-  garment.pins = pins_of(garment, report.pinned);
-}
-
 double distance_to(const Points& x, const Triangles& triangles, const Vec3& p) {
   double least = std::numeric_limits<double>::infinity();
   for (const auto& t : triangles.rowwise()) {
@@ -136,8 +108,8 @@ void look_at(const Points& x, const Points& body, const BodyModel& model, DressR
 
 DressReport dress(const DressRequest& request) {
   h5::check_out_name(request.out, "garments");
-  const Mesh mesh = read_mesh(request.mesh);
-  const Points x = metres_per_unit(request.unit) * mesh.x;
+  Mesh mesh = read_mesh(request.mesh);
+  mesh.x *= metres_per_unit(request.unit);
   const Performance who = read_wearer(request);
   DressReport report;
   report.warnings = mesh.warnings;
@@ -145,14 +117,14 @@ DressReport dress(const DressRequest& request) {
   if (request.pose && !who.clip.poses.empty() && request.time > end_of(who.clip))
     report.warnings.push_back(fmt::format("{} ends at {:.4g} s, before {:.4g} s: its last pose is taken", *request.pose,
                                           end_of(who.clip), request.time));
-  Garment& garment = report.garment;
+  const Dressing how{who.shape, read_pose(request, who), request.fit == "tight" ? Fit::tight : Fit::loose,
+                     request.pins};
+  DressedMesh made = dressed(mesh, who.body, how);
+  report.pinned = std::move(made.pinned);
+  Garment& garment = report.garment = std::move(made.garment);
   garment.name = request.mesh.stem().string();
-  garment.made_for = who.body.name;
-  garment.made_in = read_pose(request, who);
-  garment.skin = attached_in(garment.made_in, x, mesh.triangles, who, request.fit == "tight" ? Fit::tight : Fit::loose);
-  add_groups(request, who.body, mesh, report);
-  report.reposed = (rest_shape(garment, who.body, who.shape) - x).rowwise().norm().maxCoeff();
-  look_at(x, body_in(who, garment.made_in), who.body, report);
+  report.reposed = (rest_shape(garment, who.body, who.shape) - mesh.x).rowwise().norm().maxCoeff();
+  look_at(mesh.x, body_in(who, garment.made_in), who.body, report);
   write_garment(request.out, garment);
   return report;
 }

@@ -1,5 +1,7 @@
 #include "pipeline/training/soft_tissue_hdf5.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
@@ -17,21 +19,17 @@ const h5::FileForm soft_tissue_form{"selvedge flesh 1", "flesh", "docs/training.
 
 // Of the body as it is and of the clip's poses: another body or clip has another file.
 std::filesystem::path soft_tissue_file(const std::filesystem::path& folder, const TrainingWorld& world,
-                                       const TrainingBody& body, std::size_t clip, std::size_t layers) {
-  const Clip& motion = body.clips[clip];
-  std::string text =
-      fmt::format("{} {} {} {} {}", soft_tissue_recipe, mannequin_recipe, world.body.name, layers, motion.fps);
+                                       const TrainingBody& body, const TrainingClip& clip) {
+  const Clip& motion = clip.motion;
+  const TrainingPerson& person = world.people[static_cast<std::size_t>(body.person)];
+  std::string text = fmt::format("{} {} {} {} {}", soft_tissue_recipe, mannequin_recipe, person.body.name,
+                                 layer_count(world, person), motion.fps);
   for (const double s : body.shape) text += fmt::format(" {:a}", s);
+  if (body.tissue_key != 0) text += fmt::format(" of {:x} ", body.tissue_key);
   for (const BodyPose& pose : motion.poses)
     text.append(reinterpret_cast<const char*>(pose.rotations.data()),
                 sizeof(double) * static_cast<std::size_t>(pose.rotations.size()));
   return folder / "flesh" / fmt::format("{}-{:016x}.h5", motion.name, hash_of(text));
-}
-
-std::size_t most_layers(const TrainingWorld& world) {
-  std::size_t layers = 1;
-  for (const TrainingWear& wear : world.wear) layers = std::max(layers, wear.garments.size());
-  return layers;
 }
 
 // All frames on end: number of a frame, how many vertices move in it, which, and how far.
@@ -81,33 +79,53 @@ std::map<int, TissueDisplacements> read_clip(const std::filesystem::path& path, 
   return given;
 }
 
-}  // namespace
-
-void read_soft_tissue(const std::filesystem::path& folder, TrainingWorld& world) {
-  for (TrainingBody& body : world.bodies)
-    for (std::size_t clip = 0; !folder.empty() && body.soft_tissue && clip < body.clips.size(); ++clip) {
-      const std::filesystem::path path = soft_tissue_file(folder, world, body, clip, most_layers(world));
-      if (!std::filesystem::exists(path)) continue;
-      try {
-        body.given[clip].merge(read_clip(path, world.surface.vertex_count));
-      } catch (const Error&) {  // it is found anew
-      }
-    }
+// Takes away the files that were used longest ago, until the folder has no more than `most` bytes.
+void keep_within(const std::filesystem::path& folder, std::uintmax_t most) {
+  std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> files;
+  std::uintmax_t bytes = 0;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    if (!entry.is_regular_file(ignored)) continue;
+    bytes += entry.file_size(ignored);
+    files.emplace_back(entry.last_write_time(ignored), entry.path());
+  }
+  std::ranges::sort(files);
+  for (std::size_t k = 0; k < files.size() && bytes > most; ++k) {
+    bytes -= std::filesystem::file_size(files[k].second, ignored);
+    std::filesystem::remove(files[k].second, ignored);
+  }
 }
 
-void write_soft_tissue(const std::filesystem::path& folder, const TrainingWorld& world) {
+}  // namespace
+
+std::map<int, TissueDisplacements> read_soft_tissue(const std::filesystem::path& folder, const TrainingWorld& world,
+                                                    const TrainingBody& body, const TrainingClip& clip) {
+  if (folder.empty() || !body.soft_tissue) return {};
+  const std::filesystem::path path = soft_tissue_file(folder, world, body, clip);
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return {};
+  try {
+    std::map<int, TissueDisplacements> given =
+        read_clip(path, world.people[static_cast<std::size_t>(body.person)].surface.vertex_count);
+    std::filesystem::last_write_time(path, std::filesystem::file_time_type::clock::now(), ignored);  // it was used
+    return given;
+  } catch (const Error&) {  // they are found anew
+    return {};
+  }
+}
+
+void write_soft_tissue(const std::filesystem::path& folder, const TrainingWorld& world, std::uintmax_t most) {
+  if (folder.empty()) return;
+  bool wrote = false;
   for (const TrainingBody& body : world.bodies)
-    for (std::size_t clip = 0; !folder.empty() && body.soft_tissue && clip < body.clips.size(); ++clip) {
-      const std::filesystem::path path = soft_tissue_file(folder, world, body, clip, most_layers(world));
-      std::size_t there = 0;
-      try {
-        if (std::filesystem::exists(path)) there = read_clip(path, world.surface.vertex_count).size();
-      } catch (const Error&) {
-      }
-      if (body.given[clip].size() <= there) continue;
+    for (const TrainingClip& clip : body.clips) {
+      if (!body.soft_tissue || clip.given.size() <= read_soft_tissue(folder, world, body, clip).size()) continue;
+      const std::filesystem::path path = soft_tissue_file(folder, world, body, clip);
       make_folder(path.parent_path());
-      write_clip(path, body.given[clip]);
+      write_clip(path, clip.given);
+      wrote = true;
     }
+  if (wrote) keep_within(folder / "flesh", most);
 }
 
 }  // namespace selvedge

@@ -13,7 +13,6 @@
 #include "learned/network/weights_hdf5.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/host/write_file.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/run/progress.hpp"
 #include "pipeline/training/soft_tissue_hdf5.hpp"
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
@@ -58,6 +57,7 @@ void write_weights(const TrainingRun& run, const std::string& name) {
   file.weights = trainer.network.weights;
   TrainingOptions options = run.options;
   options.weights = travelling(options.weights);
+  options.samples.people = travelling(options.samples.people);
   file.training = training_yaml(options);
   file.version = program_version();
   file.origin = {{"trained by", "selvedge train " + travelling(run.request.config)},
@@ -75,7 +75,8 @@ void write_tables(const TrainingRun& run) {
 
 void save(TrainingRun& run) {
   run.history.seconds = run.seconds();
-  run.trainer->queue->locked([&] { write_soft_tissue(cache_folder(), run.trainer->maker->world); });
+  const TrainingWorld& world = run.trainer->maker->world;
+  run.trainer->queue->locked([&] { write_soft_tissue(world.kept_in, world); });
   write_weights(run, "weights.h5");
   write_tables(run);
   write_training_checkpoint(run.folder / "checkpoint.h5", *run.trainer, run.history);
@@ -184,6 +185,12 @@ void begin(TrainingRun& run) {
   write_file(run.folder / "config.yaml", training_yaml(run.options));
   run.say(fmt::format("network `{}`: {} parameters, {} passes a frame", run.trainer->architecture.name,
                       parameter_count(run.trainer->architecture), run.trainer->architecture.passes));
+  const TrainingWorld& world = run.trainer->maker->world;
+  for (const std::string& warning : world.warnings) run.say("warning: " + warning);
+  if (std::string who = people_text(world, run.options.samples); !who.empty()) {
+    who.pop_back();  // the last line's end
+    run.say(who);
+  }
   run.watch = make_training_watch(run.options, *run.trainer);
   run.started = run.saved = run.told = Clock::now();
 }

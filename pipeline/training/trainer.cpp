@@ -14,7 +14,7 @@
 #include "learned/network/weights_hdf5.hpp"
 #include "learned/network/widen_weights.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
-#include "pipeline/training/soft_tissue_hdf5.hpp"
+#include "pipeline/run/run_inputs_yaml.hpp"
 
 namespace selvedge {
 namespace {
@@ -289,7 +289,9 @@ std::unique_ptr<Trainer> make_empty_trainer(const TrainingOptions& options) {
   trainer->pool.resize(static_cast<std::size_t>(options.pool.states));
   trainer->maker = std::make_unique<RollMaker>(
       RollMaker{options, trainer->architecture.features, make_training_world(options.samples, options.seed), {}});
-  read_soft_tissue(cache_folder(), trainer->maker->world);
+  trainer->maker->world.kept_in = cache_folder();
+  trainer->inputs.files = hashed_files(files_of(options.samples.people), {});
+  trainer->inputs.scene = world_hash(trainer->maker->world);
   trainer->queue = std::make_unique<RollQueue>(*trainer->maker);
   return trainer;
 }

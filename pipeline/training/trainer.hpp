@@ -7,6 +7,7 @@
 #include "learned/gradients/adam.hpp"
 #include "learned/gradients/torch_network.hpp"
 #include "learned/gradients/training_network.hpp"
+#include "pipeline/formats/checkpoint.hpp"
 #include "pipeline/training/roll_queue.hpp"
 #include "pipeline/training/rolling_state.hpp"
 
@@ -35,6 +36,7 @@ struct Trainer {
   std::vector<RollingState> pool;
   std::unique_ptr<RollMaker> maker;
   std::unique_ptr<RollQueue> queue;
+  RunInputs inputs;              // files of people, and a hash of what they and code have made
   std::vector<int> start_pairs;  // of the roll-outs that this process has begun, where they are counted
   // Memory that is used again:
   Tape tape;

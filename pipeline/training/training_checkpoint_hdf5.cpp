@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <span>
+#include <sstream>
 
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
 #include "pipeline/host/kept_rows.hpp"
+#include "pipeline/run/resume.hpp"
+#include "pipeline/run/run_inputs_yaml.hpp"
 
 namespace selvedge {
 namespace {
@@ -136,7 +140,8 @@ RollRequest request_of(const FieldsIn& in, const TrainingWorld& world, std::span
                 n[12] != 0,
                 {n[13], n[14], n[15]}};
   const bool known = r.wear < int(world.wear.size()) && r.body < int(world.bodies.size()) &&
-                     r.clip < int(world.clip_names.size()) && r.frames >= 1 && r.frames < 100000;
+                     world.wear[std::size_t(r.wear)].person == world.bodies[std::size_t(r.body)].person &&
+                     r.clip < int(world.bodies[std::size_t(r.body)].clips.size()) && r.frames >= 1 && r.frames < 100000;
   if (!known) in.fail("names a roll-out that the configuration does not have");
   return r;
 }
@@ -298,6 +303,39 @@ void check_configuration(FieldsIn& in, const TrainingOptions& options) {
                 "resume with the same file and --set, or begin anew without --resume");
 }
 
+// A line a file, after that of the world.
+std::string inputs_text(const RunInputs& inputs) {
+  std::string text = fmt::format("{:016x}\n", inputs.scene);
+  for (const InputFile& file : inputs.files) text += fmt::format("{:016x} {}\n", file.hash, file.name);
+  return text;
+}
+
+RunInputs inputs_of(const std::string& text) {
+  RunInputs inputs;
+  std::istringstream lines(text);
+  std::string line;
+  if (std::getline(lines, line)) inputs.scene = std::strtoull(line.c_str(), nullptr, 16);
+  while (std::getline(lines, line))
+    if (line.size() > 17) inputs.files.push_back({line.substr(17), std::strtoull(line.c_str(), nullptr, 16)});
+  return inputs;
+}
+
+// What the run began with; nothing where an earlier version of this program wrote the checkpoint, which took no files.
+std::optional<RunInputs> checked_inputs(FieldsIn& in, const TrainingOptions& options) {
+  if (!in.file.has("inputs")) return {};
+  RunInputs before = inputs_of(in.text("inputs"));
+  check_input_files(in.file.path(), before.files, hashed_files(files_of(options.samples.people), {}),
+                    "the training file");
+  return before;
+}
+
+void check_world(const FieldsIn& in, const std::optional<RunInputs>& before, const RunInputs& now) {
+  if (before && before->scene != now.scene)
+    throw Error("was made with other bodies, garments or clips, though no file has changed",
+                in.file.path().string() + ": inputs",
+                "go on with the version of the program that began the run, or begin anew without --resume");
+}
+
 }  // namespace
 
 void write_training_checkpoint(const std::filesystem::path& path, const Trainer& trainer,
@@ -305,6 +343,7 @@ void write_training_checkpoint(const std::filesystem::path& path, const Trainer&
   h5::write_form(path, checkpoint_form, [&](const h5::File& file) {
     FieldsOut out{file};
     out.text("config", configuration(trainer.options));
+    out.text("inputs", inputs_text(trainer.inputs));
     write_counts(out, trainer, history);
     out.floats("weights", all_weights(trainer.architecture, trainer.network.weights));
     visit_sums(trainer.sums, [&](const std::string& name, const DoubleAccumulators& sums) {
@@ -327,7 +366,9 @@ std::unique_ptr<Trainer> read_training_checkpoint(const std::filesystem::path& p
   const h5::File file = h5::File::open(path);
   FieldsIn in{file};
   check_configuration(in, options);
+  const std::optional<RunInputs> before = checked_inputs(in, options);
   auto trainer = make_empty_trainer(options);
+  check_world(in, before, trainer->inputs);
   read_counts(in, *trainer, history);
   NetworkWeights weights = blank_weights(trainer->architecture);
   set_weights(in, trainer->architecture, in.floats("weights"), weights);

@@ -10,29 +10,13 @@
 #include "pipeline/garments/outfit.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/motions/clip_split.hpp"
+#include "pipeline/scene/config_scene.hpp"
+#include "pipeline/training/objective_options.hpp"
 
 namespace selvedge {
 namespace {
 
 using namespace table;
-
-constexpr Range from_0_to_1{.low = 0, .high = 1};
-
-const Options<LossRamp>& ramp_options() {
-  using O = LossRamp;
-  static const Options<O> table(
-      "ramp", "A number over the run that changes linearly between `begin` and `end`.",
-      {number("from", &O::from, Unit::none, not_negative, "Value up to `begin`."),
-       number("to", &O::to, Unit::none, not_negative, "Value from `end` on."),
-       number("begin", &O::begin, Unit::none, from_0_to_1, "Fraction of the run at which the change begins."),
-       number("end", &O::end, Unit::none, from_0_to_1, "Fraction of the run at which the change ends.")});
-  return table;
-}
-
-template <class Struct>
-Option<Struct> ramp(std::string name, LossRamp Struct::*member, std::string about) {
-  return renamed(section(member, ramp_options(), std::move(about)), std::move(name));
-}
 
 const Options<VertexMaterial>& training_material_options() {
   using O = VertexMaterial;
@@ -63,12 +47,36 @@ const Options<ForceSampling>& force_sampling_options() {
   return table;
 }
 
+Option<SampleOptions> people_option() {
+  Option<SampleOptions> option(sections("people", person_section(), "[]",
+                                        "Who is trained on beside the mannequin: own bodies, clips and garments."));
+  option.read = [](const Config& entry, SampleOptions& options) { options.people = entry.items; };
+  option.write = [](const SampleOptions& options, Config& entry) { entry.items = options.people; };
+  return option;
+}
+
+// Written where it holds something out.
+Option<SampleOptions> split_option() {
+  Option<SampleOptions> option = section(&SampleOptions::split, split_options(), "What of `people` is held out.");
+  option.write = [write = option.write](const SampleOptions& options, Config& entry) {
+    const bool holds_out = !options.split.validation.empty() || !options.split.test.empty();
+    entry.given = holds_out;
+    if (holds_out)
+      write(options, entry);
+    else
+      entry.entries.clear();
+  };
+  return option;
+}
+
 const Options<SampleOptions>& sample_options() {
   using O = SampleOptions;
   static const Options<O> table(
       "samples", "What a network is trained on. The validation split is not used.",
       {texts("garments", &O::garments,
-             "Garments that the program makes (docs/garments.md), or outfits of outfits.yaml."),
+             "Garments that the program makes (docs/garments.md), or outfits of outfits.yaml. `none`: the mannequin "
+             "takes "
+             "no part."),
        number("edge", &O::edge, Unit::length, positive, "Edge length of garments that the program makes."),
        texts("clips", &O::clips, "Procedural clips. Default: all of the training split."),
        integer("shapes", &O::shapes, at_least_one, "Number of body shapes. The first is the mean shape."),
@@ -98,7 +106,10 @@ const Options<SampleOptions>& sample_options() {
               "How a garment starts. `skinned`: where skinning puts it. `untangle`: the same, untangled. `cut`: the "
               "same without the triangles that intersect, as in ContourCraft's released code. `tangled`: layers "
               "without a gap, on a body whose soft tissue does not give way."),
-       section(&O::forces, force_sampling_options(), "Random forces beside gravity.")});
+       section(&O::forces, force_sampling_options(), "Random forces beside gravity."), people_option(),
+       number("mannequin_weight", &O::mannequin_weight, Unit::none, positive,
+              "How often the mannequin is drawn, beside the weights of `people`. Default: 1."),
+       split_option()});
   return table;
 }
 
@@ -160,136 +171,6 @@ const Options<SpaceOptions>& space_options() {
   return table;
 }
 
-const Options<CollisionLoss>& collision_options() {
-  using O = CollisionLoss;
-  static const Options<O> table(
-      "collision", "Penetration of the body: a penalty on the depth of vertices.",
-      {ramp("weight", &O::weight, "Weight [N/m2], or [N/m] for the quadratic penalty."),
-       number("thickness", &O::thickness, Unit::length, positive, "Distance that cloth keeps from the body."),
-       choice("matching", &O::matching,
-              {{"nearest_centroid", BodyMatching::nearest_centroid}, {"nearest_face", BodyMatching::nearest_face}},
-              "Face of the body that belongs to a vertex: that with the nearest centroid (HOOD), or the nearest one "
-              "within `radius` (ContourCraft)."),
-       number("radius", &O::radius, Unit::length, positive, "Search radius of `nearest_face`."),
-       choice("penalty", &O::penalty, {{"cubic", DepthPenalty::cubic}, {"quadratic", DepthPenalty::quadratic}},
-              "Power of the depth: the third, as published, or the second, which is softer."),
-       choice("samples", &O::samples,
-              {{"vertices", ClothSamples::vertices}, {"edges", ClothSamples::edges}, {"faces", ClothSamples::faces}},
-              "What is kept out of the body: `vertices` of the cloth, as published; `edges`: the middles of its edges "
-              "too; `faces`: the centroids of its triangles too.")});
-  return table;
-}
-
-const Options<FrictionLoss>& friction_options() {
-  using O = FrictionLoss;
-  static const Options<O> table(
-      "friction", "Friction on the body.",
-      {ramp("weight", &O::weight, "Weight of the term."),
-       number("coefficient", &O::coefficient, Unit::none, not_negative, "Friction coefficient."),
-       number("squared_radius", &O::squared_radius, Unit::none, positive,
-              "Squared distance from the nearest centroid of the body within which a vertex has friction [m2]."),
-       choice("slope", &O::slope, {{"x", SlopeAxis::x}, {"y", SlopeAxis::y}, {"z", SlopeAxis::z}},
-              "Axis along which sliding has less friction. The released code takes `z`, although y is up.")});
-  return table;
-}
-
-const Options<RepulsionLoss>& repulsion_options() {
-  using O = RepulsionLoss;
-  static const Options<O> table(
-      "repulsion", "Repulsion between layers of cloth, for pairs that repel.",
-      {ramp("weight", &O::weight, "Weight [N/m2]."),
-       number("thickness", &O::thickness, Unit::length, positive,
-              "Repulsion thickness: the distance below which a pair repels."),
-       number("correspondence", &O::correspondence, Unit::length, positive,
-              "Distance above which a pair does not take part."),
-       number("pinned_factor", &O::pinned_factor, Unit::none, positive,
-              "Factor on the depth of pairs with a pinned vertex, before the depth is cubed.")});
-  return table;
-}
-
-const Options<ContourLoss>& contour_options() {
-  using O = ContourLoss;
-  static const Options<O> table(
-      "contours", "Sum of the squared segment lengths of intersection contours.",
-      {ramp("weight", &O::weight, "Weight [N/m]."),
-       choice("gradient", &O::gradient,
-              {{"translational", ContourGradient::translational}, {"full", ContourGradient::full}},
-              "`translational` moves triangles and does not shorten them. `full` is the derivative of the value."),
-       choice("normal", &O::normal, {{"frozen", ContourNormal::frozen}, {"turning", ContourNormal::turning}},
-              "`frozen` keeps the normals of faces constant, as published. `turning` is the exact derivative."),
-       number("share", &O::share, Unit::none, {.low = 0, .high = 0.99},
-              "Share of the term in the gradient of each sample that has contours, whatever the weight, which must not "
-              "be 0. 0: as the weight has it.")});
-  return table;
-}
-
-const Options<PenetrationOptions>& region_options() {
-  using O = PenetrationOptions;
-  static const Options<O> table(
-      "regions", "How contours bound volumes.",
-      {choice("rule", &O::regions, {{"single", RegionRule::single}, {"parity", RegionRule::parity}},
-              "`single` judges each contour alone, as published. `parity` judges all contours between the same two "
-              "components together."),
-       choice("side", &O::smaller, {{"faces", SmallerSide::faces}, {"area", SmallerSide::area}},
-              "The side of a contour with fewer faces, or with less area, counts as inside.")});
-  return table;
-}
-
-const Options<VolumeLoss>& volume_options() {
-  using O = VolumeLoss;
-  static const Options<O> table(
-      "volume", "The volume that self-penetrating cloth encloses (Liao et al. 2024).",
-      {ramp("weight", &O::weight, "Weight of 6 times the volume [J/m3], 3e4 as published, or of the area [J/m2]."),
-       choice("form", &O::form, {{"enclosed", VolumeForm::enclosed}, {"winding", VolumeForm::winding}},
-              "`enclosed` closes the holes of garments by fans of triangles. `winding` uses winding numbers and needs "
-              "no fans."),
-       section(&O::regions, region_options(), "How contours bound volumes."),
-       choice("measure", &O::measure, {{"volume", PenetrationMeasure::volume}, {"area", PenetrationMeasure::area}},
-              "What is penalised: the volume of a region, or the area of its faces."),
-       choice("crossings", &O::crossings,
-              {{"exact", CrossingMotion::exact},
-               {"frozen_on_edge", CrossingMotion::frozen_on_edge},
-               {"frozen_on_face", CrossingMotion::frozen_on_face}},
-              "How crossings of edges and faces follow the vertices. `exact`: they slide in both. The others fix their "
-              "weights on the edge or the face, as published."),
-       number("saturation", &O::saturation, Unit::volume, not_negative,
-              "Volume V of a region above which its pressure falls as 1 / V. 0: it never falls, as published. It does "
-              "not apply to `area`, nor in the form `winding` to what a garment does to itself.")});
-  return table;
-}
-
-const Options<VertexRepulsionLoss>& vertex_repulsion_options() {
-  using O = VertexRepulsionLoss;
-  static const Options<O> table(
-      "vertex_repulsion", "Repulsion between vertices that no edge joins (Liao et al. 2024, appendix A).",
-      {ramp("weight", &O::weight, "Weight [J/m], or [J/m2] for the power 2."),
-       number("distance", &O::distance, Unit::length, positive, "Distance below which two vertices repel."),
-       integer("power", &O::power, {.low = 1, .high = 2},
-               "Power of the amount by which two vertices are nearer than `distance`.")});
-  return table;
-}
-
-const Options<LossOptions>& objective_options() {
-  using O = LossOptions;
-  static const Options<O> table(
-      "objective", "Terms of the loss and their weights over the run. A term whose weight is zero is left out.",
-      {ramp("stretching", &O::stretching, "Weight of the membrane energy."),
-       ramp("bending", &O::bending, "Weight of the bending energy."),
-       ramp("gravity", &O::gravity, "Weight of the energy of gravity."),
-       ramp("inertia", &O::inertia, "Weight of the inertia term."),
-       section(&O::collision, collision_options(), "Penetration of the body."),
-       section(&O::friction, friction_options(), "Friction on the body."),
-       section(&O::repulsion, repulsion_options(), "Repulsion between layers of cloth."),
-       section(&O::contours, contour_options(), "Length of intersection contours."),
-       section(&O::volume, volume_options(), "Volume that self-penetrating cloth encloses."),
-       section(&O::vertex_repulsion, vertex_repulsion_options(), "Repulsion between vertices."),
-       number("gravity_strength", &O::gravity_strength, Unit::none, not_negative,
-              "Acceleration by gravity, against y [m/s2]."),
-       number("relaxation_dt", &O::relaxation_dt, Unit::time, positive,
-              "Time step of the inertia term in a frame in which cloth falls to rest.")});
-  return table;
-}
-
 const Options<OptimiserOptions>& optimiser_options() {
   using O = OptimiserOptions;
   static const Options<O> table(
@@ -336,21 +217,35 @@ const Options<WatchOptions>& watch_options() {
 
 void check_names(const TrainingOptions& options, const std::string& where) {
   const Wardrobe wardrobe = read_wardrobe(config_folder() / "outfits.yaml");
-  std::vector<std::string> known = wardrobe.training;
+  std::vector<std::string> known = wardrobe.training, clips;
   for (const Outfit& outfit : wardrobe.outfits)
     if (!outfit.validation) known.push_back(outfit.name);
+  for (const ClipEntry& entry : read_clip_split(config_folder() / "clips.yaml"))
+    if (!entry.validation) clips.push_back(entry.name);
   const auto refuse = [&](const std::string& key, const std::string& name, const std::vector<std::string>& allowed) {
     if (std::ranges::find(allowed, name) == allowed.end())
       throw Error(fmt::format("`{}` is not for training, or unknown", name), where + ": " + key,
                   "for training: " + joined(allowed) + suggestion(name, allowed));
   };
-  if (options.samples.garments.empty()) throw Error("names no garment", where + ": samples.garments", "");
-  for (const std::string& name : options.samples.garments) refuse("samples.garments", name, known);
-  if (!options.watch.garment.empty()) refuse("watch.garment", options.watch.garment, options.samples.garments);
-  std::vector<std::string> clips;
-  for (const ClipEntry& entry : read_clip_split(config_folder() / "clips.yaml"))
-    if (!entry.validation) clips.push_back(entry.name);
-  for (const std::string& name : options.samples.clips) refuse("samples.clips", name, clips);
+  const SampleOptions& samples = options.samples;
+  const auto held_out = [&](const Config& person) {
+    return split_of(samples.split, person["name"].text()) != Split::training;
+  };
+  if (!has_mannequin(samples) && std::ranges::all_of(samples.people, held_out))
+    throw Error("names no garment", where + ": samples.garments", "name some, or `people` who are not held out");
+  if (has_mannequin(samples))
+    for (const std::string& name : samples.garments) refuse("samples.garments", name, known);
+  for (const std::string& name : samples.clips) refuse("samples.clips", name, clips);
+  check_split(samples.people, samples.split, where);
+  std::vector<std::string> worn = samples.garments;
+  for (const Config& person : samples.people) {
+    if (held_out(person)) continue;
+    for (const Config& wear : person["wear"].items)
+      if (split_of_wear(samples.split, wear) == Split::training) worn.push_back(wear["name"].text());
+    for (const Config& clip : person["clips"].items)
+      if (split_of_clip(samples.split, clip) == Split::training) clips.push_back(clip["name"].text());
+  }
+  if (!options.watch.garment.empty()) refuse("watch.garment", options.watch.garment, worn);
   refuse("watch.clip", options.watch.clip, clips);
 }
 
@@ -362,8 +257,12 @@ void read_over_base(const std::filesystem::path& file, const std::vector<std::st
     read_over_base(existing_path(base, file.parent_path()), {}, depth + 1, options);
   }
   read_options(training_options().rows, config, options);
+  const std::filesystem::path folder = file.parent_path();
+  const Config& samples = config["samples"];
+  if (samples["people"].given) settle_people(folder, options.samples.people);
+  if (samples["split"].given) settle_split(folder, samples["split"]["file"], options.samples.split);
   if (const Config& weights = config["weights"]; weights.given)
-    options.weights = expanded_path(weights, weights.text(), file.parent_path()).string();
+    options.weights = expanded_path(weights, weights.text(), folder).string();
 }
 
 }  // namespace
@@ -400,6 +299,8 @@ const Options<TrainingOptions>& training_options() {
   return table;
 }
 
+bool has_mannequin(const SampleOptions& samples) { return samples.garments != std::vector<std::string>{"none"}; }
+
 TrainingOptions read_training(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   TrainingOptions options;
   read_over_base(file, overrides, 0, options);
@@ -411,15 +312,27 @@ TrainingOptions read_training(const std::filesystem::path& file, const std::vect
 std::string training_yaml(const TrainingOptions& options) { return to_yaml(training_options().written(options)); }
 
 std::string training_reference() {
+  const Section& body = table::body_section();
+  const auto joints = std::ranges::find(body.keys, "joints", &Key::name);
+  std::vector<const Section*> all{&training_options().section,
+                                  &sample_options().section,
+                                  &training_material_options().section,
+                                  &force_sampling_options().section,
+                                  &person_section(),
+                                  &person_clip_section(),
+                                  &wear_section(),
+                                  &body,
+                                  joints->section,
+                                  &garment_options().section,
+                                  &split_options().section,
+                                  &pool_options().section,
+                                  &training_contact_options().section,
+                                  &space_options().section};
+  for (const Section* section : objective_sections()) all.push_back(section);
+  for (const Section* section : {&optimiser_options().section, &watch_options().section, &ramp_options().section})
+    all.push_back(section);
   std::string page;
-  for (const Section* section :
-       {&training_options().section, &sample_options().section, &training_material_options().section,
-        &force_sampling_options().section, &pool_options().section, &training_contact_options().section,
-        &space_options().section, &objective_options().section, &collision_options().section,
-        &friction_options().section, &repulsion_options().section, &contour_options().section,
-        &volume_options().section, &region_options().section, &vertex_repulsion_options().section,
-        &optimiser_options().section, &watch_options().section, &ramp_options().section})
-    page += section_chapter(*section);
+  for (const Section* section : all) page += section_chapter(*section);
   return page;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "learned/steppers/network_device.hpp"
 #include "pipeline/config/options.hpp"
 #include "pipeline/training/schedule.hpp"
+#include "pipeline/training/training_people.hpp"
 
 namespace selvedge {
 
@@ -37,7 +39,7 @@ enum class MaterialSampling {
 
 // What a network is trained on.
 struct SampleOptions {
-  std::vector<std::string> garments{"tshirt"};  // by code, or outfits of outfits.yaml
+  std::vector<std::string> garments{"tshirt"};  // by code, or outfits of outfits.yaml; `none`: no mannequin
   double edge = 0.035;                          // of garments' triangles [m]
   std::vector<std::string> clips;               // empty: all of the training split
   int shapes = 1;                               // of the body; the first is the mean one
@@ -51,7 +53,12 @@ struct SampleOptions {
   bool soft_tissue = true;         // the body gives way where it would pass through itself
   GarmentStart start = GarmentStart::skinned;
   ForceSampling forces;
+  std::vector<Config> people;              // of own data, as the table person_section has them
+  std::optional<double> mannequin_weight;  // how often the mannequin is drawn among them; 1 where it is not said
+  SplitOptions split;                      // of them
 };
+
+bool has_mannequin(const SampleOptions&);
 
 // How states are rolled out.
 struct PoolOptions {

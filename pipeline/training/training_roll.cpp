@@ -139,6 +139,8 @@ std::vector<char> meeting(const Surface& surface, const Points& x, IntersectionC
 std::shared_ptr<const TrainingScene> scene_of(RollMaker& maker, const RollRequest& request) {
   if (maker.options.samples.sample_materials != MaterialSampling::none)
     return make_training_scene(maker, request, drawn_materials(maker, request));
+  constexpr std::size_t most_scenes = 128;
+  if (maker.scenes.size() > most_scenes) maker.scenes.clear();
   auto& scene =
       maker.scenes[{request.wear, request.body, request.mirrored, request.with_body, request.sheet, request.wind}];
   if (!scene) scene = make_training_scene(maker, request, drawn_materials(maker, request));
@@ -183,6 +185,28 @@ void draw_force(const ForceSampling& forces, RandomStream& random, RollRequest& 
   request.force = random.between(0, forces.strongest) * Vec3(across * std::cos(turned), up, across * std::sin(turned));
 }
 
+// One of `all`, as often as its weight says.
+template <class List, class Weight>
+std::size_t drawn(const List& all, RandomStream& random, const Weight& weight) {
+  if (std::ranges::all_of(all, [&](const auto& one) { return weight(one) == weight(all[0]); }))
+    return static_cast<std::size_t>(random.below(static_cast<int>(all.size())));
+  double sum = 0, below = 0;
+  for (const auto& one : all) sum += weight(one);
+  const double at = random.uniform() * sum;
+  for (std::size_t k = 0; k + 1 < all.size(); ++k)
+    if (at < (below += weight(all[k]))) return k;
+  return all.size() - 1;
+}
+
+// A body of the person, and a clip of that body.
+void draw_performance(const TrainingWorld& world, const TrainingPerson& who, RandomStream& random,
+                      RollRequest& request) {
+  const auto body = [&](int k) -> const TrainingBody& { return world.bodies[static_cast<std::size_t>(k)]; };
+  request.body = who.bodies[drawn(who.bodies, random, [&](int k) { return body(k).weight; })];
+  request.clip =
+      static_cast<int>(drawn(body(request.body).clips, random, [](const TrainingClip& clip) { return clip.weight; }));
+}
+
 constexpr int many_pairs = 20;    // of a start that counts as tangled (Grigorev et al. 2024, figure 5, has more)
 constexpr int most_attempts = 8;  // to find one
 
@@ -204,8 +228,7 @@ RollRequest tangled_place(RollMaker& maker, const RollRequest& asked, int& pairs
       best = tried;
     }
     if (asked.number % 2 == 1) break;
-    tried.body = random.below(static_cast<int>(maker.world.bodies.size()));
-    tried.clip = random.below(static_cast<int>(maker.world.clip_names.size()));
+    draw_performance(maker.world, wearer(maker.world, tried.wear), random, tried);
     tried.first_frame = random.below(std::max(1, frame_count(maker.world, tried.body, tried.clip) - asked.frames));
   }
   return best;
@@ -218,9 +241,12 @@ RollRequest draw_roll(const TrainingOptions& options, const TrainingWorld& world
   const PoolOptions& pool = options.pool;
   RollRequest request;
   request.number = number;
-  request.wear = random.below(static_cast<int>(world.wear.size()));
-  request.body = random.below(static_cast<int>(world.bodies.size()));
-  request.clip = random.below(static_cast<int>(world.clip_names.size()));
+  const std::vector<TrainingPerson>& people = world.people;
+  const TrainingPerson& who =
+      people[people.size() > 1 ? drawn(people, random, [](const TrainingPerson& one) { return one.weight; }) : 0];
+  request.wear =
+      who.wear[drawn(who.wear, random, [&](int k) { return world.wear[static_cast<std::size_t>(k)].weight; })];
+  draw_performance(world, who, random, request);
   request.still = random.heads(samples.still_share);
   request.mirrored = samples.mirror && random.heads(0.5);
   request.with_body = !random.heads(samples.no_body_share);
@@ -281,11 +307,15 @@ std::shared_ptr<const TrainingScene> make_training_scene(const RollMaker& maker,
   } else {
     const Eigen::VectorXd& shape = world.bodies[static_cast<std::size_t>(request.body)].shape;
     for (const Garment& garment : world.wear[static_cast<std::size_t>(request.wear)].garments)
-      add(garment.name, rest_shape(garment, world.body, shape), garment.skin.triangles, garment.pins);
+      add(garment.name, rest_shape(garment, wearer(world, request.wear).body, shape), garment.skin.triangles,
+          garment.pins);
   }
   scene.wind.on = request.wind;
   scene.contact.self = maker.options.contact.edges;
-  if (request.with_body) scene.obstacles.push_back({"body", request.mirrored ? world.mirrored : world.surface, true});
+  if (request.with_body) {
+    const TrainingPerson& who = wearer(world, request.wear);
+    scene.obstacles.push_back({"body", request.mirrored ? who.mirrored : who.surface, true});
+  }
   return with_graph(maker, request, triangles, std::move(made));
 }
 

@@ -32,14 +32,35 @@ double sum_at(const FrameMaking& making, RollingState& state, const Points& x) {
   return sum_of(add_losses(inputs_of(state, seen, x, making.progress), making.losses, state.losses, nullptr));
 }
 
-RollRequest watched_request(const TrainingOptions& options, const TrainingWorld& world, int clip, int first, int frames,
-                            bool still) {
+RollRequest watched_request(const TrainingOptions& options, const TrainingWorld& world, const RollRequest& who,
+                            int clip, int first, int frames, bool still) {
   RollRequest request;
+  request.wear = who.wear;
+  request.body = who.body;
   request.clip = clip;
   request.still = still;
-  request.frames = std::max(1, std::min(frames, frame_count(world, 0, clip) - 1));
-  request.first_frame = std::clamp(first, 0, std::max(0, frame_count(world, 0, clip) - 1 - request.frames));
+  const int there = frame_count(world, request.body, clip);
+  request.frames = std::max(1, std::min(frames, there - 1));
+  request.first_frame = std::clamp(first, 0, std::max(0, there - 1 - request.frames));
   request.cloth_contact = options.contact.edges;
+  return request;
+}
+
+// The garment and clip that the options name, where they are, on a body of theirs.
+RollRequest watched(const WatchOptions& options, const TrainingWorld& world) {
+  RollRequest request;
+  const auto wear = std::ranges::find(world.wear, options.garment, &TrainingWear::name);
+  if (wear != world.wear.end()) request.wear = static_cast<int>(wear - world.wear.begin());
+  const TrainingPerson& person = wearer(world, request.wear);
+  request.body = person.bodies.front();
+  for (const int body : person.bodies) {
+    const std::vector<TrainingClip>& clips = world.bodies[static_cast<std::size_t>(body)].clips;
+    const auto found = std::ranges::find(clips, options.clip, &TrainingClip::name);
+    if (found == clips.end()) continue;
+    request.body = body;
+    request.clip = static_cast<int>(found - clips.begin());
+    break;
+  }
   return request;
 }
 
@@ -174,21 +195,15 @@ TrainingWatch make_training_watch(const TrainingOptions& options, Trainer& train
   std::vector<Roll> rolls;
   trainer.queue->locked([&] {
     const TrainingWorld& world = maker.world;
-    const auto clips = static_cast<int>(world.clip_names.size());
-    const auto found = std::ranges::find(world.clip_names, options.watch.clip);
-    const int clip = found == world.clip_names.end() ? 0 : static_cast<int>(found - world.clip_names.begin());
-    const auto wear = std::ranges::find(world.wear, options.watch.garment, &TrainingWear::name);
-    RollRequest request = watched_request(options, world, clip, 0, options.watch.frames + 1, true);
-    request.wear = wear == world.wear.end() ? 0 : static_cast<int>(wear - world.wear.begin());
+    const RollRequest who = watched(options.watch, world);
+    const auto clips = static_cast<int>(world.bodies[static_cast<std::size_t>(who.body)].clips.size());
     const double noise = std::exchange(maker.options.samples.noise, 0);
-    watch.roll = make_roll(maker, request);
+    watch.roll = make_roll(maker, watched_request(options, world, who, who.clip, 0, options.watch.frames + 1, true));
     for (int k = 0; k < options.watch.fixed_states; ++k) {
       const bool worn = k % 2 == 0;
-      const int at = (clip + k / 2) % clips, frames = worn ? 1 : frames_before + 1;
-      RollRequest of_state =
-          watched_request(options, world, at, frame_count(world, 0, at) / 3 + 10 * (k / 2 / clips), frames, !worn);
-      of_state.wear = request.wear;
-      rolls.push_back(make_roll(maker, of_state));
+      const int at = (who.clip + k / 2) % clips, frames = worn ? 1 : frames_before + 1;
+      const int first = frame_count(world, who.body, at) / 3 + 10 * (k / 2 / clips);
+      rolls.push_back(make_roll(maker, watched_request(options, world, who, at, first, frames, !worn)));
     }
     maker.options.samples.noise = noise;
   });

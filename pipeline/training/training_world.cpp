@@ -3,21 +3,32 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
+#include "learned/steppers/learned_state.hpp"
 #include "pipeline/bodies/mannequin.hpp"
-#include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/garments/garment_make.hpp"
 #include "pipeline/garments/outfit.hpp"
+#include "pipeline/host/kept_rows.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
-#include "pipeline/motions/clip_procedural.hpp"
 #include "pipeline/motions/clip_split.hpp"
-#include "pipeline/motions/t_pose.hpp"
+#include "pipeline/scene/config_scene.hpp"
+#include "pipeline/scene/setup_garment.hpp"
 #include "pipeline/training/random_stream.hpp"
 
 namespace selvedge {
 namespace {
 
 constexpr double tissue_skin_width = 0.02;  // of the skin that a garment's vertex goes along with [m]
-constexpr double layer_room = 0.005;        // that a garment more takes between parts of the body [m]
+
+// Who is to be in the world: sections as a scene has them.
+struct Cast {
+  std::string name;
+  double weight = 1;
+  Config body;
+  std::vector<std::pair<std::string, Config>> clips;  // with the body's section that has the clip
+  std::vector<double> weights;                        // of clips
+};
 
 std::vector<std::string> training_clip_names(const SampleOptions& options) {
   if (!options.clips.empty()) return options.clips;
@@ -27,8 +38,33 @@ std::vector<std::string> training_clip_names(const SampleOptions& options) {
   return names;
 }
 
+Cast mannequin_cast(const SampleOptions& options) {
+  const std::string where = "samples";
+  Cast cast{"mannequin",
+            options.mannequin_weight.value_or(1),
+            read_values(table::body_section(), {{"model", where, {"mannequin"}}}),
+            {},
+            {}};
+  for (const std::string& name : training_clip_names(options)) {
+    cast.clips.emplace_back(
+        name, read_values(table::body_section(), {{"model", where, {"mannequin"}}, {"clip", where, {name}}}));
+    cast.weights.push_back(1);
+  }
+  return cast;
+}
+
+Cast cast_of(const SampleOptions& options, const Config& person) {
+  Cast cast{person["name"].text(), person["weight"].number(), person["body"], {}, {}};
+  for (const Config& clip : person["clips"].items) {
+    if (split_of_clip(options.split, clip) != Split::training) continue;
+    cast.clips.emplace_back(clip["name"].text(), performing(person["body"], clip));
+    cast.weights.push_back(clip["weight"].number());
+  }
+  return cast;
+}
+
 // A garment by code, or an outfit.
-TrainingWear dressed_wear(const std::string& name, const SampleOptions& options, const BodyModel& body) {
+TrainingWear wear_by_code(const std::string& name, const SampleOptions& options, const BodyModel& body) {
   TrainingWear wear{name, {}, {}};
   for (const Outfit& outfit : read_wardrobe(config_folder() / "outfits.yaml").outfits)
     if (outfit.name == name)
@@ -37,102 +73,181 @@ TrainingWear dressed_wear(const std::string& name, const SampleOptions& options,
   GarmentOptions cut;
   cut.edge = options.edge;
   if (wear.garments.empty()) wear.garments.push_back(kept_garment(cache_folder(), name, body, cut));
-  for (const Garment& garment : wear.garments)
-    wear.skin.push_back(options.soft_tissue ? shares_of_body(garment.skin.rest, body, tissue_skin_width)
-                                            : SkinWeights{});
   return wear;
 }
 
-Eigen::VectorXd training_shape(const SampleOptions& options, std::uint64_t seed, int index, Eigen::Index directions) {
+TrainingWear wear_of(const Config& section, const Performance& who, std::vector<std::string>& warnings) {
+  TrainingWear wear{section["name"].text(), {}, {}};
+  wear.weight = section["weight"].number();
+  for (const Config& garment : section["garments"].items)
+    for (Garment& made : read_garments(garment, {}, who, warnings)) wear.garments.push_back(std::move(made));
+  return wear;
+}
+
+void add_wear(const SampleOptions& options, const BodyModel& body, TrainingWear wear, TrainingWorld& world) {
+  for (const Garment& garment : wear.garments)
+    wear.skin.push_back(options.soft_tissue ? shares_of_body(garment.skin.rest, body, tissue_skin_width)
+                                            : SkinWeights{});
+  wear.person = static_cast<int>(world.people.size()) - 1;
+  world.people.back().wear.push_back(static_cast<int>(world.wear.size()));
+  world.wear.push_back(std::move(wear));
+}
+
+// The body of the index-th shape, about the one that the file gives.
+Eigen::VectorXd drawn_shape(const SampleOptions& options, std::uint64_t seed, int index, const Eigen::VectorXd& given,
+                            Eigen::Index directions) {
   Eigen::VectorXd shape = Eigen::VectorXd::Zero(directions);
+  shape.head(given.size()) = given;
   if (index == 0) return shape;
   RandomStream random = stream_of(seed, static_cast<std::uint64_t>(index));
   for (Eigen::Index k = 0; k < directions; ++k)
-    shape[k] = std::clamp(options.shape_spread * random.normal(), -3.0, 3.0);
+    shape[k] += std::clamp(options.shape_spread * random.normal(), -3.0, 3.0);
   return shape;
 }
 
-TrainingBody training_body(const TrainingWorld& world, const SampleOptions& options, const Eigen::VectorXd& shape) {
-  TrainingBody body;
-  body.shape = shape;
-  body.joints = joint_positions(world.body, shape);
-  const Points rest = shaped(world.body.skin, shape);
-  std::size_t layers = 1;
-  for (const TrainingWear& wear : world.wear) layers = std::max(layers, wear.garments.size());
-  if (options.soft_tissue)
-    body.soft_tissue = std::make_shared<GiveWay>(
-        world.surface, rest,
-        GiveWayOptions{.room = GiveWayOptions{}.room + static_cast<double>(layers - 1) * layer_room});
-  const Points joints = smpl_joints(world.body, body.joints);
-  for (const std::string& name : world.clip_names)
-    body.clips.push_back(make_clip(name, joints, rest.col(1).minCoeff()));
-  body.given.resize(body.clips.size());
-  return body;
+// As a roll-out takes it, one pose a time step.
+Clip in_time_steps(Clip clip) {
+  if (std::abs(clip.fps * learned_dt - 1) < 1e-9) return clip;
+  Clip made = clip;
+  made.fps = std::round(1 / learned_dt);
+  made.poses.clear();
+  const auto steps = static_cast<int>(std::floor(end_of(clip) / learned_dt + 1e-6));
+  for (int k = 0; k <= steps; ++k) made.poses.push_back(pose_at(clip, k * learned_dt));
+  return made;
 }
 
-const TissueDisplacements& tissue_displacements(TrainingBody& body, int clip, int frame, const Points& skinned) {
-  std::map<int, TissueDisplacements>& known = body.given[static_cast<std::size_t>(clip)];
-  if (const auto found = known.find(frame); found != known.end()) return found->second;
-  const Points moves = (*body.soft_tissue)(skinned)-skinned;
-  TissueDisplacements kept;
-  for (int v = 0; v < moves.rows(); ++v)
-    if (moves.row(v).cwiseAbs().maxCoeff() > 1e-7) kept.vertices.push_back(v);
-  kept.displacements = moves(kept.vertices, Eigen::all).cast<float>();
-  return known.emplace(frame, std::move(kept)).first->second;
+void check_garments_take(const Config& section, const TrainingWorld& world, const TrainingPerson& person,
+                         const Eigen::VectorXd& shape) {
+  for (const int k : person.wear)
+    for (const Garment& garment : world.wear[static_cast<std::size_t>(k)].garments)
+      if (garment.skin.shape_directions.cols() < shape.size())
+        section.fail("has a shape of " + std::to_string(shape.size()) + " coefficients, the garment `" + garment.name +
+                         "` takes " + std::to_string(garment.skin.shape_directions.cols()),
+                     "make the garment anew for this body with `selvedge dress`, or give a shorter `shape`");
+}
+
+// Of what the frames of soft tissue depend on beside shape, layers and poses. 0: the mannequin's with the usual room.
+std::uint64_t tissue_key(const Config& section, const TrainingPerson& person) {
+  const std::vector<double>& room = section["room"].numbers;
+  if (person.body.name.starts_with("mannequin") && room.empty()) return 0;
+  return hash_of(fmt::format("{}", fmt::join(room, " ")), person.hash);
+}
+
+// The person's body of this shape, one of those from `first` on or a new one.
+TrainingBody& body_of(const SampleOptions& options, const Config& section, const Eigen::VectorXd& shape,
+                      std::size_t first, Performance& who, TrainingWorld& world) {
+  for (std::size_t k = first; k < world.bodies.size(); ++k)
+    if (world.bodies[k].shape == shape) return world.bodies[k];
+  TrainingPerson& person = world.people.back();
+  check_garments_take(section["clip"], world, person, shape);
+  TrainingBody body;
+  body.shape = shape;
+  body.joints = joint_positions(person.body, shape);
+  body.person = static_cast<int>(world.people.size()) - 1;
+  body.weight = 0;
+  body.tissue_key = tissue_key(section, person);
+  if (options.soft_tissue) {
+    perform(section, {}, who);
+    wear(layer_count(world, person), who);
+    body.soft_tissue = who.soft_tissue;
+  }
+  person.bodies.push_back(static_cast<int>(world.bodies.size()));
+  return world.bodies.emplace_back(std::move(body));
+}
+
+// All clips by the index-th shape. Clips that give their body a shape of its own are of bodies of their own.
+void add_shape(const SampleOptions& options, std::uint64_t seed, int index, const Cast& cast, Performance& who,
+               TrainingWorld& world) {
+  const std::size_t first = world.bodies.size();
+  for (std::size_t k = 0; k < cast.clips.size(); ++k) {
+    Config section = cast.clips[k].second;
+    const auto go = [&] {  // without soft tissue, which takes a while to make
+      Config stiff = section;
+      stiff["room"].numbers = {0};
+      perform(stiff, {}, who);
+      return who.clip;
+    };
+    Clip motion = go();
+    const Eigen::VectorXd shape = drawn_shape(options, seed, index, who.shape, who.body.skin.shape_directions.cols());
+    section["shape"].numbers.assign(shape.data(), shape.data() + shape.size());
+    section["shape"].given = true;
+    if (index > 0) motion = go();
+    if (motion.poses.size() < 2) section["clip"].fail("has fewer than two poses", "leave it out");
+    TrainingBody& body = body_of(options, section, shape, first, who, world);
+    body.weight += cast.weights[k];
+    body.clips.push_back({cast.clips[k].first, in_time_steps(std::move(motion)), cast.weights[k]});
+  }
+}
+
+std::uint64_t hash_of_body(const BodyModel& body) {
+  std::uint64_t hash = hash_of(body.name);
+  const auto add = [&](const void* data, std::size_t bytes) {
+    hash = hash_of({static_cast<const char*>(data), bytes}, hash);
+  };
+  const SkinnedSurface& skin = body.skin;
+  add(skin.rest.data(), sizeof(double) * static_cast<std::size_t>(skin.rest.size()));
+  add(skin.triangles.data(), sizeof(int) * static_cast<std::size_t>(skin.triangles.size()));
+  add(skin.shape_directions.data(), sizeof(double) * static_cast<std::size_t>(skin.shape_directions.size()));
+  add(skin.pose_directions.data(), sizeof(double) * static_cast<std::size_t>(skin.pose_directions.size()));
+  for (const SkinWeights* matrix : {&skin.weights, &body.regressor})
+    add(matrix->valuePtr(), sizeof(double) * static_cast<std::size_t>(matrix->nonZeros()));
+  return hash;
+}
+
+TrainingPerson person_of(const Cast& cast, const Performance& who) {
+  TrainingPerson person{cast.name, who.body, who.surface, {}, who.joined, {}, {}, hash_of_body(who.body), cast.weight};
+  Triangles turned = who.surface.triangles;
+  turned.col(1).swap(turned.col(2));
+  person.mirrored = make_surface(who.surface.vertex_count, turned);
+  return person;
+}
+
+void add_person(const SampleOptions& options, std::uint64_t seed, const Cast& cast, const Config* from,
+                TrainingWorld& world) {
+  Performance who = read_figure(cast.body, {});
+  who.name = cast.name;
+  if (from && cast.body["shape"].given) perform(cast.body, {}, who);
+  world.people.push_back(person_of(cast, who));
+  if (!from)
+    for (const std::string& name : options.garments)
+      add_wear(options, who.body, wear_by_code(name, options, who.body), world);
+  else
+    for (const Config& wear : (*from)["wear"].items)
+      if (split_of_wear(options.split, wear) == Split::training)
+        add_wear(options, who.body, wear_of(wear, who, world.warnings), world);
+  if (world.people.back().wear.empty() || cast.clips.empty())
+    from->fail("has nothing to train on: all that it wears, or all its clips, are held out by `split`",
+               "name the person in `split`, to hold it out as a whole");
+  const bool shapes = who.body.skin.shape_directions.cols() > 0;
+  for (int k = 0; k < (shapes ? options.shapes : 1); ++k) add_shape(options, seed, k, cast, who, world);
+  for (const std::string& warning : who.warnings)  // a clip that was read again warns again
+    if (std::ranges::find(world.warnings, warning) == world.warnings.end()) world.warnings.push_back(warning);
 }
 
 }  // namespace
 
+int layer_count(const TrainingWorld& world, const TrainingPerson& person) {
+  std::size_t layers = 1;
+  for (const int k : person.wear) layers = std::max(layers, world.wear[static_cast<std::size_t>(k)].garments.size());
+  return static_cast<int>(layers);
+}
+
 TrainingWorld make_training_world(const SampleOptions& options, std::uint64_t seed) {
   TrainingWorld world;
-  world.body = kept_mannequin(cache_folder());
-  const auto vertices = static_cast<int>(world.body.skin.rest.rows());
-  world.surface = make_surface(vertices, world.body.skin.triangles);
-  Triangles turned = world.body.skin.triangles;
-  turned.col(1).swap(turned.col(2));
-  world.mirrored = make_surface(vertices, turned);
-  world.clip_names = training_clip_names(options);
-  for (const std::string& name : options.garments) world.wear.push_back(dressed_wear(name, options, world.body));
-  for (int k = 0; k < options.shapes; ++k)
-    world.bodies.push_back(
-        training_body(world, options, training_shape(options, seed, k, world.body.skin.shape_directions.cols())));
+  if (has_mannequin(options)) add_person(options, seed, mannequin_cast(options), nullptr, world);
+  for (const Config& person : options.people)
+    if (split_of(options.split, person["name"].text()) == Split::training)
+      add_person(options, seed, cast_of(options, person), &person, world);
   return world;
 }
 
-WornFrame worn_frame(TrainingWorld& world, int wear, int body, int clip, int frame) {
-  TrainingBody& who = world.bodies[static_cast<std::size_t>(body)];
-  const Clip& motion = who.clips[static_cast<std::size_t>(clip)];
-  const auto last = static_cast<int>(motion.poses.size()) - 1;
-  const int k = std::clamp(frame, 0, last);
-  const BodyPose pose = matched(motion.poses[static_cast<std::size_t>(k)], motion.joints, world.body.joints);
-  const JointTransforms transforms = joint_transforms(world.body, who.joints, pose);
-  Points skinned = posed(world.body.skin, who.shape, pose, transforms);
-  Points moves;
-  if (who.soft_tissue) {
-    const TissueDisplacements& given = tissue_displacements(who, clip, k, skinned);
-    moves = Points::Zero(skinned.rows(), 3);
-    moves(given.vertices, Eigen::all) = given.displacements.cast<double>();
-    skinned += moves;
-  }
-  WornFrame result;
-  result.body = skinned.cast<float>();
-  const TrainingWear& what = world.wear[static_cast<std::size_t>(wear)];
-  Eigen::Index rows = 0;
-  for (const Garment& garment : what.garments) rows += garment.skin.rest.rows();
-  result.cloth.resize(rows, 3);
-  rows = 0;
-  for (std::size_t g = 0; g < what.garments.size(); ++g) {
-    Points x = posed(what.garments[g].skin, who.shape, pose, transforms);
-    if (who.soft_tissue) x += what.skin[g] * moves;
-    result.cloth.middleRows(rows, x.rows()) = x.cast<float>();
-    rows += x.rows();
-  }
-  return result;
+const TrainingPerson& wearer(const TrainingWorld& world, int wear) {
+  return world.people[static_cast<std::size_t>(world.wear[static_cast<std::size_t>(wear)].person)];
 }
 
 int frame_count(const TrainingWorld& world, int body, int clip) {
   return static_cast<int>(
-      world.bodies[static_cast<std::size_t>(body)].clips[static_cast<std::size_t>(clip)].poses.size());
+      world.bodies[static_cast<std::size_t>(body)].clips[static_cast<std::size_t>(clip)].motion.poses.size());
 }
 
 }  // namespace selvedge

@@ -7,15 +7,16 @@
 #include "pipeline/bodies/body_hdf5.hpp"
 #include "pipeline/tools/convert_body.hpp"
 #include "tests/pipeline/fake_body.hpp"
-#include "tests/pipeline/fake_npz.hpp"
+#include "tests/pipeline/fake_smpl.hpp"
 #include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_body_smpl {
 
+using fake::published;
+
 namespace {
 
 constexpr int vertices = 60;
-constexpr std::uint32_t root = 4294967295U;
 
 const std::vector<int> smpl_parents{-1, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 9, 9, 12, 13, 14, 16, 17, 18, 19, 20, 21};
 
@@ -31,41 +32,6 @@ BodyModel model(int joints, int columns) {
   if (joints == 24) body.parents = smpl_parents;
   body.joints = smpl_joint_names(joints);
   return body;
-}
-
-template <class T>
-std::string dense(const std::vector<std::size_t>& shape, const Eigen::MatrixXd& matrix) {
-  std::vector<T> values;
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
-    for (Eigen::Index j = 0; j < matrix.cols(); ++j) values.push_back(static_cast<T>(matrix(i, j)));
-  return fake::npy(shape, values);
-}
-
-// The fields of the published files, each in its published shape; what the models carry besides is there too, some of
-// it pickled, as in the originals.
-template <class Real, class Whole>
-fake::NpzEntries published(const BodyModel& body) {
-  const std::size_t n = vertices, joints = body.parents.size();
-  std::vector<Whole> f, kintree;
-  for (Eigen::Index k = 0; k < body.skin.triangles.size(); ++k)
-    f.push_back(static_cast<Whole>(body.skin.triangles.data()[k]));
-  for (const int parent : body.parents) kintree.push_back(static_cast<Whole>(parent < 0 ? root : unsigned(parent)));
-  for (std::size_t j = 0; j < joints; ++j) kintree.push_back(static_cast<Whole>(j));
-  const auto columns = static_cast<std::size_t>(body.skin.shape_directions.cols());
-  const std::string pickled = fake::npy_of("'|O'", false, "()", "\x80\x03}q.");
-  return {{"v_template", dense<Real>({n, 3}, body.skin.rest)},
-          {"f", fake::npy(std::vector<std::size_t>{n, 3}, f)},
-          {"shapedirs", dense<Real>({n, 3, columns}, body.skin.shape_directions)},
-          {"posedirs", dense<Real>({n, 3, 9 * (joints - 1)}, body.skin.pose_directions)},
-          {"J_regressor", dense<Real>({joints, n}, body.regressor)},
-          {"weights", dense<Real>({n, joints}, body.skin.weights)},
-          {"kintree_table", fake::npy(std::vector<std::size_t>{2, joints}, kintree)},
-          {"J", dense<Real>({joints, 3}, body.regressor * body.skin.rest)},
-          {"bs_type", fake::npy_of("'<U7'", false, "()", std::string(28, 'a'))},
-          {"bs_style", pickled},
-          {"joint2num", pickled},
-          {"part2num", pickled},
-          {"hands_meanl", dense<Real>({45}, Eigen::MatrixXd::Zero(45, 1))}};
 }
 
 void check_same(const BodyModel& read, const BodyModel& written, int shapes) {

@@ -189,8 +189,10 @@ TEST_CASE("What is wrong with a garment is named by file, line and cure", "[setu
              Contains("who wears it") && Contains("person, other"));
   CHECK_THAT(complaint("{garment: {on: person}}", person), Contains("file"));
   CHECK_THAT(complaint("{garment: shirt.h5}", person), Contains("missing file"));
-  fake::write(folder, "shirt.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  CHECK_THAT(complaint("{garment: shirt.obj}", person), Contains("scene.yaml:2") && Contains("`selvedge dress`"));
+  fake::write(folder, "shirt.stl", "");
+  CHECK_THAT(complaint("{garment: shirt.stl}", person), Contains("scene.yaml:2") && Contains("`selvedge dress`"));
+  fake::write(folder, "far.obj", "v 9 9 9\nv 9.1 9 9\nv 9 9.1 9\nf 1 2 3\n");
+  CHECK_THAT(complaint("{garment: far.obj}", person), Contains("is not worn") && Contains("`unit`"));
   fake::write(folder, "text.h5", "no HDF5");
   CHECK_THAT(complaint("{garment: text.h5}", person), Contains("text.h5") && Contains("this is no HDF5 file"));
   for (const std::string key :

@@ -64,7 +64,7 @@ std::vector<Roll> four_tangles(RollMaker& maker) {
   FrameMaking making{maker.features, maker.options.objective, 1, 1};
   making.losses.volume.weight = {0, 0};
   std::vector<Roll> found;
-  for (int clip = 0; clip < static_cast<int>(maker.world.clip_names.size()); ++clip)
+  for (int clip = 0; clip < static_cast<int>(maker.world.bodies[0].clips.size()); ++clip)
     for (int frame = 5; frame + 3 < frame_count(maker.world, 0, clip) && found.size() < 4; frame += 15) {
       RollRequest request;
       request.clip = clip;

@@ -17,8 +17,8 @@ namespace {
 
 std::vector<std::filesystem::path> training_files() {
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(config_folder() / "training"))
-    if (!is_drape_training(entry.path())) files.push_back(entry.path());
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(config_folder() / "training"))
+    if (entry.is_regular_file() && !is_drape_training(entry.path())) files.push_back(entry.path());
   std::ranges::sort(files);
   return files;
 }

@@ -66,8 +66,9 @@ TEST_CASE("training rolls: no clip or garment of the validation split is in a wo
   samples.soft_tissue = false;
   samples.edge = 0.045;
   const TrainingWorld world = make_training_world(samples, 1);
-  CHECK(world.clip_names.size() == 30);
-  for (const std::string& name : world.clip_names) CHECK_FALSE(validation.contains(name));
+  REQUIRE(world.bodies.size() == 1);
+  CHECK(world.bodies[0].clips.size() == 30);
+  for (const TrainingClip& clip : world.bodies[0].clips) CHECK_FALSE(validation.contains(clip.name));
 }
 
 TEST_CASE("training rolls: turned and mirrored they are the same garment on the same body", "[training]") {

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pipeline/config/options.hpp"
+
+namespace selvedge {
+
+// What a sample is for. The trainer takes none but those for training.
+enum class Split { training, validation, test };
+std::string split_name(Split);
+
+// Names of people, of what they wear and of their clips that are held out; `*` stands for any characters.
+struct SplitOptions {
+  std::string file;  // with the same two lists; empty: none
+  std::vector<std::string> validation, test;
+};
+
+const Options<SplitOptions>& split_options();
+
+// The table of one of `people`: a body as a scene has it, its clips, and what it wears.
+const Section& person_section();
+const Section& person_clip_section();
+const Section& wear_section();
+
+// Readies the people of a training file: names for all, absolute paths, a clip for each file that a pattern finds, and
+// the lists of the split's file among its own. `folder` is the training file's. Throws Error for files that are not
+// there, patterns that find nothing, people without clips or garments, and names that come twice.
+void settle_people(const std::filesystem::path& folder, std::vector<Config>& people);
+void settle_split(const std::filesystem::path& folder, const Config& at, SplitOptions&);
+
+// What the split says of a name; of two lists the later one.
+Split split_of(const SplitOptions&, const std::string& name);
+// Of a person's clip: held out as well where the program's own split holds it out (configs/clips.yaml).
+Split split_of_clip(const SplitOptions&, const Config& clip);
+// Of what is worn, likewise (configs/outfits.yaml).
+Split split_of_wear(const SplitOptions&, const Config& wear);
+
+// Throws Error, naming the entry, where the split names nothing that the people have.
+void check_split(const std::vector<Config>& people, const SplitOptions&, const std::string& where);
+
+// The body's section with the clip and its keys.
+Config performing(const Config& body, const Config& clip);
+
+// The files that people are read from.
+std::vector<std::string> files_of(const std::vector<Config>& people);
+
+// The people with paths that travel: the last folder and the name of each.
+std::vector<Config> travelling(std::vector<Config> people);
+
+}  // namespace selvedge

@@ -1,0 +1,289 @@
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <sstream>
+
+#include "collision/geometry/error.hpp"
+#include "learned/network/weights_hdf5.hpp"
+#include "pipeline/bodies/mannequin.hpp"
+#include "pipeline/compare/compare.hpp"
+#include "pipeline/compare/training_sequences.hpp"
+#include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/garments/garment_hdf5.hpp"
+#include "pipeline/garments/garment_make.hpp"
+#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/tools/import_weights.hpp"
+#include "pipeline/training/soft_tissue_hdf5.hpp"
+#include "pipeline/training/train.hpp"
+#include "pipeline/training/training_checkpoint_hdf5.hpp"
+#include "tests/pipeline/fake_checkpoint.hpp"
+#include "tests/pipeline/fake_smpl.hpp"
+#include "tests/pipeline/files.hpp"
+
+namespace selvedge::test_training_people {
+
+using fake::Folder;
+using fake::has;
+
+namespace {
+
+// AMASS, 60 frames a second, the right thigh swinging; `size` of the swing [rad].
+void write_amass(const std::filesystem::path& path, std::size_t frames, double size, double first_beta = 0) {
+  std::vector<double> poses(frames * 156, 0.0), trans(frames * 3, 0.0), betas(16, 0.0);
+  betas[0] = first_beta;
+  for (std::size_t f = 0; f < frames; ++f) poses[f * 156 + 6] = size * std::sin(0.2 * static_cast<double>(f));
+  fake::write_npz(path, {{"poses", fake::npy<double>({frames, 156}, poses)},
+                         {"trans", fake::npy<double>({frames, 3}, trans)},
+                         {"betas", fake::npy<double>({16}, betas)},
+                         {"mocap_framerate", fake::npy<double>({}, {60.0})}});
+}
+
+// The mannequin as a SMPL file, a skirt as OBJ and as garment file, two clips, and a training file that takes them.
+struct OwnData {
+  Folder folder{"training_people"};
+  std::filesystem::path training;
+
+  OwnData() {
+    BodyModel body = kept_mannequin(cache_folder());
+    const auto n = body.skin.rest.rows();
+    body.skin.shape_directions.conservativeResizeLike(Eigen::MatrixXd::Zero(3 * n, 10));
+    body.skin.pose_directions = Eigen::MatrixXd::Zero(3 * n, 9 * 23);
+    fake::write_npz(folder.path / "body.npz", fake::published<float, std::uint32_t>(body));
+    GarmentOptions cut;
+    cut.edge = 0.05;
+    Garment skirt = kept_garment(cache_folder(), "skirt_short", kept_mannequin(cache_folder()), cut);
+    write_obj(folder.path / "skirt.obj", 100 * skirt.skin.rest, skirt.skin.triangles);
+    std::filesystem::create_directory(folder.path / "moves");
+    write_amass(folder.path / "moves" / "swing.npz", 40, 0.3);
+    write_amass(folder.path / "moves" / "kick.npz", 40, 0.5);
+    training = write("");
+  }
+  std::filesystem::path write(const std::string& split) const {
+    return fake::write(folder, "own.yaml",
+                       "base: " + (config_folder() / "training" / "tiny.yaml").string() +
+                           "\n"
+                           "steps: 40\n"
+                           "pool: {states: 2}\n"
+                           "optimiser: {warm_up: 2}\n"
+                           "watch: {fixed_states: 1, frames: 2}\n"
+                           "samples:\n"
+                           "  garments: none\n"
+                           "  flesh: false\n"
+                           "  people:\n"
+                           "    - name: anna\n"
+                           "      body: {model: body.npz}\n"
+                           "      clips: ['moves/*.npz']\n"
+                           "      wear: [{garments: [{file: skirt.obj, unit: cm}]}]\n" +
+                           split);
+  }
+  std::string error(const std::vector<std::string>& overrides, const std::string& split = "") const {
+    try {
+      make_training_world(read_training(write(split), overrides).samples, 1);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+const OwnData& own_data() {
+  static const OwnData data;
+  return data;
+}
+
+std::vector<float> weights_of(Trainer& trainer) {
+  std::vector<float> all;
+  for (const WeightArray& array : weight_arrays(trainer.architecture, trainer.network.weights))
+    all.insert(all.end(), array.data, array.data + array.rows * array.columns);
+  return all;
+}
+
+// A person of so many garments, and of bodies with so many clips.
+void add_person(TrainingWorld& world, int garments, const std::vector<int>& clips) {
+  TrainingPerson& person = world.people.emplace_back();
+  const int number = static_cast<int>(world.people.size()) - 1;
+  for (int k = 0; k < garments; ++k) {
+    person.wear.push_back(static_cast<int>(world.wear.size()));
+    world.wear.emplace_back().person = number;
+  }
+  for (const int count : clips) {
+    person.bodies.push_back(static_cast<int>(world.bodies.size()));
+    TrainingBody& body = world.bodies.emplace_back();
+    body.person = number;
+    body.weight = count;
+    for (int k = 0; k < count; ++k) {
+      body.clips.emplace_back();
+      body.clips.back().motion.poses.resize(90);
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("training people: a SMPL file, AMASS files and an OBJ are trained on, and resumed with the same bits",
+          "[training]") {
+  const OwnData& own = own_data();
+  const TrainingOptions options = read_training(own.training);
+  auto whole = make_trainer(options);
+  const TrainingWorld& world = whole->maker->world;
+  REQUIRE(world.people.size() == 1);
+  CHECK(world.people[0].name == "anna");
+  REQUIRE(world.bodies.size() == 1);
+  CHECK(world.bodies[0].clips[0].name == "moves/kick");
+  CHECK(world.bodies[0].clips[0].motion.poses.size() == 20);           // 40 at 60 a second
+  CHECK(world.wear[0].garments[0].skin.rest.col(1).maxCoeff() < 0.5);  // metres
+  CHECK_FALSE(world.wear[0].garments[0].pins.empty());                 // the waist
+  for (int k = 0; k < 4; ++k) train_step(*whole);
+  const auto file = own.folder.path / "checkpoint.h5";
+  write_training_checkpoint(file, *whole, {"a\n", "b\n", 0, 0, 0});
+  for (int k = 0; k < 4; ++k) train_step(*whole);
+  TrainingHistory history;
+  auto resumed = read_training_checkpoint(file, options, history);
+  for (int k = 0; k < 4; ++k) train_step(*resumed);
+  CHECK(weights_of(*resumed) == weights_of(*whole));
+
+  // A clip that has changed is named.
+  const auto kick = own.folder.path / "moves" / "kick.npz", before = own.folder.path / "kick_before.npz";
+  std::filesystem::copy_file(kick, before);
+  write_amass(kick, 40, 0.4);
+  CHECK_THROWS_WITH(read_training_checkpoint(file, options, history),
+                    Catch::Contains("kick.npz") && Catch::Contains("has changed since the run began"));
+  std::filesystem::rename(before, kick);
+  CHECK(read_training_checkpoint(file, options, history)->counts.step == 4);
+}
+
+TEST_CASE("training people: what is held out is not trained on, and compared on", "[training]") {
+  const OwnData& own = own_data();
+  fake::write(own.folder, "split.yaml", "test: ['*kick']\n");
+  std::ostringstream log;
+  int asked = 0;
+  const TrainRequest request{own.write("  split: split.yaml\n"), {}, own.folder.path / "run", false, &log,
+                             [&asked] { return ++asked == 2; }};
+  train(request);
+  CHECK(has(log.str(), "trains on `anna`: 1 to wear, 1 bodies, 1 clips"));
+  CHECK(has(log.str(), "held out: 1 of the clips in test"));
+  CHECK_FALSE(has(fake::whole(request.out / "weights.h5"), own.folder.path.string()));  // paths travel
+
+  fake::write(own.folder, "compare.yaml",
+              "sequences: {training: own.yaml, split: test, frames: 2, file: " +
+                  (config_folder() / "evaluation" / "garment.yaml").string() +
+                  "}\n"
+                  "weights_folder: run\nrepeats: 1\njudged_frames: 0\n"
+                  "settings: [{name: own, stepper: learned, weights: weights.h5}]\n");
+  std::ostringstream told;
+  CompareRequest compared;
+  compared.file = own.folder.path / "compare.yaml";
+  compared.out = own.folder.path / "compared";
+  compared.log = &told;
+  const CompareResult result = compare(compared);
+  INFO(told.str());
+  CHECK(has(told.str(), "1 of 1 of the split `test`"));
+  REQUIRE(result.rows.size() == 1);
+  CHECK(result.rows[0].scene == "anna_skirt_moves_kick");
+  CHECK(result.rows[0].trouble.empty());
+}
+
+TEST_CASE("training people: imported checkpoints go on learning on one's own data", "[training]") {
+  const OwnData& own = own_data();
+  for (const std::string kind : {"hood", "contourcraft"}) {
+    INFO(kind);
+    const ImportedWeights imported = read_published_weights(
+        fake::write_checkpoint(own.folder.path / (kind + ".pth"), fake::published_tensors(kind, 8, 3)));
+    WeightFile file;
+    file.architecture = imported.architecture;
+    file.weights = imported.weights;
+    write_weight_file(own.folder.path / (kind + ".h5"), file);
+    const auto base =
+        config_folder() / "training" / "published" / (kind == "hood" ? "fine_tune.yaml" : "contourcraft_final.yaml");
+    std::string text = fake::whole(own.write(""));
+    text.replace(0, text.find("steps:"), "base: " + base.string() + "\nweights: " + kind + ".h5\nwidth: 8\n");
+    const TrainingOptions options = read_training(fake::write(own.folder, "tune.yaml", text), {"samples.shapes=1"});
+    auto trainer = make_trainer(options);
+    NetworkWeights theirs = imported.weights;
+    std::vector<float> all;
+    for (const WeightArray& array : weight_arrays(imported.architecture, theirs))
+      all.insert(all.end(), array.data, array.data + array.rows * array.columns);
+    CHECK(weights_of(*trainer) == all);
+    train_step(*trainer);
+    CHECK(trainer->counts.step + trainer->counts.bad == 1);
+  }
+}
+
+TEST_CASE("training people: errors name place and cure", "[training]") {
+  const OwnData& own = own_data();
+  const std::string clip = "samples.people.anna.clips=", wear = "samples.people.anna.wear=";
+  CHECK(has(own.error({clip + "['moves/none*.npz']"}), "finds no file"));
+  CHECK(has(own.error({clip + "[moves/lost.npz]"}), "names the missing file"));
+  CHECK(has(own.error({clip + "[]"}), "has no clip"));
+  CHECK(has(own.error({clip + "[walk, walk]"}), "the name `walk` of another"));
+  CHECK(has(own.error({wear + "[{garments: [skirt.obj]}]"}), "is not worn"));
+  CHECK(has(own.error({wear + "[{garments: [{file: skirt.obj, unit: cm, on: anna}]}]"}), "leave it out"));
+  CHECK(has(own.error({"samples.people.anna.body.model=body.npy"}), "body.npy"));
+  CHECK(has(own.error({}, "  split: {test: [swing]}\n"), "`swing` names nothing of `people`"));
+  CHECK(has(own.error({}, "  split: {test: [anna]}\n"), "names no garment"));
+  CHECK(has(own.error({}, "  split: {test: ['moves/*']}\n"), "has nothing to train on"));
+  CHECK(own.error({}).empty());
+}
+
+TEST_CASE("training people: a configuration that is written reads back", "[training]") {
+  const OwnData& own = own_data();
+  const TrainingOptions options = read_training(own.write("  split: {validation: ['*swing']}\n"));
+  const std::string text = training_yaml(options);
+  TrainingOptions again = read_training(fake::write(own.folder, "again.yaml", text));
+  CHECK(training_yaml(again) == text);
+}
+
+TEST_CASE("training people: roll-outs are drawn by weight, and by RandomStream::below where all weigh the same",
+          "[training]") {
+  TrainingWorld world;
+  add_person(world, 2, {3, 1});
+  add_person(world, 1, {2});
+  world.people[1].weight = 3;
+  world.wear[1].weight = 4;
+  TrainingOptions options;
+  std::array<int, 2> of_people{}, of_wear{}, of_bodies{};
+  constexpr int draws = 4000;
+  for (int k = 0; k < draws; ++k) {
+    const RollRequest drawn = draw_roll(options, world, static_cast<std::uint64_t>(k), 1);
+    const int person = world.wear[static_cast<std::size_t>(drawn.wear)].person;
+    CHECK(world.bodies[static_cast<std::size_t>(drawn.body)].person == person);
+    ++of_people[static_cast<std::size_t>(person)];
+    if (person == 1) continue;
+    ++of_wear[static_cast<std::size_t>(drawn.wear)];
+    ++of_bodies[static_cast<std::size_t>(drawn.body)];
+  }
+  CHECK(of_people[1] == Approx(0.75 * draws).epsilon(0.05));
+  CHECK(of_wear[1] == Approx(0.8 * of_people[0]).epsilon(0.1));
+  CHECK(of_bodies[0] == Approx(0.75 * of_people[0]).epsilon(0.1));
+
+  TrainingWorld plain;
+  add_person(plain, 3, {5, 5});
+  for (std::uint64_t k = 0; k < 50; ++k) {
+    RandomStream random = stream_of(8 * options.seed + 1, k);
+    const RollRequest drawn = draw_roll(options, plain, k, 1);
+    CHECK(drawn.wear == random.below(3));
+    CHECK(drawn.body == random.below(2));
+    CHECK(drawn.clip == random.below(5));
+  }
+}
+
+TEST_CASE("training people: the folder of soft tissue is bounded, and so is what is in memory", "[training]") {
+  const OwnData& own = own_data();
+  const Folder folder("training_flesh");
+  TrainingWorld world = make_training_world(read_training(own.write(""), {"samples.flesh=true"}).samples, 1);
+  world.kept_in = folder.path;
+  const PointsF before = worn_frame(world, 0, 0, 0, 3).body;
+  worn_frame(world, 0, 0, 1, 3);
+  CHECK(world.tissue_bytes > 0);
+  world.bodies[0].clips[0].looked = false;
+  world.most_tissue = 0;  // the next look forgets, after writing
+  CHECK(worn_frame(world, 0, 0, 0, 3).body == before);
+  CHECK(world.bodies[0].clips[1].given.empty());
+  const auto files = [&] { return std::distance(std::filesystem::directory_iterator(folder.path / "flesh"), {}); };
+  CHECK(files() == 2);
+  worn_frame(world, 0, 0, 0, 5);
+  write_soft_tissue(folder.path, world, 1);
+  CHECK(files() == 0);
+}
+
+}  // namespace selvedge::test_training_people
