@@ -127,8 +127,8 @@ struct StepReport {  // starts as failure
   PhaseTimes seconds;
   StepCounts counts;
   CollisionReport collision;
-  // Of each obstacle: triangles that contact leaves alone somewhere in the step, for they cross others of it or are next
-  // to such; empty: none of any.
+  // Of each obstacle: triangles that contact leaves alone somewhere in the step, for they cross others of it or are
+  // next to such; empty: none of any.
   std::vector<int> switched_off;
   std::optional<Audit> audit;  // of the state that was made, rounded to float (step_audit.hpp); absent: not audited
 };
