@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "collision/exact/inside.hpp"
+#include "collision/geometry/same_places.hpp"
+#include "collision/geometry/welded_surface.hpp"
 #include "pipeline/bodies/body_part.hpp"
 #include "pipeline/bodies/body_smpl.hpp"
 #include "pipeline/bodies/bone_weights.hpp"
@@ -70,6 +72,23 @@ void check_inside(const BodyModel& body, const Surface& surface, const Points& j
   }
 }
 
+// Of the surface with the seams of its file closed: vertices at one place go along with one joint, and heat spreads
+// over seams.
+void set_weights(const Points& joints, const Config& given, BodyModel& body) {
+  const auto n = static_cast<int>(body.skin.rest.rows());
+  Surface surface = make_surface(n, body.skin.triangles);
+  std::optional<WeldedSurface> welded = welded_surface(surface, same_places(body.skin.rest));
+  if (welded) surface = std::move(welded->surface);
+  check_inside(body, surface, joints, given);
+  body.skin.weights = bone_weights(surface, body.skin.rest, joints, body.parents);
+  if (!welded) return;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int v = 0; v < n; ++v) entries.emplace_back(v, welded->joined[static_cast<std::size_t>(v)], 1);
+  SkinWeights of_joined(n, n);
+  of_joined.setFromTriplets(entries.begin(), entries.end());
+  body.skin.weights = SkinWeights(of_joined * body.skin.weights);
+}
+
 }  // namespace
 
 BodyModel read_jointed(const std::filesystem::path& mesh_file, const std::filesystem::path& joints_file, double metres,
@@ -79,10 +98,8 @@ BodyModel read_jointed(const std::filesystem::path& mesh_file, const std::filesy
   const BodyPart part = body_part(mesh, mesh_file, choice);
   const Config file = read_config(joints_file, file_section());
   BodyModel body = body_without_rig(mesh, part, mesh_file);
-  const Surface surface = make_surface(static_cast<int>(part.vertices.size()), part.triangles);
   const Points joints = places(file["joints"], body.joints);
-  check_inside(body, surface, joints, file["joints"]);
-  body.skin.weights = bone_weights(surface, body.skin.rest, joints, body.parents);
+  set_weights(joints, file["joints"], body);
   std::vector<std::optional<Vec3>> given;
   for (int j = 0; j < joints.rows(); ++j) given.emplace_back(row(joints, j));
   body.regressor = joint_regressor(body, given, {mesh_file.string(), joints_file.string()});

@@ -179,7 +179,8 @@ SkinWeights bone_weights(const Surface& surface, const Points& rest, const Point
   Eigen::VectorXd areas;
   Eigen::SparseMatrix<double> matrix = conduction(surface, rest, areas);
   // Where vertices share a place or lie on a bone heat would be infinite; a tenth of their spacing is near enough.
-  const double spacing = std::sqrt(areas.sum() / std::max(1, surface.vertex_count));
+  const auto spread = std::max<Eigen::Index>(1, (areas.array() > 0).count());
+  const double spacing = std::sqrt(areas.sum() / static_cast<double>(spread));
   Eigen::MatrixXd heat = Eigen::MatrixXd::Zero(surface.vertex_count, joints.rows());
   for (int v = 0; v < surface.vertex_count; ++v) {
     const Source& source = from[static_cast<std::size_t>(v)];

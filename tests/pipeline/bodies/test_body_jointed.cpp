@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <numbers>
+#include <numeric>
 
 #include "pipeline/bodies/body_hdf5.hpp"
 #include "pipeline/bodies/body_smpl.hpp"
@@ -145,6 +146,60 @@ TEST_CASE("jointed body: the mannequin's mesh and joints give a body that moves 
   const Eigen::VectorXd off = (posed(body, {}, pose) - posed(model, {}, pose)).rowwise().norm();
   CHECK(off.mean() < 0.006);
   CHECK(off.maxCoeff() < 0.06);
+}
+
+// The mesh with its right half on vertices of its own, as a file has it where a texture has its seam.
+Tube split_in_the_middle(const SkinnedSurface& skin, std::vector<int>& original) {
+  Tube all(0, 1, 2, 1);
+  all.triangles = skin.triangles;
+  const int n = static_cast<int>(skin.rest.rows());
+  const auto is_right_half = [&](Eigen::Index t) {
+    return skin.rest(all.triangles(t, 0), 0) + skin.rest(all.triangles(t, 1), 0) + skin.rest(all.triangles(t, 2), 0) <
+           0;
+  };
+  std::vector<char> left(static_cast<std::size_t>(n), 0);
+  for (Eigen::Index t = 0; t < all.triangles.rows(); ++t)
+    for (int k = 0; k < 3 && !is_right_half(t); ++k) left[static_cast<std::size_t>(skin.triangles(t, k))] = 1;
+  original.resize(static_cast<std::size_t>(n));
+  std::iota(original.begin(), original.end(), 0);
+  std::vector<int> copy(static_cast<std::size_t>(n), -1);
+  for (Eigen::Index t = 0; t < all.triangles.rows(); ++t) {
+    if (!is_right_half(t)) continue;
+    for (int k = 0; k < 3; ++k) {
+      const int v = skin.triangles(t, k);
+      int& twin = copy[static_cast<std::size_t>(v)];
+      if (!left[static_cast<std::size_t>(v)]) continue;
+      if (twin < 0) {
+        twin = static_cast<int>(original.size());
+        original.push_back(v);
+      }
+      all.triangles(t, k) = twin;
+    }
+  }
+  all.x = skin.rest(original, Eigen::all);
+  return all;
+}
+
+TEST_CASE("jointed body: a mesh that its file splits at a seam moves as the whole one", "[body_jointed]") {
+  const Folder folder("body_jointed_split");
+  const BodyModel& model = fake::mannequin();
+  fake::write(folder, "joints.yaml", joints_file(joint_positions(model, {})));
+  std::vector<int> original;
+  const Tube split = split_in_the_middle(model.skin, original);
+  REQUIRE(original.size() > static_cast<std::size_t>(model.skin.rest.rows()) + 20);
+  write_obj(folder.path / "whole.obj", model.skin.rest, model.skin.triangles);
+  write_obj(folder.path / "split.obj", split.x, split.triangles);
+  const BodyModel whole = read_jointed(folder.path / "whole.obj", folder.path / "joints.yaml", 1);
+  const BodyModel seamed = read_jointed(folder.path / "split.obj", folder.path / "joints.yaml", 1);
+  double apart = 0, at_seam = 0;
+  for (std::size_t v = 0; v < original.size(); ++v) {
+    const Eigen::RowVectorXd mine = seamed.skin.weights.row(static_cast<Eigen::Index>(v)),
+                             theirs = whole.skin.weights.row(original[v]), twin = seamed.skin.weights.row(original[v]);
+    apart = std::max(apart, (mine - theirs).cwiseAbs().maxCoeff());
+    at_seam = std::max(at_seam, (mine - twin).cwiseAbs().maxCoeff());
+  }
+  CHECK(at_seam == 0);
+  CHECK(apart < 1e-6);
 }
 
 TEST_CASE("jointed body: what is wrong is named by file and line", "[body_jointed]") {
