@@ -112,14 +112,29 @@ MovingPoints<Count> relative_to(const Node& origin, const std::array<Node, Count
   return points;
 }
 
+// Ends the proofs of a cell. One of coincident edges takes thousands of parts, and a cell holds many: each proof
+// counts, where a comparison of boxes hardly does.
+class ProofWatch {
+ public:
+  explicit ProofWatch(AuditBudget& budget) : budget_(budget) {}
+  bool ended() { return ++proofs_ % asked_after == 0 ? !budget_.add(0) : budget_.exceeded(); }
+
+ private:
+  static constexpr int asked_after = 16;
+  AuditBudget& budget_;
+  int proofs_ = 0;
+};
+
 struct PairAudit {
   const Side::Face &a, &b;
   int max_halvings;
   std::vector<PassedPair>& passed;
+  ProofWatch* watch = nullptr;  // null: nobody ends it
 
   bool same(int i, int j) const { return corner(a, i).number() == corner(b, j).number(); }
 
   void take(bool edges, const std::array<Node, 4>& n) const {
+    if (watch && watch->ended()) return;
     const MovingPoints<4> points = relative_to(n[0], n);
     if (edges ? edges_stay_apart(points, max_halvings) : vertex_and_face_stay_apart(points, max_halvings)) return;
     passed.push_back({edges, {n[0].number(), n[1].number(), n[2].number(), n[3].number()}});
@@ -195,6 +210,7 @@ struct Found {
 // reach: as of MotionEnd.
 void audit_cell(const Cell& cell, const Side& cloth, const Side& bodies, bool self, int max_halvings, double reach,
                 AuditBudget& budget, Found& found) {
+  ProofWatch watch(budget);
   visit_pairs(
       cell, cloth.boxes, bodies.boxes, self, budget,
       [&](int a, int b) {
@@ -202,13 +218,13 @@ void audit_cell(const Cell& cell, const Side& cloth, const Side& bodies, bool se
         if (meet_at_end(cloth.end[a], cloth.end[b], reach))
           found.self_at_end.emplace_back(cloth.faces[first].number, cloth.faces[second].number);
         if (stay_apart_along_an_axis(cloth, a, cloth, b)) return;
-        PairAudit{cloth.faces[first], cloth.faces[second], max_halvings, found.passed}();
+        PairAudit{cloth.faces[first], cloth.faces[second], max_halvings, found.passed, &watch}();
       },
       [&](int a, int c) {
         if (meet_at_end(cloth.end[a], bodies.end[c], reach))
           found.body_at_end.emplace_back(cloth.faces[a].number, bodies.faces[c].number);
         if (stay_apart_along_an_axis(cloth, a, bodies, c)) return;
-        PairAudit{cloth.faces[a], bodies.faces[c], max_halvings, found.passed}();
+        PairAudit{cloth.faces[a], bodies.faces[c], max_halvings, found.passed, &watch}();
       });
 }
 

@@ -88,6 +88,20 @@ TEST_CASE("every long phase of a step asks whether to stop, and ends where it is
   }
 }
 
+TEST_CASE("the audit of a motion asks every few proofs, of which one may be long", "[stop_phases]") {
+  const ThreadLimit one(1);
+  const Sheet cloth = soup(6);
+  const Surface surface = cloth.surface();
+  Points turned = cloth.x;  // about the vertical: what coincides stays so, but for rounding
+  for (Eigen::Index v = 0; v < turned.rows(); ++v) turned.row(v) << -cloth.x(v, 2), cloth.x(v, 1), cloth.x(v, 0);
+  int asked = 0;
+  const StopFlag never = [&] { return ++asked < 0; };
+  const StopScope scope(never);
+  const MotionAudit found = audit_motion(surface, cloth.x, turned, {});
+  REQUIRE(found.passed_through() > 100);
+  CHECK(asked >= found.passed_through() / 16);
+}
+
 TEST_CASE("a step of a soup of coincident vertices ends wherever it is stopped", "[stop_phases]") {
   const ThreadLimit one(1);  // how often many threads ask depends on who takes which part of a loop
   World w = make_world(soup(4));
