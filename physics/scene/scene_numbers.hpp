@@ -13,7 +13,7 @@ struct State;
 // bounds nothing is meant that a scene could show, and doubles lose what matters.
 namespace limits {
 inline constexpr double farthest = 1e6;   // from the origin, and the largest length [m]
-inline constexpr double thickest = 1;     // contact thickness [m]
+inline constexpr double thickest = 100;   // contact thickness [m]: scenes may be kilometres wide
 inline constexpr double longest = 1e9;    // time [s]
 inline constexpr double heaviest = 1e9;   // mass per area [kg/m2]
 inline constexpr double stiffest = 1e18;  // [N/m], [N m], [Pa]

@@ -72,7 +72,7 @@ TEST_CASE("scene_numbers: a scene from arrays is checked as one from a file", "[
   CHECK(refusal([](World&) {}).empty());
   CHECK_THAT(refusal([](World& w) { w.scene.cloths[0].material.density = -3; }),
              Contains("cloth `sheet`, material: density is -3"));
-  CHECK_THAT(refusal([](World& w) { w.scene.contact.thickness = 2; }), Contains("contact: thickness is 2"));
+  CHECK_THAT(refusal([](World& w) { w.scene.contact.thickness = 200; }), Contains("contact: thickness is 200"));
   CHECK_THAT(refusal([](World& w) { w.scene.wind.drag = nan; }), Contains("wind: drag is nan"));
   CHECK_THAT(refusal([](World& w) { w.scene.pins = {3, 99}; }), Contains("pin 1: names vertex 99"));
   CHECK_THAT(refusal([](World& w) { w.scene.pins = {3, 3}; }), Contains("pin 1") && Contains("each once"));
