@@ -53,7 +53,20 @@ TEST_CASE("A skirt that is too wide has slid off, which is said with the frame",
   CHECK_THAT(pattern_text(report), Contains("`skirt` has slid off its body") && Contains("in frame"));
 }
 
-TEST_CASE("A skirt that is too narrow to close round the body is not good, whatever else it is", "[sew_garment]") {
+TEST_CASE("A pattern whose stitches never closed is not good, however well it lies", "[sew_garment]") {
+  PatternReport report;
+  report.stitches = 40;
+  report.sewn.moving_share = 0;
+  report.sewn.watch.part.places.push_back({});
+  CHECK(is_clean(report));
+  report.open_stitches = 7;
+  report.largest_gap = 0.077;
+  CHECK_FALSE(is_clean(report));
+  REQUIRE(faults_of(report).size() == 1);
+  CHECK_THAT(faults_of(report)[0], Contains("7 of 40 stitches never closed, 77 mm apart at most"));
+}
+
+TEST_CASE("A skirt that is too narrow to close round the body is not good", "[sew_garment][.long]") {
   const fake::Folder folder("sewn_narrow");
   const PatternReport report = sewn(folder, 12, 8);
   CHECK(report.open_stitches > 0);
