@@ -282,7 +282,7 @@ TEST_CASE("losses: contours have the share of the gradient that is asked for, wh
   const std::vector<LossTerm> held = add_losses_with_share(in, options, search, first);
   options.contours.weight = {1e-3, 1e-3};
   add_losses_with_share(in, options, search, second);
-  CHECK((first - second).norm() < 1e-9 * first.norm());
+  CHECK((first - second).norm() < 1e-6 * first.norm());  // the contours are the difference of two sums
   CHECK(inverse_mass_norm(*in.garment, first - others) / inverse_mass_norm(*in.garment, others) ==
         Approx(0.3 / 0.7).epsilon(1e-6));
   REQUIRE(held.back().name == "contours");

@@ -211,9 +211,11 @@ TEST_CASE("A trajectory is refused that is of another scene than the checkpoint"
   CHECK_THAT(refusal([](const std::filesystem::path& folder) {
                const h5::Handle open(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
                H5Ldelete(open.id(), "obstacles", H5P_DEFAULT);
+               H5Ldelete(open.id(), "frames/switched_off", H5P_DEFAULT);
              }),
              Contains("run.h5: obstacles") && Contains("has 0 obstacles, the scene has 2"));
-  CHECK_THAT(field("obstacles/1", 0, {}, nullptr), Contains("has 1 obstacles"));
+  CHECK_THAT(field("obstacles/1", 0, {}, nullptr), Contains("frames/switched_off"));
+  CHECK_THAT(field("frames/switched_off", H5T_NATIVE_INT, {12, 3}, ints.data()), Contains("frames/switched_off"));
   CHECK_THAT(field("frames/x", H5T_NATIVE_INT, {12, 25, 3}, ints.data()), Contains("frames/x") && Contains("integers"));
   CHECK_THAT(field("frames/x", H5T_NATIVE_FLOAT, {12, 75}, floats.data()), Contains("frames/x"));
   CHECK_THAT(field("frames/x", H5T_NATIVE_FLOAT, {12, 24, 3}, floats.data()), Contains("frames/x"));

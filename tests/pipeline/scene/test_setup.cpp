@@ -393,7 +393,7 @@ TEST_CASE("What no machine can hold is refused before memory is taken", "[setup]
   refused("cloths: [{rectangle: {size: 1, edge: 1e-6}}]", "4000000 are the most");
   refused("cloths: [{rectangle: {size: 1, resolution: 3}}]\nobstacles: [{sphere: {radius: 1, edge: 1e-5}}]",
           "4000000 are the most");
-  refused("cloths: [{rectangle: {size: 1, resolution: 3}}]\ncontact: {thickness: 100 m}", "thickness");
+  refused("cloths: [{rectangle: {size: 1, resolution: 3}}]\ncontact: {thickness: 1000 m}", "thickness");
 }
 
 TEST_CASE("A cloth that starts in one point is opened, and a warning says so", "[setup]") {
