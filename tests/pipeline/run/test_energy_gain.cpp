@@ -1,3 +1,5 @@
+#include <catch2/catch.hpp>
+
 #include "physics/energies/measures.hpp"
 #include "pipeline/run/simulate.hpp"
 #include "pipeline/scene/make_stepper.hpp"
