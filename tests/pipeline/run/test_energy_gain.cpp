@@ -5,7 +5,7 @@
 #include "pipeline/scene/make_stepper.hpp"
 #include "tests/pipeline/files.hpp"
 
-// Scenes whose energy grew from nowhere without a word (issue 51), and scenes where all of it is explained.
+// Scenes whose energy grew from nowhere without a word, and scenes where all of it is explained.
 namespace selvedge::test_energy_gain {
 
 namespace {
