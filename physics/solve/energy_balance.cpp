@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* block = "energy.from_nowhere";
 constexpr double tolerated_part = 0.3;  // of the unit of energy (below); demo, walks, wind and piles: at most 0.2
-constexpr double slight = 0.05;         // of it, where something moves: not worth to ask how much that gave
+constexpr double slight = 0.05;         // of it: a smaller gain is not compared with the work where something moves
 constexpr double earth = 9.81;          // weighs cloth where nothing falls [m/s2]
 
 double gained_before(const State& state) {
@@ -52,13 +52,13 @@ EnergyGain EnergyBalance::operator()(const State& from, const Drive& drive, Stat
   const Energies before = energies_of(from, drive.acceleration), after = energies_of(to, drive.acceleration);
   const double gained = gained_before(from), weight = terms_.masses.sum() * std::max(earth, drive.acceleration.norm());
   const double unit = std::max(0.0, before.total() - before.gravity - gained) + weight * edge_length_;
-  EnergyGain books{.gain = after.total() - before.total(), .tolerated = tolerated_part * unit};
+  EnergyGain found{.gain = after.total() - before.total(), .tolerated = tolerated_part * unit};
   const bool driven = is_driven(scene_, from, to, drive);
-  if (driven && books.gain > 0) books.work = books.gain > slight * unit ? work_of(from, to, drive) : books.gain;
-  const double nowhere = gained + (books.gain > 0 ? std::max(books.gain - books.work, 0.0) : books.gain);
-  books.nowhere = nowhere < 0 ? 0 : nowhere;  // what is no number stays none
-  remember(books.from_nowhere() ? 0 : books.nowhere, to);
-  return books;
+  if (driven && found.gain > 0) found.work = found.gain > slight * unit ? work_of(from, to, drive) : found.gain;
+  const double nowhere = gained + (found.gain > 0 ? std::max(found.gain - found.work, 0.0) : found.gain);
+  found.nowhere = nowhere < 0 ? 0 : nowhere;  // not a number stays so
+  remember(found.from_nowhere() ? 0 : found.nowhere, to);
+  return found;
 }
 
 void EnergyBalance::label(const State& from, const Drive& drive, State& to, StepReport& report) {

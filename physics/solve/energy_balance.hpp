@@ -15,16 +15,16 @@ struct EnergyGain {
   bool from_nowhere() const { return !(gain <= work) && !(nowhere <= tolerated); }
 };
 
-// The books of a scene's energy, step by step, for whoever judges or labels steps. Steps that gain a little from
-// nowhere, one after the other, are judged together: State::memory holds what they gained. Without the forces that a
-// stepper with these traits ignores. Holds caches.
+// Judges the energy of a scene step by step. Steps that each gain a little from nowhere are judged together:
+// State::memory holds the sum of what they gained. Forces that a stepper with these traits ignores are left out. Holds
+// caches.
 class EnergyBalance {
  public:
   explicit EnergyBalance(const Scene&, const StepperTraits& = {});
   EnergyBalance(const EnergyBalance&) = delete;
   EnergyBalance& operator=(const EnergyBalance&) = delete;
-  // Of a step that is taken; positions and velocities must be finite. `to` remembers what was gained from nowhere; a
-  // step that is found out begins the books anew.
+  // Of a step that is taken; positions and velocities must be finite. `to` remembers what was gained from nowhere;
+  // after a step whose energy comes from nowhere that sum begins at 0.
   EnergyGain operator()(const State& from, const Drive&, State& to);
 
   // Gives an accepted step whose energy comes from nowhere the reason `energy_gain`; one that cuts across something

@@ -148,10 +148,6 @@ Points ImplicitEuler::gradient(const StepProblem& problem, const Points& x) {
   return impl_->gradient;
 }
 
-double ImplicitEuler::imbalance(const StepProblem& problem, const Points& x) {
-  return largest_row(gradient(problem, x));
-}
-
 // The caller's guess or the ballistic positions, whichever has the lower potential (free fall is then exact). Pins are
 // put where they belong. False if neither potential is finite.
 bool ImplicitEuler::Impl::choose_first_guess(Points& x) {

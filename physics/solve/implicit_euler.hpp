@@ -59,8 +59,7 @@ class ImplicitEuler {
   // x: first guess in, minimiser out.
   NewtonReport solve(const StepProblem&, Points& x);
   double potential(const StepProblem&, const Points& x);
-  Points gradient(const StepProblem&, const Points& x);   // zero rows at pins
-  double imbalance(const StepProblem&, const Points& x);  // largest force on a free vertex [N]
+  Points gradient(const StepProblem&, const Points& x);  // zero rows at pins [N]
   LinearSolver chosen_solver() const;
   const Eigen::VectorXd& masses() const;
 

@@ -224,7 +224,8 @@ Verdict HybridStepper::propose_within_budget(Work& work) {
   }
 }
 
-// Of a step that was made. Who solves judges it himself, and so does a network, but by the forces that it knows.
+// Whether the energy of an admitted or refined step comes from nowhere. The stepper that made it may have said so
+// already. An admitted proposal is judged again here, for a network knows only some of the scene's forces.
 bool HybridStepper::gains_energy(Verdict verdict, Work& work) {
   if (verdict != Verdict::admitted && verdict != Verdict::refined) return false;
   if (work.report.reason == Reason::energy_gain) return true;

@@ -11,18 +11,24 @@ namespace selvedge {
 
 namespace {
 
-// The group of each triangle, the first that has all of its corners; -1: it is of none.
-std::vector<int> groups_of(const Mesh& mesh) {
-  std::vector<int> group_of(static_cast<std::size_t>(mesh.triangles.rows()), -1);
-  for (std::size_t g = mesh.groups.size(); g-- > 0;) {
+// Of each triangle whether it is taken: a group that has all of its corners is, or none has them and what is of no
+// group is. Groups are lists of vertices and may overlap.
+std::vector<char> taken_triangles(const Mesh& mesh, const NameChoice& choice) {
+  const auto count = static_cast<std::size_t>(mesh.triangles.rows());
+  std::vector<char> taken(count, 0), grouped(count, 0);
+  for (const auto& [group, vertices] : mesh.groups) {
     std::vector<char> in(static_cast<std::size_t>(mesh.x.rows()), 0);
-    for (const int v : mesh.groups[g].second) in[static_cast<std::size_t>(v)] = 1;
-    for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
-      if (in[static_cast<std::size_t>(mesh.triangles(t, 0))] && in[static_cast<std::size_t>(mesh.triangles(t, 1))] &&
-          in[static_cast<std::size_t>(mesh.triangles(t, 2))])
-        group_of[static_cast<std::size_t>(t)] = static_cast<int>(g);
+    for (const int v : vertices) in[static_cast<std::size_t>(v)] = 1;
+    for (std::size_t t = 0; t < count; ++t) {
+      const auto corners = mesh.triangles.row(static_cast<Eigen::Index>(t));
+      if (!std::ranges::all_of(corners, [&](int v) { return in[static_cast<std::size_t>(v)] != 0; })) continue;
+      grouped[t] = 1;
+      if (choice.takes(group)) taken[t] = 1;
+    }
   }
-  return group_of;
+  for (std::size_t t = 0; t < count; ++t)
+    if (!grouped[t] && choice.takes("")) taken[t] = 1;
+  return taken;
 }
 
 // Where no choice is made, the group `body` if there is one.
@@ -36,16 +42,12 @@ BodyPart body_part(const Mesh& mesh, const std::filesystem::path& file, const Na
   std::vector<std::string> names;
   for (const auto& [group, vertices] : mesh.groups) names.push_back(group);
   asked.check(names, file.string());
-  const NameChoice choice = of_body(names, asked);
-  const std::vector<int> group_of = choice.any() ? groups_of(mesh) : std::vector<int>();
+  const std::vector<char> taken = taken_triangles(mesh, of_body(names, asked));
   std::vector<char> used(static_cast<std::size_t>(mesh.x.rows()), 0);
   std::vector<std::array<int, 3>> triangles;
   for (Eigen::Index at = 0; at < mesh.triangles.rows(); ++at) {
+    if (!taken[static_cast<std::size_t>(at)]) continue;
     const auto t = mesh.triangles.row(at);
-    if (choice.any()) {
-      const int group = group_of[static_cast<std::size_t>(at)];
-      if (!choice.takes(group < 0 ? std::string() : names[static_cast<std::size_t>(group)])) continue;
-    }
     triangles.push_back({t[0], t[1], t[2]});
     for (int k = 0; k < 3; ++k) used[static_cast<std::size_t>(t[k])] = 1;
   }

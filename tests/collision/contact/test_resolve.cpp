@@ -114,22 +114,25 @@ TEST_CASE("resolve: nothing near, nothing changed", "[resolve]") {
   CHECK(x1 == c.x1);
 }
 
-TEST_CASE("resolve: plates that close on cloth give way to it, and the cloth goes on moving", "[resolve]") {
+// Cloth in the middle between two plates 4 cm apart, which go up by so much [m].
+Case between_plates(double low_rises, double high_rises) {
   const auto cloth = sheet(4, 0.1, 0), plate = sheet(2, 0.3, 0);
-  Case c{make_surface(25, cloth.triangles),
-         {make_surface(9, plate.triangles), make_surface(9, plate.triangles)},
-         {},
-         {},
-         {}};
+  const Surface surface = make_surface(9, plate.triangles);
+  Case c{make_surface(25, cloth.triangles), {surface, surface}, {}, {}, {}};
   Points low = plate.x, high = plate.x;
   low.col(1).array() -= 0.02;
   high.col(1).array() += 0.02;
   c.x0 = gather_nodes(cloth.x, {low, high});
-  low.col(1).array() += 0.04;
-  high.col(1).array() -= 0.04;
+  low.col(1).array() += low_rises;
+  high.col(1).array() += high_rises;
   c.x1 = gather_nodes(cloth.x, {low, high});
   c.inverse_mass = Eigen::VectorXd::Zero(c.x0.rows());
   c.inverse_mass.head(25).setConstant(1e4);
+  return c;
+}
+
+TEST_CASE("resolve: plates that close on cloth give way to it, and the cloth goes on moving", "[resolve]") {
+  const Case c = between_plates(0.04, -0.04);
   Points x1 = c.x1;
   PathPairs candidates;
   const ResolveReport report = run(c, x1, candidates);
@@ -140,17 +143,7 @@ TEST_CASE("resolve: plates that close on cloth give way to it, and the cloth goe
 }
 
 TEST_CASE("resolve: a plate that stands still does not give way, and one that closes on it does", "[resolve]") {
-  const auto cloth = sheet(4, 0.1, 0), plate = sheet(2, 0.3, 0);
-  const Surface surface = make_surface(9, plate.triangles);
-  Case c{make_surface(25, cloth.triangles), {surface, surface}, {}, {}, {}};
-  Points low = plate.x, high = plate.x;
-  low.col(1).array() -= 0.02;
-  high.col(1).array() += 0.02;
-  c.x0 = gather_nodes(cloth.x, {low, high});
-  high.col(1).array() -= 0.05;
-  c.x1 = gather_nodes(cloth.x, {low, high});
-  c.inverse_mass = Eigen::VectorXd::Zero(c.x0.rows());
-  c.inverse_mass.head(25).setConstant(1e4);
+  const Case c = between_plates(0, -0.05);
   Points x1 = c.x1;
   PathPairs candidates;
   CHECK(run(c, x1, candidates).clean);

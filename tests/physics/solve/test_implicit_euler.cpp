@@ -185,9 +185,7 @@ TEST_CASE("Both solvers find the same minimiser, with every term on", "[implicit
   ImplicitEuler solver(all.scene, accurate(LinearSolver::pcg));
   const NewtonReport report = solver.solve(all.problem(), reference);
   CHECK(report.converged);
-  const double imbalance = solver.imbalance(all.problem(), reference);
-  CHECK(imbalance < 1e-7);
-  CHECK(solver.gradient(all.problem(), reference).rowwise().norm().maxCoeff() == imbalance);
+  CHECK(solver.gradient(all.problem(), reference).rowwise().norm().maxCoeff() < 1e-7);
   CHECK(solver.potential(all.problem(), reference) < solver.potential(all.problem(), all.x));
   for (std::size_t k = 0; k < all.scene.pins.size(); ++k) CHECK(reference.row(all.scene.pins[k]) == all.pins.row(k));
 

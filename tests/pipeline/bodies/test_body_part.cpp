@@ -36,6 +36,10 @@ TEST_CASE("body part: groups that are chosen become the body", "[body_part]") {
   CHECK_THROWS_WITH(vertices(mesh, {{"skin"}, {"skin"}}), Contains("no faces"));
   const BodyPart part = body_part(mesh, "body.obj", {{}, {"skin"}});
   CHECK(body_without_rig(mesh, part, "body.obj").meshes == NamedVertices{{"joints", {0, 1, 2}}});
+  // A group that holds others does not hide them.
+  mesh.groups.insert(mesh.groups.begin(), {"all", {0, 1, 2, 3, 4, 5}});
+  CHECK(vertices(mesh, {{"joints"}, {}}) == std::vector<int>{3, 4, 5});
+  mesh.groups.erase(mesh.groups.begin());
   mesh.groups[1].first = "body";
   CHECK(vertices(mesh, {}) == std::vector<int>{3, 4, 5});
   CHECK(vertices(mesh, {{"skin"}, {}}) == std::vector<int>{0, 1, 2});
