@@ -199,7 +199,8 @@ RollingState& chosen_state(Trainer& trainer) {
     Roll roll = trainer.queue->take();
     ask_for_roll(trainer);
     if (!roll.usable) continue;
-    if (trainer.options.samples.start == GarmentStart::tangled && roll.request.cloth_contact)
+    if (trainer.options.samples.start == GarmentStart::tangled && roll.request.cloth_contact &&
+        roll.request.sheet == HungStart::none)
       trainer.start_pairs.push_back(roll.pairs);
     begin_roll(std::move(roll), state);
     set_guard(trainer.options, state);

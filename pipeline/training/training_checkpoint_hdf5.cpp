@@ -136,12 +136,13 @@ RollRequest request_of(const FieldsIn& in, const TrainingWorld& world, std::span
                 n[8] != 0,
                 n[9] != 0,
                 n[10],
-                n[11] != 0,
+                static_cast<HungStart>(integer(11)),
                 n[12] != 0,
                 {n[13], n[14], n[15]}};
   const bool known = r.wear < int(world.wear.size()) && r.body < int(world.bodies.size()) &&
                      world.wear[std::size_t(r.wear)].person == world.bodies[std::size_t(r.body)].person &&
-                     r.clip < int(world.bodies[std::size_t(r.body)].clips.size()) && r.frames >= 1 && r.frames < 100000;
+                     r.clip < int(world.bodies[std::size_t(r.body)].clips.size()) && r.frames >= 1 &&
+                     r.frames < 100000 && r.sheet <= HungStart::folded;
   if (!known) in.fail("names a roll-out that the configuration does not have");
   return r;
 }

@@ -96,6 +96,10 @@ const Options<SampleOptions>& sample_options() {
        flag("yaw", &O::yaw, "True: each roll-out is rotated about the vertical by a random angle."),
        flag("mirror", &O::mirror, "True: a random half of the roll-outs is mirrored left to right."),
        number("no_body_share", &O::no_body_share, Unit::none, from_0_to_1, "Fraction of roll-outs without the body."),
+       number(
+           "folded_share", &O::folded_share, Unit::none, from_0_to_1,
+           "Fraction of roll-outs with a hanging sheet in place of a garment, without a body, one corner of the sheet "
+           "folded through it. Roll-outs without contact between cloth and cloth are not among them."),
        flag("flesh", &O::soft_tissue,
             "True: soft tissue of the body gives way where the body would pass through itself."),
        choice("start", &O::start,

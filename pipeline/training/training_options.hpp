@@ -50,6 +50,7 @@ struct SampleOptions {
   double noise = 3e-3;             // of start positions [m]
   bool yaw = true, mirror = true;  // turned about the vertical, and left for right
   double no_body_share = 0;        // of roll-outs
+  double folded_share = 0;         // of roll-outs whose cloth meets itself: of a sheet with a corner folded through it
   bool soft_tissue = true;         // the body gives way where it would pass through itself
   GarmentStart start = GarmentStart::skinned;
   ForceSampling forces;

@@ -76,7 +76,8 @@ std::shared_ptr<const TrainingScene> with_graph(const RollMaker& maker, const Ro
     made->graph.mass = made->losses.mass;
   }
   made->rest = make_rest_graph(made->graph, maker.features);
-  if (request.sheet) made->losses.closed = close_surface(scene.surface, {}, scene.pins);  // it has no inside
+  if (request.sheet != HungStart::none)
+    made->losses.closed = close_surface(scene.surface, {}, scene.pins);  // it has no inside
   return made;
 }
 
@@ -89,8 +90,15 @@ void turn(const RollRequest& request, PointsF& x) {
   x = (x * rotation).eval();
 }
 
-// The start with noise, or parted and then without noise, which would tangle it again.
+// The start folded, or with noise, or parted and then without noise, which would tangle it again.
 void set_start(const TrainingOptions& options, Roll& roll) {
+  if (roll.request.sheet == HungStart::folded) {
+    RandomStream fold = stream_for(options.seed, place, roll.request.number);
+    PointsF start = folded(hung_sheet(options.samples.edge).rest, fold).cast<float>();
+    turn(roll.request, start);
+    roll.start = start.cast<double>();
+    return;
+  }
   RandomStream random = stream_for(options.seed, start_noise, roll.request.number);
   Points noise(roll.cloth[1].rows(), 3);
   for (Eigen::Index i = 0; i < noise.size(); ++i) noise.data()[i] = options.samples.noise * random.normal();
@@ -141,8 +149,8 @@ std::shared_ptr<const TrainingScene> scene_of(RollMaker& maker, const RollReques
     return make_training_scene(maker, request, drawn_materials(maker, request));
   constexpr std::size_t most_scenes = 128;
   if (maker.scenes.size() > most_scenes) maker.scenes.clear();
-  auto& scene =
-      maker.scenes[{request.wear, request.body, request.mirrored, request.with_body, request.sheet, request.wind}];
+  auto& scene = maker.scenes[{request.wear, request.body, request.mirrored, request.with_body,
+                              request.sheet != HungStart::none, request.wind}];
   if (!scene) scene = make_training_scene(maker, request, drawn_materials(maker, request));
   return scene;
 }
@@ -150,7 +158,7 @@ std::shared_ptr<const TrainingScene> scene_of(RollMaker& maker, const RollReques
 // Body and garments in a frame, turned as the roll-out is.
 WornFrame frame_of(RollMaker& maker, const RollRequest& request, const RollRequest& at, int k) {
   WornFrame frame;
-  if (request.sheet)
+  if (request.sheet != HungStart::none)
     frame.cloth = hung_sheet(maker.options.samples.edge).rest.cast<float>();
   else
     frame = worn_frame(maker.world, at.wear, at.body, at.clip, at.first_frame - 1 + k);
@@ -175,10 +183,14 @@ void set_forces(const RollMaker& maker, Roll& roll) {
     roll.forces.wind = std::sqrt(2 * strength * density / (wind.air_density * wind.drag)) / strength * request.force;
 }
 
+void hang(HungStart sheet, RollRequest& request) {
+  request.sheet = sheet;
+  request.with_body = false;
+}
+
 void draw_force(const ForceSampling& forces, RandomStream& random, RollRequest& request) {
   if (forces.strongest == 0) return;
-  request.sheet = random.heads(forces.sheet_share);
-  if (request.sheet) request.with_body = false;
+  if (random.heads(forces.sheet_share)) hang(HungStart::flat, request);
   request.wind = random.heads(forces.wind_share);
   const double up = random.between(-1, 1), turned = random.between(0, 2 * std::numbers::pi),
                across = std::sqrt(std::max(0.0, 1 - up * up));
@@ -260,6 +272,10 @@ RollRequest draw_roll(const TrainingOptions& options, const TrainingWorld& world
   request.frames = std::min(is_long ? pool.long_frames : some, there - 1);
   request.first_frame = random.below(std::max(1, there - request.frames));
   draw_force(samples.forces, random, request);
+  if (samples.folded_share > 0 && request.cloth_contact && random.heads(samples.folded_share)) {
+    hang(HungStart::folded, request);
+    request.still = false;  // in a settling frame cloth does not meet cloth
+  }
   return request;
 }
 
@@ -276,7 +292,7 @@ VertexMaterial random_material(RandomStream& random) {
 std::vector<MaterialDraw> drawn_materials(const RollMaker& maker, const RollRequest& request) {
   const SampleOptions& samples = maker.options.samples;
   const std::size_t garments =
-      request.sheet ? 1 : maker.world.wear[static_cast<std::size_t>(request.wear)].garments.size();
+      request.sheet != HungStart::none ? 1 : maker.world.wear[static_cast<std::size_t>(request.wear)].garments.size();
   std::vector<MaterialDraw> draws(garments, {samples.material, samples.material});
   if (samples.sample_materials == MaterialSampling::none) return draws;
   RandomStream random = stream_for(maker.options.seed, material_draw, request.number);
@@ -301,7 +317,7 @@ std::shared_ptr<const TrainingScene> make_training_scene(const RollMaker& maker,
     add_materials(draw, rest, made->materials);
     add_cloth_part(name, rest, own, pins, request.mirrored, isotropic(mixed(draw, 0.5)), scene, triangles);
   };
-  if (request.sheet) {
+  if (request.sheet != HungStart::none) {
     const HungSheet sheet = hung_sheet(maker.options.samples.edge);
     add("sheet", sheet.rest, sheet.triangles, sheet.pins);
   } else {
@@ -351,7 +367,8 @@ Roll make_roll(RollMaker& maker, const RollRequest& request) {
   Roll roll;
   roll.request = request;
   roll.space_edges = request.cloth_contact || !maker.options.contact.edges;
-  const bool looks = maker.options.samples.start == GarmentStart::tangled && request.cloth_contact && !request.sheet;
+  const bool looks =
+      maker.options.samples.start == GarmentStart::tangled && request.cloth_contact && request.sheet == HungStart::none;
   const RollRequest at = looks ? tangled_place(maker, request, roll.pairs) : request;
   roll.scene = scene_of(maker, at);
   const bool crosses_itself = request.with_body && !maker.options.samples.soft_tissue;

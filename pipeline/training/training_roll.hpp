@@ -12,6 +12,9 @@
 
 namespace selvedge {
 
+// A hung sheet without a body, in place of a garment: as it hangs, or with a corner folded through it.
+enum class HungStart { none, flat, folded };
+
 // What a roll-out starts from and how long it goes on: enough to prepare it again, to the bit.
 struct RollRequest {
   std::uint64_t number = 0;  // of all roll-outs of the run
@@ -21,8 +24,8 @@ struct RollRequest {
   bool mirrored = false;
   bool with_body = true;
   bool cloth_contact = false;
-  double yaw = 0;             // [rad]
-  bool sheet = false;         // of a hung sheet in place of a garment; then there is no body
+  double yaw = 0;  // [rad]
+  HungStart sheet = HungStart::none;
   bool wind = false;          // the force is a wind's
   Vec3 force = Vec3::Zero();  // beside gravity [m/s2]; of wind: what it does to a triangle that faces it
   bool operator==(const RollRequest&) const = default;

@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <numbers>
 
 #include "collision/search/intersections.hpp"
 #include "learned/graph/integration.hpp"
+#include "pipeline/training/hung_sheet.hpp"
 #include "pipeline/training/training_watch.hpp"
 #include "tests/pipeline/training/tiny_training.hpp"
 
@@ -42,35 +42,9 @@ TrainingOptions lesson_options(const Lesson& lesson) {
   return options;
 }
 
-// A lower corner of a hanging sheet, turned about a line that cuts it off, until it has gone through the sheet: beyond
-// half a turn about a line that is 4 to 12 mm before the sheet.
-Points folded(const Points& flat, RandomStream& random) {
-  const double side = random.heads(0.5) ? 1 : -1, front = random.heads(0.5) ? 1 : -1;
-  const double size = 0.14 + 0.1 * random.uniform(), lift = 0.004 + 0.008 * random.uniform();
-  const double turn = std::numbers::pi + 0.15 + 0.2 * random.uniform(), skew = 0.35 * (2 * random.uniform() - 1);
-  const Vec3 corner(side * flat.col(0).maxCoeff(), flat.col(1).minCoeff(), 0);
-  const Vec3 inward = Vec3(-side * std::cos(std::numbers::pi / 4 + skew), std::sin(std::numbers::pi / 4 + skew), 0);
-  Points x = flat;
-  for (Eigen::Index v = 0; v < x.rows(); ++v) {
-    const Vec3 p = x.row(v).transpose();
-    const double beyond = size - (p - corner).dot(inward);  // of the line, towards the corner
-    if (beyond <= 0) continue;
-    // First half a circle of radius lift, then straight on, tilted towards the sheet.
-    const double arc = std::numbers::pi * lift;
-    Vec3 at = p + beyond * inward;  // on the line
-    if (beyond < arc)
-      at += -std::sin(beyond / lift) * lift * inward + Vec3(0, 0, front * lift * (1 - std::cos(beyond / lift)));
-    else
-      at +=
-          -std::cos(turn) * (beyond - arc) * inward + Vec3(0, 0, front * (2 * lift + std::sin(turn) * (beyond - arc)));
-    x.row(v) = at.transpose();
-  }
-  return x;
-}
-
 Roll hung_roll(Trainer& trainer) {
   RollRequest request;
-  request.sheet = true;
+  request.sheet = HungStart::flat;
   request.still = false;
   request.with_body = false;
   request.cloth_contact = true;

@@ -54,12 +54,12 @@ TEST_CASE("training with forces: directions cover the sphere, and wind and sheet
   constexpr int count = 3000;
   for (std::uint64_t k = 0; k < count; ++k) {
     const RollRequest request = draw_roll(options, senc_maker().world, k, 1);
-    if (request.sheet) CHECK_FALSE(request.with_body);
+    if (request.sheet != HungStart::none) CHECK_FALSE(request.with_body);
     sum += request.force.normalized();
     squares += request.force.normalized().y() * request.force.normalized().y();
     most = std::max(most, request.force.norm());
     wind += request.wind;
-    sheets += request.sheet;
+    sheets += request.sheet == HungStart::flat;
   }
   CHECK(sum.norm() / count < 0.05);
   CHECK(squares / count == Approx(1.0 / 3).margin(0.03));
@@ -77,7 +77,7 @@ TEST_CASE("training with forces: the state has the acceleration that the energy 
   RollRequest request;
   request.first_frame = 30;
   request.frames = 3;
-  request.sheet = true;
+  request.sheet = HungStart::flat;
   request.with_body = false;
   request.force = {0, 0, 4};
   RollingState state;

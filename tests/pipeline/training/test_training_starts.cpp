@@ -4,6 +4,7 @@
 #include <set>
 
 #include "learned/steppers/learned_scene.hpp"
+#include "pipeline/training/rolling_state.hpp"
 #include "tests/pipeline/training/tiny_training.hpp"
 
 // What roll-outs start from: cut garments, tangled ones, materials.
@@ -188,6 +189,45 @@ TEST_CASE("training starts: every second roll-out looks for a place with 20 pair
   CAPTURE(many, many_as_drawn, moved);
   CHECK(moved >= 3);
   CHECK(many >= many_as_drawn + 3);
+}
+
+TEST_CASE("training starts: a share of the roll-outs hangs a sheet with a corner folded through it", "[training]") {
+  RollMaker maker = contact_maker(GarmentStart::tangled, 0);
+  const auto drawn = [&](double share, std::uint64_t number) {
+    maker.options.samples.folded_share = share;
+    return draw_roll(maker.options, maker.world, number, 1);
+  };
+  constexpr int count = 4000;
+  int folds = 0;
+  for (std::uint64_t number = 0; number < count; ++number) {
+    const RollRequest request = drawn(0.25, number), plain = drawn(0, number);
+    const bool fold = request.sheet == HungStart::folded;
+    folds += fold;
+    CHECK((request == plain) == !fold);
+    if (fold) CHECK_FALSE((request.with_body || request.still));
+  }
+  CHECK(folds / double(count) == Approx(0.25).margin(0.03));
+  maker.options.pool.no_contact_share = 1;
+  for (std::uint64_t number = 0; number < 50; ++number) CHECK(drawn(1, number).sheet == HungStart::none);
+
+  maker.options.pool.no_contact_share = 0;
+  std::set<std::array<double, 3>> lowest;  // of the folds: no two are the same
+  for (std::uint64_t number = 0; number < 12; ++number) {
+    INFO(number);
+    const Roll roll = make_roll(maker, drawn(1, number));
+    const Scene& scene = roll.scene->scene;
+    CHECK(scene.obstacles.empty());
+    for (const int pin : scene.pins) CHECK((roll.start.row(pin) - roll.cloth[1].row(pin).cast<double>()).norm() < 1e-6);
+    IntersectionCache cache;
+    CHECK_FALSE(intersecting_pairs(scene.surface, roll.start, cache).empty());
+    RollingState state;
+    begin_roll(make_roll(maker, drawn(1, number)), state);
+    CHECK(state.now.velocity.isZero());
+    CHECK(state.now.x == roll.start);
+    const auto p = roll.start.row(roll.start.rows() - 1);
+    lowest.insert({p.x(), p.y(), p.z()});
+  }
+  CHECK(lowest.size() >= 6);
 }
 
 TEST_CASE("training starts: roll-outs without a body, without contact of cloth, and long ones have their shares",
