@@ -32,7 +32,7 @@ void check_inputs(const LossInputs& in) {
     throw Error("what is left out of the body is not a flag for each face", "inputs of the losses", "");
 }
 
-// A weight that is not zero now.
+// The weight at this progress of the run.
 double weight_now(const LossRamp& ramp, const LossInputs& in) { return weight_at(ramp, in.progress); }
 
 bool has_body(const LossInputs& in) { return in.body && in.body->triangles.rows() > 0; }

@@ -6,8 +6,8 @@ namespace selvedge {
 
 // How a step is cut into substeps, and how a substep alternates implicit solves with Bridson's response.
 struct SubstepOptions {
-  double max_motion = 2.5;    // A vertex moves at most this many mean edges in a substep.
-  double max_slide = 1;       // A touching pair slides at most this many: more locks cloth that is pulled round a post.
+  double max_motion = 2.5;  // Pairs that meet (with icm: all vertices) move at most this many mean edges in a substep.
+  double max_slide = 1;     // A touching pair slides at most this many: more locks cloth that is pulled round a post.
   double deep_impact = 0.05;  // An impact this many mean edges deep becomes a term of the next solve.
   double longest = 1.0 / 48;  // A longer step takes two substeps at least, since implicit Euler damps visibly [s].
 

@@ -36,7 +36,7 @@ const Options<ContactTermOptions>& contact_term_options() {
       {number("stiffness", &O::stiffness, Unit::none, positive,
               "Stiffness of a new contact, in masses of the pair over the time step squared."),
        number("overlap_removed", &O::overlap_removed, Unit::none, not_negative,
-              "Largest fraction of an overlap that a step removes."),
+              "Fraction of an overlap by which a step lifts, and of the gap by which a load may sink in a step."),
        number("onset", &O::onset, Unit::none, positive,
               "Distance over which the force sets in, in contact thicknesses."),
        number(
