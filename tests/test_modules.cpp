@@ -91,6 +91,27 @@ Complaints dead_references(const fs::path& top, const std::string& file, const s
   return complaints;
 }
 
+// Prose of a Markdown page is at most 120 columns wide. Tables, code and blocks between fences may be wider.
+Complaints wide_lines(const std::string& file, const std::string& text) {
+  static const std::regex fence(R"(^\s*(```|~~~).*)"), other(R"(^(\s*\|| {4,}\S).*)");
+  Complaints complaints;
+  std::istringstream lines(text);
+  std::string line;
+  bool fenced = false;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    if (std::regex_match(line, fence)) fenced = !fenced;
+    if (fenced || line.size() <= 120 || std::regex_match(line, other)) continue;
+    complaints.push_back(at(file, number) + "wider than 120 columns");
+  }
+  return complaints;
+}
+
+Texts pages() {
+  Texts all = texts("docs", {".md"});
+  for (const std::string page : {"README.md", "CHANGELOG.md"}) all[page] = read(root / page);
+  return all;
+}
+
 }  // namespace
 
 TEST_CASE("modules: includes go left along the chain", "[modules]") {
@@ -141,10 +162,8 @@ TEST_CASE("modules: test files have names of their own", "[modules]") {
 }
 
 TEST_CASE("modules: what the documents name exists", "[modules]") {
-  auto pages = texts("docs", {".md"});
-  for (const std::string page : {"README.md", "CHANGELOG.md"}) pages[page] = read(root / page);
   Complaints all;
-  for (const auto& [file, text] : pages)
+  for (const auto& [file, text] : pages())
     for (const std::string& complaint : dead_references(root, file, text)) all.push_back(complaint);
   CHECK(listed(all) == "");
 
@@ -153,6 +172,18 @@ TEST_CASE("modules: what the documents name exists", "[modules]") {
   CHECK(dead_references(root, "docs/a.md", "\n[it](README.md)\n") ==
         Complaints{"docs/a.md:2: leads nowhere: README.md"});
   CHECK(dead_references(root, "README.md", "see `physics/nothing.cpp`\n").size() == 1);
+}
+
+TEST_CASE("modules: prose of the documents is at most 120 columns wide", "[modules]") {
+  Complaints all;
+  for (const auto& [file, text] : pages())
+    for (const std::string& complaint : wide_lines(file, text)) all.push_back(complaint);
+  CHECK(listed(all) == "");
+
+  const std::string wide = std::string(121, 'a');
+  CHECK(wide_lines("a.md", "b\n" + wide + "\n") == Complaints{"a.md:2: wider than 120 columns"});
+  CHECK(wide_lines("a.md", "```\n" + wide + "\n```\n    " + wide + "\n| " + wide + " |\n").empty());
+  CHECK(wide_lines("a.md", "```\n```\n* " + wide + "\n").size() == 1);
 }
 
 TEST_CASE("modules: headers do not define two types of one name", "[modules]") {
