@@ -100,10 +100,20 @@ TEST_CASE("cases: a shirt that is tucked into a pinned skirt part of the way rou
   const auto given = case_file("tucked_layers");
   if (!given) return;
   const fake::Folder folder("case_tucked");
-  const std::filesystem::path body = folder.path / "body.h5";
-  convert_body({.file = *given / "body.obj", .unit = "cm", .out = body, .joints = *given / "joints.yaml"});
-  for (const std::string name : {"tee", "skirt"})
-    dress({.mesh = *given / (name + ".obj"), .out = folder.path / (name + ".h5"), .unit = "cm", .body = body.string()});
+  BodyRequest body;
+  body.file = *given / "body.obj";
+  body.joints = *given / "joints.yaml";
+  body.unit = "cm";
+  body.out = folder.path / "body.h5";
+  convert_body(body);
+  for (const std::string name : {"tee", "skirt"}) {
+    DressRequest garment;
+    garment.mesh = *given / (name + ".obj");
+    garment.unit = "cm";
+    garment.body = body.out.string();
+    garment.out = folder.path / (name + ".h5");
+    dress(garment);
+  }
   std::filesystem::copy(*given / "walk.yaml", folder.path / "walk.yaml");
   const RunSummary summary = run(folder.path / "walk.yaml", {"run.frames=12"}).summary;
   CHECK(summary.worst_frame == 0);
