@@ -5,8 +5,8 @@
 #include "collision/audit/audit_memory.hpp"
 #include "collision/audit/bisection.hpp"
 #include "collision/audit/moving_pair.hpp"
+#include "collision/audit/proof_budget.hpp"
 #include "collision/geometry/floating_point.hpp"
-#include "collision/geometry/stop_scope.hpp"
 
 namespace selvedge {
 namespace {
@@ -14,10 +14,11 @@ namespace {
 // Triangles of one side, each with its place among the surfaces; only those whose corners are all finite.
 struct Side {
   struct Face {
-    const Surface* surface;
-    const Points *x0, *x1;
+    const MovingBody* body;
     int triangle, first_node;
     int number;  // as in AuditMemory::Pair
+
+    const Surface& surface() const { return *body->surface; }
   };
   std::vector<Face> faces;
   std::vector<ExactBox> start, end, boxes;  // at both ends, and round both
@@ -26,7 +27,7 @@ struct Side {
 bool finite(const Points& x0, const Points& x1, int v) { return x0.row(v).allFinite() && x1.row(v).allFinite(); }
 
 ExactBox box_of(const Side::Face& face, const Points& x) {
-  const int* v = face.surface->triangles.data() + 3 * face.triangle;
+  const int* v = face.surface().triangles.data() + 3 * face.triangle;
   ExactBox box;
   for (int k = 0; k < 3; ++k) {
     box.lo[k] = std::min({x(v[0], k), x(v[1], k), x(v[2], k)});
@@ -77,7 +78,7 @@ int add(const MovingBody& body, int first_node, int first_number, double margin,
   for (int v = 0; v < s.vertex_count; ++v) good[v] = finite(*body.x0, *body.x1, v);
   for (int t = 0; t < s.triangles.rows(); ++t) {
     if (!good[s.triangles(t, 0)] || !good[s.triangles(t, 1)] || !good[s.triangles(t, 2)]) continue;
-    const Side::Face face{&s, body.x0, body.x1, t, first_node, first_number + t};
+    const Side::Face face{&body, t, first_node, first_number + t};
     const ExactBox start = box_of(face, *body.x0), end = box_of(face, *body.x1),
                    both = grown(round_both(start, end), margin);
     if (!overlap(both, bounds)) continue;
@@ -89,17 +90,18 @@ int add(const MovingBody& body, int first_node, int first_number, double margin,
   return static_cast<int>(std::count(good.begin(), good.end(), 0));
 }
 
-// A node of either face, and where it is relative to the first corner of the first.
 struct Node {
-  const Side::Face* face;
-  int vertex;
+  const MovingBody* body;
+  int vertex, first_node;
 
-  int number() const { return face->first_node + vertex; }
-  Vec3 start() const { return row(*face->x0, vertex); }
-  Vec3 end() const { return row(*face->x1, vertex); }
+  int number() const { return first_node + vertex; }
+  Vec3 start() const { return row(*body->x0, vertex); }
+  Vec3 end() const { return row(*body->x1, vertex); }
 };
 
-Node corner(const Side::Face& face, int k) { return {&face, face.surface->triangles(face.triangle, k % 3)}; }
+Node corner(const Side::Face& face, int k) {
+  return {face.body, face.surface().triangles(face.triangle, k % 3), face.first_node};
+}
 
 template <std::size_t Count>
 MovingPoints<Count> relative_to(const Node& origin, const std::array<Node, Count>& nodes) {
@@ -112,39 +114,56 @@ MovingPoints<Count> relative_to(const Node& origin, const std::array<Node, Count
   return points;
 }
 
-// Ends the proofs of a cell. One of coincident edges takes thousands of parts, and a cell holds many: each proof
-// counts, where a comparison of boxes hardly does.
-class ProofWatch {
- public:
-  explicit ProofWatch(AuditBudget& budget) : budget_(budget) {}
-  bool ended() { return ++proofs_ % asked_after == 0 ? !budget_.add(0) : budget_.exceeded(); }
+// A vertex and a face, or two edges.
+struct FeaturePair {
+  bool edges;
+  std::array<Node, 4> nodes;
 
- private:
-  static constexpr int asked_after = 16;
-  AuditBudget& budget_;
-  int proofs_ = 0;
+  PassedPair numbered() const {
+    return {edges, {nodes[0].number(), nodes[1].number(), nodes[2].number(), nodes[3].number()}};
+  }
+  Way way(int max_halvings, int parts) const {
+    const MovingPoints<4> points = relative_to(nodes[0], nodes);
+    return edges ? way_of_edges(points, max_halvings, parts) : way_of_vertex_and_face(points, max_halvings, parts);
+  }
+};
+
+// What was found in a cell, or in all of them.
+struct Found {
+  std::vector<PassedPair> passed;
+  std::vector<FeaturePair> open;                              // that few parts did not decide
+  std::vector<std::pair<int, int>> self_at_end, body_at_end;  // that meet at the end
+};
+
+struct Asked {
+  const LeftOut& left_out;
+  int max_halvings;
 };
 
 struct PairAudit {
   const Side::Face &a, &b;
-  int max_halvings;
-  std::vector<PassedPair>& passed;
-  ProofWatch* watch = nullptr;  // null: nobody ends it
+  const Asked& asked;
+  ProofWatch& watch;
+  Found& found;
 
   bool same(int i, int j) const { return corner(a, i).number() == corner(b, j).number(); }
 
-  void take(bool edges, const std::array<Node, 4>& n) const {
-    if (watch && watch->ended()) return;
-    const MovingPoints<4> points = relative_to(n[0], n);
-    if (edges ? edges_stay_apart(points, max_halvings) : vertex_and_face_stay_apart(points, max_halvings)) return;
-    passed.push_back({edges, {n[0].number(), n[1].number(), n[2].number(), n[3].number()}});
+  void take(bool edges, const std::array<Node, 4>& nodes) const {
+    if (watch.ended()) return;
+    const FeaturePair pair{edges, nodes};
+    if (asked.left_out && asked.left_out(pair.numbered().nodes)) return;
+    const Way way = pair.way(asked.max_halvings, few_parts);
+    if (way == Way::apart) return;
+    watch.add_unproven();
+    if (way == Way::meets) found.passed.push_back(pair.numbered());
+    if (way == Way::open) found.open.push_back(pair);
   }
 
   // Of the vertices that the face p owns, with the face f.
   void vertices(const Side::Face& p, const Side::Face& f) const {
     for (int k = 0; k < 3; ++k) {
       const Node v = corner(p, k);
-      if (p.surface->vertex_owner[v.vertex] != p.triangle) continue;
+      if (p.surface().vertex_owner[v.vertex] != p.triangle) continue;
       const std::array<Node, 4> nodes{v, corner(f, 0), corner(f, 1), corner(f, 2)};
       if (std::none_of(nodes.begin() + 1, nodes.end(), [&](const Node& n) { return n.number() == v.number(); }))
         take(false, nodes);
@@ -153,9 +172,9 @@ struct PairAudit {
 
   void edges() const {
     for (int i = 0; i < 3; ++i) {
-      if (a.surface->edge_owner[a.surface->triangle_edges(a.triangle, i)] != a.triangle) continue;
+      if (a.surface().edge_owner[a.surface().triangle_edges(a.triangle, i)] != a.triangle) continue;
       for (int j = 0; j < 3; ++j) {
-        if (b.surface->edge_owner[b.surface->triangle_edges(b.triangle, j)] != b.triangle) continue;
+        if (b.surface().edge_owner[b.surface().triangle_edges(b.triangle, j)] != b.triangle) continue;
         if (same(i, j) || same(i, (j + 1) % 3) || same((i + 1) % 3, j) || same((i + 1) % 3, (j + 1) % 3)) continue;
         take(true, {corner(a, i), corner(a, i + 1), corner(b, j), corner(b, j + 1)});
       }
@@ -194,23 +213,17 @@ struct PairAudit {
 
   // Every vertex and edge is looked at with one of its faces, so that each pair is met once.
   void operator()() const {
-    if (triangles_stay_apart()) return;
+    if (watch.given_up() || triangles_stay_apart()) return;
     vertices(a, b);
     vertices(b, a);
     edges();
   }
 };
 
-// What was found in a cell, or in all of them.
-struct Found {
-  std::vector<PassedPair> passed;
-  std::vector<std::pair<int, int>> self_at_end, body_at_end;  // that meet at the end
-};
-
 // reach: as of MotionEnd.
-void audit_cell(const Cell& cell, const Side& cloth, const Side& bodies, bool self, int max_halvings, double reach,
-                AuditBudget& budget, Found& found) {
-  ProofWatch watch(budget);
+void audit_cell(const Cell& cell, const Side& cloth, const Side& bodies, bool self, const Asked& asked, double reach,
+                AuditBudget& budget, ProofBudget& proofs, Found& found) {
+  ProofWatch watch(budget, proofs);
   visit_pairs(
       cell, cloth.boxes, bodies.boxes, self, budget,
       [&](int a, int b) {
@@ -218,13 +231,13 @@ void audit_cell(const Cell& cell, const Side& cloth, const Side& bodies, bool se
         if (meet_at_end(cloth.end[a], cloth.end[b], reach))
           found.self_at_end.emplace_back(cloth.faces[first].number, cloth.faces[second].number);
         if (stay_apart_along_an_axis(cloth, a, cloth, b)) return;
-        PairAudit{cloth.faces[first], cloth.faces[second], max_halvings, found.passed, &watch}();
+        PairAudit{cloth.faces[first], cloth.faces[second], asked, watch, found}();
       },
       [&](int a, int c) {
         if (meet_at_end(cloth.end[a], bodies.end[c], reach))
           found.body_at_end.emplace_back(cloth.faces[a].number, bodies.faces[c].number);
         if (stay_apart_along_an_axis(cloth, a, bodies, c)) return;
-        PairAudit{cloth.faces[a], bodies.faces[c], max_halvings, found.passed, &watch}();
+        PairAudit{cloth.faces[a], bodies.faces[c], asked, watch, found}();
       });
 }
 
@@ -235,43 +248,72 @@ MotionEnd end_of(const MovingBody& cloth, std::span<const MovingBody> bodies, bo
 }
 
 // Of the pairs that the memory leaves open; all are finite.
-std::vector<PassedPair> passed_of(const AuditQuestions& questions, const MovingBody& cloth,
-                                  std::span<const MovingBody> bodies, int max_halvings) {
-  std::vector<PassedPair> passed;
-  const auto face = [](const MovingBody& body, int t, int first_node) {
-    return Side::Face{body.surface, body.x0, body.x1, t, first_node, t};
-  };
+Found found_among(const AuditQuestions& questions, const MovingBody& cloth, std::span<const MovingBody> bodies,
+                  const Asked& asked, AuditBudget& budget, ProofBudget& proofs) {
+  Found found;
+  ProofWatch watch(budget, proofs);
+  const auto face = [](const MovingBody& body, int t, int first_node) { return Side::Face{&body, t, first_node, t}; };
   for (const AuditMemory::Pair& pair : questions.self_pairs) {
-    check_stop();
-    PairAudit{face(cloth, std::min(pair.a, pair.b), 0), face(cloth, std::max(pair.a, pair.b), 0), max_halvings,
-              passed}();
+    const Side::Face a = face(cloth, std::min(pair.a, pair.b), 0), b = face(cloth, std::max(pair.a, pair.b), 0);
+    PairAudit{a, b, asked, watch, found}();
   }
   for (const AuditMemory::Pair& pair : questions.body_pairs) {
-    check_stop();
     const MovingBody* body = bodies.data();
     int t = pair.b, first_node = cloth.surface->vertex_count;
     for (; t >= body->surface->triangles.rows(); ++body) {
       t -= static_cast<int>(body->surface->triangles.rows());
       first_node += body->surface->vertex_count;
     }
-    PairAudit{face(cloth, pair.a, 0), face(*body, t, first_node), max_halvings, passed}();
+    const Side::Face a = face(cloth, pair.a, 0), b = face(*body, t, first_node);
+    PairAudit{a, b, asked, watch, found}();
   }
-  std::sort(passed.begin(), passed.end());
-  return passed;
+  return found;
+}
+
+// Pairs that few parts of the time did not decide get equal shares of what may be spent on them. What is open then is
+// not apart, if it had all the parts that any pair may have, or else not known.
+void decide(const std::vector<FeaturePair>& open, int max_halvings, AuditBudget& budget, MotionAudit& result) {
+  const int share = ProofBudget::share(open.size()), count = static_cast<int>(open.size());
+  std::vector<Way> ways(open.size(), Way::open);
+#pragma omp parallel for schedule(dynamic, 4)
+  for (int i = 0; i < count; ++i)
+    if (budget.add(0)) ways[i] = open[i].way(max_halvings, share);
+  for (int i = 0; i < count; ++i)
+    if (ways[i] == Way::meets || (ways[i] == Way::open && share == most_parts))
+      result.passed.push_back(open[i].numbered());
+    else
+      result.given_up += ways[i] == Way::open;
+}
+
+void conclude(Found& found, int max_halvings, AuditBudget& budget, const ProofBudget& proofs, MotionAudit& result) {
+  budget.check();
+  if (proofs.exceeded()) {
+    result.given_up = ProofBudget::most_unproven;
+    result.whole = false;
+    return;
+  }
+  result.passed = std::move(found.passed);
+  decide(found.open, max_halvings, budget, result);
+  budget.check();
+  std::sort(result.passed.begin(), result.passed.end());
 }
 
 }  // namespace
 
 MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x1, std::span<const MovingBody> bodies,
-                         bool self, AuditMemory* memory, int max_halvings) {
+                         bool self, AuditMemory* memory, const LeftOut& left_out, int max_halvings) {
   restore_standard_arithmetic();
   const MovingBody moving{&cloth, &x0, &x1};
+  const Asked asked{left_out, max_halvings};
+  ProofBudget proofs;
   MotionAudit result;
   if (memory) {
     memory->end = {};
     const AuditQuestions questions = open_questions(*memory, moving, bodies, self);
     if (!questions.all) {
-      result.passed = passed_of(questions, moving, bodies, max_halvings);
+      AuditBudget budget(cloth.triangles.rows());
+      Found found = found_among(questions, moving, bodies, asked, budget, proofs);
+      conclude(found, max_halvings, budget, proofs, result);
       return result;
     }
   }
@@ -290,11 +332,9 @@ MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x
   std::vector<Found> parts(cells.size());
   AuditBudget budget(mine.boxes.size() + others.boxes.size());
 #pragma omp parallel for schedule(dynamic, 4)
-  for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, max_halvings, reach, budget, parts[r]);
-  budget.check();
-  Found found = joined(parts, &Found::passed, &Found::self_at_end, &Found::body_at_end);
-  std::sort(found.passed.begin(), found.passed.end());
-  result.passed = std::move(found.passed);
+  for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, asked, reach, budget, proofs, parts[r]);
+  Found found = joined(parts, &Found::passed, &Found::open, &Found::self_at_end, &Found::body_at_end);
+  conclude(found, max_halvings, budget, proofs, result);
   // A face that was left out may be whole again at the end.
   if (memory && result.nonfinite == 0) memory->end = end_of(moving, bodies, self, reach, std::move(found));
   return result;

@@ -7,9 +7,6 @@
 namespace selvedge {
 namespace {
 
-// Parts of the time that one pair may be cut into before it counts as not apart.
-constexpr int max_parts = 4096;
-
 // Coordinates are differences, wrong by u = 2^-53 of themselves, and m . p rounds five times: less than 7 u max |m_k|
 // reach for a point, with `reach` the largest sum of coordinates, and 14 u for both sides. This is 45 u, which leaves
 // room for what halving the time adds. Less than 1e-300 underflows.
@@ -102,11 +99,21 @@ std::array<MovingPoints<4>, 2> halves(const MovingPoints<4>& p) {
   return parts;
 }
 
-// Depth first and early parts first, so that a pair that stays together ends at once.
+// Its first part after so many halvings.
+MovingPoints<4> beginning_of(const MovingPoints<4>& whole, int halvings) {
+  MovingPoints<4> first = whole;
+  for (int k = 0; k < halvings; ++k)
+    for (int i = 0; i < 4; ++i) first.end[i] = first.middle(i);
+  return first;
+}
+
+// Depth first and early parts first. A pair that touches at the start is found at once.
 template <class Separated>
-bool stays_apart(const MovingPoints<4>& whole, int max_halvings, Separated&& separated) {
+Way way_of(const MovingPoints<4>& whole, int max_halvings, int most, Separated&& separated) {
   // Halves are made of halves: every halving rounds the coordinates once more, 2 u for both sides.
   const double reach = reach_of(whole) * (1 + 0.05 * max_halvings);
+  if (separated(whole, reach)) return Way::apart;
+  if (!separated(beginning_of(whole, max_halvings), reach)) return Way::meets;
   struct Part {
     MovingPoints<4> points;
     int halvings;
@@ -116,12 +123,13 @@ bool stays_apart(const MovingPoints<4>& whole, int max_halvings, Separated&& sep
     const Part part = stack.back();
     stack.pop_back();
     if (separated(part.points, reach)) continue;
-    if (part.halvings == max_halvings || parts == max_parts) return false;
+    if (part.halvings == max_halvings) return Way::meets;
+    if (parts >= most) return Way::open;
     const auto [early, late] = halves(part.points);
     stack.push_back({late, part.halvings + 1});
     stack.push_back({early, part.halvings + 1});
   }
-  return true;
+  return Way::apart;
 }
 
 bool is_edge_on(const Vec3& m, const MovingPoints<2>& a, const MovingPoints<2>& b, double reach) {
@@ -171,12 +179,12 @@ bool stay_apart_at_edge(const MovingPoints<4>& p) {
   return in_order(perpendicular + lean, 0, 1) && in_order(perpendicular - lean, 1, 0);
 }
 
-bool vertex_and_face_stay_apart(const MovingPoints<4>& p, int max_halvings) {
-  return stays_apart(p, max_halvings, some_direction_separates_face);
+Way way_of_vertex_and_face(const MovingPoints<4>& p, int max_halvings, int parts) {
+  return way_of(p, max_halvings, parts, some_direction_separates_face);
 }
 
-bool edges_stay_apart(const MovingPoints<4>& p, int max_halvings) {
-  return stays_apart(p, max_halvings, some_direction_separates_edges);
+Way way_of_edges(const MovingPoints<4>& p, int max_halvings, int parts) {
+  return way_of(p, max_halvings, parts, some_direction_separates_edges);
 }
 
 }  // namespace selvedge

@@ -15,8 +15,8 @@ struct MovingPoints {
   Vec3 middle(int i) const { return 0.5 * (start[i] + end[i]); }
 };
 
-// All of these are proofs: true only if the two sides stay apart from beginning to end, as exact points would. False
-// says nothing.
+// Those that say bool are proofs: true only if the two sides stay apart from beginning to end, as exact points would.
+// False says nothing.
 
 // Triangles without a common vertex: some direction of their faces separates them all the time.
 bool stay_apart(const MovingPoints<3>& a, const MovingPoints<3>& b);
@@ -28,8 +28,13 @@ bool stay_apart_beside(const MovingPoints<2>& a, const MovingPoints<2>& b);
 // other does not share stay apart from it.
 bool stay_apart_at_edge(const MovingPoints<4>& p);
 
-// Vertex p[0] and face p[1], p[2], p[3], or edges p[0] p[1] and p[2] p[3]; time is halved at most `max_halvings` times.
-bool vertex_and_face_stay_apart(const MovingPoints<4>& p, int max_halvings);
-bool edges_stay_apart(const MovingPoints<4>& p, int max_halvings);
+// What is known of a pair that moves: it stays apart; or it comes as near as its rounding or the shortest part of the
+// time shows, which counts as meeting; or neither was found in as many parts of the time as it may be cut into.
+enum class Way { apart, meets, open };
+
+// Vertex p[0] and face p[1], p[2], p[3], or edges p[0] p[1] and p[2] p[3]; time is halved at most `max_halvings` times
+// and cut into `parts`.
+Way way_of_vertex_and_face(const MovingPoints<4>& p, int max_halvings, int parts);
+Way way_of_edges(const MovingPoints<4>& p, int max_halvings, int parts);
 
 }  // namespace selvedge

@@ -11,7 +11,7 @@ namespace {
 
 struct Driven {
   std::vector<char> met;         // by node: what pins may meet, and pins
-  Eigen::VectorXd inverse_mass;  // 1 of pins under way, all else 0
+  Eigen::VectorXd inverse_mass;  // 1 of pins that may give way, all else 0
   bool meet = false;             // boxes do
 };
 
@@ -36,13 +36,15 @@ Driven driven(const ContactWorld& world, std::span<const int> pins, double thick
       d.meet = d.meet || (a != b && overlap(a->second.moving, b->second.all));
   const std::vector<char> moving = obstacles_in_motion(world, x0, x1);
   for (std::size_t k = 0; k < moving.size(); ++k) {
-    if (moving[k]) continue;
     Box box = empty_box;
     const int first = world.first_node[k], last = first + world.obstacles[k]->vertex_count;
-    for (int node = first; node < last; ++node) box = join(box, moving_point_box(row(x0, node), row(x0, node), 0));
-    const bool near = std::ranges::any_of(groups, [&](const auto& g) { return overlap(g.second.moving, box); });
-    if (near) std::fill(d.met.begin() + first, d.met.begin() + last, 1);
-    d.meet = d.meet || near;
+    for (int node = first; node < last; ++node) box = join(box, moving_point_box(row(x0, node), row(x1, node), 0));
+    const auto comes_to = [&](const auto& g) { return overlap(moving[k] ? g.second.all : g.second.moving, box); };
+    if (std::ranges::none_of(groups, comes_to)) continue;
+    std::fill(d.met.begin() + first, d.met.begin() + last, 1);
+    d.meet = true;
+    for (const int pin : pins)
+      if (moving[k] && overlap(moving_point_box(row(x0, pin), row(x1, pin), thickness), box)) d.inverse_mass[pin] = 1;
   }
   return d;
 }
@@ -51,7 +53,10 @@ Driven driven(const ContactWorld& world, std::span<const int> pins, double thick
 
 int pins_give_way(PairSearch& search, const ContactWorld& world, std::span<const int> pins,
                   const ResolveOptions& options, const Points& x0, Points& x1, PathPairs& path, ResolveReport& report) {
-  if (std::ranges::none_of(pins, [&](int pin) { return x0.row(pin) != x1.row(pin); })) return 0;
+  const auto moves = [&](int node) { return x0.row(node) != x1.row(node); };
+  if (pins.empty() ||
+      (std::ranges::none_of(pins, moves) && std::ranges::count(obstacles_in_motion(world, x0, x1), 1) == 0))
+    return 0;
   const Driven d = driven(world, pins, options.thickness, x0, x1);
   if (!d.meet) return 0;
   ResolveOptions among = options;

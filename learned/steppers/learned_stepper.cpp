@@ -139,7 +139,7 @@ void LearnedStepper::audit_way(const State& from, const StepEnd& end, StepReport
   const Points before = gather_nodes(from.x, from.obstacles), after = gather_nodes(end.x, end.obstacles);
   const Exemption exemption = from.clean ? Exemption{} : find_exemption(world_, before);
   report.collision.left_alone = exemption.cloth_vertices();
-  report.collision.passed_through = passed_through(world_, exemption, before, after, audited_);
+  add(selvedge::audit_way(world_, exemption, before, after, audited_), report);
   report.seconds.audit += watch.lap();
 }
 

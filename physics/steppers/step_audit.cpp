@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "collision/audit/audit_motion.hpp"
 #include "collision/exact/penetration_depth.hpp"
 #include "collision/geometry/pair_budget.hpp"
 #include "collision/geometry/stopwatch.hpp"
@@ -63,16 +62,20 @@ bool confirm(const LaterAudits& later, StepReport& report) {
   return report.audit && report.audit->intersecting_pairs() == 0 && report.audit->inside_vertices == 0;
 }
 
-int passed_through(const ContactWorld& world, const Exemption& exemption, const Points& nodes0, const Points& nodes1,
-                   AuditMemory& memory) {
+MotionAudit audit_way(const ContactWorld& world, const Exemption& exemption, const Points& nodes0, const Points& nodes1,
+                      AuditMemory& memory) {
   const WorldSheets from(world, nodes0), to(world, nodes1);
   std::vector<MovingBody> bodies;
   for (std::size_t k = 1; k < from.views.size(); ++k)
     bodies.push_back({from.views[k].surface, &from.positions[k], &to.positions[k]});
-  const MotionAudit motion =
-      audit_motion(*world.cloth, from.positions[0], to.positions[0], bodies, world.self, &memory);
-  return static_cast<int>(std::ranges::count_if(
-      motion.passed, [&](const PassedPair& pair) { return !exemption.leaves_alone(world, pair.nodes); }));
+  LeftOut left_out;
+  if (exemption.any()) left_out = [&](const std::array<int, 4>& nodes) { return exemption.leaves_alone(world, nodes); };
+  return audit_motion(*world.cloth, from.positions[0], to.positions[0], bodies, world.self, &memory, left_out);
+}
+
+void add(const MotionAudit& motion, StepReport& report) {
+  report.collision.passed_through += motion.passed_through();
+  report.out_of_proofs = report.out_of_proofs || motion.given_up > 0;
 }
 
 }  // namespace selvedge

@@ -5,6 +5,7 @@
 
 #include "collision/audit/audit.hpp"
 #include "collision/audit/audit_memory.hpp"
+#include "collision/audit/audit_motion.hpp"
 #include "collision/contact/exemption.hpp"
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
@@ -39,7 +40,10 @@ Audit audit_uncut(const Scene&, const State&);
 // pairs and the reason.
 void take_audit(Audit, State&, StepReport&);
 
-// Pairs that met while all nodes moved straight from nodes0 to nodes1, those that contact leaves alone not counted.
-int passed_through(const ContactWorld&, const Exemption&, const Points& nodes0, const Points& nodes1, AuditMemory&);
+// Of the motion in which all nodes went straight from nodes0 to nodes1; pairs that contact leaves alone are not asked
+// about.
+MotionAudit audit_way(const ContactWorld&, const Exemption&, const Points& nodes0, const Points& nodes1, AuditMemory&);
+// What passed through, and whether the audit gave up.
+void add(const MotionAudit&, StepReport&);
 
 }  // namespace selvedge

@@ -33,6 +33,7 @@ std::vector<Column> columns() {
           {"out_of_newton", offsetof(Row, out_of_newton), whole},
           {"out_of_untangling", offsetof(Row, out_of_untangling), whole},
           {"out_of_response", offsetof(Row, out_of_response), whole},
+          {"out_of_proofs", offsetof(Row, out_of_proofs), whole},
           {"solve_seconds", offsetof(Row, phase.solve), real},
           {"broad_phase_seconds", offsetof(Row, phase.broad_phase), real},
           {"ccd_seconds", offsetof(Row, phase.ccd), real},
@@ -117,6 +118,7 @@ TrajectoryRow row_of(const Frame& frame, int by, std::int64_t bad_begin) {
   row.out_of_newton = report.out_of_newton;
   row.out_of_untangling = report.out_of_untangling;
   row.out_of_response = report.out_of_response;
+  row.out_of_proofs = report.out_of_proofs;
   row.unsolved = report.unsolved;
   row.self_pairs = frame.self_pairs;
   row.vertex_pairs = frame.vertex_pairs;
@@ -156,6 +158,7 @@ void fill_from_row(const TrajectoryRow& row, const std::vector<std::string>& nam
   report.out_of_newton = row.out_of_newton != 0;
   report.out_of_untangling = row.out_of_untangling != 0;
   report.out_of_response = row.out_of_response != 0;
+  report.out_of_proofs = row.out_of_proofs != 0;
   report.unsolved = row.unsolved;
   frame.self_pairs = row.self_pairs;
   frame.vertex_pairs = row.vertex_pairs;

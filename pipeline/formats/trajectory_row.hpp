@@ -19,7 +19,7 @@ struct TrajectoryRow {
   PhaseTimes phase;
   StepCounts counts;
   CollisionReport collision;
-  std::int32_t switched_off, untangling, out_of_newton, out_of_untangling, out_of_response;
+  std::int32_t switched_off, untangling, out_of_newton, out_of_untangling, out_of_response, out_of_proofs;
   double unsolved;
   std::int32_t self_pairs, vertex_pairs, obstacle_pairs, inside_vertices, nonfinite;
   double max_stretch, min_stretch;

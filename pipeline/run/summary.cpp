@@ -62,6 +62,7 @@ void add_labels(const StepReport& report, int index, RunSummary& summary) {
   summary.out_of_newton += report.out_of_newton;
   summary.out_of_untangling += report.out_of_untangling;
   summary.out_of_response += report.out_of_response;
+  summary.out_of_proofs += report.out_of_proofs;
   summary.max_unsolved = std::max(summary.max_unsolved, report.unsolved);
 }
 
@@ -95,6 +96,10 @@ std::vector<std::pair<const char*, std::string>> label_lines(const RunSummary& s
                        fmt::format("{} frames: what was tangled still waited for the next", s.out_of_untangling));
   if (s.out_of_response > 0)
     lines.emplace_back("out of response", fmt::format("{} frames: later motion was shortened", s.out_of_response));
+  if (s.out_of_proofs > 0)
+    lines.emplace_back("out of proofs", fmt::format("{} frames: the audit of their motion is not whole, and what it "
+                                                    "gave up counts as passed through",
+                                                    s.out_of_proofs));
   return lines;
 }
 
@@ -247,6 +252,7 @@ std::string summary_json(const RunSummary& s) {
       {"out_of_newton_frames", s.out_of_newton},
       {"out_of_untangling_frames", s.out_of_untangling},
       {"out_of_response_frames", s.out_of_response},
+      {"out_of_proofs_frames", s.out_of_proofs},
       {"max_unsolved", number_or_null(s.max_unsolved)},
       {"left_out", left_out},
       {"warnings", s.warnings}};

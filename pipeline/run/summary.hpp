@@ -51,7 +51,7 @@ struct RunSummary {
   };
   std::vector<SwitchedOff> switched_off;                              // of each obstacle
   long pushed_out = 0, untangling = 0;                                // vertices and passes, over all frames
-  int out_of_newton = 0, out_of_untangling = 0, out_of_response = 0;  // frames
+  int out_of_newton = 0, out_of_untangling = 0, out_of_response = 0, out_of_proofs = 0;  // frames
   double max_unsolved = 0;                                            // [m]
   std::vector<PlanLine> left_out;
   std::vector<std::string> warnings;

@@ -41,6 +41,7 @@ function chipsOf(run, frame, marked) {
   if (at("outOfNewton")) chips.push(["out of Newton iterations", "warn"]);
   if (at("outOfUntangling")) chips.push(["out of untangling passes", "warn"]);
   if (at("outOfResponse")) chips.push(["out of response", "warn"]);
+  if (at("outOfProofs")) chips.push(["out of proofs", "warn"]);
   if (at("fellBack")) chips.push([`fell back${reason ? `: ${reason}` : ""}`, "warn"]);
   else if (reason) chips.push([reason, "warn"]);
   if (at("by") && at("by") !== run.stepper) chips.push([`by ${at("by")}`, ""]);

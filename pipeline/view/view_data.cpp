@@ -74,6 +74,7 @@ struct Series {
     add("outOfNewton", f.report.out_of_newton);
     add("outOfUntangling", f.report.out_of_untangling);
     add("outOfResponse", f.report.out_of_response);
+    add("outOfProofs", f.report.out_of_proofs);
   }
 };
 

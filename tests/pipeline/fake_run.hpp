@@ -80,6 +80,7 @@ inline Frame frame(const Scene& scene, int index) {
   frame.report.out_of_newton = index % 2 == 1;
   frame.report.out_of_untangling = index % 3 == 1;
   frame.report.out_of_response = index % 5 == 1;
+  frame.report.out_of_proofs = index % 7 == 2;
   frame.report.unsolved = 1e-6 * index;
   if (index % 3 > 0) frame.report.switched_off = {index % 2, index};
   frame.self_pairs = index;

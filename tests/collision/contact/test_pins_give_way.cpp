@@ -55,15 +55,28 @@ TEST_CASE("pins that are driven into an obstacle that stands still slide along i
   CHECK((m.x1 - m.wanted).topRows(25).col(0).cwiseAbs().maxCoeff() < 1e-9);
 }
 
-TEST_CASE("pins whose way is free, or that meet what moves, are left as they are", "[pins_give_way]") {
+TEST_CASE("pins give way to an obstacle that comes to them, under way and at rest", "[pins_give_way]") {
+  const Moved met = moved({0, -0.05, 0}, {0, 1e-3, 0}, true), hit = moved(still, {0.01, 0.05, 0}, true);
+  for (const Moved* m : {&met, &hit}) {
+    CHECK(m->pins == 25);
+    CHECK(m->crossing == 0);
+    CHECK(m->x1.bottomRows(9) == m->wanted.bottomRows(9));
+    const double lowest = m->x1.topRows(25).col(1).minCoeff() - m->wanted(25, 1);
+    CHECK(lowest > 1e-4);
+    CHECK(lowest < 2e-3);
+  }
+}
+
+TEST_CASE("pins whose way is free, or that an obstacle carries with it, are left as they are", "[pins_give_way]") {
+  const Vec3 far(0.3, 0.2, -0.1);
   const Moved away = moved({0, 0.05, 0}, still, true), along = moved({0, -0.004, 0}, still, true),
-              met = moved({0, -0.05, 0}, {0, 1e-3, 0}, true), rests = moved(still, still, true);
-  for (const Moved* m : {&away, &along, &met, &rests}) {
+              rests = moved(still, still, true), carried = moved(far, far, true);
+  for (const Moved* m : {&away, &along, &rests, &carried}) {
     CHECK(m->pins == 0);
     CHECK(m->x1 == m->wanted);
   }
   CHECK(away.searches == 0);
-  CHECK(met.searches == 0);
+  CHECK(rests.searches == 0);
 }
 
 TEST_CASE("pins of two cloths that are driven through each other meet, and those at rest stay", "[pins_give_way]") {

@@ -88,8 +88,8 @@ TEST_CASE("resolve_proposal: what goes through the plate on the way ends above i
   CHECK(x.col(1).minCoeff() > 0);
   CHECK(obstacles == w.drive.obstacles);
   AuditMemory audits;
-  CHECK(passed_through(stage.world, {}, gather_nodes(w.state.x, w.state.obstacles), gather_nodes(x, obstacles),
-                       audits) == 0);
+  CHECK(audit_way(stage.world, {}, gather_nodes(w.state.x, w.state.obstacles), gather_nodes(x, obstacles), audits)
+            .passed_through() == 0);
 
   Points free = w.state.x;
   free.col(1).array() += 0.01;

@@ -34,6 +34,7 @@ void require_same(const Frame& a, const Frame& b) {
   REQUIRE(a.report.out_of_newton == b.report.out_of_newton);
   REQUIRE(a.report.out_of_untangling == b.report.out_of_untangling);
   REQUIRE(a.report.out_of_response == b.report.out_of_response);
+  REQUIRE(a.report.out_of_proofs == b.report.out_of_proofs);
   REQUIRE(a.report.unsolved == b.report.unsolved);
   REQUIRE(a.self_pairs == b.self_pairs);
   REQUIRE(a.max_stretch == b.max_stretch);

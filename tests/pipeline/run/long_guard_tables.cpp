@@ -89,8 +89,9 @@ struct Judge {
     const Audit audit = audit_positions(guard.scene, x, step.drive.obstacles, &audits);
     pairs = audit.intersecting_pairs();
     inside = audit.inside_vertices;
-    passed = passed_through(stage.world, {}, gather_nodes(step.from.x, step.from.obstacles),
-                            gather_nodes(x, step.drive.obstacles), audits);
+    passed = audit_way(stage.world, {}, gather_nodes(step.from.x, step.from.obstacles),
+                       gather_nodes(x, step.drive.obstacles), audits)
+                 .passed_through();
     return pairs + inside + passed == 0 ? Verdict::admitted : Verdict::penetrating;
   }
 };

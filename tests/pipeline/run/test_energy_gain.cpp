@@ -3,10 +3,12 @@
 #include "physics/energies/measures.hpp"
 #include "pipeline/run/simulate.hpp"
 #include "pipeline/scene/make_stepper.hpp"
-#include "tests/pipeline/files.hpp"
+#include "tests/pipeline/cases.hpp"
 
 // Scenes whose energy grew from nowhere without a word, and scenes where all of it is explained.
 namespace selvedge::test_energy_gain {
+
+using fake::case_file;
 
 namespace {
 
@@ -27,14 +29,6 @@ Reasons run(const std::filesystem::path& file, std::vector<std::string> override
                        });
   seen.energy = energies(setup.scene, state.x, state.v, setup.drive_at(0).acceleration).total();
   return seen;
-}
-
-std::optional<std::filesystem::path> case_file(const std::string& name) {
-  const std::filesystem::path file =
-      std::filesystem::path(SELVEDGE_SOURCE_DIR) / ".." / "shared" / "cases" / std::filesystem::path(name);
-  if (std::filesystem::exists(file)) return file;
-  WARN("skipped: " << file << " is not there");
-  return std::nullopt;
 }
 
 }  // namespace
