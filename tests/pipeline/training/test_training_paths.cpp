@@ -59,8 +59,8 @@ TEST_CASE("training paths: outfits are looked for beside the training file", "[t
   const auto training = fake::write(folder, "own.yaml",
                                     "base: " + (config_folder() / "training" / "tiny.yaml").string() +
                                         "\nsamples:\n  garments: none\n  people:\n    - name: doll\n"
-                                        "      body: {model: mannequin}\n      clips: [walk, turn]\n"
-                                        "      wear: [{garments: [{outfit: mine}]}]\n  split: {test: [turn]}\n");
+                                        "      body: {model: mannequin}\n      clips: [walk, spin]\n"
+                                        "      wear: [{garments: [{outfit: mine}]}]\n  split: {test: [spin]}\n");
   const TrainingOptions options = read_training(training);
   const TrainingWorld world = make_training_world(options.samples, 1);
   REQUIRE(world.wear.size() == 1);
