@@ -50,7 +50,7 @@ struct LossSearch {
 };
 
 struct LossTerm {
-  std::string name;          // stretching, bending, gravity, inertia, collision, friction, repulsion, contours
+  std::string name;          // stretching, with springs; bending, gravity, inertia, collision, friction, ..
   double weight = 0;         // now, inside value and gradient
   double value = 0;          // [J]
   double gradient_norm = 0;  // over vertices that are not pinned [N]
