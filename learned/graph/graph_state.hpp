@@ -4,6 +4,7 @@
 
 #include "collision/geometry/surface.hpp"
 #include "learned/graph/graph.hpp"
+#include "physics/scene/scene.hpp"
 
 namespace selvedge {
 
@@ -19,6 +20,7 @@ struct GraphScene {
   FeatureRows materials;        // V x 3: bending, mu, lambda as numbers between 0 and 1
   Surface body;                 // without vertices where there is none
   std::vector<int> body_types;  // body_vertex, or omitted_body_vertex: it gets no edges
+  std::vector<Spring> springs;  // stitches and buttons: networks see each as an edge of the mesh
 };
 
 // What a step starts from. Velocities are per frame [m/frame]. For pinned vertices `target` is where they will be.

@@ -29,7 +29,8 @@ struct RestGraph {
 };
 
 // Throws Error for a scene whose parts do not fit together or whose numbers are not finite. Centres: see
-// make_coarse_levels. Mesh edges are sorted by their larger, then their smaller vertex.
+// make_coarse_levels. Mesh edges are sorted by their larger, then their smaller vertex. Springs are mesh edges too, as
+// long at rest as they say; coarse levels know nothing of them.
 RestGraph make_rest_graph(const GraphScene&, const FeatureOptions&, std::span<const int> centres = {});
 
 // Fills in the columns of edges whose senders and receivers are given.

@@ -4,6 +4,7 @@
 
 #include "physics/energies/hinge_lanes.hpp"
 #include "physics/energies/membrane_lanes.hpp"
+#include "physics/energies/springs.hpp"
 
 namespace selvedge {
 namespace {
@@ -74,6 +75,18 @@ double bending_loss(const LossGarment& garment, const Points& x, Points* gradien
       for (int i = 0; i < 4; ++i)
         for (int k = 0; k < 3; ++k) (*gradient)(node[i], k) += lanes.force[3 * i + k][l];
     }
+  }
+  return sum;
+}
+
+double spring_loss(const LossGarment& garment, const Points& x, Points* gradient) {
+  double sum = 0;
+  for (const Spring& spring : garment.springs) {
+    Vec6 own;
+    sum += spring_derivatives(spring, x, own, nullptr);
+    if (!gradient) continue;
+    gradient->row(spring.a) += own.head<3>().transpose();
+    gradient->row(spring.b) += own.tail<3>().transpose();
   }
   return sum;
 }

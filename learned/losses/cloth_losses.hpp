@@ -18,6 +18,9 @@ double stretching_loss(const LossGarment&, const Points& x, Points* gradient);
 // Hinges, with the edge length that the garment was made with.
 double bending_loss(const LossGarment&, const Points& x, Points* gradient);
 
+// Of the springs: sum of k (l - L)^2 / 2.
+double spring_loss(const LossGarment&, const Points& x, Points* gradient);
+
 // Sum of m g y.
 double gravity_loss(const LossGarment&, double strength, const Points& x, Points* gradient);
 

@@ -1,6 +1,8 @@
 #include "learned/losses/force_input.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace selvedge {
 namespace {
@@ -33,7 +35,19 @@ std::vector<double> jacobi_diagonal(const LossGarment& garment, double dt) {
     diagonal[static_cast<std::size_t>(e.nodes[1])] += stiffness * second.squaredNorm();
     diagonal[static_cast<std::size_t>(e.nodes[2])] += stiffness * third.squaredNorm();
   }
+  for (const Spring& spring : garment.springs)
+    for (const int v : {spring.a, spring.b}) diagonal[static_cast<std::size_t>(v)] += 2 * spring.stiffness;
   return diagonal;
+}
+
+void set_springs(std::span<const Spring> springs, LossGarment& garment) {
+  garment.springs.clear();
+  const std::vector<double> cloth = jacobi_diagonal(garment, std::numeric_limits<double>::infinity());
+  for (Spring spring : springs) {
+    spring.stiffness = std::min(
+        {spring.stiffness, cloth[static_cast<std::size_t>(spring.a)], cloth[static_cast<std::size_t>(spring.b)]});
+    garment.springs.push_back(spring);
+  }
 }
 
 Points force_input(const LossInputs& in, const LossOptions& options, const ForceOptions& force, LossSearch& search) {

@@ -14,11 +14,16 @@ struct ForceOptions {
 };
 
 // -dE/dx at inputs.predicted, the guess, divided by the Jacobi diagonal m / dt^2 + sum of (2 mu + lambda) A |grad
-// phi|^2 over the vertex' triangles: a displacement d, whose length is compressed to log(1 + |d| / length). V x 3;
-// zero at pinned vertices and where the force is not finite. The bending and gravity are those of the objective.
+// phi|^2 over the vertex' triangles + twice the stiffness of its springs, whose other end moves too: a displacement d,
+// whose length is compressed to log(1 + |d| / length). V x 3; zero at pinned vertices and where the force is not
+// finite. The bending and gravity are those of the objective.
 Points force_input(const LossInputs&, const LossOptions&, const ForceOptions&, LossSearch&);
 
 // The diagonal [N/m]; dt as the inputs' inertia takes it.
 std::vector<double> jacobi_diagonal(const LossGarment&, double dt);
+
+// Gives the garment, whose materials are set, the springs of its scene, none stiffer than the diagonal that the cloth
+// alone has at either end: beside stiffer ones no other force would be seen, and no other loss learned from.
+void set_springs(std::span<const Spring>, LossGarment&);
 
 }  // namespace selvedge

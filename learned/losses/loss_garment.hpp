@@ -29,6 +29,7 @@ struct LossGarment {
   std::vector<Material> materials;         // St. Venant-Kirchhoff
   std::vector<double> mass;                // of each vertex [kg]
   std::vector<double> hinge_shape;         // of each hinge: its weight for a coefficient of 1
+  std::vector<Spring> springs;             // stitches and buttons (set_springs)
 };
 
 // Of the surface at `rest` [m], with one material. `pinned` is empty or has a flag a vertex. `length` says which edge

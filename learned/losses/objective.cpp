@@ -119,7 +119,8 @@ std::vector<LossTerm> add_checked(const LossInputs& in, const LossOptions& optio
     if (const double weight = weight_now(ramp, in); weight != 0)
       terms.push_back(add_term(name, weight, loss, garment, gradient));
   };
-  add("stretching", options.stretching, [&](Points* g) { return stretching_loss(garment, x, g); });
+  add("stretching", options.stretching,
+      [&](Points* g) { return stretching_loss(garment, x, g) + spring_loss(garment, x, g); });
   add("bending", options.bending, [&](Points* g) { return bending_loss(garment, x, g); });
   if (in.acceleration)
     add("forces", options.gravity, [&](Points* g) { return force_loss(garment.mass, *in.acceleration, x, g); });

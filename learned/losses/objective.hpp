@@ -50,8 +50,8 @@ struct LossSearch {
 };
 
 struct LossTerm {
-  std::string name;          // stretching, bending, gravity or forces, inertia, collision, friction, repulsion, volume,
-                             // vertex_repulsion, contours
+  std::string name;          // stretching, springs with it; bending, gravity or forces, inertia, collision, friction,
+                             // repulsion, volume, vertex_repulsion, contours
   double weight = 0;         // now, inside value and gradient
   double value = 0;          // [J]
   double gradient_norm = 0;  // over vertices that are not pinned [N]

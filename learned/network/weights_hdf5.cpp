@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* form_name = "selvedge weights 1";
 constexpr long long bytes_of_half = 2;
-constexpr hsize_t most_text = 1 << 20, most_texts = 4096;
+constexpr hsize_t most_text = 1 << 24, most_texts = 4096;
 
 // An HDF5 identifier that closes itself, of one kind.
 template <herr_t (*Close)(hid_t)>
@@ -181,6 +181,7 @@ void write_content(const std::filesystem::path& path, const WeightFile& content,
   write_texts(store, "version", {content.version});
   write_texts(store, "architecture", {architecture_text(content.architecture)});
   write_texts(store, "training", {content.training});
+  if (!content.trained_on.empty()) write_texts(store, "trained_on", {content.trained_on});
   std::vector<std::string> names, values;
   for (const auto& [name, value] : content.origin) names.push_back(name), values.push_back(value);
   write_texts(store, "origin_names", names);
@@ -235,6 +236,7 @@ WeightFile read_weight_file(const std::filesystem::path& path) {
   WeightFile content;
   content.version = read_text(store, "version");
   content.training = read_text(store, "training");
+  if (H5Lexists(store.file.id, "trained_on", H5P_DEFAULT) > 0) content.trained_on = read_text(store, "trained_on");
   content.architecture = parse_architecture(read_text(store, "architecture"), path.string() + ": architecture");
   require_fitting_architecture(store, content.architecture, bytes);
   const std::vector<std::string> names = read_texts(store, "origin_names"), values = read_texts(store, "origin_values");

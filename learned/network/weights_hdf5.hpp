@@ -16,11 +16,12 @@ struct WeightFile {
   std::string training;                                     // options of the training, as text; empty where unknown
   std::vector<std::pair<std::string, std::string>> origin;  // provenance: name and value
   std::string version;
+  std::string trained_on = {};  // who and what was trained on, as JSON; empty where unknown
 };
 
 // A weight file is an HDF5 file: texts `format`, `version`, `architecture` (architecture_text.hpp) and `training`,
-// lists of texts `origin_names` and `origin_values`, and below `weights` one dataset of 32-bit or 16-bit floats an
-// array
+// where it is known a text `trained_on`, lists of texts `origin_names` and `origin_values`, and below `weights` one
+// dataset of 32-bit or 16-bit floats an array
 // (`weight_arrays`). Its user block of 512 bytes begins with a line that names the form and a checksum of all bytes
 // behind it.
 //

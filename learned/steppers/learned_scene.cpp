@@ -86,6 +86,7 @@ LearnedScene learned_scene(const Scene& scene) {
   graph.materials = FeatureRows::Zero(vertices, 3);
   for (const Cloth& cloth : scene.cloths)
     graph.materials.middleRows(cloth.first_vertex, cloth.vertex_count).rowwise() = material_row(cloth, result.clamped);
+  graph.springs = scene.springs;
   graph.body = joined_surface(scene.obstacles);
   graph.body_types.assign(static_cast<std::size_t>(graph.body.vertex_count), body_vertex);
   return result;

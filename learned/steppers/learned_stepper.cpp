@@ -9,6 +9,7 @@
 #include "collision/untangle/find_exemption.hpp"
 #include "learned/gradients/torch_network.hpp"
 #include "learned/graph/make_graph.hpp"
+#include "learned/losses/force_input.hpp"
 #include "learned/network/engine.hpp"
 #include "learned/network/packed_network.hpp"
 #include "learned/steppers/learned_scene.hpp"
@@ -43,7 +44,9 @@ class LearnedStepper final : public Stepper {
         world_(
             make_contact_world(scene.surface, obstacle_surfaces(scene), features_of(scene).self_contact, &scene.rest)),
         traits_(learned_traits(architecture)),
-        energy_(scene, traits_) {}
+        energy_(scene, traits_) {
+    if (features_.force_inputs) set_springs(scene.springs, losses_);
+  }
 
   const StepperTraits& traits() const override { return traits_; }
   StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override {

@@ -362,12 +362,12 @@ bool report_drapes(const CompareRequest& request, const Comparison& comparison, 
 
 CompareResult compare(const CompareRequest& request) {
   Comparison comparison = read_comparison(request.file, request.short_form, request.overrides);
+  comparison.kinds = request.kinds;
   if (!comparison.sequences.training.empty())
     add_training_sequences(comparison);
   else if (comparison.sequences.count > 0)
     add_sequences(comparison);
   if (!comparison.split_text.empty()) say(request, comparison.split_text);
-  comparison.kinds = request.kinds;
   const std::string program = program_key();
   make_folder(request.out);
   std::vector<SceneWork> all;

@@ -13,7 +13,8 @@
 
 namespace selvedge {
 
-bool runs_network(const Setup& setup) { return setup.run.stepper == "learned" || setup.run.stepper == "hybrid"; }
+bool runs_network(const Setup& setup) { return runs_network(setup.run.stepper); }
+bool runs_network(const std::string& stepper) { return stepper == "learned" || stepper == "hybrid"; }
 
 WeightFile read_learned_weights(const Setup& setup) {
   const std::string& weights = setup.run.learned.weights;

@@ -9,8 +9,9 @@
 
 namespace selvedge {
 
-// Whether the setup's stepper is one of those that run a network, `learned` and `hybrid`.
+// Whether the setup's stepper is one of those that run a network, `learned` and `hybrid`; also of a kind by its name.
 bool runs_network(const Setup&);
+bool runs_network(const std::string& stepper);
 
 // The network that the stepper `learned` runs. Throws Error where the scene names none, and whatever read_weight_file
 // does.

@@ -132,7 +132,7 @@ const Options<LossOptions>& objective_options() {
   using O = LossOptions;
   static const Options<O> table(
       "objective", "Terms of the loss and their weights over the run. A term whose weight is zero is left out.",
-      {ramp("stretching", &O::stretching, "Weight of the membrane energy."),
+      {ramp("stretching", &O::stretching, "Weight of the membrane energy and of stitches."),
        ramp("bending", &O::bending, "Weight of the bending energy."),
        ramp("gravity", &O::gravity, "Weight of the energy of gravity."),
        ramp("inertia", &O::inertia, "Weight of the inertia term."),

@@ -59,6 +59,7 @@ void write_weights(const TrainingRun& run, const std::string& name) {
   options.weights = travelling(options.weights);
   options.samples.people = travelling(options.samples.people);
   file.training = training_yaml(options);
+  file.trained_on = trained_on_json(trainer.trained_on);
   file.version = program_version();
   file.origin = {{"trained by", "selvedge train " + travelling(run.request.config)},
                  {"seed", std::to_string(run.options.seed)},
@@ -182,7 +183,7 @@ void begin(TrainingRun& run) {
   }
   run.seconds_before = run.history.seconds;
   run.steps_before = run.trainer->counts.step;
-  write_file(run.folder / "config.yaml", training_yaml(run.options));
+  write_file(run.folder / "config.yaml", training_yaml(with_absolute_paths(run.options)));
   run.say(fmt::format("network `{}`: {} parameters, {} passes a frame", run.trainer->architecture.name,
                       parameter_count(run.trainer->architecture), run.trainer->architecture.passes));
   const TrainingWorld& world = run.trainer->maker->world;

@@ -14,16 +14,17 @@
 #include "learned/network/weights_hdf5.hpp"
 #include "learned/network/widen_weights.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
-#include "pipeline/run/run_inputs_yaml.hpp"
 
 namespace selvedge {
 namespace {
 
-// Weights of an earlier stage, or of a network that sees less. Features that stages may change are not compared.
-NetworkWeights first_weights(const TrainingOptions& options, const Architecture& architecture) {
+// Weights of an earlier stage, or of a network that sees less. Features that stages may change are not compared. What
+// the earlier stage was trained on is added to `on`.
+NetworkWeights first_weights(const TrainingOptions& options, const Architecture& architecture, TrainedOn& on) {
   if (options.weights.empty())
     return initial_weights(architecture, options.seed, {.last_layer_scale = options.optimiser.decoder_scale});
-  WeightFile file = read_weight_file(options.weights);
+  WeightFile file = read_weight_file(weights_path(options));
+  add_earlier(file.trained_on, weights_path(options).string() + ": trained_on", on);
   Architecture& theirs = file.architecture;
   const FeatureOptions &ours = architecture.features, had = theirs.features;
   theirs.name = architecture.name;
@@ -45,7 +46,8 @@ NetworkWeights first_weights(const TrainingOptions& options, const Architecture&
   const bool sees_more =
       (ours.acceleration_inputs && !had.acceleration_inputs) || (ours.space_edges && !had.space_edges);
   if (!sees_more || architecture_text(wide) != architecture_text(architecture))
-    throw Error("holds weights of another network than `" + architecture.name + "` as configured", options.weights,
+    throw Error("holds weights of another network than `" + architecture.name + "` as configured",
+                weights_path(options).string(),
                 "give the architecture, width and message_steps that they were trained with");
   return widen_weights(theirs, file.weights, architecture, options.seed);
 }
@@ -291,15 +293,17 @@ std::unique_ptr<Trainer> make_empty_trainer(const TrainingOptions& options) {
   trainer->maker = std::make_unique<RollMaker>(
       RollMaker{options, trainer->architecture.features, make_training_world(options.samples, options.seed), {}});
   trainer->maker->world.kept_in = cache_folder();
-  trainer->inputs.files = hashed_files(files_of(options.samples.people), {});
+  trainer->inputs.files = files_of(options.samples.people, options.samples.folder);
   trainer->inputs.scene = world_hash(trainer->maker->world);
+  trainer->trained_on = trained_on(options.samples);
   trainer->queue = std::make_unique<RollQueue>(*trainer->maker);
   return trainer;
 }
 
 std::unique_ptr<Trainer> make_trainer(const TrainingOptions& options) {
   auto trainer = make_empty_trainer(options);
-  trainer->network = make_training_network(trainer->architecture, first_weights(options, trainer->architecture));
+  trainer->network =
+      make_training_network(trainer->architecture, first_weights(options, trainer->architecture, trainer->trained_on));
   warm_up(*trainer);
   trainer->torch = torch_network_for(options.device, trainer->architecture, trainer->network.weights);
   place_network(*trainer);

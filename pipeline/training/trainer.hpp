@@ -10,6 +10,7 @@
 #include "pipeline/formats/checkpoint.hpp"
 #include "pipeline/training/roll_queue.hpp"
 #include "pipeline/training/rolling_state.hpp"
+#include "pipeline/training/trained_on.hpp"
 
 namespace selvedge {
 
@@ -37,6 +38,7 @@ struct Trainer {
   std::unique_ptr<RollMaker> maker;
   std::unique_ptr<RollQueue> queue;
   RunInputs inputs;              // files of people, and a hash of what they and code have made
+  TrainedOn trained_on;          // by this run and those whose weights it began with
   std::vector<int> start_pairs;  // of the roll-outs that this process has begun, where they are counted
   // Memory that is used again:
   Tape tape;

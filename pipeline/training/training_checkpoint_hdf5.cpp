@@ -13,7 +13,6 @@
 #include "pipeline/formats/hdf5_fields.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/run/resume.hpp"
-#include "pipeline/run/run_inputs_yaml.hpp"
 
 namespace selvedge {
 namespace {
@@ -298,8 +297,28 @@ std::string configuration(TrainingOptions options) {
   return training_yaml(options);
 }
 
+// The weights that a configuration names; empty: none.
+std::string named_weights(const std::string& text) {
+  const std::string key = "\nweights: ";
+  const std::size_t at = text.find(key), begin = at + key.size();
+  if (at == std::string::npos) return "";
+  std::string value = text.substr(begin, text.find('\n', begin) - begin);
+  if (value.size() > 1 && value.front() == '"' && value.back() == '"') value = value.substr(1, value.size() - 2);
+  return value;
+}
+
+// As an earlier version of this program wrote it: people with absolute paths, weights as seen from the working folder.
+bool is_former_configuration(const std::string& text, const TrainingOptions& options) {
+  TrainingOptions former = with_absolute_paths(options);
+  if (const std::string weights = named_weights(text);
+      !weights.empty() && std::filesystem::absolute(weights).lexically_normal() == former.weights)
+    former.weights = weights;
+  return text == configuration(former);
+}
+
 void check_configuration(FieldsIn& in, const TrainingOptions& options) {
-  if (in.text("config") != configuration(options))
+  const std::string text = in.text("config");
+  if (text != configuration(options) && !is_former_configuration(text, options))
     throw Error("the checkpoint was made under another configuration", in.file.path().string(),
                 "resume with the same file and --set, or begin anew without --resume");
 }
@@ -321,12 +340,19 @@ RunInputs inputs_of(const std::string& text) {
   return inputs;
 }
 
+// Names of files as they are seen from the training file become absolute: the folder may have moved.
+std::vector<InputFile> located(std::vector<InputFile> files, const std::filesystem::path& folder) {
+  for (InputFile& file : files) file.name = (folder / file.name).lexically_normal().string();
+  return files;
+}
+
 // What the run began with; nothing where an earlier version of this program wrote the checkpoint, which took no files.
 std::optional<RunInputs> checked_inputs(FieldsIn& in, const TrainingOptions& options) {
   if (!in.file.has("inputs")) return {};
   RunInputs before = inputs_of(in.text("inputs"));
-  check_input_files(in.file.path(), before.files, hashed_files(files_of(options.samples.people), {}),
-                    "the training file");
+  const std::filesystem::path& folder = options.samples.folder;
+  check_input_files(in.file.path(), located(before.files, folder),
+                    located(files_of(options.samples.people, folder), folder), "the training file");
   return before;
 }
 
@@ -345,6 +371,7 @@ void write_training_checkpoint(const std::filesystem::path& path, const Trainer&
     FieldsOut out{file};
     out.text("config", configuration(trainer.options));
     out.text("inputs", inputs_text(trainer.inputs));
+    out.text("trained_on", trained_on_json(trainer.trained_on));
     write_counts(out, trainer, history);
     out.floats("weights", all_weights(trainer.architecture, trainer.network.weights));
     visit_sums(trainer.sums, [&](const std::string& name, const DoubleAccumulators& sums) {
@@ -370,6 +397,10 @@ std::unique_ptr<Trainer> read_training_checkpoint(const std::filesystem::path& p
   const std::optional<RunInputs> before = checked_inputs(in, options);
   auto trainer = make_empty_trainer(options);
   check_world(in, before, trainer->inputs);
+  if (file.has("trained_on"))
+    trainer->trained_on = read_trained_on(in.text("trained_on"), path.string() + ": trained_on");
+  else if (!options.weights.empty())
+    trainer->trained_on.whole = false;
   read_counts(in, *trainer, history);
   NetworkWeights weights = blank_weights(trainer->architecture);
   set_weights(in, trainer->architecture, in.floats("weights"), weights);

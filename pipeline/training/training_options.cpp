@@ -245,7 +245,7 @@ void check_names(const TrainingOptions& options, const std::string& where) {
   for (const Config& person : samples.people) {
     if (held_out(person)) continue;
     for (const Config& wear : person["wear"].items)
-      if (split_of_wear(samples.split, wear) == Split::training) worn.push_back(wear["name"].text());
+      if (split_of_wear(samples.split, wear, samples.folder) == Split::training) worn.push_back(wear["name"].text());
     for (const Config& clip : person["clips"].items)
       if (split_of_clip(samples.split, clip) == Split::training) clips.push_back(clip["name"].text());
   }
@@ -261,12 +261,12 @@ void read_over_base(const std::filesystem::path& file, const std::vector<std::st
     read_over_base(existing_path(base, file.parent_path()), {}, depth + 1, options);
   }
   read_options(training_options().rows, config, options);
-  const std::filesystem::path folder = file.parent_path();
+  const PathsOfFile paths{file.parent_path(), options.samples.folder};
   const Config& samples = config["samples"];
-  if (samples["people"].given) settle_people(folder, options.samples.people);
-  if (samples["split"].given) settle_split(folder, samples["split"]["file"], options.samples.split);
-  if (const Config& weights = config["weights"]; weights.given)
-    options.weights = expanded_path(weights, weights.text(), folder).string();
+  if (samples["people"].given) settle_people(paths, options.samples.people);
+  if (samples["split"].given) settle_split(paths.folder, samples["split"]["file"], options.samples.split);
+  if (const Config& weights = config["weights"]; weights.given && !weights.words.empty())
+    options.weights = paths.seen(weights);
 }
 
 }  // namespace
@@ -303,10 +303,19 @@ const Options<TrainingOptions>& training_options() {
   return table;
 }
 
+std::vector<std::string> training_clip_names(const SampleOptions& samples) {
+  if (!samples.clips.empty()) return samples.clips;
+  std::vector<std::string> names;
+  for (const ClipEntry& entry : read_clip_split(config_folder() / "clips.yaml"))
+    if (!entry.validation) names.push_back(entry.name);
+  return names;
+}
+
 bool has_mannequin(const SampleOptions& samples) { return samples.garments != std::vector<std::string>{"none"}; }
 
 TrainingOptions read_training(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   TrainingOptions options;
+  options.samples.folder = std::filesystem::absolute(file).parent_path().lexically_normal();
   read_over_base(file, overrides, 0, options);
   if (options.name.empty()) options.name = file.stem().string();
   check_names(options, file.string());
@@ -314,6 +323,14 @@ TrainingOptions read_training(const std::filesystem::path& file, const std::vect
 }
 
 std::string training_yaml(const TrainingOptions& options) { return to_yaml(training_options().written(options)); }
+
+std::filesystem::path weights_path(const TrainingOptions& options) { return options.samples.folder / options.weights; }
+
+TrainingOptions with_absolute_paths(TrainingOptions options) {
+  if (!options.weights.empty()) options.weights = weights_path(options).lexically_normal().string();
+  options.samples.people = with_absolute_paths(std::move(options.samples.people), options.samples.folder);
+  return options;
+}
 
 std::string training_reference() {
   const Section& body = table::body_section();

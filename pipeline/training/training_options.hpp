@@ -39,6 +39,7 @@ enum class MaterialSampling {
 
 // What a network is trained on.
 struct SampleOptions {
+  std::filesystem::path folder;  // of the training file, where relative paths begin; empty: the working folder
   std::vector<std::string> garments{"tshirt"};  // by code, or outfits of outfits.yaml; `none`: no mannequin
   double edge = 0.035;                          // of garments' triangles [m]
   std::vector<std::string> clips;               // empty: all of the training split
@@ -60,6 +61,9 @@ struct SampleOptions {
 };
 
 bool has_mannequin(const SampleOptions&);
+
+// The procedural clips that the mannequin is trained in.
+std::vector<std::string> training_clip_names(const SampleOptions&);
 
 // How states are rolled out.
 struct PoolOptions {
@@ -112,7 +116,7 @@ struct TrainingOptions {
   std::string architecture = "small";
   int width = 0, message_steps = 0;  // in place of the architecture's own; 0: those
   double contour_force = 0;          // of contours in the force that the network is shown [N/m]
-  std::string weights;               // of an earlier stage, to start from; empty: fresh ones
+  std::string weights;               // of an earlier stage, to start from, seen from samples.folder; empty: fresh ones
   std::uint64_t seed = 1;
   int steps = 8700;                           // of the optimiser
   NetworkDevice device = NetworkDevice::cpu;  // that goes forward and backward
@@ -132,8 +136,14 @@ const Options<TrainingOptions>& training_options();
 // that leads back, for clips, garments or outfits of the validation split and for names that are unknown.
 TrainingOptions read_training(const std::filesystem::path&, const std::vector<std::string>& overrides = {});
 
-// The whole configuration as YAML that reads back to the same.
+// The whole configuration as YAML that reads back to the same from a file in `samples.folder`.
 std::string training_yaml(const TrainingOptions&);
+
+// The weights of the earlier stage, where there are some.
+std::filesystem::path weights_path(const TrainingOptions&);
+
+// The same options with absolute paths, which read back to the same from any folder.
+TrainingOptions with_absolute_paths(TrainingOptions);
 
 // Every section of a training file as Markdown: the end of docs/training.md.
 std::string training_reference();

@@ -9,6 +9,7 @@
 #include "pipeline/garments/outfit.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/motions/clip_split.hpp"
+#include "pipeline/run/run_inputs_yaml.hpp"
 #include "pipeline/scene/config_scene.hpp"
 
 namespace selvedge {
@@ -49,8 +50,9 @@ void set_text(const std::string& value, Config& entry) {
   entry.given = true;
 }
 
-void set_path(const fs::path& folder, Config& entry) {
-  set_text(fs::absolute(existing_path(entry, folder)).lexically_normal().string(), entry);
+void set_path(const PathsOfFile& paths, Config& entry) {
+  existing_path(entry, paths.folder);
+  set_text(paths.seen(entry), entry);
 }
 
 // The files below the pattern's first folder, without `*`, that it matches, ascending.
@@ -80,19 +82,19 @@ void take_over(const Config& from, Config& entry) {
   entry.key = own;
 }
 
-void settle_clips(const fs::path& folder, Config& person) {
+void settle_clips(const PathsOfFile& paths, Config& person) {
   std::vector<Config> settled;
   for (const Config& clip : person["clips"].items) {
     std::vector<std::string> files{clip["clip"].text()};
     if (is_pattern(files[0])) {
       if (clip["name"].given) clip["name"].fail("is given for a pattern", "leave it out: each file has its own");
-      files = found_files(clip["clip"], folder);
+      files = found_files(clip["clip"], paths.folder);
     }
     for (const std::string& file : files) {
       Config& one = settled.emplace_back(clip);
       set_text(file, one["clip"]);
       if (!one["name"].given) set_text(clip_name(one), one["name"]);
-      if (is_file(file)) set_path(folder, one["clip"]);
+      if (is_file(file)) set_path(paths, one["clip"]);
       for (const std::string& key : body_keys_of_clips)
         if (!one[key].given) take_over(person["body"][key], one[key]);
     }
@@ -100,13 +102,13 @@ void settle_clips(const fs::path& folder, Config& person) {
   person["clips"].items = std::move(settled);
 }
 
-void settle_wear(const fs::path& folder, Config& wear) {
+void settle_wear(const PathsOfFile& paths, Config& wear) {
   std::string name;
   for (Config& garment : wear["garments"].items) {
     if (garment["on"].given) garment["on"].fail("is given in training", "leave it out: the person wears it");
     const Config& what = garment[garment["file"].given ? "file" : garment["cut"].given ? "cut" : "outfit"];
     name += (name.empty() ? "" : "_") + fs::path(what.text()).stem().string();
-    if (garment["file"].given) set_path(folder, garment["file"]);
+    if (garment["file"].given) set_path(paths, garment["file"]);
   }
   if (name.empty()) wear["garments"].fail("is empty", "name at least one garment");
   if (!wear["name"].given) set_text(name, wear["name"]);
@@ -200,12 +202,19 @@ const Section& person_section() {
   return table;
 }
 
-void settle_people(const fs::path& folder, std::vector<Config>& people) {
+std::string PathsOfFile::seen(const Config& entry) const {
+  const fs::path named = expanded_path(entry, entry.text(), {});
+  if (named.is_absolute()) return named.lexically_normal().string();
+  const fs::path whole = folder.empty() ? fs::current_path() : fs::absolute(folder);
+  return (whole / named).lexically_normal().lexically_proximate(from).string();
+}
+
+void settle_people(const PathsOfFile& paths, std::vector<Config>& people) {
   for (std::size_t k = 0; k < people.size(); ++k) {
     Config& person = people[k];
     if (!person["name"].given) set_text(fmt::format("person{}", k), person["name"]);
     Config& body = person["body"];
-    if (is_file(body["model"].text())) set_path(folder, body["model"]);
+    if (is_file(body["model"].text())) set_path(paths, body["model"]);
     if (body["clip"].given) {
       if (!person["clips"].items.empty())
         body["clip"].fail("is given beside `clips`", "move it, with its keys, into the list");
@@ -219,10 +228,10 @@ void settle_people(const fs::path& folder, std::vector<Config>& people) {
       body["clip"].given = false;
       person["clips"].items = {clip};
     }
-    settle_clips(folder, person);
+    settle_clips(paths, person);
     if (person["clips"].items.empty())
       person.fail("has no clip", "name some under `clips`, such as `[walk, moves/*.npz]`");
-    for (Config& wear : person["wear"].items) settle_wear(folder, wear);
+    for (Config& wear : person["wear"].items) settle_wear(paths, wear);
     if (person["wear"].items.empty()) person["wear"].fail("is empty", "name at least one `{garments: [FILE]}`");
     check_names(person["wear"].items);
     check_names(person["clips"].items);
@@ -256,10 +265,10 @@ Split split_of_clip(const SplitOptions& split, const Config& clip) {
   return said;
 }
 
-Split split_of_wear(const SplitOptions& split, const Config& wear) {
+Split split_of_wear(const SplitOptions& split, const Config& wear, const fs::path& folder) {
   const Split said = split_of(split, wear["name"].text());
   if (said != Split::training) return said;
-  const Wardrobe wardrobe = read_wardrobe(config_folder() / "outfits.yaml");
+  const Wardrobe wardrobe = read_wardrobe(config_near(folder, "outfits.yaml"));
   for (const Config& garment : wear["garments"].items) {
     if (garment["cut"].given && std::ranges::count(wardrobe.validation, garment["cut"].text()) > 0)
       return Split::validation;
@@ -295,11 +304,20 @@ Config performing(const Config& body, const Config& clip) {
   return section;
 }
 
-std::vector<std::string> files_of(const std::vector<Config>& people) {
-  std::vector<std::string> files;
+std::vector<InputFile> files_of(const std::vector<Config>& people, const fs::path& folder) {
+  std::vector<std::string> absolute, relative;
   std::vector<Config> own = people;
-  visit_files(own, [&](const Config& entry) { files.push_back(entry.text()); });
+  visit_files(own, [&](const Config& entry) {
+    (fs::path(entry.text()).is_absolute() ? absolute : relative).push_back(entry.text());
+  });
+  std::vector<InputFile> files = hashed_files(relative, folder);
+  for (InputFile& file : hashed_files(absolute, {})) files.push_back(std::move(file));
   return files;
+}
+
+std::vector<Config> with_absolute_paths(std::vector<Config> people, const fs::path& folder) {
+  visit_files(people, [&](Config& entry) { entry.words = {(folder / entry.text()).lexically_normal().string()}; });
+  return people;
 }
 
 std::vector<Config> travelling(std::vector<Config> people) {

@@ -6,6 +6,7 @@
 
 #include "collision/search/intersections.hpp"
 #include "collision/untangle/untangle.hpp"
+#include "learned/losses/force_input.hpp"
 #include "learned/steppers/learned_scene.hpp"
 #include "physics/recovery/cut_out.hpp"
 #include "pipeline/scene/setup_cloth.hpp"
@@ -75,6 +76,7 @@ std::shared_ptr<const TrainingScene> with_graph(const RollMaker& maker, const Ro
     made->graph.materials = material_inputs(materials);
     made->graph.mass = made->losses.mass;
   }
+  set_springs(scene.springs, made->losses);
   made->rest = make_rest_graph(made->graph, maker.features);
   if (request.sheet != HungStart::none)
     made->losses.closed = close_surface(scene.surface, {}, scene.pins);  // it has no inside
@@ -322,9 +324,13 @@ std::shared_ptr<const TrainingScene> make_training_scene(const RollMaker& maker,
     add("sheet", sheet.rest, sheet.triangles, sheet.pins);
   } else {
     const Eigen::VectorXd& shape = world.bodies[static_cast<std::size_t>(request.body)].shape;
-    for (const Garment& garment : world.wear[static_cast<std::size_t>(request.wear)].garments)
+    for (const Garment& garment : world.wear[static_cast<std::size_t>(request.wear)].garments) {
+      const auto first = static_cast<int>(scene.rest.rows());
+      for (const auto& [a, b, rest_length] : garment.stitches)
+        scene.springs.push_back({first + a, first + b, rest_length});
       add(garment.name, rest_shape(garment, wearer(world, request.wear).body, shape), garment.skin.triangles,
           garment.pins);
+    }
   }
   scene.wind.on = request.wind;
   scene.contact.self = maker.options.contact.edges;
@@ -357,6 +363,9 @@ std::shared_ptr<const TrainingScene> cut_scene(const RollMaker& maker, const Rol
     }
     cloth.triangle_count = static_cast<int>(kept) - cloth.first_triangle;
   }
+  std::erase_if(scene.springs, [&](const Spring& spring) {
+    return alone[static_cast<std::size_t>(spring.a)] != 0 || alone[static_cast<std::size_t>(spring.b)] != 0;
+  });
   for (const int pin : scene.pins) alone[static_cast<std::size_t>(pin)] = 0;
   for (int v = 0; v < static_cast<int>(alone.size()); ++v)
     if (alone[static_cast<std::size_t>(v)]) scene.pins.push_back(v);

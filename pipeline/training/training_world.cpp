@@ -30,14 +30,6 @@ struct Cast {
   std::vector<double> weights;                        // of clips
 };
 
-std::vector<std::string> training_clip_names(const SampleOptions& options) {
-  if (!options.clips.empty()) return options.clips;
-  std::vector<std::string> names;
-  for (const ClipEntry& entry : read_clip_split(config_folder() / "clips.yaml"))
-    if (!entry.validation) names.push_back(entry.name);
-  return names;
-}
-
 Cast mannequin_cast(const SampleOptions& options) {
   const std::string where = "samples";
   Cast cast{"mannequin",
@@ -76,11 +68,12 @@ TrainingWear wear_by_code(const std::string& name, const SampleOptions& options,
   return wear;
 }
 
-TrainingWear wear_of(const Config& section, const Performance& who, std::vector<std::string>& warnings) {
+TrainingWear wear_of(const Config& section, const std::filesystem::path& folder, const Performance& who,
+                     std::vector<std::string>& warnings) {
   TrainingWear wear{section["name"].text(), {}, {}};
   wear.weight = section["weight"].number();
   for (const Config& garment : section["garments"].items)
-    for (Garment& made : read_garments(garment, {}, who, warnings)) wear.garments.push_back(std::move(made));
+    for (Garment& made : read_garments(garment, folder, who, warnings)) wear.garments.push_back(std::move(made));
   return wear;
 }
 
@@ -147,7 +140,7 @@ TrainingBody& body_of(const SampleOptions& options, const Config& section, const
   body.weight = 0;
   body.tissue_key = tissue_key(section, person);
   if (options.soft_tissue) {
-    perform(section, {}, who);
+    perform(section, options.folder, who);
     wear(layer_count(world, person), who);
     body.soft_tissue = who.soft_tissue;
   }
@@ -164,7 +157,7 @@ void add_shape(const SampleOptions& options, std::uint64_t seed, int index, cons
     const auto go = [&] {  // without soft tissue, which takes a while to make
       Config stiff = section;
       stiff["room"].numbers = {0};
-      perform(stiff, {}, who);
+      perform(stiff, options.folder, who);
       return who.clip;
     };
     Clip motion = go();
@@ -204,17 +197,17 @@ TrainingPerson person_of(const Cast& cast, const Performance& who) {
 
 void add_person(const SampleOptions& options, std::uint64_t seed, const Cast& cast, const Config* from,
                 TrainingWorld& world) {
-  Performance who = read_figure(cast.body, {});
+  Performance who = read_figure(cast.body, options.folder);
   who.name = cast.name;
-  if (from && cast.body["shape"].given) perform(cast.body, {}, who);
+  if (from && cast.body["shape"].given) perform(cast.body, options.folder, who);
   world.people.push_back(person_of(cast, who));
   if (!from)
     for (const std::string& name : options.garments)
       add_wear(options, who.body, wear_by_code(name, options, who.body), world);
   else
     for (const Config& wear : (*from)["wear"].items)
-      if (split_of_wear(options.split, wear) == Split::training)
-        add_wear(options, who.body, wear_of(wear, who, world.warnings), world);
+      if (split_of_wear(options.split, wear, options.folder) == Split::training)
+        add_wear(options, who.body, wear_of(wear, options.folder, who, world.warnings), world);
   if (world.people.back().wear.empty() || cast.clips.empty())
     from->fail("has nothing to train on: all that it wears, or all its clips, are held out by `split`",
                "name the person in `split`, to hold it out as a whole");

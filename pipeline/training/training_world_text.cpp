@@ -27,7 +27,7 @@ std::string held_out_text(const SampleOptions& options, const Config& person) {
   const Split whole = split_of(options.split, person["name"].text());
   if (whole != Split::training) return "all in " + split_name(whole);
   std::vector<Split> wear, clips;
-  for (const Config& item : person["wear"].items) wear.push_back(split_of_wear(options.split, item));
+  for (const Config& item : person["wear"].items) wear.push_back(split_of_wear(options.split, item, options.folder));
   for (const Config& item : person["clips"].items) clips.push_back(split_of_clip(options.split, item));
   const std::string a = held_out_text(wear, "of what is worn"), b = held_out_text(clips, "of the clips");
   return a + (a.empty() || b.empty() ? "" : ", ") + b;

@@ -1,101 +1,53 @@
 #include <catch2/catch.hpp>
 
 #include <array>
-#include <sstream>
 
-#include "collision/geometry/error.hpp"
 #include "learned/network/weights_hdf5.hpp"
-#include "pipeline/bodies/mannequin.hpp"
-#include "pipeline/compare/compare.hpp"
-#include "pipeline/compare/training_sequences.hpp"
-#include "pipeline/formats/mesh_io.hpp"
-#include "pipeline/garments/garment_hdf5.hpp"
-#include "pipeline/garments/garment_make.hpp"
 #include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/tools/convert_body.hpp"
 #include "pipeline/tools/import_weights.hpp"
 #include "pipeline/training/soft_tissue_hdf5.hpp"
-#include "pipeline/training/train.hpp"
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
 #include "tests/pipeline/fake_checkpoint.hpp"
-#include "tests/pipeline/fake_smpl.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/pipeline/motions/fake_bvh.hpp"
+#include "tests/pipeline/motions/fake_gltf.hpp"
+#include "tests/pipeline/training/own_data.hpp"
 
 namespace selvedge::test_training_people {
 
 using fake::Folder;
 using fake::has;
+using fake::OwnData;
+using fake::weights_of;
+using fake::write_amass;
 
 namespace {
 
-// AMASS, 60 frames a second, the right thigh swinging; `size` of the swing [rad].
-void write_amass(const std::filesystem::path& path, std::size_t frames, double size, double first_beta = 0) {
-  std::vector<double> poses(frames * 156, 0.0), trans(frames * 3, 0.0), betas(16, 0.0);
-  betas[0] = first_beta;
-  for (std::size_t f = 0; f < frames; ++f) poses[f * 156 + 6] = size * std::sin(0.2 * static_cast<double>(f));
-  fake::write_npz(path, {{"poses", fake::npy<double>({frames, 156}, poses)},
-                         {"trans", fake::npy<double>({frames, 3}, trans)},
-                         {"betas", fake::npy<double>({16}, betas)},
-                         {"mocap_framerate", fake::npy<double>({}, {60.0})}});
-}
-
-// The mannequin as a SMPL file, a skirt as OBJ and as garment file, two clips, and a training file that takes them.
-struct OwnData {
-  Folder folder{"training_people"};
-  std::filesystem::path training;
-
-  OwnData() {
-    BodyModel body = kept_mannequin(cache_folder());
-    const auto n = body.skin.rest.rows();
-    body.skin.shape_directions.conservativeResizeLike(Eigen::MatrixXd::Zero(3 * n, 10));
-    body.skin.pose_directions = Eigen::MatrixXd::Zero(3 * n, 9 * 23);
-    fake::write_npz(folder.path / "body.npz", fake::published<float, std::uint32_t>(body));
-    GarmentOptions cut;
-    cut.edge = 0.05;
-    Garment skirt = kept_garment(cache_folder(), "skirt_short", kept_mannequin(cache_folder()), cut);
-    write_obj(folder.path / "skirt.obj", 100 * skirt.skin.rest, skirt.skin.triangles);
-    std::filesystem::create_directory(folder.path / "moves");
-    write_amass(folder.path / "moves" / "swing.npz", 40, 0.3);
-    write_amass(folder.path / "moves" / "kick.npz", 40, 0.5);
-    training = write("");
-  }
-  std::filesystem::path write(const std::string& split) const {
-    return fake::write(folder, "own.yaml",
-                       "base: " + (config_folder() / "training" / "tiny.yaml").string() +
-                           "\n"
-                           "steps: 40\n"
-                           "pool: {states: 2}\n"
-                           "optimiser: {warm_up: 2}\n"
-                           "watch: {fixed_states: 1, frames: 2}\n"
-                           "samples:\n"
-                           "  garments: none\n"
-                           "  flesh: false\n"
-                           "  people:\n"
-                           "    - name: anna\n"
-                           "      body: {model: body.npz}\n"
-                           "      clips: ['moves/*.npz']\n"
-                           "      wear: [{garments: [{file: skirt.obj, unit: cm}]}]\n" +
-                           split);
-  }
-  std::string error(const std::vector<std::string>& overrides, const std::string& split = "") const {
-    try {
-      make_training_world(read_training(write(split), overrides).samples, 1);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
-  }
-};
-
 const OwnData& own_data() {
-  static const OwnData data;
+  static const OwnData data("training_people");
   return data;
 }
 
-std::vector<float> weights_of(Trainer& trainer) {
-  std::vector<float> all;
-  for (const WeightArray& array : weight_arrays(trainer.architecture, trainer.network.weights))
-    all.insert(all.end(), array.data, array.data + array.rows * array.columns);
-  return all;
+// A short swing of hips and knees.
+Clip swing(int frames) {
+  Clip clip{"swing", 30, {}, {}, {}};
+  for (int f = 0; f < frames; ++f) {
+    BodyPose pose{Points::Zero(24, 3)};
+    pose.rotations(smpl::hip, 0) = pose.rotations(smpl::knee, 0) = 0.3 * std::sin(0.3 * f);
+    clip.poses.push_back(pose);
+  }
+  return clip;
+}
+
+fake::Rig bvh_swing(int frames) {
+  fake::Rig rig{fake::mixamo, 100 * fake::skeleton(), {}};
+  for (int f = 0; f < frames; ++f) {
+    Points degrees = Points::Zero(24, 3);
+    degrees(smpl::hip, 0) = 20 * std::sin(0.3 * f);
+    rig.frames.push_back(degrees);
+  }
+  return rig;
 }
 
 // A person of so many garments, and of bodies with so many clips.
@@ -152,35 +104,42 @@ TEST_CASE("training people: a SMPL file, AMASS files and an OBJ are trained on, 
   CHECK(read_training_checkpoint(file, options, history)->counts.step == 4);
 }
 
-TEST_CASE("training people: what is held out is not trained on, and compared on", "[training]") {
-  const OwnData& own = own_data();
-  fake::write(own.folder, "split.yaml", "test: ['*kick']\n");
-  std::ostringstream log;
-  int asked = 0;
-  const TrainRequest request{own.write("  split: split.yaml\n"), {}, own.folder.path / "run", false, &log,
-                             [&asked] { return ++asked == 2; }};
-  train(request);
-  CHECK(has(log.str(), "trains on `anna`: 1 to wear, 1 bodies, 1 clips"));
-  CHECK(has(log.str(), "held out: 1 of the clips in test"));
-  CHECK_FALSE(has(fake::whole(request.out / "weights.h5"), own.folder.path.string()));  // paths travel
-
-  fake::write(own.folder, "compare.yaml",
-              "sequences: {training: own.yaml, split: test, frames: 2, file: " +
-                  (config_folder() / "evaluation" / "garment.yaml").string() +
-                  "}\n"
-                  "weights_folder: run\nrepeats: 1\njudged_frames: 0\n"
-                  "settings: [{name: own, stepper: learned, weights: weights.h5}]\n");
-  std::ostringstream told;
-  CompareRequest compared;
-  compared.file = own.folder.path / "compare.yaml";
-  compared.out = own.folder.path / "compared";
-  compared.log = &told;
-  const CompareResult result = compare(compared);
-  INFO(told.str());
-  CHECK(has(told.str(), "1 of 1 of the split `test`"));
-  REQUIRE(result.rows.size() == 1);
-  CHECK(result.rows[0].scene == "anna_skirt_moves_kick");
-  CHECK(result.rows[0].trouble.empty());
+TEST_CASE("training people: a glTF rig with its animation, and a body file with a BVH clip", "[training]") {
+  const OwnData own("training_people_files");
+  const BodyModel body = fake::small_body();
+  fake::write(own.folder, "rig.glb", fake::gltf_of(body, swing(24), body.joints).glb());
+  const BodyReport made = convert_body({own.folder.path / "body.npz", {}, {}, "m", own.folder.path / "body.h5"});
+  CHECK(made.lacks.empty());
+  fake::write(own.folder, "swing.bvh", fake::text_of(bvh_swing(24), std::vector<Vec3>(24, Vec3(0, 98, 0))));
+  const std::string wear = "wear: [{garments: [{file: skirt.obj, unit: cm}]}]";
+  const TrainingOptions options = read_training(
+      own.write("", "files.yaml"), {"samples.people=[{name: rig, body: {model: rig.glb, clip: rig.glb}, " + wear +
+                                    "}, {name: walker, body: {model: body.h5}, clips: [swing.bvh, {clip: rig.glb, "
+                                    "animation: swing, name: theirs}], " +
+                                    wear + "}]"});
+  auto whole = make_trainer(options);
+  const TrainingWorld& world = whole->maker->world;
+  REQUIRE(world.bodies.size() == 2);
+  CHECK(world.people[0].body.skin.rest.rows() == body.skin.rest.rows());
+  CHECK(world.bodies[0].clips[0].motion.poses.size() == 24);
+  CHECK(world.bodies[1].clips[0].name == "swing");
+  // Both move the skirt, each as its file says.
+  for (const int person : {0, 1}) {
+    const PointsF first = worn_frame(whole->maker->world, person, person, 0, 0).cloth,
+                  later = worn_frame(whole->maker->world, person, person, 0, 5).cloth;
+    CHECK(first.allFinite());
+    CHECK((later - first).rowwise().norm().maxCoeff() > 0.02);
+  }
+  for (int k = 0; k < 4; ++k) CHECK(train_step(*whole).bad.empty());
+  const auto file = own.folder.path / "files.h5";
+  write_training_checkpoint(file, *whole, {"a\n", "b\n", 0, 0, 0});
+  for (int k = 0; k < 2; ++k) train_step(*whole);
+  TrainingHistory history;
+  auto resumed = read_training_checkpoint(file, options, history);
+  for (int k = 0; k < 2; ++k) train_step(*resumed);
+  CHECK(weights_of(*resumed) == weights_of(*whole));
+  fake::write(own.folder, "swing.bvh", fake::text_of(bvh_swing(25), std::vector<Vec3>(25, Vec3(0, 98, 0))));
+  CHECK_THROWS_WITH(read_training_checkpoint(file, options, history), Catch::Contains("swing.bvh"));
 }
 
 TEST_CASE("training people: imported checkpoints go on learning on one's own data", "[training]") {

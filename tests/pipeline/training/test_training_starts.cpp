@@ -305,4 +305,30 @@ TEST_CASE("training starts: materials are drawn for a garment, or change over it
   }
 }
 
+TEST_CASE("training starts: graph and losses have a garment's stitches, but those of what is cut out", "[training]") {
+  RollMaker maker = fake::tiny_maker();
+  maker.scenes.clear();
+  Garment& garment = maker.world.wear[0].garments[0];
+  RollRequest request;
+  request.with_body = false;
+  const auto plain = make_training_scene(maker, request, drawn_materials(maker, request));
+  CHECK(plain->graph.springs.empty());
+  CHECK(plain->losses.springs.empty());
+  const auto far = static_cast<int>(garment.skin.rest.rows()) - 1;
+  garment.stitches = {{0, far, 0.01}, {1, far - 1, 0.02}};
+  const auto stitched = make_training_scene(maker, request, drawn_materials(maker, request));
+  REQUIRE(stitched->losses.springs.size() == 2);
+  CHECK(stitched->losses.springs[0].stiffness < 500);
+  CHECK(stitched->rest.sets[0].senders.size() == plain->rest.sets[0].senders.size() + 4);
+  CHECK(stitched->rest.coarse.vertex_level == plain->rest.coarse.vertex_level);
+  // All triangles round one end of the first stitch.
+  const std::span<const int> round = stitched->scene.surface.triangles_of(far);
+  std::vector<int> cut(round.begin(), round.end());
+  std::ranges::sort(cut);
+  const auto less = cut_scene(maker, request, *stitched, cut);
+  REQUIRE(less->graph.springs.size() == 1);
+  CHECK(less->graph.springs[0].a == 1);
+  CHECK(less->losses.springs.size() == 1);
+}
+
 }  // namespace selvedge::test_training_starts
