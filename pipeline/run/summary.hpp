@@ -49,10 +49,10 @@ struct RunSummary {
     std::string obstacle;
     int most = 0, frames = 0, first_frame = -1;  // triangles in the worst frame; in how many frames; -1: in none
   };
-  std::vector<SwitchedOff> switched_off;                              // of each obstacle
-  long pushed_out = 0, untangling = 0;                                // vertices and passes, over all frames
+  std::vector<SwitchedOff> switched_off;  // of each obstacle
+  long pushed_out = 0, untangling = 0;    // vertices and passes, over all frames
   int out_of_newton = 0, out_of_untangling = 0, out_of_response = 0, out_of_proofs = 0;  // frames
-  double max_unsolved = 0;                                            // [m]
+  double max_unsolved = 0;                                                               // [m]
   std::vector<PlanLine> left_out;
   std::vector<std::string> warnings;
 };

@@ -75,6 +75,20 @@ TEST_CASE("finish_step: names what crosses, and obstacles that lag by more than 
   CHECK(rounded.collision.obstacle_lag == 0);
 }
 
+TEST_CASE("audit of a motion: what it gave up is labelled, and counts as passed through", "[finish_step]") {
+  StepReport report;
+  MotionAudit whole, part;
+  whole.passed.resize(2);
+  add(whole, report);
+  CHECK(report.collision.passed_through == 2);
+  CHECK_FALSE(report.out_of_proofs);
+  part.given_up = 3;
+  add(part, report);
+  add(whole, report);
+  CHECK(report.collision.passed_through == 7);
+  CHECK(report.out_of_proofs);
+}
+
 TEST_CASE("resolve_proposal: what goes through the plate on the way ends above it", "[finish_step]") {
   const World w = over_plate();
   ContactStage stage(w.scene);
