@@ -122,9 +122,10 @@ struct FeaturePair {
   PassedPair numbered() const {
     return {edges, {nodes[0].number(), nodes[1].number(), nodes[2].number(), nodes[3].number()}};
   }
-  Way way(int max_halvings, int parts) const {
+  Proof proof(int max_halvings, int parts) const {
     const MovingPoints<4> points = relative_to(nodes[0], nodes);
-    return edges ? way_of_edges(points, max_halvings, parts) : way_of_vertex_and_face(points, max_halvings, parts);
+    return edges ? proof_for_edges(points, max_halvings, parts)
+                 : proof_for_vertex_and_face(points, max_halvings, parts);
   }
 };
 
@@ -152,11 +153,11 @@ struct PairAudit {
     if (watch.ended()) return;
     const FeaturePair pair{edges, nodes};
     if (asked.left_out && asked.left_out(pair.numbered().nodes)) return;
-    const Way way = pair.way(asked.max_halvings, few_parts);
-    if (way == Way::apart) return;
+    const Proof proof = pair.proof(asked.max_halvings, few_parts);
+    if (proof == Proof::apart) return;
     watch.add_unproven();
-    if (way == Way::meets) found.passed.push_back(pair.numbered());
-    if (way == Way::open) found.open.push_back(pair);
+    if (proof == Proof::meets) found.passed.push_back(pair.numbered());
+    if (proof == Proof::open) found.open.push_back(pair);
   }
 
   // Of the vertices that the face p owns, with the face f.
@@ -274,15 +275,15 @@ Found found_among(const AuditQuestions& questions, const MovingBody& cloth, std:
 // not apart, if it had all the parts that any pair may have, or else not known.
 void decide(const std::vector<FeaturePair>& open, int max_halvings, AuditBudget& budget, MotionAudit& result) {
   const int share = ProofBudget::share(open.size()), count = static_cast<int>(open.size());
-  std::vector<Way> ways(open.size(), Way::open);
+  std::vector<Proof> decided(open.size(), Proof::open);
 #pragma omp parallel for schedule(dynamic, 4)
   for (int i = 0; i < count; ++i)
-    if (budget.add(0)) ways[i] = open[i].way(max_halvings, share);
+    if (budget.add(0)) decided[i] = open[i].proof(max_halvings, share);
   for (int i = 0; i < count; ++i)
-    if (ways[i] == Way::meets || (ways[i] == Way::open && share == most_parts))
+    if (decided[i] == Proof::meets || (decided[i] == Proof::open && share == most_parts))
       result.passed.push_back(open[i].numbered());
     else
-      result.given_up += ways[i] == Way::open;
+      result.given_up += decided[i] == Proof::open;
 }
 
 void conclude(Found& found, int max_halvings, AuditBudget& budget, const ProofBudget& proofs, MotionAudit& result) {

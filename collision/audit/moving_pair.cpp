@@ -109,11 +109,11 @@ MovingPoints<4> beginning_of(const MovingPoints<4>& whole, int halvings) {
 
 // Depth first and early parts first. A pair that touches at the start is found at once.
 template <class Separated>
-Way way_of(const MovingPoints<4>& whole, int max_halvings, int most, Separated&& separated) {
+Proof proof_for(const MovingPoints<4>& whole, int max_halvings, int most, Separated&& separated) {
   // Halves are made of halves: every halving rounds the coordinates once more, 2 u for both sides.
   const double reach = reach_of(whole) * (1 + 0.05 * max_halvings);
-  if (separated(whole, reach)) return Way::apart;
-  if (!separated(beginning_of(whole, max_halvings), reach)) return Way::meets;
+  if (separated(whole, reach)) return Proof::apart;
+  if (!separated(beginning_of(whole, max_halvings), reach)) return Proof::meets;
   struct Part {
     MovingPoints<4> points;
     int halvings;
@@ -123,13 +123,13 @@ Way way_of(const MovingPoints<4>& whole, int max_halvings, int most, Separated&&
     const Part part = stack.back();
     stack.pop_back();
     if (separated(part.points, reach)) continue;
-    if (part.halvings == max_halvings) return Way::meets;
-    if (parts >= most) return Way::open;
+    if (part.halvings == max_halvings) return Proof::meets;
+    if (parts >= most) return Proof::open;
     const auto [early, late] = halves(part.points);
     stack.push_back({late, part.halvings + 1});
     stack.push_back({early, part.halvings + 1});
   }
-  return Way::apart;
+  return Proof::apart;
 }
 
 bool is_edge_on(const Vec3& m, const MovingPoints<2>& a, const MovingPoints<2>& b, double reach) {
@@ -179,12 +179,12 @@ bool stay_apart_at_edge(const MovingPoints<4>& p) {
   return in_order(perpendicular + lean, 0, 1) && in_order(perpendicular - lean, 1, 0);
 }
 
-Way way_of_vertex_and_face(const MovingPoints<4>& p, int max_halvings, int parts) {
-  return way_of(p, max_halvings, parts, some_direction_separates_face);
+Proof proof_for_vertex_and_face(const MovingPoints<4>& p, int max_halvings, int parts) {
+  return proof_for(p, max_halvings, parts, some_direction_separates_face);
 }
 
-Way way_of_edges(const MovingPoints<4>& p, int max_halvings, int parts) {
-  return way_of(p, max_halvings, parts, some_direction_separates_edges);
+Proof proof_for_edges(const MovingPoints<4>& p, int max_halvings, int parts) {
+  return proof_for(p, max_halvings, parts, some_direction_separates_edges);
 }
 
 }  // namespace selvedge

@@ -30,11 +30,11 @@ bool stay_apart_at_edge(const MovingPoints<4>& p);
 
 // What is known of a pair that moves: it stays apart; or it comes as near as its rounding or the shortest part of the
 // time shows, which counts as meeting; or neither was found in as many parts of the time as it may be cut into.
-enum class Way { apart, meets, open };
+enum class Proof { apart, meets, open };
 
 // Vertex p[0] and face p[1], p[2], p[3], or edges p[0] p[1] and p[2] p[3]; time is halved at most `max_halvings` times
 // and cut into `parts`.
-Way way_of_vertex_and_face(const MovingPoints<4>& p, int max_halvings, int parts);
-Way way_of_edges(const MovingPoints<4>& p, int max_halvings, int parts);
+Proof proof_for_vertex_and_face(const MovingPoints<4>& p, int max_halvings, int parts);
+Proof proof_for_edges(const MovingPoints<4>& p, int max_halvings, int parts);
 
 }  // namespace selvedge

@@ -56,7 +56,7 @@ class LearnedStepper final : public Stepper {
  private:
   StepReport take_step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&);
   bool settle(GraphState&, StepReport&);
-  void audit_way(const State& from, const StepEnd& end, StepReport&);
+  void audit_path(const State& from, const StepEnd& end, StepReport&);
   bool predict(GraphState, NextCloth&, StepReport&);
   void show_force(GraphState&);
 
@@ -137,12 +137,12 @@ bool LearnedStepper::settle(GraphState& state, StepReport& report) {
   return true;
 }
 
-void LearnedStepper::audit_way(const State& from, const StepEnd& end, StepReport& report) {
+void LearnedStepper::audit_path(const State& from, const StepEnd& end, StepReport& report) {
   Stopwatch watch;
   const Points before = gather_nodes(from.x, from.obstacles), after = gather_nodes(end.x, end.obstacles);
   const Exemption exemption = from.clean ? Exemption{} : find_exemption(world_, before);
   report.collision.left_alone = exemption.cloth_vertices();
-  add(selvedge::audit_way(world_, exemption, before, after, audited_), report);
+  add(selvedge::audit_path(world_, exemption, before, after, audited_), report);
   report.seconds.audit += watch.lap();
 }
 
@@ -173,7 +173,7 @@ StepReport LearnedStepper::take_step(const State& from, const Drive& drive, doub
   report.reason = Reason::none;
   if (extras.wanted && !extras.wanted(next.x)) return report;
   StepEnd end = learned_end(scene_, from, drive, state, seen_positions(rest_, state, features_).x, next);
-  audit_way(from, end, report);
+  audit_path(from, end, report);
   finish_step(scene_, from, drive, dt, std::move(end), audited_, to, report);
   energy_.label(from, drive, to, report);
   return report;

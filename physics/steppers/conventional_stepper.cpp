@@ -301,7 +301,7 @@ void ConventionalStepper::end_substep(StepWork& work, Substep&& s, SubstepState&
     const auto audit = [this](const Exemption& left_alone, const Points& from, const Points& to, StepReport& report) {
       ++report.counts.audits;
       const Timed timed(report.seconds.audit);
-      add(audit_way(contact_.world, left_alone, from, to, audited_), report);
+      add(audit_path(contact_.world, left_alone, from, to, audited_), report);
     };
     if (work.extras.later)
       work.extras.later->audits.push_back([audit, left_alone = work.left_alone, from = now.nodes,

@@ -173,8 +173,8 @@ Verdict HybridStepper::correct(Work& work, Points x) {
   if (const Verdict verdict = judged(work, x); verdict != Verdict::admitted) return verdict;
   {
     const Timed timed(work.report.seconds.audit);
-    add(audit_way(contact_.world, {}, gather_nodes(work.from.x, work.from.obstacles), gather_nodes(x, obstacles),
-                  audited_),
+    add(audit_path(contact_.world, {}, gather_nodes(work.from.x, work.from.obstacles), gather_nodes(x, obstacles),
+                   audited_),
         work.report);
   }
   work.report.substeps = 1;

@@ -225,7 +225,7 @@ StepReport IcmStepper::take_step(const State& from, const Drive& drive, double d
     if (has_contact()) {
       Stopwatch watch;
       ++report.counts.audits;
-      add(audit_way(world_, work.exemption, now.nodes, next, audited_), report);
+      add(audit_path(world_, work.exemption, now.nodes, next, audited_), report);
       report.seconds.audit += watch.lap();
     }
     if (s == 0) report.collision.left_alone = work.exemption.cloth_vertices();

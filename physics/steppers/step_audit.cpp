@@ -62,8 +62,8 @@ bool confirm(const LaterAudits& later, StepReport& report) {
   return report.audit && report.audit->intersecting_pairs() == 0 && report.audit->inside_vertices == 0;
 }
 
-MotionAudit audit_way(const ContactWorld& world, const Exemption& exemption, const Points& nodes0, const Points& nodes1,
-                      AuditMemory& memory) {
+MotionAudit audit_path(const ContactWorld& world, const Exemption& exemption, const Points& nodes0,
+                       const Points& nodes1, AuditMemory& memory) {
   const WorldSheets from(world, nodes0), to(world, nodes1);
   std::vector<MovingBody> bodies;
   for (std::size_t k = 1; k < from.views.size(); ++k)

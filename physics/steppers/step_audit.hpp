@@ -42,7 +42,7 @@ void take_audit(Audit, State&, StepReport&);
 
 // Of the motion in which all nodes went straight from nodes0 to nodes1; pairs that contact leaves alone are not asked
 // about.
-MotionAudit audit_way(const ContactWorld&, const Exemption&, const Points& nodes0, const Points& nodes1, AuditMemory&);
+MotionAudit audit_path(const ContactWorld&, const Exemption&, const Points& nodes0, const Points& nodes1, AuditMemory&);
 // What passed through, and whether the audit gave up.
 void add(const MotionAudit&, StepReport&);
 

@@ -55,12 +55,12 @@ TEST_CASE("a pair is cut into no more parts than it may be, whichever part is th
   MovingPoints<4> p;
   p.start = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 5e-3, 0), Vec3(1, 5e-3, 0)};
   p.end = {Vec3(0, 0, 0), Vec3(0, 1, 0), Vec3(-5e-3, 0, 0), Vec3(-5e-3, 1, 0)};
-  CHECK(way_of_edges(p, 30, most_parts) == Way::apart);
-  for (int parts = 1; parts <= 128; ++parts) CHECK(way_of_edges(p, 30, parts) == Way::open);
+  CHECK(proof_for_edges(p, 30, most_parts) == Proof::apart);
+  for (int parts = 1; parts <= 128; ++parts) CHECK(proof_for_edges(p, 30, parts) == Proof::open);
   p.end[2] = Vec3(5e-3, 0, 0);
-  CHECK(way_of_edges(p, 30, most_parts) == Way::meets);
+  CHECK(proof_for_edges(p, 30, most_parts) == Proof::meets);
   p.start[2] = p.start[0];
-  CHECK(way_of_edges(p, 30, 1) == Way::meets);  // from the start
+  CHECK(proof_for_edges(p, 30, 1) == Proof::meets);  // from the start
 }
 
 TEST_CASE("the audit of a motion ends early among very many pairs that touch, and says so", "[proof_budget]") {

@@ -66,7 +66,7 @@ TEST_CASE("A safeguard keeps cloth from passing through cloth", "[learned]") {
   CHECK(intersecting_pairs(world.scene.surface, to, cache).empty());
   AuditMemory memory;
   const ContactWorld alone = make_contact_world(world.scene.surface, {}, true, &world.scene.rest);
-  CHECK(audit_way(alone, {}, world.state.x, to, memory).passed_through() == 0);
+  CHECK(audit_path(alone, {}, world.state.x, to, memory).passed_through() == 0);
 
   // What meets nothing stays as it is.
   Points free = moved_down(world, 0.004, all);

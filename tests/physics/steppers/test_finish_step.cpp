@@ -102,7 +102,7 @@ TEST_CASE("resolve_proposal: what goes through the plate on the way ends above i
   CHECK(x.col(1).minCoeff() > 0);
   CHECK(obstacles == w.drive.obstacles);
   AuditMemory audits;
-  CHECK(audit_way(stage.world, {}, gather_nodes(w.state.x, w.state.obstacles), gather_nodes(x, obstacles), audits)
+  CHECK(audit_path(stage.world, {}, gather_nodes(w.state.x, w.state.obstacles), gather_nodes(x, obstacles), audits)
             .passed_through() == 0);
 
   Points free = w.state.x;

@@ -89,8 +89,8 @@ struct Judge {
     const Audit audit = audit_positions(guard.scene, x, step.drive.obstacles, &audits);
     pairs = audit.intersecting_pairs();
     inside = audit.inside_vertices;
-    passed = audit_way(stage.world, {}, gather_nodes(step.from.x, step.from.obstacles),
-                       gather_nodes(x, step.drive.obstacles), audits)
+    passed = audit_path(stage.world, {}, gather_nodes(step.from.x, step.from.obstacles),
+                        gather_nodes(x, step.drive.obstacles), audits)
                  .passed_through();
     return pairs + inside + passed == 0 ? Verdict::admitted : Verdict::penetrating;
   }
