@@ -121,8 +121,8 @@ struct StepReport {  // starts as failure
   // next.
   bool out_of_newton = false, out_of_untangling = false;
   bool out_of_response = false;  // impulses and impact zones used up theirs: later motion was shortened at once
-  // The audit of the motion used up its: `passed_through` counts what it gave up, too, or says only that there were as
-  // many at least.
+  // The audit of the motion used up its budget: `passed_through` counts what it gave up, or says only that as many
+  // passed at least.
   bool out_of_proofs = false;
   int linear_iterations = 0;
   double residual = 0;  // largest force imbalance at the last substep's end [N]
