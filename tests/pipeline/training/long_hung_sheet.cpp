@@ -29,7 +29,7 @@ TrainingOptions shipped_senc() {
 // Mean angle of the sheet against the vertical [degrees]: along the force, and across it.
 std::array<double, 2> angles_under(Trainer& trainer, double heading, double acceleration) {
   RollRequest request;
-  request.sheet = true;
+  request.sheet = HungStart::flat;
   request.with_body = false;
   request.frames = frames + 1;  // the first settles
   request.yaw = heading;
