@@ -91,7 +91,8 @@ Complaints dead_references(const fs::path& top, const std::string& file, const s
   return complaints;
 }
 
-// Prose of a Markdown page is at most 120 columns wide. Tables, code and blocks between fences may be wider.
+// Prose of a Markdown page is at most 120 columns wide. Tables, code, blocks between fences and what the program writes
+// at a page's end may be wider.
 Complaints wide_lines(const std::string& file, const std::string& text) {
   static const std::regex fence(R"(^\s*(```|~~~).*)"), other(R"(^(\s*\|| {4,}\S).*)");
   Complaints complaints;
@@ -99,6 +100,7 @@ Complaints wide_lines(const std::string& file, const std::string& text) {
   std::string line;
   bool fenced = false;
   for (int number = 1; std::getline(lines, line); ++number) {
+    if (line.starts_with("<!-- written by:") || line == "<!-- tables -->") break;
     if (std::regex_match(line, fence)) fenced = !fenced;
     if (fenced || line.size() <= 120 || std::regex_match(line, other)) continue;
     complaints.push_back(at(file, number) + "wider than 120 columns");
@@ -184,6 +186,7 @@ TEST_CASE("modules: prose of the documents is at most 120 columns wide", "[modul
   CHECK(wide_lines("a.md", "b\n" + wide + "\n") == Complaints{"a.md:2: wider than 120 columns"});
   CHECK(wide_lines("a.md", "```\n" + wide + "\n```\n    " + wide + "\n| " + wide + " |\n").empty());
   CHECK(wide_lines("a.md", "```\n```\n* " + wide + "\n").size() == 1);
+  CHECK(wide_lines("a.md", "<!-- written by: it -->\n" + wide + "\n").empty());
 }
 
 TEST_CASE("modules: headers do not define two types of one name", "[modules]") {
