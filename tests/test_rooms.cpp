@@ -38,7 +38,7 @@ const std::map<std::string, std::vector<Room>> rooms = {
       {"contact", {"geometry", "exact", "search", "penetration", "distance"}},
       {"untangle"},
       {"audit", {"geometry", "exact"}, Door::closed_to_module}}},
-    {"physics", {{"scene"}, {"energies"}, {"linear"}, {"solve"}, {"recovery"}, {"steppers"}}},
+    {"physics", {{"scene"}, {"energies"}, {"linear"}, {"solve"}, {"recovery"}, {"frame"}, {"steppers"}}},
     {"learned",
      {{"graph"},
       {"losses"},

@@ -1,5 +1,6 @@
 // A sheet falls on a plate: a scene from arrays, stepped for two seconds.
 #include <cstdio>
+#include <selvedge/physics/frame/make_frame.hpp>
 #include <selvedge/physics/scene/make_scene.hpp>
 #include <selvedge/physics/steppers/decorated_stepper.hpp>
 
@@ -21,8 +22,9 @@ int main() {
   add_obstacle(scene, 4, halves);
   State state = first_state(scene, sheet, {plate}), next;
   const auto stepper = make_recovering_conventional_stepper(scene);
+  FrameAudits audits(scene);
   for (int frame = 0; frame < 60; ++frame) {
-    const StepReport report = stepper->step(state, at_rest(scene, state), 1.0 / 30, next);
+    const StepReport report = make_frame(*stepper, audits, state, at_rest(scene, state), 1.0 / 30, next);
     if (report.status == StepStatus::accepted) state = next;
   }
   std::printf("lowest vertex %.4f m, clean: %s\n", state.x.col(1).minCoeff(), state.clean ? "yes" : "no");

@@ -31,14 +31,13 @@ class SkinningStepper final : public Stepper {
       report.reason = Reason::not_finite;
       return report;
     }
-    finish_step(scene_, from, drive, dt, std::move(end), audits_, to, report);  // fills `to`, audits it
+    finish_step(from, drive, dt, std::move(end), to, report);  // fills `to`
     return report;
   }
 
  private:
   const Scene& scene_;
   StepperTraits traits_{.name = "skinning", .needs = {.worn = true}};
-  AuditMemory audits_;
 };
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/floating_point.hpp"
 #include "collision/geometry/stopwatch.hpp"
-#include "collision/untangle/find_exemption.hpp"
 #include "learned/gradients/torch_network.hpp"
 #include "learned/graph/make_graph.hpp"
 #include "learned/losses/force_input.hpp"
@@ -15,9 +14,8 @@
 #include "learned/steppers/learned_scene.hpp"
 #include "learned/steppers/learned_state.hpp"
 #include "learned/steppers/shown_force.hpp"
-#include "physics/scene/features.hpp"
+#include "physics/frame/bounded_step.hpp"
 #include "physics/solve/energy_balance.hpp"
-#include "physics/steppers/bounded_step.hpp"
 
 namespace selvedge {
 namespace {
@@ -41,8 +39,6 @@ class LearnedStepper final : public Stepper {
         graph_scene_(learned_scene(scene, options.omitted_body_vertices).graph),
         losses_(features_.force_inputs ? loss_garment(scene) : LossGarment{}),
         rest_(make_rest_graph(graph_scene_, features_, options.centres)),
-        world_(
-            make_contact_world(scene.surface, obstacle_surfaces(scene), features_of(scene).self_contact, &scene.rest)),
         traits_(learned_traits(architecture)),
         energy_(scene, traits_) {
     if (features_.force_inputs) set_springs(scene.springs, losses_);
@@ -56,7 +52,6 @@ class LearnedStepper final : public Stepper {
  private:
   StepReport take_step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&);
   bool settle(GraphState&, StepReport&);
-  void audit_path(const State& from, const StepEnd& end, StepReport&);
   bool predict(GraphState, NextCloth&, StepReport&);
   void show_force(GraphState&);
 
@@ -71,7 +66,6 @@ class LearnedStepper final : public Stepper {
   GraphScene graph_scene_;
   LossGarment losses_;  // of networks that are shown the objective's force
   RestGraph rest_;
-  ContactWorld world_;
   StepperTraits traits_;
   EnergyBalance energy_;
   // Memory that is used again:
@@ -79,7 +73,6 @@ class LearnedStepper final : public Stepper {
   Graph graph_;
   GraphReport found_;
   LossSearch force_search_;
-  AuditMemory audited_;
 };
 
 // The objective's force at the guess, for networks that have it as an input.
@@ -137,17 +130,7 @@ bool LearnedStepper::settle(GraphState& state, StepReport& report) {
   return true;
 }
 
-void LearnedStepper::audit_path(const State& from, const StepEnd& end, StepReport& report) {
-  Stopwatch watch;
-  const Points before = gather_nodes(from.x, from.obstacles), after = gather_nodes(end.x, end.obstacles);
-  const Exemption exemption = from.clean ? Exemption{} : find_exemption(world_, before);
-  report.collision.left_alone = exemption.cloth_vertices();
-  add(selvedge::audit_path(world_, exemption, before, after, audited_), report);
-  report.seconds.audit += watch.lap();
-}
-
-StepReport LearnedStepper::take_step(const State& from, const Drive& drive, double dt, State& to,
-                                     const StepExtras& extras) {
+StepReport LearnedStepper::take_step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) {
   restore_standard_arithmetic();
   if (!traits_.accepts(dt))
     throw Error("a learned stepper takes steps of 1/30 s only", "time step " + std::to_string(dt) + " s",
@@ -171,10 +154,8 @@ StepReport LearnedStepper::take_step(const State& from, const Drive& drive, doub
   if (!predict(state, next, report)) return report;
 
   report.reason = Reason::none;
-  if (extras.wanted && !extras.wanted(next.x)) return report;
-  StepEnd end = learned_end(scene_, from, drive, state, seen_positions(rest_, state, features_).x, next);
-  audit_path(from, end, report);
-  finish_step(scene_, from, drive, dt, std::move(end), audited_, to, report);
+  finish_step(from, drive, dt, learned_end(scene_, from, drive, state, seen_positions(rest_, state, features_).x, next),
+              to, report);
   energy_.label(from, drive, to, report);
   return report;
 }

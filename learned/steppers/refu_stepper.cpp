@@ -7,8 +7,8 @@
 #include "collision/geometry/stopwatch.hpp"
 #include "learned/steppers/learned_scene.hpp"
 #include "learned/steppers/learned_state.hpp"
-#include "physics/steppers/bounded_step.hpp"
-#include "physics/steppers/step_audit.hpp"
+#include "physics/frame/bounded_step.hpp"
+#include "physics/solve/bdf2.hpp"
 
 namespace selvedge {
 namespace {
@@ -61,7 +61,6 @@ class RefuStepper final : public Stepper {
   std::vector<char> held_;
   std::vector<RefuBody> bodies_;
   OutsideBudget budget_;
-  AuditMemory audited_;
 };
 
 // `vertices` say where the search begins: one a point, or none.
@@ -140,9 +139,7 @@ void RefuStepper::calm(const State& from, double dt, const Repelled& pushed, Sta
 
 StepReport RefuStepper::take_step(const State& from, const Drive& drive, double dt, State& to,
                                   const StepExtras& extras) {
-  StepExtras handed_on = extras;
-  handed_on.later = nullptr;
-  StepReport report = inner_->step(from, drive, dt, to, handed_on);
+  StepReport report = inner_->step(from, drive, dt, to, extras);
   const auto is_finite = [](const Points& x) { return x.allFinite(); };
   if (report.status != StepStatus::accepted || !is_finite(to.x) || !std::ranges::all_of(to.obstacles, is_finite))
     return report;
@@ -155,11 +152,10 @@ StepReport RefuStepper::take_step(const State& from, const Drive& drive, double 
   to.x = std::move(pushed.x);
   pass_all_edges(to.x);
   calm(from, dt, pushed, to);
-  replace_blocks("bdf2", {}, to.memory);  // the cloth did not come here by its own motion
+  forget_history(to);  // the cloth did not come here by its own motion
   report.collision.pushed_out = static_cast<int>(pushed.pushed.size());
   report.seconds.response += watch.lap();
-  if (report.reason == Reason::penetrating) report.reason = Reason::none;  // the audit says it again
-  audit_state(scene_, drive, to, audited_, report);
+  report.audit.reset();
   return report;
 }
 

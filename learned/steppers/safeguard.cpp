@@ -7,7 +7,6 @@
 #include "collision/geometry/pair_budget.hpp"
 #include "collision/geometry/stopwatch.hpp"
 #include "learned/steppers/learned_state.hpp"
-#include "physics/steppers/step_audit.hpp"
 
 namespace selvedge {
 namespace {
@@ -25,7 +24,7 @@ ResolveOptions safeguard_resolve_options(const SafeguardOptions& options) {
 class SafeguardedStepper final : public Stepper {
  public:
   SafeguardedStepper(const Scene& scene, std::unique_ptr<Stepper> inner, const SafeguardOptions& options)
-      : scene_(scene), inner_(std::move(inner)), safeguard_(scene, options), traits_(inner_->traits()) {
+      : inner_(std::move(inner)), safeguard_(scene, options), traits_(inner_->traits()) {
     traits_.name = "safeguarded " + traits_.name;
     traits_.may_leave_out_cloths = false;
   }
@@ -33,18 +32,14 @@ class SafeguardedStepper final : public Stepper {
   StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override;
 
  private:
-  const Scene& scene_;
   std::unique_ptr<Stepper> inner_;
   Safeguard safeguard_;
   StepperTraits traits_;
-  AuditMemory audited_;
 };
 
 StepReport SafeguardedStepper::step(const State& from, const Drive& drive, double dt, State& to,
                                     const StepExtras& extras) {
-  StepExtras handed_on = extras;
-  handed_on.later = nullptr;
-  StepReport report = inner_->step(from, drive, dt, to, handed_on);
+  StepReport report = inner_->step(from, drive, dt, to, extras);
   report.by = traits_.name;
   if (report.status != StepStatus::accepted) return report;
   Stopwatch watch;
@@ -63,7 +58,7 @@ StepReport SafeguardedStepper::step(const State& from, const Drive& drive, doubl
   to.v += change / dt;
   change_carried_velocity(change, to);
   report.reason = Reason::none;
-  audit_state(scene_, drive, to, audited_, report);
+  report.audit.reset();
   return report;
 }
 

@@ -22,7 +22,7 @@ struct State {
   Points x, v;                    // one row a vertex, cloth after cloth [m], [m/s]
   std::vector<Points> obstacles;  // where they are [m]; may lag behind Drive::obstacles
   bool pinched = false;           // they do: cloth left them no room in the step that ended here
-  bool clean = false;             // known to be free of intersections, by the audit of the step that ended here
+  bool clean = false;             // known to be free of intersections, by the audit of the frame that ended here
   std::vector<int> cut_out;       // triangles that are out of the simulation, ascending (cut_out.hpp)
   Memory memory;                  // each block is read by its owner alone
 };
@@ -107,6 +107,22 @@ enum class Verdict {
   penetrating  // something passed through, crosses, or is inside a body
 };
 
+struct PartOfScene;  // part_of_scene.hpp
+
+// Where the cloth and the obstacles went straight from where they were, all nodes on end (gather_nodes).
+struct SubstepEnd {
+  Points nodes;  // [m]
+  // What contact left alone on the way; absent: what crosses at its start, where that is not known to be clean.
+  std::optional<Exemption> left_alone;
+};
+
+// How a step went, for the audit of its motion.
+struct StepPath {
+  Points start;  // [m]
+  std::vector<SubstepEnd> substeps;
+  std::shared_ptr<const PartOfScene> part;  // whose nodes these are, for the rest took no part; null: the scene's
+};
+
 struct StepReport {  // starts as failure
   StepStatus status = StepStatus::not_run;
   Reason reason = Reason::none;
@@ -133,11 +149,11 @@ struct StepReport {  // starts as failure
   // Of each obstacle: triangles that contact leaves alone somewhere in the step, for they cross others of it or are
   // next to such; empty: none of any.
   std::vector<int> switched_off;
-  std::optional<Audit> audit;  // of the state that was made, rounded to float (step_audit.hpp); absent: not audited
+  std::optional<Audit> audit;  // of the state that was made, rounded to float (frame_audits.hpp); absent: not audited
+  StepPath path;               // of the step, until its audit (judge_frame)
 };
 
-struct AddedTerm;    // physics/solve/step_problem.hpp
-struct LaterAudits;  // physics/steppers/step_audit.hpp
+struct AddedTerm;  // physics/solve/step_problem.hpp
 
 // What another stepper may hand to a step beside the world. Traits say whether a stepper honours it, but for `stop`.
 struct StepExtras {
@@ -146,17 +162,10 @@ struct StepExtras {
   const Exemption* left_alone = nullptr;  // what contact leaves alone; null: nothing
   // A further term of the potential in a substep of h [s] from positions x0; empty: none.
   std::function<AddedTerm(const Points& x0, double h)> added = {};
-  // Asked about positions [m] that a step has come to, before they are audited; false: the step is rejected, and `to`
-  // is junk. A stepper that does not know it audits what nobody wants.
-  std::function<bool(const Points& x)> wanted = {};
   // Asked once a Newton iteration, untangling pass and impact zone; true: the step is rejected as `stopped`, and `to`
   // is junk. A stepper that has none of these hands it on, or is done soon.
   StopFlag stop = {};
-  // Where a step may leave its audits to the caller; null: it makes them itself. The state it makes then counts as
-  // clean, and what is made of that state is void unless the audits confirm it. A stepper that reads or changes what
-  // an inner one has made does not hand this on.
-  LaterAudits* later = nullptr;
-  bool any() const { return guess || left_alone || added || wanted; }  // of what traits speak of
+  bool any() const { return guess || left_alone || added; }  // of what traits speak of
 };
 
 // What a scene must have.
@@ -183,10 +192,11 @@ struct StepperTraits {
 //   time, frame  from.time + dt and from.frame + 1;
 //   x, v         finite, one row a vertex, pins at Drive::pins unless the report names motion that was shortened;
 //   obstacles    where they ended, and pinched, whether one of them is not where the drive wanted it;
-//   clean        whether the audit of positions rounded to float found nothing (step_audit.hpp);
+//   clean        false: make_frame (physics/frame/make_frame.hpp) audits the step and says whether it is;
 //   cut_out      what of from.cut_out is out still;
 //   memory       what the stepper and its decorators read in their next step, and nothing else.
-// finish_step (finish_step.hpp) does so for positions and velocities.
+// Its report has the path of the step, or the audit of the state where the stepper needed that itself (judge_frame).
+// finish_step (finish_step.hpp) does all this for positions and velocities.
 class Stepper {
  public:
   virtual ~Stepper() = default;

@@ -24,6 +24,8 @@ Memory blocks_of(const StepHistory& history) {
           {velocity_block, history.v, RowsOf::vertices}};
 }
 
+void forget_history(State& state) { replace_blocks("bdf2", {}, state.memory); }
+
 // Written with differences, so that what rests gives its own positions, bit for bit.
 StepStart bdf2_start(const StepHistory& history, const Points& x0, const Points& v0) {
   assert(history.h > 0 && history.x.rows() == x0.rows() && history.v.rows() == v0.rows());

@@ -13,6 +13,8 @@ struct StepHistory {
 // The history in a state's memory, and a history as blocks of memory, none for one without length.
 StepHistory step_history(const State&);
 Memory blocks_of(const StepHistory&);
+// For what moves a state's cloth beside its own motion: the next step has no history.
+void forget_history(State&);
 
 // Where a step of implicit Euler starts from, and how long it is [s].
 struct StepStart {

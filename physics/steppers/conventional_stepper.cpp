@@ -8,13 +8,13 @@
 #include "collision/contact/room.hpp"
 #include "collision/geometry/floating_point.hpp"
 #include "collision/geometry/stopwatch.hpp"
+#include "physics/frame/bounded_step.hpp"
 #include "physics/scene/features.hpp"
 #include "physics/scene/scene_numbers.hpp"
 #include "physics/solve/bdf2.hpp"
 #include "physics/solve/contact_terms.hpp"
 #include "physics/solve/energy_balance.hpp"
 #include "physics/solve/euler_torque.hpp"
-#include "physics/steppers/bounded_step.hpp"
 #include "physics/steppers/contact_stage.hpp"
 #include "physics/steppers/finish_step.hpp"
 #include "physics/steppers/substep_solve.hpp"
@@ -99,7 +99,6 @@ class ConventionalStepper final : public Stepper {
   EnergyBalance energy_;
   double edge_length_;
   StepperTraits traits_;
-  AuditMemory audited_;
 };
 
 ResolveOptions ConventionalStepper::resolve_options(const StepWork& work) const {
@@ -297,18 +296,8 @@ Substep ConventionalStepper::begin_substep(const StepWork& work, const SubstepSt
 
 void ConventionalStepper::end_substep(StepWork& work, Substep&& s, SubstepState& now) {
   ++work.report.substeps;
-  if (has_contact()) {
-    const auto audit = [this](const Exemption& left_alone, const Points& from, const Points& to, StepReport& report) {
-      ++report.counts.audits;
-      const Timed timed(report.seconds.audit);
-      add(audit_path(contact_.world, left_alone, from, to, audited_), report);
-    };
-    if (work.extras.later)
-      work.extras.later->audits.push_back([audit, left_alone = work.left_alone, from = now.nodes,
-                                           to = s.nodes](StepReport& report) { audit(left_alone, from, to, report); });
-    else
-      audit(work.left_alone, now.nodes, s.nodes, work.report);
-  }
+  if (work.report.path.substeps.empty()) work.report.path.start = now.nodes;
+  work.report.path.substeps.push_back({s.nodes, work.left_alone});
   now.history = {};
   if (options_.integrator == Integrator::bdf2 && !s.touched)
     now.history = {s.h, now.nodes.topRows(scene_.surface.vertex_count), std::move(now.v)};
@@ -432,7 +421,7 @@ StepReport ConventionalStepper::take_step(const State& from, const Drive& drive,
   StepEnd end{now.nodes.topRows(from.x.rows()), std::move(now.v), {}, blocks_of(now.history)};
   for (std::size_t k = 0; k < from.obstacles.size(); ++k)
     end.obstacles.push_back(now.nodes.middleRows(contact_.world.first_node[k], from.obstacles[k].rows()));
-  finish_step(scene_, from, drive, dt, std::move(end), audited_, to, report, extras.later);
+  finish_step(from, drive, dt, std::move(end), to, report);
   if (!extras.added) energy_.label(from, drive, to, report);  // what recovers a cloth does work that nobody bounds
   return report;
 }

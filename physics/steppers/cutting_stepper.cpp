@@ -3,10 +3,9 @@
 #include <utility>
 
 #include "collision/geometry/stopwatch.hpp"
+#include "physics/frame/bounded_step.hpp"
 #include "physics/recovery/cut_out.hpp"
 #include "physics/scene/part_of_scene.hpp"
-#include "physics/steppers/bounded_step.hpp"
-#include "physics/steppers/step_audit.hpp"
 
 namespace selvedge {
 namespace {
@@ -31,7 +30,7 @@ class CuttingStepper final : public Stepper {
   MakeStepper make_;
   std::unique_ptr<Stepper> whole_;
   std::vector<int> cut_out_;  // which the part below lacks
-  PartOfScene part_;
+  std::shared_ptr<const PartOfScene> part_;
   std::unique_ptr<Stepper> stepper_;
 };
 
@@ -40,8 +39,8 @@ void CuttingStepper::cut(const std::vector<int>& triangles) {
   if (triangles == cut_out_) return;
   cut_out_ = triangles;
   stepper_.reset();  // refers to the part that goes
-  part_ = part_of_triangles(scene_, all_but(scene_, triangles));
-  if (!part_.triangles.empty()) stepper_ = make_(part_.scene);
+  part_ = std::make_shared<const PartOfScene>(part_of_triangles(scene_, all_but(scene_, triangles)));
+  if (!part_->triangles.empty()) stepper_ = make_(part_->scene);
 }
 
 // A step of which all cloth is cut out: only obstacles move.
@@ -51,7 +50,6 @@ StepReport step_nothing(const State& from, const Drive& drive, double dt, const 
   end.frame = from.frame + 1;
   end.obstacles = drive.obstacles;
   end.pinched = false;
-  end.clean = true;
   end.memory.clear();
   StepReport report;
   report.status = StepStatus::accepted;
@@ -65,8 +63,8 @@ StepReport CuttingStepper::step_rest(const State& from, const Drive& drive, doub
                                      State& to) {
   cut(from.cut_out);
   State end;
-  const State start = state_of(part_, from);
-  StepReport report = stepper_ ? stepper_->step(start, drive_of(part_, drive), dt, end, {.stop = stop})
+  const State start = state_of(*part_, from);
+  StepReport report = stepper_ ? stepper_->step(start, drive_of(*part_, drive), dt, end, {.stop = stop})
                                : step_nothing(start, drive, dt, traits().name, end);
   if (report.status != StepStatus::accepted) return report;
   to = from;
@@ -77,7 +75,8 @@ StepReport CuttingStepper::step_rest(const State& from, const Drive& drive, doub
   for (std::size_t p = 0; p < scene_.pins.size(); ++p)
     to.x.row(scene_.pins[p]) = drive.pins.row(static_cast<Eigen::Index>(p));
   to.v = (to.x - from.x) / dt;
-  put(part_, end, to);
+  put(*part_, end, to);
+  report.path.part = part_;
   return report;
 }
 
@@ -87,15 +86,12 @@ StepReport CuttingStepper::step_cut(const State& from, const Drive& drive, doubl
   Stopwatch watch;
   to.cut_out = still_cut_out(scene_, to);
   report.seconds.response += watch.lap();
-  if (to.cut_out == from.cut_out) {
-    if (report.audit) report.audit = whole_audit(part_, *std::move(report.audit));
-  } else {
-    const int wanted = report.collision.pairs_wanted;
+  if (to.cut_out != from.cut_out) {
     forget_motion(to.memory);  // what comes back did not move with the rest
-    take_audit(audit_uncut(scene_, to), to, report);
-    if (to.pinched) report.collision.pairs_wanted = wanted;
+    report.audit.reset();
+  } else if (report.audit) {
+    report.audit = whole_audit(*part_, *std::move(report.audit));
   }
-  report.seconds.audit += watch.lap();
   report.collision.cut_out = static_cast<int>(to.cut_out.size());
   return report;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "physics/steppers/step_audit.hpp"
+#include "physics/scene/scene.hpp"
+#include "physics/scene/stepper.hpp"
 
 namespace selvedge {
 
@@ -12,9 +13,8 @@ struct StepEnd {
 };
 
 // The common end of every stepper: accepts the step, fills `to` as the contract in stepper.hpp asks for, and the report
-// with the lag of obstacles and with the audit of positions, which it leaves to `later` where that is given. A lag
-// within rounding counts as none. A step whose audit meets more pairs than it may look at is rejected.
-void finish_step(const Scene&, const State& from, const Drive&, double dt, StepEnd, AuditMemory&, State& to,
-                 StepReport&, LaterAudits* later = nullptr);
+// with the lag of obstacles and, where the stepper has named no path, with the straight one to the end. A lag within
+// rounding counts as none.
+void finish_step(const State& from, const Drive&, double dt, StepEnd, State& to, StepReport&);
 
 }  // namespace selvedge

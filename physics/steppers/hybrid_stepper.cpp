@@ -8,6 +8,7 @@
 #include "collision/geometry/floating_point.hpp"
 #include "collision/geometry/pair_budget.hpp"
 #include "collision/geometry/stopwatch.hpp"
+#include "physics/frame/frame_audits.hpp"
 #include "physics/solve/energy_balance.hpp"
 #include "physics/steppers/finish_step.hpp"
 #include "physics/steppers/proposal_line_search.hpp"
@@ -59,13 +60,13 @@ StepperTraits joint_traits(const HybridParts& parts) {
 class HybridStepper final : public Stepper {
  public:
   HybridStepper(const Scene& scene, HybridParts parts, const HybridOptions& options)
-      : scene_(scene),
-        parts_(std::move(parts)),
+      : parts_(std::move(parts)),
         options_(options),
         guard_(scene, options.guard),
         contact_(scene),
         energy_(scene),
         traits_(joint_traits(parts_)),
+        audits_(scene),
         clock_(clock_of(parts_)) {
     if (options.mode == HybridMode::gated || options.mode == HybridMode::after_k)
       line_.emplace(scene, options.implicit_euler,
@@ -82,20 +83,21 @@ class HybridStepper final : public Stepper {
     State& to;
     StepReport& report;
     const StopFlag& stop;
+    double audited = 0;  // by the clock: what judging took, which a step without proposals has behind it as well
   };
   Verdict may_ask(const State& from, const Drive&, const ProposalTrust&, bool has_history) const;
   Verdict propose(Work&);
   Verdict propose_within_budget(Work&);
   bool gains_energy(Verdict, Work&);
+  bool ask_proposer(Work&);
   Verdict propose_step(Work&);
-  std::optional<Points> proposed_positions(Work&);
   Verdict correct(Work&, Points x);
   Verdict refine(Work&, const Points& x);
   Verdict judged(const Work&, const Points& x);
+  Verdict audited(Work&, Verdict free_of_contact);
   void take_parent_step(Work&);
   void note_times(bool asked, bool taken, double proposal, double parent);
 
-  const Scene& scene_;
   HybridParts parts_;
   HybridOptions options_;
   Guard guard_;
@@ -103,7 +105,7 @@ class HybridStepper final : public Stepper {
   EnergyBalance energy_;
   std::optional<ProposalLineSearch> line_;
   StepperTraits traits_;
-  AuditMemory audited_;
+  FrameAudits audits_;
   std::function<double()> clock_;
   ProposalTimes times_;
 };
@@ -128,38 +130,24 @@ Verdict HybridStepper::judged(const Work& work, const Points& x) {
       [&] { return touching_vertices(contact_, work.from, work.drive.obstacles, x); }, measures);
 }
 
-// The proposal as it is. The guard judges the positions before the proposer audits them, and again if the proposer then
-// ends elsewhere.
-Verdict HybridStepper::propose_step(Work& work) {
-  Verdict verdict = Verdict::none;
-  Points seen;
-  StepExtras extras{.stop = work.stop};
-  extras.wanted = [&](const Points& x) {
-    seen = x;
-    return (verdict = judged(work, x)) == Verdict::admitted;
-  };
-  StepReport made = parts_.proposer->step(work.from, work.drive, work.dt, work.to, extras);
-  const double guarded = work.report.seconds.guard;
-  work.report = std::move(made);
-  work.report.seconds.guard += guarded;
-  if (work.report.status != StepStatus::accepted) return verdict == Verdict::none ? Verdict::not_made : verdict;
-  if (verdict == Verdict::none || seen != work.to.x) verdict = judged(work, work.to.x);
-  if (verdict != Verdict::admitted) return verdict;
-  return is_contact_free(work.to, work.report) ? Verdict::admitted : Verdict::penetrating;
+// The verdict of the audits of the step that was made, which nobody has to make again.
+Verdict HybridStepper::audited(Work& work, Verdict free_of_contact) {
+  const double started = clock_();
+  work.to.clean = judge_frame(audits_, work.from, work.drive, work.to, work.report);
+  work.audited += clock_() - started;
+  return is_contact_free(work.to, work.report) ? free_of_contact : Verdict::penetrating;
 }
 
-// The proposer's positions, without its audit where it can skip that.
-std::optional<Points> HybridStepper::proposed_positions(Work& work) {
-  std::optional<Points> x;
-  StepExtras extras{.stop = work.stop};
-  extras.wanted = [&](const Points& made) {
-    x = made;
-    return false;
-  };
-  StepReport made = parts_.proposer->step(work.from, work.drive, work.dt, work.to, extras);
-  if (made.status == StepStatus::accepted) x = work.to.x;
-  work.report.seconds = made.seconds;
-  return x;
+// A step of the proposer's, which nobody has audited. False: it made none.
+bool HybridStepper::ask_proposer(Work& work) {
+  work.report = parts_.proposer->step(work.from, work.drive, work.dt, work.to, {.stop = work.stop});
+  return work.report.status == StepStatus::accepted;
+}
+
+// The proposal as it is.
+Verdict HybridStepper::propose_step(Work& work) {
+  if (const Verdict verdict = judged(work, work.to.x); verdict != Verdict::admitted) return verdict;
+  return audited(work, Verdict::admitted);
 }
 
 // Bridson's response to the motion, then the common end of a step.
@@ -171,20 +159,12 @@ Verdict HybridStepper::correct(Work& work, Points x) {
   add(resolved, work.report);
   if (!resolved.clean) return Verdict::penetrating;
   if (const Verdict verdict = judged(work, x); verdict != Verdict::admitted) return verdict;
-  {
-    const Timed timed(work.report.seconds.audit);
-    add(audit_path(contact_.world, {}, gather_nodes(work.from.x, work.from.obstacles), gather_nodes(x, obstacles),
-                   audited_),
-        work.report);
-  }
   work.report.substeps = 1;
   work.report.collision.pairs_before = 0;
   Points v = (x - work.from.x) / work.dt;
-  finish_step(scene_, work.from, work.drive, work.dt, {std::move(x), std::move(v), std::move(obstacles)}, audited_,
-              work.to, work.report);
-  if (!is_contact_free(work.to, work.report)) return Verdict::penetrating;
+  finish_step(work.from, work.drive, work.dt, {std::move(x), std::move(v), std::move(obstacles)}, work.to, work.report);
   if (parts_.hand_over) parts_.hand_over(work.from, work.to);
-  return Verdict::admitted;
+  return audited(work, Verdict::admitted);
 }
 
 // A solve from the proposal.
@@ -196,23 +176,26 @@ Verdict HybridStepper::refine(Work& work, const Points& x) {
   work.report.seconds += proposal;
   if (work.report.status != StepStatus::accepted) return Verdict::not_made;
   if (parts_.hand_over) parts_.hand_over(work.from, work.to);
-  return is_contact_free(work.to, work.report) ? Verdict::refined : Verdict::penetrating;
+  return audited(work, Verdict::refined);
 }
 
 // A proposal that no cloth could follow is not worth a line search, a response or a solve.
 Verdict HybridStepper::propose(Work& work) {
+  if (!ask_proposer(work)) return Verdict::not_made;
   if (!asks_for_positions(options_.mode)) return propose_step(work);
-  std::optional<Points> x = proposed_positions(work);
-  if (!x) return Verdict::not_made;
+  Points x = std::move(work.to.x);
+  const PhaseTimes proposal = work.report.seconds;
+  work.report = {};
+  work.report.seconds = proposal;
   GuardMeasures measures;
-  if (const Verdict motion = judge_motion(guard_, work.from, work.dt, *x, measures); motion != Verdict::admitted)
+  if (const Verdict motion = judge_motion(guard_, work.from, work.dt, x, measures); motion != Verdict::admitted)
     return motion;
   if (line_) {
     const Timed timed(work.report.seconds.guard);
-    if (!search_along(*line_, contact_, work.from, work.drive, work.dt, options_.gate_steps, *x))
+    if (!search_along(*line_, contact_, work.from, work.drive, work.dt, options_.gate_steps, x))
       return Verdict::energy_gain;
   }
-  return options_.mode == HybridMode::refined ? refine(work, *x) : correct(work, std::move(*x));
+  return options_.mode == HybridMode::refined ? refine(work, x) : correct(work, std::move(x));
 }
 
 // What comes near more than can be searched is taken for what crosses.
@@ -267,7 +250,7 @@ StepReport HybridStepper::step(const State& from, const Drive& drive, double dt,
   const bool taken = verdict == Verdict::admitted || verdict == Verdict::refined;
   const double proposed = clock_();
   if (!taken) take_parent_step(work);
-  note_times(asked, taken, proposed - started, clock_() - proposed);
+  note_times(asked, taken, proposed - started - work.audited, clock_() - proposed);
   report.by = traits_.name + ": " +
               (verdict == Verdict::admitted ? parts_.proposer->traits().name : parts_.parent->traits().name);
   report.fell_back = asked && !taken;

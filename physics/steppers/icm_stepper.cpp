@@ -11,6 +11,8 @@
 #include "collision/untangle/caught.hpp"
 #include "collision/untangle/find_exemption.hpp"
 #include "collision/untangle/separation.hpp"
+#include "physics/frame/bounded_step.hpp"
+#include "physics/frame/frame_audits.hpp"
 #include "physics/recovery/recovery.hpp"
 #include "physics/scene/features.hpp"
 #include "physics/scene/scene_numbers.hpp"
@@ -18,7 +20,6 @@
 #include "physics/solve/contour_potential.hpp"
 #include "physics/solve/energy_balance.hpp"
 #include "physics/solve/euler_torque.hpp"
-#include "physics/steppers/bounded_step.hpp"
 #include "physics/steppers/count_solve.hpp"
 #include "physics/steppers/finish_step.hpp"
 #include "physics/steppers/substeps.hpp"
@@ -88,7 +89,6 @@ class IcmStepper final : public Stepper {
   ImplicitEuler solver_;
   EulerTorque euler_torque_;
   EnergyBalance energy_;
-  AuditMemory audited_;
   SelfCrossings self_crossings_;
   StepperTraits traits_{"icm"};
   std::vector<NodePair> pairs_;  // scratch
@@ -222,19 +222,15 @@ StepReport IcmStepper::take_step(const State& from, const Drive& drive, double d
     }
     ++report.substeps;
     now.v = std::move(work.v);
-    if (has_contact()) {
-      Stopwatch watch;
-      ++report.counts.audits;
-      add(audit_path(world_, work.exemption, now.nodes, next, audited_), report);
-      report.seconds.audit += watch.lap();
-    }
+    if (s == 0) report.path.start = now.nodes;
+    report.path.substeps.push_back({next, work.exemption});
     if (s == 0) report.collision.left_alone = work.exemption.cloth_vertices();
     all.off = either(std::move(all.off), work.exemption.off);
     now.nodes = std::move(next);
   }
   if (!all.off.empty()) report.switched_off = switched_off(world_, all);
-  finish_step(scene_, from, drive, dt, {now.nodes.topRows(n), std::move(now.v), drive.obstacles}, audited_, to, report);
-  if (report.status == StepStatus::accepted && energy_(from, drive, to).from_nowhere()) {
+  finish_step(from, drive, dt, {now.nodes.topRows(n), std::move(now.v), drive.obstacles}, to, report);
+  if (energy_(from, drive, to).from_nowhere()) {
     report.status = StepStatus::rejected;
     report.reason = Reason::energy_gain;
   }

@@ -5,11 +5,11 @@
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/stopwatch.hpp"
 #include "collision/untangle/caught.hpp"
+#include "physics/frame/bounded_step.hpp"
 #include "physics/recovery/carrying.hpp"
 #include "physics/recovery/parting.hpp"
 #include "physics/scene/features.hpp"
 #include "physics/solve/contact_terms.hpp"
-#include "physics/steppers/bounded_step.hpp"
 #include "physics/steppers/substeps.hpp"
 
 namespace selvedge {
@@ -84,7 +84,7 @@ StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive,
                                           const StepExtras& extras) {
   Stopwatch watch;
   const Points wanted = gather_nodes(from.x, drive.obstacles);
-  const LastClean before = last_clean(from);
+  const LastClean before = from.clean ? LastClean{} : last_clean(from);
   const WornPlaces where{&wanted, &drive.worn, gather_nodes(before.x, before.obstacles), scene_.contact.thickness, dt};
   Points nodes = gather_nodes(from.x, from.obstacles), v = from.v;
   UntanglingBudget budget{options_.untangling_passes, &extras.stop};
@@ -130,7 +130,7 @@ StepReport RecoveringStepper::step(const State& from, const Drive& drive, double
   StepReport report = bounded_step(traits().name, extras.stop, [&] {
     return has_contact_ ? step_parted(from, drive, dt, to, extras) : inner_->step(from, drive, dt, to, extras);
   });
-  if (report.status == StepStatus::accepted && !to.clean && drive.worn.rows() > 0)
+  if (report.status == StepStatus::accepted && drive.worn.rows() > 0)
     remember(from.clean ? LastClean{from.x, from.obstacles} : last_clean(from), to);
   return report;
 }

@@ -55,7 +55,7 @@ class RestingStepper final : public Stepper {
 
  private:
   struct Part {
-    PartOfScene part;
+    std::shared_ptr<const PartOfScene> part;
     std::unique_ptr<Stepper> stepper;
   };
   auto rows(const Points& x, int cloth) const {
@@ -147,8 +147,8 @@ RestingStepper::Part& RestingStepper::part(const Chosen& resting) {
   Chosen chosen = resting;
   for (char& c : chosen) c = !c;
   Part& made = parts_[resting];
-  made.part = part_of(scene_, chosen);
-  made.stepper = make_(made.part.scene);
+  made.part = std::make_shared<const PartOfScene>(part_of(scene_, chosen));
+  made.stepper = make_(made.part->scene);
   return made;
 }
 
@@ -173,11 +173,11 @@ StepReport RestingStepper::step_others(const State& from, const Drive& drive, do
   Part& others = part(resting);
   State end;
   StepReport report =
-      others.stepper->step(state_of(others.part, from), drive_of(others.part, drive), dt, end, {.stop = extras.stop});
+      others.stepper->step(state_of(*others.part, from), drive_of(*others.part, drive), dt, end, {.stop = extras.stop});
   report.resting = count;
   if (report.status != StepStatus::accepted) return report;
-  put(others.part, end, to);
-  if (report.audit) report.audit = whole_audit(others.part, *std::move(report.audit));
+  put(*others.part, end, to);
+  report.path.part = others.part;
   return report;
 }
 

@@ -44,7 +44,7 @@ Flight fly(const Setup& setup, State from, int frames, const Stop& stop,
   Flight flight;
   flight.end = std::move(from);
   flight.last = simulate(
-      *stepper, setup.drive_at, 1 / setup.run.fps, flight.end.frame + frames, flight.end,
+      setup.scene, *stepper, setup.drive_at, 1 / setup.run.fps, flight.end.frame + frames, flight.end,
       [&](const FrameEvent& event) {
         if (flight.first.status == StepStatus::not_run) flight.first = event.report;
         if (observe && event.report.status == StepStatus::accepted) observe(event.state);

@@ -9,7 +9,7 @@
 #include "collision/exact/penetration_depth.hpp"
 #include "collision/search/intersections.hpp"
 #include "learned/steppers/learned_state.hpp"
-#include "physics/steppers/step_audit.hpp"
+#include "physics/frame/frame_audits.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
 #include "pipeline/formats/trajectory_row.hpp"
 #include "pipeline/host/kept_rows.hpp"
@@ -123,7 +123,7 @@ std::optional<CompareRun> timed_run(const Setup& setup, const TimedRunOptions& o
   RunWatch watch(setup, run, options, stepper->traits());
   RowWatch row(options.limits, setup.scene);
   const StepReport last = simulate(
-      *stepper, setup.drive_at, 1 / setup.run.fps, setup.run.frames, state,
+      setup.scene, *stepper, setup.drive_at, 1 / setup.run.fps, setup.run.frames, state,
       [&](const FrameEvent& event) {
         watch(event);
         stopped = stop && stop();

@@ -11,6 +11,7 @@
 #include "collision/geometry/stopwatch.hpp"
 #include "collision/search/intersections.hpp"
 #include "collision/search/obstacle.hpp"
+#include "physics/frame/make_frame.hpp"
 #include "physics/scene/make_scene.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/drapes/drape_path_hdf5.hpp"
@@ -50,6 +51,7 @@ struct PathMaker {
   BodyPose pose;
   IntersectionCache body_cache;
   std::optional<Clip> clip;  // that poses are taken from; none: they are drawn
+  FrameAudits audits{scene};
 
   Points body_in(const BodyPose& at) const {
     return posed(world.body.skin, path.shape, at, joint_transforms(world.body, joints, at));
@@ -111,7 +113,8 @@ bool advance(PathMaker& maker, const BodyPose& at) {
     }
   }
   State next;
-  const StepReport report = maker.stepper->step(maker.state, drive, 1 / maker.world.options.fps, next);
+  const StepReport report =
+      make_frame(*maker.stepper, maker.audits, maker.state, drive, 1 / maker.world.options.fps, next);
   if (report.status != StepStatus::accepted) return false;
   maker.state = std::move(next);
   return true;

@@ -8,6 +8,7 @@
 #include "collision/geometry/disjoint_sets.hpp"
 #include "collision/geometry/stopwatch.hpp"
 #include "collision/untangle/untangle.hpp"
+#include "physics/frame/make_frame.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/patterns/clear_stitches.hpp"
 
@@ -89,13 +90,13 @@ struct Sewing {
   }
 
   // Returns the share of vertices that move, or nothing where the step was rejected.
-  std::optional<double> step(Stepper& stepper, const Scene& scene, const Joining& joining, bool sewn,
+  std::optional<double> step(Stepper& stepper, FrameAudits& audits, const Joining& joining, bool sewn,
                              const Vec3& gravity, State& state) {
-    Drive drive = at_rest(scene, state);
+    Drive drive = at_rest(audits.scene, state);
     drive.acceleration = gravity;
     drive.obstacles = {body};
     State next;
-    const StepReport report = stepper.step(state, drive, 1 / options.fps, next);
+    const StepReport report = make_frame(stepper, audits, state, drive, 1 / options.fps, next);
     if (report.status != StepStatus::accepted) {
       result.rejected = true;
       return {};
@@ -142,8 +143,9 @@ struct Sewing {
             first_stiffness * std::pow(last_stiffness / first_stiffness, std::min(1.0, 1.0 * frame / shut_end));
       }
       scene.contact.self = frame <= facing_end;
+      FrameAudits audits(scene);
       // A stepper takes stitches as they are when it is made.
-      if (!step(*make_recovering_conventional_stepper(scene), scene, joining, false, Vec3::Zero(), state)) break;
+      if (!step(*make_recovering_conventional_stepper(scene), audits, joining, false, Vec3::Zero(), state)) break;
       result.closing_frames = frame;
       if (frame >= shut_end && largest_gap(spread(state.x, joining)) < options.closed) break;
     }
@@ -164,14 +166,16 @@ struct Sewing {
     flat.contact.self = false;
     flat.contact.friction = 0;
     const auto flattening = make_recovering_conventional_stepper(flat);
+    FrameAudits flat_audits(flat);
     for (int frame = 1; frame <= flattening_frames; ++frame)
-      if (!step(*flattening, flat, joining, true, Vec3::Zero(), state)) return;
+      if (!step(*flattening, flat_audits, joining, true, Vec3::Zero(), state)) return;
     state.clean = false;
     const Scene scene = scene_of(mesh, joining, body_triangles, body.rows(), options, 1);
     const auto stepper = make_recovering_conventional_stepper(scene);
+    FrameAudits audits(scene);
     const Vec3 gravity(0, -9.81, 0);
     for (int frame = 1; frame <= options.most_draping * options.fps; ++frame) {
-      const std::optional<double> share = step(*stepper, scene, joining, true, gravity, state);
+      const std::optional<double> share = step(*stepper, audits, joining, true, gravity, state);
       if (!share) break;
       result.draping_frames = frame;
       result.moving_share = *share;

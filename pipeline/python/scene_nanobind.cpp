@@ -9,6 +9,7 @@
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/same_places.hpp"
 #include "collision/geometry/welded_surface.hpp"
+#include "physics/frame/make_frame.hpp"
 #include "physics/scene/make_scene.hpp"
 #include "physics/scene/scene_numbers.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
@@ -100,7 +101,7 @@ class World {
     check_state(setup_.scene, state_);  // whose arrays Python may have written to
     const double dt = 1 / setup_.run.fps;
     State next;
-    const StepReport report = stepper_->step(state_, drive_at(state_.time + dt), dt, next);
+    const StepReport report = make_frame(*stepper_, audits_, state_, drive_at(state_.time + dt), dt, next);
     if (report.status != StepStatus::accepted) return false;
     keep(std::move(next), report);
     return true;
@@ -172,6 +173,7 @@ class World {
   std::vector<std::vector<int>> joined_;  // of each obstacle (welded_surface.hpp)
   State state_;
   std::unique_ptr<Stepper> stepper_;
+  FrameAudits audits_{setup_.scene};
   int pairs_ = -1;
 };
 

@@ -104,7 +104,7 @@ class PythonStepper final : public Stepper {
     report.status = StepStatus::rejected;
     StepEnd end{from.x, from.v, drive.obstacles};
     report.reason = ask(from, drive, dt, end);
-    if (report.reason == Reason::none) finish_step(scene_, from, drive, dt, std::move(end), audits_, to, report);
+    if (report.reason == Reason::none) finish_step(from, drive, dt, std::move(end), to, report);
     return report;
   }
 
@@ -136,7 +136,6 @@ class PythonStepper final : public Stepper {
   const Scene& scene_;
   Kept stepper_;
   StepperTraits traits_;
-  AuditMemory audits_;
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include "pipeline/run/jitter.hpp"
 
 #include "collision/geometry/error.hpp"
-#include "physics/steppers/step_audit.hpp"
+#include "physics/frame/frame_audits.hpp"
 #include "pipeline/shapes/random_shifts.hpp"
 
 namespace selvedge {

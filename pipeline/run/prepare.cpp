@@ -23,7 +23,7 @@ bool prepare(Setup& setup, const std::function<bool()>& stop, Progress* progress
     ended = stop && stop();
     return !ended;
   };
-  const StepReport last = simulate(*stepper, setup.drive_at, 1 / setup.run.fps, 0, state, sink, interrupt);
+  const StepReport last = simulate(setup.scene, *stepper, setup.drive_at, 1 / setup.run.fps, 0, state, sink, interrupt);
   if (progress) progress->end();
   if (ended || last.reason == Reason::stopped) return false;
   if (last.status != StepStatus::accepted)

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "physics/steppers/step_audit.hpp"
+#include "physics/frame/frame_audits.hpp"
 
 namespace selvedge {
 namespace {

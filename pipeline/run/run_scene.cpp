@@ -147,7 +147,7 @@ RunSummary run_scene(const Setup& setup, Stepper& stepper, const RunRequest& req
   }
 
   if (request.progress) request.progress->begin(state.frame, setup.run.frames);
-  const StepReport last = simulate(stepper, setup.drive_at, 1 / setup.run.fps, setup.run.frames, state,
+  const StepReport last = simulate(setup.scene, stepper, setup.drive_at, 1 / setup.run.fps, setup.run.frames, state,
                                    std::ref(recorder), request.interrupt);
   if (last.reason == Reason::stopped) recorder.checkpoint(state);
   if (request.progress) request.progress->end();

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <functional>
 
+#include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
 
 namespace selvedge {
@@ -21,16 +22,12 @@ struct FrameEvent {
 };
 using FrameSink = std::function<bool(const FrameEvent&)>;  // false ends the run
 
-// Steps `state` to frame `frames`, or until a step is rejected or the sink ends the run. Returns the last report
-// (not_run where there was nothing to do). `state` ends as the last accepted one. A step that `stop` ended (see
-// StepExtras) ends the run unseen by the sink.
-//
-// Where there are two threads or more, one of them may make the drive of the next frame and the audits of the last one
-// (StepExtras::later) beside a step, if that is faster (arrangement.hpp). The sink sees the same frames, bit for bit:
-// it is given a frame with its verdict only. Where that is bad, the frame is stepped again with its audits in the step,
-// and what was made after it is void. Phases of a frame then have the time that it waited for its audits. `drive_at` is
-// called by one thread at a time, and never while the sink is.
-StepReport simulate(Stepper&, const std::function<Drive(double time)>& drive_at, double dt, int frames, State& state,
-                    const FrameSink&, const StopFlag& stop = {});
+// Makes frames from `state` to frame `frames`, or until one is rejected or the sink ends the run. Returns the last
+// report (not_run where there was nothing to do). `state` ends as the last accepted one. A frame that `stop` ended (see
+// StepExtras) ends the run unseen by the sink. The sink sees the same frames on any number of threads, bit for bit,
+// each with its verdict; what overlaps is in frames_ahead.hpp. `drive_at` is called by one thread at a time, and never
+// while the sink is.
+StepReport simulate(const Scene&, Stepper&, const std::function<Drive(double time)>& drive_at, double dt, int frames,
+                    State& state, const FrameSink&, const StopFlag& stop = {});
 
 }  // namespace selvedge

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "collision/geometry/error.hpp"
-#include "physics/steppers/step_audit.hpp"
+#include "physics/frame/frame_audits.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/run/prepare.hpp"

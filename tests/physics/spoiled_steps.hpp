@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
 // Steps as the conventional stepper makes them, and the same steps spoiled, for tests of the guard.
@@ -28,7 +29,7 @@ inline std::vector<RecordedStep> recorded(const World& w, int frames) {
   State before = w.state, from = w.state;
   for (int f = 0; f < frames; ++f) {
     State to;
-    REQUIRE(stepper->step(from, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
+    REQUIRE(testing::frame(w.scene, *stepper, from, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
     steps.push_back({before, from, to, w.drive});
     before = from;
     from = to;

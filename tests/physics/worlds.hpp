@@ -6,6 +6,7 @@
 #include "physics/steppers/decorated_stepper.hpp"
 #include "physics/steppers/resting_stepper.hpp"
 #include "tests/collision/sheets.hpp"
+#include "tests/frame.hpp"
 
 // Small scenes for the tests of steppers.
 namespace selvedge::testing {
@@ -54,7 +55,7 @@ inline Run run(const World& w, int frames, int renew = 1 << 30, const MakeSteppe
   for (int f = 0; f < frames; ++f) {
     if (f % renew == renew - 1) stepper = make(w.scene);
     State to;
-    const StepReport report = stepper->step(r.state, w.drive, 1.0 / 30, to);
+    const StepReport report = testing::frame(w.scene, *stepper, r.state, w.drive, 1.0 / 30, to);
     REQUIRE(report.status == StepStatus::accepted);
     r.contacts += report.collision.contacts;
     r.pairs += report.collision.pairs_after;

@@ -3,6 +3,7 @@
 
 #include "pipeline/formats/checkpoint.hpp"
 #include "pipeline/tools/import_weights.hpp"
+#include "tests/frame.hpp"
 #include "tests/learned/learned_scenes.hpp"
 #include "tests/learned/parity_pack.hpp"
 #include "tests/pipeline/files.hpp"
@@ -59,7 +60,8 @@ void follow(const std::string& checkpoint, const std::vector<std::string>& steps
   for (const std::string& step : steps) {
     const parity::Case recorded = parity::load(step);
     State to;
-    REQUIRE(stepper->step(state, recorded_drive(recorded, scene), frame_dt, to).status == StepStatus::accepted);
+    REQUIRE(testing::frame(scene, *stepper, state, recorded_drive(recorded, scene), frame_dt, to).status ==
+            StepStatus::accepted);
     INFO(step);
     CHECK((to.x - parity::points(recorded.npz, "pred_pos")).cwiseAbs().maxCoeff() < 3e-7);
     state = to;
@@ -96,8 +98,8 @@ TEST_CASE("A checkpoint keeps what a learned stepper remembers", "[learned]") {
   const fake::NarrowNetwork network = fake::narrow_network("hood");
   const auto step = [&](const State& from, int frame) {
     State to;
-    REQUIRE(make_learned_stepper(run.scene, network.architecture, network.weights)
-                ->step(from, run.drives[static_cast<std::size_t>(frame)], frame_dt, to)
+    REQUIRE(testing::frame(run.scene, *make_learned_stepper(run.scene, network.architecture, network.weights), from,
+                           run.drives[static_cast<std::size_t>(frame)], frame_dt, to)
                 .status == StepStatus::accepted);
     return to;
   };
@@ -112,7 +114,8 @@ TEST_CASE("A process that steps with a network maps no libtorch", "[learned]") {
   const fake::LearnedCase run = fake::learned_case(fake::grid(3, 4), {}, {0, 0, 0}, 1);
   const fake::NarrowNetwork network = fake::narrow_network("hood");
   State to;
-  make_learned_stepper(run.scene, network.architecture, network.weights)->step(run.state, run.drives[0], frame_dt, to);
+  testing::frame(run.scene, *make_learned_stepper(run.scene, network.architecture, network.weights), run.state,
+                 run.drives[0], frame_dt, to);
   std::string line;
   int lines = 0;
   for (std::ifstream maps("/proc/self/maps"); std::getline(maps, line); ++lines)

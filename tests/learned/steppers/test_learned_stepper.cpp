@@ -8,6 +8,7 @@
 #include "learned/network/engine.hpp"
 #include "learned/network/packed_network.hpp"
 #include "learned/steppers/learned_plan.hpp"
+#include "tests/frame.hpp"
 #include "tests/learned/learned_scenes.hpp"
 #include "tests/threads.hpp"
 
@@ -28,7 +29,7 @@ std::vector<State> rollout(const fake::LearnedCase& run, Stepper& stepper, StepR
   std::vector<State> states{run.state};
   for (const Drive& drive : run.drives) {
     State to;
-    const StepReport report = stepper.step(states.back(), drive, frame_dt, to);
+    const StepReport report = testing::frame(run.scene, stepper, states.back(), drive, frame_dt, to);
     if (last) *last = report;
     if (report.status != StepStatus::accepted) break;
     states.push_back(std::move(to));
@@ -149,12 +150,12 @@ TEST_CASE("A learned step depends on the state alone and leaves it untouched", "
   const auto fresh = stepper_of(run.scene, network);
   const State from = once[2];
   State to;
-  CHECK(fresh->step(from, run.drives[2], frame_dt, to).status == StepStatus::accepted);
+  CHECK(testing::frame(run.scene, *fresh, from, run.drives[2], frame_dt, to).status == StepStatus::accepted);
   CHECK(fake::same_state(to, once[3]));
   CHECK(fake::same_state(from, once[2]));
   State other = once[2];
   for (MemoryBlock& block : other.memory) block.rows.array() += 2e-3;  // hood_cvpr and fine15 look at positions alone
-  CHECK(fresh->step(other, run.drives[2], frame_dt, to).status == StepStatus::accepted);
+  CHECK(testing::frame(run.scene, *fresh, other, run.drives[2], frame_dt, to).status == StepStatus::accepted);
   CHECK_FALSE(fake::same_points(to.x, once[3].x));
 }
 
@@ -163,14 +164,14 @@ TEST_CASE("A learned step reports itself", "[learned]") {
   const auto stepper = stepper_of(run.scene, fake::narrow_network("hood"));
   CHECK(stepper->traits().name == "learned");
   State first, second;
-  const StepReport report = stepper->step(run.state, run.drives[0], frame_dt, first);
+  const StepReport report = testing::frame(run.scene, *stepper, run.state, run.drives[0], frame_dt, first);
   CHECK(report.by == "learned");
   CHECK(report.substeps == 1);  // the settling frame is no time step of the scene
   CHECK(report.audit.has_value());
   CHECK(report.seconds.graph > 0);
   CHECK(report.seconds.network > 0);
   CHECK(report.seconds.total() >= report.seconds.graph + report.seconds.network);
-  CHECK(stepper->step(first, run.drives[1], frame_dt, second).substeps == 1);
+  CHECK(testing::frame(run.scene, *stepper, first, run.drives[1], frame_dt, second).substeps == 1);
   CHECK(second.frame == 2);
   CHECK(second.time == Approx(2 * frame_dt));
   CHECK(fake::same_points(second.obstacles[0], run.drives[1].obstacles[0]));
@@ -206,7 +207,8 @@ TEST_CASE("A learned stepper ends finite or says why it stopped", "[learned]") {
     run.state.x(4, 2) = std::numeric_limits<double>::quiet_NaN();
     State to = run.state;
     to.x.setOnes();
-    const StepReport report = stepper_of(run.scene, calm)->step(run.state, run.drives[0], frame_dt, to);
+    const StepReport report =
+        testing::frame(run.scene, *stepper_of(run.scene, calm), run.state, run.drives[0], frame_dt, to);
     CHECK(report.status == StepStatus::rejected);
     CHECK((to.x.array() == 1).all());
   }
@@ -223,7 +225,8 @@ TEST_CASE("A learned stepper refuses with one error what it cannot run", "[learn
   const fake::LearnedCase run = above_a_plate(1);
   const auto stepper = stepper_of(run.scene, fake::narrow_network("hood"));
   State to;
-  CHECK_THROWS_WITH(stepper->step(run.state, run.drives[0], 1.0 / 60, to), Catch::Contains("fps: 30"));
+  CHECK_THROWS_WITH(testing::frame(run.scene, *stepper, run.state, run.drives[0], 1.0 / 60, to),
+                    Catch::Contains("fps: 30"));
   Architecture strange = architecture_preset("small");
   ++strange.node_inputs;
   CHECK_THROWS_AS(make_learned_stepper(run.scene, strange, random_weights(strange, 1)), Error);
@@ -237,20 +240,21 @@ TEST_CASE("A network of several passes goes on from its own guess, and starts at
     fake::NarrowNetwork network = fake::narrow_network(name, 1e-3);
     State first, second;
     const auto stepper = stepper_of(run.scene, network);
-    const StepReport report = stepper->step(run.state, run.drives[0], frame_dt, first);
+    const StepReport report = testing::frame(run.scene, *stepper, run.state, run.drives[0], frame_dt, first);
     REQUIRE(report.status == StepStatus::accepted);
     CHECK(report.substeps == 1);  // passes are no time steps
-    REQUIRE(stepper->step(first, run.drives[1], frame_dt, second).status == StepStatus::accepted);
+    REQUIRE(testing::frame(run.scene, *stepper, first, run.drives[1], frame_dt, second).status == StepStatus::accepted);
     CHECK(second.x.allFinite());
     network.architecture.passes = 1;
     State once;
-    stepper_of(run.scene, network)->step(run.state, run.drives[0], frame_dt, once);
+    testing::frame(run.scene, *stepper_of(run.scene, network), run.state, run.drives[0], frame_dt, once);
     CHECK_FALSE(fake::same_points(once.x, first.x));
   }
   // A network that adds nothing goes where the cloth would without forces: settled, it falls not at all.
   fake::NarrowNetwork still = fake::narrow_network("small", 0);
   State to;
-  REQUIRE(stepper_of(run.scene, still)->step(run.state, run.drives[0], frame_dt, to).status == StepStatus::accepted);
+  REQUIRE(testing::frame(run.scene, *stepper_of(run.scene, still), run.state, run.drives[0], frame_dt, to).status ==
+          StepStatus::accepted);
   CHECK((to.x - run.state.x).bottomRows(to.x.rows() - 1).cwiseAbs().maxCoeff() < 2.1e-3);  // pushed out at most
 }
 
@@ -259,7 +263,7 @@ TEST_CASE("Networks that see forces are moved by the drive's acceleration and wi
   const auto first_of = [&](const std::string& name) {
     State to;
     const auto stepper = stepper_of(run.scene, fake::narrow_network(name));
-    REQUIRE(stepper->step(run.state, run.drives[0], frame_dt, to).status == StepStatus::accepted);
+    REQUIRE(testing::frame(run.scene, *stepper, run.state, run.drives[0], frame_dt, to).status == StepStatus::accepted);
     return to.x;
   };
   std::vector<Points> calm;

@@ -4,6 +4,7 @@
 
 #include "learned/steppers/refu_stepper.hpp"
 #include "tests/collision/solids.hpp"
+#include "tests/frame.hpp"
 #include "tests/learned/learned_scenes.hpp"
 
 namespace selvedge::test_refu_stepper {
@@ -59,8 +60,8 @@ TEST_CASE("refu stepper: the same bits where nothing is inside, and where a step
     BlindStepper plain(made.scene, way);
     const auto refu = make_refu_stepper(made.scene, std::make_unique<BlindStepper>(made.scene, way));
     State expected, found;
-    const StepReport a = plain.step(made.state, made.drives[0], 1.0 / 30, expected);
-    const StepReport b = refu->step(made.state, made.drives[0], 1.0 / 30, found);
+    const StepReport a = testing::frame(made.scene, plain, made.state, made.drives[0], 1.0 / 30, expected);
+    const StepReport b = testing::frame(made.scene, *refu, made.state, made.drives[0], 1.0 / 30, found);
     CHECK(same_report(a, b));
     if (a.status == StepStatus::accepted) CHECK(fake::same_state(expected, found));
   }
@@ -81,7 +82,7 @@ TEST_CASE("refu stepper: what is inside comes out, no faster than the body, and 
     for (const Drive& drive : made.drives) {
       State blind;
       BlindStepper(made.scene, way).step(from, drive, 1.0 / 30, blind);
-      const StepReport report = refu->step(from, drive, 1.0 / 30, to);
+      const StepReport report = testing::frame(made.scene, *refu, from, drive, 1.0 / 30, to);
       REQUIRE(report.status == StepStatus::accepted);
       pushed += report.collision.pushed_out;
       DistanceField field(made.scene.obstacles[0].surface);
@@ -121,8 +122,9 @@ TEST_CASE("refu stepper: scales by neighbours push farther than the surface, and
   scaled.neighbours = std::make_shared<const NeighbourScale>(scales);
   State surface, farther;
   const auto step = [&](const RefuOptions& options, State& to) {
-    return make_refu_stepper(made.scene, std::make_unique<BlindStepper>(made.scene, way), options)
-        ->step(made.state, made.drives[0], 1.0 / 30, to)
+    return testing::frame(made.scene,
+                          *make_refu_stepper(made.scene, std::make_unique<BlindStepper>(made.scene, way), options),
+                          made.state, made.drives[0], 1.0 / 30, to)
         .collision.pushed_out;
   };
   const int pushed = step(plain, surface);
@@ -149,8 +151,9 @@ TEST_CASE("refu stepper: vertices on faces, edges and corners, and flat bodies, 
     for (const double down : {0.0, 0.01}) {
       const Eigen::RowVector3d way(0, -down, 0);
       State to;
-      const StepReport report = make_refu_stepper(made.scene, std::make_unique<BlindStepper>(made.scene, way))
-                                    ->step(made.state, made.drives[0], 1.0 / 30, to);
+      const StepReport report =
+          testing::frame(made.scene, *make_refu_stepper(made.scene, std::make_unique<BlindStepper>(made.scene, way)),
+                         made.state, made.drives[0], 1.0 / 30, to);
       REQUIRE(report.status == StepStatus::accepted);
       CHECK(to.x.allFinite());
       CHECK(to.v.allFinite());
@@ -170,7 +173,8 @@ TEST_CASE("refu stepper: where a body or the cloth is not finite, the step is as
     (in_body ? drive.obstacles[0] : from.x)(5, 1) = std::numeric_limits<double>::quiet_NaN();
     const Eigen::RowVector3d way(0, -0.04, 0);
     BlindStepper(made.scene, way).step(from, drive, 1.0 / 30, expected);
-    make_refu_stepper(made.scene, std::make_unique<BlindStepper>(made.scene, way))->step(from, drive, 1.0 / 30, found);
+    testing::frame(made.scene, *make_refu_stepper(made.scene, std::make_unique<BlindStepper>(made.scene, way)), from,
+                   drive, 1.0 / 30, found);
     REQUIRE(found.x.rows() == expected.x.rows());
     CHECK(std::memcmp(found.x.data(), expected.x.data(), sizeof(double) * static_cast<std::size_t>(found.x.size())) ==
           0);

@@ -3,7 +3,8 @@
 #include "collision/search/intersections.hpp"
 #include "learned/steppers/learned_state.hpp"
 #include "learned/steppers/safeguard.hpp"
-#include "physics/steppers/step_audit.hpp"
+#include "physics/frame/frame_audits.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_safeguard {
@@ -100,7 +101,7 @@ TEST_CASE("A safeguarded stepper goes where the response lets it, and carries wh
   const auto stepper = make_safeguarded(world.scene, std::make_unique<FixedProposal>(proposed), {.largest_zone = 0});
   CHECK(stepper->traits().name == "safeguarded fixed");
   State to;
-  const StepReport report = stepper->step(world.state, world.drive, learned_dt, to);
+  const StepReport report = testing::frame(world.scene, *stepper, world.state, world.drive, learned_dt, to);
   REQUIRE(report.status == StepStatus::accepted);
   CHECK(report.by == "safeguarded fixed");
   CHECK(report.collision.pairs_after == 0);
@@ -112,7 +113,7 @@ TEST_CASE("A safeguarded stepper goes where the response lets it, and carries wh
 
   const auto strict =
       make_safeguarded(world.scene, std::make_unique<FixedProposal>(proposed), {.largest_impulse = 1e-5});
-  const StepReport refused = strict->step(world.state, world.drive, learned_dt, to);
+  const StepReport refused = testing::frame(world.scene, *strict, world.state, world.drive, learned_dt, to);
   CHECK(refused.status == StepStatus::rejected);
   CHECK(refused.reason == Reason::penetrating);
 }

@@ -7,6 +7,7 @@
 #include "learned/losses/cloth_losses.hpp"
 #include "learned/losses/force_input.hpp"
 #include "learned/network/weights_hdf5.hpp"
+#include "tests/frame.hpp"
 #include "tests/learned/learned_scenes.hpp"
 
 namespace selvedge::test_stitches {
@@ -67,7 +68,7 @@ double largest_gap(const fake::LearnedCase& run, const Scene& seen, const std::s
   double gap = 0;
   for (const Drive& drive : run.drives) {
     State to;
-    REQUIRE(stepper->step(state, drive, 1.0 / 30, to).status == StepStatus::accepted);
+    REQUIRE(testing::frame(run.scene, *stepper, state, drive, 1.0 / 30, to).status == StepStatus::accepted);
     state = std::move(to);
     for (const Spring& spring : run.scene.springs)
       gap = std::max(gap, std::abs((row(state.x, spring.a) - row(state.x, spring.b)).norm() - spring.rest_length));

@@ -8,6 +8,7 @@
 #include "physics/linear/cholesky.hpp"
 #include "physics/solve/equilibrium.hpp"
 #include "physics/steppers/icm_stepper.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 #include "tests/threads.hpp"
 
@@ -81,7 +82,7 @@ World hung_by_the_middle(int n, double stiffness) {
 State run(const World& w, Stepper& stepper, int frames, double dt) {
   State state = w.state, to;
   for (int f = 0; f < frames; ++f) {
-    REQUIRE(stepper.step(state, w.drive, dt, to).status == StepStatus::accepted);
+    REQUIRE(testing::frame(w.scene, stepper, state, w.drive, dt, to).status == StepStatus::accepted);
     state = to;
   }
   return state;
@@ -200,7 +201,7 @@ TEST_CASE("springs: what they join keeps its momentum to rounding", "[springs]")
   const auto stepper = make_recovering_conventional_stepper(w.scene, options);
   const State end = run(w, *stepper, 5, 1.0 / 30);
   State next;
-  const StepReport report = stepper->step(end, w.drive, 1.0 / 30, next);
+  const StepReport report = testing::frame(w.scene, *stepper, end, w.drive, 1.0 / 30, next);
   CHECK(report.reason == Reason::none);
   CHECK(report.iterations < 5 * report.substeps);  // more if the sheets were moved each as if it were alone
   const double moved = lumped_masses(w.scene).dot(end.v.rowwise().norm());
@@ -214,7 +215,7 @@ TEST_CASE("springs: one button holds a cloth under another, clean, at its length
   State state = w.state, to;
   const auto stepper = testing::conventional(w.scene);
   for (int f = 0; f < 60; ++f) {
-    const StepReport report = stepper->step(state, w.drive, 1.0 / 30, to);
+    const StepReport report = testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to);
     REQUIRE(report.status == StepStatus::accepted);
     CHECK(report.collision.pairs_after == 0);
     CHECK(report.collision.passed_through == 0);
@@ -230,7 +231,7 @@ TEST_CASE("springs: many stiff ones are solved in few iterations", "[springs]") 
   const int count = w.scene.cloths[0].vertex_count;
   for (int i = 0; i < count; i += 7) w.scene.springs.push_back({i, count + i, 2e-3, 1e4});
   State to;
-  const StepReport report = testing::conventional(w.scene)->step(w.state, w.drive, 1.0 / 30, to);
+  const StepReport report = testing::frame(w.scene, *testing::conventional(w.scene), w.state, w.drive, 1.0 / 30, to);
   CHECK(report.status == StepStatus::accepted);
   CHECK(report.linear_iterations < 8 * report.iterations);
 }

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "physics/recovery/carrying.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_carrying {
@@ -109,7 +110,7 @@ TEST_CASE("carrying: clean cloth over a body that keeps its shape is not drawn, 
         w.drive.worn.col(0).array() += 0.005 * (frame + 1);
       }
       State to;
-      REQUIRE(stepper->step(w.state, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
+      REQUIRE(testing::frame(w.scene, *stepper, w.state, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
       w.state = to;
     }
     return w.state.x(6 * 13 + 6, 0) - start(6 * 13 + 6, 0);

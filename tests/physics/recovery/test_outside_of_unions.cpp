@@ -11,6 +11,7 @@
 #include "collision/geometry/welded_surface.hpp"
 #include "physics/scene/make_scene.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_outside_of_unions {
@@ -263,7 +264,7 @@ Found drop_on(const Union& u) {
   for (int frame = 1; frame <= frames; ++frame) {
     drive.obstacles = {place(frame * dt)};
     State to;
-    const StepReport report = stepper->step(state, drive, dt, to);
+    const StepReport report = testing::frame(w.scene, *stepper, state, drive, dt, to);
     if (report.status != StepStatus::accepted) {
       ++found.rejected;
       break;

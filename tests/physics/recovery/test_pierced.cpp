@@ -10,6 +10,7 @@
 #include "physics/recovery/put_on.hpp"
 #include "physics/recovery/recovery.hpp"
 #include "physics/steppers/recovering_stepper.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_pierced {
@@ -279,7 +280,7 @@ TEST_CASE("put on: cloth that a body closed on, through itself, is back between 
       State to;
       w.drive.obstacles = {lenses(apart).x};
       w.drive.worn.col(1).setConstant(apart);  // in the upper one's middle
-      REQUIRE(stepper->step(at, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
+      REQUIRE(testing::frame(w.scene, *stepper, at, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
       CHECK(to.clean == (frame == 1 || frame == 6));
       CHECK(last_clean(to).x.rows() == (to.clean ? 0 : to.x.rows()));
       at = to;

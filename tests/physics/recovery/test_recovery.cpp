@@ -8,6 +8,7 @@
 #include "physics/energies/measures.hpp"
 #include "physics/recovery/recovery.hpp"
 #include "physics/steppers/icm_stepper.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_recovery {
@@ -39,7 +40,7 @@ void check_recovers(World w) {
   const auto stepper = make_recovering_conventional_stepper(w.scene, {});
   for (int frame = 0; frame < 20 && !(frame > 0 && state.clean); ++frame) {
     State to;
-    REQUIRE(stepper->step(state, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
+    REQUIRE(testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
     fastest = std::max(fastest, (to.x - state.x).rowwise().norm().maxCoeff());
     state = to;
   }
@@ -144,9 +145,9 @@ TEST_CASE("recovery: cloth between parts that pass through each other is caught,
         static_cast<std::size_t>(counted[0]));
   w.drive.obstacles = {together.bottomRows(16)};
   State to;
-  CHECK(make_recovering_conventional_stepper(w.scene, {})->step(w.state, w.drive, 1.0 / 30, to).switched_off ==
-        counted);
-  CHECK(make_icm_stepper(w.scene, {})->step(w.state, w.drive, 1.0 / 30, to).switched_off[0] > 0);
+  CHECK(testing::frame(w.scene, *make_recovering_conventional_stepper(w.scene, {}), w.state, w.drive, 1.0 / 30, to)
+            .switched_off == counted);
+  CHECK(testing::frame(w.scene, *make_icm_stepper(w.scene, {}), w.state, w.drive, 1.0 / 30, to).switched_off[0] > 0);
   // A pair is left alone for what is caught alone.
   const int body = static_cast<int>(first);
   CHECK(exemption.leaves_alone(world, {0, body + 1, body + 3, body + 5}));
@@ -171,7 +172,8 @@ TEST_CASE("recovery: all that is tangled with a body that crosses itself is draw
   const Exemption tangled = find_exemption(world, gather_nodes(w.state.x, w.state.obstacles));
   REQUIRE(std::count(tangled.body.begin(), tangled.body.end(), 1) > 20);
   State to;
-  const StepReport report = make_recovering_conventional_stepper(w.scene, {})->step(w.state, w.drive, 1.0 / 30, to);
+  const StepReport report =
+      testing::frame(w.scene, *make_recovering_conventional_stepper(w.scene, {}), w.state, w.drive, 1.0 / 30, to);
   REQUIRE(report.status == StepStatus::accepted);
   CHECK(report.untangling == 0);  // it waits
   for (int v = 0; v < to.x.rows(); ++v)
@@ -201,7 +203,7 @@ TEST_CASE("recovery: where a body crosses itself cloth is parted from cloth, and
   const auto stepper = make_recovering_conventional_stepper(w.scene, {});
   for (int frame = 0; frame < 12; ++frame) {
     State to;
-    REQUIRE(stepper->step(state, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
+    REQUIRE(testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
     state = to;
     if (frame >= 5) CHECK(pairs_of(w, state) == 0);
   }
@@ -267,7 +269,7 @@ TEST_CASE("recovery: cloth tangled with itself gets out of it without momentum",
     State state = w.state, to;
     int frame = 0;
     for (; frame < 20 && !(frame > 0 && state.clean); ++frame) {
-      REQUIRE(stepper->step(state, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
+      REQUIRE(testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
       CHECK(mass_mean(w.scene, to.v).norm() < 2e-3);  // of 1 to 3 m/s
       state = to;
     }
@@ -365,14 +367,14 @@ TEST_CASE("recovery: a body that jumps farther than its size is not swept along,
   const auto stepper = make_recovering_conventional_stepper(w.scene, {});
   State state = w.state, to;
   w.drive.obstacles = {there};
-  StepReport report = stepper->step(state, w.drive, 1.0 / 30, to);
+  StepReport report = testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to);
   REQUIRE(report.status == StepStatus::accepted);
   CHECK(report.collision.jumped == 1);
   CHECK(to.obstacles[0] == there);
   CHECK((to.x - state.x).rowwise().norm().maxCoeff() < 0.1);  // a sweep at 90 m/s would carry it off
   for (int frame = 0; frame < 20; ++frame) {
     state = to;
-    report = stepper->step(state, w.drive, 1.0 / 30, to);
+    report = testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to);
     CHECK(report.collision.jumped == 0);
   }
   CHECK(to.clean);
@@ -384,7 +386,8 @@ TEST_CASE("recovery: a fast body that does not jump sweeps the cloth along", "[r
   w.drive.acceleration.setZero();
   w.drive.obstacles = {block({0, 1, 0}, 0.06).x};
   State to;
-  const StepReport report = make_recovering_conventional_stepper(w.scene, {})->step(w.state, w.drive, 1.0 / 30, to);
+  const StepReport report =
+      testing::frame(w.scene, *make_recovering_conventional_stepper(w.scene, {}), w.state, w.drive, 1.0 / 30, to);
   REQUIRE(report.status == StepStatus::accepted);
   CHECK(report.collision.jumped == 0);
   CHECK(to.clean);

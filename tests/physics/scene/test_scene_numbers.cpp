@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "collision/geometry/error.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_scene_numbers {
@@ -93,7 +94,7 @@ TEST_CASE("scene_numbers: no stepper takes a scene or a time step that is none",
   State to;
   for (const double dt : {0.0, -1.0, nan, inf, 1e30}) {
     CHECK_FALSE(stepper->traits().accepts(dt));
-    CHECK_THROWS_WITH(stepper->step(w.state, w.drive, dt, to), Contains("time step [s] is "));
+    CHECK_THROWS_WITH(testing::frame(w.scene, *stepper, w.state, w.drive, dt, to), Contains("time step [s] is "));
   }
   w.scene.cloths[0].material.lame_mu = -1;
   CHECK_THROWS_WITH(testing::conventional(w.scene), Contains("lame_mu is -1"));

@@ -6,6 +6,7 @@
 
 #include "physics/energies/measures.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 #include "tests/threads.hpp"
 
@@ -56,7 +57,7 @@ State run(const World& w, const ConventionalOptions& options, double time, int s
   State state = w.state;
   for (int s = 0; s < steps; ++s) {
     State to;
-    REQUIRE(stepper->step(state, w.drive, time / steps, to).status == StepStatus::accepted);
+    REQUIRE(testing::frame(w.scene, *stepper, state, w.drive, time / steps, to).status == StepStatus::accepted);
     state = to;
   }
   return state;
@@ -64,8 +65,9 @@ State run(const World& w, const ConventionalOptions& options, double time, int s
 
 State one_step(const World& w, const ConventionalOptions& options, const State& from, double dt) {
   State to;
-  REQUIRE(make_recovering_conventional_stepper(w.scene, options)->step(from, w.drive, dt, to).status ==
-          StepStatus::accepted);
+  REQUIRE(
+      testing::frame(w.scene, *make_recovering_conventional_stepper(w.scene, options), from, w.drive, dt, to).status ==
+      StepStatus::accepted);
   return to;
 }
 
@@ -205,7 +207,8 @@ TEST_CASE("BDF2: a substep that touches is implicit Euler's and leaves no histor
   int smooth = 0, touching = 0;
   for (int f = 0; f < 30; ++f) {
     State to;
-    const StepReport report = make_recovering_conventional_stepper(w.scene, bdf2)->step(state, w.drive, dt, to);
+    const StepReport report =
+        testing::frame(w.scene, *make_recovering_conventional_stepper(w.scene, bdf2), state, w.drive, dt, to);
     REQUIRE(report.status == StepStatus::accepted);
     CHECK(report.collision.pairs_after == 0);
     CHECK(report.collision.passed_through == 0);

@@ -2,6 +2,7 @@
 
 #include "physics/energies/measures.hpp"
 #include "physics/steppers/icm_stepper.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_euler_torque {
@@ -35,7 +36,7 @@ double fastest_turn(const World& w, Stepper& stepper, int frames) {
   State state = w.state, to;
   double fastest = 0;
   for (int f = 0; f < frames; ++f) {
-    REQUIRE(stepper.step(state, w.drive, h, to).status == StepStatus::accepted);
+    REQUIRE(testing::frame(w.scene, stepper, state, w.drive, h, to).status == StepStatus::accepted);
     std::swap(state, to);
     fastest = std::max(fastest, std::abs(turn(w, state)));
   }
@@ -63,7 +64,7 @@ TEST_CASE("what turns about its pin turns on", "[euler_torque]") {
   const Points arms = w.state.x.rowwise() - w.drive.pins.row(0);
   const double momentum = angular_momentum(w.scene, arms, w.state.v).y();
   for (int f = 0; f < 30; ++f) {
-    REQUIRE(stepper->step(state, w.drive, h, to).status == StepStatus::accepted);
+    REQUIRE(testing::frame(w.scene, *stepper, state, w.drive, h, to).status == StepStatus::accepted);
     std::swap(state, to);
   }
   const Points now = state.x.rowwise() - w.drive.pins.row(0);

@@ -1,4 +1,5 @@
 #include "physics/solve/work.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_work {
@@ -25,7 +26,7 @@ Books books(const World& w, int frames, const std::function<Drive(int frame)>& d
   result.gain = -energy(state);
   for (int f = 1; f <= frames; ++f) {
     const Drive d = drive(f);
-    REQUIRE(stepper->step(state, d, 1.0 / 60, to).status == StepStatus::accepted);
+    REQUIRE(testing::frame(w.scene, *stepper, state, d, 1.0 / 60, to).status == StepStatus::accepted);
     result.work += bound(state, to, d);
     std::swap(state, to);
   }

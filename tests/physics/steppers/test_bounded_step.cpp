@@ -2,6 +2,7 @@
 #include "collision/contact/path_pairs.hpp"
 #include "collision/contour/segments.hpp"
 #include "collision/search/intersections.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_bounded_step {
@@ -81,7 +82,7 @@ TEST_CASE("a step of a crowd that cannot be searched is rejected, and leaves not
   crowded.x = soup.x;
   const auto step = [&](Stepper& stepper, const State& from) {
     std::pair<StepReport, State> done;
-    done.first = stepper.step(from, w.drive, 1.0 / 30, done.second);
+    done.first = testing::frame(w.scene, stepper, from, w.drive, 1.0 / 30, done.second);
     return done;
   };
   for (const bool recovers : {false, true}) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include "physics/energies/measures.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 #include "tests/threads.hpp"
 
@@ -46,7 +47,7 @@ TEST_CASE("conventional stepper: free fall is implicit Euler's, to rounding", "[
   const int frames = 10;
   for (int f = 0; f < frames; ++f) {
     State to;
-    REQUIRE(stepper->step(state, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
+    REQUIRE(testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
     state = to;
   }
   const int n = 4 * frames;
@@ -83,7 +84,7 @@ TEST_CASE("conventional stepper: plates that close on cloth lag, leave it clean,
     const double half = f < 10 ? 0.02 * (1 - f / 10.0) : f < 15 ? 0 : std::min(0.02, 0.02 * (f - 15) / 5.0);
     for (int k = 0; k < 2; ++k) w.drive.obstacles[k].col(1).setConstant((k == 0 ? -1 : 1) * half);
     State to;
-    const StepReport report = stepper->step(state, w.drive, 1.0 / 30, to);
+    const StepReport report = testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to);
     REQUIRE(report.status == StepStatus::accepted);
     CHECK(report.collision.pairs_after == 0);
     CHECK(report.collision.passed_through == 0);
@@ -117,7 +118,7 @@ Drawn drawn(World w, int pinned, double depth, int frames, const ConventionalOpt
   for (int f = 1; f <= 2 * frames; ++f) {
     w.drive.pins = start;
     w.drive.pins.topRows(pinned).col(1).array() -= depth * (1 - std::abs(f - frames) / double(frames));
-    const StepReport report = stepper->step(state, w.drive, 1.0 / 30, to);
+    const StepReport report = testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to);
     REQUIRE(report.status == StepStatus::accepted);
     d.out_of_response += report.out_of_response;
     d.pairs += report.collision.pairs_after + report.collision.passed_through;
@@ -185,7 +186,7 @@ TEST_CASE("conventional stepper: cloth at rest is solved once a substep, and sta
   State state = w.state, to;
   int iterations = 0, substeps = 0;
   for (int f = 0; f < 60; ++f) {
-    const StepReport report = stepper->step(state, w.drive, 1.0 / 30, to);
+    const StepReport report = testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to);
     iterations += report.iterations;
     substeps += report.substeps;
     CHECK(report.collision.contacts > 20);
@@ -233,7 +234,8 @@ TEST_CASE("conventional stepper: a sheet that slides or hits is stepped finer th
     w.drive.acceleration.setZero();
     w.state.v.rowwise() = velocity.transpose();
     State to;
-    const StepReport report = make_recovering_conventional_stepper(w.scene, {})->step(w.state, w.drive, dt, to);
+    const StepReport report =
+        testing::frame(w.scene, *make_recovering_conventional_stepper(w.scene, {}), w.state, w.drive, dt, to);
     CHECK(to.clean);
     CHECK(report.collision.passed_through == 0);
     return report.substeps;

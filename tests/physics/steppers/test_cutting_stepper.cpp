@@ -5,9 +5,10 @@
 #include <numbers>
 
 #include "collision/untangle/crossing_triangles.hpp"
+#include "physics/frame/frame_audits.hpp"
 #include "physics/recovery/cut_out.hpp"
 #include "physics/steppers/cutting_stepper.hpp"
-#include "physics/steppers/step_audit.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 #include "tests/threads.hpp"
 
@@ -84,7 +85,7 @@ std::vector<State> lowered(World w, int frames, int renew = 1 << 30) {
     if (f % renew == 0) stepper = cutting(w.scene);
     w.drive.obstacles[0] = spike(0.1 - 0.02 * f).x;
     State to;
-    const StepReport report = stepper->step(states.back(), w.drive, dt, to);
+    const StepReport report = testing::frame(w.scene, *stepper, states.back(), w.drive, dt, to);
     REQUIRE(report.status == StepStatus::accepted);
     REQUIRE(report.audit);
     CHECK(report.audit->intersecting_pairs() == 0);
@@ -126,7 +127,7 @@ TEST_CASE("cutting stepper: vertices that only cut triangles have go where they 
   w.drive.pins = cloth.x(w.scene.pins, Eigen::all);
   w.drive.worn = cloth.x.rowwise() + Eigen::RowVector3d(0, 0.004, 0);
   State to;
-  REQUIRE(cutting(w.scene)->step(w.state, w.drive, dt, to).status == StepStatus::accepted);
+  REQUIRE(testing::frame(w.scene, *cutting(w.scene), w.state, w.drive, dt, to).status == StepStatus::accepted);
   int followed = 0;
   for (int v = 0; v < cloth.x.rows(); ++v) {
     const auto round = w.scene.surface.triangles_of(v);
@@ -176,10 +177,10 @@ TEST_CASE("cutting stepper: a part that nothing holds is cut out with what it hu
   w.drive.obstacles[0] = band(-0.02).x;
   const auto stepper = cutting(w.scene);
   State to, later;
-  REQUIRE(stepper->step(w.state, w.drive, dt, to).status == StepStatus::accepted);
+  REQUIRE(testing::frame(w.scene, *stepper, w.state, w.drive, dt, to).status == StepStatus::accepted);
   CHECK(to.cut_out == cut);
   w.drive.obstacles[0] = band(-0.1).x;
-  REQUIRE(stepper->step(to, w.drive, dt, later).status == StepStatus::accepted);
+  REQUIRE(testing::frame(w.scene, *stepper, to, w.drive, dt, later).status == StepStatus::accepted);
   CHECK(later.cut_out.empty());
 }
 
@@ -189,7 +190,7 @@ TEST_CASE("cutting stepper: all may be cut out, and nothing", "[cutting]") {
   REQUIRE(w.state.cut_out == std::vector<int>{0, 1});
   w.drive.worn.col(0).array() += 0.01;
   State to;
-  REQUIRE(cutting(w.scene)->step(w.state, w.drive, dt, to).status == StepStatus::accepted);
+  REQUIRE(testing::frame(w.scene, *cutting(w.scene), w.state, w.drive, dt, to).status == StepStatus::accepted);
   CHECK(to.x == w.drive.worn);
   CHECK(to.frame == 1);
   CHECK(to.time == Approx(dt));
@@ -198,8 +199,10 @@ TEST_CASE("cutting stepper: all may be cut out, and nothing", "[cutting]") {
   World free = pierced(cloth, spike(-0.2));
   free.drive.acceleration = {0, -9.81, 0};
   State one, other;
-  REQUIRE(cutting(free.scene)->step(free.state, free.drive, dt, one).status == StepStatus::accepted);
-  REQUIRE(testing::conventional(free.scene)->step(free.state, free.drive, dt, other).status == StepStatus::accepted);
+  REQUIRE(testing::frame(free.scene, *cutting(free.scene), free.state, free.drive, dt, one).status ==
+          StepStatus::accepted);
+  REQUIRE(testing::frame(free.scene, *testing::conventional(free.scene), free.state, free.drive, dt, other).status ==
+          StepStatus::accepted);
   CHECK(one.x == other.x);
 }
 

@@ -1,5 +1,6 @@
 #include "physics/steppers/finish_step.hpp"
 
+#include "physics/frame/frame_audits.hpp"
 #include "physics/steppers/contact_stage.hpp"
 #include "tests/physics/worlds.hpp"
 
@@ -34,59 +35,37 @@ TEST_CASE("finish_step: fills in all that a state must have", "[finish_step]") {
   end.x.col(1).array() -= 0.01;
   end.v.setConstant(0.5);
   end.memory = {{"new.block", MemoryRows::Ones(1, 2)}};
-  AuditMemory audits;
   StepReport report;
-  finish_step(w.scene, w.state, w.drive, dt, end, audits, to, report);
+  finish_step(w.state, w.drive, dt, end, to, report);
   CHECK(report.status == StepStatus::accepted);
   CHECK(to.time == w.state.time + dt);
   CHECK(to.frame == 8);
   CHECK(to.x == end.x);
   CHECK(to.v == end.v);
   CHECK(to.obstacles == w.drive.obstacles);
-  CHECK((to.clean && !to.pinched && to.cut_out.empty()));
+  CHECK((!to.clean && !to.pinched && to.cut_out.empty()));  // nobody has looked
   REQUIRE(to.memory.size() == 1);
   CHECK(to.memory[0].name == "new.block");
-  REQUIRE(report.audit);
-  CHECK(report.collision.pairs_after == 0);
+  CHECK_FALSE(report.audit);
   CHECK(report.collision.obstacle_lag == 0);
+  CHECK(report.path.start == gather_nodes(w.state.x, w.state.obstacles));
+  REQUIRE(report.path.substeps.size() == 1);
+  CHECK(report.path.substeps[0].nodes == gather_nodes(to.x, to.obstacles));
 }
 
-TEST_CASE("finish_step: names what crosses, and obstacles that lag by more than rounding", "[finish_step]") {
+TEST_CASE("finish_step: names obstacles that lag by more than rounding", "[finish_step]") {
   const World w = over_plate();
-  AuditMemory audits;
   State to;
-  StepReport crossing;
-  StepEnd end = straight_on(w);
-  for (int v = 0; v < 12; ++v) end.x(v, 1) -= 0.1;
-  finish_step(w.scene, w.state, w.drive, dt, end, audits, to, crossing);
-  CHECK(crossing.collision.pairs_after > 0);
-  CHECK(crossing.reason == Reason::penetrating);
-  CHECK_FALSE(to.clean);
-
   StepReport lagging, rounded;
-  end = straight_on(w);
+  StepEnd end = straight_on(w);
   end.obstacles[0](0, 2) += 1e-3;
-  finish_step(w.scene, w.state, w.drive, dt, end, audits, to, lagging);
+  finish_step(w.state, w.drive, dt, end, to, lagging);
   CHECK(to.pinched);
   CHECK(lagging.collision.obstacle_lag == Approx(1e-3));
   end.obstacles[0](0, 2) = w.drive.obstacles[0](0, 2) + 1e-16;
-  finish_step(w.scene, w.state, w.drive, dt, end, audits, to, rounded);
+  finish_step(w.state, w.drive, dt, end, to, rounded);
   CHECK_FALSE(to.pinched);
   CHECK(rounded.collision.obstacle_lag == 0);
-}
-
-TEST_CASE("audit of a motion: what it gave up is labelled, and counts as passed through", "[finish_step]") {
-  StepReport report;
-  MotionAudit whole, part;
-  whole.passed.resize(2);
-  add(whole, report);
-  CHECK(report.collision.passed_through == 2);
-  CHECK_FALSE(report.out_of_proofs);
-  part.given_up = 3;
-  add(part, report);
-  add(whole, report);
-  CHECK(report.collision.passed_through == 7);
-  CHECK(report.out_of_proofs);
 }
 
 TEST_CASE("resolve_proposal: what goes through the plate on the way ends above it", "[finish_step]") {

@@ -4,6 +4,7 @@
 #include "physics/steppers/finish_step.hpp"
 #include "physics/steppers/icm_stepper.hpp"
 #include "physics/steppers/proposal_trust.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/spoiled_steps.hpp"
 #include "tests/threads.hpp"
 
@@ -20,12 +21,11 @@ using Propose = std::function<Points(const State& from, const Points& solved)>;
 class FakeProposer final : public Stepper {
  public:
   FakeProposer(const Scene& scene, Propose propose, int past_frames = 0)
-      : scene_(scene),
-        solver_(make_recovering_conventional_stepper(scene)),
+      : solver_(make_recovering_conventional_stepper(scene)),
         propose_(std::move(propose)),
         traits_{.name = "fake", .past_frames = past_frames} {}
   const StepperTraits& traits() const override { return traits_; }
-  StepReport step(const State& from, const Drive& drive, double h, State& to, const StepExtras& extras) override {
+  StepReport step(const State& from, const Drive& drive, double h, State& to, const StepExtras&) override {
     solver_->step(from, drive, h, to);
     Points x = propose_(from, to.x);
     StepReport report;
@@ -34,19 +34,15 @@ class FakeProposer final : public Stepper {
     report.reason = Reason::not_finite;
     if (!x.allFinite()) return report;
     report.reason = Reason::none;
-    if (extras.wanted && !extras.wanted(x)) return report;
     Points v = (x - from.x) / h;
-    finish_step(scene_, from, drive, h, {std::move(x), std::move(v), drive.obstacles, {{"fake.x", from.x}}}, audits_,
-                to, report);
+    finish_step(from, drive, h, {std::move(x), std::move(v), drive.obstacles, {{"fake.x", from.x}}}, to, report);
     return report;
   }
 
  private:
-  const Scene& scene_;
   std::unique_ptr<Stepper> solver_;
   Propose propose_;
   StepperTraits traits_;
-  AuditMemory audits_;
 };
 
 // Another stepper, with something that is done at each of its steps.
@@ -122,7 +118,7 @@ Seen follow(Stepper& stepper, const World& w, State state, int frames) {
   Seen seen{std::move(state), {}};
   for (int f = 0; f < frames; ++f) {
     State to;
-    const StepReport report = stepper.step(seen.state, w.drive, dt, to);
+    const StepReport report = testing::frame(w.scene, stepper, seen.state, w.drive, dt, to);
     REQUIRE(report.status == StepStatus::accepted);
     REQUIRE(to.x.allFinite());
     REQUIRE(to.v.allFinite());
@@ -145,17 +141,17 @@ TEST_CASE("hybrid: good proposals are the steps, after one frame that the propos
   const auto stepper = hybrid(w.scene, as_solved);
   CHECK(stepper->traits().name == "hybrid");
   State to;
-  StepReport report = stepper->step(w.state, w.drive, dt, to);
+  StepReport report = testing::frame(w.scene, *stepper, w.state, w.drive, dt, to);
   CHECK(report.verdict == Verdict::no_history);
   CHECK(report.by == "hybrid: conventional");
   CHECK_FALSE(report.fell_back);
   State next;
-  report = stepper->step(to, w.drive, dt, next);
+  report = testing::frame(w.scene, *stepper, to, w.drive, dt, next);
   CHECK(report.verdict == Verdict::admitted);
   CHECK(report.by == "hybrid: fake");
   const auto solver = make_recovering_conventional_stepper(w.scene);
   State solved;
-  solver->step(to, w.drive, dt, solved);
+  testing::frame(w.scene, *solver, to, w.drive, dt, solved);
   CHECK(same_bits(next.x, solved.x));
 }
 
@@ -181,7 +177,7 @@ TEST_CASE("hybrid: a proposal whose energy comes from nowhere is refused", "[hyb
   State state = w.state, to;
   const auto solver = make_recovering_conventional_stepper(w.scene);
   for (int f = 0; f < 5; ++f) {
-    solver->step(state, w.drive, dt, to);
+    testing::frame(w.scene, *solver, state, w.drive, dt, to);
     std::swap(state, to);
   }
   HybridOptions options;
@@ -189,12 +185,12 @@ TEST_CASE("hybrid: a proposal whose energy comes from nowhere is refused", "[hyb
   const auto stepper = make_hybrid_stepper(
       w.scene, {std::make_unique<HastyProposer>(w.scene), make_recovering_conventional_stepper(w.scene), {}, {}},
       options);
-  const StepReport report = stepper->step(state, w.drive, dt, to);
+  const StepReport report = testing::frame(w.scene, *stepper, state, w.drive, dt, to);
   CHECK(report.verdict == Verdict::energy_gain);
   CHECK(report.by == "hybrid: conventional");
   CHECK(report.reason == Reason::none);
   State solved;
-  solver->step(state, w.drive, dt, solved);
+  testing::frame(w.scene, *solver, state, w.drive, dt, solved);
   CHECK(same_bits(to.v, solved.v));
 }
 
@@ -321,8 +317,8 @@ TEST_CASE("hybrid: a refined step is as good as the parent's", "[hybrid]") {
   const auto solver = make_recovering_conventional_stepper(w.scene);
   const Seen begun = follow(*stepper, w, w.state, 3);
   State refined, solved;
-  const StepReport report = stepper->step(begun.state, w.drive, dt, refined);
-  solver->step(begun.state, w.drive, dt, solved);
+  const StepReport report = testing::frame(w.scene, *stepper, begun.state, w.drive, dt, refined);
+  testing::frame(w.scene, *solver, begun.state, w.drive, dt, solved);
   CHECK(report.verdict == Verdict::refined);
   CHECK((refined.x - solved.x).rowwise().norm().maxCoeff() < 2e-3);
 }

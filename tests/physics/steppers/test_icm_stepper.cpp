@@ -3,6 +3,7 @@
 #include "collision/contour/segments.hpp"
 #include "physics/energies/measures.hpp"
 #include "physics/steppers/icm_stepper.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 #include "tests/threads.hpp"
 
@@ -78,7 +79,7 @@ TEST_CASE("icm stepper: without contact its step is implicit Euler's", "[icm_ste
   options.implicit_euler.max_newton = 60;
   const double dt = 1.0 / 60;
   State to;
-  const StepReport report = make_icm_stepper(w.scene, options)->step(w.state, w.drive, dt, to);
+  const StepReport report = testing::frame(w.scene, *make_icm_stepper(w.scene, options), w.state, w.drive, dt, to);
   REQUIRE(report.status == StepStatus::accepted);
   CHECK(report.reason == Reason::none);
   ImplicitEuler solver(w.scene, options.implicit_euler);
@@ -98,7 +99,7 @@ TEST_CASE("icm stepper: two sheets that start through each other part", "[icm_st
   int frames = 0;
   for (; frames < 30 && !(frames > 0 && state.clean); ++frames) {
     State to;
-    const StepReport report = stepper->step(state, w.drive, 1.0 / 30, to);
+    const StepReport report = testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to);
     REQUIRE(report.status == StepStatus::accepted);
     CHECK(report.collision.pairs_before > 0);
     CHECK((report.reason == Reason::penetrating) == (report.collision.pairs_after > 0));

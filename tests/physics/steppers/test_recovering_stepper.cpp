@@ -4,6 +4,7 @@
 #include "physics/solve/step_problem.hpp"
 #include "physics/steppers/finish_step.hpp"
 #include "physics/steppers/icm_stepper.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_recovering_stepper {
@@ -22,22 +23,19 @@ struct Asked {
 };
 class AskedStepper final : public Stepper {
  public:
-  AskedStepper(const Scene& scene, Asked& asked, bool honours)
-      : scene_(scene), asked_(asked), traits_{.name = "asked", .honours_extras = honours} {}
+  AskedStepper(Asked& asked, bool honours) : asked_(asked), traits_{.name = "asked", .honours_extras = honours} {}
   const StepperTraits& traits() const override { return traits_; }
   StepReport step(const State& from, const Drive& drive, double h, State& to, const StepExtras& extras) override {
     asked_ = {from, extras.guess != nullptr, bool(extras.added),
               extras.left_alone ? extras.left_alone->cloth_vertices() : 0};
     StepReport report;
-    finish_step(scene_, from, drive, h, {from.x, from.v, drive.obstacles}, audits_, to, report);
+    finish_step(from, drive, h, {from.x, from.v, drive.obstacles}, to, report);
     return report;
   }
 
  private:
-  const Scene& scene_;
   Asked& asked_;
   StepperTraits traits_;
-  AuditMemory audits_;
 };
 
 // A sheet that hangs in a plate by its middle.
@@ -60,12 +58,12 @@ TEST_CASE("recovering stepper: a clean start is handed on as it is", "[recoverin
   w.state.clean = true;
   w.state.memory = {{"asked.rates", MemoryRows::Ones(w.state.x.rows(), 3), RowsOf::vertices}};
   Asked asked;
-  const auto stepper = make_recovering_stepper(w.scene, std::make_unique<AskedStepper>(w.scene, asked, true));
+  const auto stepper = make_recovering_stepper(w.scene, std::make_unique<AskedStepper>(asked, true));
   State to;
   const Points guess = w.state.x;
   StepExtras extras;
   extras.guess = &guess;
-  CHECK(stepper->step(w.state, w.drive, dt, to, extras).status == StepStatus::accepted);
+  CHECK(testing::frame(w.scene, *stepper, w.state, w.drive, dt, to, extras).status == StepStatus::accepted);
   CHECK((asked.guess && !asked.added && asked.left_alone == 0));
   CHECK(asked.from.x == w.state.x);
   CHECK(asked.from.memory.size() == 1);
@@ -77,10 +75,10 @@ TEST_CASE("recovering stepper: of a tangled start the cloth is moved, the motion
   World w = tangled();
   w.state.memory = {{"asked.rates", MemoryRows::Ones(w.state.x.rows(), 3), RowsOf::vertices}};
   Asked asked;
-  const auto stepper = make_recovering_stepper(w.scene, std::make_unique<AskedStepper>(w.scene, asked, true));
+  const auto stepper = make_recovering_stepper(w.scene, std::make_unique<AskedStepper>(asked, true));
   const State before = w.state;
   State to;
-  stepper->step(w.state, w.drive, dt, to);
+  testing::frame(w.scene, *stepper, w.state, w.drive, dt, to);
   CHECK(asked.from.x != before.x);
   CHECK((asked.from.x - before.x).rowwise().norm().maxCoeff() <= dt * 1.001);  // at most 1 m/s
   CHECK(asked.from.memory.empty());
@@ -91,7 +89,7 @@ TEST_CASE("recovering stepper: of a tangled start the cloth is moved, the motion
   more.self.assign(static_cast<std::size_t>(w.state.x.rows()), 1);
   StepExtras extras;
   extras.left_alone = &more;
-  stepper->step(w.state, w.drive, dt, to, extras);
+  testing::frame(w.scene, *stepper, w.state, w.drive, dt, to, extras);
   CHECK(asked.left_alone == w.state.x.rows());
 }
 
@@ -101,16 +99,16 @@ TEST_CASE("recovering stepper: remembers where worn cloth was clean last, until 
   w.state.clean = true;
   w.drive.worn = w.state.x;
   Asked asked;
-  const auto stepper = make_recovering_stepper(w.scene, std::make_unique<AskedStepper>(w.scene, asked, true));
+  const auto stepper = make_recovering_stepper(w.scene, std::make_unique<AskedStepper>(asked, true));
   State dirty;
   Drive through = w.drive;
   through.obstacles[0] = testing::tilted(testing::sheet(3, 0.6, 0.05), 0.1).x;
-  stepper->step(w.state, through, dt, dirty);
+  testing::frame(w.scene, *stepper, w.state, through, dt, dirty);
   REQUIRE_FALSE(dirty.clean);
   CHECK(last_clean(dirty).x == w.state.x);
   CHECK(last_clean(dirty).obstacles == w.state.obstacles);
   through.worn.resize(0, 3);
-  stepper->step(w.state, through, dt, dirty);
+  testing::frame(w.scene, *stepper, w.state, through, dt, dirty);
   CHECK(last_clean(dirty).x.rows() == 0);
 }
 
@@ -126,18 +124,18 @@ TEST_CASE("conventional stepper: a good guess ends where its own does, in fewer 
   const auto stepper = make_conventional_stepper(w.scene, options);
   State from = w.state, own, guessed;
   for (int f = 0; f < 5; ++f) {
-    stepper->step(from, w.drive, dt, own);
+    testing::frame(w.scene, *stepper, from, w.drive, dt, own);
     from = own;
   }
-  const StepReport plain = stepper->step(from, w.drive, dt, own);
+  const StepReport plain = testing::frame(w.scene, *stepper, from, w.drive, dt, own);
   StepExtras extras;
   extras.guess = &own.x;
-  const StepReport warm = stepper->step(from, w.drive, dt, guessed, extras);
+  const StepReport warm = testing::frame(w.scene, *stepper, from, w.drive, dt, guessed, extras);
   CHECK(warm.iterations < plain.iterations);
   CHECK((guessed.x - own.x).rowwise().norm().maxCoeff() < 1e-5);
   const Points far = (own.x.array() + 1e3).matrix();  // its own guess is better
   extras.guess = &far;
-  stepper->step(from, w.drive, dt, guessed, extras);
+  testing::frame(w.scene, *stepper, from, w.drive, dt, guessed, extras);
   CHECK((guessed.x - own.x).rowwise().norm().maxCoeff() < 1e-5);
 }
 
@@ -148,17 +146,17 @@ TEST_CASE("conventional stepper: what it is told to leave alone goes through, an
   w.state.v.col(1).setConstant(-1);
   const auto stepper = make_conventional_stepper(w.scene, {});
   State held, through, pulled;
-  stepper->step(w.state, w.drive, dt, held);
+  testing::frame(w.scene, *stepper, w.state, w.drive, dt, held);
   CHECK(held.x.col(1).minCoeff() > 0);
   Exemption all;
   all.body.assign(static_cast<std::size_t>(w.state.x.rows()), 1);
   StepExtras extras;
   extras.left_alone = &all;
-  const StepReport report = stepper->step(w.state, w.drive, dt, through, extras);
+  const StepReport report = testing::frame(w.scene, *stepper, w.state, w.drive, dt, through, extras);
   CHECK(report.collision.left_alone == w.state.x.rows());
   CHECK(through.x.col(1).maxCoeff() < 0);
   State again;
-  stepper->step(w.state, w.drive, dt, again);  // and it is forgotten
+  testing::frame(w.scene, *stepper, w.state, w.drive, dt, again);  // and it is forgotten
   CHECK(again.x == held.x);
 
   extras = {};
@@ -168,7 +166,7 @@ TEST_CASE("conventional stepper: what it is told to leave alone goes through, an
     force.add_derivatives = [](const Points&, Points& gradient, std::vector<ContactBlock>&) { gradient(0, 0) -= 1; };
     return force;
   };
-  stepper->step(w.state, w.drive, dt, pulled, extras);
+  testing::frame(w.scene, *stepper, w.state, w.drive, dt, pulled, extras);
   CHECK(pulled.x(0, 0) > held.x(0, 0) + 1e-3);
 }
 

@@ -4,6 +4,7 @@
 #include "physics/scene/part_of_scene.hpp"
 #include "physics/steppers/recovering_stepper.hpp"
 #include "physics/steppers/resting_stepper.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_resting_stepper {
@@ -53,7 +54,7 @@ State until_resting(const World& w, int enough) {
   const auto stepper = resting(w.scene);
   State state = w.state, to;
   for (int f = 0; f < 300; ++f) {
-    const StepReport report = stepper->step(state, w.drive, 1.0 / 30, to);
+    const StepReport report = testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to);
     REQUIRE(report.status == StepStatus::accepted);
     if (report.resting >= enough) return to;
     state = to;
@@ -64,7 +65,7 @@ State until_resting(const World& w, int enough) {
 
 int resting_next(const World& w, const State& from) {
   State to;
-  return resting(w.scene)->step(from, w.drive, 1.0 / 30, to).resting;
+  return testing::frame(w.scene, *resting(w.scene), from, w.drive, 1.0 / 30, to).resting;
 }
 
 }  // namespace
@@ -120,8 +121,8 @@ TEST_CASE("resting stepper: what rests stays and costs no work, what moves does 
   alone.drive.pins = w.drive.pins;
   const auto other = testing::conventional(alone.scene);
   for (int f = 0; f < 20; ++f) {
-    const StepReport report = stepper->step(state, w.drive, 1.0 / 30, to);
-    const StepReport of_other = other->step(expected, alone.drive, 1.0 / 30, next);
+    const StepReport report = testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to);
+    const StepReport of_other = testing::frame(alone.scene, *other, expected, alone.drive, 1.0 / 30, next);
     CHECK(report.resting == 1);
     CHECK(report.iterations == of_other.iterations);
     REQUIRE(report.audit);
@@ -139,7 +140,7 @@ TEST_CASE("resting stepper: where all rest nothing is solved", "[resting]") {
   const World w = two_cloths(lying, moved(lying, {0.12, 0, 0}));
   const State calm = until_resting(w, 2);
   State to;
-  const StepReport report = resting(w.scene)->step(calm, w.drive, 1.0 / 30, to);
+  const StepReport report = testing::frame(w.scene, *resting(w.scene), calm, w.drive, 1.0 / 30, to);
   CHECK(report.resting == 2);
   CHECK(report.iterations == 0);
   CHECK(report.status == StepStatus::accepted);
@@ -158,7 +159,7 @@ TEST_CASE("resting stepper: cloths that a spring joins rest together or move tog
   const auto stepper = resting(w.scene);
   State state = w.state, to;
   for (int f = 0; f < 40; ++f) {
-    CHECK(stepper->step(state, w.drive, 1.0 / 30, to).resting == 0);
+    CHECK(testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to).resting == 0);
     state = to;
   }
   CHECK(rest_of(state).seconds[0] > 0.5);  // it would rest alone
@@ -242,7 +243,7 @@ TEST_CASE("resting stepper: a sheet that falls on a resting one wakes it and bot
   const auto stepper = resting(w.scene);
   int alone = 0, together = 0, at_rest = 0;
   for (int f = 0; f < 200; ++f) {
-    const StepReport report = stepper->step(state, w.drive, 1.0 / 30, to);
+    const StepReport report = testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to);
     REQUIRE(report.status == StepStatus::accepted);
     CHECK(report.collision.pairs_after == 0);
     CHECK(report.collision.passed_through == 0);

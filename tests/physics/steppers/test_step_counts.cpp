@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_step_counts {
@@ -38,7 +39,7 @@ Counted counted(const World& w, int frames) {
   const auto stepper = testing::conventional(w.scene);
   State state = w.state, to;
   for (int f = 0; f < frames; ++f) {
-    const StepReport report = stepper->step(state, w.drive, 1.0 / 30, to);
+    const StepReport report = testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to);
     REQUIRE(report.status == StepStatus::accepted);
     CHECK(report.collision.pairs_after == 0);
     sum.iterations += report.iterations;

@@ -1,6 +1,7 @@
 #include "collision/geometry/parallel.hpp"
 #include "physics/steppers/icm_stepper.hpp"
 #include "physics/steppers/recovering_stepper.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_stop {
@@ -33,7 +34,7 @@ Polled step_until(Stepper& stepper, const World& w, const State& from, int k) {
     p.after += p.polls > k;
     return p.polls >= k;
   };
-  p.report = stepper.step(from, w.drive, dt, p.to, extras);
+  p.report = testing::frame(w.scene, stepper, from, w.drive, dt, p.to, extras);
   return p;
 }
 
@@ -45,7 +46,7 @@ TEST_CASE("stop: asked once a Newton iteration and untangling pass, and the step
   int passes = 0;
   for (int frame = 0; frame < 6; ++frame) {
     State plain;
-    const StepReport unasked = testing::conventional(w.scene)->step(state, w.drive, dt, plain);
+    const StepReport unasked = testing::frame(w.scene, *testing::conventional(w.scene), state, w.drive, dt, plain);
     const Polled p = step_until(*testing::conventional(w.scene), w, state, 1 << 30);
     REQUIRE(p.report.status == StepStatus::accepted);
     CHECK(p.to.x == plain.x);
@@ -92,7 +93,7 @@ TEST_CASE("budget: a step that has used its Newton iterations up says so and sta
   bool ran_out = false;
   for (int frame = 0; frame < 20; ++frame) {
     State to;
-    const StepReport report = short_of->step(state, w.drive, dt, to);
+    const StepReport report = testing::frame(w.scene, *short_of, state, w.drive, dt, to);
     REQUIRE(report.status == StepStatus::accepted);
     CHECK(report.iterations <= options.implicit_euler.max_newton_step + 8 * report.substeps);
     CHECK(report.collision.pairs_after == 0);
@@ -113,7 +114,7 @@ TEST_CASE("budget: untangling goes on in the next step where its passes ran out"
   int frames = 0;
   for (; frames < 60 && !state.clean; ++frames) {
     State to;
-    const StepReport report = stepper->step(state, w.drive, dt, to);
+    const StepReport report = testing::frame(w.scene, *stepper, state, w.drive, dt, to);
     REQUIRE(report.status == StepStatus::accepted);
     CHECK(report.untangling <= 3);
     if (report.out_of_untangling) CHECK(report.collision.left_alone > 0);

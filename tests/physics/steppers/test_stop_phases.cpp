@@ -11,6 +11,7 @@
 #include "collision/untangle/give_way.hpp"
 #include "collision/untangle/untangle.hpp"
 #include "tests/collision/solids.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_stop_phases {
@@ -110,8 +111,9 @@ TEST_CASE("a step of a soup of coincident vertices ends wherever it is stopped",
   const auto stepper = testing::conventional(w.scene);
   int asked = 0;
   State to;
-  REQUIRE(stepper->step(w.state, w.drive, 1.0 / 30, to, {.stop = [&] { return ++asked < 0; }}).reason !=
-          Reason::stopped);
+  REQUIRE(
+      testing::frame(w.scene, *stepper, w.state, w.drive, 1.0 / 30, to, {.stop = [&] { return ++asked < 0; }}).reason !=
+      Reason::stopped);
   REQUIRE(asked > 20);
   for (const int at : {0, 1, asked / 7, asked / 3, asked / 2, asked / 4 * 3}) {
     INFO("stopped after " << at << " of " << asked << " times");
@@ -120,7 +122,8 @@ TEST_CASE("a step of a soup of coincident vertices ends wherever it is stopped",
       late += now > at;
       return now++ >= at;
     };
-    const StepReport report = testing::conventional(w.scene)->step(w.state, w.drive, 1.0 / 30, to, {.stop = stop});
+    const StepReport report =
+        testing::frame(w.scene, *testing::conventional(w.scene), w.state, w.drive, 1.0 / 30, to, {.stop = stop});
     CHECK(report.reason == Reason::stopped);
     CHECK(report.status == StepStatus::rejected);
     CHECK(late < 20);

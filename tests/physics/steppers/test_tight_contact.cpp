@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "physics/energies/measures.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_tight_contact {
@@ -93,7 +94,7 @@ Pulled pull(double friction) {
       w.drive.pins(p, 1) -= tight + (p <= across ? -slid : slid);
     }
     State to;
-    const StepReport report = stepper->step(state, w.drive, 1.0 / 30, to);
+    const StepReport report = testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to);
     REQUIRE(report.status == StepStatus::accepted);
     REQUIRE(report.collision.pairs_after == 0);
     state = to;

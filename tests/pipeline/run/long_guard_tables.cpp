@@ -12,6 +12,7 @@
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/simulate.hpp"
 #include "pipeline/scene/make_stepper.hpp"
+#include "tests/frame.hpp"
 #include "tests/physics/spoiled_steps.hpp"
 #include "tests/pipeline/files.hpp"
 
@@ -64,7 +65,7 @@ void record(const Setup& setup, See&& see) {
   for (int f = 0; f < frames_of_each(); ++f) {
     State to;
     const Drive drive = setup.drive_at(from.time + dt);
-    const StepReport report = stepper->step(from, drive, dt, to);
+    const StepReport report = testing::frame(setup.scene, *stepper, from, drive, dt, to);
     REQUIRE(report.status == StepStatus::accepted);
     see(RecordedStep{before, from, to, drive}, report);
     before = std::move(from);
@@ -239,22 +240,15 @@ TEST_CASE("guard tables: what it refuses on validation scenes", "[guard_tables][
       if (!proposer || step.from.frame % 2) return;
       State start = step.from, made;
       carry_frame(step.before, start);
-      std::optional<Points> x;
-      StepExtras extras;
-      extras.wanted = [&](const Points& proposed) {
-        x = proposed;
-        return false;
-      };
-      proposer->step(start, step.drive, dt, made, extras);
-      if (!x) return;
-      const double error = 1e3 * (*x - step.to.x).rowwise().norm().maxCoeff();
-      const bool adds = pairs(*x) > 0;
+      if (proposer->step(start, step.drive, dt, made).status != StepStatus::accepted) return;
+      const double error = 1e3 * (made.x - step.to.x).rowwise().norm().maxCoeff();
+      const bool adds = pairs(made.x) > 0;
       const std::string bin = error < 2    ? "a: below 2 mm"
                               : error < 5  ? "b: 2 to 5 mm"
                               : error < 10 ? "c: 5 to 10 mm"
                               : error < 20 ? "d: 10 to 20 mm"
                                            : "e: over 20 mm";
-      count(proposals[bin + (adds ? ", pairs" : ", clean")], *x, true);
+      count(proposals[bin + (adds ? ", pairs" : ", clean")], made.x, true);
     });
   }
   std::cout << "verdicts by number, see Verdict in stepper.hpp\n"

@@ -6,6 +6,7 @@
 #include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/scene/make_stepper.hpp"
+#include "tests/frame.hpp"
 
 namespace selvedge::test_legs_crossing {
 
@@ -46,7 +47,7 @@ TEST_CASE("legs that go through each other in wide trousers: what they carry nei
   long outside = 0, late = 0;
   IntersectionCache of_cloth, of_body;
   for (; state.frame < 112; state = to) {
-    const StepReport report = stepper->step(state, setup.drive_at(state.time + dt), dt, to);
+    const StepReport report = testing::frame(setup.scene, *stepper, state, setup.drive_at(state.time + dt), dt, to);
     REQUIRE(report.status == StepStatus::accepted);
     Exemption exemption;
     crossings.switch_off(gather_nodes(state.x, {state.obstacles[0]}), gather_nodes(to.x, {to.obstacles[0]}),

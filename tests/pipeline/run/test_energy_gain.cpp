@@ -22,7 +22,7 @@ Reasons run(const std::filesystem::path& file, std::vector<std::string> override
   const Setup setup = read_setup(file, overrides);
   State state = setup.initial;
   Reasons seen;
-  seen.last = simulate(*make_stepper(setup), setup.drive_at, 1 / setup.run.fps, setup.run.frames, state,
+  seen.last = simulate(setup.scene, *make_stepper(setup), setup.drive_at, 1 / setup.run.fps, setup.run.frames, state,
                        [&](const FrameEvent& event) {
                          if (event.report.reason == Reason::energy_gain) seen.gains.push_back(event.state.frame);
                          return true;

@@ -3,6 +3,7 @@
 #include "collision/geometry/error.hpp"
 #include "learned/network/weights_hdf5.hpp"
 #include "pipeline/scene/make_stepper.hpp"
+#include "tests/frame.hpp"
 #include "tests/learned/learned_scenes.hpp"
 #include "tests/pipeline/files.hpp"
 
@@ -82,8 +83,8 @@ TEST_CASE("The keys of run.learned: weights are seen from the scene file, settle
   CHECK(settled.run.learned.settle);
   const auto first = [](const Setup& setup) {
     State to;
-    REQUIRE(make_stepper(setup)->step(setup.initial, setup.drive_at(1.0 / 30), 1.0 / 30, to).status ==
-            StepStatus::accepted);
+    REQUIRE(testing::frame(setup.scene, *make_stepper(setup), setup.initial, setup.drive_at(1.0 / 30), 1.0 / 30, to)
+                .status == StepStatus::accepted);
     return to.x;
   };
   CHECK(first(plain) != first(settled));

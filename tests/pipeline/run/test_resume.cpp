@@ -6,6 +6,7 @@
 #include "pipeline/run/memory_forms.hpp"
 #include "pipeline/run/run_inputs_yaml.hpp"
 #include "pipeline/scene/make_stepper.hpp"
+#include "tests/frame.hpp"
 #include "tests/pipeline/run/sheet_over_ball.hpp"
 
 namespace selvedge::test_resume {
@@ -16,7 +17,8 @@ namespace {
 State stepped(const Setup& setup, Stepper& stepper, const State& from) {
   State to;
   const double dt = 1 / setup.run.fps;
-  REQUIRE(stepper.step(from, setup.drive_at(from.time + dt), dt, to).status == StepStatus::accepted);
+  REQUIRE(testing::frame(setup.scene, stepper, from, setup.drive_at(from.time + dt), dt, to).status ==
+          StepStatus::accepted);
   return to;
 }
 

@@ -8,6 +8,7 @@
 #include "pipeline/formats/checkpoint.hpp"
 #include "pipeline/run/record_frame.hpp"
 #include "pipeline/run/simulate.hpp"
+#include "tests/frame.hpp"
 #include "tests/pipeline/fake_run.hpp"
 
 namespace selvedge::test_simulate {
@@ -37,7 +38,7 @@ TEST_CASE("simulate steps to the last frame and asks the world for the end of ea
     asked.push_back(time);
     return setup.drive_at(time);
   };
-  const StepReport last = simulate(stepper, drive_at, 0.5, 4, state, [&](const FrameEvent& event) {
+  const StepReport last = simulate(setup.scene, stepper, drive_at, 0.5, 4, state, [&](const FrameEvent& event) {
     seen.push_back(event.state.frame);
     return true;
   });
@@ -53,7 +54,7 @@ TEST_CASE("a rejected step ends the run and leaves the last accepted state") {
   State state = setup.initial;
   int events = 0;
   const StepReport last =
-      simulate(stepper, setup.drive_at, 0.1, 10, state, [&](const FrameEvent&) { return ++events; });
+      simulate(setup.scene, stepper, setup.drive_at, 0.1, 10, state, [&](const FrameEvent&) { return ++events; });
   REQUIRE(last.status == StepStatus::rejected);
   REQUIRE(events == 3);
   REQUIRE(state.frame == 2);
@@ -109,7 +110,7 @@ TEST_CASE("a frame that the stepper has audited is recorded as an audit of the f
     Drive drive = setup.drive_at(0);
     drive.obstacles = setup.initial.obstacles;
     State state;
-    StepReport report = stepper->step(setup.initial, drive, 1e-4, state);
+    StepReport report = testing::frame(setup.scene, *stepper, setup.initial, drive, 1e-4, state);
     REQUIRE(report.audit);
     const EnergyTerms terms = energy_terms(setup.scene);
     const Frame told = record_frame(setup.scene, terms, {state, drive, report, 0});

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "pipeline/scene/make_stepper.hpp"
+#include "tests/frame.hpp"
 #include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_tangled_start {
@@ -20,7 +21,7 @@ TEST_CASE("A T-shirt that is skinned into a tangle takes no more than ten clean 
   int most = 0, clean = 0, frames = 0, passes = 0;
   while (state.frame < 8) {
     State next;
-    const StepReport report = stepper->step(state, setup.drive_at(state.time + dt), dt, next);
+    const StepReport report = testing::frame(setup.scene, *stepper, state, setup.drive_at(state.time + dt), dt, next);
     REQUIRE(report.status == StepStatus::accepted);
     passes += report.untangling;
     if (state.clean && !report.out_of_newton) {

@@ -7,6 +7,7 @@
 #include "pipeline/formats/checkpoint.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/make_stepper.hpp"
+#include "tests/frame.hpp"
 #include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_kinds {
@@ -36,7 +37,7 @@ class CountingStepper final : public Stepper {
     counted("counting.steps", 1, RowsOf::none);
     StepReport report;
     report.by = traits_.name;
-    finish_step(scene_, from, drive, dt, std::move(end), audits_, to, report);
+    finish_step(from, drive, dt, std::move(end), to, report);
     return report;
   }
 
@@ -44,7 +45,6 @@ class CountingStepper final : public Stepper {
   const Scene& scene_;
   double speed_;
   StepperTraits traits_;
-  AuditMemory audits_;
 };
 
 const Section& counting_section() {
@@ -87,7 +87,7 @@ TEST_CASE("kinds: one that a caller adds is read with its options and runs", "[k
   const auto stepper = make_stepper(setup);
   CHECK(stepper->traits().name == "counting");
   State to;
-  stepper->step(setup.initial, setup.drive_at(1.0 / 30), 1.0 / 30, to);
+  testing::frame(setup.scene, *stepper, setup.initial, setup.drive_at(1.0 / 30), 1.0 / 30, to);
   CHECK(to.x(to.x.rows() - 1, 1) == Approx(setup.initial.x(to.x.rows() - 1, 1) - 2.0 / 30));
   CHECK(last(to.memory, "counting.steps") == 1);
   const Setup copy = setup;  // its tables live on

@@ -4,10 +4,11 @@
 
 #include "collision/geometry/error.hpp"
 #include "learned/network/weights_hdf5.hpp"
-#include "physics/steppers/step_audit.hpp"
+#include "physics/frame/frame_audits.hpp"
 #include "pipeline/run/run_scene.hpp"
 #include "pipeline/run/simulate.hpp"
 #include "pipeline/scene/make_stepper.hpp"
+#include "tests/frame.hpp"
 #include "tests/learned/learned_scenes.hpp"
 #include "tests/pipeline/files.hpp"
 
@@ -55,7 +56,8 @@ Setup scene_for(const std::string& kind, const Folder& folder, std::vector<std::
 State after(Stepper& stepper, const Setup& setup, State state, int frames) {
   State to;
   for (int f = 0; f < frames; ++f) {
-    REQUIRE(stepper.step(state, setup.drive_at(state.time + dt), dt, to).status == StepStatus::accepted);
+    REQUIRE(testing::frame(setup.scene, stepper, state, setup.drive_at(state.time + dt), dt, to).status ==
+            StepStatus::accepted);
     state = to;
   }
   return state;
@@ -92,7 +94,7 @@ TEST_CASE("known steppers: a step fills what a state must have", "[known_stepper
     to.cut_out = {5};
     to.memory = {{"left.over", MemoryRows::Zero(1, 1)}};
     const Drive drive = setup.drive_at(from.time + dt);
-    const StepReport report = stepper->step(from, drive, dt, to);
+    const StepReport report = testing::frame(setup.scene, *stepper, from, drive, dt, to);
     REQUIRE(report.status == StepStatus::accepted);
     CHECK(report.by.starts_with(kind));
     CHECK(report.substeps > 0);
@@ -131,20 +133,20 @@ TEST_CASE("known steppers: a step is taken back by doing nothing, and one that i
     const State from = after(*stepper, setup, setup.initial, 3), kept = from;
     State first, further, again;
     const Drive drive = setup.drive_at(from.time + dt);
-    stepper->step(from, drive, dt, first);
-    stepper->step(first, setup.drive_at(first.time + dt), dt, further);
-    stepper->step(from, drive, dt, again);
+    testing::frame(setup.scene, *stepper, from, drive, dt, first);
+    testing::frame(setup.scene, *stepper, first, setup.drive_at(first.time + dt), dt, further);
+    testing::frame(setup.scene, *stepper, from, drive, dt, again);
     CHECK(same(from, kept));
     CHECK(same(first, again));
 
     State broken = from;
     broken.x(2, 1) = broken.v(2, 1) = std::numeric_limits<double>::quiet_NaN();
     const State before = broken;
-    const StepReport report = stepper->step(broken, drive, dt, further);
+    const StepReport report = testing::frame(setup.scene, *stepper, broken, drive, dt, further);
     CHECK(report.status == StepStatus::rejected);
     CHECK(report.reason == Reason::not_finite);
     CHECK(same(broken, before));
-    stepper->step(from, drive, dt, again);
+    testing::frame(setup.scene, *stepper, from, drive, dt, again);
     CHECK(same(first, again));
   }
 }
@@ -183,7 +185,8 @@ TEST_CASE("known steppers: what the traits do not accept is refused", "[known_st
     CHECK_THROWS_WITH(make_stepper(faster),
                       Contains("the stepper `" + kind + "` does not take this scene") && Contains("run.fps"));
     State to;
-    CHECK_THROWS_AS(stepper->step(setup.initial, setup.drive_at(1.0 / 60), 1.0 / 60, to), Error);
+    CHECK_THROWS_AS(testing::frame(setup.scene, *stepper, setup.initial, setup.drive_at(1.0 / 60), 1.0 / 60, to),
+                    Error);
   }
 }
 

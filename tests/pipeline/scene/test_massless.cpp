@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "pipeline/scene/make_stepper.hpp"
+#include "tests/frame.hpp"
 #include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_massless {
@@ -42,7 +43,8 @@ Points after(const Setup& setup, int frames) {
   State state = setup.initial, next;
   for (int f = 0; f < frames; ++f) {
     const double dt = 1 / setup.run.fps;
-    REQUIRE(stepper->step(state, setup.drive_at(state.time + dt), dt, next).status == StepStatus::accepted);
+    REQUIRE(testing::frame(setup.scene, *stepper, state, setup.drive_at(state.time + dt), dt, next).status ==
+            StepStatus::accepted);
     std::swap(state, next);
   }
   return state.x;

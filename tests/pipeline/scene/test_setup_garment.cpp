@@ -229,16 +229,17 @@ TEST_CASE("A skirt on a walking mannequin stays clean and its waist stays on the
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
   State state = setup.initial;
   int pairs = 0, inside = 0, passed = 0;
-  simulate(*stepper, setup.drive_at, 1 / setup.run.fps, setup.run.frames, state, [&](const FrameEvent& event) {
-    REQUIRE(event.report.audit);
-    INFO(event.state.frame);
-    CHECK(farthest(event.state.x.topRows(waist), event.drive.pins) < 1e-12);
-    CHECK((event.report.audit->intersecting_pairs() == 0 || event.state.frame < 5));
-    pairs = event.report.audit->intersecting_pairs();
-    inside = event.report.audit->inside_vertices;
-    passed += event.report.collision.passed_through;
-    return true;
-  });
+  simulate(setup.scene, *stepper, setup.drive_at, 1 / setup.run.fps, setup.run.frames, state,
+           [&](const FrameEvent& event) {
+             REQUIRE(event.report.audit);
+             INFO(event.state.frame);
+             CHECK(farthest(event.state.x.topRows(waist), event.drive.pins) < 1e-12);
+             CHECK((event.report.audit->intersecting_pairs() == 0 || event.state.frame < 5));
+             pairs = event.report.audit->intersecting_pairs();
+             inside = event.report.audit->inside_vertices;
+             passed += event.report.collision.passed_through;
+             return true;
+           });
   CHECK(state.frame == 20);
   CHECK(pairs + inside + passed == 0);
 }
@@ -270,7 +271,7 @@ TEST_CASE("Pockets of a garment by code stay where they are stitched", "[setup_g
   REQUIRE(setup.scene.springs.size() >= 14);
   CHECK(setup.warnings.empty());
   State state = setup.initial;
-  simulate(*make_stepper(setup), setup.drive_at, 1 / setup.run.fps, 8, state,
+  simulate(setup.scene, *make_stepper(setup), setup.drive_at, 1 / setup.run.fps, 8, state,
            [](const FrameEvent& event) { return event.report.audit && event.report.audit->intersecting_pairs() == 0; });
   REQUIRE(state.frame == 8);
   double apart = 0;

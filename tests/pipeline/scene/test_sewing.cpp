@@ -9,6 +9,7 @@
 #include "physics/scene/features.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "pipeline/scene/setup.hpp"
+#include "tests/frame.hpp"
 #include "tests/pipeline/files.hpp"
 #include "tests/threads.hpp"
 
@@ -89,7 +90,8 @@ State run(const Setup& setup, int frames) {
   const auto stepper = make_stepper(setup);
   State state = setup.initial, to;
   for (int f = 1; f <= frames; ++f) {
-    const StepReport report = stepper->step(state, setup.drive_at(f / setup.run.fps), 1 / setup.run.fps, to);
+    const StepReport report =
+        testing::frame(setup.scene, *stepper, state, setup.drive_at(f / setup.run.fps), 1 / setup.run.fps, to);
     REQUIRE(report.status == StepStatus::accepted);
     CHECK(report.collision.pairs_after == 0);
     CHECK(report.collision.passed_through == 0);

@@ -2,6 +2,7 @@
 
 #include "pipeline/scene/make_stepper.hpp"
 #include "pipeline/scene/setup.hpp"
+#include "tests/frame.hpp"
 #include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_step_options {
@@ -24,7 +25,9 @@ Points after(const Setup& setup, int frames) {
   const auto stepper = make_stepper(setup);
   State state = setup.initial, next;
   for (int k = 0; k < frames; ++k) {
-    REQUIRE(stepper->step(state, setup.drive_at(state.time + 1.0 / 30), 1.0 / 30, next).status == StepStatus::accepted);
+    REQUIRE(
+        testing::frame(setup.scene, *stepper, state, setup.drive_at(state.time + 1.0 / 30), 1.0 / 30, next).status ==
+        StepStatus::accepted);
     std::swap(state, next);
   }
   return state.x;

@@ -5,6 +5,7 @@
 #include "pipeline/scene/make_stepper.hpp"
 #include "pipeline/suites/spoiled_weights.hpp"
 #include "pipeline/tools/plan.hpp"
+#include "tests/frame.hpp"
 #include "tests/learned/learned_scenes.hpp"
 #include "tests/pipeline/files.hpp"
 #include "tests/threads.hpp"
@@ -47,7 +48,8 @@ Course follow(const Setup& setup, int frames) {
   Course course{setup.initial, {}};
   for (int f = 0; f < frames; ++f) {
     State to;
-    const StepReport report = stepper->step(course.state, setup.drive_at(course.state.time + dt), dt, to);
+    const StepReport report =
+        testing::frame(setup.scene, *stepper, course.state, setup.drive_at(course.state.time + dt), dt, to);
     REQUIRE(report.status == StepStatus::accepted);
     REQUIRE(to.x.allFinite());
     REQUIRE(to.v.allFinite());

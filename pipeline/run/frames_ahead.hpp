@@ -1,0 +1,65 @@
+#pragma once
+
+#include <atomic>
+#include <exception>
+#include <functional>
+#include <optional>
+
+#include "physics/frame/frame_audits.hpp"
+#include "pipeline/run/arrangement.hpp"
+
+namespace selvedge {
+
+struct MadeFrame {
+  State state;  // junk if the step was rejected
+  Drive drive;
+  StepReport report;
+  double seconds = 0;  // by the clock: of its step, and of waiting for its drive and its audits
+};
+
+// Makes the frames of a run one after the other, as make_frame does. Where there are two threads or more, and where it
+// is faster (arrangement.hpp), one of them audits the last frame and makes the drive of the next one beside a step.
+// That step takes the last frame for clean. Where it turns out not to be, the step is void and is taken again. Frames
+// are handed out with their verdicts only, and are the same, bit for bit.
+class FramesAhead {
+ public:
+  // Up to frame `frames`. `state`: the last one that was handed out, or where the run begins; the caller keeps it so.
+  // `drive_at` is called by one thread at a time, and only while `next` runs.
+  FramesAhead(const Scene&, Stepper&, const std::function<Drive(double time)>& drive_at, double dt, int frames,
+              const State& state, const StopFlag& stop);
+  // Absent: all frames are made. A frame that `stop` ended is rejected as `stopped`. Throws what `drive_at` throws.
+  std::optional<MadeFrame> next();
+
+ private:
+  // What the thread beside a step has done.
+  struct Beside {
+    bool clean = false;          // the frame that waited
+    std::optional<Drive> drive;  // of the frame after the one that was stepped
+    std::exception_ptr trouble;  // why there is none
+  };
+  bool asks_to_stop();
+  bool advance(std::optional<MadeFrame>& judged);
+  void judge(MadeFrame&);
+  MadeFrame take_step(const State& from, Drive, double waited, const StopFlag&);
+  MadeFrame make_alone();
+  MadeFrame step_beside(const State& from);
+  Beside work_beside(std::optional<double> time_after);
+  Drive coming_drive(double time);
+
+  Stepper& stepper_;
+  const std::function<Drive(double)>& drive_at_;
+  double dt_;
+  int frames_;
+  const State& state_;
+  const StopFlag& stop_;
+  std::atomic<bool> stopping_ = false;  // what it said last, for the thread beside
+  StopFlag asked_;
+  FrameAudits audits_;
+  int threads_;
+  Arrangement arrangement_;
+  std::optional<MadeFrame> waiting_;  // for its verdict: the frame after `state_`
+  std::optional<Drive> coming_;       // of the next frame to make
+  std::exception_ptr trouble_;        // why it is not known
+};
+
+}  // namespace selvedge
