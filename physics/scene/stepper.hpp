@@ -194,7 +194,7 @@ struct StepperTraits {
 //   obstacles    where they ended, and pinched, whether one of them is not where the drive wanted it;
 //   clean        false: make_frame (physics/frame/make_frame.hpp) audits the step and says whether it is;
 //   cut_out      what of from.cut_out is out still;
-//   memory       what the stepper and its decorators read in their next step, and nothing else.
+//   memory       what the stepper and its decorators may read in their next step, and nothing else.
 // Its report has the path of the step, or the audit of the state where the stepper needed that itself (judge_frame).
 // finish_step (finish_step.hpp) does all this for positions and velocities.
 class Stepper {
