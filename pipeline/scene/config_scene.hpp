@@ -5,7 +5,7 @@
 #include "physics/scene/scene_numbers.hpp"
 #include "pipeline/config/options.hpp"
 #include "pipeline/garments/garment_make.hpp"
-#include "pipeline/meshes/setup_body.hpp"
+#include "pipeline/obstacles/setup_body.hpp"
 #include "pipeline/scene/kinds.hpp"
 #include "pipeline/scene/run_options.hpp"
 #include "pipeline/shapes/generate.hpp"
