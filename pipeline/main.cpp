@@ -238,6 +238,11 @@ void weights_import_options(CLI::App& command, WeightsImportArguments& arguments
   command.add_option("--out", arguments.out, "where the weight file goes (.h5)")->required();
 }
 
+void info_options(CLI::App& command, InfoArguments& arguments) {
+  command.add_option("--keys", arguments.keys, "user: what most scenes need; expert: all other keys of scene files")
+      ->check(CLI::IsMember({"user", "expert"}));
+}
+
 void weights_info_options(CLI::App& command, WeightsInfoArguments& arguments) {
   command.add_option("file", arguments.file, "weight file (.h5)")->required();
 }
@@ -266,7 +271,6 @@ void add_weights_commands(CLI::App& app, Chosen& chosen) {
 }
 
 void add_commands(CLI::App& app, Chosen& chosen) {
-  struct Nothing {};
   add_command<SimulateArguments>(app, chosen, "simulate", "a scene in, an audited trajectory out", simulate_options,
                                  simulate_command);
   add_command<SceneArguments>(app, chosen, "plan", "what a scene needs, what is left out, and why", scene_options,
@@ -306,9 +310,8 @@ void add_commands(CLI::App& app, Chosen& chosen) {
   add_command<TrainArguments>(app, chosen, "train", "a network of the stepper `learned`, or one of drapes",
                               train_options, train_command);
   add_weights_commands(app, chosen);
-  add_command<Nothing>(
-      app, chosen, "info", "versions, packages, threads", [](CLI::App&, Nothing&) {},
-      [](const Nothing&, bool json) { return info_command(json); });
+  add_command<InfoArguments>(app, chosen, "info", "versions, packages, threads; keys of scene files", info_options,
+                             info_command);
 }
 
 // The headings of `selvedge --help`; a command that stands under none is one for use.

@@ -10,15 +10,21 @@ namespace selvedge {
 
 // How obstacles that would close on cloth give way before the solve (room.hpp).
 struct RoomOptions {
-  double obstacle_mass = 30;  // A node that gives way weighs so many mean cloth vertices: it presses layers together.
-  int sweeps = 25;            // Demands are projected in blocks of this many sweeps,
-  int min_blocks = 3;         // in at least
-  int max_blocks = 20;        // and at most this many blocks.
-  double growing = 1;         // A multiplier grows if it pushes by more than this part of the separation a sweep.
-  double steady = 0.98;       // Demands contradict each other if this part of all growth remains in the next block.
-  int max_rounds = 6;         // Pairs are searched anew at most this often.
-  double few = 0.01;          // `resolve` sees to new demands if they are fewer than this part of all.
-  double steepest_lag = 0.5;  // Lag changes by at most this much of the distance between two nodes of a body.
+  int sweeps = 25;     // of projected Gauss-Seidel in a block
+  int max_rounds = 6;  // searches for pairs, at most
+
+  // A node of an obstacle that gives way weighs so many mean cloth vertices. More presses layers together.
+  static constexpr double obstacle_mass = 30;
+  // Projection takes at least and at most so many blocks.
+  static constexpr int min_blocks = 3, max_blocks = 20;
+  // A constraint's multiplier grows if it pushes by more than this part of the separation a sweep.
+  static constexpr double growing = 1;
+  // Constraints contradict each other if this part of all growth remains in the next block.
+  static constexpr double steady = 0.98;
+  // `resolve` meets new constraints if they are fewer than this part of all.
+  static constexpr double few = 0.01;
+  // Lag changes by at most this much of the distance between two nodes of a body.
+  static constexpr double steepest_lag = 0.5;
 };
 
 // Work of a response, counted: no clock and no other program on the machine changes it.
@@ -47,14 +53,18 @@ struct ResolveOptions {
   int zone_sweeps = 200;
   bool rigid_zones = false;                 // zones of free nodes go on as rigid bodies
   bool last_resort = true;                  // false: leave what zones do not solve, and say that it is not clean
-  int yield_rounds = 20;                    // last resort, first part: obstacles give way
-  double yielding_mass = 1e3;               // of their nodes in its first round, in mean cloth vertices; halved in each
-  int motion_halvings = 4;                  // last resort, second part: of a motion, before it is held still
   int holding_rounds = 8;                   // rounds of zones held still before everything is, where no work is left
   const std::vector<char>* only = nullptr;  // by node: pairs of which a node is 0 are left alone; null: none is
   RoomOptions room;
   ResponseWork most = unbounded_work;  // once it is done, the last resort holds still what meets even so
   StopFlag stop = {};                  // asked once a zone and a round: true ends it, not clean
+
+  // The last resort lets obstacles give way in so many rounds. Their nodes weigh so many mean cloth vertices in the
+  // first one, and half as much in each that follows.
+  static constexpr int yield_rounds = 20;
+  static constexpr double yielding_mass = 1e3;
+  // Then it halves a zone's motion so often before it holds the zone still.
+  static constexpr int motion_halvings = 4;
 };
 
 // What resolve did.

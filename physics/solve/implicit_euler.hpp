@@ -10,15 +10,20 @@ namespace selvedge {
 
 // When Newton goes beyond its usual step, Hessian and number of iterations.
 struct NewtonOptions {
-  double nearly_linear =
-      0.7;                   // A longer step is tried where the change over the slope is larger; exact models have 0.5.
-  double longest_step = 16;  // No step is longer than this many Newton steps.
-  int exact_from = 3;        // The exact Hessian is tried after this many filtered ones.
-  double stiff = 1e5;        // Cloth is stiff if its mean stiffness is this many times its inertia over h^2:
-  double stiff_allowance =
-      4;                    // it is solved until the energy that a step gains is that of a motion this many goals long.
-  double far_energy = 0.1;  // With contact it is solved until a step gains less than this part of the potential.
-  int more_iterations = 8;  // These two rules take at most this many times max_newton iterations.
+  int exact_from = 3;  // The exact Hessian is tried after this many filtered ones.
+
+  // A longer step is tried where the change over its linear prediction is larger. Exact models have 0.5.
+  static constexpr double nearly_linear = 0.7;
+  // No step is longer than this many Newton steps.
+  static constexpr double longest_step = 16;
+  // Cloth is stiff if its mean stiffness is this many times its inertia over h^2.
+  static constexpr double stiff = 1e5;
+  // Stiff cloth is solved until the energy that a step gains is that of a motion this many goals long.
+  static constexpr double stiff_allowance = 4;
+  // With contact it is solved until a step gains less than this part of the potential.
+  static constexpr double far_energy = 0.1;
+  // These two rules take at most this many times max_newton iterations.
+  static constexpr int more_iterations = 8;
 };
 
 struct ImplicitEulerOptions {

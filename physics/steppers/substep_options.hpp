@@ -6,25 +6,31 @@ namespace selvedge {
 
 // How a step is cut into substeps, and how a substep alternates implicit solves with Bridson's response.
 struct SubstepOptions {
-  double max_motion = 2.5;  // Pairs that meet (with icm: all vertices) move at most this many mean edges in a substep.
-  double max_slide = 1;     // A touching pair slides at most this many: more locks cloth that is pulled round a post.
-  double deep_impact = 0.05;  // An impact this many mean edges deep becomes a term of the next solve.
-  double longest = 1.0 / 48;  // A longer step takes two substeps at least, since implicit Euler damps visibly [s].
-
-  double first_tolerance = 8;       // The first solve is this many times as rough: it finds impacts and normal forces.
+  double longest = 1.0 / 48;   // A longer step takes two substeps at least, since implicit Euler damps visibly [s].
+  double first_tolerance = 8;  // The first solve is this many times as rough: it finds impacts and normal forces.
   double friction_tolerance = 0.2;  // Solves with friction are this many times as rough: sticking needs accuracy.
-  double contact_iterations = 0.5;  // A solve with contact takes this part of max_newton, since another one follows.
-  int max_passes = 6;               // A substep solves again at most this often,
-  int pinched_passes = 3;           // and at most this often where there is no room: no stiffness makes any.
+  int max_passes = 6;               // A substep solves again at most this often.
   double normal_change = 0.05;      // It solves again while lagged normal forces change by more than this part.
-
-  int max_halvings = 2;          // A substep whose zones do not converge is halved this often before the last resort.
-  int halving_zone_rounds = 12;  // Zones take this many rounds in a substep that may still be halved,
-  int pinched_zone_rounds = 4;   // and this many where there is no room.
-  double tearing = 10;       // A response is refused that raises the potential to this many times the energy there is.
-  double kept_motion = 0.5;  // Cloth that stops short keeps this part of its motion up to the first impact.
-
   ContactTermOptions contact;
+
+  // Pairs that meet (with icm: all vertices) move at most this many mean edges in a substep.
+  static constexpr double max_motion = 2.5;
+  // A touching pair slides at most this many. More locks cloth that is pulled round a post.
+  static constexpr double max_slide = 1;
+  // An impact this many mean edges deep becomes a term of the next solve.
+  static constexpr double deep_impact = 0.05;
+  // A solve with contact takes this part of max_newton, since another one follows.
+  static constexpr double contact_iterations = 0.5;
+  // A substep solves again at most this often where there is no room: no stiffness makes any.
+  static constexpr int pinched_passes = 3;
+  // A substep whose zones do not converge is halved this often before the last resort.
+  static constexpr int max_halvings = 2;
+  // Zones take this many rounds in a substep that may still be halved, and this many where there is no room.
+  static constexpr int halving_zone_rounds = 12, pinched_zone_rounds = 4;
+  // A response is refused that raises the potential to this many times the energy there is.
+  static constexpr double tearing = 10;
+  // Cloth that stops short keeps this part of its motion up to the first impact.
+  static constexpr double kept_motion = 0.5;
 };
 
 }  // namespace selvedge

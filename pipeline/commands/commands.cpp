@@ -16,6 +16,7 @@
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/run_scene.hpp"
 #include "pipeline/scene/make_stepper.hpp"
+#include "pipeline/scene/scene_pages.hpp"
 #include "pipeline/tools/ccd_report.hpp"
 #include "pipeline/tools/info.hpp"
 #include "pipeline/tools/plan.hpp"
@@ -287,7 +288,11 @@ int stability_command(const StabilityRequest& request, bool json) {
   return passed(rows) && !InterruptWatch::interrupted() ? 0 : 1;
 }
 
-int info_command(bool json) {
+int info_command(const InfoArguments& arguments, bool json) {
+  if (!arguments.keys.empty()) {
+    std::cout << scene_keys_text(arguments.keys == "user" ? KeyTier::user : KeyTier::expert);
+    return 0;
+  }
   std::cout << (json ? info_json() : info_text());
   return 0;
 }

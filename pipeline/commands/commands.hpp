@@ -68,6 +68,9 @@ int compare_command(const CompareRequest&, bool json);
 int validate_command(const ValidateRequest&, bool json);
 int stability_command(const StabilityRequest&, bool json);
 int wardrobe_command(const WardrobeRequest&, bool json);
-int info_command(bool json);
+struct InfoArguments {
+  std::string keys;  // user or expert: keys of scene files in place of facts about the program
+};
+int info_command(const InfoArguments&, bool json);
 
 }  // namespace selvedge

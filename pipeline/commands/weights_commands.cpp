@@ -5,9 +5,9 @@
 
 #include "learned/network/weights_hdf5.hpp"
 #include "pipeline/host/version.hpp"
-#include "pipeline/tools/import_weights.hpp"
-#include "pipeline/tools/weights_info.hpp"
-#include "pipeline/tools/weights_parity.hpp"
+#include "pipeline/weights/import_weights.hpp"
+#include "pipeline/weights/weights_info.hpp"
+#include "pipeline/weights/weights_parity.hpp"
 
 namespace selvedge {
 namespace {

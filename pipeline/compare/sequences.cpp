@@ -8,7 +8,7 @@
 #include "collision/geometry/error.hpp"
 #include "learned/network/weights_hdf5.hpp"
 #include "pipeline/garments/outfit.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/training/training_roll.hpp"
 
 namespace selvedge {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "pipeline/tools/volume_table.hpp"
+#include "pipeline/compare/volume_table.hpp"
 
 namespace selvedge {
 

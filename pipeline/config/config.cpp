@@ -26,7 +26,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-std::string kind_text(const Key& key) {
+std::string kind_text(const Key& key, const std::string& page) {
   const std::string words = key.choices.empty() ? "" : joined(key.choices);
   switch (key.kind) {
     case Kind::number:
@@ -50,9 +50,9 @@ std::string kind_text(const Key& key) {
     case Kind::texts:
       return "text or list of texts";
     case Kind::section:
-      return "see [" + key.section->name + "](#" + key.section->name + ")";
+      return "see [" + key.section->name + "](" + page + "#" + key.section->name + ")";
     case Kind::sections:
-      return "list of [" + key.section->name + "](#" + key.section->name + ")";
+      return "list of [" + key.section->name + "](" + page + "#" + key.section->name + ")";
   }
   return {};
 }
@@ -130,20 +130,20 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& kn
   return near.empty() ? "" : "; did you mean `" + near + "`?";
 }
 
-std::string section_markdown(const Section& section) {
-  std::string page = "| key | value | unit | allowed | default | meaning |\n|---|---|---|---|---|---|\n";
-  for (const Key& key : section.keys)
-    page += fmt::format(
-        "| `{}` | {} | {} | {} | {} | {} |\n", key.name, kind_text(key), unit_symbol(key.unit), key.range.text(),
-        key.required ? "required" : (key.otherwise.empty() ? "" : "`" + key.otherwise + "`"), key.about);
-  return page;
-}
-
-std::string section_chapter(const Section& section) {
-  std::string page = "### " + section.name + "\n\n";
-  if (!section.about.empty()) page += section.about + "\n\n";
-  if (!section.shorthand.empty()) page += "A plain value stands for `" + section.shorthand + "`.\n\n";
-  return page + section_markdown(section) + "\n";
+std::string section_chapter(const Section& section, const KeyPage& page) {
+  std::string text = "### " + section.name + "\n\n";
+  if (!section.about.empty()) text += section.about + "\n\n";
+  if (!section.shorthand.empty()) text += "A plain value stands for `" + section.shorthand + "`.\n\n";
+  text += "| key | value | unit | allowed | default | meaning |\n|---|---|---|---|---|---|\n";
+  for (const Key& key : section.keys) {
+    if (page.shows && !page.shows(section, key)) continue;
+    text +=
+        fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", key.name,
+                    kind_text(key, page.page_of && key.section ? page.page_of(*key.section) : std::string()),
+                    unit_symbol(key.unit), key.range.text(),
+                    key.required ? "required" : (key.otherwise.empty() ? "" : "`" + key.otherwise + "`"), key.about);
+  }
+  return text + "\n";
 }
 
 }  // namespace selvedge

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -36,11 +37,19 @@ struct Key {
   const Section* section = nullptr;  // of a section or of each in a list of sections
 };
 
+// A key that a section had once. A file may say it as long as it says what holds now.
+struct RetiredKey {
+  std::string name;
+  double value = 0;     // that holds now, in SI units
+  std::string instead;  // where that stands
+};
+
 struct Section {
   std::string name, about;
   std::string shorthand;                 // the key that a plain value stands for
   std::vector<std::string> exactly_one;  // of these keys one must be given
   std::vector<Key> keys;
+  std::vector<RetiredKey> retired = {};
 };
 
 // A value of a configuration file, checked against its row, SI units. Sections hold one entry for every row of their
@@ -90,9 +99,13 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
 std::string suggestion(std::string_view word, const std::vector<std::string>& known);
 std::string joined(const std::vector<std::string>& words);
 
-// The table of a section as Markdown, as it stands in docs/scene.md.
-std::string section_markdown(const Section&);
-// The same as a chapter: heading, what the section is about, what a plain value stands for, and the table.
-std::string section_chapter(const Section&);
+// The keys of a section that a page shows, and the page on which each section has its chapter, empty: the same.
+struct KeyPage {
+  std::function<bool(const Section&, const Key&)> shows;
+  std::function<std::string(const Section&)> page_of;
+};
+// A section as a chapter in Markdown: heading, what the section is about, what a plain value stands for, and the table
+// of its keys; all of them stand on one page unless that is given.
+std::string section_chapter(const Section&, const KeyPage& = {});
 
 }  // namespace selvedge

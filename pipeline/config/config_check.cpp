@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -153,7 +154,7 @@ void check_known_once(const YAML::Node& node, const Section& section, const std:
     const std::string name = pair.first.IsScalar() ? pair.first.Scalar() : "?";
     const std::string full = path.empty() ? name : path + "." + name;
     const std::string here = origin.of(pair.first, full, where);
-    if (!find_key(section, name))
+    if (!find_key(section, name) && !is_retired(section, name, pair.second, full, here))
       throw Error(
           "`" + full + "` is not a known key" + (section.name.empty() ? "" : " of section `" + section.name + "`"),
           here, "allowed: " + joined(key_names(section)) + suggestion(name, key_names(section)));
@@ -202,6 +203,16 @@ bool is_plain(const YAML::Node& node, const Section& section) {
 }
 
 }  // namespace
+
+bool is_retired(const Section& section, const std::string& name, const YAML::Node& value, const std::string& path,
+                const std::string& where) {
+  const auto found = std::ranges::find(section.retired, name, &RetiredKey::name);
+  if (found == section.retired.end()) return false;
+  const Quantity given = value.IsScalar() ? read_quantity(value.Scalar(), Unit::none) : Quantity{};
+  if (value.IsScalar() && given.problem.empty() && given.value == found->value) return true;
+  throw Error("`" + path + "` is a constant now", where,
+              fmt::format("leave it out: it is {} ({})", found->value, found->instead));
+}
 
 Config checked_section(const YAML::Node& node, const Section& section, const std::string& path,
                        const std::string& parent, const Origin& origin) {

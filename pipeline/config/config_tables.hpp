@@ -100,6 +100,14 @@ inline Key with_words(Key key, std::vector<std::string> choices) {
   return key;
 }
 
+// Keys that have become constants of a header, each with its value.
+inline std::vector<RetiredKey> constants(const std::string& header,
+                                         const std::vector<std::pair<std::string, double>>& all) {
+  std::vector<RetiredKey> retired;
+  for (const auto& [name, value] : all) retired.push_back({name, value, header});
+  return retired;
+}
+
 inline Key renamed(Key key, std::string name) {
   key.name = std::move(name);
   return key;

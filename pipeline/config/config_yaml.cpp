@@ -42,6 +42,8 @@ void assign(YAML::Node node, const Section& section, std::vector<std::string>& w
   std::string path;
   for (std::size_t i = 0; i < depth; ++i) path += (i ? "." : "") + words[i];
   const Key* key = find_key(section, words[depth]);
+  if (!key && is_retired(section, words[depth], value, path.empty() ? words[depth] : path + "." + words[depth], where))
+    return;
   if (!key)
     throw Error("`" + words[depth] + "` is not a key of " + (path.empty() ? "the file" : "`" + path + "`"), where,
                 "allowed: " + joined(key_names(section)) + suggestion(words[depth], key_names(section)));

@@ -30,5 +30,8 @@ Config checked_section(const YAML::Node&, const Section&, const std::string& pat
 
 std::vector<std::string> key_names(const Section&);
 const Key* find_key(const Section&, std::string_view name);
+// Whether the section had this key once and the value is the one that holds now. Throws Error for another value.
+bool is_retired(const Section&, const std::string& name, const YAML::Node& value, const std::string& path,
+                const std::string& where);
 
 }  // namespace selvedge

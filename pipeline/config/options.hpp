@@ -99,9 +99,9 @@ struct Options {
   const Section section;
 
   Options(std::string name, std::string about, OptionRows<Struct> all, std::string shorthand = {},
-          std::vector<std::string> exactly_one = {})
-      : rows(std::move(all)),
-        section{std::move(name), std::move(about), std::move(shorthand), std::move(exactly_one), keys_of(rows)} {}
+          std::vector<std::string> exactly_one = {}, std::vector<RetiredKey> retired = {})
+      : rows(std::move(all)), section{std::move(name),        std::move(about), std::move(shorthand),
+                                      std::move(exactly_one), keys_of(rows),    std::move(retired)} {}
   Options(const Options&) = delete;
   Options& operator=(const Options&) = delete;
 

@@ -2,7 +2,7 @@
 
 #include "pipeline/bodies/mannequin.hpp"
 #include "pipeline/garments/garment_make.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 
 namespace selvedge {
 

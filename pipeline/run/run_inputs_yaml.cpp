@@ -9,7 +9,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/host/kept_rows.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 
 namespace selvedge {
 namespace {

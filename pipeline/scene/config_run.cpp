@@ -160,50 +160,27 @@ const Options<RecoveryOptions>& recovery_options() {
       {integer("untangling_passes", &O::untangling_passes, at_least_one,
                "Largest number of untangling passes in a step. The next step continues."),
        number("speed", &O::speed, Unit::speed, positive, "Largest speed at which untangling moves a vertex."),
-       integer("hopeless_pairs", &O::hopeless_pairs, at_least_one,
-               "Number of crossing pairs for each triangle above which cloth is not untangled. Its own stiffness then "
-               "has to open it."),
-       integer("max_pair_passes", &O::max_pair_passes, at_least_one,
-               "Largest product of crossing pairs and passes in a step, where cloth crosses itself. It bounds the time "
-               "of untangling."),
-       number("useful_motions", &O::useful_motions, Unit::none, positive,
-              "Longest displacement that untangling from obstacles looks for, in multiples of what `speed` allows in a "
-              "step."),
-       integer("min_passes", &O::min_passes, at_least_one,
-               "Number of passes that `useful_motions` always leaves, however short the step."),
-       integer("waiting_passes", &O::waiting_passes, at_least_one,
-               "Largest number of passes while cloth lies where a body crosses itself."),
-       integer("max_halvings", &O::max_halvings, not_negative,
-               "How often an untangling motion is halved that makes more pairs of triangles cross."),
-       number("negligible_move", &O::negligible_move, Unit::none, not_negative,
-              "Displacement that counts as none, in mean edge lengths."),
        number("farthest_place", &O::farthest_place, Unit::length, not_negative,
               "Largest distance that a vertex moves when a garment is put on again."),
-       integer("placing_passes", &O::placing_passes, at_least_one,
-               "Largest number of untangling passes when a garment is put on again."),
-       integer("max_placing_pair_passes", &O::max_placing_pair_passes, at_least_one,
-               "Largest product of crossing pairs and passes when a garment is put on again. It bounds the time."),
-       number("pierced_part", &O::pierced_part, Unit::none, not_negative,
-              "Fraction of the vertices of a component that are tangled and far from their target, above which a limb "
-              "counts as having pierced it."),
-       number("astray", &O::astray, Unit::none, not_negative,
-              "Distance from its skinned target above which a vertex counts as far, in mean edge lengths."),
-       number("sunken_part", &O::sunken_part, Unit::none, not_negative,
-              "Fraction of the vertices of a component that are tangled with a body, above which it counts as sunken "
-              "in and is put on again."),
-       number("long_limb", &O::long_limb, Unit::none, positive,
-              "Length of the part of a body beyond a closed contour, in radii of the contour, above which the contour "
-              "counts as pierced by a limb."),
-       number("carrying_speed", &O::carrying_speed, Unit::speed, positive,
-              "Largest speed at which cloth is drawn to its skinned target."),
-       number("carrying_stiffness", &O::carrying_stiffness, Unit::none, positive,
-              "Stiffness with which cloth is drawn to its skinned target, in masses over the time step squared, while "
-              "the body does not cross itself."),
-       number("crossing_stiffness", &O::crossing_stiffness, Unit::none, positive,
-              "Stiffness with which cloth is drawn to its skinned target where the body crosses itself, in masses over "
-              "the time step squared."),
        number("push_softness", &O::push_softness, Unit::none, positive,
-              "Distance over which the force sets in that keeps untangled cloth apart, in contact thicknesses.")});
+              "Distance over which the force sets in that keeps untangled cloth apart, in contact thicknesses.")},
+      {}, {},
+      constants("physics/recovery/recovery_options.hpp", {{"hopeless_pairs", O::hopeless_pairs},
+                                                          {"max_pair_passes", O::max_pair_passes},
+                                                          {"useful_motions", O::useful_motions},
+                                                          {"min_passes", O::min_passes},
+                                                          {"waiting_passes", O::waiting_passes},
+                                                          {"max_halvings", O::max_halvings},
+                                                          {"negligible_move", O::negligible_move},
+                                                          {"placing_passes", O::placing_passes},
+                                                          {"max_placing_pair_passes", O::max_placing_pair_passes},
+                                                          {"pierced_part", O::pierced_part},
+                                                          {"astray", O::astray},
+                                                          {"sunken_part", O::sunken_part},
+                                                          {"long_limb", O::long_limb},
+                                                          {"carrying_speed", O::carrying_speed},
+                                                          {"carrying_stiffness", O::carrying_stiffness},
+                                                          {"crossing_stiffness", O::crossing_stiffness}}));
   return table;
 }
 

@@ -1,7 +1,5 @@
 #include "pipeline/scene/config_scene.hpp"
 
-#include <algorithm>
-
 // Rows that are bound to a member have its default; a default that is written here has its only place here.
 namespace selvedge {
 namespace {
@@ -16,13 +14,6 @@ const Section& wind_key_section() {
                              {needed(number("time", Unit::time, any, "", "Time of the keyframe.")),
                               needed(vector("velocity", Unit::speed, "", "Velocity of the air."))}};
   return table;
-}
-
-void collect(const Section& section, std::vector<const Section*>& found) {
-  if (std::find(found.begin(), found.end(), &section) != found.end()) return;
-  found.push_back(&section);
-  for (const Key& key : section.keys)
-    if (key.section) collect(*key.section, found);
 }
 
 }  // namespace
@@ -99,18 +90,6 @@ const Section& material_file_section() {
   static const Section table{
       "material_file", "", "", {}, std::vector<Key>{text("description", "for people")} + keys_of(material_options())};
   return table;
-}
-
-std::vector<const Section*> scene_sections() {
-  std::vector<const Section*> found;
-  collect(scene_section(), found);
-  return found;
-}
-
-std::string scene_reference() {
-  std::string page;
-  for (const Section* section : scene_sections()) page += section_chapter(*section);
-  return page;
 }
 
 }  // namespace selvedge

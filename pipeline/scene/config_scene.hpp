@@ -5,7 +5,7 @@
 #include "physics/scene/scene_numbers.hpp"
 #include "pipeline/config/options.hpp"
 #include "pipeline/garments/garment_make.hpp"
-#include "pipeline/meshes/setup_body.hpp"
+#include "pipeline/obstacles/setup_body.hpp"
 #include "pipeline/scene/kinds.hpp"
 #include "pipeline/scene/run_options.hpp"
 #include "pipeline/shapes/generate.hpp"
@@ -21,10 +21,6 @@ struct SceneTable {
 std::shared_ptr<const SceneTable> scene_table(const Kinds&);
 // The table of a material file: what a scene may say of a material by value.
 const Section& material_file_section();
-// Every section of a scene file in the order of docs/scene.md, the scene itself first.
-std::vector<const Section*> scene_sections();
-// All of them as Markdown: the second half of docs/scene.md.
-std::string scene_reference();
 
 // What a number of a scene may be, as physics has it.
 template <class Struct>

@@ -10,22 +10,15 @@ const Options<NewtonOptions>& newton_options() {
   using O = NewtonOptions;
   static const Options<O> table(
       "newton", "When Newton's method takes longer steps, the exact Hessian or more iterations than usual.",
-      {number("nearly_linear", &O::nearly_linear, Unit::none, positive,
-              "Ratio of the potential's change to its linear prediction above which a longer step is tried. A "
-              "quadratic potential has 0.5."),
-       number("longest_step", &O::longest_step, Unit::none, positive,
-              "Longest step of the line search, in Newton steps."),
-       integer("exact_from", &O::exact_from, not_negative,
-               "Number of iterations with a filtered Hessian before the exact one is tried."),
-       number("stiff", &O::stiff, Unit::none, positive,
-              "Ratio of the mean stiffness to the mass over the time step squared above which cloth counts as stiff."),
-       number("stiff_allowance", &O::stiff_allowance, Unit::none, positive,
-              "Energy that the last step of stiff cloth may gain: that of a displacement of this many times the usual "
-              "tolerance against inertia. A smaller value takes more iterations."),
-       number("far_energy", &O::far_energy, Unit::none, positive,
-              "With contact, Newton goes on while a step gains more than this fraction of the potential."),
-       integer("more_iterations", &O::more_iterations, at_least_one,
-               "Largest number of iterations by `stiff_allowance` and `far_energy`, in multiples of `max_newton`.")});
+      {integer("exact_from", &O::exact_from, not_negative,
+               "Number of iterations with a filtered Hessian before the exact one is tried.")},
+      {}, {},
+      constants("physics/solve/implicit_euler.hpp", {{"nearly_linear", O::nearly_linear},
+                                                     {"longest_step", O::longest_step},
+                                                     {"stiff", O::stiff},
+                                                     {"stiff_allowance", O::stiff_allowance},
+                                                     {"far_energy", O::far_energy},
+                                                     {"more_iterations", O::more_iterations}}));
   return table;
 }
 
@@ -36,20 +29,14 @@ const Options<ContactTermOptions>& contact_term_options() {
       {number("stiffness", &O::stiffness, Unit::none, positive,
               "Stiffness of a new contact, in masses of the pair over the time step squared."),
        number("overlap_removed", &O::overlap_removed, Unit::none, not_negative,
-              "Fraction of an overlap by which a step lifts, and of the gap by which a load may sink in a step."),
-       number("onset", &O::onset, Unit::none, positive,
-              "Distance over which the force sets in, in contact thicknesses."),
-       number(
-           "load_sink", &O::load_sink, Unit::none, positive,
-           "Depth to which a load may press a contact, in contact thicknesses. A smaller value makes contact stiffer."),
-       number("impact_sink", &O::impact_sink, Unit::none, not_negative,
-              "Depth to which a stopped impact may sink, as a fraction of the gap at which it is stopped."),
-       number("max_stiffening", &O::max_stiffening, Unit::none, positive,
-              "Largest factor by which loads raise the stiffness of a contact in a step."),
-       number("same_side", &O::same_side, Unit::none, not_negative,
-              "A contact is linearised anew only if the cosine between its old and new normals is larger."),
-       integer("static_friction_sweeps", &O::static_friction_sweeps, not_negative,
-               "Number of Gauss-Seidel sweeps over the pairs for static friction.")});
+              "Fraction of an overlap by which a step lifts, and of the gap by which a load may sink in a step.")},
+      {}, {},
+      constants("physics/solve/contact_term_options.hpp", {{"onset", O::onset},
+                                                           {"load_sink", O::load_sink},
+                                                           {"impact_sink", O::impact_sink},
+                                                           {"max_stiffening", O::max_stiffening},
+                                                           {"same_side", O::same_side},
+                                                           {"static_friction_sweeps", O::static_friction_sweeps}}));
   return table;
 }
 
@@ -57,40 +44,28 @@ const Options<SubstepOptions>& substep_options() {
   using O = SubstepOptions;
   static const Options<O> table(
       "substep", "How a step is divided into substeps, and how a substep alternates solves with the contact response.",
-      {number("max_motion", &O::max_motion, Unit::none, positive,
-              "Largest displacement in a substep of pairs that meet (with `icm`: of any vertex), in mean edge lengths. "
-              "A smaller value takes more substeps."),
-       number("max_slide", &O::max_slide, Unit::none, positive,
-              "Largest slide of a touching pair in a substep, in mean edge lengths. Larger values may lock cloth that "
-              "is pulled round a post."),
-       number("deep_impact", &O::deep_impact, Unit::none, positive,
-              "Depth from which an impact becomes a contact term of the next solve, in mean edge lengths."),
-       number("longest", &O::longest, Unit::time, positive,
+      {number("longest", &O::longest, Unit::time, positive,
               "Longest step that may stay undivided. A longer one takes at least two substeps."),
        number("first_tolerance", &O::first_tolerance, Unit::none, positive,
               "Factor on the tolerance of the first solve, which finds impacts and normal forces."),
        number("friction_tolerance", &O::friction_tolerance, Unit::none, positive,
               "Factor on the tolerance of solves with friction. Sticking cloth needs a small value."),
-       number("contact_iterations", &O::contact_iterations, Unit::none, positive,
-              "Largest number of Newton iterations of a solve with contact, as a fraction of `max_newton`."),
        integer("max_passes", &O::max_passes, at_least_one,
                "Largest number of solves of a substep after the first one."),
-       integer("pinched_passes", &O::pinched_passes, at_least_one,
-               "Largest number of these solves where obstacles leave the cloth no room."),
        number("normal_change", &O::normal_change, Unit::none, positive,
               "Relative change of the lagged normal forces above which a substep is solved again."),
-       integer("max_halvings", &O::max_halvings, not_negative,
-               "How often a substep is halved whose impact zones do not converge, before the last resort."),
-       integer("halving_zone_rounds", &O::halving_zone_rounds, at_least_one,
-               "Number of rounds of impact zones in a substep that may still be halved."),
-       integer("pinched_zone_rounds", &O::pinched_zone_rounds, at_least_one,
-               "Number of rounds of impact zones where obstacles leave the cloth no room."),
-       number("tearing", &O::tearing, Unit::none, positive,
-              "Ratio of the potential after the contact response to the energy before it above which the response is "
-              "refused."),
-       number("kept_motion", &O::kept_motion, Unit::none, {.low = 0, .high = 1},
-              "Fraction of the motion up to the first impact that is kept where the last resort is refused, too."),
-       section(&O::contact, contact_term_options(), "Contact terms of the incremental potential.")});
+       section(&O::contact, contact_term_options(), "Contact terms of the incremental potential.")},
+      {}, {},
+      constants("physics/steppers/substep_options.hpp", {{"max_motion", O::max_motion},
+                                                         {"max_slide", O::max_slide},
+                                                         {"deep_impact", O::deep_impact},
+                                                         {"contact_iterations", O::contact_iterations},
+                                                         {"pinched_passes", O::pinched_passes},
+                                                         {"max_halvings", O::max_halvings},
+                                                         {"halving_zone_rounds", O::halving_zone_rounds},
+                                                         {"pinched_zone_rounds", O::pinched_zone_rounds},
+                                                         {"tearing", O::tearing},
+                                                         {"kept_motion", O::kept_motion}}));
   return table;
 }
 
@@ -100,25 +75,16 @@ const Options<RoomOptions>& room_options() {
       "room",
       "How obstacles yield before the solve where they would pinch cloth. A constraint here is a pair that must not "
       "come closer.",
-      {number("obstacle_mass", &O::obstacle_mass, Unit::none, positive,
-              "Mass of an obstacle node that yields, in mean masses of cloth vertices. A larger mass presses layers "
-              "together more."),
-       integer("sweeps", &O::sweeps, at_least_one, "Number of projected Gauss-Seidel sweeps in a block."),
-       integer("min_blocks", &O::min_blocks, at_least_one, "Smallest number of blocks."),
-       integer("max_blocks", &O::max_blocks, at_least_one, "Largest number of blocks."),
-       number("growing", &O::growing, Unit::none, positive,
-              "Push of a constraint in a sweep above which its multiplier counts as growing, in multiples of the "
-              "minimum separation of pairs."),
-       number("steady", &O::steady, Unit::none, positive,
-              "Ratio of the growth of all multipliers in a block to that in the block before, above which constraints "
-              "count as contradictory. Obstacles then yield."),
-       integer("max_rounds", &O::max_rounds, at_least_one, "Largest number of searches for pairs."),
-       number("few", &O::few, Unit::none, not_negative,
-              "Fraction of new constraints in a search below which no further search is made. The contact response "
-              "meets those."),
-       number("steepest_lag", &O::steepest_lag, Unit::none, positive,
-              "Largest difference in lag between two nodes of an obstacle, relative to their distance. It keeps a body "
-              "from folding into itself.")});
+      {integer("sweeps", &O::sweeps, at_least_one, "Number of projected Gauss-Seidel sweeps in a block."),
+       integer("max_rounds", &O::max_rounds, at_least_one, "Largest number of searches for pairs.")},
+      {}, {},
+      constants("collision/contact/resolve_options.hpp", {{"obstacle_mass", O::obstacle_mass},
+                                                          {"min_blocks", O::min_blocks},
+                                                          {"max_blocks", O::max_blocks},
+                                                          {"growing", O::growing},
+                                                          {"steady", O::steady},
+                                                          {"few", O::few},
+                                                          {"steepest_lag", O::steepest_lag}}));
   return table;
 }
 
@@ -131,14 +97,11 @@ const Options<ResolveOptions>& response_options() {
        integer("zone_rounds", &O::zone_rounds, at_least_one,
                "Number of rounds of impact zones before the last resort."),
        integer("zone_sweeps", &O::zone_sweeps, at_least_one, "Number of Gauss-Seidel sweeps in an impact zone."),
-       integer("yield_rounds", &O::yield_rounds, not_negative,
-               "Number of rounds of the last resort in which obstacles yield to impact zones."),
-       number("yielding_mass", &O::yielding_mass, Unit::none, positive,
-              "Mass of an obstacle node in the first of these rounds, in mean masses of cloth vertices. Each round "
-              "halves it."),
-       integer("motion_halvings", &O::motion_halvings, not_negative,
-               "How often the motion of an impact zone is halved before it is held still."),
-       section(&O::room, room_options(), "How obstacles yield before the solve.")});
+       section(&O::room, room_options(), "How obstacles yield before the solve.")},
+      {}, {},
+      constants("collision/contact/resolve_options.hpp", {{"yield_rounds", O::yield_rounds},
+                                                          {"yielding_mass", O::yielding_mass},
+                                                          {"motion_halvings", O::motion_halvings}}));
   return table;
 }
 

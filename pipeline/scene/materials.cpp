@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "physics/scene/scene_numbers.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/scene/config_scene.hpp"
 
 namespace selvedge {

@@ -6,9 +6,9 @@
 
 #include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/host/bounds.hpp"
-#include "pipeline/meshes/setup_mesh.hpp"
-#include "pipeline/meshes/setup_motion.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_mesh.hpp"
+#include "pipeline/obstacles/setup_motion.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/scene/massless.hpp"
 #include "pipeline/scene/materials.hpp"
 #include "pipeline/scene/setup_seams.hpp"

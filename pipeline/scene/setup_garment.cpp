@@ -7,9 +7,9 @@
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/garments/outfit.hpp"
 #include "pipeline/garments/worn_part.hpp"
-#include "pipeline/meshes/setup_mesh.hpp"
-#include "pipeline/meshes/setup_motion.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_mesh.hpp"
+#include "pipeline/obstacles/setup_motion.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/scene/config_scene.hpp"
 
 namespace selvedge {

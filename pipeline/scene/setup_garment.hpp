@@ -6,7 +6,7 @@
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/garments/footing.hpp"
 #include "pipeline/garments/garment.hpp"
-#include "pipeline/meshes/setup_body.hpp"
+#include "pipeline/obstacles/setup_body.hpp"
 
 namespace selvedge {
 

@@ -9,8 +9,8 @@
 #include "collision/geometry/disjoint_sets.hpp"
 #include "collision/geometry/error.hpp"
 #include "physics/energies/measures.hpp"
-#include "pipeline/meshes/setup_pairs.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_pairs.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/scene/setup_selection.hpp"
 
 namespace selvedge {

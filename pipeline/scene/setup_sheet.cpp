@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/host/bounds.hpp"
-#include "pipeline/meshes/setup_mesh.hpp"
+#include "pipeline/obstacles/setup_mesh.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/shapes/generate.hpp"
 

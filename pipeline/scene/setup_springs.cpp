@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <span>
 
-#include "pipeline/meshes/setup_pairs.hpp"
+#include "pipeline/obstacles/setup_pairs.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/setup_selection.hpp"
 

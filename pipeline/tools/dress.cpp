@@ -13,7 +13,7 @@
 #include "pipeline/garments/garment_dressed.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/garments/worn_part.hpp"
-#include "pipeline/meshes/setup_body.hpp"
+#include "pipeline/obstacles/setup_body.hpp"
 #include "pipeline/scene/config_scene.hpp"
 
 namespace selvedge {

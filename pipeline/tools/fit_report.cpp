@@ -8,8 +8,8 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/host/numbers_json.hpp"
-#include "pipeline/meshes/setup_body.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_body.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/setup.hpp"
 #include "pipeline/view/view.hpp"

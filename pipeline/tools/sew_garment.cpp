@@ -15,7 +15,7 @@
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/garments/garment_places.hpp"
 #include "pipeline/measures/motion_measures.hpp"
-#include "pipeline/meshes/setup_body.hpp"
+#include "pipeline/obstacles/setup_body.hpp"
 #include "pipeline/patterns/stand_round.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/materials.hpp"

@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "pipeline/host/kept_rows.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 
 namespace selvedge {
 namespace {

@@ -13,7 +13,7 @@
 #include "learned/network/architecture_text.hpp"
 #include "learned/network/weights_hdf5.hpp"
 #include "learned/network/widen_weights.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 
 namespace selvedge {
 namespace {

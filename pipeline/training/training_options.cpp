@@ -8,8 +8,8 @@
 #include "learned/network/architecture.hpp"
 #include "learned/network/architecture_limits.hpp"
 #include "pipeline/garments/outfit.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/motions/clip_split.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/training/objective_options.hpp"
 

@@ -7,8 +7,8 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/garments/outfit.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/motions/clip_split.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/run/run_inputs_yaml.hpp"
 #include "pipeline/scene/config_scene.hpp"
 

@@ -1,5 +1,5 @@
-#include "pipeline/formats/torch_archive.hpp"
-#include "pipeline/tools/import_weights.hpp"
+#include "pipeline/weights/import_weights.hpp"
+#include "pipeline/weights/torch_archive.hpp"
 #include "tests/fuzz/fuzzed_file.hpp"
 #include "tests/pipeline/fake_checkpoint.hpp"
 

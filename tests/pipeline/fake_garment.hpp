@@ -7,7 +7,7 @@
 #include "collision/geometry/surface.hpp"
 #include "pipeline/bodies/mannequin.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "tests/pipeline/fake_run.hpp"
 
 namespace selvedge::fake {

@@ -4,7 +4,7 @@
 
 #include "learned/gradients/training_network.hpp"
 #include "pipeline/formats/npz.hpp"
-#include "pipeline/tools/published_names.hpp"
+#include "pipeline/weights/published_names.hpp"
 #include "tests/learned/recorded_network.hpp"
 
 namespace selvedge::test_training_parity {

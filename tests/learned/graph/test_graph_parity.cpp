@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "pipeline/tools/import_weights.hpp"
+#include "pipeline/weights/import_weights.hpp"
 #include "tests/learned/parity_edges.hpp"
 
 namespace selvedge::test_graph_parity {

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "learned/graph/integration.hpp"
-#include "pipeline/tools/import_weights.hpp"
+#include "pipeline/weights/import_weights.hpp"
 #include "tests/learned/graph_scenes.hpp"
 #include "tests/learned/parity_pack.hpp"
 

@@ -2,7 +2,7 @@
 #include <fstream>
 
 #include "pipeline/formats/checkpoint.hpp"
-#include "pipeline/tools/import_weights.hpp"
+#include "pipeline/weights/import_weights.hpp"
 #include "tests/frame.hpp"
 #include "tests/learned/learned_scenes.hpp"
 #include "tests/learned/parity_pack.hpp"

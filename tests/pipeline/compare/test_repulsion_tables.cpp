@@ -6,7 +6,7 @@
 #include "pipeline/drapes/make_drapes.hpp"
 #include "pipeline/drapes/train_drapes.hpp"
 #include "pipeline/host/read_file.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/training/csv_charts.hpp"
 #include "tests/pipeline/files.hpp"
 

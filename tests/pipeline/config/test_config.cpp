@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "collision/geometry/error.hpp"
 #include "pipeline/scene/config_scene.hpp"
+#include "pipeline/scene/scene_pages.hpp"
 #include "pipeline/scene/setup.hpp"
 #include "tests/pipeline/files.hpp"
 
@@ -37,6 +40,8 @@ std::string check_refused(const std::string& scene, const std::vector<std::strin
 }
 
 const std::filesystem::path page = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "docs" / "scene.md";
+const std::vector<std::pair<std::filesystem::path, KeyTier>> tier_pages{
+    {page, KeyTier::user}, {page.parent_path() / "expert.md", KeyTier::expert}};
 const std::string marker = "<!-- tables -->\n";
 
 std::vector<std::string> yaml_blocks(const std::string& text) {
@@ -292,11 +297,37 @@ TEST_CASE("Defaults are those of the structs", "[config]") {
   CHECK_FALSE(setup.scene.wind.on);
 }
 
-TEST_CASE("docs/scene.md has the tables as the program has them", "[config]") {
-  const std::string text = whole(page);
-  const std::size_t at = text.find(marker);
-  REQUIRE(at != std::string::npos);
-  CHECK(text.substr(at + marker.size()) == fmt::format("\n{}", scene_reference()));
+TEST_CASE("docs/scene.md and docs/expert.md have the tables as the program has them", "[config]") {
+  for (const auto& [file, tier] : tier_pages) {
+    INFO(file);
+    const std::string text = whole(file);
+    const std::size_t at = text.find(marker);
+    REQUIRE(at != std::string::npos);
+    CHECK(text.substr(at + marker.size()) == fmt::format("\n{}", scene_reference(tier)));
+  }
+}
+
+TEST_CASE("Keys of scene files: a user has as many as a reader can take in, and every key is in one tier", "[config]") {
+  CHECK(scene_key_count(KeyTier::user) <= 130);
+  const std::string user = scene_keys_text(KeyTier::user), expert = scene_keys_text(KeyTier::expert);
+  CHECK(std::ranges::count(user, '\n') > scene_key_count(KeyTier::user));  // with its headings
+  CHECK_THAT(user, Contains("  friction ") && Contains("  blend_in "));
+  CHECK_THAT(user, !Contains("  zone_rounds "));
+  CHECK_THAT(expert, Contains("  zone_rounds ") && !Contains("  blend_in "));
+}
+
+TEST_CASE("Keys of scene files: one that has become a constant may be given as it is, and nothing else", "[config]") {
+  const Folder folder("config");
+  const auto read = [&](const std::string& solver) {
+    return read_setup(fake::write(folder, "scene.yaml", std::string(sheet) + "solver: " + solver + "\n"));
+  };
+  CHECK_NOTHROW(read("{substep: {max_slide: 1, tearing: 10}}"));
+  CHECK_THROWS_WITH(read("{substep: {max_slide: 2}}"), Contains("solver.substep.max_slide") &&
+                                                           Contains("is a constant now") &&
+                                                           Contains("it is 1 (physics/steppers/substep_options.hpp)"));
+  const auto file = fake::write(folder, "scene.yaml", sheet);
+  CHECK_NOTHROW(read_setup(file, {"solver.response.room.few=0.01"}));
+  CHECK_THROWS_WITH(read_setup(file, {"run.recovery.astray=3"}), Contains("is a constant now"));
 }
 
 TEST_CASE("The scenes in docs/scene.md can be read", "[config]") {
@@ -312,9 +343,11 @@ TEST_CASE("The scenes in docs/scene.md can be read", "[config]") {
   }
 }
 
-TEST_CASE("docs/scene.md is written anew", "[.][write-docs]") {
-  const std::string text = whole(page);
-  std::ofstream(page) << text.substr(0, text.find(marker) + marker.size()) << "\n" << scene_reference();
+TEST_CASE("docs/scene.md and docs/expert.md are written anew", "[.][write-docs]") {
+  for (const auto& [file, tier] : tier_pages) {
+    const std::string text = whole(file);
+    std::ofstream(file) << text.substr(0, text.find(marker) + marker.size()) << "\n" << scene_reference(tier);
+  }
 }
 
 }  // namespace selvedge::test_config

@@ -5,7 +5,7 @@
 #include "pipeline/drapes/drape_path_hdf5.hpp"
 #include "pipeline/drapes/drape_training_options.hpp"
 #include "pipeline/drapes/stage_file_hdf5.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_drape_set {

@@ -6,7 +6,7 @@
 #include "pipeline/drapes/drape_run.hpp"
 #include "pipeline/drapes/make_drapes.hpp"
 #include "pipeline/drapes/train_drapes.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_train_drapes {

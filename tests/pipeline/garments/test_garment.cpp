@@ -4,7 +4,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/bodies/mannequin.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "tests/threads.hpp"
 
 namespace selvedge::test_garment {

@@ -12,7 +12,7 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/bodies/mannequin.hpp"
 #include "pipeline/garments/outfit.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "tests/pipeline/fake_body.hpp"
 #include "tests/pipeline/files.hpp"
 

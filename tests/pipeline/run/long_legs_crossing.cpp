@@ -3,7 +3,7 @@
 #include "collision/search/intersections.hpp"
 #include "collision/untangle/find_exemption.hpp"
 #include "physics/recovery/recovery.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "tests/frame.hpp"

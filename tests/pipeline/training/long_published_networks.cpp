@@ -8,7 +8,7 @@
 
 #include "learned/network/architecture.hpp"
 #include "pipeline/host/peak_memory.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/run/simulate.hpp"
 #include "pipeline/training/trainer.hpp"
 

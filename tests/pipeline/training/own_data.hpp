@@ -6,7 +6,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/mesh_io.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/training/trainer.hpp"
 #include "tests/pipeline/fake_smpl.hpp"
 #include "tests/pipeline/files.hpp"

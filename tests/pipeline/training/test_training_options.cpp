@@ -5,7 +5,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/drapes/drape_training_options.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/training/training_options.hpp"
 #include "tests/pipeline/files.hpp"
 

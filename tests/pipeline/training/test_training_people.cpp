@@ -3,11 +3,11 @@
 #include <array>
 
 #include "learned/network/weights_hdf5.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/tools/convert_body.hpp"
-#include "pipeline/tools/import_weights.hpp"
 #include "pipeline/training/soft_tissue_hdf5.hpp"
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
+#include "pipeline/weights/import_weights.hpp"
 #include "tests/pipeline/fake_checkpoint.hpp"
 #include "tests/pipeline/files.hpp"
 #include "tests/pipeline/motions/fake_bvh.hpp"

@@ -3,8 +3,8 @@
 #include <set>
 
 #include "learned/steppers/learned_state.hpp"
-#include "pipeline/meshes/setup_paths.hpp"
 #include "pipeline/motions/clip_split.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/training/roll_queue.hpp"
 #include "pipeline/training/rolling_state.hpp"
 #include "tests/pipeline/training/tiny_training.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/meshes/setup_paths.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/training/rolling_state.hpp"
 #include "pipeline/training/trainer.hpp"
 

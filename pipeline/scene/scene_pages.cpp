@@ -1,0 +1,151 @@
+#include "pipeline/scene/scene_pages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+#include "collision/geometry/error.hpp"
+#include "pipeline/scene/config_scene.hpp"
+
+namespace selvedge {
+namespace {
+
+// What a user wants to do, and the sections with the keys that this needs. All other keys are the expert's.
+struct Task {
+  std::string title;
+  std::vector<std::pair<std::string, std::string>> sections;  // name, keys
+};
+
+const std::vector<Task>& tasks() {
+  static const std::vector<Task> all{
+      {"The file", {{"scene", "description cloths springs obstacles gravity wind contact run solver output"}}},
+      {"Cloths",
+       {{"cloth", "name rectangle mesh garment scale rotate translate start material rest seams pins"},
+        {"rectangle", "size resolution edge"},
+        {"mesh", "file unit"},
+        {"material", "name file density youngs_modulus poisson bending thickness stiffness_damping"},
+        {"rest", "from flat"},
+        {"pin", "vertices box group motion follow"},
+        {"box_region", "min max"},
+        {"motion", "keyframes"},
+        {"keyframe", "time translate rotate"},
+        {"seam", "from to pair file"},
+        {"seam_side", "vertices box group"},
+        {"spring", "from to pair rest_length stiffness"},
+        {"selection", "cloth vertices box group"}}},
+      {"Garments", {{"garment", "file unit cut over outfit form on pins"}, {"start", "from seconds"}}},
+      {"Obstacles and bodies",
+       {{"obstacle", "name plane sphere box mesh sequence body scale rotate translate motion"},
+        {"plane", "size edge"},
+        {"sphere", "radius edge"},
+        {"box", "size edge"},
+        {"sequence", "pattern cache mesh fps unit"},
+        {"body", "model shape clip blend_in room"}}},
+      {"Air and contact",
+       {{"wind", "velocity keyframes drag"},
+        {"wind_key", "time velocity"},
+        {"contact", "thickness friction self_friction self"}}},
+      {"The run",
+       {{"run", "frames fps quality substeps stepper learned hybrid refu"},
+        {"learned", "weights device"},
+        {"hybrid", "mode stop_when_slow"},
+        {"refu", "on alpha weights"},
+        {"solver", "integrator velocity_tolerance"},
+        {"output", "folder"}}}};
+  return all;
+}
+
+void collect(const Section& section, std::vector<const Section*>& found) {
+  if (std::ranges::find(found, &section) != found.end()) return;
+  found.push_back(&section);
+  for (const Key& key : section.keys)
+    if (key.section) collect(*key.section, found);
+}
+
+// Every section of a scene file, the scene itself first.
+std::vector<const Section*> scene_sections() {
+  std::vector<const Section*> found;
+  collect(scene_section(), found);
+  return found;
+}
+
+bool has_word(const std::string& words, const std::string& word) {
+  std::istringstream stream(words);
+  for (std::string one; stream >> one;)
+    if (one == word) return true;
+  return false;
+}
+
+const std::string* user_keys(const Section& section) {
+  for (const Task& task : tasks())
+    for (const auto& [name, keys] : task.sections)
+      if (name == section.name) return &keys;
+  return nullptr;
+}
+
+KeyTier tier_of(const Section& section, const Key& key) {
+  const std::string* keys = user_keys(section);
+  return keys && has_word(*keys, key.name) ? KeyTier::user : KeyTier::expert;
+}
+
+// Sections with chapters on a tier's page: the user's in the order of the tasks.
+std::vector<const Section*> sections_of(KeyTier tier) {
+  std::vector<const Section*> chosen;
+  for (const Section* section : scene_sections())
+    if (std::ranges::any_of(section->keys, [&](const Key& key) { return tier_of(*section, key) == tier; }))
+      chosen.push_back(section);
+  return chosen;
+}
+
+KeyPage page_of(KeyTier tier) {
+  return {[tier](const Section& section, const Key& key) { return tier_of(section, key) == tier; },
+          [tier](const Section& section) -> std::string {
+            const bool user = user_keys(section) != nullptr;
+            if (tier == KeyTier::user) return user ? "" : "expert.md";
+            return user ? "scene.md" : "";
+          }};
+}
+
+}  // namespace
+
+std::string scene_reference(KeyTier tier) {
+  std::string text;
+  const std::vector<const Section*> sections = sections_of(tier);
+  if (tier == KeyTier::expert) {
+    for (const Section* section : sections) text += section_chapter(*section, page_of(tier));
+    return text;
+  }
+  for (const Task& task : tasks()) {
+    text += "## " + task.title + ": keys\n\n";
+    for (const auto& [name, keys] : task.sections)
+      for (const Section* section : sections)
+        if (section->name == name) text += section_chapter(*section, page_of(tier));
+  }
+  return text;
+}
+
+std::string scene_keys_text(KeyTier tier) {
+  std::string text;
+  for (const Section* section : sections_of(tier)) {
+    text += section->name + "\n";
+    for (const Key& key : section->keys) {
+      if (tier_of(*section, key) != tier) continue;
+      std::string facts = unit_symbol(key.unit);
+      if (!key.otherwise.empty()) facts += (facts.empty() ? "" : ", ") + key.otherwise;
+      text += fmt::format("  {:<20} {:<24} {}\n", key.name, facts, key.about);
+    }
+  }
+  return text;
+}
+
+int scene_key_count(KeyTier tier) {
+  int count = 0;
+  for (const Section* section : scene_sections())
+    count += static_cast<int>(
+        std::ranges::count_if(section->keys, [&](const Key& key) { return tier_of(*section, key) == tier; }));
+  return count;
+}
+
+}  // namespace selvedge

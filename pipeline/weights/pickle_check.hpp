@@ -1,0 +1,14 @@
+#pragma once
+
+#include "pipeline/weights/pickle_value.hpp"
+
+namespace selvedge {
+
+// Throws Error if the values below the root contain themselves, nest too deeply, unfold to too many, have a key twice,
+// or hold a global or a bare storage.
+void check_pickle(const Pickle&, const std::string& where);
+
+// Throws the Error of a file that this reader does not take.
+[[noreturn]] void refuse_pickle(const std::string& what, const std::string& where);
+
+}  // namespace selvedge

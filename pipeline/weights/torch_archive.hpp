@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pipeline/weights/pickle.hpp"
+#include "pipeline/weights/stored_archive.hpp"
+
+namespace selvedge {
+
+// A file of torch.save (torch 1.6 or newer): a ZIP archive with one pickle of plain values and a storage an entry. The
+// pickle is read at once, a tensor's numbers when they are asked for. Throws Error for everything that pickle.hpp and
+// stored_archive.hpp refuse.
+class TorchArchive {
+ public:
+  explicit TorchArchive(const std::filesystem::path&);
+
+  const std::filesystem::path& path() const { return path_; }
+  const Pickle& pickle() const { return pickle_; }
+  const PickleValue& root() const { return pickle_.values[pickle_.root]; }
+
+  // The tensor's numbers, the last index fastest. `name` is for messages. Throws Error for a tensor of integers, and
+  // for a storage that is missing or is of another size than the pickle says.
+  std::vector<float> floats(const TorchTensor&, const std::string& name);
+
+ private:
+  std::filesystem::path path_;
+  StoredArchive archive_;
+  std::string stem_;
+  Pickle pickle_;
+};
+
+}  // namespace selvedge

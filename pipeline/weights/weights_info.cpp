@@ -1,0 +1,107 @@
+#include "pipeline/weights/weights_info.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace selvedge {
+namespace {
+
+using StatisticsColumns = std::vector<std::pair<std::string, int>>;
+
+StatisticsColumns statistics_columns(const Architecture& a) {
+  const StatisticsSizes& s = a.statistics;
+  StatisticsColumns present;
+  for (const auto& [name, columns] : StatisticsColumns{{"node", s.node},
+                                                       {"mesh_edge", s.mesh_edge},
+                                                       {"coarse_edge", s.coarse_edge},
+                                                       {"world_edge", s.world_edge},
+                                                       {"body_edge", s.body_edge},
+                                                       {"output", s.output}})
+    if (columns > 0) present.emplace_back(name, columns);
+  return present;
+}
+
+std::string integration_name(Integration integration) {
+  return integration == Integration::relaxation_frame ? "relaxation_frame" : "start_flag";
+}
+
+// Steps that follow each other with the same edges count as one line.
+std::vector<std::pair<int, MessageStep>> grouped_steps(const Architecture& a) {
+  std::vector<std::pair<int, MessageStep>> groups;
+  for (const MessageStep& step : a.steps)
+    if (!groups.empty() && groups.back().second.edge_keys == step.edge_keys)
+      ++groups.back().first;
+    else
+      groups.emplace_back(1, step);
+  return groups;
+}
+
+}  // namespace
+
+WeightsInfo weights_info(const WeightFile& file) {
+  WeightsInfo info{file, parameter_count(file.architecture), 0, 0};
+  NetworkWeights& copy = info.file.weights;  // weight_arrays gives pointers that may be written to
+  for (const WeightArray& array : weight_arrays(file.architecture, copy))
+    for (std::ptrdiff_t k = 0; k < std::ptrdiff_t{array.rows} * array.columns; ++k) {
+      if (!std::isfinite(array.data[k])) ++info.nonfinite;
+      if (array.name.ends_with("/deviation") && array.data[k] <= 1e-8f) ++info.constant_columns;
+    }
+  copy = {};
+  return info;
+}
+
+std::string weights_info_text(const WeightsInfo& info) {
+  const Architecture& a = info.file.architecture;
+  const auto line = [](const std::string& name, const std::string& value) {
+    return fmt::format("{:<20}{}\n", name, value);
+  };
+  std::string text = line("network", a.name);
+  text += line("parameters", fmt::format("{}", info.parameters));
+  text += line("width", fmt::format("{}, {} hidden layers", a.width, a.hidden_layers));
+  text += line("node inputs", fmt::format("{}", a.node_inputs));
+  for (const EdgeEncoder& encoder : a.encoders)
+    text += line("edge encoder", fmt::format("{}, {} inputs", encoder.name, encoder.inputs));
+  for (const auto& [count, step] : grouped_steps(a))
+    text += line("steps", fmt::format("{} of {}", count, fmt::join(step.edge_keys, ", ")));
+  for (const auto& [name, columns] : statistics_columns(a))
+    text += line("statistics", fmt::format("{}, {} columns", name, columns));
+  text += line("integration", fmt::format("{}, {} passes a frame", integration_name(a.integration), a.passes));
+  text += line("constant columns", fmt::format("{}", info.constant_columns));
+  text += line("not finite", fmt::format("{}", info.nonfinite));
+  for (const auto& [name, value] : info.file.origin) text += line(name, value);
+  if (!info.file.training.empty()) text += line("training", info.file.training);
+  text += line("written by", "selvedge " + info.file.version);
+  return text;
+}
+
+std::string weights_info_json(const WeightsInfo& info) {
+  using Json = nlohmann::ordered_json;
+  const Architecture& a = info.file.architecture;
+  Json encoders = Json::array(), steps = Json::array(), statistics = Json::object(), origin = Json::object();
+  for (const EdgeEncoder& encoder : a.encoders)
+    encoders.push_back({{"name", encoder.name}, {"inputs", encoder.inputs}});
+  for (const MessageStep& step : a.steps) steps.push_back(step.edge_keys);
+  for (const auto& [name, columns] : statistics_columns(a)) statistics[name] = columns;
+  for (const auto& [name, value] : info.file.origin) origin[name] = value;
+  return Json{{"network", a.name},
+              {"parameters", info.parameters},
+              {"width", a.width},
+              {"hidden_layers", a.hidden_layers},
+              {"node_inputs", a.node_inputs},
+              {"edge_encoders", encoders},
+              {"steps", steps},
+              {"statistics", statistics},
+              {"integration", integration_name(a.integration)},
+              {"passes", a.passes},
+              {"constant_columns", info.constant_columns},
+              {"nonfinite", info.nonfinite},
+              {"origin", origin},
+              {"training", info.file.training},
+              {"version", info.file.version}}
+             .dump(2) +
+         "\n";
+}
+
+}  // namespace selvedge
