@@ -47,11 +47,14 @@ const std::map<std::string, std::vector<Room>> rooms = {
       {"repulsion"},
       {"steppers"},
       {"torch", {"graph", "network", "gradients"}, Door::closed}}},
-    {"pipeline",
-     {{"host"},     {"config"},   {"formats"}, {"exports"},  {"shapes"},  {"bodies"},   {"motions"},
-      {"garments"}, {"patterns"}, {"meshes"},  {"scene"},    {"run"},     {"measures"}, {"view", {"host", "formats"}},
-      {"tools"},    {"training"}, {"drapes"},  {"validate"}, {"compare"}, {"suites"},   {"python"},
-      {"commands"}}}};
+    {"pipeline", {{"host"},     {"config"},   {"reports", {"host"}},
+                  {"formats"},  {"exports"},  {"shapes"},
+                  {"bodies"},   {"motions"},  {"garments"},
+                  {"patterns"}, {"meshes"},   {"scene"},
+                  {"run"},      {"measures"}, {"view", {"host", "reports", "formats"}},
+                  {"tools"},    {"training"}, {"drapes"},
+                  {"validate"}, {"compare"},  {"suites"},
+                  {"python"},   {"commands"}}}};
 const std::string program = "pipeline/main.cpp";  // stands above all rooms
 
 struct Place {
