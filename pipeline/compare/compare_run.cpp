@@ -11,9 +11,9 @@
 #include "learned/steppers/learned_state.hpp"
 #include "physics/frame/frame_audits.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
-#include "pipeline/formats/trajectory_row.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/measures/run_measures.hpp"
+#include "pipeline/reports/report_fields.hpp"
 #include "pipeline/run/record_frame.hpp"
 #include "pipeline/run/simulate.hpp"
 #include "pipeline/run/summary.hpp"
@@ -62,11 +62,8 @@ struct RunWatch {
   }
 
   void note_phases(const PhaseTimes& s) {
-    const std::pair<const char*, double> all[]{{"solve", s.solve},     {"broad_phase", s.broad_phase},
-                                               {"ccd", s.ccd},         {"response", s.response},
-                                               {"audit", s.audit},     {"graph", s.graph},
-                                               {"network", s.network}, {"guard", s.guard}};
-    for (const auto& [name, seconds] : all) phases[name].push_back(1000 * seconds);
+    for (const BoundField<PhaseTimes>& phase : phase_fields())
+      phases[phase.name].push_back(1000 * number_of(phase.get(s), {}));
   }
 
   void operator()(const FrameEvent& event) {

@@ -42,9 +42,8 @@ void write_constants(const h5::File& file, const TrajectoryInfo& info) {
   write_ints(file, "cloth/pins", info.pins);
 
   const h5::Handle codes = file.make_group("codes");
-  file.write_texts("codes/reason", reason_names());
-  file.write_texts("codes/status", status_names());
-  file.write_texts("codes/verdict", verdict_names());
+  for (const BoundField<Frame>& field : frame_fields())
+    if (field.type == ColumnType::word) file.write_texts("codes/" + field.name, field.words);
 }
 
 }  // namespace
@@ -179,10 +178,11 @@ void TrajectoryWriter::Impl::append(const Frame& frame) {
   std::vector<std::int32_t> off = frame.report.switched_off;
   off.resize(obstacles.size(), 0);
   if (!off.empty()) file.write_rows(switched_off.id(), H5T_NATIVE_INT32, frames, 1, off.data());
-  const TrajectoryRow row = row_of(frame, code_of(frame.report.by), bad_length);
-  file.write_rows(report.id(), row_type.id(), frames, 1, &row);
+  const TrajectoryRow row = row_of(
+      frame, [this](const std::string& name) { return code_of(name); }, bad_length);
+  file.write_rows(report.id(), row_type.id(), frames, 1, row.cells.data());
   file.flush();
-  bad_length += row.bad_count;
+  bad_length += row.bad_count();
   set(complete, ++frames);
 }
 

@@ -169,27 +169,26 @@ Frame TrajectoryReader::frame(int index) const {
     throw Error("there is no frame " + std::to_string(index), r.file.path().string(),
                 "it has " + std::to_string(r.frames) + " frames, counted from 0");
   Frame frame;
-  TrajectoryRow row{};
-  r.file.read_rows(r.report.id(), r.row_type.id(), {}, static_cast<hsize_t>(index), 1, &row);
-  if (row.reason < 0 || row.reason >= static_cast<int>(reason_names().size()) || row.status < 0 ||
-      row.status >= static_cast<int>(status_names().size()) || row.verdict < 0 ||
-      row.verdict >= static_cast<int>(verdict_names().size()))
-    throw_damaged(r.file, "frame " + std::to_string(index) + " has an unknown reason, status or verdict");
+  TrajectoryRow row = empty_row();
+  r.file.read_rows(r.report.id(), r.row_type.id(), {}, static_cast<hsize_t>(index), 1, row.cells.data());
+  if (const auto name = unknown_word(row))
+    throw_damaged(r.file, "frame " + std::to_string(index) + " has an unknown " + *name);
   fill_from_row(row, r.by_names, frame);
   frame.x = r.read_points(r.x, index, r.info.rest.rows());
   for (std::size_t k = 0; k < r.obstacles.size(); ++k)
     frame.obstacles.push_back(
         r.read_points(r.obstacles[k], r.info.obstacles[k].moving ? index : 0, r.info.obstacles[k].vertex_count));
-  if (row.switched_off > 0 && r.switched_off.id() >= 0) {
+  if (r.switched_off.id() >= 0) {
     std::vector<int>& off = frame.report.switched_off;
     off.resize(r.obstacles.size());
     r.file.read_rows(r.switched_off.id(), H5T_NATIVE_INT32, {off.size()}, static_cast<hsize_t>(index), 1, off.data());
+    if (std::ranges::all_of(off, [](int count) { return count == 0; })) off.clear();
   }
-  if (row.bad_count < 0 || row.bad_count > r.info.triangles.rows() || row.bad_begin < 0)
+  if (row.bad_count() < 0 || row.bad_count() > r.info.triangles.rows() || row.bad_begin() < 0)
     throw_damaged(r.file, "frame " + std::to_string(index) + " marks more triangles than there are");
-  frame.bad_triangles.resize(row.bad_count);
-  r.file.read_rows(r.bad.id(), H5T_NATIVE_INT32, {}, static_cast<hsize_t>(row.bad_begin),
-                   static_cast<hsize_t>(row.bad_count), frame.bad_triangles.data());
+  frame.bad_triangles.resize(static_cast<std::size_t>(row.bad_count()));
+  r.file.read_rows(r.bad.id(), H5T_NATIVE_INT32, {}, static_cast<hsize_t>(row.bad_begin()),
+                   static_cast<hsize_t>(row.bad_count()), frame.bad_triangles.data());
   for (const int t : frame.bad_triangles)
     if (t < 0 || t >= r.info.triangles.rows())
       throw_damaged(r.file, "frame " + std::to_string(index) + " marks a triangle that is not there");

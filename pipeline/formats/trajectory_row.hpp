@@ -1,43 +1,43 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "pipeline/formats/hdf5_handles.hpp"
 #include "pipeline/formats/trajectory.hpp"
+#include "pipeline/reports/report_fields.hpp"
 
 namespace selvedge {
 
-// A frame without its arrays, as the compound row of dataset frames/report. The columns are listed once, in
-// trajectory_row.cpp.
+// A frame without its positions: its report, its audit, its energies.
+const BoundFields<Frame>& frame_fields();
+
+// The same as the compound row of dataset frames/report: a cell of 8 bytes for each field that has a column, whole
+// numbers as they are and others by their bits.
 struct TrajectoryRow {
-  double time, seconds;
-  std::int32_t by, reason, status;  // rows of codes/by, codes/reason, codes/status
-  std::int32_t fell_back, verdict, substeps, resting, iterations, linear_iterations;
-  double residual;
-  PhaseTimes phase;
-  StepCounts counts;
-  CollisionReport collision;
-  std::int32_t switched_off, untangling, out_of_newton, out_of_untangling, out_of_response, out_of_proofs;
-  double unsolved;
-  std::int32_t self_pairs, vertex_pairs, obstacle_pairs, inside_vertices, nonfinite;
-  double max_stretch, min_stretch;
-  double kinetic_energy, gravity_energy, membrane_energy, bending_energy, spring_energy;
-  std::int64_t bad_begin;  // frames/bad_triangles [bad_begin, bad_begin + bad_count)
-  std::int32_t bad_count;
+  std::vector<std::int64_t> cells;
+  // The last two columns: frames/bad_triangles [bad_begin, bad_begin + bad_count).
+  std::int64_t bad_begin() const { return cells[cells.size() - 2]; }
+  std::int64_t bad_count() const { return cells.back(); }
 };
 
 h5::Handle row_memory_type();
-h5::Handle row_file_type();  // the same columns without padding
+h5::Handle row_file_type();  // the same columns, without padding
 
-TrajectoryRow row_of(const Frame&, int by, std::int64_t bad_begin);
-void fill_from_row(const TrajectoryRow&, const std::vector<std::string>& names_of_by, Frame&);
+// `number_of_text` gives the row of codes/by.
+TrajectoryRow row_of(const Frame&, const std::function<int(const std::string&)>& number_of_text,
+                     std::int64_t bad_begin);
+// Columns that a file lacks have the values that a new frame has: read into this.
+TrajectoryRow empty_row();
+// The name of a field whose enumerator there is not; nothing else of such a row may be read.
+std::optional<std::string> unknown_word(const TrajectoryRow&);
+void fill_from_row(const TrajectoryRow&, const std::vector<std::string>& texts, Frame&);
 
-// Names of the enumerators, in order: the tables codes/reason, codes/status and codes/verdict.
-const std::vector<std::string>& reason_names();
-const std::vector<std::string>& status_names();
-const std::vector<std::string>& verdict_names();
+// The columns as docs/files.md has them.
+std::string trajectory_reference();
 
 // Bytes kept for a name in codes/by.
 inline constexpr std::size_t by_name_bytes = 64;

@@ -15,7 +15,9 @@
 #include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
 #include "pipeline/python/bindings_nanobind.hpp"
+#include "pipeline/python/fields_nanobind.hpp"
 #include "pipeline/python/stepper_nanobind.hpp"
+#include "pipeline/reports/report_fields.hpp"
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "pipeline/scene/setup.hpp"
@@ -101,9 +103,10 @@ class World {
     check_state(setup_.scene, state_);  // whose arrays Python may have written to
     const double dt = 1 / setup_.run.fps;
     State next;
-    const StepReport report = make_frame(*stepper_, audits_, state_, drive_at(state_.time + dt), dt, next);
-    if (report.status != StepStatus::accepted) return false;
-    keep(std::move(next), report);
+    report_ = make_frame(*stepper_, audits_, state_, drive_at(state_.time + dt), dt, next);
+    if (report_->status != StepStatus::accepted) return false;
+    keep(std::move(next));
+    pairs_ = report_->collision.pairs_after;
     return true;
   }
 
@@ -112,6 +115,7 @@ class World {
     return state_;
   }
   int pairs() const { return pairs_; }
+  nb::dict report() const { return report_ ? dict_of(report_fields(), *report_) : nb::dict(); }
   double fps() const { return setup_.run.fps; }
   int frames() const { return setup_.run.frames; }
   const Triangles& triangles() const { return setup_.scene.surface.triangles; }
@@ -152,7 +156,7 @@ class World {
   }
 
   // Writes into the existing arrays, so that views of them stay valid.
-  void keep(State next, const StepReport& report) {
+  void keep(State next) {
     Points x = std::move(state_.x), v = std::move(state_.v);
     std::vector<Points> obstacles = std::move(state_.obstacles);
     x = next.x;
@@ -162,7 +166,6 @@ class World {
     state_.x.swap(x);
     state_.v.swap(v);
     state_.obstacles.swap(obstacles);
-    pairs_ = report.collision.pairs_after;
   }
 
   HeldObjects held_ = std::make_shared<HeldObjects::element_type>();
@@ -174,6 +177,7 @@ class World {
   State state_;
   std::unique_ptr<Stepper> stepper_;
   FrameAudits audits_{setup_.scene};
+  std::optional<StepReport> report_;  // of the last step
   int pairs_ = -1;
 };
 
@@ -219,6 +223,8 @@ void bind_scene(nb::module_& module) {
       .def_prop_ro(
           "clean", [](World& world) { return world.state().clean; }, "Known to be free of intersections.")
       .def_prop_ro("pairs", &World::pairs, "Intersecting pairs of triangles after the last step; -1: not known.")
+      .def_prop_ro("report", &World::report,
+                   "What came of the last step, accepted or rejected, by the names of docs/files.md; empty before one.")
       .def_prop_ro("fps", &World::fps, "Frames a second.")
       .def_prop_ro("frames", &World::frames, "That the scene file asks for; 0 of a scene from arrays.");
 }

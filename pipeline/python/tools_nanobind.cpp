@@ -11,8 +11,10 @@
 #include "pipeline/compare/compare.hpp"
 #include "pipeline/formats/read_point_cache.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/formats/trajectory_row.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
 #include "pipeline/python/bindings_nanobind.hpp"
+#include "pipeline/python/fields_nanobind.hpp"
 #include "pipeline/python/stepper_nanobind.hpp"
 
 namespace selvedge {
@@ -164,17 +166,19 @@ nb::object compare_file(const std::filesystem::path& file, const nb::dict& kinds
 
 nb::dict read_trajectory(const std::filesystem::path& file) {
   const TrajectoryReader reader(file);
-  nb::list x, time;
+  nb::list x, time, reports;
   for (int k = 0; k < reader.frame_count(); ++k) {
     const Frame frame = reader.frame(k);
     x.append(copy_of(Points(frame.x.cast<double>())));
     time.append(frame.time);
+    reports.append(dict_of(frame_fields(), frame));
   }
   nb::dict result;
   result["triangles"] = copy_of(reader.info().triangles);
   result["fps"] = reader.info().fps;
   result["time"] = time;
   result["x"] = x;
+  result["reports"] = reports;
   return result;
 }
 
@@ -208,7 +212,8 @@ void bind_tools(nb::module_& module) {
              "Parts a cloth from itself and from bodies, arguments as for check. Returns positions, n x 3 [m], and a "
              "report: pairs_before, pairs_after, iterations.");
   module.def("read_trajectory", &read_trajectory, "file"_a,
-             "A run's run.h5: triangles, m x 3; fps; time, a list [s]; x, a list of n x 3 [m], one a frame.");
+             "A run's run.h5: triangles, m x 3; fps; time, a list [s]; x, a list of n x 3 [m], one a frame; reports, a "
+             "list of dicts, one a frame, by the names of docs/files.md.");
   module.def(
       "read_cache", &read_cache, "file"_a,
       "A point cache, .pc2, .pc16 (half floats, as CLOTH3D has them) or .mdd: fps, 0 where it does not say; at, when "

@@ -9,7 +9,6 @@
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/stop_scope.hpp"
 #include "pipeline/config/config.hpp"
-#include "pipeline/formats/trajectory_row.hpp"
 #include "pipeline/formats/xdmf.hpp"
 #include "pipeline/host/folder_lock.hpp"
 #include "pipeline/host/peak_memory.hpp"

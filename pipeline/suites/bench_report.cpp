@@ -21,6 +21,10 @@ double a_frame(const BenchMember& member, double sum) {
   return frames > 0 ? sum / frames : 0;
 }
 
+const FieldTotal& total(const BenchMember& member, std::string_view field) {
+  return total_of(member.summary.fields, field);
+}
+
 double per_frame(const BenchMember& member, double seconds) { return 1000 * a_frame(member, seconds); }
 
 const std::vector<Column>& columns() {
@@ -35,19 +39,19 @@ const std::vector<Column>& columns() {
       {"ms_response", "response", 1, [](M m) { return per_frame(m, m.summary.seconds.response); }},
       {"ms_audit", "audit", 1, [](M m) { return per_frame(m, m.summary.seconds.audit); }},
       {"ms_worst", "worst ms", 1, [](M m) { return worst_milliseconds(m.summary); }},
-      {"iterations", "Newton", 1, [](M m) { return a_frame(m, m.summary.iterations); }},
-      {"linear_iterations", "V-cycles", 1, [](M m) { return a_frame(m, m.summary.linear_iterations); }},
-      {"solves", "solves", 1, [](M m) { return a_frame(m, m.summary.counts.solves); }},
-      {"coarse_builds", "builds", 1, [](M m) { return a_frame(m, m.summary.counts.coarse_builds); }},
-      {"searches", "searches", 1, [](M m) { return a_frame(m, m.summary.counts.searches); }},
-      {"candidates", "candidates", 0, [](M m) { return a_frame(m, double(m.summary.counts.candidates)); }},
-      {"audits", "audits", 1, [](M m) { return a_frame(m, m.summary.counts.audits); }},
+      {"iterations", "Newton", 1, [](M m) { return a_frame(m, total(m, "iterations").sum); }},
+      {"linear_iterations", "V-cycles", 1, [](M m) { return a_frame(m, total(m, "linear_iterations").sum); }},
+      {"solves", "solves", 1, [](M m) { return a_frame(m, total(m, "solves").sum); }},
+      {"coarse_builds", "builds", 1, [](M m) { return a_frame(m, total(m, "coarse_builds").sum); }},
+      {"searches", "searches", 1, [](M m) { return a_frame(m, total(m, "searches").sum); }},
+      {"candidates", "candidates", 0, [](M m) { return a_frame(m, total(m, "candidates").sum); }},
+      {"audits", "audits", 1, [](M m) { return a_frame(m, total(m, "audits").sum); }},
       {"peak_mb", "peak MB", 1, [](M m) { return double(m.summary.peak_memory) / 1e6; }},
-      {"max_contacts", "contacts", 0, [](M m) { return double(m.summary.max_contacts); }},
-      {"impulses", "impulses", 0, [](M m) { return double(m.summary.impulses); }},
+      {"max_contacts", "contacts", 0, [](M m) { return total(m, "contacts").largest; }},
+      {"impulses", "impulses", 0, [](M m) { return total(m, "impulses").sum; }},
       {"intersecting_pairs", "pairs", 0, [](M m) { return double(m.summary.worst_pairs); }},
-      {"pairs_wanted", "wanted", 0, [](M m) { return double(m.summary.worst_pairs_wanted); }},
-      {"depth_wanted", "depth", 4, [](M m) { return m.summary.max_depth_wanted; }},
+      {"pairs_wanted", "wanted", 0, [](M m) { return total(m, "pairs_wanted").largest; }},
+      {"depth_wanted", "depth", 4, [](M m) { return total(m, "depth_wanted").largest; }},
       {"inside_vertices", "inside", 0, [](M m) { return double(m.summary.worst_inside); }},
       {"nonfinite", "nonfinite", 0, [](M m) { return double(m.summary.nonfinite); }},
       {"max_stretch", "stretch", 3, [](M m) { return m.summary.max_stretch; }},

@@ -60,8 +60,9 @@ Setup read_run(const StabilityRequest& request, const StabilityCase& one, const 
 }
 
 int frames_of(const RunSummary& summary, Verdict verdict) {
+  const std::vector<int>& frames = total_of(summary.fields, "verdict").by_word;
   const auto k = static_cast<std::size_t>(verdict);
-  return k < summary.verdicts.size() ? summary.verdicts[k] : 0;
+  return k < frames.size() ? frames[k] : 0;
 }
 
 // Nothing but numbers that are none is held against a bare network: a step that it rejects has a reason, and what else
@@ -84,8 +85,8 @@ void judge_row(const RunSummary& summary, const StabilityLimits& limits, Stabili
           fmt::format("{} intersecting pairs after a clean start", row.pairs));
   fail_if(row.clean_start && row.jumped > 0 && row.end_pairs + row.end_inside > 0,
           fmt::format("still {} pairs and {} vertices inside what jumped", row.end_pairs, row.end_inside));
-  fail_if(row.clean_start && row.jumped == 0 && summary.passed_through > 0,
-          fmt::format("{} passed through", summary.passed_through));
+  const auto passed_through = static_cast<long>(total_of(summary.fields, "passed_through").sum);
+  fail_if(row.clean_start && row.jumped == 0 && passed_through > 0, fmt::format("{} passed through", passed_through));
 }
 
 // Absent: stopped before its end.

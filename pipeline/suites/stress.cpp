@@ -72,7 +72,8 @@ std::vector<std::string> failures_of(const StressRow& row, const RunSummary& sum
   fail_if(row.pairs > 0, fmt::format("{} intersecting pairs, most in frame {}", row.pairs, row.worst_frame));
   fail_if(row.vertex_pairs > 0, fmt::format("{} pairs that share a vertex cross", row.vertex_pairs));
   fail_if(row.worst_inside > 0, fmt::format("{} vertices inside an obstacle", row.worst_inside));
-  fail_if(summary.cut_out_at_end > 0, fmt::format("{} triangles still cut out", summary.cut_out_at_end));
+  const auto cut_out = static_cast<long>(total_of(summary.fields, "cut_out").at_end);
+  fail_if(cut_out > 0, fmt::format("{} triangles still cut out", cut_out));
   fail_if(row.passed_through > 0, fmt::format("{} passed through", row.passed_through));
   fail_if(row.held_share >= most_held, fmt::format("{:.2f} % of vertex-steps held back", 100 * row.held_share));
   if (!obstacles_must_lag(setup)) {
@@ -124,12 +125,12 @@ std::optional<StressRow> run_repeat(const StressRequest& request, const Repeat& 
   row.worst_frame = summary.worst_frame;
   row.worst_inside = summary.worst_inside;
   row.wanted_frames = watch.wanted_frames;
-  row.passed_through = summary.passed_through;
-  row.impulses = summary.impulses;
-  row.zones = summary.zones;
-  row.shortened = summary.shortened;
+  row.passed_through = static_cast<long>(total_of(summary.fields, "passed_through").sum);
+  row.impulses = static_cast<long>(total_of(summary.fields, "impulses").sum);
+  row.zones = static_cast<long>(total_of(summary.fields, "zones").sum);
+  row.shortened = static_cast<long>(total_of(summary.fields, "shortened").sum);
   row.held_share = held_fraction(summary);
-  row.obstacle_lag = summary.max_obstacle_lag;
+  row.obstacle_lag = total_of(summary.fields, "obstacle_lag").largest;
   row.max_stretch = summary.max_stretch;
   const std::vector<OutcomeResult> results = watch.outcome.results();
   for (std::size_t k = 0; k < results.size(); ++k) row.outcome.push_back(outcome_text(setup.outcomes[k], results[k]));

@@ -22,7 +22,7 @@ function drawTicks(canvas, runs, timeline) {
   timeline.forEach((time, f) => {
     const at = runs.map((run) => [run, frameAt(run, time)]).filter(([run]) => time <= run.end + 1e-9);
     const bad = at.some(([run, g]) => run.pairs[g] > 0 || run.series.nonfinite[g] > 0);
-    const fell = at.some(([run, g]) => run.series.fellBack[g]);
+    const fell = at.some(([run, g]) => run.series.fell_back[g]);
     if (!bad && !fell) return;
     context.fillStyle = style.getPropertyValue(bad ? "--bad" : "--warn");
     const step = canvas.width / Math.max(1, frames - 1);

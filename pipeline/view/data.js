@@ -33,7 +33,7 @@ function loadRuns() {
       body.triangles = decode(`run${r}-body${b}-triangles`, Uint32Array);
       body.levels = decode(`run${r}-body${b}-x`, Uint16Array);
     });
-    run.pairs = run.series.self.map((pairs, f) => pairs + run.series.obstacle[f]);
+    run.pairs = run.series.self_pairs.map((pairs, f) => pairs + run.series.obstacle_pairs[f]);
   });
   return data;
 }

@@ -17,7 +17,7 @@ document.documentElement.dataset.errors = "[]";
 
 // A round top for the colours that nearly all frames stay under.
 function strainTop(runs) {
-  const tops = runs.flatMap((run) => run.series.maxStretch).filter((value) => value !== null).sort((a, b) => a - b);
+  const tops = runs.flatMap((run) => run.series.max_stretch).filter((value) => value !== null).sort((a, b) => a - b);
   const high = tops.length ? tops[Math.floor(0.9 * (tops.length - 1))] : 1.1;
   return Math.min(3, 1 + Math.max(0.01, niceTop(high - 1)));
 }

@@ -11,7 +11,7 @@ const energyColours = {
   gravity: "#8a939d",
   membrane: "#e0922f",
   bending: "#2fa58a",
-  springs: "#a0569c"
+  spring: "#a0569c"
 };
 const strainStops = ["#2b2f6b", "#2c5f9e", "#2f93a6", "#63bd8c", "#c5d968", "#fff3a3"];
 

@@ -25,24 +25,24 @@ function makePanel(run, scaleText) {
 // What is worth saying about a frame, most important first: [text, class].
 function chipsOf(run, frame, marked) {
   const at = (name) => run.series[name][frame], reason = at("reason") === "none" ? "" : at("reason").replace(/_/g, " ");
-  const range = ["minStretch", "maxStretch"].map((name) => (at(name) === null ? "\u2013" : at(name).toFixed(3)));
+  const range = ["min_stretch", "max_stretch"].map((name) => (at(name) === null ? "\u2013" : at(name).toFixed(3)));
   const plural = (n, word) => `${n} ${n === 1 ? word : word.replace(/ex$/, "ice")}${n === 1 ? "" : "s"}`;
   const chips = [], pairs = run.pairs[frame];
   if (at("nonfinite")) chips.push([`${plural(at("nonfinite"), "vertex")} not finite`, "bad"]);
   if (pairs) chips.push([`${plural(pairs, "intersecting pair")}, ${plural(marked, "triangle")} marked`, "bad"]);
   else chips.push([run.selfAudited ? "0 intersecting pairs" : "0 pairs with obstacles", "good"]);
   if (!run.selfAudited) chips.push(["self: not audited", "warn"]);
-  if (at("vertexPairs")) chips.push([`${plural(at("vertexPairs"), "pair")} crossing at a shared vertex`, "warn"]);
-  if (at("inside")) chips.push([`${plural(at("inside"), "vertex")} inside an obstacle`, "bad"]);
-  at("switchedOff").forEach((count, b) => {
+  if (at("vertex_pairs")) chips.push([`${plural(at("vertex_pairs"), "pair")} crossing at a shared vertex`, "warn"]);
+  if (at("inside_vertices")) chips.push([`${plural(at("inside_vertices"), "vertex")} inside an obstacle`, "bad"]);
+  at("switched_off").forEach((count, b) => {
     if (count) chips.push([`${plural(count, "triangle")} of ${run.obstacles[b].name} switched off`, "warn"]);
   });
-  if (at("pushedOut")) chips.push([`${plural(at("pushedOut"), "vertex")} pushed out`, ""]);
-  if (at("outOfNewton")) chips.push(["out of Newton iterations", "warn"]);
-  if (at("outOfUntangling")) chips.push(["out of untangling passes", "warn"]);
-  if (at("outOfResponse")) chips.push(["out of response", "warn"]);
-  if (at("outOfProofs")) chips.push(["out of proofs", "warn"]);
-  if (at("fellBack")) chips.push([`fell back${reason ? `: ${reason}` : ""}`, "warn"]);
+  if (at("pushed_out")) chips.push([`${plural(at("pushed_out"), "vertex")} pushed out`, ""]);
+  if (at("out_of_newton")) chips.push(["out of Newton iterations", "warn"]);
+  if (at("out_of_untangling")) chips.push(["out of untangling passes", "warn"]);
+  if (at("out_of_response")) chips.push(["out of response", "warn"]);
+  if (at("out_of_proofs")) chips.push(["out of proofs", "warn"]);
+  if (at("fell_back")) chips.push([`fell back${reason ? `: ${reason}` : ""}`, "warn"]);
   else if (reason) chips.push([reason, "warn"]);
   if (at("by") && at("by") !== run.stepper) chips.push([`by ${at("by")}`, ""]);
   chips.push([`stretch ${range[0]} to ${range[1]}`, ""]);

@@ -98,14 +98,15 @@ function drawCurves(canvas, curves, run, view) {
 
 // Gravity is counted from its lowest frame, so that all share one axis that begins at zero. Springs show where there are any.
 function energyCurves(run) {
-  const lowest = run.series.gravity.reduce((low, value) => (value !== null && value < low ? value : low), Infinity);
+  const gravity = run.series.gravity_energy, springs = run.series.spring_energy;
+  const lowest = gravity.reduce((low, value) => (value !== null && value < low ? value : low), Infinity);
   return Object.keys(energyColours)
-      .filter((name) => name !== "springs" || run.series.springs.some((value) => value))
+      .filter((name) => name !== "spring" || springs.some((value) => value))
       .map((name) => ({
              name,
              colour: energyColours[name],
-             values: name === "gravity" ? run.series.gravity.map((value) => (value === null ? null : value - lowest)) :
-                                          run.series[name],
+             values: name === "gravity" ? gravity.map((value) => (value === null ? null : value - lowest)) :
+                                          run.series[`${name}_energy`],
            }));
 }
 

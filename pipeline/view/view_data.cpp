@@ -44,37 +44,14 @@ struct Track {
   }
 };
 
-// Everything that is plotted or written beside the picture; every frame, exact.
+// Everything that is plotted or written beside the picture, by the names of the fields; every frame, exact.
 struct Series {
   json numbers = json::object();
 
-  void append(const Frame& f) {
-    const auto add = [&](const char* key, const json& value) { numbers[key].push_back(value); };
-    add("time", f.time);
-    add("self", f.self_pairs);
-    add("vertexPairs", f.vertex_pairs);
-    add("obstacle", f.obstacle_pairs);
-    add("inside", f.inside_vertices);
-    add("nonfinite", f.nonfinite);
-    add("maxStretch", f.max_stretch);
-    add("minStretch", f.min_stretch);
-    add("kinetic", f.energy.kinetic);
-    add("gravity", f.energy.gravity);
-    add("membrane", f.energy.membrane);
-    add("bending", f.energy.bending);
-    add("springs", f.energy.springs);
-    add("seconds", f.seconds);
-    add("contacts", f.report.collision.contacts);
-    add("iterations", f.report.iterations);
-    add("by", f.report.by);
-    add("reason", reason_names()[static_cast<std::size_t>(f.report.reason)]);
-    add("fellBack", f.report.fell_back);
-    add("switchedOff", f.report.switched_off);
-    add("pushedOut", f.report.collision.pushed_out);
-    add("outOfNewton", f.report.out_of_newton);
-    add("outOfUntangling", f.report.out_of_untangling);
-    add("outOfResponse", f.report.out_of_response);
-    add("outOfProofs", f.report.out_of_proofs);
+  void append(const Frame& frame) {
+    for (const BoundField<Frame>& field : frame_fields())
+      if (field.page == Page::yes)
+        std::visit([&](const auto& value) { numbers[field.name].push_back(value); }, field.get(frame));
   }
 };
 

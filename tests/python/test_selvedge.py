@@ -36,6 +36,20 @@ def test_a_sheet_falls_on_a_floor_and_stays_clean():
     assert scene.time == pytest.approx(40 / 30)
 
 
+def test_the_report_of_a_step_says_all_that_there_is():
+    scene = falling()
+    assert scene.report == {}
+    assert scene.step()
+    report = scene.report
+    assert report["status"] == "accepted" and report["reason"] == "none" and report["by"] == "conventional"
+    assert report["iterations"] > 0 and report["solves"] > 0 and report["solve_seconds"] > 0
+    for name in ("untangling", "pushed_out"):
+        assert report[name] == 0
+    for name in ("out_of_newton", "out_of_untangling", "out_of_response", "out_of_proofs"):
+        assert report[name] is False
+    assert report["unsolved"] >= 0 and report["pairs_after"] == scene.pairs
+
+
 def test_positions_are_views_that_follow_the_steps():
     scene = falling()
     x = scene.x
@@ -229,6 +243,9 @@ def test_a_run_has_the_bits_of_the_program(tmp_path):
     for ours, theirs in zip(positions, run["x"]):
         assert (ours == theirs.astype(np.float32)).all()
     assert (scene.triangles == run["triangles"]).all()
+    last = run["reports"][-1]
+    assert last["time"] == run["time"][-1] and last["status"] == "accepted" and last["self_pairs"] == 0
+    assert all(last[name] == value for name, value in scene.report.items() if not name.endswith("_seconds"))
 
 
 def test_point_caches(tmp_path):

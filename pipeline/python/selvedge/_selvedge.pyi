@@ -12,6 +12,7 @@ Path = str | os.PathLike[str]
 Bodies = list[tuple[npt.ArrayLike, npt.ArrayLike]]
 Numbers = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
+Report = dict[str, bool | int | float | str | list[int]]
 
 class Error(ValueError): ...
 
@@ -48,6 +49,7 @@ class Trajectory(TypedDict):
     fps: float
     time: list[float]
     x: list[Numbers]
+    reports: list[Report]
 
 class Cache(TypedDict):
     fps: float
@@ -89,6 +91,8 @@ class Scene:
     def clean(self) -> bool: ...
     @property
     def pairs(self) -> int: ...
+    @property
+    def report(self) -> Report: ...
     @property
     def fps(self) -> float: ...
     @property

@@ -10,7 +10,7 @@
 #include "pipeline/formats/hdf5_handles.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
 #include "pipeline/formats/trajectory_row.hpp"
-#include "tests/pipeline/fake_run.hpp"
+#include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_trajectory {
 
@@ -21,25 +21,10 @@ void require_same(const Frame& a, const Frame& b) {
   REQUIRE(a.x == b.x);
   REQUIRE(a.obstacles.size() == b.obstacles.size());
   for (std::size_t k = 0; k < a.obstacles.size(); ++k) REQUIRE(a.obstacles[k] == b.obstacles[k]);
-  REQUIRE(a.report.by == b.report.by);
-  REQUIRE(a.report.status == b.report.status);
-  REQUIRE(a.report.iterations == b.report.iterations);
-  REQUIRE(a.report.residual == b.report.residual);
-  REQUIRE(a.report.seconds.audit == b.report.seconds.audit);
-  REQUIRE(a.report.collision.contacts == b.report.collision.contacts);
-  REQUIRE(a.report.collision.min_gap == b.report.collision.min_gap);
-  REQUIRE(a.report.switched_off == b.report.switched_off);
-  REQUIRE(a.report.collision.pushed_out == b.report.collision.pushed_out);
-  REQUIRE(a.report.untangling == b.report.untangling);
-  REQUIRE(a.report.out_of_newton == b.report.out_of_newton);
-  REQUIRE(a.report.out_of_untangling == b.report.out_of_untangling);
-  REQUIRE(a.report.out_of_response == b.report.out_of_response);
-  REQUIRE(a.report.out_of_proofs == b.report.out_of_proofs);
-  REQUIRE(a.report.unsolved == b.report.unsolved);
-  REQUIRE(a.self_pairs == b.self_pairs);
-  REQUIRE(a.max_stretch == b.max_stretch);
-  REQUIRE(a.energy.kinetic == b.energy.kinetic);
-  REQUIRE(a.energy.springs == b.energy.springs);
+  for (const BoundField<Frame>& field : frame_fields()) {
+    INFO(field.name);
+    REQUIRE(field.get(a) == field.get(b));
+  }
   REQUIRE(a.bad_triangles == b.bad_triangles);
 }
 
@@ -160,6 +145,64 @@ TEST_CASE("every field of a trajectory is checked before it is read") {
   CHECK_THAT(refusal("frames/report", H5T_NATIVE_INT32, {3, 3}, whole.data()), Catch::Contains("frames/report"));
   CHECK_THAT(refusal("obstacles/0/x", H5T_NATIVE_FLOAT, {0, 2000000000, 3}, nullptr), Catch::Contains("obstacles/0/x"));
   CHECK_THAT(refusal("frames_complete", H5T_NATIVE_INT32, {1}, whole.data()), Catch::Contains("1000000 frames"));
+}
+
+// As a version wrote it that had these columns of frames/report only.
+void leave_columns(const std::filesystem::path& path, const std::vector<std::string>& names) {
+  h5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+  h5::Handle report(H5Dopen2(file.id(), "frames/report", H5P_DEFAULT), H5Dclose);
+  h5::Handle all(H5Dget_type(report.id()), H5Tclose), space(H5Dget_space(report.id()), H5Sclose);
+  h5::Handle type(H5Tcreate(H5T_COMPOUND, H5Tget_size(all.id())), H5Tclose);
+  for (const std::string& name : names) {
+    const auto k = static_cast<unsigned>(H5Tget_member_index(all.id(), name.c_str()));
+    const h5::Handle member(H5Tget_member_type(all.id(), k), H5Tclose);
+    H5Tinsert(type.id(), name.c_str(), H5Tget_member_offset(all.id(), k), member.id());
+  }
+  const auto count = static_cast<hsize_t>(H5Sget_simple_extent_npoints(space.id()));
+  std::vector<char> rows(H5Tget_size(all.id()) * count);
+  REQUIRE(H5Dread(report.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0);
+  report.reset();
+  H5Ldelete(file.id(), "frames/report", H5P_DEFAULT);
+  space = h5::Handle(H5Screate_simple(1, &count, nullptr), H5Sclose);
+  const h5::Handle old(
+      H5Dcreate2(file.id(), "frames/report", type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  REQUIRE(H5Dwrite(old.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0);
+}
+
+TEST_CASE("a trajectory of a program that had fewer columns can be read: what it lacks is as in a new frame") {
+  const fake::Folder folder("fewer_columns");
+  const Scene scene = fake::scene();
+  const std::filesystem::path path = folder.path / "run.h5";
+  TrajectoryWriter writer(path, trajectory_info(scene, "", "conventional", 30));
+  for (int i = 0; i < 3; ++i) writer.append(fake::frame(scene, i));
+  writer.close();
+  leave_columns(path, {"time", "by", "status", "reason", "iterations", "contacts", "bad_begin", "bad_count"});
+  const TrajectoryReader reader(path);
+  const Frame read = reader.frame(2), wrote = fake::frame(scene, 2), fresh;
+  for (const BoundField<Frame>& field : frame_fields()) {
+    INFO(field.name);
+    const bool there = field.name == "time" || field.name == "by" || field.name == "status" || field.name == "reason" ||
+                       field.name == "iterations" || field.name == "contacts" ||
+                       field.name == "switched_off";  // which has a dataset of its own
+    CHECK(field.get(read) == field.get(there ? wrote : fresh));
+  }
+  CHECK(read.bad_triangles == wrote.bad_triangles);
+}
+
+const std::filesystem::path files_page = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "docs" / "files.md";
+const std::string columns_begin = "<!-- written by: selvedge_tests \"[write-docs]\" -->\n";
+
+TEST_CASE("docs/files.md has the columns as the program has them", "[reports]") {
+  const std::string text = fake::whole(files_page);
+  const std::size_t at = text.find(columns_begin);
+  REQUIRE(at != std::string::npos);
+  CHECK(text.substr(at + columns_begin.size()) == trajectory_reference());
+}
+
+TEST_CASE("docs/files.md is written anew", "[.][write-docs]") {
+  const std::string text = fake::whole(files_page);
+  std::ofstream(files_page) << text.substr(0, text.find(columns_begin) + columns_begin.size())
+                            << trajectory_reference();
 }
 
 TEST_CASE("a trajectory of a program that did not count what is switched off can be read") {

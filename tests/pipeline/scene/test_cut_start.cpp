@@ -50,9 +50,9 @@ TEST_CASE("A cut start has no pair in any frame, says what is out, and ends whol
 
   const RunSummary summary = run(setup, folder, "whole");
   CHECK(is_clean(summary));
-  CHECK(summary.cut_out_at_start == out);
-  CHECK(summary.cut_out_at_end == 0);
-  CHECK(summary.last_cut_frame > 0);
+  CHECK(total_of(summary.fields, "cut_out").at_start == out);
+  CHECK(total_of(summary.fields, "cut_out").at_end == 0);
+  CHECK(total_of(summary.fields, "cut_out").last_frame > 0);
   CHECK_THAT(summary_text(summary), Contains("cut out") && Contains("none after frame"));
   CHECK_THAT(summary_json(summary), Contains("\"cut_out_triangles\": " + std::to_string(out)));
   const TrajectoryReader reader(folder.path / "whole" / "run.h5");
@@ -67,8 +67,8 @@ TEST_CASE("A cut start has no pair in any frame, says what is out, and ends whol
   CHECK(checked.pairs_by_frame.front() > 0);
   CHECK(checked.pairs_by_frame.back() == 0);
   REQUIRE_FALSE(checked.warnings.empty());
-  CHECK_THAT(checked.warnings.back(),
-             Contains("cut triangles out up to frame " + std::to_string(summary.last_cut_frame)));
+  CHECK_THAT(checked.warnings.back(), Contains("cut triangles out up to frame " +
+                                               std::to_string(total_of(summary.fields, "cut_out").last_frame)));
 }
 
 TEST_CASE("A run that ends with triangles cut out is not clean", "[cut_start]") {
@@ -77,7 +77,7 @@ TEST_CASE("A run that ends with triangles cut out is not clean", "[cut_start]") 
   const RunSummary summary = run(read(folder, cut, "", 0), folder, "stays");
   CHECK(summary.end == RunEnd::finished);
   CHECK(summary.pairs + summary.worst_inside == 0);
-  CHECK(summary.cut_out_at_end > 0);
+  CHECK(total_of(summary.fields, "cut_out").at_end > 0);
   CHECK_FALSE(is_clean(summary));
   CHECK_THAT(summary_text(summary), Contains("no pair is counted of them"));
 }

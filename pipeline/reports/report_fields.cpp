@@ -1,0 +1,157 @@
+#include "pipeline/reports/report_fields.hpp"
+
+namespace selvedge {
+
+using namespace report_table;
+
+const std::vector<std::string>& reason_names() {
+  static const std::vector<std::string> names{"none",        "not_converged", "not_finite", "penetrating",
+                                              "energy_gain", "overstretched", "stopped",    "too_many_pairs"};
+  return names;
+}
+
+const std::vector<std::string>& verdict_names() {
+  static const std::vector<std::string> names{
+      "none",     "admitted",   "refined",       "no_history",    "tangled",     "waiting",    "too_slow",
+      "not_made", "not_finite", "moved_too_far", "overstretched", "energy_gain", "unbalanced", "penetrating"};
+  return names;
+}
+
+const std::vector<std::string>& status_names() {
+  static const std::vector<std::string> names{"not_run", "accepted", "rejected"};
+  return names;
+}
+
+const BoundFields<PhaseTimes>& phase_fields() {
+  using P = PhaseTimes;
+  const std::string key = "ms_per_frame.by_phase";
+  const std::vector<InSummary> mean{{key, Over::milliseconds}}, where_there{{key, Over::milliseconds_where_there}};
+  static const BoundFields<P> all{
+      field("solve", &P::solve, "s", "Newton's method and its linear solver", mean),
+      field("broad_phase", &P::broad_phase, "s", "searches for pairs", mean),
+      field("ccd", &P::ccd, "s", "tests of paths for a first contact", mean),
+      field("response", &P::response, "s", "impulses and impact zones", mean),
+      field("graph", &P::graph, "s", "of a learned stepper: what the network sees", where_there),
+      field("network", &P::network, "s", "of a learned stepper: the network", where_there),
+      field("guard", &P::guard, "s", "of [the hybrid](hybrid.md): the judgement of proposals", where_there),
+      field("audit", &P::audit, "s", "audits of motions and positions", mean)};
+  return all;
+}
+
+const BoundFields<StepCounts>& count_fields() {
+  using C = StepCounts;
+  static const BoundFields<C> all{
+      field("solves", &C::solves, "",
+            "solves of a substep. Of this count and the next six: what caches save is not in "
+            "it, so a resumed run may count more",
+            {{"solves", Over::sum}}),
+      field("coarse_builds", &C::coarse_builds, "", "builds of multigrid's coarse levels",
+            {{"coarse_builds", Over::sum}}),
+      field("searches", &C::searches, "", "searches for pairs that come near each other", {{"searches", Over::sum}}),
+      field("candidates", &C::candidates, "", "pairs whose boxes those found to overlap", {{"candidates", Over::sum}}),
+      field("audits", &C::audits, "", "audits of a motion or of positions", {{"audits", Over::sum}}),
+      field("swept", &C::swept, "", "pairs whose paths were tested for a first contact", {{"swept", Over::sum}}),
+      field("projected", &C::projected, "", "vertices that impact zones moved, once a projection",
+            {{"projected", Over::sum}})};
+  return all;
+}
+
+const BoundFields<CollisionReport>& collision_fields() {
+  using C = CollisionReport;
+  static const BoundFields<C> all{
+      field("contacts", &C::contacts, "", "proximity pairs in the last solve", {{"max_contacts", Over::largest}},
+            Page::yes),
+      field("impulses", &C::impulses, "", "impacts met with an impulse, all substeps", {{"impulses", Over::sum}}),
+      field("zones", &C::zones, "", "impact zones projected, all substeps", {{"zones", Over::sum}}),
+      field("halved_substeps", &C::halved_substeps, "",
+            "substeps done again in two halves because impact zones did not converge",
+            {{"halved_substeps", Over::sum}}),
+      field("shortened", &C::shortened, "", "zones whose motion was shortened", {{"shortened_zones", Over::sum}}),
+      field("held_vertices", &C::held_vertices, "", "cloth vertices in those zones, all substeps",
+            {{"held_vertices", Over::sum}}),
+      field("passed_through", &C::passed_through, "", "pairs that met on their way, by the audit of the motion",
+            {{"passed_through", Over::sum}}),
+      field("left_alone", &C::left_alone, "",
+            "cloth vertices that were tangled at the start, which contact leaves alone until they are out"),
+      field("cut_out", &C::cut_out, "",
+            "triangles that are out of the simulation in this frame ([cut starts](garments.md#in-a-scene)); no pair is "
+            "counted of them",
+            {{"cut_out_triangles", Over::at_start},
+             {"cut_out_triangles_at_end", Over::at_end},
+             {"cut_out_last_frame", Over::last_frame}}),
+      field("pushed_out", &C::pushed_out, "", "cloth vertices that [the repulsive layer](repulsion.md) moved",
+            {{"pushed_out", Over::sum}}, Page::yes),
+      field("jumped", &C::jumped, "",
+            "obstacles that were wanted farther away than their own size in a substep: put there without a sweep, as a "
+            "new start",
+            {{"jumped", Over::sum}, {"jumped_first_frame", Over::first_frame}}),
+      field("contact_gap", &C::min_gap, "m", "smallest gap of the contacts", {{"min_contact_gap", Over::smallest}}),
+      field("obstacle_lag", &C::obstacle_lag, "m", "largest distance of an obstacle from where it was wanted",
+            {{"max_obstacle_lag", Over::largest}}),
+      field("pairs_before", &C::pairs_before, "",
+            "intersecting pairs at the start as the stepper saw them, -1: it did not look"),
+      field("pairs_after", &C::pairs_after, "", "the same at the end"),
+      field("pairs_wanted", &C::pairs_wanted, "", "the same at the end, with obstacles where they were wanted",
+            {{"intersecting_pairs_wanted", Over::largest}}),
+      field("depth_wanted", &C::depth_wanted, "m", "how deep a cloth vertex lies in an obstacle where that was wanted",
+            {{"max_depth_wanted", Over::largest}})};
+  return all;
+}
+
+namespace {
+
+BoundFields<StepReport> own_fields() {
+  using R = StepReport;
+  return {
+      field("by", &R::by, "", "who made the state: row of `codes/by`", {}, Page::yes),
+      field("reason", &R::reason, reason_names(),
+            "why it was rejected or is doubtful (`energy_gain`: [energy from nowhere](stability.md#frame-by-frame)): "
+            "row of `codes/reason`",
+            {}, Page::yes),
+      field("status", &R::status, status_names(), "accepted or rejected: row of `codes/status`"),
+      field("fell_back", &R::fell_back, "", "1 where a second stepper took over", {}, Page::yes),
+      field("verdict", &R::verdict, verdict_names(),
+            "of [the hybrid](hybrid.md): what became of a proposal, row of `codes/verdict`",
+            {{"verdicts", Over::by_word}}),
+      field("substeps", &R::substeps, "", "parts that the frame was cut into", {{"substeps", Over::sum}}),
+      field("resting", &R::resting, "", "cloths that were left out because they rest"),
+      field("iterations", &R::iterations, "", "Newton's, all substeps", {{"iterations", Over::sum}}, Page::yes),
+      field("linear_iterations", &R::linear_iterations, "", "the linear solver's, all substeps",
+            {{"linear_iterations", Over::sum}}),
+      field("residual", &R::residual, "N", "largest force imbalance at the end", {{"max_residual", Over::largest}}),
+      field("unsolved", &R::unsolved, "m", "bound of the RMS distance from where exact solves would end",
+            {{"max_unsolved", Over::largest}}),
+      field("untangling", &R::untangling, "", "passes of untangling before the step",
+            {{"untangling_passes", Over::sum}}),
+      field("out_of_newton", &R::out_of_newton, "",
+            "1 where [the budget](overview.md#recovery-from-a-tangle) of Newton iterations ran out: later solves are "
+            "rough",
+            {{"out_of_newton_frames", Over::frames}}, Page::yes),
+      field("out_of_untangling", &R::out_of_untangling, "",
+            "1 where that of untangling passes did: what is tangled still waits for the next frame",
+            {{"out_of_untangling_frames", Over::frames}}, Page::yes),
+      field("out_of_response", &R::out_of_response, "",
+            "1 where that of impulses and impact zones did: later motion was shortened at once",
+            {{"out_of_response_frames", Over::frames}}, Page::yes),
+      field("out_of_proofs", &R::out_of_proofs, "",
+            "1 where that of the audit of the motion did: it is not whole, and what it gave up is in `passed_through`",
+            {{"out_of_proofs_frames", Over::frames}}, Page::yes),
+      field("switched_off", &R::switched_off, "",
+            "the sum of the row of `frames/switched_off`; in the page and in Python triangles by obstacle",
+            {{"switched_off", Over::by_obstacle}}, Page::yes),
+      {.name = "audited",
+       .unit = "",
+       .about = "whether the stepper has audited the state; what it found is in the columns of the frame's audit",
+       .get = [](const R& report) { return FieldValue(report.audit.has_value()); }}};
+}
+
+}  // namespace
+
+const BoundFields<StepReport>& report_fields() {
+  using R = StepReport;
+  static const BoundFields<R> all = own_fields() + inside(&R::seconds, phase_fields(), "_seconds") +
+                                    inside(&R::counts, count_fields()) + inside(&R::collision, collision_fields());
+  return all;
+}
+
+}  // namespace selvedge
