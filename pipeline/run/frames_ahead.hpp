@@ -5,7 +5,7 @@
 #include <functional>
 #include <optional>
 
-#include "physics/frame/frame_audits.hpp"
+#include "physics/frame/make_frame.hpp"
 #include "pipeline/run/arrangement.hpp"
 
 namespace selvedge {
