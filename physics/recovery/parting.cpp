@@ -32,41 +32,61 @@ std::vector<char> without(std::vector<char> marked, const std::vector<char>& tan
   return marked;
 }
 
+// What is tangled. True: the cloth crosses itself so often that no side can be told, and its own stiffness opens it.
+bool find_tangled(const ContactWorld& world, const Points& nodes, const RecoveryOptions& options, Exemption& tangled) {
+  const std::optional<Exemption> untouched = hopeless(world, nodes, options);
+  tangled = untouched ? *untouched : find_exemption(world, nodes);
+  return untouched.has_value();
+}
+
+// Parts what is tangled still; what waits for a body to be free of itself is drawn firmly, unless it is tangled with
+// cloth. True: untangling knows no way out of any of it.
+bool part_the_rest(const ContactWorld& world, const Eigen::VectorXd& inverse_mass, const WornPlaces& where,
+                   const RecoveryOptions& options, Points& nodes, UntanglingBudget& budget, Parting& parting) {
+  std::vector<char> tangled = parting.left.self;
+  if (!tangled.empty() && !parting.left.off.empty())
+    tangled = either(std::move(tangled), crossed_as_worn(world, nodes, *where.worn));
+  const double reach = options.speed * where.h;
+  Recovery recovery = recover(world, inverse_mass, reach, parting.left, parting.carried, nodes, &budget, options);
+  parting.left = std::move(recovery.left);
+  parting.gained = std::move(recovery.gained);
+  if (!parting.left.off.empty()) {
+    parting.waits = without(worn_ones(std::move(recovery.waits), *where.worn), tangled);
+    parting.carried = without(std::move(parting.carried), tangled);
+  }
+  return recovery.stuck;
+}
+
 }  // namespace
 
+// The order is that of docs/recovery.md.
 Parting part_at_start(const ContactWorld& world, SelfCrossings& self_crossings, const Eigen::VectorXd& inverse_mass,
                       double edge_length, bool clean, const WornPlaces& where, const RecoveryOptions& options,
                       Points& nodes, Points& v, UntanglingBudget& budget) {
   const Points &wanted = *where.wanted, &worn = *where.worn;
   Parting parting;
-  std::optional<Exemption> untouched;
-  if (!clean && nodes.allFinite()) {
-    untouched = hopeless(world, nodes, options);
-    parting.left = untouched ? *untouched : find_exemption(world, nodes);
-  }
+  // 1. What is tangled.
+  const bool opens_itself = !clean && nodes.allFinite() && find_tangled(world, nodes, options, parting.left);
+  // 2. What a body that crosses itself has caught is let through.
   self_crossings.switch_off(nodes, wanted, worn, parting.left);
+  // 3. What a limb has gone through, or has sunken in, is put on again.
   std::vector<char> pierced, sunken;
-  if (!untouched)
+  if (!opens_itself) {
     pierced = pierced_vertices(world, parting.left, nodes, wanted, worn, options.astray * edge_length, options);
-  if (!untouched) sunken = sunken_vertices(world, parting.left, worn, options);
-  const PutOn put = put_on(world, either(sunken, pierced), where, nodes, v, &budget, options);
-  if (put == PutOn::done) parting.left = find_exemption(world, nodes);
-  if (put == PutOn::done) pierced.clear();
-  parting.carried = either(carried_vertices(world, parting.left, worn, nodes, edge_length), pierced);
-  if (parting.left.cloth() && !untouched) {
-    const double reach = options.speed * where.h;
-    std::vector<char> tangled = parting.left.self;
-    if (!tangled.empty() && !parting.left.off.empty())
-      tangled = either(std::move(tangled), crossed_as_worn(world, nodes, worn));
-    Recovery recovery = recover(world, inverse_mass, reach, parting.left, parting.carried, nodes, &budget, options);
-    parting.left = std::move(recovery.left);
-    parting.gained = std::move(recovery.gained);
-    if (!parting.left.off.empty()) {
-      parting.waits = without(worn_ones(std::move(recovery.waits), worn), tangled);
-      parting.carried = without(std::move(parting.carried), tangled);
-    }
-    if (recovery.stuck && put != PutOn::done) pierced = either(std::move(pierced), sunken);
+    sunken = sunken_vertices(world, parting.left, worn, options);
   }
+  const bool placed = put_on(world, either(sunken, pierced), where, nodes, v, &budget, options) == PutOn::done;
+  if (placed) {
+    parting.left = find_exemption(world, nodes);
+    pierced.clear();
+  }
+  // 4. Without a place it is drawn to its skinned targets, and so is cloth where a body crosses itself.
+  parting.carried = either(carried_vertices(world, parting.left, worn, nodes, edge_length), pierced);
+  // 5. What else is tangled is parted.
+  const bool stuck = parting.left.cloth() && !opens_itself &&
+                     part_the_rest(world, inverse_mass, where, options, nodes, budget, parting);
+  // 6. Where there is no way out, what has sunken in is drawn, too.
+  if (stuck && !placed) pierced = either(std::move(pierced), sunken);
   parting.carried = either(std::move(parting.carried), pierced);
   parting.left.body = either(std::move(parting.left.body), pierced);
   return parting;

@@ -15,11 +15,9 @@ struct Parting {
   std::vector<char> waits;         // the same of what is tangled where an obstacle crosses itself: firmly
 };
 
-// In this order: what a limb has gone through, or has sunken in, is put on again (put_on.hpp); where that cannot be it
-// is drawn to its skinned targets, and what else is tangled is parted (recovery.hpp); what has to wait for the body to
-// be free of itself is drawn to its skinned targets meanwhile; and where untangling gains nothing, so is what has
-// sunken in. edge_length: the cloth's mean [m]. `clean`: nothing is tangled at the start, for cloth at least.
-// Overwrites the cloth's rows of `nodes`, at the start, and velocities v.
+// What a state that is not clean goes through, in the order of docs/recovery.md. edge_length: the cloth's mean [m].
+// `clean`: nothing is tangled at the start, for cloth at least. Overwrites the cloth's rows of `nodes`, at the start,
+// and velocities v.
 Parting part_at_start(const ContactWorld&, SelfCrossings&, const Eigen::VectorXd& inverse_mass, double edge_length,
                       bool clean, const WornPlaces&, const RecoveryOptions&, Points& nodes, Points& v,
                       UntanglingBudget&);
