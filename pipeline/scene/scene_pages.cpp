@@ -90,12 +90,15 @@ KeyTier tier_of(const Section& section, const Key& key) {
   return keys && has_word(*keys, key.name) ? KeyTier::user : KeyTier::expert;
 }
 
-// Sections with chapters on a tier's page: the user's in the order of the tasks.
+bool has_keys(const Section& section, KeyTier tier) {
+  return std::ranges::any_of(section.keys, [&](const Key& key) { return tier_of(section, key) == tier; });
+}
+
+// Sections with chapters on a tier's page. Those without a key are the expert's.
 std::vector<const Section*> sections_of(KeyTier tier) {
   std::vector<const Section*> chosen;
   for (const Section* section : scene_sections())
-    if (std::ranges::any_of(section->keys, [&](const Key& key) { return tier_of(*section, key) == tier; }))
-      chosen.push_back(section);
+    if (section->keys.empty() ? tier == KeyTier::expert : has_keys(*section, tier)) chosen.push_back(section);
   return chosen;
 }
 
@@ -121,7 +124,10 @@ std::string scene_reference(KeyTier tier) {
     text += "## " + task.title + ": keys\n\n";
     for (const auto& [name, keys] : task.sections)
       for (const Section* section : sections)
-        if (section->name == name) text += section_chapter(*section, page_of(tier));
+        if (section->name == name) {
+          text += section_chapter(*section, page_of(tier));
+          if (has_keys(*section, KeyTier::expert)) text += "[More keys](expert.md#" + name + ")\n\n";
+        }
   }
   return text;
 }
