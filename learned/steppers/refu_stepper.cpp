@@ -158,7 +158,6 @@ StepReport RefuStepper::take_step(const State& from, const Drive& drive, double 
   replace_blocks("bdf2", {}, to.memory);  // the cloth did not come here by its own motion
   report.collision.pushed_out = static_cast<int>(pushed.pushed.size());
   report.seconds.response += watch.lap();
-  if (report.reason == Reason::penetrating) report.reason = Reason::none;  // the audit says it again
   audit_state(scene_, drive, to, audited_, report);
   return report;
 }

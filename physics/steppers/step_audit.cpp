@@ -34,7 +34,7 @@ void take_audit(Audit audit, State& state, StepReport& report) {
   const int pairs = audit.intersecting_pairs();
   report.collision.pairs_after = report.collision.pairs_wanted = pairs;
   state.clean = pairs == 0 && audit.inside_vertices == 0;
-  if (pairs > 0) report.reason = Reason::penetrating;
+  report.doubts.penetrating = pairs > 0;
   report.audit = std::move(audit);
 }
 

@@ -20,7 +20,7 @@ namespace selvedge {
 Audit audit_positions(const Scene&, const Points& x, const std::vector<Points>& obstacles, AuditMemory* = nullptr);
 
 // Of the state that a step made: sets `clean`, and in the report the audit, the intersecting pairs, those with
-// obstacles where the drive wanted them, the reason `penetrating` where any are left, and the seconds it took.
+// obstacles where the drive wanted them, whether it is `penetrating`, and the seconds it took.
 void audit_state(const Scene&, const Drive&, State&, AuditMemory&, StepReport&);
 
 // Audits that a step has left to its caller (StepExtras::later), in the order in which the step would have made them.
@@ -37,7 +37,7 @@ bool confirm(const LaterAudits&, StepReport&);
 // Of the state without the triangles that are cut out of it.
 Audit audit_uncut(const Scene&, const State&);
 // What audit_state does with an audit, but for the drive: sets `clean`, and in the report the audit, the intersecting
-// pairs and the reason.
+// pairs and whether it is `penetrating`.
 void take_audit(Audit, State&, StepReport&);
 
 // Of the motion in which all nodes went straight from nodes0 to nodes1; pairs that contact leaves alone are not asked

@@ -56,11 +56,13 @@ TEST_CASE("finish_step: names what crosses, and obstacles that lag by more than 
   AuditMemory audits;
   State to;
   StepReport crossing;
+  crossing.doubts.not_converged = true;
   StepEnd end = straight_on(w);
   for (int v = 0; v < 12; ++v) end.x(v, 1) -= 0.1;
   finish_step(w.scene, w.state, w.drive, dt, end, audits, to, crossing);
   CHECK(crossing.collision.pairs_after > 0);
-  CHECK(crossing.reason == Reason::penetrating);
+  CHECK(crossing.reason == Reason::none);
+  CHECK(crossing.doubts == Doubts{.not_converged = true, .penetrating = true});
   CHECK_FALSE(to.clean);
 
   StepReport lagging, rounded;
