@@ -57,7 +57,7 @@ StepReport SafeguardedStepper::step(const State& from, const Drive& drive, doubl
   if (change.isZero(0)) return report;
   to.v += change / dt;
   change_carried_velocity(change, to);
-  report.reason = Reason::none;
+  report.doubts = {};
   report.audit.reset();
   return report;
 }

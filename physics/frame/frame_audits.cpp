@@ -121,7 +121,7 @@ bool judge_frame(FrameAudits& audits, const State& from, const Drive& drive, con
   }
   const int pairs = report.audit->intersecting_pairs();
   report.collision.pairs_after = pairs;
-  if (pairs > 0) report.reason = Reason::penetrating;
+  report.doubts.penetrating = pairs > 0;
   return pairs == 0 && report.audit->inside_vertices == 0;
 }
 

@@ -42,7 +42,7 @@ struct FrameAudits {
 
 // Judges an accepted step: audits its path substep by substep, then the state that it made, unless the report has that
 // audit already. Returns whether the state is clean. The report gets the audit, what passed through, the intersecting
-// pairs, those with obstacles where the drive wanted them, the reason `penetrating` where any are left, and the seconds
+// pairs, those with obstacles where the drive wanted them, whether it is `penetrating`, and the seconds
 // that this took; its path is gone after that. A step whose audit meets more pairs than it may look at
 // (pair_budget.hpp) is rejected. Throws Stopped where a StopScope of the caller ends it.
 [[nodiscard]] bool judge_frame(FrameAudits&, const State& from, const Drive&, const State& to, StepReport&);

@@ -48,7 +48,17 @@ struct Drive {
 };
 
 enum class StepStatus { not_run, accepted, rejected };
+// Why a step was rejected.
 enum class Reason { none, not_converged, not_finite, penetrating, energy_gain, overstretched, stopped, too_many_pairs };
+
+// What an accepted step leaves in doubt, several at once where it is so.
+struct Doubts {
+  bool not_converged = false;  // solves ended farther from their minimum than is tolerated
+  bool penetrating = false;    // triangles cross, by the audit of the state
+  bool energy_gain = false;    // energy came from nowhere (energy_balance.hpp)
+  bool any() const { return not_converged || penetrating || energy_gain; }
+  bool operator==(const Doubts&) const = default;
+};
 
 struct PhaseTimes {  // [s]
   double solve = 0, broad_phase = 0, ccd = 0, response = 0, audit = 0;
@@ -123,11 +133,13 @@ struct StepPath {
   std::shared_ptr<const PartOfScene> part;  // whose nodes these are, for the rest took no part; null: the scene's
 };
 
+// Each member of it and of its parts has a row in pipeline/reports/report_fields.cpp.
 struct StepReport {  // starts as failure
   StepStatus status = StepStatus::not_run;
-  Reason reason = Reason::none;
-  std::string by;          // who made the state
-  bool fell_back = false;  // a proposal was refused, and another stepper took the step
+  Reason reason = Reason::none;  // none unless it is rejected
+  Doubts doubts;                 // of an accepted one
+  std::string by;                // who made the state
+  bool fell_back = false;        // a proposal was refused, and another stepper took the step
   Verdict verdict = Verdict::none;
   int substeps = 0;
   int resting = 0;     // cloths that were left out because they rest (resting_stepper.hpp)

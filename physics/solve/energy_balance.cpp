@@ -62,8 +62,8 @@ EnergyGain EnergyBalance::operator()(const State& from, const Drive& drive, Stat
 }
 
 void EnergyBalance::label(const State& from, const Drive& drive, State& to, StepReport& report) {
-  if (report.status != StepStatus::accepted || report.reason == Reason::penetrating) return;
-  if ((*this)(from, drive, to).from_nowhere()) report.reason = Reason::energy_gain;
+  if (report.status != StepStatus::accepted) return;
+  report.doubts.energy_gain = (*this)(from, drive, to).from_nowhere();
 }
 
 }  // namespace selvedge

@@ -27,8 +27,7 @@ class EnergyBalance {
   // after a step whose energy comes from nowhere that sum begins at 0.
   EnergyGain operator()(const State& from, const Drive&, State& to);
 
-  // Gives an accepted step whose energy comes from nowhere the reason `energy_gain`; one that cuts across something
-  // keeps its own.
+  // Sets the doubt `energy_gain` of an accepted step whose energy comes from nowhere.
   void label(const State& from, const Drive&, State& to, StepReport&);
 
  private:

@@ -417,7 +417,7 @@ StepReport ConventionalStepper::take_step(const State& from, const Drive& drive,
     add(catch_up(contact_.search, contact_.options, contact_.inverse_mass, wanted, now.nodes, contact_.path), report);
   report.counts.searches = contact_.search.tally().searches - before.searches;
   report.counts.candidates = contact_.search.tally().candidates - before.candidates;
-  if (report.unsolved > options_.implicit_euler.tolerated_error) report.reason = Reason::not_converged;
+  report.doubts.not_converged = report.unsolved > options_.implicit_euler.tolerated_error;
   StepEnd end{now.nodes.topRows(from.x.rows()), std::move(now.v), {}, blocks_of(now.history)};
   for (std::size_t k = 0; k < from.obstacles.size(); ++k)
     end.obstacles.push_back(now.nodes.middleRows(contact_.world.first_node[k], from.obstacles[k].rows()));

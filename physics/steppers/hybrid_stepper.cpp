@@ -212,7 +212,7 @@ Verdict HybridStepper::propose_within_budget(Work& work) {
 // already. An admitted proposal is judged again here, for a network knows only some of the scene's forces.
 bool HybridStepper::gains_energy(Verdict verdict, Work& work) {
   if (verdict != Verdict::admitted && verdict != Verdict::refined) return false;
-  if (work.report.reason == Reason::energy_gain) return true;
+  if (work.report.doubts.energy_gain) return true;
   const Timed timed(work.report.seconds.guard);
   return verdict == Verdict::admitted && energy_(work.from, work.drive, work.to).from_nowhere();
 }

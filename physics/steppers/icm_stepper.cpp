@@ -133,7 +133,7 @@ bool IcmStepper::minimise(const StepProblem& problem, Points& x, IcmWork& work, 
   count_solve(newton, report);
   work.unbalanced = solver_.gradient(problem, x);
   report.residual = largest_row(work.unbalanced);
-  if (!newton.converged) report.reason = Reason::not_converged;
+  if (!newton.converged) report.doubts.not_converged = true;
   report.seconds.solve += watch.lap();
   return newton.finite && !newton.stopped && x.allFinite();
 }

@@ -26,7 +26,7 @@ struct IcmOptions {
 // Intersection contour minimisation without learning: each substep minimises
 //   Phi(x) = incremental potential + repulsion + contour_weight m / h^2 * sum of squared segment lengths
 // (Grigorev et al. 2024, equation 12, m the mean vertex mass) by Newton with a line search on Phi. Penetrations during
-// the step are neither detected nor undone: the audit finds and reports what is left, with the reason `penetrating`.
+// the step are neither detected nor undone: the audit finds and reports what is left, as `penetrating`.
 // Obstacles are where they are wanted. Keeps a reference to the scene.
 std::unique_ptr<Stepper> make_icm_stepper(const Scene&, const IcmOptions&);
 

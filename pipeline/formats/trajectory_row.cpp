@@ -75,6 +75,14 @@ FieldValue value_of_cell(const BoundField<Frame>& one, std::int64_t cell, const 
   return cell;
 }
 
+// Files of older versions have what an accepted step leaves in doubt as its reason.
+void read_old_reason(StepReport& report) {
+  if (report.status != StepStatus::accepted || report.reason == Reason::none) return;
+  for (const BoundField<Doubts>& doubt : doubt_fields())
+    if (doubt.name == reason_names()[static_cast<std::size_t>(report.reason)]) doubt.set(true, report.doubts);
+  report.reason = Reason::none;
+}
+
 }  // namespace
 
 const BoundFields<Frame>& frame_fields() {
@@ -146,6 +154,7 @@ void fill_from_row(const TrajectoryRow& row, const std::vector<std::string>& tex
     const std::int64_t cell = row.cells[at++];
     if (one.type != ColumnType::list) one.set(value_of_cell(one, cell, texts), frame);
   }
+  read_old_reason(frame.report);
 }
 
 std::string trajectory_reference() {

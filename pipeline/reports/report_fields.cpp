@@ -98,6 +98,21 @@ const BoundFields<CollisionReport>& collision_fields() {
   return all;
 }
 
+const BoundFields<Doubts>& doubt_fields() {
+  using D = Doubts;
+  static const BoundFields<D> all{
+      field("not_converged", &D::not_converged, "",
+            "1 where an accepted step leaves in doubt: solves ended farther from their minimum than is tolerated",
+            {{"not_converged_frames", Over::frames}}, Page::yes),
+      field("penetrating", &D::penetrating, "",
+            "1 where an accepted step leaves in doubt: triangles cross, by the stepper's audit",
+            {{"penetrating_frames", Over::frames}}, Page::yes),
+      field("energy_gain", &D::energy_gain, "",
+            "1 where an accepted step leaves in doubt: its [energy came from nowhere](stability.md#frame-by-frame)",
+            {{"energy_gains", Over::frames}, {"energy_gains_first_frame", Over::first_frame}}, Page::yes)};
+  return all;
+}
+
 namespace {
 
 BoundFields<StepReport> own_fields() {
@@ -105,14 +120,14 @@ BoundFields<StepReport> own_fields() {
   return {
       field("by", &R::by, "", "who made the state: row of `codes/by`", {}, Page::yes),
       field("reason", &R::reason, reason_names(),
-            "why it was rejected or is doubtful (`energy_gain`: [energy from nowhere](stability.md#frame-by-frame)): "
-            "row of `codes/reason`",
+            "why it was rejected: row of `codes/reason`. In files of older versions also what an accepted step left in "
+            "doubt; readers make the columns below of it",
             {}, Page::yes),
       field("status", &R::status, status_names(), "accepted or rejected: row of `codes/status`"),
       field("fell_back", &R::fell_back, "", "1 where a second stepper took over", {}, Page::yes),
       field("verdict", &R::verdict, verdict_names(),
             "of [the hybrid](hybrid.md): what became of a proposal, row of `codes/verdict`",
-            {{"verdicts", Over::by_word}}),
+            {{"verdicts", Over::by_word}}, Page::yes),
       field("substeps", &R::substeps, "", "parts that the frame was cut into", {{"substeps", Over::sum}}),
       field("resting", &R::resting, "", "cloths that were left out because they rest"),
       field("iterations", &R::iterations, "", "Newton's, all substeps", {{"iterations", Over::sum}}, Page::yes),
@@ -149,7 +164,8 @@ BoundFields<StepReport> own_fields() {
 
 const BoundFields<StepReport>& report_fields() {
   using R = StepReport;
-  static const BoundFields<R> all = own_fields() + inside(&R::seconds, phase_fields(), "_seconds") +
+  static const BoundFields<R> all = own_fields() + inside(&R::doubts, doubt_fields()) +
+                                    inside(&R::seconds, phase_fields(), "_seconds") +
                                     inside(&R::counts, count_fields()) + inside(&R::collision, collision_fields());
   return all;
 }

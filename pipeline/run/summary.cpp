@@ -56,7 +56,6 @@ void add_labels(const StepReport& report, int index, RunSummary& summary) {
     if (obstacle.frames++ == 0) obstacle.first_frame = index;
     obstacle.most = std::max(obstacle.most, report.switched_off[k]);
   }
-  if (report.reason == Reason::energy_gain && summary.energy_gains++ == 0) summary.first_gain_frame = index;
 }
 
 nlohmann::ordered_json switched_off_json(const RunSummary& s) {
@@ -82,6 +81,9 @@ std::vector<std::pair<const char*, std::string>> label_lines(const RunSummary& s
   if (const auto pushed = static_cast<long>(total_of(s.fields, "pushed_out").sum); pushed > 0)
     lines.emplace_back("pushed out", fmt::format("{} vertices over all frames, by the repulsive layer", pushed));
   const auto frames = [&](std::string_view field) { return total_of(s.fields, field).frames; };
+  if (frames("not_converged") > 0)
+    lines.emplace_back("not converged", fmt::format("{} frames: {:.2g} m off at most", frames("not_converged"),
+                                                    total_of(s.fields, "unsolved").largest));
   if (frames("out_of_newton") > 0)
     lines.emplace_back("out of Newton", fmt::format("{} frames: later solves were rough, {:.2g} m off at most",
                                                     frames("out_of_newton"), total_of(s.fields, "unsolved").largest));
@@ -210,9 +212,7 @@ std::string summary_json(const RunSummary& s) {
       {"inside_vertices", s.worst_inside},
       {"nonfinite", s.nonfinite},
       {"slid_off", slid_off},
-      {"held_fraction", held_fraction(s)},
-      {"energy_gains", s.energy_gains},
-      {"energy_gains_first_frame", s.first_gain_frame}};
+      {"held_fraction", held_fraction(s)}};
   put_totals(s, json);
   json["left_out"] = left_out;
   json["warnings"] = s.warnings;
@@ -269,9 +269,9 @@ std::string summary_text(const RunSummary& s) {
     add("jumped", fmt::format("{} obstacles, first in frame {}: too fast for a sweep, so what they passed is not "
                               "known; give more frames a second or substeps",
                               sum("jumped"), total_of(s.fields, "jumped").first_frame));
-  if (s.energy_gains > 0)
+  if (const FieldTotal& gains = total_of(s.fields, "energy_gain"); gains.frames > 0)
     add("energy from nowhere", fmt::format("in {} frames, first in frame {}: more than pins, obstacles and wind gave",
-                                           s.energy_gains, s.first_gain_frame));
+                                           gains.frames, gains.first_frame));
   if (largest("obstacle_lag") > 0)
     add("obstacles lag",
         fmt::format("{:.2g} m at most; where they were wanted {} pairs and {:.2g} m deep at worst",

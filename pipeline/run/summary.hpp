@@ -32,8 +32,6 @@ struct RunSummary {
   int worst_pairs = 0, worst_frame = 0, worst_inside = 0;
   std::vector<WornWatch> slid_off;  // garments that have left their bodies by the end
   long nonfinite = 0;
-  long energy_gains = 0;      // frames whose energy grew by more than what gave some (energy_balance.hpp)
-  int first_gain_frame = -1;  // -1: none did
   // What contact left alone of an obstacle.
   struct SwitchedOff {
     std::string obstacle;

@@ -24,7 +24,8 @@ function makePanel(run, scaleText) {
 
 // What is worth saying about a frame, most important first: [text, class].
 function chipsOf(run, frame, marked) {
-  const at = (name) => run.series[name][frame], reason = at("reason") === "none" ? "" : at("reason").replace(/_/g, " ");
+  const at = (name) => run.series[name][frame];
+  const words = (name) => (name === "none" ? "" : name.replace(/_/g, " "));
   const range = ["min_stretch", "max_stretch"].map((name) => (at(name) === null ? "\u2013" : at(name).toFixed(3)));
   const plural = (n, word) => `${n} ${n === 1 ? word : word.replace(/ex$/, "ice")}${n === 1 ? "" : "s"}`;
   const chips = [], pairs = run.pairs[frame];
@@ -42,8 +43,10 @@ function chipsOf(run, frame, marked) {
   if (at("out_of_untangling")) chips.push(["out of untangling passes", "warn"]);
   if (at("out_of_response")) chips.push(["out of response", "warn"]);
   if (at("out_of_proofs")) chips.push(["out of proofs", "warn"]);
-  if (at("fell_back")) chips.push([`fell back${reason ? `: ${reason}` : ""}`, "warn"]);
-  else if (reason) chips.push([reason, "warn"]);
+  const refused = words(at("verdict")), reason = words(at("reason"));
+  if (at("fell_back")) chips.push([`fell back${refused ? `: ${refused}` : ""}`, "warn"]);
+  if (reason) chips.push([`rejected: ${reason}`, "bad"]);
+  run.doubts.filter(at).forEach((name) => chips.push([words(name), "warn"]));
   if (at("by") && at("by") !== run.stepper) chips.push([`by ${at("by")}`, ""]);
   chips.push([`stretch ${range[0]} to ${range[1]}`, ""]);
   if (at("contacts")) chips.push([plural(at("contacts"), "contact"), ""]);

@@ -64,7 +64,10 @@ std::size_t bytes_a_frame(const TrajectoryInfo& info) {
 
 json describe(const ViewRun& run) {
   const TrajectoryInfo& info = run.info;
+  json doubts = json::array();
+  for (const BoundField<Doubts>& doubt : doubt_fields()) doubts.push_back(doubt.name);
   return {{"name", run.name},
+          {"doubts", doubts},
           {"stepper", info.stepper},
           {"program", info.program_version},
           {"fps", info.fps},

@@ -72,6 +72,7 @@ inline Frame frame(const Scene& scene, int index) {
   frame.report.status = StepStatus::accepted;
   frame.report.by = index % 2 ? "odd" : "even";
   frame.report.iterations = index;
+  frame.report.doubts = {index % 2 == 1, index % 3 == 2, index % 5 == 3};
   frame.report.residual = 0.5 * index;
   frame.report.seconds = {1, 2, 3, 4, 5.0 + index};
   frame.report.collision.contacts = 7 * index;

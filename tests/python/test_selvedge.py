@@ -47,6 +47,7 @@ def test_the_report_of_a_step_says_all_that_there_is():
         assert report[name] == 0
     for name in ("out_of_newton", "out_of_untangling", "out_of_response", "out_of_proofs"):
         assert report[name] is False
+    assert not any(report[name] for name in ("not_converged", "penetrating", "energy_gain"))
     assert report["unsolved"] >= 0 and report["pairs_after"] == scene.pairs
 
 

@@ -47,8 +47,8 @@ fake::LearnedCase sheet_over_ball() {
 }
 
 bool same_report(const StepReport& a, const StepReport& b) {
-  return a.status == b.status && a.reason == b.reason && a.collision.pushed_out == b.collision.pushed_out &&
-         a.audit.has_value() == b.audit.has_value();
+  return a.status == b.status && a.reason == b.reason && a.doubts == b.doubts &&
+         a.collision.pushed_out == b.collision.pushed_out && a.audit.has_value() == b.audit.has_value();
 }
 
 }  // namespace

@@ -203,6 +203,7 @@ TEST_CASE("springs: what they join keeps its momentum to rounding", "[springs]")
   State next;
   const StepReport report = testing::frame(w.scene, *stepper, end, w.drive, 1.0 / 30, next);
   CHECK(report.reason == Reason::none);
+  CHECK_FALSE(report.doubts.any());
   CHECK(report.iterations < 5 * report.substeps);  // more if the sheets were moved each as if it were alone
   const double moved = lumped_masses(w.scene).dot(end.v.rowwise().norm());
   CHECK(moved > 1e-4);

@@ -101,15 +101,24 @@ TEST_CASE("make_frame: the state's verdict names what crosses", "[make_frame]") 
   const Made clean = lift(w, {0.01});
   CHECK(clean.to.clean);
   REQUIRE(clean.report.audit);
-  CHECK(clean.report.reason == Reason::none);
+  CHECK_FALSE(clean.report.doubts.any());
 
   for (int v = 0; v < 12; ++v) w.state.x(v, 1) -= 0.1;
   const Made crossing = lift(w, {0.001});
   CHECK(crossing.report.status == StepStatus::accepted);
   CHECK(crossing.report.collision.pairs_after > 0);
   CHECK(crossing.report.collision.pairs_wanted == crossing.report.collision.pairs_after);
-  CHECK(crossing.report.reason == Reason::penetrating);
+  CHECK(crossing.report.reason == Reason::none);
+  CHECK(crossing.report.doubts == Doubts{.penetrating = true});
   CHECK_FALSE(crossing.to.clean);
+
+  State to;  // it stands beside what the step says itself
+  StepReport rough;
+  rough.doubts.not_converged = true;
+  finish_step(w.state, w.drive, dt, {w.state.x, w.state.v, w.drive.obstacles}, to, rough);
+  FrameAudits audits(w.scene);
+  CHECK_FALSE(judge_frame(audits, w.state, w.drive, to, rough));
+  CHECK(rough.doubts == Doubts{.not_converged = true, .penetrating = true});
 }
 
 TEST_CASE("make_frame: pairs that a substep left alone are not asked about, and without a word what crosses is not",

@@ -69,19 +69,21 @@ TEST_CASE("energy balance: what pins do is no gain from nowhere", "[energy_balan
 
 TEST_CASE("energy balance: the label stands on accepted steps that cross nothing", "[energy_balance]") {
   const World w = make_world(sheet(6, 0.4, 0));
-  const auto labelled = [&](StepStatus status, Reason reason, double speed) {
+  const auto labelled = [&](StepStatus status, Doubts doubts, double speed) {
     StepReport report;
     report.status = status;
-    report.reason = reason;
+    report.doubts = doubts;
     State to = moved(w, 0, speed);
     EnergyBalance(w.scene).label(w.state, w.drive, to, report);
-    return report.reason;
+    CHECK(report.reason == Reason::none);
+    return report.doubts;
   };
-  CHECK(labelled(StepStatus::accepted, Reason::none, 3) == Reason::energy_gain);
-  CHECK(labelled(StepStatus::accepted, Reason::not_converged, 3) == Reason::energy_gain);
-  CHECK(labelled(StepStatus::accepted, Reason::penetrating, 3) == Reason::penetrating);
-  CHECK(labelled(StepStatus::rejected, Reason::stopped, 3) == Reason::stopped);
-  CHECK(labelled(StepStatus::accepted, Reason::none, 0) == Reason::none);
+  const Doubts rough{.not_converged = true}, crossing{.penetrating = true};
+  CHECK(labelled(StepStatus::accepted, {}, 3) == Doubts{.energy_gain = true});
+  CHECK(labelled(StepStatus::accepted, rough, 3) == Doubts{.not_converged = true, .energy_gain = true});
+  CHECK(labelled(StepStatus::accepted, crossing, 3) == crossing);
+  CHECK(labelled(StepStatus::rejected, {}, 3) == Doubts{});
+  CHECK(labelled(StepStatus::accepted, {}, 0) == Doubts{});
 }
 
 }  // namespace selvedge::test_energy_balance

@@ -91,6 +91,7 @@ TEST_CASE("conventional stepper: plates that close on cloth lag, leave it clean,
     worst_lag = std::max(worst_lag, report.collision.obstacle_lag);
     CHECK(report.collision.held_vertices == 0);
     CHECK(report.reason == Reason::none);
+    CHECK_FALSE(report.doubts.any());
     if (f > 11 && f <= 15) CHECK(report.collision.impulses < 20);  // plates wait where there is room
     if (f < 8 || f > 25) CHECK(report.collision.obstacle_lag == 0);
     if (f > 25) CHECK(report.collision.pairs_wanted == 0);

@@ -189,6 +189,7 @@ TEST_CASE("hybrid: a proposal whose energy comes from nowhere is refused", "[hyb
   CHECK(report.verdict == Verdict::energy_gain);
   CHECK(report.by == "hybrid: conventional");
   CHECK(report.reason == Reason::none);
+  CHECK_FALSE(report.doubts.any());
   State solved;
   testing::frame(w.scene, *solver, state, w.drive, dt, solved);
   CHECK(same_bits(to.v, solved.v));

@@ -189,6 +189,31 @@ TEST_CASE("a trajectory of a program that had fewer columns can be read: what it
   CHECK(read.bad_triangles == wrote.bad_triangles);
 }
 
+TEST_CASE("the reason of an accepted step of an older file becomes what it leaves in doubt") {
+  const fake::Folder folder("older_reasons");
+  const Scene scene = fake::scene();
+  const std::filesystem::path path = folder.path / "run.h5";
+  TrajectoryWriter writer(path, trajectory_info(scene, "", "conventional", 30));
+  const std::vector<Reason> reasons{Reason::none, Reason::not_converged, Reason::penetrating, Reason::energy_gain};
+  for (const StepStatus status : {StepStatus::accepted, StepStatus::rejected})
+    for (const Reason reason : reasons) {
+      Frame frame = fake::frame(scene, 0);
+      frame.report.status = status;
+      frame.report.reason = reason;
+      writer.append(frame);
+    }
+  writer.close();
+  leave_columns(path, {"time", "by", "status", "reason", "bad_begin", "bad_count"});
+  const TrajectoryReader reader(path);
+  const std::vector<Doubts> doubts{
+      {}, {.not_converged = true}, {.penetrating = true}, {.energy_gain = true}, {}, {}, {}, {}};
+  for (int i = 0; i < 8; ++i) {
+    INFO(i);
+    CHECK(reader.frame(i).report.doubts == doubts[static_cast<std::size_t>(i)]);
+    CHECK(reader.frame(i).report.reason == (i < 4 ? Reason::none : reasons[static_cast<std::size_t>(i - 4)]));
+  }
+}
+
 const std::filesystem::path files_page = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "docs" / "files.md";
 const std::string columns_begin = "<!-- written by: selvedge_tests \"[write-docs]\" -->\n";
 

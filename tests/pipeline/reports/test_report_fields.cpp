@@ -19,6 +19,11 @@ void each_member(PhaseTimes& all, const F& f) {
   for (double* one : {&a, &b, &c, &d, &e, &g, &h, &i}) f(*one);
 }
 template <class F>
+void each_member(Doubts& all, const F& f) {
+  auto& [not_converged, penetrating, energy_gain] = all;
+  for (bool* one : {&not_converged, &penetrating, &energy_gain}) f(*one);
+}
+template <class F>
 void each_member(StepCounts& all, const F& f) {
   auto& [solves, coarse_builds, searches, candidates, audits, swept, projected] = all;
   for (int* one : {&solves, &coarse_builds, &searches, &audits}) f(*one);
@@ -35,7 +40,7 @@ void each_member(CollisionReport& all, const F& f) {
 }
 template <class F>
 void each_member(StepReport& all, const F& f) {
-  auto& [status, reason, by, fell_back, verdict, substeps, resting, iterations, untangling, out_of_newton,
+  auto& [status, reason, doubts, by, fell_back, verdict, substeps, resting, iterations, untangling, out_of_newton,
          out_of_untangling, out_of_response, out_of_proofs, linear_iterations, residual, unsolved, seconds, counts,
          collision, switched_off, audit, path] = all;
   static_cast<void>(path);  // until its audit: of no frame that is reported
@@ -43,7 +48,7 @@ void each_member(StepReport& all, const F& f) {
   for (bool* one : {&fell_back, &out_of_newton, &out_of_untangling, &out_of_response, &out_of_proofs}) f(*one);
   for (int* one : {&substeps, &resting, &iterations, &untangling, &linear_iterations}) f(*one);
   for (double* one : {&residual, &unsolved}) f(*one);
-  each_member(seconds, f), each_member(counts, f), each_member(collision, f);
+  each_member(doubts, f), each_member(seconds, f), each_member(counts, f), each_member(collision, f);
 }
 
 void change(int& value) { value = 7; }
@@ -88,6 +93,7 @@ void check_rows(const BoundFields<Struct>& fields) {
 
 TEST_CASE("reports: each member of a report and of its parts has one row of the table", "[reports]") {
   check_rows(phase_fields());
+  check_rows(doubt_fields());
   check_rows(count_fields());
   check_rows(collision_fields());
   check_rows(report_fields());
@@ -126,6 +132,11 @@ TEST_CASE("reports: seconds and counts add up member by member", "[reports]") {
     one += before;
     for (const auto& row : count_fields()) CHECK(number_of(row.get(one), {}) == 2 * number_of(row.get(before), {}));
   }
+}
+
+TEST_CASE("reports: any doubt is one", "[reports]") {
+  CHECK_FALSE(Doubts{}.any());
+  for (const Doubts& one : with_one_change<Doubts>()) CHECK(one.any());
 }
 
 TEST_CASE("reports: a field over all frames", "[reports]") {

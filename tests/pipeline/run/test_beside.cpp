@@ -48,6 +48,7 @@ struct Seen {
   bool clean, pinched;
   StepStatus status;
   Reason reason;
+  Doubts doubts;
   Points x, v;
   bool operator==(const Seen&) const = default;
 };
@@ -75,7 +76,7 @@ Watched watch(int threads, const std::set<int>& planted, int frames, int fails_a
     const CollisionReport& found = event.report.collision;
     watched.frames.push_back({event.state.frame, found.pairs_after, found.pairs_wanted, event.report.counts.audits,
                               event.state.clean, event.state.pinched, event.report.status, event.report.reason,
-                              event.state.x, event.state.v});
+                              event.report.doubts, event.state.x, event.state.v});
     return event.state.frame < ends_at;
   };
   try {

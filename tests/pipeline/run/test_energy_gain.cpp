@@ -13,7 +13,7 @@ using fake::case_file;
 namespace {
 
 struct Reasons {
-  std::vector<int> gains;  // frames with the reason `energy_gain`
+  std::vector<int> gains;  // frames that leave `energy_gain` in doubt
   StepReport last;
   double energy = 0;  // at the end [J]
 };
@@ -24,7 +24,7 @@ Reasons run(const std::filesystem::path& file, std::vector<std::string> override
   Reasons seen;
   seen.last = simulate(setup.scene, *make_stepper(setup), setup.drive_at, 1 / setup.run.fps, setup.run.frames, state,
                        [&](const FrameEvent& event) {
-                         if (event.report.reason == Reason::energy_gain) seen.gains.push_back(event.state.frame);
+                         if (event.report.doubts.energy_gain) seen.gains.push_back(event.state.frame);
                          return true;
                        });
   seen.energy = energies(setup.scene, state.x, state.v, setup.drive_at(0).acceleration).total();

@@ -266,4 +266,18 @@ TEST_CASE("a summary says in how many frames the audit of the motion was not who
   REQUIRE_THAT(summary_text(summary), Catch::Contains("out of proofs"));
 }
 
+TEST_CASE("a summary says in how many frames an accepted step left something in doubt, each doubt by itself") {
+  RunSummary summary;
+  for (int index = 0; index < 6; ++index) {
+    Frame frame = fake::frame(fake::scene(), index);
+    frame.report.doubts = {index > 1, index > 2, index > 3};
+    add_frame(summary, index, frame);
+  }
+  for (const char* part : {"\"not_converged_frames\": 4", "\"penetrating_frames\": 3", "\"energy_gains\": 2",
+                           "\"energy_gains_first_frame\": 4"})
+    CHECK_THAT(summary_json(summary), Catch::Contains(part));
+  for (const char* label : {"energy from nowhere", "not converged"})
+    CHECK_THAT(summary_text(summary), Catch::Contains(label));
+}
+
 }  // namespace selvedge::test_simulate

@@ -118,9 +118,11 @@ TEST_CASE("view: a trajectory file becomes a page named after its folder", "[vie
   writer.close();
   write_view({file.parent_path()}, folder.path / "page.html", options);
   const std::string page = fake::whole(folder.path / "page.html");
-  for (const char* part : {"\"name\":\"silk-dress\"", "\"stepper\":\"hybrid-of-two\"", "\"self_pairs\":[0,1,2]",
-                           "\"marked\":[[],[1],[0,1]]", "\"selfAudited\":true", "\"switched_off\":[[],[1,1],[0,2]]",
-                           "\"out_of_response\":[false,true,false]", "\"out_of_proofs\":[false,false,true]"})
+  for (const char* part :
+       {"\"name\":\"silk-dress\"", "\"stepper\":\"hybrid-of-two\"", "\"self_pairs\":[0,1,2]",
+        "\"marked\":[[],[1],[0,1]]", "\"selfAudited\":true",
+        "\"doubts\":[\"not_converged\",\"penetrating\",\"energy_gain\"]", "\"switched_off\":[[],[1,1],[0,2]]",
+        "\"out_of_response\":[false,true,false]", "\"out_of_proofs\":[false,false,true]"})
     CHECK(page.find(part) != std::string::npos);
   CHECK_THROWS_AS(write_view({file}, folder.path / "no/such/folder.html", options), Error);
   std::filesystem::create_directories(folder.path / "taken.html/inside");
