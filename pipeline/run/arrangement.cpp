@@ -12,8 +12,8 @@ constexpr double faster = 0.95;
 
 }  // namespace
 
-void Arrangement::begin(Leg leg, bool beside) {
-  leg_ = leg;
+void Arrangement::begin(Phase phase, bool beside) {
+  phase_ = phase;
   beside_ = beside;
   frames_ = 0;
 }
@@ -22,21 +22,21 @@ void Arrangement::choose(double after) {
   const double own = (before_ + after) / 2;
   const double all_step = beside_ ? other_ : own, one_beside = beside_ ? own : other_;
   kept_frames_ = std::min(2 * kept_frames_, most_kept_frames);
-  begin(Leg::kept, !(all_step < faster * one_beside));
+  begin(Phase::kept, !(all_step < faster * one_beside));
 }
 
 void Arrangement::took(double seconds) {
   const double recent = (seconds + last_) / 2;
   last_ = seconds;
-  if (++frames_ < (leg_ == Leg::kept ? kept_frames_ : trial_frames)) return;
-  switch (leg_) {
-    case Leg::kept:
+  if (++frames_ < (phase_ == Phase::kept ? kept_frames_ : trial_frames)) return;
+  switch (phase_) {
+    case Phase::kept:
       before_ = recent;
-      return begin(Leg::other, !beside_);
-    case Leg::other:
+      return begin(Phase::other, !beside_);
+    case Phase::other:
       other_ = recent;
-      return begin(Leg::back, !beside_);
-    case Leg::back:
+      return begin(Phase::back, !beside_);
+    case Phase::back:
       return choose(recent);
   }
 }

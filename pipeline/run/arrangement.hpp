@@ -13,13 +13,13 @@ class Arrangement {
   void took(double seconds);  // a frame in this arrangement
 
  private:
-  enum class Leg { kept, other, back };
-  void begin(Leg leg, bool beside);
+  enum class Phase { kept, other, back };
+  void begin(Phase phase, bool beside);
   void choose(double after);
 
-  Leg leg_ = Leg::kept;
+  Phase phase_ = Phase::kept;
   bool beside_ = true;
-  int frames_ = 0, kept_frames_ = 3;  // of this leg so far; of the next leg that is kept, doubled at each choice
+  int frames_ = 0, kept_frames_ = 3;  // of this phase so far; of the next phase that is kept, doubled at each choice
   double last_ = 0;                   // the last frame's time [s]
   double before_ = 0, other_ = 0;     // mean times of a frame before the trial and in it [s]
 };
