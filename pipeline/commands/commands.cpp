@@ -16,10 +16,10 @@
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/run_scene.hpp"
 #include "pipeline/scene/make_stepper.hpp"
-#include "pipeline/scene/scene_pages.hpp"
 #include "pipeline/tools/ccd_report.hpp"
 #include "pipeline/tools/info.hpp"
 #include "pipeline/tools/plan.hpp"
+#include "pipeline/tools/scene_pages.hpp"
 #include "pipeline/training/running_mark.hpp"
 #include "pipeline/view/view.hpp"
 

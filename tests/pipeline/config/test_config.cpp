@@ -6,8 +6,8 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/scene/config_scene.hpp"
-#include "pipeline/scene/scene_pages.hpp"
 #include "pipeline/scene/setup.hpp"
+#include "pipeline/tools/scene_pages.hpp"
 #include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_config {

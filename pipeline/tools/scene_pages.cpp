@@ -1,4 +1,4 @@
-#include "pipeline/scene/scene_pages.hpp"
+#include "pipeline/tools/scene_pages.hpp"
 
 #include <fmt/format.h>
 
