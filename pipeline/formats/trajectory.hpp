@@ -6,6 +6,7 @@
 #include "physics/energies/measures.hpp"
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
+#include "pipeline/reports/bound_field.hpp"
 
 namespace selvedge {
 
@@ -43,5 +44,8 @@ struct Frame {
   double seconds = 0;              // whole frame
   std::vector<int> bad_triangles;  // triangles that intersect something (drawn marked)
 };
+
+// A frame without its positions: its report, its audit, its energies.
+const BoundFields<Frame>& frame_fields();
 
 }  // namespace selvedge

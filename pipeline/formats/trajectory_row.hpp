@@ -12,10 +12,7 @@
 
 namespace selvedge {
 
-// A frame without its positions: its report, its audit, its energies.
-const BoundFields<Frame>& frame_fields();
-
-// The same as the compound row of dataset frames/report: a cell of 8 bytes for each field that has a column, whole
+// A frame's fields as the compound row of dataset frames/report: a cell of 8 bytes for each field that has a column, whole
 // numbers as they are and others by their bits.
 struct TrajectoryRow {
   std::vector<std::int64_t> cells;

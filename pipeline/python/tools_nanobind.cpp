@@ -11,7 +11,6 @@
 #include "pipeline/compare/compare.hpp"
 #include "pipeline/formats/read_point_cache.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
-#include "pipeline/formats/trajectory_row.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
 #include "pipeline/python/bindings_nanobind.hpp"
 #include "pipeline/python/fields_nanobind.hpp"
