@@ -12,8 +12,8 @@
 
 namespace selvedge {
 
-// A frame's fields as the compound row of dataset frames/report: a cell of 8 bytes for each field that has a column, whole
-// numbers as they are and others by their bits.
+// A frame's fields as the compound row of dataset frames/report: a cell of 8 bytes for each field that has a column,
+// whole numbers as they are and others by their bits.
 struct TrajectoryRow {
   std::vector<std::int64_t> cells;
   // The last two columns: frames/bad_triangles [bad_begin, bad_begin + bad_count).
