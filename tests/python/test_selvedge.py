@@ -42,7 +42,7 @@ def test_the_report_of_a_step_says_all_that_there_is():
     assert scene.step()
     report = scene.report
     assert report["status"] == "accepted" and report["reason"] == "none" and report["by"] == "conventional"
-    assert report["iterations"] > 0 and report["solves"] > 0 and report["solve_seconds"] > 0
+    assert report["solves"] > 0 and report["solve_seconds"] > 0 and report["iterations"] == 0  # it falls freely
     for name in ("untangling", "pushed_out"):
         assert report[name] == 0
     for name in ("out_of_newton", "out_of_untangling", "out_of_response", "out_of_proofs"):
