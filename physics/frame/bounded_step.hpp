@@ -9,8 +9,8 @@
 
 namespace selvedge {
 
-// The report of `take`, which takes a step; where one of its searches meets more pairs than it may look at
-// (pair_budget.hpp), or `stop` ends one (stop_scope.hpp), that of a rejected step.
+// Calls `take` and returns its report. Where a search meets more pairs than it may look at (pair_budget.hpp), or `stop`
+// ends a search (stop_scope.hpp), it returns the report of a rejected step.
 template <class Take>
 StepReport bounded_step(const std::string& by, const StopFlag& stop, Take&& take) {
   StepReport rejected;

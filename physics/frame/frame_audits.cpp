@@ -15,7 +15,7 @@
 namespace selvedge {
 namespace {
 
-constexpr std::size_t most_parts = 4;  // that are remembered
+constexpr std::size_t most_parts = 4;  // whose audits are remembered
 
 Points rounded_to_float(const Points& x) { return x.cast<float>().cast<double>(); }
 

@@ -12,10 +12,11 @@
 
 namespace selvedge {
 
-// The audits of frames. Positions are rounded to float, as a file stores them: what is audited is what a reader will
-// see. Cloth is held against itself where Scene::contact says so. Memories, where given, save time where little moves.
+// The audits of frames. Cloth is held against itself where Scene::contact says so. Memories, where given, save time
+// where little moves.
 
-// Of positions [m]: crossing pairs of the cloth and with obstacles, and vertices inside closed ones.
+// Of positions [m], rounded to float as a file stores them, so that a reader sees what is audited: crossing pairs of
+// the cloth and with obstacles, and vertices inside closed ones.
 Audit audit_positions(const Scene&, const Points& x, const std::vector<Points>& obstacles, AuditMemory* = nullptr);
 // Of the state without the triangles that are cut out of it.
 Audit audit_uncut(const Scene&, const State&);
@@ -37,14 +38,16 @@ struct FrameAudits {
     AuditMemory memory;
   };
   AuditMemory whole;
-  std::vector<OfPart> parts;  // of the scene that steps were of, the last one at the end
+  std::vector<OfPart> parts;  // of the last few parts of the scene that were stepped
 };
 
 // Judges an accepted step: audits its path substep by substep, then the state that it made, unless the report has that
-// audit already. Returns whether the state is clean. The report gets the audit, what passed through, the intersecting
-// pairs, those with obstacles where the drive wanted them, whether it is `penetrating`, and the seconds
-// that this took; its path is gone after that. A step whose audit meets more pairs than it may look at
-// (pair_budget.hpp) is rejected. Throws Stopped where a StopScope of the caller ends it.
+// audit already. Returns whether the state is clean: no two triangles cross that share no vertex, and no vertex is
+// inside a closed obstacle. What passed through on the way does not count. The report gets the audit, the number of
+// pairs that passed through, the number of intersecting pairs, the same number with all obstacles where the drive
+// wanted them, whether it is `penetrating`, and the seconds that this took; its path is gone after that. A step whose
+// audit meets more pairs than it may look at (pair_budget.hpp) is rejected. Throws Stopped where a StopScope of the
+// caller ends it.
 [[nodiscard]] bool judge_frame(FrameAudits&, const State& from, const Drive&, const State& to, StepReport&);
 
 }  // namespace selvedge

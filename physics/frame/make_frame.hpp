@@ -5,8 +5,8 @@
 namespace selvedge {
 
 // One frame: a step of the stepper by dt [s], the audit of its motion, the audit of the state that it made, and the
-// verdict, in this order (judge_frame). Nothing else calls a frame that was made clean. A stop flag among the extras
-// ends the audits, too: the frame is rejected as `stopped`.
+// verdict, in this order (judge_frame). A stop flag among the extras ends the audits, too: the frame is rejected as
+// `stopped`.
 StepReport make_frame(Stepper&, FrameAudits&, const State& from, const Drive&, double dt, State& to,
                       const StepExtras& = {});
 

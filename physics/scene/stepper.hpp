@@ -51,7 +51,7 @@ enum class StepStatus { not_run, accepted, rejected };
 // Why a step was rejected.
 enum class Reason { none, not_converged, not_finite, penetrating, energy_gain, overstretched, stopped, too_many_pairs };
 
-// What an accepted step leaves in doubt, several at once where it is so.
+// Doubts about an accepted step. More than one may be set.
 struct Doubts {
   bool not_converged = false;  // solves ended farther from their minimum than is tolerated
   bool penetrating = false;    // triangles cross, by the audit of the state
@@ -93,10 +93,11 @@ struct CollisionReport {
   int pushed_out = 0;       // cloth vertices that the repulsive layer moved (refu_stepper.hpp)
   int jumped = 0;           // obstacles put where they were wanted without a sweep: too far for one
   double min_gap = std::numeric_limits<double>::infinity();  // of the contacts [m]
-  double obstacle_lag = 0;                // largest distance of an obstacle vertex from where it was wanted [m]
-  int pairs_before = 0, pairs_after = 0;  // intersecting triangle pairs by the audit; -1: not audited
-  int pairs_wanted = 0;                   // the same with obstacles where they were wanted
-  double depth_wanted = 0;                // how deep a cloth vertex lies in a wanted closed obstacle [m]
+  double obstacle_lag = 0;  // largest distance of an obstacle vertex from where it was wanted [m]
+  int pairs_before = 0,
+      pairs_after = 0;      // intersecting triangle pairs by the audit; -1, or 0 in a step that did not look
+  int pairs_wanted = 0;     // the same with obstacles where they were wanted
+  double depth_wanted = 0;  // how deep a cloth vertex lies in a wanted closed obstacle [m]
 };
 
 // What a hybrid stepper has done with another stepper's proposal (guard.hpp, hybrid_stepper.hpp).
@@ -119,10 +120,11 @@ enum class Verdict {
 
 struct PartOfScene;  // part_of_scene.hpp
 
-// Where the cloth and the obstacles went straight from where they were, all nodes on end (gather_nodes).
+// Where a substep ended. Every node went there along a straight line.
 struct SubstepEnd {
-  Points nodes;  // [m]
-  // What contact left alone on the way; absent: what crosses at its start, where that is not known to be clean.
+  Points nodes;  // cloth, then obstacles (gather_nodes) [m]
+  // What contact left alone on the way. Absent: nothing if the frame's start is clean, else what crosses at the start
+  // of this substep.
   std::optional<Exemption> left_alone;
 };
 
@@ -130,10 +132,10 @@ struct SubstepEnd {
 struct StepPath {
   Points start;  // [m]
   std::vector<SubstepEnd> substeps;
-  std::shared_ptr<const PartOfScene> part;  // whose nodes these are, for the rest took no part; null: the scene's
+  std::shared_ptr<const PartOfScene> part;  // of the scene that was stepped, whose nodes these are; null: all of it
 };
 
-// Each member of it and of its parts has a row in pipeline/reports/report_fields.cpp.
+// Each member of it and of its parts but `path` has a row in pipeline/reports/report_fields.cpp.
 struct StepReport {  // starts as failure
   StepStatus status = StepStatus::not_run;
   Reason reason = Reason::none;  // none unless it is rejected
@@ -204,11 +206,11 @@ struct StepperTraits {
 //   time, frame  from.time + dt and from.frame + 1;
 //   x, v         finite, one row a vertex, pins at Drive::pins unless the report names motion that was shortened;
 //   obstacles    where they ended, and pinched, whether one of them is not where the drive wanted it;
-//   clean        false: make_frame (physics/frame/make_frame.hpp) audits the step and says whether it is;
+//   clean        false: judge_frame (physics/frame/frame_audits.hpp) decides after the step;
 //   cut_out      what of from.cut_out is out still;
 //   memory       what the stepper and its decorators may read in their next step, and nothing else.
-// Its report has the path of the step, or the audit of the state where the stepper needed that itself (judge_frame).
-// finish_step (finish_step.hpp) does all this for positions and velocities.
+// Its report has the path of the step. A stepper that has called judge_frame itself (the hybrid) leaves the audit of
+// the state there in place of the path. finish_step (finish_step.hpp) does all this for positions and velocities.
 class Stepper {
  public:
   virtual ~Stepper() = default;

@@ -13,13 +13,15 @@ struct SubstepOptions {
   double normal_change = 0.05;      // It solves again while lagged normal forces change by more than this part.
   ContactTermOptions contact;
 
-  // Pairs that meet (with icm: all vertices) move at most this many mean edges in a substep.
+  // A step is cut so that pairs that meet (with icm: all vertices) move by at most this many mean edges in a substep,
+  // as far as max_substeps allows.
   static constexpr double max_motion = 2.5;
-  // A touching pair slides at most this many. More locks cloth that is pulled round a post.
+  // It is cut so that a touching pair slides by at most this many mean edges. More locks cloth that is pulled round a
+  // post.
   static constexpr double max_slide = 1;
   // An impact this many mean edges deep becomes a term of the next solve.
   static constexpr double deep_impact = 0.05;
-  // A solve with contact takes this part of max_newton, since another one follows.
+  // A solve with contact may take this part of max_newton, since another one follows.
   static constexpr double contact_iterations = 0.5;
   // A substep solves again at most this often where there is no room: no stiffness makes any.
   static constexpr int pinched_passes = 3;
@@ -29,7 +31,7 @@ struct SubstepOptions {
   static constexpr int halving_zone_rounds = 12, pinched_zone_rounds = 4;
   // A response is refused that raises the potential to this many times the energy there is.
   static constexpr double tearing = 10;
-  // Cloth that stops short keeps this part of its motion up to the first impact.
+  // Where the last resort is refused, cloth and obstacles keep this part of their motion up to the first impact.
   static constexpr double kept_motion = 0.5;
 };
 

@@ -23,7 +23,8 @@ struct Range {
 
 struct Section;
 
-// One row of the table of allowed keys: drives reading, error messages, the effective configuration and docs/scene.md.
+// One row of the table of allowed keys: drives reading, error messages, the effective configuration and the pages of
+// keys.
 struct Key {
   std::string name{};
   Kind kind = Kind::number;

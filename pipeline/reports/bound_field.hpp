@@ -27,7 +27,7 @@ using FieldValue = std::variant<bool, std::int64_t, double, std::string, std::ve
 // number, the number of an enumerator, the number of a text, or the sum of a list.
 enum class ColumnType { none, flag, whole, large, real, word, text, list };
 
-// How the values of all frames become one of the summary. Code of their own (summary.cpp) makes the last three.
+// How the values of all frames become one of the summary. Code of their own (summary.cpp) makes the last four.
 enum class Over {
   sum,
   largest,

@@ -25,7 +25,7 @@ void add_report(FieldTotals&, int frame, const StepReport&);
 // By the name of the field; throws Error for a name that no field has.
 const FieldTotal& total_of(const FieldTotals&, std::string_view name);
 
-// For all but `by_word` and what is made by code of its own.
+// The value for the summary. Not for `by_word` and what is made by code of its own.
 double value_of(const FieldTotal&, Over);
 
 }  // namespace selvedge

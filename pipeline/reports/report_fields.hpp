@@ -8,8 +8,9 @@
 
 namespace selvedge {
 
-// All that a step's report says: the one list of its fields. Trajectory, summary, page, Python and docs/files.md are
-// made from it. Whoever adds a member to one of these structs adds a row here; a test fails until it is there.
+// All that a step's report says but its path: the one list of its fields. Trajectory, summary, page, Python and
+// docs/files.md are made from it. Whoever adds a member to one of these structs adds a row here; a test fails until it
+// is there.
 const BoundFields<PhaseTimes>& phase_fields();
 const BoundFields<Doubts>& doubt_fields();
 const BoundFields<StepCounts>& count_fields();

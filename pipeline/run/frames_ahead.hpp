@@ -19,8 +19,8 @@ struct MadeFrame {
 
 // Makes the frames of a run one after the other, as make_frame does. Where there are two threads or more, and where it
 // is faster (arrangement.hpp), one of them audits the last frame and makes the drive of the next one beside a step.
-// That step takes the last frame for clean. Where it turns out not to be, the step is void and is taken again. Frames
-// are handed out with their verdicts only, and are the same, bit for bit.
+// That step takes the last frame for clean. If it is not, the step is thrown away and taken again. No frame is handed
+// out before its verdict. Frames have the same bits on any number of threads.
 class FramesAhead {
  public:
   // Up to frame `frames`. `state`: the last one that was handed out, or where the run begins; the caller keeps it so.
@@ -35,7 +35,7 @@ class FramesAhead {
   struct Beside {
     bool clean = false;          // the frame that waited
     std::optional<Drive> drive;  // of the frame after the one that was stepped
-    std::exception_ptr trouble;  // why there is none
+    std::exception_ptr trouble;  // what `drive_at` threw; null: nothing
   };
   bool asks_to_stop();
   bool advance(std::optional<MadeFrame>& judged);
@@ -52,14 +52,14 @@ class FramesAhead {
   int frames_;
   const State& state_;
   const StopFlag& stop_;
-  std::atomic<bool> stopping_ = false;  // what it said last, for the thread beside
+  std::atomic<bool> stopping_ = false;  // whether `stop_` has said true; the thread beside reads it
   StopFlag asked_;
   FrameAudits audits_;
   int threads_;
   Arrangement arrangement_;
-  std::optional<MadeFrame> waiting_;  // for its verdict: the frame after `state_`
+  std::optional<MadeFrame> waiting_;  // the frame after `state_`, which has no verdict yet
   std::optional<Drive> coming_;       // of the next frame to make
-  std::exception_ptr trouble_;        // why it is not known
+  std::exception_ptr trouble_;        // what `drive_at` threw when it was asked for that drive
 };
 
 }  // namespace selvedge

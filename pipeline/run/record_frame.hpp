@@ -8,7 +8,7 @@ namespace selvedge {
 
 // What a trajectory keeps of a frame. Positions are rounded to float first; the audit, the stretches and the energies
 // are those of the rounded positions, because these are what a reader gets.
-// What the stepper has audited is not audited again.
+// A frame that has its audit is not audited again.
 Frame record_frame(const Scene&, const EnergyTerms&, const FrameEvent&);
 
 // Frame 0: the state before any step.

@@ -4,12 +4,12 @@
 
 namespace selvedge {
 
-// Which keys of a scene file most scenes need, and which few do. Each key is in one tier.
+// Keys of a first scene, and all others. Each key of a scene file is in one tier.
 enum class KeyTier { user, expert };
 
-// The keys of a tier as Markdown, the user's by task: the second halves of docs/scene.md and docs/expert.md.
+// The keys of a tier as Markdown, the user's by task: docs/scene.md and docs/expert.md below `<!-- tables -->`.
 std::string scene_reference(KeyTier);
-// The same as lines for a terminal, dotted keys with their units, defaults and meanings.
+// The keys for a terminal, by section: unit, default, meaning.
 std::string scene_keys_text(KeyTier);
 int scene_key_count(KeyTier);
 
