@@ -70,7 +70,9 @@ TEST_CASE("make_frame: an excursion between two substeps is found, though the fr
           "[make_frame]") {
   const World w = over_plate();
   const Made there_and_back = lift(w, {-0.1, 0.0});
-  CHECK(there_and_back.report.collision.passed_through > 0);
+  const Made there = lift(w, {-0.1});  // half of the way
+  CHECK(there.report.collision.passed_through > 0);
+  CHECK(there_and_back.report.collision.passed_through == 2 * there.report.collision.passed_through);
   CHECK(there_and_back.report.collision.pairs_after == 0);
   CHECK(there_and_back.report.counts.audits == 3);
   CHECK(there_and_back.to.clean);
