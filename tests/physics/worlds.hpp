@@ -31,6 +31,14 @@ inline void add_obstacle(World& w, const Sheet& body) {
   w.drive.obstacles.push_back(body.x);
 }
 
+// A sheet 5 cm above a plate, known to be clean.
+inline World sheet_over_plate() {
+  World w = make_world(sheet(4, 0.2, 0.05));
+  add_obstacle(w, sheet(2, 0.6, 0));
+  w.state.clean = true;
+  return w;
+}
+
 inline Sheet tilted(Sheet s, double angle) {
   const Mat3 turn = Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix();
   s.x = (s.x * turn.transpose()).eval();

@@ -12,14 +12,6 @@ namespace {
 
 constexpr double dt = 1.0 / 30;
 
-// A sheet 5 cm above a plate.
-World over_plate() {
-  World w = make_world(testing::sheet(4, 0.2, 0.05));
-  add_obstacle(w, testing::sheet(2, 0.6, 0));
-  w.state.clean = true;
-  return w;
-}
-
 Points raised(Points x, double height) {
   x.col(1).array() += height;
   return x;
@@ -68,7 +60,7 @@ Made lift(const World& w, std::vector<double> heights, std::optional<Exemption> 
 
 TEST_CASE("make_frame: an excursion between two substeps is found, though the frame ends where it began",
           "[make_frame]") {
-  const World w = over_plate();
+  const World w = testing::sheet_over_plate();
   const Made there_and_back = lift(w, {-0.1, 0.0});
   const Made there = lift(w, {-0.1});  // half of the way
   CHECK(there.report.collision.passed_through > 0);
@@ -82,7 +74,7 @@ TEST_CASE("make_frame: an excursion between two substeps is found, though the fr
 }
 
 TEST_CASE("make_frame: a step that names no path is audited along the straight one", "[make_frame]") {
-  const World w = over_plate();
+  const World w = testing::sheet_over_plate();
   class Falling final : public Stepper {
    public:
     const StepperTraits& traits() const override { return traits_; }
@@ -99,7 +91,7 @@ TEST_CASE("make_frame: a step that names no path is audited along the straight o
 }
 
 TEST_CASE("make_frame: the state's verdict names what crosses", "[make_frame]") {
-  World w = over_plate();
+  World w = testing::sheet_over_plate();
   const Made clean = lift(w, {0.01});
   CHECK(clean.to.clean);
   REQUIRE(clean.report.audit);
@@ -125,13 +117,13 @@ TEST_CASE("make_frame: the state's verdict names what crosses", "[make_frame]") 
 
 TEST_CASE("make_frame: pairs that a substep left alone are not asked about, and without a word what crosses is not",
           "[make_frame]") {
-  const World w = over_plate();
+  const World w = testing::sheet_over_plate();
   Exemption all;
   all.body.assign(static_cast<std::size_t>(w.state.x.rows()), 1);
   CHECK(lift(w, {-0.1}, all).report.collision.passed_through == 0);
   CHECK(lift(w, {-0.1}, Exemption{}).report.collision.passed_through > 0);
 
-  World tangled = over_plate();  // half of it hangs below the plate, and moves aside
+  World tangled = testing::sheet_over_plate();  // half of it hangs below the plate, and moves aside
   for (int v = 0; v < 12; ++v) tangled.state.x(v, 1) -= 0.1;
   tangled.state.clean = false;
   const Made made = lift(tangled, {0.001});
@@ -182,7 +174,7 @@ TEST_CASE("make_frame: of a step of a part of the scene that part's motion is au
 }
 
 TEST_CASE("make_frame: what the stepper has audited itself is not audited again", "[make_frame]") {
-  const World w = over_plate();
+  const World w = testing::sheet_over_plate();
   class Audited final : public Stepper {
    public:
     explicit Audited(const Scene& scene) : audits_(scene) {}
@@ -204,7 +196,7 @@ TEST_CASE("make_frame: what the stepper has audited itself is not audited again"
 }
 
 TEST_CASE("make_frame: a stop ends the audits, too, and a rejected step is not audited", "[make_frame]") {
-  const World w = over_plate();
+  const World w = testing::sheet_over_plate();
   LiftingStepper stepper({-0.1, 0.0});
   const Made stopped = make(w, stepper, {.stop = [] { return true; }});
   CHECK(stopped.report.status == StepStatus::rejected);

@@ -12,13 +12,10 @@ namespace {
 
 constexpr double dt = 1.0 / 30;
 
-// A sheet 5 cm above a plate.
 World over_plate() {
-  World w = make_world(testing::sheet(4, 0.2, 0.05));
-  add_obstacle(w, testing::sheet(2, 0.6, 0));
+  World w = testing::sheet_over_plate();
   w.state.time = 0.5;
   w.state.frame = 7;
-  w.state.clean = true;
   return w;
 }
 
