@@ -20,6 +20,9 @@ class FollowingStepper final : public Stepper {
     StepReport report = stepper_->step(from, held, dt, to, extras);
     if (report.status != StepStatus::accepted) return report;
     for (const Follower& one : followers_) {
+      // The path ends where the state is: the audit of the state then uses the search of the motion.
+      if (!report.path.part)
+        for (SubstepEnd& substep : report.path.substeps) follow(one, substep.nodes);
       follow(one, to.x);
       follow(one, to.v);
       for (MemoryBlock& block : to.memory)

@@ -16,6 +16,12 @@ namespace selvedge::test_trajectory {
 
 namespace {
 
+void write_three_frames(const std::filesystem::path& path, const Scene& scene) {
+  TrajectoryWriter writer(path, trajectory_info(scene, "", "conventional", 30));
+  for (int i = 0; i < 3; ++i) writer.append(fake::frame(scene, i));
+  writer.close();
+}
+
 void require_same(const Frame& a, const Frame& b) {
   REQUIRE(a.time == b.time);
   REQUIRE(a.x == b.x);
@@ -99,11 +105,7 @@ TEST_CASE("every field of a trajectory is checked before it is read") {
   const std::filesystem::path path = folder.path / "run.h5";
   const auto refusal = [&](const std::string& field, hid_t type, const std::vector<hsize_t>& shape,
                            const void* data) -> std::string {
-    {
-      TrajectoryWriter writer(path, trajectory_info(scene, "", "conventional", 30));
-      for (int i = 0; i < 3; ++i) writer.append(fake::frame(scene, i));
-      writer.close();
-    }
+    write_three_frames(path, scene);
     h5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
     H5Ldelete(file.id(), field.c_str(), H5P_DEFAULT);
     const h5::Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
@@ -173,9 +175,7 @@ TEST_CASE("a trajectory of a program that had fewer columns can be read: what it
   const fake::Folder folder("fewer_columns");
   const Scene scene = fake::scene();
   const std::filesystem::path path = folder.path / "run.h5";
-  TrajectoryWriter writer(path, trajectory_info(scene, "", "conventional", 30));
-  for (int i = 0; i < 3; ++i) writer.append(fake::frame(scene, i));
-  writer.close();
+  write_three_frames(path, scene);
   leave_columns(path, {"time", "by", "status", "reason", "iterations", "contacts", "bad_begin", "bad_count"});
   const TrajectoryReader reader(path);
   const Frame read = reader.frame(2), wrote = fake::frame(scene, 2), fresh;
@@ -234,9 +234,7 @@ TEST_CASE("a trajectory of a program that did not count what is switched off can
   const fake::Folder folder("older");
   const Scene scene = fake::scene();
   const std::filesystem::path path = folder.path / "run.h5";
-  TrajectoryWriter writer(path, trajectory_info(scene, "", "conventional", 30));
-  for (int i = 0; i < 3; ++i) writer.append(fake::frame(scene, i));
-  writer.close();
+  write_three_frames(path, scene);
   h5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
   H5Ldelete(file.id(), "frames/switched_off", H5P_DEFAULT);
   file.reset();
