@@ -83,7 +83,7 @@ class HybridStepper final : public Stepper {
     State& to;
     StepReport& report;
     const StopFlag& stop;
-    double audited = 0;  // by the clock: what judging took, which a step without proposals has behind it as well
+    double audited = 0;  // time of the audits, by the clock: a step without a proposal needs them, too
   };
   Verdict may_ask(const State& from, const Drive&, const ProposalTrust&, bool has_history) const;
   Verdict propose(Work&);
@@ -130,7 +130,7 @@ Verdict HybridStepper::judged(const Work& work, const Points& x) {
       [&] { return touching_vertices(contact_, work.from, work.drive.obstacles, x); }, measures);
 }
 
-// The verdict of the audits of the step that was made, which nobody has to make again.
+// Audits the step that was made and returns the verdict. The audit stays in the report, for make_frame.
 Verdict HybridStepper::audited(Work& work, Verdict free_of_contact) {
   const double started = clock_();
   work.to.clean = judge_frame(audits_, work.from, work.drive, work.to, work.report);
@@ -138,13 +138,13 @@ Verdict HybridStepper::audited(Work& work, Verdict free_of_contact) {
   return is_contact_free(work.to, work.report) ? free_of_contact : Verdict::penetrating;
 }
 
-// A step of the proposer's, which nobody has audited. False: it made none.
+// Takes a step of the proposer, without an audit. False: the proposer made none.
 bool HybridStepper::ask_proposer(Work& work) {
   work.report = parts_.proposer->step(work.from, work.drive, work.dt, work.to, {.stop = work.stop});
   return work.report.status == StepStatus::accepted;
 }
 
-// The proposal as it is.
+// The proposal is the step if guard and audits admit it.
 Verdict HybridStepper::propose_step(Work& work) {
   if (const Verdict verdict = judged(work, work.to.x); verdict != Verdict::admitted) return verdict;
   return audited(work, Verdict::admitted);

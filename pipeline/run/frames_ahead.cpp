@@ -111,8 +111,8 @@ MadeFrame FramesAhead::make_alone() {
   return made;
 }
 
-// The verdict on the frame that waits, and the drive of the frame after the one that is being made. The step beside
-// starts from the state that is judged: nothing of it is written.
+// Judges the frame that waits, and makes the drive of the frame after the one that is being stepped. The step beside
+// starts from the state that is judged, so this changes nothing of that state.
 FramesAhead::Beside FramesAhead::work_beside(std::optional<double> time_after) {
   Beside done;
   if (waiting_) done.clean = judge_frame(audits_, state_, waiting_->drive, waiting_->state, waiting_->report);
@@ -124,7 +124,8 @@ FramesAhead::Beside FramesAhead::work_beside(std::optional<double> time_after) {
   return done;
 }
 
-// Takes a step with fewer threads; another one does the rest. A phase then has the time that was waited for it.
+// Takes a step with fewer threads, while another one audits and drives. The phase `audit` of the frame that waits then
+// has the time that was waited for its audits.
 MadeFrame FramesAhead::step_beside(const State& from) {
   Stopwatch watch;
   Drive drive = coming_drive(from.time + dt_);
