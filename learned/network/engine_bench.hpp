@@ -33,7 +33,7 @@ EngineMeasurement measure_engine(const PackedNetwork&, const Graph&, int rounds 
 // features.
 Graph grid_graph(const Architecture&, int nodes);
 
-// The network of the figures in docs/benchmarks.md: one set of edges, two hidden layers.
+// The network of the figures in docs/results/benchmarks.md: one set of edges, two hidden layers.
 Architecture bench_architecture(int width, int steps);
 
 }  // namespace selvedge
