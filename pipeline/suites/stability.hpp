@@ -38,7 +38,7 @@ std::vector<StabilityRow> stability(const StabilityRequest&);
 // Whether every run passed.
 bool passed(const std::vector<StabilityRow>&);
 
-// The rows for people, for docs/stability.md, and for programs; the two for programs have all fields.
+// The rows for people, for docs/results/stability.md, and for programs; the two for programs have all fields.
 std::string stability_table(const std::vector<StabilityRow>&);
 std::string stability_markdown(const std::vector<StabilityRow>&);
 std::string stability_csv(const std::vector<StabilityRow>&);

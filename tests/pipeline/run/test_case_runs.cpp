@@ -163,7 +163,7 @@ TEST_CASE("cases: soups of coincident vertices end, and are never called clean",
   }
 }
 
-// A slow fold goes on for longer (docs/validation.md); what is asked is that nothing turns.
+// A slow fold goes on for longer (docs/results/validation.md); what is asked is that nothing turns.
 TEST_CASE("cases: a sheet on one pin does not turn after 30 s", "[case_runs][.long]") {
   for (const char* name : {"corner_long", "corner_tight"}) {
     const auto file = case_file("spin_on_pin/" + std::string(name) + ".yaml");
