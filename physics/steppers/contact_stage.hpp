@@ -9,7 +9,7 @@
 namespace selvedge {
 
 // The work that the response of one step of so many cloth vertices may take, over all its substeps and attempts. The
-// most that an ordinary frame of about 4,000 was seen to take is a twentieth of it (docs/overview.md).
+// most that an ordinary frame of about 4,000 was seen to take is a twentieth of it (docs/results/contact.md).
 ResponseWork most_response(int cloth_vertices);
 
 // What contact of a scene needs from step to step: the numbering of nodes, the trees, the settings. The scene's contact
