@@ -14,7 +14,7 @@
 
 namespace selvedge::long_published_networks {
 
-// What docs/training.md has of them: `selvedge_tests "published networks*"` prints the lines.
+// What docs/results/networks.md has of them: `selvedge_tests "published networks*"` prints the lines.
 TEST_CASE("published networks: ten steps of each, at the published size", "[training][.long]") {
   for (const char* name : {"hood", "contourcraft", "contourcraft_final", "senc"}) {
     TrainingOptions options = read_training(config_folder() / "training" / "published" / (std::string(name) + ".yaml"),
