@@ -9,7 +9,8 @@
 namespace selvedge {
 
 // What a proposed step may do. On training scenes no conventional step exceeds a third of the bounds of the residual,
-// and noise of 3 mm exceeds others before (tests/pipeline/run/long_guard_tables.cpp prints both; docs/results/hybrid.md).
+// and noise of 3 mm exceeds others before (tests/pipeline/run/long_guard_tables.cpp prints both;
+// docs/results/hybrid.md).
 struct GuardOptions {
   double acceleration = 300;       // of a vertex in the step, at most [m/s2]
   double mean_acceleration = 6;    // RMS of all vertices [m/s2]; or
