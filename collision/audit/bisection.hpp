@@ -18,27 +18,27 @@ struct ExactBox {
 
 inline constexpr double endless = std::numeric_limits<double>::infinity();
 inline constexpr ExactBox everywhere{{-endless, -endless, -endless}, {endless, endless, endless}};
-ExactBox hull_of(std::span<const ExactBox>);  // overlaps nothing where there are none
+ExactBox hull_of(std::span<const ExactBox>);  // of no boxes: a box that overlaps nothing
 bool overlap(const ExactBox&, const ExactBox&);
 
 // A cell of space with the boxes that touch it. A pair of boxes belongs to the cell that holds the lowest corner of
-// what they have in common, so that each pair is met once.
+// their common part, so that each pair is visited once.
 struct Cell {
   ExactBox bounds;  // half-open: lo <= p < hi
   std::vector<int> first, second;
 };
 
-// Halves space until few boxes are left in each cell or halving stops to help. Cells without a possible pair, of
-// two of `first` (where within_first) or of one of `first` and one of `second`, are left out.
+// Halves space until each cell has few boxes or halving no longer helps. Cells without a possible pair are left out: a
+// pair is two of `first` (where within_first), or one of `first` and one of `second`.
 std::vector<Cell> bisect(std::span<const ExactBox> first, std::span<const ExactBox> second, bool within_first);
 
-// What an audit may look at. It ends, too, where the flag of the thread's scope asks for that.
+// How many pairs an audit may look at. The audit also ends where the stop flag of the thread's scope says so.
 class AuditBudget {
  public:
   explicit AuditBudget(std::int64_t triangles) : pairs_(triangles) {}
   bool add(std::int64_t pairs) { return pairs_.add(pairs) && !stop_.wanted(); }
   bool exceeded() const { return pairs_.exceeded() || stop_.was_wanted(); }
-  // Throws Stopped or TooManyPairs if it has ended.
+  // Throws Stopped or TooManyPairs if the audit has to end.
   void check() const {
     stop_.check();
     pairs_.check();
@@ -49,14 +49,14 @@ class AuditBudget {
   StopPoll stop_;
 };
 
-// Calls self(a, b) for the pairs of two of `first` (where within_first) and other(a, c) for those of one of `first` and
-// one of `second` that belong to the cell. Boxes are those given to bisect. Each pair is taken from the budget, and
-// every eight comparisons of boxes; once it is spent, here or elsewhere, some pairs are not visited.
+// Visits the pairs that belong to the cell: self(a, b) for two of `first` (where within_first), other(a, c) for one of
+// `first` and one of `second`. Boxes are those given to bisect. Each pair takes one from the budget, and so do eight
+// comparisons of boxes. Once the budget is spent, here or on another thread, some pairs are not visited.
 template <typename Self, typename Other>
 void visit_pairs(const Cell& cell, std::span<const ExactBox> first, std::span<const ExactBox> second, bool within_first,
                  AuditBudget& budget, Self&& self, Other&& other);
 
-// What was found in each cell, joined list by list.
+// Joins what was found in each cell, list by list.
 template <typename Found, typename... Lists>
 Found joined(const std::vector<Found>& parts, Lists... lists) {
   Found all;
@@ -67,7 +67,7 @@ Found joined(const std::vector<Found>& parts, Lists... lists) {
   return all;
 }
 
-// Boxes of a cell side by side, in the order of their lower ends along an axis.
+// Copies of a cell's boxes, in the order of their lower ends along an axis.
 struct Sweep {
   struct Entry {
     ExactBox box;
@@ -78,8 +78,8 @@ struct Sweep {
 
   Sweep(std::span<const ExactBox> boxes, std::span<const int> items, int axis);
 
-  // Calls visit(item) for the entries from place `from` on that overlap the box and belong to the cell with it. Returns
-  // how many were compared.
+  // Calls visit(item) for the entries from index `from` on that overlap the box, if the pair belongs to the cell with
+  // these bounds. Returns how many were compared.
   template <typename Visit>
   std::size_t overlapping(std::size_t from, const ExactBox& box, const ExactBox& bounds, Visit&& visit) const {
     std::size_t i = from;
@@ -109,7 +109,7 @@ void visit_pairs(const Cell& cell, std::span<const ExactBox> first, std::span<co
   const int axis = sweep_axis(cell, first);
   const Sweep mine(first, cell.first, axis), theirs(second, cell.second, axis);
   constexpr std::int64_t told_at_once = 1 << 12;
-  std::int64_t untold = 0;  // to the budget
+  std::int64_t untold = 0;  // not yet reported to the budget
   for (std::size_t i = 0; i < mine.entries.size(); ++i) {
     const Sweep::Entry& a = mine.entries[i];
     std::size_t compared = 0;

@@ -6,8 +6,8 @@
 
 namespace selvedge {
 
-// For the audit of motion. Points at the beginning and end of a straight motion, relative to a node that both sides
-// know, so that they round with the size of the pair and not of the world.
+// For the audit of motion: points at the beginning and end of a straight motion, relative to one node of the pair, so
+// that rounding depends on the size of the pair and not on its distance from the origin.
 template <int Count>
 struct MovingPoints {
   std::array<Vec3, Count> start, end;
@@ -15,8 +15,8 @@ struct MovingPoints {
   Vec3 middle(int i) const { return 0.5 * (start[i] + end[i]); }
 };
 
-// Those that say bool are proofs: true only if the two sides stay apart from beginning to end, as exact points would.
-// False says nothing.
+// The functions that return bool are proofs: true only if the two sides stay apart from beginning to end in exact
+// arithmetic. False says nothing.
 
 // Triangles without a common vertex: some direction of their faces separates them all the time.
 bool stay_apart(const MovingPoints<3>& a, const MovingPoints<3>& b);
@@ -28,8 +28,8 @@ bool stay_apart_beside(const MovingPoints<2>& a, const MovingPoints<2>& b);
 // other does not share stay apart from it.
 bool stay_apart_at_edge(const MovingPoints<4>& p);
 
-// What is known of a pair that moves: it stays apart; or it comes as near as its rounding or the shortest part of the
-// time shows, which counts as meeting; or neither was found in as many parts of the time as it may be cut into.
+// What is known of a moving pair. apart: it stays apart. meets: it comes so near that rounding, or the shortest part of
+// time, cannot tell it from meeting. open: the allowed parts of time did not decide.
 enum class Proof { apart, meets, open };
 
 // Vertex p[0] and face p[1], p[2], p[3], or edges p[0] p[1] and p[2] p[3]; time is halved at most `max_halvings` times

@@ -8,22 +8,22 @@
 
 namespace selvedge {
 
-// Parts of the time that one pair may be cut into before it counts as not apart: in the end, and at first. Ordinary
-// cloth needs one, and 16 at the most that was seen.
+// How many parts the time of one pair may be cut into before it counts as not apart: at last, and in a first round.
+// Ordinary cloth needs one; the most that was seen is 16.
 inline constexpr int most_parts = 4096, few_parts = 64;
 
-// What the proofs of one motion may cost, in counts. Totals over all pairs decide what is given up, not their order:
-// the result is the same for any number of threads, with a memory and without.
+// What the proofs of one motion may cost, in counts. Only totals over all pairs decide what is given up. So the result
+// is the same for any number of threads, with a memory and without.
 class ProofBudget {
  public:
-  // Pairs that few parts do not prove apart. Where there are more, nothing is learned from further proofs.
+  // The most pairs that few_parts may leave unproven. Where there are more, the audit ends.
   static constexpr int most_unproven = 1 << 16;
-  // Of the time, for all pairs together that few parts did not decide.
+  // Parts of time for the second round, for all pairs together that few_parts did not decide.
   static constexpr std::int64_t parts_for_open = std::int64_t{1} << 22;
 
   void add_unproven() { unproven_.fetch_add(1, std::memory_order_relaxed); }
   bool exceeded() const { return unproven_.load(std::memory_order_relaxed) > most_unproven; }
-  // Parts for each of so many pairs.
+  // Parts of time for each of `open` pairs.
   static int share(std::size_t open) {
     const auto each = parts_for_open / std::max<std::int64_t>(1, static_cast<std::int64_t>(open));
     return static_cast<int>(std::clamp<std::int64_t>(each, few_parts, most_parts));
@@ -33,8 +33,8 @@ class ProofBudget {
   std::atomic<int> unproven_ = 0;
 };
 
-// Asks before a proof of a cell whether it is still wanted. One of coincident edges takes many parts, and a cell holds
-// many of them: each proof counts, where a comparison of boxes hardly does.
+// Asks before each proof in a cell whether the audit goes on. A proof for coincident edges takes many parts, and a cell
+// may hold many of them, so that asking once a cell would be too rare.
 class ProofWatch {
  public:
   ProofWatch(AuditBudget& searched, ProofBudget& proofs) : searched_(searched), proofs_(proofs) {}

@@ -5,8 +5,8 @@
 
 namespace selvedge {
 
-// Signed integer wide enough for the product of three differences of any finite doubles on a common power of two, each
-// interpolated between two with a weight of 53 and one of 40 bits: sums of a few with 3 * (2098 + 1 + 93 + 2) bits.
+// Signed integer, wide enough for sums of a few products of three differences of any finite doubles on a common power
+// of two, each interpolated between two values with a weight of 53 and one of 40 bits: 3 * (2098 + 1 + 93 + 2) bits.
 // Lives on the stack and touches only the limbs that it uses.
 class ExactInteger {
  public:
@@ -43,7 +43,7 @@ class ExactInteger {
   bool negative_;
 };
 
-// Largest e such that value / 2^e is whole; a large number for 0, which is whole on every power.
+// Largest e such that value / 2^e is whole; a large number for 0, which is a multiple of every power of two.
 int lowest_exponent(double value);
 
 }  // namespace selvedge

@@ -19,9 +19,10 @@ struct CornerNodes {
 // In cyclic order.
 std::span<const CornerNodes> polygon_corners(PairKind);
 
-// What continuous detection looks at: all differences of a point of the second primitive and one of the first. They are
-// a flat convex polygon, a triangle f_k - v or a parallelogram b_j - a_i; its distance from the origin is that of the
-// primitives, and it holds the origin where they meet. Corners move straight where the nodes do.
+// What continuous detection looks at: all differences of a point of the second primitive and one of the first (their
+// Minkowski difference). They form a flat convex polygon, a triangle f_k - v or a parallelogram b_j - a_i. Its distance
+// from the origin is that of the primitives, and it holds the origin where they meet. Corners move straight where the
+// nodes do.
 struct MovingPolygon {
   int corners = 0;
   std::array<Vec3, most_corners> start, end;  // at times 0 and 1
@@ -30,7 +31,7 @@ struct MovingPolygon {
   Vec3 at(int corner, double time) const { return (1 - time) * start[corner] + time * end[corner]; }
 };
 
-// Coordinates of start and end are differences rounded once, by u of themselves, and by underflow. Finite coordinates.
+// Coordinates of start and end are differences, rounded once (relative error u, or underflow). x0, x1 must be finite.
 MovingPolygon moving_polygon(PairKind, const std::array<Vec3, 4>& x0, const std::array<Vec3, 4>& x1);
 
 }  // namespace selvedge

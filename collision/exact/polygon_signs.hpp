@@ -10,13 +10,14 @@
 //   (b) corners 0, 1, 2 have a volume with the origin, det[p0, p1, p2] != 0, since the polygon is flat, or
 //   (c) seen along one axis, one side p_k p_k+1 turns left about the origin and another one turns right: a convex
 //       polygon, also one without an area, that holds the origin has turns p_k x p_k+1 of one sign or zero only.
-// And if it is not, one of them holds. If (b) does not, all corners are in one plane through the origin, and all turns
-// are multiples of its normal. If all are zero, the corners are on one line with the origin, on one side of it: (a).
-// Otherwise look along an axis that is not in the plane. Turns sum to twice the area: where that is zero, both signs
-// are there; where it is not, the origin is strictly beyond some side, whose turn is against the sum: (c).
-// In time coordinates are linear, turns quadratic and the volume cubic, and over an interval a polynomial stays within
-// its Bernstein coefficients there. So strict signs of coefficients prove an interval free, and since coefficients
-// converge to values, halving proves it for everything that does not touch.
+// Conversely, if the origin is not in the polygon, one of the three holds. If (b) does not, all corners are in one
+// plane through the origin, and all turns are multiples of its normal. If all turns are zero, the corners are on one
+// line with the origin, on one side of it: (a). Otherwise look along an axis that is not in the plane. Turns sum to
+// twice the area. Where the area is zero, turns of both signs exist. Where it is not, the origin is strictly beyond
+// some side, whose turn has the sign opposite to the sum's: (c). In time coordinates are linear, turns quadratic and
+// the volume cubic. Over an interval a polynomial stays within its Bernstein coefficients. So strict signs of
+// coefficients prove an interval free. Since coefficients converge to values, repeated halving proves it for every pair
+// that does not touch.
 
 namespace selvedge {
 
@@ -25,7 +26,7 @@ using Corner = std::array<Number, 3>;
 template <class Number>
 using Corners = std::array<Corner<Number>, most_corners>;
 
-constexpr int unknown = 2;  // what may be -1, 0 or 1
+constexpr int unknown = 2;  // a sign that may be -1, 0 or 1
 
 // Signs of the Bernstein coefficients of a polynomial over an interval; the outer ones are those of its values at the
 // ends. An unknown sign makes the lowest -1 and the highest 1.
@@ -54,9 +55,8 @@ Number dot(const Corner<Number>& a, const Corner<Number>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// Corners p at the interval's beginning and q at its end. `sign_of` gives the sign of a sum of products of as many
-// coordinates as its second argument says, or unknown. Positive multiples of coefficients do: binomial factors are left
-// out.
+// Corners p at the interval's beginning and q at its end. `sign_of(sum, degree)` gives the sign of a sum of products of
+// `degree` coordinates, or unknown. Signs need coefficients only up to a positive factor: binomials are left out.
 template <class Number, class Sign>
 PolygonSigns polygon_signs(int corners, const Corners<Number>& p, const Corners<Number>& q, const Sign& sign_of) {
   const auto signs = [&](int degree, const auto&... coefficients) {
@@ -85,12 +85,12 @@ PolygonSigns polygon_signs(int corners, const Corners<Number>& p, const Corners<
   return s;
 }
 
-// (a), (b) or (c) throughout the interval: no contact in it.
+// (a), (b) or (c) holds throughout the interval: there is no contact in it.
 bool is_free(const PolygonSigns&);
 
-// The origin passes the polygon's plane, and meanwhile all turns seen along one axis have one sign or are zero, and one
-// of them is never zero: at that moment neither (b) nor (c), and not (a), since some turn is not zero. There is contact
-// within the interval.
+// The origin passes the polygon's plane, and all the while turns seen along one axis have one sign or are zero, and one
+// of them is never zero. At that moment neither (b) nor (c) holds, nor (a), since some turn is not zero: there is
+// contact within the interval.
 bool is_certain(const PolygonSigns&);
 
 // Is there contact at the interval's beginning? All signs must be known.

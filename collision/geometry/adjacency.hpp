@@ -18,14 +18,14 @@ struct Adjacency {
   }
 };
 
-// Each edge once.
+// `edges` has each edge once.
 Adjacency adjacency_of(int vertex_count, const Edges& edges);
 
 // Are two vertices the same, adjacent, or do they have a common neighbour?
 bool within_two_edges(const Adjacency&, int a, int b);
 
-// Number of edges from the nearest of the sources; -1 where none can be reached. Returns the vertices in the order in
-// which they were reached.
+// Sets `depth` of each vertex: the number of edges from the nearest source, -1 where no source can be reached. Returns
+// the vertices in the order in which they were reached.
 std::vector<int> breadth_first(const Adjacency&, std::span<const int> sources, std::vector<int>& depth);
 
 // Pairs, smaller first, as a sorted list without doubles.

@@ -23,7 +23,7 @@ constexpr Box empty_box{{std::numeric_limits<float>::infinity(), std::numeric_li
 
 inline bool is_empty(const Box& box) { return box.lo[0] > box.hi[0]; }
 
-// Without branches, of which half would be mispredicted. An empty box overlaps none.
+// Without branches, since half of them would be mispredicted. An empty box overlaps no box.
 inline bool overlap(const Box& a, const Box& b) {
   return (a.lo[0] <= b.hi[0]) & (b.lo[0] <= a.hi[0]) & (a.lo[1] <= b.hi[1]) & (b.lo[1] <= a.hi[1]) &
          (a.lo[2] <= b.hi[2]) & (b.lo[2] <= a.hi[2]);
@@ -38,8 +38,8 @@ inline Box join(const Box& a, const Box& b) {
   return box;
 }
 
-// Largest float at or below a value that is not NaN. Without branches: half of them would be mispredicted. What rounds
-// to zero keeps its sign, so that the next float below a zero that is too high is a negative one.
+// Largest float at or below a value that is not NaN. Without branches: half of them would be mispredicted. A value that
+// rounds to zero keeps its sign, so that the next float below a zero that is too high is negative.
 inline float round_down(double value) {
   const float nearest = static_cast<float>(value);
   const auto bits = std::bit_cast<std::int32_t>(nearest);
@@ -49,7 +49,7 @@ inline float round_down(double value) {
 
 inline float round_up(double value) { return -round_down(-value); }
 
-// Of a point that moves straight from x0 to x1, grown by `radius` on every side; empty where a coordinate is NaN.
+// The box of a point that moves straight from x0 to x1, grown by `radius` on every side; empty where one is NaN.
 inline Box moving_point_box(const Vec3& x0, const Vec3& x1, double radius) {
   Box box;
   for (int k = 0; k < 3; ++k) {
@@ -61,7 +61,7 @@ inline Box moving_point_box(const Vec3& x0, const Vec3& x1, double radius) {
   return box;
 }
 
-// Of the hull of what two or three boxes hold; empty where one of them is.
+// The box round two or three boxes; empty where one of them is.
 inline Box hull(const Box& a, const Box& b) { return is_empty(a) || is_empty(b) ? empty_box : join(a, b); }
 inline Box hull(const Box& a, const Box& b, const Box& c) {
   return is_empty(a) || is_empty(b) || is_empty(c) ? empty_box : join(join(a, b), c);

@@ -8,18 +8,18 @@
 
 namespace selvedge {
 
-// Points by the cubes of a grid that they lie in.
+// Points sorted by the cubes of a grid.
 class CellGrid {
  public:
-  // All points finite; `cell` is the cubes' edge [m]. It is doubled until the box of the points has at most
-  // `most_cubes`.
+  // All points must be finite; `cell` is the cubes' edge [m]. It is doubled until the points' bounding box has at most
+  // `most_cubes` cubes.
   CellGrid(const Points& x, double cell);
   static constexpr int most_cubes = 1 << 24;
 
   // The points by the cubes that they lie in, those of a cube side by side.
   const std::vector<int>& order() const { return point_; }
 
-  // Cubes by number, and the places in `order` where their points begin; one behind the last cube ends it.
+  // The number of cubes, and the place in `order` where a cube's points begin. first(cubes()) is the end of `order`.
   int cubes() const { return static_cast<int>(begin_.size()) - 1; }
   int first(int cube) const { return begin_[cube]; }
 
@@ -29,7 +29,7 @@ class CellGrid {
     for_each_place_near(at, radius, [&](int p) { visit(point_[p]); });
   }
 
-  // The same by their places in `order`, ascending.
+  // The same, but visits the points' places in `order`, ascending.
   template <class Visit>
   void for_each_place_near(const Vec3& at, double radius, Visit visit) const {
     std::array<int, 3> from, to;
@@ -43,7 +43,7 @@ class CellGrid {
         for (int p = begin_[cell(i, j, from[2])]; p < begin_[cell(i, j, to[2]) + 1]; ++p) visit(p);
   }
 
-  // Visits the cubes within so many of a cube along each axis, itself among them, in ascending order.
+  // Visits the cubes within `rings` of a cube along each axis, with the cube itself, in ascending order.
   template <class Visit>
   void for_each_cube_around(int cube, int rings, Visit visit) const {
     const std::array<int, 3> at{cube / size_[2] / size_[1], cube / size_[2] % size_[1], cube % size_[2]};

@@ -4,7 +4,7 @@
 
 namespace selvedge {
 
-// The members 0 .. size - 1 in sets that only grow. What they come to does not depend on the order of the joins.
+// The members 0 .. size - 1 in sets that only grow (union-find). Results do not depend on the order of the joins.
 class DisjointSets {
  public:
   explicit DisjointSets(int size);  // each member a set of its own
@@ -15,7 +15,7 @@ class DisjointSets {
   std::vector<int> numbers();  // of each member's set, sets in the order of their lowest members: 0 .. count() - 1
 
  private:
-  std::vector<int> parent_;  // of each member one of its set, not higher than itself
+  std::vector<int> parent_;  // of each member another one of its set, not higher than itself; of a root itself
   int count_;
 };
 

@@ -4,8 +4,8 @@
 
 namespace selvedge {
 
-// Closest points of two primitives. `weights` sum p's part minus q's part: the vector from q to p is sum w_i x_i
-// over the four nodes in the order of the arguments.
+// Closest points p and q of two primitives. The vector from q to p is sum w_i x_i with the `weights` w, over the four
+// nodes x_i in the order of the arguments: weights are positive on the first primitive, negative on the second.
 struct Closest {
   double squared_distance = 0;
   Eigen::Vector4d weights;

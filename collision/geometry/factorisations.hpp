@@ -6,8 +6,8 @@
 
 namespace selvedge {
 
-// Factorisations of symmetric matrices. Eigen's take seconds to compile wherever they are used, so that these are
-// compiled once. Small ones are not for inner loops.
+// Factorisations of symmetric matrices. Eigen's take seconds to compile in every file that uses them; here they are
+// compiled once. For tiny matrices the call costs too much for inner loops.
 
 // Eigenvalues in ascending order, and eigenvectors as columns.
 struct Spectrum {
@@ -23,7 +23,7 @@ struct Spectrum3 {
 };
 Spectrum3 symmetric_spectrum3(const Mat3& matrix);
 
-// The solution of matrix * x = right, a column for each of the right sides'. The matrix is not singular.
+// The solution x of matrix * x = right, one column for each column of `right`. The matrix must not be singular.
 Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
 // The same for a sparse, positive definite matrix (assert), of which the lower triangle is read.
 Eigen::MatrixXd solve_symmetric(const Eigen::SparseMatrix<double>& matrix, const Eigen::MatrixXd& right);

@@ -4,8 +4,8 @@
 
 namespace selvedge {
 
-// A path in the same folder that nobody can foresee, for a file that is written there and then renamed. Whoever makes
-// that file asks for a new one (O_EXCL), so that no link which waits in a shared folder is followed.
+// An unpredictable path in the same folder, for a file that is written there and then renamed. The caller must create
+// that file with O_EXCL, so that it follows no link that somebody left in a shared folder.
 std::filesystem::path path_beside(const std::filesystem::path&);
 
 }  // namespace selvedge

@@ -8,14 +8,14 @@
 
 namespace selvedge {
 
-// Of each vertex the lowest one that lies where it does: within a millionth of the box's diagonal, and the same for
-// chains of such. Positions must be finite.
+// Of each vertex the lowest one at its place. Vertices within a millionth of the bounding box's diagonal are at one
+// place, and so are chains of such vertices. Positions must be finite.
 std::vector<int> same_places(const Points& x);
 
-// Parts vertices at one place of which `same` says no. More than a thousand at one place all part.
+// Splits places whose vertices `same` tells apart. Of more than a thousand at one place each gets its own.
 void part_places(const std::function<bool(int v, int w)>& same, std::vector<int>& places);
 
-// Of each vertex the lowest one that lies where it does in every frame. There must be one at least.
+// Of each vertex the lowest one at its place in every frame. Needs at least one frame.
 std::vector<int> same_places(std::span<const Points> frames);
 
 }  // namespace selvedge

@@ -8,17 +8,17 @@
 
 namespace selvedge {
 
-// Thrown by a search, an audit or another loop that has asked the flag of its thread's scope. It has no result.
+// Thrown by a search, an audit or another loop whose stop flag has become true. The loop then has no result.
 class Stopped : public std::exception {
  public:
   const char* what() const noexcept override { return "stopped"; }
 };
 
-// For as long as it lives, long loops of the calling thread ask this flag and throw Stopped once it is true. An empty
-// flag: nobody is asked. The flag is asked by this thread alone.
+// For the lifetime of this object, long loops of the calling thread ask this flag and throw Stopped once it is true.
+// With an empty flag they do not ask. Only this thread calls the flag.
 class StopScope {
  public:
-  explicit StopScope(const StopFlag&);  // which must outlive it
+  explicit StopScope(const StopFlag&);  // the flag must outlive the scope
   ~StopScope();
   StopScope(const StopScope&) = delete;
   StopScope& operator=(const StopScope&) = delete;
@@ -30,8 +30,8 @@ class StopScope {
 // Throws Stopped if the flag of the thread's scope is true: for loops of one thread.
 void check_stop();
 
-// The same for a loop that several threads share: all of them call wanted() now and then, and the thread that has made
-// the poll calls check() when they are through.
+// check_stop for a loop that several threads share: all of them call wanted() now and then, and the thread that has
+// made the poll calls check() when all are through.
 class StopPoll {
  public:
   StopPoll();
@@ -47,7 +47,7 @@ class StopPoll {
   }
 
  private:
-  const StopFlag* flag_;  // null: nobody is asked
+  const StopFlag* flag_;  // null: no scope, or an empty flag
   std::thread::id owner_ = std::this_thread::get_id();
   std::atomic<bool> wanted_ = false;
 };

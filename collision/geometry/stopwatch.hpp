@@ -4,7 +4,7 @@
 
 namespace selvedge {
 
-// Times of reports, by a clock that is never set back.
+// Measures times for reports, by a clock that is never set back.
 class Stopwatch {
  public:
   // Seconds since the last lap, or since it was made.
@@ -19,7 +19,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-// Adds the seconds that it lives.
+// Adds the seconds of its lifetime.
 class Timed {
  public:
   explicit Timed(double& seconds) : seconds_(seconds) {}

@@ -7,19 +7,19 @@
 
 namespace selvedge {
 
-// A surface's topology with vertices joined that always lie at one place: the seam of a texture is no border. All
-// vertices keep their numbers; those that another one stands for are isolated.
+// A surface's topology after joining vertices that always lie at one place, so that the seam of a texture is no border.
+// All vertices keep their numbers; one that another vertex stands for becomes isolated.
 struct WeldedSurface {
   Surface surface;
   std::vector<int> joined;  // of each vertex the one that stands for it, the lowest
 };
 
-// `places`: of each vertex the lowest one at its place (same_places.hpp). Two faces are joined where they alone meet
-// along an edge, so that no edge gets more than two faces which had fewer. Faces whose corners lie at fewer than three
-// places are left out, and so are those that repeat a face. Absent where that changes nothing.
+// `places`: of each vertex the lowest one at its place (same_places.hpp). Faces are joined along an edge only where
+// exactly two meet, so that no edge gains a third face. Faces whose corners lie at fewer than three places are left
+// out, and so are those that repeat a face. Absent where nothing was joined.
 std::optional<WeldedSurface> welded_surface(const Surface&, const std::vector<int>& places);
 
-// Puts vertices where those are that stand for them. `joined` may be empty.
+// Moves each vertex to the vertex that stands for it. `joined` may be empty.
 void hold_together(const std::vector<int>& joined, Points&);
 
 }  // namespace selvedge

@@ -10,28 +10,28 @@
 namespace selvedge {
 
 // Boxes of the vertices over the straight motion x0 -> x1, grown by `radius` [m] on every side. x1 may be x0. A vertex
-// with an undefined coordinate has an empty box, and so has what is made of it.
+// with an undefined coordinate has an empty box, and so have its triangles.
 void vertex_boxes(const Points& x0, const Points& x1, double radius, std::vector<Box>& boxes);
 void triangle_boxes(const Surface&, std::span<const Box> vertices, std::vector<Box>& boxes);
-// All in one.
+// Both steps at once.
 void triangle_boxes(const Surface&, const Points& x0, const Points& x1, double radius, std::vector<Box>& boxes);
 
-// Binary AABB tree with wide leaves. Items lie in the order of the leaves, so that a node's are side by side; the two
-// children of a node lie side by side too, behind it, and so does all that is below a block's root.
+// Binary AABB tree with wide leaves. Leaves are stored in order, so that a node's leaves are contiguous. The two
+// children of a node are next to each other and come after it. The nodes below a block's root are contiguous.
 struct Bvh {
   static constexpr int leaf_size = 8;
   struct Node {
     Box box;
     int child = 0;  // children child and child + 1; below 0: the leaf ~child
-    int first = 0;  // of its leaves
+    int first = 0;  // the first of its leaves
   };
-  // Four floats at once: a vector of the compilers (gcc, clang), one register on every x86-64.
+  // Four floats at once: a vector extension of gcc and clang, one register on every x86-64.
   using Lanes [[gnu::vector_size(16)]] = float;
   struct Leaf {
     Lanes lo[3][2], hi[3][2];  // boxes by coordinate, place i in lane i % 4 of half i / 4
     int item[leaf_size];       // -1: a place that is left over, where lo and hi are NaN
   };
-  struct Block {  // refitted by one thread: root, and all below it in [begin, end)
+  struct Block {  // refitted by one thread: nodes below `root` are [begin, end)
     int root, begin, end;
   };
   std::vector<Node> nodes;  // root first
@@ -48,18 +48,18 @@ Box set_leaf_boxes(Bvh::Leaf&, std::span<const Box> items);
 // Total surface area of the boxes over that of the root: rises as a refitted tree degrades.
 double bvh_cost(const Bvh&);
 
-// A tree that is refitted while it is good and built anew when it has lost a quarter of its quality. Which of both
-// happened shows only in the time taken and in the order of pairs.
+// A tree that is refitted until its cost has grown by a quarter, and then built anew. This affects only the time taken
+// and the order of pairs.
 struct KeptBvh {
   Bvh bvh;
   double built_cost = 0;
   bool built = false;
 };
-// True if it was built anew.
+// Fits the tree to the boxes. True if it was built anew.
 bool update(KeptBvh&, std::span<const Box> items);
 
-// Pairs (i, j) whose boxes overlap, in an order that depends on the tree alone and not on the thread count.
-// self_pairs: i < j, each unordered pair once. `pairs` is overwritten.
+// Pairs (i, j) whose boxes overlap, in an order that depends on the tree alone and not on the thread count. self_pairs
+// lists each unordered pair once, i < j. `pairs` is overwritten.
 void self_pairs(const Bvh&, std::vector<std::pair<int, int>>& pairs);
 void cross_pairs(const Bvh& a, const Bvh& b, std::vector<std::pair<int, int>>& pairs);
 

@@ -12,20 +12,20 @@
 
 namespace selvedge {
 
-// All pairs of an item below node a of the first tree with one below node b of the second; within one tree a == b
-// stands for the pairs below that node.
+// Stands for all pairs of an item below node a of the first tree with one below node b of the second. Within one tree a
+// == b stands for the pairs of items below that node.
 struct NodeWork {
   int a, b;
 };
 
-// Boxes at both ends of a motion round what boxes of whole motions are round.
+// The boxes of a node or item at both ends of its motion; the tree itself has boxes of the whole motion.
 struct EndBoxes {
   Box start, end;
 };
 
-// Boxes round whole motions overlap where things move by many of their own sizes. What moves along together is told
-// apart by an axis along which the boxes at the start are apart and those at the end, in the same order: on straight
-// motions so they are all the way.
+// Boxes of whole motions overlap where items move by many times their size. Two items that move along together are told
+// apart by an axis along which their boxes are apart at the start and at the end, in the same order: as motions are
+// straight, they then are apart all the way.
 [[gnu::always_inline]] inline bool apart_in_order(const EndBoxes& a, const EndBoxes& b) {
   bool apart = false;
   for (int k = 0; k < 3; ++k)
@@ -34,10 +34,9 @@ struct EndBoxes {
   return apart;
 }
 
-// The way through one tree with itself (first and second the same) or through two. Below a node of one tree that is
-// marked in `quiet` no pair of its items with each other is visited; nor are nodes that are apart in order by the boxes
-// in `first_ends` and `second_ends`, where there are some; nor pairs of nodes of which neither is marked in
-// `first_marks` or `second_marks`, where there are any: then a search is for what has items below the marked ones.
+// A simultaneous traversal of two trees, or of one tree with itself (first and second are the same). The optional
+// members leave pairs out. `quiet`: pairs of items below one marked node. `first_ends`, `second_ends`: nodes that are
+// apart in order by these boxes. `first_marks`, `second_marks`: pairs of nodes of which neither is marked.
 struct BvhTraversal {
   const Bvh& first;
   const Bvh& second;
@@ -53,7 +52,7 @@ struct BvhTraversal {
   const Bvh::Leaf& leaf_a(NodeWork w) const { return first.leaves[~first.nodes[w.a].child]; }
   const Bvh::Leaf& leaf_b(NodeWork w) const { return second.leaves[~second.nodes[w.b].child]; }
 
-  // The one rule of descent. Appends the parts of w, which is no leaf, that may hold overlapping pairs.
+  // The rule of descent. w is not a pair of leaves. Appends the parts of w that may hold overlapping pairs.
   void split(NodeWork w, std::vector<NodeWork>& out) const {
     const Bvh::Node &a = first.nodes[w.a], &b = second.nodes[w.b];
     const auto add = [&](int i, int j) {
@@ -80,11 +79,11 @@ struct BvhTraversal {
     }
   }
 
-  // Enough parts to share out evenly, found by a rule that knows nothing of threads.
+  // Splits the traversal into enough parts to share them out evenly. They do not depend on the number of threads.
   std::vector<NodeWork> frontier() const;
 };
 
-// One bit a lane, of comparisons of both halves of a leaf.
+// Turns comparisons of both halves of a leaf into one bit for each lane.
 using LaneFlags [[gnu::vector_size(16)]] = int;
 [[gnu::always_inline]] inline unsigned bits_of(LaneFlags first, LaneFlags second) {
   constexpr LaneFlags low{1, 2, 4, 8}, high{16, 32, 64, 128};
@@ -92,7 +91,7 @@ using LaneFlags [[gnu::vector_size(16)]] = int;
   return static_cast<unsigned>(bits[0] | bits[1] | bits[2] | bits[3]);
 }
 
-// One bit an item of the leaf: does its box overlap the box?
+// One bit for each item of the leaf: 1 where its box overlaps `box`.
 [[gnu::always_inline]] inline unsigned overlaps(const Bvh::Leaf& leaf, const Box& box) {
   const auto half = [&](int h) {
     return (leaf.lo[0][h] <= box.hi[0]) & (leaf.hi[0][h] >= box.lo[0]) & (leaf.lo[1][h] <= box.hi[1]) &
@@ -110,8 +109,8 @@ inline Box box_of(const Bvh::Leaf& leaf, int i) {
   return box;
 }
 
-// Calls visit(i, j) for the places i in a and j in b whose boxes overlap, and returns how many those are. box_b holds
-// all of b.
+// Calls visit(i, j) for the places i in a and j in b whose boxes overlap, and returns their number. box_b is round all
+// of b.
 template <class Visit>
 [[gnu::always_inline]] inline int for_each_overlap(const Bvh::Leaf& a, const Bvh::Leaf& b, const Box& box_b,
                                                    Visit&& visit) {
@@ -134,18 +133,18 @@ template <class Visit>
   return visited;
 }
 
-// Lists that parts of a traversal fill; keeping them between calls spares their allocation.
+// One list for each part of a traversal. Keeping them between calls saves allocations.
 template <class Item>
 using PartLists = std::vector<std::vector<Item>>;
 
-// Goes through what is below `w`. Takes from the budget what the visits have looked at, and eight pairs for each visit.
-// False: it ended early, as the budget was spent.
+// Visits all pairs of leaves below `w`. Takes from the budget the pairs that the visits report, and eight more for each
+// visit. Returns false if it ended early because the budget was spent.
 template <class Item, class Visit>
 bool visit_below(const BvhTraversal& traversal, NodeWork w, std::vector<Item>& list, PairBudget& budget,
                  Visit&& visit) {
   constexpr std::int64_t told_at_once = 1 << 14;
   std::vector<NodeWork> stack{w};
-  std::int64_t untold = 0;  // to the budget
+  std::int64_t untold = 0;  // not yet reported to the budget
   while (!stack.empty()) {
     w = stack.back();
     stack.pop_back();
@@ -160,9 +159,9 @@ bool visit_below(const BvhTraversal& traversal, NodeWork w, std::vector<Item>& l
 }
 
 // Calls visit(w, list) for every pair of leaves whose boxes overlap (and every leaf with itself, within one tree), on
-// all threads; what the calls append to their lists is appended to `out` in an order that depends on the trees alone.
-// The calls return how many pairs they have looked at. Throws TooManyPairs, with empty lists and `out`, where that is
-// more than a search may look at (pair_budget.hpp).
+// all threads. A visit appends to its list and returns how many pairs it has looked at. The lists are appended to `out`
+// in an order that depends on the trees alone. Throws TooManyPairs (pair_budget.hpp), with empty lists and `out`, where
+// the visits have looked at too many.
 template <class Item, class Visit>
 void gather(const BvhTraversal& traversal, PartLists<Item>& parts, std::vector<Item>& out, Visit&& visit) {
   if (traversal.first.item_count == 0 || traversal.second.item_count == 0) return;

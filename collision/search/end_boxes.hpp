@@ -7,7 +7,7 @@
 
 namespace selvedge {
 
-// The boxes of leaves, or of groups like them, at both ends of a motion.
+// The boxes of leaves, or of groups of items in the form of leaves, at both ends of a motion.
 struct EndLeaves {
   std::vector<Bvh::Leaf> start, end;
   std::vector<EndBoxes> bounds;  // of each leaf
@@ -15,13 +15,13 @@ struct EndLeaves {
   void resize(std::size_t leaves);
 };
 
-// Of a leaf's items, whose boxes at both ends are given; it is the one at that place of the EndLeaves.
+// Fills in the boxes of one leaf, at index `place` of the EndLeaves. `start` and `end` are the boxes of all items.
 void set_end_boxes(const Bvh::Leaf&, std::span<const Box> start, std::span<const Box> end, int place, EndLeaves&);
 
-// Of a tree's nodes, from those of its leaves.
+// The boxes of a tree's nodes, from those of its leaves.
 void set_end_boxes(const Bvh&, const EndLeaves&, std::vector<EndBoxes>& nodes);
 
-// One bit an item of the leaf: it is apart in order from what has the boxes `other`.
+// One bit for each item of the leaf: 1 where it is apart in order (bvh_traversal.hpp) from the boxes `other`.
 [[gnu::always_inline]] inline unsigned apart_in_order(const Bvh::Leaf& start, const Bvh::Leaf& end,
                                                       const EndBoxes& other) {
   const auto half = [&](int h) {

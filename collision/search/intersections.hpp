@@ -9,22 +9,22 @@
 
 namespace selvedge {
 
-// What is kept of one surface between calls: a tree that is refitted, and its flat parts. It changes the time that a
-// call takes, and nothing else.
+// What is kept of one surface between calls: a tree that is refitted, and its flat parts. It changes nothing but the
+// time of a call.
 struct IntersectionCache {
-  bool cull = true;  // leave out what cannot intersect itself (quiet.hpp)
+  bool cull = true;  // skip parts that cannot intersect themselves (quiet.hpp)
   KeptBvh tree;
   QuietParts parts;
   std::vector<Box> boxes;
   PartLists<std::pair<int, int>> lists;
 };
 
-// Discrete detection for the solver's side: triangles of a surface that intersect and share no vertex, exact signs
-// (triangles_meet), each pair once with i < j, sorted. A triangle with an undefined coordinate intersects nothing.
-// Throws TooManyPairs (pair_budget.hpp).
+// Discrete detection for the solver, not for the audit: pairs of triangles of a surface that intersect and share no
+// vertex, by exact signs (triangles_meet). Each pair is listed once with i < j, sorted. A triangle with an undefined
+// coordinate intersects nothing. Throws TooManyPairs (pair_budget.hpp).
 std::vector<std::pair<int, int>> intersecting_pairs(const Surface&, const Points& x, IntersectionCache&);
 
-// Of a surface with another: (triangle of a, triangle of b), sorted. Each surface has a cache of its own.
+// The same between two surfaces: (triangle of a, triangle of b), sorted. Each surface has a cache of its own.
 std::vector<std::pair<int, int>> intersecting_pairs(const Surface& a, const Points& xa, IntersectionCache& cache_a,
                                                     const Surface& b, const Points& xb, IntersectionCache& cache_b);
 

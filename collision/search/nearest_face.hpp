@@ -9,7 +9,7 @@
 
 namespace selvedge {
 
-// Some faces of a surface where it is now, in a tree. Looks at both.
+// A tree of some faces of a surface at positions x. It keeps pointers to both, which must outlive it.
 struct FaceTree {
   const Surface* surface = nullptr;
   const Points* x = nullptr;
@@ -23,13 +23,13 @@ FaceTree make_face_tree(const Surface&, const Points& x, std::vector<int> faces)
 struct NearestFace {
   int face = -1;
   double squared_distance = std::numeric_limits<double>::infinity();  // [m^2]
-  std::array<double, 3> weight{};                                     // of its corners: the nearest point, sum 1
+  std::array<double, 3> weight{};  // of its corners, sum 1: they give the nearest point
 };
 
-// The face nearest to p of those that do not have the vertex own_vertex, which may be -1.
+// The face nearest to p among those without the vertex own_vertex. own_vertex = -1: among all.
 NearestFace nearest_face(const FaceTree&, int own_vertex, const Vec3& p);
 
-// The same of those that `counts` says yes to, nearer than `within` [m].
+// The nearest face among those with counts(face) true that are nearer than `within` [m].
 NearestFace nearest_face(const FaceTree&, const Vec3& p, double within, const std::function<bool(int face)>& counts);
 
 }  // namespace selvedge

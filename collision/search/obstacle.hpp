@@ -8,8 +8,8 @@
 
 namespace selvedge {
 
-// FCL, the Flexible Collision Library, where the build has it: a second opinion on triangles that intersect (in plain
-// floating point, as it comes) and the test of a garment against a body. Without it everything here throws Error.
+// FCL, the Flexible Collision Library, where the build has it. It is used to compare: which triangles intersect (in
+// plain floating point), and whether a garment touches a body. Without FCL everything here throws Error.
 bool obstacle_available();
 
 // A triangle mesh in FCL's tree of axis-aligned boxes.
@@ -34,7 +34,7 @@ std::vector<std::pair<int, int>> obstacle_self_pairs(const ObstacleModel&, const
 // (triangle of a, triangle of b), sorted.
 std::vector<std::pair<int, int>> obstacle_pairs(const ObstacleModel& a, const ObstacleModel& b);
 
-// The test of ReFU (garment against body): no triangle of the one touches one of the other.
+// The test of ReFU: true if no triangle of the garment touches a triangle of the body.
 bool collision_free(const ObstacleModel& garment, const ObstacleModel& body);
 
 }  // namespace selvedge

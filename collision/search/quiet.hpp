@@ -6,7 +6,7 @@
 
 namespace selvedge {
 
-// Parts of a surface that cannot intersect themselves: flat or gently curved ones, in which a search need not look.
+// Parts of a surface that cannot intersect themselves, since they are flat or gently curved. A search skips them.
 //
 // Let a part be a disk (connected, one boundary loop, Euler characteristic 1, consistently oriented) and project it to
 // a plane. If every triangle keeps its orientation there and the boundary becomes a simple polygon, then the projection
@@ -16,28 +16,29 @@ namespace selvedge {
 // c >= 0. By Gauss and Bonnet pi less those boundary angles sum to 2 pi (1 + sum b). For a simple polygon pi less its
 // angles sum to 2 pi or, passed the other way, -2 pi: 1 + sum b + sum c is 1 or -1, so that every b and c is zero and
 // the projection is one to one near every point. Over a point of the plane there are then as many points of the part as
-// the polygon winds round it, none or one; and over a point of the polygon no other than its own, for near that one
-// there would be points of the plane with more over them than the polygon winds round them.
+// the polygon winds round it, none or one. Over a point of the polygon there is only its own: near a second one there
+// would be points of the plane with more points over them than the polygon's winding number allows.
 struct QuietParts {
   struct Part {
-    int node;                // of the tree
+    int node;                // its node of the tree
     int first_leaf, leaves;  // its triangles
     std::vector<int> loop;   // vertices of its boundary, in order
   };
-  std::vector<Part> parts;   // the disks among the nodes that hold enough triangles
+  std::vector<Part> parts;   // nodes of the tree that are disks and hold enough triangles
   std::vector<int> part_of;  // by node, -1: none
   std::vector<Vec3> normals, node_normals;
   std::vector<char> quiet;  // by node, as of the last mark_quiet
 };
 
-// For a tree of the surface's triangles that was built anew. Topology alone.
+// Finds the parts in a newly built tree of the surface's triangles, from topology alone.
 void find_parts(const Surface&, const Bvh&, QuietParts&);
 
-// Marks the largest parts that are seen to be quiet, one-sidedly: floating-point tests with room for rounding, so that
-// what is marked is quiet in exact arithmetic too.
+// Marks the largest parts that are proven quiet. The tests are floating-point and conservative: what is marked is quiet
+// in exact arithmetic too; what is not marked may be quiet.
 void mark_quiet(const Surface&, const Points& x, const Bvh&, QuietParts&);
 
-// Is the closed polygon simple, with at least `margin` (a length) to spare for its coordinates? False says nothing.
+// True only if the closed polygon stays simple when each coordinate is off by up to `margin` (a length). False says
+// nothing.
 bool surely_simple(const std::vector<Vec2>& polygon, double margin);
 
 }  // namespace selvedge
