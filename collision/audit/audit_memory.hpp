@@ -20,7 +20,7 @@ struct MotionEnd {
 // Four times the most that rounding to float can move a coordinate at the end of these motions [m].
 double reach_of_rounding(const MovingBody& cloth, std::span<const MovingBody> bodies);
 
-// Is every coordinate near enough to the motion's end that triangles which are not listed are apart?
+// Is every coordinate within `reach` of where the motion ended? Then triangles that are not listed are apart.
 bool is_at_end(const MotionEnd&, const MovingBody& cloth, std::span<const MovingBody> bodies, bool self);
 
 // What the audit remembers of a scene, so that it need not prove pairs at rest again: which pairs of triangles were

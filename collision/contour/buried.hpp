@@ -6,12 +6,12 @@
 
 namespace selvedge {
 
-// The triangles of a surface that do not face the outside of the whole: they do not cross it (`found`, at x), and the
-// union of what its closed shells enclose is before them as well as behind. A piece between crossings is judged as one,
-// and faces the outside where one of the triangles asked for it does. 1 a triangle. Nothing where all shells are open.
+// 1 for each triangle that faces no outside: it does not cross the surface (`found`, at x), and the union of the closed
+// shells is in front of it as well as behind it. A connected piece between crossings is judged as one, by a few of its
+// triangles; it faces the outside where one of these does. All 0 if all shells are open.
 std::vector<char> buried_triangles(const Surface&, const Points& x, const Segments& found);
 
-// The vertices of triangles that cross, and of buried ones; none where nothing crosses. 1 a vertex.
+// 1 for each vertex of a triangle that crosses another or is buried; 0 everywhere if nothing crosses.
 std::vector<char> buried_vertices(const Surface&, const Points& x, const Segments& found);
 
 }  // namespace selvedge

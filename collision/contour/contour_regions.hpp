@@ -8,20 +8,22 @@
 
 namespace selvedge {
 
-// Does the curve end nowhere inside its sheet? A side that ends at loop vertices does so together with the other side.
+// True if the curve on this side ends nowhere inside its sheet. At a loop vertex it goes on as the curve of the other
+// side.
 bool ends_outside(const Contour&, int side);
 
 // Vertices of a component that lie on the wrong side of a partner component (which may be the same).
 struct Region {
   int sheet = 0, component = 0, partner_sheet = 0, partner_component = 0;
-  std::vector<int> contours;  // between the two
+  std::vector<int> contours;  // between the two components
   std::vector<int> vertices;  // sorted
-  bool cut = true;            // false: some of the contours do not part the component, even together
+  bool cut = true;            // false: some of the contours do not cut the component, even together
 };
 
-// Regions from all contours of a sheet with a partner together: their parity, the smaller part being inside. Contours
-// that spoil the colouring are left out of it, and `cut` says so. Against a closed obstacle the vertices of sheets[0]
-// are those inside it, whatever the contours. Regions without vertices are listed too.
+// The regions of each component with each partner, from all contours between the two together: crossing a contour
+// changes the side, and the smaller part is inside. Contours that allow no such colouring are left out, and `cut` says
+// so. Against a closed obstacle the vertices of sheets[0] are those inside it, whatever the contours. Regions without
+// vertices are listed too.
 std::vector<Region> enclosed_regions(std::span<const SheetView> sheets, const Segments&, std::span<const Contour>);
 
 }  // namespace selvedge

@@ -11,12 +11,12 @@ namespace selvedge {
 
 struct Bvh;
 
-// A surface where it is now.
+// A surface at its present positions.
 struct SheetView {
   const Surface* surface = nullptr;
   const Points* x = nullptr;
-  const Bvh* tree = nullptr;  // of its triangles' boxes there, if whoever asks has one: saves building it
-  const std::vector<char>* quiet = nullptr;  // by node of that tree: nothing below crosses itself (quiet.hpp)
+  const Bvh* tree = nullptr;                 // of its triangles' boxes at x, if the caller has one: saves building it
+  const std::vector<char>* quiet = nullptr;  // by node of that tree: 1 if nothing below crosses itself (quiet.hpp)
 };
 
 // Where an edge of one surface passes through a face of another or of its own. `sheet` numbers the surfaces of a query.
@@ -29,8 +29,8 @@ struct Crossing {
   }
 };
 
-// What two triangles have in common. Each end is a crossing (its index) or, for triangles that share one vertex and
-// cross, the bitwise complement of that vertex; then it is the first.
+// The line along which two triangles cross. Each end is the index of a crossing. If the triangles share a vertex, the
+// first end is the bitwise complement of that vertex.
 struct Segment {
   std::array<int, 2> sheet;     // the second is the higher
   std::array<int, 2> triangle;  // within one surface the first is the lower
@@ -40,24 +40,24 @@ struct Segment {
 
 // All intersections, as if every vertex had been moved by an infinitesimal amount (symbolic_orientation.hpp, ranks in
 // the order of sheets and vertices): two triangles have no segment or one, a crossing belongs to one segment for every
-// triangle at its edge, and so segments join end to end. Signs are exact; s and the weights are floating, good to the
-// relative error of the determinants that they are quotients of, and clamped to their ranges where these vanish.
+// triangle at its edge, and so segments join end to end. Signs are exact. s and the weights are quotients of
+// floating-point determinants, with the relative error of these; where these vanish they are clamped to their ranges.
 struct Segments {
   std::vector<Crossing> crossings;  // sorted by sheets, edge and face
   std::vector<Segment> segments;    // sorted by sheets and triangles
-  // Pairs without a common vertex that touch or overlap in a plane without crossing, as a rule of the infinitesimal
-  // motion: closed triangles meet (triangles_meet) exactly if they have a segment or are listed here.
+  // Pairs without a common vertex that touch or overlap in a plane, but do not cross after the infinitesimal motion.
+  // Closed triangles meet (triangles_meet) exactly if they have a segment or are listed here.
   std::vector<std::array<int, 3>> touching;  // triangle of sheet 0, sheet, triangle of that sheet; sorted
 };
 
-// sheets[0] against itself and against each of the others. Vertices must be finite. Throws TooManyPairs
+// Intersections of sheets[0] with itself and with each of the others. Vertices must be finite. Throws TooManyPairs
 // (pair_budget.hpp).
 Segments find_segments(std::span<const SheetView> sheets);
 
 Vec3 point_of(std::span<const SheetView> sheets, const Crossing&);  // on the edge
-// Of a segment's end.
+// The position of a segment's end 0 or 1.
 Vec3 end_point(std::span<const SheetView> sheets, const Segments&, const Segment&, int end);
-// Number of segments between triangles that share no vertex, the touching ones included: what an audit counts.
+// The number of pairs of triangles that share no vertex and cross or touch, as an audit counts them.
 int intersecting_pairs(const Segments&);
 
 }  // namespace selvedge

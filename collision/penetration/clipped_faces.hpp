@@ -9,8 +9,8 @@
 
 namespace selvedge {
 
-// Part of a face, or several parts, each with a whole number: how often it counts. moment[k] is the integral of the
-// number times the k-th corner's barycentric coordinate over the face, where the face's area is 1/2.
+// Parts of a face, each with an integer: how often it counts. moment[k] is the integral over the face of this integer
+// times the k-th barycentric coordinate, where the face's area is taken as 1/2.
 struct ClippedFace {
   int face = 0;
   bool whole = false;  // no curve runs through it
@@ -18,34 +18,35 @@ struct ClippedFace {
   double covered() const { return moment[0] + moment[1] + moment[2]; }
 };
 
-// A piece of the boundary of a clipped face's part, `times` over, with the part on its left.
+// A piece of the boundary of a part of a face, counted `times` times. The part is on its left.
 struct ClippedPiece {
   int face = 0;
   CurvePoint from = 0, to = 0;
   int times = 0;
 };
 
-// What counts on one component, and how often: 0 at vertices that are not listed, and at each curve a step by `times`
-// from its right to its left.
+// How often each place of one component counts: 0 at vertices that are not listed; it rises by `times` from a curve's
+// right to its left.
 struct CountedPart {
   std::vector<std::pair<int, int>> vertices;                // vertex, how often
   std::vector<std::pair<const SurfaceCurve*, int>> curves;  // curve, times
 };
 
 struct ClippedPart {
-  std::vector<ClippedFace> faces;    // whole ones too
-  std::vector<ClippedPiece> pieces;  // of those that curves run through
-  bool at_boundary = false;          // it goes on to an edge without a second triangle: it cannot be closed
+  std::vector<ClippedFace> faces;    // with whole faces
+  std::vector<ClippedPiece> pieces;  // of faces that curves run through
+  bool at_boundary = false;          // the part reaches an edge with only one triangle, so that it cannot be closed
 };
 
-// By Green's theorem from the boundaries alone, so that curves may cross each other inside a face. `count` is zero for
-// each vertex, `cut` for each triangle, and so they are again afterwards: memory that calls share.
+// Computes moments from boundaries alone, by Green's theorem, so that curves may cross each other inside a face.
+// `count` (zero for each vertex) and `cut` (zero for each triangle) are memory that calls share; they are zero again
+// afterwards.
 ClippedPart clip_faces(const ClosedSurface&, const std::vector<Crossing>&, const CountedPart&, std::vector<int>& count,
                        std::vector<char>& cut);
 
 // Barycentric coordinates in a face.
 std::array<double, 3> weights_in(const Surface&, const std::vector<Crossing>&, int face, CurvePoint);
 Vec3 position_of(const Surface&, const Points& x, const std::vector<Crossing>&,
-                 CurvePoint);  // of a crossing: on its edge
+                 CurvePoint);  // of a crossing: its position on its edge
 
 }  // namespace selvedge

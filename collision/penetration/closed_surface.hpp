@@ -16,21 +16,22 @@ struct ClosedSurface {
   std::vector<std::vector<int>> loops;  // of the closed holes; the centre of loop i is vertex cloth_vertices + i
   std::vector<int> garment;             // of each triangle
   std::vector<signed char> turn;        // of each triangle, +1 or -1: neighbours are turned alike
-  std::vector<char> orientable;         // of each component: it can be, and no edge has three triangles
+  std::vector<char> orientable;         // of each component: 1 if such turns exist and no edge has three triangles
   std::vector<int> component_faces;     // of each component: its triangles
 
   bool is_fan(int triangle) const { return triangle >= cloth_triangles; }
 };
 
-// `garments` names the garment of each vertex (of a triangle: that of its first); empty: each component is one. A hole
-// with one of the vertices `open` on its boundary stays open. Throws Error for a list of another length, or for a
-// vertex that is on no boundary.
+// `garments`: the garment's number of each vertex; a triangle has that of its first vertex. Empty: each component is a
+// garment. A hole with one of the vertices `open` on its boundary stays open. Throws Error if `garments` has another
+// length, or if a vertex of `open` is on no boundary.
 ClosedSurface close_surface(const Surface& cloth, std::span<const int> garments = {}, std::span<const int> open = {});
 
 // Cloth positions [m] with the centres of the fans behind them.
 Points closed_positions(const ClosedSurface&, const Points& cloth);
 
-// A derivative by closed_positions as one by the cloth's positions: a loop's n vertices get 1/n of their centre's each.
+// Turns a derivative by closed_positions into one by the cloth's positions: each of a loop's n vertices gets 1/n of the
+// centre's.
 Points by_cloth_positions(const ClosedSurface&, const Points& gradient);
 
 }  // namespace selvedge

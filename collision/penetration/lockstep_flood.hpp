@@ -6,12 +6,12 @@
 
 namespace selvedge {
 
-// Fronts that spread over a surface's vertices along its edges, but not along those that are shut, all at the same
-// pace, so that small parts are whole before a large one is (Baraff et al. 2003 with the lockstep of Liao et al. 2024,
-// section 3.2.3). Fronts that meet become one. The number of a front is the lowest of those that it came of.
+// Flood fill from several fronts over a surface's vertices, along edges that are not shut. All fronts advance at the
+// same pace, so that small parts are complete before a large one (Baraff et al. 2003 with the lockstep of Liao et al.
+// 2024, section 3.2.3). Fronts that meet are merged, under the lowest of their numbers.
 class LockstepFlood {
  public:
-  // `owner` is -1 for each vertex, and is so again when the flood is over: memory that floods share.
+  // `owner` is memory that floods share: -1 for each vertex, and again -1 after the destructor.
   LockstepFlood(const Surface& surface, const std::vector<char>& shut, std::vector<int>& owner)
       : surface_(surface), shut_(shut), owner_(owner) {}
   ~LockstepFlood();
@@ -21,7 +21,7 @@ class LockstepFlood {
   int add_front();
   void seed(int vertex, int front);
   void join(int a, int b);
-  // Until at most `open` fronts have vertices left to go on from. Returns one that has, or -1.
+  // Spreads until at most `open` fronts have vertices left to go on from. Returns one of these fronts, or -1.
   int grow(int open);
 
   int root(int front);

@@ -8,29 +8,30 @@
 
 namespace selvedge {
 
-// Where a contour goes on beyond its last point. rim: round a hole. plane: straight, where a plane cuts the surface.
+// How a contour is continued beyond its last point. rim: round a hole. plane: straight, where a plane cuts the surface.
 // middles: along the shortest strip of faces, through the middles of edges.
 enum class ClosingWay { rim, plane, middles };
 
 // How a contour between two garments is closed that ends at their rims, because fans meet only their own garment. On
-// each garment's surface it goes on from its last point to its first; triangles between both ways, with a corner at the
-// middle of these two points, close what lies between the surfaces.
+// each garment's surface a path leads from its last point back to its first. Triangles between the two paths, with a
+// corner at the middle of these two points, close the gap between the surfaces.
 struct ContourClosing {
   struct Way {
     ClosingWay kind = ClosingWay::plane;
-    std::vector<CurvePoint> points;  // from the contour's last to its first, both with it
+    std::vector<CurvePoint> points;  // from the contour's last to its first, both included
     std::array<int, 2> end_faces{};  // the contour's last and first triangle on this side
-    int times = 0;                   // of its triangles (middle, point, next point) in the region's surface
+    int times = 0;  // how often its triangles (middle, point, next point) count in the region's surface
   };
   std::array<Way, 2> ways;  // by side of the contour
 };
 
-// If both ends are at one closed hole, the cloth round the hole has gone through the other garment: on its own surface
-// the contour goes on along the shorter way round the rim, on the other one back from end to end. If one end is at a
-// rim of each garment, it goes back on both. That is in a plane through both ends that stands on the surfaces that it
-// cuts (up_of_plane is in it), or, where this meets a hole or is longer than twice the contour, through the middles of
-// edges; so there always is a way, for the contour is one. Nothing for other contours, or for one at two holes of one
-// garment. Else appends the curves of both sides, and to the crossings where ways cut edges (their `face` is -1).
+// Closes a contour with both ends at closed holes. If both are at one hole, the cloth round the hole has gone through
+// the other garment: on its own surface the path takes the shorter way round the rim, on the other surface it leads
+// straight from end to end. If one end is at a rim of each garment, both paths lead straight. Straight means in a plane
+// through both ends and up_of_plane. Where that meets a hole or is longer than twice the contour, both paths go through
+// the middles of edges, which always exist along the contour itself. Returns nothing for other contours, with two holes
+// of one garment among them. Otherwise appends the curves of both sides to `curves`, and to `crossings` where paths cut
+// edges (with `face` -1).
 std::optional<ContourClosing> close_open_contour(const ClosedSurface&, const Points& closed_x, const Contour&,
                                                  int number, std::vector<Crossing>& crossings,
                                                  std::vector<SurfaceCurve>& curves);
@@ -38,12 +39,13 @@ std::optional<ContourClosing> close_open_contour(const ClosedSurface&, const Poi
 // The sum of the unit normals of the surfaces that the plane cuts, each the mean of those at the contour's ends.
 Vec3 up_of_plane(const ClosedSurface&, const Points& closed_x, const ContourClosing&);
 
-// The part of a region's volume that the closing's triangles have, seen from `centre` [m^3].
+// The volume of the cones from `centre` over the closing's triangles, a part of the region's volume [m^3].
 double closing_volume(const ClosedSurface&, const Points& closed_x, const std::vector<Crossing>&, const ContourClosing&,
                       const Vec3& centre);
 
-// Adds `scale` times the flux through the triangles as the closed positions move them: crossings stay where edges and
-// faces meet, cuts in their plane. With what the moving surfaces add, it is the region's exact derivative.
+// Adds to `gradient` `scale` times the derivative of the flux through the closing's triangles by the closed positions:
+// crossings stay where edges and faces meet, cuts stay in their plane. With the flux through the surfaces' faces it is
+// the exact derivative of the region's volume.
 void add_closing_flux(const ClosedSurface&, const Points& closed_x, const std::vector<Crossing>&, const ContourClosing&,
                       double scale, Points& gradient);
 
