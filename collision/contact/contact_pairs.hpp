@@ -31,7 +31,7 @@ inline Closest closest(const NodePair& pair, const Points& x) { return closest(p
 // Distance in the rest shape of a pair of one cloth; infinite for any other, and where the world has no rest shape [m].
 double rest_distance(const ContactWorld&, const NodePair&);
 
-// Searches so far, and the pairs that they found.
+// Numbers of searches and of pairs found.
 struct SearchTally {
   int searches = 0;
   std::int64_t candidates = 0;
@@ -43,12 +43,12 @@ struct SearchTally {
 class PairSearch {
  public:
   explicit PairSearch(const ContactWorld&);  // keeps a reference
-  // In an order that depends on what the trees went through; the pairs themselves do not. `pairs` is overwritten. With
-  // marks by node only the pairs are found that have a marked one. Throws TooManyPairs (pair_budget.hpp), and then
+  // The order of pairs depends on earlier calls; the set of pairs does not. `pairs` is overwritten. If `marks` (by
+  // node) is not empty, only pairs with a marked node are found. Throws TooManyPairs (pair_budget.hpp), and then
   // `pairs` is empty.
   void find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs,
             const std::vector<char>& marks = {});
-  // Pairs that are not to be found from here on; nothing ends it. Keeps the pointer.
+  // From now on `find` leaves these pairs out; null: none. Keeps the pointer.
   void leave_out(const Exemption* exemption) { left_out_ = exemption; }
   const ContactWorld& world() const { return world_; }
   const SearchTally& tally() const { return tally_; }

@@ -13,20 +13,20 @@ struct ContactWorld {
   std::vector<int> first_node;  // of each obstacle
   bool self = true;             // cloth against itself
   int node_count = 0;
-  const Points* rest = nullptr;  // of the cloth [m]; without it nothing counts as resting close
+  const Points* rest = nullptr;  // rest positions of the cloth [m]; without them no pair counts as close at rest
 
   bool is_cloth(int node) const { return node < cloth->vertex_count; }
   int obstacle_of(int node) const;  // -1: cloth
 };
 
-// Keeps all that it is given by pointer. rest: of the cloth, one row a vertex.
+// Keeps pointers to all arguments. rest: rest positions of the cloth, one row for each vertex.
 ContactWorld make_contact_world(const Surface& cloth, std::vector<const Surface*> obstacles, bool self,
                                 const Points* rest = nullptr);
 
 // Positions of all nodes in that numbering.
 Points gather_nodes(const Points& cloth, const std::vector<Points>& obstacles);
 
-// By obstacle, 1 where a node of it is not at x1 where it is at x0. One that stands still does not give way.
+// For each obstacle, 1 if any of its nodes differs between x0 and x1. An obstacle that stands still does not give way.
 std::vector<char> obstacles_in_motion(const ContactWorld&, const Points& x0, const Points& x1);
 
 }  // namespace selvedge

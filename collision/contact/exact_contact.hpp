@@ -15,11 +15,11 @@ struct FoundContact {
 };
 
 // Searches the times [from, to] of [0, 1], both whole multiples of time_grain, for the first contact at distance zero
-// while the nodes move straight from x0 to x1; `polygon` is theirs. Signs that rounding leaves open are found with
-// whole numbers, so it gives nothing only if there is no contact in there, and otherwise a time at or before the first
-// one: by less than 2^-30 if certain. Coordinates must be finite. Capped, which leaves a contact uncertain: 2^-40 of
-// [from, to] still undecided counts as contact, and so does everything that is left when as many as `intervals` have
-// been looked at, which is lowered by those that were.
+// while the nodes move straight from x0 to x1; `polygon` is the moving polygon of x0 and x1. Signs that rounding leaves
+// open are found with exact integers. So it returns nothing only if there is no contact in [from, to], and otherwise a
+// time at or before the first contact: by less than 2^-30 if certain. Coordinates must be finite. Two caps leave a
+// contact uncertain: an undecided part of 2^-40 of [from, to] counts as contact, and so does all that is left after
+// `intervals` intervals. `intervals` is lowered by the number looked at.
 std::optional<FoundContact> exact_contact(PairKind, const std::array<Vec3, 4>& x0, const std::array<Vec3, 4>& x1,
                                           const MovingPolygon& polygon, double from, double to, int& intervals);
 

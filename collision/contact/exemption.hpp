@@ -7,21 +7,21 @@
 
 namespace selvedge {
 
-// What contact leaves alone: the mechanisms that keep a clean state clean would keep a tangled one tangled. All 1 where
-// it applies; empty where nothing does.
+// What contact leaves alone: contact that keeps a clean state clean would keep a tangled one tangled. Each list has 1
+// for vertices or nodes to which it applies, and is empty if there is none.
 struct Exemption {
   std::vector<char> self;  // of the cloth's vertices: on or inside a contour of the cloth with itself
   std::vector<char> body;  // of the cloth's vertices: on a contour with an obstacle, or inside a closed one
   std::vector<char>
-      off;  // of all nodes: caught ones of the cloth, and the obstacle's where it crosses itself there (caught.hpp)
+      off;  // of all nodes: caught vertices of the cloth, and obstacle vertices that are switched off (caught.hpp)
 
   bool cloth() const { return !self.empty() || !body.empty(); }
-  int cloth_vertices() const;  // how many of them
+  int cloth_vertices() const;  // with self or body
   bool any() const { return cloth() || !off.empty(); }
   bool leaves_alone(const ContactWorld&, const std::array<int, 4>& nodes) const;
 };
 
-// Marks of either; empty where neither has any.
+// 1 where a or b has 1; empty if both are empty.
 std::vector<char> either(std::vector<char> a, const std::vector<char>& b);
 
 }  // namespace selvedge

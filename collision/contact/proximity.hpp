@@ -6,18 +6,18 @@
 
 namespace selvedge {
 
-// A pair closer than its rest gap, linearised where it is: gap(x) = normal . sum w_i x_i.
+// A pair closer than its rest gap, linearised at the present positions: gap(x) = normal . sum w_i x_i.
 struct Proximity {
   NodePair pair;
   Eigen::Vector4d weights;
   Vec3 normal;          // from the second primitive toward the first
   double gap = 0;       // [m], > 0
-  double rest_gap = 0;  // distance that the pair keeps [m]
+  double rest_gap = 0;  // distance that contact aims for [m]
 };
 
 // Proximities among `candidates` at positions x. Of the faces near a vertex only the closest on each side counts, and
-// of the edges near an edge likewise, so that one contact is not met by many forces. Pairs of one cloth that rest close
-// to each other keep at most 0.7 of their rest distance. Sorted by pair, whatever the order of the candidates.
+// likewise of the edges near an edge, so that one contact gets one force. Pairs of one cloth that are close in the rest
+// shape have a rest gap of at most 0.7 of their rest distance. Sorted by pair, whatever the order of the candidates.
 std::vector<Proximity> find_proximities(const ContactWorld&, std::span<const NodePair> candidates, const Points& x,
                                         double thickness);
 

@@ -9,7 +9,8 @@
 
 namespace selvedge {
 
-// A pair that meets during a step, linearised where it meets: it must end with normal . sum w_i x_i >= target.
+// A pair that meets during a step, linearised at the impact: at the step's end normal . sum w_i x_i >= target must
+// hold.
 struct Impact {
   NodePair pair;
   Eigen::Vector4d weights;
@@ -21,36 +22,36 @@ struct Impact {
   Vec3 tangential = Vec3::Zero();  // accumulated friction impulse times the time step [kg m]
 };
 
-// The impact of a pair on the straight paths x0 -> x1, if it comes within `separation` [m].
-// With a world its normal is one of the surfaces that meet (contact_normal.hpp).
+// The impact of a pair on the straight paths x0 -> x1, if it comes within `separation` [m]. With a world its normal is
+// that of contact_normal.hpp.
 std::optional<Impact> find_impact(const NodePair&, const Points& x0, const Points& x1, double separation,
                                   const ContactWorld* = nullptr);
 
 double impact_gap(const Impact&, const Points& x);  // normal . sum w_i x_i [m]
 
-// Inverse of the mass that the pair feels along any direction [1/kg].
+// Inverse of the pair's effective mass, in any direction: sum w_i^2 / m_i [1/kg].
 double compliance(const Impact&, const Eigen::VectorXd& inverse_mass);
 
-double mean_inverse_mass(const Eigen::VectorXd&);  // of the nodes that are free; 0 if none is [1/kg]
+double mean_inverse_mass(const Eigen::VectorXd&);  // of free nodes [1/kg]; 0 if none is free
 
 // Inelastic impulse of Bridson, Fedkiw and Anderson 2002 (section 7.3) in positions: moves the ends x1 of the four
-// nodes, by their inverse masses [1/kg] (0: prescribed), so that the gap reaches its target, and takes from the pair's
-// slip over the step what Coulomb friction allows (all of it where it sticks).
+// nodes, by their inverse masses [1/kg] (0: prescribed), so that the gap reaches its target. Then it reduces the pair's
+// slip over the step by as much as Coulomb friction allows (to zero where the pair sticks).
 void apply_impulse(Impact&, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1);
 
 struct Projection {
   double violation = 0;    // largest that remains [m]
-  std::int64_t moved = 0;  // free nodes of the impacts, once a sweep
+  std::int64_t moved = 0;  // number of free nodes moved, summed over impacts and sweeps
 };
 
 // Inelastic impact zone (Harmon et al. 2008, with inequalities): the smallest mass-weighted change of x1 that brings
 // every impact to its target, by projected Gauss-Seidel on the multipliers, which start from their last values. Sliding
-// is kept but for Coulomb friction: no more than the normal impulse of the same pair allows.
+// stays, but for Coulomb friction bounded by the normal impulse of the same pair.
 Projection project_zone(std::span<Impact*> impacts, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1,
                         int max_sweeps, double tolerance);
 
-// The angular velocity with that angular momentum [kg m2 / s over kg m2]. Nodes on a line have no inertia about it, and
-// turn about it at no speed.
+// The angular velocity [1/s] for an inertia [kg m2] and an angular momentum [kg m2 / s]. Nodes on a line have no
+// inertia about the line; the velocity about it is 0.
 Vec3 angular_velocity(const Mat3& inertia, const Vec3& momentum);
 
 // Rigid impact zone (Provot 1997; Bridson et al. 2002, section 7.4): the nodes go on from x0 as one rigid body with the

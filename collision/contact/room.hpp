@@ -5,22 +5,22 @@
 
 namespace selvedge {
 
-// Lets obstacles that would close on cloth without leaving it room give way, before the cloth is solved for. x1: a
-// guess of where the cloth goes, and where obstacles are wanted; on return obstacle nodes without room have given way
-// along the normals of what is between them, and stop short of what they touch; if they lag by more than the distance
-// to other nodes of their body allows without folding it, those lag with them. All other rows stay. Nodes that gave way
-// get an inverse mass [1/kg], so that `resolve` may push them a little farther. False: there is room for all.
+// Lets obstacles give way that would close on cloth without leaving it room, before the cloth is solved for. x1: a
+// guess for the cloth's end, and the wanted ends of obstacles. On return obstacle nodes without room have moved back
+// along the normals of the contacts between them. If they lag so much that their body would fold, nodes nearby lag with
+// them. All other rows stay. Nodes that gave way get an inverse mass [1/kg], so that `resolve` may push them a little
+// farther. Returns false if there is room everywhere.
 //
-// The pairs near the start and those that meet on the way each ask for twice the separation, linearised. Nothing but
-// inertia holds the cloth there, so that what finds no room finds none for cloth that stretches and slides as it likes.
-// Where demands contradict each other, and only there, the multipliers of projected Gauss-Seidel grow without end
-// (Farkas: they tend to weights under which the demands sum to an impossible one).
+// Pairs near the start, and those that meet on the way, each demand twice the separation, linearised. The cloth here
+// has inertia but no elasticity or friction; so if the demands cannot be met, not even freely stretching and sliding
+// cloth has room. Exactly where demands contradict each other, the multipliers of projected Gauss-Seidel grow without
+// bound (Farkas: they tend to weights with which the demands sum to an impossible one).
 bool make_room(PairSearch&, const ContactWorld&, const ResolveOptions&, std::span<const Proximity> near,
                const Points& x0, Points& x1, PathPairs&, Eigen::VectorXd& inverse_mass, ResolveReport&);
 
-// Where obstacles end a step short of where they are wanted, and the way there has come free meanwhile, takes all of
-// them there: what is linearised at the start may ask for more room than the cloth needed in the end. Not clean, with
-// `nodes` as they were, if something meets on that way.
+// Moves all obstacles that ended a step short to where they are wanted, if their paths are free by now: demands
+// linearised at the start may ask for more room than the cloth needed in the end. If anything meets on these paths, the
+// report is not clean and `nodes` stay as they were.
 ResolveReport catch_up(PairSearch&, const ResolveOptions&, const Eigen::VectorXd& inverse_mass, const Points& wanted,
                        Points& nodes, PathPairs&);
 

@@ -7,28 +7,28 @@
 
 namespace selvedge {
 
-// Vertices or edges by the leaf of a tree of triangles that owns them, eight together.
+// The vertices or edges that each leaf of a tree of triangles owns, in groups of eight.
 struct PrimitiveGroups {
   std::vector<Bvh::Leaf> groups;
-  std::vector<int> begin;  // those of leaf l are groups[begin[l] .. begin[l + 1])
+  std::vector<int> begin;  // leaf l has groups[begin[l] .. begin[l + 1])
   EndLeaves ends;
 
-  // Corner k of triangle t has the primitive primitives(t, k).
+  // primitives(t, k): vertex or edge k of triangle t. owner: of each primitive the triangle that owns it.
   void share_out(const Bvh&, const Triangles& primitives, const std::vector<int>& owner);
 };
 
-// A surface that takes part in a search, and the tree of its triangles. What a leaf's triangles own has boxes only once
-// something comes near to the leaf: of a body most is away from what it wears.
+// A surface that takes part in a search, and the tree of its triangles. Vertices and edges of a leaf get boxes only
+// once something comes near the leaf: most of a body is far from its garments.
 class SearchPart {
  public:
   SearchPart(const Surface& s, int first) : surface(&s), first_node(first) {}
 
-  // Boxes round the straight motion x0 -> x1 of all nodes, grown by half the radius [m], and with `ends` at both ends
-  // of it too. What moves as it did the last time keeps what it has.
+  // Makes boxes round the straight motion x0 -> x1 of all nodes, grown by half the radius [m]; with `ends` also boxes
+  // at both ends of the motion. If the motion is the same as in the last call, boxes are kept.
   void move(const Points& x0, const Points& x1, double radius, bool ends);
-  // Of the leaves that overlap something of the other tree, which is that of another surface, or of all without one.
+  // Fills in boxes of vertices and edges: of the leaves that overlap the other surface's tree, or of all if it is null.
   void fill(const Bvh* other);
-  // By node of the tree: it holds a marked node.
+  // Sets `marks` by node of the tree: 1 if it holds a marked node of the world.
   void mark(const std::vector<char>& nodes);
 
   const Surface* surface;
@@ -47,7 +47,7 @@ class SearchPart {
   void fill_ends(int leaf);
   void set_edge_boxes(int leaf, Boxes&) const;
 
-  Points from_, to_;  // what the boxes hold
+  Points from_, to_;  // the motion of the boxes
   double radius_ = -1;
   bool ends_ = false;
   Boxes boxes_, start_, end_;

@@ -54,7 +54,7 @@ struct Segments {
 // (pair_budget.hpp).
 Segments find_segments(std::span<const SheetView> sheets);
 
-Vec3 point_of(std::span<const SheetView> sheets, const Crossing&);  // on the edge
+Vec3 point_of(std::span<const SheetView> sheets, const Crossing&);  // on its edge
 // The position of a segment's end 0 or 1.
 Vec3 end_point(std::span<const SheetView> sheets, const Segments&, const Segment&, int end);
 // The number of pairs of triangles that share no vertex and cross or touch, as an audit counts them.

@@ -12,8 +12,8 @@
 
 namespace selvedge {
 
-// What counts as the body where its surface passes through itself. united: all that lies inside any part of it, so that
-// a closest point is on the outside of the whole. raw: the nearest triangle, whatever lies round it (ReFU).
+// What counts as the body where its surface passes through itself. united: the union of its parts, so that a closest
+// point is on the outside of the whole. raw: the nearest triangle, even inside another part (as in ReFU).
 enum class BodyShape { united, raw };
 
 // Where on the surface a closest point lies: inside a triangle, on an edge (of a united body also where two of its
@@ -22,32 +22,33 @@ enum class SurfacePlace { face, edge, vertex };
 
 struct SignedDistance {
   double value = 0;              // [m], below 0 inside
-  Vec3 gradient = Vec3::Zero();  // of `value`: unit length, out of the body; zero where nothing tells a direction
+  Vec3 gradient = Vec3::Zero();  // of `value`: unit length, out of the body; zero where no direction is known
   Vec3 closest = Vec3::Zero();
-  Vec3 along = Vec3::Zero();  // of the edge, unit length; zero where the place is none
+  Vec3 along = Vec3::Zero();  // direction of the edge, unit length; zero if `place` is not an edge
   SurfacePlace place = SurfacePlace::face;
   int triangle = -1;  // the lowest of the nearest ones
 };
 
-// Signed distance from a triangle surface, its closest points and its derivative. Distances are exact but for rounding.
-// The side is told by angle-weighted normals on closed manifolds, and by the winding number, over 1/2 or not,
-// elsewhere: on open surfaces, and where the normals say nothing. Triangles are counter-clockwise seen from outside.
+// Signed distance from a triangle surface, its closest points and its derivative. Distances are exact up to rounding.
+// On closed manifolds the side comes from angle-weighted normals (pseudonormals.hpp). On open surfaces, and where these
+// normals are zero, it comes from the winding number: inside if over 1/2. Triangles are counter-clockwise seen from
+// outside.
 class DistanceField {
  public:
   // Keeps a reference. Throws Error for a surface without triangles.
   explicit DistanceField(const Surface&, BodyShape = BodyShape::united);
 
-  // The surface is there now. Throws Error for positions that are not finite.
+  // Sets the surface's positions. Throws Error if any is not finite.
   void move_to(const Points& x);
 
-  // Of each point. `faces`, one a point, are where the search begins: the last nearest triangles, or -1; a list of
-  // another length begins anew. It returns with the nearest triangles. Where it begins changes the time and nothing
-  // else. Throws Error for a point that is not finite, and before the first move_to.
+  // The signed distance of each point. `faces` has for each point the triangle where the search begins, such as the
+  // last nearest one, or -1; a list of another length is reset. On return it has the nearest triangles. The start
+  // changes only the time. Throws Error for a point that is not finite, and before the first move_to.
   void ask(const Points& at, std::vector<int>& faces, std::vector<SignedDistance>& found) const;
   std::vector<SignedDistance> ask(const Points& at) const;
 
   bool is_closed() const { return closed_; }
-  bool crosses_itself() const { return !exposed_.all_whole(); }  // or holds hidden parts; false of a raw body
+  bool crosses_itself() const { return !exposed_.all_whole(); }  // or has hidden parts; false for a raw body
   const Surface& surface() const { return surface_; }
   const Points& positions() const { return x_; }
 
@@ -56,9 +57,9 @@ class DistanceField {
     double squared_distance;
     int triangle = -1;
     Vec3 closest;
-    Eigen::Vector4d weights;  // of p and, negative, of the corners; of the piece's where the triangle is cut
+    Eigen::Vector4d weights;  // of p and, negative, of the corners: of the piece if the triangle is cut
     int piece = -1;
-    bool tie = false;  // another one is as near, inside of both: the sheets of a flat body, or the medial axis
+    bool tie = false;  // a second triangle is as near, and p inside both: a flat body, or the medial axis
   };
   struct Waiting {
     float squared;

@@ -6,8 +6,8 @@
 
 namespace selvedge {
 
-// The tree of a surface's triangles (bvh.hpp) with eight children a node, for searches that hold one point against all
-// of them at once. Floats, relative to `origin`. Leaf i is leaf i of the binary tree.
+// The tree of a surface's triangles (bvh.hpp) with eight children per node, for searches that compare one point with
+// all eight at once. Floats, relative to `origin`. Leaf i is leaf i of the binary tree.
 struct WideTree {
   static constexpr int width = 8;
   struct Node {
@@ -16,7 +16,7 @@ struct WideTree {
     int source[width];                 // nodes of the binary tree; -1: none
   };
   struct Leaf {
-    float corner[3][3][width];  // by corner of the triangle, coordinate and place
+    float corner[3][3][width];  // [corner of the triangle][coordinate][index in the leaf]
     int triangle[width];        // -1: none
   };
   Vec3 origin = Vec3::Zero();
@@ -27,7 +27,8 @@ struct WideTree {
 
 // Topology alone; `refit` fills in the boxes and corners.
 WideTree widen(const Bvh&);
-// From a binary tree that is fitted to x. Triangles marked in `left_out`, which may be empty, take no part.
+// Fills in boxes and corners from a binary tree that is fitted to x. Triangles marked in `left_out`, which may be
+// empty, are skipped.
 void refit(WideTree&, const Bvh&, const Surface&, const Points& x, std::span<const char> left_out);
 
 }  // namespace selvedge

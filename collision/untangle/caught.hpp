@@ -4,23 +4,23 @@
 
 namespace selvedge {
 
-// Cloth between two parts of a body that pass through each other has no place to be: contact with both would hold the
-// body, or tear the cloth. It is let through, and nothing else is: what comes from outside meets all of the body.
+// Cloth between two parts of a body that pass through each other has no room: contact with both parts would stop the
+// body or tear the cloth. Contact leaves only this cloth alone; cloth from outside still meets all of the body.
 //
-// An obstacle goes from where it is in `from` to where it is in `to`, and crosses itself at one end at least. A vertex
-// of the cloth is caught if the face before which it is would carry it through another one that faces that face, into
-// the obstacle where its shells are closed. An obstacle that keeps its shape catches nothing anew: its parts do not
-// pass through each other. A vertex is caught, too, if it is tangled with obstacles (`exemption.body`) within an edge
-// of the crossing and worn: it has a place to be drawn to (`worn`, a row a vertex, not a number where nothing wears it;
-// or empty). Marks what is caught, and where there is some `off` for the obstacle: triangles that cross, are buried, or
-// are next to such.
+// For an obstacle that moves from its nodes in `from` to those in `to` and crosses itself at either end. A vertex of
+// the cloth is caught if the face in front of which it lies, moving with the body, takes it through another face that
+// faces the first; through a face of a closed shell only if it ends inside. An obstacle that keeps its shape catches no
+// further vertices: its parts do not pass through each other. A vertex that is tangled with obstacles
+// (`exemption.body`) within an edge of the crossing is caught too if a body wears it. `worn`: skinned targets, one row
+// for each vertex, NaN where no body wears it; or empty. Marks caught vertices in exemption.off, and if there are any
+// also the obstacle's triangles that cross, are buried, or are next to such.
 void switch_off(const ContactWorld&, int obstacle, const Points& from, const Points& to, const Points& worn,
                 Exemption& exemption);
 
-// Triangles of a surface at x that switch_off can mark: they cross, are buried, or are next to such.
+// The triangles of a surface at x that switch_off can mark: those that cross, are buried, or are next to such.
 std::vector<int> may_be_off(const Surface&, const Points& x);
 
-// Triangles that are off of each obstacle.
+// The number of switched-off triangles of each obstacle.
 std::vector<int> switched_off(const ContactWorld&, const Exemption&);
 
 // Does the surface move from x0 to x1 as a rigid body?

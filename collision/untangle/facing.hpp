@@ -7,17 +7,17 @@
 
 namespace selvedge {
 
-inline constexpr double facing_cosine = -0.3;  // cosine of two normals, at most, of surfaces that face each other
+inline constexpr double facing_cosine = -0.3;  // surfaces face each other if their normals' cosine is at most this
 
-// Of a body before it is posed.
+// A body in its rest pose.
 struct FacingBody {
   const Points& rest;                    // where its parts are apart [m]
-  const std::vector<double>& thickness;  // under each vertex [m]
-  double reach;                          // within which vertices meet [m]
+  const std::vector<double>& thickness;  // of the body under each vertex [m]
+  double reach;                          // largest distance of vertices that meet [m]
 };
 
-// For each vertex of the body posed to x the nearest one of a part that faces it and that was farther at rest; -1:
-// none. Where several are as near, the first in the order of a grid of cubes.
+// For each vertex of the body posed to x, the nearest vertex that faces it and was farther away at rest; -1: none. Of
+// several at one distance, the first in the order of a grid of cubes.
 std::vector<int> facing_vertices(const FacingBody&, const Points& x, const Points& normals);
 
 }  // namespace selvedge

@@ -4,8 +4,8 @@
 
 namespace selvedge {
 
-// Contours of the cloth with itself (where world.self) and with the obstacles, and its vertices inside closed shells
-// of obstacles. Positions must be finite.
+// Marks cloth vertices on or inside contours of the cloth with itself (where world.self), on contours with obstacles,
+// and inside closed shells of obstacles. Positions must be finite.
 Exemption find_exemption(const ContactWorld&, const Points& nodes);
 
 }  // namespace selvedge

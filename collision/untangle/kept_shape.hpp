@@ -7,15 +7,15 @@
 
 namespace selvedge {
 
-// The input that a repaired cloth is compared with.
+// The shape of the input, with which the repaired cloth is compared.
 struct KeptShape {
   const Surface* surface = nullptr;
   Points x0;
   std::vector<int> neighbour_begin, neighbour;  // of each vertex, along edges
   std::vector<double> edge_length;              // mean over each vertex' edges [m]
   std::vector<Eigen::Matrix2d> rest_inverse;    // of each triangle's two edges in its plane
-  std::vector<char> measured;                   // 0: the input triangle has no area, its stretches are not defined
-  double mean_edge = 0;                         // [m]
+  std::vector<char> measured;  // 0: the input triangle has no area, so that its stretches are not defined
+  double mean_edge = 0;        // [m]
 };
 
 KeptShape keep_shape(const Surface&, const Points& x0);
@@ -31,21 +31,20 @@ struct StretchRange {
 StretchRange stretch_of(const KeptShape&, const Points& x, int triangle);
 StretchRange extreme_stretch(const KeptShape&, const Points& x);
 
-// Moves the displacement x - from of each listed vertex toward the mean of its neighbours' by `share`.
+// Blends the displacement x - from of each listed vertex with the mean displacement of its neighbours, by `share`.
 void smooth_displacement(const KeptShape&, const Points& from, std::span<const int> vertices, double share, Points& x);
 
-// One pass over the triangles: those stretched out of the range are brought back to it. reach: how far each vertex may
-// be from x0 [m], zero: it stays.
+// One pass over the triangles that brings those stretched out of the range back to it. Vertices with `reach` 0 stay.
 void limit_stretch(const KeptShape&, std::span<const int> triangles, const std::vector<double>& reach,
                    const StretchRange& range, Points& x);
 
 // Brings each vertex back to within its reach of x0.
 void limit_displacement(const KeptShape&, std::span<const int> vertices, const std::vector<double>& reach, Points& x);
 
-// Takes the vertices that offend part of the way back to `before`, in late rounds all of it, and forgets the offence.
+// Moves vertices with `offends` 1 part of the way back to `before`, in late rounds all of it, and sets `offends` to 0.
 void take_back(std::vector<char>& offends, int round, const Points& before, Points& x);
 
-// Takes vertices back toward `before`, where every triangle was in the range, until every triangle is in it again.
+// Moves vertices back toward `before`, where every triangle was in the range, until every triangle is in it again.
 void hold_back(const KeptShape&, std::span<const int> triangles, const StretchRange& range, const Points& before,
                Points& x);
 

@@ -10,16 +10,16 @@
 
 namespace selvedge {
 
-// Keeps what is apart apart while a cloth is untangled. Obstacles stand still.
+// Keeps pairs apart that are apart, while a cloth is untangled. Obstacles stand still.
 class Repulsion {
  public:
   // Keeps references to all but the span itself.
   Repulsion(const Surface& cloth, std::span<const SheetView> obstacles, const KeptShape& shape);
 
-  // Vertex-face and edge-edge pairs nearer than `horizon` [m] that are to stay `gap` apart: some vertex has reach > 0,
-  // and one of the two primitives has no `tangled` vertex, so that the pair is not on or inside a contour. Pairs of
-  // neighbours, whose distance is the shape's own, keep 0.7 of what they have in the input. wide: both primitives must
-  // be free of tangled vertices.
+  // Vertex-face and edge-edge pairs nearer than `horizon` [m] that must stay `gap` [m] apart. Only pairs with a vertex
+  // of reach > 0 count, and with a primitive that has no `tangled` vertex (of the cloth, if the pair is with an
+  // obstacle), so that the pair is not on or inside a contour. Pairs that an edge joins keep 0.7 of their distance in
+  // the input. wide: neither primitive may have a tangled vertex.
   std::vector<Separation> find(const Points& x, const std::vector<char>& tangled, const std::vector<double>& reach,
                                double gap, double horizon, bool wide);
 

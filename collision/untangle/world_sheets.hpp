@@ -7,8 +7,8 @@
 
 namespace selvedge {
 
-// A contact world as searches for intersections see it: the cloth is sheet 0, obstacle k is sheet k + 1. The views look
-// at the positions beside them: it may be moved but not copied.
+// A contact world as input to searches for intersections: the cloth is sheet 0, obstacle k is sheet k + 1. `views`
+// point into `positions`, so that the struct may be moved but not copied.
 struct WorldSheets {
   std::vector<Points> positions;
   std::vector<SheetView> views;
@@ -17,8 +17,8 @@ struct WorldSheets {
   WorldSheets(WorldSheets&&) = default;
 };
 
-// Visits the triangles of the cloth that meet another one, each once a pair, with the sheet of the other one: those of
-// its segments and touching pairs, with the cloth itself only where world.self.
+// Calls visit(triangle, sheet of the other triangle) for each triangle of the cloth in a crossing or touching pair,
+// once per pair. Pairs of the cloth with itself count only if world.self.
 template <class Visit>
 void for_each_meeting(const ContactWorld& world, const Segments& found, Visit visit) {
   for (const Segment& segment : found.segments)
