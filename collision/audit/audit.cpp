@@ -21,7 +21,7 @@ using Pairs = std::vector<std::pair<int, int>>;
 struct Triangle {
   std::array<Vec3, 3> corners;
   std::array<int, 3> vertices;
-  int number;  // in the mesh; of obstacles, numbered on end
+  int number;  // in its mesh; numbered over all obstacles
 
   bool is_finite() const { return corners[0].allFinite() && corners[1].allFinite() && corners[2].allFinite(); }
 };
@@ -31,13 +31,13 @@ Triangle triangle_of(const Surface& surface, const Points& x, int t, int first_n
   return {{row(x, v[0]), row(x, v[1]), row(x, v[2])}, v, first_number + t};
 }
 
-// What is left after the vertices with undefined coordinates are out.
+// Triangles without undefined coordinates, and their boxes.
 struct Soup {
   std::vector<Triangle> triangles;
   std::vector<ExactBox> boxes;
 };
 
-// If its box comes within the bounds.
+// Adds the triangle if its box, grown by the margin, overlaps the bounds.
 void add_triangle(const Triangle& triangle, double margin, const ExactBox& bounds, Soup& soup) {
   if (!triangle.is_finite()) return;
   const auto& p = triangle.corners;
@@ -64,7 +64,7 @@ Soup soup_of(const Surface& surface, const Points& x, double margin) {
   return soup;
 }
 
-// What of the bodies may meet that of the cloth.
+// The bodies' triangles that may meet the cloth's.
 Soup soup_near(const Soup& cloth, std::span<const AuditBody> bodies, double margin) {
   const ExactBox bounds = hull_of(cloth.boxes);
   Soup soup;
@@ -87,13 +87,14 @@ bool intersect(const Triangle& s, const Triangle& t) {
   return triangles_intersect(a[0], a[1], a[2], b[0], b[1], b[2]);
 }
 
-// Triangles s, a1, a2 and s, b1, b2: nearly always some plane through s has them on its two sides, beyond doubt.
+// True only if a plane through s separates the triangles s, a1, a2 and s, b1, b2, with room for rounding. Nearly all
+// pairs that share one vertex pass.
 bool surely_beside(const Vec3& s, const Vec3& a1, const Vec3& a2, const Vec3& b1, const Vec3& b2) {
   const std::array<Vec3, 2> a{a1 - s, a2 - s}, b{b1 - s, b2 - s};
   return stay_apart_beside({a, a}, {b, b});
 }
 
-// a and b share one vertex.
+// For triangles that share one vertex: do they share more than this point?
 bool cross_at_vertex(const Triangle& a, const Triangle& b) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
@@ -105,7 +106,7 @@ bool cross_at_vertex(const Triangle& a, const Triangle& b) {
   return false;
 }
 
-// Of two triangles of the cloth.
+// Judges two triangles of the cloth.
 void judge_pair(const Triangle& a, const Triangle& b, Audit& found) {
   const int shared = shared_vertices(a.vertices, b.vertices);
   const std::pair numbers = std::minmax({a.number, b.number});
@@ -113,7 +114,7 @@ void judge_pair(const Triangle& a, const Triangle& b, Audit& found) {
   if (shared == 1 && cross_at_vertex(a, b)) found.vertex_pairs.push_back(numbers);
 }
 
-// Of a triangle of the cloth and one of a body.
+// Judges a triangle of the cloth and one of a body.
 void judge_body_pair(const Triangle& a, const Triangle& c, Audit& found) {
   if (intersect(a, c)) found.obstacle_pairs.emplace_back(a.number, c.number);
 }
@@ -132,7 +133,7 @@ int count_nonfinite(const Points& x) {
   return count;
 }
 
-// pairs: those of the cloth's triangles with obstacles'.
+// Cloth vertices inside obstacles. pairs: (cloth triangle, obstacle triangle) that intersect.
 int count_inside(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, const Pairs& pairs) {
   std::vector<char> is_inside(cloth.vertex_count, 0), undefined(cloth.triangles.rows(), 0);
   for (int t = 0; t < cloth.triangles.rows(); ++t)
@@ -178,7 +179,7 @@ double gap_in_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, doub
                    AuditBudget& budget) {
   double least = bound;
   const auto take = [&](const Soup& second, int a, int b) {
-    // A little slack for the rounding of the margins: passing over a pair must never change the result.
+    // A little slack for the rounding of the margins: skipping a pair must never change the result.
     if (squared_box_gap(cloth.boxes[a], second.boxes[b], margin) > least * (1 + 1e-9) + 1e-300) return;
     const Triangle &s = cloth.triangles[a], &t = second.triangles[b];
     least = std::min(least, intersect(s, t) ? 0.0 : squared_gap(s.corners, t.corners));
@@ -199,7 +200,7 @@ Audit joined_and_sorted(const std::vector<Audit>& parts) {
   return all;
 }
 
-// Of listed pairs; all is finite.
+// The audit of listed pairs. All coordinates are finite.
 Audit audit_listed(const Surface& cloth, const Points& x, std::span<const AuditBody> obstacles, const Pairs& self_pairs,
                    const Pairs& body_pairs) {
   constexpr int at_once = 256;
@@ -230,8 +231,8 @@ Pairs triangles_of(const std::vector<AuditMemory::Pair>& pairs) {
   return triangles;
 }
 
-// Looks at what the memory leaves open. Where no triangle has come to an obstacle since the reference, none of its
-// vertices has come into it or out of it.
+// Looks at the pairs that the memory leaves open. If no triangle has come near an obstacle since the reference, no
+// vertex has gone into it or out of it.
 Audit answer(const AuditQuestions& questions, const Surface& cloth, const Points& x,
              std::span<const AuditBody> obstacles, AuditMemory& memory) {
   Audit result =

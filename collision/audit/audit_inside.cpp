@@ -12,8 +12,8 @@ namespace {
 
 constexpr int most_rounds = 24;
 
-// Vertices that triangles beside the body join, by their lowest one. The response's
-// DisjointSets are not for the audit.
+// For each vertex the lowest one that triangles which do not meet the body connect to it. The audit does not use
+// DisjointSets, since the response does.
 std::vector<int> one_sided_groups(const Surface& cloth, const std::vector<char>& meets) {
   std::vector<int> up(cloth.vertex_count);
   std::iota(up.begin(), up.end(), 0);
@@ -42,7 +42,7 @@ ExactBox box_of(std::initializer_list<Vec3> points) {
 
 enum class Passage { beside, through, on_face, unclear };
 
-// Of the segment from p out of the body to q, past a face. Unclear: through an edge or along the face.
+// How the segment from p to q, a point outside of the body, passes a face. Unclear: through an edge or along the face.
 Passage passage(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
   const int from = orient3d(a, b, c, p), to = orient3d(a, b, c, q);
   if (from != 0 && from == to) return Passage::beside;
@@ -101,8 +101,8 @@ std::vector<char> inside_body(const Surface& cloth, const Points& x, const std::
         group[v] == v && cloth.vertex_owner[v] >= 0 && (p.array() > lo.array()).all() && (p.array() < hi.array()).all())
       open.push_back({v, p, p});
   for (int round = 0; !open.empty(); ++round) {
-    // Beyond the body along its shortest side; straight at first, then leaning a little more each time that edges are
-    // met.
+    // Rays leave the body along its shortest side: straight at first, then tilted a little more each time an edge is
+    // hit.
     for (Ray& ray : open) {
       ray = {ray.vertex, ray.from, ray.from};
       ray.to[axis] = hi[axis] + (hi - lo)[axis];
@@ -110,7 +110,7 @@ std::vector<char> inside_body(const Surface& cloth, const Points& x, const std::
       ray.to[(axis + 2) % 3] += 0.0019 * round * (hi - lo)[axis];
     }
     trace(open, faces, body, y);
-    // What stays unclear, far from the origin where leaning is lost in rounding, counts rather than hides.
+    // A ray may stay unclear far from the origin, where rounding hides the tilt. Its vertex counts as inside.
     for (const Ray& ray : open) inside[ray.vertex] = !ray.on_face && (ray.unclear ? round + 1 == most_rounds : ray.odd);
     std::erase_if(open, [&](const Ray& ray) { return ray.on_face || !ray.unclear || round + 1 == most_rounds; });
   }

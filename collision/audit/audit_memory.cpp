@@ -10,13 +10,13 @@ namespace selvedge {
 namespace {
 
 constexpr double most_reach = 0.4, first_reach = 0.2;  // in the cloth's mean edges
-constexpr double many = 16;                            // pairs for each of the cloth's triangles: less reach will do
-constexpr double slow = 0.125;                         // of the reach, since the last audit: then remembering pays
-constexpr double rounding_to_float = 0x1p-22;          // of a coordinate, four times over
+constexpr double many = 16;     // pairs for each of the cloth's triangles: with more, the reach is shortened
+constexpr double slow = 0.125;  // of the reach: remembering pays if motion since the last audit is less
+constexpr double rounding_to_float = 0x1p-22;  // of a coordinate: four times the error
 
 using Corners = std::array<Vec3, 3>;
 
-// Of two sets of points, along the best of the directions tried: no more than their distance.
+// The gap of two sets of points along the best direction tried: a lower bound of their distance.
 struct Gap {
   double best = 0;
 
@@ -54,8 +54,8 @@ double gap_of_triangles(const Corners& a, const Corners& b) {
   return gap.best;
 }
 
-// Triangles s, a and s, b: a plane through s has both others of each on one side, farther than twice what is returned,
-// so that they share no more than s while their vertices move by less.
+// For triangles s, a[0], a[1] and s, b[0], b[1]: if a plane through s separates the others, at more than twice the
+// returned distance, then the triangles share no more than s while vertices move by less than that.
 double gap_beside(const Vec3& s, const std::array<Vec3, 2>& a, const std::array<Vec3, 2>& b) {
   const Vec3 to_a = a[0] + a[1] - 2 * s, to_b = b[0] + b[1] - 2 * s;
   double best = 0;
@@ -92,7 +92,7 @@ double gap_of_edges(const std::array<Vec3, 2>& p, const std::array<Vec3, 2>& q) 
   return gap.best;
 }
 
-// Two triangles on the edge s, t, with the third vertices a and b: of what they have that shares no vertex.
+// For two triangles on the edge s, t with the third vertices a and b: the gap of those parts that share no vertex.
 double gap_at_edge(const Vec3& s, const Vec3& t, const Vec3& a, const Vec3& b) {
   return std::min({gap_of_vertex_and_face(a, {s, t, b}), gap_of_vertex_and_face(b, {s, t, a}),
                    gap_of_edges({s, a}, {t, b}), gap_of_edges({t, a}, {s, b})});
@@ -122,7 +122,7 @@ struct Faces {
 };
 
 AuditMemory::Pair measured(const Faces& cloth, int a, int b) {
-  // Shared vertices to the front of both.
+  // Moves shared vertices to the front of both triangles.
   std::array<int, 3> in_a{0, 1, 2}, in_b{0, 1, 2};
   int shared = 0;
   for (int i = 0; i < 3; ++i)
@@ -148,8 +148,8 @@ double largest(std::span<const Points> all) {
   return size;
 }
 
-// Lists the pairs within reach of the reference, with their gaps, less what rounding may have added to them. False:
-// there are too many to look at.
+// Lists the pairs within reach of the reference, with their gaps minus what rounding may have added. False if there are
+// too many pairs.
 bool measure(AuditMemory& memory, const Surface& cloth, std::span<const MovingBody> bodies, bool self) {
   Faces mine, others;
   const double margin = 0.5 * memory.reach * (1 + 1e-9);
@@ -183,7 +183,7 @@ bool measure(AuditMemory& memory, const Surface& cloth, std::span<const MovingBo
   return true;
 }
 
-// In a crowd a short list is worth more than a large budget.
+// Where there are many pairs, a shorter list is worth more than a large reach.
 void shorten(AuditMemory& memory, double most) {
   while (static_cast<double>(memory.self_pairs.size() + memory.body_pairs.size()) > most) {
     memory.reach /= 2;
@@ -192,7 +192,8 @@ void shorten(AuditMemory& memory, double most) {
   }
 }
 
-// How far each vertex is from the reference at either end; false if one is farther than it may be, or not finite.
+// Sets `moved`: how far each vertex is from the reference, at the farther end. False if one is farther than `most` or
+// not finite.
 bool within_budget(const Points& reference, const MovingBody& body, double most, Eigen::VectorXd& moved) {
   if (reference.rows() != body.x0->rows()) return false;
   moved = (*body.x0 - reference).rowwise().squaredNorm();
@@ -206,7 +207,7 @@ double of_triangle(const Surface& surface, const Eigen::VectorXd& moved, int t) 
   return std::max({moved[v[0]], moved[v[1]], moved[v[2]]});
 }
 
-// False: the reference is too far away.
+// Collects the open pairs. False if the reference is too far away.
 bool ask(const AuditMemory& memory, std::span<const MovingBody> sheets, AuditQuestions& questions) {
   if (memory.reference.size() != sheets.size()) return false;
   std::vector<Eigen::VectorXd> moved(sheets.size());
@@ -226,7 +227,7 @@ bool ask(const AuditMemory& memory, std::span<const MovingBody> sheets, AuditQue
   return true;
 }
 
-// This audit becomes the last one. True if it is of a motion.
+// Records this audit as the last one. True if it is of a motion.
 bool take_note(AuditMemory& memory, std::span<const MovingBody> sheets) {
   memory.moving = std::ranges::any_of(sheets, [](const MovingBody& sheet) { return sheet.x0 != sheet.x1; });
   memory.last.clear();
@@ -234,8 +235,8 @@ bool take_note(AuditMemory& memory, std::span<const MovingBody> sheets) {
   return memory.moving;
 }
 
-// Whether little has moved since the last audit, which this one becomes. A state after a motion, at whose end it is,
-// moves as that did.
+// Whether little has moved since the last audit; then records this one. A state that follows a motion is at the
+// motion's end, so that it keeps the motion's result.
 bool is_slow(AuditMemory& memory, std::span<const MovingBody> sheets, double reach) {
   bool slowly = memory.last.size() == sheets.size();
   Eigen::VectorXd moved;

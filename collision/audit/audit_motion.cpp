@@ -11,7 +11,7 @@
 namespace selvedge {
 namespace {
 
-// Triangles of one side, each with its place among the surfaces; only those whose corners are all finite.
+// Triangles of the cloth or of the bodies, with their numbers; only those with finite corners.
 struct Side {
   struct Face {
     const MovingBody* body;
@@ -21,7 +21,7 @@ struct Side {
     const Surface& surface() const { return *body->surface; }
   };
   std::vector<Face> faces;
-  std::vector<ExactBox> start, end, boxes;  // at both ends, and round both
+  std::vector<ExactBox> start, end, boxes;  // at the start, at the end, and round both
 };
 
 bool finite(const Points& x0, const Points& x1, int v) { return x0.row(v).allFinite() && x1.row(v).allFinite(); }
@@ -45,8 +45,8 @@ ExactBox round_both(const ExactBox& a, const ExactBox& b) {
   return box;
 }
 
-// Is one of the faces above the other along an axis, at both ends and so all the way? What moves along together is told
-// apart so, without rounding, however far it moves.
+// Is one of the faces above the other along an axis, at both ends and so all the way? This separates faces that move
+// along together, without rounding, however far they move.
 bool stay_apart_along_an_axis(const Side& a, int i, const Side& b, int j) {
   const ExactBox &a0 = a.start[i], &a1 = a.end[i], &b0 = b.start[j], &b1 = b.end[j];
   bool apart = false;
@@ -70,7 +70,7 @@ ExactBox grown(ExactBox box, double margin) {
   return box;
 }
 
-// The faces that come within the bounds, with boxes grown by the margin. Returns the number of vertices that are not
+// Adds the faces whose boxes, grown by the margin, overlap the bounds. Returns the number of vertices that are not
 // finite.
 int add(const MovingBody& body, int first_node, int first_number, double margin, const ExactBox& bounds, Side& side) {
   const Surface& s = *body.surface;
@@ -129,11 +129,11 @@ struct FeaturePair {
   }
 };
 
-// What was found in a cell, or in all of them.
+// What was found in one cell, or in all of them.
 struct Found {
   std::vector<PassedPair> passed;
-  std::vector<FeaturePair> open;                              // that few parts did not decide
-  std::vector<std::pair<int, int>> self_at_end, body_at_end;  // that meet at the end
+  std::vector<FeaturePair> open;                              // not decided by few_parts
+  std::vector<std::pair<int, int>> self_at_end, body_at_end;  // within reach at the end
 };
 
 struct Asked {
@@ -160,7 +160,7 @@ struct PairAudit {
     if (proof == Proof::open) found.open.push_back(pair);
   }
 
-  // Of the vertices that the face p owns, with the face f.
+  // Tests the vertices that the face p owns against the face f.
   void vertices(const Side::Face& p, const Side::Face& f) const {
     for (int k = 0; k < 3; ++k) {
       const Node v = corner(p, k);
@@ -184,7 +184,7 @@ struct PairAudit {
 
   // Both ends of the edge that the faces share, then the corners opposite.
   MovingPoints<4> at_common_edge() const {
-    std::array<int, 2> alone{};  // the corner of a that b does not have, and the other way round
+    std::array<int, 2> alone{};  // the corner of each face that the other does not have
     for (int k = 0; k < 3; ++k) {
       if (!same(k, 0) && !same(k, 1) && !same(k, 2)) alone[0] = k;
       if (!same(0, k) && !same(1, k) && !same(2, k)) alone[1] = k;
@@ -212,7 +212,7 @@ struct PairAudit {
                       relative_to<3>(origin, {corner(b, 0), corner(b, 1), corner(b, 2)}));
   }
 
-  // Every vertex and edge is looked at with one of its faces, so that each pair is met once.
+  // Every vertex and edge is tested with the one face that owns it, so that each pair is tested once.
   void operator()() const {
     if (watch.given_up() || triangles_stay_apart()) return;
     vertices(a, b);
@@ -221,7 +221,7 @@ struct PairAudit {
   }
 };
 
-// reach: as of MotionEnd.
+// reach: as in MotionEnd.
 void audit_cell(const Cell& cell, const Side& cloth, const Side& bodies, bool self, const Asked& asked, double reach,
                 AuditBudget& budget, ProofBudget& proofs, Found& found) {
   ProofWatch watch(budget, proofs);
@@ -248,7 +248,7 @@ MotionEnd end_of(const MovingBody& cloth, std::span<const MovingBody> bodies, bo
   return end;
 }
 
-// Of the pairs that the memory leaves open; all are finite.
+// Tests the pairs that the memory leaves open. All coordinates are finite.
 Found found_among(const AuditQuestions& questions, const MovingBody& cloth, std::span<const MovingBody> bodies,
                   const Asked& asked, AuditBudget& budget, ProofBudget& proofs) {
   Found found;
@@ -271,8 +271,8 @@ Found found_among(const AuditQuestions& questions, const MovingBody& cloth, std:
   return found;
 }
 
-// Pairs that few parts of the time did not decide get equal shares of what may be spent on them. What is open then is
-// not apart, if it had all the parts that any pair may have, or else not known.
+// Pairs that few_parts did not decide get equal shares of the budget. A pair that is still open counts as passed if its
+// share was the most that any pair may have, and else as given up.
 void decide(const std::vector<FeaturePair>& open, int max_halvings, AuditBudget& budget, MotionAudit& result) {
   const int share = ProofBudget::share(open.size()), count = static_cast<int>(open.size());
   std::vector<Proof> decided(open.size(), Proof::open);
@@ -336,7 +336,7 @@ MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x
   for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, asked, reach, budget, proofs, parts[r]);
   Found found = joined(parts, &Found::passed, &Found::open, &Found::self_at_end, &Found::body_at_end);
   conclude(found, max_halvings, budget, proofs, result);
-  // A face that was left out may be whole again at the end.
+  // A face that was left out as not finite may be finite at the end; then the list would lack its pairs.
   if (memory && result.nonfinite == 0) memory->end = end_of(moving, bodies, self, reach, std::move(found));
   return result;
 }

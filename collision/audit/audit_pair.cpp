@@ -9,8 +9,8 @@ namespace {
 
 Vec2 without(const Vec3& p, int axis) { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
 
-// An axis along which the plane of the three points can be seen, so that dropping it loses nothing; -1 if the points
-// lie on a line.
+// An axis that is not in the plane of the three points, so that projecting along it loses nothing; -1 if the points are
+// on a line.
 int visible_axis(const Vec3& a, const Vec3& b, const Vec3& c) {
   for (int axis = 0; axis < 3; ++axis)
     if (orient2d(a, b, c, axis) != 0) return axis;
@@ -39,12 +39,12 @@ bool segments_meet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
     const int axis = visible_axis(*u, *v, *w);
     if (axis >= 0) return segments_meet_2d(without(p, axis), without(q, axis), without(a, axis), without(b, axis));
   }
-  // All on one line, along which every coordinate is monotone.
+  // All points are on one line, along which every coordinate is monotone.
   return (p.array().min(q.array()) <= a.array().max(b.array())).all() &&
          (a.array().min(b.array()) <= p.array().max(q.array())).all();
 }
 
-// Segment and triangle in one plane, or a triangle that is none.
+// Do segment and triangle meet, if they are in one plane or the triangle is degenerate?
 bool segment_meets_flat(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
   const int axis = visible_axis(a, b, c);
   if (axis < 0) return segments_meet(p, q, a, b) || segments_meet(p, q, b, c) || segments_meet(p, q, c, a);
@@ -96,8 +96,8 @@ bool rays_overlap(const Vec3& s, const Vec3& a, const Vec3& b) {
   return false;
 }
 
-// Does the segment from s to a share more than s with a true triangle s, b1, b2? If so, then the last point that it
-// shares is a or lies on the side opposite s.
+// Does the segment from s to a share more than s with a proper triangle s, b1, b2? If so, the last point that it shares
+// is a or lies on the side opposite s.
 bool ray_meets_triangle(const Vec3& s, const Vec3& a, const Vec3& b1, const Vec3& b2) {
   return a != s && (segment_meets_triangle(a, a, s, b1, b2) || segments_meet(s, a, b1, b2));
 }
@@ -125,7 +125,7 @@ bool triangles_cross_at_vertex(const Vec3& s, const Vec3& a1, const Vec3& a2, co
     return rays_overlap(s, a1, b1) || rays_overlap(s, a1, b2) || rays_overlap(s, a2, b1) || rays_overlap(s, a2, b2);
   if (flat_a) return ray_meets_triangle(s, a1, b1, b2) || ray_meets_triangle(s, a2, b1, b2);
   if (flat_b) return ray_meets_triangle(s, b1, a1, a2) || ray_meets_triangle(s, b2, a1, a2);
-  // What they share is star-shaped round s, so that its far end lies on the side of one of them opposite s.
+  // Their common part is star-shaped round s, so that its far end lies on a side opposite s, of one of them.
   return segment_meets_triangle(a1, a2, side_a1, side_a2, s, b1, b2) ||
          segment_meets_triangle(b1, b2, side_b1, side_b2, s, a1, a2);
 }

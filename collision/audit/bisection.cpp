@@ -10,7 +10,7 @@ namespace selvedge {
 namespace {
 
 constexpr std::size_t few = 40;
-// Halves that together hold more than this many times the boxes of the whole are not worth it.
+// A cell is not cut if its halves together would hold more than this many times its boxes.
 constexpr double too_many = 1.6;
 
 struct Boxes {
@@ -77,7 +77,7 @@ std::vector<int> count_up(std::size_t count) {
   return all;
 }
 
-// Cuts the cell until it is not worth it any more, or until there are `enough` parts. Parts without a possible pair
+// Cuts the cell until cutting does not pay any more, or until there are `enough` parts. Parts without a possible pair
 // are dropped.
 std::vector<Cell> cut(const Boxes& boxes, Cell whole, std::size_t enough) {
   std::vector<Cell> open{std::move(whole)}, next, finished;
@@ -146,7 +146,7 @@ int sweep_axis(const Cell& cell, std::span<const ExactBox> first) {
 
 std::vector<Cell> bisect(std::span<const ExactBox> first, std::span<const ExactBox> second, bool within_first) {
   const Boxes boxes{first, second, within_first};
-  // First a few parts, then each of them on a thread of its own: the same cells whatever the number of threads.
+  // First cuts a few parts, then cuts these in parallel: the cells do not depend on the number of threads.
   std::vector<Cell> parts = cut(boxes, {everywhere, count_up(first.size()), count_up(second.size())}, 32);
   const int count = static_cast<int>(parts.size());
   std::vector<std::vector<Cell>> cut_up(parts.size());

@@ -7,9 +7,9 @@
 namespace selvedge {
 namespace {
 
-// Coordinates are differences, wrong by u = 2^-53 of themselves, and m . p rounds five times: less than 7 u max |m_k|
-// reach for a point, with `reach` the largest sum of coordinates, and 14 u for both sides. This is 45 u, which leaves
-// room for what halving the time adds. Less than 1e-300 underflows.
+// A bound of the rounding error of m . p - m . q. Coordinates are differences, wrong by u = 2^-53 of themselves, and m
+// . p rounds five times: less than 7 u max |m_k| reach for a point, with `reach` the largest sum of coordinates, and 14
+// u for both sides. This is 45 u, with room for the error of halving the time. Underflow adds less than 1e-300.
 double slack_of(const Vec3& m, double reach) { return 5e-15 * m.cwiseAbs().maxCoeff() * reach + 1e-300; }
 
 template <std::size_t Count>
@@ -40,7 +40,7 @@ Range range_of(const Vec3& m, const std::array<Vec3, Count>& points, std::size_t
   return range;
 }
 
-// Which of the two lies lower by more than the slack; 0 if neither is known to.
+// Which of the two is lower by more than the slack; 0 if neither is known to be.
 int order(const Range& a, const Range& b, double slack) {
   return b.lo - a.hi > slack ? 1 : a.lo - b.hi > slack ? -1 : 0;
 }
@@ -51,7 +51,7 @@ bool separates(const Vec3& m, const MovingPoints<3>& a, const MovingPoints<3>& b
   return before != 0 && before == order(range_of(m, a.end, 0, 3), range_of(m, b.end, 0, 3), slack);
 }
 
-// Points [0, split) and [split, 4).
+// Does the direction m separate the points [0, split) from [split, 4) all the time?
 bool separates(const Vec3& m, const MovingPoints<4>& p, int split, double reach) {
   const double slack = slack_of(m, reach);
   const int before = order(range_of(m, p.start, 0, split), range_of(m, p.start, split, 4), slack);
@@ -63,8 +63,8 @@ Vec3 across(const Vec3& edge, const Vec3& to) {
   return length2 > 0 ? Vec3(to - edge * (edge.dot(to) / length2)) : to;
 }
 
-// A direction from closest point to closest point is one of those tried: normal to the face, from an edge of it or from
-// a corner. They are taken where the pair is in the middle of the interval.
+// Tries the normal of the face, and the directions from its edges and corners to the vertex, at the middle of the
+// interval. The direction between the closest points is one of these.
 bool some_direction_separates_face(const MovingPoints<4>& p, double reach) {
   const std::array<Vec3, 4> x{p.middle(0), p.middle(1), p.middle(2), p.middle(3)};
   if (separates((x[2] - x[1]).cross(x[3] - x[1]), p, 1, reach)) return true;
@@ -75,7 +75,7 @@ bool some_direction_separates_face(const MovingPoints<4>& p, double reach) {
   return false;
 }
 
-// Normal to both edges, from an end to the other edge, or from end to end.
+// Tries the normal of both edges, and the directions from an end to the other edge or its ends.
 bool some_direction_separates_edges(const MovingPoints<4>& p, double reach) {
   const std::array<Vec3, 4> x{p.middle(0), p.middle(1), p.middle(2), p.middle(3)};
   const Vec3 a = x[1] - x[0], b = x[3] - x[2];
@@ -99,7 +99,7 @@ std::array<MovingPoints<4>, 2> halves(const MovingPoints<4>& p) {
   return parts;
 }
 
-// Its first part after so many halvings.
+// The first part of the motion after so many halvings of the time.
 MovingPoints<4> beginning_of(const MovingPoints<4>& whole, int halvings) {
   MovingPoints<4> first = whole;
   for (int k = 0; k < halvings; ++k)
@@ -110,7 +110,7 @@ MovingPoints<4> beginning_of(const MovingPoints<4>& whole, int halvings) {
 // Depth first and early parts first. A pair that touches at the start is found at once.
 template <class Separated>
 Proof proof_for(const MovingPoints<4>& whole, int max_halvings, int most, Separated&& separated) {
-  // Halves are made of halves: every halving rounds the coordinates once more, 2 u for both sides.
+  // Every halving rounds the coordinates once more, 2 u for both sides.
   const double reach = reach_of(whole) * (1 + 0.05 * max_halvings);
   if (separated(whole, reach)) return Proof::apart;
   if (!separated(beginning_of(whole, max_halvings), reach)) return Proof::meets;
@@ -161,8 +161,8 @@ bool stay_apart_beside(const MovingPoints<2>& a, const MovingPoints<2>& b) {
   return is_edge_on(toward_b * length_a - toward_a * length_b, a, b, reach);
 }
 
-// Along the edge's perpendicular a lies before s and t, b behind them; leant along the edge, s and t are told apart as
-// well, one way for the edges s a and t b, the other way for t a and s b.
+// Along a perpendicular of the edge, a is in front of s and t, and b behind them. Tilted along the edge the direction
+// separates s and t too: one way for the edges s a and t b, the other way for t a and s b.
 bool stay_apart_at_edge(const MovingPoints<4>& p) {
   const double reach = reach_of(p);
   const Vec3 edge = p.middle(1) - p.middle(0), from = p.middle(2), to = p.middle(3);

@@ -11,11 +11,11 @@
 namespace selvedge {
 namespace {
 
-// Triangles over the cells of a grid in the plane across the rays.
+// Triangles by the cells of a grid in the plane perpendicular to the rays.
 struct Grid {
   int axis = 0;  // of the rays
   Vec3 lo, hi;
-  int cells = 1;  // a side
+  int cells = 1;  // along each side
   Vec2 per_length;
   std::vector<int> begin, triangles;  // of closed shells; those over cell c are triangles[begin[c] .. begin[c + 1])
 
@@ -38,7 +38,7 @@ void for_each_cell(const Grid& grid, const Surface& surface, const Points& x, in
     for (int j = first[1]; j <= last[1]; ++j) visit(i * grid.cells + j);
 }
 
-// Of the triangles of closed shells; there must be some.
+// A grid of the triangles of closed shells. At least one shell must be closed.
 Grid make_grid(const Surface& surface, const Points& x, const std::vector<char>& closed) {
   Grid grid;
   grid.lo.setConstant(std::numeric_limits<double>::infinity());
@@ -75,8 +75,8 @@ int moved_orientation(const Vec2& a, const Vec2& b, const Vec2& p) {
   return 0;
 }
 
-// The closed triangle, degenerate or not: p is in its plane and, seen along each axis, beyond no edge. Where the view
-// shows a line or a point alone the box decides.
+// Is p on the closed triangle, which may be degenerate? It is if it is in the plane and, seen along each axis, beyond
+// no edge. In a view that shows the triangle as a line or a point, its box decides.
 bool on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   if ((p.array() < a.array().min(b.array()).min(c.array())).any() ||
       (p.array() > a.array().max(b.array()).max(c.array())).any() || orient3d(a, b, c, p) != 0)
@@ -102,7 +102,7 @@ int winding_number(const Grid& grid, const Surface& surface, const Points& x, co
     const Vec2 a2 = grid.flat(a), b2 = grid.flat(b), c2 = grid.flat(c);
     const int seen = moved_orientation(a2, b2, flat);
     if (seen == 0 || moved_orientation(b2, c2, flat) != seen || moved_orientation(c2, a2, flat) != seen) continue;
-    if (orient3d(a, b, c, p) != seen) winding += seen;  // p lies before the triangle, seen along the ray
+    if (orient3d(a, b, c, p) != seen) winding += seen;  // p is in front of the triangle, seen along the ray
   }
   return winding;
 }

@@ -7,7 +7,7 @@
 namespace selvedge {
 namespace {
 
-// Differences of nodes shrunk by a power of two, and the largest coordinate.
+// Takes differences of nodes, scaled by the power of two `shrink`. Returns the largest coordinate.
 double take_differences(PairKind kind, const std::array<Vec3, 4>& x0, const std::array<Vec3, 4>& x1, double shrink,
                         MovingPolygon& p) {
   double largest = 0;

@@ -10,13 +10,13 @@ namespace {
 
 // Relative error of the floating determinants (Shewchuk 1997, section 4.4, stage A), rounded up.
 constexpr double error_2d = 3.4e-16, error_3d = 7.8e-16;
-// More than all underflow in them, relative to the last factors.
+// A bound of all underflow in these determinants, relative to the last factors.
 constexpr double underflow = 1e-300;
 
 int sign(double value) { return (value > 0) - (value < 0); }
 
-// Difference from point `from` of coordinate `axis` of the others, as whole numbers on their common power of two. The
-// power may differ from axis to axis: scaling an axis keeps the sign of a determinant.
+// Coordinate `axis` of the other points minus that of point `from`, as integers on a common power of two. The power may
+// differ from axis to axis: scaling an axis keeps the sign of a determinant.
 template <typename Point, int Count>
 void exact_differences(const std::array<const Point*, Count>& points, int axis,
                        std::array<ExactInteger, Count - 1>& differences) {
@@ -71,7 +71,7 @@ int orient2d(const Vec2& a, const Vec2& b, const Vec2& c) {
   const double left = ab.x() * ac.y(), right = ac.x() * ab.y();
   const double det = left - right;
   if (std::abs(det) > error_2d * (std::abs(left) + std::abs(right)) + underflow) return sign(det);
-  // A difference is zero only if its terms are equal: the common case of points on a line of the axes.
+  // A difference is zero only if its terms are equal. This decides the common case of points on a line along an axis.
   if ((ab.x() == 0 || ac.y() == 0) && (ac.x() == 0 || ab.y() == 0)) return 0;
   return exact_orient2d(a, b, c);
 }

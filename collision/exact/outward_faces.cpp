@@ -15,12 +15,12 @@
 namespace selvedge {
 namespace {
 
-// What is measured of a shell, most of its triangles facing as given.
+// Measures of a shell, turned so that most of its area faces as given.
 struct Measured {
   std::vector<int> triangles;
   std::vector<int> vertices;
   Vec3 lo, hi;        // its box in the first frame
-  double volume = 0;  // [m3], 0: it has none, or no inside
+  double volume = 0;  // [m3]; 0 if it has no volume or no inside
 };
 
 Vec3 twice_area(const Triangles& triangles, int t, const Points& x) {
@@ -34,7 +34,7 @@ double volume_to(const Vec3& origin, const Vec3& a, const Vec3& b, const Vec3& c
   return (a - origin).dot((b - origin).cross(c - origin)) / 6;
 }
 
-// Of each triangle the first one that lies where it does and faces as it does; -1 where it has fewer than three places.
+// Of each triangle the first one at the same places that faces the same way; -1 if it has fewer than three places.
 std::vector<int> first_alike(const Triangles& triangles, const std::vector<int>& places) {
   std::map<std::array<int, 3>, int> seen;
   std::vector<int> first;
@@ -50,10 +50,10 @@ std::vector<int> first_alike(const Triangles& triangles, const std::vector<int>&
   return first;
 }
 
-// The surface without triangles that come again, welded, with its shells; `faced` are its triangles, each shell's
-// turned as most of them are.
+// The welded surface without repeated triangles, and its shells. `faced`: its triangles, in each shell turned as most
+// of them are.
 struct Shells {
-  std::vector<int> kept;  // of the triangles as given
+  std::vector<int> kept;  // numbers of the given triangles
   Surface surface;
   TurnedAlike alike;
   Triangles faced;
@@ -71,7 +71,7 @@ void count_edges(Shells& all) {
   }
 }
 
-// Most of a shell's area faces as it did.
+// Turns each shell so that most of its area faces as it did.
 void face_as_most(const Points& x, Shells& all) {
   const auto count = static_cast<int>(all.alike.turn.size());
   std::vector<double> vote(all.shells.size(), 0);
@@ -118,7 +118,7 @@ void measure(const Points& x, const Shells& all, Measured& part, Shell& shell) {
   for (const int t : part.triangles)
     volume += volume_to(origin, row(x, all.faced(t, 0)), row(x, all.faced(t, 1)), row(x, all.faced(t, 2)));
   if (shell.open_edges > 0) volume += close_holes(all, part, x, origin, shell);
-  constexpr double rounding = 1e-12;  // of the box's volume, as if it were a cube
+  constexpr double rounding = 1e-12;  // relative to the volume of a cube round the shell
   const bool has_inside = shell.closed() || shell.nearly_closed();
   if (has_inside && std::abs(volume) > rounding * std::pow((part.hi - part.lo).norm(), 3)) part.volume = volume;
 }
@@ -169,7 +169,7 @@ bool lies_within(const Shells& all, std::size_t a, std::size_t b, std::span<cons
   });
 }
 
-// +1 where a shell is to face outwards, -1 inwards. Shells with a volume only; the others 0.
+// Of each shell: +1 if it is to face outwards, -1 inwards, 0 if it has no volume.
 std::vector<int> wanted_sides(const Shells& all, std::span<const Points> frames) {
   std::vector<int> wanted(all.shells.size(), 0);
   std::vector<std::size_t> order(all.shells.size());
@@ -181,7 +181,7 @@ std::vector<int> wanted_sides(const Shells& all, std::span<const Points> frames)
     const std::size_t shell = order[i];
     wanted[shell] = 1;
     if (all_alike || !all.shells[shell].closed()) continue;
-    for (std::size_t j = i; j-- > 0;) {  // the smallest that is round it
+    for (std::size_t j = i; j-- > 0;) {  // finds the smallest shell round it
       const std::size_t round = order[j];
       if (!all.shells[round].closed() || !lies_within(all, shell, round, frames)) continue;
       const bool alike = (all.measured[shell].volume > 0) == (all.measured[round].volume > 0);

@@ -11,10 +11,11 @@ namespace {
 
 using Rows = std::array<const Vec3*, 4>;
 
-// Some entries of the matrix with rows (point, 1) whose infinitesimals are multiplied: no two in a row or column.
+// A product of infinitesimals in the expansion of the determinant with rows (point, 1): chosen entries of the matrix,
+// no two in a row or column.
 struct Term {
   std::array<int, 4> column{-1, -1, -1, -1};  // of the entry chosen in each row, -1: none
-  int sign = 1;                               // of the minor that is left, in the determinant
+  int sign = 1;                               // sign of the remaining minor in the determinant
 };
 
 int parity_sign(const std::array<int, 4>& permutation) {
@@ -25,7 +26,8 @@ int parity_sign(const std::array<int, 4>& permutation) {
   return sign;
 }
 
-// The sign of a minor in Laplace's expansion is that of the permutation that keeps the rows and columns left in order.
+// The sign of a minor in Laplace's expansion: that of the permutation that keeps the remaining rows and columns in
+// order.
 int minor_sign(const std::array<int, 4>& column) {
   std::array<int, 4> permutation = column;
   std::array<bool, 4> used{};
@@ -40,8 +42,8 @@ int minor_sign(const std::array<int, 4>& column) {
   return parity_sign(permutation);
 }
 
-// In the order of falling size: bit 3 r + 2 - k stands for coordinate k of row r, and a product is the smaller the
-// larger its bits are as one number.
+// All products, largest first. Bit 3 r + 2 - k stands for coordinate k of row r; read as a number, larger bits mean a
+// smaller product.
 std::vector<Term> make_terms() {
   std::vector<Term> terms;
   for (int bits = 1; bits < 1 << 12; ++bits) {
@@ -64,7 +66,7 @@ std::vector<Term> make_terms() {
   return terms;
 }
 
-// Sign of the minor of the rows and columns that the term leaves, the last column being ones.
+// Sign of the minor of the rows and columns that the term does not use. The last column is ones.
 int minor(const Rows& rows, const Term& term) {
   std::array<const Vec3*, 3> left{};
   int count = 0;

@@ -21,8 +21,8 @@ Sides sides(const TriangleCorners& plane, const TriangleCorners& of) {
 bool on_one_side(const Sides& s) { return s[0] != 0 && s[0] == s[1] && s[0] == s[2]; }
 bool in_plane(const Sides& s) { return s[0] == 0 && s[1] == 0 && s[2] == 0; }
 
-// A triangle that reaches the plane of the other from one side: the apex strictly beyond the other two corners, which
-// follow it in the triangle's sense of rotation. `above`: beyond on the positive side.
+// A triangle that crosses the other's plane. The apex is alone on its side; `next` and `last` follow it in the
+// triangle's order of corners. `above`: the apex is on the positive side.
 struct Wedge {
   const Vec3 *apex, *next, *last;
   bool above;
@@ -37,16 +37,18 @@ Wedge wedge(const TriangleCorners& t, const Sides& side) {
   }
 }
 
-// Both cut the line of the two planes in an interval between the edges from the apex. With each apex above the other's
-// plane and the line directed along the cross product of the normals, the first triangle's interval runs from its edge
-// to `last` to that to `next`, the second's the other way round: each is to begin before the other ends.
+// Each triangle cuts the line of the two planes in an interval between its edges from the apex. Let each apex be above
+// the other's plane, and the line directed along the cross product of the normals. Then the first triangle's interval
+// begins at its edge to `last` and ends at its edge to `next`, and the second's the other way round. They overlap if
+// each begins before the other ends.
 bool intervals_overlap(Wedge a, Wedge b) {
   if (!a.above) std::swap(b.next, b.last);  // turns b's plane over
   if (!b.above) std::swap(a.next, a.last);
   return orient3d(*a.apex, *a.last, *b.apex, *b.last) >= 0 && orient3d(*a.apex, *a.next, *b.apex, *b.next) <= 0;
 }
 
-// A degenerate triangle across the plane of a true one: its line goes through the face, seen along it, or not.
+// For a degenerate triangle that crosses the plane of a proper one: does its line go through the face, seen along the
+// line?
 bool segment_meets(const TriangleCorners& segment, const Sides& side, const TriangleCorners& face) {
   const auto [low, high] = std::minmax_element(side.begin(), side.end());
   const Vec3 &p = segment[low - side.begin()], &q = segment[high - side.begin()];
@@ -57,7 +59,7 @@ bool segment_meets(const TriangleCorners& segment, const Sides& side, const Tria
 
 int area_sign(const TriangleCorners& t, int axis) { return orient2d(t[0], t[1], t[2], axis); }
 
-// Seen along the axis: is b strictly beyond an edge of a?
+// Seen along the axis: is all of b strictly beyond an edge of a?
 bool edge_parts(const TriangleCorners& a, int area_a, const TriangleCorners& b, int axis) {
   for (int k = 0; k < 3; ++k) {
     const Vec3 &p = a[k], &q = a[(k + 1) % 3];
@@ -84,9 +86,10 @@ bool edges_are_skew(const TriangleCorners& a, const TriangleCorners& b) {
   return false;
 }
 
-// Triangles in one plane, or two degenerate ones. Convex sets in a plane that are apart lie on both sides of an edge's
-// line or, all on one line, in separate boxes. An axis along which one of the triangles has an area shows their plane.
-// Of two segments one view of the three shows all there is to see, and those that meet do so in each.
+// For triangles in one plane, or two degenerate ones. Convex polygons in a plane that are apart are on different sides
+// of the line of some edge or, if all is on one line, in separate boxes. An axis along which one of the triangles has
+// an area shows their plane. Two segments that are apart are apart in one of the three views; two that meet do so in
+// each.
 bool flat_meet(const TriangleCorners& a, const TriangleCorners& b) {
   if (!boxes_meet(a, b)) return false;
   for (int axis = 0; axis < 3; ++axis) {
@@ -106,7 +109,7 @@ bool triangles_meet(const TriangleCorners& a, const TriangleCorners& b) {
   if (on_one_side(side_a)) return false;
   const bool flat_a = in_plane(side_a), flat_b = in_plane(side_b);
   if (flat_a && flat_b) return flat_meet(a, b);
-  // A plane that cuts the other triangle without being cut by it is no plane: that one is degenerate.
+  // If a's plane cuts b but b's does not cut a, then b is degenerate, or the other way round.
   if (flat_a) return segment_meets(b, side_b, a);
   if (flat_b) return segment_meets(a, side_a, b);
   return intervals_overlap(wedge(a, side_a), wedge(b, side_b));

@@ -7,8 +7,8 @@
 namespace selvedge {
 namespace {
 
-// A triangle or a pair of edges is flat where the squared sine of its angle is below this: from here on the cross
-// product has lost so many digits that the closest points of the boundary are asked as well.
+// A triangle or a pair of edges counts as flat if the squared sine of its angle is below this. The cross product then
+// has lost so many digits that the closest points of the boundary are tried as well.
 constexpr double flat = 1e-10;
 
 struct OnSegment {

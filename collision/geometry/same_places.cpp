@@ -10,9 +10,9 @@
 namespace selvedge {
 namespace {
 
-constexpr std::size_t many = 1000;  // vertices at one place: too many for some mesh's seam
+constexpr std::size_t many = 1000;  // more vertices at one place than the seams of a mesh have
 
-// How far apart vertices at one place may lie [m].
+// The largest distance of vertices at one place [m].
 double same_place(const Points& x) { return 1e-6 * (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm(); }
 
 }  // namespace
@@ -23,7 +23,7 @@ std::vector<int> same_places(const Points& x) {
   if (n == 0) return {};
   const Eigen::RowVector3d low = x.colwise().minCoeff();
   const double near = same_place(x);
-  // Sorted by cubes of that edge, whose neighbours are looked up. Their numbers stay exact in doubles.
+  // Vertices sorted by cubes of this edge; neighbours are found by binary search. Cube numbers stay exact in doubles.
   using Cube = std::array<double, 3>;
   const auto cube_of = [&](int v) {
     Cube cube{};
@@ -37,7 +37,7 @@ std::vector<int> same_places(const Points& x) {
     const Cube own = cube_of(v);
     for (int dx = -1; dx <= 1; ++dx)
       for (int dy = -1; dy <= 1; ++dy) {
-        // A column of three cubes lies side by side.
+        // A column of three cubes is contiguous.
         const Cube first{own[0] + dx, own[1] + dy, own[2] - 1};
         auto entry = std::lower_bound(sorted.begin(), sorted.end(), std::pair(first, -1));
         for (; entry != sorted.end() && entry->first[0] == first[0] && entry->first[1] == first[1] &&
@@ -57,7 +57,7 @@ void part_places(const std::function<bool(int, int)>& same, std::vector<int>& pl
   std::vector<std::vector<int>> members(places.size());
   for (std::size_t v = 0; v < places.size(); ++v) members[places[v]].push_back(static_cast<int>(v));
   for (const std::vector<int>& group : members) {
-    std::vector<int> lowest;  // of each place that the group's comes apart into
+    std::vector<int> lowest;  // of each place into which the group is split
     for (const int v : group) {
       const auto found =
           group.size() > many ? lowest.end() : std::ranges::find_if(lowest, [&](int w) { return same(v, w); });

@@ -5,7 +5,7 @@
 namespace selvedge {
 namespace {
 
-// As the number of threads is a thread's own (parallel.hpp), so is what ends its loops.
+// Each thread has a flag of its own, as it has a number of threads of its own (parallel.hpp).
 thread_local const StopFlag* asked = nullptr;
 
 }  // namespace

@@ -101,11 +101,11 @@ std::vector<std::vector<int>> boundary_loops(const Surface& s) {
       if (s.edge_triangles[s.triangle_edges(t, k)][1] < 0)
         out[s.triangles(t, k)].push_back(s.triangles(t, (k + 1) % 3));
   std::vector<std::vector<int>> loops;
-  std::vector<int> place(s.vertex_count, -1);  // in the walk
+  std::vector<int> place(s.vertex_count, -1);  // in the walk, -1: not in it
   for (int v = 0; v < s.vertex_count; ++v) {
     std::vector<int> walk;
     for (int w = v;;) {
-      if (place[w] >= 0) {  // closes a loop, which a vertex of two loops does before the walk is back at its start
+      if (place[w] >= 0) {  // closes a loop; at a vertex of two loops this happens before the walk is back at its start
         const auto first = walk.begin() + place[w];
         loops.emplace_back(first, walk.end());
         for (int left : loops.back()) place[left] = -1;

@@ -8,7 +8,7 @@ int corner_at_edge(const Surface& surface, int triangle, int edge) {
   return edges(triangle, 0) == edge ? 0 : edges(triangle, 1) == edge ? 1 : 2;
 }
 
-// Do both triangles of an edge run along it from the same end?
+// Do both triangles of an edge run along it in the same direction?
 bool same_direction(const Surface& surface, int edge, int a, int b) {
   const int i = corner_at_edge(surface, a, edge), j = corner_at_edge(surface, b, edge);
   return surface.triangles(a, i) == surface.triangles(b, j);

@@ -15,7 +15,7 @@ Corners corners_of(const Surface& surface, int t) {
   return {surface.triangles(t, 0), surface.triangles(t, 1), surface.triangles(t, 2)};
 }
 
-// The faces to keep, ascending.
+// The faces with three different places, without repeats, ascending.
 std::vector<int> kept_faces(const Surface& surface, const std::vector<int>& places) {
   std::vector<std::pair<Corners, int>> faces;
   for (int t = 0; t < surface.triangles.rows(); ++t) {
@@ -52,14 +52,14 @@ std::vector<PlacedEdge> placed_edges(const Surface& surface, const std::vector<i
   return edges;
 }
 
-// Faces of each edge.
+// The number of faces of each edge.
 std::vector<int> face_counts(const Surface& surface) {
   std::vector<int> count(static_cast<std::size_t>(surface.edges.rows()), 0);
   for (const int edge : surface.triangle_edges.reshaped()) ++count[edge];
   return count;
 }
 
-// The kept faces between joined vertices.
+// The surface of the kept faces, with vertices joined.
 WeldedSurface joined_at(const Surface& surface, const std::vector<int>& kept, DisjointSets& sets) {
   WeldedSurface result;
   for (int v = 0; v < surface.vertex_count; ++v) result.joined.push_back(sets.root(v));
@@ -71,7 +71,7 @@ WeldedSurface joined_at(const Surface& surface, const std::vector<int>& kept, Di
   return result;
 }
 
-// Bars the places at the ends of edges that have got more than two faces. True where there are such.
+// Bars places at edges that joining gave more than two faces. True if it barred any.
 bool bar_crowded(const Surface& before, const std::vector<int>& kept, const Surface& after,
                  const std::vector<int>& places, std::vector<char>& barred) {
   if (after.nonmanifold_edges == 0) return false;

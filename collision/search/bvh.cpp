@@ -19,7 +19,7 @@ struct Centre {
   int item;
 };
 
-// Twice the centre; 0 where it is undefined (empty and unbounded boxes), for NaN would break the order of the sort.
+// Twice the centre; 0 where it is undefined (empty and unbounded boxes), since NaN would break the sort.
 Centre centre_of(const Box& box, int item) {
   Centre centre{{}, item};
   for (int k = 0; k < 3; ++k) {
@@ -42,8 +42,8 @@ int longest_axis(std::span<const Centre> centres) {
   return axis;
 }
 
-// Moves the half with the smaller centres to the front, as many as fill leaves; ties go by item, so that the tree is
-// unique.
+// Moves the half with the smaller centres to the front; its size is a multiple of the leaf's. Ties are ordered by item,
+// so that the tree is unique.
 std::size_t split_at_median(std::span<Centre> centres) {
   constexpr std::size_t full = Bvh::leaf_size;
   const int axis = longest_axis(centres);
@@ -57,7 +57,7 @@ std::size_t split_at_median(std::span<Centre> centres) {
 
 int leaves_for(std::size_t items) { return static_cast<int>((items + Bvh::leaf_size - 1) / Bvh::leaf_size); }
 
-// Items to share out below a node, whose descendants take the places from `place` on.
+// Items to distribute below a node. The node's descendants get the node numbers from `place` on.
 struct Task {
   std::span<Centre> centres;
   int node, place;

@@ -16,7 +16,7 @@ void set_end_boxes(const Bvh::Leaf& leaf, std::span<const Box> start, std::span<
 
 void set_end_boxes(const Bvh& tree, const EndLeaves& leaves, std::vector<EndBoxes>& nodes) {
   nodes.resize(tree.nodes.size());
-  // Children lie behind their parents.
+  // Children come after their parents.
   for (int n = static_cast<int>(tree.nodes.size()) - 1; n >= 0; --n) {
     const int child = tree.nodes[n].child;
     nodes[n] = child < 0 ? leaves.bounds[~child]

@@ -35,27 +35,27 @@ Range range_along(const Vec3& m, const Corners& c) {
   return {std::min(std::min(p, q), r), std::max(std::max(p, q), r)};
 }
 
-// A bound of what rounding does to a difference of two products m . p. Points are relative to one of them, each
-// coordinate wrong by at most u = 2^-53 of itself, and at most `reach` in the sum of their coordinates. With the
-// rounding of three products and two sums m . p is wrong by less than 5 u max |m_k| reach, on both sides together by 10
-// u; 2e-15 is 18 u. What underflows is less than 1e-300.
+// A bound of the rounding error of a difference of two products m . p. Points are relative to one of them; each
+// coordinate is wrong by at most u = 2^-53 of itself, and coordinates sum to at most `reach`. With the rounding of
+// three products and two sums m . p is wrong by less than 5 u max |m_k| reach, both sides together by 10 u; 2e-15 is 18
+// u. Underflow adds less than 1e-300.
 double slack_along(const Vec3& m, double reach) { return 2e-15 * m.cwiseAbs().maxCoeff() * reach + 1e-300; }
 
-// Does a plane across the direction m lie between them?
+// Is there a plane perpendicular to m between the two triangles?
 bool apart_along(const Vec3& m, const Corners& a, const Corners& b, double reach) {
   const Range of_a = range_along(m, a), of_b = range_along(m, b);
   return std::max(of_b.low - of_a.high, of_a.low - of_b.high) > slack_along(m, reach);
 }
 
-// Room for the rounding of a height over a face's plane. With R for `reach`, the computed
-// normal is wrong by less than 3 u 4 R^2 in each coordinate, along an edge (2 R) of the face by 24 u R^3; that the
-// edges are wrong by 4 u R in the sum of their coordinates adds 16 u R^3. So far the face's other corners may be off
-// the plane; 1e-14 is 90 u.
+// A bound of the rounding error of a height over a face's plane. With R for `reach`, the computed normal is wrong by
+// less than 3 u 4 R^2 in each coordinate, which along an edge (2 R) of the face gives 24 u R^3; the edges' own error of
+// 4 u R in the sum of their coordinates adds 16 u R^3. The face's other corners may be off the plane by this much;
+// 1e-14 is 90 u.
 double slack_by_plane(const Vec3& normal, double reach) {
   return slack_along(normal, reach) + 1e-14 * reach * reach * reach;
 }
 
-// Does the face's plane, through its corner `on`, have the other triangle on one side?
+// Is the other triangle on one side of the face's plane through its corner `on`?
 bool apart_by_plane(const Vec3& normal, const Vec3& on, const Corners& other, double reach) {
   const Range beyond = range_along(normal, other);
   const double height = normal.dot(on), slack = slack_by_plane(normal, reach);

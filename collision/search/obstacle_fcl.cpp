@@ -8,8 +8,8 @@
 
 namespace selvedge {
 
-// Axis-aligned boxes: on folded cloth they are faster than FCL's oriented ones, which after a refit were also seen to
-// lose a few pairs in ten thousand.
+// Uses axis-aligned boxes. On folded cloth they are faster than FCL's oriented ones, and after a refit these missed a
+// few pairs in ten thousand.
 struct ObstacleModel::Impl {
   fcl::BVHModel<fcl::AABBd> mesh;
 };

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int least_leaves = 8;
 
-// Leaves below each node.
+// The number of leaves below each node.
 std::vector<int> leaf_counts(const Bvh& tree) {
   std::vector<int> count(tree.nodes.size(), 1);
   for (int n = static_cast<int>(tree.nodes.size()) - 1; n >= 0; --n)
@@ -30,7 +30,7 @@ std::vector<char> irregular_edges(const Surface& s) {
   return bad;
 }
 
-// Looks at one node after another; marks of the node before are told apart by its number.
+// Looks at one node after another. Marks hold the node's number, so that they need not be cleared.
 struct PartFinder {
   const Surface& s;
   const Bvh& tree;
@@ -95,7 +95,7 @@ struct PartFinder {
   }
 };
 
-// Segments without a common end.
+// True only if the segments pq and ab, which share no end, are apart.
 bool surely_apart(const Vec2& p, const Vec2& q, const Vec2& a, const Vec2& b, double slack) {
   const auto beside = [slack](const Vec2& from, const Vec2& to, const Vec2& c, const Vec2& d) {
     const double at_c = cross(to - from, c - from), at_d = cross(to - from, d - from);
@@ -136,7 +136,7 @@ bool is_quiet(const QuietParts& parts, const QuietParts::Part& part, const Point
   Vec3::Index least;
   axis.cwiseAbs().minCoeff(&least);
   const Vec3 u = axis.cross(Vec3::Unit(least)).normalized(), w = axis.cross(u).normalized(), view = u.cross(w);
-  // What a triangle's projection turns by is its normal times view; both are wrong by some 1e-15 of the edges' squares.
+  // A triangle keeps its orientation if normal . view > 0; both are wrong by some 1e-15 of the edges' squares.
   const auto begin = parts.normals.begin() + part.first_leaf * Bvh::leaf_size;
   const auto end = std::min(begin + part.leaves * Bvh::leaf_size, parts.normals.end());
   if (!std::all_of(begin, end, [&](const Vec3& n) { return n.dot(view) > 1e-10 * longest; })) return false;
@@ -153,7 +153,7 @@ bool is_quiet(const QuietParts& parts, const QuietParts::Part& part, const Point
   return surely_simple(polygon, 1e-15 * reach);
 }
 
-// Below a node: the largest parts first.
+// Marks the largest quiet parts below a node.
 void mark_below(const Points& x, const Bvh& tree, double longest, int node, QuietParts& parts) {
   std::vector<int> stack{node};
   while (!stack.empty()) {
@@ -248,7 +248,7 @@ bool surely_simple(const std::vector<Vec2>& polygon, double margin) {
       const Vec2 &a = at(segments[j].index), &b = at(segments[j].index + 1);
       if (std::max(a.y(), b.y()) < y_lo || std::min(a.y(), b.y()) > y_hi) continue;
       const int apart = std::abs(segments[i].index - segments[j].index);
-      if (apart == 1 || apart == count - 1) continue;  // one follows the other: looked at above
+      if (apart == 1 || apart == count - 1) continue;  // consecutive segments were checked above
       if (!surely_apart(p, q, a, b, slack)) return false;
     }
   }
