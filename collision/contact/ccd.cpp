@@ -11,14 +11,14 @@ namespace selvedge {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double u = 0x1p-53;         // most that an operation loses by rounding, relative to its result
-constexpr int most_intervals = 1000;  // looked at exactly; a few hundred decide what is worst
-// More than what all underflow together loses, where lengths are of the order of one.
+constexpr double u = 0x1p-53;         // largest relative rounding error of an operation
+constexpr int most_intervals = 1000;  // most intervals in exact arithmetic; the worst cases seen take a few hundred
+// A bound of all underflow together, where lengths are of the order of one.
 constexpr double underflow = 8 * std::numeric_limits<double>::min();
 
 // A lower bound of (direction . true corner) - room, where the true room is within 4 u of `room`. The corner's
-// coordinates, the products and the two sums lose up to 4 u of sum |terms|, to first order; taking away room and then
-// `lost` each u of what is there. Together less than 6 u (sum |terms| + room); `lost` has a quarter to spare for its
+// coordinates, the products and the two sums have an error up to 4 u of sum |terms|, to first order; subtracting room
+// and then `lost` adds u each. Together this is less than 6 u (sum |terms| + room); `lost` is a quarter larger, for its
 // own rounding.
 double gap_below(const Vec3& direction, const Vec3& corner, double room) {
   const double x = direction.x() * corner.x(), y = direction.y() * corner.y(), z = direction.z() * corner.z();
@@ -26,13 +26,12 @@ double gap_below(const Vec3& direction, const Vec3& corner, double room) {
   return (x + y + z) - room - lost;
 }
 
-// The time until which, from `time` on, no corner comes within `limit` across `along`; `time` itself if that is not so
-// even there. As long as it is so, the distance of the polygon from the origin is above the limit.
+// The time until which, from `time` on, every corner is farther than `limit` from the origin along `along`; `time`
+// itself if that is false there. Until then the distance of the polygon from the origin is above the limit.
 //
-// Any vector serves, exactly as it is given, so that its own rounding matters to nothing. Along it each corner's gap is
+// The proof holds for any vector `along`, so that its own rounding does not matter. Along it each corner's gap is
 // linear in time, so it is at least the line from one end's lower bound to the other's. The line's zero is a quotient
-// of numbers that do not cancel: within 2 u of what is computed, to first order; 8 u leave room for the product and the
-// sum behind it.
+// without cancellation: computed within 2 u, to first order; 8 u leave room for the product and the sum after it.
 double free_until(const MovingPolygon& p, const Vec3& along, double time, double limit) {
   const double largest = along.cwiseAbs().maxCoeff();
   if (!(largest > 0 && largest < infinity)) return time;
@@ -51,10 +50,10 @@ double free_until(const MovingPolygon& p, const Vec3& along, double time, double
   return std::max(time, until);
 }
 
-// Those across which the origin may be kept out of the polygon.
+// Directions along which the polygon may be apart from the origin.
 struct Directions {
   Vec3 closest;  // from the origin to the polygon's closest point
-  Vec3 normal;   // the polygon's, to the same side
+  Vec3 normal;   // of the polygon, toward the same side
 };
 
 Directions directions(const MovingPolygon& p, double time) {
@@ -68,15 +67,16 @@ Directions directions(const MovingPolygon& p, double time) {
   return {closest, normal.dot(closest) < 0 ? Vec3(-normal) : normal};
 }
 
-// A short vector between closest points has lost its direction in rounding long before a normal does.
+// Tries the normal too: a short vector between closest points loses its direction in rounding long before a normal
+// does.
 double free_until(const MovingPolygon& p, const Directions& apart, double time, double limit) {
   const double until = free_until(p, apart.closest, time, limit);
   return until > time ? until : free_until(p, apart.normal, time, limit);
 }
 
-// Conservative advancement to contact itself. Where it cannot get on, or has become slow, a window of time is searched
-// exactly; windows grow as long as they are free. What the cap ends in a wide one is searched again in a narrow one.
-// What is before `time` is proven free by one or the other.
+// Conservative advancement to contact itself. Where it cannot advance, or has become slow, a window of time is searched
+// exactly. Windows grow as long as they are free; an uncertain contact in a wide window is searched again in a narrow
+// one. Times before `time` are always proven free.
 std::optional<double> first_contact(PairKind kind, const std::array<Vec3, 4>& x0, const std::array<Vec3, 4>& x1,
                                     int max_iterations) {
   constexpr double narrowest = 0x1p-40, growth = 256;
@@ -100,7 +100,7 @@ std::optional<double> first_contact(PairKind kind, const std::array<Vec3, 4>& x0
   return time;
 }
 
-// Conservative advancement to a distance above zero, which rounding cannot hide.
+// Conservative advancement to a distance above zero, which needs no exact arithmetic.
 std::optional<double> first_approach(PairKind kind, const std::array<Vec3, 4>& x0, const std::array<Vec3, 4>& x1,
                                      double min_separation, int max_iterations) {
   const MovingPolygon p = moving_polygon(kind, x0, x1);

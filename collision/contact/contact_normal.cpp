@@ -9,7 +9,7 @@ namespace selvedge {
 namespace {
 
 constexpr double rounding = 1e-12;  // of a direction
-constexpr double across = 0.1;      // cosine: a normal that is farther off says nothing of the direction
+constexpr double across = 0.1;      // least cosine with `direction`: normals with a smaller one are not used
 
 // Positions during the motion.
 struct Moving {
@@ -18,11 +18,11 @@ struct Moving {
   Vec3 operator()(int node) const { return row(x0, node) + time * (row(x1, node) - row(x0, node)); }
 };
 
-// One side of a pair: the vertex or the edge of a surface that its closest point lies on.
+// The vertex or the edge of a surface on which the closest point of one side of a pair lies.
 struct Feature {
   const Surface* surface;
   int first_node;            // of the surface
-  std::array<int, 2> nodes;  // its own; of a vertex the second is -1
+  std::array<int, 2> nodes;  // its nodes; for a vertex the second is -1
 };
 
 Feature feature_of(const ContactWorld& world, std::array<int, 2> nodes) {
@@ -30,8 +30,8 @@ Feature feature_of(const ContactWorld& world, std::array<int, 2> nodes) {
   return {obstacle < 0 ? world.cloth : world.obstacles[obstacle], obstacle < 0 ? 0 : world.first_node[obstacle], nodes};
 }
 
-// `direction`, a unit vector away from the feature, where no face beside it leans into that direction. Otherwise the
-// nearest normal of the faces round it, or `direction` again where that is across all of them.
+// `direction` (unit, away from the feature) if no face at the feature is on that side of it. Otherwise the nearest
+// normal of these faces, or `direction` again if it is nearly perpendicular to all normals.
 Vec3 in_cone(const Feature& feature, const Vec3& direction, const Moving& x) {
   const auto [a, b] = feature.nodes;
   const bool vertex = b < 0;
@@ -51,7 +51,7 @@ Vec3 in_cone(const Feature& feature, const Vec3& direction, const Moving& x) {
     if (!has_edge) continue;
     if (!vertex)
       for (int k = 0; k < 3; ++k) {
-        Vec3 inward = corner[k] - at;  // zero, but for rounding, of the edge's own ends
+        Vec3 inward = corner[k] - at;  // zero up to rounding for the edge's own ends
         inward -= inward.dot(edge) * edge;
         const int node = feature.first_node + feature.surface->triangles(t, k);
         if (node != a && node != b) closest = closest && direction.dot(inward.normalized()) <= rounding;
@@ -65,7 +65,7 @@ Vec3 in_cone(const Feature& feature, const Vec3& direction, const Moving& x) {
   return closest ? direction : found;
 }
 
-// The vertex or the edge of a side of a pair that the closest point lies on; none inside of a face.
+// The vertex or edge on which the closest point of one side of a pair lies; none if it is inside a face.
 std::optional<std::array<int, 2>> ends_of(const NodePair& pair, const Eigen::Vector4d& weights,
                                           std::initializer_list<int> side) {
   std::array<int, 2> ends{-1, -1};

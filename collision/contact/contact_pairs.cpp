@@ -10,12 +10,12 @@
 namespace selvedge {
 namespace {
 
-// Primitives that a leaf of a tree owns, side by side; where things move fast with their boxes at both ends.
+// Primitives that a leaf of a tree owns, with boxes; for fast motion also with boxes at both ends.
 struct Group {
   const Bvh::Leaf& leaf;
   const Bvh::Leaf *start = nullptr, *end = nullptr;
 
-  // Of the items of the other group, one bit each: those that item i may come near.
+  // One bit for each item of the other group: 1 if item i may come near it.
   unsigned near(int i, const Group& other) const {
     const unsigned bits = overlaps(other.leaf, box_of(leaf, i));
     return bits == 0 || !start ? bits
@@ -23,8 +23,8 @@ struct Group {
   }
 };
 
-// A surface that takes part in a search. Without `node_ends` nothing has boxes at both ends, without `marks` every node
-// is looked at.
+// A surface that takes part in a search. Without `node_ends` there are no boxes at both ends; without `marks` every
+// node is visited.
 struct Side {
   const SearchPart& part;
   const EndBoxes* node_ends;
@@ -43,7 +43,7 @@ struct Side {
   }
 };
 
-// Calls visit(i, j) for the places i in a and j in b of what may come near. box_b holds all of b.
+// Calls visit(i, j) for the places i in a and j in b whose items may come near. box_b is round all of b.
 template <class Visit>
 [[gnu::always_inline]] inline void for_each_near(const Group& a, const Group& b, const Box& box_b, Visit&& visit) {
   for (unsigned from = overlaps(a.leaf, box_b); from != 0; from &= from - 1) {
@@ -54,7 +54,7 @@ template <class Visit>
 
 struct LeafPairs {
   const Side &a, &b;
-  bool same;  // one surface: primitives that share a vertex are no pair
+  bool same;  // both sides are one surface: primitives that share a vertex are no pair
 
   void vertex_face(const Side& p, int v, const Side& f, int face, std::vector<NodePair>& pairs) const {
     const int* n = f.surface().triangles.data() + 3 * face;
@@ -131,7 +131,7 @@ PairSearch::PairSearch(const ContactWorld& world) : world_(world), cloth_(*world
 void PairSearch::find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs,
                       const std::vector<char>& marks) {
   pairs.clear();
-  // Boxes at both ends tell more apart than those round whole motions only where these are the longer ones.
+  // Boxes at both ends separate more pairs than boxes of whole motions only where motions are longer than the radius.
   const bool ends = !((x1 - x0).rowwise().squaredNorm().maxCoeff() <= radius * radius);
   const auto prepare = [&](SearchPart& part, const Bvh* other) {
     part.move(x0, x1, radius, ends);

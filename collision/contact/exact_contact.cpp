@@ -12,12 +12,12 @@ namespace {
 
 using Exact = ExactInteger;
 
-constexpr std::uint64_t whole = std::uint64_t{1} << 40;  // finest intervals in a window
-constexpr double fine = 0x1p-30;                         // a certain contact is placed this well in time
+constexpr std::uint64_t whole = std::uint64_t{1} << 40;  // number of finest intervals in a window
+constexpr double fine = 0x1p-30;                         // a certain contact is known in time within this
 constexpr double unit_roundoff = 0x1p-53;
 
-// Corners at both ends of the times searched, on a power of two of each axis' own, which keeps all signs: every product
-// has each axis at most once, and every sum is of products of the same axes.
+// Corners at both ends of the searched window as integers, scaled by a power of two for each axis. This keeps all
+// signs: every product has each axis at most once, and every sum is of products of the same axes.
 struct Window {
   int corners;
   Corners<Exact> first, last;
@@ -70,11 +70,11 @@ PolygonSigns exact_signs(const Window& w, std::uint64_t first, std::uint64_t las
   return polygon_signs(w.corners, p, q, [](const Exact& value, int) { return value.sign(); });
 }
 
-// The same in floating point, unknown where rounding may change the sign. Coordinates are below 2. One at a time
-// between is lost by at most 4 u of |start| + |end| < 4, and by 2 u of its speed, below 4, since the time itself is
-// rounded: 24 u. So a product of two, below 4, is lost by 4 x 24 u + 4 u, and a coefficient of a turn, four of them
-// added, by less than 420 u. A product of such a one, below 16, and a coordinate is lost by 2 x 420 u + 16 x 24 u + 32
-// u, and a coefficient of the volume, six of them added, by less than 8400 u.
+// The same in floating point, unknown where rounding may change the sign. Coordinates are below 2. The error of an
+// interpolated one is at most 4 u of |start| + |end| < 4, and 2 u of its speed, below 4, since the time is rounded too:
+// 24 u. So the error of a product of two, below 4, is 4 x 24 u + 4 u, and that of a turn's coefficient, a sum of four
+// of them, less than 420 u. The error of a product of such a coefficient, below 16, and a coordinate is 2 x 420 u + 16
+// x 24 u + 32 u, and that of a volume's coefficient, a sum of six of them, less than 8400 u.
 PolygonSigns rounded_signs(const MovingPolygon& polygon, double first, double last) {
   constexpr std::array<double, 4> lost{0, 32 * unit_roundoff, 512 * unit_roundoff, 16384 * unit_roundoff};
   Corners<double> p, q;
@@ -111,7 +111,7 @@ std::optional<FoundContact> exact_contact(PairKind kind, const std::array<Vec3, 
     }
     const bool certain =
         (static_cast<double>(width) * unit <= fine && is_certain(s)) || (!decided && touches_at_first(s));
-    // A moment is rounded by less than two grains.
+    // The rounding error of `moment` is less than two grains.
     if (capped || certain || width == 1) return FoundContact{std::max(from, moment(time) - 2 * time_grain), certain};
     width /= 2;
   }

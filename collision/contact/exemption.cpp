@@ -11,8 +11,8 @@ int Exemption::cloth_vertices() const {
   return count;
 }
 
-// Of cloth with cloth a pair is left alone where all of it is tangled: what is clean of each other stays so. With an
-// obstacle one vertex that is tangled is enough, or one that is caught where all of the obstacle's are off.
+// A pair of cloth with cloth is left alone only if all of its vertices are tangled: pairs that are clean stay clean.
+// With an obstacle one tangled vertex is enough, or one caught vertex if all of the obstacle's nodes are switched off.
 bool Exemption::leaves_alone(const ContactWorld& world, const std::array<int, 4>& nodes) const {
   bool self_alone = !self.empty(), body_alone = false, all_cloth = true, all_off = !off.empty(), any_caught = false;
   for (const int node : nodes) {

@@ -57,7 +57,7 @@ bool shorten_rounds(Resolution& r, std::vector<Impact> impacts) {
     for (const Impact& impact : impacts)
       for (const int node : impact.pair.nodes)
         if (belongs(node)) hit[sets.root(node)] = 1;
-    std::vector<int> most(r.world.node_count, 0);  // halvings of any member: a set that grows goes on from there
+    std::vector<int> most(r.world.node_count, 0);  // most halvings of any member: a set that grows continues from there
     for (int node = 0; node < r.world.node_count; ++node) {
       int& of_set = most[sets.root(node)];
       of_set = std::max(of_set, halved[node]);

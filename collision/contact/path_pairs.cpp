@@ -11,9 +11,9 @@ namespace selvedge {
 namespace {
 
 constexpr double slack_part = 0.5;   // of the thickness
-constexpr double few_strayed = 0.3;  // of the cloth's vertices: a search for what has some of them is worth its while
+constexpr double few_strayed = 0.3;  // of the cloth's vertices: if fewer stray, only their pairs are searched
 
-// Takes the pairs from `first` on for which out(i) is true off the list.
+// Removes the pairs from `first` on for which out(i) is true.
 template <class Out>
 void leave_out(PathPairs& path, std::size_t first, Out&& out) {
   std::size_t kept = first;
@@ -26,7 +26,7 @@ void leave_out(PathPairs& path, std::size_t first, Out&& out) {
   path.gap.resize(kept);
 }
 
-// Of the boxes round the pair's primitives.
+// Squared distance of the boxes round the pair's primitives [m^2].
 double squared_gap(const NodePair& pair, const Points& x) {
   const int split = pair.kind == PairKind::vertex_face ? 1 : 2;
   const auto bounds = [&](int first, int last, Vec3& lo, Vec3& hi) {
@@ -42,11 +42,11 @@ double squared_gap(const NodePair& pair, const Points& x) {
   return (lo_a - hi_b).cwiseMax(lo_b - hi_a).cwiseMax(0).squaredNorm();
 }
 
-// Makes the list hold for no motion, until it is complete again: a search that throws leaves nothing that looks whole.
+// Marks the list as valid for no motion until it is complete again, since a search may throw.
 void invalidate(PathPairs& path) { path.end.resize(0, 3); }
 
-// Of the pairs from `first` on, keeps those that may come within `reach` [m], with their gaps. Boxes round motions
-// hold many pairs that never come near each other; the gap of the pair's own boxes tells most of them.
+// Of the pairs from `first` on, keeps those that may come within `reach` [m], with their gaps. Boxes of motions overlap
+// for many pairs that never come near each other; the gap of the pair's own boxes excludes most of these.
 void keep_what_comes_near(PathPairs& path, std::size_t first, double reach) {
   constexpr double never = std::numeric_limits<double>::infinity();
   const PathMotion motion(path, path.start, path.end);
@@ -61,7 +61,7 @@ void keep_what_comes_near(PathPairs& path, std::size_t first, double reach) {
   leave_out(path, first, [&](std::size_t i) { return path.gap[i] == never; });
 }
 
-// Marks of the nodes that end farther than the slack from where the list has them end.
+// 1 for nodes that end farther than `slack` from path.end.
 std::vector<char> strayed_nodes(const PathPairs& path, const Points& x1) {
   std::vector<char> strayed(static_cast<std::size_t>(x1.rows()));
   for (Eigen::Index i = 0; i < x1.rows(); ++i)

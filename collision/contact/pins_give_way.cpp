@@ -10,9 +10,9 @@ namespace selvedge {
 namespace {
 
 struct Driven {
-  std::vector<char> met;         // by node: what pins may meet, and pins
-  Eigen::VectorXd inverse_mass;  // 1 of pins that may give way, all else 0
-  bool meet = false;             // boxes do
+  std::vector<char> met;         // by node: 1 for pins, and for nodes that pins may meet
+  Eigen::VectorXd inverse_mass;  // 1 for pins that may give way, else 0
+  bool meet = false;             // boxes of some overlap
 };
 
 Driven driven(const ContactWorld& world, std::span<const int> pins, double thickness, const Points& x0,

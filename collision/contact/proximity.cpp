@@ -10,12 +10,12 @@
 namespace selvedge {
 namespace {
 
-// Edges that meet at an end are met by vertex-face pairs already.
+// Is the closest point of both edges inside of them? At an end of one, a vertex-face pair covers the contact.
 bool crosses_inside(const Closest& c) {
   return c.weights[0] > 0 && c.weights[1] > 0 && c.weights[2] < 0 && c.weights[3] < 0;
 }
 
-constexpr double kept_of_rest = 0.7;  // of the rest distance, by a pair that rests close
+constexpr double kept_of_rest = 0.7;  // of the rest distance, for a pair that is close at rest
 
 std::vector<Proximity> close_pairs(const ContactWorld& world, std::span<const NodePair> candidates, const Points& x,
                                    double thickness) {

@@ -11,8 +11,8 @@
 namespace selvedge {
 namespace {
 
-// How near pairs may come. Those of one cloth that rest within the thickness are to each other what layers are at it:
-// elements smaller than that would else be forced apart by every motion of their own.
+// The least distance of each pair. It is smaller for pairs of one cloth whose rest distance is below the thickness, in
+// the same ratio; otherwise every motion would force elements apart that are smaller than the thickness.
 class Separations {
  public:
   Separations(const ContactWorld& world, const ResolveOptions& options)
@@ -93,7 +93,7 @@ int zone_of(Resolution& r, const Impact& impact) {
   return r.zones.root(*std::find_if(nodes.begin(), nodes.end(), [&](int n) { return r.is_free(n); }));
 }
 
-// A zone whose nodes are all free may go on as one rigid body; one that leans on something prescribed may not.
+// Moves a zone as one rigid body if all of its nodes are free. False for a zone with a prescribed node.
 bool rigidify(Resolution& r, std::span<Impact* const> impacts) {
   std::vector<int> nodes;
   for (const Impact* impact : impacts) nodes.insert(nodes.end(), impact->pair.nodes.begin(), impact->pair.nodes.end());
@@ -104,7 +104,7 @@ bool rigidify(Resolution& r, std::span<Impact* const> impacts) {
   return true;
 }
 
-// Sweeps of a zone of so many impacts that what is left of the work has room for.
+// The number of sweeps of a zone with so many impacts for which the remaining budget of work suffices.
 int most_sweeps(const Resolution& r, std::size_t impacts) {
   const std::int64_t left = std::max<std::int64_t>(0, r.options.most.projected - r.report.work.projected);
   const std::int64_t sweeps = left / static_cast<std::int64_t>(4 * impacts) + 1;
@@ -115,7 +115,7 @@ int most_sweeps(const Resolution& r, std::size_t impacts) {
 
 std::vector<Impact> new_impacts(Resolution& r) {
   r.watch.lap();
-  // What a list gains by being mended has a node that strayed in this round, which is marked.
+  // Pairs that a partial search adds have a node that moved in this round, and such nodes are marked already.
   if (update_pairs(r.search, r.options.thickness, r.x0, r.x1, r.path)) std::fill(r.moved.begin(), r.moved.end(), 1);
   r.report.broad_phase += r.watch.lap();
   auto impacts = impacts_of(r.path, r.inverse_mass, r.moved, r.options.only, {r.world, r.options}, r.x0, r.x1, &r.world,
@@ -176,7 +176,7 @@ ResolveReport resolve(PairSearch& search, const ContactWorld& world, const Eigen
                {},           DisjointSets(world.node_count)};
   std::vector<Impact> impacts = new_impacts(r);
   r.report.found = static_cast<int>(impacts.size());
-  bool contradictory = false;  // zones ask for what cannot be, and more rounds do not change that
+  bool contradictory = false;  // demands in zones contradict each other; more rounds do not help
   for (int round = 0; !impacts.empty() && !contradictory && !r.stopped() && !r.spent() &&
                       round < options.impulse_rounds + options.zone_rounds;
        ++round) {

@@ -12,7 +12,7 @@
 namespace selvedge {
 namespace {
 
-constexpr double no_inertia = 1e-14;  // of a principal axis, over the largest: nodes on a line have none about it
+constexpr double no_inertia = 1e-14;  // ratio of principal moments below which nodes count as on a line
 
 Vec3 weighted(const Eigen::Vector4d& w, const std::array<Vec3, 4>& p) {
   return w[0] * p[0] + w[1] * p[1] + w[2] * p[2] + w[3] * p[3];
@@ -25,14 +25,14 @@ void push(const Impact& impact, const Eigen::VectorXd& inverse_mass, const Vec3&
   }
 }
 
-// Relative motion of the pair over the step, across its normal.
+// Relative motion of the pair over the step, perpendicular to its normal.
 Vec3 slip_of(const Impact& impact, const Points& x0, const Points& x1) {
   const Vec3 motion =
       weighted(impact.weights, corners(impact.pair, x1)) - weighted(impact.weights, corners(impact.pair, x0));
   return motion - motion.dot(impact.normal) * impact.normal;
 }
 
-// Brings the friction impulse to what would stop the slip, or as near as Coulomb's cone lets it.
+// Sets the friction impulse to the one that stops the slip, bounded by Coulomb's cone.
 void rub(Impact& impact, double give, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1) {
   Vec3 wanted = impact.tangential - slip_of(impact, x0, x1) / give;
   const double bound = impact.friction * impact.multiplier, size = wanted.norm();
@@ -74,9 +74,10 @@ std::optional<Impact> find_impact(const NodePair& pair, const Points& x0, const 
   }
   Impact impact{pair, meeting.weights, between.normalized(), *time};
   if (world) impact.normal = contact_normal(*world, pair, meeting.weights, between, x0, x1, *time);
-  // Twice the separation leaves room below the target; a pair that starts closer need not be thrown apart.
+  // The target is twice the separation, to leave a margin; a pair that starts closer keeps its distance.
   impact.target = std::min(2 * separation, std::sqrt(start.squared_distance));
-  // A path that comes too near and parts again ends above that target: ask for a little more than it has.
+  // A pair that comes too near and parts again may end above this target; then the target is a little more than its
+  // end.
   const double end = impact_gap(impact, x1);
   if (end >= impact.target) impact.target = end + 0.25 * separation;
   return impact;
@@ -96,7 +97,7 @@ void apply_impulse(Impact& impact, const Eigen::VectorXd& inverse_mass, const Po
 
 Projection project_zone(std::span<Impact*> impacts, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1,
                         int max_sweeps, double tolerance) {
-  constexpr int patience = 25;  // sweeps; impacts that contradict each other never come nearer to their targets
+  constexpr int patience = 25;  // sweeps without progress; impacts that contradict each other never reach their targets
   double violation = 0, earlier = std::numeric_limits<double>::infinity();
   std::int64_t free = 0, moved = 0;
   for (const Impact* impact : impacts)

@@ -17,9 +17,9 @@ struct Squeeze {
   Eigen::VectorXd& inverse_mass;
   ResolveReport& report;
   double light = 0;               // inverse mass of a node that gives way
-  std::vector<char> moving;       // by obstacle: what stands still does not give way
+  std::vector<char> moving;       // by obstacle: one that stands still does not give way
   std::vector<char> yields;       // by node
-  std::vector<Impact> demands{};  // first those of pairs near the start
+  std::vector<Impact> demands{};  // the first `near` are those of pairs near the start
   std::size_t near = 0;
   Points x{};  // after the last press
   Stopwatch watch{};
@@ -38,8 +38,8 @@ void add_meetings(Squeeze& s, const Points& x1) {
   }
 }
 
-// Moves s.x from `trial` to meet the demands as far as that can be. Returns what each of them was still pushed by in
-// the last block of sweeps, as a multiplier, and zero where that was settling.
+// Moves s.x from `trial` to meet the demands as far as possible. Returns for each demand the growth of its multiplier
+// in the last block of sweeps, 0 where it was small.
 std::vector<double> press(Squeeze& s, const Points& trial) {
   s.x = trial;
   std::vector<Impact*> all;
@@ -69,8 +69,8 @@ std::vector<double> press(Squeeze& s, const Points& trial) {
   return growth;
 }
 
-// Lets the obstacle nodes of demands that grow give way. They need not try to go farther, either: in `trial` they come
-// at most half as much nearer to the cloth as it is away. False: there is none.
+// Lets the obstacle nodes of growing demands give way. Also shortens their motion in `trial`, so that they approach the
+// cloth by at most half of their spare distance. Returns false if no further node gives way.
 bool give_way(Squeeze& s, const std::vector<double>& growth, Points& trial) {
   Points away = Points::Zero(trial.rows(), 3);
   Eigen::VectorXd gap = Eigen::VectorXd::Zero(trial.rows()), share = gap;
@@ -100,8 +100,8 @@ bool give_way(Squeeze& s, const std::vector<double>& growth, Points& trial) {
   return any;
 }
 
-// A body that gives way far at one place alone would fold into itself: nodes nearby lag with it, so that lag changes by
-// less than distance does and no two points of the body can meet. Small lags stay where they are.
+// A body that gives way far at a single place would fold into itself. So nodes nearby lag too, such that the lag
+// changes by less than the distance between nodes, and no two points of the body can meet. Small lags are not spread.
 void spread_lag(const Squeeze& s, const Points& wanted, Points& x1) {
   const int nodes = static_cast<int>(x1.rows());
   std::vector<std::pair<double, int>> lagging;
@@ -115,7 +115,7 @@ void spread_lag(const Squeeze& s, const Points& wanted, Points& x1) {
     Vec3 lag = row(lags, node);
     for (const auto& [minus_size, from] : lagging) {
       const double least = -minus_size - lag.norm();
-      if (least <= 0) break;  // it lags more than all that follow
+      if (least <= 0) break;  // this node lags more than all that follow
       const double near = s.options.room.steepest_lag * (row(wanted, from) - row(wanted, node)).norm();
       const Vec3 more = row(lags, from) - lag;
       if (from != node && more.norm() > near && s.world.obstacle_of(from) == body)
@@ -149,7 +149,7 @@ bool make_room(PairSearch& search, const ContactWorld& world, const ResolveOptio
   for (int round = 0; round < options.room.max_rounds && !stopped(options.stop); ++round) {
     if (give_way(s, press(s, trial), trial)) {
       squeezed = true;
-      s.demands.resize(s.near);  // those met on the way there were as deep as what is not there
+      s.demands.resize(s.near);  // demands met on the way to the old `trial` are out of date
       add_meetings(s, trial);
       continue;
     }

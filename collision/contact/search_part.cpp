@@ -5,7 +5,7 @@
 namespace selvedge {
 namespace {
 
-// Does the box overlap that of a leaf?
+// Does the box overlap the box of any leaf?
 bool meets(const Bvh& tree, const Box& box) {
   if (tree.item_count == 0) return false;
   int stack[64], size = 0;  // a tree of 2^31 leaves is 31 deep
@@ -104,7 +104,7 @@ void SearchPart::fill(const Bvh* other) {
   std::vector<int> leaves;
   for (const Bvh::Node& node : tree.bvh.nodes) {
     if (node.child >= 0 || filled_[~node.child]) continue;
-    // A traversal looks at two trees of one leaf each without asking their boxes.
+    // A traversal of two trees with one leaf each does not test their boxes.
     if (!other || tree.bvh.leaves.size() == 1 || meets(*other, node.box)) leaves.push_back(~node.child);
   }
   const int count = static_cast<int>(leaves.size());

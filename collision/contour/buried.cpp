@@ -9,8 +9,8 @@
 namespace selvedge {
 namespace {
 
-constexpr double little = 1e-3;  // how far before and behind a triangle, in mean edge lengths
-constexpr int speakers = 9;      // triangles that are asked for their piece, about
+constexpr double little = 1e-3;  // distance of test points in front of and behind a triangle, in mean edges
+constexpr int speakers = 9;      // about the number of triangles that are tested in each piece
 
 std::vector<char> crossing_triangles(const Surface& surface, const Segments& found) {
   std::vector<char> crossing(static_cast<std::size_t>(surface.triangles.rows()), 0);
@@ -19,7 +19,7 @@ std::vector<char> crossing_triangles(const Surface& surface, const Segments& fou
   return crossing;
 }
 
-// What hangs together along edges of triangles that do not cross: nothing comes through there.
+// Pieces: sets of triangles that do not cross, connected along edges. Each is on one side of the rest.
 DisjointSets pieces_between(const std::vector<char>& crossing, const Surface& surface) {
   DisjointSets pieces(static_cast<int>(surface.triangles.rows()));
   for (const auto& [a, b] : surface.edge_triangles)

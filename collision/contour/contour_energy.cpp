@@ -6,13 +6,13 @@
 namespace selvedge {
 namespace {
 
-// The end of a segment with what its derivative needs.
+// The end of a segment with the values that its derivative needs.
 struct EndPoint {
   Vec3 at = Vec3::Zero();
   int edge_sheet = 0, face_sheet = 0;
-  std::array<int, 2> edge{-1, -1};  // the vertex of a loop end comes first, then the second is -1
+  std::array<int, 2> edge{-1, -1};  // at a loop vertex: this vertex, then -1
   std::array<int, 3> face{};
-  Vec3 a = Vec3::Zero(), b = Vec3::Zero(), normal = Vec3::Zero();  // normal: not of unit length
+  Vec3 a = Vec3::Zero(), b = Vec3::Zero(), normal = Vec3::Zero();  // the normal is not of unit length
   double s = 0, slope = 0;                                         // n.(B - A)
   std::array<double, 3> weight{};
 };
@@ -59,7 +59,8 @@ void add_gradient(const EndPoint& p, const Vec3& pull, ContourGradient kind, Con
     if (full) by_edge.row(p.edge[0]) += pull.transpose();
     return;
   }
-  // Seen from the crossing, the normal's own turning is what makes the weights those of the point and not a third each.
+  // Because the normal turns with the face, weights are those of the crossing; with a frozen normal they are a third
+  // each.
   const Vec3 sliding = pull.dot(p.b - p.a) / p.slope * p.normal;
   by_edge.row(p.edge[0]) -= (1 - p.s) * sliding.transpose();
   by_edge.row(p.edge[1]) -= p.s * sliding.transpose();

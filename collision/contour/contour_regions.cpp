@@ -22,7 +22,7 @@ bool ends_outside(const Contour& contour, int side) {
 
 namespace {
 
-// A contour on one of its sides, or on both where both lie on the same component and belong together.
+// A contour's curve on one side, or on both sides where these are on one component and form one curve.
 struct Trace {
   const Contour* contour;
   std::array<bool, 2> sides;
@@ -53,7 +53,7 @@ void add(EdgeParity& parity, const Trace& trace) {
     if (trace.sides[side]) parity.add(*trace.contour, side);
 }
 
-// All cycles together, or those that part the component on their own.
+// Colours by all closed traces together, or if that fails by those that cut the component on their own.
 std::vector<char> colour_together(const Surface& surface, int component, const std::vector<Trace>& traces, bool& cut) {
   std::vector<char> colours;
   EdgeParity all(surface);

@@ -6,7 +6,7 @@
 namespace selvedge {
 namespace {
 
-// Beyond this an edge is so nearly parallel to the face that its slide says little of the contour.
+// Longer slides are left out: the edge is so nearly parallel to the face that its slide says little of the contour.
 constexpr double longest_slide = 4;
 
 Vec3 position(std::span<const SheetView> sheets, const Segments& found, const Contour& contour, std::size_t i) {

@@ -17,8 +17,8 @@ int across(const Surface& surface, int edge, int triangle) {
   return two[0] == triangle ? two[1] : two[0];
 }
 
-// Edges at a vertex passed on the way from one triangle of it to another, turning one way; false if a boundary or a
-// branch comes between.
+// Collects the edges at a vertex between two of its triangles, going round in one direction. False if a boundary or a
+// branching edge comes between.
 bool fan(const Surface& surface, int vertex, int from, int to, bool forward, std::vector<int>& edges) {
   edges.clear();
   int previous = -1;
@@ -101,8 +101,8 @@ bool EdgeParity::colour(int component, std::vector<char>& colours) const {
 
 namespace {
 
-// Parts of a component that no odd edge runs through, grown from both ends of every odd edge, all at the same pace, so
-// that the small ones are whole before the largest one is.
+// Connected parts of a component without odd edges, grown from both ends of every odd edge. All grow at the same pace,
+// so that small parts are complete before the largest one.
 class Parts {
  public:
   Parts(const Surface& surface, const std::vector<char>& odd)
@@ -116,7 +116,7 @@ class Parts {
     reached_.push_back({vertex});
   }
   int of(int vertex) { return root(owner_[vertex]); }
-  // Until at most `open` parts have vertices left to go on from. Returns one that has, or -1.
+  // Grows until at most `open` parts have vertices left to go on from. Returns one of these parts, or -1.
   int grow(int open) {
     for (;;) {
       int growing = 0, last = -1;
@@ -135,7 +135,7 @@ class Parts {
     while (root_[part] != part) part = root_[part] = root_[root_[part]];
     return part;
   }
-  const std::vector<int>& reached(int part) const { return reached_[part]; }  // of a root
+  const std::vector<int>& reached(int part) const { return reached_[part]; }  // part: a root
 
  private:
   void expand(int f) {
@@ -166,7 +166,7 @@ class Parts {
   std::vector<std::vector<int>> fronts_, reached_;
 };
 
-// Colours of parts so that an odd edge joins two of different ones; empty if there are none such.
+// Colours 0 and 1 of parts so that every odd edge joins different colours; empty if there is no such colouring.
 std::vector<char> two_colours(Parts& parts, const std::vector<std::array<int, 2>>& joined) {
   std::vector<std::vector<int>> beside(parts.count());
   for (const auto& [a, b] : joined) {

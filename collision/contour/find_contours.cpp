@@ -12,7 +12,7 @@ struct Use {
   int segment, end;
 };
 
-// Where the segments' ends meet.
+// Which segments end at each crossing.
 struct Joints {
   std::vector<std::vector<Use>> uses;  // of each crossing
 
@@ -121,14 +121,14 @@ bool same_component(const Contour& contour) {
   return contour.sides[0].sheet == contour.sides[1].sheet && contour.sides[0].component == contour.sides[1].component;
 }
 
-// Puts the vertices that the curves part from the rest into `side`; it cuts if they do.
+// Sets `cuts` of a side, and `inside`: the vertices that the curves cut off.
 void judge_cut(const EdgeParity& parity, const std::vector<int>& sizes, ContourSide& side) {
   std::optional<std::vector<int>> part = parity.smaller_part(side.component, sizes[side.component]);
   side.cuts = part.has_value();
   if (part) side.inside = std::move(*part);
 }
 
-// sizes: of the components of each sheet.
+// sizes: numbers of vertices of the components of each sheet.
 void judge_sides(std::span<const SheetView> sheets, std::span<const std::vector<int>> sizes, Contour& contour) {
   const bool loop = contour.ends[0] == ContourEnd::vertex || contour.ends[1] == ContourEnd::vertex;
   if (loop || contour.one_trace) {
@@ -168,14 +168,14 @@ bool lies_inside(const Surface& surface, const ContourSide& inner, const Contour
   return true;
 }
 
-// A side that parts its component, by the vertices that it encloses.
+// A side that cuts its component, listed at each vertex that it encloses.
 struct Enclosure {
   int contour = 0;
   const ContourSide* side = nullptr;
 };
 
 void mark_nested(std::span<const SheetView> sheets, std::vector<Contour>& contours) {
-  std::vector<std::vector<std::vector<Enclosure>>> round;  // each vertex of each sheet
+  std::vector<std::vector<std::vector<Enclosure>>> round;  // enclosures of each vertex of each sheet
   for (const SheetView& sheet : sheets) round.emplace_back(sheet.surface->vertex_count);
   for (int c = 0; c < static_cast<int>(contours.size()); ++c)
     for (const ContourSide& side : contours[c].sides)

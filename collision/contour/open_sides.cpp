@@ -9,8 +9,8 @@
 namespace selvedge {
 namespace {
 
-constexpr double parallel = 0.5;   // cosine of normals of layers that lie along each other
-constexpr double agreeing = 0.75;  // part of the edges at a contour whose two ends must be of different sides
+constexpr double parallel = 0.5;   // least cosine of the normals of layers that face each other
+constexpr double agreeing = 0.75;  // share of crossed edges whose ends must be on different sides
 
 bool parts_nothing(const Contour& contour) { return !contour.sides[0].cuts && !contour.sides[1].cuts; }
 
@@ -55,7 +55,7 @@ Layer make_layer(std::span<const SheetView> sheets, int sheet, int component) {
           std::vector<int>(surface.vertex_count, -1)};
 }
 
-// side: 1 where the first layer is on that side of the second to which the second's normals point, -1 on the other.
+// side: 1 if the first layer is on the side to which the second layer's normals point, -1 if on the other.
 struct Sector {
   int side = 0;
   int vertices = 0;
@@ -87,7 +87,7 @@ class Pair {
   std::vector<Sector> sectors_;
 };
 
-// Visits the crossed edges of a contour, with the layer that they are of.
+// Calls visit(layer, crossing) for the crossed edges of a contour; layer is that of the edge.
 template <class Visit>
 void Pair::for_each_edge(int number, Visit visit) const {
   const Contour& contour = contours_[number];
@@ -99,7 +99,8 @@ void Pair::for_each_edge(int number, Visit visit) const {
   }
 }
 
-// Where normal . normal is small the layers cross steeply, and it says little which side is which.
+// Lets both ends of a crossed edge vote for their side. Where the dot product of normals is small the layers cross
+// steeply, and the vote counts little.
 void Pair::vote(int k, const Crossing& c) {
   Layer &own = layers_[k], &other = layers_[1 - k];
   const Surface& surface = *other.surface;
@@ -113,7 +114,7 @@ void Pair::vote(int k, const Crossing& c) {
   }
 }
 
-// As Sector::side; 0 where the vertex does not face the other layer.
+// The side of a vertex, as Sector::side; 0 if the vertex does not face the other layer.
 int Pair::facing_side(int k, int v) const {
   const Layer &own = layers_[k], &other = layers_[1 - k];
   const NearestFace near = nearest_face(other.faces, -1, row(*own.x, v));
@@ -147,7 +148,7 @@ void Pair::grow(int k, int seed) {
   sectors_.push_back({side, static_cast<int>(reached.size())});
 }
 
-// Contours, and the sectors that belong together with them.
+// Decides contours `numbers` together, with the sectors that reach them.
 void Pair::decide_set(std::span<const int> numbers, std::span<const char> in_set, OpenSides& sides) const {
   int edges = 0, parted = 0;
   for (const int number : numbers)

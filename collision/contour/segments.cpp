@@ -35,7 +35,7 @@ Face make_face(std::span<const SheetView> sheets, std::span<const int> first_ran
 
 struct Shared {
   int count = 0;
-  int in_a = -1, in_b = -1;  // corners, of the last one found
+  int in_a = -1, in_b = -1;  // indices of the shared corner last found
 };
 
 Shared shared_vertices(const Face& a, const Face& b) {
@@ -59,7 +59,7 @@ bool all_on_one_side(const std::array<int, 3>& side) {
   return (side[0] >= 0 && side[1] >= 0 && side[2] >= 0) || (side[0] <= 0 && side[1] <= 0 && side[2] <= 0);
 }
 
-// Does the line through p and q, which lie on both sides of the face, pass through the face?
+// Does the line through p and q, which lie on different sides of the face, pass through it?
 bool line_meets(const RankedPoint& p, const RankedPoint& q, const Face& face, bool& exact_zero) {
   const int first = symbolic_orient3d(p, q, face.corner(0), face.corner(1), exact_zero);
   return first == symbolic_orient3d(p, q, face.corner(1), face.corner(2), exact_zero) &&
@@ -99,7 +99,7 @@ Crossing make_crossing(std::span<const SheetView> sheets, const Face& edge_of, i
   return {edge_of.sheet, edge, face.sheet, face.triangle, found.s, found.weight};
 }
 
-// Two triangles in general position have no crossing, or two; one beside a shared vertex.
+// Two triangles in general position have no crossing or two; with a shared vertex none or one.
 struct PairResult {
   std::vector<Crossing> crossings;
   int shared_vertex = -1;
@@ -134,7 +134,7 @@ PairResult cross(std::span<const SheetView> sheets, const Face& a, const Face& b
 }
 
 struct Candidate {
-  int sheet, a, b;  // triangle a of sheet 0, b of `sheet`
+  int sheet, a, b;  // a is a triangle of sheet 0, b of `sheet`
 };
 
 bool have_common_corner(const int* a, const int* b) {
@@ -151,15 +151,15 @@ std::vector<FacePlane> face_planes(const SheetView& sheet) {
   return planes;
 }
 
-// False only where a pair without a common corner surely has no segment and does not touch: most pairs, decided without
-// exact signs.
+// False only if a pair without a common corner has no segment and does not touch. Decides most pairs without exact
+// signs.
 bool may_meet(const SheetView& of_a, const FacePlane& plane_a, int a, const SheetView& of_b, const FacePlane& plane_b,
               int b) {
   const std::array<Vec3, 3> at_a = corners_of(*of_a.surface, *of_a.x, a), at_b = corners_of(*of_b.surface, *of_b.x, b);
   return !surely_on_one_side(plane_a, at_b) && !surely_on_one_side(plane_b, at_a) && !surely_apart(at_a, at_b);
 }
 
-// The other two corners of a triangle round a vertex.
+// A triangle at a vertex: its other two corners.
 struct RoundVertex {
   int triangle;
   std::array<int, 2> vertex;
@@ -175,7 +175,7 @@ void list_round_vertex(const SheetView& sheet, int vertex, std::vector<RoundVert
   }
 }
 
-// Pairs of triangles that have one vertex in common, and may have more.
+// Adds pairs of triangles that share a vertex and cross; the triangles `round` are those of one vertex.
 void add_round_vertex(const std::vector<RoundVertex>& round, const std::vector<FacePlane>& planes,
                       std::vector<Candidate>& found) {
   for (std::size_t i = 0; i < round.size(); ++i)
@@ -242,7 +242,7 @@ std::vector<Candidate> candidates(std::span<const SheetView> sheets) {
 auto key(const Crossing& c) { return std::tie(c.edge_sheet, c.edge, c.face_sheet, c.face); }
 auto key(const Segment& s) { return std::tie(s.sheet, s.triangle); }
 
-// Gives each crossing its index, which the segments, whose ends are places in `all`, then carry.
+// Sorts and numbers the crossings. Segment ends, which are indices of `all`, become these numbers.
 void number_crossings(std::vector<Crossing>& all, Segments& found) {
   found.crossings = all;
   std::sort(found.crossings.begin(), found.crossings.end(),

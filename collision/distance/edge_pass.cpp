@@ -8,7 +8,7 @@ namespace {
 
 using Weights = Eigen::Vector3d;
 
-// An edge or a triangle of the garment, and the point of it that lies deepest so far.
+// An edge or a triangle of the garment, and its deepest point found so far.
 struct DeepPlace {
   DeepPlace(const std::array<int, 3>& vertices, int count) : vertex(vertices), corners(count) {}
   std::array<int, 3> vertex;
@@ -28,7 +28,7 @@ struct Touched {
   int pairs = 0;
 };
 
-// What of the garment meets the body.
+// The garment's edges and triangles that meet the body.
 Touched touched_by(const DistanceField& body, const Surface& garment, const Points& x, EdgePassMemory& memory) {
   Touched touched;
   const auto pairs = intersecting_pairs(garment, x, memory.garment, body.surface(), body.positions(), memory.body);
@@ -63,7 +63,7 @@ void keep_deeper(const Weights& weight, const SignedDistance& at, DeepPlace& pla
   place.weight = weight;
 }
 
-// Points round the deepest one so far; only those to which its gradient goes down.
+// Points near the deepest one so far, only in directions in which the distance falls.
 std::vector<Weights> downhill(const Points& x, const DeepPlace& place, double step) {
   std::vector<Weights> tries;
   for (int from = 0; from < place.corners; ++from)
@@ -79,7 +79,7 @@ std::vector<Weights> downhill(const Points& x, const DeepPlace& place, double st
   return tries;
 }
 
-// Half as far off each time.
+// Searches for the deepest points, with half the step each time.
 void descend(const DistanceField& body, const Points& x, std::vector<DeepPlace>& places) {
   Tries tries(places.size());
   for (double step = 1.0 / 8; step > 1e-3; step /= 2) {
@@ -90,7 +90,7 @@ void descend(const DistanceField& body, const Points& x, std::vector<DeepPlace>&
   }
 }
 
-// Distances of the vertices of some edges, each asked once; those of the others are left as they are made.
+// Distances of the ends of some edges, by vertex; other vertices keep default values.
 std::vector<SignedDistance> ask_ends(const DistanceField& body, const Surface& garment, const std::vector<int>& edges,
                                      const Points& x) {
   std::vector<int> ends;
@@ -105,8 +105,8 @@ std::vector<SignedDistance> ask_ends(const DistanceField& body, const Surface& g
   return of_vertex;
 }
 
-// The deepest points of edges. Those that are told to lie outside all along, since a distance changes by no more than
-// one moves, are left out.
+// The deepest points of edges. Edges that are outside along their whole length are left out: a distance changes by no
+// more than the point moves.
 std::vector<DeepPlace> deepest_of_edges(const DistanceField& body, const Surface& garment,
                                         const std::vector<int>& edges, double margin, const Points& x) {
   const std::vector<SignedDistance> ends = ask_ends(body, garment, edges, x);
@@ -139,14 +139,14 @@ std::vector<DeepPlace> deepest_of_faces(const DistanceField& body, const Surface
   return places;
 }
 
-// That a vertex moves so far along a normal, or farther.
+// A demand that a vertex moves along a normal by at least `length` [m].
 struct Wish {
   double length = 0;
   Vec3 normal;
 };
 using Wishes = std::vector<std::vector<Wish>>;  // by vertex
 
-// Asks the corners so that the deepest point comes to the margin. False: it is there.
+// Adds demands to the corners that move the deepest point to the margin. False if it is there already.
 bool wish(const DeepPlace& place, double margin, Wishes& wishes) {
   if (!(place.at.value < margin) || place.at.gradient.isZero(0)) return false;
   const double square = place.weight.squaredNorm();
@@ -157,7 +157,7 @@ bool wish(const DeepPlace& place, double margin, Wishes& wishes) {
   return true;
 }
 
-// About the shortest motion that grants them all: the longest first, then what the others lack.
+// About the shortest motion that fulfils all demands: the longest first, then what the others still need.
 Vec3 granted(std::vector<Wish> wishes) {
   std::ranges::stable_sort(wishes, std::greater{}, &Wish::length);
   Vec3 motion = Vec3::Zero();

@@ -10,7 +10,7 @@ namespace selvedge {
 namespace {
 
 using Polygon = std::vector<Vec3>;
-using Crossed = std::vector<std::vector<int>>;  // of each triangle those that cross it
+using Crossed = std::vector<std::vector<int>>;  // for each triangle those that cross it
 
 constexpr double just_outside = 1e-9;  // of the surface's size
 
@@ -23,7 +23,7 @@ Crossed crossed_triangles(const Surface& surface, const Segments& found) {
   return by;
 }
 
-// Cuts each of the convex polygons in two where the plane through p passes it.
+// Cuts each convex polygon that the plane through p crosses in two.
 void cut_polygons(const Vec3& p, const Vec3& normal, std::vector<Polygon>& polygons) {
   std::vector<Polygon> parts;
   for (const Polygon& polygon : polygons) {
@@ -60,7 +60,7 @@ Vec3 mean_of(const Polygon& polygon) {
   return sum / static_cast<double>(polygon.size());
 }
 
-// Sets of triangles that edges join and nothing crosses; of each the largest triangle.
+// Sets of triangles without crossings, connected by edges, with the largest triangle of each.
 struct Regions {
   std::vector<int> of_triangle;  // -1: crossed
   std::vector<int> largest;

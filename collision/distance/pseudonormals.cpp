@@ -14,7 +14,7 @@ int corner_at(const Surface& surface, int triangle, int vertex) {
   return surface.triangles(triangle, 0) == vertex ? 0 : surface.triangles(triangle, 1) == vertex ? 1 : 2;
 }
 
-// Does the triangle pass the edge from its lower to its higher vertex?
+// Does the triangle run along the edge from its lower to its higher vertex?
 bool passes_upward(const Surface& surface, int triangle, int edge) {
   for (int k = 0; k < 3; ++k)
     if (surface.triangle_edges(triangle, k) == edge)
@@ -22,7 +22,7 @@ bool passes_upward(const Surface& surface, int triangle, int edge) {
   return false;
 }
 
-// How many triangles one comes by, from the first one round the vertex, before one is back.
+// The number of triangles in the fan of the vertex's first triangle: all that are reached by turning round the vertex.
 int fan_size(const Surface& surface, int vertex) {
   const int first = surface.triangles_of(vertex).front();
   int at = first, size = 0;

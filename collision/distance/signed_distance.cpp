@@ -15,8 +15,8 @@ namespace selvedge {
 namespace {
 
 constexpr int chunk = 64;             // queries of one task
-constexpr double undecided = 1e-9;    // cosine between a pseudonormal and the way to the point
-constexpr double on_surface = 1e-12;  // of the surface's size: nearer points have no direction of their own
+constexpr double undecided = 1e-9;    // least cosine between a pseudonormal and the direction to the point
+constexpr double on_surface = 1e-12;  // of the surface's size: nearer points count as on the surface
 constexpr double just_beside = 1e-9;  // of the surface's size
 
 void check_finite(const Points& points, const std::string& what) {
@@ -59,7 +59,7 @@ std::vector<char> DistanceField::winds_round(const Points& points) const {
     std::ranges::transform(winding, result.begin(), [](int number) { return number > 0; });
     return result;
   }
-  const Box& box = tree_.bvh.nodes.front().box;  // outside of the hull nothing fills more than half of the view
+  const Box& box = tree_.bvh.nodes.front().box;  // outside of the hull the winding number is at most 1/2
 #pragma omp parallel for schedule(dynamic, 16)
   for (int i = 0; i < count; ++i)
     result[i] = overlap(box, moving_point_box(row(points, i), row(points, i), 0)) &&
@@ -67,7 +67,7 @@ std::vector<char> DistanceField::winds_round(const Points& points) const {
   return result;
 }
 
-// Holds p against a triangle, or against what is exposed of it. The lowest of equally near ones counts.
+// Compares p with a triangle, or with its exposed pieces. Of equally near triangles the lowest counts.
 void DistanceField::measure(const Vec3& p, int t, Nearest& best) const {
   const auto take = [&](const Vec3& a, const Vec3& b, const Vec3& c, int piece) {
     const Closest found = point_triangle(p, a, b, c);
@@ -89,7 +89,7 @@ void DistanceField::measure(const Vec3& p, int t, Nearest& best) const {
   }
 }
 
-// The nearest of the leaf's triangles first.
+// Measures the leaf's triangles, the nearest first.
 void DistanceField::measure_leaf(const WideKernels& kernels, const Vec3& p, const float* at, double reach,
                                  const WideTree::Leaf& leaf, float& limit, Nearest& best) const {
   float squared[WideTree::width];
@@ -130,7 +130,7 @@ DistanceField::Nearest DistanceField::search(const Vec3& p, int start, std::vect
       const int i = std::countr_zero(found);
       stack.push_back({squared[i], node.child[i]});
       for (auto place = stack.end() - 1; place - stack.begin() > bottom && place[-1].squared < place->squared; --place)
-        std::swap(place[-1], *place);  // the nearest on top
+        std::swap(place[-1], *place);  // keeps the nearest on top
     }
   }
   return best;
@@ -142,7 +142,7 @@ bool DistanceField::is_cut_near(int vertex) const {
                              [&](int t) { return exposed_.kind[t] != ExposedFaces::Kind::whole; });
 }
 
-// Tells face, edge or vertex of a whole triangle, and returns the normal there; zero where that tells no side.
+// Sets face, edge or vertex for a whole triangle, and returns the normal there; zero if it tells no side.
 Vec3 DistanceField::place(const Nearest& near, SignedDistance& result) const {
   const int t = near.triangle;
   int zeros = 0, zero = 0, last = 0;
@@ -166,7 +166,7 @@ Vec3 DistanceField::place(const Nearest& near, SignedDistance& result) const {
   return is_cut_near(vertex) ? Vec3::Zero() : vertex_pseudonormal(surface_, x_, vertex);
 }
 
-// The same on what is exposed of a cut triangle. Lines that only cut the triangle in two are no edges.
+// The same for an exposed piece of a cut triangle. Sides of a piece inside the triangle's exposed part are no edges.
 Vec3 DistanceField::place_on_piece(const Vec3& p, const Nearest& near, SignedDistance& result) const {
   const Vec3 normal = face_normal(surface_, x_, near.triangle), away = p - near.closest;
   if ((away - normal.dot(away) * normal).norm() <= 1e-7 * away.norm()) return normal;
@@ -178,7 +178,7 @@ Vec3 DistanceField::place_on_piece(const Vec3& p, const Nearest& near, SignedDis
   return Vec3::Zero();
 }
 
-// False: the side is still open, and the result is that of a point outside.
+// False if the side is not known; the result then is that of a point outside.
 bool DistanceField::complete(const Vec3& p, const Nearest& near, SignedDistance& result) const {
   result = {};
   result.triangle = near.triangle;
@@ -203,8 +203,8 @@ bool DistanceField::complete(const Vec3& p, const Nearest& near, SignedDistance&
   return true;
 }
 
-// A point may lie on a part of the surface that is hidden in the body, where winding numbers are 0: it is moved by less
-// than its distance from what is exposed, askew.
+// A point may lie on a hidden part of the surface, where winding numbers are not defined. So it is moved obliquely, by
+// less than its distance from the exposed surface.
 Vec3 DistanceField::beside(const Vec3& p, const SignedDistance& found) const {
   const double step = std::min(just_beside * wide_.extent, 0.2 * std::abs(found.value));
   return p + step * (found.gradient + Vec3(0.31, 0.47, 0.59));
@@ -237,7 +237,7 @@ void DistanceField::ask(const Points& at, std::vector<int>& faces, std::vector<S
 #pragma omp parallel for schedule(dynamic)
   for (int c = 0; c < chunks; ++c) {
     std::vector<Waiting> stack;
-    int last = -1;  // points on end are often near each other
+    int last = -1;  // consecutive points are often near each other
     for (int i = c * chunk; i < std::min(count, (c + 1) * chunk); ++i) {
       const Nearest near = search(row(at, i), faces[i] >= 0 ? faces[i] : last, stack);
       open[i] = !complete(row(at, i), near, found[i]);

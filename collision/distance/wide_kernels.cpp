@@ -37,7 +37,7 @@ struct EightVec3 {
   return result;
 }
 
-// Squared distances of the point from eight boxes. Results are written, not returned: clang returns no wide vector
+// Squared distances of the point from eight boxes. The result is an argument, since clang cannot return wide vectors
 // between functions of different instruction sets.
 [[gnu::always_inline]] inline void test_boxes(const WideTree::Node& node, const float* at, Eight& sum) {
   sum = Eight{};
@@ -48,7 +48,7 @@ struct EightVec3 {
   }
 }
 
-// Squared distance of a point, seen from the start of an edge, from the edge.
+// Squared distance of a point from an edge. p: relative to the start of the edge.
 [[gnu::always_inline]] inline Eight from_edge(const EightVec3& p, const EightVec3& edge, Eight length2) {
   const Eight s = smaller(larger(dot(p, edge) / length2, Eight{}), Eight{} + 1.0f);  // 0 where the edge has no length
   const EightVec3 rest{p.x - s * edge.x, p.y - s * edge.y, p.z - s * edge.z};

@@ -13,7 +13,7 @@ double half_area(const Box& box) {
   return x * y + y * z + z * x;
 }
 
-// Up to eight nodes that together hold what `root` holds, the largest ones opened first.
+// Up to eight nodes that together cover `root`, found by opening the largest ones first.
 std::vector<int> open_node(const Bvh& tree, int root) {
   std::vector<int> open{root};
   while (open.size() < WideTree::width) {

@@ -6,17 +6,17 @@
 namespace selvedge {
 namespace {
 
-constexpr double far_away = 2.5;  // in radii of a node: from there on it is a dipole
-constexpr double unclear = 0.1;   // of a sum with dipoles, about 1/2
+constexpr double far_away = 2.5;  // in radii of a node: beyond, it counts as a dipole
+constexpr double unclear = 0.1;   // range round 1/2 in which a sum with dipoles does not decide
 
-// Solid angle of the triangle whose corners lie at a, b, c from the viewer, positive seen from behind: in [-2 pi, 2
-// pi], at the ends on the triangle itself, where the sign means nothing (van Oosterom and Strackee 1983).
+// Solid angle of the triangle with corners a, b, c relative to the viewer, positive if seen from behind, in [-2 pi, 2
+// pi] (van Oosterom and Strackee 1983). On the triangle itself it is +-2 pi, and the sign means nothing.
 double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
   return 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
 }
 
-// What one triangle adds to the winding number.
+// The part of one triangle in the winding number.
 double winding_of(const Surface& surface, const Points& x, int t, const Vec3& p) {
   const Vec3 a = row(x, surface.triangles(t, 0)) - p, b = row(x, surface.triangles(t, 1)) - p;
   const Vec3 c = row(x, surface.triangles(t, 2)) - p;
@@ -44,7 +44,7 @@ WindingTree make_winding_tree(const Bvh& tree, const Surface& surface, const Poi
   WindingTree made;
   made.nodes.resize(tree.nodes.size());
   std::vector<double> weight(tree.nodes.size(), 0);
-  for (int i = static_cast<int>(tree.nodes.size()) - 1; i >= 0; --i) {  // children stand behind their parents
+  for (int i = static_cast<int>(tree.nodes.size()) - 1; i >= 0; --i) {  // children come after their parents
     WindingTree::Node& node = made.nodes[i];
     const int child = tree.nodes[i].child;
     if (child < 0) {

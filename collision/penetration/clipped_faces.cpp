@@ -43,16 +43,16 @@ std::vector<CountedRun> runs_of(const CountedPart& part) {
   return runs;
 }
 
-// The corners of a face in the sense of rotation that its turn shows.
+// The corners of a face, in reverse order if the face is turned.
 std::array<int, 3> turned_corners(const ClosedSurface& closed, int face) {
   return closed.turn[face] > 0 ? std::array{0, 1, 2} : std::array{0, 2, 1};
 }
 
 using Weights = std::array<double, 3>;
 
-// Sums `times` times the integrals over what lies to the left of closed ways.
+// Sums integrals over the areas to the left of closed polygons, each times `times` (Green's theorem).
 struct GreenSum {
-  int b, c;  // corners whose coordinates are u and v
+  int b, c;  // the corners whose barycentric coordinates are u and v
   double one = 0, u = 0, v = 0;
 
   void add(const Weights& from, const Weights& to, int times) {

@@ -39,7 +39,7 @@ std::vector<int> garments_of_triangles(const Surface& cloth, const Surface& clos
   if (!garments.empty() && static_cast<int>(garments.size()) != cloth.vertex_count)
     throw Error("a garment is needed for each vertex", "closed garments", "");
   std::vector<int> garment;
-  for (const auto& triangle : closed.triangles.rowwise())  // a fan's first corner is one of the cloth
+  for (const auto& triangle : closed.triangles.rowwise())  // a fan's first corner is a cloth vertex
     garment.push_back(garments.empty() ? cloth.component[triangle[0]] : garments[triangle[0]]);
   return garment;
 }

@@ -9,13 +9,13 @@ Vec3 twice_area(const ClosedSurface& closed, const Points& x, int face) {
   return closed.turn[face] * (row(x, corners(face, 1)) - a).cross(row(x, corners(face, 2)) - a);
 }
 
-// At both ends of a way together.
+// The sum of twice the vector areas at both ends of a path.
 Vec3 normal_of(const ClosedSurface& closed, const Points& x, const ContourClosing::Way& way) {
   return twice_area(closed, x, way.end_faces[0]) + twice_area(closed, x, way.end_faces[1]);
 }
 
-// Of two normals the second counts as its opposite where they are more than a right angle apart: which way a garment is
-// turned says nothing.
+// The sign of a side's normal in the sum: -1 for the second side if the two normals are more than a right angle apart,
+// since the orientation of a garment has no meaning here.
 double sense_of(const ClosedSurface& closed, const Points& x, const ContourClosing& closing, int side) {
   const bool against = normal_of(closed, x, closing.ways[0]).dot(normal_of(closed, x, closing.ways[1])) < 0;
   return side == 1 && against ? -1 : 1;
@@ -51,7 +51,7 @@ class MovingClosing {
  private:
   Vec3 at(CurvePoint point) const { return position_of(surface_, x_, crossings_, point); }
 
-  // Where an edge of one garment meets a face of the other: it slides along the edge with the face.
+  // Adds the derivative through a crossing of an edge and a face: it slides along the edge as the face moves.
   void pull_end(CurvePoint point, const Vec3& by) {
     const Crossing& c = crossings_[point];
     const Vec3 normal = twice_area(closed_, x_, c.face);
@@ -78,7 +78,8 @@ class MovingClosing {
     }
   }
 
-  // Where the plane cuts an edge, the point is carried by the plane: by both ends and by what is up in it.
+  // Adds the derivative through a point where the plane cuts an edge. The point moves with the edge and with the plane,
+  // which depends on both ends of the contour and on the normal `up_`.
   void pull_cut(CurvePoint point, const Vec3& by) {
     const Vec3 along = at(to_) - at(from_), place = at(point) - at(from_), normal = along.cross(up_);
     const double square = normal.squaredNorm();
@@ -94,7 +95,7 @@ class MovingClosing {
   void pull_up(const ContourClosing::Way& way, const Vec3& by) {
     const Vec3 normal = normal_of(closed_, x_, way);
     const double length = normal.norm();
-    if (length == 0) return;  // faces without area, or as much of them either way: nothing is up
+    if (length == 0) return;  // faces have no area, or normals cancel: `up` is not defined
     const Vec3 unit = normal / length, across = (by - unit * unit.dot(by)) / length;
     for (const int face : way.end_faces) {
       const int a = surface_.triangles(face, 0), b = surface_.triangles(face, 1), c = surface_.triangles(face, 2);

@@ -8,7 +8,7 @@
 namespace selvedge {
 namespace {
 
-// About the origin of the surface.
+// Sums about a common origin.
 struct DipoleSum {
   double area = 0;
   Vec3 centre = Vec3::Zero(), moment = Vec3::Zero();
@@ -25,7 +25,7 @@ void add_triangle(const std::array<Vec3, 3>& t, const Vec3& origin, DipoleSum& s
   sum.spread += middle * normal.transpose();
 }
 
-// Sums of a node from those of what is below it; children stand behind their parents.
+// The sums of each node from those of its children, which come after their parents.
 std::vector<DipoleSum> sums_of(const DipoleTree& tree, const Vec3& origin) {
   std::vector<DipoleSum> sums(tree.bvh.nodes.size());
   for (std::size_t i = sums.size(); i-- > 0;) {

@@ -63,7 +63,7 @@ int LockstepFlood::grow(int open) {
     for (int f = 0; f < count(); ++f)
       if (parent_[f] == f && !waiting_[f].empty()) growing.push_back(f);
     if (static_cast<int>(growing.size()) <= open) return growing.empty() ? -1 : growing.front();
-    // As long as no front ends or joins another, the list stays what it is.
+    // The list stays valid until a front ends or joins another.
     for (bool same = true; same;)
       for (const int f : growing) {
         if (parent_[f] != f || waiting_[f].empty()) {

@@ -48,7 +48,7 @@ int edge_between(const Surface& surface, int triangle, int a, int b) {
   return -1;
 }
 
-// Round a hole from one of its rim's crossings to another, forward or back in the order of the loop.
+// The path round a hole from one crossing of its rim to another, forward or backward in the order of the loop.
 std::vector<CurvePoint> round_hole(const std::vector<int>& loop, CurvePoint from, int at, CurvePoint to, int last,
                                    bool forward) {
   const int n = static_cast<int>(loop.size());
@@ -66,7 +66,7 @@ class Closer {
   // The rims' places at the contour's last and first point.
   std::array<RimPlace, 2> rims() const { return {rim_of(from()), rim_of(to())}; }
 
-  // On the inside of the rim, that is through the fan, which is left as it was.
+  // Along the rim on its inside, through the triangles of the fan.
   void go_along_rim(const std::array<RimPlace, 2>& rims, SurfaceCurve& curve, ContourClosing::Way& way) {
     const std::vector<int>& loop = closed_.loops[rims[0].loop];
     const int n = static_cast<int>(loop.size()), first = first_fan(closed_, rims[0].loop);
@@ -87,7 +87,7 @@ class Closer {
     cut(curve, fan, crossings_[to()].edge, to());
   }
 
-  // False if it meets a hole, or is too long.
+  // False if the path meets a hole or is too long.
   bool go_straight(const Vec3& up, SurfaceCurve& curve, ContourClosing::Way& way) {
     way.points = {from()};
     const Vec3 p = at(to()), toward = p - at(from());
@@ -130,14 +130,14 @@ class Closer {
 
  private:
   struct StripStep {
-    int face = 0, edge = 0;  // that is left, and through which edge
-    int before = -1;         // the step before, as a place in a list
+    int face = 0, edge = 0;  // the face that is left, and through which edge
+    int before = -1;         // index of the step before
   };
 
-  // From face to face through the middles of edges, on the cloth.
+  // The shortest path over the cloth's faces through the middles of edges (Dijkstra).
   std::vector<StripStep> shortest_strip(int first, int last) const {
     std::vector<StripStep> steps, strip;
-    std::set<std::tuple<double, int, int>> front;  // length of the way, edge, place of the step
+    std::set<std::tuple<double, int, int>> front;  // length of the path, edge, index of the step
     std::vector<char> crossed(static_cast<std::size_t>(surface_.edges.rows()), 0);
     const auto spread = [&](const Vec3& from, double length, int face, int before) {
       for (int k = 0; k < 3; ++k) {
@@ -169,7 +169,7 @@ class Closer {
     return first == face ? second : first;
   }
 
-  // The way goes on to a place on an edge of the face, and into the next one.
+  // Continues the path to a point on an edge of the face, and into the next face.
   void leave(int face, int edge, double share, SurfaceCurve& curve, ContourClosing::Way& way) {
     const int id = static_cast<int>(crossings_.size());
     crossings_.push_back({0, edge, 0, -1, share, {}});

@@ -29,7 +29,7 @@ std::vector<OrderedCut> ordered_cuts(const PartingSpace& space, std::span<const 
   return cuts;
 }
 
-// Shuts edges and marks faces for as long as it lives.
+// Shuts edges and marks cut faces; the destructor clears both.
 class Marks {
  public:
   Marks(PartingSpace& space, std::span<const SurfaceCurve* const> curves) : space_(space), curves_(curves) { set(1); }
@@ -66,7 +66,8 @@ class Marks {
 constexpr int right_of(int curve) { return 2 * curve; }
 constexpr int left_of(int curve) { return 2 * curve + 1; }
 
-// A curve inside a face crosses no edge: what is round it is found on the way to the face's first corner.
+// For a curve inside one face, which crosses no edge. The part round it is found along the line from the curve to the
+// face's first corner.
 void join_round(const PartingSpace& space, std::span<const SurfaceCurve* const> curves, int i, LockstepFlood& flood) {
   const Surface& surface = space.closed.surface;
   const int face = curves[i]->runs.front().face;
@@ -107,7 +108,7 @@ void join_round(const PartingSpace& space, std::span<const SurfaceCurve* const> 
     flood.seed(surface.triangles(face, 0), outer);
 }
 
-// Two fronts a curve, for what is on its right and on its left, joined and seeded by the edges that are cut.
+// Makes two fronts for each curve, for its right and its left; cut edges seed and join them.
 void start_fronts(const PartingSpace& space, std::span<const SurfaceCurve* const> curves, Marks& marks,
                   LockstepFlood& flood) {
   const int count = static_cast<int>(curves.size());
@@ -137,7 +138,8 @@ std::vector<int> with_one_part(LockstepFlood& flood, int curves) {
   return found;
 }
 
-// Colours 0 and 1 by front, different on both sides of each curve and 0 at `start`; empty if there are none such.
+// Colours 0 and 1 of the fronts, different on both sides of each curve, 0 at `start`; empty if there is no such
+// colouring.
 std::vector<int> two_colouring(LockstepFlood& flood, int curves, int start) {
   std::vector<std::vector<int>> beside(static_cast<std::size_t>(flood.count()));
   for (int i = 0; i < curves; ++i) {
@@ -179,7 +181,7 @@ double face_area(const PartingSpace& space, int face) {
   return 0.5 * (row(space.x, corners(face, 1)) - a).cross(row(space.x, corners(face, 2)) - a).norm();
 }
 
-// Integral of what counts over the area, as a part of the component's.
+// The counted area (area times count) as a fraction of the component's area.
 double share_of_area(PartingSpace& space, int component, const CountedPart& part) {
   const Surface& surface = space.closed.surface;
   if (space.component_area.empty()) {
@@ -195,7 +197,7 @@ double share_of_area(PartingSpace& space, int component, const CountedPart& part
   return all > 0 ? sum / all : 0;
 }
 
-// Is the part of colour 1 the larger one?
+// Is the part with colour 1 the larger one?
 bool odd_is_larger(PartingSpace& space, std::span<const SurfaceCurve* const> curves, int cut_faces,
                    const std::vector<int>& colour, LockstepFlood& flood) {
   const int component = curves.front()->component;
@@ -256,7 +258,7 @@ std::optional<PartedTogether> part_together(PartingSpace& space, std::span<const
 
 namespace {
 
-// Edges that a curve passes more often one way than the other; sorted.
+// Edges that a curve crosses more often in one direction than in the other, with the difference; sorted.
 std::vector<std::pair<int, int>> net_jumps(const SurfaceCurve& curve) {
   std::vector<std::pair<int, int>> all, net;
   for (const CurveCut& cut : curve.cuts) all.emplace_back(cut.edge, cut.jump);
@@ -270,7 +272,7 @@ std::vector<std::pair<int, int>> net_jumps(const SurfaceCurve& curve) {
   return net;
 }
 
-// A level for each front, 0 at `start`, higher by the jump at an edge's higher end; empty if there are none such.
+// A level for each front: 0 at `start`, higher by the jump at an edge's higher vertex; empty if the jumps contradict.
 std::vector<int> levels_of(const Surface& surface, const std::vector<std::pair<int, int>>& jumps, LockstepFlood& flood,
                            int start) {
   struct Step {
@@ -338,7 +340,7 @@ std::optional<std::vector<std::pair<int, int>>> part_alone(PartingSpace& space, 
   const std::vector<int> level = levels_of(surface, jumps, flood, flood.root(open >= 0 ? open : 0));
   if (level.empty()) return std::nullopt;
   const int base = base_level(space, curve, marks.faces(), flood, level);
-  if (open >= 0 && base != 0) flood.grow(0);  // what is still open counts too
+  if (open >= 0 && base != 0) flood.grow(0);  // the open front is listed too
   return listed_levels(flood, level, base);
 }
 

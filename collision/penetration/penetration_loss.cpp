@@ -33,7 +33,7 @@ class FrozenPatches {
     gradient.row(surface_.edges(c.edge, 0)) += (1 - c.s) * by.transpose();
     gradient.row(surface_.edges(c.edge, 1)) += c.s * by.transpose();
   }
-  // Twice the vector area of a face as it is turned.
+  // Twice the vector area of a face, with its turn.
   Vec3 normal(int face) const {
     return closed_.turn[face] * (corner(face, 1) - corner(face, 0)).cross(corner(face, 2) - corner(face, 0));
   }
@@ -64,7 +64,7 @@ class FrozenPatches {
   bool on_face_;
 };
 
-// Calls visit(pieces) for the pieces of each face. They lie side by side.
+// Calls visit(pieces) for the pieces of each face, which are contiguous.
 template <class Visit>
 void for_each_face(const std::vector<ClippedPiece>& pieces, const Visit& visit) {
   for (std::size_t first = 0, last = 0; first < pieces.size(); first = last) {
@@ -95,7 +95,7 @@ double exact_volume(const ClosedSurface& closed, const Points& x, const std::vec
   return scale * saturated_volume(size, options.saturation);
 }
 
-// Of the triangles that close an open contour, divided by `scale`.
+// The volume of the triangles that close an open contour, divided by `scale`.
 double frozen_closing(const FrozenPatches& patches, const ContourClosing::Way& way, const Vec3& centre, double scale,
                       Points* gradient) {
   double volume = 0;
@@ -113,7 +113,7 @@ double frozen_closing(const FrozenPatches& patches, const ContourClosing::Way& w
   return volume;
 }
 
-// `pull` times the volume that the patches have now.
+// `pull` times the present volume of the patches.
 double pulled_volume(const FrozenPatches& patches, const Triangles& corners, const PenetrationRegion& region,
                      double pull, Points* gradient) {
   double volume = 0;

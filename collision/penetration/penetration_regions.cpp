@@ -12,11 +12,11 @@ namespace {
 // The parts of the surface that bound a region, before it is measured.
 struct RegionPlan {
   std::vector<int> contours;
-  std::vector<CountedPart> parts;  // one a component, or one a curve
+  std::vector<CountedPart> parts;  // one for each component, or for each curve
   const ContourClosing* closing = nullptr;
 };
 
-// Curves between the same two components, which may be one.
+// Curves between the same two components, which may be the same one.
 struct CurveGroup {
   std::vector<const SurfaceCurve*> curves;  // in the order of contours
   std::vector<int> contours() const {
@@ -27,8 +27,8 @@ struct CurveGroup {
   }
 };
 
-// What is inside on a curve's left counts +1 if the curve runs forward along the contour, and the other side of the
-// contour runs backward.
+// An inside on the left of a curve counts +1 on side 0 of the contour and -1 on side 1: seen from there the contour
+// runs backward.
 int direction(const SurfaceCurve& curve) { return curve.side == 0 ? 1 : -1; }
 
 class Planner {
@@ -38,7 +38,7 @@ class Planner {
     for (const SurfaceCurve& curve : curves) of_contour_[curve.contour].push_back(&curve);
   }
 
-  // Each of them alone.
+  // Each contour alone.
   void plan_alone(const std::vector<int>& contours, const ContourClosing* closing = nullptr) {
     for (const int contour : contours) {
       RegionPlan plan{{contour}, {}, closing};
@@ -53,7 +53,7 @@ class Planner {
     }
   }
 
-  // All together; those that cannot be so, alone.
+  // All contours of the group together; those that cannot be, alone.
   void plan_together(CurveGroup group) {
     std::vector<int> alone;
     for (std::vector<int> bad; !group.curves.empty();) {
@@ -75,7 +75,7 @@ class Planner {
     int first_patch = 0;
   };
 
-  // False, with the contours at fault as far as they are known, if a component is not parted.
+  // False if the curves do not cut a component into inside and outside; `bad` then has the contours at fault, if known.
   bool try_together(const CurveGroup& group, std::vector<int>& bad, std::vector<int>& alone) {
     bad.clear();
     std::map<int, std::vector<const SurfaceCurve*>> by_component;
@@ -94,11 +94,11 @@ class Planner {
     return true;
   }
 
-  struct Link {  // the sign of a patch is that of a contour times `sign`
+  struct Link {  // sign of the patch = sign of the contour times `sign`
     int contour, patch, sign;
   };
 
-  // Contours that share a patch, with the patches, make a region, if there are signs that fit.
+  // Contours connected by common patches make a region with these patches, if there are consistent signs.
   void sign_and_plan(const std::vector<int>& contours, const std::vector<ParityPart>& parts, int patches,
                      std::vector<int>& alone) {
     const auto place = [&](int contour) {
@@ -114,7 +114,7 @@ class Planner {
         sets.join(c, count + patch);
       }
     std::vector<int> sign(static_cast<std::size_t>(count + patches), 0);
-    std::vector<char> fits(sign.size(), 1);  // by the lowest contour of a region
+    std::vector<char> fits(sign.size(), 1);  // indexed by the lowest contour of a region
     for (int c = 0; c < count; ++c)
       if (sets.root(c) == c) sign[c] = 1;
     for (bool changed = true; changed;) {
@@ -176,7 +176,7 @@ Vec3 mean_crossing(const PartingSpace& space, const std::vector<ClippedPiece>& p
   return count > 0 ? Vec3(sum / count) : row(space.x, 0);
 }
 
-// Clips and measures; false where the region is not closed.
+// Clips faces and measures the region. False if the region is not closed.
 bool measure(PartingSpace& space, const RegionPlan& plan, PenetrationRegion& region) {
   region.contours = plan.contours;
   for (const CountedPart& part : plan.parts) {

@@ -12,8 +12,8 @@ int corner_on(const Surface& surface, int triangle, int vertex) {
   return -1;
 }
 
-// Edges at a vertex on the way from one of its triangles to another, turning one way, with the triangle that each is
-// left from; nothing if a boundary comes between.
+// The edges at a vertex between two of its triangles, going round in one direction, each with the triangle before it;
+// nothing if a boundary comes between.
 std::optional<std::vector<std::array<int, 2>>> way_round(const Surface& surface, int vertex, int from, int to,
                                                          bool forward) {
   std::vector<std::array<int, 2>> way;
@@ -32,7 +32,8 @@ std::optional<std::vector<std::array<int, 2>>> way_round(const Surface& surface,
   return way;
 }
 
-// Leads the curve round the vertex at which it turns from one side of the contour to the other, by the shorter way.
+// Leads the curve round the loop vertex at which it turns from one side of the contour to the other, in the direction
+// with fewer edges.
 bool pass_vertex(const ClosedSurface& closed, int vertex, int from, int to, SurfaceCurve& curve) {
   const auto forward = way_round(closed.surface, vertex, from, to, true),
              back = way_round(closed.surface, vertex, from, to, false);
@@ -46,7 +47,7 @@ bool pass_vertex(const ClosedSurface& closed, int vertex, int from, int to, Surf
   return true;
 }
 
-// Appends what the contour is on one of its sides.
+// Appends the contour's curve on one of its sides.
 void add_side(const ClosedSurface& closed, const std::vector<Crossing>& crossings, const Contour& contour, int side,
               bool backwards, SurfaceCurve& curve) {
   const int segments = static_cast<int>(contour.segments.size()), points = static_cast<int>(contour.points.size());

@@ -6,13 +6,13 @@
 #include "collision/geometry/parallel.hpp"
 #include "collision/penetration/dipole_tree.hpp"
 
-// Four points go down the tree together, a lane each. Each lane decides for itself where a dipole stands for its
-// triangles, so that a point's result has the same bits whatever points go with it.
+// Four points traverse the tree together, one in each lane. Each lane decides by itself where a dipole replaces
+// triangles, so that a point's result has the same bits whatever the other three points are.
 namespace selvedge {
 namespace {
 
 constexpr int width = 4;
-// Without AVX gcc would align them to 16 bytes, and the code with AVX2 takes 32 for granted.
+// Without AVX gcc would align these types to 16 bytes, but the code for AVX2 relies on 32.
 using Lanes [[gnu::vector_size(32), gnu::aligned(32)]] = double;
 using Marks [[gnu::vector_size(32), gnu::aligned(32)]] = long long;  // all bits of a lane, or none
 
@@ -36,7 +36,7 @@ struct LaneVec3 {
 }
 [[gnu::always_inline]] inline bool any(const Marks& marks) { return (marks[0] | marks[1] | marks[2] | marks[3]) != 0; }
 
-// The points, the sums of what is far from them, and the solid angles of what is near.
+// The points, the sums of far dipoles, and the solid angles of near triangles.
 struct Group {
   LaneVec3 at;
   Marks left_out;
@@ -65,8 +65,9 @@ struct Group {
   return dot(moment, to) / (square * root(square));
 }
 
-// Solid angle / 2 is the argument of (real, imaginary) (van Oosterom and Strackee 1983). Arguments are added by
-// products, since an arc tangent costs more than all else; where the sum leaves the right half plane it is taken.
+// Half the solid angle is the argument of (real, imaginary) (van Oosterom and Strackee 1983). Arguments are summed by
+// complex products, since an arc tangent costs more than all else; it is taken only where the product leaves the right
+// half plane.
 [[gnu::always_inline]] inline void turn_by(const Lanes& real, const Lanes& imaginary, const Marks& open, Group& group) {
   const Marks right = open & (real > 0), others = open & ~right;
   const Lanes product = group.turn_real * real - group.turn_imaginary * imaginary,
@@ -85,7 +86,7 @@ struct Group {
   }
 }
 
-// The triangle itself; 0 from within its plane, which is the principal value.
+// Adds the solid angle of a triangle; 0 from a point in its plane, which is the principal value.
 [[gnu::always_inline]] inline void add_triangle(const std::array<Vec3, 3>& corners, const Marks& near, Group& group) {
   const LaneVec3 a = from_to(group.at, corners[0]), b = from_to(group.at, corners[1]),
                  c = from_to(group.at, corners[2]);
@@ -95,7 +96,7 @@ struct Group {
   turn_by(real, volume, near & (volume != 0), group);
 }
 
-// A face far away is a dipole, then three at the middles of its edges, and near by it is exact.
+// Adds a face: as a dipole if far away, nearer as three at the middles of its edges, and exactly if close by.
 [[gnu::always_inline]] inline void add_face(const DipoleTree& tree, int item, const Marks& marked, Group& group) {
   const Marks open = marked & (group.left_out != static_cast<long long>(tree.faces[item]));
   const DipoleTree::Dipole& dipole = tree.of_faces[item];
@@ -162,7 +163,7 @@ std::vector<double> winding_numbers(const DipoleTree& tree, std::span<const Wind
   const int count = static_cast<int>(points.size());
   parallel_for(chunks_of(count, width), 4, [&](int chunk) {
     Group group{{}, {}, {}, {}, Lanes{} + 1, {}};
-    for (int i = 0; i < width; ++i) {  // lanes that are not in use take after the last one
+    for (int i = 0; i < width; ++i) {  // unused lanes copy the last point
       const WindingPoint& point = points[std::min(chunk * width + i, count - 1)];
       group.at.x[i] = point.at[0];
       group.at.y[i] = point.at[1];

@@ -12,7 +12,7 @@
 namespace selvedge {
 namespace {
 
-// Each triangle turned so that its component, closed, has its outside before it.
+// A turn for each triangle such that the closed components have positive volume: normals point outward.
 std::vector<signed char> outward_turns(const ClosedSurface& closed, const Points& x) {
   const Surface& surface = closed.surface;
   std::vector<double> volume(static_cast<std::size_t>(surface.component_count), 0);
@@ -32,7 +32,7 @@ std::vector<signed char> outward_turns(const ClosedSurface& closed, const Points
   return turns;
 }
 
-// Of a face the parts that no crossing runs through, with what each of them weighs.
+// The cells of a face between crossings, and the weight of each.
 struct WeighedFace {
   int face = 0;
   std::vector<FaceCell> cells;
@@ -49,7 +49,7 @@ class GarmentWinding {
         found_(found),
         tree_(make_dipole_tree(surface_, x, faces, turn, far)) {}
 
-  // The faces that count, and with them those round them, which do not.
+  // The faces that count, and those next to them, which have weights 0.
   std::vector<WeighedFace> reach(const std::vector<std::array<int, 2>>& pairs, const std::vector<int>& segments) {
     for (const int s : segments)
       for (const int face : found_.segments[s].triangle) chords_[face].push_back(s);
@@ -78,7 +78,7 @@ class GarmentWinding {
   }
 
  private:
-  // What each cell of some faces weighs, by the winding number at its middle.
+  // The weights of the cells of some faces, from the winding number at the cell's middle.
   std::vector<WeighedFace> weigh(const std::vector<int>& faces) const {
     std::vector<WeighedFace> weighed;
     std::vector<WindingPoint> points;
@@ -118,7 +118,7 @@ class GarmentWinding {
   std::map<int, std::vector<int>> chords_;  // segments by face
 };
 
-// Faces that hang together, by neighbours or by crossings.
+// Group numbers of faces: neighbours, and faces that cross, are in one group.
 std::vector<int> groups_of(const Surface& surface, const std::vector<WeighedFace>& reached,
                            const std::vector<std::array<int, 2>>& pairs) {
   std::map<int, int> place;
@@ -142,7 +142,7 @@ struct PushSum {
   Vec3 middle = Vec3::Zero(), net = Vec3::Zero();
 };
 
-// Adds the pushes of the faces to the gradient, and what they come to to the report.
+// Adds the pushes of the faces to the gradient, and values and counts to the report.
 void sum_up(const Surface& surface, const Points& x, const std::vector<signed char>& turn,
             const std::vector<WeighedFace>& reached, const std::vector<int>& group, double weight, Points* gradient,
             WindingReport& report, PushSum& total) {

@@ -15,9 +15,9 @@
 namespace selvedge {
 namespace {
 
-constexpr double kept_shape = 1e-3;  // of a mean edge: farther off no vertex is from where a rigid motion takes it
+constexpr double kept_shape = 1e-3;  // of a mean edge: largest distance of a vertex from a rigid motion
 
-// 1 for vertices of triangles that cross or are buried, and of those next to them.
+// Sets 1 for vertices of triangles that cross or are buried, and of triangles next to these.
 void add_crossing(const Surface& surface, const Points& x, std::vector<char>& off) {
   const std::vector<SheetView> view{{&surface, &x}};
   const Segments found = find_segments(view);
@@ -30,7 +30,7 @@ void add_crossing(const Surface& surface, const Points& x, std::vector<char>& of
 
 Vec3 normal_of(const std::array<Vec3, 3>& at) { return (at[1] - at[0]).cross(at[2] - at[0]).normalized(); }
 
-// The frame of a triangle: along its first edge, across it, and its normal.
+// The frame of a triangle: along its first edge, perpendicular to it in the plane, and the normal.
 Mat3 frame_of(const std::array<Vec3, 3>& at) {
   const Vec3 along = (at[1] - at[0]).normalized(), normal = normal_of(at);
   Mat3 frame;
@@ -38,7 +38,7 @@ Mat3 frame_of(const std::array<Vec3, 3>& at) {
   return frame;
 }
 
-// The part of an obstacle that is off, at the start and the end of a step.
+// The part of an obstacle that can be switched off, at the start and the end of a step.
 class Closing {
  public:
   Closing(const Surface& surface, const Points& x0, const Points& x1, const std::vector<int>& faces, double reach)
@@ -53,7 +53,7 @@ class Closing {
     return nearest_face(start_, p, within, [](int) { return true; }).face >= 0;
   }
 
-  // A face that p is carried through, and where it is carried.
+  // The face through which the body's motion would take p, and where p would end.
   struct Passage {
     int face;
     Vec3 to;
@@ -76,7 +76,7 @@ class Closing {
     const std::array<Vec3, 3> at = corners_of(surface_, x, t);
     return normal_of(at).dot(p - at[0]);
   }
-  // Along with the closest point of the face, turned as the face is.
+  // Where p ends if it moves rigidly with the frame of the face.
   Vec3 carried(const NearestFace& by, const Vec3& p) const {
     const std::array<Vec3, 3> before = corners_of(surface_, x0_, by.face), after = corners_of(surface_, x1_, by.face);
     Vec3 from = Vec3::Zero(), to = Vec3::Zero();
@@ -89,11 +89,11 @@ class Closing {
 
   const Surface& surface_;
   const Points &x0_, &x1_;
-  double reach_;  // how far a step may take anything here [m]
+  double reach_;  // largest motion of these faces in the step, plus a mean edge [m]
   FaceTree start_, end_;
 };
 
-// The triangles that are off.
+// The triangles whose vertices are all marked.
 std::vector<int> faces_of(const Surface& body, const std::vector<char>& off) {
   std::vector<int> faces;
   for (int t = 0; t < body.triangles.rows(); ++t)
@@ -101,11 +101,11 @@ std::vector<int> faces_of(const Surface& body, const std::vector<char>& off) {
   return faces;
 }
 
-// Marks vertices of the cloth, but for `tangled` ones, that a motion of the body catches.
+// Marks vertices of the cloth, except `tangled` ones, that the motion of the body catches.
 void catch_anew(const Surface& body, const Points& x1, const Closing& closing, const Points& cloth,
                 const std::vector<char>& tangled, std::vector<char>& caught) {
   const std::vector<char> closed = closed_shells(body);
-  std::vector<int> into;  // vertices that are carried through a face of a closed shell
+  std::vector<int> into;  // vertices that would pass through a face of a closed shell
   std::vector<Vec3> places;
   for (int v = 0; v < cloth.rows(); ++v) {
     if (!cloth.row(v).allFinite() || (!tangled.empty() && tangled[v])) continue;

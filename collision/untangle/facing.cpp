@@ -9,11 +9,11 @@
 namespace selvedge {
 namespace {
 
-constexpr double come_closer = 0.5;   // of their distance at rest: what is nearer has come together
-constexpr double deepest_part = 0.7;  // of a part's thickness, that another is in it: beyond, it comes out behind
-constexpr double widened = 1 + 1e-9;  // bounds of many vertices are taken wider by this
-constexpr int in_a_group = 4;         // vertices of a cube that are looked at together
-constexpr int cubes_away = 2;         // cubes that the reach is long
+constexpr double come_closer = 0.5;   // of their distance at rest: vertices that are nearer have come together
+constexpr double deepest_part = 0.7;  // of a part's thickness: deeper, the other part counts as behind it
+constexpr double widened = 1 + 1e-9;  // factor that widens bounds of many vertices, for rounding
+constexpr int in_a_group = 4;         // vertices of a cube in a group
+constexpr int cubes_away = 2;         // length of the reach in cubes
 
 struct Extent {
   Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
@@ -27,7 +27,7 @@ struct Extent {
   }
 };
 
-// The least that a dot product of a member of a and one of b can be.
+// A lower bound of the dot product of a vector in a and a vector in b.
 double least_dot(const Extent& a, const Extent& b) {
   const Eigen::Array3d ll = a.lo.array() * b.lo.array(), lh = a.lo.array() * b.hi.array(),
                        hl = a.hi.array() * b.lo.array(), hh = a.hi.array() * b.hi.array();
@@ -42,7 +42,7 @@ double largest_square(const Extent& a, const Extent& b) {
   return (a.hi - b.lo).cwiseAbs().cwiseMax((b.hi - a.lo).cwiseAbs()).squaredNorm();
 }
 
-// Of the vertices of a cube of the grid, or of some of them.
+// Bounds of the vertices of a cube, or of a group in it.
 struct Extents {
   Extent x, normals, rest;
   void take(const Extents& other) {
@@ -52,22 +52,22 @@ struct Extents {
   }
 };
 
-// Places in the grid's order, side by side in one cube.
+// Vertices [first, last) in the grid's order, all in one cube.
 struct VertexGroup {
   int first, last;
   Extents extents;
 };
 
-// A posed body with its vertices also in the order of a grid: whoever looks round goes through memory in order.
+// A posed body with its vertices also in the order of a grid, so that searches read memory in order.
 struct PosedCubes {
   const FacingBody& body;
   const Points &x, &normals;
   CellGrid grid;
   Points x_near, normals_near;
   std::vector<int> filled;       // cubes that hold vertices
-  std::vector<int> place;        // of each cube among these
+  std::vector<int> place;        // of each cube its index in `filled`; -1: empty
   std::vector<Extents> extents;  // of these
-  std::vector<int> first_group;  // of these; one more ends them
+  std::vector<int> first_group;  // of each filled cube; one more at the end
   std::vector<VertexGroup> groups;
 
   PosedCubes(const FacingBody& b, const Points& posed, const Points& n)
@@ -99,7 +99,7 @@ struct PosedCubes {
   }
 };
 
-// False only if no vertex of a faces one of b that was farther at rest.
+// False only if no vertex of a faces a vertex of b that was farther away at rest.
 bool may_face(const Extents& a, const Extents& b, double reach) {
   const double square = least_square(a.x, b.x);
   return square <= widened * reach * reach && least_dot(a.normals, b.normals) <= facing_cosine + (widened - 1) &&
@@ -140,8 +140,8 @@ int facing_vertex(const PosedCubes& posed, int v, const std::vector<int>& near) 
 
 }  // namespace
 
-// Most cubes near a vertex hold nothing but skin of its own part, which looks the same way and was as near at rest:
-// they are left out for all vertices of a cube at once, and so are groups for those of a group.
+// Most cubes near a vertex have only vertices of the same part, which face the same way and were as near at rest. Such
+// cubes are skipped for all vertices of a cube at once, and such groups for all vertices of a group.
 std::vector<int> facing_vertices(const FacingBody& body, const Points& x, const Points& normals) {
   const PosedCubes posed(body, x, normals);
   std::vector<int> partner(static_cast<std::size_t>(x.rows()));

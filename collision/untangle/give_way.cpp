@@ -17,7 +17,8 @@ namespace {
 
 using Pairs = std::vector<std::pair<int, int>>;  // of triangles that cross
 
-// How thick the body is under each vertex: to the nearest one behind it that looks the other way, at most `most` [m].
+// The thickness of the body under each vertex: the distance to the nearest vertex behind it that faces the other way,
+// at most `most` [m].
 std::vector<double> thicknesses(const Surface& body, const Points& x, double most, double through) {
   const Points normals = vertex_normals(body, x);
   const CellGrid grid(x, most / 2);
@@ -32,7 +33,7 @@ std::vector<double> thicknesses(const Surface& body, const Points& x, double mos
   return thickness;
 }
 
-// The triangles among some vertices.
+// The triangles with all corners among these vertices, renumbered.
 Surface part_of(const Surface& body, const std::vector<int>& vertices) {
   std::vector<int> number(body.vertex_count, -1);
   for (std::size_t i = 0; i < vertices.size(); ++i) number[vertices[i]] = static_cast<int>(i);
@@ -47,7 +48,7 @@ Surface part_of(const Surface& body, const std::vector<int>& vertices) {
 
 }  // namespace
 
-// A body before it is posed.
+// What depends only on the body at rest.
 struct SoftTissue {
   SoftTissue(Surface surface, const Points& rest, const GiveWayOptions& o)
       : body(std::move(surface)),
@@ -57,25 +58,25 @@ struct SoftTissue {
         thickness(thicknesses(body, rest, reach, o.through)) {
     intersecting_pairs(body, rest, at_rest);
   }
-  SoftTissue(const SoftTissue&) = delete;  // the shape looks at the body
+  SoftTissue(const SoftTissue&) = delete;  // the shape points to the body
   SoftTissue& operator=(const SoftTissue&) = delete;
 
   Surface body;
   KeptShape shape;
   GiveWayOptions options;
-  double reach;                   // within which vertices meet: both go as far as they can, and leave room [m]
+  double reach;                   // largest distance of vertices that meet: both move by `most` and leave room [m]
   std::vector<double> thickness;  // under each vertex [m]
-  IntersectionCache at_rest;      // Its tree serves poses, refitted, and changes no pair.
+  IntersectionCache at_rest;      // its tree is refitted for poses
 };
 
 namespace {
 
-// A vertex and the one that it meets, on another part of the body.
+// A vertex and the vertex of another part of the body that it meets.
 struct Meeting {
   int vertex, partner;
-  Vec3 apart;    // the direction to go [unit]
-  double least;  // distance along it [m]
-  double share;  // of what is missing that the vertex goes
+  Vec3 apart;    // direction of its motion, unit length
+  double least;  // distance wanted along it [m]
+  double share;  // of the missing distance by which the vertex moves
 };
 
 double gap_of(const Meeting& m, const Points& x) { return m.apart.dot(row(x, m.vertex) - row(x, m.partner)); }
@@ -90,14 +91,14 @@ std::vector<Meeting> meetings(const SoftTissue& tissue, const Points& x) {
     const Vec3 apart = (row(normals, w) - row(normals, v)).normalized(), offset = row(x, v) - row(x, w);
     const double gap = offset.dot(apart), aside = (offset - gap * apart).norm();
     const double least = std::min(tissue.options.room, tissue.options.rest_room * (rest.row(v) - rest.row(w)).norm());
-    // What passes it by, an edge or more aside, is not over it; either goes half the way.
+    // Each moves half of what is missing; less if it is beside the other, from an edge to two edges off.
     const double share = 0.5 * std::clamp(2 - aside / tissue.shape.edge_length[v], 0.0, 1.0);
     if (gap < least && share > 0) found.push_back({v, w, apart, least, share});
   }
   return found;
 }
 
-// The marked vertices and what goes along with them, listed.
+// The marked vertices and those round them that move along.
 std::vector<int> with_surroundings(const SoftTissue& tissue, const std::vector<char>& marked) {
   const std::vector<char> near = within_rings(tissue.shape, marked, tissue.options.press_rings);
   std::vector<int> vertices;
@@ -106,8 +107,8 @@ std::vector<int> with_surroundings(const SoftTissue& tissue, const std::vector<c
   return vertices;
 }
 
-// From x each vertex of a meeting goes its share, no farther from where it is skinned to than it may or is, and what
-// lies round it goes along, less and less.
+// Moves each vertex of a meeting from x by its share. Its distance from the skinned position stays below `most`, or
+// below what it was in x. Vertices round it move along, less with distance.
 Points pressed(const SoftTissue& tissue, const Points& skinned, const Points& x, const std::vector<Meeting>& found) {
   if (found.empty()) return x;
   std::vector<char> meets(static_cast<std::size_t>(tissue.body.vertex_count), 0);
@@ -129,13 +130,13 @@ Points pressed(const SoftTissue& tissue, const Points& skinned, const Points& x,
   return to;
 }
 
-// Where a pressed body crosses itself still.
+// A place where a pressed body still crosses itself.
 struct Place {
-  std::vector<int> vertices;        // what crosses, skinned or pressed, and what lies round it
+  std::vector<int> vertices;        // that cross, skinned or pressed, and those round them
   std::ptrdiff_t skinned, pressed;  // how many pairs of triangles cross there
 };
 
-// What crosses and hangs together, along edges or by a pair, is one place.
+// Crossing triangles that are connected, along edges or by a pair, are one place.
 std::vector<Place> places_of(const SoftTissue& tissue, const Pairs& skinned, const Pairs& pressed) {
   const Surface& body = tissue.body;
   DisjointSets sets(body.vertex_count);
@@ -162,7 +163,7 @@ std::vector<Place> places_of(const SoftTissue& tissue, const Pairs& skinned, con
   return places;
 }
 
-// A place untangled by itself, from where its vertices are now; none where it stays tangled or goes too far from x.
+// A place untangled by itself, starting at `from`; none if it stays tangled or a vertex ends too far from x.
 std::optional<Points> mended(const SoftTissue& tissue, const Place& place, const Points& from, const Points& x) {
   UntangleOptions mending;
   mending.iterations = tissue.options.mend_iterations;
@@ -175,9 +176,9 @@ std::optional<Points> mended(const SoftTissue& tissue, const Place& place, const
   return parted.x;
 }
 
-// Pressed more where there is less room than there should be: mending leaves hardly any, and what came from deep may
-// meet others than it met at first. What crosses by that in a spot, as the bottom of a fold does, is mended; more of it
-// is pressed less, or stays.
+// Presses again where there is too little room: mending leaves hardly any, and vertices that came from deep inside may
+// meet others than at first. If this makes crossings in a small spot, as at the bottom of a fold, the spot is mended.
+// Larger places are pressed less, or stay as they were.
 Points opened(const SoftTissue& tissue, const Points& skinned, const Points& x, const std::vector<Meeting>& found,
               const Pairs& left, IntersectionCache& cache) {
   Points to = pressed(tissue, skinned, x, found);
@@ -198,7 +199,7 @@ Points opened(const SoftTissue& tissue, const Points& skinned, const Points& x, 
   return intersecting_pairs(tissue.body, to, cache).size() <= left.size() ? to : x;
 }
 
-// Meetings that leave next to no room, or are next to none through.
+// Meetings with a gap near zero, positive or negative, of vertices that have moved.
 std::vector<Meeting> pinches_of(const SoftTissue& tissue, const std::vector<Meeting>& found, const Points& x,
                                 const Points& to) {
   const double pinched = tissue.options.pinched_part * tissue.options.room;
@@ -211,7 +212,7 @@ std::vector<Meeting> pinches_of(const SoftTissue& tissue, const std::vector<Meet
   return pinches;
 }
 
-// Vertices of a body that move together: those that do along edges, and what meets.
+// Sets of vertices that move together: moving vertices along edges, and vertices that meet.
 DisjointSets moved_together(const SoftTissue& tissue, const Points& from, const Points& to,
                             std::initializer_list<const std::vector<Meeting>*> meetings) {
   const auto moves = [&](int v) { return to.row(v) != from.row(v); };
@@ -223,14 +224,14 @@ DisjointSets moved_together(const SoftTissue& tissue, const Points& from, const 
   return sets;
 }
 
-// A body and what of it has come together.
+// A pressed body and its meetings.
 struct Pressed {
   Points x;
   std::vector<Meeting> close;
 };
 
-// The body pressed from `once` to `twice`, but for what moves together into more pinches than it had: that stays, and
-// so does all if more than `most_pairs` would cross.
+// The body pressed from `once` to `twice`. Sets that move together and get more pinches stay as in `once`, and so does
+// the whole body if more than `most_pairs` pairs would cross.
 Pressed where_it_opens(const SoftTissue& tissue, const Points& skinned, const Pressed& once, const Points& twice,
                        std::size_t most_pairs, IntersectionCache& cache) {
   Pressed next{twice, meetings(tissue, twice)};
@@ -246,13 +247,13 @@ Pressed where_it_opens(const SoftTissue& tissue, const Points& skinned, const Pr
   return next;
 }
 
-// Where over some area next to no room is left between parts after all, cloth would be held by faces that touch, and
-// there is no place to put it. There what hangs together gives way less, so that the parts pass through each other.
+// If hardly any room is left between parts over some area, faces that touch would hold cloth that has no room. There
+// vertices that move together give way less, so that the parts pass through each other.
 void let_through(const SoftTissue& tissue, const std::vector<Meeting>& pinches, const Points& x, Points& to) {
   const double pinched = tissue.options.pinched_part * tissue.options.room;
   if (static_cast<int>(pinches.size()) < tissue.options.many_pinched) return;
   DisjointSets sets = moved_together(tissue, x, to, {&pinches});
-  Eigen::VectorXi count = Eigen::VectorXi::Zero(tissue.body.vertex_count);  // by set
+  Eigen::VectorXi count = Eigen::VectorXi::Zero(tissue.body.vertex_count);  // pinches, by set
   Eigen::VectorXd share = Eigen::VectorXd::Ones(tissue.body.vertex_count);  // of its displacements
   for (const Meeting& m : pinches) {
     const double now = gap_of(m, to), skinned = gap_of(m, x);
@@ -270,8 +271,9 @@ void let_through(const SoftTissue& tissue, const std::vector<Meeting>& pinches, 
 GiveWay::GiveWay(Surface body, const Points& rest, const GiveWayOptions& options)
     : tissue_(std::make_shared<const SoftTissue>(std::move(body), rest, options)) {}
 
-// Pressed apart where parts meet. Where that does not do, mended place by place: from there, or as skinned, or else
-// left as it crosses less. Then pressed more for room, where no more of it would next to touch by that.
+// Presses parts apart where they meet. Places that still cross are untangled one by one: from the pressed shape, or
+// from the skinned one, or else left in the one with fewer crossings. Then presses for more room, where this makes no
+// further pinches.
 Points GiveWay::operator()(const Points& x) const {
   std::vector<Meeting> found = meetings(*tissue_, x);
   Pressed body{pressed(*tissue_, x, x, found), {}};

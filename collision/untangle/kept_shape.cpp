@@ -17,7 +17,7 @@ Edges32 edges_of(const Surface& surface, const Points& x, int triangle) {
   return edges;
 }
 
-// A triangle's edges in coordinates of its plane; the determinant is twice the area.
+// A triangle's edges in 2D coordinates of its plane; the determinant is twice the area.
 Eigen::Matrix2d flattened(const Edges32& edges) {
   const double base = edges.col(0).norm();
   const double along = base > 0 ? edges.col(0).dot(edges.col(1)) / base : 0;

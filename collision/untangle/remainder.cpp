@@ -14,7 +14,8 @@ std::string name_of(const ContourSide& side) {
          std::to_string(side.component);
 }
 
-// What held the cloth round the contour: its triangles' shape, or the distance that vertices off the contours may go.
+// What stopped the cloth round the contour: the limits on its triangles' stretch, or on the motion of vertices away
+// from contours.
 std::string held_by(std::span<const SheetView> sheets, const Contour& contour, const KeptShape& shape,
                     const std::vector<double>& reach, const StretchRange& range) {
   const Surface& cloth = *sheets[0].surface;

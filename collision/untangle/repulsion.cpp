@@ -23,7 +23,7 @@ Repulsion::Repulsion(const Surface& cloth, std::span<const SheetView> obstacles,
   input_ = gather_nodes(shape.x0, obstacle_points_);
 }
 
-// Is a vertex of the one primitive joined by an edge to one of the other?
+// Does an edge join a vertex of one primitive to a vertex of the other?
 bool Repulsion::neighbours(const NodePair& pair) const {
   const int first = pair.kind == PairKind::vertex_face ? 1 : 2;
   for (int i = 0; i < first; ++i) {
@@ -41,7 +41,8 @@ bool Repulsion::is_movable(const NodePair& pair, const std::vector<double>& reac
                      [&](int node) { return world_.is_cloth(node) && reach[node] > 0; });
 }
 
-// Is one of the primitives away from contours and enclosed regions? Of a pair with an obstacle, that of the cloth.
+// Is one of the primitives (with an obstacle: that of the cloth) away from contours and enclosed regions? wide: are
+// both?
 bool Repulsion::is_clear(const NodePair& pair, const std::vector<char>& tangled, bool wide) const {
   const int first = pair.kind == PairKind::vertex_face ? 1 : 2;
   std::array<bool, 2> clear{true, true};

@@ -13,11 +13,11 @@
 namespace selvedge {
 namespace {
 
-// Gathers a separation; what belongs to an obstacle moves into the right-hand side.
+// Collects the terms of a separation; those of obstacles go to the right-hand side.
 struct Maker {
   std::span<const SheetView> sheets;
   Separation made;
-  double value = 0;  // of the left-hand side now
+  double value = 0;  // of the left-hand side at present
 
   Maker(std::span<const SheetView> all, const Vec3& direction) : sheets(all) { made.direction = direction; }
   void add(int sheet, int vertex, double weight) {
@@ -71,11 +71,11 @@ struct Setting {
   }
 };
 
-// Vertices on the wrong side that hang together, with the contours that bound them.
+// A connected set of vertices on the wrong side, with the contours that bound it.
 struct Patch {
   int region = 0;
   std::vector<int> vertices;
-  std::map<std::pair<int, int>, int> bounds;  // contour and side -> votes for which side of the partner is right
+  std::map<std::pair<int, int>, int> bounds;  // contour and side -> votes for the right side of the partner
 };
 
 // Numbers of the patches by region and vertex, -1 elsewhere.
@@ -108,7 +108,7 @@ std::vector<Patch> find_patches(const Setting& setting, std::span<const Region> 
 
 Vec3 normal_at(const Setting& setting, const Crossing& c) { return setting.face_normal(c.face_sheet, c.face); }
 
-// A crossing whose edge has one end on the wrong side: that end goes to the side of the other.
+// For a crossing whose edge has one end on the wrong side: moves that end to the side of the other.
 Separation pull_back(const Setting& setting, const Crossing& c, int wrong, int right) {
   const Vec3 normal = normal_at(setting, c);
   const Vec3 from_face = row(*setting.sheets[c.edge_sheet].x, right) - setting.at(c.face_sheet, c.face, c.weight);
@@ -149,7 +149,7 @@ void part_crossings(const Setting& setting, int number, const PatchOf& patch_of,
                     std::vector<Separation>& separations) {
   const Contour& contour = setting.contours[number];
   const ContourTranslation translation = contour_translation(setting.sheets, setting.found, contour);
-  // Not clamped: steps that were shortened may be below the gap.
+  // Not std::clamp: a shortened step may be below the gap.
   const double step = std::min(std::max(0.25 * contour.length, setting.lengths.gap), setting.lengths.step);
   const bool body = meets_closed_obstacle(setting, contour);
   for (std::size_t i = 0; i < contour.points.size(); ++i) {
@@ -175,11 +175,11 @@ void part_crossings(const Setting& setting, int number, const PatchOf& patch_of,
   }
 }
 
-// Faces of the partner that the vertices of a patch went through, or may stand behind, and the side to go to.
+// Faces of the partner that the vertices of a patch went through, or may be behind, and the side to which they must go.
 struct Target {
   int sheet = 0;
   std::vector<int> faces;
-  double sign = 0;  // of the faces' normals
+  double sign = 0;  // side relative to the faces' normals; 0: not known
 };
 
 Target target_of(const Setting& setting, const Patch& patch, std::span<const Region> regions,
@@ -189,7 +189,7 @@ Target target_of(const Setting& setting, const Patch& patch, std::span<const Reg
   int votes = 0;
   std::vector<char> partner(surface.vertex_count, 0);
   for (const auto& [bound, count] : patch.bounds) {
-    // A patch on both sides of a contour is a fold, whose partner is itself.
+    // A patch on both sides of a contour is a fold; its partner is the patch itself.
     if (patch.bounds.count({bound.first, 1 - bound.second})) return target;
     votes += count;
     const std::vector<int>& path = setting.contours[bound.first].sides[1 - bound.second].triangles;
@@ -207,7 +207,7 @@ Target target_of(const Setting& setting, const Patch& patch, std::span<const Reg
   return target;
 }
 
-// A vertex toward the right side of its nearest point among the faces; none if it is there.
+// Adds a demand that moves a vertex toward the right side of its nearest point on the faces; none without a face.
 void push_through(const Setting& setting, int vertex, int sheet, const NearestFace& nearest, double sign,
                   std::vector<Separation>& separations) {
   if (nearest.face < 0) return;

@@ -24,9 +24,9 @@ struct Tangle {
   std::vector<Region> regions;
   std::vector<char> enclosed;  // vertices of the cloth on the wrong side
   int pairs = 0, vertex_pairs = 0;
-  int inside = 0;     // vertices in closed obstacles, contours or not
+  int inside = 0;     // vertices inside closed obstacles, with or without contours
   double length = 0;  // of all contours [m]
-  double merit = 0;   // that, and a mean edge for each vertex in a closed obstacle [m]
+  double merit = 0;   // length, plus a mean edge for each vertex inside a closed obstacle [m]
 
   int wrong() const { return pairs + vertex_pairs + inside; }
   bool clean() const { return wrong() == 0; }
@@ -41,8 +41,7 @@ std::vector<SheetView> with_cloth(const Surface& cloth, const Points& x, std::sp
   return sheets;
 }
 
-// Obstacles with a tree each, and what of them does not face the outside: they stand still while it is asked again and
-// again what meets them.
+// Obstacles with their trees and buried triangles. Both are made once, since obstacles stand still.
 struct Standing {
   std::vector<Bvh> trees;
   std::vector<std::vector<char>> buried;
@@ -59,7 +58,7 @@ struct Standing {
       buried.push_back(buried_triangles(*views[k].surface, *views[k].x, find_segments({&views[k], 1})));
     }
   }
-  Standing(const Standing&) = delete;  // the views look at the trees
+  Standing(const Standing&) = delete;  // the views point to the trees
   Standing& operator=(const Standing&) = delete;
 };
 
@@ -69,7 +68,7 @@ Segments segments_that_count(std::span<const SheetView> sheets, const UntangleOp
   return found;
 }
 
-// found: the segments of the sheets that count.
+// found: from segments_that_count.
 Tangle tangle_of(std::span<const SheetView> sheets, Segments found, const KeptShape& shape,
                  const UntangleOptions& options) {
   const std::vector<int>& layers = options.layers;
@@ -121,20 +120,20 @@ void satisfy(std::span<const Separation> separations, const std::vector<double>&
       if (reach[s.vertex[i]] > 0) square += s.weight[i] * s.weight[i];
     }
     if (value >= s.least || square == 0) continue;
-    // A small weight alone cannot hold the whole of it.
+    // Limits the motion where only a node with a small weight may move.
     const double size = (s.least - value) / std::max(square, 0.1);
     for (int i = 0; i < s.count; ++i)
       if (reach[s.vertex[i]] > 0) x.row(s.vertex[i]) += size * s.weight[i] * s.direction.transpose();
   }
 }
 
-// What may move, and how far from the input.
+// Which vertices may move, and how far from the input [m].
 struct Freedom {
   std::vector<double> reach;
   std::vector<int> vertices, triangles;
 };
 
-// What far vertices' motion is measured in: their own edges, or the mean edge where that is shorter [m].
+// The unit of far_limit: a vertex' own mean edge, or the mesh's if that is shorter [m].
 double far_unit(const KeptShape& shape, int vertex) { return std::min(shape.edge_length[vertex], shape.mean_edge); }
 
 Freedom make_freedom(const KeptShape& shape, const std::vector<char>& tangled, const UntangleOptions& options) {
@@ -156,7 +155,7 @@ Freedom make_freedom(const KeptShape& shape, const std::vector<char>& tangled, c
   return freedom;
 }
 
-// The vertices round contours that came up later than the first may move a little, too.
+// Vertices round contours that are new since the start may move by far_limit too.
 void widen(const KeptShape& shape, const std::vector<char>& tangled, const UntangleOptions& options, Freedom& freedom) {
   const Freedom more = make_freedom(shape, tangled, options);
   bool wider = false;
@@ -204,7 +203,7 @@ void keep_range(const KeptShape& shape, const Freedom& freedom, const UntangleOp
   hold_back(shape, freedom.triangles, outer, before, x);
 }
 
-// Takes vertices back to `before` until no pair meets that was away from the contours there, and the triangles are in
+// Moves vertices back toward `before` until no pair meets whose vertices were all untangled there, and stretches are in
 // range. Returns the tangle of x.
 Tangle keep_clean(const KeptShape& shape, const Freedom& freedom, std::span<const SheetView> obstacles,
                   const std::vector<char>& tangled, const UntangleOptions& options, const Points& before, Points& x) {
@@ -233,7 +232,7 @@ Tangle keep_clean(const KeptShape& shape, const Freedom& freedom, std::span<cons
   }
 }
 
-// Gives triangles of a clean cloth back what shape they can have without new contours.
+// Lets stretched triangles of a clean cloth recover their shape as far as that makes no new contours.
 void relax(const KeptShape& shape, const Freedom& freedom, std::span<const SheetView> obstacles, Repulsion& repulsion,
            const UntangleOptions& options, Points& x) {
   const std::vector<char> none(shape.surface->vertex_count, 0);
@@ -270,13 +269,13 @@ void measure(const KeptShape& shape, const std::vector<char>& near, UntangleResu
 }
 
 struct Attempt {
-  Points x;  // the best that was seen
+  Points x;  // the best state so far
   Tangle tangle;
   Freedom freedom;
   int iterations = 0;
 };
 
-// From the input on. wide: nothing at a contour repels anything.
+// Untangles from the input. wide: the second rule of repulsion, without pairs that have a tangled vertex.
 Attempt attempt(const KeptShape& shape, const Standing& standing, const Tangle& input, Freedom freedom, bool wide,
                 Repulsion& repulsion, const UntangleOptions& options) {
   const Surface& cloth = *shape.surface;
@@ -336,7 +335,7 @@ UntangleResult untangle(const Surface& cloth, const Points& x, std::span<const S
   const std::vector<char> tangled = tangled_vertices(sheets, input);
   const Freedom freedom = make_freedom(shape, tangled, options);
   Repulsion repulsion(cloth, obstacles, shape);
-  // Two opinions of what repulsion keeps apart near a contour: where the one gets stuck the other may not.
+  // Where the first rule of repulsion gets stuck, the second may not.
   Attempt best = attempt(shape, standing, input, freedom, false, repulsion, options);
   int iterations = best.iterations;
   if (!best.tangle.clean() && options.second_opinion) {
