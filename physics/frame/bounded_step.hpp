@@ -9,8 +9,8 @@
 
 namespace selvedge {
 
-// Calls `take` and returns its report. Where a search meets more pairs than it may look at (pair_budget.hpp), or `stop`
-// ends a search (stop_scope.hpp), it returns the report of a rejected step.
+// Calls `take` and returns its report. If a search meets too many pairs (pair_budget.hpp), or `stop` ends a search
+// (stop_scope.hpp), it returns the report of a rejected step instead.
 template <class Take>
 StepReport bounded_step(const std::string& by, const StopFlag& stop, Take&& take) {
   StepReport rejected;

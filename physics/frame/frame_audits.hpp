@@ -12,18 +12,17 @@
 
 namespace selvedge {
 
-// The audits of frames. Cloth is held against itself where Scene::contact says so. Memories, where given, save time
-// where little moves.
+// The audits of frames. Cloth is tested against itself if Scene::contact.self is set. A memory only saves time where
+// little moves.
 
-// Of positions [m], rounded to float as a file stores them, so that a reader sees what is audited: crossing pairs of
-// the cloth and with obstacles, and vertices inside closed ones.
+// Audits positions [m], rounded to float as a file stores them, so that a reader has what was audited: crossing pairs
+// of the cloth with itself and with obstacles, and vertices inside closed obstacles.
 Audit audit_positions(const Scene&, const Points& x, const std::vector<Points>& obstacles, AuditMemory* = nullptr);
-// Of the state without the triangles that are cut out of it.
+// Audits a state without its triangles that are cut out.
 Audit audit_uncut(const Scene&, const State&);
-// Of the motion in which all nodes went straight from nodes0 to nodes1; pairs that contact leaves alone are not asked
-// about.
+// Audits the motion of all nodes straight from nodes0 to nodes1, without pairs that contact leaves alone.
 MotionAudit audit_path(const ContactWorld&, const Exemption&, const Points& nodes0, const Points& nodes1, AuditMemory&);
-// What passed through, and whether the audit gave up.
+// Adds to the report what passed through, and whether the audit gave up.
 void add(const MotionAudit&, StepReport&);
 
 // What the audits of a scene's frames remember. A cache: one thread at a time may use it.
@@ -38,16 +37,15 @@ struct FrameAudits {
     AuditMemory memory;
   };
   AuditMemory whole;
-  std::vector<OfPart> parts;  // of the last few parts of the scene that were stepped
+  std::vector<OfPart> parts;  // memories of the parts of the scene that were stepped last
 };
 
-// Judges an accepted step: audits its path substep by substep, then the state that it made, unless the report has that
-// audit already. Returns whether the state is clean: no two triangles cross that share no vertex, and no vertex is
-// inside a closed obstacle. What passed through on the way does not count. The report gets the audit, the number of
-// pairs that passed through, the number of intersecting pairs, the same number with all obstacles where the drive
-// wanted them, whether it is `penetrating`, and the seconds that this took; its path is gone after that. A step whose
-// audit meets more pairs than it may look at (pair_budget.hpp) is rejected. Throws Stopped where a StopScope of the
-// caller ends it.
+// Judges an accepted step: audits its path substep by substep, then the new state, unless the report has that audit
+// already. Returns whether the state is clean: no two triangles cross that share no vertex, and no vertex is inside a
+// closed obstacle; pairs that passed through during the step do not count. Writes to the report the audit, the number
+// of pairs that passed through, the number of intersecting pairs, also with obstacles where the drive wanted them, the
+// doubt `penetrating`, and the seconds used. Removes the path from the report. A step whose audit meets more pairs than
+// it may look at (pair_budget.hpp) is rejected. Throws Stopped if a StopScope of the caller ends it.
 [[nodiscard]] bool judge_frame(FrameAudits&, const State& from, const Drive&, const State& to, StepReport&);
 
 }  // namespace selvedge

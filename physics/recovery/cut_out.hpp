@@ -6,18 +6,18 @@
 namespace selvedge {
 
 // Triangles that are cut out of cloth that starts tangled, so that the rest is clean from the first frame on: they take
-// no part in physics and contact (cutting_stepper.hpp) until they are free. A triangle is free if it neither meets
-// anything nor has a vertex inside a closed obstacle, in the positions as they are and rounded to float. Parts that
-// what is cut out leaves without pins and apart from the largest one of their cloth would fall: they are cut out, too,
-// and come back together with a way to the others, stitches and buttons included.
+// no part in physics and contact (cutting_stepper.hpp) until they are free. A triangle is free if it meets no other and
+// has no vertex inside a closed obstacle, both in the positions as they are and rounded to float. A part that is left
+// without pins, and separate from the largest part of its cloth, would fall. So it is cut out too, until free triangles
+// or springs (stitches, buttons) connect it to the others again.
 
-// At the start of a scene: of the triangles that `may` marks, ascending. The others stay, tangled or not.
+// Triangles to cut out at the start of a scene, ascending, among those with `may` 1. The others stay, tangled or not.
 std::vector<int> cut_out_at_start(const Scene&, const State&, const std::vector<char>& may);
 
-// What of State::cut_out has to stay out, ascending.
+// The triangles of State::cut_out that have to stay out, ascending.
 std::vector<int> still_cut_out(const Scene&, const State&);
 
-// Of each triangle of the scene, 1 where it is not among these.
+// For each triangle of the scene, 1 if it is not in `cut_out`.
 std::vector<char> all_but(const Scene&, const std::vector<int>& cut_out);
 
 }  // namespace selvedge

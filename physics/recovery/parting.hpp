@@ -7,17 +7,16 @@
 
 namespace selvedge {
 
-// Where a step begins, of cloth that starts tangled.
+// What a step of cloth that starts tangled has to know.
 struct Parting {
-  Exemption left;                  // what is tangled still, and what is switched off: contact leaves it alone
-  std::vector<Separation> gained;  // what the solve must not lose again
+  Exemption left;                  // what is still tangled or switched off: contact leaves it alone
+  std::vector<Separation> gained;  // separations that the solve must keep
   std::vector<char> carried;       // 1 for vertices that are drawn to their skinned targets (carrying.hpp), or empty
-  std::vector<char> waits;         // the same of what is tangled where an obstacle crosses itself: firmly
+  std::vector<char> waits;  // 1 for tangled vertices where an obstacle crosses itself, drawn more stiffly, or empty
 };
 
-// What a state that is not clean goes through, in the order of docs/recovery.md. edge_length: the cloth's mean [m].
-// `clean`: nothing is tangled at the start, for cloth at least. Overwrites the cloth's rows of `nodes`, at the start,
-// and velocities v.
+// Parts a tangled start, in the order of docs/recovery.md. edge_length: the cloth's mean [m]. `clean`: the cloth is not
+// tangled at the start. Overwrites the cloth's rows of `nodes` (at the start of the step) and velocities v.
 Parting part_at_start(const ContactWorld&, SelfCrossings&, const Eigen::VectorXd& inverse_mass, double edge_length,
                       bool clean, const WornPlaces&, const RecoveryOptions&, Points& nodes, Points& v,
                       UntanglingBudget&);

@@ -8,27 +8,27 @@
 
 namespace selvedge {
 
-// Springs (carrying.hpp) take cloth near to its skinned targets, but leave it a millimetre off, and so in the body
-// wherever it is worn that close. So cloth that is near is set to them.
+// Springs (carrying.hpp) draw cloth to within a millimetre of its skinned targets: too far where it fits closer to the
+// body than that. So cloth that is near its targets is set to them.
 
-// Where cloth is taken in a step: by the body that wears it, or by obstacles that it was clean beside.
+// Where bodies and obstacles would take the cloth in a step.
 struct WornPlaces {
   const Points* wanted;  // all nodes, with obstacles at the step's end
   const Points* worn;    // the cloth's skinned targets then, a row a vertex
-  Points last_clean;     // all nodes when the cloth was clean last; empty: it never was
+  Points last_clean;     // all nodes when the cloth was last clean; empty: never
   double thickness;      // of contact [m]
   double h;              // of the step [s]
 };
 
 enum class PutOn { nothing, too_far, no_place, done };
 
-// Puts the marked vertices of the cloth on their skinned targets at the start of a step, untangled there, and has them
-// move along with the obstacle's node that is nearest. Where they were clean last, carried along since
-// (carried_along.hpp), is a second place; the one with fewer crossing triangles is tried first. Cloth that is not
-// marked makes way, and keeps its velocity. `nodes`, at the start, and the cloth's velocities v are overwritten. Both
-// stay as they were if nothing is marked, if a marked vertex would go farther than it may, or if there is no place:
-// the passes that it may take do not untangle it. Cloth without one is better off where it is.
-// All must be finite, what is worn where it is marked. No budget: an ample one.
+// Moves the marked vertices of the cloth to their skinned targets at the start of a step and untangles them there.
+// Their velocities become those of the nearest obstacle nodes. A second place is where they were last clean, moved
+// along since (carried_along.hpp); the place with fewer crossing triangles is tried first. Other cloth may be moved by
+// untangling, and keeps its velocity. Overwrites `nodes` (at the start) and the cloth's velocities v. Both stay as they
+// were if nothing is marked (`nothing`), if a marked vertex would move too far (`too_far`), or if the passes do not
+// untangle it at any place (`no_place`). All positions must be finite, targets at marked vertices. Without a budget an
+// ample one is used.
 PutOn put_on(const ContactWorld&, const std::vector<char>& marked, const WornPlaces&, Points& nodes, Points& v,
              UntanglingBudget* = nullptr, const RecoveryOptions& = {});
 

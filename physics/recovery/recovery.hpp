@@ -10,31 +10,31 @@
 
 namespace selvedge {
 
-// What contact leaves alone of cloth that crosses itself through and through, a sheet that starts in one point say: it
-// has no sides to go to, and its own stiffness opens it first. Absent where it does not.
+// What contact leaves alone of cloth that crosses itself almost everywhere, such as a sheet that starts in one point:
+// no side can be told, and its own stiffness has to open it first. Absent for other cloth.
 std::optional<Exemption> hopeless(const ContactWorld&, const Points& nodes, const RecoveryOptions&);
 
-// What a step that starts tangled does first: `untangle` says where the cloth should be, and every vertex that may move
-// goes there by at most `reach` [m], through no obstacle that it was clean of. Cloth that is tangled with cloth gets no
-// linear momentum of it: one side goes against the other. `left` is what is still tangled then, for contact to leave
-// alone, and `gained` what the solve must not lose again, how far the sides have come against each other, or a vertex
-// against an obstacle: what springs back gets nowhere, and what holds it pulls the cloth after it.
-// Cloth that is carried (carrying.hpp; or empty) and what is tangled together with it, and tangled cloth at a part of a
-// body that is switched off, waits: it is parted from cloth but not from obstacles. Cloth that does not cross itself
-// will not do so after, and cloth that does crosses itself in no more pairs. `before` is what is tangled, as
-// find_exemption has it, and what is switched off. No budget: an ample one.
+// The first part of a step that starts tangled. `untangle` says where the cloth should be. Every vertex that may move
+// goes there by at most `reach` [m], and not through an obstacle of which it was clean. Cloth that is tangled with
+// cloth gets no linear momentum: the two sides move against each other. `left` is what is still tangled then, for
+// contact to leave alone. `gained` are separations that the solve must keep: how far the two sides, or a vertex and an
+// obstacle, have come apart. Otherwise cloth would spring back and untangling would get nowhere. These wait, that is,
+// they are parted from cloth but not from obstacles: cloth that is drawn (`carried`, see carrying.hpp; or empty),
+// tangled cloth connected to it, and tangled cloth at switched-off parts of a body. The cloth does not cross itself in
+// more pairs than before. `before`: what is tangled (find_exemption) and switched off. Without a budget an ample one is
+// used.
 struct Recovery {
   Exemption left;
   std::vector<Separation> gained;
-  bool stuck = false;       // untangling knows no way out of any of it: all is where it was
+  bool stuck = false;       // untangling finds no way to part anything: nothing was moved
   std::vector<char> waits;  // 1 for vertices that wait, or empty
 };
 Recovery recover(const ContactWorld&, const Eigen::VectorXd& inverse_mass, double reach, const Exemption& before,
                  const std::vector<char>& carried, Points& nodes, UntanglingBudget* = nullptr,
                  const RecoveryOptions& = {});
 
-// Which obstacles cross themselves, in the positions of a step's start or end, and what cloth is caught there
-// (caught.hpp). Remembers what it was asked last.
+// Finds obstacles that cross themselves at a step's start or end, and the cloth that is caught there (caught.hpp).
+// Caches the answers for the last positions.
 class SelfCrossings {
  public:
   explicit SelfCrossings(const ContactWorld& world);  // keeps a reference

@@ -5,14 +5,14 @@
 
 namespace selvedge {
 
-// What a step may spend on untangling, in passes, and what it has.
+// The passes of untangling that a step may take, and has taken.
 struct UntanglingBudget {
   int most = 1000;                 // passes
-  const StopFlag* stop = nullptr;  // asked once a pass
+  const StopFlag* stop = nullptr;  // asked in each pass
   int used = 0;
-  bool ran_out = false;  // where more passes were wanted
+  bool ran_out = false;  // more passes were wanted
 
-  // Untangles by at most options.iterations passes, and by no more than are left: none leaves the cloth where it is.
+  // Untangles with at most options.iterations passes, and no more than are left. With no passes left the cloth stays.
   UntangleResult untangle(const Surface& cloth, const Points& x, std::span<const SheetView> obstacles,
                           UntangleOptions options);
 };

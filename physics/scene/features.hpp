@@ -9,7 +9,7 @@ namespace selvedge {
 
 struct StepperTraits;
 
-// What a scene needs, derived from its data and never declared. Factories build only what is set here.
+// What a scene needs, derived from its data. Factories build only what is set here.
 struct Features {
   bool obstacles = false, moving_obstacles = false;
   bool self_contact = false;
@@ -23,7 +23,7 @@ struct Features {
 };
 Features features_of(const Scene&);
 
-// One line of `selvedge plan`: a feature, whether it is in, and why.
+// One line of `selvedge plan`: a feature, whether the scene needs it, and why.
 struct PlanLine {
   std::string feature;
   bool in = false;
@@ -31,10 +31,10 @@ struct PlanLine {
 };
 std::vector<PlanLine> plan_lines(const Scene&);
 
-// What the scene has and a stepper with these traits ignores: lines that are not in.
+// Features that the scene has and a stepper with these traits ignores, as lines with `in` false.
 std::vector<PlanLine> ignored_lines(const Scene&, const StepperTraits&);
 
-// The scene as such a stepper has it: without the forces that it ignores.
+// The scene without the forces that a stepper with these traits ignores.
 Scene without_ignored(Scene, const StepperTraits&);
 
 }  // namespace selvedge

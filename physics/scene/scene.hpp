@@ -10,7 +10,7 @@ namespace selvedge {
 
 enum class MembraneModel { stvk, stable_neo_hookean, baraff_witkin };  // membrane.hpp has their sources
 enum class BendingModel { curvature, hinge };
-// Which length of its edge weighs a hinge: the rest shape's, or the present one, as in HOOD's and ContourCraft's
+// The edge length that weights a hinge: that of the rest shape, or the present one as in HOOD's and ContourCraft's
 // losses.
 enum class HingeLength { rest, current };
 
@@ -53,7 +53,8 @@ struct Wind {
   double lift = 0.0;         // coefficient of the tangential part
 };
 
-// Joins two vertices, of the same cloth or of different ones, such as a button does: it pulls and pushes alike.
+// Joins two vertices of the same cloth or of different ones, as a button does. It resists both extension and
+// compression.
 struct Spring {
   int a = 0, b = 0;        // vertices of the scene
   double rest_length = 0;  // [m]
@@ -61,18 +62,18 @@ struct Spring {
 };
 
 struct ContactSettings {
-  double thickness = 2e-3;     // distance that resting layers keep [m]
+  double thickness = 2e-3;     // distance between resting layers [m]
   double friction = 0.3;       // cloth on obstacle
   double self_friction = 0.3;  // cloth on cloth
   bool self = true;            // false: cloth-cloth contact is left out and not audited
-  bool rigid_zones = false;    // impact zones of cloth alone go on as rigid bodies
+  bool rigid_zones = false;    // impact zones of cloth alone move as rigid bodies
 };
 
 // Constant during a run. All cloths are one surface: vertices and triangles numbered cloth after cloth.
 struct Scene {
   std::vector<Cloth> cloths;
   Surface surface;
-  Points rest;  // one row a vertex [m]; used where a length or an angle needs 3D (curved rest shapes)
+  Points rest;  // one row a vertex [m]; for lengths and angles that need 3D (curved rest shapes)
   std::vector<RestTriangle> rest_triangle;  // one a triangle; the metric of the rest shape
   bool rest_is_flat = true;                 // no rest angles, no rest curvature
   std::vector<int> pins;                    // vertices with prescribed positions, ascending
@@ -88,11 +89,11 @@ double area(const RestTriangle&);                                   // signed [m
 // Lumped mass of every vertex [kg]: a third of each triangle's rest area times its cloth's density.
 Eigen::VectorXd lumped_masses(const Scene&);
 
-// Of every node of cloth and obstacles [1/kg]; zero where positions are prescribed: pins, vertices without mass,
-// obstacles.
+// Inverse masses of all nodes of cloth and obstacles [1/kg]; 0 for pins, vertices without mass and obstacles, whose
+// positions are prescribed.
 Eigen::VectorXd inverse_masses(const Scene&, int node_count);
 
-double smallest_altitude(const RestTriangle&);           // [m]; 0 of a triangle without extent
+double smallest_altitude(const RestTriangle&);           // [m]; 0 for a triangle without extent
 double mean_edge_length(std::span<const RestTriangle>);  // [m]; 0 without triangles
 double mean_edge_length(const Scene&);                   // of all triangles at rest [m]
 

@@ -9,23 +9,23 @@ namespace selvedge {
 
 struct State;
 
-// What the numbers of a scene may be, whoever gives them: a scene file, Python, or C++ that fills a Scene. Beyond these
-// bounds nothing is meant that a scene could show, and doubles lose what matters.
+// Bounds of the numbers of a scene, from a scene file, Python or C++. Numbers beyond them make no sensible scene, and
+// doubles lose precision.
 namespace limits {
-inline constexpr double farthest = 1e6;   // from the origin, and the largest length [m]
+inline constexpr double farthest = 1e6;   // distance from the origin, and largest length [m]
 inline constexpr double thickest = 100;   // contact thickness [m]: scenes may be kilometres wide
 inline constexpr double longest = 1e9;    // time [s]
 inline constexpr double heaviest = 1e9;   // mass per area [kg/m2]
 inline constexpr double stiffest = 1e18;  // [N/m], [N m], [Pa]
 }  // namespace limits
 
-// In place of the Lame coefficients, in plane stress.
+// Elastic constants that replace the Lame coefficients (plane stress).
 struct Elasticity {
   double youngs_modulus = 0;  // times thickness [N/m]
   double poisson = 0;
 };
 
-// A number of a struct and what it may be.
+// A number of a struct and its allowed range.
 template <class Struct>
 struct NumberField {
   const char* name;
@@ -41,7 +41,7 @@ struct NumberField {
 template <class Struct>
 std::span<const NumberField<Struct>> number_fields();
 
-// Each throws Error, naming `where`, the field, its value and what is allowed.
+// Both throw Error, with `where`, the field, its value and the allowed range.
 [[noreturn]] void refuse_number(const std::string& field, double value, double low, double high, bool low_in,
                                 bool high_in, const std::string& where);
 
@@ -56,16 +56,16 @@ void check_numbers(const Struct& all, const std::string& where) {
 bool is_time_step(double dt);
 void check_time_step(double dt, const std::string& where);
 
-// Positions [m], or velocities [m/s], that are finite and nowhere beyond limits::farthest.
+// Throws Error unless all positions [m] (or velocities [m/s]) are finite and within limits::farthest.
 void check_positions(const Points&, const std::string& where, const std::string& unit = "m");
 
-// Sets the Lame coefficients.
+// Sets the Lame coefficients of the material. Throws Error for numbers out of range.
 void set_elasticity(const Elasticity&, const std::string& where, Material&);
 
-// Numbers of materials, contact, wind and springs; rest positions; indices of pins and springs.
+// Checks numbers of materials, contact, wind and springs, rest positions, and indices of pins and springs.
 void check_scene(const Scene&);
 
-// Positions and velocities of cloths and obstacles, as many as the scene has.
+// Checks that positions and velocities match the scene in number and are in range.
 void check_state(const Scene&, const State&);
 
 }  // namespace selvedge

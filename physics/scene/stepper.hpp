@@ -21,16 +21,16 @@ struct State {
   int frame = 0;
   Points x, v;                    // one row a vertex, cloth after cloth [m], [m/s]
   std::vector<Points> obstacles;  // where they are [m]; may lag behind Drive::obstacles
-  bool pinched = false;           // they do: cloth left them no room in the step that ended here
+  bool pinched = false;           // obstacles lag: cloth left them no room in the step that ended here
   bool clean = false;             // known to be free of intersections, by the audit of the frame that ended here
-  std::vector<int> cut_out;       // triangles that are out of the simulation, ascending (cut_out.hpp)
+  std::vector<int> cut_out;       // triangles that take no part in the simulation, ascending (cut_out.hpp)
   Memory memory;                  // each block is read by its owner alone
 };
 
-// A body at the end of a step, as the scene has it.
+// The shape and pose of a body at the end of a step.
 struct BodyFrame {
   Eigen::VectorXd shape;            // coefficients of its model
-  Points rotations;                 // one row a joint: axis times angle [rad], relative to the parent
+  Points rotations;                 // one row per joint: axis times angle [rad], relative to the parent
   Vec3 translation = Vec3::Zero();  // of the pose [m]
   Points joints;                    // where they are [m]
   bool is_body() const { return joints.rows() > 0; }
@@ -42,9 +42,9 @@ struct Drive {
   std::vector<Points> obstacles;     // wanted positions [m]
   Vec3 wind = Vec3::Zero();          // [m/s]
   Vec3 acceleration = Vec3::Zero();  // gravity [m/s2]
-  Points worn;                       // one row a vertex: where the body that wears it takes it without forces, not a
-                                     // number where none does; empty where nothing is worn
-  std::vector<BodyFrame> bodies;     // one an obstacle, without joints where it is no body; empty: there is none
+  Points worn;                       // one row per vertex: its skinned target, where its body takes it without forces;
+                                     // NaN where no body wears it; empty if no cloth is worn
+  std::vector<BodyFrame> bodies;     // one per obstacle, without joints if it is no body; empty: there are no bodies
 };
 
 enum class StepStatus { not_run, accepted, rejected };
@@ -53,9 +53,9 @@ enum class Reason { none, not_converged, not_finite, penetrating, energy_gain, o
 
 // Doubts about an accepted step. More than one may be set.
 struct Doubts {
-  bool not_converged = false;  // solves ended farther from their minimum than is tolerated
+  bool not_converged = false;  // solves ended farther from their minimum than tolerated
   bool penetrating = false;    // triangles cross, by the audit of the state
-  bool energy_gain = false;    // energy came from nowhere (energy_balance.hpp)
+  bool energy_gain = false;    // the cloth gained energy without a source (energy_balance.hpp)
   bool any() const { return not_converged || penetrating || energy_gain; }
   bool operator==(const Doubts&) const = default;
 };
@@ -68,15 +68,15 @@ struct PhaseTimes {  // [s]
   PhaseTimes& operator+=(const PhaseTimes&);
 };
 
-// Work done, counted: no clock and no other program on the machine changes it. What caches save is not in it.
+// Work done in counts, which do not depend on how busy the machine is. Work that caches save is not counted.
 struct StepCounts {
   int solves = 0;               // minimisations of the incremental potential
   int coarse_builds = 0;        // of multigrid's coarse levels
-  int searches = 0;             // for pairs that come near each other, in part or whole
+  int searches = 0;             // for pairs that come near each other, partial ones included
   std::int64_t candidates = 0;  // pairs whose boxes those found to overlap
   int audits = 0;               // of a motion or of positions
   std::int64_t swept = 0;       // pairs whose paths were tested for a first contact
-  std::int64_t projected = 0;   // vertices that impact zones moved, once a projection
+  std::int64_t projected = 0;   // vertices moved by impact zones, summed over projections
   StepCounts& operator+=(const StepCounts&);
 };
 
@@ -85,13 +85,13 @@ struct CollisionReport {
   int impulses = 0;         // impacts met with an impulse, all substeps
   int zones = 0;            // impact zones projected, all substeps
   int halved_substeps = 0;  // substeps done again in two halves because zones did not converge
-  int shortened = 0;        // zones whose motion was shortened toward the last clean state, once a halving
-  int held_vertices = 0;    // cloth vertices in them, all substeps
-  int passed_through = 0;   // pairs that met on their way by the audit of the motion, those left alone not counted
+  int shortened = 0;        // zones whose motion was shortened toward the last clean state, per halving
+  int held_vertices = 0;    // cloth vertices in these zones, all substeps
+  int passed_through = 0;   // pairs that met during the motion, by its audit; without those left alone
   int left_alone = 0;       // cloth vertices on or inside a contour at the start, after recovery
-  int cut_out = 0;          // triangles out of the simulation at the end: no pair is counted of them
+  int cut_out = 0;          // triangles that are cut out at the end; their pairs are not counted
   int pushed_out = 0;       // cloth vertices that the repulsive layer moved (refu_stepper.hpp)
-  int jumped = 0;           // obstacles put where they were wanted without a sweep: too far for one
+  int jumped = 0;           // obstacles moved to where they were wanted without a sweep, since it was too far
   double min_gap = std::numeric_limits<double>::infinity();  // of the contacts [m]
   double obstacle_lag = 0;  // largest distance of an obstacle vertex from where it was wanted [m]
   int pairs_before = 0,
@@ -100,106 +100,105 @@ struct CollisionReport {
   double depth_wanted = 0;  // how deep a cloth vertex lies in a wanted closed obstacle [m]
 };
 
-// What a hybrid stepper has done with another stepper's proposal (guard.hpp, hybrid_stepper.hpp).
+// What a hybrid stepper did with another stepper's proposal (guard.hpp, hybrid_stepper.hpp).
 enum class Verdict {
-  none,           // the stepper is no hybrid one
-  admitted,       // the proposal is the step, as it was or after a correction
-  refined,        // a solve began at it
-  no_history,     // not asked for: the proposer has not seen the frame before
-  tangled,        // not asked for: the step starts tangled, or where an obstacle lags or jumps
-  waiting,        // not asked for: one was refused a short while ago
-  too_slow,       // not asked for: it takes longer than it saves
+  none,           // the stepper is not a hybrid one
+  admitted,       // the proposal became the step, as it was or corrected
+  refined,        // a solve began at the proposal
+  no_history,     // no proposal was asked for: the proposer lacks the frame before
+  tangled,        // not asked for: the step starts tangled, or an obstacle lags or jumps
+  waiting,        // not asked for: one was refused recently
+  too_slow,       // not asked for: proposals take longer than they save
   not_made,       // the proposer rejected the step
-  not_finite,     // refused, and so are all that follow
-  moved_too_far,  // from where the cloth's velocities take it
+  not_finite,     // the proposal was refused, as for all that follow
+  moved_too_far,  // away from where the cloth's velocities take it
   overstretched,
   energy_gain,
-  unbalanced,  // forces that nothing explains
-  penetrating  // something passed through, crosses, or is inside a body
+  unbalanced,  // forces without a cause
+  penetrating  // parts passed through each other, cross, or are inside a body
 };
 
 struct PartOfScene;  // part_of_scene.hpp
 
-// Where a substep ended. Every node went there along a straight line.
+// Where a substep ended. Every node moved there along a straight line.
 struct SubstepEnd {
   Points nodes;  // cloth, then obstacles (gather_nodes) [m]
-  // What contact left alone on the way. Absent: nothing if the frame's start is clean, else what crosses at the start
-  // of this substep.
+  // What contact left alone in the substep. Absent: nothing if the frame's start is clean, else the pairs that cross at
+  // the start of this substep.
   std::optional<Exemption> left_alone;
 };
 
-// How a step went, for the audit of its motion.
+// The path of a step, for the audit of its motion.
 struct StepPath {
   Points start;  // [m]
   std::vector<SubstepEnd> substeps;
-  std::shared_ptr<const PartOfScene> part;  // of the scene that was stepped, whose nodes these are; null: all of it
+  std::shared_ptr<const PartOfScene> part;  // the part of the scene that was stepped, with these nodes; null: all of it
 };
 
-// Each member of it and of its parts but `path` has a row in pipeline/reports/report_fields.cpp.
-struct StepReport {  // starts as failure
+// Each member except `path`, also of the structs inside, has a row in pipeline/reports/report_fields.cpp.
+struct StepReport {  // starts as a failure
   StepStatus status = StepStatus::not_run;
-  Reason reason = Reason::none;  // none unless it is rejected
-  Doubts doubts;                 // of an accepted one
-  std::string by;                // who made the state
+  Reason reason = Reason::none;  // none unless the step is rejected
+  Doubts doubts;                 // of an accepted step
+  std::string by;                // the stepper that made the state
   bool fell_back = false;        // a proposal was refused, and another stepper took the step
   Verdict verdict = Verdict::none;
   int substeps = 0;
   int resting = 0;     // cloths that were left out because they rest (resting_stepper.hpp)
   int iterations = 0;  // Newton, all substeps
   int untangling = 0;  // passes before the step, of cloth that starts tangled
-  // Its budget of them ran out: solves that came later are rough; what is tangled still (left_alone) waits for the
-  // next.
+  // The budget of iterations or passes ran out: later solves are rough, or what is still tangled (left_alone) waits for
+  // the next step.
   bool out_of_newton = false, out_of_untangling = false;
-  bool out_of_response = false;  // impulses and impact zones used up theirs: later motion was shortened at once
-  // The audit of the motion used up its budget: `passed_through` counts what it gave up, or says only that as many
-  // passed at least.
+  bool out_of_response = false;  // the budget of the response ran out: later impacts shortened motion at once
+  // The audit of the motion used up its budget: `passed_through` includes pairs that it gave up, or is a lower bound.
   bool out_of_proofs = false;
   int linear_iterations = 0;
   double residual = 0;  // largest force imbalance at the last substep's end [N]
-  double unsolved = 0;  // bound of the RMS distance from where exact solves would end, summed over substeps [m]
+  double unsolved = 0;  // bound of the RMS distance from exact minima, summed over substeps [m]
   PhaseTimes seconds;
   StepCounts counts;
   CollisionReport collision;
-  // Of each obstacle: triangles that contact leaves alone somewhere in the step, for they cross others of it or are
-  // next to such; empty: none of any.
+  // For each obstacle: the number of its triangles that contact leaves alone in some part of the step, since they cross
+  // others of it or are next to such; empty: none.
   std::vector<int> switched_off;
-  std::optional<Audit> audit;  // of the state that was made, rounded to float (frame_audits.hpp); absent: not audited
-  StepPath path;               // of the step, until its audit (judge_frame)
+  std::optional<Audit> audit;  // of the new state, rounded to float (frame_audits.hpp); absent: not audited
+  StepPath path;               // kept until its audit (judge_frame)
 };
 
 struct AddedTerm;  // physics/solve/step_problem.hpp
 
-// What another stepper may hand to a step beside the world. Traits say whether a stepper honours it, but for `stop`.
+// What one stepper may hand to another for a step, beside state and drive. Traits say whether a stepper honours it;
+// `stop` is not covered by traits.
 struct StepExtras {
-  // Where the cloth may be at the end, n x 3 [m]. The implicit solve starts there where its own guess is worse.
+  // A guess of the cloth at the end, n x 3 [m]. The implicit solve starts there unless its own guess is better.
   const Points* guess = nullptr;
   const Exemption* left_alone = nullptr;  // what contact leaves alone; null: nothing
-  // A further term of the potential in a substep of h [s] from positions x0; empty: none.
+  // Makes a further term of the potential, for a substep of h [s] from positions x0; empty: none.
   std::function<AddedTerm(const Points& x0, double h)> added = {};
-  // Asked once a Newton iteration, untangling pass and impact zone; true: the step is rejected as `stopped`, and `to`
-  // is junk. A stepper that has none of these hands it on, or is done soon.
+  // Asked in each Newton iteration, untangling pass and impact zone. True: the step is rejected as `stopped`, and `to`
+  // must not be used. A stepper without such loops hands it on, or ends soon.
   StopFlag stop = {};
-  bool any() const { return guess || left_alone || added; }  // of what traits speak of
+  bool any() const { return guess || left_alone || added; }  // those that traits cover
 };
 
-// What a scene must have.
+// What a scene must have for a stepper.
 struct StepperNeeds {
   bool worn = false;       // Drive::worn
   bool bodies = false;     // Drive::bodies
-  bool obstacles = false;  // one at least
+  bool obstacles = false;  // at least one
 };
 
 struct StepperTraits {
   std::string name;
-  int past_frames = 0;  // before `from` that it remembers in State::memory
+  int past_frames = 0;  // number of frames before `from` that it keeps in State::memory
   StepperNeeds needs = {};
-  std::optional<double> only_dt = {};  // the only time step that it takes [s]
-  bool may_leave_out_cloths = true;    // a step of some of the cloths is what a step of all of them does with these
+  std::optional<double> only_dt = {};  // the only time step that it accepts [s]
+  bool may_leave_out_cloths = true;    // a step of some cloths alone gives them the same motion
   bool honours_extras = false;
-  int max_substeps = 1;  // obstacles that move by more than so many times their own size are put where they are wanted
-  std::vector<std::string> ignores =
-      {};                         // forces of a scene that it lacks, by their names in plan_lines (features.hpp)
-  bool accepts(double dt) const;  // [s]
+  int max_substeps = 1;                   // obstacles that move by more times their own size than this jump
+  std::vector<std::string> ignores = {};  // forces that it does not model, by their names in plan_lines (features.hpp)
+  bool accepts(double dt) const;          // [s]
 };
 
 // An accepted step leaves in `to`:
