@@ -15,7 +15,7 @@
 namespace selvedge {
 namespace {
 
-constexpr std::size_t most_parts = 4;  // whose audits are remembered
+constexpr std::size_t most_parts = 4;  // whose memories are kept
 
 Points rounded_to_float(const Points& x) { return x.cast<float>().cast<double>(); }
 
@@ -47,7 +47,8 @@ void audit_substeps(FrameAudits& audits, bool starts_clean, const StepPath& path
   }
 }
 
-// Of the scene or a part of it: the state's audit, and what there is with obstacles where the drive wanted them.
+// The audit of a state of the scene, or of a part of it. Adds to the report the pairs and the depth with obstacles
+// where the drive wanted them.
 Audit audit_state(const Scene& scene, const State& state, const Drive& drive, AuditMemory& memory, StepReport& report) {
   ++report.counts.audits;
   Audit found = audit_positions(scene, state.x, state.obstacles, &memory);
@@ -62,7 +63,7 @@ Audit audit_state(const Scene& scene, const State& state, const Drive& drive, Au
   return found;
 }
 
-// The part of the scene that is not cut out: what was stepped, unless triangles have come back.
+// The part of the scene that is not cut out. It is the part that was stepped, unless triangles have come back.
 std::shared_ptr<const PartOfScene> uncut_part(const Scene& scene, const State& from, const State& to,
                                               const StepPath& path) {
   if (path.part && to.cut_out == from.cut_out) return path.part;

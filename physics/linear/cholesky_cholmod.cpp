@@ -8,17 +8,17 @@
 namespace selvedge {
 namespace {
 
-// A spinning multi-threaded BLAS loses to one thread on matrices of this size. Looked up when running, since which BLAS
-// answers to CHOLMOD is the machine's choice.
+// A multi-threaded BLAS is slower than one thread on matrices of this size. The function is looked up at run time,
+// since the machine decides which BLAS CHOLMOD uses.
 void hold_blas_to_one_thread() {
   using SetThreads = void (*)(int);
   for (const char* name : {"openblas_set_num_threads", "bli_thread_set_num_threads"})
     if (void* found = dlsym(RTLD_DEFAULT, name)) reinterpret_cast<SetThreads>(found)(1);
 }
 
-// While one lives, CHOLMOD starts no threads. It asks for a team of four whatever the number of threads that it may
-// have; such a team spins on two cores, and takes the place of ours each time. Looked up, as CHOLMOD has OpenMP where
-// we may not.
+// For its lifetime CHOLMOD starts no threads. CHOLMOD asks for a team of four whatever the limit of threads; on two
+// cores such a team spins, and each time displaces our own. The functions are looked up at run time, since CHOLMOD may
+// use OpenMP where this build does not.
 class OneThread {
  public:
   OneThread() : levels_(get_ ? get_() : 0) {
@@ -46,7 +46,7 @@ struct Cholesky::Impl {
   Impl() {
     cholmod_start(&common);
     common.print = 0;
-    common.supernodal = CHOLMOD_SUPERNODAL;  // the other kind takes indefinite matrices without a word
+    common.supernodal = CHOLMOD_SUPERNODAL;  // the simplicial kind accepts indefinite matrices
     common.error_handler = nullptr;
   }
   ~Impl() {

@@ -9,12 +9,12 @@
 namespace selvedge {
 namespace {
 
-constexpr int most_candidates = 12;    // kept vertices among which a vertex is interpolated
+constexpr int most_candidates = 12;    // most kept vertices that are tried for a vertex
 constexpr double straight = 0.766;     // cosine of the largest turn of a border without a corner
-constexpr double least_weight = 1e-3;  // below it a weight is zero
-constexpr double aside = 1e-9;         // of a triangle's sides squared: a smaller area is none
+constexpr double least_weight = 1e-3;  // smaller weights are set to zero
+constexpr double aside = 1e-9;         // of a triangle's squared sides: smaller areas count as none
 
-// Not free ones count as kept, for what is interpolated from them is known to be zero.
+// 1 for vertices to keep. Vertices that are not free count as kept, since their values are known to be zero.
 std::vector<char> choose(const Vertices& fine, std::span<const char> free) {
   const int n = fine.graph.vertex_count();
   std::vector<char> kept(n, false), covered(n, false);
@@ -36,7 +36,7 @@ struct Candidate {
   Vec2 place;  // in the tangent plane, the vertex itself at the origin
 };
 
-// Kept vertices within two steps, the nearest first.
+// Kept vertices within two edges, the nearest first.
 std::vector<Candidate> candidates(const Vertices& fine, const std::vector<char>& kept, int i) {
   std::vector<int> ring{i};
   for (int step = 0, first = 0; step < 2; ++step) {
@@ -73,7 +73,7 @@ struct Weights {
   std::array<double, 3> weight{1, 0, 0};
 };
 
-// The triangle of the nearest candidates that the origin lies in. False: in none.
+// Weights of the origin in the triangle of the nearest candidates round it. False if it is in none.
 bool triangle_weights(const std::vector<Candidate>& c, Weights& found) {
   for (int k = 2; k < static_cast<int>(c.size()); ++k)
     for (int j = 1; j < k; ++j)
@@ -89,7 +89,7 @@ bool triangle_weights(const std::vector<Candidate>& c, Weights& found) {
   return false;
 }
 
-// The point nearest to the origin on the segments between candidates, of those the shortest.
+// Weights of the point nearest to the origin on segments between candidates; on a tie on the shortest segment.
 Weights segment_weights(const std::vector<Candidate>& c) {
   Weights best;
   double least = 1.01 * c[0].distance;
@@ -108,7 +108,7 @@ Weights segment_weights(const std::vector<Candidate>& c) {
 
 Weights interpolate(const Vertices& fine, int i, std::vector<Candidate>& around) {
   flatten(fine.rest, i, around);
-  if (fine.rim[i] != Rim::inside) {  // a border is interpolated along itself where it can be
+  if (fine.rim[i] != Rim::inside) {  // a border vertex is interpolated along the border if possible
     std::vector<Candidate> border;
     for (const Candidate& c : around)
       if (fine.rim[c.vertex] != Rim::inside) border.push_back(c);
@@ -180,7 +180,7 @@ Vertices coarse_vertices(const Vertices& fine, const Prolongation& p) {
   const auto join = [&](int i, int j) {
     for (int k = p.begin[i]; k < p.begin[i + 1]; ++k)
       for (int l = p.begin[j]; l < p.begin[j + 1]; ++l)
-        if (p.coarse[k] < p.coarse[l]) pairs.emplace_back(p.coarse[k], p.coarse[l]);  // the reverse comes too
+        if (p.coarse[k] < p.coarse[l]) pairs.emplace_back(p.coarse[k], p.coarse[l]);  // its reverse is visited too
   };
   for (int i = 0; i < fine.graph.vertex_count(); ++i) {
     join(i, i);

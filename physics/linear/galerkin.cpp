@@ -9,7 +9,8 @@ namespace {
 
 constexpr double rounding = 1e-12;
 
-// Collects the terms of one coarse row after the other, right of the diagonal and on it, and gives columns their slots.
+// Collects the terms of coarse rows, one row after the other, on the diagonal and right of it, and assigns slots to
+// columns.
 class RowCollector {
  public:
   explicit RowCollector(int columns) : slot_(columns, -1) { product_.begin = {0}; }
@@ -34,18 +35,18 @@ class RowCollector {
     }
     return slot_[column];
   }
-  // The terms of the last row, the diagonal's first, each target's in the order in which they came.
+  // Sorts the terms of the last row by target, the diagonal first; terms of one target keep their order.
   void sort_by_target();
   int row_ = 0;
   std::vector<int> slot_, begin_{0}, column_;  // slots are positions in column_
-  std::vector<int> next_;                      // of each target of a row: where its next term goes
+  std::vector<int> next_;                      // of each target of a row: the index of its next term
   std::vector<ProductTerm> sorted_;
   Product product_;
 };
 
 void RowCollector::sort_by_target() {
   const auto terms = std::span(product_.term).subspan(product_.begin.back());
-  const int first = begin_.back() - 1;  // the diagonal stands before the row's slots
+  const int first = begin_.back() - 1;  // the diagonal comes before the row's slots
   const auto place = [&](const ProductTerm& term) { return term.target < 0 ? 0 : term.target - first; };
   next_.assign(column_.size() - first + 1, 0);
   for (const ProductTerm& term : terms) ++next_[place(term) + 1];
@@ -55,7 +56,7 @@ void RowCollector::sort_by_target() {
   std::ranges::copy(sorted_, terms.begin());
 }
 
-// The product with what was collected and its mirror image in one pattern: each row's left part first.
+// The product of the collected terms and their mirror images in one pattern: each row's left part first.
 Product RowCollector::with_mirrored(RowPattern& whole) {
   const int rows = static_cast<int>(begin_.size()) - 1;
   std::vector<int> left_begin(rows + 1, 0), left_slot(column_.size()), left_row(column_.size());
@@ -68,7 +69,7 @@ Product RowCollector::with_mirrored(RowPattern& whole) {
       left_slot[at] = k;
       left_row[at] = a;
     }
-  std::vector<int> entry(column_.size());  // of each slot in the whole pattern
+  std::vector<int> entry(column_.size());  // of each slot its entry in the whole pattern
   whole.begin = {0};
   whole.column.clear();
   product_.mirror.clear();
@@ -89,7 +90,7 @@ Product RowCollector::with_mirrored(RowPattern& whole) {
   return std::move(product_);
 }
 
-// A sum that is meant to be zero or one is.
+// Rounds a sum that is zero or one up to rounding to exactly that.
 double without_rounding(double sum) {
   if (std::abs(sum) < rounding) return 0;
   return std::abs(sum - 1) < rounding ? 1 : sum;

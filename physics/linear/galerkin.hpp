@@ -12,7 +12,7 @@ namespace selvedge {
 // Coarse matrices P^T A P with patterns worked out once. A matrix acts as
 //   y_i = D_i u_i + sum_j B_ij (u_j - u_i),
 // which keeps translations exact in float whatever the stiffness, and so does its product. Sources and targets are
-// blocks in pairs, as column_of() has them.
+// arrays of block pairs, as for column_of().
 
 // The fine vertices that interpolate from each coarse one.
 struct Restriction {
@@ -21,8 +21,8 @@ struct Restriction {
 };
 Restriction transpose(const Prolongation&);
 
-// Adds weight times a source block to a target block; row by row of the target. Targets are on the diagonal or right of
-// it: what is left of it comes by symmetry.
+// Adds weight times a source block to a target block. Terms are sorted by rows of the target. Targets are on the
+// diagonal or right of it; `reflect` fills in the rest.
 struct ProductTerm {
   int source;  // an entry of the fine pattern, or ~i: the diagonal of row i
   int target;  // an entry of the coarse pattern, or -1: the diagonal of the row
@@ -31,18 +31,18 @@ struct ProductTerm {
 struct Product {
   std::vector<int> begin;
   std::vector<ProductTerm> term;
-  std::vector<int> mirror;  // of an entry of the coarse pattern left of the diagonal, the one that it is the transpose
-                            // of; of others -1
+  std::vector<int> mirror;  // for an entry of the coarse pattern left of the diagonal, the entry of which it is
+                            // the transpose; for others -1
 };
 
-// The product of a matrix of this pattern; `diagonal`: it has one.
+// The product for matrices with this pattern; `diagonal`: they have a diagonal.
 Product make_product(const RowPattern& fine, bool diagonal, const Prolongation&, const Restriction&,
                      RowPattern& coarse);
 
-// The product of contacts, which are the sources: their 3 x 3 factors.
+// The product for contacts; the sources are their 3 x 3 factors.
 Product make_product(std::span<const ContactBlock>, const Prolongation&, RowPattern& coarse);
 
-// Adds to the target blocks of rows [begin, end), left of the diagonal nothing.
+// Adds to the target blocks of rows [begin, end), on the diagonal and right of it.
 void accumulate(const Product&, const BlockPair<float>* source, const BlockColumns<float>* source_diagonal,
                 BlockPair<float>* target, BlockColumns<float>* target_diagonal, int begin, int end);
 

@@ -14,19 +14,19 @@
 namespace selvedge {
 namespace {
 
-// Free vertices up to which CHOLMOD is taken. Measured on hanging N x N sheets, one thread, steps of 1/60 s: 1.7
-// against 0.5 ms a frame with block Jacobi for 81 vertices and 53 against 10 for 625.
+// Free vertices up to which CHOLMOD is taken. Measured on hanging N x N sheets, one thread, steps of 1/60 s: 1.7 ms per
+// frame against 0.5 ms with block Jacobi for 81 vertices, and 53 against 10 for 625.
 constexpr int direct_limit = 60;
 
-constexpr int stiff_iterations = 150;  // of an automatic PCG solve, beyond which CHOLMOD takes the next ones
-constexpr int stiff_turns = 1000;      // that many, then PCG is tried again
+constexpr int stiff_iterations = 150;  // if an automatic PCG solve takes more, CHOLMOD takes the next ones
+constexpr int stiff_turns = 1000;      // number of solves by CHOLMOD before PCG is tried again
 
-constexpr double jacobi_share = 0.4;           // of a tolerance: block Jacobi's norm hardly sees smooth errors
-constexpr double float_tolerance = 1e-3;       // what one pass in float surely reaches
-constexpr double refinement_tolerance = 1e-4;  // of each pass where several are needed
+constexpr double jacobi_share = 0.4;           // of a tolerance: block Jacobi's norm underrates smooth errors
+constexpr double float_tolerance = 1e-3;       // reached by one pass in float
+constexpr double refinement_tolerance = 1e-4;  // of each pass if several are needed
 constexpr int max_passes = 12;
 
-// Everything of a PCG solve in one precision.
+// All data of a PCG solve in one precision.
 template <class Real>
 struct Iterative {
   PcgMatrix<Real> matrix;
@@ -39,7 +39,7 @@ struct Iterative {
     preconditioner = [this](const Quads<Real>& r, Quads<Real>& z) { jacobi.apply(r, z); };
   }
 
-  // x += A^-1 right, with `right` scaled into the range of Real.
+  // x += A^-1 right; `right` is scaled into the range of Real.
   PcgReport add_solution(const Points& right, std::span<const char> free, double tolerance, int iterations, Points& x) {
     const int rows = static_cast<int>(right.rows());
     const double scale = right.cwiseAbs().maxCoeff();
@@ -77,7 +77,7 @@ LinearSolver chosen_solver(LinearSolver wanted, int free_vertices) {
 struct LinearSystemSolver::Impl {
   LinearSolver chosen;
   bool automatic = false;
-  int direct_turns = 0;  // solves for CHOLMOD, since PCG found the system stiff
+  int direct_turns = 0;  // solves left for CHOLMOD, since PCG found the system stiff
   Cholesky cholesky;
   LowerTriangle lower;
   std::vector<double> packed_right, packed_solution;
@@ -85,9 +85,9 @@ struct LinearSystemSolver::Impl {
   std::vector<char> free;
   std::unique_ptr<Multigrid> multigrid;  // made when first needed
   int coarse_builds = 0;                 // so far
-  int fresh_iterations = -1;             // that PCG took with the coarse levels made for its system; -1: make them
+  int fresh_iterations = -1;             // of PCG when the coarse levels were new; -1: make them anew
   Iterative<float> single;
-  std::unique_ptr<Iterative<double>> full;  // made when float first fails
+  std::unique_ptr<Iterative<double>> full;  // made when float fails first
 
   bool solve_direct(const LinearSystem&, std::span<const Mat3> diagonal, const Points& right, Points& x);
   double prepare_single(const LinearSystem&, std::span<const Mat3> diagonal);
@@ -147,7 +147,7 @@ LinearReport LinearSystemSolver::Impl::solve_iterative(Iterative<Real>& method, 
   return report;
 }
 
-// Where multigrid cannot be had, block Jacobi takes its place. Returns the preconditioner's share of a tolerance.
+// Prepares multigrid, or block Jacobi if multigrid is not possible. Returns the factor on tolerances for it.
 double LinearSystemSolver::Impl::prepare_single(const LinearSystem& system, std::span<const Mat3> diagonal) {
   single.matrix.fill(system);
   if (chosen == LinearSolver::multigrid) {
@@ -174,8 +174,8 @@ LinearSystemSolver::LinearSystemSolver(LinearSolver wanted, Vertices vertices, s
 LinearSystemSolver::~LinearSystemSolver() = default;
 LinearSolver LinearSystemSolver::chosen() const { return impl_->chosen; }
 
-// After a solve with the preconditioner of prepare_single(): coarse levels of an earlier system are kept as long as
-// they need no more iterations than they did for that one.
+// After a solve with the preconditioner of prepare_single(). Coarse levels of an earlier system are kept as long as PCG
+// needs no more iterations than with the system for which they were made.
 void LinearSystemSolver::Impl::judge_preconditioner(const LinearReport& report) {
   if (fresh_iterations < 0)
     fresh_iterations = report.converged ? report.iterations : -1;

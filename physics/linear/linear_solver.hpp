@@ -7,7 +7,7 @@
 
 namespace selvedge {
 
-// What is known of a matrix on its free rows: exact Hessians are only perhaps positive definite.
+// Whether a matrix is known to be positive definite on its free rows. Exact Hessians may not be.
 enum class Definite { yes, perhaps };
 
 struct LinearReport {
@@ -16,9 +16,9 @@ struct LinearReport {
   int coarse_builds = 0;  // of multigrid's coarse levels
 };
 
-// `automatic` takes CHOLMOD, where the build has it, for scenes of few free vertices, and multigrid for larger ones; in
-// systems so stiff that multigrid needs very many iterations CHOLMOD takes over for a while.
-// Asking for CHOLMOD in a build without it is an Error.
+// `automatic` takes CHOLMOD, where the build has it, for scenes of few free vertices, and multigrid for larger ones. If
+// a system is so stiff that multigrid needs very many iterations, CHOLMOD takes over for a while. Asking for CHOLMOD in
+// a build without it is an Error.
 LinearSolver chosen_solver(LinearSolver wanted, int free_vertices);
 
 // CHOLMOD and PCG behind one call. Holds caches: patterns, hierarchies, factors, vectors.
@@ -29,15 +29,14 @@ class LinearSystemSolver {
   ~LinearSystemSolver();
   LinearSolver chosen() const;
 
-  // The systems from here on are one family: of one step, with the same contacts. Their preconditioner is made for the
-  // first of them and serves the others as well as it does.
+  // Begins a family of systems: of one step, with the same contacts. The preconditioner is made for the first system
+  // and reused for the others, as long as it is good enough.
   void start_family();
 
   // Solves A x = right; `diagonal` are the blocks of diagonal_blocks(). x is zero on rows that are not free. PCG stops
-  // when the residual's preconditioner norm has fallen by `tolerance`; it works in float, refined in double where the
-  // tolerance asks for that, and hands over to CHOLMOD (or to double PCG) where it does not get there. Where nothing
-  // gets there, x is the best direction found: finite, and zero if there was none. A matrix that is only perhaps
-  // positive definite gets one attempt.
+  // when the residual's preconditioner norm has fallen by `tolerance`; it works in float, refined in double if the
+  // tolerance needs that. If PCG does not converge, CHOLMOD (or PCG in double) tries. If nothing converges, x is the
+  // best direction found: finite, and zero if there was none. A matrix that is `perhaps` definite gets one attempt.
   LinearReport solve(const LinearSystem&, std::span<const Mat3> diagonal, const Points& right, double tolerance,
                      int max_iterations, Points& x, Definite = Definite::yes);
 

@@ -11,7 +11,7 @@ namespace selvedge {
 
 enum class LinearSolver { automatic, cholmod, pcg, multigrid };  // pcg: block Jacobi; multigrid: PCG with a V-cycle
 
-// Row i of a scalar matrix whose rows sum to zero, times the coordinates u.
+// Row i of a scalar matrix whose rows sum to zero, times u, for each coordinate.
 Vec3 multiply_flat_row(const SparseMatrix& flat, const Points& u, int i);
 
 // Second derivative of one contact: w w^T (x) (normal_stiffness n n^T + tangent_stiffness (I - n n^T)).
@@ -26,14 +26,14 @@ Mat3 contact_matrix(const ContactBlock&);  // the 3 x 3 factor
 
 // The contacts of each vertex, ascending.
 struct ContactLists {
-  std::vector<int> begin;  // size n + 1, or empty where there is no contact
+  std::vector<int> begin;  // size n + 1, or empty if there is no contact
   std::vector<int> contact;
   std::vector<double> weight;
 };
 ContactLists list_contacts(std::span<const ContactBlock>, int vertices);
 
-// A = diagonal (x) I3 + pairs + (flat_scale flat) (x) I3 + contacts over n vertices; rows and columns of vertices that
-// are not free are those of the identity's. Symmetric positive definite on the free ones [N/m]. Borrows everything.
+// A = diagonal (x) I3 + pairs + (flat_scale flat) (x) I3 + contacts over n vertices. Rows and columns of vertices that
+// are not free are those of the identity. Symmetric positive definite on the free ones [N/m]. Only refers to its parts.
 struct LinearSystem {
   const PairPattern& pattern;
   const PairBlocks& pairs;

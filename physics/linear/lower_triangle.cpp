@@ -6,7 +6,7 @@
 namespace selvedge {
 namespace {
 
-// Calls visit(i, j) for every pair of different vertices that the system couples; a pair may come more than once.
+// Calls visit(i, j) for every pair of different vertices that the system couples, possibly more than once.
 template <class Visit>
 void for_each_coupling(const LinearSystem& system, Visit visit) {
   for (const auto& [i, j] : system.pattern.pairs) visit(i, j);

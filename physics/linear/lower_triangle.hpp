@@ -6,8 +6,8 @@
 
 namespace selvedge {
 
-// Lower triangle of a LinearSystem's free part as compressed scalar columns, for a direct solver. The pattern holds
-// every pair of pairs, flat and contacts, whatever their values are.
+// Lower triangle of a LinearSystem's free part as compressed scalar columns, for a direct solver. The pattern has an
+// entry for every pair of `pairs`, `flat` and `contacts`, even if its value is zero.
 struct LowerTriangle {
   std::vector<int> free_index;              // of each vertex, -1 where not free
   std::vector<int> vertex;                  // of each free index
@@ -18,8 +18,8 @@ struct LowerTriangle {
   int size() const { return 3 * static_cast<int>(vertex.size()); }
 };
 
-// Rebuilds the pattern where the contacts or the free vertices have changed since; pairs and flat must always be the
-// same. True if it did (then a factorisation needs a new analysis).
+// Rebuilds the pattern if the contacts or the free vertices have changed; pairs and flat must always be the same. True
+// if it was rebuilt (then a factorisation needs a new analysis).
 bool update_pattern(const LinearSystem&, LowerTriangle&);
 
 void fill_values(const LinearSystem&, std::span<const Mat3> diagonal, LowerTriangle&);

@@ -14,17 +14,17 @@ namespace selvedge {
 namespace {
 
 constexpr int level_chunk = 64;     // rows of one task
-constexpr int one_thread = 128;     // rows below which a level costs more in a team than alone
-constexpr int coarsest = 48;        // vertices that Cholesky takes
+constexpr int one_thread = 128;     // levels with fewer rows are faster on one thread
+constexpr int coarsest = 48;        // levels with at most so many vertices are solved by Cholesky
 constexpr int smoothing_steps = 2;  // before and after the coarse correction
-// Of the eigenvalues of the inverse diagonal blocks times the matrix. For triangles it is at most 3, for contacts 4;
-// flat bending has 3.3 on regular meshes, and the polynomial does no harm up to 5. Estimating it by the power method
-// took longer than it saved.
+// Bound of the eigenvalues of the inverse diagonal blocks times the matrix. Triangles give at most 3, contacts 4, flat
+// bending 3.3 on regular meshes; the polynomial is harmless up to 5. Estimating it by the power method took longer than
+// it saved.
 constexpr float longest = 4;
 constexpr int most_levels = 12;
-constexpr double least_coarsening = 0.7;  // of the vertices; a level that keeps more is not worth having
+constexpr double least_coarsening = 0.7;  // of the vertices; a level that keeps more is not used
 
-// f(begin, end) over the chunks of `rows`, shared among the calling team or by one thread alone.
+// Calls f(begin, end) for the chunks of `rows`: shared by the calling team, or on one thread alone.
 template <class F>
 void for_chunks(bool team, int rows, const F& f) {
   if (team) {
@@ -35,7 +35,7 @@ void for_chunks(bool team, int rows, const F& f) {
   }
 }
 
-// f(row) over all rows, shared among a team of its own where there are many: rows differ in what they cost.
+// Calls f(row) for all rows, on a team of its own if there are many. Scheduling is dynamic, since rows differ in cost.
 template <class F>
 void for_rows(int rows, const F& f) {
 #pragma omp parallel for schedule(dynamic, 8) if (rows > 32)
@@ -57,12 +57,12 @@ struct Level {
   Prolongation prolongation;
   Restriction restriction;
   std::vector<float> prolongation_weight, restriction_weight;
-  // The matrix, a product of the finer level's; `touching`: of its contacts.
+  // The matrix, a product of the finer level's. `touching`: the same for contacts.
   RowPattern pattern, touching;
   Product product, touching_product;
   PairedBlocks block, touching_block;
   Blocks diagonal;
-  // Of the smoother.
+  // Data of the smoother.
   Blocks inverse;
   Quads<float> right, x, step, product_of_step, residual;
 
@@ -103,9 +103,9 @@ bool same(std::span<const ContactBlock> contacts, const std::vector<ContactBlock
 struct Multigrid::Impl {
   std::vector<Level> levels;
   PcgMatrix<float>* fine = nullptr;
-  bool patterns = false;                 // of the coarse matrices are made
-  std::vector<float> far, far_diagonal;  // of the second level: the product of the flat entries in no block
-  std::vector<ContactBlock> contacts;    // that the patterns were made for
+  bool patterns = false;                 // patterns of the coarse matrices are made
+  std::vector<float> far, far_diagonal;  // of the second level: product of the flat entries outside of blocks
+  std::vector<ContactBlock> contacts;    // for which the patterns were made
   PairedBlocks contact_factor;
   Blocks fine_diagonal;
   Eigen::LLT<Eigen::MatrixXd> cholesky;
@@ -148,15 +148,15 @@ Multigrid::Multigrid(const Vertices& vertices, std::span<const char> free) : imp
 }
 Multigrid::~Multigrid() = default;
 
-// The first product takes the blocks and the flat entries that are in none together; the latter are constant and scalar
-// and are worked out here.
+// The first product takes blocks and flat entries outside of blocks together; the latter are constant scalars, whose
+// product is computed here.
 void Multigrid::Impl::make_patterns(const LinearSystem& system) {
   patterns = true;
   if (levels.size() < 2) return;
   const RowPattern &near = fine->pattern(), &beyond = fine->far();
   const int blocks = static_cast<int>(near.column.size());
   RowPattern joint{{0}, {}};
-  std::vector<int> entry;  // of the blocks, or behind those the place of a flat value
+  std::vector<int> entry;  // of blocks; after these come flat values
   for (int i = 0; i < near.rows(); ++i) {
     for (int k = near.begin[i]; k < near.begin[i + 1]; ++k) {
       joint.column.push_back(near.column[k]);
@@ -255,7 +255,7 @@ void Multigrid::Impl::fill_coarser(const Level& finer, Level& level) {
   reflect(level);
 }
 
-// False where a block is not one of a positive definite matrix.
+// False if a block is not positive definite.
 bool Multigrid::Impl::invert_diagonal(Level& level) {
   level.inverse.resize(level.rows);
   std::vector<char> positive(level.rows);
@@ -343,8 +343,8 @@ bool Multigrid::fill(const LinearSystem& system, std::span<const Mat3> diagonal,
   return true;
 }
 
-// Steps of the iteration with its residual in `residual` but for `product_of_step`, which is still to be taken from it;
-// x += what they add. `further`: leaves the product of the last step too.
+// Steps of the iteration. The residual is `residual` minus `product_of_step`, which is still to be subtracted. Adds the
+// steps to x. `further`: also computes the product of the last step.
 void Multigrid::Impl::smooth(int l, bool team, Quads<float>& x, bool further) {
   Level& level = levels[l];
   for (int k = 1; k <= smoothing_steps; ++k) {

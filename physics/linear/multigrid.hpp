@@ -7,21 +7,22 @@
 
 namespace selvedge {
 
-// One symmetric V-cycle of Galerkin multigrid as a preconditioner in float: the hierarchy of vertices is made once from
-// the rest shape, the patterns of the coarse matrices once, those of contacts whenever contacts change. Smoothed by
-// Chebyshev polynomials of the fourth kind over block Jacobi (Lottes 2023), solved by Cholesky on the coarsest level.
+// One symmetric V-cycle of Galerkin multigrid as a preconditioner in float. The hierarchy of vertices (from the rest
+// shape) and the patterns of the coarse matrices are made once, patterns of contacts whenever contacts change. Smoothed
+// by Chebyshev polynomials of the fourth kind over block Jacobi (Lottes 2023), solved by Cholesky on the coarsest
+// level.
 class Multigrid {
  public:
   Multigrid(const Vertices&, std::span<const char> free);
   ~Multigrid();
-  // `fine` is the system's matrix in float and stays where it is until the last apply(). False where the mesh is too
-  // small to have a coarse level, or the matrix turned out not to be positive definite: there is nothing to apply then.
+  // `fine` is the system's matrix in float; it must stay in place until the last apply(). False if the mesh is too
+  // small for a coarse level or the matrix is not positive definite; apply() must not be called then.
   bool fill(const LinearSystem&, std::span<const Mat3> diagonal, PcgMatrix<float>& fine);
-  // For a system like the one of the last fill() that did well, with the same contacts: the finest level's smoother
-  // alone; the coarse levels stay as they are. What comes of it is symmetric and positive definite all the same, for
-  // the coarse correction, whatever matrix it is of, is applied between one smoother and its transpose.
+  // For a system similar to that of the last successful fill(), with the same contacts: fills the finest level's
+  // smoother alone and keeps the coarse levels. The preconditioner stays symmetric and positive definite, since the
+  // coarse correction, for any matrix, is applied between a smoother and its transpose.
   void fill_finest(const LinearSystem&, std::span<const Mat3> diagonal, PcgMatrix<float>& fine);
-  // z = M^-1 r, as Preconditioner asks for.
+  // z = M^-1 r, with the contract of Preconditioner (pcg.hpp).
   void apply(const Quads<float>& r, Quads<float>& z);
 
  private:

@@ -13,8 +13,8 @@ namespace selvedge {
 namespace {
 
 constexpr int pcg_chunk = 64;   // rows of one partial sum; fixed, so that sums do not depend on the number of threads
-constexpr double foreseen = 4;  // times what the square of the norm is expected to be
-constexpr int small = 8;        // chunks below which a team of threads costs more than it saves
+constexpr double foreseen = 4;  // safety factor on the expected square of the norm
+constexpr int small = 8;        // with fewer chunks one thread is faster than a team
 
 double sum(const std::vector<double>& partial) {
   double total = 0;
@@ -258,7 +258,7 @@ PcgReport pcg(PcgMatrix<Real>& a, const Preconditioner<Real>& precondition, doub
   StopPoll stop;
 #pragma omp parallel if (chunks > small)
   {
-    // Every thread keeps the scalars for itself and gets the same bits.
+    // Every thread computes the scalars by itself and gets the same bits.
     PcgReport own;
     precondition(v.r, v.z);
     product(v.r, v.z, rows, v.partial_rz);
@@ -271,7 +271,7 @@ PcgReport pcg(PcgMatrix<Real>& a, const Preconditioner<Real>& precondition, doub
       }
       if (rz <= goal) own.end = PcgEnd::converged;
       if (rz <= goal || own.iterations == max_iterations) break;
-      stop.wanted();  // before the threads meet, so that all of them know the same after it
+      stop.wanted();  // before the barrier, so that all threads know the same after it
 #pragma omp for schedule(static)
       for (int c = 0; c < chunks; ++c)
         turn(static_cast<Real>(keep), v.z.data(), v.p.data(), c * pcg_chunk, std::min(rows, (c + 1) * pcg_chunk));
@@ -286,7 +286,7 @@ PcgReport pcg(PcgMatrix<Real>& a, const Preconditioner<Real>& precondition, doub
       for (int c = 0; c < chunks; ++c)
         advance(static_cast<Real>(rz / pq), v.p.data(), v.q.data(), v.x.data(), v.r.data(), c * pcg_chunk,
                 std::min(rows, (c + 1) * pcg_chunk));
-      // At the mean rate so far this step was the last one needed, and more: the preconditioner need not confirm it.
+      // At the mean rate so far this step reached the goal with room to spare: saves one use of the preconditioner.
       if (own.iterations > 0 && foreseen * rz * std::pow(rz / first, 1.0 / own.iterations) < goal) {
         own.end = PcgEnd::converged;
         ++own.iterations;

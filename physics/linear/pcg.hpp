@@ -27,8 +27,8 @@ Mat3 block_of(const BlockColumns<Real>& columns) {
   return block;
 }
 
-// Entries of rows off the diagonal, in any order. Each row's number is even: where need be the last entry is one of the
-// row's own, whose block is zero.
+// Entries off the diagonal by rows, in any order. The number in each row is even: if necessary the last entry has the
+// row's own index and a zero block.
 struct RowPattern {
   std::vector<int> begin, column;
   int rows() const { return static_cast<int>(begin.size()) - 1; }
@@ -38,25 +38,25 @@ struct RowPattern {
   }
 };
 
-// z = M^-1 r on all rows. Called by every thread of an OpenMP team, with its loops shared among them; complete when it
-// returns. z must be zero on rows that are not free, whatever r is there.
+// z = M^-1 r on all rows. Every thread of an OpenMP team calls it, and they share its loops; the result is complete on
+// return. z must be zero on rows that are not free, whatever r is.
 template <class Real>
 using Preconditioner = std::function<void(const Quads<Real>& r, Quads<Real>& z)>;
 
 // A LinearSystem in the layout of the kernels. Flat entries and contacts between vertices that share an element are
-// parts of its blocks; what couples others is kept beside them.
+// added to its blocks; other ones are stored separately.
 template <class Real>
 class PcgMatrix {
  public:
-  void fill(const LinearSystem&);  // with patterns that stay those of the first one
+  void fill(const LinearSystem&);  // all systems must have the patterns of the first one
   int rows() const { return near_.rows(); }
   const RowPattern& pattern() const { return near_; }
   const BlockPair<Real>* blocks() const { return blocks_.data(); }
-  BlockColumns<Real> diagonal(int i) const;       // what acts on the row's own motion, not on differences
-  const RowPattern& far() const { return far_; }  // flat entries that are in no block, with the place of their value
+  BlockColumns<Real> diagonal(int i) const;       // acts on the row's own motion, not on differences
+  const RowPattern& far() const { return far_; }  // flat entries outside of blocks; far_place: where their values are
   std::span<const int> far_place() const { return far_place_; }
-  std::span<const ContactBlock> contacts() const { return contacts_; }  // that are in no block
-  // q = A p by the calling team; partial sums of p . q, one for each of chunks().
+  std::span<const ContactBlock> contacts() const { return contacts_; }  // those outside of blocks
+  // q = A p, by all threads of the calling team; partial: sums of p . q, one for each of chunks().
   int chunks() const;
   void multiply(const Quads<Real>& p, Quads<Real>& q, std::vector<double>& partial);
 
@@ -68,12 +68,12 @@ class PcgMatrix {
   void fill_contacts();
 
   RowPattern near_, far_;
-  std::vector<int> near_entry_, near_place_, far_place_;  // in the system's pattern and in its flat matrix; -1: nowhere
+  std::vector<int> near_entry_, near_place_, far_place_;  // indices in the system's pattern and flat matrix; -1: none
   std::vector<BlockPair<Real>> blocks_;
   std::vector<Real> diagonal_, far_value_;
-  std::vector<std::array<int, 4>> known_;  // the nodes of all contacts, as they were sorted
-  std::vector<char> is_near_;              // of each contact: it is a part of the blocks
-  std::vector<char> is_held_;              // of each row: such contacts act on its own motion, by `held_`
+  std::vector<std::array<int, 4>> known_;  // nodes of all contacts at the last sort_contacts
+  std::vector<char> is_near_;              // of each contact: 1 if it is added to the blocks
+  std::vector<char> is_held_;              // of each row: 1 if such contacts act on its own motion, by `held_`
   std::vector<BlockColumns<Real>> held_;
   std::vector<ContactBlock> contacts_;
   ContactLists lists_;
@@ -108,8 +108,8 @@ struct PcgVectors {
 };
 
 // Preconditioned conjugate gradients from x = 0 on A x = r (vectors.r, overwritten by the residual), until the norm
-// sqrt(r . M^-1 r) has fallen by `tolerance`. Whatever the end, x is finite or the report says not_finite, and every
-// iterate lowers x . A x / 2 - b . x.
+// sqrt(r . M^-1 r) has fallen by `tolerance`. At any end x is finite or the report says not_finite. Every iteration
+// lowers x . A x / 2 - b . x.
 template <class Real>
 PcgReport pcg(PcgMatrix<Real>&, const Preconditioner<Real>&, double tolerance, int max_iterations, PcgVectors<Real>&);
 

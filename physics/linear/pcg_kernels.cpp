@@ -138,8 +138,8 @@ template <class Real>
 
 }  // namespace
 
-// SELVEDGE_CLONES (CMake) has the compiler make one clone an instruction set, from which the loader picks for the
-// machine at hand. It is empty where that does not work: other compilers, and sanitizers, which start too late for the
+// SELVEDGE_CLONES (CMake) makes the compiler generate one clone for each instruction set; the loader picks one for the
+// machine. It is empty where that does not work: for other compilers, and for sanitizers, which start too late for the
 // loader.
 
 SELVEDGE_CLONES double multiply_rows(const RowView<float>& a, const Quad<float>* u, Quad<float>* y, int begin,

@@ -14,7 +14,7 @@ struct Quad<float> {
   Lanes lanes;
 };
 template <>
-struct alignas(32) Quad<double> {  // as clones for wide registers take it to be, which others would not
+struct alignas(32) Quad<double> {  // clones for wide registers assume this alignment, others would not
   using Lanes = double __attribute__((vector_size(32)));
   Lanes lanes;
 };
@@ -24,18 +24,18 @@ struct BlockColumns {
   Quad<Real> column[3];
 };
 
-// The blocks of two entries of a row, an even one and the next.
+// The blocks of two entries of a row: an even one and the next.
 template <class Real>
 struct BlockPair {
   Quad<Real> column[3][2];
 };
-template <class Pair>  // of a matrix whose blocks lie in pairs
+template <class Pair>  // column k of a block of a matrix that is stored in pairs
 auto& column_of(Pair* pairs, int entry, int k) {
   return pairs[entry / 2].column[k][entry % 2];
 }
 
-// A matrix by rows, as LinearSystem means it: y_i = (diagonal_i + held_i) u_i + sum B_ij (u_j - u_i) + contacts. Rows
-// begin at even entries and end before even ones. Null pointers: no such term.
+// A LinearSystem's matrix by rows: y_i = (diagonal_i + held_i) u_i + sum B_ij (u_j - u_i) + contacts. Rows have even
+// numbers of entries, from an even index on. Null pointers: no such term.
 template <class Real>
 struct RowView {
   const int* begin;
@@ -55,7 +55,7 @@ struct RowView {
 
 template <class Real>
 struct ContactView {
-  const int* node;  // four a contact, 0 where unused
+  const int* node;  // four per contact, 0 if unused
   const Real* weight;
   const Quad<Real>* normal;
   const Real* tangent_stiffness;
@@ -76,7 +76,7 @@ struct LevelView {
 };
 void multiply_level(const LevelView&, const Quad<float>* u, Quad<float>* y, int begin, int end);
 
-// Weighted sums of other rows' values, by rows: y = P u, or y += P u.
+// A sparse matrix of scalar weights by rows: y = P u, or y += P u.
 struct WeightView {
   const int* begin;
   const int* column;
@@ -89,11 +89,11 @@ void add_gathered(const WeightView&, const Quad<float>* u, Quad<float>* step, Qu
 void chebyshev(float keep, float factor, const BlockColumns<float>* inverse, const Quad<float>* product,
                Quad<float>* residual, Quad<float>* step, Quad<float>* x, int begin, int end);
 
-// The force of contacts [begin, end) on a weight of one.
+// The force of contacts [begin, end) for a node with weight 1.
 void contact_responses(const ContactView<float>&, const Quad<float>* u, Quad<float>* response, int begin, int end);
 void contact_responses(const ContactView<double>&, const Quad<double>* u, Quad<double>* response, int begin, int end);
 
-// y = B u with one block a row.
+// y = B u with one block per row.
 void multiply_diagonal(const BlockColumns<float>*, const Quad<float>* u, Quad<float>* y, int begin, int end);
 void multiply_diagonal(const BlockColumns<double>*, const Quad<double>* u, Quad<double>* y, int begin, int end);
 

@@ -74,8 +74,8 @@ void shorten_sets(double reach, DisjointSets& sets, Points& move) {
     if (const double length = most[sets.root(v)]; length > reach) move.row(v) *= reach / length;
 }
 
-// A push that has hold of a vertex by a small weight sends it many times as far as the gap, and its set is shortened
-// for it. Each set keeps the motion that does more of what its pushes ask.
+// A push with a small weight on a vertex moves it many times as far as the gap, and its whole set is scaled down for
+// that. So each set keeps the one of two motions that fulfils its pushes better.
 void keep_better(std::span<const Separation> pushes, const Points& other, DisjointSets& sets, Points& move) {
   std::vector<double> gain(static_cast<std::size_t>(move.rows()), 0.0);  // of `other` over `move`, by set [m]
   for (const Separation& push : pushes)

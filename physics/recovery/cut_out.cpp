@@ -9,7 +9,7 @@
 namespace selvedge {
 namespace {
 
-using Marks = std::vector<char>;  // one a triangle
+using Marks = std::vector<char>;  // one per triangle
 
 Marks tangled(const Scene& scene, const State& state) {
   const ContactWorld world = make_contact_world(scene.surface, obstacle_surfaces(scene), scene.contact.self);
@@ -21,7 +21,7 @@ Marks tangled(const Scene& scene, const State& state) {
   return marks;
 }
 
-// Of each vertex the part of the cloth that it belongs to if only these triangles are there, with the springs between
+// The part of the cloth to which each vertex belongs, if only the triangles `there` exist, with the springs between
 // their vertices.
 std::vector<int> parts_of(const Scene& scene, const Marks& there) {
   const Triangles& all = scene.surface.triangles;
@@ -50,8 +50,8 @@ std::vector<int> cloth_of_triangles(const Scene& scene) {
   return cloths;
 }
 
-// `stay` are in the simulation already; of the others those that `out` does not mark may come, if something holds them:
-// `stay`, pins, or, where nothing of a piece of cloth stays, its largest part.
+// The triangles to cut out. `stay` are in the simulation already. Others without `out` come in if their part is held:
+// it has triangles that stay or pins, or it is the largest part of a piece of cloth of which nothing stays.
 std::vector<int> cut_out(const Scene& scene, const Marks& stay, const Marks& out) {
   const Triangles& triangles = scene.surface.triangles;
   const int count = static_cast<int>(triangles.rows());
@@ -59,12 +59,12 @@ std::vector<int> cut_out(const Scene& scene, const Marks& stay, const Marks& out
   std::ranges::transform(out, there.begin(), [](char marked) { return !marked; });
   const std::vector<int> part = parts_of(scene, there), whole = parts_of(scene, Marks(out.size(), 1));
   const std::vector<int> cloth = cloth_of_triangles(scene);
-  Marks held(static_cast<std::size_t>(scene.surface.vertex_count), 0);  // one a part
+  Marks held(static_cast<std::size_t>(scene.surface.vertex_count), 0);  // one per part
   struct Piece {
     bool stays = false;
-    std::map<int, int> sizes;  // of its parts, in triangles
+    std::map<int, int> sizes;  // numbers of triangles of its parts
   };
-  std::map<std::pair<int, int>, Piece> pieces;  // by what hangs together uncut, and cloth
+  std::map<std::pair<int, int>, Piece> pieces;  // by uncut part and cloth
   for (int t = 0; t < count; ++t) {
     Piece& piece = pieces[{whole[triangles(t, 0)], cloth[t]}];
     piece.stays = piece.stays || stay[t];

@@ -18,7 +18,8 @@ std::vector<char> worn_ones(std::vector<char> marked, const Points& worn) {
   return marked;
 }
 
-// Vertices of the cloth that cross it where all is worn; empty where there are none.
+// Vertices of the cloth on or inside contours with itself if all worn vertices were at their skinned targets; empty if
+// there are none.
 std::vector<char> crossed_as_worn(const ContactWorld& world, const Points& nodes, const Points& worn) {
   Points there = nodes.topRows(world.cloth->vertex_count);
   for (Eigen::Index v = 0; v < worn.rows(); ++v)
@@ -26,21 +27,21 @@ std::vector<char> crossed_as_worn(const ContactWorld& world, const Points& nodes
   return find_exemption(make_contact_world(*world.cloth, {}, true), there).self;
 }
 
-// Not the marked ones that are `tangled` with cloth: where they are worn they may be so as well.
+// Removes the mark of vertices that are `tangled` with cloth: at their skinned targets they may be tangled too.
 std::vector<char> without(std::vector<char> marked, const std::vector<char>& tangled) {
   for (std::size_t v = 0; v < std::min(marked.size(), tangled.size()); ++v) marked[v] = marked[v] && !tangled[v];
   return marked;
 }
 
-// What is tangled. True: the cloth crosses itself so often that no side can be told, and its own stiffness opens it.
+// Finds what is tangled. True if the cloth is hopeless: its own stiffness has to open it.
 bool find_tangled(const ContactWorld& world, const Points& nodes, const RecoveryOptions& options, Exemption& tangled) {
   const std::optional<Exemption> untouched = hopeless(world, nodes, options);
   tangled = untouched ? *untouched : find_exemption(world, nodes);
   return untouched.has_value();
 }
 
-// Parts what is tangled still; what waits for a body to be free of itself is drawn firmly, unless it is tangled with
-// cloth. True: untangling knows no way out of any of it.
+// Parts what is still tangled. Cloth that waits for a body to be free of itself is drawn, unless it is tangled with
+// cloth. True if untangling finds no way to part anything.
 bool part_the_rest(const ContactWorld& world, const Eigen::VectorXd& inverse_mass, const WornPlaces& where,
                    const RecoveryOptions& options, Points& nodes, UntanglingBudget& budget, Parting& parting) {
   std::vector<char> tangled = parting.left.self;
@@ -65,11 +66,11 @@ Parting part_at_start(const ContactWorld& world, SelfCrossings& self_crossings, 
                       Points& nodes, Points& v, UntanglingBudget& budget) {
   const Points &wanted = *where.wanted, &worn = *where.worn;
   Parting parting;
-  // 1. What is tangled.
+  // 1. Find what is tangled.
   const bool opens_itself = !clean && nodes.allFinite() && find_tangled(world, nodes, options, parting.left);
-  // 2. What a body that crosses itself has caught is let through.
+  // 2. Let through cloth that is caught where a body crosses itself.
   self_crossings.switch_off(nodes, wanted, worn, parting.left);
-  // 3. What a limb has gone through, or has sunken in, is put on again.
+  // 3. Put on again cloth that a limb has gone through, or that has sunken in.
   std::vector<char> pierced, sunken;
   if (!opens_itself) {
     pierced = pierced_vertices(world, parting.left, nodes, wanted, worn, options.astray * edge_length, options);
@@ -80,12 +81,12 @@ Parting part_at_start(const ContactWorld& world, SelfCrossings& self_crossings, 
     parting.left = find_exemption(world, nodes);
     pierced.clear();
   }
-  // 4. Without a place it is drawn to its skinned targets, and so is cloth where a body crosses itself.
+  // 4. Without a place, draw it to its skinned targets; likewise cloth where a body crosses itself.
   parting.carried = either(carried_vertices(world, parting.left, worn, nodes, edge_length), pierced);
-  // 5. What else is tangled is parted.
+  // 5. Part other tangled cloth.
   const bool stuck = parting.left.cloth() && !opens_itself &&
                      part_the_rest(world, inverse_mass, where, options, nodes, budget, parting);
-  // 6. Where there is no way out, what has sunken in is drawn, too.
+  // 6. If there is no way out, draw sunken cloth too.
   if (stuck && !placed) pierced = either(std::move(pierced), sunken);
   parting.carried = either(std::move(parting.carried), pierced);
   parting.left.body = either(std::move(parting.left.body), pierced);

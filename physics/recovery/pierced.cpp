@@ -41,7 +41,7 @@ std::vector<char> pierced_components(const ContactWorld& world, const Points& no
   return pierced;
 }
 
-// Of which more than `part` is tangled with obstacles and farther than that from where it is worn.
+// Components with more than `part` of their vertices tangled with obstacles and farther than `astray` from targets.
 std::vector<char> far_components(const ContactWorld& world, const Exemption& exemption, const Points& nodes,
                                  const Points& worn, double part, double astray) {
   const auto components = static_cast<std::size_t>(world.cloth->component_count);
@@ -60,13 +60,13 @@ bool applies(const Exemption& exemption, const Points& worn) {
   return !exemption.body.empty() && exemption.off.empty() && worn.rows() > 0;
 }
 
-// Components with a vertex that is not worn have no place to go to.
+// Removes components with an unworn vertex, which has no target.
 void leave_unworn(const ContactWorld& world, const Points& worn, std::vector<char>& components) {
   for (int v = 0; v < worn.rows(); ++v)
     if (!worn.row(v).allFinite()) components[world.cloth->component[v]] = 0;
 }
 
-// Empty where there are none.
+// 1 for vertices of marked components; empty if there are none.
 std::vector<char> vertices_of(const ContactWorld& world, const std::vector<char>& components) {
   if (std::ranges::find(components, 1) == components.end()) return {};
   std::vector<char> vertices;

@@ -12,11 +12,11 @@ namespace selvedge {
 namespace {
 
 struct Place {
-  Points nodes, ways;  // with what is marked put there, and how far that goes along in the step
-  int pairs;           // of triangles that cross there
+  Points nodes, ways;  // with the marked vertices at this place, and their displacements in the step
+  int pairs;           // number of pairs of triangles that cross there
 };
 
-// The ways over the step of the obstacles' nodes that are nearest to places, with obstacles as in `at`.
+// The displacements in the step of the obstacle nodes nearest to `places`, with obstacles as in `at`.
 Points ways_along(const ContactWorld& world, const Points& at, const Points& places, const Points& nodes,
                   const Points& wanted) {
   Points ways(places.rows(), 3);
@@ -27,7 +27,8 @@ Points ways_along(const ContactWorld& world, const Points& at, const Points& pla
   return ways;
 }
 
-// Those within reach, the least tangled first: where it is worn, and where it was clean last, carried along since.
+// Places within `farthest`, the least tangled first: the skinned targets, and where the cloth was clean last, moved
+// along with obstacles since.
 std::vector<Place> places_for(const ContactWorld& world, const std::vector<int>& vertices, const WornPlaces& where,
                               const Points& nodes, double farthest) {
   std::vector<Place> places;
@@ -54,11 +55,11 @@ UntangleResult part(const ContactWorld& world, const Place& place, const Recover
   const WorldSheets sheets(world, place.nodes);
   UntangleOptions options;
   options.iterations = std::min(limits.placing_passes, limits.max_placing_pair_passes / std::max(1, place.pairs));
-  options.second_opinion = false;  // a place that the first does not find is looked for again in the next step
+  options.second_opinion = false;  // if the first rule fails, the next step tries again
   return budget.untangle(*world.cloth, sheets.positions[0], std::span(sheets.views).subspan(1), options);
 }
 
-// Tangled there, of what is marked or was not tangled before.
+// Is any vertex tangled at a place that is marked, or was not tangled before?
 bool is_tangled(const Exemption& there, const Exemption& before, const std::vector<char>& marked) {
   const std::vector<char> now = either(there.body, there.self), then = either(before.body, before.self);
   for (std::size_t v = 0; v < now.size(); ++v)
@@ -80,7 +81,7 @@ PutOn put_on(const ContactWorld& world, const std::vector<char>& marked, const W
   UntanglingBudget ample;
   for (Place& place : places) {
     const UntangleResult parted = part(world, place, limits, budget ? *budget : ample);
-    place.nodes.topRows(parted.x.rows()) = parted.x;  // of other layers as well, which the place may go through
+    place.nodes.topRows(parted.x.rows()) = parted.x;  // moves other layers too, which the place may cross
     if (is_tangled(find_exemption(world, place.nodes), before, marked)) continue;
     nodes = std::move(place.nodes);
     v(vertices, Eigen::all) = place.ways / where.h;

@@ -14,8 +14,8 @@
 namespace selvedge {
 namespace {
 
-// The vertices that cross the cloth still, where `untangle` says that they should be: to push them towards it for ever
-// would keep the cloth from resting. Empty where there are none.
+// The vertices that are tangled with the cloth even where `untangle` wants them: pushing them there for ever would keep
+// the cloth from resting. Empty if there are none.
 std::vector<char> tangled_at(const ContactWorld& world, const Points& nodes, const UntangleResult& parted) {
   if (!world.self || parted.pairs_after + parted.vertex_pairs_after == 0) return {};
   Points goal = nodes;
@@ -23,8 +23,8 @@ std::vector<char> tangled_at(const ContactWorld& world, const Points& nodes, con
   return find_exemption(world, goal).self;
 }
 
-// Tangled cloth that hangs together with what is carried, or with a crossing of a part of a body that is switched off;
-// empty where there is none.
+// 1 for tangled cloth that is connected to drawn cloth, or to a crossing with a switched-off part of a body; empty if
+// there is none.
 std::vector<char> waiting(const ContactWorld& world, const Points& nodes, const std::vector<char>& tangled,
                           const std::vector<char>& off, const std::vector<char>& carried) {
   if ((off.empty() && carried.empty()) || tangled.empty()) return {};
@@ -59,8 +59,7 @@ bool none_is_left(const Exemption& found, const std::vector<char>& waits) {
   return found.self.empty() && (found.body.empty() || found.body == waits);
 }
 
-// A contact term has four vertices. Where an edge has gone through a face that is one too few: its nearer end stands
-// for it.
+// A contact term has four vertices. An edge through a face has five: the edge's nearer end replaces it.
 Separation on_four(Separation s) {
   if (s.count <= 4) return s;
   const int near = s.weight[0] > s.weight[1] ? 0 : 1;
@@ -70,9 +69,9 @@ Separation on_four(Separation s) {
   return s;
 }
 
-// What the displacement to where the cloth should be asks of all that is to be parted: its two sides go against each
-// other, or vertices against an obstacle, in the direction in which it takes them apart, `least` far and at most by
-// `reach` [m]. Where all vertices are lost nothing is asked.
+// The pushes that follow from the `wanted` displacement to the untangled cloth. For each separation its sides (two of
+// cloth, or cloth and an obstacle) move in the direction in which `wanted` moves them apart, by the same distance but
+// at most `reach` [m]. None for separations whose vertices are all `lost`.
 std::vector<Separation> pushes_along(const Points& wanted, const std::vector<char>& lost, const WorldSheets& sheets,
                                      double shortest, double reach) {
   const Segments found = find_segments(sheets.views);
@@ -96,15 +95,15 @@ std::vector<Separation> pushes_along(const Points& wanted, const std::vector<cha
   return pushes;
 }
 
-// Pairs of triangles of the cloth that cross each other.
+// The number of pairs of the cloth's triangles that cross each other.
 std::size_t pairs_within_cloth(const ContactWorld& world, const Points& nodes) {
   IntersectionCache cache;
   const Points cloth = nodes.topRows(world.cloth->vertex_count);
   return intersecting_pairs(*world.cloth, cloth, cache).size();
 }
 
-// Of untangling, in a step in which vertices can go as far as `reach` [m]. What sits on a body goes straight out; where
-// cloth is tangled with itself the first steps may be the wrong ones.
+// The passes of untangling in a step in which vertices can move by `reach` [m]. Cloth in a body goes straight out;
+// where cloth is tangled with itself the first passes may go the wrong way, so that it needs more.
 int iterations_for(const ContactWorld& world, const Points& nodes, double reach, const Exemption& before,
                    const UntangleOptions& options, const RecoveryOptions& limits) {
   if (!before.self.empty())
@@ -115,7 +114,7 @@ int iterations_for(const ContactWorld& world, const Points& nodes, double reach,
   return useful < options.iterations ? static_cast<int>(useful) : options.iterations;
 }
 
-// Vertices that would go through an obstacle anew stay: it holds them up. Returns what is tangled then.
+// Moves vertices that would newly go through an obstacle back to `from`. Returns what is tangled then.
 Exemption stop_at_obstacles(const ContactWorld& world, const Exemption& before, const Points& from, Points& nodes) {
   for (;;) {
     Exemption left = find_exemption(world, nodes);

@@ -9,7 +9,7 @@ UntangleResult UntanglingBudget::untangle(const Surface& cloth, const Points& x,
                                           UntangleOptions options) {
   const int left = std::max(0, most - used), wanted = options.iterations;
   options.iterations = std::min(wanted, left);
-  // The second opinion is as many passes again.
+  // The second rule of repulsion takes as many passes again.
   if (options.second_opinion && 2 * options.iterations > left) {
     options.second_opinion = left >= 2;
     options.iterations = options.second_opinion ? left / 2 : left;

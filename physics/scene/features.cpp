@@ -35,9 +35,9 @@ bool wants_bending(const Cloth& cloth, BendingModel model) {
   return cloth.material.bending_model == model && cloth.material.bending > 0;
 }
 
-// The curvature form needs a vertex inside, the hinge form an edge inside.
+// Curvature bending needs an inner vertex, hinge bending an inner edge.
 struct Insides {
-  std::vector<char> vertex, edge_at;  // of each vertex: lies inside; has an inner edge
+  std::vector<char> vertex, edge_at;  // of each vertex: is an inner one; has an inner edge
 };
 
 Insides insides(const Surface& surface) {

@@ -17,7 +17,7 @@ void put_rows(const Points& part, const std::vector<int>& rows, Points& whole) {
   for (std::size_t i = 0; i < rows.size(); ++i) whole.row(rows[i]) = part.row(static_cast<Eigen::Index>(i));
 }
 
-// The rows of a block that the part has; null: all.
+// The numbers of the rows of a block that the part has; null: all.
 const std::vector<int>* numbers_of(const PartOfScene& part, RowsOf rows_of) {
   switch (rows_of) {
     case RowsOf::vertices:
@@ -56,7 +56,7 @@ Memory memory_of_whole(const PartOfScene& part, Memory memory, const Points& x) 
   return memory;
 }
 
-// What is marked of the vertices and triangles of a scene; a triangle needs its vertices.
+// The part with the marked vertices and triangles of a scene. Vertices of marked triangles must be marked.
 PartOfScene part_with(const Scene& whole, std::span<const char> has_vertex, std::span<const char> has_triangle) {
   PartOfScene part;
   Scene& scene = part.scene;

@@ -27,7 +27,7 @@ StepCounts& StepCounts::operator+=(const StepCounts& other) {
   return *this;
 }
 
-constexpr double longest_step = 1e9;  // [s], as scene_numbers.hpp has it
+constexpr double longest_step = 1e9;  // [s], the bound of scene_numbers.hpp
 
 bool StepperTraits::accepts(double dt) const {
   return dt > 0 && dt <= longest_step && (!only_dt || std::abs(dt - *only_dt) <= 1e-9);

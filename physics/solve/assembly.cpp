@@ -21,7 +21,7 @@ void append_element(Elastic& elastic, const Nodes& nodes) {
   elastic.pair_begin.push_back(elastic.pair_begin.back() + count * (count - 1) / 2);
 }
 
-// Lists the positions of each value 0 .. count - 1 in `values`, ascending.
+// Lists the indices at which each value 0 .. count - 1 is in `values`, ascending.
 void invert(const std::vector<int>& values, int count, std::vector<int>& begin, std::vector<int>& positions) {
   begin.assign(count + 1, 0);
   for (int value : values) ++begin[value + 1];

@@ -9,21 +9,21 @@
 
 namespace selvedge {
 
-// All elastic elements of a scene and where their parts go. Elements are numbered membrane triangles first, then
-// hinges, curved vertices and springs; kinds that the scene does not have are empty and cost nothing. Each element
-// writes into slots of its own and each vertex and pair sums its slots in a fixed order: the same bits for any number
-// of threads.
+// All elastic elements of a scene and the slots of their results. Elements are numbered: membrane triangles first, then
+// hinges, curved vertices and springs; kinds that the scene does not have are empty. Each element writes into slots of
+// its own, and each vertex and pair sums its slots in a fixed order, so that bits do not depend on the number of
+// threads.
 struct Elastic {
   std::vector<Material> materials;  // of the cloths
   std::vector<MembraneElement> membrane;
   std::vector<Hinge> hinges;
   std::vector<CurvedVertex> curved;
   std::vector<Spring> springs;
-  SparseMatrix flat;  // Q [N/m], acts on each coordinate alone; 0 x 0 where no flat cloth bends by curvature
+  SparseMatrix flat;  // Q [N/m], for each coordinate; 0 x 0 if no flat cloth bends by curvature
 
-  std::vector<int> element_begin, element_nodes;  // a position in element_nodes is a force slot
+  std::vector<int> element_begin, element_nodes;  // indices of element_nodes are force slots
   std::vector<int> pair_begin;                    // first pair slot of each element: (0, 1), (0, 2) .. (1, 2) ..
-  std::vector<double> element_damping;  // stiffness damping of the element's cloth, of a spring's two the mean [s]
+  std::vector<double> element_damping;  // stiffness damping of the element's cloth; for a spring the mean of two [s]
   std::vector<double> vertex_damping;   // the same of each vertex
   PairPattern pattern;
   std::vector<int> force_gather_begin, force_gather;  // the force slots of each vertex
@@ -31,21 +31,21 @@ struct Elastic {
 };
 Elastic make_elastic(const Scene&);
 
-// What elements write before it is summed. Kept between calls for its memory alone.
+// The slots that elements write. Kept between calls only to save allocations.
 struct AssemblyScratch {
   Points forces;
   PairBlocks pairs;
 };
 
-// filtered: each element made PSD; exact: as it is (curved vertices stay Gauss-Newton); damping: filtered, each element
-// times its stiffness damping.
+// filtered: each element is projected to positive semidefinite. exact: not projected (curved vertices stay
+// Gauss-Newton). damping: filtered, and each element times its stiffness damping.
 enum class HessianForm { filtered, exact, damping };
 
-// Appends one sum a chunk of elements [J]: their total is the elastic energy, and the total of their differences is a
-// change of energy with little rounding.
+// Appends one sum for each chunk of elements [J]. Their total is the elastic energy; summing differences of two such
+// lists gives a change of energy with little rounding.
 void append_elastic_energies(const Elastic&, const Points& x, std::vector<double>& energies);
 
-// Gradient (n x 3, written, Q included) and Hessian of the elements (written, Q not included); either may be null.
+// Overwrites the gradient (n x 3 [N], with Q) and the Hessian of the elements ([N/m], without Q); either may be null.
 void elastic_derivatives(const Elastic&, const Points& x, AssemblyScratch&, Points* gradient, PairBlocks* hessian,
                          HessianForm = HessianForm::filtered);
 

@@ -4,19 +4,19 @@
 
 namespace selvedge {
 
-// Where the last substep began, for an integrator of two steps that may go on from it.
+// The start of the last substep, for a two-step integrator.
 struct StepHistory {
-  double h = 0;  // its length [s]; 0: there is none
+  double h = 0;  // the substep's length [s]; 0: there is no history
   Points x, v;
 };
 
-// The history in a state's memory, and a history as blocks of memory, none for one without length.
+// Reads the history from a state's memory, and makes blocks of memory from it; no blocks if h is 0.
 StepHistory step_history(const State&);
 Memory blocks_of(const StepHistory&);
-// For what moves a state's cloth beside its own motion: the next step has no history.
+// Removes the history: to be called when something other than a step moves the cloth.
 void forget_history(State&);
 
-// Where a step of implicit Euler starts from, and how long it is [s].
+// The start and the length [s] of a step of implicit Euler.
 struct StepStart {
   double h = 0;
   Points x, v;
@@ -26,8 +26,8 @@ struct StepStart {
 // Equations II, section III.1): with x0, v0 where the last step ended and x_, v_ where it began,
 //   v1 = (3/2 x1 - 2 x0 + 1/2 x_) / h,   M (3/2 v1 - 2 v0 + 1/2 v_) / h = forces(x1, v1).
 // That is implicit Euler over h' = 2 h / 3 from x' = x0 + (x0 - x_) / 3 with v' = v0 + (v0 - v_) / 3, and ends with the
-// velocity (x1 - x') / h', which damping and wind see too. What these are linearised about, the stiffness that damps
-// and the speed of the wind past the cloth, is that of x', v': in it the scheme stays first order.
+// velocity (x1 - x') / h', which damping and wind see too. The damping stiffness and the speed of the air past the
+// cloth are taken at x', v'; in these the scheme stays first order.
 StepStart bdf2_start(const StepHistory&, const Points& x0, const Points& v0);
 
 }  // namespace selvedge

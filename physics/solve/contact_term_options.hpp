@@ -5,9 +5,9 @@ namespace selvedge {
 // How contact enters the incremental potential of a step (contact_terms.hpp).
 struct ContactTermOptions {
   double stiffness = 200;  // A term begins this many times as stiff as its pair's mass over the time step squared.
-  double overlap_removed = 0.1;  // A step lifts by this part of an overlap; a load sinks by this part of a gap.
+  double overlap_removed = 0.1;  // A step removes this part of an overlap; a load sinks by this part of a gap.
 
-  // The force sets in smoothly over this part of the thickness.
+  // The force rises smoothly over this part of the thickness.
   static constexpr double onset = 0.02;
   // A load may press a term in by this part of the thickness.
   static constexpr double load_sink = 0.01;

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double least_free_weight = 0.01;
 
-// What a gap gives under a unit impulse [1/kg]. 0 where no free node has a hundredth of the gap: it would go a hundred
-// times as far.
+// The inverse effective mass of a gap [1/kg]. 0 if no free node has a weight of at least 0.01, since it would have to
+// move a hundred times as far as the gap.
 double compliance(std::span<const int> nodes, std::span<const double> weights, const Eigen::VectorXd& inverse_mass) {
   double sum = 0, largest_free = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -27,8 +27,8 @@ double compliance(const ContactTerm& term, const Eigen::VectorXd& inverse_mass) 
   return compliance(term.nodes, term.weights, inverse_mass);
 }
 
-// What proximities and impacts have in common: the linearised gap and the slip, with what belongs to obstacles folded
-// in. False if nothing in the pair can move.
+// The common part of terms of proximities and impacts: the linearised gap and the slip, with obstacle nodes as
+// constants. False if no node of the pair can move.
 bool linearise(const Scene& scene, const ContactWorld& world, const NodePair& pair, const Eigen::Vector4d& weights,
                const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1, double h,
                const ContactTermOptions& options, ContactTerm& term) {
@@ -64,7 +64,7 @@ Contacts contact_terms(const Scene& scene, const ContactWorld& world, std::span<
     term.normal = p.normal;
     term.target = std::min(p.rest_gap, p.gap + lift);
     term.softness = options.onset * p.rest_gap;
-    // Loaded cloth comes to rest where it sinks by as much as it is lifted: at half the rest gap.
+    // Loaded cloth comes to rest where sinking and lifting balance: at half the rest gap.
     term.sink = std::max(options.overlap_removed * p.gap, options.load_sink * p.rest_gap);
     if (!linearise(scene, world, p.pair, p.weights, inverse_mass, nodes0, nodes1, h, options, term)) continue;
     contacts.pairs.push_back(p.pair);
@@ -208,7 +208,7 @@ void relinearise(const Scene& scene, const ContactWorld& world, const Eigen::Vec
 
 void set_load_stiffness(std::vector<ContactTerm>& terms, const Eigen::VectorXd& inverse_mass, const Points& forces,
                         const ContactTermOptions& options) {
-  std::vector<double> borne(forces.rows(), 0.0), held(borne);  // by how many terms, of each vertex; by what weight
+  std::vector<double> borne(forces.rows(), 0.0), held(borne);  // number of terms of each vertex; sum of their weights
   for (const ContactTerm& term : terms)
     for (int i = 0; i < 4; ++i)
       if (term.nodes[i] >= 0) {
@@ -245,7 +245,7 @@ void apply_static_friction(std::span<const ContactTerm> terms, const Eigen::Vect
   std::vector<double> budget(terms.size(), 0.0);  // tangential impulse times h still allowed [kg m]
   for (std::size_t k = 0; k < terms.size(); ++k) {
     const Vec3 slip = contact_slip(terms[k], x0, x);
-    if (slip.norm() > slip_width) continue;  // slides: the solve has used the whole bound
+    if (slip.norm() > slip_width) continue;  // it slides: the solve has used the whole bound
     const double used = friction_force(terms[k], slip, slip_width).factor * slip.norm();
     budget[k] = std::max(0.0, terms[k].friction * terms[k].normal_force - used) * h * h;
   }

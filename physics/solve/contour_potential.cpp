@@ -7,8 +7,8 @@
 namespace selvedge {
 namespace {
 
-// Where an edge is nearly parallel to a face, a crossing runs far for a small motion: below this cosine of edge and
-// normal the bound would be so stiff that it would spoil the linear system.
+// Where an edge is nearly parallel to a face, a crossing moves far for a small motion. Below this cosine of edge and
+// normal the bound would be too stiff for the linear system.
 constexpr double least_cosine = 0.01;
 
 }  // namespace
@@ -41,7 +41,7 @@ void ContourPotential::add_blocks(const Crossing& c, int uses, std::vector<Conta
   const double cosine = normal.dot((row(x, edge[1]) - row(x, edge[0])).normalized());
   if (!std::isfinite(cosine)) return;
   const bool both = c.edge_sheet == 0 && c.face_sheet == 0;
-  const double stiffness = 2 * weight_ * uses * 2 * (both ? 2 : 1);  // the last two: segment ends, edge and face
+  const double stiffness = 2 * weight_ * uses * 2 * (both ? 2 : 1);  // factors for segment ends, and for edge and face
   ContactBlock block;
   block.normal = normal;
   block.normal_stiffness = stiffness / std::max(cosine * cosine, least_cosine * least_cosine);

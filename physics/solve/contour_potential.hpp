@@ -8,19 +8,20 @@
 
 namespace selvedge {
 
-// weight * contour_energy of the cloth with obstacles that stand still and, where world.self, with itself [J]: weight
-// times the squared lengths of all segments, so that weight [N/m] is a stiffness. Segments are found anew for every x.
+// weight * contour_energy of the cloth with obstacles that stand still and, if world.self, with itself [J]. That is
+// weight [N/m] times the sum of squared lengths of all segments. Segments are found anew for every x.
 class ContourPotential {
  public:
   ContourPotential(const ContactWorld&, const Points& nodes, double weight, ContourGradient);  // keeps a reference
 
   double value(const Points& x);  // x: the cloth's; infinite where x is not finite
   const Segments& segments(const Points& x);
-  std::span<const SheetView> sheets() const { return sheets_.views; }  // the cloth where it was asked about last
+  std::span<const SheetView> sheets() const { return sheets_.views; }  // with the cloth at the x asked for last
 
-  // Adds the gradient of the chosen kind, and for each crossing one block a sheet that moves. They bound the
-  // Gauss-Newton Hessian, but for edges nearly parallel to their face, where they are capped. The bound parts the two
-  // ends of a segment, and edge and face, by (a + b)^2 <= 2 (a^2 + b^2), since a block has four vertices.
+  // Adds the gradient of the chosen kind, and for each crossing one block per moving sheet. The blocks bound the
+  // Gauss-Newton Hessian from above, except for edges nearly parallel to their face, where they are capped. Since a
+  // block has four vertices, the bound separates the two ends of a segment, and edge and face, by (a + b)^2 <= 2 (a^2 +
+  // b^2).
   void add_derivatives(const Points& x, Points& gradient, std::vector<ContactBlock>& blocks);
 
  private:

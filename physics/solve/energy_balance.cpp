@@ -8,9 +8,9 @@ namespace selvedge {
 namespace {
 
 constexpr const char* block = "energy.from_nowhere";
-constexpr double tolerated_part = 0.3;  // of the unit of energy (below); demo, walks, wind and piles: at most 0.2
-constexpr double slight = 0.05;         // of it: a smaller gain is not compared with the work where something moves
-constexpr double earth = 9.81;          // weighs cloth where nothing falls [m/s2]
+constexpr double tolerated_part = 0.3;  // of the unit of energy; demo, walks, wind and piles have at most 0.2
+constexpr double slight = 0.05;         // of it: smaller gains in driven scenes are not compared with the work
+constexpr double earth = 9.81;          // for the unit of energy without gravity [m/s2]
 
 double gained_before(const State& state) {
   const MemoryRows* rows = find_rows(state.memory, block, 1);
@@ -23,7 +23,7 @@ void remember(double nowhere, State& state) {
   replace_blocks("energy", std::move(blocks), state.memory);
 }
 
-// Whether anything can have given energy: a pin or an obstacle that moved, or wind.
+// Whether the world may have done work: a pin or an obstacle moved, or there is wind.
 bool is_driven(const Scene& scene, const State& from, const State& to, const Drive& drive) {
   return !drive.wind.isZero(0) || from.obstacles != to.obstacles ||
          std::ranges::any_of(scene.pins, [&](int pin) { return from.x.row(pin) != to.x.row(pin); });
@@ -34,7 +34,7 @@ bool is_driven(const Scene& scene, const State& from, const State& to, const Dri
 EnergyBalance::EnergyBalance(const Scene& scene, const StepperTraits& traits)
     : scene_(without_ignored(scene, traits)), terms_(energy_terms(scene_)), edge_length_(mean_edge_length(scene_)) {}
 
-// Of the two states of a step the first is the second one of the step before, as a rule.
+// Caches the last result: a step usually starts with the state that the step before ended with.
 Energies EnergyBalance::energies_of(const State& state, const Vec3& acceleration) {
   const bool known = last_.x.rows() == state.x.rows() && last_.v.rows() == state.v.rows() && last_.x == state.x &&
                      last_.v == state.v && last_.acceleration == acceleration;
@@ -56,7 +56,7 @@ EnergyGain EnergyBalance::operator()(const State& from, const Drive& drive, Stat
   const bool driven = is_driven(scene_, from, to, drive);
   if (driven && found.gain > 0) found.work = found.gain > slight * unit ? work_of(from, to, drive) : found.gain;
   const double nowhere = gained + (found.gain > 0 ? std::max(found.gain - found.work, 0.0) : found.gain);
-  found.nowhere = nowhere < 0 ? 0 : nowhere;  // not a number stays so
+  found.nowhere = nowhere < 0 ? 0 : nowhere;  // NaN stays NaN
   remember(found.from_nowhere() ? 0 : found.nowhere, to);
   return found;
 }

@@ -8,7 +8,7 @@
 namespace selvedge {
 namespace {
 
-constexpr double first_step = 0.3;  // in the time in which the load alone would move the cloth by its size
+constexpr double first_step = 0.3;  // in units of the time in which the load moves the cloth by its size
 constexpr double growth = 3, long_step = 100, longest_step = 300;
 
 Points pins_at(const Scene& scene, const Points& x) {

@@ -4,19 +4,19 @@
 
 namespace selvedge {
 
-// What a scene without contact comes to rest under, pins held where they are.
+// The load of an equilibrium without contact; pins are held where they are.
 struct StaticLoad {
   Vec3 acceleration = Vec3::Zero();  // [m/s2]
   const AddedTerm* added = nullptr;  // its value is minus the work of the load
   double size = 0;                   // the norm of all nodal loads [N]
 };
 
-// A frame may be left with the imbalance that its tolerances allow, since the next one sees it; at rest there is no
-// next one. So each step is solved to the end, directly where CHOLMOD is in the build.
+// Options that solve each step to the end, by CHOLMOD if the build has it. A frame may leave an imbalance within its
+// tolerances, since the next frame corrects it; an equilibrium has no next frame.
 ImplicitEulerOptions to_the_end();
 
 struct EquilibriumOptions {
-  double tolerance = 1e-6;  // of the root mean square motion in a long step, in the extent of the start
+  double tolerance = 1e-6;  // of the RMS motion in a long step, relative to the extent of the start
   int max_steps = 300;
   ImplicitEulerOptions implicit_euler = to_the_end();
 };
@@ -24,15 +24,14 @@ struct EquilibriumOptions {
 struct Equilibrium {
   Points x;
   bool converged = false;
-  double moved = 0;     // in the last step, of the tolerance's kind
-  double residual = 0;  // norm of all force imbalances, in StaticLoad::size
+  double moved = 0;     // in the last step, in the units of the tolerance
+  double residual = 0;  // norm of all force imbalances, divided by StaticLoad::size
   int steps = 0, iterations = 0;
 };
 
-// Steps of implicit Euler from rest, velocities forgotten after each and every step longer than the one before: each
-// is the minimiser of the energy near where it starts, so that the energy sinks in every step until nothing moves
-// though steps are so long that inertia holds nothing back. Nothing is left of the way there: an equilibrium is stable
-// where this ends in it from beside it.
+// Takes steps of implicit Euler, each from rest and longer than the one before. Each step minimises the energy near its
+// start, so that the energy falls in every step. It ends when nothing moves although steps are so long that inertia has
+// no effect. The result does not depend on inertia: an equilibrium is stable if starts near it end in it.
 Equilibrium settle(const Scene&, const Points& start, const StaticLoad&, const EquilibriumOptions& = {});
 
 // Norm of the weights of a scene's free vertices [N].

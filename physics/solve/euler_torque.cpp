@@ -8,7 +8,7 @@
 namespace selvedge {
 namespace {
 
-constexpr double on_axis = 1e-9;  // of a pin's distance from the others: rounding
+constexpr double on_axis = 1e-9;  // of a pin's distance from the others, for rounding
 
 bool on_one_line(const std::vector<int>& pins, const Points& x, const Vec3& up) {
   const Vec3 first = row(x, pins.front());
@@ -18,7 +18,7 @@ bool on_one_line(const std::vector<int>& pins, const Points& x, const Vec3& up) 
   });
 }
 
-// Rotation of a part about an axis through `middle`, as seen from there.
+// Rotation of a part about an axis through `middle`, relative to its motion.
 struct Turn {
   double momentum = 0, inertia = 0;  // [kg m2/s], [kg m2]
   double rate() const { return inertia > 0 ? momentum / inertia : 0; }
@@ -59,7 +59,7 @@ void EulerTorque::take_back(const StepProblem& step, const Points& x1, const Poi
   for (const Part& part : parts_) {
     if (!on_one_line(part.pins, x0, up) || !on_one_line(part.pins, x1, up)) continue;
     const Vec3 from = row(x0, part.pins.front()), to = row(x1, part.pins.front()), speed = (to - from) / h;
-    // A pin that moves by `speed` takes -speed x momentum a second from what is seen from it.
+    // Relative to a pin that moves with `speed`, angular momentum changes by -speed x momentum per second.
     double torque = 0;
     Vec3 gained = Vec3::Zero();
     for (const int i : part.free) {

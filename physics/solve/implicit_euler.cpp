@@ -22,7 +22,7 @@ constexpr int max_halvings = 40;
 
 struct EnergyChange {
   double change = 0;  // [J]
-  double noise = 0;   // below which a change means nothing
+  double noise = 0;   // smaller changes mean nothing
 };
 
 double sum_of(const std::vector<double>& parts) { return std::accumulate(parts.begin(), parts.end(), 0.0); }
@@ -67,8 +67,9 @@ std::vector<char> drifting_components(const Scene& scene, const std::vector<int>
   return drifting;
 }
 
-// Elastic forces do not see a translation, so the best one of a drifting component is known exactly, whatever the
-// linear solver left of it. Keeps linear momentum to rounding and never raises the quadratic model.
+// Elastic forces do not change under translation, so that the best translation of a drifting component is known
+// exactly, whatever the linear solver found. Conserves linear momentum up to rounding and never raises the quadratic
+// model.
 void correct_translations(const std::vector<int>& component, const StepPotential& step,
                           const std::vector<char>& drifting, const Points& gradient, Points& motion) {
   std::vector<double> weight(drifting.size(), 0.0);
@@ -148,8 +149,8 @@ Points ImplicitEuler::gradient(const StepProblem& problem, const Points& x) {
   return impl_->gradient;
 }
 
-// The caller's guess or the ballistic positions, whichever has the lower potential (free fall is then exact). Pins are
-// put where they belong. False if neither potential is finite.
+// The caller's guess or the ballistic positions, whichever has the lower potential (free fall is then exact). Sets pins
+// to their targets. False if neither potential is finite.
 bool ImplicitEuler::Impl::choose_first_guess(Points& x) {
   if (step.problem->warm_start) {
     energies(step, x, scratch, energy);
@@ -171,7 +172,7 @@ bool ImplicitEuler::Impl::choose_first_guess(Points& x) {
   return std::isfinite(std::min(guess, ballistic)) && x.allFinite();
 }
 
-// What a Newton step's RMS displacement has to fall below [m].
+// The RMS displacement of a Newton step below which Newton ends [m].
 double ImplicitEuler::Impl::goal(const Points& x) const {
   const StepProblem& problem = *step.problem;
   return std::max(
@@ -179,21 +180,21 @@ double ImplicitEuler::Impl::goal(const Points& x) const {
       options.relative_tolerance * std::max(problem.tolerance_scale, 1.0) * root_mean_square(x - *problem.x0));
 }
 
-// What the energy that a Newton step can still gain has to fall below [J]: in stiff cloth small errors store much.
+// The energy gain of a Newton step below which Newton ends in stiff cloth [J], where small errors store much energy.
 double ImplicitEuler::Impl::energy_goal(const Points& x) const {
   const double reach = options.newton.stiff_allowance * goal(x);
   return reach * reach * sum_of(step.inertia);
 }
 
-// How far x is from the minimiser at most, RMS, where a Newton step can gain that energy [J]: the minimiser lies lower
-// by half of it, and inertia alone takes as much for that way. Of a convex potential; what is left after the step is
-// less.
+// A bound of the RMS distance from x to the minimiser of a convex potential, if a Newton step can gain the energy
+// `gain` [J]: the minimum is lower by half of it, and inertia alone takes as much for that distance. After the step
+// less is left.
 double ImplicitEuler::Impl::distance_left(double gain) const {
   const double inertia = sum_of(step.inertia);
   return inertia > 0 ? std::sqrt(std::max(gain, 0.0) / inertia) : 0;
 }
 
-// Mean stiffness of the vertices over their inertia.
+// Mean stiffness of the vertices, divided by their inertia.
 double ImplicitEuler::Impl::mean_stiffness() const {
   double stiffness = 0, inertia = 0;
   for (std::size_t i = 0; i < diagonal.size(); ++i) {
@@ -204,8 +205,9 @@ double ImplicitEuler::Impl::mean_stiffness() const {
   return inertia > 0 ? stiffness / inertia : 0;
 }
 
-// One linear solve for the Newton step; true if it is as accurate as asked for. The norm in which it converges weighs a
-// motion by its stiffness: the stiffer the cloth, the less of it are the soft modes, which carry the motion.
+// One linear solve for the Newton step; true if it is as accurate as asked for. The norm in which it converges weights
+// a motion by its stiffness. So in stiff cloth the soft modes, which make up most of the motion, count little and need
+// a smaller tolerance.
 bool ImplicitEuler::Impl::solve_linear(Definite definite, NewtonReport& report) {
   relative_stiffness = mean_stiffness();
   const double tolerance =
@@ -218,8 +220,8 @@ bool ImplicitEuler::Impl::solve_linear(Definite definite, NewtonReport& report) 
 }
 
 // Assembles at x and solves for the Newton step. Filtered Hessians always lead downhill but converge slowly where cloth
-// is compressed; the exact one converges quadratically where it is positive definite, so it is tried once Newton had
-// time to come near (projection on demand, after Longva et al. 2023), and ever less often where it fails.
+// is compressed; the exact one converges quadratically where it is positive definite, so it is tried after a few
+// iterations (projection on demand, after Longva et al. 2023), and less often each time it fails.
 ImplicitEuler::Impl::Direction ImplicitEuler::Impl::find_direction(const Points& x, NewtonReport& report) {
   for (const HessianForm form : {HessianForm::exact, HessianForm::filtered}) {
     const bool exact = form == HessianForm::exact;
@@ -244,9 +246,9 @@ ImplicitEuler::Impl::Direction ImplicitEuler::Impl::find_direction(const Points&
   return Direction::rough;
 }
 
-// Moves x along `motion` until the potential has sunk enough; the step length, or 0 if no step did. Filtered Hessians
-// overrate the stiffness of buckling cloth: where the potential sinks almost linearly, and by more than rounding,
-// longer steps are tried.
+// Moves x along `motion` so that the potential falls enough. Returns the step length, or 0 if none was found. Filtered
+// Hessians overestimate the stiffness of buckling cloth: if the potential falls almost linearly, and by more than
+// rounding, longer steps are tried.
 double ImplicitEuler::Impl::line_search(Points& x) {
   const double slope = gradient.cwiseProduct(motion).sum();
   const auto try_length = [&](double length) {
@@ -285,7 +287,7 @@ NewtonReport ImplicitEuler::solve(const StepProblem& problem, Points& x) {
   report.finite = impl.choose_first_guess(x);
   if (!report.finite) return report;
   const int most = std::max(1, static_cast<int>(std::lround(problem.iteration_scale * impl.options.max_newton)));
-  bool unfinished = false;  // the last step could gain more energy than its length says, or much of all there is
+  bool unfinished = false;  // the last step gained too much energy for Newton to end
   while (!report.converged &&
          report.iterations <
              std::min(problem.most_iterations, unfinished ? impl.options.newton.more_iterations * most : most)) {

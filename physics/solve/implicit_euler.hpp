@@ -8,19 +8,20 @@
 
 namespace selvedge {
 
-// When Newton goes beyond its usual step, Hessian and number of iterations.
+// When Newton uses longer steps, exact Hessians and more iterations.
 struct NewtonOptions {
   int exact_from = 3;  // The exact Hessian is tried after this many filtered ones.
 
-  // A longer step is tried where the change over its linear prediction is larger. Exact models have 0.5.
+  // A longer step is tried if the change of the potential over its linear prediction is larger. Exact quadratics have
+  // 0.5.
   static constexpr double nearly_linear = 0.7;
   // No step is longer than this many Newton steps.
   static constexpr double longest_step = 16;
   // Cloth is stiff if its mean stiffness is this many times its inertia over h^2.
   static constexpr double stiff = 1e5;
-  // Stiff cloth is solved until the energy that a step gains is that of a motion this many goals long.
+  // Stiff cloth is solved until a Newton step gains no more energy than a motion of this many times the tolerance.
   static constexpr double stiff_allowance = 4;
-  // With contact it is solved until a step gains less than this part of the potential.
+  // Any cloth with contact is solved until a Newton step gains less than this part of the potential.
   static constexpr double far_energy = 0.1;
   // These two rules take at most this many times max_newton iterations.
   static constexpr int more_iterations = 8;
@@ -34,11 +35,11 @@ struct ImplicitEulerOptions {
   LinearSolver linear_solver = LinearSolver::automatic;
   double linear_tolerance = 0.25;  // of PCG in a Newton iteration, in the norm of its preconditioner
   int max_linear = 2000;
-  // Of a whole step. Once they are used up every further solve takes one, and the report says so: contact is kept, but
-  // the cloth is not where it should be.
+  // Newton iterations of a whole step. Once they are used up every further solve takes one, and the report says so
+  // (out_of_newton): contact still holds, but the cloth is not where it should be.
   int max_newton_step = 1000;
-  double slip_speed = 2e-3;  // below it lagged friction is viscous [m/s]
-  // A step whose solves may be farther from their ends, RMS, is called not converged (StepReport::unsolved) [m].
+  double slip_speed = 2e-3;  // below this speed lagged friction is viscous [m/s]
+  // A step counts as not converged if StepReport::unsolved, an RMS distance, is larger [m].
   double tolerated_error = 5e-4;
   NewtonOptions newton;
 };
@@ -46,10 +47,10 @@ struct ImplicitEulerOptions {
 struct NewtonReport {
   bool converged = false;
   bool finite = true;
-  bool stopped = false;  // by the problem's flag: x is no minimiser
+  bool stopped = false;  // by the problem's flag: x is not a minimiser
   int iterations = 0, linear_iterations = 0;
   int coarse_builds = 0;  // of multigrid's coarse levels
-  double left = 0;        // RMS distance from the minimiser, at most, as the last iteration shows it [m]
+  double left = 0;        // bound of the RMS distance from the minimiser, from the last iteration [m]
 };
 
 // Minimises the incremental potential

@@ -12,15 +12,15 @@
 
 namespace selvedge {
 
-// A term of the potential that implicit Euler knows nothing of. It may be anything that has a value; where it jumps or
-// has kinks the line search still holds Newton to what sinks.
+// A term of the potential that a caller adds. It may jump or have kinks: the line search still accepts only steps that
+// lower the potential.
 struct AddedTerm {
   std::function<double(const Points& x)> value;  // [J]
-  // Adds a gradient [N], and blocks whose sum is a positive semidefinite stand-in for the second derivative.
+  // Adds a gradient [N], and blocks whose sum is a positive semidefinite approximation of the second derivative.
   std::function<void(const Points& x, Points& gradient, std::vector<ContactBlock>& blocks)> add_derivatives;
 };
 
-// One step's data. Everything is over the cloth's joint numbering.
+// The data of one step, in the cloth's joint numbering.
 struct StepProblem {
   double h = 0;                // [s]
   const Points* x0 = nullptr;  // positions and velocities at the step's start
@@ -29,12 +29,12 @@ struct StepProblem {
   Vec3 acceleration = Vec3::Zero();
   Vec3 wind = Vec3::Zero();
   std::span<const ContactTerm> contacts;
-  double tolerance_scale = 1;  // of a solve that only feeds another one
+  double tolerance_scale = 1;  // of a solve whose result only feeds another one
   const AddedTerm* added = nullptr;
-  double iteration_scale = 1;  // of the most iterations, of a solve that another one goes on from
-  bool warm_start = false;     // x is where an earlier solve of the same step ended: no other first guess is weighed
-  const StopFlag* stop = nullptr;                         // asked once an iteration
-  int most_iterations = std::numeric_limits<int>::max();  // whatever is left to be done then
+  double iteration_scale = 1;      // of the most iterations, for a solve that another one continues
+  bool warm_start = false;         // x is the end of an earlier solve of the same step: no other first guess is tried
+  const StopFlag* stop = nullptr;  // asked in each iteration
+  int most_iterations = std::numeric_limits<int>::max();  // a hard limit
 };
 
 }  // namespace selvedge

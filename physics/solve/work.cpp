@@ -39,7 +39,7 @@ void WorkBound::unnamed_forces(const State& from, const State& to, const Drive& 
   for (const Cloth& cloth : scene_.cloths)
     for (int i = cloth.first_vertex; i < cloth.first_vertex + cloth.vertex_count; ++i) {
       const Material& material = cloth.material;
-      // A spring between cloths of different damping counts here at each end with that cloth's.
+      // A spring between cloths of different damping counts at each end with the damping of that end's cloth.
       const Vec3 inertia = masses_[i] * ((row(to.v, i) - row(from.v, i)) / dt - drive.acceleration +
                                          material.mass_damping * row(to.v, i)) +
                            material.stiffness_damping / dt * (row(after, i) - row(before, i)) - row(wind_, i);

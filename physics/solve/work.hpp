@@ -7,21 +7,21 @@
 
 namespace selvedge {
 
-// What the world, and the response to contact, can at most have given to a cloth in a step [J].
+// Bounds of the work that the world and the response to contact did on a cloth in a step [J].
 struct Work {
   double pins = 0, obstacles = 0, wind = 0, response = 0;
   double total() const { return pins + obstacles + wind + response; }
   Work& operator+=(const Work&);
 };
 
-// Bounds the work of a step by what its two ends show, whoever made it: a vertex moved by forces that nobody names has
-// felt R = m dv/dt - elastic - gravity - wind - damping, with the larger of the elastic forces at both ends.
+// Bounds the work of a step from its two ends alone, whichever stepper made it. The unnamed force on a vertex is R = m
+// dv/dt - elastic - gravity - wind - damping, with the larger of the elastic forces at both ends.
 //   pins       |R| times the displacement of the pin
 //   obstacles  |R| times the displacement of the obstacle, at vertices that may have touched it
 //   wind       the force of the air times the displacement of the vertex
 //   response   |R| times how far a vertex was pressed closer than the rest gap at the start, which pushing apart may
 //              give back; and |R| times its displacement where it started tangled
-// A cloth whose energy grows by more has it from nowhere. Holds caches and a reference to the scene.
+// If the energy of a cloth grows by more, the gain has no source. Holds caches and a reference to the scene.
 class WorkBound {
  public:
   explicit WorkBound(const Scene&);

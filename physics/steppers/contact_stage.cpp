@@ -34,7 +34,7 @@ ContactStage::ContactStage(const Scene& scene, const ResolveOptions& limits)
 
 void ContactStage::leave_alone(const Exemption* exemption) {
   const bool any = exemption && exemption->any();
-  if (exempt || any) path = {};  // what was listed then is not what is to be listed now
+  if (exempt || any) path = {};  // the list was made with other pairs left out
   exempt = any;
   search.leave_out(any ? exemption : nullptr);
 }

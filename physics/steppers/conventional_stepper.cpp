@@ -23,27 +23,27 @@
 namespace selvedge {
 namespace {
 
-// What belongs to one step.
+// The data of one step.
 struct StepWork {
   StepWork(const State& from, const Drive& d, const StepExtras& e, StepReport& r)
       : drive(d), extras(e), report(r), look_for_room(from.pinched) {}
   const Drive& drive;
   const StepExtras& extras;
   StepReport& report;
-  bool look_for_room;  // obstacles lag at its start, or some did not have room in it
+  bool look_for_room;  // obstacles lag at its start, or lacked room in it
   const Exemption nothing = {};
   const Exemption& left_alone = extras.left_alone ? *extras.left_alone : nothing;
 };
 
 enum class SubstepOutcome { clean, impact_too_deep, zones_not_converged, too_many_pairs, not_finite, stopped };
 
-// Substeps still to be taken, of one length: to where `nodes` has the obstacles and to `pins`.
+// Substeps of one length that are still to be taken; at their end obstacles are as in `nodes` and pins as in `pins`.
 struct Stretch {
   Points nodes, pins;
   double h;      // of each [s]
-  int count;     // that are left
-  int halvings;  // that each may still go through
-  int parts;     // that each may still be cut into
+  int count;     // substeps left
+  int halvings;  // halvings that each may still take
+  int parts;     // most parts of each
 };
 
 class ConventionalStepper final : public Stepper {
@@ -121,7 +121,7 @@ AddedTerm added_term(const StepWork& work, const Points& x0, double h) {
   return work.extras.added ? work.extras.added(x0, h) : AddedTerm{};
 }
 
-// Whether BDF2 goes on from the history: one of this length, and no pin changes its speed by an edge a substep.
+// Whether BDF2 can use the history: its step has the same length, and no pin changes its speed by an edge per substep.
 bool ConventionalStepper::continues_history(const Substep& s) const {
   const StepHistory& history = s.start.history;
   if (options_.integrator != Integrator::bdf2 || s.attempt != SubstepAttempt::first || history.h != s.h) return false;
@@ -138,14 +138,14 @@ void ConventionalStepper::note_imbalance(const StepProblem& problem, const Point
   report.residual = largest_row(s.unbalanced);
 }
 
-// By what the positions did, and without the torque that implicit Euler adds of itself.
+// Velocities from the change of positions, without the torque that implicit Euler adds.
 void ConventionalStepper::set_velocities(const StepProblem& problem, const Points& x, Substep& s) const {
   s.v = (x - *problem.x0) / problem.h;
   const bool euler = problem.h == s.h;
   if (euler) euler_torque_.take_back(problem, x, s.unbalanced, s.v);
 }
 
-// The substep without contact. False, with `s` as it was, if it runs into something or is not finite.
+// The substep without contact. False, with `s` unchanged, if there are impacts or it is not finite.
 bool ConventionalStepper::solve_freely(StepWork& work, Substep& s, const StepStart& start) {
   const int n = scene_.surface.vertex_count;
   const AddedTerm added = added_term(work, start.x, start.h);
@@ -162,7 +162,7 @@ bool ConventionalStepper::solve_freely(StepWork& work, Substep& s, const StepSta
   return true;
 }
 
-// Pins that would be driven into what cannot move give way, and the report says that their motion was shortened.
+// Lets pins give way that would be driven into prescribed motion; the report says that their motion was shortened.
 void ConventionalStepper::hold_pins(StepWork& work, Substep& s, Points& pins) {
   Points nodes = s.nodes;
   ResolveReport report;
@@ -176,7 +176,8 @@ void ConventionalStepper::hold_pins(StepWork& work, Substep& s, Points& pins) {
   for (const int pin : scene_.pins) s.nodes.row(pin) = nodes.row(pin);
 }
 
-// Obstacles that leave no room give way, where that is looked for. False: they were to, but there is room for all.
+// Lets obstacles without room give way, in attempts that look for that. False if the attempt looked and there is room
+// for all.
 bool ConventionalStepper::yield_obstacles(StepWork& work, const std::vector<Proximity>& near, Substep& s) {
   s.inverse_mass = contact_.inverse_mass;
   const bool retried = s.attempt == SubstepAttempt::pinched;
@@ -190,8 +191,8 @@ bool ConventionalStepper::yield_obstacles(StepWork& work, const std::vector<Prox
   return true;
 }
 
-// Whether the response has taken the cloth from x to where it stores far more than there is to be stored. Impulses
-// know nothing of the cloth: what is a small motion to them may be many times the width of a sliver.
+// Whether the response moved the cloth from x to where it stores far more energy than there was. Impulses do not take
+// elasticity into account: a small motion may be many times the width of a thin triangle.
 bool ConventionalStepper::torn(const StepProblem& problem, const Points& x, const Points& after) {
   const double moving =
       0.5 * solve_.solver().masses().dot((x - *problem.x0).rowwise().squaredNorm()) / (problem.h * problem.h);
@@ -199,7 +200,7 @@ bool ConventionalStepper::torn(const StepProblem& problem, const Points& x, cons
          options_.substep.tearing * (solve_.solver().potential(problem, x) + moving);
 }
 
-// Takes everything together as far as nothing meets.
+// Moves everything along the straight path up to the first impact.
 void ConventionalStepper::stop_short(StepWork& work, const Points& wanted, Substep& s) {
   double first = 1;
   for (const Impact& impact : solve_.impacts(s.start.nodes, wanted, work.report)) first = std::min(first, impact.time);
@@ -233,7 +234,7 @@ SubstepOutcome ConventionalStepper::respond(StepWork& work, Substep& s, const St
     return resolved;
   };
   ResolveReport resolved = resolve_wanted();
-  if (resolved.out_of_work && !options.last_resort) {  // another attempt has nothing left to be made of
+  if (resolved.out_of_work && !options.last_resort) {  // there is no work left for another attempt
     options.last_resort = true;
     resolved = resolve_wanted();
   }
@@ -250,7 +251,7 @@ SubstepOutcome ConventionalStepper::respond(StepWork& work, Substep& s, const St
   return SubstepOutcome::clean;
 }
 
-// Bridson, Fedkiw and Anderson 2002: an implicit solve that sees what is near, then impulses and zones for what meets.
+// Bridson, Fedkiw and Anderson 2002: an implicit solve with proximities, then impulses and zones for impacts.
 SubstepOutcome ConventionalStepper::substep(StepWork& work, Substep& s) {
   const int n = scene_.surface.vertex_count;
   const bool smooth = continues_history(s) && !work.extras.added;
@@ -280,7 +281,8 @@ SubstepOutcome ConventionalStepper::substep(StepWork& work, Substep& s) {
   return respond(work, s, problem, newton, contacts, x);
 }
 
-// To where the target has obstacles and pins. The cloth goes on as it moves, or along a guess of the step's end.
+// The substep with obstacles and pins of the target. The cloth's guess follows its velocity, or a guess of the step's
+// end.
 Substep ConventionalStepper::begin_substep(const StepWork& work, const SubstepState& start, const Stretch& target,
                                            SubstepAttempt attempt, double time_left) const {
   const int n = scene_.surface.vertex_count;
@@ -305,9 +307,9 @@ void ConventionalStepper::end_substep(StepWork& work, Substep&& s, SubstepState&
   now.nodes = std::move(s.nodes);
 }
 
-// Takes all substeps. One that meets something in full motion is cut into parts. One whose zones do not converge is
-// tried again with obstacles that give way, then halved; only the last halves take the last resort. One that comes near
-// more than can be searched is halved too. False: the report says why the step is rejected.
+// Takes all substeps. A substep with impacts in fast motion is cut into parts. One whose zones do not converge is tried
+// again with obstacles that give way, then halved; only the last halves take the last resort. One with too many near
+// pairs is halved too. False if the step is rejected; the report says why.
 bool ConventionalStepper::advance(StepWork& work, SubstepState& now, Stretch whole) {
   const auto reject = [&](Reason reason) {
     work.report.status = StepStatus::rejected;
@@ -337,7 +339,7 @@ bool ConventionalStepper::advance(StepWork& work, SubstepState& now, Stretch who
       try {
         if (first && has_contact()) hold_pins(work, *s, target.pins);
         return substep(work, *s);
-      } catch (const TooManyPairs&) {  // half of the motion may not come near so much
+      } catch (const TooManyPairs&) {  // half of the motion may have fewer near pairs
         update_pairs(contact_.search, contact_.options.thickness, now.nodes, now.nodes, contact_.path);
         return SubstepOutcome::too_many_pairs;
       }
@@ -365,7 +367,7 @@ bool ConventionalStepper::advance(StepWork& work, SubstepState& now, Stretch who
   return true;
 }
 
-// What contact leaves alone, and the pairs near the start.
+// Sets what contact leaves alone, and lists the pairs near the start.
 void ConventionalStepper::begin_contact(StepWork& work, const Points& nodes) {
   const Timed timed(work.report.seconds.broad_phase);
   work.report.collision.left_alone = work.left_alone.cloth_vertices();
@@ -375,7 +377,7 @@ void ConventionalStepper::begin_contact(StepWork& work, const Points& nodes) {
 
 int ConventionalStepper::planned_substeps(const State& from, const Drive& drive, double dt, const Points& nodes) const {
   if (options_.substeps) return *options_.substeps;
-  // The list may hold more than what touches, by what was asked before, which no checkpoint knows.
+  // The list may have further pairs that depend on earlier steps, which a checkpoint does not store: they are left out.
   const double thickness = contact_.options.thickness;
   auto touching = has_contact() ? pairs_within(contact_.path, nodes, thickness) : std::vector<NodePair>{};
   std::erase_if(touching,
@@ -409,7 +411,7 @@ StepReport ConventionalStepper::take_step(const State& from, const Drive& drive,
   if (has_contact()) begin_contact(work, now.nodes);
   if (work.left_alone.any()) now.history = {};
   const int planned = planned_substeps(from, drive, dt, now.nodes);
-  // Cloth that left an obstacle no room will hardly do so now.
+  // An obstacle that had no room will hardly have room now.
   const int halvings = from.pinched ? 0 : options_.substep.max_halvings,
             parts = options_.substeps ? 1 : options_.max_substeps / planned;
   if (!advance(work, now, {wanted, drive.pins, dt / planned, planned, halvings, parts})) return report;
@@ -422,7 +424,7 @@ StepReport ConventionalStepper::take_step(const State& from, const Drive& drive,
   for (std::size_t k = 0; k < from.obstacles.size(); ++k)
     end.obstacles.push_back(now.nodes.middleRows(contact_.world.first_node[k], from.obstacles[k].rows()));
   finish_step(from, drive, dt, std::move(end), to, report);
-  if (!extras.added) energy_.label(from, drive, to, report);  // what recovers a cloth does work that nobody bounds
+  if (!extras.added) energy_.label(from, drive, to, report);  // recovery does work without a bound
   return report;
 }
 

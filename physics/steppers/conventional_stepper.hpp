@@ -10,13 +10,13 @@
 
 namespace selvedge {
 
-// bdf2: of second order where nothing touches; implicit Euler, without a history, for a substep in which something
-// does or before which pins jump, for the first one after it, and where the substep's length has changed.
+// bdf2 is of second order where nothing touches. It falls back to implicit Euler in a substep with contact or after a
+// jump of pins, in the first substep after these, and where the substep's length has changed.
 enum class Integrator { implicit_euler, bdf2 };
 
 struct ConventionalOptions {
-  std::optional<int> substeps;      // nothing: chosen each frame from the speed
-  std::optional<int> min_substeps;  // nothing: least_substeps
+  std::optional<int> substeps;      // absent: chosen in each frame from the speed
+  std::optional<int> min_substeps;  // absent: least_substeps
   int max_substeps = 12;
   Integrator integrator = Integrator::implicit_euler;
   ImplicitEulerOptions implicit_euler;
@@ -24,7 +24,7 @@ struct ConventionalOptions {
   ResolveOptions resolve;  // thickness, separation and friction are those of the scene
 };
 
-// Implicit Euler or BDF2, then contact in Bridson's order, then the audit. Keeps a reference to the scene.
+// Implicit Euler or BDF2, then the response to contact in Bridson's order. Keeps a reference to the scene.
 std::unique_ptr<Stepper> make_conventional_stepper(const Scene&, const ConventionalOptions&);
 
 }  // namespace selvedge

@@ -5,7 +5,7 @@
 
 namespace selvedge {
 
-// Adds a solve, its iterations and its coarse levels to what a step reports.
+// Adds a solve, its iterations and its coarse levels to the report of a step.
 inline void count_solve(const NewtonReport& newton, StepReport& report) {
   report.iterations += newton.iterations;
   report.linear_iterations += newton.linear_iterations;

@@ -29,21 +29,21 @@ class CuttingStepper final : public Stepper {
   const Scene& scene_;
   MakeStepper make_;
   std::unique_ptr<Stepper> whole_;
-  std::vector<int> cut_out_;  // which the part below lacks
+  std::vector<int> cut_out_;  // the triangles that part_ lacks
   std::shared_ptr<const PartOfScene> part_;
   std::unique_ptr<Stepper> stepper_;
 };
 
-// Makes the part of the scene without these triangles, unless it is there.
+// Makes the part of the scene without these triangles, unless it exists already.
 void CuttingStepper::cut(const std::vector<int>& triangles) {
   if (triangles == cut_out_) return;
   cut_out_ = triangles;
-  stepper_.reset();  // refers to the part that goes
+  stepper_.reset();  // it refers to the old part
   part_ = std::make_shared<const PartOfScene>(part_of_triangles(scene_, all_but(scene_, triangles)));
   if (!part_->triangles.empty()) stepper_ = make_(part_->scene);
 }
 
-// A step of which all cloth is cut out: only obstacles move.
+// A step with all cloth cut out: only obstacles move.
 StepReport step_nothing(const State& from, const Drive& drive, double dt, const std::string& by, State& end) {
   end = from;
   end.time = from.time + dt;
@@ -58,7 +58,7 @@ StepReport step_nothing(const State& from, const Drive& drive, double dt, const 
   return report;
 }
 
-// A step of all but what is cut out, which goes where it is worn.
+// A step of the cloth that is not cut out; the rest follows Drive::worn.
 StepReport CuttingStepper::step_rest(const State& from, const Drive& drive, double dt, const StopFlag& stop,
                                      State& to) {
   cut(from.cut_out);
@@ -87,7 +87,7 @@ StepReport CuttingStepper::step_cut(const State& from, const Drive& drive, doubl
   to.cut_out = still_cut_out(scene_, to);
   report.seconds.response += watch.lap();
   if (to.cut_out != from.cut_out) {
-    forget_motion(to.memory);  // what comes back did not move with the rest
+    forget_motion(to.memory);  // triangles that come back did not move with the rest
     report.audit.reset();
   } else if (report.audit) {
     report.audit = whole_audit(*part_, *std::move(report.audit));

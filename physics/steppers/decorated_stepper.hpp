@@ -11,15 +11,15 @@
 namespace selvedge {
 
 struct Decorations {
-  bool rest = false;  // cloths that rest are left out, where the stepper allows it
+  bool rest = false;  // leave out cloths that rest, if the stepper allows it
   bool cut = false;   // states may have triangles cut out
   RecoveryOptions recovery = {};
   RestingOptions resting = {};
 };
 
-// A stepper of what `bare` makes of the scene or of a part of it, with all that stands round one, from outside to
-// inside: cutting, resting, recovering. The last only round a stepper that honours extras. What knows more than the
-// scene stands round all of these: the repulsive layer of learned, and vertices that follow (following_stepper.hpp).
+// A stepper that `bare` makes of the scene, or of a part of it, with the decorators round it: from outside to inside
+// cutting, resting, recovering. Only a stepper that honours extras is recovering. Decorators that know more than the
+// scene stand round all of these: the repulsive layer (learned), and followers (following_stepper.hpp).
 std::unique_ptr<Stepper> decorated(const Scene&, const MakeStepper& bare, const Decorations& = {});
 
 // Makes bare conventional steppers with these options, for `decorated`.

@@ -15,12 +15,12 @@ class FollowingStepper final : public Stepper {
   }
   const StepperTraits& traits() const override { return stepper_->traits(); }
   StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override {
-    Drive held = drive;  // a pin that moves would ask for substeps
+    Drive held = drive;  // moving pins would cause substeps
     for (std::size_t k = 0; k < pins_.size(); ++k) held.pins.row(pins_[k]) = from.x.row(followers_[k].vertex);
     StepReport report = stepper_->step(from, held, dt, to, extras);
     if (report.status != StepStatus::accepted) return report;
     for (const Follower& one : followers_) {
-      // The path ends where the state is: the audit of the state then uses the search of the motion.
+      // The path must end at the state, so that the audit of the state can use the search of the motion.
       if (!report.path.part)
         for (SubstepEnd& substep : report.path.substeps) follow(one, substep.nodes);
       follow(one, to.x);

@@ -11,7 +11,7 @@ namespace selvedge {
 namespace {
 
 constexpr double standard_gravity = 9.81;  // [m/s2]
-constexpr double contact_reach = 2;        // A vertex may be pushed within this many thicknesses.
+constexpr double contact_reach = 2;        // Contact may push a vertex within this many thicknesses.
 
 double total(const std::vector<double>& parts) { return std::accumulate(parts.begin(), parts.end(), 0.0); }
 
@@ -41,8 +41,8 @@ std::vector<int> patches(const Scene& scene, int patch_size) {
   return nearest_along_edges(scene, middles);
 }
 
-// The force on each patch that nothing touches, over its mass. Elastic forces inside of a patch cancel, so that motion
-// that is wrong as a whole shows, which a Jacobi sweep of stiff cloth does not see.
+// RMS of force over mass, of patches that nothing touches, weighted by mass. Internal elastic forces cancel in a patch,
+// so that this finds a wrong motion of a patch as a whole, which a Jacobi sweep of stiff cloth does not.
 double patch_acceleration(const Guard& guard, const Points& gradient, const std::vector<char>& touching) {
   Points forces = Points::Zero(gradient.rows(), 3);
   std::vector<double> masses(static_cast<std::size_t>(gradient.rows()), 0.0);
@@ -92,7 +92,7 @@ void measure_energy(const Guard& guard, const State& from, const Points& x, Guar
   m.energy_growth = guard.unit_energy > 0 ? growth / guard.unit_energy : 0;
 }
 
-// Of the vertices that nothing touches: forces on patches, and a Jacobi sweep with the stiffness of the rest shape.
+// For vertices that nothing touches: forces on patches, and a Jacobi sweep with the stiffness of the rest shape.
 void measure_residual(Guard& guard, const State& from, const Drive& drive, double dt, const Points& x,
                       const std::vector<char>& touching, GuardMeasures& m) {
   const StepProblem problem{dt, &from.x, &from.v, &drive.pins, drive.acceleration, drive.wind, {}, 1};
@@ -119,8 +119,8 @@ void measure_residual(Guard& guard, const State& from, const Drive& drive, doubl
   m.in_contact = count + left_out > 0 ? static_cast<double>(left_out) / (count + left_out) : 0;
 }
 
-// Cloth stops or turns back because something makes it: where the motion changes by as much as it was, and slowly
-// enough to be let pass, forces must say why. Frozen cloth shows nothing else that is wrong.
+// Cloth stops or turns back only because of forces. If the motion changes by about as much as itself, and too little
+// for the bounds on acceleration, forces must explain it. Frozen cloth is recognised by nothing else.
 bool is_explained(const GuardOptions& most, const GuardMeasures& m) {
   return m.change_of_motion <= most.change_of_motion ||
          m.patch_acceleration <= std::max(most.slight, most.unexplained * m.mean_acceleration);
@@ -179,7 +179,7 @@ std::vector<char> touching_vertices(ContactStage& stage, const State& from, cons
   const double reach = contact_reach * stage.options.thickness;
   const Points before = gather_nodes(from.x, from.obstacles), after = gather_nodes(x, obstacles);
   update_pairs(stage.search, reach, before, after, stage.path);
-  // Which pairs are listed beyond those depends on what was asked before, which no checkpoint knows.
+  // The list may have further pairs that depend on earlier steps, which a checkpoint does not store: they are left out.
   const auto touches = [&](const NodePair& pair) {
     return std::min(closest(pair, before).squared_distance, closest(pair, after).squared_distance) < reach * reach;
   };

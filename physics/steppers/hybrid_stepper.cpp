@@ -83,7 +83,7 @@ class HybridStepper final : public Stepper {
     State& to;
     StepReport& report;
     const StopFlag& stop;
-    double audited = 0;  // time of the audits, by the clock: a step without a proposal needs them, too
+    double audited = 0;  // time of the audits, which a step without a proposal needs too
   };
   Verdict may_ask(const State& from, const Drive&, const ProposalTrust&, bool has_history) const;
   Verdict propose(Work&);
@@ -130,7 +130,7 @@ Verdict HybridStepper::judged(const Work& work, const Points& x) {
       [&] { return touching_vertices(contact_, work.from, work.drive.obstacles, x); }, measures);
 }
 
-// Audits the step that was made and returns the verdict. The audit stays in the report, for make_frame.
+// Audits the new step and returns the verdict. The audit stays in the report, for make_frame.
 Verdict HybridStepper::audited(Work& work, Verdict free_of_contact) {
   const double started = clock_();
   work.to.clean = judge_frame(audits_, work.from, work.drive, work.to, work.report);
@@ -138,19 +138,19 @@ Verdict HybridStepper::audited(Work& work, Verdict free_of_contact) {
   return is_contact_free(work.to, work.report) ? free_of_contact : Verdict::penetrating;
 }
 
-// Takes a step of the proposer, without an audit. False: the proposer made none.
+// Takes a step of the proposer, without an audit. False if the proposer rejected it.
 bool HybridStepper::ask_proposer(Work& work) {
   work.report = parts_.proposer->step(work.from, work.drive, work.dt, work.to, {.stop = work.stop});
   return work.report.status == StepStatus::accepted;
 }
 
-// The proposal is the step if guard and audits admit it.
+// The proposal becomes the step if guard and audits admit it.
 Verdict HybridStepper::propose_step(Work& work) {
   if (const Verdict verdict = judged(work, work.to.x); verdict != Verdict::admitted) return verdict;
   return audited(work, Verdict::admitted);
 }
 
-// Bridson's response to the motion, then the common end of a step.
+// Applies Bridson's response to the motion, then the common end of a step.
 Verdict HybridStepper::correct(Work& work, Points x) {
   ResolveOptions options = contact_.options;
   options.last_resort = false;
@@ -167,7 +167,7 @@ Verdict HybridStepper::correct(Work& work, Points x) {
   return audited(work, Verdict::admitted);
 }
 
-// A solve from the proposal.
+// Makes a solve that begins at the proposal.
 Verdict HybridStepper::refine(Work& work, const Points& x) {
   const PhaseTimes proposal = work.report.seconds;
   StepExtras extras{.guess = &x, .stop = work.stop};
@@ -179,7 +179,7 @@ Verdict HybridStepper::refine(Work& work, const Points& x) {
   return audited(work, Verdict::refined);
 }
 
-// A proposal that no cloth could follow is not worth a line search, a response or a solve.
+// A proposal with impossible motion is refused before a line search, a response or a solve.
 Verdict HybridStepper::propose(Work& work) {
   if (!ask_proposer(work)) return Verdict::not_made;
   if (!asks_for_positions(options_.mode)) return propose_step(work);
@@ -198,7 +198,7 @@ Verdict HybridStepper::propose(Work& work) {
   return options_.mode == HybridMode::refined ? refine(work, x) : correct(work, std::move(x));
 }
 
-// What comes near more than can be searched is taken for what crosses.
+// A proposal with too many near pairs counts as penetrating.
 Verdict HybridStepper::propose_within_budget(Work& work) {
   try {
     const Verdict verdict = propose(work);
@@ -208,8 +208,8 @@ Verdict HybridStepper::propose_within_budget(Work& work) {
   }
 }
 
-// Whether the energy of an admitted or refined step comes from nowhere. The stepper that made it may have said so
-// already. An admitted proposal is judged again here, for a network knows only some of the scene's forces.
+// Whether an admitted or refined step gains energy from nowhere. The stepper that made it may have said so already. An
+// admitted proposal is judged again here, since a network knows only some of the scene's forces.
 bool HybridStepper::gains_energy(Verdict verdict, Work& work) {
   if (verdict != Verdict::admitted && verdict != Verdict::refined) return false;
   if (work.report.doubts.energy_gain) return true;

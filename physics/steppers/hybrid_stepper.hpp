@@ -11,40 +11,40 @@
 namespace selvedge {
 
 enum class HybridMode {
-  fallback,   // a proposal that the guard admits is the step
-  corrected,  // its motion goes through the response to contact before
-  refined,    // a conventional solve begins at it
+  fallback,   // a proposal that the guard admits becomes the step
+  corrected,  // as fallback, after the response to contact has corrected the motion
+  refined,    // a conventional solve begins at the proposal
   gated,      // as corrected, after a line search of the step's potential from free flight to the proposal
-  after_k     // as gated, from where k Newton iterations have come to
+  after_k     // as gated, but the line begins where k Newton iterations end
 };
 
 struct HybridOptions {
   HybridMode mode = HybridMode::corrected;
   GuardOptions guard;
-  std::optional<int> newton;  // iterations: k of `after_k`, else 2; of a solve of `refined`, else the solver's own
-  int gate_steps = 6;         // places between start and proposal where the potential is asked
+  std::optional<int> newton;  // iterations: k of `after_k`, else 2; for a solve of `refined`, else the solver's own
+  int gate_steps = 6;         // points between start and proposal where the potential is evaluated
   int longest_stretch = 32;   // steps without a proposal, after refusals (proposal_trust.hpp)
   int admitted_to_halve = 3;  // proposals in a row that halve this stretch
-  // Stop asking where proposals cost more time than they save. Steps then depend on the clock.
+  // Stop asking for proposals when they cost more time than they save. Steps then depend on the clock.
   bool stop_when_slow = false;
-  double extra_time = 0.05;  // that proposals may cost, of the time so far
+  double extra_time = 0.05;  // share of the time so far that proposals may cost
   ImplicitEulerOptions implicit_euler;
 };
 
-// Who takes part. The proposer makes steps that are judged; `parent` takes those that are refused. `refiner` makes the
-// solves of the mode `refined`, null: the parent does. `hand_over` tells the proposer, in the state's memory, of a step
-// that it has not made; a proposer that remembers frames needs it in all modes but `fallback`.
+// The steppers inside a hybrid. `proposer` makes steps that are judged; `parent` takes the steps whose proposals are
+// refused. `refiner` makes the solves of the mode `refined`; null: the parent does. `hand_over` records a step that the
+// proposer has not made in its memory of the state; a proposer that remembers frames needs it in all modes but
+// `fallback`.
 struct HybridParts {
   std::unique_ptr<Stepper> proposer, parent, refiner = {};
   std::function<void(const State& from, State& to)> hand_over = {};
-  std::function<double()> clock = {};  // time so far, of the rule `stop_when_slow`; none: of the machine [s]
+  std::function<double()> clock = {};  // time so far, for `stop_when_slow` [s]; empty: the machine's clock
 };
 
-// A step is the proposer's where the guard admits it, and otherwise the parent's from the same state. No proposal is
-// asked for where the step starts tangled, in the first step, where obstacles lag or jump, and for a while after one
-// was refused. StepReport::verdict says what happened, and `by` who made the state. A step that starts clean ends clean
-// wherever the parent's do.
-// Keeps a reference to the scene. Throws Error for parts that do not go together.
+// A step is the proposer's if the guard admits it, and otherwise the parent's from the same state. No proposal is asked
+// for in the first step, if the step starts tangled, if obstacles lag or jump, and for a while after a refusal.
+// StepReport::verdict says what happened, and `by` which stepper made the state. A step that starts clean ends clean if
+// the parent's does. Keeps a reference to the scene. Throws Error for parts that do not fit together.
 std::unique_ptr<Stepper> make_hybrid_stepper(const Scene&, HybridParts, const HybridOptions&);
 
 }  // namespace selvedge

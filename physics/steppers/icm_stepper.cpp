@@ -38,12 +38,12 @@ double mean_mass(const Eigen::VectorXd& inverse_mass) {
   return count > 0 ? sum / count : 0;
 }
 
-// What belongs to one substep.
+// The data of one substep.
 struct IcmWork {
-  std::vector<NodePair> held;          // that have a term, sorted
+  std::vector<NodePair> held;          // pairs that have a term, sorted
   std::vector<ContactTerm> repulsion;  // their terms
   Exemption exemption;                 // at the start
-  Points v, unbalanced;                // at the end [m/s], and the forces that the last solve left [N]
+  Points v, unbalanced;                // at the end [m/s], and the unbalanced forces after the last solve [N]
   const StopFlag* stop = nullptr;
 };
 
@@ -94,8 +94,8 @@ class IcmStepper final : public Stepper {
   std::vector<NodePair> pairs_;  // scratch
 };
 
-// Adds terms for the pairs that are near at `at` and have none yet. A pair keeps the side on which it was first seen in
-// the substep, as in equation 5 of the paper.
+// Adds terms for the pairs that are near at `at` and have none yet. A pair keeps the side on which it was first found
+// in the substep, as in equation 5 of the paper (icm_stepper.hpp).
 void IcmStepper::find_pairs(const Points& nodes0, const Points& at, const Points& nodes1, double h,
                             const Exemption& exemption, IcmWork& work, StepReport& report) {
   const double reach = std::max(options_.reach, scene_.contact.thickness);
@@ -115,7 +115,7 @@ void IcmStepper::find_pairs(const Points& nodes0, const Points& at, const Points
   std::sort(work.held.begin(), work.held.end());
 }
 
-// Enclosed vertices may have to lengthen a contour before they are out: they are pushed back directly.
+// Moving enclosed vertices out may lengthen a contour at first, so that they are pushed back directly.
 std::vector<ContactTerm> IcmStepper::pushes(ContourPotential& contour, const Points& x, double h) const {
   if (options_.push_speed == 0) return {};
   const Segments& found = contour.segments(x);
@@ -138,14 +138,14 @@ bool IcmStepper::minimise(const StepProblem& problem, Points& x, IcmWork& work, 
   return newton.finite && !newton.stopped && x.allFinite();
 }
 
-// Velocities are what the positions did, without the torque that implicit Euler adds of itself.
+// Velocities are the change of positions, without the torque that implicit Euler adds.
 void IcmStepper::end_substep(const StepProblem& problem, const Points& x, Points& nodes1, IcmWork& work) {
   nodes1.topRows(x.rows()) = x;
   work.v = (x - *problem.x0) / problem.h;
   euler_torque_.take_back(problem, x, work.unbalanced, work.v);
 }
 
-// nodes1 comes with obstacles where they are to end and the cloth at its first guess. False: not finite, or stopped.
+// nodes1 has obstacles at their ends and the cloth's first guess. False if the result is not finite or was stopped.
 bool IcmStepper::substep(const SubstepState& now, const Points& pins, const Drive& drive, double h, Points& nodes1,
                          IcmWork& work, StepReport& report) {
   const int n = scene_.surface.vertex_count;
@@ -204,7 +204,7 @@ StepReport IcmStepper::take_step(const State& from, const Drive& drive, double d
                           : substeps_for_speed(from, drive, dt, edge_length_, options_.max_substeps, options_.substep);
   SubstepState now{gather_nodes(from.x, from.obstacles), from.v};
   const Points wanted = gather_nodes(from.x, drive.obstacles);
-  Exemption all;  // of the substeps, by what is off
+  Exemption all;  // switched-off nodes of all substeps
   if (has_contact() && !from.clean && now.nodes.allFinite())
     report.collision.pairs_before = audit_positions(scene_, from.x, from.obstacles).intersecting_pairs();
   for (int s = 0; s < planned; ++s) {

@@ -5,9 +5,10 @@
 
 namespace selvedge {
 
-// The step's incremental potential, with contacts of what is near at the start, along a proposal.
+// A line search toward a proposal, on the step's incremental potential with contacts of pairs that are near at the
+// start.
 struct ProposalLineSearch {
-  // newton: iterations that are taken from free flight, where the line begins; 0: it begins there.
+  // newton: number of iterations from free flight; the line begins where they end. 0: it begins at free flight.
   ProposalLineSearch(const Scene&, ImplicitEulerOptions, int newton);
   ProposalLineSearch(const ProposalLineSearch&) = delete;
   ProposalLineSearch& operator=(const ProposalLineSearch&) = delete;
@@ -17,8 +18,8 @@ struct ProposalLineSearch {
   ImplicitEuler solver;
 };
 
-// Puts x where the potential is least of `steps` places on the way from the line's beginning to x, which is the last
-// one (the gate of training.md). False, with x at the beginning: it is least there.
+// Moves x to the least potential among `steps` points on the line from its beginning to x, which is the last point (the
+// gate of training.md). If the potential is least at the beginning, x is set to it and the result is false.
 bool search_along(ProposalLineSearch&, ContactStage&, const State& from, const Drive&, double dt, int steps, Points& x);
 
 }  // namespace selvedge

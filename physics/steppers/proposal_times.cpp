@@ -5,8 +5,8 @@
 namespace selvedge {
 namespace {
 
-constexpr int learning_steps = 8;       // of the parent, before its time counts as known
-constexpr int longest_known = 32;       // steps for which its time counts as known
+constexpr int learning_steps = 8;       // steps of the parent before its time counts as known
+constexpr int longest_known = 32;       // steps after its last one for which its time counts as known
 constexpr double newest_weight = 0.25;  // of a step in the parent's mean time
 
 }  // namespace

@@ -2,24 +2,24 @@
 
 namespace selvedge {
 
-// What proposals have cost and saved so far, for the rule that stops them where they do not pay. In seconds, or in any
+// What proposals have cost and saved so far, for the rule that stops proposals which do not pay. In seconds, or in any
 // other measure of work.
 class ProposalTimes {
  public:
   void add_parent(double time);  // a step without a proposal
   void add_refused(double proposal,
-                   double step);  // the time lost on a proposal, and that of the parent's step after it
-  void add_taken(double time);    // a step that a proposal has become
+                   double step);  // the time lost on a proposal, and the parent's time for the step
+  void add_taken(double time);    // a step made by a proposal
 
-  // Whether enough of the parent's steps were seen, and the last one not long ago, to know its time.
+  // Whether enough steps of the parent were seen, the last one recently, to know its time.
   bool knows_parent() const;
-  // Whether another proposal, if it goes as the last one did, leaves the sum of what proposals have cost beyond the
-  // parent's time within `extra` times all time so far.
+  // Whether one more proposal, if it costs what the last one did, keeps the total cost of proposals beyond the parent's
+  // time within `extra` times all time so far.
   bool may_propose(double extra) const;
 
  private:
-  double parent_ = 0;          // of a step, the latest weigh most
-  int parents_ = 0, age_ = 0;  // its steps, and those since the last one
+  double parent_ = 0;          // time of a step: a mean in which the latest weigh most
+  int parents_ = 0, age_ = 0;  // number of the parent's steps, and of steps since the last one
   double all_ = 0, lost_ = 0, last_lost_ = 0;
 };
 

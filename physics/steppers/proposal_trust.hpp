@@ -4,16 +4,15 @@
 
 namespace selvedge {
 
-// When a hybrid stepper asks for the next proposal. After one that was refused the conventional stepper goes on alone
-// for a stretch of steps. Each refusal doubles the next stretch; `to_halve` proposals in a row that are admitted halve
-// it.
+// When a hybrid stepper asks for the next proposal. After a refusal the parent steps alone for a stretch of steps. Each
+// refusal doubles the next stretch; `to_halve` admitted proposals in a row halve it.
 struct ProposalTrust {
   int wait = 0;      // steps until a proposal is asked for
-  int stretch = 1;   // of the next wait
+  int stretch = 1;   // length of the next wait
   int admitted = 0;  // in a row since `stretch` has changed
 };
 
-// Kept in State::memory. False: the state is not one that a hybrid stepper made, and `trust` is as it was.
+// Kept in State::memory. False if no hybrid stepper made the state; `trust` then stays as it was.
 bool read_trust(const State&, ProposalTrust& trust);
 void remember(const ProposalTrust&, State&);
 

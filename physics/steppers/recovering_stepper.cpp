@@ -52,7 +52,8 @@ class RecoveringStepper final : public Stepper {
   SelfCrossings self_crossings_;
 };
 
-// Holds what was gained, and draws cloth to where it is worn: stiffly where the body is free of itself.
+// Terms that keep the gained separations, and draw cloth to its skinned targets: stiffly if no part of a body is
+// switched off.
 AddedTerm RecoveringStepper::added_term(const Parting& parting, const Drive& drive, const Points& x0, double h) const {
   AddedTerm added;
   if (!parting.gained.empty())
@@ -113,7 +114,7 @@ StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive,
       return extras.added ? sum_of(extras.added(x0, h), std::move(own)) : own;
     };
   const StepReport report = add_parting(inner_->step(start, drive, dt, to, all));
-  // The motion of cloth that was drawn stiffly is none of its own: it would fly past where it is worn.
+  // Cloth that was drawn stiffly loses its velocity; otherwise it would overshoot its targets.
   if (report.status == StepStatus::accepted && parting.left.off.empty())
     for (std::size_t k = 0; k < parting.carried.size(); ++k)
       if (parting.carried[k]) to.v.row(static_cast<Eigen::Index>(k)).setZero();

@@ -8,21 +8,21 @@
 
 namespace selvedge {
 
-// Where everything was when cloth that is tangled now was clean last.
+// Where everything was when the cloth was clean last.
 struct LastClean {
-  Points x;  // without rows: it never was
+  Points x;  // no rows: it never was
   std::vector<Points> obstacles;
 };
 
-// What the recovering stepper remembers in State::memory, of worn cloth that is not clean.
+// The recovering stepper keeps this in State::memory while worn cloth is not clean.
 LastClean last_clean(const State&);
 void remember(const LastClean&, State&);
 
-// A stepper for starts that are tangled, and for bodies that cross themselves (parting.hpp): worn cloth that a limb has
-// gone through is put on again, what else is tangled is parted, and `inner` steps from there. It is told what contact
-// has to leave alone, and gets terms that keep what was gained and draw cloth to where it is worn. From clean states
-// with bodies free of themselves the step is that of `inner`. Extras are handed on beside its own. Throws Error for an
-// inner stepper that honours none. Keeps a reference to the scene.
+// A stepper for starts that are tangled, and for bodies that cross themselves (parting.hpp). Worn cloth that a limb has
+// gone through is put on again, other tangled cloth is parted, and `inner` steps from there. By extras `inner` learns
+// what contact has to leave alone, and gets terms that keep separations and draw cloth to its skinned targets. From
+// clean states, with bodies that do not cross themselves, the step is that of `inner`. Extras of the caller are passed
+// on too. Throws Error for an inner stepper that does not honour extras. Keeps a reference to the scene.
 std::unique_ptr<Stepper> make_recovering_stepper(const Scene&, std::unique_ptr<Stepper> inner,
                                                  const RecoveryOptions& = {});
 

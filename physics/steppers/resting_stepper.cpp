@@ -14,11 +14,11 @@
 namespace selvedge {
 namespace {
 
-constexpr std::size_t most_kept = 4;  // scenes of part of the cloths; one is a cache, for what falls asleep may wake
+constexpr std::size_t most_kept = 4;  // scenes with some of the cloths that are kept, since resting cloths may wake
 
 constexpr const char *seconds_block = "resting.seconds", *place_block = "resting.place", *air_block = "resting.air";
 
-using Chosen = std::vector<char>;  // one a cloth
+using Chosen = std::vector<char>;  // one per cloth
 
 bool any(const Chosen& cloths) { return std::ranges::count(cloths, true) > 0; }
 
@@ -28,7 +28,7 @@ Box box_of_motion(const Points& x0, const Points& x1, double margin) {
   return box;
 }
 
-// The box round all that moves from x0 to x1 and leaves the straight path by no more than its length.
+// The box of a motion from x0 to x1 that leaves the straight path by no more than the path's length.
 Box box_of_motion(const Points& x0, const Points& x1) { return box_of_motion(x0, x1, largest_row(x1 - x0)); }
 
 // Of each cloth the lowest one that springs join it to.
@@ -75,8 +75,8 @@ class RestingStepper final : public Stepper {
   const Scene& scene_;
   MakeStepper make_;
   std::unique_ptr<Stepper> whole_;
-  double still_;             // what moves by less is still [m]
-  double still_seconds_;     // what has been still for this long rests
+  double still_;             // cloth that moves by less is still [m]
+  double still_seconds_;     // cloth that was still for this long rests [s]
   std::vector<int> joined_;  // of each cloth the lowest one that springs join it to
   std::map<Chosen, Part> parts_;
 };
@@ -92,7 +92,7 @@ bool RestingStepper::pins_move(const State& from, const Drive& drive, int cloth)
   return false;
 }
 
-// Cloths that springs join rest only if all of them do.
+// Cloths that springs join rest only if all of them are still.
 void RestingStepper::keep_joined(Chosen& resting) const {
   Chosen all(resting.size(), true);
   for (std::size_t c = 0; c < resting.size(); ++c) all[joined_[c]] = all[joined_[c]] && resting[c];
@@ -110,7 +110,7 @@ Chosen RestingStepper::still_ones(const State& from, const Rest& rest, const Dri
   return still;
 }
 
-// What moves in the step: obstacles, and the other cloths as far as they will probably go.
+// Boxes of what moves in the step: obstacles, and the other cloths as far as they will probably move.
 std::vector<Box> RestingStepper::moving_boxes(const State& from, const Drive& drive, double dt,
                                               const Chosen& resting) const {
   std::vector<Box> boxes;
@@ -126,7 +126,7 @@ std::vector<Box> RestingStepper::moving_boxes(const State& from, const Drive& dr
   return boxes;
 }
 
-// True if one of the resting cloths is near one of the boxes: it rests no more.
+// True if a resting cloth is near one of the boxes; that cloth then no longer rests.
 bool RestingStepper::wake(const State& from, const std::vector<Box>& moving, Chosen& resting) const {
   bool woken = false;
   for (std::size_t c = 0; c < resting.size(); ++c) {
@@ -181,7 +181,7 @@ StepReport RestingStepper::step_others(const State& from, const Drive& drive, do
   return report;
 }
 
-// True if what moved came nearer to a resting cloth than was foreseen; that one rests no more.
+// True if something came nearer to a resting cloth than expected; that cloth then no longer rests.
 bool RestingStepper::comes_near(const State& from, const State& to, Chosen& resting) const {
   std::vector<Box> boxes;
   for (std::size_t k = 0; k < from.obstacles.size(); ++k)

@@ -6,11 +6,11 @@ namespace selvedge {
 
 // How a step is cut into substeps, and how a substep alternates implicit solves with Bridson's response.
 struct SubstepOptions {
-  double longest = 1.0 / 48;   // A longer step takes two substeps at least, since implicit Euler damps visibly [s].
-  double first_tolerance = 8;  // The first solve is this many times as rough: it finds impacts and normal forces.
-  double friction_tolerance = 0.2;  // Solves with friction are this many times as rough: sticking needs accuracy.
+  double longest = 1.0 / 48;   // A longer step takes at least two substeps, since implicit Euler damps visibly [s].
+  double first_tolerance = 8;  // Tolerance scale of the first solve, which only finds impacts and normal forces.
+  double friction_tolerance = 0.2;  // Tolerance scale of solves with friction: sticking needs accuracy.
   int max_passes = 6;               // A substep solves again at most this often.
-  double normal_change = 0.05;      // It solves again while lagged normal forces change by more than this part.
+  double normal_change = 0.05;      // It solves again while lagged normal forces change by more than this share.
   ContactTermOptions contact;
 
   // A step is cut so that pairs that meet (with icm: all vertices) move by at most this many mean edges in a substep,
@@ -23,13 +23,13 @@ struct SubstepOptions {
   static constexpr double deep_impact = 0.05;
   // A solve with contact may take this part of max_newton, since another one follows.
   static constexpr double contact_iterations = 0.5;
-  // A substep solves again at most this often where there is no room: no stiffness makes any.
+  // A substep without room solves again at most this often, since no stiffness makes room.
   static constexpr int pinched_passes = 3;
   // A substep whose zones do not converge is halved this often before the last resort.
   static constexpr int max_halvings = 2;
   // Zones take this many rounds in a substep that may still be halved, and this many where there is no room.
   static constexpr int halving_zone_rounds = 12, pinched_zone_rounds = 4;
-  // A response is refused that raises the potential to this many times the energy there is.
+  // A response is refused if it raises the potential to this many times the energy before.
   static constexpr double tearing = 10;
   // Where the last resort is refused, cloth and obstacles keep this part of their motion up to the first impact.
   static constexpr double kept_motion = 0.5;

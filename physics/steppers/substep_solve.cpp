@@ -41,7 +41,7 @@ NewtonReport SubstepSolve::with_contact(Substep& s, StepProblem& problem, Points
                                         StepReport& report) {
   const Points& nodes0 = s.start.nodes;
   const double creep = slip_speed_ * s.h;
-  // Where nothing touches, or nothing that does moves, the first solve is likely to be the last one.
+  // If nothing touches, or touching cloth does not move, the first solve is likely to be the last one.
   const bool calm = !s.pinched && mean_touching(contacts.terms, s.h * *problem.v0) < creep;
   for (int pass = 0;; ++pass) {
     problem.contacts = contacts.terms;
@@ -65,8 +65,7 @@ NewtonReport SubstepSolve::with_contact(Substep& s, StepProblem& problem, Points
         mistaken_friction(solved, contacts.terms, *problem.x0, x, creep) < options_.normal_change)
       return newton;
     const int least = friction ? 2 : 1;
-    // Where the iteration has not converged, normal forces change with it, and one more solve for their sake is as
-    // rough.
+    // If Newton has not converged, normal forces change for that reason, and one more solve for them would be as rough.
     const bool bounded = change < options_.normal_change || !newton.converged;
     if (pass >= least && bounded && deepest(found, s.nodes) < deep_) return newton;
     const Timed timed(report.seconds.response);
@@ -92,7 +91,7 @@ Contacts SubstepSolve::loaded_contacts(const Substep& s, const std::vector<Proxi
   const Timed timed(report.seconds.response);
   Contacts contacts =
       contact_terms(scene_, stage_.world, near, stage_.inverse_mass, s.start.nodes, s.nodes, s.h, options_.contact);
-  // The load of a contact is what pulls at it where the cloth would go without any.
+  // The load of a contact is the force on it at the place where the cloth would go without contact.
   if (!contacts.terms.empty())
     set_load_stiffness(contacts.terms, stage_.inverse_mass, -solver_.gradient(problem, x), options_.contact);
   return contacts;

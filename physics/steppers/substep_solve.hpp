@@ -9,7 +9,7 @@
 
 namespace selvedge {
 
-// pinched: zones did not converge, but perhaps obstacles yield.
+// pinched: zones did not converge in the first attempt, and obstacles may give way.
 enum class SubstepAttempt { first, pinched, last_resort };
 
 // A substep under way.
@@ -18,13 +18,13 @@ struct Substep {
   const Points& pins;  // at its end, one row a Scene::pins entry
   double h;            // [s]
   SubstepAttempt attempt;
-  int max_parts;                      // that it may be cut into
-  Points nodes, v = {};               // at its end; at first obstacles where they are to be, and the cloth at a guess
-  Points unbalanced = {};             // forces that the last solve left at its end [N]
-  bool touched = false;               // something was near, met, or left alone
+  int max_parts;                      // most parts into which it may be cut
+  Points nodes, v = {};               // at its end; at first the wanted obstacles and a guess of the cloth
+  Points unbalanced = {};             // unbalanced forces after the last solve [N]
+  bool touched = false;               // some pair was near, met, or was left alone
   bool pinched = false;               // obstacles leave the cloth no room
-  int parts = 1;                      // that it should be cut into
-  Eigen::VectorXd inverse_mass = {};  // of all nodes, those that yield included
+  int parts = 1;                      // parts into which it should be cut
+  Eigen::VectorXd inverse_mass = {};  // of all nodes, with those of obstacles that give way
 };
 
 // The implicit solves of a substep. Times and counts go into reports. Keeps references to the scene and the stage.
@@ -35,16 +35,17 @@ class SubstepSolve {
 
   // x: first guess in, minimiser out.
   NewtonReport once(const StepProblem&, Points& x, StepReport&);
-  // What meets on the straight motion.
+  // The impacts of the straight motion.
   std::vector<Impact> impacts(const Points& nodes0, const Points& nodes1, StepReport&);
-  // What is near at the start.
+  // The proximities at the start.
   std::vector<Proximity> near(const Substep&, StepReport&);
-  // Contact terms of what is near, as stiff as what pulls at them asks for where the cloth would go without any.
+  // Contact terms of proximities, stiff enough for the forces on them at the place where the cloth would go without
+  // contact.
   Contacts loaded_contacts(const Substep&, const std::vector<Proximity>&, const StepProblem&, const Points& x,
                            StepReport&);
-  // Solves with contacts, again and again until what the cloth runs into besides them is shallow and friction is
-  // bounded by the normal forces that there are. x is the cloth in the substep's nodes. Reports the last solve. Ends
-  // after the first one where that shows that the substep should be cut into parts.
+  // Solves with contacts until further impacts are shallow and friction is bounded by the present normal forces. x is
+  // the cloth in the substep's nodes. Returns the report of the last solve. Ends after the first solve if that shows
+  // that the substep should be cut into parts.
   NewtonReport with_contact(Substep&, StepProblem&, Points& x, Contacts&, StepReport&);
 
  private:

@@ -12,44 +12,44 @@
 
 namespace selvedge {
 
-// Where a step has come to: all nodes, the cloth's velocity, and what an integrator of two steps goes on from.
+// The present state of a step: all nodes, the cloth's velocity, and the history for a two-step integrator.
 struct SubstepState {
   Points nodes, v;
   StepHistory history = {};
 };
 
-// How many parts a step of dt [s] is cut into. edge_length: the mean one [m]; speeds in m/s.
-// Two at least of a step that is longer than the longest substep.
+// Numbers of substeps for a step of dt [s]. edge_length: the mean one [m]; speeds in m/s. At least two for a step that
+// is longer than the longest substep.
 int least_substeps(double dt, const SubstepOptions&);
-// As many as keep every vertex's motion in a substep within a few mesh edges, and least_substeps.
+// Enough to keep every vertex's motion in a substep within a few mesh edges, and at least least_substeps.
 int substeps_for_speed(const State& from, const Drive&, double dt, double edge_length, int max_substeps,
                        const SubstepOptions&);
-// As many as keep the motion of touching pairs past each other within `max_slide`.
+// Enough to keep the sliding of touching pairs within `max_slide`.
 int substeps_for_contact(double contact_speed, double dt, double edge_length, int least, int most,
                          const SubstepOptions&);
-// As many as keep each part of a motion of `distance` [m] past each other within a few edges: contact cannot be
+// Parts of a substep, enough to keep a sliding motion of `distance` [m] within a few edges in each: contact cannot be
 // linearised over more.
 int parts_for_distance(double distance, double edge_length, int most, const SubstepOptions&);
 
-// The largest speed of a pair's one primitive past the other, of one vertex each [m/s].
+// The largest sliding speed of a pair, between one vertex of each primitive [m/s].
 double fastest_past(std::span<const NodePair>, const State& from, const Drive&, double dt);
 
-// The farthest that nodes of one primitive of an impact move past those of the other, of all [m].
+// The largest sliding motion of an impact, between one node of each primitive [m].
 double farthest_past(std::span<const Impact>, const Points& nodes0, const Points& nodes1);
 
-// How far impacts are from their targets at the end, at most [m].
+// The largest distance of an impact from its target at the end [m].
 double deepest(std::span<const Impact>, const Points& nodes1);
-// How deep an impact may be for impulses alone to meet it: part of an edge, and where triangles are narrower than
-// contact is thick, no more than that [m].
+// The largest depth of an impact that impulses alone respond to: a part of an edge, but at most the thickness if some
+// triangle is narrower than it [m].
 double deep_impact(const Scene&, const SubstepOptions&);
 
-// A start with every obstacle where it is wanted that would have to move farther than its own size (the diagonal of its
-// box) in a substep: that is no motion to sweep along but a new start, and a tangled one it may be.
+// A start in which obstacles that would move farther than their own size (the diagonal of the box) in a substep are
+// where they are wanted. Such a jump is not swept; the new start may be tangled.
 struct Restart {
   State state;
   int jumped = 0;  // obstacles
 };
-// Absent where no obstacle jumps, and where the state's obstacles lag: those are on their way.
+// Absent if no obstacle jumps, or if the state's obstacles lag, since these are on their way.
 std::optional<Restart> restart_of(const State& from, const Drive&, int max_substeps);
 
 Points pinned_rows(const Scene&, const Points& nodes);  // one row a Scene::pins entry
