@@ -10,7 +10,7 @@
 namespace selvedge {
 namespace {
 
-// Is the closest point of both edges inside of them? At an end of one, a vertex-face pair covers the contact.
+// Are both closest points inside the edges? Vertex-face pairs cover contact at ends.
 bool crosses_inside(const Closest& c) {
   return c.weights[0] > 0 && c.weights[1] > 0 && c.weights[2] < 0 && c.weights[3] < 0;
 }

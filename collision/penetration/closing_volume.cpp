@@ -14,8 +14,8 @@ Vec3 normal_of(const ClosedSurface& closed, const Points& x, const ContourClosin
   return twice_area(closed, x, way.end_faces[0]) + twice_area(closed, x, way.end_faces[1]);
 }
 
-// The sign of a side's normal in the sum: -1 for the second side if the two normals are more than a right angle apart,
-// since the orientation of a garment has no meaning here.
+// The sign of a side's normal in the sum: -1 for side 1 if the normals are more than a right angle apart, since the
+// orientation of a garment means nothing here.
 double sense_of(const ClosedSurface& closed, const Points& x, const ContourClosing& closing, int side) {
   const bool against = normal_of(closed, x, closing.ways[0]).dot(normal_of(closed, x, closing.ways[1])) < 0;
   return side == 1 && against ? -1 : 1;
@@ -51,7 +51,7 @@ class MovingClosing {
  private:
   Vec3 at(CurvePoint point) const { return position_of(surface_, x_, crossings_, point); }
 
-  // Adds the derivative through a crossing of an edge and a face: it slides along the edge as the face moves.
+  // Adds the derivative through a crossing, which slides along its edge as its face moves.
   void pull_end(CurvePoint point, const Vec3& by) {
     const Crossing& c = crossings_[point];
     const Vec3 normal = twice_area(closed_, x_, c.face);
@@ -78,8 +78,8 @@ class MovingClosing {
     }
   }
 
-  // Adds the derivative through a point where the plane cuts an edge. The point moves with the edge and with the plane,
-  // which depends on both ends of the contour and on the normal `up_`.
+  // Adds the derivative through a point where the plane cuts an edge: the plane moves with both ends of the contour and
+  // `up_`.
   void pull_cut(CurvePoint point, const Vec3& by) {
     const Vec3 along = at(to_) - at(from_), place = at(point) - at(from_), normal = along.cross(up_);
     const double square = normal.squaredNorm();

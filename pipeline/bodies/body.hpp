@@ -13,7 +13,7 @@ namespace selvedge {
 
 using SkinWeights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-// What a linear blend skinning model deforms: a body, or a garment that follows one.
+// The surface that linear blend skinning deforms: a body, or a garment that follows one.
 struct SkinnedSurface {
   Points rest;  // n x 3 in the zero pose and zero shape [m]
   Triangles triangles;
@@ -29,7 +29,7 @@ struct BodyModel {
   std::vector<std::string> joints;  // names, the root first
   std::vector<int> parents;         // of joints, each before its children; -1 for the root
   SkinWeights regressor;            // joints x n: joints from the shaped surface
-  NamedVertices meshes = {};        // that its file was made of, where it names them
+  NamedVertices meshes = {};        // the named meshes of its file, if any
 };
 
 // One pose of a body.
@@ -38,38 +38,39 @@ struct BodyPose {
   Vec3 translation = Vec3::Zero();  // [m]
 };
 
-// The zero pose with the shape's blend shapes added: rest + shape_directions * shape. Coefficients beyond the model's
-// are refused, missing ones are zero. Throws Error.
+// The zero pose with the shape's blend shapes added: rest + shape_directions * shape. Missing coefficients are zero.
+// Throws Error for more coefficients than the model has.
 Points shaped(const SkinnedSurface&, const Eigen::VectorXd& shape);
 
 // Joint positions of the shaped body, joints x 3 [m]. Throws Error as `shaped` does.
 Points joint_positions(const BodyModel&, const Eigen::VectorXd& shape);
 
-// Transforms of the zero pose into the pose, one a joint, 3 x 4 each; without the pose's translation.
+// Transforms from the zero pose to the pose, one per joint, 3 x 4 each, without the pose's translation.
 using JointTransforms = std::vector<Eigen::Matrix<double, 3, 4>>;
 JointTransforms joint_transforms(const BodyModel&, const Points& joints, const BodyPose&);
 
-// Where the joints are in a pose, with its translation. Throws Error as joint_transforms does.
+// Joint positions in a pose, with its translation, joints x 3 [m]. Throws Error as joint_transforms does.
 Points posed_joints(const BodyModel&, const Points& joints, const BodyPose&);
 
 // The surface in a pose: shape and pose blend shapes, then linear blend skinning, then the translation. In parallel;
 // any number of threads gives the same bits. Throws Error for a pose or transforms of another number of joints, and for
-// rotations that are not finite. Pose blend shapes: Loper et al. 2015, section 3, one column an entry, row by row.
+// rotations that are not finite. Pose blend shapes: Loper et al. 2015, section 3; one column for each entry of a
+// rotation matrix, row by row.
 Points posed(const SkinnedSurface&, const Eigen::VectorXd& shape, const BodyPose&, const JointTransforms&);
 Points posed(const BodyModel&, const Eigen::VectorXd& shape, const BodyPose&);
 
-// The other way: the zero pose and shape of a surface whose `rest` is where the pose has it. Throws Error as `posed`
-// does, and for a vertex that transforms of opposite turns flatten.
+// The inverse of `posed`: for a surface whose `rest` is in the pose, its positions in zero pose and shape. Throws Error
+// as `posed` does, and for a vertex that its transforms collapse (opposite rotations).
 Points unposed(const SkinnedSurface&, const Eigen::VectorXd& shape, const BodyPose&, const JointTransforms&);
 
-// What the parts of a body are called where it comes from, for errors.
+// The names of a body's fields in its source, for errors.
 struct BodyFields {
   std::string rest = "rest", triangles = "triangles", weights = "weights", shape_directions = "shape_directions",
               pose_directions = "pose_directions", joints = "joints", parents = "parents", regressor = "regressor";
 };
 
-// Throws Error, naming `file` and the field, unless the sizes fit, indices are in range, all numbers are finite,
-// weights sum to 1 (within 1e-3), and parents come before children. For readers and generators of bodies.
+// Throws Error, naming `file` and the field, unless sizes match, indices are in range, all numbers are finite, weights
+// sum to 1 (within 1e-3), and parents come before children. For readers and generators of bodies.
 void check_body(const BodyModel&, const std::string& file, const BodyFields& = {});
 void check_skin(const SkinnedSurface&, Eigen::Index joints, const std::string& file, const BodyFields& = {});
 

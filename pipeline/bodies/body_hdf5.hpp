@@ -6,8 +6,8 @@
 
 namespace selvedge {
 
-// Any rigged body in our HDF5 form, docs/bodies.md. Both throw Error; what is written is read back to the bit. Written
-// beside and renamed.
+// Any rigged body in our HDF5 format, docs/bodies.md. Reading gives exactly what was written. Writes to a file beside
+// it and renames that. Both throw Error.
 void write_body(const std::filesystem::path&, const BodyModel&);
 BodyModel read_body(const std::filesystem::path&);
 

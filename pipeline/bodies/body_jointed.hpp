@@ -7,12 +7,12 @@
 
 namespace selvedge {
 
-// A body of a mesh (OBJ, PLY) and a file (YAML) that says where its joints are; weights as `bone_weights` makes them.
-// The joints of the right side may be left out: they are those of the left, mirrored at the plane through the pelvis
-// across x. A leaf's bone, hand, foot or head, goes on half as far as it is from its parent. The zero pose and the
-// origin are the mesh's. No shapes, no pose directions. `metres`: of one unit of the mesh; joints are in metres or have
-// their units. Throws Error with file and line: as the readers do, for a joint outside the body where it is closed, and
-// for one that nothing bends at.
+// Reads a body from a mesh (OBJ, PLY) and a file (YAML) with the places of its joints; weights are those of
+// `bone_weights`. Joints of the right side may be left out: then the left ones are mirrored at the plane x = const
+// through the pelvis. The bone of a leaf (hand, foot or head) continues half as far as the leaf is from its parent.
+// Zero pose and origin are the mesh's. No shapes, no pose directions. `metres`: length of one unit of the mesh; joints
+// are in metres or have their units. Throws Error with file and line: as the readers do, for a joint outside a closed
+// body, and for a joint at which nothing bends.
 BodyModel read_jointed(const std::filesystem::path& mesh, const std::filesystem::path& joints, double metres,
                        const NameChoice& = {});
 

@@ -8,7 +8,7 @@
 
 namespace selvedge {
 
-// Turns the closed shells of a body's surface outwards, as it stands in its zero pose (outward_mesh.hpp).
+// Turns the closed shells of a body's surface outwards, judged in its zero pose (outward_mesh.hpp).
 void turn_outward(const std::string& name, BodyModel&, std::vector<std::string>& warnings);
 
 // Where the body's surface crosses itself in its zero pose, by its meshes.

@@ -15,8 +15,8 @@ std::vector<std::string> smpl_joint_names(int joints);
 // (Pavlakos et al. 2019), told apart by the number of joints. Reads v_template, f, shapedirs (the first `shapes`
 // columns; SMPL-X's expression columns never), posedirs, J_regressor (dense, or as the parts _data, _indices, _indptr
 // of a sparse matrix of scipy), weights and kintree_table; nothing else in the file is touched. Metres, Y is up.
-// Weights are scaled to sums of exactly 1. Throws Error with file, field and cure for what is missing, of a wrong shape
-// or type, pickled, out of range or not finite.
+// Weights are scaled to sums of exactly 1. Throws Error with file, field and cure for arrays that are missing, of a
+// wrong shape or type, pickled, out of range or not finite.
 BodyModel read_smpl(const std::filesystem::path&, int shapes = 10);
 
 }  // namespace selvedge

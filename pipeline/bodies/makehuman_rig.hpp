@@ -9,13 +9,13 @@ namespace selvedge {
 
 struct RigBone {
   std::string name;
-  int parent = -1;        // among the bones; -1: hangs on none
-  std::vector<int> head;  // vertices of the base mesh whose middle is where the bone begins
+  int parent = -1;        // index of a bone; -1: none
+  std::vector<int> head;  // vertices of the base mesh: the bone begins at their mean
 };
 
-// Bones of a skeleton in the order of their names. Read are bones/NAME/{parent, head} and joints/HEAD. Throws Error
-// with the file and what is wrong: the line for text that is not JSON, otherwise the place in it, for what is missing
-// or of a wrong kind, parents that are no bones, and bones in a circle.
+// Reads the bones of a skeleton, in the order of their names, from bones/NAME/{parent, head} and joints/HEAD. Throws
+// Error with the file and the line for text that is not JSON; with the place in it for values that are missing or of a
+// wrong kind, parents that are no bones, and cycles of bones.
 std::vector<RigBone> read_rig_bones(const std::filesystem::path&);
 
 struct RigWeight {
@@ -23,7 +23,7 @@ struct RigWeight {
   double weight = 0;         // 0 to 1
 };
 
-// Read is weights/BONE: [[vertex, weight], ...]. Throws Error likewise, for bones that the skeleton lacks and for
+// Reads weights/BONE: [[vertex, weight], ...]. Throws Error likewise, also for bones that the skeleton lacks and for
 // weights out of range.
 std::vector<RigWeight> read_rig_weights(const std::filesystem::path&, const std::vector<RigBone>&);
 

@@ -19,13 +19,13 @@ struct MannequinJoint {
 // SMPL's 24 joints (Loper et al. 2015) in its order.
 std::vector<MannequinJoint> mannequin_joints();
 
-// The body's surface, or that of some of its limbs merged with other solids, right for x >= 0.
+// The body's surface, or that of some of its limbs merged with other solids. Valid for x >= 0.
 enum class MannequinLimb { torso, head, arm, leg };
 Form mannequin_form(const std::vector<MannequinLimb>& = {MannequinLimb::torso, MannequinLimb::head, MannequinLimb::arm,
                                                          MannequinLimb::leg},
                     std::vector<Limb> others = {});
 
-// Edge length that its mesh is to have round a point [m].
+// The wanted edge length of its mesh near a point [m].
 double mannequin_edge(const Vec3&);
 
 }  // namespace selvedge

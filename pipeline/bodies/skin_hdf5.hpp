@@ -5,7 +5,8 @@
 
 namespace selvedge::h5 {
 
-// The fields that bodies and garments have in common: rest, triangles, weights, shape_directions, pose_directions.
+// Reads and writes the fields that bodies and garments share: rest, triangles, weights, shape_directions,
+// pose_directions.
 SkinnedSurface read_skin(const Fields&, Eigen::Index joints);
 void write_skin(const File&, const SkinnedSurface&);
 

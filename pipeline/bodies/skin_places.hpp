@@ -6,7 +6,7 @@
 
 namespace selvedge {
 
-// Of each vertex the lowest one that lies where it does in every shape and pose: at one place at rest
+// Of each vertex the lowest one that is at its place in every shape and pose: at the same place at rest
 // (same_places.hpp), with the same weights and directions.
 std::vector<int> same_places(const SkinnedSurface&);
 

@@ -5,7 +5,7 @@
 
 namespace selvedge {
 
-// SMPL's joints by their places in `smpl_joint_names(24)`; of a pair the left one, the right one follows it.
+// Indices of SMPL's joints in `smpl_joint_names(24)`. Of a pair the left one is named; the right one is next.
 namespace smpl {
 enum Joint {
   pelvis = 0,
@@ -24,7 +24,7 @@ enum Joint {
 // Parents of SMPL's 24 joints (`smpl_joint_names(24)`), each before its children; -1 for the root.
 const std::vector<int>& smpl_joint_parents();
 
-// Where SMPL's 24 joints are among the joints of a body; hands that it lacks are its wrists, -1 for any other.
+// Indices of SMPL's 24 joints among the joints of a body. Missing hands are its wrists; other missing joints are -1.
 std::vector<int> smpl_joints_among(const std::vector<std::string>& joints);
 
 }  // namespace selvedge

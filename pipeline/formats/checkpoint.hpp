@@ -10,34 +10,35 @@
 
 namespace selvedge {
 
-// A file that a scene was read from, by the name that its error messages have, and a hash of its bytes.
+// A file from which a scene was read: its name as in error messages, and a hash of its bytes.
 struct InputFile {
   std::string name;
   std::uint64_t hash = 0;
 };
 
-// All that makes a run: one that is resumed must have the same.
+// All inputs of a run. A resumed run must have the same.
 struct RunInputs {
   std::string config;
   std::vector<InputFile> files;
-  std::uint64_t scene = 0;  // hash of what files and code have made
+  std::uint64_t scene = 0;  // hash of the scene that files and code made
 };
 
 struct Checkpoint {
   State state;
   RunInputs inputs;
-  bool knows_files = true;  // false: an earlier version of this program wrote it, which noted the configuration alone
+  bool knows_files = true;  // false: written by an earlier version, which stored the configuration alone
 };
 
-// The state in full precision, so that a resumed run goes on with the same bits. Written beside and renamed.
+// Writes the state in full precision, so that a resumed run continues with the same bits. Writes to a file beside it
+// and renames that. Throws Error if it cannot be written.
 void write_checkpoint(const std::filesystem::path&, const State&, const RunInputs&);
 
-// Throws Error, with file and field, when there is none, and when it is damaged: arrays of other types, shapes or
-// lengths than the rest of it, numbers that are not finite or beyond what any scene has.
+// Throws Error, with file and field, if there is no checkpoint or it is damaged: arrays whose types, shapes or lengths
+// do not match, numbers that are not finite or out of range for any scene.
 Checkpoint read_checkpoint(const std::filesystem::path&);
 
-// Throws Error, with the field, what is there and what the scene has, unless the state has as many
-// vertices, obstacles and triangles as the scene.
+// Throws Error, with the field, its value and that of the scene, unless the state has as many vertices, obstacles and
+// triangles as the scene.
 void check_fits(const std::filesystem::path&, const State&, const Scene&);
 
 }  // namespace selvedge

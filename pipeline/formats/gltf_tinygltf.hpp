@@ -13,7 +13,7 @@
 
 namespace selvedge {
 
-// A place in the tree of a glTF file: what its transform is without animation.
+// A node in the tree of a glTF file, with its transform without animation.
 struct GltfNode {
   std::string name;  // node7 where the file has none
   int parent = -1;   // before its children; -1: none
@@ -24,14 +24,14 @@ struct GltfNode {
 enum class GltfPath { translation, rotation, scale };
 enum class GltfInterpolation { step, linear, cubic };
 
-// How one part of a node's transform goes with time.
+// One part of a node's transform over time.
 struct GltfTrack {
   int node = 0;
   GltfPath path = GltfPath::translation;
   GltfInterpolation interpolation = GltfInterpolation::linear;
-  Eigen::VectorXd times;  // ascending, one at least [s]
+  Eigen::VectorXd times;  // ascending, at least one [s]
   Eigen::MatrixXd
-      values;  // a row a time, x y z or a quaternion x y z w; cubic: three rows a time, tangent, value, tangent
+      values;  // one row per time, x y z or a quaternion x y z w; cubic: three rows, tangent, value, tangent
 };
 
 struct GltfAnimation {
@@ -39,21 +39,21 @@ struct GltfAnimation {
   std::vector<GltfTrack> tracks;
 };
 
-// What a glTF file has of one skin and the meshes that it deforms.
+// One skin of a glTF file and the meshes that it deforms.
 struct GltfScene {
   std::vector<GltfNode> nodes;                           // parents first
   std::vector<int> joints;                               // of the skin: nodes
   std::vector<Eigen::Matrix4d> inverse_bind;             // of each joint: from the mesh's space to the joint's
-  Mesh mesh;                                             // what the skin deforms, as stored; groups: the meshes
+  Mesh mesh;                                             // the deformed surface, as stored; its groups are the meshes
   Eigen::SparseMatrix<double, Eigen::RowMajor> weights;  // vertices x joints, rows sum to 1
   std::vector<GltfAnimation> animations;
 };
 
-// Reads a rigged mesh, glTF 2.0 (.glb, or .gltf with what it names beside it). Vertices that differ only in texture or
-// normal are joined, so that what was closed is closed. Of other files only buffers are opened, and only below the
-// file's own folder; images never. Throws Error, naming the file and the part
-// of it: no skin or several that are used, no triangles, compressed or sparse data, numbers that lie outside of their
-// buffers or are not finite, weights that are all zero; a choice of meshes that it has not, or that leaves none.
+// Reads a rigged mesh, glTF 2.0 (.glb, or .gltf with the files that it names beside it). Vertices that differ only in
+// texture or normal are joined, so that closed surfaces stay closed. Of other files only buffers are opened, only below
+// the file's own folder, and never images. Throws Error, naming the file and the part of it, for no skin or several
+// that are used, no triangles, compressed or sparse data, numbers outside of their buffers or not finite, weights that
+// are all zero, and a choice of meshes that the file lacks or that leaves none.
 GltfScene read_gltf(const std::filesystem::path&, const NameChoice& = {});
 
 }  // namespace selvedge

@@ -14,15 +14,15 @@ namespace selvedge::h5 {
 
 using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-// What a form of ours is called in its files, and the page that describes it.
+// The name of one of our file formats, and the page that describes it.
 struct FileForm {
   std::string format;  // text of the field `format`
   std::string noun;    // body, garment
   std::string page;    // docs/bodies.md
 };
 
-// Fields of a file in one of our forms. What is missing, or of another shape, throws Error that names file, field and
-// page.
+// Fields of a file in one of our formats. A field that is missing or has another shape throws Error with file, field
+// and page.
 class Fields {
  public:
   Fields(const std::filesystem::path&, FileForm);
@@ -36,7 +36,7 @@ class Fields {
   Points points(const std::string& field) const;
   Triangles triangles(const std::string& field) const;
   SparseRows sparse(const std::string& field, Eigen::Index rows, Eigen::Index cols) const;
-  // An array vertices x 3 x k as a matrix of 3 rows a vertex; of no columns where the field is missing.
+  // An array vertices x 3 x k as a matrix with 3 rows per vertex; no columns if the field is missing.
   Eigen::MatrixXd directions(const std::string& field, Eigen::Index vertices) const;
 
  private:
@@ -55,11 +55,11 @@ void write_points(const File&, const std::string& name, const Points&);
 void write_sparse(const File&, const std::string& name, const SparseRows&);
 void write_directions(const File&, const std::string& name, const Eigen::MatrixXd&);
 
-// Throws Error for a name of an option --out that does not end in .h5, by which readers know our forms.
+// Throws Error if the name given to --out does not end in .h5, by which readers recognise our formats.
 void check_out_name(const std::filesystem::path& out, const std::string& nouns);
 
-// A file of that form, written beside and renamed: `fields` writes what comes after `format`. Several processes may
-// write the same file, as they do in the cache: it is the last one's.
+// Writes a file of that format to a file beside it, then renames it; `fields` writes the fields after `format`. Several
+// processes may write the same file, as they do in the cache; the last one wins.
 void write_form(const std::filesystem::path&, const FileForm&, const std::function<void(const File&)>& fields);
 
 }  // namespace selvedge::h5

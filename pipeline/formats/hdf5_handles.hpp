@@ -9,7 +9,7 @@
 
 namespace selvedge::h5 {
 
-// Owns one HDF5 identifier. Closing never throws: what must not be lost is flushed before.
+// Owns one HDF5 identifier. Closing never throws: flush data that must not be lost before.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -43,8 +43,8 @@ Handle text_type(std::size_t length);  // fixed length, padded with zeros; `leng
 // A file and the calls on it that may fail, each turned into an Error that names the file.
 class File {
  public:
-  static File create(const std::filesystem::path&);  // one that is not there yet: take a path_beside, and rename it
-  static File open(const std::filesystem::path&);    // SWMR read: also what a killed writer has left
+  static File create(const std::filesystem::path&);  // must not exist yet: take a path_beside, then rename it
+  static File open(const std::filesystem::path&);    // SWMR read: also opens files of killed writers
 
   hid_t id() const { return handle_.id(); }
   const std::filesystem::path& path() const { return path_; }
@@ -52,13 +52,13 @@ class File {
   hid_t check(hid_t result, const std::string& doing) const { return checked(result, path_, doing); }
   void flush() const;
   void start_swmr() const;
-  void close();  // throws if what is still held cannot be written
-  // After a failed write: closes without touching the disk again, so that the file stays as a killed writer would
-  // leave it. A plain close would mark it whole and name an end that it does not have.
+  void close();  // throws if buffered data cannot be written
+  // After a failed write: closes without touching the disk again, so that the file stays as a killed writer would leave
+  // it. A plain close would mark it as complete, with a wrong end of file.
   void abandon();
 
   Handle make_group(const std::string& name) const;
-  // A dataset of fixed size, written at once. Values lie contiguously in `data`.
+  // A dataset of fixed size, written at once. Values are contiguous in `data`.
   void write_constant(const std::string& name, hid_t type, const std::vector<hsize_t>& shape, const void* data) const;
   void write_text(const std::string& name, const std::string& text) const;
   void write_texts(const std::string& name, const std::vector<std::string>& texts) const;
@@ -69,18 +69,19 @@ class File {
   bool has(const std::string& name) const;
   std::vector<hsize_t> shape(hid_t dataset) const;
 
-  // What is read may have been written by anyone: shapes and types are checked before anything is, and values must be
-  // in the file. Throws Error with file, field and sizes for another shape, for another class of numbers (integers are
-  // no floating-point numbers, which HDF5 would convert), for more values than what is stored can hold, for values that
-  // lie in other files, and for what HDF5 cannot read.
-  // The shape of a dataset with `rank` extents; `growing` ones may be ahead of what is stored.
+  // Files may come from anyone. So readers check shapes and types before they read, and values must be stored in the
+  // file itself. They throw Error with file, field and sizes for another shape, for another class of numbers (HDF5
+  // would convert integers to floating point), for more values than the stored bytes can hold, for values in other
+  // files, and for data that HDF5 cannot read. The shape of a dataset with `rank` extents. With `growing` the first may
+  // be larger than what is stored.
   std::vector<hsize_t> shape_of(const std::string& name, std::size_t rank, bool growing = false) const;
-  std::string read_text(const std::string& name) const;  // the only one, or the first
+  std::string read_text(const std::string& name) const;  // the only text, or the first one
   std::vector<std::string> read_texts(const std::string& name) const;
   // The whole dataset, which must have exactly this shape.
   void read_all(const std::string& name, hid_t type, const std::vector<hsize_t>& shape, void* data) const;
 
-  // Rows [first, first + count) of a dataset; writing grows it to that length, reading wants rows of this shape.
+  // Rows [first, first + count) of a dataset. Writing grows it to that length; reading throws for rows of another
+  // shape.
   void write_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t count, const void* data) const;
   void read_rows(hid_t dataset, hid_t type, const std::vector<hsize_t>& row_shape, hsize_t first, hsize_t count,
                  void* data) const;

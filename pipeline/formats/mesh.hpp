@@ -18,8 +18,8 @@ struct Mesh {
   Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> uv;  // texture vertices (OBJ vt), may be empty
   Triangles uv_triangles;                                        // corner -> row of uv; empty where a face has none
   NamedVertices groups;                                          // OBJ g / o, meshes of glTF
-  std::vector<int> corners, corner_begin;  // vertices of the polygons as read, and where each begins; empty: none was
-  std::vector<int> welded;  // of each vertex as read: its number once coincident ones are joined; empty: none are
+  std::vector<int> corners, corner_begin;  // vertices of the polygons as read, and where each begins; empty: not read
+  std::vector<int> welded;  // of each vertex as read: its number after coincident ones were joined; empty: not joined
   std::vector<std::string> warnings;
 };
 

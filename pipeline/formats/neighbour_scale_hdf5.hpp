@@ -6,7 +6,7 @@
 
 namespace selvedge {
 
-// A file of scales by neighbours, of some kilobytes. What is read is checked; both throw Error.
+// A small file of scales by neighbours (some kilobytes). Reading checks it; both functions throw Error.
 void write_neighbour_scale(const std::filesystem::path&, const NeighbourScale&);
 NeighbourScale read_neighbour_scale(const std::filesystem::path&);
 

@@ -10,11 +10,11 @@
 
 namespace selvedge {
 
-// An .npz file as numpy.savez and numpy.savez_compressed write it: arrays by name. Only what is asked for is read, so
-// that what else is in the file, pickled objects among it, does not matter.
+// An .npz file as numpy.savez and numpy.savez_compressed write it: arrays by name. Only the requested arrays are read,
+// so that other content, even pickled objects, does not matter.
 class Npz {
  public:
-  explicit Npz(const std::filesystem::path&);  // throws Error for what cannot be opened or is no .npz
+  explicit Npz(const std::filesystem::path&);  // throws Error for a file that cannot be opened or is no .npz
   Npz(Npz&&) noexcept;
   ~Npz();
 
@@ -22,7 +22,7 @@ class Npz {
   std::vector<std::string> names() const;  // in the order of the file
   NpyPlace place(const std::string& name) const;
 
-  // See npy.hpp. Throw Error, naming the file and the array, also for one that is missing or damaged.
+  // See npy.hpp. They throw Error, naming the file and the array, also if it is missing or damaged.
   NpyArray<double> numbers(const std::string& name) const;
   NpyArray<std::int64_t> integers(const std::string& name) const;
   NpyArray<std::string> texts(const std::string& name) const;

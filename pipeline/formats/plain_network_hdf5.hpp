@@ -5,16 +5,16 @@
 
 namespace selvedge {
 
-// A plain network below a group of a file of ours: sizes, bend, and parameters as 32-bit floats. What is read is
-// checked; both throw Error.
+// A plain network in a group of one of our files: sizes, bend, and parameters as 32-bit floats. Reading checks it; both
+// functions throw Error.
 void write_plain_network(const h5::File&, const std::string& group, const PlainNetwork&);
 PlainNetwork read_plain_network(const h5::Fields&, const std::string& group);
 
-// Adam's moments, which stand for as many parameters (else Error).
+// Adam's moments. Their number must be that of the parameters (else Error).
 void write_plain_adam(const h5::File&, const std::string& group, const PlainAdam&);
 PlainAdam read_plain_adam(const h5::Fields&, const std::string& group, long long parameters);
 
-// A list of 32-bit floats. Both throw Error.
+// A list of 32-bit floats. Both functions throw Error.
 void write_floats(const h5::File&, const std::string& name, const std::vector<float>&);
 std::vector<float> read_floats(const h5::Fields&, const std::string& name);
 

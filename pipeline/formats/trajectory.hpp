@@ -12,14 +12,14 @@ namespace selvedge {
 
 using PointsF = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
-// What is constant in a trajectory.
+// The constant data of a trajectory.
 struct TrajectoryInfo {
   std::string program_version, config, stepper;
   double fps = 30;
   bool self_audited = true;  // false: the file is labelled "self: not audited"
   std::vector<std::string> cloth_names;
   std::vector<int> cloth_first_vertex, cloth_first_triangle;  // size cloths + 1
-  Triangles triangles;                                        // all cloths on end
+  Triangles triangles;                                        // of all cloths, one after the other
   Points rest;
   std::vector<RestTriangle> rest_triangle;
   std::vector<int> pins;
@@ -27,7 +27,7 @@ struct TrajectoryInfo {
     std::string name;
     Triangles triangles;
     int vertex_count = 0;
-    bool moving = false;  // still ones are stored once; read: also those that cloth has moved all the same
+    bool moving = false;  // still ones are stored once; when read, also true for still ones that cloth moved
   };
   std::vector<Body> obstacles;
 };

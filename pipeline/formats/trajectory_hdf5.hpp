@@ -11,9 +11,9 @@ namespace selvedge {
 
 TrajectoryInfo trajectory_info(const Scene&, const std::string& config, const std::string& stepper, double fps);
 
-// HDF5 in SWMR mode: all datasets are made before the first frame, one flush a frame, so that a file whose writer was
-// killed opens and is complete up to its last full frame. Still obstacles are stored once, as long as all frames have
-// them where the first one has. Throws Error when the disk is full or the path cannot be written. Without close() the
+// HDF5 in SWMR mode: all datasets are made before the first frame, and each frame is flushed. So a file whose writer
+// was killed opens and is complete up to its last full frame. Still obstacles are stored once, as long as they stay
+// where the first frame has them. Throws Error if the disk is full or the path cannot be written. Without close() the
 // file is not marked closed.
 class TrajectoryWriter {
  public:
@@ -27,7 +27,7 @@ class TrajectoryWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-// Reads also a file that is being written, or whose writer was killed. Throws Error for what is no trajectory.
+// Also reads a file that is being written, or whose writer was killed. Throws Error for a file that is no trajectory.
 class TrajectoryReader {
  public:
   explicit TrajectoryReader(const std::filesystem::path&);

@@ -7,9 +7,8 @@
 
 namespace selvedge {
 
-// What of a surface the border keeps. Its new boundary lies in the border: triangles that cross it are cut, vertices
-// within `snap` of it are moved onto it [m]. What lies in the borders of earlier cuts stays in them. Vertices without
-// triangles are dropped.
+// The part of a surface that the border keeps. Triangles that cross the border are cut, and vertices within `snap` [m]
+// are moved onto it. Vertices on borders of earlier cuts stay on them. Vertices without triangles are dropped.
 Shape clipped(const Shape&, const Border&, std::span<const Border> earlier, double snap);
 
 // The component with most vertices.

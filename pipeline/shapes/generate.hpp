@@ -14,15 +14,15 @@ struct SheetOptions {
   std::uint64_t seed = 1;  // of unstructured meshes: the same seed gives the same mesh
 };
 
-// Cloths lie in their flat coordinates uv [m], one row a vertex (uv_triangles = triangles), with named groups.
+// All cloths have flat coordinates uv [m], one row per vertex (uv_triangles = triangles), and named groups.
 
 // columns x rows vertices (at least 2 x 2), horizontal and centred at the origin, normal +Y, u along +X, v along -Z.
 // Unstructured meshes have one vertex more in every second row. Groups: left right top bottom boundary center and the
 // corners top_left top_right bottom_left bottom_right, as seen from above with -Z up.
 Mesh make_rectangle(const Vec2& size, int columns, int rows, const SheetOptions&);
 
-// Moves the vertices of a structured rectangle along its sides so that their spacings grow geometrically, the last one
-// `grading` times as long as the first along u and along -v.
+// Moves the vertices of a structured rectangle along its sides so that spacings grow geometrically: the last is
+// `grading` times the first along u and along -v.
 void grade_rectangle(Mesh&, const Vec2& size, int columns, int rows, const Vec2& grading);
 
 // Rings of 6, 12, 18 ... vertices round a centre, normal +Y. Groups: boundary center. rings >= 1.
@@ -32,7 +32,7 @@ Mesh make_disc(double radius, int rings, const SheetOptions&);
 // Groups: top bottom boundary. around >= 6, rows >= 2.
 Mesh make_tube(double radius, double height, int around, int rows, const SheetOptions&);
 
-// A point of a centre line and the way the ribbon faces there, which need not be square to the line.
+// A point of a centre line and the direction that the ribbon faces there, which need not be perpendicular to the line.
 struct LinePoint {
   Vec3 at, normal;
 };
@@ -42,7 +42,7 @@ struct LinePoint {
 // line. No normal may be along the line. Groups: start end middle boundary.
 Mesh make_ribbon(const std::vector<LinePoint>& line, double width, int along, int across, const SheetOptions&);
 
-// Length of that line [m]; least angle of a normal with the line, over the whole of it [rad].
+// Length of that line [m], and the least angle between a normal and the line [rad].
 double line_length(const std::vector<LinePoint>& line);
 double least_normal_angle(const std::vector<LinePoint>& line);
 

@@ -7,11 +7,11 @@ namespace selvedge {
 // A strip cut out of a mesh that runs at an angle to it, for checks that must not depend on how cloth is cut.
 struct StripShape {
   double length = 1, width = 0.25;  // [m]
-  int along = 30;                   // elements: no edge spans more of the length or across than length / along, about
+  int along = 30;                   // elements: edges span at most about length / along in both directions
   double angle = 0;                 // of the strip to the mesh [rad]
   SheetOptions sheet;
   bool clamp = false;  // one more row of elements before the start
-  bool grip = false;   // and behind the end
+  bool grip = false;   // one more row of elements after the end
 };
 
 // The mesh covers [0, length] x [0, width] in u, v, with straight edges, clamp and grip outside. The pattern's lattice

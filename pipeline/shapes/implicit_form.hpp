@@ -9,7 +9,7 @@
 
 namespace selvedge {
 
-// A cross-section of a loft: where on the axis, and from where to where it reaches in the two other coordinates [m].
+// A cross-section of a loft: its place on the axis, and its extents in the two other coordinates [m].
 struct LoftSection {
   double at, u_low, u_high, v_low, v_high;
 };
@@ -40,9 +40,9 @@ using Solid = std::variant<Loft, Ellipsoid, Cone>;
 
 struct Part {
   Solid solid;
-  double blend = 0;                 // width over which it merges with what comes before it [m]
+  double blend = 0;                 // width over which it merges with earlier parts [m]
   bool paired = false;              // with its mirror image at x = 0
-  bool cut = false;                 // taken away instead of added
+  bool cut = false;                 // subtracted instead of added
   Eigen::AlignedBox3d bounds = {};  // filled by make_form
 };
 
@@ -57,10 +57,10 @@ struct Form {
 };
 Form make_form(std::vector<Limb>);
 
-// About the signed distance to the form's surface, negative inside; once continuously differentiable near it [m].
+// Approximate signed distance to the form's surface [m], negative inside; continuously differentiable near it.
 double signed_value(const Form&, const Vec3& p);
 
-// The zero level's point near p, along gradients of a function that is about a distance there.
+// Moves p onto the zero level, along gradients of a function that is approximately a distance.
 Vec3 projected(const std::function<double(const Vec3&)>& value, const Vec3& p);
 Vec3 projected(const Form&, const Vec3& p);
 

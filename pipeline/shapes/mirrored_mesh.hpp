@@ -14,8 +14,8 @@ struct MirroredMesh {
   std::vector<int> twin;  // of each vertex: its image, itself where the two are joined
 };
 
-// Joins a half at x >= 0 with its image at those of its vertices at x = 0 that `joined` accepts (all without it); what
-// else has x = 0 keeps an image of its own.
+// Joins a half at x >= 0 with its mirror image at its vertices at x = 0 that `joined` accepts (all, if it is empty).
+// Other vertices at x = 0 get images of their own.
 MirroredMesh mirrored(const Shape& half, const std::function<bool(int vertex)>& joined = {});
 
 }  // namespace selvedge

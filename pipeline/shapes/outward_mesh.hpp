@@ -8,14 +8,14 @@
 
 namespace selvedge {
 
-// Every mesh that becomes an obstacle or a body goes through here: its closed shells are turned outwards
-// (outward_faces.hpp). Warnings say, by `name` (the file's) and mesh, what was turned, what is taken for a cavity, and
-// what has no inside though it is meant to: what is nearly closed, or closed but for edges of many triangles.
-// `places` as face_outward has them.
+// Turns closed shells outwards (outward_faces.hpp); called for every mesh that becomes an obstacle or a body. Warnings,
+// with `name` (the file's) and mesh, list shells that were turned, shells taken for cavities, and shells without an
+// inside that were probably meant to have one: nearly closed ones, and ones closed except for edges of many triangles.
+// `places`: as for face_outward.
 void turn_outward(const std::string& name, const NamedVertices& groups, std::span<const Points> frames,
                   const std::vector<int>& places, Triangles& triangles, std::vector<std::string>& warnings);
 
-// The same for a mesh that stands still, in whatever unit.
+// The same for a mesh that stands still, in any unit.
 void turn_outward(const std::string& name, Mesh&, std::vector<std::string>& warnings);
 
 }  // namespace selvedge

@@ -17,11 +17,12 @@ Shape make_sphere(double radius, double edge);                  // geodesic: sub
 Shape make_capsule(double radius, double length, double edge);  // along Y; length of the cylinder between the caps
 Shape make_box(const Vec3& size, double edge);
 
-// A line of at least two points (distance from the axis, height) turned round Y. It closes on itself (`closed`, then
-// every distance is above 0), or runs as given; where both ends lie on the axis the surface is closed as well.
+// A line of at least two points (distance from the axis, height) turned round Y. With `closed` the line closes on
+// itself; every distance must then be above 0. Otherwise it runs as given, and the surface is closed if both ends are
+// on the axis.
 Shape make_revolution(const std::vector<Vec2>& profile, bool closed, double edge);
 
-// Vertices that a shape of this area would have, for refusing absurd edge lengths before memory runs out.
+// The approximate number of vertices of a shape with this area, to refuse absurd edge lengths before memory runs out.
 double vertices_for(double area, double edge);
 
 }  // namespace selvedge
