@@ -12,7 +12,7 @@
 namespace selvedge {
 namespace {
 
-constexpr double farthest_place = 1e6, fastest = 1e9, longest_run = 1e9;  // [m], [m/s], [s]: no scene goes so far
+constexpr double farthest_place = 1e6, fastest = 1e9, longest_run = 1e9;  // [m], [m/s], [s]: beyond any scene
 
 [[noreturn]] void throw_unfit(const std::filesystem::path& file, const std::string& field, const std::string& what) {
   throw Error(what, file.string() + ": " + field, "run without --resume");

@@ -51,8 +51,8 @@ std::string_view json_of(std::string_view bytes) {
   return bytes.substr(header, length);
 }
 
-// The files that a glTF file may open: its buffers, below its own folder. By the names under which the package asks
-// for them; whatever else it asks for, an image, is not there.
+// The files that a glTF file may open: its buffers, below its own folder, by the names that the package asks for. All
+// other files, such as images, count as missing.
 class BufferFiles {
  public:
   BufferFiles(const std::filesystem::path& file, std::string_view bytes) {
@@ -64,7 +64,7 @@ class BufferFiles {
       const std::string uri = buffer["uri"];
       if (uri.starts_with("data:")) continue;
       std::string asked = uri;
-      std::ranges::replace(asked, '+', ' ');  // as the package decodes it
+      std::ranges::replace(asked, '+', ' ');  // as the package decodes URIs
       files_[percent_decoded(asked)] =
           path_below(file.parent_path(), percent_decoded(uri), file.string() + ": buffer " + std::to_string(i));
     }
@@ -92,8 +92,7 @@ class BufferFiles {
   Files files_;
 };
 
-// The file as the package has parsed it. Nothing in it can be trusted: indices and sizes are checked where they are
-// used.
+// The file as parsed by the package. The package does not check it: indices and sizes are checked at their use.
 class Document {
  public:
   explicit Document(const std::filesystem::path& file) : file_(file) {
@@ -102,7 +101,7 @@ class Document {
                     "export less of it");
     BufferFiles buffers(file, bytes);
     tinygltf::TinyGLTF loader;
-    loader.SetImageLoader([](auto...) { return true; }, nullptr);  // images are of no use here
+    loader.SetImageLoader([](auto...) { return true; }, nullptr);  // images are not needed
     loader.SetFsCallbacks(buffers.callbacks());
     std::string error, warning;
     bool good = false;
@@ -137,7 +136,7 @@ class Document {
     return list[static_cast<std::size_t>(index)];
   }
 
-  // The numbers of an accessor, a row each; `columns` must be right.
+  // The numbers of an accessor, one row per element. Throws Error if it does not have `columns` columns.
   Numbers numbers(int index, int columns, const std::string& part) const {
     const tinygltf::Accessor& accessor = entry(model.accessors, index, part);
     if (accessor.sparse.isSparse) fail(part, "is stored sparsely", "export it without sparse accessors");
@@ -203,7 +202,7 @@ std::string name_or(const std::string& name, const char* noun, std::size_t numbe
   return name.empty() ? noun + std::to_string(number) : name;
 }
 
-// Translation, rotation and scale of a matrix, given by columns.
+// Sets translation, rotation and scale from a column-major matrix.
 void set_by_matrix(const Document& file, const std::vector<double>& m, const std::string& part, GltfNode& node) {
   const Eigen::Matrix4d all = Eigen::Map<const Eigen::Matrix4d>(m.data());
   Mat3 linear = all.topLeftCorner<3, 3>();
@@ -237,7 +236,7 @@ GltfNode node_of(const Document& file, std::size_t number) {
   return node;
 }
 
-// The nodes, parents first, and the place of each of the file's among them.
+// Reads the nodes, parents first. Returns the index of each of the file's nodes among them.
 std::vector<int> read_nodes(const Document& file, std::vector<GltfNode>& nodes) {
   const std::vector<tinygltf::Node>& given = file.model.nodes;
   std::vector<int> parent(given.size(), -1), place(given.size(), -1), order;
@@ -274,7 +273,7 @@ int used_skin(const Document& file) {
   return *skin;
 }
 
-// Joints and weights of a vertex in sets of four.
+// Adds joints and weights of vertices, in sets of four.
 void add_weights(const Document& file, const tinygltf::Primitive& primitive, const std::string& part, int first,
                  int count, int joints, std::vector<Eigen::Triplet<double>>& all) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(count);
@@ -325,8 +324,7 @@ void add_primitive(const Document& file, const tinygltf::Primitive& primitive, c
   add_weights(file, primitive, part, first, count, joints, weights);
 }
 
-// The meshes that a skin deforms and that are chosen, each a group by its name. Returns the names of all that there
-// are.
+// Adds the chosen meshes that a skin deforms, each as a group with its name. Returns the names of all that it deforms.
 std::vector<std::string> add_meshes(const Document& file, int skin, const NameChoice& choice, GltfScene& scene,
                                     std::vector<Eigen::Triplet<double>>& weights) {
   std::vector<std::string> names;
@@ -347,7 +345,7 @@ std::vector<std::string> add_meshes(const Document& file, int skin, const NameCh
   return names;
 }
 
-// Vertices at one place become one, with the weights of the lowest.
+// Joins vertices at one place, with the weights of the lowest.
 void join_vertices(const Document& file, const std::string& name, GltfScene& scene,
                    const std::vector<Eigen::Triplet<double>>& weights) {
   const Eigen::Index as_read = scene.mesh.x.rows();
@@ -377,7 +375,7 @@ std::optional<GltfPath> path_of(const std::string& name) {
   if (name == "translation") return GltfPath::translation;
   if (name == "rotation") return GltfPath::rotation;
   if (name == "scale") return GltfPath::scale;
-  return {};  // weights of morph targets, and what extensions animate
+  return {};  // weights of morph targets, and properties of extensions
 }
 
 GltfAnimation animation_of(const Document& file, const std::vector<int>& place, std::size_t number) {

@@ -13,7 +13,7 @@
 namespace selvedge::h5 {
 namespace {
 
-// The deepest entry of the error stack names the system's own reason ("... error message = 'No space left on device'").
+// The deepest entry of the error stack has the system's reason ("... error message = 'No space left on device'").
 std::string reason_of_failure() {
   std::string deepest;
   const auto keep_last = [](unsigned, const H5E_error2_t* entry, void* text) -> herr_t {
@@ -40,19 +40,20 @@ std::string cure_for(const std::string& reason) {
   return "check that the file is one of this program and that its disk works";
 }
 
-// Latest format (SWMR needs it), no file locks (network folders often have none; one writer a file is a rule of ours).
+// Latest format (SWMR needs it), no file locks (network folders often lack them; this program allows one writer per
+// file).
 Handle file_access() {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_libver_bounds(access.id(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
   H5Pset_file_locking(access.id(), false, true);
   // SWMR readers read metadata again while its checksum is wrong, and wait twice as long each time. The default of 100
-  // times never ends where a killed writer left it so; this many take a second or two.
+  // times would never end with a file of a killed writer; this many take a second or two.
   H5Pset_metadata_read_attempts(access.id(), 30);
   return access;
 }
 
-// The system may end a killed writer's last write between two pages of memory. Metadata that lies within one page is
-// therefore whole or as it was.
+// The system may cut a killed writer's last write between two memory pages. So metadata is kept within single pages,
+// where a write is complete or absent.
 Handle file_creation() {
   Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_file_space_strategy(creation.id(), H5F_FSPACE_STRATEGY_PAGE, false, 1);
@@ -164,7 +165,7 @@ Handle File::make_growing(const std::string& name, hid_t type, const std::vector
 
 namespace {
 
-// A way to datasets and links that leads into no other file.
+// Access properties for datasets and links that never lead into another file.
 Handle within_the_file(hid_t kind) {
   Handle access(H5Pcreate(kind), H5Pclose);
   H5Pset_elink_cb(
@@ -199,10 +200,11 @@ void File::fail(const std::string& name, const std::string& what) const {
   throw Error(what, path_.string() + ": " + name, "the file is damaged or is none of this program; write it again");
 }
 
-// An attacker or a damaged file may declare any number of values: as many must be stored as the best packed ones make.
+// An attacker or a damaged file may declare any number of values. So the stored bytes must be enough for them at the
+// best possible compression.
 void File::check_stored(hid_t dataset, const std::string& name) const {
-  constexpr hsize_t most_packed = 1032;  // bytes that deflate makes of one
-  constexpr hsize_t little = 1 << 20;    // bytes that do no harm: a file that is being written may be behind by them
+  constexpr hsize_t most_packed = 1032;  // most bytes that deflate packs into one
+  constexpr hsize_t little = 1 << 20;    // bytes that are always allowed, since a file that is being written may lag
   const Handle type(check(H5Dget_type(dataset), "read the type of " + name), H5Tclose);
   const Handle creation(check(H5Dget_create_plist(dataset), "read how " + name + " is stored"), H5Pclose);
   if (H5Pget_external_count(creation.id()) != 0 || H5Pget_layout(creation.id()) == H5D_VIRTUAL)

@@ -31,7 +31,7 @@ struct Parser {
   std::vector<double> x, uv;
   std::vector<Corner> corners;
   std::vector<Face> faces;
-  std::map<std::string, int> unknown;  // first words of lines that are passed over, and how often
+  std::map<std::string, int> unknown;  // unknown first words of lines, and how often
   std::vector<std::string> open_groups;
   std::string object;
   std::vector<std::pair<std::string, std::vector<int>>> groups;
@@ -71,7 +71,8 @@ void read_coordinates(Parser& p, const std::vector<std::string_view>& words, std
   }
 }
 
-// An index of the file, from 1, or from the end where negative, as a row. Rows to come are checked at the end.
+// The row of an index in the file, which counts from 1, or from the end if negative. Rows that are not read yet are
+// checked at the end.
 int read_index(const Parser& p, std::string_view word, int count) {
   int index = 0;
   const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), index);
@@ -104,14 +105,14 @@ void read_face(Parser& p, const std::vector<std::string_view>& words) {
   }
 }
 
-// What a cloth has no use for: normals, lines and points, smoothing, materials, curves and surfaces, display.
+// Statements that are skipped: normals, lines and points, smoothing, materials, curves and surfaces, display.
 constexpr std::array<std::string_view, 36> passed_over = {
     "vn",       "vp",         "l",         "p",     "s",     "mg",   "usemtl", "mtllib", "usemap",
     "maplib",   "cstype",     "deg",       "bmat",  "step",  "curv", "curv2",  "surf",   "parm",
     "trim",     "hole",       "scrv",      "sp",    "end",   "con",  "lod",    "bevel",  "c_interp",
     "d_interp", "shadow_obj", "trace_obj", "ctech", "stech", "call", "csh",    "fo",     "bzp"};
 
-// A word that no OBJ file has. One that ends in a known word hides a line that was meant.
+// Counts an unknown first word. Throws Error if it is not plain text, as it may hide a known word.
 void note_unknown(Parser& p, std::string_view word) {
   const bool printable = std::all_of(word.begin(), word.end(), [](char c) { return c > ' ' && c <= '~'; });
   if (!printable)
@@ -141,7 +142,7 @@ void read_line(Parser& p, std::string_view text) {
   }
 }
 
-// Lines that end in a backslash go on in the next.
+// Reads all lines; a line that ends in a backslash continues in the next.
 void read_lines(Parser& p, std::string_view text) {
   std::string continued;
   int number = 0;
@@ -229,7 +230,8 @@ Mesh parse_obj(std::string_view text, const std::string& name) {
 std::string moved_obj_text(std::string_view text, const Points& x) {
   std::string moved;
   Eigen::Index next = 0;
-  bool continues = false, in_position = false;  // the line before ended in a backslash, and was of a position
+  bool continues = false,
+       in_position = false;  // the line before ended in a backslash, and was a position
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, end);

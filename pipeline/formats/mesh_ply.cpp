@@ -46,7 +46,7 @@ struct Element {
   }
 };
 
-// Reads on through the file; every message names the line, in binary data the element.
+// Reads the file in order; messages name the line, or in binary data the element.
 struct Reader {
   std::string name;
   std::string_view text;
@@ -191,7 +191,7 @@ void read_row(Reader& r, const Element& element, int list, std::vector<double>& 
 }
 
 void check_size(const Reader& r, const Element& element) {
-  std::size_t least = 0;  // bytes a row; in text a digit and a space a value
+  std::size_t least = 0;  // least bytes per row; in text a digit and a space per value
   for (const Property& p : element.properties)
     least += r.encoding == Encoding::ascii ? 2 : (p.count ? p.count->size : p.type->size);
   if (element.count > 0 && (least == 0 || element.count > (r.left() + 1) / least))
@@ -240,7 +240,7 @@ void read_faces(Reader& r, const Element& element, Mesh& mesh) {
   }
 }
 
-// The faces may stand before the vertices: they are checked and cut once all is read.
+// Faces may come before vertices in the file, so that they are checked and cut once all is read.
 void cut_ply_faces(const std::string& name, Mesh& mesh) {
   std::vector<Vec3> places;
   std::vector<std::array<int, 3>> triangles;
@@ -280,7 +280,7 @@ Mesh parse_ply(std::string_view text, const std::string& name) {
   r.name = name;
   r.text = text;
   const std::vector<Element> elements = read_header(r);
-  ++r.line;  // values of a text file are read from here on
+  ++r.line;  // values of a text file begin here
   Mesh mesh;
   for (const Element& element : elements) {
     check_size(r, element);

@@ -19,7 +19,7 @@ struct Header {
   bool fortran_order = false;
   std::vector<std::size_t> shape;
   std::size_t count = 1;  // of values
-  std::size_t begin = 0;  // of the values, in bytes
+  std::size_t begin = 0;  // byte offset of the values
 };
 
 constexpr std::string_view magic = "\x93NUMPY";
@@ -28,7 +28,7 @@ constexpr std::string_view magic = "\x93NUMPY";
   throw Error(what, place.text(), "the file is damaged or no array of numpy; copy it again, or save it anew");
 }
 
-// Named, never carried out: unpickling runs whatever program the file contains.
+// Refuses pickled objects: unpickling would run any program that the file contains.
 [[noreturn]] void fail_pickled(const NpyPlace& place) {
   const std::string script = fmt::format(
       "import numpy as np; d = dict(np.load('{0}', allow_pickle=True)); a = d['{1}'].tolist(); "
@@ -163,7 +163,7 @@ NpyArray<T> in_c_order(const Header& header, const Value& value) {
     for (std::size_t i = 0; i < header.count; ++i) array.values[i] = value(i);
     return array;
   }
-  std::vector<std::size_t> stride(rank, 1), index(rank, 0);  // places in the file from one index to the next
+  std::vector<std::size_t> stride(rank, 1), index(rank, 0);  // distance in the file from one index to the next
   for (std::size_t k = 1; k < rank; ++k) stride[k] = stride[k - 1] * header.shape[k - 1];
   std::size_t from = 0;
   for (std::size_t i = 0; i < header.count; ++i) {
@@ -238,7 +238,7 @@ NpyArray<double> npy_numbers(std::string_view bytes, const NpyPlace& place) {
 }
 
 NpyArray<std::int64_t> npy_integers(std::string_view bytes, const NpyPlace& place) {
-  constexpr double largest = 9007199254740992;  // up to here doubles count without gaps
+  constexpr double largest = 9007199254740992;  // 2^53: up to here doubles have every integer
   return read_array<std::int64_t>(bytes, place, [&](auto value) {
     if constexpr (std::is_floating_point_v<decltype(value)>) {
       if (!(std::abs(value) <= largest) || std::trunc(value) != value)

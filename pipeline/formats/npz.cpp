@@ -21,7 +21,7 @@ struct CloseEntry {
 
 // The size that the archive claims for an entry, if its compressed bytes can give as much.
 std::size_t plausible_size(const zip_stat_t& entry, std::uintmax_t file_size, const NpyPlace& place) {
-  constexpr std::uint64_t most_by_byte = 1032;  // that deflate can make of one
+  constexpr std::uint64_t most_by_byte = 1032;  // most bytes that deflate packs into one
   if (entry.encryption_method != ZIP_EM_NONE)
     throw Error("is encrypted", place.text(), "save the arrays with numpy.savez");
   if (entry.comp_method != ZIP_CM_STORE && entry.comp_method != ZIP_CM_DEFLATE)
@@ -97,7 +97,7 @@ std::string Npz::bytes(const std::string& name) const {
   zip_int64_t got = 0;
   while (done < size && (got = zip_fread(file.get(), bytes.data() + done, size - done)) > 0)
     done += static_cast<std::size_t>(got);
-  // Only reading on at the end makes libzip compare the checksum.
+  // libzip compares the checksum only when reading beyond the end.
   if (got >= 0) got = zip_fread(file.get(), &beyond, 1);
   if (got != 0 || done != size)
     throw Error(got < 0 ? fmt::format("cannot be read ({})", zip_file_strerror(file.get()))

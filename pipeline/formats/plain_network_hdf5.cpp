@@ -6,7 +6,7 @@ namespace selvedge {
 namespace {
 
 constexpr int most_width = 1 << 20;
-constexpr double most_steps = 1e15;  // of a training
+constexpr double most_steps = 1e15;  // most training steps
 
 }  // namespace
 

@@ -8,11 +8,11 @@ namespace selvedge {
 namespace {
 
 constexpr double least_quality = 1e-6;  // of a triangle with area: twice that over its longest edge squared
-constexpr double on_edge = 1e-9;        // how far outside a corner may be that counts as on it, in the same way
+constexpr double on_edge = 1e-9;        // a corner outside by less than this quality counts as on the edge
 
 Vec3 twice_area(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
 
-// Twice the area along the normal over the longest edge squared; 0 where that has no length.
+// Twice the area along the normal, divided by the longest edge squared; 0 if that has no length.
 double shape_quality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) {
   const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
   return longest > 0 ? twice_area(a, b, c).dot(normal) / longest : 0;
@@ -31,7 +31,7 @@ std::vector<std::array<int, 3>> fan(const std::vector<int>& left) {
   return triangles;
 }
 
-// What is left of a polygon while its ears are cut off.
+// The rest of a polygon while its ears are cut off.
 struct EarCutter {
   std::span<const Vec3> corners;
   Vec3 normal;
@@ -106,7 +106,7 @@ std::vector<std::array<int, 3>> polygon_triangles(std::span<const Vec3> corners)
   std::vector<std::array<int, 3>> triangles;
   while (cutter.left.size() > 3) {
     std::optional<std::size_t> ear = cutter.best();
-    if (!ear) {  // one that was no ear may be one now that others are gone
+    if (!ear) {  // a corner that was no ear may be one after others are cut off
       std::ranges::fill(cutter.known, 0);
       ear = cutter.best();
     }

@@ -18,8 +18,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "MDD is read by turning its bytes round");
 
-constexpr double most_time = 1e6;  // of a sample [frames or s]: beyond it floats tell no two apart
-constexpr double uneven = 0.01;    // steps that differ by more are no steady rate
+constexpr double most_time = 1e6;  // of a sample [frames or s]: beyond it floats are too coarse
+constexpr double uneven = 0.01;    // steps that differ by more are not a steady rate
 
 // The numbers of a cache one after the other.
 struct CacheBytes {
@@ -104,7 +104,7 @@ PointCache read_pc2(CacheBytes file) {
   return cache;
 }
 
-// The times of a cache [s] as frames of their rate where that is steady, else as they are.
+// Sets the times of a cache, given in [s]: as frames of their rate if it is steady, else unchanged.
 void set_times(const CacheBytes& file, const std::vector<double>& times, PointCache& cache) {
   for (const double time : times)
     if (!(std::abs(time) <= most_time))
@@ -117,7 +117,7 @@ void set_times(const CacheBytes& file, const std::vector<double>& times, PointCa
   for (std::size_t f = 0; f < times.size(); ++f)
     if (!(std::abs(times[f] - times.front() - static_cast<double>(f) * step) <= uneven * step)) return;
   cache.fps = 1 / step;
-  const double first = std::round(1e4 * times.front() / step) / 1e4;  // floats have no more
+  const double first = std::round(1e4 * times.front() / step) / 1e4;  // the precision of floats
   for (std::size_t f = 0; f < times.size(); ++f) cache.at[f] = first + static_cast<double>(f);
 }
 

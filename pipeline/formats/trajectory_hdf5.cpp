@@ -35,7 +35,7 @@ void write_constants(const h5::File& file, const TrajectoryInfo& info) {
   write_ints(file, "cloth/first_triangle", info.cloth_first_triangle);
   write_triangles(file, "cloth/triangles", info.triangles);
   file.write_constant("cloth/rest", H5T_NATIVE_DOUBLE, {static_cast<hsize_t>(info.rest.rows()), 3}, info.rest.data());
-  // RestTriangle is column-major 2 x 3, so a triangle's corners lie one after the other: rows of 3 x (u, v).
+  // RestTriangle is column-major 2 x 3, so that a triangle's corners are stored in order: rows of 3 x (u, v).
   static_assert(sizeof(RestTriangle) == 6 * sizeof(double));
   file.write_constant("cloth/rest_triangles", H5T_NATIVE_DOUBLE, {info.rest_triangle.size(), 3, 2},
                       info.rest_triangle.data());
@@ -78,7 +78,7 @@ struct TrajectoryWriter::Impl {
   h5::Handle row_type = row_memory_type(), by_type = h5::text_type(by_name_bytes);
   h5::Handle complete, closed, report, by, x, bad, switched_off;
   std::vector<h5::Handle> obstacles;
-  std::vector<PointsF> still;  // of each obstacle where the first frame has it; empty once it has been elsewhere
+  std::vector<PointsF> still;  // positions of each obstacle in the first frame; empty once it has moved
   std::vector<std::string> by_names;
   std::int64_t frames = 0, bad_length = 0;
 
@@ -139,7 +139,7 @@ void TrajectoryWriter::Impl::set(const h5::Handle& flag, std::int64_t value) {
   file.flush();
 }
 
-// The file takes its name only once it is open for SWMR, so that a file of that name can always be opened.
+// The file gets its name only once it is open for SWMR, so that a file with that name can always be opened.
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const TrajectoryInfo& info) {
   const std::filesystem::path beside = path_beside(path);
   try {
@@ -157,8 +157,8 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const Traj
 
 TrajectoryWriter::~TrajectoryWriter() = default;
 
-// A still obstacle is stored once. Cloth that leaves it no room moves it all the same: from then on it is stored in
-// every frame, and in those before, in their order: a reader takes it as still until all are there.
+// A still obstacle is stored once. If cloth without room moves it, it is stored in every frame from then on, and also
+// in the earlier ones, in order; readers take it as still until all are stored.
 void TrajectoryWriter::Impl::append_obstacle(std::size_t k, const PointsF& at) {
   if (frames == 0 && !info.obstacles[k].moving) still[k] = at;
   if (frames > 0 && still[k].rows() > 0) {
@@ -170,7 +170,7 @@ void TrajectoryWriter::Impl::append_obstacle(std::size_t k, const PointsF& at) {
   file.write_rows(obstacles[k].id(), H5T_NATIVE_FLOAT, static_cast<hsize_t>(frames), 1, at.data());
 }
 
-// The count of full frames is raised after everything else has reached the file: readers count by it alone.
+// The count of full frames is raised after everything else has reached the file, since readers rely on it alone.
 void TrajectoryWriter::Impl::append(const Frame& frame) {
   file.write_rows(x.id(), H5T_NATIVE_FLOAT, frames, 1, frame.x.data());
   for (std::size_t k = 0; k < obstacles.size(); ++k) append_obstacle(k, frame.obstacles[k]);

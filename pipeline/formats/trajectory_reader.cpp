@@ -44,7 +44,7 @@ std::vector<int> read_ints(const h5::File& file, const std::string& name) {
   return values;
 }
 
-// Where the cloths begin, and the end of the last one.
+// The first index of each cloth, and the end of the last one.
 std::vector<int> read_begins(const h5::File& file, const std::string& name, std::size_t cloths, Eigen::Index end) {
   const std::vector<int> begins = read_ints(file, name);
   if (begins.size() != cloths + 1 || begins.front() != 0 || begins.back() != end ||
@@ -78,7 +78,7 @@ void read_cloth(const h5::File& file, TrajectoryInfo& info) {
 }
 
 TrajectoryInfo::Body read_body(const h5::File& file, const std::string& name, hsize_t frames) {
-  constexpr hsize_t many = 1u << 20;  // vertices: of more it is asked whether they are in the file
+  constexpr hsize_t many = 1u << 20;  // with more vertices, checks that they are stored in the file
   TrajectoryInfo::Body body;
   body.name = file.read_text(name + "/name");
   body.moving = file.read_text(name + "/motion") == "moving";
@@ -114,7 +114,7 @@ struct TrajectoryReader::Impl {
   h5::File file;
   TrajectoryInfo info;
   h5::Handle row_type = row_memory_type(), report, x, bad;
-  h5::Handle switched_off;  // not in older files
+  h5::Handle switched_off;  // missing in older files
   std::vector<h5::Handle> obstacles;
   std::vector<std::string> by_names;
   int frames = 0;

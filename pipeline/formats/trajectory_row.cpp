@@ -29,7 +29,7 @@ BoundFields<Frame> clock_fields() {
                 {}, Page::yes)};
 }
 
-// What is measured on the positions as they are written, rounded to float.
+// Fields that are measured on the written positions, rounded to float.
 BoundFields<Frame> measured_fields() {
   using F = Frame;
   return {field("self_pairs", &F::self_pairs, "",
@@ -65,7 +65,7 @@ hid_t file_type_of(ColumnType type) {
   return type == ColumnType::large ? H5T_NATIVE_INT64 : H5T_NATIVE_INT32;
 }
 
-// The cell's value, whose enumerator there is.
+// The value of a cell; an enumerator must exist for it.
 FieldValue value_of_cell(const BoundField<Frame>& one, std::int64_t cell, const std::vector<std::string>& texts) {
   if (one.type == ColumnType::real) return std::bit_cast<double>(cell);
   if (one.type == ColumnType::word) return one.words.at(static_cast<std::size_t>(cell));
@@ -75,7 +75,7 @@ FieldValue value_of_cell(const BoundField<Frame>& one, std::int64_t cell, const 
   return cell;
 }
 
-// Files of older versions have what an accepted step leaves in doubt as its reason.
+// In files of older versions the reason of an accepted step is a doubt.
 void read_old_reason(StepReport& report) {
   if (report.status != StepStatus::accepted || report.reason == Reason::none) return;
   for (const BoundField<Doubts>& doubt : doubt_fields())

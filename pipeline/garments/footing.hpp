@@ -7,13 +7,13 @@
 
 namespace selvedge {
 
-// For each vertex of a worn surface the vertex of the body that is nearest in the rest pose: its foot.
+// For each vertex of a worn surface its foot: the vertex of the body that is nearest in the rest pose.
 struct Footing {
   std::vector<int> foot;     // of the body's vertices
-  std::vector<double> part;  // share of the gap above the foot, beyond which a vertex is squeezed
+  std::vector<double> part;  // share of the gap above the foot beyond which a vertex is squeezed
 };
 
-// A body in a pose, with a grid for the search from what is worn on it.
+// A body in a pose, with a grid for searches from garments.
 struct PosedSkin {
   PosedSkin(const Surface& body, const Points& posed);
 
@@ -25,13 +25,13 @@ struct PosedSkin {
 // The footing of a surface x that is worn by the body at rest [m]. The parts of the body must be apart there.
 Footing footing_of(const Points& x, const PosedSkin& rest);
 
-// The footing of some of the vertices; empty if `Footing` is.
+// The footing of some of the vertices; empty if the given one is.
 Footing footing_of(const Footing&, const std::vector<int>& vertices);
 
-// Squeezes a surface x that is worn by the body in this pose. A vertex is moved towards its foot if it would reach into
-// another part of the body that has come near, or beyond the middle of the gap to it. The layers keep their order, and
-// each side keeps its half of the gap. A vertex that is farther than 6 cm from the body stays. Nothing moves unless a
-// part of the body is nearer than at rest.
+// Squeezes a surface x that the body wears in this pose. A vertex is moved toward its foot if it would be inside
+// another part of the body that has come near, or beyond the middle of the gap to it. Layers keep their order, and each
+// side keeps its half of the gap. Vertices farther than 6 cm from the body stay. Nothing moves unless a part of the
+// body is nearer than at rest.
 Points squeezed(const Footing&, const PosedSkin&, const Points& x);
 
 }  // namespace selvedge

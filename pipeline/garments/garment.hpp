@@ -9,45 +9,45 @@
 
 namespace selvedge {
 
-// Joins two vertices of a garment by a spring, such as a pocket's and one of the front behind it.
+// A spring that joins two vertices of a garment, such as one of a pocket and one of the front behind it.
 struct Stitch {
   int a = 0, b = 0;
   double rest_length = 0;  // [m]
   bool operator==(const Stitch&) const = default;
 };
 
-// A garment on the body that it was made for.
+// A garment on the body for which it was made.
 struct Garment {
   std::string name;
-  SkinnedSurface skin;  // as worn in the body's zero pose and shape, with the directions it takes from the body
-  BodyPose made_in;     // the pose in which its shape is its rest shape; no rows: the zero pose
+  SkinnedSurface skin;  // as worn in the body's zero pose and shape, with the directions that it takes from the body
+  BodyPose made_in;     // the pose in which it has its rest shape; no rows: the zero pose
   std::vector<std::pair<std::string, std::vector<int>>> groups;  // by name, vertices ascending
   std::vector<int> pins;                                         // vertices that stay with the body, ascending
   std::string made_for = {};                                     // the body's name; empty: not known
   std::vector<Stitch> stitches = {};
-  std::vector<RestTriangle> flat = {};  // of each triangle, as cut from panels; empty: its rest shape, flattened
+  std::vector<RestTriangle> flat = {};  // rest shapes of triangles, as cut from panels; empty: the flattened rest shape
 };
 
-// How a garment vertex takes weights and directions from the body: from the nearest vertex, as tight garments do, or
-// from all vertices about as near as that one, averaged (Gaussian, as wide as the vertex is far from the body), as
-// loose ones do. ContourCraft (Grigorev et al. 2024) samples the same two ways, the loose one at random.
+// How a garment vertex takes weights and directions from the body. tight: from the nearest vertex. loose: averaged over
+// all vertices about as near as that one (Gaussian, as wide as the distance from the body). ContourCraft (Grigorev et
+// al. 2024) uses the same two, the loose one with random samples.
 enum class Fit { tight, loose };
 
-// A surface x worn in the body's zero pose and shape, given the body's weights and directions. Throws Error for one
-// without vertices.
+// A skinned surface from positions x worn in the body's zero pose and shape, with weights and directions from the body.
+// Throws Error if it has no vertices.
 SkinnedSurface attached(const Points& x, const Triangles&, const BodyModel&, Fit);
 
-// What each vertex worn in the body's zero pose takes from the body's vertices when those are moved: the ones about as
-// near as the nearest, averaged (Gaussian, `width` [m] wide). Rows sum to 1.
+// The weights with which each vertex, worn in the body's zero pose, follows motions of the body's vertices: of those
+// about as near as the nearest (Gaussian, `width` [m] wide). Rows sum to 1.
 SkinWeights shares_of_body(const Points& x, const BodyModel&, double width);
 
-// The garment worn by the body in a shape and pose: skinned, which may tangle it.
+// The garment on the body in a shape and pose [m]. It is only skinned, so that it may be tangled.
 Points worn(const Garment&, const BodyModel&, const Eigen::VectorXd& shape, const BodyPose&);
 
-// Its rest shape on a body of that shape: as made, resized by the shape directions.
+// Its rest shape for a body of that shape: as made, resized by the shape directions [m].
 Points rest_shape(const Garment&, const BodyModel&, const Eigen::VectorXd& shape);
 
-// Throws Error, naming `file` and the field, unless the sizes fit, indices are in range and ascend, all numbers are
+// Throws Error, naming `file` and the field, unless sizes match, indices are in range and ascend, all numbers are
 // finite, weights sum to 1 and stitches join different vertices. For readers and makers of garments.
 void check_garment(const Garment&, const std::string& file);
 

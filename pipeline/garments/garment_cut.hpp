@@ -12,20 +12,20 @@
 
 namespace selvedge {
 
-// Linear between points (coordinate, value), held beyond them.
+// Linear between points (coordinate, value), constant beyond them.
 using Profile = std::vector<std::array<double, 2>>;
 double at(const Profile&, double coordinate);
 
-// How far edges lie below a surface as round as a limb whose points they join [m].
+// The depth of edges of this length below a surface as round as a limb, if they join points on it [m].
 double sagitta(double edge);
 
-// Where a garment ends: what lies beyond the border is cut away. Paired ones are cut on both sides of x = 0 and named
+// An end of a garment: the part beyond the border is cut away. Paired openings are cut on both sides of x = 0 and named
 // _left and _right.
 struct Opening {
   std::string group;
   Border border;
   bool paired = false;
-  std::function<Border(double)> widened = {};  // the border of round ones, so much farther from the neck [m]
+  std::function<Border(double)> widened = {};  // for round ones: the border at a larger distance from the neck [m]
 };
 
 // A patch on the front, stitched on along its sides and its lower edge.
@@ -45,11 +45,11 @@ struct GarmentCut {
   std::vector<Opening> openings = {};
   std::string pinned = {};  // the group that stays with the body; empty: it hangs from the shoulders
   bool legs_apart = false;  // however loose they are
-  double collar = 0;        // how deep it falls; 0: there is none
+  double collar = 0;        // width of the turn-down collar [m]; 0: none
   std::vector<Pocket> pockets = {};
 };
 
-// Of T-shirt to jacket, in a fixed order, each name once.
+// All cuts, from T-shirt to jacket, in a fixed order with unique names.
 const std::vector<GarmentCut>& garment_cuts();
 
 }  // namespace selvedge

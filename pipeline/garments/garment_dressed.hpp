@@ -8,16 +8,16 @@
 
 namespace selvedge {
 
-// How a body wears a mesh.
+// How to make a garment from a mesh on a body.
 struct Dressing {
   Eigen::VectorXd shape;          // of the body
   BodyPose pose;                  // of it; no rows: the zero pose
   Fit fit = Fit::loose;           // how the mesh takes weights and directions from the body
-  std::vector<std::string> pins;  // groups that stay with the body, or `none`; empty: waists of what would fall
+  std::vector<std::string> pins;  // groups that stay with the body, or `none`; empty: waists of pieces that would fall
 };
 
-// A garment of a mesh that lies where the body wears it [m]: weights and directions from the surface of the body as it
-// is there, groups of the mesh and of its boundaries, pins. Throws Error for pins that are no group of it.
+// A garment from a mesh in the place where the body wears it [m]. Weights and directions come from the posed body's
+// surface, groups from the mesh and its boundaries. Throws Error for pins that are not a group of it.
 struct DressedMesh {
   Garment garment;
   std::vector<std::string> pinned;  // groups

@@ -6,8 +6,8 @@
 
 namespace selvedge {
 
-// A garment in our HDF5 form, docs/garments.md. Both throw Error; what is written is read back to the bit. Written
-// beside and renamed.
+// A garment in our HDF5 format, docs/garments.md. Reading gives exactly what was written. Writes to a file beside it
+// and renames that. Both throw Error.
 void write_garment(const std::filesystem::path&, const Garment&);
 Garment read_garment(const std::filesystem::path&);
 

@@ -8,7 +8,7 @@
 
 namespace selvedge {
 
-// Garments by code that are worn over each other, the first one next to the body.
+// Garments made by code that are worn over each other, from the body outward.
 struct Outfit {
   std::string name;
   std::vector<std::string> garments;
@@ -17,20 +17,20 @@ struct Outfit {
   bool validation = false;
 };
 
-// Which garments and outfits are for what. What is for validation is never trained on.
+// The use of garments and outfits. Those for validation are never trained on.
 struct Wardrobe {
   std::vector<std::string> training, validation;  // garments
   std::vector<Outfit> outfits;
 };
 
-// configs/outfits.yaml. Throws Error with file and line, also for names that are unknown or come twice, garments
-// without a split, and outfits that have garments of the other split.
+// configs/outfits.yaml. Throws Error with file and line, also for unknown and repeated names, garments without a split,
+// and outfits with garments of the other split.
 Wardrobe read_wardrobe(const std::filesystem::path&);
 
-// The garments of an outfit at an edge length, each over those before it, kept in the folder as kept_garment does.
+// The garments of an outfit at an edge length, each over those before it, cached in the folder as by kept_garment.
 std::vector<Garment> kept_outfit(const std::filesystem::path& folder, const Outfit&, const BodyModel& mannequin,
                                  double edge);
-// The same without the gap between them, each as if it were worn alone: they start in each other.
+// The same without gaps, each as if it were worn alone, so that they intersect at the start.
 std::vector<Garment> kept_layers(const std::filesystem::path& folder, const Outfit&, const BodyModel& mannequin,
                                  double edge);
 

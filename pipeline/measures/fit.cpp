@@ -12,23 +12,23 @@ namespace selvedge {
 namespace {
 
 constexpr int girths_a_region = 7;
-constexpr double high_part = 0.99;  // of the values are not above a high one
+constexpr double high_part = 0.99;  // percentile of the high values
 
-// What is known of each vertex and triangle of the cloth.
+// Measures of each vertex and triangle of the cloth.
 struct FitField {
   std::vector<int> region;  // of the nearest point of the body, by vertex
   std::vector<char> touches;
   Eigen::VectorXd areas;    // as worn [m2]
-  Eigen::VectorXd push;     // of the skin along its normal, where it is touched [N]
+  Eigen::VectorXd push;     // force on the skin along its normal, if touched [N]
   Eigen::VectorXd strains;  // largest principal strain, by triangle
 };
 
-// What lies in one region of one cloth.
+// The part of one cloth in one region.
 struct FitPart {
   std::vector<int> vertices, triangles;
 };
 
-// The region that most corners of a triangle are in; of three different ones the first corner's.
+// The region of most corners of a triangle; of three different ones that of the first corner.
 int region_of_triangle(const Triangles& triangles, int t, const std::vector<int>& of_vertex) {
   const int a = of_vertex[triangles(t, 0)], b = of_vertex[triangles(t, 1)], c = of_vertex[triangles(t, 2)];
   return b == c ? b : a;
@@ -44,7 +44,7 @@ Eigen::VectorXd vertex_areas(const Triangles& triangles, const Points& x) {
   return areas;
 }
 
-// What contact must do to each vertex so that it rests [N].
+// The contact force on each vertex in equilibrium [N].
 Points forces_of_contact(const Scene& scene, const Points& x, const Vec3& gravity) {
   AssemblyScratch scratch;
   Points gradient;
@@ -52,7 +52,7 @@ Points forces_of_contact(const Scene& scene, const Points& x, const Vec3& gravit
   return gradient - lumped_masses(scene) * gravity.transpose();
 }
 
-// Mean over a vertex and its neighbours, by area: the forces of single vertices go up and down with the mesh.
+// Area-weighted means over a vertex and its neighbours, since forces of single vertices vary with the mesh.
 Eigen::VectorXd ring_means(const Surface& surface, const Eigen::VectorXd& forces, const Eigen::VectorXd& areas) {
   Eigen::VectorXd sum = forces, area = areas;
   for (Eigen::Index e = 0; e < surface.edges.rows(); ++e)
@@ -99,7 +99,7 @@ FitPart part_of(const Scene& scene, const Cloth& cloth, const std::vector<int>& 
   return part;
 }
 
-// Also the gap of each vertex.
+// Measures all vertices and triangles; also sets the gap of each vertex.
 FitField field_of(const Scene& scene, const Points& x, const Vec3& gravity, const DistanceField& body,
                   const std::vector<int>& region_of_body, double reach, Eigen::VectorXd& gap) {
   const std::vector<SignedDistance> distances = body.ask(x);
@@ -119,7 +119,7 @@ FitField field_of(const Scene& scene, const Points& x, const Vec3& gravity, cons
   return field;
 }
 
-// By vertex: the largest strain of its triangles, and the pressure, averaged.
+// Adds values by vertex: the largest strain of its triangles, and the averaged pressure.
 void add_maps(const Scene& scene, const FitField& field, FitMeasures& found) {
   const Triangles& triangles = scene.surface.triangles;
   found.strain = Eigen::VectorXd::Zero(field.areas.size());

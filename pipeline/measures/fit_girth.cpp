@@ -8,7 +8,7 @@
 namespace selvedge {
 namespace {
 
-// Where a plane cuts a triangle: on two of its sides, as weights of its corners.
+// The cut of a plane with a triangle: points on two of its sides, as weights of its corners.
 struct CutTriangle {
   int triangle = 0;
   std::array<int, 2> edges{};  // of the surface
@@ -47,7 +47,7 @@ struct PlaneAxes {
 
 using CutLoop = std::vector<CutTriangle>;
 
-// What a plane cuts of triangles, triangle after triangle round each closed loop; what ends somewhere is left out.
+// The closed loops of a plane's cut with triangles, triangle after triangle; open curves are left out.
 std::vector<CutLoop> closed_loops(const Surface& surface, int first, int count, const Points& x,
                                   const CutPlane& plane) {
   std::vector<CutTriangle> cuts;
@@ -79,7 +79,7 @@ std::vector<CutLoop> closed_loops(const Surface& surface, int first, int count, 
   return loops;
 }
 
-// By the number of its segments that a ray from the origin crosses.
+// True if a ray from the origin crosses an odd number of its segments.
 bool goes_round_origin(const Surface& surface, const CutLoop& loop, const Points& x, const PlaneAxes& axes) {
   bool inside = false;
   for (const CutTriangle& cut : loop) {

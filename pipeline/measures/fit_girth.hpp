@@ -13,15 +13,15 @@ struct CutPlane {
   double offset = 0;  // [m]
 };
 
-// The middle of the box round the section of some triangles; absent where the plane misses them.
+// The middle of the box round the section of the triangles `which`; absent if the plane misses them.
 std::optional<Vec3> section_middle(const Surface&, const std::vector<int>& which, const Points& x, const CutPlane&);
 
-// Length of a tape round the body's section, which is its convex hull [m]. Of the loops in which the plane cuts the
-// surface those count that go round `middle`; absent without any.
+// Length of a tape round the body's section: that of its convex hull [m]. Only loops of the section that go round
+// `middle` count; absent without any.
 std::optional<double> body_girth(const Surface&, const Points& x, const CutPlane&, const Vec3& middle);
 
-// Length of a cloth's section as it is at rest [m], of the loops that go round `middle`. Absent without any: a section
-// that ends at a boundary is no loop.
+// Rest length of a cloth's section [m], of the loops that go round `middle`. Absent without any: a section that ends at
+// a boundary is not a loop.
 std::optional<double> girth_at_rest(const Scene&, const Cloth&, const Points& x, const CutPlane&, const Vec3& middle);
 
 }  // namespace selvedge

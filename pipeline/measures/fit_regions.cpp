@@ -30,7 +30,7 @@ Vec3 unit_or_up(const Vec3& direction) {
   return length > 1e-9 ? Vec3(direction / length) : Vec3::UnitY();
 }
 
-// From the joint to the middle of its children; from its parent where it has none. A shoulder has no girth of its own.
+// From the joint to the mean of its children, or from its parent if it has none. Zero for collars, which have no girth.
 Vec3 limb_axis(const BodyModel& body, const Points& joints, std::size_t joint) {
   if (body.joints[joint].ends_with("collar")) return Vec3::Zero();
   Vec3 sum = Vec3::Zero();
@@ -38,13 +38,13 @@ Vec3 limb_axis(const BodyModel& body, const Points& joints, std::size_t joint) {
   for (std::size_t k = 0; k < body.parents.size(); ++k)
     if (body.parents[k] == static_cast<int>(joint)) sum += row(joints, static_cast<int>(k)), ++children;
   const Vec3 here = row(joints, static_cast<int>(joint));
-  // The root's children go three ways: the one up the back is what hips are measured across.
+  // The root's children point in three directions: hips are measured across the one up the back.
   if (body.parents[joint] < 0) return Vec3::UnitY();
   if (children > 0) return unit_or_up(sum / children - here);
   return unit_or_up(here - row(joints, body.parents[joint]));
 }
 
-// The direction in which points are longest.
+// The direction of largest extent of points (first principal axis).
 Vec3 longest_direction(const Points& x, const std::vector<int>& vertices) {
   if (vertices.size() < 2) return Vec3::UnitY();
   const Points own = x(vertices, Eigen::all);

@@ -13,7 +13,7 @@ struct CurvaturePair {
 
 double dot(const Points& a, const Points& b) { return a.cwiseProduct(b).sum(); }
 
-// The two loops, with the inverse of the diagonal as the first guess of the inverse Hessian.
+// The two-loop recursion, with the inverse diagonal as first guess of the inverse Hessian.
 Points quasi_newton(const std::deque<CurvaturePair>& pairs, const Eigen::VectorXd& inverse_diagonal,
                     const Points& gradient) {
   Points direction = gradient;

@@ -8,7 +8,7 @@
 namespace selvedge {
 namespace {
 
-// For each point the nearest of the others, the lowest of several. All finite.
+// For each point the index of the nearest of `others`, the lowest on a tie. All must be finite.
 std::vector<int> nearest_of(const Points& others, const Points& points) {
   constexpr double cell = 0.02;  // [m]
   const CellGrid grid(others, cell);

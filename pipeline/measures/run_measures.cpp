@@ -8,7 +8,7 @@
 namespace selvedge {
 namespace {
 
-constexpr int settling_frames = 2;  // at the start of a run, which hood_losses leave out: garments fall into place
+constexpr int settling_frames = 2;  // first frames, left out of hood_losses: garments fall into place
 
 struct MeasureMeaning {
   const char *name, *text;

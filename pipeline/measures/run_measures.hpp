@@ -9,33 +9,33 @@
 
 namespace selvedge {
 
-// A frame of a run, as it is measured.
+// The data of a frame that is measured.
 struct MeasuredFrame {
   Points x;                 // of the cloth [m]
-  Points body;              // of all obstacles, on end [m]; empty where there are none
+  Points body;              // of all obstacles, one after the other [m]; empty if there are none
   Points acceleration;      // of the cloth by all forces without contact [m/s2]
   int pairs = 0;            // of cloth triangles that intersect and share no vertex
   int body_pairs = 0;       // of a cloth's and an obstacle's triangle that intersect
   bool meets_body = false;  // a triangle of the cloth meets an obstacle, or a vertex lies in a closed one
   double depth = 0;         // of the deepest cloth vertex in a closed obstacle [m]
   bool crossed = false;     // an obstacle passes through itself
-  int pushed_out = 0;       // vertices, by a response to obstacles
+  int pushed_out = 0;       // number of vertices, by a response to obstacles
   double kinetic = 0;       // [J]
 };
 
-// Follows a run from its start, frame by frame.
+// Measures a run from its start, frame by frame.
 class RunMeasures {
  public:
-  // `judged`: of how many frames, spread over a run of `frames`, the distance to the optimum is found, which takes
+  // `judged`: for so many frames, spread over a run of `frames`, the distance to the optimum is found, which takes
   // seconds each.
   RunMeasures(const Scene&, int frames, int judged);
 
-  void begin(const Points& x, const Points& body, int pairs);  // as the run starts
+  void begin(const Points& x, const Points& body, int pairs);  // the start of the run
   void add(MeasuredFrame);
 
-  // By name (docs/comparison.md): means over the frames but for what its meaning says otherwise. Without a frame, none.
+  // Values by name (docs/comparison.md): means over frames, unless meaning_of() says otherwise. Empty without frames.
   std::map<std::string, double> values() const;
-  const std::vector<int>& pairs_by_frame() const { return pairs_; }  // the start's first
+  const std::vector<int>& pairs_by_frame() const { return pairs_; }  // the first is the start's
 
  private:
   void judge(const MeasuredFrame&);
@@ -53,7 +53,7 @@ class RunMeasures {
   int free_frames_ = 0;
 };
 
-// What a name of RunMeasures::values() means; empty for one that it does not have.
+// The meaning of a name of RunMeasures::values(); empty for an unknown name.
 std::string meaning_of(const std::string& measure);
 
 }  // namespace selvedge

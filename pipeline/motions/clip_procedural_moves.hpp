@@ -17,12 +17,12 @@ std::vector<NamedMovement> gait_movements();      // walking, running
 std::vector<NamedMovement> exercise_movements();  // on the spot
 std::vector<NamedMovement> everyday_movements();  // sitting, reaching, bowing
 std::vector<NamedMovement> dance_movements();
-std::vector<NamedMovement> penetrating_movements();  // a body that passes through itself
+std::vector<NamedMovement> penetrating_movements();  // the body passes through itself
 
-// Feet side by side, at the origin.
+// A movement that starts with the feet side by side at the origin.
 Movement movement(const Skeleton&, double seconds);
 
-// Stays in a figure from one time to another.
+// Keeps a figure from one time to another.
 void hold(Movement&, double from, double to, const Figure&);
 
 }  // namespace selvedge

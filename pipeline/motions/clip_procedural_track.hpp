@@ -11,22 +11,22 @@ struct FigureKey {
   Figure figure;
 };
 
-// A foot is lifted, carried to another place and put down; in between it stands still.
+// A foot is lifted, moved to another place and put down. Between steps it stands still.
 struct Footstep {
   int side = 0;
   double from = 0, to = 0;  // [s]
   Vec3 place = Vec3::Zero();
   double yaw = 0;
   double lift = 0.05;              // [m]
-  double toe_off = 0, strike = 0;  // how far the heel is up as it leaves, and the toes as it comes down
+  double toe_off = 0, strike = 0;  // lift of the heel as it leaves, and of the toes as it comes down
 };
 
-// Both feet in the air: the body flies a parabola.
+// Both feet are in the air: the body moves along a parabola.
 struct Flight {
   double from = 0, to = 0;  // [s]
 };
 
-// A foot swings up, on top of its step.
+// A foot swings up, in addition to its step.
 struct Swing {
   int side = 0;
   double from = 0, to = 0;  // [s]
@@ -44,15 +44,16 @@ struct Movement {
   std::vector<Flight> flights;
 };
 
-// A ramp max(t, 0) averaged three times over `width` [s]: three times differentiable, itself from 1.5 widths on.
+// A ramp max(t, 0) averaged three times over `width` [s]: three times differentiable, and equal to the ramp from 1.5
+// widths on.
 double smooth_ramp(double t, double width);
 
-// Linear between keys, averaged three times over `width`: no overshoot, and holds stay holds.
+// Linear between keys, averaged three times over `width`: without overshoot, and constant parts stay constant.
 double smooth_between(const std::vector<double>& times, const std::vector<double>& values, double width, double t);
 Figure figure_at(const Movement&, double time);
 std::array<FootPose, 2> feet_at(const Movement&, double time);
 
-// At 30 frames a second.
+// The poses of a movement, at 30 frames per second.
 std::vector<BodyPose> performed(const Movement&, const Skeleton&);
 
 }  // namespace selvedge

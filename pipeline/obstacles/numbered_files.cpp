@@ -11,11 +11,11 @@
 namespace selvedge {
 namespace {
 
-constexpr int most_named = 5;  // ranges of missing numbers
+constexpr int most_named = 5;  // ranges of missing numbers in a warning
 
-// A path about its number.
+// A path, split at its number.
 struct NumberPattern {
-  std::string before, after;  // the place of the number
+  std::string before, after;  // the digits of the number
   std::size_t width = 0;
   char fill = ' ';
 
@@ -41,7 +41,7 @@ NumberPattern read_pattern(const Config& pattern) {
   return read;
 }
 
-// The numbers of the files that there are: those of which the entry with the number is in its folder.
+// The numbers of existing files, from the entries of the folder.
 std::set<int> numbers_there(const Config& at, const NumberPattern& pattern, const std::filesystem::path& folder) {
   const std::size_t slash = pattern.before.rfind('/');
   const std::string above = slash == std::string::npos ? "." : pattern.before.substr(0, slash + 1),

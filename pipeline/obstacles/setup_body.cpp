@@ -29,7 +29,7 @@
 namespace selvedge {
 namespace {
 
-constexpr double gltf_frames = 60;  // a second, by which a scene counts them: these files have none
+constexpr double gltf_frames = 60;  // frames per second in scenes: glTF files have none
 
 bool is_gltf(const std::filesystem::path& name) { return name.extension() == ".glb" || name.extension() == ".gltf"; }
 
@@ -42,7 +42,7 @@ BodyModel read_model(const Config& model, const std::filesystem::path& folder) {
   model.fail("is neither `mannequin` nor a .npz, .h5, .glb or .gltf file", "convert the body as docs/bodies.md says");
 }
 
-// What clips are made for: the body in SMPL's zero pose.
+// The body in SMPL's zero pose, for which clips are made.
 struct Measures {
   Points joints;     // 24 x 3
   double floor = 0;  // y of the soles
@@ -89,7 +89,7 @@ Clip read_clip(const Config& section, const Measures& who, const std::filesystem
   return make_clip(clip.text(), who.joints, who.floor);
 }
 
-// An animation of the body's own skeleton, as it is.
+// An animation of the body's own skeleton, unchanged.
 Clip own_animation(const Config& section, const Performance& who, const std::filesystem::path& folder,
                    std::vector<std::string>& warnings) {
   const Config &clip = section["clip"], &animation = section["animation"];
@@ -110,7 +110,7 @@ void begin_later(const Config& first_frame, double fps, Clip& clip) {
   clip.poses.erase(clip.poses.begin(), clip.poses.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
-// Goes on where the clip ends: backward to its first pose, forward again, and so on.
+// Extends the clip: backward to its first pose, forward again, and so on.
 void turn_round(int turns, Clip& clip) {
   const std::size_t once = clip.poses.size();
   clip.poses.reserve(once + static_cast<std::size_t>(turns) * (once - 1));
@@ -118,8 +118,8 @@ void turn_round(int turns, Clip& clip) {
     for (std::size_t k = 1; k < once; ++k) clip.poses.push_back(clip.poses[turn % 2 == 0 ? once - 1 - k : k]);
 }
 
-// The clip by the body's own joints, from its own zero pose. A start with the arms down comes before the body's own
-// zero pose is accounted for, since it is said in SMPL's; the zero pose that cloth was fitted to is the body's own.
+// The clip for the body's own joints, from its own zero pose. A start with arms down is added before the conversion,
+// since it refers to SMPL's zero pose; a start in the zero pose to which cloth was fitted is added after it.
 Clip performed(const Config& section, const Performance& who, const std::filesystem::path& folder,
                std::vector<std::string>& warnings) {
   const double seconds = section["blend_in"].number();
@@ -243,7 +243,7 @@ BodyPose pose_at(const Performance& who, double time) {
 }
 
 const PosedBody& posed_at(const Performance& who, double time) {
-  constexpr std::size_t most = 4;  // moments that a step asks for
+  constexpr std::size_t most = 4;  // times that a step needs
   std::map<double, PosedBody>& at = who.known->at;
   if (const auto found = at.find(time); found != at.end()) return found->second;
   if (!who.known->keeps_all && at.size() >= most) at.clear();

@@ -20,17 +20,17 @@ struct Draping {
   bool operator==(const Draping&) const = default;
 };
 
-// The surface of a body before it is placed in the scene: skinned, and with deformed soft tissue [m].
+// The surface of a body before it is placed in the scene: skinned, and with its soft tissue given way [m].
 struct PosedBody {
   Points skinned, given;
 };
 
-// Poses of one performance by time. They are kept because soft tissue takes long, and the obstacle and all garments
+// A cache of posed surfaces of one performance by time, since soft tissue takes long, and the obstacle and all garments
 // need the same times.
 struct PosedBodies {
   std::map<double, PosedBody> at;
-  bool keeps_all = false;  // false: only the last poses are kept
-  double skin_at = 0;      // the moment of:
+  bool keeps_all = false;  // false: keeps only the last poses
+  double skin_at = 0;      // time of `skin` [s]
   std::optional<PosedSkin> skin;
 };
 
@@ -39,29 +39,29 @@ struct Performance {
   std::string name;  // the obstacle's
   BodyModel body;
   Surface surface;          // of its skin, welded (welded_surface.hpp)
-  std::vector<int> joined;  // of each vertex the one that stands for it in `surface`; empty: none is joined
+  std::vector<int> joined;  // of each vertex the one that stands for it in `surface`; empty: none joined
   Eigen::VectorXd shape;
-  Eigen::VectorXd said;                        // the shape that its section gives; empty: none
-  Clip clip;                                   // without poses: it stands in the zero pose
-  std::shared_ptr<const GiveWay> soft_tissue;  // null: it passes through itself
-  bool fits_room = false;                      // between its parts to what it wears
-  int garments = 0;                            // that it wears
-  Config section;                              // the obstacle's: how it is placed
-  Motion motion;                               // of what is placed
-  Clip before;                                 // up to time 0, where the scene's time begins before it
-  double begins = 0;                           // when it does [s]
-  std::shared_ptr<PosedBodies> known = std::make_shared<PosedBodies>();  // where it was asked for, by time
-  std::vector<std::string> warnings = {};                                // of what its files do not say, or say twice
+  Eigen::VectorXd said;                        // the shape from its section; empty: none
+  Clip clip;                                   // no poses: it stands in the zero pose
+  std::shared_ptr<const GiveWay> soft_tissue;  // null: the body may pass through itself
+  bool fits_room = false;                      // the room between its parts follows from its garments
+  int garments = 0;                            // number of garments that it wears
+  Config section;                              // the obstacle's section, with its placement
+  Motion motion;                               // of the placed body
+  Clip before;                                 // the motion up to time 0, if the scene begins earlier
+  double begins = 0;                           // time at which the scene begins [s]
+  std::shared_ptr<PosedBodies> known = std::make_shared<PosedBodies>();  // cache
+  std::vector<std::string> warnings = {};  // about information that files lack or contradict
 };
 
-// The bodies of a scene's obstacles, one an obstacle, null for what is none. `folder` is the scene file's.
+// The bodies of a scene's obstacles: one per obstacle, null if it is no body. `folder` is the scene file's.
 using Performances = std::vector<std::shared_ptr<Performance>>;
 Performances read_performances(const Config& obstacles, const std::filesystem::path& folder);
 
-// A `body` section by itself: model, shape and clip.
+// Reads a `body` section: model, shape and clip.
 Performance read_performance(const Config& body, const std::filesystem::path& folder);
-// The same in two parts: the model, which stands in its zero pose, and what it does: shape, clip and room, in place of
-// what it did before.
+// The same in two parts: read_figure reads the model, in its zero pose; perform reads shape, clip and room and replaces
+// the old ones.
 Performance read_figure(const Config& body, const std::filesystem::path& folder);
 void perform(const Config& body, const std::filesystem::path& folder, Performance&);
 
@@ -75,21 +75,21 @@ void come_from(const Points& rotations, double begins, double seconds, Performan
 
 BodyPose pose_at(const Performance&, double time);
 
-// The body at a time before it is placed. The performance keeps it.
+// The body at a time [s], before it is placed. Cached in the performance.
 const PosedBody& posed_at(const Performance&, double time);
 
-// The skin with deformed soft tissue before it is placed. The last one is kept.
+// The skin after soft tissue gave way, before it is placed. The last one is cached.
 const PosedSkin& skin_at(const Performance&, double time);
 
-// The body where the scene has it at a time [s], with its soft tissue deformed if it has any.
+// The body as placed in the scene at a time [s], with its soft tissue if it has any.
 Points body_at(const Performance&, double time);
 
-// Scaled, turned and moved as the body is.
+// Positions scaled, turned and moved as the body is at a time [s].
 Points in_scene(const Performance&, const Points&, double time);
 
 bool is_still(const Performance&);
 
-// The obstacle that a body is.
+// The obstacle for a body.
 ObstaclePart obstacle_of(const std::shared_ptr<const Performance>&);
 
 }  // namespace selvedge

@@ -11,7 +11,7 @@
 namespace selvedge {
 namespace {
 
-constexpr double smallest = 0.01;  // diagonal of what is taken for a cloth or a body [m]
+constexpr double smallest = 0.01;  // least diagonal of a cloth or a body [m]
 
 }  // namespace
 

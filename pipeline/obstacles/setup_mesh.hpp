@@ -7,15 +7,15 @@
 
 namespace selvedge {
 
-// The mesh that a `mesh` section names, in metres, welded where it says so. `folder` is the scene file's.
+// The mesh that a `mesh` section names, in metres, welded if the section asks for it. `folder` is the scene file's.
 Mesh read_mesh_section(const Config& section, const std::filesystem::path& folder);
 
 // Throws Error, naming the vertex and where it is, for a position that is not finite or farther from the origin than
-// bounds.hpp allows. `at` is what the positions were read by, `noun` what they are of.
+// bounds.hpp allows. `at`: the value from which they were read; `noun`: what has these positions.
 void refuse_far(const Config& at, const std::string& noun, const Points& x);
 
-// A warning where something read from a file, as placed, is larger than `largest` or smaller than a centimetre: files
-// have units of their own. `at` is the section with the key `unit`.
+// Adds a warning if a mesh from a file, as placed, is larger than `largest` or smaller than a centimetre, since files
+// have units of their own. `at`: the section with the key `unit`.
 inline constexpr double largest_cloth = 10, largest_obstacle = 50;  // diagonals of boxes [m]
 void warn_of_extent(const Config& at, const std::string& noun, double largest, const Points& x,
                     std::vector<std::string>& warnings);

@@ -5,7 +5,7 @@
 
 namespace selvedge {
 
-// A `motion` section, absent: at rest. `x` are the points that move; the middle of their box is the default centre.
+// Reads a `motion` section; absent: at rest. `x`: the moving points; the middle of their box is the default centre.
 Motion read_motion(const Config& section, const Points& x);
 
 Interpolation read_interpolation(const Config&);
@@ -13,7 +13,7 @@ Interpolation read_interpolation(const Config&);
 // Throws Error unless the items' `time` ascends.
 void check_ascending_times(const Config& keyframes);
 
-// scale, rotate and translate of a cloth or obstacle.
+// Applies the keys scale, rotate and translate of a cloth or obstacle.
 Points placed(const Config& section, const Points& x);
 
 // Length of a file's unit [m]: a `unit` value.

@@ -13,19 +13,19 @@ namespace selvedge {
 
 struct ObstaclePart {
   Obstacle obstacle;
-  std::function<Points(double time)> at;            // positions wanted at a time [s]
-  std::function<BodyFrame(double time)> body = {};  // empty: it is no body
-  std::optional<double> ends = {};                  // when its file's motion does [s]; empty: there is none
+  std::function<Points(double time)> at;            // wanted positions at a time [s]
+  std::function<BodyFrame(double time)> body = {};  // empty: not a body
+  std::optional<double> ends = {};                  // end of its file's motion [s]; absent: no motion
 };
 
-// The name given, or that of its place in the list.
+// The name in the section, or one made of its index.
 std::string obstacle_name(const Config& section, std::size_t index);
 
-// An obstacle that is no skinned body (setup_body.hpp). `folder` is the scene file's; warnings are added.
+// Reads an obstacle that is not a skinned body (setup_body.hpp). `folder` is the scene file's. Adds warnings.
 ObstaclePart read_obstacle(const Config& section, std::size_t index, const std::filesystem::path& folder,
                            std::vector<std::string>& warnings);
 
-// Vertex positions of a body that changes shape, the same faces in all frames.
+// Vertex positions of a deforming mesh with the same faces in all frames.
 struct Sequence {
   std::vector<Points> frames;
   Triangles triangles;
@@ -33,11 +33,11 @@ struct Sequence {
 };
 Points sequence_at(const Sequence&, double time);  // linear between frames, held at both ends
 
-// A `sequence` section; throws Error naming the file whose faces differ from the first one's. What files do not say of
-// their times, and numbers that are missing among them, are warned of.
+// Reads a `sequence` section. Throws Error, naming the file, if its faces differ from the first one's. Warns of missing
+// times and missing numbers of files.
 Sequence read_sequence(const Config& section, const std::filesystem::path& folder, std::vector<std::string>& warnings);
 
-// A `trajectory` section: a cloth or an obstacle of an earlier run. Frames of rejected steps are left out.
+// Reads a `trajectory` section: a cloth or an obstacle of an earlier run. Leaves out frames of rejected steps.
 Sequence read_recorded(const Config& section, const std::filesystem::path& folder, std::vector<std::string>& warnings);
 
 }  // namespace selvedge

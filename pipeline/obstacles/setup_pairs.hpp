@@ -8,8 +8,9 @@
 
 namespace selvedge {
 
-// Vertices in pairs, as the key `pair` of a section with `from` and `to` asks: one by one, or each of `from` with the
-// nearest of `to` in x, the first one on a tie. Throws Error where the sides do not fit together.
+// Pairs of vertices, by the key `pair` of a section with `from` and `to`: one by one in order, or each of `from` with
+// the nearest of `to` in x (the first on a tie). Throws Error if sides in order differ in number, or a vertex is paired
+// with itself.
 std::vector<std::array<int, 2>> read_pairs(const Config& section, std::span<const int> from, std::span<const int> to,
                                            const Points& x);
 

@@ -44,7 +44,7 @@ fs::path files_folder(const Config& scene, const fs::path& file) {
 
 namespace {
 
-// Whether another user may have put files there.
+// Whether other users may put files into the folder.
 bool is_shared(const fs::path& folder) {
   struct stat found = {};
   if (::stat(folder.c_str(), &found) != 0) return false;

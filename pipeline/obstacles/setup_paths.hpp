@@ -8,22 +8,23 @@
 
 namespace selvedge {
 
-// The folder `configs` of the program: share/selvedge/configs beside an installed program, configs beside an installed
-// Python extension, else the source's.
+// The folder `configs` of the program: share/selvedge/configs for an installed program, configs beside an installed
+// Python extension, else that of the source.
 std::filesystem::path config_folder();
 
-// Where what a scene names is looked for, in this order: the scene file's folder, the one above it, the program's
-// configs.
+// The folders in which files that a scene names are searched, in order: the scene file's, the one above it, the
+// program's configs.
 std::vector<std::filesystem::path> config_folders(const std::filesystem::path& folder);
 
-// `name` in the first of these that has it, or else in the last.
+// The path of `name` in the first of these folders that has it, or else in the last.
 std::filesystem::path config_near(const std::filesystem::path& folder, const std::string& name);
 
-// Where what is made once is kept: selvedge in XDG_CACHE_HOME, else in the user's .cache. Empty where the environment
-// has neither, and where another user may write there: nothing is kept then, for others could put files there.
+// The folder of caches: selvedge in XDG_CACHE_HOME, else in the user's .cache. Empty if the environment has neither, or
+// if other users may write there and could put files into it; nothing is cached then.
 std::filesystem::path cache_folder();
 
-// Where the relative paths of a scene file begin: its `folder`, or its own. Throws Error where that is not there.
+// The folder to which paths in a scene file are relative: its `folder`, or that of the file. Throws Error if it does
+// not exist.
 std::filesystem::path files_folder(const Config& scene, const std::filesystem::path& file);
 
 // `text` with ${NAME} replaced by the environment's value (SELVEDGE_DATA has the default ../shared/data beside the

@@ -18,7 +18,7 @@
 namespace selvedge {
 namespace {
 
-// The rate that the scene gives, or that the files have; where neither does, a warning says what is assumed.
+// The rate from the scene, or else from the files; if both lack it, a warning says what is assumed.
 double rate_of(const Config& section, double own, std::size_t count, std::vector<std::string>& warnings) {
   const Config& fps = section["fps"];
   if (!fps.given && own > 0) return own;
@@ -30,7 +30,7 @@ double rate_of(const Config& section, double own, std::size_t count, std::vector
   return fps.number();
 }
 
-// Lets it begin where the scene says, or says where the files let it.
+// Sets the begin from the scene, or warns where the files begin.
 void set_begin(const Config& section, SampleTimes& times, std::vector<std::string>& warnings) {
   if (section["start"].given)
     begin_at(section["start"].number(), times);
@@ -38,11 +38,11 @@ void set_begin(const Config& section, SampleTimes& times, std::vector<std::strin
     warn_of_begin(section.where + ": the sequence", "`start: 0 s` lets it begin at once", times, warnings);
 }
 
-// When the samples of a cache are. A rate of the scene takes the place of the file's.
+// The times of a cache's samples. A rate in the scene replaces the file's.
 SampleTimes cache_times(const Config& section, const PointCache& cache, std::vector<std::string>& warnings) {
   const double rate = rate_of(section, cache.fps, cache.at.size(), warnings);
   SampleTimes times{cache.at, rate};
-  const double differs = std::abs(rate / cache.fps - 1);  // of a file without a rate: endless
+  const double differs = std::abs(rate / cache.fps - 1);  // infinite for a file without a rate
   if (section["fps"].given && cache.fps > 0 && differs > 1e-3) {
     times = steady(cache.at.size(), rate);
     warnings.push_back(fmt::format("{}: `fps` is {:g}, and the times of the file, {:.4g} s in {} frames, are not used",
@@ -53,7 +53,7 @@ SampleTimes cache_times(const Config& section, const PointCache& cache, std::vec
   return times;
 }
 
-// What a sequence of files is called, for people.
+// The name of a sequence of files for messages.
 std::string sequence_name(const Config& section) {
   return section["pattern"].given ? section["pattern"].text() : section["files"].words.front();
 }
@@ -79,7 +79,7 @@ Sequence cached_sequence(const Config& section, const std::filesystem::path& fol
   return {std::move(cache.frames), mesh.triangles, std::move(times)};
 }
 
-// The files of a sequence and when they are: a number of a pattern is a frame, counted from the first one.
+// The files of a sequence and their times: numbers of a pattern are frames, counted from the first one.
 std::vector<std::filesystem::path> sequence_files(const Config& section, const std::filesystem::path& folder,
                                                   SampleTimes& times, std::vector<std::string>& warnings) {
   std::vector<std::filesystem::path> files;

@@ -22,7 +22,7 @@ struct FlipMesh {
   int fixed = 0;
   bool may_make_chords = true;  // edges inside that join two points of the outline
 
-  // Triangles of the polygon alone.
+  // corners: triangles of the polygon, without inner points.
   FlipMesh(const std::vector<Vec2>& outline, const std::vector<std::array<int, 3>>& corners);
 
   bool is_sound() const;         // every triangle is counter-clockwise
@@ -31,19 +31,19 @@ struct FlipMesh {
   // Flips edges until each is locally Delaunay (Lawson 1977).
   void make_delaunay();
 
-  // A new point, in the triangle that holds it, then flips. Nothing happens where it lies outside or on an edge.
+  // Inserts a point into its triangle, then flips edges. Does nothing if the point is outside or on an edge.
   void insert(const Vec2&);
 
   bool is_chord(int triangle, int k) const;            // an edge inside that joins two points of the outline
-  double angle_if_flipped(int triangle, int k) const;  // smallest one of the two triangles [rad]; 0: cannot be
+  double angle_if_flipped(int triangle, int k) const;  // smallest angle of the two triangles [rad]; 0: not possible
   void flip(int triangle, int k);                      // must be possible
-  void cut(int triangle, int k);                       // in the middle, with both triangles at the edge
+  void cut(int triangle, int k);                       // splits the edge, and both of its triangles, at the middle
 
   std::vector<std::vector<int>> triangles_round_vertices() const;
 
  private:
   int find(const Vec2&) const;
-  int edge_to(int triangle, int other) const;  // which edge of a triangle the other one is beyond
+  int edge_to(int triangle, int other) const;  // the edge of a triangle that it shares with another
   void rejoin(int triangle, int k);            // updates the neighbour across edge k
   bool wants_flip(int triangle, int k) const;
   void settle(std::vector<int> fan);

@@ -6,8 +6,8 @@
 
 namespace selvedge {
 
-// Finds the loop of every panel. Throws Error, naming `file`, panel and edge, for places that are absurdly far, edges
-// without length, arcs that do not reach, loops that do not close or cross themselves, and edges that two stitches sew.
+// Finds the loop of every panel. Throws Error, naming `file`, panel and edge, for absurdly distant places, edges
+// without length, arcs with too small a radius, loops that do not close or cross themselves, and edges in two stitches.
 void check_pattern(Pattern&, const std::string& file);
 
 }  // namespace selvedge

@@ -6,8 +6,8 @@ namespace selvedge {
 namespace {
 
 constexpr int trial_frames = 3, most_kept_frames = 48;
-// Of the time with one beside. Less is no reason to have all threads step: where other programs use the cores, they
-// wait for each other at every loop, and one beside waits once a frame.
+// All threads step only if this takes less than this part of the time with one beside. Where other programs use the
+// cores, stepping threads wait for each other at every loop, but one beside waits once per frame.
 constexpr double faster = 0.95;
 
 }  // namespace

@@ -30,7 +30,7 @@ bool FramesAhead::asks_to_stop() {
 
 std::optional<MadeFrame> FramesAhead::next() {
   std::optional<MadeFrame> judged;
-  const StopScope scope(asked_);  // drives and audits that this thread makes end, too
+  const StopScope scope(asked_);  // also ends drives and audits on this thread
   try {
     for (bool goes_on = true; goes_on && !judged;) {
       Stopwatch watch;
@@ -46,7 +46,7 @@ std::optional<MadeFrame> FramesAhead::next() {
   return judged;
 }
 
-// Takes a step, or ends the wait of the frame that waits, or both. False: there is none left to take.
+// Takes a step, or judges the waiting frame, or both. False if all steps are taken.
 bool FramesAhead::advance(std::optional<MadeFrame>& judged) {
   if (waiting_ && waiting_->report.status != StepStatus::accepted) {
     judged = std::exchange(waiting_, std::nullopt);
@@ -67,12 +67,12 @@ bool FramesAhead::advance(std::optional<MadeFrame>& judged) {
   }
   MadeFrame made = step_beside(from);
   judged = std::exchange(waiting_, std::nullopt);
-  if (judged && !judged->state.clean) {  // the step is void, and its drive is needed again
+  if (judged && !judged->state.clean) {  // the step is discarded, and its drive is needed again
     coming_ = std::move(made.drive);
     trouble_ = nullptr;
   } else if (judged || state_.clean) {
     waiting_ = std::move(made);
-    waiting_->state.clean = true;  // as long as nobody knows better
+    waiting_->state.clean = true;  // assumed until its audit
   } else {
     judge(made);
     judged = std::move(made);
@@ -86,7 +86,7 @@ void FramesAhead::judge(MadeFrame& made) {
   made.seconds += watch.lap();
 }
 
-// The drive that was made ahead, or one made now.
+// The drive that was made ahead, or else makes it now.
 Drive FramesAhead::coming_drive(double time) {
   if (trouble_) std::rethrow_exception(std::exchange(trouble_, nullptr));
   if (!coming_) return drive_at_(time);
@@ -111,8 +111,8 @@ MadeFrame FramesAhead::make_alone() {
   return made;
 }
 
-// Judges the frame that waits, and makes the drive of the frame after the one that is being stepped. The step beside
-// starts from the state that is judged, so this changes nothing of that state.
+// Judges the waiting frame, and makes the drive of the frame after the one being stepped. The step beside starts from
+// the state that is judged, so that this must not change the state.
 FramesAhead::Beside FramesAhead::work_beside(std::optional<double> time_after) {
   Beside done;
   if (waiting_) done.clean = judge_frame(audits_, state_, waiting_->drive, waiting_->state, waiting_->report);
@@ -124,13 +124,13 @@ FramesAhead::Beside FramesAhead::work_beside(std::optional<double> time_after) {
   return done;
 }
 
-// Takes a step with fewer threads, while another one audits and drives. The phase `audit` of the frame that waits then
-// has the time that was waited for its audits.
+// Takes a step with one thread less, while that thread audits and makes the drive. The phase `audit` of the waiting
+// frame is then the time spent waiting for its audits.
 MadeFrame FramesAhead::step_beside(const State& from) {
   Stopwatch watch;
   Drive drive = coming_drive(from.time + dt_);
   const double waited = watch.lap(), audited = waiting_ ? waiting_->report.seconds.audit : 0;
-  restore_standard_arithmetic();  // on all threads: the step begins with fewer
+  restore_standard_arithmetic();  // on all threads, as the step begins with fewer
   std::atomic<bool> ended = false;
   std::future<Beside> beside = std::async(std::launch::async, [&, last = from.frame + 1 >= frames_] {
     restore_standard_arithmetic();
@@ -144,7 +144,7 @@ MadeFrame FramesAhead::step_beside(const State& from) {
   MadeFrame made;
   {
     const ThreadLimit limit(threads_ - 1);
-    made = take_step(from, std::move(drive), waited, [&] {  // asked again and again: what is left is for all threads
+    made = take_step(from, std::move(drive), waited, [&] {  // asked often: once the rest is done, uses all threads
       if (ended) use_threads(threads_);
       return asks_to_stop();
     });

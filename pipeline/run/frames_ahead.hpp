@@ -11,30 +11,31 @@
 namespace selvedge {
 
 struct MadeFrame {
-  State state;  // junk if the step was rejected
+  State state;  // not to be used if the step was rejected
   Drive drive;
   StepReport report;
-  double seconds = 0;  // by the clock: of its step, and of waiting for its drive and its audits
+  double seconds = 0;  // wall-clock time of its step, and of waiting for its drive and its audits
 };
 
 // Makes the frames of a run one after the other, as make_frame does. Where there are two threads or more, and where it
 // is faster (arrangement.hpp), one of them audits the last frame and makes the drive of the next one beside a step.
-// That step takes the last frame for clean. If it is not, the step is thrown away and taken again. No frame is handed
-// out before its verdict. Frames have the same bits on any number of threads.
+// That step assumes that the last frame is clean. If it is not, the step is discarded and taken again. No frame is
+// returned before its verdict. Frames have the same bits on any number of threads.
 class FramesAhead {
  public:
-  // Up to frame `frames`. `state`: the last one that was handed out, or where the run begins; the caller keeps it so.
-  // `drive_at` is called by one thread at a time, and only while `next` runs.
+  // Makes frames up to number `frames`. `state`: the start of the run; the caller must update it to the last frame that
+  // `next` returned. `drive_at` is called by one thread at a time, and only while `next` runs.
   FramesAhead(const Scene&, Stepper&, const std::function<Drive(double time)>& drive_at, double dt, int frames,
               const State& state, const StopFlag& stop);
-  // Absent: all frames are made. A frame that `stop` ended is rejected as `stopped`. Throws what `drive_at` throws.
+  // The next frame; absent if all frames are made. A frame that `stop` ended is rejected as `stopped`. Throws what
+  // `drive_at` throws.
   std::optional<MadeFrame> next();
 
  private:
-  // What the thread beside a step has done.
+  // Results of the thread beside a step.
   struct Beside {
-    bool clean = false;          // the frame that waited
-    std::optional<Drive> drive;  // of the frame after the one that was stepped
+    bool clean = false;          // verdict of the waiting frame
+    std::optional<Drive> drive;  // of the frame after the one being stepped
     std::exception_ptr trouble;  // what `drive_at` threw; null: nothing
   };
   bool asks_to_stop();
@@ -52,7 +53,7 @@ class FramesAhead {
   int frames_;
   const State& state_;
   const StopFlag& stop_;
-  std::atomic<bool> stopping_ = false;  // whether `stop_` has said true; the thread beside reads it
+  std::atomic<bool> stopping_ = false;  // whether `stop_` was true; the thread beside reads it
   StopFlag asked_;
   FrameAudits audits_;
   int threads_;

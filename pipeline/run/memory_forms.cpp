@@ -10,15 +10,15 @@
 namespace selvedge {
 namespace {
 
-// How a stepper's block looks in every state.
+// The form of a stepper's block, the same in every state.
 struct MemoryForm {
   std::string_view name;
   RowsOf rows_of = RowsOf::none;
   int columns = 3;
   bool positions = false;
   int rows = 1;        // of RowsOf::none
-  double most = 1e6;   // no value is farther from 0
-  bool whole = false;  // all values are whole numbers from 0
+  double most = 1e6;   // largest absolute value
+  bool whole = false;  // all values are integers >= 0
 };
 
 constexpr std::array known_forms{
@@ -40,7 +40,7 @@ constexpr std::array known_forms{
     MemoryForm{.name = "learned.previous", .rows_of = RowsOf::vertices, .positions = true},
     MemoryForm{.name = "learned.body_previous", .rows_of = RowsOf::obstacle_vertices, .positions = true}};
 
-// That of a block of a stepper which others have added.
+// The form of a block of another program's stepper.
 MemoryForm form_of(const MemoryBlock& block) {
   return {block.name,
           block.rows_of,
@@ -70,7 +70,7 @@ Eigen::Index rows_in(const Scene& scene, const MemoryForm& form) {
   return form.rows;
 }
 
-// A value that no block of this form has; nothing where there is none.
+// A value that is not allowed in this form; nothing if all are allowed.
 std::optional<double> wrong_value(const MemoryRows& rows, const MemoryForm& form) {
   for (const double value : rows.reshaped<Eigen::RowMajor>())
     if (!(std::abs(value) <= form.most) || (form.whole && (value < 0 || value != std::floor(value)))) return value;

@@ -40,7 +40,7 @@ void compare_edges(const Scene& scene, double trained, std::vector<std::string>&
                       cloth.name, 1e3 * here, 1e3 * trained));
 }
 
-// Of a network that does not see it. All of them were trained with that of the earth.
+// Compares gravity for networks that do not take it as input: all were trained with that of the earth.
 void compare_gravity(const Setup& setup, std::vector<std::string>& sentences) {
   const Vec3 here = setup.drive_at(0).acceleration, trained = {0, -9.81, 0};
   if ((here - trained).norm() > 1e-3 * trained.norm())

@@ -8,13 +8,14 @@
 
 namespace selvedge {
 
-// A sentence for every quantity of every cloth that is far from training: of a material over three times as large or
-// under a third, of the edges' mean length one and a half times. Networks do not extrapolate: too stiff a cloth slides
-// off the body, and one with edges of half the length stretches to a multiple.
+// A sentence for every quantity of every cloth that is far from training: a material's number by a factor of more than
+// three, the mean edge length by more than one and a half. Networks do not extrapolate: too stiff a cloth slides off
+// the body, and one with edges of half the length stretches to a multiple.
 std::vector<std::string> unlike_training(const Scene&, const TrainedWith&);
 
-// The same for a scene whose stepper runs a network, and what else makes its frames wrong: gravity that it does not
-// see, numbers of its own that are not finite. Empty for all other scenes. Reads the weight file; throws its errors.
+// The same for a scene whose stepper runs a network, with other causes of wrong frames: gravity that the network does
+// not take as input, and weights that are not finite. Empty for all other scenes. Reads the weight file and throws its
+// errors.
 std::vector<std::string> network_warnings(const Setup&);
 
 }  // namespace selvedge

@@ -7,11 +7,12 @@
 
 namespace selvedge {
 
-// Frames a second and time left: one line that is rewritten on a terminal, a plain line now and then elsewhere.
+// Shows frames per second and the time left: one line that is rewritten on a terminal, a plain line now and then
+// elsewhere.
 class Progress {
  public:
   Progress(std::ostream& stream, bool terminal);
-  void begin(int done, int frames, const std::string& what = "frame");  // `done` of them were there before
+  void begin(int done, int frames, const std::string& what = "frame");  // `done` of them existed before
   void frame(int index);
   void end();
 

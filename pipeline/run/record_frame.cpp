@@ -35,7 +35,7 @@ Frame record_frame(const Scene& scene, const EnergyTerms& terms, const FrameEven
   record_audit(event.report.audit ? *event.report.audit : audit_uncut(scene, event.state), frame);
   frame.report.seconds.audit += seconds_since(before_audit);
   auto stretches = principal_stretches(scene, x);
-  // What is cut out is stretched by nothing: it follows the body.
+  // Cut-out triangles follow the body; their stretches do not count.
   for (const int t : event.state.cut_out) stretches.row(t).setOnes();
   if (stretches.rows() > 0) {
     frame.min_stretch = stretches.col(0).minCoeff();

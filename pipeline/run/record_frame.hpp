@@ -6,9 +6,8 @@
 
 namespace selvedge {
 
-// What a trajectory keeps of a frame. Positions are rounded to float first; the audit, the stretches and the energies
-// are those of the rounded positions, because these are what a reader gets.
-// A frame that has its audit is not audited again.
+// The data of a frame for a trajectory. Positions are rounded to float first; audit, stretches and energies are those
+// of the rounded positions, which a reader gets. A frame that has its audit is not audited again.
 Frame record_frame(const Scene&, const EnergyTerms&, const FrameEvent&);
 
 // Frame 0: the state before any step.

@@ -48,7 +48,7 @@ void check_moment(const std::filesystem::path& file, const State& state, const R
         fmt::format("is {:g} s, frame {} of the scene is at {:g} s", state.time, state.frame, state.frame / run.fps));
 }
 
-// What is out of the simulation was so from the start.
+// Triangles that are cut out must have been cut out at the start.
 void check_cut_out(const std::filesystem::path& file, const State& state, const State& initial) {
   if (!std::ranges::includes(initial.cut_out, state.cut_out))
     refuse(file, "cut_out",
@@ -61,7 +61,7 @@ bool same_matrix(const Matrix& a, const Matrix& b) {
   return a.rows() == b.rows() && a == b;
 }
 
-// Constants of a trajectory against those of the scene.
+// Compares constants of a trajectory with those of the scene.
 struct TrajectoryCheck {
   const std::filesystem::path& file;
 
@@ -99,7 +99,7 @@ struct TrajectoryCheck {
   }
 };
 
-// The checkpoint was written when the trajectory had the same state as its last frame.
+// The checkpoint's state must be that of the trajectory's frame with its number.
 void check_last_frame(const std::filesystem::path& file, const TrajectoryReader& reader, const State& state) {
   if (reader.frame_count() <= state.frame)
     refuse(file, "frames_complete",

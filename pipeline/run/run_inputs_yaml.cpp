@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// All texts of a tree.
+// Adds all texts in a tree.
 void add_texts(const YAML::Node& node, std::vector<std::string>& texts) {
   if (node.IsScalar()) texts.push_back(node.Scalar());
   if (node.IsSequence())
@@ -25,7 +25,7 @@ void add_texts(const YAML::Node& node, std::vector<std::string>& texts) {
     for (const auto& pair : node) add_texts(pair.second, texts);
 }
 
-// The files of a folder whose names are `name` with digits, or blanks, in the place of its %d or %0Nd.
+// The files whose names are `name` with digits, or blanks, in place of its %d or %0Nd.
 std::vector<fs::path> numbered_files(const fs::path& name) {
   const std::string text = name.filename().string();
   const std::size_t begin = text.find('%'), end = text.find('d', begin);
@@ -43,7 +43,7 @@ std::vector<fs::path> numbered_files(const fs::path& name) {
   return files;
 }
 
-// The files that a .gltf file has its numbers in.
+// The buffer files of a .gltf file.
 std::vector<fs::path> gltf_buffers(const fs::path& file) {
   std::vector<fs::path> buffers;
   std::ifstream in(file);
@@ -55,7 +55,7 @@ std::vector<fs::path> gltf_buffers(const fs::path& file) {
   return buffers;
 }
 
-// What a value of the scene may name, whether or not it is there.
+// Paths that a value of the scene may name; they need not exist.
 std::vector<fs::path> named_files(const std::string& text, const fs::path& folder) {
   if (text.find('.') == std::string::npos || text.size() > 4096) return {};
   fs::path path;
@@ -102,7 +102,7 @@ struct ArraysHash {
   }
 };
 
-// No file of the scene tells of what code makes, or the program keeps in its cache.
+// Covers what code makes or the cache holds, which no file of the scene shows.
 std::uint64_t scene_hash(const Setup& setup) {
   ArraysHash all;
   all.matrix(setup.scene.rest);

@@ -5,13 +5,13 @@
 
 namespace selvedge {
 
-// What a run of the scene is made of: its configuration, a hash of each file that a value of it names (meshes, clips,
-// bodies, garments, caches, sequences, weights; of a .gltf file also those that it names), and a hash of what files and
-// code have made of them. Asks for the drive at time 0.
+// The inputs of a run: its configuration, a hash of each file that one of its values names (meshes, clips, bodies,
+// garments, caches, sequences, weights; for a .gltf file also those that it names), and a hash of the scene that files
+// and code made. Calls for the drive at time 0.
 RunInputs run_inputs(const Setup&);
 
-// The files that texts name, seen from the folder, each once with a hash of its bytes; of a .gltf file also those that
-// it names. Texts that name no file are left out.
+// The files that texts name, relative to the folder, each once with a hash of its bytes; for a .gltf file also those
+// that it names. Texts that name no file are left out.
 std::vector<InputFile> hashed_files(const std::vector<std::string>& texts, const std::filesystem::path& folder);
 
 }  // namespace selvedge

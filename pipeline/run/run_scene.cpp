@@ -77,7 +77,7 @@ struct Recorder {
   }
 };
 
-// Frames up to the checkpoint's, from the file that the interrupted run has left.
+// Copies frames up to the checkpoint's from the file of the interrupted run.
 void copy_frames(const ResumedRun& resumed, const std::filesystem::path& folder, Recorder& recorder) {
   try {
     for (int i = 0; i <= resumed.state.frame; ++i) {
@@ -90,7 +90,7 @@ void copy_frames(const ResumedRun& resumed, const std::filesystem::path& folder,
   }
 }
 
-// What an earlier run left must not pass for this one's if it fails.
+// Removes results of an earlier run, so that they are not taken for this run's if it fails.
 void remove_results(const RunRequest& request) {
   for (const char* name : {"summary.json", "run.xdmf", "view.html"}) std::filesystem::remove(request.out / name);
   if (request.resume) return;
@@ -104,7 +104,7 @@ void finish(RunSummary& summary, const StepReport& last, int frame) {
   summary.peak_memory = peak_memory();
 }
 
-// The configuration as the run's folder has it: paths go on from the scene's.
+// The configuration for the run's folder: its paths are relative to the scene's folder.
 std::string config_in(const std::filesystem::path& out, const Setup& setup) {
   if (setup.file.empty() || setup.config.starts_with("folder: ") ||
       setup.config.find("\nfolder: ") != std::string::npos)
@@ -132,7 +132,7 @@ RunSummary run_scene(const Setup& setup, Stepper& stepper, const RunRequest& req
   const RunInputs inputs = request.resume ? resumed.inputs : run_inputs(setup);
   write_file(request.out / "config.yaml", config_in(request.out, setup));
 
-  // A resumed run writes beside the old file until all that is kept of it has been copied.
+  // A resumed run writes to another file until all kept frames of the old one are copied.
   const std::filesystem::path first_file = request.resume ? request.out / "resumed.h5" : file;
   RunSummary summary = empty_summary(setup, stepper);
   const TrajectoryInfo info = trajectory_info(setup.scene, setup.config, stepper.traits().name, setup.run.fps);

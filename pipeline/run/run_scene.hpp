@@ -10,20 +10,20 @@
 namespace selvedge {
 
 struct RunRequest {
-  std::filesystem::path out;       // folder, made if it is not there
-  bool locked = false;             // whoever calls holds the folder (folder_lock.hpp); false: run_scene does
-  bool resume = false;             // go on from the checkpoint that an interrupted run left in `out`
+  std::filesystem::path out;       // folder, made if it does not exist
+  bool locked = false;             // the caller has locked the folder (folder_lock.hpp); false: run_scene does it
+  bool resume = false;             // continue from the checkpoint of an interrupted run in `out`
   double checkpoint_seconds = 30;  // between checkpoints
   Progress* progress = nullptr;
   std::function<bool()> stop;  // asked after every frame; true ends the run cleanly
   StopFlag interrupt;          // asked within steps: true ends the run at its last whole frame (before one: Stopped)
-  std::function<void(const FrameEvent&)> observe;  // shown every frame, outside the measured time
+  std::function<void(const FrameEvent&)> observe;  // called for every frame, outside the measured time
 };
 
-// Simulates a scene, prepared (prepare.hpp) unless it is resumed, into a folder: run.h5 (trajectory), run.xdmf,
-// summary.json, config.yaml (whose `folder` is the scene's), and checkpoint.h5 until the run has finished. A rejected
-// step is recorded as a frame with the last accepted positions and ends the run. Throws Error where files cannot be
-// written, there is nothing to resume, or another process is running into the folder.
+// Simulates a scene into a folder: run.h5 (trajectory), run.xdmf, summary.json, config.yaml (whose `folder` is the
+// scene's), and checkpoint.h5 until the run has finished. Unless it is resumed, the scene is prepared first
+// (prepare.hpp). A rejected step is recorded as a frame with the last accepted positions and ends the run. Throws Error
+// if files cannot be written, there is nothing to resume, or another process is running into the folder.
 RunSummary run_scene(const Setup&, Stepper&, const RunRequest&);
 
 }  // namespace selvedge

@@ -17,7 +17,7 @@ StepReport simulate(const Scene& scene, Stepper& stepper, const std::function<Dr
     if (last.reason == Reason::stopped) break;
     const bool accepted = last.status == StepStatus::accepted;
     if (accepted) std::swap(state, made->state);
-    const StopScope whole(nobody);  // what the sink begins with a frame, it ends
+    const StopScope whole(nobody);  // the sink's work on a frame is never interrupted
     if (!sink({state, made->drive, last, made->seconds}) || !accepted) break;
   }
   return last;

@@ -40,7 +40,7 @@ std::vector<std::pair<std::string, double>> phases_in_milliseconds(const RunSumm
   return phases;
 }
 
-// The verdicts that there were, each with its frames.
+// The verdicts that occurred, each with its number of frames.
 std::vector<std::pair<std::string, int>> verdict_counts(const RunSummary& s) {
   std::vector<std::pair<std::string, int>> counts;
   const std::vector<int>& frames = total_of(s.fields, "verdict").by_word;
@@ -69,7 +69,7 @@ nlohmann::ordered_json switched_off_json(const RunSummary& s) {
   return all;
 }
 
-// What contact left alone and what budgets ended, a label and a sentence each.
+// Labels and sentences about cloth that contact left alone, and budgets that ran out.
 std::vector<std::pair<const char*, std::string>> label_lines(const RunSummary& s) {
   std::vector<std::pair<const char*, std::string>> lines;
   for (const RunSummary::SwitchedOff& one : s.switched_off)
@@ -115,7 +115,7 @@ nlohmann::ordered_json total_json(const BoundField<StepReport>& field, const Fie
   return number_or_null(value);
 }
 
-// What the table of fields (report_fields.cpp) wants of them.
+// Adds the totals that the table of fields (report_fields.cpp) asks for.
 void put_totals(const RunSummary& s, nlohmann::ordered_json& json) {
   for (std::size_t k = 0; k < report_fields().size(); ++k)
     for (const InSummary& one : report_fields()[k].in_summary)
@@ -259,7 +259,7 @@ std::string summary_text(const RunSummary& s) {
   const auto sum = [&](std::string_view field) { return static_cast<long>(total_of(s.fields, field).sum); };
   const auto largest = [&](std::string_view field) { return total_of(s.fields, field).largest; };
   const auto contacts = static_cast<long>(largest("contacts"));
-  if (contacts > 0 || sum("impulses") > 0 || sum("zones") > 0)  // a network looks for none
+  if (contacts > 0 || sum("impulses") > 0 || sum("zones") > 0)  // networks do not look for contacts
     add("contacts", fmt::format("{} at most; {} impulses, {} zones", contacts, sum("impulses"), sum("zones")));
   if (sum("halved_substeps") > 0) add("substeps halved", std::to_string(sum("halved_substeps")));
   if (sum("held_vertices") > 0)

@@ -17,12 +17,12 @@ struct Cutter {
   const Border& border;
   std::span<const Border> earlier;
   std::vector<Vec3> x;
-  std::vector<double> side;  // value of each vertex, zero where it was moved onto the border
+  std::vector<double> side;  // value of each vertex, 0 if it was moved onto the border
   std::map<std::pair<int, int>, int> crossings;
   std::vector<std::array<int, 3>> triangles;
 };
 
-// Onto the border, and onto the earlier ones that both ends lie in.
+// Moves p onto the border, and onto the earlier borders on which both a and b lie.
 Vec3 onto_all(const Cutter& cutter, const Vec3& a, const Vec3& b, Vec3 p) {
   constexpr double rounding = 1e-7;
   constexpr int most = 20;  // two borders that cross at a right angle need few
@@ -58,7 +58,7 @@ void cut(Cutter& cutter, const std::array<int, 3>& corners) {
   for (std::size_t k = 2; k < kept.size(); ++k) cutter.triangles.push_back({kept[0], kept[k - 1], kept[k]});
 }
 
-// Without the vertices that no triangle has.
+// A shape without unused vertices.
 Shape packed(const std::vector<Vec3>& x, std::vector<std::array<int, 3>> triangles) {
   std::vector<int> number(x.size(), -1);
   int count = 0;
@@ -87,7 +87,7 @@ Shape clipped(const Shape& shape, const Border& border, std::span<const Border> 
   }
   for (const auto& t : shape.triangles.rowwise()) {
     const std::array<int, 3> corners{t[0], t[1], t[2]};
-    bool any_inside = false;  // one whose corners are all on the border or beyond has no part inside
+    bool any_inside = false;  // a triangle with all corners on the border or beyond has no part inside
     for (const int v : corners) any_inside = any_inside || cutter.side[static_cast<std::size_t>(v)] < 0;
     if (any_inside) cut(cutter, corners);
   }

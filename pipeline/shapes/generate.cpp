@@ -33,7 +33,7 @@ bool cut_from_a(Triangulation triangulation, int i, int j) {
   return triangulation != Triangulation::alternating || (i + j) % 2 == 0;
 }
 
-// Rows of equal length, cut quad by quad; the last column joins the first where the rows are closed.
+// Rows of equal length, cut quad by quad; if `closed` the last column is joined to the first.
 TriangleList structured(int columns, int rows, bool closed, Triangulation triangulation) {
   TriangleList triangles;
   for (int j = 0; j + 1 < rows; ++j)
@@ -116,7 +116,7 @@ std::vector<Row> straight_rows(const Vec2& size, int columns, int rows) {
 
 int ring_begin(int ring) { return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1); }
 
-// Six sectors a ring; a sector of ring k has k vertices, and the strip between two rings is k quads and one triangle.
+// Six sectors per ring; a sector of ring k has k vertices, and the strip between two rings is k quads and one triangle.
 TriangleList disc_triangles(int rings, Triangulation triangulation) {
   TriangleList triangles;
   const auto vertex = [](int ring, int i) { return ring == 0 ? 0 : ring_begin(ring) + i % (6 * ring); };
@@ -186,7 +186,7 @@ Mesh make_rectangle(const Vec2& size, int columns, int rows, const SheetOptions&
 }
 
 void grade_rectangle(Mesh& mesh, const Vec2& size, int columns, int rows, const Vec2& grading) {
-  // Of n spacings the k-th is q^k times the first, q^(n - 1) = grading; between vertices the same law goes on.
+  // Of n spacings the k-th is q^k times the first, q^(n - 1) = grading; the same law holds between vertices.
   const auto graded = [](double u, int n, double ratio) {
     if (n < 2 || ratio == 1) return u;
     const double q = std::log(ratio) / (n - 1);

@@ -9,7 +9,7 @@
 namespace selvedge {
 namespace {
 
-constexpr int steps_a_piece = 64;  // of the polyline that stands for the smooth line between two points
+constexpr int steps_a_piece = 64;  // of the polyline between two points of the smooth line
 
 // The smooth line as a polyline with its length so far.
 struct Polyline {

@@ -36,7 +36,7 @@ Flat lattice(const Vec2& cell, double angle, int n, Triangulation triangulation)
   return flat;
 }
 
-// Keeps the part where normal . p >= offset: near vertices are moved onto the line first, what still crosses is cut.
+// Keeps the part with normal . p >= offset: moves near vertices onto the line, then cuts triangles that still cross it.
 void keep_side(Flat& flat, const Vec2& normal, double offset, double near) {
   std::vector<double> height(flat.uv.size());
   for (std::size_t v = 0; v < flat.uv.size(); ++v) {
@@ -68,7 +68,7 @@ void keep_side(Flat& flat, const Vec2& normal, double offset, double near) {
   flat.triangles = std::move(kept);
 }
 
-// Leaves out vertices that no triangle uses, and joins those that a corner has gathered in one place.
+// Removes unused vertices, and joins vertices that were moved to the same corner.
 void compact(Flat& flat, double edge) {
   std::map<std::pair<long, long>, int> places;
   std::vector<Vec2> used;
@@ -97,7 +97,8 @@ std::vector<int> column(const Points2& uv, double u, double rounding) {
   return found;
 }
 
-// A row of elements beside a column of vertices, on the side that `move` says; returns the new vertices.
+// Adds a row of elements beside a column of vertices, on the side given by the sign of `move`; returns the new
+// vertices.
 std::vector<int> extrude(Mesh& mesh, const std::vector<int>& line, double move) {
   const int first = static_cast<int>(mesh.uv.rows()), count = static_cast<int>(line.size());
   mesh.uv.conservativeResize(first + count, 2);
@@ -138,7 +139,7 @@ Mesh cut_out(const StripShape& shape, double edge) {
   return mesh;
 }
 
-// The farthest that an edge of a unit cell spans along or across the strip.
+// The largest extent of an edge of a unit cell along or across the strip.
 double widest_span(double angle) {
   const double c = std::abs(std::cos(angle)), s = std::abs(std::sin(angle));
   return c + s;  // of a diagonal; legs span max(c, s)

@@ -54,7 +54,7 @@ double seam_distance(const Grid& grid, int i, int j) {
 
 Mesh make_tshirt(const TshirtShape& shape) {
   assert(shape.edge > 0 && shape.depth > 0);
-  constexpr double slope = 0.35;  // of front and back where they part at a seam
+  constexpr double slope = 0.35;  // of front and back beside a seam
   const Grid grid = grid_of(shape);
   std::map<std::array<int, 3>, int> index;  // column, row and side of a corner; seams have side 0
   std::vector<Vec3> x;

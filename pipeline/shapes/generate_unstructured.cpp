@@ -8,7 +8,7 @@
 namespace selvedge {
 namespace {
 
-// Vector from one vertex to another, the short way round where the first coordinate wraps.
+// Vector from one vertex to another, the shorter one if the first coordinate wraps.
 Vec2 across(const Points2& uv, int from, int to, double period) {
   Vec2 d = (uv.row(to) - uv.row(from)).transpose();
   if (period > 0) d.x() -= period * std::round(d.x() / period);
@@ -50,12 +50,12 @@ void shake(Points2& uv, const Triangles& triangles, const std::vector<bool>& fix
   }
 }
 
-// Moves every free vertex part of the way to the mean of its neighbours: opens the smallest angles.
+// Moves every free vertex part of the way to the mean of its neighbours, which opens the smallest angles.
 void smooth(Points2& uv, const Triangles& triangles, const std::vector<bool>& fixed, double part, double period) {
   const Surface surface = make_surface(static_cast<int>(uv.rows()), triangles);
   for (int v = 0; v < uv.rows(); ++v) {
     if (fixed[static_cast<std::size_t>(v)]) continue;
-    Eigen::RowVector2d sum = Eigen::RowVector2d::Zero();  // each neighbour comes twice round an inner vertex
+    Eigen::RowVector2d sum = Eigen::RowVector2d::Zero();  // each neighbour of an inner vertex counts twice
     for (const int t : surface.triangles_of(v))
       for (int k = 0; k < 3; ++k) sum += across(uv, v, triangles(t, k), period).transpose();
     const double count = 2 * static_cast<double>(surface.triangles_of(v).size());
@@ -74,7 +74,7 @@ double cotangent(const Points2& uv, int at, int a, int b, double period) {
   return u.dot(v) / std::abs(cross(u, v));
 }
 
-// One sweep over the edges; a triangle takes part in one flip a sweep. Returns the number of flips.
+// One sweep over the edges; a triangle takes part in at most one flip. Returns the number of flips.
 int flip_sweep(const Points2& uv, Triangles& triangles, double period) {
   const Surface surface = make_surface(static_cast<int>(uv.rows()), triangles);
   std::vector<bool> done(static_cast<std::size_t>(triangles.rows()), false);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::array columns{&LoftSection::u_low, &LoftSection::u_high, &LoftSection::v_low, &LoftSection::v_high};
 
-// Ellipses, blended: the p-norm of scaled coordinates less 1, over the length of its gradient.
+// The p-norm of scaled coordinates minus 1, divided by the length of its gradient.
 double scaled_norm_value(const Vec3& q, const Vec3& radii, double exponent) {
   const Vec3 s = q.cwiseQuotient(radii).cwiseAbs();
   const double norm = exponent == 2 ? s.norm() : std::pow(s.array().pow(exponent).sum(), 1 / exponent);
@@ -87,7 +87,7 @@ Bounds bounds(const Cone& cone) {
   return box.merged(Bounds(cone.to.array() - cone.to_radius, cone.to.array() + cone.to_radius));
 }
 
-// Values are at most the distance; what is farther than the blend, with room for how much less they are, adds nothing.
+// Values are at most the distance. Parts farther than the blend, with a margin for that, are skipped.
 double value(const Limb& limb, const Vec3& p) {
   constexpr double nothing = 1e3, room = 0.02;
   double all = nothing;

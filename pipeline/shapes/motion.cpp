@@ -6,7 +6,7 @@
 namespace selvedge {
 namespace {
 
-constexpr double opposite = 1e-12;  // directions whose cosine is nearer to -1 have no axis of their own
+constexpr double opposite = 1e-12;  // directions whose cosine is nearer to -1 have no defined axis
 
 // A unit vector perpendicular to both, which may be parallel.
 Vec3 perpendicular(const Vec3& a, const Vec3& b) {
@@ -20,8 +20,8 @@ double between(const std::vector<double>& times, const std::vector<Vec3>& values
   return (values[k + 1][axis] - values[k][axis]) / (times[k + 1] - times[k]);
 }
 
-// Slope at key k that keeps every piece monotone: the weighted harmonic mean of the neighbouring secants where they
-// agree in sign, else zero.
+// Slope at key k that keeps every piece monotone: the weighted harmonic mean of the neighbouring secants if they agree
+// in sign, else zero.
 double slope(const std::vector<double>& times, const std::vector<Vec3>& values, std::size_t k, int axis) {
   if (k == 0 || k + 1 == times.size()) return 0;
   const double before = between(times, values, k - 1, axis), after = between(times, values, k, axis);
@@ -75,7 +75,7 @@ Mat3 rotation_matrix(const Vec3& rotation_vector) {
 }
 
 Vec3 rotation_vector(const Mat3& rotation) {
-  const Eigen::AngleAxisd turn(rotation);  // by way of a quaternion: exact near 0 and pi
+  const Eigen::AngleAxisd turn(rotation);  // through a quaternion: exact near 0 and pi
   return turn.angle() * turn.axis();
 }
 

@@ -11,11 +11,11 @@
 namespace selvedge {
 namespace {
 
-// What there is to say of the shells of one mesh.
+// Findings about the shells of one mesh.
 struct Findings {
   int shells = 0, triangles = 0;
   int over = 0, over_triangles = 0;  // shells that were turned whole
-  int mixed = 0, odd = 0;            // shells of mixed orientation, triangles of the lesser part
+  int mixed = 0, odd = 0;            // shells of mixed orientation, triangles of the smaller part
   int cavities = 0;
   int open = 0, open_edges = 0;
   int branching = 0, branching_edges = 0;
@@ -67,7 +67,7 @@ void turn_outward(const std::string& name, const NamedVertices& groups, std::spa
   OutwardFaces outward = face_outward(triangles, frames, places);
   triangles = std::move(outward.triangles);
   std::vector<int> group_of(static_cast<std::size_t>(frames.empty() ? 0 : frames[0].rows()), -1);
-  for (std::size_t g = groups.size(); g-- > 0;)  // the first that names a vertex
+  for (std::size_t g = groups.size(); g-- > 0;)  // the first group with a vertex counts
     for (const int v : groups[g].second) group_of[static_cast<std::size_t>(v)] = static_cast<int>(g);
   std::map<int, Findings> by_group;
   for (const Shell& shell : outward.shells) add(shell, by_group[group_of[static_cast<std::size_t>(shell.vertex)]]);

@@ -25,7 +25,7 @@ OwnCrossings own_crossings(const NamedVertices& meshes, const Points& x, const T
   const std::optional<WeldedSurface> welded = welded_surface(surface, places);
   const Surface& whole = welded ? welded->surface : surface;
   std::vector<int> mesh_of(static_cast<std::size_t>(x.rows()), -1);
-  for (std::size_t m = meshes.size(); m-- > 0;)  // the first that names a vertex
+  for (std::size_t m = meshes.size(); m-- > 0;)  // the first mesh with a vertex counts
     for (const int v : meshes[m].second) mesh_of[static_cast<std::size_t>(v)] = static_cast<int>(m);
   const auto mesh = [&](int triangle) { return mesh_of[static_cast<std::size_t>(whole.triangles(triangle, 0))]; };
   OwnCrossings found;

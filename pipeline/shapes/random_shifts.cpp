@@ -3,7 +3,7 @@
 namespace selvedge {
 namespace {
 
-// The generator of Steele, Lea and Flood 2014 (SplitMix): the same numbers everywhere.
+// The generator of Steele, Lea and Flood 2014 (SplitMix): the same numbers on every machine.
 double uniform(std::uint64_t& state) {  // in [-1, 1)
   state += 0x9e3779b97f4a7c15u;
   std::uint64_t z = state;

@@ -13,14 +13,14 @@
 namespace selvedge {
 namespace {
 
-// A mesh whose triangles may be marked as gone (corner -1) until it is packed.
+// A mesh whose triangles may be marked as removed (corner -1) until it is packed.
 struct Work {
   std::vector<Vec3> x;
   std::vector<std::array<int, 3>> triangles;
   Surface surface;
   std::vector<char> boundary;          // of each vertex
-  const std::vector<Border>& borders;  // that the boundary lies in
-  std::vector<std::uint32_t> lies_in;  // of each boundary vertex, a bit a border
+  const std::vector<Border>& borders;  // in which the boundary lies
+  std::vector<std::uint32_t> lies_in;  // of each boundary vertex, one bit per border
 
   const Vec3& at(int vertex) const { return x[static_cast<std::size_t>(vertex)]; }
   std::array<int, 3>& triangle(int t) { return triangles[static_cast<std::size_t>(t)]; }
@@ -41,7 +41,7 @@ Vec3 normal(const Work& work, const std::array<int, 3>& t) {
   return (work.at(t[1]) - work.at(t[0])).cross(work.at(t[2]) - work.at(t[0]));
 }
 
-// Which borders a boundary vertex lies in: those it is in but for rounding, or else the nearest.
+// The borders of a boundary vertex: those on which it is up to rounding, or else the nearest.
 std::uint32_t borders_at(const Work& work, const Vec3& x) {
   constexpr double rounding = 1e-7;
   std::uint32_t bits = 0;
@@ -60,7 +60,7 @@ Vec3 onto_borders(const Work& work, std::uint32_t bits, Vec3 x) {
   return x;
 }
 
-// In the borders that both ends lie in, where the edge is the boundary's.
+// The middle of an edge; for a boundary edge moved onto the borders of both ends.
 Vec3 middle_on_borders(const Work& work, int edge) {
   const std::uint32_t common = work.is_boundary(edge) ? work.borders_of(work.surface.edges(edge, 0)) &
                                                             work.borders_of(work.surface.edges(edge, 1))
@@ -68,7 +68,7 @@ Vec3 middle_on_borders(const Work& work, int edge) {
   return onto_borders(work, common, work.middle(edge));
 }
 
-// Drops triangles marked as gone and vertices without triangles, and finds the topology anew.
+// Removes marked triangles and vertices without triangles, and makes the topology anew.
 void pack(Work& work) {
   std::erase_if(work.triangles, [](const auto& t) { return t[0] < 0; });
   std::vector<int> number(work.x.size(), -1);
@@ -120,7 +120,7 @@ double relative_length(const Work& work, const RemeshTarget& target, int edge) {
   return work.length(edge) / target.edge(work.middle(edge));
 }
 
-// Each round splits edges that share no triangle; so do the rounds of the other passes with their neighbourhoods.
+// Each round splits edges that share no triangle. Rounds of other passes also work on separate neighbourhoods.
 bool split_round(Work& work, const RemeshTarget& target, double longest) {
   std::vector<char> used(work.triangles.size(), 0);
   const auto chosen = edges_below(work, -longest, [&](int e) { return -relative_length(work, target, e); });
@@ -160,8 +160,8 @@ bool may_move(const Work& work, const RemeshTarget& target, int vertex, int othe
   return true;
 }
 
-// A corner stays, unless it becomes one of the same borders: where these meet there is one corner, whatever a cut
-// across them has left there.
+// A corner must stay, unless it is joined to one of the same borders: there must be only one corner where borders meet,
+// though a cut may have left several.
 bool may_vanish(const Work& work, int gone, int kept) {
   return !work.is_corner(gone) || (work.borders_of(gone) & ~work.borders_of(kept)) == 0;
 }
@@ -217,8 +217,8 @@ double cosine_at(const Vec3& corner, const Vec3& a, const Vec3& b) {
   return (a - corner).dot(b - corner) / ((a - corner).norm() * (b - corner).norm());
 }
 
-// What a flip gains, below zero: in squared deviations from valence 6 (4 at the boundary), or in angles across the
-// edge that add up to more than a half turn.
+// The change by a flip; below zero is a gain: in squared deviations from valence 6 (4 at the boundary), or in cosines
+// of the opposite angles, whose sum is negative if they exceed pi together.
 double flip_gain(const Work& work, const std::vector<int>& valence, int e, bool by_angles) {
   const auto [s, t] = work.surface.edge_triangles[static_cast<std::size_t>(e)];
   if (t < 0) return 0;
@@ -267,8 +267,8 @@ bool flip_round(Work& work, bool by_angles) {
   return changed;
 }
 
-// Towards the mean of the neighbours, weighted by how large triangles are against what they should be there, and back
-// onto the surface.
+// Moves vertices toward the mean of their neighbours, weighted by the triangles' size relative to the wanted size, then
+// back onto the surface.
 void relax(Work& work, const RemeshTarget& target) {
   std::vector<Vec3> sum(work.x.size(), Vec3::Zero());
   std::vector<double> weight(work.x.size(), 0);
@@ -298,7 +298,7 @@ void relax(Work& work, const RemeshTarget& target) {
 
 Shape remeshed(Shape shape, const RemeshTarget& target, int rounds) {
   constexpr double longest = 4.0 / 3, shortest = 4.0 / 5;
-  constexpr int most = 30;  // rounds of one pass; what is left then waits for the next
+  constexpr int most = 30;  // rounds of one pass; the rest is left to the next pass
   Work work{{}, {}, {}, {}, target.borders, {}};
   for (int v = 0; v < shape.x.rows(); ++v) work.x.push_back(row(shape.x, v));
   for (Eigen::Index t = 0; t < shape.triangles.rows(); ++t)

@@ -9,7 +9,7 @@
 namespace selvedge {
 namespace {
 
-constexpr double rounding = 1e-6;  // of times in files, in frames
+constexpr double rounding = 1e-6;  // of times in files [frames]
 
 }  // namespace
 
@@ -52,7 +52,7 @@ void warn_of_begin(const std::string& noun, const std::string& cure, const Sampl
 
 void warn_of_end(const std::string& noun, double last, double fps, int frames, std::vector<std::string>& warnings) {
   const double frame = std::max(last, 0.0) * fps;
-  if (frame >= frames - 1 - rounding) return;  // the last sample stands for the frame that it begins
+  if (frame >= frames - 1 - rounding) return;  // the last sample covers its own frame
   warnings.push_back(fmt::format("{} ends at {:.4g} s: from frame {:.0f} of {} on it is held as it is then", noun, last,
                                  std::ceil(frame - rounding), frames));
 }

@@ -4,7 +4,7 @@
 
 namespace selvedge {
 
-// The page's own sources in pipeline/view, made part of the program by embed.cmake.
+// The page's own sources in pipeline/view; embed.cmake embeds them in the program.
 struct PageSources {
   std::string_view html, style, script;
 };

@@ -23,7 +23,7 @@ std::string_view bytes_of(std::span<const T> values) {
   return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
 }
 
-// base64 has no character that HTML gives a meaning to.
+// Writes base64, which has no character with a meaning in HTML.
 void append_array(std::string& html, const std::string& id, std::string_view bytes) {
   html += "<script type=\"text/plain\" id=\"" + id + "\">" + base64(bytes) + "</script>\n";
 }
@@ -32,7 +32,7 @@ void append_triangles(std::string& html, const std::string& id, const Triangles&
   append_array(html, id, bytes_of(std::span<const int>(triangles.data(), triangles.size())));
 }
 
-// The boxes and the arrays of one surface over the frames it is drawn at.
+// The boxes and arrays of one surface in the frames that are drawn.
 struct Track {
   json boxes = json::array();
   std::vector<std::uint16_t> values;
@@ -44,7 +44,7 @@ struct Track {
   }
 };
 
-// Everything that is plotted or written beside the picture, by the names of the fields; every frame, exact.
+// All values that are plotted or written beside the picture, by field name, for every frame.
 struct Series {
   json numbers = json::object();
 
@@ -128,7 +128,7 @@ json append_run(std::string& html, const ViewRun& run, const std::string& id, st
   return j;
 }
 
-// JSON inside a script element: the only way out of it begins with '<', which can be written as an escape.
+// JSON for a script element. Only '<' could end the element, so that it is escaped.
 std::string script_json(const json& j) {
   std::string text;
   for (const char c : j.dump(-1, ' ', true, json::error_handler_t::replace)) c == '<' ? text += "\\u003c" : text += c;

@@ -10,10 +10,10 @@
 
 namespace selvedge {
 
-// Positions on the 65,535 levels of their own bounding box: x = origin + step * level. Level 65535 says not finite.
+// Positions on the 65,535 levels of their own bounding box: x = origin + step * level. Level 65535 means not finite.
 struct QuantisedPoints {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero(), step = Eigen::Vector3d::Zero();
-  std::vector<std::uint16_t> levels;  // 3 a vertex
+  std::vector<std::uint16_t> levels;  // 3 per vertex
 };
 QuantisedPoints quantise(const PointsF& x);
 
@@ -23,10 +23,10 @@ std::vector<float> inverse_rest_metric(const std::vector<RestTriangle>& rest);
 
 std::string base64(std::string_view bytes);
 
-// Frames whose geometry is embedded: 0, k, 2k, ... and the last, k the smallest for which the text fits the limit.
+// Frames whose geometry is embedded: 0, k, 2k, ... and the last, with the smallest k for which the text fits the limit.
 std::vector<int> drawn_frames(int frame_count, std::size_t bytes_a_frame, std::size_t limit);
 
-// The page's data as script elements: per run its arrays in base64, then all numbers as one JSON object.
+// The page's data as script elements: for each run its arrays in base64, then all numbers as one JSON object.
 std::string view_data(const std::vector<ViewRun>& runs, std::size_t limit);
 
 }  // namespace selvedge

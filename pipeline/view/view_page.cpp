@@ -20,7 +20,7 @@ std::string read_package_file(const std::filesystem::path& file) {
   return text.str();
 }
 
-// Parts go where the template says {{name}}; what a part holds is not looked at again.
+// Replaces {{name}} in the template by the part with that name. Inserted text is not searched again.
 std::string fill(std::string_view page, const std::vector<std::pair<std::string_view, std::string_view>>& parts) {
   std::string html;
   for (std::size_t at = 0; at < page.size();) {
