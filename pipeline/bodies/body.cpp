@@ -10,9 +10,9 @@
 namespace selvedge {
 namespace {
 
-constexpr Eigen::Index chunk = 256;  // vertices: their blend shapes stay in the nearest cache
+constexpr Eigen::Index chunk = 256;  // vertices per task: their blend shapes fit in the L1 cache
 
-// The entries of R(joint) - 1 that the pose blend shapes go with: nine a joint but the root, row by row.
+// The coefficients of the pose blend shapes: the entries of R(joint) - 1, nine per joint except the root, row by row.
 Eigen::VectorXd pose_coefficients(const BodyPose& pose) {
   Eigen::VectorXd coefficients(9 * (pose.rotations.rows() - 1));
   for (int j = 1; j < pose.rotations.rows(); ++j) {
@@ -23,7 +23,7 @@ Eigen::VectorXd pose_coefficients(const BodyPose& pose) {
 }
 
 // Adds directions * coefficients to x for the vertices [begin, end). Column by column, so that an element's sum has the
-// same order wherever chunks begin; columns that do not count are not read.
+// same order for any chunks; columns with coefficient 0 are not read.
 void add_directions(const Eigen::MatrixXd& directions, const Eigen::VectorXd& coefficients, Eigen::Index begin,
                     Eigen::Index end, Points& x) {
   Eigen::Map<Eigen::VectorXd> flat(x.data() + 3 * begin, 3 * (end - begin));
@@ -54,7 +54,7 @@ void check_pose(Eigen::Index joints, const BodyPose& pose) {
     throw Error("is not finite", "pose", "repair the motion where it was made");
 }
 
-// The coefficients of the pose blend shapes, none where there are none.
+// The coefficients of the pose blend shapes; empty if the skin has none.
 Eigen::VectorXd checked_correction(const SkinnedSurface& skin, const BodyPose& pose,
                                    const JointTransforms& transforms) {
   const Eigen::Index joints = skin.weights.cols();
@@ -100,7 +100,7 @@ JointTransforms joint_transforms(const BodyModel& body, const Points& joints, co
                 "take them from joint_positions of the same body");
   JointTransforms transforms(count);
   for (std::size_t j = 0; j < count; ++j) {
-    // A turn about the joint where it is in the zero pose, then whatever the parent does.
+    // A rotation about the joint's place in the zero pose, then the parent's transform.
     const Vec3 center = row(joints, static_cast<int>(j));
     const Mat3 turn = rotation_matrix(row(pose.rotations, static_cast<int>(j)));
     auto& transform = transforms[j];
@@ -143,7 +143,7 @@ Points posed(const SkinnedSurface& skin, const Eigen::VectorXd& shape, const Bod
 
 Points unposed(const SkinnedSurface& skin, const Eigen::VectorXd& shape, const BodyPose& pose,
                const JointTransforms& transforms) {
-  constexpr double flat = 1e-3;  // volume that is left of 1
+  constexpr double flat = 1e-3;  // a determinant below this counts as collapsed
   check_shape(skin, shape);
   const Eigen::VectorXd correction = checked_correction(skin, pose, transforms);
   Points x = skin.rest;

@@ -7,7 +7,7 @@ namespace {
 
 const h5::FileForm form{"selvedge body 1", "body", "docs/bodies.md"};
 
-// Of each vertex the first mesh that has it.
+// Writes for each vertex the first mesh that has it.
 void write_meshes(const h5::File& file, const BodyModel& body) {
   std::vector<std::string> names;
   std::vector<int> mesh_of(static_cast<std::size_t>(body.skin.rest.rows()), -1);

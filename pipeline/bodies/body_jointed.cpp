@@ -41,7 +41,7 @@ const Section& file_section() {
   return table;
 }
 
-// Each joint's entry; a right one that is left out has the left one's.
+// A joint's entry; for a missing right joint that of the left one.
 const Config& entry_of(const Config& joints, const std::string& name) {
   const Config& own = joints[name];
   return own.given || !is_right(name) ? own : joints["left" + name.substr(5)];
@@ -72,8 +72,8 @@ void check_inside(const BodyModel& body, const Surface& surface, const Points& j
   }
 }
 
-// Of the surface with the seams of its file closed: vertices at one place go along with one joint, and heat spreads
-// over seams.
+// Computes weights on the surface with the seams of its file closed, so that vertices at one place follow the same
+// joint and heat spreads over seams.
 void set_weights(const Points& joints, const Config& given, BodyModel& body) {
   const auto n = static_cast<int>(body.skin.rest.rows());
   Surface surface = make_surface(n, body.skin.triangles);

@@ -21,9 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double most_torn = 0.01;  // of the edges; a renumbered base mesh has 0.05
+constexpr double most_torn = 0.01;  // of the edges may join vertices of distant joints; a renumbered base mesh has 0.05
 
-// The bones that a joint of SMPL is made of, where it begins; of joints in pairs those of a side.
+// The bones of a joint of SMPL, which is at the mean of their heads. For joints in pairs those of that side.
 std::vector<std::string> bones_of(const std::string& joint) {
   static const std::vector<std::pair<std::string, std::vector<std::string>>> table = {
       {"pelvis", {"root"}},
@@ -49,7 +49,8 @@ std::vector<std::string> bones_of(const std::string& joint) {
   return bones;
 }
 
-// The root's own head is behind the body; where the spine begins is the middle of the pelvis.
+// The bones whose heads give a joint's place. The root's own head is behind the body; the spine begins in the middle of
+// the pelvis.
 std::vector<std::string> places_of(const std::string& joint) {
   return joint == "pelvis" ? std::vector<std::string>{"spine05"} : bones_of(joint);
 }
@@ -110,8 +111,8 @@ bool near_in_tree(int a, int b) {
   return within_one(a, b) || (above(a) >= 0 && within_one(above(a), b)) || (above(b) >= 0 && within_one(a, above(b)));
 }
 
-// Neighbours on a body hang on joints that are neighbours too. Programs that leave the helpers out often number the
-// vertices anew, and the weights are then those of vertices somewhere else.
+// Throws Error if neighbours on the body follow joints that are not neighbours. Programs that leave out the helpers
+// often renumber vertices, and weights then belong to other vertices.
 void check_order(const Surface& surface, const SkinWeights& weights, const fs::path& mesh, const fs::path& file) {
   Eigen::Index torn = 0;
   for (const auto& edge : surface.edges.rowwise()) {
@@ -130,7 +131,7 @@ void check_order(const Surface& surface, const SkinWeights& weights, const fs::p
         mesh.string(), "give the base mesh that " + file.filename().string() + " was made for (base.obj)");
 }
 
-// Where the middles of the bones' reference vertices are; nothing if the mesh lacks one.
+// The mean of the reference vertices of the joint's bones; nothing if the mesh lacks one.
 std::optional<Vec3> reference(const Rig& rig, const std::string& joint, const Points& mesh) {
   Vec3 sum = Vec3::Zero();
   const std::vector<std::string> places = places_of(joint);

@@ -11,8 +11,8 @@ namespace selvedge {
 
 namespace {
 
-// Of each triangle whether it is taken: a group that has all of its corners is, or none has them and what is of no
-// group is. Groups are lists of vertices and may overlap.
+// 1 for each triangle that is taken: a chosen group has all of its corners, or no group has and triangles without group
+// are chosen. Groups are lists of vertices and may overlap.
 std::vector<char> taken_triangles(const Mesh& mesh, const NameChoice& choice) {
   const auto count = static_cast<std::size_t>(mesh.triangles.rows());
   std::vector<char> taken(count, 0), grouped(count, 0);
@@ -31,7 +31,7 @@ std::vector<char> taken_triangles(const Mesh& mesh, const NameChoice& choice) {
   return taken;
 }
 
-// Where no choice is made, the group `body` if there is one.
+// The choice, or without one the group `body` if it exists.
 NameChoice of_body(const std::vector<std::string>& names, const NameChoice& choice) {
   return !choice.any() && std::ranges::count(names, "body") > 0 ? NameChoice{{"body"}, {}} : choice;
 }

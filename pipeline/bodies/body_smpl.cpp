@@ -51,7 +51,8 @@ int index_of(std::int64_t value, Index count, const NpyPlace& place) {
   return static_cast<int>(value);
 }
 
-// Parents by column; the root's is -1, or the same in 32 bits without sign. The second row says which id a column has.
+// Reads parents by column; the root's is -1, possibly stored as unsigned 32 bits. The second row has the id of each
+// column.
 std::vector<int> read_parents(const Npz& npz) {
   const NpyPlace place = npz.place("kintree_table");
   const NpyArray<std::int64_t> table = integers(npz, "kintree_table", {2, any_extent});
@@ -79,14 +80,14 @@ Triangles read_triangles(const Npz& npz, Index vertices) {
   return triangles;
 }
 
-// n x 3 x columns of the file as 3n x `kept`.
+// Converts n x 3 x columns of the file to 3n x `kept`.
 Eigen::MatrixXd directions(const NpyArray<double>& array, Index kept) {
   const Index columns = array.shape[2];
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   return Eigen::Map<const RowMajor>(array.values.data(), 3 * array.shape[0], columns).leftCols(kept);
 }
 
-// How many columns of shapedirs are shapes: SMPL-X's have 10 or 100 columns of expressions behind them.
+// The number of columns of shapedirs that are shapes: in SMPL-X 10 or 100 columns of expressions follow them.
 Index shape_columns(Index columns, std::size_t joints) {
   if (joints != 55) return columns;
   return columns >= 400 ? 300 : std::min<Index>(columns, 10);
@@ -120,7 +121,7 @@ SkinWeights without_zeros(const NpyArray<double>& dense) {
   return from_entries(dense.shape[0], cols, entries);
 }
 
-// The parts that scipy calls data, indices and indptr, of rows (csr) or of columns (csc), as the length of indptr says.
+// Reads scipy's data, indices and indptr of a sparse matrix by rows (csr) or columns (csc), by the length of indptr.
 SkinWeights sparse_parts(const Npz& npz, const std::string& field, Index rows, Index cols) {
   const NpyArray<double> data = numbers(npz, field + "_data", {any_extent});
   const NpyArray<std::int64_t> indices = integers(npz, field + "_indices", {data.shape[0]});
@@ -150,7 +151,8 @@ SkinWeights read_regressor(const Npz& npz, Index joints, Index vertices) {
   return without_zeros(numbers(npz, "J_regressor", {joints, vertices}));
 }
 
-// Sums of float32 files differ from 1 in the seventh digit: enough for a body far from the origin to shake.
+// Scales rows to sum 1. In float32 files sums are off in the seventh digit, so that a body far from the origin would
+// shake.
 void scale_to_one(SkinWeights& weights) {
   for (Index v = 0; v < weights.rows(); ++v) {
     double sum = 0;

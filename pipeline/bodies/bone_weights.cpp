@@ -12,11 +12,11 @@
 namespace selvedge {
 namespace {
 
-constexpr double leaf_length = 0.5;  // of a bone without an end, of its parent's
-constexpr double same = 1 + 1e-6;    // distances that differ by less are equal: bones that end in one joint
+constexpr double leaf_length = 0.5;  // length of a bone without an end, relative to its parent's
+constexpr double same = 1 + 1e-6;    // distances within this ratio count as equal, as for bones that share a joint
 constexpr double least_weight = 1e-3;
-constexpr double least_cotangent = 1e-3;  // of an edge, so that heat spreads over bad triangles, too
-constexpr int at_once = 2000;             // lines of sight, for the memory of their pairs
+constexpr double least_cotangent = 1e-3;  // of an edge, so that heat spreads over bad triangles too
+constexpr int at_once = 2000;             // lines of sight per batch, to bound the memory for their pairs
 
 struct Bone {
   int joint;
@@ -54,7 +54,7 @@ bool crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const V
   return (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
 }
 
-// Of each line from a vertex to the nearest point of a bone: whether the surface crosses it.
+// Tests lines of sight from vertices to the nearest points of bones for crossings with the surface.
 class Hiding {
  public:
   Hiding(const Surface& surface, const Points& rest, const std::vector<Bone>& bones)
@@ -97,7 +97,7 @@ class Hiding {
   Bvh tree_;
 };
 
-// What warms a vertex: the joints of the nearest bones in sight, in equal parts, and how near they are.
+// The heat source of a vertex: the joints of the nearest visible bones, in equal parts, and their distance.
 struct Source {
   std::vector<int> joints;
   double distance = 0;
@@ -150,7 +150,8 @@ std::vector<Source> sources(const Surface& surface, const Points& rest, const st
   return found;
 }
 
-// Minus the Laplacian times the vertices' areas, which are a third of their triangles'.
+// Minus the cotangent Laplacian times the vertices' areas. Sets `areas`: a third of the area of the triangles round
+// each.
 Eigen::SparseMatrix<double> conduction(const Surface& surface, const Points& rest, Eigen::VectorXd& areas) {
   std::vector<Eigen::Triplet<double>> entries;
   areas = Eigen::VectorXd::Zero(surface.vertex_count);
@@ -178,7 +179,7 @@ SkinWeights bone_weights(const Surface& surface, const Points& rest, const Point
   const std::vector<Source> from = sources(surface, rest, bones_between(joints, parents));
   Eigen::VectorXd areas;
   Eigen::SparseMatrix<double> matrix = conduction(surface, rest, areas);
-  // Where vertices share a place or lie on a bone heat would be infinite; a tenth of their spacing is near enough.
+  // Heat would be infinite for vertices on a bone or at one place: distances are at least a tenth of the spacing.
   const auto spread = std::max<Eigen::Index>(1, (areas.array() > 0).count());
   const double spacing = std::sqrt(areas.sum() / static_cast<double>(spread));
   Eigen::MatrixXd heat = Eigen::MatrixXd::Zero(surface.vertex_count, joints.rows());

@@ -5,10 +5,10 @@
 namespace selvedge {
 namespace {
 
-constexpr double farthest_miss = 1e-4;  // of a joint from its place [m]
+constexpr double farthest_miss = 1e-4;  // largest distance of a joint from its place [m]
 
-// What a vertex has of a joint times what it has of the joint's parent, or of its children for the root: what bends
-// where the joint is.
+// For each vertex its weight for the joint times that for the joint's parent (for the root: its children). It is large
+// where the surface bends at the joint.
 Eigen::VectorXd bends_at(const Eigen::MatrixXd& weights, const std::vector<int>& parents, int joint) {
   Eigen::VectorXd others = Eigen::VectorXd::Zero(weights.rows());
   for (int other = 0; other < weights.cols(); ++other)

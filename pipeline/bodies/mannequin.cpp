@@ -38,7 +38,7 @@ BodyModel kept_mannequin(const std::filesystem::path& folder) {
     try {
       BodyModel body = read_body(file);
       if (body.name == mannequin_name()) return body;
-    } catch (const Error&) {  // a file of something else, or half of one: made anew below
+    } catch (const Error&) {  // another kind of file, or a damaged one: made anew below
     }
   }
   BodyModel body = make_mannequin();

@@ -8,7 +8,7 @@
 namespace selvedge {
 namespace {
 
-// Vertices that tell where a joint is: within `band` of it along a coordinate and within `reach` of it.
+// The vertices for a joint: within `band` of it along a coordinate, and within `reach` of it [m].
 struct Band {
   int axis;
   double band, reach;

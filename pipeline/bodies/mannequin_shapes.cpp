@@ -8,7 +8,7 @@
 namespace selvedge {
 namespace {
 
-// What the fields below know of a vertex at x >= 0: where it is, and how much of it belongs to which part.
+// Input of the fields below for a vertex at x >= 0: its place, and how much it belongs to each part.
 struct Place {
   Vec3 p;
   double head, arm, hand, leg, foot, trunk;  // parts of 1
@@ -25,7 +25,8 @@ double along(double value, double from, double to) {
   return rounded(t) - rounded(t - 1);
 }
 
-// From the limbs' axes outward. The thigh's runs near its inner side, so that thighs grow away from each other.
+// Vectors from the limbs' axes outward. The thigh's axis is near its inner side, so that thighs grow away from each
+// other.
 Vec3 from_arm_axis(const Vec3& p) { return {0, p.y() - 1.385, p.z() + 0.019}; }
 Vec3 from_leg_axis(const Vec3& p) {
   const double x = 0.134 - 0.016 * along(p.y(), 0.085, 0.475) - 0.080 * smooth_step(p.y(), 0.48, 0.74);

@@ -8,20 +8,20 @@
 namespace selvedge {
 namespace {
 
-// How much of what is at p moves with the joint instead of its parent, for joints in the middle and on the left; p may
-// lie on the right, where it is the other side's.
+// The share of a point p that follows the joint instead of its parent, for central and left joints. p may be on the
+// right, where the other side's joint takes its part.
 double share(const std::string& joint, const Vec3& at, const Vec3& p) {
   const Vec3 q = p - at;
   if (joint == "spine1") return smooth_step(q.y(), -0.07, 0.05);
   if (joint == "spine2") return smooth_step(q.y(), -0.06, 0.06);
   if (joint == "spine3") return smooth_step(q.y(), -0.05, 0.05);
-  if (joint == "neck") {  // the slopes towards the shoulders are the trunk's, however wide the head
+  if (joint == "neck") {  // the slopes toward the shoulders belong to the trunk
     const double width = std::abs(p.x()) - 2 * std::max(0.0, p.y() - 1.46);
     return smooth_step(q.y() + 0.3 * q.z(), -0.04, 0.04) * (1 - smooth_step(width, 0.07, 0.12));
   }
   if (joint == "head") return smooth_step(0.95 * q.y() + 0.3 * q.z(), -0.03, 0.03);
   if (joint == "left_hip") {
-    // The crease rises outward and to the front; between the legs left and right share what is close to the middle.
+    // The crease rises outward and to the front; between the legs both sides share the part near the middle.
     const double crease = at.y() - 0.015 + 0.25 * q.x() + 0.25 * q.z();
     const double middle = 0.001 + 0.03 * std::clamp((p.y() - 0.70) / 0.08, 0.0, 1.0);
     return smooth_step(crease - p.y(), -0.085, 0.085) * smooth_step(p.x(), -middle, middle);
@@ -32,7 +32,7 @@ double share(const std::string& joint, const Vec3& at, const Vec3& p) {
   if (joint == "left_collar")
     return smooth_step(p.x(), 0.02, 0.13) * smooth_step(p.y() + std::max(0.0, p.x() - 0.15), 1.25, 1.38) *
            (1 - smooth_step(p.y(), 1.44, 1.50));
-  if (joint == "left_shoulder") {  // the flank below the arm is the trunk's
+  if (joint == "left_shoulder") {  // the flank below the arm belongs to the trunk
     const double inner = 0.163 + 0.6 * std::max(0.0, 1.37 - p.y());
     return smooth_step(p.x(), inner - 0.07, inner + 0.07);
   }
@@ -43,7 +43,7 @@ double share(const std::string& joint, const Vec3& at, const Vec3& p) {
   return 1;
 }
 
-// The joint on the other side: left_knee for right_knee; joints in the middle are their own.
+// The joint on the other side: left_knee for right_knee; central joints map to themselves.
 std::vector<int> other_sides(const std::vector<MannequinJoint>& joints) {
   std::vector<int> other;
   for (const MannequinJoint& joint : joints) {
@@ -76,7 +76,7 @@ Eigen::RowVectorXd shares_of_tree(const std::vector<MannequinJoint>& joints, con
   return weights.cwiseMax(0) / weights.cwiseMax(0).sum();
 }
 
-// Half of a vertex's own weights and half of its neighbours'.
+// The mean of a vertex' own weights and the mean of its neighbours'.
 Eigen::MatrixXd averaged(const Surface& surface, const Eigen::MatrixXd& weights) {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(weights.rows(), weights.cols());
   Eigen::VectorXd count = Eigen::VectorXd::Zero(weights.rows());
@@ -88,7 +88,7 @@ Eigen::MatrixXd averaged(const Surface& surface, const Eigen::MatrixXd& weights)
   return 0.5 * weights + 0.5 * count.cwiseInverse().asDiagonal() * sum;
 }
 
-// The `most` largest weights and none that is next to nothing.
+// Keeps the `most` largest weights, without negligible ones.
 void thin_out(Eigen::Ref<Eigen::RowVectorXd> weights, int most) {
   std::vector<double> sorted(weights.begin(), weights.end());
   std::sort(sorted.begin(), sorted.end(), std::greater<>());

@@ -5,7 +5,7 @@
 namespace selvedge {
 namespace {
 
-constexpr double same_weight = 1e-6;  // and the same direction [m]: what differs by less moves alike
+constexpr double same_weight = 1e-6;  // also of directions [m]: vertices that differ by less move alike
 
 }  // namespace
 

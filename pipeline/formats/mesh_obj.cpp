@@ -230,8 +230,7 @@ Mesh parse_obj(std::string_view text, const std::string& name) {
 std::string moved_obj_text(std::string_view text, const Points& x) {
   std::string moved;
   Eigen::Index next = 0;
-  bool continues = false,
-       in_position = false;  // the line before ended in a backslash, and was a position
+  bool continues = false, in_position = false;  // the line before ended in a backslash, and was of a position
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, end);

@@ -5,13 +5,13 @@
 namespace selvedge {
 namespace {
 
-constexpr double first_part = 0.25, last_part = 0.5;  // of a gap: squeezed from the one, towards the other
-constexpr double near = 0.03, far = 0.06;             // of its foot: squeezed in full, and not at all [m]
-constexpr double beside = 0.01;                       // of the way out from the foot: as good as on it [m]
-constexpr double facing = -0.3;                       // cosine, at most, of its normal with the way out
+constexpr double first_part = 0.25, last_part = 0.5;  // of a gap: squeezed from the first on, toward the second
+constexpr double near = 0.03, far = 0.06;             // from the foot: squeezed in full, and no more [m]
+constexpr double beside = 0.01;                       // this near to the line out from the foot counts as on it [m]
+constexpr double facing = -0.3;                       // largest cosine of its normal with the direction out
 
-// How far it is from each foot, on its way out to x, to where another part of the body begins [m]; what that way would
-// pass by counts as farther by the distance. Endless where it is farther than squeezing asks for.
+// For each foot the distance along the line out to x at which another part of the body begins [m]. A part beside the
+// line counts as farther by its distance from it. Infinite if no part is near enough to matter.
 std::vector<double> gaps(const std::vector<int>& foot, const PosedSkin& body, const Points& x) {
   std::vector<double> gap(foot.size(), std::numeric_limits<double>::infinity());
 #pragma omp parallel for schedule(dynamic, 64) if (foot.size() > 256)
@@ -69,9 +69,9 @@ Points squeezed(const Footing& footing, const PosedSkin& body, const Points& x) 
   for (std::size_t v = 0; v < gap.size(); ++v) {
     const Vec3 foot = row(body.x, footing.foot[v]), way = row(x, static_cast<int>(v)) - foot;
     const double out = way.norm(), free = footing.part[v] * gap[v],
-                 left = last_part * gap[v] - free;  // none where it was so near at rest
+                 left = last_part * gap[v] - free;  // 0 or less if the part was as near at rest
     if (!(out > free)) continue;
-    // Smooth, rising, and never as much as the last part of the gap.
+    // Smooth and rising, but always below last_part of the gap.
     const double less = left > 0 ? free + left * (out - free) / (out - free + left) : free;
     const double share = std::clamp((far - out) / (far - near), 0.0, 1.0);
     to.row(static_cast<Eigen::Index>(v)) += share * (less / out - 1) * way.transpose();

@@ -9,7 +9,7 @@
 namespace selvedge {
 namespace {
 
-// What a garment vertex is made of: body vertices and their shares, which sum to 1.
+// The body vertices that a garment vertex follows, with their shares, which sum to 1.
 using Shares = std::vector<std::pair<int, double>>;
 
 // A third of the area of the triangles round each vertex [m2].
@@ -23,7 +23,7 @@ Eigen::VectorXd vertex_areas(const SkinnedSurface& skin) {
   return areas;
 }
 
-// width: of the Gaussian [m]; none: as wide as p is far from the body.
+// width: of the Gaussian [m]; absent: the distance of p from the body.
 Shares shares_of(const Vec3& p, const SkinnedSurface& body, const Eigen::VectorXd& areas, Fit fit,
                  std::optional<double> width = {}) {
   constexpr double reach = 3;  // standard deviations
@@ -53,7 +53,7 @@ std::vector<Shares> all_shares(const Points& x, const SkinnedSurface& body, Fit 
   return shares;
 }
 
-// Rows of `from`, 3 a vertex, in these shares.
+// Mixes rows of `from`, 3 per vertex, by these shares.
 void mix(const Eigen::MatrixXd& from, const std::vector<Shares>& shares, Eigen::MatrixXd& to) {
   const auto count = static_cast<Eigen::Index>(shares.size());
   to.setZero(3 * count, from.cols());
@@ -65,7 +65,7 @@ void mix(const Eigen::MatrixXd& from, const std::vector<Shares>& shares, Eigen::
 }
 
 SkinWeights mixed_weights(const SkinWeights& from, const std::vector<Shares>& shares) {
-  constexpr double least = 1e-4;  // what is less is left out
+  constexpr double least = 1e-4;  // smaller shares are left out
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t v = 0; v < shares.size(); ++v) {
     Eigen::VectorXd weights = Eigen::VectorXd::Zero(from.cols());

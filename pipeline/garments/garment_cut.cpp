@@ -24,13 +24,13 @@ Opening arms_beyond(const char* group, double reach) {
   Opening opening = beyond(group, reach);
   return {group, limited(opening.border, [](const Vec3& p) { return p.y() - armpit; }), true};
 }
-// All the way down the middle of the front.
+// An opening all the way down the middle of the front.
 Opening front() {
   constexpr double half_gap = 0.008;
   return {"front", limited(border(Plane(-Vec3::UnitX(), Vec3(half_gap, 0, 0))), [](const Vec3& p) { return p.z(); }),
           true};
 }
-// Round, as wide and deep as given, its middle so far in front of the neck and so far down.
+// A round opening of this half width and depth, its middle `forward` in front of the neck and `down` below it [m].
 Opening neck(double half_width, double depth, double forward, double down) {
   const Vec3 centre(0, 1.45 - down, -0.02 + forward), radii(half_width, 0.08 + down, depth);
   const auto widened = [centre, radii](double by) { return border_round(centre, radii + Vec3(by, 0, by)); };

@@ -5,8 +5,8 @@
 namespace selvedge {
 namespace {
 
-// The garment that is `x` on the body as it stands there: attached to the body's surface in that pose, then put into
-// the zero pose and shape.
+// The garment whose mesh lies on the posed body: attached to the body's surface in that pose, then moved to zero pose
+// and shape.
 SkinnedSurface attached_in(const Dressing& how, const Mesh& mesh, const BodyModel& body) {
   BodyModel there = body;
   there.skin.rest = how.pose.rotations.rows() == 0 ? shaped(body.skin, how.shape) : posed(body, how.shape, how.pose);

@@ -11,7 +11,7 @@ namespace {
 
 const h5::FileForm file_form{"selvedge garment 1", "garment", "docs/garments.md"};
 
-// Names, where each one's vertices begin in the list of all, and that list.
+// Writes names, where each group's vertices begin in one list, and that list.
 void write_groups(const h5::File& file, const Garment& garment) {
   std::vector<std::string> names;
   std::vector<int> begin{0}, all;
@@ -102,7 +102,7 @@ std::vector<RestTriangle> read_flat(const h5::Fields& fields) {
   return flat;
 }
 
-constexpr int most_joints = 100000;  // a damaged file may ask for more memory than there is
+constexpr int most_joints = 100000;  // a damaged file may claim more than fits in memory
 
 Eigen::Index read_joint_count(const h5::Fields& fields) {
   const std::vector<int> count = fields.integers("joint_count");

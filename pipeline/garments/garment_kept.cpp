@@ -18,7 +18,7 @@ Garment kept_garment(const std::filesystem::path& folder, const std::string& nam
     try {
       Garment garment = read_garment(file);
       if (garment.name == name && garment.made_for == mannequin.name) return garment;
-    } catch (const Error&) {  // a file of something else, or half of one: made anew below
+    } catch (const Error&) {  // another kind of file, or a damaged one: made anew below
     }
   }
   Garment garment = make_garment(name, mannequin, options, under);

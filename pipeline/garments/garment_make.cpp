@@ -42,7 +42,7 @@ double ease_at(const GarmentCut& cut, const Vec3& p) {
   return ease;
 }
 
-// About how far a point lies beyond the nearest opening, negative on the side that is kept [m].
+// The approximate distance of a point beyond the nearest opening, negative on the kept side [m].
 double beyond(const GarmentCut& cut, const Vec3& p) {
   const Vec3 q(std::abs(p.x()), p.y(), p.z());
   double farthest = -1;
@@ -50,8 +50,8 @@ double beyond(const GarmentCut& cut, const Vec3& p) {
   return farthest;
 }
 
-// A garment's surface is the zero level of `surface`; `solid` is what it encloses, for those worn over it, which get
-// narrower only slowly beyond its openings, so that they pass over its borders without a step.
+// A garment's surface is the zero level of `surface`. `solid` is the solid that it encloses, for garments over it;
+// beyond the openings it becomes narrower slowly, so that these pass over its borders without a step.
 struct Field {
   DistanceField surface, solid;
 };
@@ -59,7 +59,7 @@ struct Field {
 Field field_of(const GarmentCut& cut, const GarmentOptions& options, const std::vector<Field>& under) {
   std::vector<Limb> lofts;
   if (!cut.lofts.empty()) lofts.push_back({cut.lofts, 0.03});
-  // Arms are in the form at x > 0 alone.
+  // The form has arms only at x > 0.
   const Form form = mannequin_form(cut.limbs, std::move(lofts));
   const double more = sagitta(options.edge);
   const auto surface = [&cut, form, more, gap = options.gap, under](const Vec3& p) {
@@ -75,7 +75,7 @@ Field field_of(const GarmentCut& cut, const GarmentOptions& options, const std::
   return {surface, solid};
 }
 
-// Of the half at x >= 0, with a boundary where the openings are.
+// The half at x >= 0, with boundaries at the openings.
 Shape half_of(const GarmentCut& cut, const Field& field, double edge) {
   constexpr int rounds = 6;
   const double grid = std::min(0.8 * edge, 0.015);
@@ -135,7 +135,7 @@ Garment make_garment(const std::string& name, const BodyModel& mannequin, const 
                      std::span<const std::string> under) {
   if (!(options.edge >= 0.005 && options.edge <= 0.05))
     throw Error(fmt::format("is {} m", options.edge), "edge of a garment", "allowed: 0.005 to 0.05 m");
-  // Over others the neck of the body is thicker, and so is the opening.
+  // Over other garments the neck is thicker, and so the opening must be wider.
   std::deque<GarmentCut> cuts;
   const auto over_others = [&](const GarmentCut& cut) -> const GarmentCut& {
     const double more = static_cast<double>(cuts.size()) * (options.gap + 1.5 * sagitta(options.edge));

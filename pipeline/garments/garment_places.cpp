@@ -17,7 +17,7 @@ namespace {
 
 enum Region { trunk, left_arm, right_arm, left_leg, right_leg, region_count };
 
-// What a joint moves, by SMPL's names; joints of other names, fingers say, belong to their parents' region.
+// The region of each joint, by SMPL's names; joints with other names, such as fingers, belong to their parents' region.
 std::vector<Region> regions_of(const BodyModel& body) {
   std::vector<Region> regions;
   for (std::size_t j = 0; j < body.joints.size(); ++j) {
@@ -34,9 +34,9 @@ std::vector<Region> regions_of(const BodyModel& body) {
 
 struct BodyPlaces {
   std::vector<Region> region;                                  // of each joint
-  std::vector<Vec3> spine;                                     // joints that the trunk turns round
+  std::vector<Vec3> spine;                                     // places of the joints of the spine
   double shoulders = std::numeric_limits<double>::infinity();  // height of the shoulder joints; infinity: not known
-  double chest = 0;                                            // halfway between them and the root
+  double chest = 0;                                            // height halfway between them and the root
 };
 
 BodyPlaces places_of(const BodyModel& body) {
@@ -60,7 +60,7 @@ struct Loop {
   bool central = false;  // goes round the spine
 };
 
-// How often a closed line goes round a vertical axis.
+// The winding number of a closed line round a vertical axis.
 int turns_round(const std::vector<int>& line, const Points& x, const Vec3& axis) {
   double angle = 0;
   for (std::size_t k = 0; k < line.size(); ++k) {
@@ -94,7 +94,7 @@ std::string limb_of(const Loop& loop) {
   return "opening";
 }
 
-// One name a loop, of the loops of one piece; not yet told apart.
+// One name for each loop of a piece; names may still be equal.
 std::vector<std::string> names_of(const std::vector<Loop>& loops, bool hangs, const BodyPlaces& places) {
   int top = -1, bottom = -1;
   for (int k = 0; k < static_cast<int>(loops.size()); ++k) {

@@ -10,7 +10,7 @@
 namespace selvedge {
 namespace {
 
-// Above the cloth below [m].
+// The height above the cloth below [m].
 double lift(double edge) { return 0.006 + sagitta(edge); }
 
 // The boundary vertices in a border, from one end of their run to the other.
@@ -33,7 +33,7 @@ Vec3 gradient(const DistanceField& value, const Vec3& p) {
   return g;
 }
 
-// So far away from the neckline along the garment's surface, in steps that follow it.
+// The point at distance `away` from the neckline along the garment's surface, reached in steps from p.
 Vec3 walked(const DistanceField& field, const Border& neck, double away, Vec3 p) {
   constexpr double longest = 0.005;
   const int steps = static_cast<int>(std::ceil(away / longest));
@@ -44,7 +44,7 @@ Vec3 walked(const DistanceField& field, const Border& neck, double away, Vec3 p)
   return p;
 }
 
-// Where a collar goes from a point of the neckline: heights above the garment and distances along it.
+// The profile of a collar from a point of the neckline: heights above the garment and distances along it.
 struct CollarPoint {
   double height, away;
 };
@@ -88,7 +88,7 @@ void add_squares(const std::vector<int>& below, const std::vector<int>& above, b
   }
 }
 
-// To the nearest of the points.
+// A stitch to the nearest of the points.
 Stitch stitch_to(const Points& points, const Vec3& p, int vertex) {
   Eigen::Index nearest = 0;
   const double squared = (points.rowwise() - p.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
@@ -99,8 +99,8 @@ Stitch stitch_to(const Points& points, const Vec3& p, int vertex) {
 
 std::vector<int> add_collar(Shape& shape, const DistanceField& field, const Border& neck, double depth, double edge) {
   std::vector<int> below = run_in(shape, neck);
-  std::reverse(below.begin(), below.end());  // so that the garment's normals go on
-  std::vector<Vec3> at, x;                   // where each line of the collar has got to
+  std::reverse(below.begin(), below.end());  // so that normals continue those of the garment
+  std::vector<Vec3> at, x;                   // the present end of each line of the collar
   for (const int v : below) at.push_back(row(shape.x, v));
   double away = 0;
   std::vector<std::array<int, 3>> triangles;
@@ -136,7 +136,7 @@ std::vector<int> add_pocket(Shape& shape, const DistanceField& field, const Pock
     for (int i = 0; i <= columns; ++i) {
       const double u = pocket.centre.x() + pocket.size.x() * (static_cast<double>(i) / columns - 0.5);
       const double v = pocket.centre.y() + pocket.size.y() * (static_cast<double>(j) / rows - 0.5);
-      double z = before;  // straight back until the garment is met
+      double z = before;  // moves straight back until it meets the garment
       for (int step = 0; step < 40; ++step) z -= 0.8 * field(Vec3(u, v, z));
       line.push_back(static_cast<int>(shape.x.rows()) + static_cast<int>(x.size()));
       const Vec3 on(u, v, z);

@@ -10,13 +10,13 @@ namespace selvedge {
 namespace {
 
 constexpr Eigen::Index most_places = 512;
-constexpr double fewest_near = 0.05;  // of a garment's vertices, if it is on the body
+constexpr double fewest_near = 0.05;  // least share of near vertices, if it is on the body
 constexpr double least_share = 0.5, least_highest = 1.0 / 3;
 
 bool is_covered(const WornPart::Place& place, const Points& x, const Points& body) {
   const auto foot = body.row(place.foot);
   const double squared = place.reach * place.reach;
-  if ((x.row(place.vertex) - foot).squaredNorm() <= squared) return true;  // nearly always
+  if ((x.row(place.vertex) - foot).squaredNorm() <= squared) return true;  // the usual case
   for (Eigen::Index v = 0; v < x.rows(); ++v)
     if ((x.row(v) - foot).squaredNorm() <= squared) return true;
   return false;

@@ -13,7 +13,7 @@ struct JudgedInputs {
   Points velocity;
 };
 
-// judged.inputs refers to all three.
+// Keeps references to all three.
 void fill(const HoodJudge& judge, const JudgedFrame& frame, JudgedInputs& judged) {
   judged.velocity = frame.now - frame.before;
   LossInputs& inputs = judged.inputs;

@@ -26,7 +26,7 @@ Vec3 vector_of(const Quaternion& rotation) {
   return turn.angle() * turn.axis();
 }
 
-// From a to b, each joint along the shorter way.
+// Interpolates from a to b, each joint by the shorter rotation.
 BodyPose between(const BodyPose& a, const BodyPose& b, double s) {
   BodyPose pose{Points(a.rotations.rows(), 3), (1 - s) * a.translation + s * b.translation};
   for (Eigen::Index j = 0; j < a.rotations.rows(); ++j)
@@ -59,7 +59,7 @@ Points start_rotations(const Clip& clip, StartPose start) {
   return rotations;
 }
 
-// With the heading and the place of frame 0.
+// The start pose with the heading and place of frame 0.
 BodyPose start_pose(const Clip& clip, const Points& rotations) {
   const BodyPose& first = clip.poses.front();
   BodyPose pose{rotations, first.translation};
@@ -89,7 +89,7 @@ double end_of(const Clip& clip) {
 
 BodyPose pose_at(const Clip& clip, double time) {
   check_has_poses(clip);
-  constexpr double rounding = 1e-9;  // within which times of another rate meet a frame
+  constexpr double rounding = 1e-9;  // times of another rate this near to a frame count as at it
   const auto [k, share] = steady_place(clip.poses.size(), clip.fps, time);
   if (share < rounding) return clip.poses[k];
   return 1 - share < rounding ? clip.poses[k + 1] : between(clip.poses[k], clip.poses[k + 1], share);

@@ -37,7 +37,7 @@ struct Part {
   Index joints;
 };
 
-// Where the rotations are, in the order of the joints' names.
+// The fields with the rotations, in the order of the joints' names.
 std::vector<Part> rotation_parts(const Npz& npz) {
   if (!npz.has("root_orient") && npz.has("poses")) {
     const NpyArray<double> poses = table(npz, "poses", -1, -1);
@@ -61,7 +61,7 @@ double frame_rate(const Npz& npz) {
   return rate.values[0];
 }
 
-// One body's: a row, or a row a frame.
+// The shapes of a body: one row, or one row per frame.
 Eigen::MatrixXd shapes_of(const Npz& npz, int most) {
   if (!npz.has("betas")) return {};
   const NpyArray<double> betas = npz.numbers("betas");

@@ -56,7 +56,7 @@ struct Reader {
   }
 };
 
-// Words with their lines; braces stand alone, as written or not.
+// Splits the text into words with their line numbers; braces are words of their own.
 std::vector<Token> split(std::string_view text) {
   std::vector<Token> tokens;
   int line = 1;

@@ -9,8 +9,8 @@
 namespace selvedge {
 namespace {
 
-// What rigs call the joints of a limb or of the trunk, in the order of SMPL's names; empty: has none. In lower case
-// without signs; # stands for left or right, $ for l or r.
+// The names in rigs of the joints of a limb or the trunk, in the order of SMPL's names; empty: the rig lacks it. In
+// lower case without punctuation; # stands for left or right, $ for l or r.
 struct Chain {
   std::vector<std::string> smpl;
   std::vector<std::vector<std::string>> rigs;
@@ -89,7 +89,7 @@ const std::vector<Chain>& chains() {
         {"#upperleg", "#lowerleg", "#foot", "#toes"},  // Unity
         {"#hip", "#knee", "#ankle", "#toe"},
         {"#thigh", "#shin", "#foot", "#toe"}}},
-      // Rigify's pelvis is the lowest of its spine, which elsewhere is above the pelvis: then it is taken already.
+      // Rigify's pelvis is the lowest of its spine, which elsewhere is above the pelvis: there it is already used.
       {{"pelvis"}, {{"pelvis"}, {"hips"}, {"hip"}, {"spine"}, {"root"}}}};
   return table;
 }
@@ -99,7 +99,7 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-// "CC_Base_L_Thigh" as cc, base, l and thigh; what stands before a colon is left out.
+// Splits "CC_Base_L_Thigh" into cc, base, l and thigh; a prefix with a colon is left out.
 std::vector<std::string> words_of_name(const std::string& name) {
   std::vector<std::string> words(1);
   for (const char c : lower_case(name.substr(name.rfind(':') + 1))) {
@@ -112,8 +112,8 @@ std::vector<std::string> words_of_name(const std::string& name) {
   return words;
 }
 
-// Drops the first words that most names of a rig begin with, as "Character1_", "CC_Base_" and "J_Bip_" are. A name
-// keeps its last word.
+// Drops the first words with which most names of a rig begin, such as "Character1_", "CC_Base_" and "J_Bip_". A name
+// keeps at least its last word.
 void drop_common_words(std::vector<std::vector<std::string>>& names) {
   constexpr double most = 0.75;
   for (;;) {
@@ -129,8 +129,8 @@ void drop_common_words(std::vector<std::vector<std::string>>& names) {
   }
 }
 
-// The names of a rig in lower case, without signs and without what stands before all of them: "mixamorig:LeftUpLeg",
-// "Bip01 L Thigh", "upper_arm.L" and "J_Bip_C_Hips" as leftupleg, lthigh, upperarml and hips.
+// The names of a rig in lower case, without punctuation and common prefixes: "mixamorig:LeftUpLeg", "Bip01 L Thigh",
+// "upper_arm.L" and "J_Bip_C_Hips" as leftupleg, lthigh, upperarml and hips.
 std::vector<std::string> plain_names(const std::vector<std::string>& names) {
   std::vector<std::vector<std::string>> words;
   for (const std::string& name : names) words.push_back(words_of_name(name));
@@ -161,7 +161,7 @@ std::string of_side(std::string pattern, bool left) {
 
 using Found = std::vector<std::pair<std::string, int>>;  // SMPL's name and the file's joint
 
-// The naming of the table that finds most of a chain, the earlier one where two find as much.
+// The joints found by the row of the table that finds most of a chain; on a tie the earlier row.
 Found best(const Chain& chain, const std::map<std::string, int>& names, bool left) {
   Found most;
   for (const std::vector<std::string>& rig : chain.rigs) {
@@ -183,7 +183,7 @@ std::vector<int> matched_joints(const BvhFile& bvh, const std::map<std::string, 
   for (const BvhJoint& joint : bvh.joints) theirs.push_back(joint.name);
   const std::vector<std::string> plain = plain_names(theirs);
   for (std::size_t j = 0; j < theirs.size(); ++j) {
-    // MakeHuman puts a joint `__UpLeg_L` where UpLeg_L hangs on the hips.
+    // MakeHuman inserts a joint `__UpLeg_L` between the hips and UpLeg_L.
     const auto [entry, fresh] = by_plain.emplace(plain[j], static_cast<int>(j));
     if (!fresh && theirs[static_cast<std::size_t>(entry->second)].starts_with("_")) entry->second = static_cast<int>(j);
   }

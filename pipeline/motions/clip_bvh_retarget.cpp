@@ -23,15 +23,15 @@ struct Source {
     return upright * row(pose.positions, joint[static_cast<std::size_t>(smpl)]);
   }
   Vec3 hips(const BvhPose& pose) const { return 0.5 * (at(pose, smpl::hip) + at(pose, smpl::hip + 1)); }
-  // How a joint has turned from rest, with Y up.
+  // The rotation of a joint from rest, with Y up.
   Mat3 turned(const BvhPose& pose, int smpl) const {
     const auto j = static_cast<std::size_t>(joint[static_cast<std::size_t>(smpl)]);
     return upright * pose.rotations[j] * rest.rotations[j].transpose() * upright.transpose();
   }
 };
 
-// The rotation that takes the axis along which the file stands in its rest pose to Y, in quarter turns; nothing where
-// it does not stand upright.
+// The rotation, in quarter turns, that takes the axis along which the file's figure stands at rest to Y; nothing if it
+// does not stand upright.
 std::optional<Mat3> upright_axes(const Source& s) {
   const auto middle = [&](int left) -> Vec3 {
     return 0.5 * (row(s.rest.positions, s.joint[static_cast<std::size_t>(left)]) +
@@ -45,8 +45,8 @@ std::optional<Mat3> upright_axes(const Source& s) {
   return rotation_between(up, Vec3::UnitY());
 }
 
-// Where the zero pose is to be the rest pose and does not stand, as that of much motion capture, the first frame
-// serves: recordings mostly begin in a T- or an A-pose.
+// If the zero pose should be the rest pose but does not stand upright, as in much motion capture, the first frame is
+// used: recordings mostly begin in a T-pose or an A-pose.
 Source upright_source(const BvhFile& bvh, const BvhOptions& options) {
   Source s{matched_joints(bvh, options.joints), Mat3::Identity(), bvh_pose(bvh, options.rest_frame)};
   std::optional<Mat3> upright = upright_axes(s);
@@ -88,7 +88,7 @@ std::vector<Mat3> alignment(const Source& s, const Skeleton& k) {
   });
 }
 
-// A joint that the file lacks goes with its parent.
+// A joint that the file lacks follows its parent.
 BodyPose pose_of(const Source& s, const BvhPose& pose, const std::vector<Mat3>& align) {
   BodyPose result{Points(24, 3)};
   std::vector<Mat3> world(24);

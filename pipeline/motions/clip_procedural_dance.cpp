@@ -32,7 +32,7 @@ Movement dance_sway(const Skeleton& k) {
   return m;
 }
 
-// A box of six steps, turning a little, arms held round a partner who is not there.
+// A box of six steps, turning a little, arms held as if round a partner.
 Movement dance_waltz(const Skeleton& k) {
   Movement m = movement(k, 9);
   m.smoothing = 0.2;

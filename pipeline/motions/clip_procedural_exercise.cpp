@@ -102,7 +102,7 @@ Movement jump(const Skeleton& k) {
     m.keys.push_back({land + 0.25, soft});
     hold(m, land + 0.85, land + 0.9, standing());
     m.flights.push_back({leave, land});
-    // Nothing moves along: the feet only point down in flight.
+    // The feet stay in place and only point down in flight.
     for (const int side : {0, 1}) m.steps.push_back({side, leave, land, stance(k, side), 0, 0, 0.6, 0});
   }
   hold(m, 4.8, 5, standing());

@@ -10,10 +10,10 @@
 namespace selvedge {
 namespace {
 
-constexpr double straightest_leg = 0.985;  // of its length: knees stay bent by 20 degrees, so that none snaps straight
+constexpr double straightest_leg = 0.985;  // of its length: knees stay bent by 20 degrees and never snap straight
 
 enum Joint { pelvis, hip = 1, spine1 = 3, knee = 4, spine2 = 6, ankle = 7, spine3 = 9, foot = 10, neck = 12 };
-enum UpperJoint { collar = 13, head = 15, shoulder = 16, elbow = 18, wrist = 20 };  // plus the side, as those of legs
+enum UpperJoint { collar = 13, head = 15, shoulder = 16, elbow = 18, wrist = 20 };  // plus the side, as for legs
 
 Mat3 about(int axis, double angle) { return rotation_matrix(angle * Vec3::Unit(axis)); }
 
@@ -27,7 +27,8 @@ Mat3 arm_rotation(int side, double out, double forward, double in) {
   return about(0, -forward) * about(2, m * out) * about(1, -m * in) * about(2, -m * std::numbers::pi / 2);
 }
 
-// Arms are kept as rotation vectors from here: within reach of an arm none comes near half a turn.
+// The middle pose from which rotation vectors of arms are measured: within an arm's reach they stay well below half a
+// turn.
 Mat3 middle(int side) { return arm_rotation(side, 0.8, 0.8, 0.2); }
 
 Mat3 collar_rotation(int side, const Vec3& upper_arm, double shrug) {
@@ -37,7 +38,7 @@ Mat3 collar_rotation(int side, const Vec3& upper_arm, double shrug) {
 
 double bone(const Skeleton& k, int a, int b) { return (joint(k, b) - joint(k, a)).norm(); }
 
-// Columns: along a bone, the axis its joint bends about, and what completes them.
+// Columns: along a bone, the axis about which its joint bends, and their cross product.
 Mat3 bone_frame(const Vec3& along, const Vec3& axis) {
   Mat3 frame;
   frame.col(0) = along;
@@ -96,7 +97,7 @@ FootPose raised(FootPose f, double heel_up) {
   return f;
 }
 
-// How far the pelvis is too high for a leg.
+// How much the pelvis is too high for a leg [m].
 double excess(const Skeleton& k, Figure& f, int side, const FootPose& foot_pose) {
   const Vec3 from = hip_at(k, f, side), to = ankle_of(k, side, raised(foot_pose, f.heel_up(side))).at;
   const double reach = straightest_leg * k.leg, flat = (from - to).cwiseProduct(Vec3(1, 0, 1)).norm();
@@ -205,7 +206,7 @@ void reach(Figure& f, const Skeleton& k, int side, const Vec3& place, const Vec3
   Vec3 u = -Vec3::UnitY();
   Vec3 bend = Vec3::UnitZ();
   double flex = 0;
-  for (int round = 0; round < 20; ++round) {  // the collar moves with the arm, and the arm hangs on it
+  for (int round = 0; round < 20; ++round) {  // iterates, since collar and arm depend on each other
     const Vec3 from = joint(k, collar + side) + collar_rotation(side, u, f.shrug(side)) * from_collar;
     const Vec3 along = (target - from).normalized(), off = without(elbow_side, along);
     const double far = std::clamp((target - from).norm(), 1.1 * std::abs(upper - fore), 0.995 * (upper + fore));

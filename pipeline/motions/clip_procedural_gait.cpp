@@ -13,13 +13,13 @@ const double pi = std::numbers::pi;
 struct Gait {
   int steps = 8;        // the last one brings the feet together
   double step = 0.68;   // from one foot's place to the other's; negative: backwards
-  double time = 0.55;   // a step
-  double swing = 0.42;  // of the cycle of two steps a foot is in the air; above 0.5: running
+  double time = 0.55;   // of a step
+  double swing = 0.42;  // share of a cycle of two steps in which a foot is in the air; above 0.5: running
   double lift = 0.06, toe_off = 1.0, strike = 0.3;
   double arm = 0.4, elbow = 0.3, elbow_swing = 0.25, arm_out = 0.22;
   double bob = 0.012, sway = 0.022, twist = 0.12, roll = 0.05;
   double lean = 0.03, crouch = 0;
-  double turn = 0;       // of the heading, a step
+  double turn = 0;       // of the heading, per step
   double width = 0.8;    // of the feet's distance in the zero pose; negative: they cross
   double knee_lift = 0;  // knees up, as in marching
 };
@@ -68,7 +68,7 @@ Movement walked(const Skeleton& k, const Gait& g, double seconds) {
   }
   times.push_back(times.back() + 0.5 * g.time);
   ways.push_back(way);
-  // The other foot closes the stance where the last one has crossed or narrowed it.
+  // The other foot closes the stance if the last step has crossed or narrowed it.
   const int other = g.steps % 2;
   const Place stop = on_path(way, curvature);
   if (g.width != 1)

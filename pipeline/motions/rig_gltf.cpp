@@ -34,7 +34,7 @@ std::vector<Matrix4d> global_transforms(const std::vector<GltfNode>& nodes) {
   return all;
 }
 
-// The size of a similarity; 0 where it is none.
+// The scale of a similarity transform; 0 if it is none.
 double size_of(const Matrix4d& m) {
   const Mat3 linear = m.topLeftCorner<3, 3>();
   const double size = std::cbrt(std::abs(linear.determinant()));
@@ -48,7 +48,7 @@ Mat3 nearest_rotation(const Mat3& m) {
   return m * stretch.vectors * stretch.values.cwiseSqrt().cwiseInverse().asDiagonal() * stretch.vectors.transpose();
 }
 
-// The joints of a skin as a tree: of each its parent among them, through whatever nodes lie between.
+// The parent of each joint of a skin among these joints; other nodes between are skipped.
 std::vector<int> parents_among(const GltfScene& scene) {
   std::vector<int> joint_of(scene.nodes.size(), -1), parents;
   for (std::size_t j = 0; j < scene.joints.size(); ++j)
@@ -62,7 +62,7 @@ std::vector<int> parents_among(const GltfScene& scene) {
   return parents;
 }
 
-// Which of the skin's joints the body has, parents first: from the first that has weights or several children on.
+// The skin's joints that the body has, parents first: from the first joint with weights or several children on.
 std::vector<int> kept_joints(const GltfScene& scene, const std::vector<int>& parents, const std::string& file) {
   const auto children = [&](int joint) {
     std::vector<int> found;
@@ -81,7 +81,7 @@ std::vector<int> kept_joints(const GltfScene& scene, const std::vector<int>& par
   return order;
 }
 
-// SMPL's names where the rig's are known; every name once.
+// SMPL's names if the rig's naming is known, else its own; all names are unique.
 std::vector<std::string> joint_names(const std::vector<std::string>& names, const std::vector<int>& parents,
                                      const std::string& file) {
   std::vector<std::string> all = names;
@@ -96,15 +96,15 @@ std::vector<std::string> joint_names(const std::vector<std::string>& names, cons
         all[static_cast<std::size_t>(found[k])] = smpl_names[k];
         is_smpl[static_cast<std::size_t>(found[k])] = 1;
       }
-  } catch (const Error&) {  // no person's: its own names will do
+  } catch (const Error&) {  // not a human rig: keeps its own names
   }
   for (std::size_t j = 0; j < all.size(); ++j)
     while (!is_smpl[j] && std::ranges::count(all, all[j]) > 1) all[j] += "_";
   return all;
 }
 
-// Weights of vertices, of any sign, that sum to 1 and have their mean at the point: the shortest such. The vertices
-// must not lie in one plane.
+// Weights of any sign that sum to 1, with the weighted mean of the vertices at the point: those with the least norm.
+// The vertices must not lie in one plane.
 Eigen::VectorXd exact_mean(const Points& x, const Vec3& point) {
   const Vec3 mean = x.colwise().mean().transpose();
   const Points off = x.rowwise() - mean.transpose();
@@ -112,7 +112,7 @@ Eigen::VectorXd exact_mean(const Points& x, const Vec3& point) {
   return (off * pull).array() + 1.0 / static_cast<double>(x.rows());
 }
 
-// A body without shapes needs its joints at their places and no more, so that any vertices serve that span space.
+// A body without shapes needs only the joints' places, so that any vertices not in one plane will do.
 SkinWeights exact_regressor(const BodyModel& body, const Points& joints, const std::string& file) {
   std::vector<Eigen::Triplet<double>> entries;
   const Points& x = body.skin.rest;
@@ -128,7 +128,7 @@ SkinWeights exact_regressor(const BodyModel& body, const Points& joints, const s
   return regressor;
 }
 
-// Of a track at a time: its three or four numbers.
+// The three or four numbers of a track at a time.
 Eigen::VectorXd value_at(const GltfTrack& track, double time) {
   const bool cubic = track.interpolation == GltfInterpolation::cubic;
   const Eigen::Index last = track.times.size() - 1;
@@ -176,9 +176,9 @@ const GltfAnimation& animation_named(const GltfRig& rig, const std::string& name
   return all[static_cast<std::size_t>(found - names.begin())];
 }
 
-// How joints have gone from the zero pose to a time, as the body's pose.
+// The body's pose at a time: the joints' motion from the zero pose.
 BodyPose animated_pose(const GltfRig& rig, const Points& zero, const GltfAnimation& animation, double time) {
-  constexpr double most = 0.01;  // that a joint may move against its parent [m]
+  constexpr double most = 0.01;  // largest motion of a joint relative to its parent [m]
   const std::vector<Matrix4d> global = global_transforms(nodes_at(rig, animation, time));
   const Matrix4d to_mesh = rig.placed.inverse();
   BodyPose pose{Points(zero.rows(), 3), Vec3::Zero()};
@@ -228,7 +228,7 @@ GltfRig read_gltf_rig(const std::filesystem::path& path, const NameChoice& choic
   body.skin.rest = scene.mesh.x.rowwise().homogeneous() * placed.transpose();
   body.skin.triangles = scene.mesh.triangles;
   body.meshes = scene.mesh.groups;
-  std::vector<int> place(scene.joints.size(), 0);  // of a joint that is left out: the root
+  std::vector<int> place(scene.joints.size(), 0);  // the root for joints that are left out
   std::vector<std::string> names;
   Points joints(static_cast<Eigen::Index>(rig.joints.size()), 3);
   for (std::size_t j = 0; j < rig.joints.size(); ++j) {

@@ -85,7 +85,7 @@ std::optional<BodyPose> t_pose(const BodyModel& body, const Points& joints) {
 }
 
 Clip from_own_zero_pose(const Clip& clip, const BodyModel& body, const Points& joints, const BodyPose& t_pose) {
-  // A joint turns in the frame of its parent, which lies otherwise than in the T-pose by what took the parent there.
+  // A joint turns in the frame of its parent, which differs from the T-pose by the parent's rotation to it.
   const JointTransforms to_t = joint_transforms(body, joints, t_pose);
   Clip result{clip.name, clip.fps, body.joints, {}, clip.shape};
   for (const BodyPose& pose : clip.poses) {

@@ -10,8 +10,8 @@ namespace selvedge {
 namespace {
 
 constexpr double on_each_other = 1e-7;    // vertices nearer than this lie at one place [m]
-constexpr double passing = 0.01;          // distance from the body at which a stitch runs past it [m]
-constexpr double deepest_grazing = 0.02;  // a stitch that is deeper has the body in its way, whatever its panels do [m]
+constexpr double passing = 0.01;          // distance from the body at which a stitch passes it [m]
+constexpr double deepest_grazing = 0.02;  // a deeper stitch cannot be freed by moving its panels [m]
 constexpr int points_a_stitch = 21, most_moves = 6;
 
 class Placing {
@@ -52,7 +52,7 @@ class Placing {
  private:
   int panel(int vertex) const { return mesh_.panel[static_cast<std::size_t>(vertex)]; }
 
-  // Of each stitch: where its straight line is deepest in the body, or nearest to it.
+  // For each stitch the deepest point of its straight line in the body, or the nearest to it.
   std::vector<SignedDistance> depths(const Points& x) const {
     const Eigen::Index count = static_cast<Eigen::Index>(mesh_.sewn.size());
     Points at(count * points_a_stitch, 3);
@@ -83,7 +83,8 @@ class Placing {
     return true;
   }
 
-  // With the panels of that seam moved out of the body, by where its deepest stitch leaves it soonest.
+  // Positions with the panels of that seam moved out of the body, in the direction in which its deepest stitch leaves
+  // soonest.
   Points freed(Points x, std::size_t first, std::size_t end) const {
     const auto group = [&](int vertex) { return numbers_[static_cast<std::size_t>(panel(vertex))]; };
     const int one = group(mesh_.sewn[first][0]), other = group(mesh_.sewn[first][1]);
@@ -97,7 +98,7 @@ class Placing {
     return x;
   }
 
-  // Whether what moved came to lie neither in the body nor in other panels.
+  // Whether the moved vertices are neither inside the body nor inside other panels.
   bool is_free(const Points& before, const Points& after) const {
     const std::vector<AuditBody> bodies{{&body_, &body_x_}};
     const Audit was = audit(cloth_, before, bodies), is = audit(cloth_, after, bodies);

@@ -9,9 +9,9 @@
 namespace selvedge {
 namespace {
 
-constexpr double clearly = 1e-9;  // more of the scale of an in-circle determinant is no rounding
+constexpr double clearly = 1e-9;  // relative to the scale of an in-circle determinant: larger values are not rounding
 
-// Whether d lies within the circle through a, b, c (counter-clockwise) by more than rounding.
+// Whether d is inside the circle through a, b, c (counter-clockwise) by more than rounding.
 bool within_circle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   const Vec2 p = a - d, q = b - d, r = c - d;
   const double pp = p.squaredNorm(), qq = q.squaredNorm(), rr = r.squaredNorm();
@@ -153,7 +153,7 @@ void FlipMesh::make_delaunay() {
 
 int FlipMesh::find(const Vec2& p) const {
   int t = std::min(last_, static_cast<int>(triangles.size()) - 1);
-  // The walk may run into the outline of a polygon that is not convex; then every triangle is asked.
+  // The walk may hit the outline of a polygon that is not convex; then every triangle is tested.
   for (std::size_t step = 0; step < triangles.size(); ++step) {
     const FlipTriangle& triangle = triangles[static_cast<std::size_t>(t)];
     int out = -1;
@@ -194,7 +194,7 @@ void FlipMesh::insert(const Vec2& p) {
   settle({t, second, third});
 }
 
-// Flips edges opposite the newest point, and those that come to lie opposite it.
+// Flips edges opposite the newest point, and those that become opposite to it.
 void FlipMesh::settle(std::vector<int> fan) {
   const int v = static_cast<int>(points.size()) - 1;
   for (std::size_t i = 0; i < fan.size(); ++i)

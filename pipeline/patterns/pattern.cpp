@@ -8,7 +8,7 @@
 namespace selvedge {
 namespace {
 
-constexpr int fine_pieces = 512;  // of a curve, on which lengths are measured
+constexpr int fine_pieces = 512;  // pieces of a curve, for measuring lengths
 
 const Vec2& corner(const Panel& panel, const PanelEdge& edge, std::size_t end) {
   return panel.corners[static_cast<std::size_t>(edge.ends[end])];

@@ -13,11 +13,11 @@ namespace selvedge {
 namespace {
 
 constexpr double least_length = 1e-6;  // of an edge [m]
-constexpr double most_way = 1000;      // of a place from the origin of its panel, and of a panel from the body's [m]
+constexpr double most_way = 1000;      // of a point from its panel's origin, and of a panel from the body's [m]
 constexpr double most_radius = 1e6;    // [m]
-constexpr int checked_pieces = 24;     // of a curved edge, when it is looked at for crossings
+constexpr int checked_pieces = 24;     // pieces of a curved edge, for finding crossings
 
-// Farther off lengths and angles are no numbers any more. What is not finite is too far as well.
+// Throws Error for places so far away that lengths and angles lose all precision, and for places that are not finite.
 void check_places(const Panel& panel, const std::string& file) {
   const std::string cure = "check the numbers, and `units_in_meter`";
   if (!(panel.translation.cwiseAbs().maxCoeff() <= most_way))
@@ -44,7 +44,7 @@ void check_edge(const Panel& panel, int e, const std::string& file) {
                 "give a radius of half that distance or more");
 }
 
-// Edges in the order in which they follow each other, all of them once round.
+// All edges in the order round the panel.
 std::vector<int> closed_loop(const Panel& panel, const std::string& file) {
   std::map<int, int> from;
   for (int e = 0; e < static_cast<int>(panel.edges.size()); ++e)

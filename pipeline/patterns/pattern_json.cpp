@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 const std::string form_cure = "docs/patterns.md says what a pattern file holds";
 
-// NaN and Infinity, which Python writes and JSON does not have, as null, so that an error can say where they are.
+// Replaces NaN and Infinity, which Python writes but JSON lacks, by null, so that an error can say where they are.
 std::string without_nan(const std::string& text) {
   std::string result;
   bool quoted = false;
@@ -119,7 +119,7 @@ struct PatternReader {
     }
   }
 
-  // R = Rz Ry Rx, angles in degrees, as Maya has them.
+  // R = Rz Ry Rx with angles in degrees, as in Maya.
   Mat3 rotation(const std::vector<double>& degrees) const {
     constexpr double rad = 3.14159265358979323846 / 180;
     return (Eigen::AngleAxisd(degrees[2] * rad, Vec3::UnitZ()) * Eigen::AngleAxisd(degrees[1] * rad, Vec3::UnitY()) *

@@ -58,7 +58,7 @@ CutPanel cut_panel(const Panel& panel, const std::vector<int>& counts, double ed
     outline.insert(outline.end(), points.begin(), points.end() - 1);
   }
   cut.edge_vertices[static_cast<std::size_t>(panel.loop.back())].back() = 0;
-  const bool clockwise = signed_area(outline) < 0;  // seen from the front: the right side is the back
+  const bool clockwise = signed_area(outline) < 0;  // seen from the front; then the right side is the back
   if (clockwise)
     for (Vec2& p : outline) p.x() = -p.x();
   try {
@@ -71,7 +71,7 @@ CutPanel cut_panel(const Panel& panel, const std::vector<int>& counts, double ed
   return cut;
 }
 
-// A triangle of the panel as seen from its right side.
+// The rest shape of a triangle, seen from the panel's right side.
 RestTriangle rest_of(const std::vector<Vec2>& points, const Triangles& triangles, Eigen::Index t) {
   RestTriangle rest;
   for (int k = 0; k < 3; ++k) rest.col(k) = points[static_cast<std::size_t>(triangles(t, k))];

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double lattice_clearance = 0.62;  // of the lattice from the outline, in edge lengths
 constexpr int relaxations = 30;
-constexpr double sound_angle = 0.38;  // below it an edge across a corner is cut rather than turned [rad]
+constexpr double sound_angle = 0.38;  // if a flip makes a smaller angle, an edge across a corner is cut instead [rad]
 
 FlipMesh outline_mesh(const std::vector<Vec2>& outline) {
   const std::size_t n = outline.size();
@@ -53,7 +53,7 @@ void insert_lattice(const std::vector<Vec2>& outline, double edge, FlipMesh& mes
     high = high.cwiseMax(p);
   }
   const double height = edge * std::sqrt(3.0) / 2;
-  // About the middle, a little aside, so that no point lies on an edge of an even outline.
+  // Centred a little beside the middle, so that no point is on an edge of a regular outline.
   const Vec2 middle = (low + high) / 2 + edge * Vec2(0.0137, 0.0071);
   const int rows = static_cast<int>((high.y() - low.y()) / height) + 2,
             columns = static_cast<int>((high.x() - low.x()) / edge) + 2;
@@ -64,7 +64,7 @@ void insert_lattice(const std::vector<Vec2>& outline, double edge, FlipMesh& mes
     }
 }
 
-// Each vertex inside goes to the mean of its neighbours where that turns no triangle over.
+// Moves each inner vertex to the mean of its neighbours if that turns no triangle over.
 void relax(FlipMesh& mesh) {
   for (int round = 0; round < relaxations; ++round) {
     const std::vector<std::vector<int>> around = mesh.triangles_round_vertices();
@@ -83,7 +83,7 @@ void relax(FlipMesh& mesh) {
   }
 }
 
-// Edges inside that join vertices of the outline are turned, or cut in the middle where that makes poor triangles.
+// Flips inner edges that join vertices of the outline, or cuts them in the middle where a flip makes poor triangles.
 void part_chords(FlipMesh& mesh) {
   mesh.may_make_chords = false;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)

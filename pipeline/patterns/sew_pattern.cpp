@@ -16,14 +16,14 @@ namespace selvedge {
 namespace {
 
 constexpr double one_place = 1e-7;                            // vertices nearer than this lie at one place [m]
-constexpr double first_stiffness = 30, last_stiffness = 2e4;  // of a stitch, while it gets shorter [N/m]
-constexpr double sewn_stiffer = 30;  // in bending, while panels are sewn: it keeps them from folding
-constexpr double facing = 0.01;      // length of stitches at which edges find their places [m]
+constexpr double first_stiffness = 30, last_stiffness = 2e4;  // of a stitch, rising while it gets shorter [N/m]
+constexpr double sewn_stiffer = 30;  // factor on bending while panels are sewn, which keeps them from folding
+constexpr double facing = 0.01;      // length of stitches at which edges align [m]
 constexpr int facing_frames = 8, shutting_frames = 10, most_shut_frames = 10, flattening_frames = 8;
-constexpr double round_body = 0.25;  // of the extent of a garment that is about to fall on the body: how near that is
-constexpr int least_draping = 15;    // frames: what begins to fall is slow and not at rest
+constexpr double round_body = 0.25;  // distance of a garment that begins to fall on the body, relative to its extent
+constexpr int least_draping = 15;    // frames, since a garment that begins to fall is slow but not at rest
 
-// Panels with some stitches joined: of each vertex its number, and how many there are.
+// Panels with some stitches joined: the new number of each vertex, and the count.
 struct Joining {
   std::vector<int> number;
   int count = 0;
@@ -54,7 +54,7 @@ Triangles renumbered(Triangles triangles, const Joining& to) {
   return triangles;
 }
 
-// `stiffer`: times the material's bending.
+// `stiffer`: factor on the material's bending.
 Scene scene_of(const PatternMesh& mesh, const Joining& joining, const Triangles& body_triangles,
                Eigen::Index body_vertices, const SewingOptions& options, double stiffer) {
   Scene scene;
@@ -89,7 +89,7 @@ struct Sewing {
     return most;
   }
 
-  // Returns the share of vertices that move, or nothing where the step was rejected.
+  // Returns the share of vertices that move, or nothing if the step was rejected.
   std::optional<double> step(Stepper& stepper, FrameAudits& audits, const Joining& joining, bool sewn,
                              const Vec3& gravity, State& state) {
     Drive drive = at_rest(audits.scene, state);
@@ -110,17 +110,16 @@ struct Sewing {
     return share;
   }
 
-  // How long a stitch of that first length is in a frame of the closing [m]: first all get as short as `facing`, at
-  // which the edges of two panels find their places beside each other, then they close.
+  // The length of a stitch with first length `first` in a frame of the closing [m]. First all shrink to `facing`, at
+  // which the edges of two panels align, then they close.
   double length_at(int frame, double first) const {
     const double closing_frames = options.closing * options.fps, t = std::min(1.0, frame / closing_frames);
     const double shut = std::clamp((frame - closing_frames - facing_frames) / shutting_frames, 0.0, 1.0);
     return std::max((1 - t * t * (3 - 2 * t)) * first, (1 - shut) * std::min(first, facing));
   }
 
-  // Positions of the panels' vertices with the stitches closed as far as they come. While the last of their length
-  // goes, cloth does not meet cloth: edges that lie on each other would be held apart, and edges that overlap could not
-  // get past each other.
+  // Positions of the panels' vertices with stitches closed as far as possible. At the end contact of cloth with cloth
+  // is off: it would keep edges apart that lie on each other, and overlapping edges could not pass each other.
   Points close() {
     const Joining joining = join(mesh, [&](std::size_t s) { return gap(mesh.placed, s) < one_place; });
     Scene scene = scene_of(mesh, joining, body_triangles, body.rows(), options, sewn_stiffer);
@@ -144,7 +143,7 @@ struct Sewing {
       }
       scene.contact.self = frame <= facing_end;
       FrameAudits audits(scene);
-      // A stepper takes stitches as they are when it is made.
+      // A stepper keeps the stitches with which it was made.
       if (!step(*make_recovering_conventional_stepper(scene), audits, joining, false, Vec3::Zero(), state)) break;
       result.closing_frames = frame;
       if (frame >= shut_end && largest_gap(spread(state.x, joining)) < options.closed) break;
@@ -162,7 +161,7 @@ struct Sewing {
     State state = first_state(flat, joined, {body});
     state.time = result.closing_frames / options.fps;
     state.frame = result.closing_frames;
-    // What overlapped at the seams springs flat before cloth meets cloth again.
+    // Overlaps at the seams spring flat before contact of cloth with cloth is on again.
     flat.contact.self = false;
     flat.contact.friction = 0;
     const auto flattening = make_recovering_conventional_stepper(flat);

@@ -13,11 +13,11 @@ namespace selvedge {
 namespace {
 
 constexpr double floor_rounding = 0.01;  // [m]
-constexpr double beside = 0.02;          // of heights that do not differ yet [m]
+constexpr double beside = 0.02;          // heights that differ by less count as equal [m]
 constexpr double least_at_height = 1.0 / 3;
-constexpr double least_between = 0.05;  // of the body's vertices at the panels' heights: its arms may be elsewhere
+constexpr double least_between = 0.05;  // of the body's vertices at the panels' heights: arms may be elsewhere
 constexpr int directions = 32;
-constexpr double flat = 0.05;  // panels thinner than that are on one side: capes [m]
+constexpr double flat = 0.05;  // panels with less depth are on one side of the body, like capes [m]
 
 struct Span {
   double low, high;
