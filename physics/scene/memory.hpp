@@ -19,7 +19,7 @@ struct MemoryBlock {
   std::string name;  // "stepper.quantity"
   MemoryRows rows;
   RowsOf rows_of = RowsOf::none;
-  bool positions = false;  // the rows are positions [m]: for cloth that a step leaves out they are its own, otherwise 0
+  bool positions = false;  // the rows are positions [m]: cloth that a step leaves out has its own; in other blocks 0
 };
 using Memory = std::vector<MemoryBlock>;
 

@@ -7,10 +7,11 @@
 
 namespace selvedge {
 
-// XDMF text that lets ParaView play a trajectory: a temporal collection over `h5_name`, which must lie beside it.
+// XDMF text that lets ParaView play a trajectory: a temporal collection over the file `h5_name`, which must be in the
+// same folder.
 std::string xdmf_text(const TrajectoryInfo&, const std::vector<double>& times, const std::string& h5_name);
 
-// Beside the trajectory, with its name and the ending .xdmf.
+// Writes it beside the trajectory, with the ending .xdmf.
 std::filesystem::path write_xdmf(const std::filesystem::path& trajectory);
 
 }  // namespace selvedge
