@@ -14,10 +14,10 @@
 // plane through the origin, and all turns are multiples of its normal. If all turns are zero, the corners are on one
 // line with the origin, on one side of it: (a). Otherwise look along an axis that is not in the plane. Turns sum to
 // twice the area. Where the area is zero, turns of both signs exist. Where it is not, the origin is strictly beyond
-// some side, whose turn has the sign opposite to the sum's: (c). In time coordinates are linear, turns quadratic and
-// the volume cubic. Over an interval a polynomial stays within its Bernstein coefficients. So strict signs of
-// coefficients prove an interval free. Since coefficients converge to values, repeated halving proves it for every pair
-// that does not touch.
+// some side, whose turn has the sign opposite to the sum's: (c).
+// In time coordinates are linear, turns quadratic and the volume cubic. Over an interval a polynomial stays within its
+// Bernstein coefficients. So strict signs of coefficients prove an interval free. Since coefficients converge to
+// values, repeated halving proves it for every pair that does not touch.
 
 namespace selvedge {
 

@@ -18,11 +18,11 @@ std::optional<Exemption> hopeless(const ContactWorld&, const Points& nodes, cons
 // goes there by at most `reach` [m], and not through an obstacle of which it was clean. Cloth that is tangled with
 // cloth gets no linear momentum: the two sides move against each other. `left` is what is still tangled then, for
 // contact to leave alone. `gained` are separations that the solve must keep: how far the two sides, or a vertex and an
-// obstacle, have come apart. Otherwise cloth would spring back and untangling would get nowhere. These wait, that is,
-// they are parted from cloth but not from obstacles: cloth that is drawn (`carried`, see carrying.hpp; or empty),
-// tangled cloth connected to it, and tangled cloth at switched-off parts of a body. The cloth does not cross itself in
-// more pairs than before. `before`: what is tangled (find_exemption) and switched off. Without a budget an ample one is
-// used.
+// obstacle, have come apart. Otherwise cloth would spring back and untangling would get nowhere.
+// These wait, that is, they are parted from cloth but not from obstacles: cloth that is drawn (`carried`, see
+// carrying.hpp; or empty), tangled cloth connected to it, and tangled cloth at switched-off parts of a body. The cloth
+// does not cross itself in more pairs than before. `before`: what is tangled (find_exemption) and switched off. Without
+// a budget an ample one is used.
 struct Recovery {
   Exemption left;
   std::vector<Separation> gained;

@@ -9,8 +9,8 @@ struct RecoveryOptions {
   double farthest_place = 0.3;  // Putting on moves a vertex at most this far [m].
   double push_softness = 0.1;   // The force that keeps parted cloth apart sets in over this part of the thickness.
 
-  // Untangling of cloth that crosses itself or lies in an obstacle. Cloth with more crossing pairs per triangle is not
-  // untangled: its own stiffness opens it.
+  // Untangling of cloth that crosses itself or lies in an obstacle.
+  // Cloth with more crossing pairs per triangle is not untangled: its own stiffness opens it.
   static constexpr int hopeless_pairs = 10;
   // Crossing pairs times passes stay below this in a step.
   static constexpr int max_pair_passes = 150'000;
@@ -25,8 +25,9 @@ struct RecoveryOptions {
   // A shorter displacement counts as none [mean edges].
   static constexpr double negligible_move = 1e-6;
 
-  // Worn cloth that a limb has gone through is put on again, or drawn to its skinned targets. Untangling of cloth that
-  // is put on takes at most this many passes, and crossing pairs times passes stay below the second number.
+  // Worn cloth that a limb has gone through is put on again, or drawn to its skinned targets.
+  // Untangling of cloth that is put on takes at most this many passes, and crossing pairs times passes stay below the
+  // second number.
   static constexpr int placing_passes = 60, max_placing_pair_passes = 100'000;
   // A component is pierced if a limb goes through it, or if more than `pierced_part` of its vertices are tangled and
   // farther than `astray` mean edges from their targets.

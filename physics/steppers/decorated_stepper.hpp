@@ -18,8 +18,8 @@ struct Decorations {
 };
 
 // A stepper that `bare` makes of the scene, or of a part of it, with the decorators round it: from outside to inside
-// cutting, resting, recovering. Only a stepper that honours extras is recovering. Decorators that know more than the
-// scene stand round all of these: the repulsive layer (learned), and followers (following_stepper.hpp).
+// cutting, resting, recovering. The recovering one needs a stepper that honours extras. Decorators that know more than
+// the scene stand round all of these: the repulsive layer (learned), and followers (following_stepper.hpp).
 std::unique_ptr<Stepper> decorated(const Scene&, const MakeStepper& bare, const Decorations& = {});
 
 // Makes bare conventional steppers with these options, for `decorated`.

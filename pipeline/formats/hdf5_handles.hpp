@@ -72,8 +72,8 @@ class File {
   // Files may come from anyone. So readers check shapes and types before they read, and values must be stored in the
   // file itself. They throw Error with file, field and sizes for another shape, for another class of numbers (HDF5
   // would convert integers to floating point), for more values than the stored bytes can hold, for values in other
-  // files, and for data that HDF5 cannot read. The shape of a dataset with `rank` extents. With `growing` the first may
-  // be larger than what is stored.
+  // files, and for data that HDF5 cannot read.
+  // The shape of a dataset with `rank` extents. With `growing` the first may be larger than what is stored.
   std::vector<hsize_t> shape_of(const std::string& name, std::size_t rank, bool growing = false) const;
   std::string read_text(const std::string& name) const;  // the only text, or the first one
   std::vector<std::string> read_texts(const std::string& name) const;

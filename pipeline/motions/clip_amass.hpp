@@ -4,9 +4,10 @@
 
 #include "pipeline/motions/clip.hpp"
 
-// Motions of the AMASS archive (Mahmood et al. 2019) and other files of the same form, .npz: SMPL+H: poses (frames x
-// 156), trans, betas, mocap_framerate; SMPL-X: root_orient, pose_body, pose_hand, pose_jaw, pose_eye, trans, betas,
-// mocap_frame_rate. poses of 72 (SMPL) and 165 (SMPL-X) columns are read too, and betas with a row per frame.
+// Motions of the AMASS archive (Mahmood et al. 2019) and other files of the same form, .npz:
+// SMPL+H: poses (frames x 156), trans, betas, mocap_framerate;
+// SMPL-X: root_orient, pose_body, pose_hand, pose_jaw, pose_eye, trans, betas, mocap_frame_rate.
+// poses of 72 (SMPL) and 165 (SMPL-X) columns are read too, and betas with a row per frame.
 namespace selvedge {
 
 // The first coefficients of betas, at most `most`. Of betas with a row per frame it takes the first row, and warns if
