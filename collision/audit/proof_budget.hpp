@@ -34,7 +34,7 @@ class ProofBudget {
 };
 
 // Asks before each proof in a cell whether the audit goes on. A proof for coincident edges takes many parts, and a cell
-// may hold many of them, so that asking once a cell would be too rare.
+// may hold many of them, so that asking once per cell would be too rare.
 class ProofWatch {
  public:
   ProofWatch(AuditBudget& searched, ProofBudget& proofs) : searched_(searched), proofs_(proofs) {}

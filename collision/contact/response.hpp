@@ -54,9 +54,9 @@ Projection project_zone(std::span<Impact*> impacts, const Eigen::VectorXd& inver
 // inertia about the line; the velocity about it is 0.
 Vec3 angular_velocity(const Mat3& inertia, const Vec3& momentum);
 
-// Rigid impact zone (Provot 1997; Bridson et al. 2002, section 7.4): the nodes go on from x0 as one rigid body with the
-// linear and angular momentum of their paths x0 -> x1, turned by the whole angle of the step, so that no distance among
-// them changes. Prescribed nodes may not be among them.
+// Rigid impact zone (Provot 1997; Bridson et al. 2002, section 7.4): the nodes move on from x0 as one rigid body with
+// the linear and angular momentum of their paths x0 -> x1, turned by the whole angle of the step, so that no distance
+// among them changes. Prescribed nodes may not be among them.
 void rigidify_zone(std::span<const int> nodes, const Eigen::VectorXd& inverse_mass, const Points& x0, Points& x1);
 
 }  // namespace selvedge

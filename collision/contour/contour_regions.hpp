@@ -8,7 +8,7 @@
 
 namespace selvedge {
 
-// True if the curve on this side ends nowhere inside its sheet. At a loop vertex it goes on as the curve of the other
+// True if the curve on this side ends nowhere inside its sheet. At a loop vertex it continues as the curve of the other
 // side.
 bool ends_outside(const Contour&, int side);
 

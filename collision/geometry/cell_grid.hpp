@@ -16,7 +16,7 @@ class CellGrid {
   CellGrid(const Points& x, double cell);
   static constexpr int most_cubes = 1 << 24;
 
-  // The points by the cubes that they lie in, those of a cube side by side.
+  // The points, sorted by the cubes in which they lie.
   const std::vector<int>& order() const { return point_; }
 
   // The number of cubes, and the place in `order` where a cube's points begin. first(cubes()) is the end of `order`.

@@ -4,7 +4,7 @@
 
 namespace selvedge {
 
-// Whether to end the work at hand. Asked again and again while it goes on: it must be cheap, and once true stay true.
+// Whether to end the work at hand. Called often during the work: it must be cheap, and stay true once it is true.
 // Empty: never.
 using StopFlag = std::function<bool()>;
 

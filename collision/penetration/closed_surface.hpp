@@ -8,8 +8,8 @@
 namespace selvedge {
 
 // A cloth whose holes are closed, each by a fan from its boundary to the mean of the boundary's vertices (Liao et al.
-// 2024, algorithm 1, steps 2 to 7). The cloth is left as it is: its vertices and triangles come first, those of the
-// fans behind them. Built once, constant afterwards; positions live outside.
+// 2024, algorithm 1, steps 2 to 7). The cloth is left as it is: its vertices and triangles come first, then those of
+// the fans. Built once, constant afterwards; positions live outside.
 struct ClosedSurface {
   Surface surface;
   int cloth_vertices = 0, cloth_triangles = 0;
@@ -27,7 +27,7 @@ struct ClosedSurface {
 // length, or if a vertex of `open` is on no boundary.
 ClosedSurface close_surface(const Surface& cloth, std::span<const int> garments = {}, std::span<const int> open = {});
 
-// Cloth positions [m] with the centres of the fans behind them.
+// Cloth positions [m], then the centres of the fans.
 Points closed_positions(const ClosedSurface&, const Points& cloth);
 
 // Turns a derivative by closed_positions into one by the cloth's positions: each of a loop's n vertices gets 1/n of the

@@ -6,7 +6,7 @@ namespace selvedge {
 namespace {
 
 constexpr double first_part = 0.25, last_part = 0.5;  // of a gap: squeezed from the first on, toward the second
-constexpr double near = 0.03, far = 0.06;             // from the foot: squeezed in full, and no more [m]
+constexpr double near = 0.03, far = 0.06;             // from the foot: nearer squeezed in full, farther not [m]
 constexpr double beside = 0.01;                       // this near to the line out from the foot counts as on it [m]
 constexpr double facing = -0.3;                       // largest cosine of its normal with the direction out
 
