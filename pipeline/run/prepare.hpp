@@ -1,16 +1,23 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "pipeline/run/progress.hpp"
 #include "pipeline/scene/setup.hpp"
 
 namespace selvedge {
 
-// Brings a scene whose time begins before 0 to time 0, with the conventional stepper as it is by default: whatever
-// steps the scene from there on starts from the same bits. Nothing is recorded; `prepared` says what was done. Does
-// nothing where time begins at 0. False: stopped. Throws Error where a step is rejected.
-bool prepare(Setup&, const std::function<bool()>& stop = {}, Progress* progress = nullptr,
-             const StopFlag& interrupt = {});
+// What a run starts from.
+struct Start {
+  State state;           // at time 0
+  std::string prepared;  // what was done for it; empty: nothing
+};
+
+// The start of a scene. Where time begins before 0, the conventional stepper as it is by default takes it to 0:
+// whatever steps the scene from there on starts from the same bits. Nothing of that is recorded. Absent: stopped.
+// Throws Error where a step is rejected.
+std::optional<Start> prepare(const Setup&, const std::function<bool()>& stop = {}, Progress* progress = nullptr,
+                             const StopFlag& interrupt = {});
 
 }  // namespace selvedge

@@ -13,25 +13,6 @@
 
 namespace selvedge {
 
-bool runs_network(const Setup& setup) { return runs_network(setup.run.stepper); }
-bool runs_network(const std::string& stepper) { return stepper == "learned" || stepper == "hybrid"; }
-
-WeightFile read_learned_weights(const Setup& setup) {
-  const std::string& weights = setup.run.learned.weights;
-  if (weights.empty())
-    throw Error("the stepper `" + setup.run.stepper + "` needs a weight file",
-                setup.file.string() + ": run.learned.weights",
-                "give this key or --weights; `selvedge weights import` makes such a file of a published checkpoint");
-  return read_weight_file(setup.file.parent_path() / weights);  // an absolute path stays as it is
-}
-
-LearnedOptions learned_options_of(const Setup& setup) {
-  return {.settle = setup.run.learned.settle,
-          .omitted_body_vertices = {},
-          .centres = {},
-          .device = setup.run.learned.device};
-}
-
 std::shared_ptr<const NeighbourScale> read_refu_weights(const Setup& setup) {
   const std::string& weights = setup.run.refu.weights;
   if (weights.empty()) return nullptr;
@@ -93,12 +74,8 @@ std::unique_ptr<Stepper> with_refu(const Setup& setup, std::unique_ptr<Stepper> 
 }  // namespace
 
 std::unique_ptr<Stepper> make_stepper(const Setup& setup) {
-  const Kinds known = known_kinds();
-  const StepperKind* kind = setup.kind.maker ? &setup.kind : known.find(setup.run.stepper);
-  if (!kind)
-    throw Error("unknown stepper `" + setup.run.stepper + "`", setup.file.string(), "known: " + joined(known.names()));
   std::unique_ptr<Stepper> stepper =
-      decorated(setup.scene, kind->maker(setup, setup.kind_options),
+      decorated(setup.scene, setup.kind.maker(setup, setup.kind_options),
                 {setup.run.rest, !setup.initial.cut_out.empty(), setup.run.recovery, setup.run.resting});
   check_accepted(setup, stepper->traits());
   stepper = with_refu(setup, std::move(stepper));

@@ -206,7 +206,7 @@ TEST_CASE("known steppers: a run says what of the scene its stepper ignores, and
     CHECK(none == (kind == "learned"));
     RunRequest request;
     request.out = folder.path / "out";
-    const RunSummary summary = run_scene(setup, *stepper, request);
+    const RunSummary summary = run_scene(setup, *prepare(setup), *stepper, request);
     CHECK(summary.warnings.size() == setup.warnings.size() + ignored.size());
     CHECK(std::ranges::any_of(summary.left_out, [](const PlanLine& l) { return l.feature == "springs"; }) == none);
     const TrajectoryReader reader(request.out / "run.h5");

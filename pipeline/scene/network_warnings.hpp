@@ -3,8 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/scene/setup.hpp"
-#include "pipeline/scene/trained_with_yaml.hpp"
+#include "learned/network/weights_hdf5.hpp"
+#include "physics/scene/scene.hpp"
+#include "pipeline/weights/trained_with_yaml.hpp"
 
 namespace selvedge {
 
@@ -13,8 +14,9 @@ namespace selvedge {
 // off the body, and one with edges of half the length stretches to a multiple.
 std::vector<std::string> unlike_training(const Scene&, const TrainedWith&);
 
-// The same for a scene whose stepper runs a network, and what else makes its frames wrong: gravity that it does not
-// see, numbers of its own that are not finite. Empty for all other scenes. Reads the weight file; throws its errors.
-std::vector<std::string> network_warnings(const Setup&);
+// The same for the network that moves a scene, and what else makes its frames wrong: gravity [m/s2] that it does not
+// see, numbers of its own that are not finite. `name`: of its file, for people.
+std::vector<std::string> network_warnings(const Scene&, const Vec3& gravity, const WeightFile&,
+                                          const std::string& name);
 
 }  // namespace selvedge
