@@ -51,13 +51,14 @@ LearnedOptions learned_options(const Setup& setup) {
 }
 
 MakeStepper learned_maker(const Setup& setup) {
-  return [file = setup.network, options = learned_options(setup)](const Scene& scene) {
-    return make_learned_stepper(scene, file->architecture, file->weights, options);
+  network_of(setup);
+  return [kept = setup.network, options = learned_options(setup)](const Scene& scene) {
+    return make_learned_stepper(scene, (*kept)->architecture, (*kept)->weights, options);
   };
 }
 
 std::vector<PlanLine> learned_lines(const Setup& setup) {
-  const Architecture& architecture = setup.network->architecture;
+  const Architecture& architecture = network_of(setup).architecture;
   StepperTraits traits = learned_traits(architecture);
   traits.name = setup.kind.name;
   check_accepted(setup, traits);

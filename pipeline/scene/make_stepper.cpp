@@ -10,8 +10,21 @@
 #include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/formats/neighbour_scale_hdf5.hpp"
+#include "pipeline/scene/network_warnings.hpp"
 
 namespace selvedge {
+
+const WeightFile& network_of(const Setup& setup) {
+  std::optional<WeightFile>& network = *setup.network;
+  if (network) return *network;
+  const std::string& weights = setup.run.learned.weights;
+  if (weights.empty())
+    throw Error("the stepper `" + setup.kind.name + "` needs a weight file",
+                setup.file.string() + ": run.learned.weights",
+                "give this key or --weights; `selvedge weights import` makes such a file of a published checkpoint");
+  network = read_weight_file(setup.file.parent_path() / weights);  // an absolute path stays as it is
+  return *network;
+}
 
 std::shared_ptr<const NeighbourScale> read_refu_weights(const Setup& setup) {
   const std::string& weights = setup.run.refu.weights;
@@ -82,8 +95,17 @@ std::unique_ptr<Stepper> make_stepper(const Setup& setup) {
   return make_following_stepper(setup.scene, setup.followers, std::move(stepper));
 }
 
-std::vector<std::string> run_warnings(const Setup& setup, const StepperTraits& traits) {
+std::vector<std::string> warnings_of(const Setup& setup) {
   std::vector<std::string> warnings = setup.warnings;
+  if (setup.kind.network == NetworkUse::none) return warnings;
+  const Vec3 gravity = setup.drive_at(0).acceleration;
+  for (const std::string& one : network_warnings(setup.scene, gravity, network_of(setup), setup.run.learned.weights))
+    warnings.push_back(one);
+  return warnings;
+}
+
+std::vector<std::string> run_warnings(const Setup& setup, const StepperTraits& traits) {
+  std::vector<std::string> warnings = warnings_of(setup);
   for (const PlanLine& line : ignored_lines(setup.scene, traits)) warnings.push_back(line.feature + ": " + line.why);
   return warnings;
 }

@@ -2,10 +2,15 @@
 
 #include <memory>
 
+#include "learned/network/weights_hdf5.hpp"
 #include "learned/repulsion/neighbour_scale.hpp"
 #include "pipeline/scene/setup.hpp"
 
 namespace selvedge {
+
+// The network of a setup whose kind of stepper runs one, read once. Throws Error where the scene names none, and
+// whatever read_weight_file does.
+const WeightFile& network_of(const Setup&);
 
 // Networks that scale the repulsive layer's pushes; null where the scene names none. Throws what read_neighbour_scale
 // does.
@@ -18,7 +23,10 @@ void check_accepted(const Setup&, const StepperTraits&);
 // scene that does not have what the stepper's traits ask for.
 std::unique_ptr<Stepper> make_stepper(const Setup&);
 
-// The setup's warnings, and a sentence for each force of the scene that the stepper ignores.
+// The setup's warnings and those of its network (network_warnings.hpp). Throws what network_of does.
+std::vector<std::string> warnings_of(const Setup&);
+
+// The same, and a sentence for each force of the scene that the stepper ignores.
 std::vector<std::string> run_warnings(const Setup&, const StepperTraits&);
 
 }  // namespace selvedge

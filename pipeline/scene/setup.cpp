@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "learned/network/weights_hdf5.hpp"
 #include "physics/scene/make_scene.hpp"
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/obstacles/setup_mesh.hpp"
@@ -12,7 +13,6 @@
 #include "pipeline/obstacles/setup_obstacle.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/scene/config_scene.hpp"
-#include "pipeline/scene/network_warnings.hpp"
 #include "pipeline/scene/quality.hpp"
 #include "pipeline/scene/setup_cloth.hpp"
 #include "pipeline/scene/setup_outcome.hpp"
@@ -153,15 +153,6 @@ RunOptions read_run(const Config& scene) {
   run.icm.implicit_euler = run.conventional.implicit_euler;
   run.icm.substep = run.conventional.substep;
   return run;
-}
-
-// The weight file that the scene file names.
-std::shared_ptr<const WeightFile> read_network(const std::filesystem::path& scene, const RunOptions& run) {
-  const std::string& weights = run.learned.weights;
-  if (weights.empty())
-    throw Error("the stepper `" + run.stepper + "` needs a weight file", scene.string() + ": run.learned.weights",
-                "give this key or --weights; `selvedge weights import` makes such a file of a published checkpoint");
-  return std::make_shared<const WeightFile>(read_weight_file(scene.parent_path() / weights));
 }
 
 // Adds the name of an item of a list to those that are taken.
@@ -342,7 +333,7 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
   setup.kind = *kinds.find(setup.run.stepper);
   if (setup.kind.options) setup.kind_options = config["run"][setup.kind.name];
   if (setup.kind.check) setup.kind.check(config);
-  if (setup.kind.network != NetworkUse::none) setup.network = read_network(file, setup.run);
+  setup.network = std::make_shared<std::optional<WeightFile>>();
   const SceneParts parts = read_parts(config, folder, setup.run.fps);
   const double begin_time = parts.begin_frame / setup.run.fps;
   JoinedScene joined = join_scene(config, parts, begin_time);
@@ -365,10 +356,6 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
   setup.outcomes = read_outcomes(config["outcome"], parts.cloths, setup.scene);
   setup.short_form = config["short_form"].words;
   setup.config = to_yaml(config);
-  if (setup.network)
-    for (std::string& warning :
-         network_warnings(setup.scene, setup.drive_at(0).acceleration, *setup.network, setup.run.learned.weights))
-      setup.warnings.push_back(std::move(warning));
   return setup;
 }
 
