@@ -37,7 +37,7 @@ FeatureRows target_accelerations(const RestGraph& rest, const GraphState& state,
   return (state.target - 2 * seen.x + seen.previous).cast<float>();
 }
 
-void push_out(const Surface& body, const Points& body_x, double margin, Points& x) {
+int push_out(const Surface& body, const Points& body_x, double margin, Points& x) {
   const auto faces = static_cast<int>(body.triangles.rows());
   Points centroids(faces, 3);
   for (int f = 0; f < faces; ++f)
@@ -47,7 +47,8 @@ void push_out(const Surface& body, const Points& body_x, double margin, Points& 
   vertex_boxes(centroids, centroids, 0, boxes);
   const Bvh tree = build_bvh(boxes);
   const int count = static_cast<int>(x.rows());
-#pragma omp parallel for schedule(static, 64)
+  int moved = 0;
+#pragma omp parallel for schedule(static, 64) reduction(+ : moved)
   for (int v = 0; v < count; ++v) {
     const Vec3 p = row(x, v);
     NearGroup alone;
@@ -60,7 +61,9 @@ void push_out(const Surface& body, const Points& body_x, double margin, Points& 
     const Vec3 normal = (row(body_x, corner[1]) - a).cross(row(body_x, corner[2]) - a).normalized();
     const double short_of = (p - row(centroids, face)).dot(normal) - margin;
     x.row(v) = (p - std::min(short_of, 0.0) * normal).transpose();
+    moved += short_of < 0;
   }
+  return moved;
 }
 
 }  // namespace selvedge

@@ -21,8 +21,8 @@ NextCloth integrate(const RestGraph&, const GraphState&, const FeatureOptions&, 
 FeatureRows target_accelerations(const RestGraph&, const GraphState&, const FeatureOptions&);
 
 // Pushes vertices out of the body to `margin` [m] in front of the plane of the face with the nearest centroid (HOOD's
-// first frame, parity README, 18). The lowest of several such faces counts.
-void push_out(const Surface& body, const Points& body_x, double margin, Points& x);
+// first frame, parity README, 18). The lowest of several such faces counts. Returns how many it moved.
+int push_out(const Surface& body, const Points& body_x, double margin, Points& x);
 constexpr double push_out_margin = 2e-3;  // HOOD's
 
 }  // namespace selvedge

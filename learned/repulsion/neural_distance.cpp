@@ -68,20 +68,6 @@ QueryMap bone_query(const std::vector<Eigen::Matrix<double, 3, 4>>& frames) {
   return query;
 }
 
-NeuralDistanceShape paper_distance_shape(int query, int condition) {
-  NeuralDistanceShape shape;
-  shape.query = query;
-  shape.condition = condition;
-  return shape;
-}
-
-NeuralDistanceShape small_distance_shape(int query, int condition) {
-  NeuralDistanceShape shape = paper_distance_shape(query, condition);
-  shape.layers = 6;
-  shape.width = 256;
-  return shape;
-}
-
 PlainNetwork make_neural_distance(const NeuralDistanceShape& shape, std::uint64_t seed) {
   PlainShape plain{shape.query + shape.condition,
                    std::vector<int>(static_cast<std::size_t>(shape.layers), shape.width),

@@ -27,8 +27,6 @@ struct NeuralDistanceShape {
   double beta = 100;    // of softplus
   int again_layer = 3;  // the fourth reads the query again
 };
-NeuralDistanceShape paper_distance_shape(int query = 3, int condition = 82);
-NeuralDistanceShape small_distance_shape(int query = 3, int condition = 82);  // 6 x 256
 PlainNetwork make_neural_distance(const NeuralDistanceShape&, std::uint64_t seed);
 
 // For one body: its numbers are folded into the layer that reads them.

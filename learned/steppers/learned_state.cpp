@@ -74,11 +74,6 @@ StepEnd learned_end(const Scene& scene, const State& from, const Drive& drive, c
   return end;
 }
 
-void change_carried_velocity(const Points& change, State& state) {
-  for (MemoryBlock& block : state.memory)
-    if (block.name == carried_block && block.rows.rows() == change.rows()) block.rows += change;
-}
-
 void carry_velocities(std::span<const int> vertices, State& state) {
   const auto block = std::ranges::find(state.memory, carried_block, &MemoryBlock::name);
   if (block == state.memory.end() || block->rows.rows() != state.v.rows()) return;

@@ -38,10 +38,6 @@ StepEnd learned_end(const Scene&, const State& from, const Drive&, const GraphSt
 // roll-out begins there. The velocity is the cloth's motion in the frame.
 void carry_frame(const State& from, State& to);
 
-// For cloth that another stepper has moved after a network's step: the positions in the memory move along [m]. Nothing
-// happens where the state carries nothing.
-void change_carried_velocity(const Points& change, State&);
-
 // What a network carries of these vertices' velocities becomes what State::v has of them. Nothing happens to a state
 // that no network made.
 void carry_velocities(std::span<const int> vertices, State&);

@@ -114,7 +114,7 @@ bool LearnedStepper::settle(GraphState& state, StepReport& report) {
   still.timestep = settling_time;
   still.no_cloth_edges = still.no_space_edges = true;
   if (integration_ == Integration::relaxation_frame) {
-    push_out(graph_scene_.body, still.body, push_out_margin, still.x);
+    report.collision.pushed_out = push_out(graph_scene_.body, still.body, push_out_margin, still.x);
   } else {
     still.is_init = true;
   }

@@ -5,8 +5,6 @@
 
 #include "collision/geometry/floating_point.hpp"
 #include "collision/geometry/pair_budget.hpp"
-#include "collision/geometry/stopwatch.hpp"
-#include "learned/steppers/learned_state.hpp"
 
 namespace selvedge {
 namespace {
@@ -19,47 +17,6 @@ ResolveOptions safeguard_resolve_options(const SafeguardOptions& options) {
   resolve.impulse_rounds = 10;
   resolve.last_resort = false;
   return resolve;
-}
-
-class SafeguardedStepper final : public Stepper {
- public:
-  SafeguardedStepper(const Scene& scene, std::unique_ptr<Stepper> inner, const SafeguardOptions& options)
-      : inner_(std::move(inner)), safeguard_(scene, options), traits_(inner_->traits()) {
-    traits_.name = "safeguarded " + traits_.name;
-    traits_.may_leave_out_cloths = false;
-  }
-  const StepperTraits& traits() const override { return traits_; }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override;
-
- private:
-  std::unique_ptr<Stepper> inner_;
-  Safeguard safeguard_;
-  StepperTraits traits_;
-};
-
-StepReport SafeguardedStepper::step(const State& from, const Drive& drive, double dt, State& to,
-                                    const StepExtras& extras) {
-  StepReport report = inner_->step(from, drive, dt, to, extras);
-  report.by = traits_.name;
-  if (report.status != StepStatus::accepted) return report;
-  Stopwatch watch;
-  const Points proposed = to.x;
-  const SafeguardReport kept = safeguard_(from.x, to.x);
-  report.collision.impulses += kept.impulses;
-  report.collision.zones += kept.zones;
-  report.seconds.response += watch.lap();
-  if (!kept.kept) {
-    report.status = StepStatus::rejected;
-    report.reason = Reason::penetrating;
-    return report;
-  }
-  const Points change = to.x - proposed;
-  if (change.isZero(0)) return report;
-  to.v += change / dt;
-  change_carried_velocity(change, to);
-  report.doubts = {};
-  report.audit.reset();
-  return report;
 }
 
 }  // namespace
@@ -105,11 +62,6 @@ SafeguardReport Safeguard::respond(const Points& from, Points& to) {
     return give_up("an impulse is too large");
   if (!resolved.clean) return give_up("impact zones do not settle");
   return report;
-}
-
-std::unique_ptr<Stepper> make_safeguarded(const Scene& scene, std::unique_ptr<Stepper> inner,
-                                          const SafeguardOptions& options) {
-  return std::make_unique<SafeguardedStepper>(scene, std::move(inner), options);
 }
 
 }  // namespace selvedge

@@ -1,12 +1,10 @@
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "collision/contact/resolve.hpp"
 #include "collision/search/intersections.hpp"
 #include "physics/scene/scene.hpp"
-#include "physics/scene/stepper.hpp"
 
 namespace selvedge {
 
@@ -45,10 +43,5 @@ class Safeguard {
   PathPairs path_;
   IntersectionCache intersections_;
 };
-
-// A stepper whose proposals go through a Safeguard. A step that is given up is rejected: the reason `penetrating`, with
-// the counts in the report. The velocity that a learned stepper carries to the next frame is the one after the
-// response. Keeps a reference to the scene.
-std::unique_ptr<Stepper> make_safeguarded(const Scene&, std::unique_ptr<Stepper>, const SafeguardOptions& = {});
 
 }  // namespace selvedge

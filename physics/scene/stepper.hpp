@@ -90,7 +90,7 @@ struct CollisionReport {
   int passed_through = 0;   // pairs that met during the motion, by its audit; without those left alone
   int left_alone = 0;       // cloth vertices on or inside a contour at the start, after recovery
   int cut_out = 0;          // triangles that are cut out at the end; their pairs are not counted
-  int pushed_out = 0;       // cloth vertices that the repulsive layer moved (refu_stepper.hpp)
+  int pushed_out = 0;       // cloth vertices that the repulsive layer, or a network that settles, moved out of bodies
   int jumped = 0;           // obstacles moved to where they were wanted without a sweep, since it was too far
   double min_gap = std::numeric_limits<double>::infinity();  // of the contacts [m]
   double obstacle_lag = 0;  // largest distance of an obstacle vertex from where it was wanted [m]

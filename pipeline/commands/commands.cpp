@@ -12,7 +12,6 @@
 #include "pipeline/host/folder_lock.hpp"
 #include "pipeline/host/interrupt.hpp"
 #include "pipeline/host/write_file.hpp"
-#include "pipeline/run/network_warnings.hpp"
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/run_scene.hpp"
 #include "pipeline/scene/make_stepper.hpp"
@@ -35,8 +34,7 @@ Setup read_scene(const SceneArguments& arguments) {
     overrides.push_back("run.learned.weights=" + quoted_yaml(std::filesystem::absolute(*arguments.weights).string()));
   if (arguments.device) overrides.push_back("run.learned.device=" + *arguments.device);
   Setup setup = read_setup(arguments.scene, overrides);
-  for (const std::string& warning : network_warnings(setup)) setup.warnings.push_back(warning);
-  if ((arguments.weights || arguments.device) && !runs_network(setup))
+  if ((arguments.weights || arguments.device) && setup.kind.network == NetworkUse::none)
     setup.warnings.push_back(
         fmt::format("{} has no part in the stepper `{}`, which runs no network; --stepper learned "
                     "and --stepper hybrid do",
@@ -81,7 +79,7 @@ bool report_outcome(const std::vector<Outcome>& outcomes, const std::vector<Outc
 }  // namespace
 
 int simulate_command(const SimulateArguments& arguments, bool json) {
-  Setup setup = read_scene(arguments.scene);
+  const Setup setup = read_scene(arguments.scene);
   warn_of_training();
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
   for (const std::string& warning : run_warnings(setup, stepper->traits())) std::cerr << "warning: " << warning << "\n";
@@ -90,14 +88,15 @@ int simulate_command(const SimulateArguments& arguments, bool json) {
   const std::filesystem::path out = folder_for(arguments, setup);
   make_folder(out);
   const FolderLock lock(out);
-  if (!arguments.resume && !prepare(setup, InterruptWatch::interrupted, &progress, InterruptWatch::interrupted)) {
+  std::optional<Start> start;
+  if (!arguments.resume) start = prepare(setup, InterruptWatch::interrupted, &progress, InterruptWatch::interrupted);
+  if (!arguments.resume && !start) {
     people(json) << "stopped before the first frame\n";
     return 1;
   }
   RunRequest request;
   request.out = out;
   request.locked = true;
-  request.resume = arguments.resume;
   request.progress = &progress;
   request.stop = request.interrupt = InterruptWatch::interrupted;
   OutcomeWatch outcome(setup.scene, setup.outcomes, setup.run.frames / setup.run.fps);
@@ -105,8 +104,8 @@ int simulate_command(const SimulateArguments& arguments, bool json) {
   RunSummary summary;
   try {
     const StopScope scope(request.interrupt);
-    outcome(setup.initial, setup.drive_at(0));
-    summary = run_scene(setup, *stepper, request);
+    outcome(start ? start->state : setup.initial, setup.drive_at(0));
+    summary = start ? run_scene(setup, *start, *stepper, request) : resume_scene(setup, *stepper, request);
   } catch (const Stopped&) {
     people(json) << "stopped before the first frame\n";
     return 1;

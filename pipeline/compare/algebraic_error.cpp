@@ -28,7 +28,7 @@ bool free_step(Stepper& stepper, const State& from, const Drive& drive, double d
 }  // namespace
 
 std::optional<AlgebraicError> algebraic_error(const Setup& setup, const State& start, double dt) {
-  if (setup.run.stepper != "conventional") return {};
+  if (!setup.kind.minimises) return {};
   ConventionalOptions single = setup.run.conventional;
   single.substeps = 1;
   const auto stepper = make_recovering_conventional_stepper(setup.scene, single);

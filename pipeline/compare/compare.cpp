@@ -38,6 +38,7 @@ struct SceneWork {
   Keys keys;
   std::vector<std::optional<Setup>> setups;  // absent: this build cannot, and `trouble` says why
   std::vector<std::string> trouble;
+  Start start;  // of all of them
   CompareFloor floor;
   std::vector<CompareErrors> errors;
   std::vector<std::vector<CompareRun>> runs;  // of each setting
@@ -159,14 +160,11 @@ bool find_errors(const CompareRequest& request, const Comparison& comparison, Sc
 
 // All settings start alike: a scene is prepared once. False: stopped.
 bool prepare_settings(const CompareRequest& request, SceneWork& work) {
-  const Setup* first = nullptr;
-  for (std::optional<Setup>& setup : work.setups) {
+  for (const std::optional<Setup>& setup : work.setups) {
     if (!setup) continue;
-    if (first)
-      setup->initial = first->initial;
-    else if (!prepare(*setup, request.stop))
-      return false;
-    first = &*setup;
+    const std::optional<Start> start = prepare(*setup, request.stop);
+    if (start) work.start = *start;
+    return start.has_value();
   }
   return true;
 }
@@ -177,7 +175,7 @@ std::filesystem::path trajectory_of(const std::filesystem::path& folder, std::si
 
 // Every row of an evaluation that a network makes is the bare network, by its stored run.
 void check_bare(const Setup& setup, const std::filesystem::path& trajectory) {
-  if (setup.run.stepper != "learned") return;
+  if (setup.kind.network != NetworkUse::alone) return;
   if (const std::string trouble = trouble_of_bare_run(trajectory); !trouble.empty())
     throw Error("a row of the evaluation is not the bare network: " + trouble, trajectory.string(),
                 "name gated rows by a stepper of their own");
@@ -198,7 +196,7 @@ bool time_settings(const CompareRequest& request, const Comparison& comparison, 
       options.limits = comparison.limits;
       const bool judged = !comparison.evaluation.baseline.empty();
       if (repeat == 0 && (work.keeps || judged)) options.trajectory = trajectory;
-      run = timed_run(*work.setups[s], options, request.stop);
+      run = timed_run(*work.setups[s], work.start, options, request.stop);
       if (!run) return false;
       if (judged && repeat == 0) check_bare(*work.setups[s], trajectory);
       if (!work.keeps) std::filesystem::remove(trajectory);

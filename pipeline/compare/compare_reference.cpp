@@ -85,11 +85,12 @@ std::vector<int> chosen_frames(const CompareScene& scene, const Setup& setup) {
 }
 
 // The whole run: fills in states and what it loses. False: stopped.
-bool run_reference(const Setup& setup, const CompareScene& scene, const Stop& stop, CompareReference& reference) {
+bool run_reference(const Setup& setup, const State& start, const CompareScene& scene, const Stop& stop,
+                   CompareReference& reference) {
   const std::vector<int> frames = chosen_frames(scene, setup);
   reference.states.resize(frames.size());
-  State before = setup.initial;
-  before.x -= setup.initial.v / setup.run.fps;
+  State before = start;
+  before.x -= start.v / setup.run.fps;
   const auto keep = [&](const State& state) {
     for (std::size_t k = 0; k < frames.size(); ++k) {
       CommonState& common = reference.states[k];
@@ -103,10 +104,10 @@ bool run_reference(const Setup& setup, const CompareScene& scene, const Stop& st
     }
     before = state;
   };
-  keep(setup.initial);
-  const Flight flight = fly(setup, setup.initial, setup.run.frames, stop, keep);
+  keep(start);
+  const Flight flight = fly(setup, start, setup.run.frames, stop, keep);
   check_arrived(flight, setup);
-  reference.floor.lost = energy_of(setup, setup.initial) - energy_of(setup, flight.end);
+  reference.floor.lost = energy_of(setup, start) - energy_of(setup, flight.end);
   return flight.arrived();
 }
 
@@ -122,11 +123,10 @@ bool run_algebraic(const Setup& setup, const CompareScene& scene, const Stop& st
   return true;
 }
 
-std::optional<Points> jittered_end(Setup setup, const State& from, double jitter, std::uint64_t seed, int horizon,
+std::optional<Points> jittered_end(const Setup& setup, State from, double jitter, std::uint64_t seed, int horizon,
                                    const Stop& stop) {
-  setup.initial = from;
-  jitter_start(setup, jitter, seed);
-  const Flight flight = fly(setup, setup.initial, horizon, stop);
+  jitter_start(setup, jitter, seed, from);
+  const Flight flight = fly(setup, from, horizon, stop);
   check_arrived(flight, setup);
   if (flight.stopped) return {};
   return flight.end.x;
@@ -149,11 +149,12 @@ Setup read_compared(const CompareScene& scene, bool short_form, const std::vecto
 
 std::optional<CompareReference> make_reference(const Comparison& comparison, const CompareScene& scene, bool short_form,
                                                const Stop& stop) {
-  Setup setup = with_steps(comparison, scene, short_form, fine);
-  if (!prepare(setup, stop)) return {};
+  const Setup setup = with_steps(comparison, scene, short_form, fine);
+  const std::optional<Start> start = prepare(setup, stop);
+  if (!start) return {};
   const Setup coarser = with_steps(comparison, scene, short_form, half_as_fine);
   CompareReference reference;
-  if (!run_reference(setup, scene, stop, reference)) return {};
+  if (!run_reference(setup, start->state, scene, stop, reference)) return {};
   if (!run_algebraic(with_algebraic(comparison, scene, short_form), scene, stop, reference)) return {};
   Mean motion, steps, jittered;
   for (const CommonState& state : reference.states) {

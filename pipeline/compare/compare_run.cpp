@@ -38,9 +38,9 @@ struct RunWatch {
   Points acceleration;                                                        // of the frame to come
   std::vector<IntersectionCache> obstacles;
 
-  RunWatch(const Setup& s, CompareRun& r, const TimedRunOptions& options, const StepperTraits& stepper)
+  RunWatch(const Setup& s, const State& start, CompareRun& r, const TimedRunOptions& options,
+           const StepperTraits& stepper)
       : setup(s), run(r), terms(energy_terms(s.scene, stepper)) {
-    const State& start = setup.initial;
     const Drive drive = setup.drive_at(start.time);
     if (options.measured) begin_measures(options, start, drive);
     if (options.trajectory.empty()) return;
@@ -112,12 +112,13 @@ void note_verdicts(const std::vector<long>& frames, CompareRun& run) {
 
 }  // namespace
 
-std::optional<CompareRun> timed_run(const Setup& setup, const TimedRunOptions& options, const Stop& stop) {
+std::optional<CompareRun> timed_run(const Setup& setup, const Start& start, const TimedRunOptions& options,
+                                    const Stop& stop) {
   CompareRun run;
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
-  State state = setup.initial;
+  State state = start.state;
   bool stopped = false;
-  RunWatch watch(setup, run, options, stepper->traits());
+  RunWatch watch(setup, start.state, run, options, stepper->traits());
   RowWatch row(options.limits, setup.scene);
   const StepReport last = simulate(
       setup.scene, *stepper, setup.drive_at, 1 / setup.run.fps, setup.run.frames, state,
@@ -136,7 +137,7 @@ std::optional<CompareRun> timed_run(const Setup& setup, const TimedRunOptions& o
   const auto energy = [&](const State& at) {
     return energies(setup.scene, watch.terms, at.x, at.v, setup.drive_at(at.time).acceleration).total();
   };
-  run.lost = energy(setup.initial) - energy(state);
+  run.lost = energy(start.state) - energy(state);
   run.end = bits_of(state.x);
   if (watch.measures) {
     run.measures = watch.measures->values();

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "pipeline/compare/compare_parts.hpp"
+#include "pipeline/run/prepare.hpp"
 
 namespace selvedge {
 
@@ -14,9 +15,9 @@ struct TimedRunOptions {
   std::filesystem::path trajectory{};  // where the run is kept; empty: nowhere
 };
 
-// Runs the scene, times each frame, and measures between the frames. The run ends early if it exceeds a limit, and says
-// so. Absent if it was stopped.
-std::optional<CompareRun> timed_run(const Setup&, const TimedRunOptions&, const Stop&);
+// Runs the scene from its start, times each frame, and measures between the frames. The run ends early if it exceeds a
+// limit, and says so. Absent if it was stopped.
+std::optional<CompareRun> timed_run(const Setup&, const Start&, const TimedRunOptions&, const Stop&);
 
 // Checks that a network alone made every frame of a kept run after the start: none was gated, responded to, pushed or
 // made by another stepper. Returns the reason if it is not so, else an empty text.

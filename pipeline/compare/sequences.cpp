@@ -52,7 +52,8 @@ std::string list_text(const Eigen::VectorXd& values) {
 void check_bodies_unseen(const Comparison& comparison) {
   const std::string seed = std::to_string(comparison.sequences.seed);
   for (const CompareSetting& setting : comparison.settings) {
-    if (setting.stepper != "learned" || !std::filesystem::exists(setting.weights)) continue;
+    const StepperKind* kind = comparison.kinds.find(setting.stepper);
+    if (!kind || kind->network != NetworkUse::alone || !std::filesystem::exists(setting.weights)) continue;
     for (const auto& [name, value] : read_weight_file(setting.weights).origin)
       if (name == "seed" && value == seed)
         throw Error(fmt::format("`sequences.seed` {} is the seed with which {} was trained: the row `{}` would start "

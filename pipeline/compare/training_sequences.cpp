@@ -106,7 +106,7 @@ std::filesystem::path weights_of(const CompareSetting& setting, const CompareSce
   const Config config = read_config(scene.file, table->scene, overrides);
   const Config& run = config["run"];
   const std::vector<std::string>& named = run["learned"]["weights"].words;
-  if (named.empty() || named[0].empty() || !runs_network(run["stepper"].text())) return {};
+  if (named.empty() || named[0].empty() || kinds.find(run["stepper"].text())->network == NetworkUse::none) return {};
   const std::filesystem::path path = files_folder(config, scene.file) / named[0];
   std::error_code ignored;
   return std::filesystem::is_regular_file(path, ignored) ? path : std::filesystem::path();

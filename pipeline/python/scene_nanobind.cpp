@@ -38,9 +38,8 @@ class World {
 
   World(const std::filesystem::path& file, const std::vector<std::string>& overrides, const nb::dict& kinds)
       : setup_(read_setup(file, overrides, kinds_with(kinds, held_))) {
-    warn(setup_.warnings);
-    prepare(setup_);
-    state_ = setup_.initial;
+    warn(warnings_of(setup_));
+    state_ = prepare(setup_)->state;
     stepper_ = make_stepper(setup_);
   }
 

@@ -79,8 +79,10 @@ const BoundFields<CollisionReport>& collision_fields() {
             {{"cut_out_triangles", Over::at_start},
              {"cut_out_triangles_at_end", Over::at_end},
              {"cut_out_last_frame", Over::last_frame}}),
-      field("pushed_out", &C::pushed_out, "", "cloth vertices that [the repulsive layer](repulsion.md) moved",
-            {{"pushed_out", Over::sum}}, Page::yes),
+      field(
+          "pushed_out", &C::pushed_out, "",
+          "cloth vertices that [the repulsive layer](repulsion.md), or the settling of a network, moved out of bodies",
+          {{"pushed_out", Over::sum}}, Page::yes),
       field("jumped", &C::jumped, "",
             "obstacles that were wanted farther away than their own size in a substep: put there without a sweep, as a "
             "new start",

@@ -17,18 +17,18 @@ bool is_clean_start(const Scene& scene, const State& start) {
 
 }  // namespace
 
-double jitter_start(Setup& setup, double amount, std::uint64_t seed) {
-  const Points start = setup.initial.x;
-  if (!is_clean_start(setup.scene, setup.initial))
+double jitter_start(const Setup& setup, double amount, std::uint64_t seed, State& start) {
+  const Points x = start.x;
+  if (!is_clean_start(setup.scene, start))
     throw Error("the start is not clean", setup.file.string(), "move the cloths and obstacles of the scene apart");
-  Points shift = random_shifts(start.rows(), seed);
+  Points shift = random_shifts(x.rows(), seed);
   for (const int pin : setup.scene.pins) shift.row(pin).setZero();
   shift *= mean_edge_length(setup.scene);
   for (int halvings = 0; halvings < most_halvings; ++halvings, amount /= 2) {
-    setup.initial.x = start + amount * shift;
-    if (is_clean_start(setup.scene, setup.initial)) return amount;
+    start.x = x + amount * shift;
+    if (is_clean_start(setup.scene, start)) return amount;
   }
-  setup.initial.x = start;
+  start.x = x;
   return 0;
 }
 

@@ -9,13 +9,15 @@
 
 namespace selvedge {
 
-bool prepare(Setup& setup, const std::function<bool()>& stop, Progress* progress, const StopFlag& interrupt) {
+std::optional<Start> prepare(const Setup& setup, const std::function<bool()>& stop, Progress* progress,
+                             const StopFlag& interrupt) {
+  Start start{setup.initial, setup.prepared};
   const int frames = -setup.initial.frame;
-  if (frames <= 0) return true;
+  if (frames <= 0) return start;
   const Clock::time_point started = Clock::now();
   const std::unique_ptr<Stepper> stepper =
       make_following_stepper(setup.scene, setup.followers, make_recovering_conventional_stepper(setup.scene));
-  State state = setup.initial;
+  State& state = start.state;
   bool ended = false;
   if (progress) progress->begin(0, frames, "draping, frame");
   const FrameSink sink = [&](const FrameEvent& event) {
@@ -25,13 +27,13 @@ bool prepare(Setup& setup, const std::function<bool()>& stop, Progress* progress
   };
   const StepReport last = simulate(setup.scene, *stepper, setup.drive_at, 1 / setup.run.fps, 0, state, sink, interrupt);
   if (progress) progress->end();
-  if (ended || last.reason == Reason::stopped) return false;
+  if (ended || last.reason == Reason::stopped) return {};
   if (last.status != StepStatus::accepted)
     throw Error(fmt::format("cannot be draped: a step is rejected {} frames before time 0", -state.frame),
                 setup.file.string(), "let the body come more slowly (start.seconds), or start from: skinned");
   const Audit audit = last.audit.value_or(Audit{});
   const double moving = moving_share(state.v, 1);
-  setup.prepared = fmt::format("draped in {} frames, {}; {} pairs, {} vertices inside, fastest vertex {:.2g} m/s, {}",
+  start.prepared = fmt::format("draped in {} frames, {}; {} pairs, {} vertices inside, fastest vertex {:.2g} m/s, {}",
                                frames, duration_text(seconds_since(started)), audit.intersecting_pairs(),
                                audit.inside_vertices, state.v.rowwise().norm().maxCoeff(),
                                moving < resting_share ? std::string("at rest")
@@ -41,8 +43,7 @@ bool prepare(Setup& setup, const std::function<bool()>& stop, Progress* progress
   state.time = 0;
   state.v = setup.velocity;
   state.memory.clear();
-  setup.initial = std::move(state);
-  return true;
+  return start;
 }
 
 }  // namespace selvedge

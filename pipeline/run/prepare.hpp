@@ -1,16 +1,22 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "pipeline/run/progress.hpp"
 #include "pipeline/scene/setup.hpp"
 
 namespace selvedge {
 
-// Steps a scene whose time begins before 0 to time 0, with the default conventional stepper, so that all steppers start
-// from the same bits. Records nothing; Setup's `prepared` says what was done. Does nothing if time begins at 0. Returns
-// false if stopped. Throws Error if a step is rejected.
-bool prepare(Setup&, const std::function<bool()>& stop = {}, Progress* progress = nullptr,
-             const StopFlag& interrupt = {});
+// What a run starts from.
+struct Start {
+  State state;           // at time 0
+  std::string prepared;  // what was done for it; empty: nothing
+};
+
+// The start of a scene. If its time begins before 0, the default conventional stepper takes it to time 0, so that all
+// steppers start from the same bits; nothing of that is recorded. Absent: stopped. Throws Error if a step is rejected.
+std::optional<Start> prepare(const Setup&, const std::function<bool()>& stop = {}, Progress* progress = nullptr,
+                             const StopFlag& interrupt = {});
 
 }  // namespace selvedge

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <optional>
 
 #include "collision/geometry/error.hpp"
@@ -22,12 +21,12 @@
 namespace selvedge {
 namespace {
 
-RunSummary empty_summary(const Setup& setup, const Stepper& stepper) {
+RunSummary empty_summary(const Setup& setup, const std::string& prepared, const Stepper& stepper) {
   RunSummary summary;
   summary.program_version = program_version();
   summary.scene = setup.file.string();
   summary.stepper = stepper.traits().name;
-  summary.prepared = setup.prepared;
+  summary.prepared = prepared;
   summary.vertices = setup.scene.surface.vertex_count;
   summary.triangles = static_cast<int>(setup.scene.surface.triangles.rows());
   summary.frames_wanted = setup.run.frames;
@@ -91,10 +90,10 @@ void copy_frames(const ResumedRun& resumed, const std::filesystem::path& folder,
 }
 
 // Removes results of an earlier run, so that they are not taken for this run's if it fails.
-void remove_results(const RunRequest& request) {
-  for (const char* name : {"summary.json", "run.xdmf", "view.html"}) std::filesystem::remove(request.out / name);
-  if (request.resume) return;
-  for (const char* name : {"run.h5", "checkpoint.h5"}) std::filesystem::remove(request.out / name);
+void remove_results(const std::filesystem::path& folder, bool resumed) {
+  for (const char* name : {"summary.json", "run.xdmf", "view.html"}) std::filesystem::remove(folder / name);
+  if (resumed) return;
+  for (const char* name : {"run.h5", "checkpoint.h5"}) std::filesystem::remove(folder / name);
 }
 
 void finish(RunSummary& summary, const StepReport& last, int frame) {
@@ -116,33 +115,31 @@ std::string config_in(const std::filesystem::path& out, const Setup& setup) {
   return "folder: " + quoted_yaml(folder.string()) + "\n" + setup.config;
 }
 
-}  // namespace
-
-RunSummary run_scene(const Setup& setup, Stepper& stepper, const RunRequest& request) {
-  assert(request.resume || setup.initial.frame >= 0);
+// From the start; null: from the folder's checkpoint.
+RunSummary run_from(const Start* start, const Setup& setup, Stepper& stepper, const RunRequest& request) {
   const StopScope scope(request.interrupt);
   make_folder(request.out);
   std::optional<FolderLock> lock;
   if (!request.locked) lock.emplace(request.out);
   const std::filesystem::path file = request.out / "run.h5", saved = request.out / "checkpoint.h5";
   ResumedRun resumed;
-  if (request.resume) resumed = read_resumed(request.out, setup, stepper.traits(), run_inputs(setup));
-  State state = request.resume ? resumed.state : setup.initial;
-  remove_results(request);
-  const RunInputs inputs = request.resume ? resumed.inputs : run_inputs(setup);
+  if (!start) resumed = read_resumed(request.out, setup, stepper.traits(), run_inputs(setup));
+  State state = start ? start->state : resumed.state;
+  remove_results(request.out, !start);
+  const RunInputs inputs = start ? run_inputs(setup) : resumed.inputs;
   write_file(request.out / "config.yaml", config_in(request.out, setup));
 
   // A resumed run writes to another file until all kept frames of the old one are copied.
-  const std::filesystem::path first_file = request.resume ? request.out / "resumed.h5" : file;
-  RunSummary summary = empty_summary(setup, stepper);
+  const std::filesystem::path first_file = start ? file : request.out / "resumed.h5";
+  RunSummary summary = empty_summary(setup, start ? start->prepared : setup.prepared, stepper);
   const TrajectoryInfo info = trajectory_info(setup.scene, setup.config, stepper.traits().name, setup.run.fps);
   Recorder recorder{
       setup, request, summary, inputs, TrajectoryWriter(first_file, info), energy_terms(setup.scene, stepper.traits())};
-  if (request.resume) {
+  if (start) {
+    recorder.add(record_initial(setup.scene, recorder.terms, state, setup.drive_at(state.time)));
+  } else {
     copy_frames(resumed, request.out, recorder);
     std::filesystem::rename(first_file, file);
-  } else {
-    recorder.add(record_initial(setup.scene, recorder.terms, state, setup.drive_at(state.time)));
   }
 
   if (request.progress) request.progress->begin(state.frame, setup.run.frames);
@@ -159,6 +156,16 @@ RunSummary run_scene(const Setup& setup, Stepper& stepper, const RunRequest& req
   write_xdmf(file);
   write_file(request.out / "summary.json", summary_json(summary));
   return summary;
+}
+
+}  // namespace
+
+RunSummary run_scene(const Setup& setup, const Start& start, Stepper& stepper, const RunRequest& request) {
+  return run_from(&start, setup, stepper, request);
+}
+
+RunSummary resume_scene(const Setup& setup, Stepper& stepper, const RunRequest& request) {
+  return run_from(nullptr, setup, stepper, request);
 }
 
 }  // namespace selvedge

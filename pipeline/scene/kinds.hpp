@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "physics/scene/features.hpp"
 #include "physics/scene/stepper.hpp"
 #include "pipeline/config/config.hpp"
 
@@ -11,7 +12,14 @@ namespace selvedge {
 
 struct Setup;
 
-// A kind of stepper that a scene file names by `run.stepper`.
+// What a kind of stepper does with the network of run.learned.
+enum class NetworkUse {
+  none,
+  alone,   // its frames are what the network makes
+  guarded  // the network proposes, and another stepper decides
+};
+
+// A kind of stepper that a scene file names by `run.stepper`: all that differs from kind to kind.
 struct StepperKind {
   std::string name;
   // The table of the key run.<name>; null: the kind has no options, or they stand in run_options(). It bears the kind's
@@ -19,6 +27,13 @@ struct StepperKind {
   const Section* options = nullptr;
   // The maker of bare steppers (decorated_stepper.hpp) of a scene; `given` is the section as the file has it.
   std::function<MakeStepper(const Setup&, const Config& given)> maker = {};
+  NetworkUse network = NetworkUse::none;
+  // Its steps without contact are the minimisers that the options of `solver` describe.
+  bool minimises = false;
+  // Throws Error for what the scene file says and the kind does not take; empty: it takes all.
+  std::function<void(const Config& scene)> check = {};
+  // What it adds to a scene's plan. Throws Error where it does not take the scene; empty: nothing.
+  std::function<std::vector<PlanLine>(const Setup&)> plan = {};
 };
 
 // The kinds that scene files may name.

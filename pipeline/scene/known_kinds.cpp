@@ -1,5 +1,10 @@
+#include <fmt/format.h>
+
+#include <map>
 #include <memory>
 
+#include "learned/network/weights_hdf5.hpp"
+#include "learned/steppers/learned_plan.hpp"
 #include "learned/steppers/learned_state.hpp"
 #include "learned/steppers/learned_stepper.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
@@ -10,9 +15,60 @@
 namespace selvedge {
 namespace {
 
+StepperKind conventional_kind() {
+  StepperKind kind{.name = "conventional", .minimises = true};
+  kind.maker = [](const Setup& setup, const Config&) { return conventional_maker(setup.run.conventional); };
+  return kind;
+}
+
+std::vector<PlanLine> icm_lines(const Setup& setup) {
+  const std::string untouched = "left out by the stepper icm";
+  return {{"contour energy", true, "weight " + fmt::format("{}", setup.run.icm.contour_weight)},
+          {"continuous detection", false, untouched + ": what passes through on the way is found by the audit"},
+          {"impulses and impact zones", false, untouched + ": nothing undoes a motion"},
+          {"recovery before a step", false, untouched + ": the contour energy does it within"},
+          {"obstacles that give way", false, untouched + ": they are where they are wanted"}};
+}
+
+StepperKind icm_kind() {
+  StepperKind kind{.name = "icm", .plan = icm_lines};
+  kind.maker = [](const Setup& setup, const Config&) -> MakeStepper {
+    return [options = setup.run.icm](const Scene& scene) { return make_icm_stepper(scene, options); };
+  };
+  kind.check = [](const Config& scene) {
+    const Config& integrator = scene["solver"]["integrator"];
+    if (integrator.text() == "bdf2")
+      integrator.fail("is not one of the stepper `icm`", "leave it out, or take the stepper `conventional`");
+  };
+  return kind;
+}
+
+LearnedOptions learned_options(const Setup& setup) {
+  return {.settle = setup.run.learned.settle,
+          .omitted_body_vertices = {},
+          .centres = {},
+          .device = setup.run.learned.device};
+}
+
 MakeStepper learned_maker(const Setup& setup) {
-  return [file = std::make_shared<const WeightFile>(read_learned_weights(setup)), options = learned_options_of(setup)](
-             const Scene& scene) { return make_learned_stepper(scene, file->architecture, file->weights, options); };
+  network_of(setup);
+  return [kept = setup.network, options = learned_options(setup)](const Scene& scene) {
+    return make_learned_stepper(scene, (*kept)->architecture, (*kept)->weights, options);
+  };
+}
+
+std::vector<PlanLine> learned_lines(const Setup& setup) {
+  const Architecture& architecture = network_of(setup).architecture;
+  StepperTraits traits = learned_traits(architecture);
+  traits.name = setup.kind.name;
+  check_accepted(setup, traits);
+  return learned_plan_lines(setup.scene, architecture, learned_options(setup));
+}
+
+StepperKind learned_kind() {
+  StepperKind kind{.name = "learned", .network = NetworkUse::alone, .plan = learned_lines};
+  kind.maker = [](const Setup& setup, const Config&) { return learned_maker(setup); };
+  return kind;
 }
 
 // The conventional stepper as the scene has it; `newton`: most iterations of a solve.
@@ -35,17 +91,40 @@ MakeStepper hybrid_maker(const Setup& setup) {
   };
 }
 
+// What proposes, what becomes of it, and what the network leaves out.
+std::vector<PlanLine> hybrid_lines(const Setup& setup) {
+  static const std::map<HybridMode, std::string> modes{
+      {HybridMode::fallback, "a proposal that the guard admits is the step"},
+      {HybridMode::corrected, "its motion goes through the response to contact, then the guard"},
+      {HybridMode::refined, "a conventional solve begins at it"},
+      {HybridMode::gated, "a line search of the step's potential, the response to contact, then the guard"},
+      {HybridMode::after_k, "Newton iterations, a line search from there, the response to contact, then the guard"}};
+  const HybridOptions& hybrid = setup.run.hybrid;
+  const bool guarded = hybrid.mode != HybridMode::refined;
+  std::vector<PlanLine> lines{
+      {"proposals", true, modes.at(hybrid.mode)},
+      {"guard", guarded,
+       guarded ? "refused steps are taken by the conventional stepper" : "the solve decides what a proposal is worth"},
+      {"proposals by time", hybrid.stop_when_slow,
+       hybrid.stop_when_slow ? "none where they cost more than they save: frames depend on the clock"
+                             : "not asked for by run.hybrid.stop_when_slow"}};
+  for (const PlanLine& line : learned_lines(setup))
+    if (line.feature != "settling pass") lines.push_back({"proposal: " + line.feature, line.in, line.why});
+  return lines;
+}
+
+StepperKind hybrid_kind() {
+  StepperKind kind{.name = "hybrid", .network = NetworkUse::guarded, .plan = hybrid_lines};
+  kind.maker = [](const Setup& setup, const Config&) { return hybrid_maker(setup); };
+  return kind;
+}
+
 }  // namespace
 
 Kinds known_kinds() {
   Kinds kinds;
-  kinds.add({.name = "conventional",
-             .maker = [](const Setup& setup, const Config&) { return conventional_maker(setup.run.conventional); }});
-  kinds.add({.name = "icm", .maker = [](const Setup& setup, const Config&) -> MakeStepper {
-               return [options = setup.run.icm](const Scene& scene) { return make_icm_stepper(scene, options); };
-             }});
-  kinds.add({.name = "learned", .maker = [](const Setup& setup, const Config&) { return learned_maker(setup); }});
-  kinds.add({.name = "hybrid", .maker = [](const Setup& setup, const Config&) { return hybrid_maker(setup); }});
+  for (StepperKind& kind : std::vector{conventional_kind(), icm_kind(), learned_kind(), hybrid_kind()})
+    kinds.add(std::move(kind));
   return kinds;
 }
 

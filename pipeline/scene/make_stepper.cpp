@@ -10,26 +10,20 @@
 #include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/formats/neighbour_scale_hdf5.hpp"
+#include "pipeline/scene/network_warnings.hpp"
 
 namespace selvedge {
 
-bool runs_network(const Setup& setup) { return runs_network(setup.run.stepper); }
-bool runs_network(const std::string& stepper) { return stepper == "learned" || stepper == "hybrid"; }
-
-WeightFile read_learned_weights(const Setup& setup) {
+const WeightFile& network_of(const Setup& setup) {
+  std::optional<WeightFile>& network = *setup.network;
+  if (network) return *network;
   const std::string& weights = setup.run.learned.weights;
   if (weights.empty())
-    throw Error("the stepper `" + setup.run.stepper + "` needs a weight file",
+    throw Error("the stepper `" + setup.kind.name + "` needs a weight file",
                 setup.file.string() + ": run.learned.weights",
                 "give this key or --weights; `selvedge weights import` makes such a file of a published checkpoint");
-  return read_weight_file(setup.file.parent_path() / weights);  // an absolute path stays as it is
-}
-
-LearnedOptions learned_options_of(const Setup& setup) {
-  return {.settle = setup.run.learned.settle,
-          .omitted_body_vertices = {},
-          .centres = {},
-          .device = setup.run.learned.device};
+  network = read_weight_file(setup.file.parent_path() / weights);  // an absolute path stays as it is
+  return *network;
 }
 
 std::shared_ptr<const NeighbourScale> read_refu_weights(const Setup& setup) {
@@ -93,20 +87,25 @@ std::unique_ptr<Stepper> with_refu(const Setup& setup, std::unique_ptr<Stepper> 
 }  // namespace
 
 std::unique_ptr<Stepper> make_stepper(const Setup& setup) {
-  const Kinds known = known_kinds();
-  const StepperKind* kind = setup.kind.maker ? &setup.kind : known.find(setup.run.stepper);
-  if (!kind)
-    throw Error("unknown stepper `" + setup.run.stepper + "`", setup.file.string(), "known: " + joined(known.names()));
   std::unique_ptr<Stepper> stepper =
-      decorated(setup.scene, kind->maker(setup, setup.kind_options),
+      decorated(setup.scene, setup.kind.maker(setup, setup.kind_options),
                 {setup.run.rest, !setup.initial.cut_out.empty(), setup.run.recovery, setup.run.resting});
   check_accepted(setup, stepper->traits());
   stepper = with_refu(setup, std::move(stepper));
   return make_following_stepper(setup.scene, setup.followers, std::move(stepper));
 }
 
-std::vector<std::string> run_warnings(const Setup& setup, const StepperTraits& traits) {
+std::vector<std::string> warnings_of(const Setup& setup) {
   std::vector<std::string> warnings = setup.warnings;
+  if (setup.kind.network == NetworkUse::none) return warnings;
+  const Vec3 gravity = setup.drive_at(0).acceleration;
+  for (const std::string& one : network_warnings(setup.scene, gravity, network_of(setup), setup.run.learned.weights))
+    warnings.push_back(one);
+  return warnings;
+}
+
+std::vector<std::string> run_warnings(const Setup& setup, const StepperTraits& traits) {
+  std::vector<std::string> warnings = warnings_of(setup);
   for (const PlanLine& line : ignored_lines(setup.scene, traits)) warnings.push_back(line.feature + ": " + line.why);
   return warnings;
 }

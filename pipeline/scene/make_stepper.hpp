@@ -4,21 +4,13 @@
 
 #include "learned/network/weights_hdf5.hpp"
 #include "learned/repulsion/neighbour_scale.hpp"
-#include "learned/steppers/learned_stepper.hpp"
 #include "pipeline/scene/setup.hpp"
 
 namespace selvedge {
 
-// Whether the setup's stepper is one of those that run a network, `learned` and `hybrid`; also of a kind by its name.
-bool runs_network(const Setup&);
-bool runs_network(const std::string& stepper);
-
-// The network that the stepper `learned` runs. Throws Error where the scene names none, and whatever read_weight_file
-// does.
-WeightFile read_learned_weights(const Setup&);
-
-// How that stepper runs it.
-LearnedOptions learned_options_of(const Setup&);
+// The network of a setup whose kind of stepper runs one, read once. Throws Error where the scene names none, and
+// whatever read_weight_file does.
+const WeightFile& network_of(const Setup&);
 
 // Networks that scale the repulsive layer's pushes; null where the scene names none. Throws what read_neighbour_scale
 // does.
@@ -27,11 +19,14 @@ std::shared_ptr<const NeighbourScale> read_refu_weights(const Setup&);
 // Throws Error where a stepper with these traits does not take the setup's scene.
 void check_accepted(const Setup&, const StepperTraits&);
 
-// The setup's kind of stepper with what stands round it. Keeps a reference to the setup's scene. Throws Error for an
-// unknown kind, and for a scene that does not have what the stepper's traits ask for.
+// The setup's kind of stepper with what stands round it. Keeps a reference to the setup's scene. Throws Error for a
+// scene that does not have what the stepper's traits ask for.
 std::unique_ptr<Stepper> make_stepper(const Setup&);
 
-// The setup's warnings, and a sentence for each force of the scene that the stepper ignores.
+// The setup's warnings and those of its network (network_warnings.hpp). Throws what network_of does.
+std::vector<std::string> warnings_of(const Setup&);
+
+// The same, and a sentence for each force of the scene that the stepper ignores.
 std::vector<std::string> run_warnings(const Setup&, const StepperTraits&);
 
 }  // namespace selvedge

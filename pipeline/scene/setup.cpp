@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "learned/network/weights_hdf5.hpp"
 #include "physics/scene/make_scene.hpp"
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/obstacles/setup_mesh.hpp"
@@ -147,9 +148,6 @@ RunOptions read_run(const Config& scene) {
   RunOptions run = run_options().read(scene["run"]);
   read_options(output_options().rows, scene["output"], run);
   read_options(solver_options().rows, scene["solver"], run.conventional);
-  if (run.conventional.integrator == Integrator::bdf2 && run.stepper == "icm")
-    scene["solver"]["integrator"].fail("is not one of the stepper `icm`",
-                                       "leave it out, or take the stepper `conventional`");
   run.icm.substeps = run.conventional.substeps;
   run.icm.max_substeps = run.conventional.max_substeps;
   run.icm.implicit_euler = run.conventional.implicit_euler;
@@ -334,6 +332,8 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
   }
   setup.kind = *kinds.find(setup.run.stepper);
   if (setup.kind.options) setup.kind_options = config["run"][setup.kind.name];
+  if (setup.kind.check) setup.kind.check(config);
+  setup.network = std::make_shared<std::optional<WeightFile>>();
   const SceneParts parts = read_parts(config, folder, setup.run.fps);
   const double begin_time = parts.begin_frame / setup.run.fps;
   JoinedScene joined = join_scene(config, parts, begin_time);

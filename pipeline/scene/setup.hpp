@@ -19,6 +19,7 @@ namespace selvedge {
 
 struct PosedBodies;
 struct SceneTable;
+struct WeightFile;
 
 // A garment of a scene: where it is on its body, and whether it still is.
 struct WornCloth {
@@ -31,9 +32,9 @@ struct Setup {
   std::filesystem::path file;
   std::string config;  // the full configuration as YAML, overrides applied
   Scene scene;
-  State initial;         // before time 0 where the start is still to be made, which `prepare` does
+  State initial;         // when its time begins; what a run starts from is made of it (run/prepare.hpp)
   Points velocity;       // at time 0
-  std::string prepared;  // what was done for the start; empty: nothing
+  std::string prepared;  // what was done for the initial state; empty: nothing
   RunOptions run;
   std::string quality;                               // what run.quality has set, for people
   std::function<Drive(double time)> drive_at;        // the world at a time [s]
@@ -42,9 +43,10 @@ struct Setup {
   std::vector<Outcome> outcomes;                     // what must come true
   std::vector<WornCloth> worn;                       // garments on their bodies, by where skinning has them at first
   std::vector<std::string> short_form;               // overrides that make a shorter run of the scene
-  StepperKind kind;                                  // of the stepper; without a maker: the known one of run.stepper
+  StepperKind kind;                                  // of the stepper
   Config kind_options;                               // what the file gives for it
-  std::shared_ptr<const SceneTable> table;           // by which the file was read
+  std::shared_ptr<std::optional<WeightFile>> network;  // read by network_of (make_stepper.hpp); copies share it
+  std::shared_ptr<const SceneTable> table;             // by which the file was read
   std::vector<std::string> warnings;  // named and counted: degenerate triangles left out, isolated vertices, ...
 };
 

@@ -39,10 +39,10 @@ std::optional<AlgebraicError> worst_error(const Setup& setup, const StateSampler
 }
 
 // Energy lost in a run to `end` over what the same steps, each solved to its minimiser, lose.
-std::optional<double> energy_decay(const Setup& setup, const State& end, const Setup& converged) {
-  const auto reference = timed_run(converged, {.measured = false}, {});
+std::optional<double> energy_decay(const State& start, const State& end, const Setup& converged) {
+  const auto reference = timed_run(converged, *prepare(converged), {.measured = false}, {});
   if (!reference || !reference->trouble.empty() || !(reference->lost > 0)) return {};
-  return (energy_of(setup, setup.initial) - energy_of(setup, end)) / reference->lost;
+  return (energy_of(converged, start) - energy_of(converged, end)) / reference->lost;
 }
 
 BenchMember run_member(const BenchRequest& request, const std::string& scene, int size) {
@@ -50,12 +50,12 @@ BenchMember run_member(const BenchRequest& request, const std::string& scene, in
       fmt::format("cloths.0.{}.resolution={}", scene == "tube" ? "tube" : "rectangle", size)};
   if (request.frames) overrides.push_back(fmt::format("run.frames={}", *request.frames));
   const std::filesystem::path file = request.configs / (scene + ".yaml");
-  Setup setup = read_setup(file, overrides);
-  prepare(setup);
+  const Setup setup = read_setup(file, overrides);
+  const Start start = *prepare(setup);
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
 
   StateSampler sampler;
-  sampler.before = setup.initial;
+  sampler.before = start.state;
   sampler.dt = 1 / setup.run.fps;
   sampler.every = std::max(1, setup.run.frames / 4);
   RunRequest run;
@@ -63,14 +63,12 @@ BenchMember run_member(const BenchRequest& request, const std::string& scene, in
   run.checkpoint_seconds = 1e9;
   if (scene == "hang") run.observe = std::ref(sampler);
   reset_peak_memory();
-  BenchMember member{scene, size, run_scene(setup, *stepper, run), {}, {}};
+  BenchMember member{scene, size, run_scene(setup, start, *stepper, run), {}, {}};
   member.algebraic = worst_error(setup, sampler);
   if (scene == "hang") {
     overrides.insert(overrides.end(), {"solver.relative_tolerance=0", "solver.velocity_tolerance=1e-5",
                                        "solver.max_newton=40", "solver.linear_tolerance=0.01"});
-    Setup converged = read_setup(file, overrides);
-    prepare(converged);
-    member.decay = energy_decay(setup, sampler.before, converged);
+    member.decay = energy_decay(start.state, sampler.before, read_setup(file, overrides));
   }
   return member;
 }

@@ -67,8 +67,8 @@ int frames_of(const RunSummary& summary, Verdict verdict) {
 
 // Nothing but numbers that are none is held against a bare network: a step that it rejects has a reason, and what else
 // there is to say of it is told.
-void judge_row(const RunSummary& summary, const StabilityLimits& limits, StabilityRow& row) {
-  std::vector<std::string>& told = row.stepper == "learned" ? row.told : row.failures;
+void judge_row(const RunSummary& summary, const StabilityLimits& limits, NetworkUse network, StabilityRow& row) {
+  std::vector<std::string>& told = network == NetworkUse::alone ? row.told : row.failures;
   const auto fail_if = [&](bool bad, std::string why) {
     if (bad) told.push_back(std::move(why));
   };
@@ -94,8 +94,9 @@ std::optional<StabilityRow> run_one(const StabilityRequest& request, const Stabi
                                     const StabilityCase& one, const StabilityRun& run,
                                     const std::filesystem::path& folder) {
   const Clock::time_point started = Clock::now();
-  Setup setup = read_run(request, one, run);
-  if (!prepare(setup, request.stop)) return {};
+  const Setup setup = read_run(request, one, run);
+  const std::optional<Start> start = prepare(setup, request.stop);
+  if (!start) return {};
   StabilityRow row;
   row.name = one.name;
   row.run = run.name;
@@ -108,7 +109,7 @@ std::optional<StabilityRow> run_one(const StabilityRequest& request, const Stabi
     row.failures = {error.what()};
     return row;
   }
-  StabilityWatch watch(setup, stepper->traits());
+  StabilityWatch watch(setup, start->state, stepper->traits());
   RunRequest to_run;
   to_run.out = folder;
   to_run.checkpoint_seconds = 1e9;
@@ -120,18 +121,18 @@ std::optional<StabilityRow> run_one(const StabilityRequest& request, const Stabi
     row.end_pairs = end.intersecting_pairs();
     row.end_inside = end.inside_vertices;
   };
-  const RunSummary summary = run_scene(setup, *stepper, to_run);
+  const RunSummary summary = run_scene(setup, *start, *stepper, to_run);
   if (summary.end == RunEnd::interrupted) return {};
   row.stepper = stepper->traits().name;
   row.frames = summary.frames;
-  const Audit start = audit_positions(setup.scene, setup.initial.x, setup.initial.obstacles);
-  row.clean_start = start.intersecting_pairs() == 0 && start.inside_vertices == 0;
+  const Audit found = audit_positions(setup.scene, start->state.x, start->state.obstacles);
+  row.clean_start = found.intersecting_pairs() == 0 && found.inside_vertices == 0;
   row.pairs = summary.pairs;
   row.max_stretch = summary.max_stretch;
   row.notes = setup.warnings;
   row.proposed = frames_of(summary, Verdict::admitted) + frames_of(summary, Verdict::refined);
   watch.write(row);
-  judge_row(summary, limits, row);
+  judge_row(summary, limits, setup.kind.network, row);
   row.seconds = seconds_since(started);
   keep_or_remove(folder, !row.passed(), request.log);
   return row;

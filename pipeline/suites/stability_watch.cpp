@@ -15,12 +15,12 @@ long count_nonfinite(const Points& points) { return points.size() - points.array
 
 }  // namespace
 
-StabilityWatch::StabilityWatch(const Setup& setup, const StepperTraits& stepper)
+StabilityWatch::StabilityWatch(const Setup& setup, const State& start, const StepperTraits& stepper)
     : setup_(setup),
       scene_(without_ignored(setup.scene, stepper)),
       bound_(scene_),
       terms_(energy_terms(scene_)),
-      before_(setup.initial) {
+      before_(start) {
   const Vec3 gravity = setup.drive_at(0).acceleration;
   lowest_ = energy(before_, gravity);
 }

@@ -10,7 +10,7 @@ struct Setup;
 // Follows a run and keeps the books of its energy, without the forces that its stepper ignores.
 class StabilityWatch {
  public:
-  StabilityWatch(const Setup&, const StepperTraits&);
+  StabilityWatch(const Setup&, const State& start, const StepperTraits&);
   void operator()(const FrameEvent&);
   void write(StabilityRow&) const;  // all that was seen
 

@@ -102,18 +102,19 @@ std::optional<StressRow> run_repeat(const StressRequest& request, const Repeat& 
   row.scene = repeat.scene;
   row.repeat = repeat.index;
   row.seed = request.seed + static_cast<std::uint64_t>(repeat.index);
-  Setup setup = read_scene(request, repeat.scene);
-  if (!prepare(setup, request.stop)) return {};
-  row.jitter = jitter_start(setup, request.jitter, row.seed);
+  const Setup setup = read_scene(request, repeat.scene);
+  std::optional<Start> start = prepare(setup, request.stop);
+  if (!start) return {};
+  row.jitter = jitter_start(setup, request.jitter, row.seed, start->state);
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
   StressWatch watch{OutcomeWatch(setup.scene, setup.outcomes, setup.run.frames / setup.run.fps)};
-  watch.outcome(setup.initial, setup.drive_at(0));
+  watch.outcome(start->state, setup.drive_at(0));
   RunRequest run;
   run.out = repeat.run_folder();
   run.checkpoint_seconds = 1e9;
   run.observe = std::ref(watch);
   run.stop = request.stop;
-  const RunSummary summary = run_scene(setup, *stepper, run);
+  const RunSummary summary = run_scene(setup, *start, *stepper, run);
   if (summary.end == RunEnd::interrupted) return {};
 
   row.vertices = summary.vertices;

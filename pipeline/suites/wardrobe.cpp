@@ -148,7 +148,9 @@ std::optional<WardrobeRow> run_row(const WardrobeRequest& request, const Wear& w
   run.checkpoint_seconds = 1e9;
   run.observe = WardrobeWatch{excused, row};
   run.stop = request.stop;
-  const RunSummary summary = run_scene(setup, *make_stepper(setup), run);
+  const std::optional<Start> start = prepare(setup, request.stop);
+  if (!start) return {};
+  const RunSummary summary = run_scene(setup, *start, *make_stepper(setup), run);
   std::swap(known, body.known);
   if (summary.end == RunEnd::interrupted) return {};
   row.vertices = summary.vertices;

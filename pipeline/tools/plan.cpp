@@ -3,13 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "collision/search/intersections.hpp"
 #include "collision/untangle/caught.hpp"
-#include "learned/steppers/learned_plan.hpp"
-#include "learned/steppers/learned_stepper.hpp"
 #include "physics/linear/linear_solver.hpp"
 #include "physics/scene/features.hpp"
 #include "physics/solve/step_potential.hpp"
@@ -29,37 +26,6 @@ std::string linear_solver_of(const Setup& setup) {
                                                      : "PCG with a multigrid V-cycle";
   return fmt::format("{}, {}{} free vertices", name, wanted == LinearSolver::automatic ? "for " : "as asked for, ",
                      count);
-}
-
-// Of a stepper that runs a network. Throws Error where it does not take the scene, as a run does.
-std::vector<PlanLine> network_lines(const Setup& setup) {
-  const Architecture architecture = read_learned_weights(setup).architecture;
-  StepperTraits traits = learned_traits(architecture);
-  traits.name = setup.run.stepper;
-  check_accepted(setup, traits);
-  return learned_plan_lines(setup.scene, architecture, learned_options_of(setup));
-}
-
-// Of the hybrid: what proposes, what becomes of it, and what the network leaves out.
-void append_hybrid_lines(const Setup& setup, std::vector<PlanLine>& lines) {
-  const HybridOptions& hybrid = setup.run.hybrid;
-  const std::map<HybridMode, std::string> modes{
-      {HybridMode::fallback, "a proposal that the guard admits is the step"},
-      {HybridMode::corrected, "its motion goes through the response to contact, then the guard"},
-      {HybridMode::refined, "a conventional solve begins at it"},
-      {HybridMode::gated, "a line search of the step's potential, the response to contact, then the guard"},
-      {HybridMode::after_k, "Newton iterations, a line search from there, the response to contact, then the guard"}};
-  lines.push_back({"proposals", true, modes.at(hybrid.mode)});
-  lines.push_back({"guard", hybrid.mode != HybridMode::refined,
-                   hybrid.mode != HybridMode::refined ? "refused steps are taken by the conventional stepper"
-                                                      : "the solve decides what a proposal is worth"});
-  lines.push_back({"proposals by time", hybrid.stop_when_slow,
-                   hybrid.stop_when_slow ? "none where they cost more than they save: frames depend on the clock"
-                                         : "not asked for by run.hybrid.stop_when_slow"});
-  for (const PlanLine& line : network_lines(setup)) {
-    if (line.feature == "settling pass") continue;
-    lines.push_back({"proposal: " + line.feature, line.in, line.why});
-  }
 }
 
 // What stands round a stepper of any kind. Throws Error where a run would not find it.
@@ -127,32 +93,25 @@ void append_crossing_lines(const Setup& setup, std::vector<PlanLine>& lines) {
         {"switching off", false, fmt::format("no obstacle crosses itself in {} frames looked at", steps + 1)});
 }
 
-// What the scene needs, and what the stepper does without.
-std::vector<PlanLine> lines_of(const Setup& setup) {
-  if (setup.run.stepper == "learned") {
-    std::vector<PlanLine> lines = network_lines(setup);
-    append_common_lines(setup, lines);
-    return lines;
-  }
-  std::vector<PlanLine> lines = plan_lines(setup.scene);
+// What the scene needs of a stepper that solves.
+void append_solver_lines(const Setup& setup, std::vector<PlanLine>& lines) {
+  for (PlanLine& line : plan_lines(setup.scene)) lines.push_back(std::move(line));
   append_crossing_lines(setup, lines);
   lines.push_back({"quality", true, setup.quality});
   lines.push_back({"linear solver", true, linear_solver_of(setup)});
-  const bool hybrid = setup.run.stepper == "hybrid", rest = setup.run.rest && !hybrid;
+  const bool networked = setup.kind.network != NetworkUse::none, rest = setup.run.rest && !networked;
   lines.push_back({"cloths at rest", !rest,
-                   hybrid ? "stepped like others: a network sees all of the cloth"
-                   : rest ? "left out of a step as long as nothing that moves comes near them"
-                          : "stepped like others, as run.rest asks"});
+                   networked ? "stepped like others: a network sees all of the cloth"
+                   : rest    ? "left out of a step as long as nothing that moves comes near them"
+                             : "stepped like others, as run.rest asks"});
+}
+
+std::vector<PlanLine> lines_of(const Setup& setup) {
+  std::vector<PlanLine> lines;
+  if (setup.kind.network != NetworkUse::alone) append_solver_lines(setup, lines);
+  if (setup.kind.plan)
+    for (PlanLine& line : setup.kind.plan(setup)) lines.push_back(std::move(line));
   append_common_lines(setup, lines);
-  if (setup.run.stepper == "hybrid") append_hybrid_lines(setup, lines);
-  if (setup.run.stepper != "icm") return lines;
-  const std::string untouched = "left out by the stepper icm";
-  lines.push_back({"contour energy", true, "weight " + fmt::format("{}", setup.run.icm.contour_weight)});
-  lines.push_back(
-      {"continuous detection", false, untouched + ": what passes through on the way is found by the audit"});
-  lines.push_back({"impulses and impact zones", false, untouched + ": nothing undoes a motion"});
-  lines.push_back({"recovery before a step", false, untouched + ": the contour energy does it within"});
-  lines.push_back({"obstacles that give way", false, untouched + ": they are where they are wanted"});
   return lines;
 }
 
@@ -170,7 +129,7 @@ std::string plan_json(const Setup& setup) {
                                        {"triangles", setup.scene.surface.triangles.rows()},
                                        {"self", setup.scene.contact.self ? "audited" : "not audited"},
                                        {"plan", lines},
-                                       {"warnings", setup.warnings}};
+                                       {"warnings", warnings_of(setup)}};
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -184,7 +143,7 @@ std::string plan_text(const Setup& setup) {
                   setup.run.fps, setup.run.stepper);
   for (const PlanLine& line : lines)
     text += fmt::format("  {:<3}  {:<{}}  {}\n", line.in ? "in" : "out", line.feature, width, line.why);
-  for (const std::string& warning : setup.warnings) text += "  warning: " + warning + "\n";
+  for (const std::string& warning : warnings_of(setup)) text += "  warning: " + warning + "\n";
   return text;
 }
 

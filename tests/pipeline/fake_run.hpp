@@ -140,10 +140,9 @@ inline RunSummary run(const Setup& setup, Stepper& stepper, const std::filesyste
                       int stop_after = 1 << 30) {
   RunRequest request;
   request.out = out;
-  request.resume = resume;
   int seen = 0;
   request.stop = [&] { return ++seen >= stop_after; };
-  return run_scene(setup, stepper, request);
+  return resume ? resume_scene(setup, stepper, request) : run_scene(setup, *prepare(setup), stepper, request);
 }
 
 }  // namespace selvedge::fake

@@ -59,13 +59,13 @@ TEST_CASE("integration: pushing out leaves what is outside, and does nothing wit
   const fake::Mesh body = fake::grid(5, 5);  // its normals point along +y
   const Points x = (Points(3, 3) << 0.04, 0.01, 0.03, 0.04, 0.001, 0.03, 0.04, -0.02, 0.03).finished();
   Points moved = x;
-  push_out(fake::surface_of(body), body.x, 0.002, moved);
+  CHECK(push_out(fake::surface_of(body), body.x, 0.002, moved) == 2);
   CHECK(moved.row(0) == x.row(0));
   CHECK(moved(1, 1) == Approx(0.002));
   CHECK(moved(2, 1) == Approx(0.002));
   CHECK(moved(2, 0) == Approx(0.04));
   moved = x;
-  push_out(make_surface(0, Triangles(0, 3)), Points(0, 3), 0.002, moved);
+  CHECK(push_out(make_surface(0, Triangles(0, 3)), Points(0, 3), 0.002, moved) == 0);
   CHECK(moved == x);
 }
 

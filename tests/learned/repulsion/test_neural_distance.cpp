@@ -37,11 +37,7 @@ DistanceSamples ball_samples(int count, unsigned seed) {
 }
 
 PlainNetwork narrow_distance(int query, int condition, double beta) {
-  NeuralDistanceShape shape = small_distance_shape(query, condition);
-  shape.layers = 4;
-  shape.width = 24;
-  shape.beta = beta;
-  return make_neural_distance(shape, 3);
+  return make_neural_distance({.query = query, .condition = condition, .layers = 4, .width = 24, .beta = beta}, 3);
 }
 
 }  // namespace
@@ -144,7 +140,7 @@ TEST_CASE("neural distance: derivatives go through bones, and folding the body c
     CHECK(found[0].gradient[k] == Approx((forth[0].value - back[0].value) / 2e-2).margin(2e-3));
   }
   CHECK_THROWS_AS(NeuralDistance(network, point_query(), condition), Error);
-  CHECK(forward_operations(make_neural_distance(paper_distance_shape(), 1), 9723) == Approx(165e9).epsilon(0.01));
+  CHECK(forward_operations(make_neural_distance({}, 1), 9723) == Approx(165e9).epsilon(0.01));
 }
 
 }  // namespace selvedge::test_neural_distance

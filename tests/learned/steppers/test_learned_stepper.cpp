@@ -18,9 +18,9 @@ namespace {
 
 constexpr double frame_dt = 1.0 / 30;
 
-fake::LearnedCase above_a_plate(int frames) {
+fake::LearnedCase above_a_plate(int frames, double height = 0.01) {
   fake::Mesh plate = fake::grid(5, 5, 0.03);
-  plate.x.col(1).array() -= 0.01;
+  plate.x.col(1).array() -= height;
   return fake::learned_case(fake::grid(8, 9), plate, {0.001, 0.002, 0}, frames);
 }
 
@@ -99,6 +99,21 @@ TEST_CASE("A roll-out of HOOD through the stepper has the bits of one by hand", 
     CHECK(states[k + 1].x.row(0) == run.drives[k].pins.row(0));
     CHECK((states[k + 1].v.row(5) - 30 * next.velocity.row(5)).norm() < 1e-12);
   }
+}
+
+TEST_CASE("The first frame of a roll-out says how many vertices its settling moved out of bodies", "[learned]") {
+  const fake::LearnedCase run = above_a_plate(2, -0.005);
+  const auto pushed = [&](const std::string& preset, const LearnedOptions& options, int frames) {
+    fake::LearnedCase part = run;
+    part.drives.resize(static_cast<std::size_t>(frames));
+    StepReport last;
+    REQUIRE(std::ssize(rollout(part, *stepper_of(part.scene, fake::narrow_network(preset), options), &last)) ==
+            frames + 1);
+    return last.collision.pushed_out;
+  };
+  CHECK(pushed("hood", {}, 1) > 10);
+  CHECK(pushed("hood", {}, 2) == 0);
+  CHECK(pushed("contourcraft", {.settle = true}, 1) == 0);
 }
 
 TEST_CASE("A roll-out of ContourCraft through the stepper has the bits of one by hand", "[learned]") {

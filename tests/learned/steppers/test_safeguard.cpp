@@ -1,10 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include "collision/search/intersections.hpp"
-#include "learned/steppers/learned_state.hpp"
 #include "learned/steppers/safeguard.hpp"
 #include "physics/frame/frame_audits.hpp"
-#include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_safeguard {
@@ -22,33 +20,11 @@ World two_sheets() {
   return make_world(testing::join(testing::sheet(6, 0.15, 0), upper));
 }
 
-Points moved_down(const World& world, double way, int vertices) {
+Points moved_down(const World& world, double distance, int vertices) {
   Points x = world.state.x;
-  x.bottomRows(x.rows() / 2).topRows(vertices).col(1).array() -= way;
+  x.bottomRows(x.rows() / 2).topRows(vertices).col(1).array() -= distance;
   return x;
 }
-
-// Goes to the positions that it was given, whatever the state is.
-class FixedProposal final : public Stepper {
- public:
-  explicit FixedProposal(Points x) : x_(std::move(x)) {}
-  const StepperTraits& traits() const override { return traits_; }
-  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override {
-    to = {};
-    to.time = from.time + dt;
-    to.x = x_;
-    to.v = (x_ - from.x) / dt;
-    to.obstacles = drive.obstacles;
-    to.memory = {{"learned.velocity", x_ - from.x}};
-    StepReport report;
-    report.status = StepStatus::accepted;
-    return report;
-  }
-
- private:
-  Points x_;
-  StepperTraits traits_{"fixed"};
-};
 
 }  // namespace
 
@@ -91,31 +67,6 @@ TEST_CASE("A safeguard gives up as ContourCraft's released code does", "[learned
   lost(0, 0) = std::numeric_limits<double>::quiet_NaN();
   CHECK(why({}, world.state.x, lost).find("finite") != std::string::npos);
   CHECK(why({}, moved_down(world, 0.012, 3), world.state.x).find("before") != std::string::npos);
-}
-
-TEST_CASE("A safeguarded stepper goes where the response lets it, and carries what is left of its velocity",
-          "[learned]") {
-  World world = two_sheets();
-  world.scene.contact.self = true;
-  const Points proposed = moved_down(world, 0.02, 3);
-  const auto stepper = make_safeguarded(world.scene, std::make_unique<FixedProposal>(proposed), {.largest_zone = 0});
-  CHECK(stepper->traits().name == "safeguarded fixed");
-  State to;
-  const StepReport report = testing::frame(world.scene, *stepper, world.state, world.drive, learned_dt, to);
-  REQUIRE(report.status == StepStatus::accepted);
-  CHECK(report.by == "safeguarded fixed");
-  CHECK(report.collision.pairs_after == 0);
-  CHECK(to.clean);
-  CHECK(to.x != proposed);
-  REQUIRE(to.memory.size() == 1);
-  CHECK(to.memory[0].rows.isApprox(to.x - world.state.x, 1e-12));
-  CHECK(to.v.isApprox((to.x - world.state.x) / learned_dt, 1e-9));
-
-  const auto strict =
-      make_safeguarded(world.scene, std::make_unique<FixedProposal>(proposed), {.largest_impulse = 1e-5});
-  const StepReport refused = testing::frame(world.scene, *strict, world.state, world.drive, learned_dt, to);
-  CHECK(refused.status == StepStatus::rejected);
-  CHECK(refused.reason == Reason::penetrating);
 }
 
 }  // namespace selvedge::test_safeguard

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "collision/geometry/distance.hpp"
+#include "learned/network/weights_hdf5.hpp"
 #include "learned/steppers/learned_state.hpp"
 #include "learned/steppers/learned_stepper.hpp"
 #include "pipeline/run/prepare.hpp"
@@ -53,7 +54,7 @@ Setup worn(const Folder& folder, const WornScene& scene) {
       fmt::format("cloths: [{{name: worn, garment: {}, start: {{from: draped}}, material: hood}}]\nobstacles: [{{name: "
                   "person, body: {{model: mannequin, clip: {}}}}}]\nrun: {{fps: 30}}\n",
                   scene.garment, scene.clip)));
-  REQUIRE(prepare(setup, {}, nullptr));
+  setup.initial = prepare(setup).value().state;
   return setup;
 }
 

@@ -28,7 +28,7 @@ Ran run(const std::filesystem::path& file, const std::vector<std::string>& overr
   RunRequest request;
   request.out = folder.path / "out";
   request.observe = [&](const FrameEvent& event) { ran.last = event.state; };
-  ran.summary = run_scene(setup, *make_stepper(setup), request);
+  ran.summary = run_scene(setup, *prepare(setup), *make_stepper(setup), request);
   ran.height = ran.last.x.col(1).mean();
   return ran;
 }

@@ -20,10 +20,10 @@ TEST_CASE("A run that is interrupted within a step keeps the state before it and
   const auto run = [&](const std::string& out, bool resume, const StopFlag& interrupt, Points& last) {
     RunRequest request;
     request.out = folder.path / out;
-    request.resume = resume;
     request.interrupt = interrupt;
     request.observe = [&](const FrameEvent& event) { last = event.state.x; };
-    return run_scene(setup, *make_stepper(setup), request);
+    const auto stepper = make_stepper(setup);
+    return resume ? resume_scene(setup, *stepper, request) : run_scene(setup, *prepare(setup), *stepper, request);
   };
   Points whole, before, after;
   int all = 0;

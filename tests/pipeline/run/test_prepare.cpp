@@ -30,9 +30,9 @@ Setup read(const Folder& folder, const std::string& cloth, const std::string& mo
 
 const std::string draped = "{garment: skirt.h5, start: {from: draped, seconds: 0.35, hold: 0.15}}";
 
-Audit audit_of(const Setup& setup) {
-  const std::vector<AuditBody> bodies{{&setup.scene.obstacles[0].surface, &setup.initial.obstacles[0]}};
-  return audit(setup.scene.surface, setup.initial.x, bodies);
+Audit audit_of(const Scene& scene, const State& state) {
+  const std::vector<AuditBody> bodies{{&scene.obstacles[0].surface, &state.obstacles[0]}};
+  return audit(scene.surface, state.x, bodies);
 }
 
 }  // namespace
@@ -79,56 +79,55 @@ TEST_CASE("Draped cloth is clean at time 0, where its pins and its body are want
   const Folder folder("prepare_clean");
   const auto waist = static_cast<Eigen::Index>(fake::write_skirt(folder).pins.size());
   const std::string pin = "  - {rectangle: {size: [0.1, 0.1], resolution: 3}, translate: [3, 5, 0]}\n";
-  Setup setup = read(folder, draped, pin);
+  const Setup setup = read(folder, draped, pin);
   int asked = 0;
-  REQUIRE(prepare(setup, [&] { return ++asked > 100; }));
+  const std::optional<Start> start = prepare(setup, [&] { return ++asked > 100; });
+  REQUIRE(start);
   CHECK(asked == 10);
-  CHECK(setup.initial.time == 0);
-  CHECK(setup.initial.frame == 0);
-  const Audit found = audit_of(setup);
+  const State& state = start->state;
+  CHECK(state.time == 0);
+  CHECK(state.frame == 0);
+  const Audit found = audit_of(setup.scene, state);
   CHECK(found.intersecting_pairs() == 0);
   CHECK(found.inside_vertices == 0);
   const Drive drive = setup.drive_at(0);
-  CHECK(farthest(setup.initial.obstacles[0], drive.obstacles[0]) < 1e-12);
-  CHECK(farthest(setup.initial.x(setup.scene.pins, Eigen::all), drive.pins) < 1e-12);
-  CHECK_THAT(setup.prepared, Contains("draped in 10 frames") && Contains("0 pairs"));
+  CHECK(farthest(state.obstacles[0], drive.obstacles[0]) < 1e-12);
+  CHECK(farthest(state.x(setup.scene.pins, Eigen::all), drive.pins) < 1e-12);
+  CHECK_THAT(start->prepared, Contains("draped in 10 frames") && Contains("0 pairs"));
   // It moves as the body begins to; the pins' velocity is theirs to say. The sheet has fallen along.
   const Setup skinned = read(folder, "{garment: skirt.h5}", pin);
-  CHECK(setup.initial.v == skinned.initial.v);
-  CHECK(setup.initial.v.col(0).segment(waist, 50).mean() > 0.5);
-  CHECK(setup.initial.x.bottomRows(9).col(1).maxCoeff() < 4.5);
-  // Nothing is left to prepare.
-  const Points x = setup.initial.x;
-  REQUIRE(prepare(setup, [] { return true; }));
-  CHECK(setup.initial.x == x);
+  CHECK(state.v == skinned.initial.v);
+  CHECK(state.v.col(0).segment(waist, 50).mean() > 0.5);
+  CHECK(state.x.bottomRows(9).col(1).maxCoeff() < 4.5);
+  // A scene that begins at time 0 starts as it is.
+  const std::optional<Start> as_it_is = prepare(skinned, [] { return true; });
+  REQUIRE(as_it_is);
+  CHECK(as_it_is->state.x == skinned.initial.x);
+  CHECK(as_it_is->prepared.empty());
 }
 
 TEST_CASE("A draped start has the same bits whoever steps the scene, with any number of threads", "[prepare]") {
   const Folder folder("prepare_bits");
   fake::write_skirt(folder);
-  Setup one = read(folder, draped),
-        two = read(folder, draped, "", {"run.stepper=icm", "run.substeps=1", "run.frames=9"});
-  prepare(one);
-  with_threads(most_threads() == 1 ? 2 : 1, [&] { prepare(two); });
-  CHECK(one.initial.x == two.initial.x);
-  Setup stopped = read(folder, draped);
-  CHECK_FALSE(prepare(stopped, [] { return true; }));
-  CHECK(stopped.initial.frame == -10);
+  const Setup one = read(folder, draped),
+              two = read(folder, draped, "", {"run.stepper=icm", "run.substeps=1", "run.frames=9"});
+  std::optional<Start> other;
+  with_threads(most_threads() == 1 ? 2 : 1, [&] { other = prepare(two); });
+  CHECK(prepare(one).value().state.x == other.value().state.x);
+  CHECK_FALSE(prepare(one, [] { return true; }));
 }
 
 TEST_CASE("A run with a draped start that was interrupted is resumed without draping again", "[prepare]") {
   const Folder folder("prepare_resume");
   fake::write_skirt(folder);
-  Setup setup = read(folder, draped);
-  const Setup unprepared = setup;
-  prepare(setup);
-  const auto run = [&](const Setup& scene, const std::string& out, bool resume, int frames) {
-    return fake::run(scene, *make_stepper(scene), folder.path / out, resume, frames);
+  const Setup setup = read(folder, draped);
+  const auto run = [&](const std::string& out, bool resume, int frames) {
+    return fake::run(setup, *make_stepper(setup), folder.path / out, resume, frames);
   };
-  const RunSummary whole = run(setup, "whole", false, 100);
+  const RunSummary whole = run("whole", false, 100);
   CHECK_THAT(summary_json(whole), Contains("draped in 10 frames"));
-  CHECK(run(setup, "parts", false, 2).end == RunEnd::interrupted);
-  CHECK(run(unprepared, "parts", true, 100).end == RunEnd::finished);
+  CHECK(run("parts", false, 2).end == RunEnd::interrupted);
+  CHECK(run("parts", true, 100).end == RunEnd::finished);
   const TrajectoryReader one(folder.path / "whole" / "run.h5"), other(folder.path / "parts" / "run.h5");
   REQUIRE(one.frame_count() == 6);
   REQUIRE(other.frame_count() == 6);

@@ -309,9 +309,8 @@ TEST_CASE("The folders of the cases are refused with file and field", "[resume]"
                                  std::filesystem::copy_options::overwrite_existing);
     RunRequest request;
     request.out = place;
-    request.resume = true;
     try {
-      run_scene(setup, *make_stepper(setup), request);
+      resume_scene(setup, *make_stepper(setup), request);
     } catch (const Error& error) {
       return error.what();
     }

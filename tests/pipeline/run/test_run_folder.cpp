@@ -15,7 +15,7 @@ namespace {
 void run(const Setup& setup, const std::filesystem::path& out) {
   RunRequest request;
   request.out = out;
-  run_scene(setup, *make_stepper(setup), request);
+  run_scene(setup, *prepare(setup), *make_stepper(setup), request);
 }
 
 }  // namespace

@@ -133,13 +133,12 @@ TEST_CASE("kinds: memory of a stepper rests with its cloth, goes into a checkpoi
   const auto watch = [](State& state) { return [&state](const FrameEvent& event) { state = event.state; }; };
   RunRequest request;
   request.out = folder.path / "half";
-  request.resume = true;
   request.observe = watch(end);
-  run_scene(setup, *make_stepper(setup), request);
+  resume_scene(setup, *make_stepper(setup), request);
   request = {};
   request.out = folder.path / "whole";
   request.observe = watch(straight);
-  run_scene(setup, *make_stepper(setup), request);
+  run_scene(setup, *prepare(setup), *make_stepper(setup), request);
   CHECK(end.frame == 24);
   CHECK(end.x == straight.x);
   REQUIRE(end.memory.size() == straight.memory.size());

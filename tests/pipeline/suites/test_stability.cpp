@@ -25,7 +25,7 @@ const char* falling_sheet = "cloths: [{name: sheet, rectangle: {size: [0.3, 0.3]
 StabilityRow watched(const Folder& folder, const char* scene, const StepperTraits& stepper,
                      const std::function<void(State&)>& spoil) {
   const Setup setup = read_setup(fake::write(folder, "scene.yaml", scene));
-  StabilityWatch watch(setup, stepper);
+  StabilityWatch watch(setup, setup.initial, stepper);
   State state = setup.initial;
   StepReport report;
   report.status = StepStatus::accepted;

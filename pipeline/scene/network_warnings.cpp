@@ -1,11 +1,10 @@
-#include "pipeline/run/network_warnings.hpp"
+#include "pipeline/scene/network_warnings.hpp"
 
 #include <fmt/format.h>
 
 #include <span>
 
 #include "learned/steppers/learned_scene.hpp"
-#include "pipeline/scene/make_stepper.hpp"
 
 namespace selvedge {
 namespace {
@@ -41,8 +40,8 @@ void compare_edges(const Scene& scene, double trained, std::vector<std::string>&
 }
 
 // Compares gravity for networks that do not take it as input: all were trained with that of the earth.
-void compare_gravity(const Setup& setup, std::vector<std::string>& sentences) {
-  const Vec3 here = setup.drive_at(0).acceleration, trained = {0, -9.81, 0};
+void compare_gravity(const Vec3& here, std::vector<std::string>& sentences) {
+  const Vec3 trained = {0, -9.81, 0};
   if ((here - trained).norm() > 1e-3 * trained.norm())
     sentences.push_back(
         fmt::format("gravity is [{:g}, {:g}, {:g}] m/s2, and the network knows [0, -9.81, 0] alone: expect wrong "
@@ -50,9 +49,9 @@ void compare_gravity(const Setup& setup, std::vector<std::string>& sentences) {
                     here[0], here[1], here[2]));
 }
 
-long long nonfinite_numbers(WeightFile& file) {
+long long nonfinite_numbers(const Architecture& architecture, NetworkWeights weights) {
   long long count = 0;
-  for (const WeightArray& array : weight_arrays(file.architecture, file.weights))
+  for (const WeightArray& array : weight_arrays(architecture, weights))
     count +=
         (!Eigen::Map<const Eigen::ArrayXf>(array.data, Eigen::Index{array.rows} * array.columns).isFinite()).count();
   return count;
@@ -73,16 +72,15 @@ std::vector<std::string> unlike_training(const Scene& scene, const TrainedWith& 
   return sentences;
 }
 
-std::vector<std::string> network_warnings(const Setup& setup) {
-  if (!runs_network(setup)) return {};
-  WeightFile file = read_learned_weights(setup);
-  std::vector<std::string> sentences = unlike_training(setup.scene, trained_with(file.training));
-  if (!file.architecture.features.acceleration_inputs) compare_gravity(setup, sentences);
-  if (const long long count = nonfinite_numbers(file); count > 0)
+std::vector<std::string> network_warnings(const Scene& scene, const Vec3& gravity, const WeightFile& file,
+                                          const std::string& name) {
+  std::vector<std::string> sentences = unlike_training(scene, trained_with(file.training));
+  if (!file.architecture.features.acceleration_inputs) compare_gravity(gravity, sentences);
+  if (const long long count = nonfinite_numbers(file.architecture, file.weights); count > 0)
     sentences.push_back(
         fmt::format("{}: {} of the network's numbers are not finite, so that it can make no frame; "
                     "train or import it again",
-                    setup.run.learned.weights, count));
+                    name, count));
   return sentences;
 }
 

@@ -3,7 +3,8 @@
 #include <limits>
 
 #include "learned/network/weights_hdf5.hpp"
-#include "pipeline/run/network_warnings.hpp"
+#include "pipeline/scene/make_stepper.hpp"
+#include "pipeline/scene/network_warnings.hpp"
 #include "pipeline/training/training_options.hpp"
 #include "tests/learned/learned_scenes.hpp"
 #include "tests/pipeline/files.hpp"
@@ -29,7 +30,7 @@ std::vector<std::string> warnings_of(const std::string& preset, const std::strin
   if (spoiled)
     weight_arrays(network.architecture, network.weights)[0].data[0] = std::numeric_limits<float>::quiet_NaN();
   write_weight_file(folder.path / "w.h5", {network.architecture, network.weights, "", {}, ""});
-  return network_warnings(
+  return warnings_of(
       read_setup(fake::write(folder, "scene.yaml",
                              "cloths: [{rectangle: {size: [1, 1], resolution: 2}}]\ngravity: " + gravity +
                                  "\nrun: {stepper: " + stepper + ", learned: {weights: w.h5}}\n")));

@@ -1,4 +1,4 @@
-#include "pipeline/scene/trained_with_yaml.hpp"
+#include "pipeline/weights/trained_with_yaml.hpp"
 
 #include <yaml-cpp/yaml.h>
 
