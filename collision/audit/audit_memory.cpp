@@ -228,7 +228,7 @@ bool ask(const AuditMemory& memory, std::span<const MovingBody> sheets, AuditQue
 }
 
 // Records this audit as the last one. True if it is of a motion.
-bool take_note(AuditMemory& memory, std::span<const MovingBody> sheets) {
+bool record_audit(AuditMemory& memory, std::span<const MovingBody> sheets) {
   memory.moving = std::ranges::any_of(sheets, [](const MovingBody& sheet) { return sheet.x0 != sheet.x1; });
   memory.last.clear();
   for (const MovingBody& sheet : sheets) memory.last.push_back(*sheet.x1);
@@ -243,7 +243,7 @@ bool is_slow(AuditMemory& memory, std::span<const MovingBody> sheets, double rea
   for (std::size_t k = 0; k < sheets.size() && slowly; ++k)
     slowly = within_budget(memory.last[k], sheets[k], slow * reach, moved);
   const bool after_motion = memory.moving;
-  if (take_note(memory, sheets) || !after_motion) memory.slow = slowly;
+  if (record_audit(memory, sheets) || !after_motion) memory.slow = slowly;
   return memory.slow;
 }
 
@@ -271,7 +271,7 @@ AuditQuestions open_questions(AuditMemory& memory, const MovingBody& cloth, std:
   sheets.insert(sheets.end(), bodies.begin(), bodies.end());
   AuditQuestions questions;
   if (ask(memory, sheets, questions)) {
-    take_note(memory, sheets);
+    record_audit(memory, sheets);
     return questions;
   }
   const double edge = mean_edge(*cloth.surface, *cloth.x1);

@@ -108,24 +108,24 @@ void visit_pairs(const Cell& cell, std::span<const ExactBox> first, std::span<co
                  AuditBudget& budget, Self&& self, Other&& other) {
   const int axis = sweep_axis(cell, first);
   const Sweep mine(first, cell.first, axis), theirs(second, cell.second, axis);
-  constexpr std::int64_t told_at_once = 1 << 12;
-  std::int64_t untold = 0;  // not yet reported to the budget
+  constexpr std::int64_t reported_at_once = 1 << 12;
+  std::int64_t unreported = 0;  // not yet reported to the budget
   for (std::size_t i = 0; i < mine.entries.size(); ++i) {
     const Sweep::Entry& a = mine.entries[i];
     std::size_t compared = 0;
     if (within_first)
       compared += mine.overlapping(i + 1, a.box, cell.bounds, [&](int b) {
-        ++untold;
+        ++unreported;
         self(a.item, b);
       });
     compared += theirs.overlapping(0, a.box, cell.bounds, [&](int c) {
-      ++untold;
+      ++unreported;
       other(a.item, c);
     });
-    untold += static_cast<std::int64_t>(compared / 8);
-    if (untold >= told_at_once && !budget.add(std::exchange(untold, 0))) return;
+    unreported += static_cast<std::int64_t>(compared / 8);
+    if (unreported >= reported_at_once && !budget.add(std::exchange(unreported, 0))) return;
   }
-  budget.add(untold);
+  budget.add(unreported);
 }
 
 }  // namespace selvedge

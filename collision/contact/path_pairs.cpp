@@ -10,8 +10,8 @@
 namespace selvedge {
 namespace {
 
-constexpr double slack_part = 0.5;   // of the thickness
-constexpr double few_strayed = 0.3;  // of the cloth's vertices: if fewer stray, only their pairs are searched
+constexpr double slack_part = 0.5;        // of the thickness
+constexpr double few_beyond_slack = 0.3;  // of the cloth's vertices: if fewer stray, only their pairs are searched
 
 // Removes the pairs from `first` on for which out(i) is true.
 template <class Out>
@@ -62,24 +62,24 @@ void keep_what_comes_near(PathPairs& path, std::size_t first, double reach) {
 }
 
 // 1 for nodes that end farther than `slack` from path.end.
-std::vector<char> strayed_nodes(const PathPairs& path, const Points& x1) {
-  std::vector<char> strayed(static_cast<std::size_t>(x1.rows()));
+std::vector<char> nodes_beyond_slack(const PathPairs& path, const Points& x1) {
+  std::vector<char> beyond_slack(static_cast<std::size_t>(x1.rows()));
   for (Eigen::Index i = 0; i < x1.rows(); ++i)
-    strayed[i] = !((x1.row(i) - path.end.row(i)).squaredNorm() <= path.slack * path.slack);
-  return strayed;
+    beyond_slack[i] = !((x1.row(i) - path.end.row(i)).squaredNorm() <= path.slack * path.slack);
+  return beyond_slack;
 }
 
-void search_again(PairSearch& search, const std::vector<char>& strayed, double reach, const Points& x1,
+void search_again(PairSearch& search, const std::vector<char>& beyond_slack, double reach, const Points& x1,
                   PathPairs& path) {
   leave_out(path, 0, [&](std::size_t i) {
-    return std::ranges::any_of(path.pairs[i].nodes, [&](int node) { return strayed[node] != 0; });
+    return std::ranges::any_of(path.pairs[i].nodes, [&](int node) { return beyond_slack[node] != 0; });
   });
   Points end = path.end;
   for (Eigen::Index i = 0; i < x1.rows(); ++i)
-    if (strayed[i]) end.row(i) = x1.row(i);
+    if (beyond_slack[i]) end.row(i) = x1.row(i);
   std::vector<NodePair> found;
   invalidate(path);
-  search.find(path.start, end, reach, found, strayed);
+  search.find(path.start, end, reach, found, beyond_slack);
   path.end = std::move(end);
   const std::size_t kept = path.pairs.size();
   path.pairs.insert(path.pairs.end(), found.begin(), found.end());
@@ -95,11 +95,11 @@ bool update_pairs(PairSearch& search, double thickness, const Points& x0, const 
   const double reach = thickness + 2 * slack_part * thickness;
   if (path.end.rows() == x1.rows()) {
     if (path.start == x0) {
-      const std::vector<char> strayed = strayed_nodes(path, x1);
-      const auto count = std::ranges::count(strayed, 1);
+      const std::vector<char> beyond_slack = nodes_beyond_slack(path, x1);
+      const auto count = std::ranges::count(beyond_slack, 1);
       if (count == 0) return false;
-      if (static_cast<double>(count) < few_strayed * search.world().cloth->vertex_count) {
-        search_again(search, strayed, reach, x1, path);
+      if (static_cast<double>(count) < few_beyond_slack * search.world().cloth->vertex_count) {
+        search_again(search, beyond_slack, reach, x1, path);
         return false;
       }
     } else if (near_end(x1) && near_end(x0)) {

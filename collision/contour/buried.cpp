@@ -9,8 +9,8 @@
 namespace selvedge {
 namespace {
 
-constexpr double little = 1e-3;  // distance of test points in front of and behind a triangle, in mean edges
-constexpr int speakers = 9;      // about the number of triangles that are tested in each piece
+constexpr double little = 1e-3;       // distance of test points in front of and behind a triangle, in mean edges
+constexpr int samples_per_piece = 9;  // about the number of triangles that are tested in each piece
 
 std::vector<char> crossing_triangles(const Surface& surface, const Segments& found) {
   std::vector<char> crossing(static_cast<std::size_t>(surface.triangles.rows()), 0);
@@ -39,7 +39,7 @@ std::vector<char> buried_triangles(const Surface& surface, const Points& x, cons
   for (const int p : piece) ++size[p];
   std::vector<int> asked;
   for (int t = 0; t < static_cast<int>(buried.size()); ++t)
-    if (!crossing[t] && seen[piece[t]]++ % (1 + size[piece[t]] / speakers) == 0) asked.push_back(t);
+    if (!crossing[t] && seen[piece[t]]++ % (1 + size[piece[t]] / samples_per_piece) == 0) asked.push_back(t);
   Points before(static_cast<Eigen::Index>(asked.size()), 3), behind(before);
   const double away = little * mean_edge(surface, x);
   for (std::size_t i = 0; i < asked.size(); ++i) {

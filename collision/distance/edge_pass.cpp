@@ -140,41 +140,41 @@ std::vector<DeepPlace> deepest_of_faces(const DistanceField& body, const Surface
 }
 
 // A demand that a vertex moves along a normal by at least `length` [m].
-struct Wish {
+struct Demand {
   double length = 0;
   Vec3 normal;
 };
-using Wishes = std::vector<std::vector<Wish>>;  // by vertex
+using Demands = std::vector<std::vector<Demand>>;  // by vertex
 
 // Adds demands to the corners that move the deepest point to the margin. False if it is there already.
-bool wish(const DeepPlace& place, double margin, Wishes& wishes) {
+bool add_demand(const DeepPlace& place, double margin, Demands& demands) {
   if (!(place.at.value < margin) || place.at.gradient.isZero(0)) return false;
   const double square = place.weight.squaredNorm();
   for (int k = 0; k < place.corners; ++k)
     if (place.weight[k] > 0)
-      wishes[static_cast<std::size_t>(place.vertex[k])].push_back(
+      demands[static_cast<std::size_t>(place.vertex[k])].push_back(
           {(margin - place.at.value) * place.weight[k] / square, place.at.gradient});
   return true;
 }
 
 // About the shortest motion that fulfils all demands: the longest first, then what the others still need.
-Vec3 granted(std::vector<Wish> wishes) {
-  std::ranges::stable_sort(wishes, std::greater{}, &Wish::length);
+Vec3 combined(std::vector<Demand> demands) {
+  std::ranges::stable_sort(demands, std::greater{}, &Demand::length);
   Vec3 motion = Vec3::Zero();
-  for (const Wish& one : wishes) motion += std::max(0.0, one.length - one.normal.dot(motion)) * one.normal;
+  for (const Demand& one : demands) motion += std::max(0.0, one.length - one.normal.dot(motion)) * one.normal;
   return motion;
 }
 
 void move_once(const DistanceField& body, const Surface& garment, const Touched& touched, double margin, Points& x,
                std::span<const char> held, EdgePassReport& report) {
-  Wishes wishes(static_cast<std::size_t>(x.rows()));
+  Demands demands(static_cast<std::size_t>(x.rows()));
   const std::vector<DeepPlace> edges = deepest_of_edges(body, garment, touched.edges, margin, x);
   const std::vector<DeepPlace> faces = deepest_of_faces(body, garment, touched.triangles, x);
   for (const DeepPlace& place : edges)
-    if (place.at.value < 0.5 * margin) report.edges += wish(place, margin, wishes);
-  for (const DeepPlace& place : faces) report.faces += wish(place, margin, wishes);
+    if (place.at.value < 0.5 * margin) report.edges += add_demand(place, margin, demands);
+  for (const DeepPlace& place : faces) report.faces += add_demand(place, margin, demands);
   for (int v = 0; v < x.rows(); ++v)
-    if (!wishes[v].empty() && (held.empty() || !held[v])) x.row(v) += granted(std::move(wishes[v])).transpose();
+    if (!demands[v].empty() && (held.empty() || !held[v])) x.row(v) += combined(std::move(demands[v])).transpose();
 }
 
 }  // namespace

@@ -10,14 +10,14 @@ Vec3 twice_area(const ClosedSurface& closed, const Points& x, int face) {
 }
 
 // The sum of twice the vector areas at both ends of a path.
-Vec3 normal_of(const ClosedSurface& closed, const Points& x, const ContourClosing::Way& way) {
-  return twice_area(closed, x, way.end_faces[0]) + twice_area(closed, x, way.end_faces[1]);
+Vec3 normal_of(const ClosedSurface& closed, const Points& x, const ContourClosing::Path& path) {
+  return twice_area(closed, x, path.end_faces[0]) + twice_area(closed, x, path.end_faces[1]);
 }
 
 // The sign of a side's normal in the sum: -1 for side 1 if the normals are more than a right angle apart, since the
 // orientation of a garment means nothing here.
 double sense_of(const ClosedSurface& closed, const Points& x, const ContourClosing& closing, int side) {
-  const bool against = normal_of(closed, x, closing.ways[0]).dot(normal_of(closed, x, closing.ways[1])) < 0;
+  const bool against = normal_of(closed, x, closing.paths[0]).dot(normal_of(closed, x, closing.paths[1])) < 0;
   return side == 1 && against ? -1 : 1;
 }
 
@@ -32,19 +32,19 @@ class MovingClosing {
         closing_(closing),
         gradient_(gradient),
         up_(up_of_plane(closed, x, closing)) {
-    from_ = closing.ways[0].points.front();
-    to_ = closing.ways[0].points.back();
+    from_ = closing.paths[0].points.front();
+    to_ = closing.paths[0].points.back();
     middle_ = (at(from_) + at(to_)) / 2;
   }
 
-  void pull(const ContourClosing::Way& way, double scale) {
-    for (std::size_t k = 0; k + 1 < way.points.size(); ++k) {
-      const CurvePoint a = way.points[k], b = way.points[k + 1];
-      const Vec3 share = (scale * way.times / 6) * (at(a) - middle_).cross(at(b) - middle_);
+  void pull(const ContourClosing::Path& path, double scale) {
+    for (std::size_t k = 0; k + 1 < path.points.size(); ++k) {
+      const CurvePoint a = path.points[k], b = path.points[k + 1];
+      const Vec3 share = (scale * path.times / 6) * (at(a) - middle_).cross(at(b) - middle_);
       pull_end(from_, share / 2);
       pull_end(to_, share / 2);
-      pull_point(way.kind, a, share);
-      pull_point(way.kind, b, share);
+      pull_point(path.kind, a, share);
+      pull_point(path.kind, b, share);
     }
   }
 
@@ -88,16 +88,16 @@ class MovingClosing {
     pull_end(from_, (1 - ahead) * by);
     pull_end(to_, ahead * by);
     for (int side = 0; side < 2; ++side)
-      if (closing_.ways[side].kind == ClosingWay::plane)
-        pull_up(closing_.ways[side], above * sense_of(closed_, x_, closing_, side) * by);
+      if (closing_.paths[side].kind == ClosingWay::plane)
+        pull_up(closing_.paths[side], above * sense_of(closed_, x_, closing_, side) * by);
   }
 
-  void pull_up(const ContourClosing::Way& way, const Vec3& by) {
-    const Vec3 normal = normal_of(closed_, x_, way);
+  void pull_up(const ContourClosing::Path& path, const Vec3& by) {
+    const Vec3 normal = normal_of(closed_, x_, path);
     const double length = normal.norm();
     if (length == 0) return;  // faces have no area, or normals cancel: `up` is not defined
     const Vec3 unit = normal / length, across = (by - unit * unit.dot(by)) / length;
-    for (const int face : way.end_faces) {
+    for (const int face : path.end_faces) {
       const int a = surface_.triangles(face, 0), b = surface_.triangles(face, 1), c = surface_.triangles(face, 2);
       const Vec3 first = row(x_, b) - row(x_, a), second = row(x_, c) - row(x_, a),
                  turned = closed_.turn[face] * across;
@@ -124,8 +124,8 @@ class MovingClosing {
 Vec3 up_of_plane(const ClosedSurface& closed, const Points& x, const ContourClosing& closing) {
   Vec3 up = Vec3::Zero();
   for (int side = 0; side < 2; ++side)
-    if (closing.ways[side].kind == ClosingWay::plane)
-      up += sense_of(closed, x, closing, side) * normal_of(closed, x, closing.ways[side]).normalized();
+    if (closing.paths[side].kind == ClosingWay::plane)
+      up += sense_of(closed, x, closing, side) * normal_of(closed, x, closing.paths[side]).normalized();
   return up;
 }
 
@@ -133,10 +133,10 @@ double closing_volume(const ClosedSurface& closed, const Points& x, const std::v
                       const ContourClosing& closing, const Vec3& centre) {
   const auto at = [&](CurvePoint point) { return Vec3(position_of(closed.surface, x, crossings, point) - centre); };
   double volume = 0;
-  for (const ContourClosing::Way& way : closing.ways) {
-    const Vec3 middle = (at(way.points.front()) + at(way.points.back())) / 2;
-    for (std::size_t k = 0; k + 1 < way.points.size(); ++k)
-      volume += way.times / 6.0 * middle.dot(at(way.points[k]).cross(at(way.points[k + 1])));
+  for (const ContourClosing::Path& path : closing.paths) {
+    const Vec3 middle = (at(path.points.front()) + at(path.points.back())) / 2;
+    for (std::size_t k = 0; k + 1 < path.points.size(); ++k)
+      volume += path.times / 6.0 * middle.dot(at(path.points[k]).cross(at(path.points[k + 1])));
   }
   return volume;
 }
@@ -144,7 +144,7 @@ double closing_volume(const ClosedSurface& closed, const Points& x, const std::v
 void add_closing_flux(const ClosedSurface& closed, const Points& x, const std::vector<Crossing>& crossings,
                       const ContourClosing& closing, double scale, Points& gradient) {
   MovingClosing moving(closed, x, crossings, closing, gradient);
-  for (const ContourClosing::Way& way : closing.ways) moving.pull(way, scale);
+  for (const ContourClosing::Path& path : closing.paths) moving.pull(path, scale);
 }
 
 }  // namespace selvedge

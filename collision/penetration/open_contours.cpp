@@ -67,18 +67,18 @@ class Closer {
   std::array<RimPlace, 2> rims() const { return {rim_of(from()), rim_of(to())}; }
 
   // Along the rim on its inside, through the triangles of the fan.
-  void go_along_rim(const std::array<RimPlace, 2>& rims, SurfaceCurve& curve, ContourClosing::Way& way) {
+  void go_along_rim(const std::array<RimPlace, 2>& rims, SurfaceCurve& curve, ContourClosing::Path& path) {
     const std::vector<int>& loop = closed_.loops[rims[0].loop];
     const int n = static_cast<int>(loop.size()), first = first_fan(closed_, rims[0].loop);
-    way.points = round_hole(loop, from(), rims[0].place, to(), rims[1].place, true);
+    path.points = round_hole(loop, from(), rims[0].place, to(), rims[1].place, true);
     std::vector<CurvePoint> back = round_hole(loop, from(), rims[0].place, to(), rims[1].place, false);
     const bool forward =
-        length_along(closed_, x_, crossings_, way.points) <= length_along(closed_, x_, crossings_, back);
-    if (!forward) way.points.swap(back);
+        length_along(closed_, x_, crossings_, path.points) <= length_along(closed_, x_, crossings_, back);
+    if (!forward) path.points.swap(back);
     int fan = first + rims[0].place;
-    cut(curve, way.end_faces[0], crossings_[from()].edge, from());
-    for (std::size_t k = 0; k + 1 < way.points.size(); ++k) {
-      const CurvePoint at = way.points[k], next = way.points[k + 1];
+    cut(curve, path.end_faces[0], crossings_[from()].edge, from());
+    for (std::size_t k = 0; k + 1 < path.points.size(); ++k) {
+      const CurvePoint at = path.points[k], next = path.points[k + 1];
       curve.runs.push_back({fan, at, next});
       if (next < 0) cut(curve, fan, edge_between(surface_, fan, ~next, surface_.triangles(fan, 2)), next);
       if (next >= 0) break;
@@ -88,14 +88,14 @@ class Closer {
   }
 
   // False if the path meets a hole or is too long.
-  bool go_straight(const Vec3& up, SurfaceCurve& curve, ContourClosing::Way& way) {
-    way.points = {from()};
+  bool go_straight(const Vec3& up, SurfaceCurve& curve, ContourClosing::Path& path) {
+    path.points = {from()};
     const Vec3 p = at(to()), toward = p - at(from());
     const Vec3 normal = toward.cross(up);
     const auto height = [&](int vertex) { return normal.dot(row(x_, vertex) - p); };
-    int face = way.end_faces[0], last = -1;
+    int face = path.end_faces[0], last = -1;
     const std::size_t most = 4 * contour_.segments.size() + 100;
-    while (face != way.end_faces[1]) {
+    while (face != path.end_faces[1]) {
       int chosen = -1;
       double share = 0, farthest = 0;
       for (int k = 0; k < 3; ++k) {
@@ -109,23 +109,23 @@ class Closer {
         share = s;
         farthest = ahead;
       }
-      if (chosen < 0 || way.points.size() > most) return false;
-      leave(face, chosen, share, curve, way);
+      if (chosen < 0 || path.points.size() > most) return false;
+      leave(face, chosen, share, curve, path);
       face = beyond(chosen, face);
       if (face < 0 || closed_.is_fan(face)) return false;
       last = chosen;
     }
-    curve.runs.push_back({face, way.points.back(), to()});
-    way.points.push_back(to());
-    return length_along(closed_, x_, crossings_, way.points) <= 2 * contour_.length;
+    curve.runs.push_back({face, path.points.back(), to()});
+    path.points.push_back(to());
+    return length_along(closed_, x_, crossings_, path.points) <= 2 * contour_.length;
   }
 
-  void go_through_middles(SurfaceCurve& curve, ContourClosing::Way& way) {
-    way.points = {from()};
-    for (const StripStep& step : shortest_strip(way.end_faces[0], way.end_faces[1]))
-      leave(step.face, step.edge, 0.5, curve, way);
-    curve.runs.push_back({way.end_faces[1], way.points.back(), to()});
-    way.points.push_back(to());
+  void go_through_middles(SurfaceCurve& curve, ContourClosing::Path& path) {
+    path.points = {from()};
+    for (const StripStep& step : shortest_strip(path.end_faces[0], path.end_faces[1]))
+      leave(step.face, step.edge, 0.5, curve, path);
+    curve.runs.push_back({path.end_faces[1], path.points.back(), to()});
+    path.points.push_back(to());
   }
 
  private:
@@ -170,12 +170,12 @@ class Closer {
   }
 
   // Continues the path to a point on an edge of the face, and into the next face.
-  void leave(int face, int edge, double share, SurfaceCurve& curve, ContourClosing::Way& way) {
+  void leave(int face, int edge, double share, SurfaceCurve& curve, ContourClosing::Path& path) {
     const int id = static_cast<int>(crossings_.size());
     crossings_.push_back({0, edge, 0, -1, share, {}});
-    curve.runs.push_back({face, way.points.back(), id});
+    curve.runs.push_back({face, path.points.back(), id});
     cut(curve, face, edge, id);
-    way.points.push_back(id);
+    path.points.push_back(id);
   }
 
   CurvePoint from() const { return contour_.points.back(); }
@@ -214,17 +214,17 @@ std::optional<ContourClosing> close_open_contour(const ClosedSurface& closed, co
     for (int side = 0; side < 2; ++side) {
       const std::vector<int>& triangles = contour.sides[side].triangles;
       const bool at_rim = one_rim && side == contour.end_side[0];
-      closing.ways[side] = {
+      closing.paths[side] = {
           at_rim ? ClosingWay::rim : kind, {}, {triangles.back(), triangles.front()}, side == 0 ? -1 : 1};
       made[side] = curve_on_side(closed, crossings, contour, number, side);
     }
     const Vec3 up = up_of_plane(closed, x, closing);
     bool goes = true;
     for (int side = 0; side < 2; ++side) {
-      ContourClosing::Way& way = closing.ways[side];
-      if (way.kind == ClosingWay::rim) closer.go_along_rim(rims, made[side], way);
-      if (way.kind == ClosingWay::plane) goes &= closer.go_straight(up, made[side], way);
-      if (way.kind == ClosingWay::middles) closer.go_through_middles(made[side], way);
+      ContourClosing::Path& path = closing.paths[side];
+      if (path.kind == ClosingWay::rim) closer.go_along_rim(rims, made[side], path);
+      if (path.kind == ClosingWay::plane) goes &= closer.go_straight(up, made[side], path);
+      if (path.kind == ClosingWay::middles) closer.go_through_middles(made[side], path);
     }
     return goes;
   };

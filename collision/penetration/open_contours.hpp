@@ -16,13 +16,13 @@ enum class ClosingWay { rim, plane, middles };
 // each garment's surface a path leads from its last point back to its first. Triangles between the two paths, with a
 // corner at the middle of these two points, close the gap between the surfaces.
 struct ContourClosing {
-  struct Way {
+  struct Path {
     ClosingWay kind = ClosingWay::plane;
     std::vector<CurvePoint> points;  // from the contour's last to its first, both included
     std::array<int, 2> end_faces{};  // the contour's last and first triangle on this side
     int times = 0;  // how often its triangles (middle, point, next point) count in the region's surface
   };
-  std::array<Way, 2> ways;  // by side of the contour
+  std::array<Path, 2> paths;  // by side of the contour
 };
 
 // Closes a contour with both ends at closed holes. If both are at one hole, the cloth round the hole has gone through

@@ -96,9 +96,9 @@ void join_round(const PartingSpace& space, std::span<const SurfaceCurve* const> 
       const double first = start.x() * p.y() - start.y() * p.x(),
                    last = first + start.x() * along.y() - start.y() * along.x();
       if ((here > 0) == (there > 0) || (first > 0) == (last > 0)) continue;
-      const double way = here / (here - there);
-      if (way >= nearest) continue;
-      nearest = way;
+      const double share = here / (here - there);
+      if (share >= nearest) continue;
+      nearest = share;
       met = here > 0 ? left_of(other) : right_of(other);
     }
   }

@@ -96,18 +96,18 @@ double exact_volume(const ClosedSurface& closed, const Points& x, const std::vec
 }
 
 // The volume of the triangles that close an open contour, divided by `scale`.
-double frozen_closing(const FrozenPatches& patches, const ContourClosing::Way& way, const Vec3& centre, double scale,
+double frozen_closing(const FrozenPatches& patches, const ContourClosing::Path& path, const Vec3& centre, double scale,
                       Points* gradient) {
   double volume = 0;
-  const CurvePoint first = way.points.front(), last = way.points.back();
+  const CurvePoint first = path.points.front(), last = path.points.back();
   const Vec3 middle = (patches.at(first) + patches.at(last)) / 2 - centre;
-  for (std::size_t k = 0; k + 1 < way.points.size(); ++k) {
-    const Vec3 p = patches.at(way.points[k]) - centre, q = patches.at(way.points[k + 1]) - centre;
-    const double sixth = way.times / 6.0;
+  for (std::size_t k = 0; k + 1 < path.points.size(); ++k) {
+    const Vec3 p = patches.at(path.points[k]) - centre, q = patches.at(path.points[k + 1]) - centre;
+    const double sixth = path.times / 6.0;
     volume += sixth * middle.dot(p.cross(q));
     if (!gradient) continue;
-    patches.pull(way.points[k], scale * sixth * q.cross(middle), *gradient);
-    patches.pull(way.points[k + 1], scale * sixth * middle.cross(p), *gradient);
+    patches.pull(path.points[k], scale * sixth * q.cross(middle), *gradient);
+    patches.pull(path.points[k + 1], scale * sixth * middle.cross(p), *gradient);
     for (const CurvePoint end : {first, last}) patches.pull(end, scale * sixth / 2 * p.cross(q), *gradient);
   }
   return volume;
@@ -145,8 +145,8 @@ double pulled_volume(const FrozenPatches& patches, const Triangles& corners, con
     if (gradient) patches.pull_apex(pieces, pull * by_apex, *gradient);
   });
   if (region.closing)
-    for (const ContourClosing::Way& way : region.closing->ways)
-      volume += frozen_closing(patches, way, region.centre, pull, gradient);
+    for (const ContourClosing::Path& path : region.closing->paths)
+      volume += frozen_closing(patches, path, region.centre, pull, gradient);
   return pull * volume;
 }
 

@@ -14,32 +14,32 @@ int corner_on(const Surface& surface, int triangle, int vertex) {
 
 // The edges at a vertex between two of its triangles, going round in one direction, each with the triangle before it;
 // nothing if a boundary comes between.
-std::optional<std::vector<std::array<int, 2>>> way_round(const Surface& surface, int vertex, int from, int to,
-                                                         bool forward) {
-  std::vector<std::array<int, 2>> way;
+std::optional<std::vector<std::array<int, 2>>> edges_round(const Surface& surface, int vertex, int from, int to,
+                                                           bool forward) {
+  std::vector<std::array<int, 2>> edges;
   const std::size_t most = surface.triangles_of(vertex).size();
   int previous = -1;
   for (int t = from; t != to;) {
     const int k = corner_on(surface, t, vertex);
     const int ahead = surface.triangle_edges(t, k), behind = surface.triangle_edges(t, (k + 2) % 3);
     const int edge = previous < 0 ? (forward ? ahead : behind) : (ahead == previous ? behind : ahead);
-    way.push_back({edge, t});
+    edges.push_back({edge, t});
     previous = edge;
     const auto [first, second] = surface.edge_triangles[edge];
     t = first == t ? second : first;
-    if (t < 0 || t == from || way.size() > most) return std::nullopt;
+    if (t < 0 || t == from || edges.size() > most) return std::nullopt;
   }
-  return way;
+  return edges;
 }
 
 // Leads the curve round the loop vertex at which it turns from one side of the contour to the other, in the direction
 // with fewer edges.
 bool pass_vertex(const ClosedSurface& closed, int vertex, int from, int to, SurfaceCurve& curve) {
-  const auto forward = way_round(closed.surface, vertex, from, to, true),
-             back = way_round(closed.surface, vertex, from, to, false);
+  const auto forward = edges_round(closed.surface, vertex, from, to, true),
+             back = edges_round(closed.surface, vertex, from, to, false);
   if (!forward && !back) return false;
-  const auto& way = forward && (!back || forward->size() <= back->size()) ? *forward : *back;
-  for (const auto& [edge, triangle] : way) {
+  const auto& edges = forward && (!back || forward->size() <= back->size()) ? *forward : *back;
+  for (const auto& [edge, triangle] : edges) {
     curve.cuts.push_back({edge, ~vertex, jump_on_leaving(closed, triangle, edge)});
     curve.passed.push_back(triangle);
   }

@@ -142,20 +142,20 @@ using PartLists = std::vector<std::vector<Item>>;
 template <class Item, class Visit>
 bool visit_below(const BvhTraversal& traversal, NodeWork w, std::vector<Item>& list, PairBudget& budget,
                  Visit&& visit) {
-  constexpr std::int64_t told_at_once = 1 << 14;
+  constexpr std::int64_t reported_at_once = 1 << 14;
   std::vector<NodeWork> stack{w};
-  std::int64_t untold = 0;  // not yet reported to the budget
+  std::int64_t unreported = 0;  // not yet reported to the budget
   while (!stack.empty()) {
     w = stack.back();
     stack.pop_back();
     if (!traversal.is_leaf(w)) {
       traversal.split(w, stack);
     } else if (!traversal.is_quiet(w)) {
-      untold += Bvh::leaf_size + visit(w, list);
-      if (untold >= told_at_once && !budget.add(std::exchange(untold, 0))) return false;
+      unreported += Bvh::leaf_size + visit(w, list);
+      if (unreported >= reported_at_once && !budget.add(std::exchange(unreported, 0))) return false;
     }
   }
-  return budget.add(untold);
+  return budget.add(unreported);
 }
 
 // Calls visit(w, list) for every pair of leaves whose boxes overlap (and every leaf with itself, within one tree), on

@@ -42,12 +42,12 @@ std::vector<SheetView> with_cloth(const Surface& cloth, const Points& x, std::sp
 }
 
 // Obstacles with their trees and buried triangles. Both are made once, since obstacles stand still.
-struct Standing {
+struct StillObstacles {
   std::vector<Bvh> trees;
   std::vector<std::vector<char>> buried;
   std::vector<SheetView> views;
 
-  explicit Standing(std::span<const SheetView> obstacles) : views(obstacles.begin(), obstacles.end()) {
+  explicit StillObstacles(std::span<const SheetView> obstacles) : views(obstacles.begin(), obstacles.end()) {
     std::vector<Box> boxes;
     for (const SheetView& obstacle : obstacles) {
       triangle_boxes(*obstacle.surface, *obstacle.x, *obstacle.x, 0, boxes);
@@ -58,8 +58,8 @@ struct Standing {
       buried.push_back(buried_triangles(*views[k].surface, *views[k].x, find_segments({&views[k], 1})));
     }
   }
-  Standing(const Standing&) = delete;  // the views point to the trees
-  Standing& operator=(const Standing&) = delete;
+  StillObstacles(const StillObstacles&) = delete;  // the views point to the trees
+  StillObstacles& operator=(const StillObstacles&) = delete;
 };
 
 Segments segments_that_count(std::span<const SheetView> sheets, const UntangleOptions& options) {
@@ -276,7 +276,7 @@ struct Attempt {
 };
 
 // Untangles from the input. wide: the second rule of repulsion, without pairs that have a tangled vertex.
-Attempt attempt(const KeptShape& shape, const Standing& standing, const Tangle& input, Freedom freedom, bool wide,
+Attempt attempt(const KeptShape& shape, const StillObstacles& standing, const Tangle& input, Freedom freedom, bool wide,
                 Repulsion& repulsion, const UntangleOptions& options) {
   const Surface& cloth = *shape.surface;
   const std::span<const SheetView> obstacles = standing.views;
@@ -327,7 +327,7 @@ Attempt attempt(const KeptShape& shape, const Standing& standing, const Tangle& 
 UntangleResult untangle(const Surface& cloth, const Points& x, std::span<const SheetView> around,
                         const UntangleOptions& options) {
   restore_standard_arithmetic();
-  const Standing standing(around);
+  const StillObstacles standing(around);
   const std::span<const SheetView> obstacles = standing.views;
   const KeptShape shape = keep_shape(cloth, x);
   const std::vector<SheetView> sheets = with_cloth(cloth, x, obstacles);
@@ -338,7 +338,7 @@ UntangleResult untangle(const Surface& cloth, const Points& x, std::span<const S
   // Where the first rule of repulsion gets stuck, the second may not.
   Attempt best = attempt(shape, standing, input, freedom, false, repulsion, options);
   int iterations = best.iterations;
-  if (!best.tangle.clean() && options.second_opinion) {
+  if (!best.tangle.clean() && options.second_rule) {
     Attempt other = attempt(shape, standing, input, freedom, true, repulsion, options);
     iterations += other.iterations;
     if (other.tangle.better_than(best.tangle)) best = std::move(other);

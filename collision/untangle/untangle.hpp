@@ -32,8 +32,8 @@ struct UntangleOptions {
   // 1 for vertices that ignore obstacles. A contour with an obstacle is ignored if it runs through one of their
   // triangles. Empty: none.
   std::vector<char> let_through;
-  std::vector<char> held;      // 1 for vertices that stay where they are, as pins do. Empty: none.
-  bool second_opinion = true;  // if stuck, try the second rule of repulsion: as many iterations again
+  std::vector<char> held;   // 1 for vertices that stay where they are, as pins do. Empty: none.
+  bool second_rule = true;  // if stuck, try the second rule of repulsion: as many iterations again
   std::function<void(const UntangleProgress&)> progress;
   StopFlag stop = {};  // asked in each iteration: true ends it with the best state so far
 };

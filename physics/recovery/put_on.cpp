@@ -55,7 +55,7 @@ UntangleResult part(const ContactWorld& world, const Place& place, const Recover
   const WorldSheets sheets(world, place.nodes);
   UntangleOptions options;
   options.iterations = std::min(limits.placing_passes, limits.max_placing_pair_passes / std::max(1, place.pairs));
-  options.second_opinion = false;  // if the first rule fails, the next step tries again
+  options.second_rule = false;  // if the first rule fails, the next step tries again
   return budget.untangle(*world.cloth, sheets.positions[0], std::span(sheets.views).subspan(1), options);
 }
 

@@ -157,7 +157,7 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
   if (std::ranges::find(waits, 1) != waits.end()) {
     options.iterations = limits.waiting_passes;
     options.let_through = either(waits, carried);
-    options.second_opinion = false;
+    options.second_rule = false;
   }
   options.iterations = iterations_for(world, nodes, reach, before, options, limits);
   const UntangleResult parted =

@@ -10,9 +10,9 @@ UntangleResult UntanglingBudget::untangle(const Surface& cloth, const Points& x,
   const int left = std::max(0, most - used), wanted = options.iterations;
   options.iterations = std::min(wanted, left);
   // The second rule of repulsion takes as many passes again.
-  if (options.second_opinion && 2 * options.iterations > left) {
-    options.second_opinion = left >= 2;
-    options.iterations = options.second_opinion ? left / 2 : left;
+  if (options.second_rule && 2 * options.iterations > left) {
+    options.second_rule = left >= 2;
+    options.iterations = options.second_rule ? left / 2 : left;
   }
   if (stop) options.stop = *stop;
   UntangleResult result = selvedge::untangle(cloth, x, obstacles, options);

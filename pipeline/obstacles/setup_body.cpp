@@ -176,11 +176,11 @@ void perform(const Config& section, const std::filesystem::path& folder, Perform
   const Config &clip = section["clip"], &shape = section["shape"];
   const bool of_smpl = std::filesystem::path(section["model"].text()).extension() == ".npz";
   who.shape.resize(0);
-  who.said.resize(0);
+  who.given_shape.resize(0);
   who.clip = {};
   leave_room(0, who);
   if (shape.given)
-    who.shape = who.said =
+    who.shape = who.given_shape =
         Eigen::Map<const Eigen::VectorXd>(shape.numbers.data(), static_cast<Eigen::Index>(shape.numbers.size()));
   else if (of_smpl && clip.given && std::filesystem::path(clip.text()).extension() == ".npz")
     who.shape = read_amass_shape(existing_path(clip, folder), who.warnings);

@@ -41,7 +41,7 @@ struct Performance {
   Surface surface;          // of its skin, welded (welded_surface.hpp)
   std::vector<int> joined;  // of each vertex the one that stands for it in `surface`; empty: none joined
   Eigen::VectorXd shape;
-  Eigen::VectorXd said;                        // the shape from its section; empty: none
+  Eigen::VectorXd given_shape;                 // the shape from its section; empty: none
   Clip clip;                                   // no poses: it stands in the zero pose
   std::shared_ptr<const GiveWay> soft_tissue;  // null: the body may pass through itself
   bool fits_room = false;                      // the room between its parts follows from its garments

@@ -98,10 +98,10 @@ Garment read_dressed(const Config& section, const std::filesystem::path& file, c
   mesh.x *= read_unit(section["unit"]);
   refuse_far(section["file"], "mesh " + file.string(), mesh.x);
   warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
-  if (worn_part(mesh.x, shaped(who.body.skin, who.said)).places.empty())
+  if (worn_part(mesh.x, shaped(who.body.skin, who.given_shape)).places.empty())
     section["file"].fail("is not worn: hardly a vertex lies on the body in its zero pose",
                          "give its `unit`, or make the garment with `selvedge dress`, which takes poses");
-  const Dressing how{who.said, {}, section["fit"].text() == "tight" ? Fit::tight : Fit::loose, {}};
+  const Dressing how{who.given_shape, {}, section["fit"].text() == "tight" ? Fit::tight : Fit::loose, {}};
   Garment garment = dressed(mesh, who.body, how).garment;
   garment.name = file.stem().string();
   return garment;

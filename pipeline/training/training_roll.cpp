@@ -114,7 +114,7 @@ void set_start(const TrainingOptions& options, Roll& roll) {
   UntangleOptions untangling;
   untangling.iterations = 60;
   untangling.patience = 15;
-  untangling.second_opinion = false;
+  untangling.second_rule = false;
   const UntangleResult parted = untangle(roll.scene->scene.surface, roll.start, {}, untangling);
   roll.usable = parted.pairs_after == 0 && parted.vertex_pairs_after == 0;
   roll.parting = parted.iterations;

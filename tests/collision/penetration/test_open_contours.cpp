@@ -146,7 +146,7 @@ TEST_CASE("open contours: where a straight way meets a hole, another is found", 
   const double expected = integral_above(section_corners(), [](const Vec2& at) { return -0.3 * (at.x() + 0.2); });
   const Found found(both(slanted_sleeve(), holed_wall()));
   REQUIRE(found.is_one_region());
-  CHECK(found.penetration.regions[0].closing->ways[1].kind == ClosingWay::middles);
+  CHECK(found.penetration.regions[0].closing->paths[1].kind == ClosingWay::middles);
   CHECK(found.value == Approx(expected).epsilon(1e-9));
 }
 
