@@ -48,7 +48,7 @@ class Kinds {
   std::vector<StepperKind> kinds_;
 };
 
-// conventional, icm, learned, hybrid.
+// conventional, carried, icm, learned, hybrid.
 Kinds known_kinds();
 
 }  // namespace selvedge

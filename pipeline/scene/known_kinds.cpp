@@ -7,6 +7,7 @@
 #include "learned/steppers/learned_plan.hpp"
 #include "learned/steppers/learned_state.hpp"
 #include "learned/steppers/learned_stepper.hpp"
+#include "physics/steppers/carried_stepper.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
 #include "physics/steppers/hybrid_stepper.hpp"
 #include "pipeline/scene/kinds.hpp"
@@ -18,6 +19,19 @@ namespace {
 StepperKind conventional_kind() {
   StepperKind kind{.name = "conventional", .minimises = true};
   kind.maker = [](const Setup& setup, const Config&) { return conventional_maker(setup.run.conventional); };
+  return kind;
+}
+
+std::vector<PlanLine> carried_lines(const Setup&) {
+  return {{"carried guess", true, "cloth goes along with its skinned target, and on by a part of its last motion"},
+          {"solve", false, "left out by the stepper carried, and with it every elastic force"}};
+}
+
+StepperKind carried_kind() {
+  StepperKind kind{.name = "carried", .plan = carried_lines};
+  kind.maker = [](const Setup&, const Config&) -> MakeStepper {
+    return [](const Scene& scene) { return make_carried_stepper(scene); };
+  };
   return kind;
 }
 
@@ -123,7 +137,7 @@ StepperKind hybrid_kind() {
 
 Kinds known_kinds() {
   Kinds kinds;
-  for (StepperKind& kind : std::vector{conventional_kind(), icm_kind(), learned_kind(), hybrid_kind()})
+  for (StepperKind& kind : std::vector{conventional_kind(), carried_kind(), icm_kind(), learned_kind(), hybrid_kind()})
     kinds.add(std::move(kind));
   return kinds;
 }

@@ -1,0 +1,104 @@
+#include "physics/steppers/carried_stepper.hpp"
+
+#include "collision/geometry/floating_point.hpp"
+#include "collision/geometry/stopwatch.hpp"
+#include "physics/frame/bounded_step.hpp"
+#include "physics/scene/scene_numbers.hpp"
+#include "physics/steppers/contact_stage.hpp"
+#include "physics/steppers/finish_step.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr const char *target_block = "carried.target", *motion_block = "carried.motion";
+
+bool has_target(const Points& worn, Eigen::Index v) { return worn.rows() > 0 && worn.row(v).allFinite(); }
+
+// The skinned target of cloth that a body wears, the place of all other cloth.
+Points targets(const Drive& drive, const Points& x) {
+  Points all = x;
+  for (Eigen::Index v = 0; v < x.rows(); ++v)
+    if (has_target(drive.worn, v)) all.row(v) = drive.worn.row(v);
+  return all;
+}
+
+// What the next guess reads: the targets of this frame, and the motion relative to them.
+std::vector<MemoryBlock> memory_of(const State& from, const Drive& drive, const Points& x) {
+  const Points now = targets(drive, x);
+  Points motion = Points::Zero(x.rows(), 3);
+  if (const MemoryRows* before = find_rows(from.memory, target_block, x.rows()))
+    motion = (x - from.x) - (now - Points(*before));
+  return {{target_block, now, RowsOf::vertices, true}, {motion_block, motion, RowsOf::vertices}};
+}
+
+class CarriedStepper final : public Stepper {
+ public:
+  CarriedStepper(const Scene& scene, const CarriedOptions& options)
+      : scene_(scene), options_(options), contact_(scene) {}
+
+  const StepperTraits& traits() const override { return traits_; }
+  StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override {
+    check_time_step(dt, "stepper `" + traits_.name + "`");
+    return bounded_step(traits_.name, extras.stop, [&] { return take_step(from, drive, dt, to, extras.stop); });
+  }
+
+ private:
+  StepReport take_step(const State& from, const Drive& drive, double dt, State& to, const StopFlag& stop);
+
+  const Scene& scene_;
+  CarriedOptions options_;
+  ContactStage contact_;
+  StepperTraits traits_{.name = "carried",
+                        .past_frames = 1,
+                        .ignores = {"membrane", "bending (curvature)", "bending (hinge)", "stiffness damping",
+                                    "mass damping", "wind", "springs"}};
+};
+
+StepReport CarriedStepper::take_step(const State& from, const Drive& drive, double dt, State& to,
+                                     const StopFlag& stop) {
+  restore_standard_arithmetic();
+  StepReport report;
+  report.by = traits_.name;
+  report.substeps = 1;
+  report.status = StepStatus::rejected;
+  report.reason = Reason::not_finite;
+  Points x = carried_guess(scene_, from, drive, dt, options_);
+  if (!x.allFinite()) return report;
+  std::vector<Points> obstacles = drive.obstacles;
+  ResolveOptions options = contact_.options;
+  options.stop = stop;
+  const ResolveReport resolved = resolve_proposal(contact_, options, from, nullptr, x, obstacles);
+  add(resolved, report);
+  report.reason = resolved.stopped ? Reason::stopped : x.allFinite() ? Reason::none : Reason::not_finite;
+  if (report.reason != Reason::none) return report;
+  StepEnd end{x, (x - from.x) / dt, std::move(obstacles), memory_of(from, drive, x)};
+  finish_step(from, drive, dt, std::move(end), to, report);
+  return report;
+}
+
+}  // namespace
+
+Points carried_guess(const Scene& scene, const State& from, const Drive& drive, double dt,
+                     const CarriedOptions& options) {
+  const MemoryRows *target = find_rows(from.memory, target_block, from.x.rows()),
+                   *motion = find_rows(from.memory, motion_block, from.x.rows());
+  Points x = from.x;
+  for (Eigen::Index v = 0; v < x.rows(); ++v) {
+    if (!has_target(drive.worn, v))
+      x.row(v) += dt * (from.v.row(v) + dt * drive.acceleration.transpose());
+    else if (target)
+      x.row(v) += drive.worn.row(v) - target->row(v);
+    else
+      x.row(v) += dt * from.v.row(v);
+    if (has_target(drive.worn, v) && motion) x.row(v) += options.kept * motion->row(v);
+  }
+  for (std::size_t k = 0; k < scene.pins.size(); ++k)
+    x.row(scene.pins[k]) = drive.pins.row(static_cast<Eigen::Index>(k));
+  return x;
+}
+
+std::unique_ptr<Stepper> make_carried_stepper(const Scene& scene, const CarriedOptions& options) {
+  return std::make_unique<CarriedStepper>(scene, options);
+}
+
+}  // namespace selvedge

@@ -1,0 +1,74 @@
+#include <catch2/catch.hpp>
+
+#include "physics/steppers/carried_stepper.hpp"
+#include "tests/frame.hpp"
+#include "tests/physics/worlds.hpp"
+
+namespace selvedge::test_carried_stepper {
+
+using testing::make_world;
+using testing::World;
+
+namespace {
+
+constexpr double dt = 1.0 / 30;
+
+// The sheet's skinned target: `offset` [m] from where it starts.
+Points moved(const World& world, const Vec3& offset) { return world.state.x.rowwise() + offset.transpose(); }
+
+}  // namespace
+
+TEST_CASE("carried: cloth goes along with its skinned target, and keeps a part of its motion relative to it",
+          "[carried]") {
+  World world = make_world(testing::sheet(5, 0.2, 1));
+  world.drive.acceleration = {0, -9.81, 0};
+  const auto stepper = make_carried_stepper(world.scene, {.kept = 0.6});
+  State first, second, third;
+  world.state.v.setConstant(0.3);
+  world.drive.worn = moved(world, {0, 0, 0});
+  REQUIRE(testing::frame(world.scene, *stepper, world.state, world.drive, dt, first).status == StepStatus::accepted);
+  CHECK((first.x - moved(world, {0.01, 0.01, 0.01})).cwiseAbs().maxCoeff() < 1e-12);  // nothing is known of before
+  world.drive.worn = moved(world, {0, 0, 0.02});
+  testing::frame(world.scene, *stepper, first, world.drive, dt, second);
+  CHECK((second.x - first.x).isApprox(moved(world, {0, 0, 0.02}) - world.state.x, 1e-12));
+  Points pushed = second.x;
+  pushed.col(0).array() += 0.01;  // as if it had moved so in the second frame
+  for (MemoryBlock& block : second.memory)
+    if (block.name == "carried.motion") block.rows.col(0).array() += 0.01;
+  second.x = pushed;
+  world.drive.worn = moved(world, {0, 0, 0.05});
+  testing::frame(world.scene, *stepper, second, world.drive, dt, third);
+  CHECK((third.x - pushed).isApprox(moved(world, {0.006, 0, 0.03}) - world.state.x, 1e-9));
+}
+
+TEST_CASE("carried: cloth that nothing wears falls freely, and pins go where the drive has them", "[carried]") {
+  World world = make_world(testing::sheet(4, 0.2, 1));
+  world.scene.pins = {0};
+  world.drive.acceleration = {0, -9.81, 0};
+  world.drive.pins = moved(world, {0.001, 0, 0}).topRows(1);
+  const auto stepper = make_carried_stepper(world.scene);
+  State to;
+  REQUIRE(testing::frame(world.scene, *stepper, world.state, world.drive, dt, to).status == StepStatus::accepted);
+  CHECK(to.x.row(0) == world.drive.pins.row(0));
+  CHECK(to.x(5, 1) == Approx(world.state.x(5, 1) - 9.81 * dt * dt));
+  CHECK(to.v(5, 1) == Approx(-9.81 * dt));
+}
+
+TEST_CASE("carried: the response to contact keeps cloth that is carried into cloth apart from it", "[carried]") {
+  World world = make_world(testing::join(testing::sheet(6, 0.2, 0), testing::sheet(6, 0.2, 0.01)));
+  world.scene.contact.self = true;
+  Points target = world.state.x;
+  const auto stepper = make_carried_stepper(world.scene);
+  State first, to;
+  world.drive.worn = target;
+  testing::frame(world.scene, *stepper, world.state, world.drive, dt, first);
+  world.drive.worn.bottomRows(36).col(1).array() -= 0.02;  // through the lower sheet
+  const StepReport report = testing::frame(world.scene, *stepper, first, world.drive, dt, to);
+  REQUIRE(report.status == StepStatus::accepted);
+  CHECK(report.collision.impulses + report.collision.zones > 0);
+  CHECK(report.collision.pairs_after == 0);
+  CHECK(report.collision.passed_through == 0);
+  CHECK(to.clean);
+}
+
+}  // namespace selvedge::test_carried_stepper
