@@ -64,12 +64,12 @@ class MovingClosing {
     for (int k = 0; k < 3; ++k) gradient_.row(surface_.triangles(c.face, k)) += c.weight[k] * by_face.transpose();
   }
 
-  void pull_point(ClosingWay kind, CurvePoint point, const Vec3& by) {
+  void pull_point(ClosingKind kind, CurvePoint point, const Vec3& by) {
     if (point == from_ || point == to_) {
       pull_end(point, by);
     } else if (point < 0) {
       gradient_.row(~point) += by.transpose();
-    } else if (kind == ClosingWay::plane) {
+    } else if (kind == ClosingKind::plane) {
       pull_cut(point, by);
     } else {
       const Crossing& c = crossings_[point];
@@ -88,7 +88,7 @@ class MovingClosing {
     pull_end(from_, (1 - ahead) * by);
     pull_end(to_, ahead * by);
     for (int side = 0; side < 2; ++side)
-      if (closing_.paths[side].kind == ClosingWay::plane)
+      if (closing_.paths[side].kind == ClosingKind::plane)
         pull_up(closing_.paths[side], above * sense_of(closed_, x_, closing_, side) * by);
   }
 
@@ -124,7 +124,7 @@ class MovingClosing {
 Vec3 up_of_plane(const ClosedSurface& closed, const Points& x, const ContourClosing& closing) {
   Vec3 up = Vec3::Zero();
   for (int side = 0; side < 2; ++side)
-    if (closing.paths[side].kind == ClosingWay::plane)
+    if (closing.paths[side].kind == ClosingKind::plane)
       up += sense_of(closed, x, closing, side) * normal_of(closed, x, closing.paths[side]).normalized();
   return up;
 }

@@ -209,26 +209,26 @@ std::optional<ContourClosing> close_open_contour(const ClosedSurface& closed, co
   ContourClosing closing;
   const std::size_t before = crossings.size();
   std::array<SurfaceCurve, 2> made;
-  const auto close = [&](ClosingWay kind) {
+  const auto close = [&](ClosingKind kind) {
     crossings.resize(before);
     for (int side = 0; side < 2; ++side) {
       const std::vector<int>& triangles = contour.sides[side].triangles;
       const bool at_rim = one_rim && side == contour.end_side[0];
       closing.paths[side] = {
-          at_rim ? ClosingWay::rim : kind, {}, {triangles.back(), triangles.front()}, side == 0 ? -1 : 1};
+          at_rim ? ClosingKind::rim : kind, {}, {triangles.back(), triangles.front()}, side == 0 ? -1 : 1};
       made[side] = curve_on_side(closed, crossings, contour, number, side);
     }
     const Vec3 up = up_of_plane(closed, x, closing);
     bool goes = true;
     for (int side = 0; side < 2; ++side) {
       ContourClosing::Path& path = closing.paths[side];
-      if (path.kind == ClosingWay::rim) closer.go_along_rim(rims, made[side], path);
-      if (path.kind == ClosingWay::plane) goes &= closer.go_straight(up, made[side], path);
-      if (path.kind == ClosingWay::middles) closer.go_through_middles(made[side], path);
+      if (path.kind == ClosingKind::rim) closer.go_along_rim(rims, made[side], path);
+      if (path.kind == ClosingKind::plane) goes &= closer.go_straight(up, made[side], path);
+      if (path.kind == ClosingKind::middles) closer.go_through_middles(made[side], path);
     }
     return goes;
   };
-  if (!close(ClosingWay::plane)) close(ClosingWay::middles);
+  if (!close(ClosingKind::plane)) close(ClosingKind::middles);
   std::ranges::move(made, std::back_inserter(curves));
   return closing;
 }

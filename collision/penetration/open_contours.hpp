@@ -10,14 +10,14 @@ namespace selvedge {
 
 // How a contour is continued beyond its last point. rim: round a hole. plane: straight, where a plane cuts the surface.
 // middles: along the shortest strip of faces, through the middles of edges.
-enum class ClosingWay { rim, plane, middles };
+enum class ClosingKind { rim, plane, middles };
 
 // How a contour between two garments is closed that ends at their rims, because fans meet only their own garment. On
 // each garment's surface a path leads from its last point back to its first. Triangles between the two paths, with a
 // corner at the middle of these two points, close the gap between the surfaces.
 struct ContourClosing {
   struct Path {
-    ClosingWay kind = ClosingWay::plane;
+    ClosingKind kind = ClosingKind::plane;
     std::vector<CurvePoint> points;  // from the contour's last to its first, both included
     std::array<int, 2> end_faces{};  // the contour's last and first triangle on this side
     int times = 0;  // how often its triangles (middle, point, next point) count in the region's surface

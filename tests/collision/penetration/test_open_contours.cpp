@@ -146,7 +146,7 @@ TEST_CASE("open contours: where a straight way meets a hole, another is found", 
   const double expected = integral_above(section_corners(), [](const Vec2& at) { return -0.3 * (at.x() + 0.2); });
   const Found found(both(slanted_sleeve(), holed_wall()));
   REQUIRE(found.is_one_region());
-  CHECK(found.penetration.regions[0].closing->paths[1].kind == ClosingWay::middles);
+  CHECK(found.penetration.regions[0].closing->paths[1].kind == ClosingKind::middles);
   CHECK(found.value == Approx(expected).epsilon(1e-9));
 }
 
@@ -159,7 +159,7 @@ TEST_CASE("open contours: with ends at both rims they have the volume up to a pl
     const auto end = [&](CurvePoint point) {
       return position_of(found.closed.surface, found.x, found.penetration.crossings, point);
     };
-    const Vec3 from = end(closing.ways[0].points.front()), to = end(closing.ways[0].points.back());
+    const Vec3 from = end(closing.paths[0].points.front()), to = end(closing.paths[0].points.back());
     const Vec3 normal = (to - from).cross(up_of_plane(found.closed, found.x, closing));
     const double sign = normal.y() * (0 - from.y()) + normal.z() * (0 - from.z()) > 0 ? -1 : 1;
     const double expected = integral_above(section_corners(), [&](const Vec2& at) {
