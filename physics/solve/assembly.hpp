@@ -3,14 +3,14 @@
 #include <vector>
 
 #include "physics/energies/bending.hpp"
+#include "physics/energies/joints.hpp"
 #include "physics/energies/membrane.hpp"
-#include "physics/energies/springs.hpp"
 #include "physics/linear/linear_system.hpp"
 
 namespace selvedge {
 
 // All elastic elements of a scene and where their parts go. Elements are numbered membrane triangles first, then
-// hinges, curved vertices and springs; kinds that the scene does not have are empty and cost nothing. Each element
+// hinges, curved vertices and joints; kinds that the scene does not have are empty and cost nothing. Each element
 // writes into slots of its own and each vertex and pair sums its slots in a fixed order: the same bits for any number
 // of threads.
 struct Elastic {
@@ -18,12 +18,12 @@ struct Elastic {
   std::vector<MembraneElement> membrane;
   std::vector<Hinge> hinges;
   std::vector<CurvedVertex> curved;
-  std::vector<Spring> springs;
+  Scene joints;       // the scene's lists of joints alone
   SparseMatrix flat;  // Q [N/m], acts on each coordinate alone; 0 x 0 where no flat cloth bends by curvature
 
   std::vector<int> element_begin, element_nodes;  // a position in element_nodes is a force slot
   std::vector<int> pair_begin;                    // first pair slot of each element: (0, 1), (0, 2) .. (1, 2) ..
-  std::vector<double> element_damping;  // stiffness damping of the element's cloth, of a spring's two the mean [s]
+  std::vector<double> element_damping;  // stiffness damping of the element's cloth, of a joint's several the mean [s]
   std::vector<double> vertex_damping;   // the same of each vertex
   PairPattern pattern;
   std::vector<int> force_gather_begin, force_gather;  // the force slots of each vertex
