@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "physics/energies/hinge_lanes.hpp"
+#include "physics/energies/joints.hpp"
 #include "physics/energies/membrane_lanes.hpp"
-#include "physics/energies/springs.hpp"
 
 namespace selvedge {
 namespace {
@@ -83,7 +83,7 @@ double spring_loss(const LossGarment& garment, const Points& x, Points* gradient
   double sum = 0;
   for (const Spring& spring : garment.springs) {
     Vec6 own;
-    sum += spring_derivatives(spring, x, own, nullptr);
+    sum += joint_derivatives(spring, x, own, nullptr);
     if (!gradient) continue;
     gradient->row(spring.a) += own.head<3>().transpose();
     gradient->row(spring.b) += own.tail<3>().transpose();

@@ -1,12 +1,9 @@
 #include "learned/losses/objective.hpp"
 
 #include <cmath>
-#include <functional>
 
 #include "collision/geometry/error.hpp"
 #include "learned/losses/body_losses.hpp"
-#include "learned/losses/cloth_losses.hpp"
-#include "learned/losses/volume_loss.hpp"
 
 namespace selvedge {
 namespace {
@@ -35,19 +32,10 @@ void check_inputs(const LossInputs& in) {
 // The weight at this progress of the run.
 double weight_now(const LossRamp& ramp, const LossInputs& in) { return weight_at(ramp, in.progress); }
 
-bool has_body(const LossInputs& in) { return in.body && in.body->triangles.rows() > 0; }
-
 const std::vector<char>& left_out_of(const LossInputs& in) {
   static const std::vector<char> none;
   return in.body_left_out ? *in.body_left_out : none;
 }
-
-double dt_of(const LossInputs& in, const LossOptions& options) {
-  return in.is_initial ? options.relaxation_dt : in.timestep;
-}
-
-// The value of a loss without its weight; adds the derivative.
-using Loss = std::function<double(Points*)>;
 
 double norm_of_free(const LossGarment& garment, const Points& gradient) {
   double sum = 0;
@@ -56,27 +44,18 @@ double norm_of_free(const LossGarment& garment, const Points& gradient) {
   return std::sqrt(sum);
 }
 
-LossTerm add_term(const char* name, double weight, const Loss& loss, const LossGarment& garment, Points* gradient) {
-  LossTerm term{name, weight, 0, 0};
+LossTerm add_term(const LossRow& row, const LossFrame& frame, double weight, Points* gradient) {
+  LossTerm term{&row, row.name, weight, 0, 0};
   if (!gradient) {
-    term.value = weight * loss(nullptr);
+    term.value = weight * row.value(frame, nullptr);
     return term;
   }
   Points own = Points::Zero(gradient->rows(), 3);
-  term.value = weight * loss(&own);
+  term.value = weight * row.value(frame, &own);
   own *= weight;
-  term.gradient_norm = norm_of_free(garment, own);
+  term.gradient_norm = norm_of_free(*frame.in.garment, own);
   if (std::isfinite(term.value) && own.allFinite()) *gradient += own;
   return term;
-}
-
-double contour_loss(const LossInputs& in, const ContourLoss& options, const Segments& crossings, Points* gradient) {
-  const SheetView sheet{&in.garment->surface, in.predicted};
-  std::vector<Points> by_sheet;
-  const double value = contour_energy({&sheet, 1}, crossings, ContourMeasure::squared_length,
-                                      gradient ? &by_sheet : nullptr, options.gradient, options.normal);
-  if (gradient) *gradient += by_sheet[0];
-  return value;
 }
 
 bool looks_for_contours(const LossInputs& in, const LossOptions& options) {
@@ -108,46 +87,6 @@ void find_of_state(const LossInputs& in, const LossOptions& options, LossSearch&
   if (weight_now(options.friction.weight, in) != 0)
     search.matches.friction_before =
         nearest_centroids(*in.body, *in.body_previous, left_out_of(in), *in.x, search.before);
-}
-
-std::vector<LossTerm> add_checked(const LossInputs& in, const LossOptions& options, const LossMatches& matches,
-                                  Points* gradient) {
-  const LossGarment& garment = *in.garment;
-  const Points& x = *in.predicted;
-  std::vector<LossTerm> terms;
-  const auto add = [&](const char* name, const LossRamp& ramp, const Loss& loss) {
-    if (const double weight = weight_now(ramp, in); weight != 0)
-      terms.push_back(add_term(name, weight, loss, garment, gradient));
-  };
-  add("stretching", options.stretching,
-      [&](Points* g) { return stretching_loss(garment, x, g) + spring_loss(garment, x, g); });
-  add("bending", options.bending, [&](Points* g) { return bending_loss(garment, x, g); });
-  if (in.acceleration)
-    add("forces", options.gravity, [&](Points* g) { return force_loss(garment.mass, *in.acceleration, x, g); });
-  else
-    add("gravity", options.gravity, [&](Points* g) { return gravity_loss(garment, options.gravity_strength, x, g); });
-  add("inertia", options.inertia,
-      [&](Points* g) { return inertia_loss(garment, *in.x, *in.velocity, dt_of(in, options), x, g); });
-  if (has_body(in)) {
-    add("collision", options.collision.weight, [&](Points* g) {
-      return collision_loss(garment, options.collision, matches.collision_face, *in.body, *in.body_next, x, g);
-    });
-    add("friction", options.friction.weight, [&](Points* g) {
-      return friction_loss(garment, options.friction, options.gravity_strength, matches.friction_before,
-                           matches.friction_after, *in.body, *in.body_previous, *in.body_now, *in.x, x, g);
-    });
-  }
-  add("repulsion", options.repulsion.weight,
-      [&](Points* g) { return repulsion_loss(garment, options.repulsion, in.repulsion, *in.x, x, g); });
-  add("volume", options.volume.weight, [&](Points* g) { return volume_loss(garment.closed, options.volume, x, g); });
-  add("vertex_repulsion", options.vertex_repulsion.weight, [&](Points* g) {
-    return vertex_repulsion_loss(garment.surface, options.vertex_repulsion.distance, options.vertex_repulsion.power, x,
-                                 g);
-  });
-  if (in.contours)
-    add("contours", options.contours.weight,
-        [&](Points* g) { return contour_loss(in, options.contours, matches.crossings, g); });
-  return terms;
 }
 
 void check_match(const std::vector<int>& faces, const LossInputs& in, const LossRamp& ramp,
@@ -191,7 +130,13 @@ std::vector<LossTerm> add_losses(const LossInputs& in, const LossOptions& option
   check_match(matches.collision_face, in, options.collision.weight, options.collision.samples);
   check_match(matches.friction_before, in, options.friction.weight);
   check_match(matches.friction_after, in, options.friction.weight);
-  return add_checked(in, options, matches, gradient);
+  const LossFrame frame{in, options, matches};
+  std::vector<LossTerm> terms;
+  for (const LossRow& row : loss_rows())
+    if (const double weight = weight_now(row.weight(options), in);
+        weight != 0 && (!row.takes_part || row.takes_part(in)))
+      terms.push_back(add_term(row, frame, weight, gradient));
+  return terms;
 }
 
 std::vector<LossTerm> add_losses(const LossInputs& in, const LossOptions& options, LossSearch& search,

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "physics/energies/springs.hpp"
+#include "physics/energies/joints.hpp"
 #include "physics/scene/stepper.hpp"
 
 namespace selvedge {
@@ -20,7 +20,9 @@ EnergyTerms energy_terms(const Scene& scene, const StepperTraits& traits) {
   const auto has = [&](const char* force) { return std::ranges::find(traits.ignores, force) == traits.ignores.end(); };
   terms.with_membrane = has("membrane");
   terms.with_bending = has("bending (curvature)") && has("bending (hinge)");
-  terms.with_springs = has("springs");
+  for_each_joint_list([&](auto list, const JointKind& kind) {
+    if (!has(kind.name) && !(scene.*list).empty()) terms.with_springs = false;
+  });
   return terms;
 }
 
@@ -36,11 +38,13 @@ Energies energies(const Scene& scene, const EnergyTerms& terms, const Points& x,
   }
   for (const CurvedVertex& vertex : terms.curvature.curved) energy.bending += curved_energy(vertex, x);
   for (const Hinge& hinge : terms.hinges) energy.bending += hinge_energy(hinge, x);
-  for (const Spring& spring : scene.springs) energy.springs += spring_energy(spring, x);
+  for_each_joint_list([&](auto list, const JointKind&) {
+    for (const auto& joint : scene.*list) energy.springs += joint_energy(joint, x);
+  });
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   if (!terms.with_membrane) energy.membrane = none;
   if (!terms.with_bending) energy.bending = none;
-  if (!terms.with_springs && !scene.springs.empty()) energy.springs = none;
+  if (!terms.with_springs) energy.springs = none;
   return energy;
 }
 

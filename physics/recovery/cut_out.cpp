@@ -4,7 +4,7 @@
 #include <map>
 
 #include "collision/untangle/crossing_triangles.hpp"
-#include "physics/energies/springs.hpp"
+#include "physics/energies/joints.hpp"
 
 namespace selvedge {
 namespace {
@@ -33,12 +33,9 @@ std::vector<int> parts_of(const Scene& scene, const Marks& there) {
     triangles.row(next++) = all.row(t);
     for (const int v : all.row(t)) has[v] = 1;
   }
-  std::vector<Spring> springs;
-  for (const Spring& spring : scene.springs)
-    if (has[spring.a] && has[spring.b]) springs.push_back(spring);
   const Surface surface = make_surface(scene.surface.vertex_count, triangles);
   std::vector<int> parts = surface.component;
-  const std::vector<int> joined = joined_by_springs(springs, parts, surface.component_count);
+  const std::vector<int> joined = joined_parts(scene, parts, surface.component_count, has);
   for (int& part : parts) part = joined[part];
   return parts;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "physics/scene/joint_lists.hpp"
 #include "physics/scene/stepper.hpp"
 
 namespace selvedge {
@@ -160,9 +161,10 @@ std::vector<PlanLine> plan_lines(const Scene& scene) {
       {"self-contact", f.self_contact, why_self(scene, f.self_contact)},
       {"friction", f.friction, why_friction(scene, f)},
   };
-  if (f.springs)
-    lines.push_back(
-        {"springs", true, count(static_cast<long long>(scene.springs.size()), "pair") + " of vertices joined"});
+  for_each_joint_list([&](auto list, const JointKind& kind) {
+    const auto joints = std::ssize(scene.*list);
+    if (joints > 0) lines.push_back({kind.name, true, count(joints, kind.one, kind.many)});
+  });
   return lines;
 }
 
@@ -178,7 +180,9 @@ Scene without_ignored(Scene scene, const StepperTraits& traits) {
   const auto ignored = [&](const std::string& force) {
     return std::ranges::find(traits.ignores, force) != traits.ignores.end();
   };
-  if (ignored("springs")) scene.springs.clear();
+  for_each_joint_list([&](auto list, const JointKind& kind) {
+    if (ignored(kind.name)) (scene.*list).clear();
+  });
   if (ignored("wind")) scene.wind.on = false;
   for (Cloth& cloth : scene.cloths) {
     Material& m = cloth.material;

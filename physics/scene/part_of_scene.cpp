@@ -4,6 +4,8 @@
 #include <cassert>
 #include <utility>
 
+#include "physics/scene/joint_lists.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -96,10 +98,14 @@ PartOfScene part_with(const Scene& whole, std::span<const char> has_vertex, std:
     scene.pins.push_back(pin);
     part.pins.push_back(static_cast<int>(p));
   }
-  for (const Spring& spring : whole.springs) {
-    const int a = renumbered[spring.a], b = renumbered[spring.b];
-    if (a >= 0 && b >= 0) scene.springs.push_back({a, b, spring.rest_length, spring.stiffness});
-  }
+  for_each_joint_list([&](auto list, const JointKind&) {
+    for (auto joint : whole.*list) {
+      auto nodes = nodes_of(joint);
+      for (int& node : nodes) node = renumbered[node];
+      renumber(nodes, joint);
+      if (std::ranges::min(nodes) >= 0) (scene.*list).push_back(joint);
+    }
+  });
   scene.obstacles = whole.obstacles;
   scene.contact = whole.contact;
   scene.wind = whole.wind;
@@ -116,7 +122,12 @@ PartOfScene part_of(const Scene& whole, std::span<const char> cloths) {
     std::fill_n(vertices.begin() + cloth.first_vertex, cloth.vertex_count, cloths[c]);
     std::fill_n(triangles.begin() + cloth.first_triangle, cloth.triangle_count, cloths[c]);
   }
-  assert(std::ranges::all_of(whole.springs, [&](const Spring& s) { return vertices[s.a] == vertices[s.b]; }));
+  for_each_joint_list([&]([[maybe_unused]] auto list, const JointKind&) {
+    assert(std::ranges::all_of(whole.*list, [&](const auto& joint) {
+      return std::ranges::all_of(nodes_of(joint),
+                                 [&](int node) { return vertices[node] == vertices[nodes_of(joint)[0]]; });
+    }));
+  });
   return part_with(whole, vertices, triangles);
 }
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "collision/geometry/error.hpp"
+#include "physics/scene/joint_lists.hpp"
 #include "physics/scene/stepper.hpp"
 
 namespace selvedge {
@@ -135,11 +136,13 @@ void check_scene(const Scene& scene) {
       throw Error("is vertex " + std::to_string(scene.pins[p]) + " after " + std::to_string(scene.pins[p - 1]), where,
                   "sort the pins, each once");
   }
-  for (std::size_t s = 0; s < scene.springs.size(); ++s) {
-    const std::string where = "spring " + std::to_string(s);
-    for (const int end : {scene.springs[s].a, scene.springs[s].b}) check_vertex(end, scene, where);
-    check_numbers(scene.springs[s], where);
-  }
+  for_each_joint_list([&](auto list, const JointKind& kind) {
+    for (std::size_t j = 0; j < (scene.*list).size(); ++j) {
+      const std::string where = std::string(kind.joint) + " " + std::to_string(j);
+      for (const int node : nodes_of((scene.*list)[j])) check_vertex(node, scene, where);
+      check_numbers((scene.*list)[j], where);
+    }
+  });
 }
 
 void check_state(const Scene& scene, const State& state) {

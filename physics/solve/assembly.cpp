@@ -58,6 +58,23 @@ void store(const Elastic& elastic, int e, const Gradient& gradient, const Hessia
     }
 }
 
+double weight_of(const Elastic& elastic, int e, HessianForm form) {
+  return form == HessianForm::damping ? elastic.element_damping[e] : 1;
+}
+
+// The pair blocks of the element in lane l.
+template <std::size_t count, class Lanes>
+void store_lane(const Elastic& elastic, int e, const std::array<int, count>& nodes, const Lanes& lanes, int l,
+                double weight, AssemblyScratch& scratch) {
+  int pair = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = i + 1; j < count; ++j, ++pair) {
+      Mat3& block = scratch.pairs[elastic.pair_begin[e] + pair];
+      block = weight * block_of(lanes, pair, l);
+      if (nodes[i] > nodes[j]) block.transposeInPlace();
+    }
+}
+
 void derivatives_of_membranes(const Elastic& elastic, const Points& x, int begin, int end, bool forces, bool pairs,
                               HessianForm form, AssemblyScratch& scratch) {
   MembraneLanes lanes;
@@ -74,15 +91,7 @@ void derivatives_of_membranes(const Elastic& elastic, const Points& x, int begin
         scratch.forces.row(slot) = -(corner(0) + corner(1)).transpose();
         for (int k = 0; k < 2; ++k) scratch.forces.row(slot + 1 + k) = corner(k).transpose();
       }
-      if (!pairs) continue;
-      const double weight = form == HessianForm::damping ? elastic.element_damping[e] : 1;
-      const std::array<int, 3>& nodes = elements[l].nodes;
-      for (int i = 0, pair = 0; i < 3; ++i)
-        for (int j = i + 1; j < 3; ++j, ++pair) {
-          Mat3& block = scratch.pairs[elastic.pair_begin[e] + pair];
-          block = weight * block_of(lanes, pair, l);
-          if (nodes[i] > nodes[j]) block.transposeInPlace();
-        }
+      if (pairs) store_lane(elastic, e, elements[l].nodes, lanes, l, weight_of(elastic, e, form), scratch);
     }
   }
 }
@@ -99,27 +108,27 @@ void derivatives_of_hinges(const Elastic& elastic, const Points& x, int begin, i
       const int e = first + l, slot = elastic.element_begin[e];
       if (forces)
         for (int k = 0; k < 12; ++k) scratch.forces(slot + k / 3, k % 3) = lanes.force[k][l];
-      if (!pairs) continue;
-      const double weight = form == HessianForm::damping ? elastic.element_damping[e] : 1;
-      const std::array<int, 4>& nodes = hinges[l].nodes;
-      for (int i = 0, pair = 0; i < 4; ++i)
-        for (int j = i + 1; j < 4; ++j, ++pair) {
-          Mat3& block = scratch.pairs[elastic.pair_begin[e] + pair];
-          block = weight * block_of(lanes, pair, l);
-          if (nodes[i] > nodes[j]) block.transposeInPlace();
-        }
+      if (pairs) store_lane(elastic, e, hinges[l].nodes, lanes, l, weight_of(elastic, e, form), scratch);
     }
   }
+}
+
+// Calls `visit` with the number of each joint among elements begin .. end - 1, and with the joint.
+template <class Visit>
+void for_each_joint(const Elastic& elastic, int joints_begin, int begin, int end, const Visit& visit) {
+  for_each_joint_list([&](auto list, const JointKind&) {
+    const auto& joints = elastic.joints.*list;
+    const int joints_end = joints_begin + static_cast<int>(joints.size());
+    for (int e = std::max(begin, joints_begin); e < std::min(end, joints_end); ++e) visit(e, joints[e - joints_begin]);
+    joints_begin = joints_end;
+  });
 }
 
 void derivatives_of_chunk(const Elastic& elastic, const Points& x, int begin, int end, bool forces, bool pairs,
                           HessianForm form, AssemblyScratch& scratch) {
   const int hinges_begin = static_cast<int>(elastic.membrane.size());
   const int curved_begin = hinges_begin + static_cast<int>(elastic.hinges.size());
-  const int springs_begin = curved_begin + static_cast<int>(elastic.curved.size());
-  const bool psd = form != HessianForm::exact;
-  Vec6 gradient6;
-  Mat6 hessian6;
+  const int joints_begin = curved_begin + static_cast<int>(elastic.curved.size());
   Eigen::VectorXd gradient;
   Eigen::MatrixXd hessian;
   if (begin < hinges_begin)
@@ -127,22 +136,23 @@ void derivatives_of_chunk(const Elastic& elastic, const Points& x, int begin, in
   if (end > hinges_begin && begin < curved_begin)
     derivatives_of_hinges(elastic, x, std::max(begin, hinges_begin), std::min(end, curved_begin), forces, pairs, form,
                           scratch);
-  for (int e = std::max(begin, curved_begin); e < end; ++e) {
-    const double weight = form == HessianForm::damping ? elastic.element_damping[e] : 1;
-    if (e < springs_begin) {
-      curved_derivatives(elastic.curved[e - curved_begin], x, gradient, pairs ? &hessian : nullptr);
-      store(elastic, e, gradient, hessian, weight, forces, pairs, scratch);
-    } else {
-      spring_derivatives(elastic.springs[e - springs_begin], x, gradient6, pairs ? &hessian6 : nullptr, psd);
-      store(elastic, e, gradient6, hessian6, weight, forces, pairs, scratch);
-    }
+  for (int e = std::max(begin, curved_begin); e < std::min(end, joints_begin); ++e) {
+    curved_derivatives(elastic.curved[e - curved_begin], x, gradient, pairs ? &hessian : nullptr);
+    store(elastic, e, gradient, hessian, weight_of(elastic, e, form), forces, pairs, scratch);
   }
+  for_each_joint(elastic, joints_begin, begin, end, [&](int e, const auto& joint) {
+    constexpr int size = 3 * std::tuple_size_v<decltype(nodes_of(joint))>;
+    Eigen::Matrix<double, size, 1> own_gradient;
+    Eigen::Matrix<double, size, size> own_hessian;
+    joint_derivatives(joint, x, own_gradient, pairs ? &own_hessian : nullptr, form != HessianForm::exact);
+    store(elastic, e, own_gradient, own_hessian, weight_of(elastic, e, form), forces, pairs, scratch);
+  });
 }
 
 double energy_of_chunk(const Elastic& elastic, const Points& x, int begin, int end) {
   const int hinges_begin = static_cast<int>(elastic.membrane.size());
   const int curved_begin = hinges_begin + static_cast<int>(elastic.hinges.size());
-  const int springs_begin = curved_begin + static_cast<int>(elastic.curved.size());
+  const int joints_begin = curved_begin + static_cast<int>(elastic.curved.size());
   double sum = 0;
   if (begin < hinges_begin) {
     const std::span<const MembraneElement> all = elastic.membrane;
@@ -153,12 +163,9 @@ double energy_of_chunk(const Elastic& elastic, const Points& x, int begin, int e
     const std::span<const Hinge> all = elastic.hinges;
     sum += hinge_energy(all.subspan(first, std::min(end, curved_begin) - hinges_begin - first), x);
   }
-  for (int e = std::max(begin, curved_begin); e < end; ++e) {
-    if (e < springs_begin)
-      sum += curved_energy(elastic.curved[e - curved_begin], x);
-    else
-      sum += spring_energy(elastic.springs[e - springs_begin], x);
-  }
+  for (int e = std::max(begin, curved_begin); e < std::min(end, joints_begin); ++e)
+    sum += curved_energy(elastic.curved[e - curved_begin], x);
+  for_each_joint(elastic, joints_begin, begin, end, [&](int, const auto& joint) { sum += joint_energy(joint, x); });
   return sum;
 }
 
@@ -177,7 +184,6 @@ Elastic make_elastic(const Scene& scene) {
   elastic.hinges = hinges(scene);
   CurvatureBending bending = curvature_bending(scene);
   elastic.curved = std::move(bending.curved);
-  elastic.springs = scene.springs;
   if (bending.flat.nonZeros() > 0) elastic.flat = std::move(bending.flat);
   elastic.flat.makeCompressed();
 
@@ -187,11 +193,17 @@ Elastic make_elastic(const Scene& scene) {
   for (const CurvedVertex& vertex : elastic.curved) append_element(elastic, vertex.nodes);
   for (int e = 0; e < element_count(elastic); ++e)
     elastic.element_damping.push_back(elastic.vertex_damping[elastic.element_nodes[elastic.element_begin[e]]]);
-  for (const Spring& spring : elastic.springs) {
-    assert(spring.a != spring.b);
-    append_element(elastic, std::array{spring.a, spring.b});
-    elastic.element_damping.push_back(0.5 * (elastic.vertex_damping[spring.a] + elastic.vertex_damping[spring.b]));
-  }
+  for_each_joint_list([&](auto list, const JointKind&) {
+    elastic.joints.*list = scene.*list;
+    for (const auto& joint : scene.*list) {
+      const auto nodes = nodes_of(joint);
+      assert(std::ranges::adjacent_find(nodes) == nodes.end());
+      append_element(elastic, nodes);
+      double damping = 0;
+      for (const int node : nodes) damping += elastic.vertex_damping[node];
+      elastic.element_damping.push_back(damping / static_cast<double>(nodes.size()));
+    }
+  });
 
   elastic.pattern = make_pair_pattern(vertices, elastic.element_begin, elastic.element_nodes);
   make_gather_lists(elastic, vertices);

@@ -3,14 +3,14 @@
 #include <vector>
 
 #include "physics/energies/bending.hpp"
+#include "physics/energies/joints.hpp"
 #include "physics/energies/membrane.hpp"
-#include "physics/energies/springs.hpp"
 #include "physics/linear/linear_system.hpp"
 
 namespace selvedge {
 
 // All elastic elements of a scene and the slots of their results. Elements are numbered: membrane triangles first, then
-// hinges, curved vertices and springs; kinds that the scene does not have are empty. Each element writes into slots of
+// hinges, curved vertices and joints; kinds that the scene does not have are empty. Each element writes into slots of
 // its own, and each vertex and pair sums its slots in a fixed order, so that bits do not depend on the number of
 // threads.
 struct Elastic {
@@ -18,12 +18,12 @@ struct Elastic {
   std::vector<MembraneElement> membrane;
   std::vector<Hinge> hinges;
   std::vector<CurvedVertex> curved;
-  std::vector<Spring> springs;
+  Scene joints;       // the scene's lists of joints alone
   SparseMatrix flat;  // Q [N/m], for each coordinate; 0 x 0 if no flat cloth bends by curvature
 
   std::vector<int> element_begin, element_nodes;  // indices of element_nodes are force slots
   std::vector<int> pair_begin;                    // first pair slot of each element: (0, 1), (0, 2) .. (1, 2) ..
-  std::vector<double> element_damping;  // stiffness damping of the element's cloth; for a spring the mean of two [s]
+  std::vector<double> element_damping;  // stiffness damping of the element's cloth; for a joint the mean of its own [s]
   std::vector<double> vertex_damping;   // the same of each vertex
   PairPattern pattern;
   std::vector<int> force_gather_begin, force_gather;  // the force slots of each vertex

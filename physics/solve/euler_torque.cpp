@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/energies/springs.hpp"
+#include "physics/energies/joints.hpp"
 
 namespace selvedge {
 namespace {

@@ -8,8 +8,8 @@
 
 #include <Eigen/LU>
 
+#include "physics/energies/joints.hpp"
 #include "physics/energies/measures.hpp"
-#include "physics/energies/springs.hpp"
 #include "physics/linear/linear_solver.hpp"
 #include "physics/solve/step_potential.hpp"
 

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "collision/geometry/box.hpp"
+#include "physics/energies/joints.hpp"
 #include "physics/energies/measures.hpp"
-#include "physics/energies/springs.hpp"
 #include "physics/scene/part_of_scene.hpp"
 
 namespace selvedge {
@@ -37,7 +37,7 @@ std::vector<int> joined_cloths(const Scene& scene) {
   for (std::size_t c = 0; c < scene.cloths.size(); ++c)
     cloth_of_vertex.insert(cloth_of_vertex.end(), static_cast<std::size_t>(scene.cloths[c].vertex_count),
                            static_cast<int>(c));
-  return joined_by_springs(scene.springs, cloth_of_vertex, static_cast<int>(scene.cloths.size()));
+  return joined_parts(scene, cloth_of_vertex, static_cast<int>(scene.cloths.size()));
 }
 
 class RestingStepper final : public Stepper {

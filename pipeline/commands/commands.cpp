@@ -3,29 +3,42 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
+#include <CLI/CLI.hpp>
 #include <iostream>
-#include <nlohmann/json.hpp>
+#include <memory>
 
 #include "collision/geometry/stop_scope.hpp"
+#include "pipeline/commands/command_output.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/host/folder_lock.hpp"
 #include "pipeline/host/interrupt.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/run_scene.hpp"
+#include "pipeline/scene/kinds.hpp"
 #include "pipeline/scene/make_stepper.hpp"
-#include "pipeline/tools/ccd_report.hpp"
 #include "pipeline/tools/info.hpp"
 #include "pipeline/tools/plan.hpp"
 #include "pipeline/tools/scene_pages.hpp"
-#include "pipeline/training/running_mark.hpp"
 #include "pipeline/view/view.hpp"
 
 namespace selvedge {
 namespace {
 
-std::ostream& people(bool json) { return json ? std::cerr : std::cout; }
+struct SceneArguments {
+  std::filesystem::path scene;
+  std::vector<std::string> overrides;  // key=value
+  std::optional<std::string> stepper;
+  std::optional<std::filesystem::path> weights;  // of the stepper `learned`
+  std::optional<std::string> device;             // that computes its network
+};
+
+struct SimulateArguments {
+  SceneArguments scene;
+  std::optional<std::filesystem::path> out;  // otherwise out/NAME-OF-SCENE
+  bool resume = false;
+  bool view = true;
+};
 
 Setup read_scene(const SceneArguments& arguments) {
   std::vector<std::string> overrides = arguments.overrides;
@@ -48,25 +61,11 @@ std::filesystem::path folder_for(const SimulateArguments& arguments, const Setup
   return std::filesystem::path("out") / arguments.scene.scene.stem();
 }
 
-// What takes times says so while a training takes the cores.
-void warn_of_training() {
-  if (const std::optional<std::string> training = running_training())
-    std::cerr << "warning: " << *training << " is being trained: times are not to be compared with others\n";
-}
-
 // Makes the page and says where it is, or why it is not.
 std::string page_text(const std::filesystem::path& out, const RunSummary& summary) {
   if (summary.end == RunEnd::interrupted) return "not made of a run that was stopped: `selvedge view` makes one";
   const std::optional<std::string> trouble = write_page(out);
   return trouble ? "not made: " + *trouble : (out / "view.html").string();
-}
-
-// Long work that says how it goes on and can be interrupted.
-template <class Request>
-Request followed(Request request) {
-  request.log = &std::cerr;
-  request.stop = InterruptWatch::interrupted;
-  return request;
 }
 
 // Whether all that the scene states came true, with a line each. A resumed run has not seen its first frames.
@@ -76,9 +75,7 @@ bool report_outcome(const std::vector<Outcome>& outcomes, const std::vector<Outc
   return all_came_true(results);
 }
 
-}  // namespace
-
-int simulate_command(const SimulateArguments& arguments, bool json) {
+int simulate(const SimulateArguments& arguments, bool json) {
   const Setup setup = read_scene(arguments.scene);
   warn_of_training();
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
@@ -118,182 +115,49 @@ int simulate_command(const SimulateArguments& arguments, bool json) {
   return is_clean(summary) && came_true ? 0 : 1;
 }
 
-int plan_command(const SceneArguments& arguments, bool json) {
-  const Setup setup = read_scene(arguments);
-  std::cout << (json ? plan_json(setup) : plan_text(setup));
-  return 0;
+void add_scene_options(CLI::App& command, SceneArguments& arguments) {
+  command.add_option("scene", arguments.scene, "scene file (YAML)")->required();
+  command.add_option("--set", arguments.overrides, "key=value instead of the scene's, dotted keys")
+      ->allow_extra_args(false);
+  command.add_option("--stepper", arguments.stepper, joined(known_kinds().names()));
+  command.add_option("--weights", arguments.weights, "weight file of the steppers `learned` and `hybrid`");
+  command.add_option("--device", arguments.device, "that runs their network: cpu, libtorch, cuda or auto");
 }
 
-int check_command(const CheckRequest& request, bool json) {
-  const CheckReport report = check(request);
-  people(json) << check_text(report);
-  if (json) std::cout << check_json(report);
-  return is_clean(report) ? 0 : 1;
+}  // namespace
+
+RunCommand simulate_command(CLI::App& command) {
+  const auto arguments = std::make_shared<SimulateArguments>();
+  add_scene_options(command, arguments->scene);
+  command.add_option("--out", arguments->out,
+                     "folder for the results (the scene's output.folder, or out/NAME-OF-SCENE)");
+  command.add_flag("--resume", arguments->resume, "go on from the checkpoint of an interrupted run");
+  command.add_flag("!--no-view", arguments->view, "do not make the page");
+  return [arguments](bool json) { return simulate(*arguments, json); };
 }
 
-int untangle_command(const UntangleRequest& request, bool json) {
-  UntangleRequest shown = request;
-  const bool terminal = isatty(STDERR_FILENO) != 0;
-  Clock::time_point last = Clock::now();
-  shown.progress = [&](const UntangleProgress& now) {
-    if (seconds_since(last) < (terminal ? 0.1 : 5)) return;
-    last = Clock::now();
-    const std::string line =
-        fmt::format("iteration {} of {}, {} pairs left", now.iteration, request.iterations, now.pairs);
-    std::cerr << (terminal ? "\r" + line + "\033[K" : line + "\n") << std::flush;
-  };
-  const UntangleReport report = untangle_mesh(shown);
-  if (terminal) std::cerr << "\r\033[K" << std::flush;
-  people(json) << untangle_text(report);
-  if (json) std::cout << untangle_json(report);
-  return is_clean(report) ? 0 : 1;
-}
-
-int push_command(const PushRequest& request, bool json) {
-  const PushReport report = push_mesh(request);
-  people(json) << push_text(report);
-  if (json) std::cout << push_json(report);
-  return report.after.collision_free ? 0 : 1;
-}
-
-int dress_command(const DressRequest& request, bool json) {
-  const DressReport report = dress(request);
-  people(json) << dress_text(report);
-  if (json) std::cout << dress_json(report);
-  return is_clean(report) ? 0 : 1;
-}
-
-int pattern_command(const PatternRequest& request, bool json) {
-  PatternRequest followed = request;
-  followed.progress = [](const SewingFrame& frame) {
-    std::cerr << fmt::format("{} {:.2f} s: gaps {:.3g} mm, {:.3g} % move, {} pairs\n",
-                             frame.sewn ? "draping" : "sewing", frame.time, 1e3 * frame.largest_gap,
-                             100 * frame.moving_share, frame.report->collision.pairs_after);
-  };
-  const PatternReport report = sew_garment(followed);
-  people(json) << pattern_text(report);
-  if (json) std::cout << pattern_json(report);
-  return request.flat || is_clean(report) ? 0 : 1;
-}
-
-int body_command(const BodyRequest& request, bool json) {
-  const BodyReport report = convert_body(request);
-  people(json) << body_text(report);
-  if (json) std::cout << body_json(report);
-  return 0;
-}
-
-int ccd_command(const CcdArguments& arguments, bool json) {
-  const CcdReport report = ccd_report(arguments.files);
-  people(json) << ccd_text(report);
-  if (json) std::cout << ccd_json(report);
-  return is_clean(report) ? 0 : 1;
-}
-
-int export_command(const ExportRequest& request, bool json) {
-  Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
-  ExportRequest shown = request;
-  shown.progress = [&](int done, int all) {
-    if (done == 1) progress.begin(0, all);
-    progress.frame(done);
-  };
-  const std::vector<std::filesystem::path> written = export_trajectory(shown);
-  progress.end();
-  people(json) << fmt::format("{} files, the last is {}\n", written.size(),
-                              written.empty() ? "none" : written.back().string());
-  if (!json) return 0;
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const std::filesystem::path& file : written) list.push_back(file.string());
-  std::cout << nlohmann::ordered_json{{"files", list}}.dump(2) << "\n";
-  return 0;
-}
-
-int fit_command(const FitRequest& request, bool json) {
-  const FitReport report = fit(request);
-  people(json) << fit_text(report);
-  if (!request.out.empty()) people(json) << "page to look at: " << request.out.string() << "\n";
-  if (json) std::cout << fit_json(report);
-  return 0;
-}
-
-int view_command(const ViewArguments& arguments, bool json) {
-  write_view(arguments.runs, arguments.out);
-  people(json) << "page to look at: " << arguments.out.string() << "\n";
-  if (json) std::cout << nlohmann::ordered_json{{"page", arguments.out.string()}}.dump(2) << "\n";
-  return 0;
-}
-
-int bench_command(const BenchRequest& request, bool json) {
-  warn_of_training();
-  BenchRequest logged = request;
-  logged.log = &std::cerr;
-  const BenchResult result = bench(logged);
-  people(json) << bench_table(result);
-  if (json) std::cout << bench_json(result);
-  return std::all_of(result.members.begin(), result.members.end(),
-                     [](const BenchMember& m) { return is_clean(m.summary); })
-             ? 0
-             : 1;
-}
-
-int stress_command(const StressRequest& request, bool json) {
-  warn_of_training();
-  const InterruptWatch watch;
-  const std::vector<StressRow> rows = stress(followed(request));
-  people(json) << stress_table(rows);
-  if (InterruptWatch::interrupted()) people(json) << "stopped; the same command goes on\n";
-  if (json) std::cout << stress_json(rows);
-  const bool passed = std::all_of(rows.begin(), rows.end(), [](const StressRow& row) { return row.passed(); });
-  return passed && !InterruptWatch::interrupted() ? 0 : 1;
-}
-
-int wardrobe_command(const WardrobeRequest& request, bool json) {
-  warn_of_training();
-  const InterruptWatch watch;
-  const std::vector<WardrobeRow> rows = wardrobe(followed(request));
-  people(json) << wardrobe_table(rows);
-  if (InterruptWatch::interrupted()) people(json) << "stopped; the same command goes on\n";
-  if (json) std::cout << wardrobe_json(rows);
-  const bool passed = std::all_of(rows.begin(), rows.end(), [](const WardrobeRow& row) { return row.passed(); });
-  return passed && !InterruptWatch::interrupted() ? 0 : 1;
-}
-
-int compare_command(const CompareRequest& request, bool json) {
-  warn_of_training();
-  const InterruptWatch watch;
-  const CompareResult result = compare(followed(request));
-  people(json) << compare_table(result) << result.evaluation << result.repulsion << result.plots << "\n"
-               << (request.out / "compare.html").string() << "\n";
-  if (!result.finished) people(json) << "stopped; the same command goes on\n";
-  if (json) std::cout << compare_json(result);
-  return result.finished ? 0 : 1;
-}
-
-int validate_command(const ValidateRequest& request, bool json) {
-  ValidateRequest logged = request;
-  logged.log = &std::cerr;
-  const std::vector<ValidationRow> rows = validate(logged);
-  people(json) << validate_table(rows);
-  if (json) std::cout << validate_json(rows);
-  return passed(rows) ? 0 : 1;
-}
-
-int stability_command(const StabilityRequest& request, bool json) {
-  warn_of_training();
-  const InterruptWatch watch;
-  const std::vector<StabilityRow> rows = stability(followed(request));
-  people(json) << stability_table(rows);
-  if (json) std::cout << stability_json(rows);
-  return passed(rows) && !InterruptWatch::interrupted() ? 0 : 1;
-}
-
-int info_command(const InfoArguments& arguments, bool json) {
-  if (!arguments.keys.empty()) {
-    std::cout << scene_keys_text(arguments.keys == "user" ? KeyTier::user : KeyTier::expert);
+RunCommand plan_command(CLI::App& command) {
+  const auto arguments = std::make_shared<SceneArguments>();
+  add_scene_options(command, *arguments);
+  return [arguments](bool json) {
+    const Setup setup = read_scene(*arguments);
+    std::cout << (json ? plan_json(setup) : plan_text(setup));
     return 0;
-  }
-  std::cout << (json ? info_json() : info_text());
-  return 0;
+  };
+}
+
+RunCommand info_command(CLI::App& command) {
+  const auto keys = std::make_shared<std::string>();
+  command.add_option("--keys", *keys, "user: what most scenes need; expert: all other keys of scene files")
+      ->check(CLI::IsMember({"user", "expert"}));
+  return [keys](bool json) {
+    if (!keys->empty()) {
+      std::cout << scene_keys_text(*keys == "user" ? KeyTier::user : KeyTier::expert);
+      return 0;
+    }
+    std::cout << (json ? info_json() : info_text());
+    return 0;
+  };
 }
 
 }  // namespace selvedge

@@ -1,9 +1,10 @@
-#include "pipeline/commands/weights_commands.hpp"
-
-#include <iostream>
+#include <CLI/CLI.hpp>
+#include <memory>
 #include <utility>
 
 #include "learned/network/weights_hdf5.hpp"
+#include "pipeline/commands/command_output.hpp"
+#include "pipeline/commands/commands.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/weights/import_weights.hpp"
 #include "pipeline/weights/weights_info.hpp"
@@ -12,50 +13,65 @@
 namespace selvedge {
 namespace {
 
-void print_weights(const WeightFile& file, bool json) {
+struct TwoFiles {
+  std::filesystem::path from, other;  // other: what is written, or compared with
+};
+
+int print_weights(const WeightFile& file, bool json) {
   const WeightsInfo info = weights_info(file);
-  (json ? std::cerr : std::cout) << weights_info_text(info);
-  if (json) std::cout << weights_info_json(info);
+  return end_command(json, weights_info_text(info), weights_info_json(info), true);
 }
 
 }  // namespace
 
-int weights_import_command(const WeightsImportArguments& arguments, bool json) {
-  ImportedWeights imported = read_published_weights(arguments.checkpoint);
-  const WeightFile file{imported.architecture, std::move(imported.weights), "", origin_of(imported),
-                        std::string(program_version())};
-  write_weight_file(arguments.out, file);
-  print_weights(file, json);
-  return 0;
+RunCommand weights_import_command(CLI::App& command) {
+  const auto files = std::make_shared<TwoFiles>();
+  command.add_option("checkpoint", files->from, "published by the authors of HOOD or ContourCraft (.pth)")->required();
+  command.add_option("--out", files->other, "where the weight file goes (.h5)")->required();
+  return [files](bool json) {
+    ImportedWeights imported = read_published_weights(files->from);
+    const WeightFile file{imported.architecture, std::move(imported.weights), "", origin_of(imported),
+                          std::string(program_version())};
+    write_weight_file(files->other, file);
+    return print_weights(file, json);
+  };
 }
 
-int weights_info_command(const WeightsInfoArguments& arguments, bool json) {
-  print_weights(read_weight_file(arguments.file), json);
-  return 0;
+RunCommand weights_info_command(CLI::App& command) {
+  const auto file = std::make_shared<std::filesystem::path>();
+  command.add_option("file", *file, "weight file (.h5)")->required();
+  return [file](bool json) { return print_weights(read_weight_file(*file), json); };
 }
 
-int weights_halve_command(const WeightsHalveArguments& arguments, bool json) {
-  write_weight_file(arguments.out, read_weight_file(arguments.file), WeightStorage::half);
-  print_weights(read_weight_file(arguments.out), json);
-  return 0;
+RunCommand weights_halve_command(CLI::App& command) {
+  const auto files = std::make_shared<TwoFiles>();
+  command.add_option("file", files->from, "weight file (.h5)")->required();
+  command.add_option("--out", files->other, "where the weight file of half the size goes (.h5)")->required();
+  return [files](bool json) {
+    write_weight_file(files->other, read_weight_file(files->from), WeightStorage::half);
+    return print_weights(read_weight_file(files->other), json);
+  };
 }
 
-int weights_parity_command(const WeightsParityArguments& arguments, bool json) {
-  const bool is_checkpoint = arguments.file.extension() == ".pth";
-  ImportedWeights network;
-  if (is_checkpoint) {
-    network = read_published_weights(arguments.file);
-  } else {
-    WeightFile file = read_weight_file(arguments.file);
-    network.architecture = std::move(file.architecture);
-    network.weights = std::move(file.weights);
-  }
-  const ParityReport report =
-      weights_parity(network.architecture, network.weights, read_parity_dump(arguments.dump, network.architecture),
-                     is_checkpoint ? &network.sums : nullptr);
-  (json ? std::cerr : std::cout) << parity_text(report);
-  if (json) std::cout << parity_json(report);
-  return is_clean(report) ? 0 : 1;
+RunCommand weights_parity_command(CLI::App& command) {
+  const auto files = std::make_shared<TwoFiles>();
+  command.add_option("file", files->from, "weight file (.h5) or published checkpoint (.pth)")->required();
+  command.add_option("dump", files->other, "a step that the authors' code took (.npz)")->required();
+  return [files](bool json) {
+    const bool is_checkpoint = files->from.extension() == ".pth";
+    ImportedWeights network;
+    if (is_checkpoint) {
+      network = read_published_weights(files->from);
+    } else {
+      WeightFile file = read_weight_file(files->from);
+      network.architecture = std::move(file.architecture);
+      network.weights = std::move(file.weights);
+    }
+    const ParityReport report =
+        weights_parity(network.architecture, network.weights, read_parity_dump(files->other, network.architecture),
+                       is_checkpoint ? &network.sums : nullptr);
+    return end_command(json, parity_text(report), parity_json(report), is_clean(report));
+  };
 }
 
 }  // namespace selvedge

@@ -1,11 +1,10 @@
-#include "pipeline/exports/glb.hpp"
-
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/exports/export_formats.hpp"
 #include "pipeline/host/growing_file.hpp"
 
 namespace selvedge {
@@ -209,7 +208,8 @@ void write_chunks(const std::filesystem::path& path, std::string text, const std
 
 }  // namespace
 
-void write_glb(const std::filesystem::path& path, const AnimatedSurfaces& run) {
+std::vector<std::filesystem::path> export_glb(const AnimatedSurfaces& run, const ExportRequest& request) {
+  const std::filesystem::path path = request.one_file();
   check_size(path, run);
   const std::vector<Ranges> ranges = ranges_of(run);
   std::vector<Track> tracks = tracks_of(run, ranges);
@@ -243,6 +243,7 @@ void write_glb(const std::filesystem::path& path, const AnimatedSurfaces& run) {
   const Json buffer = {{"byteLength", chunk.bytes.size()}};
   all["buffers"] = Json::array({buffer});
   write_chunks(path, all.dump(-1, ' ', false, Json::error_handler_t::replace), chunk.bytes);
+  return {path};
 }
 
 }  // namespace selvedge

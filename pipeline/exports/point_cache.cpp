@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "pipeline/exports/export_formats.hpp"
+#include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/host/growing_file.hpp"
 
 namespace selvedge {
@@ -57,6 +59,18 @@ void write_mdd(const std::filesystem::path& path, const AnimatedSurfaces& run, s
   put_word(header, std::int32_t{run.surfaces[surface].vertex_count}, true);
   for (int i = 0; i < run.frame_count; ++i) put_word(header, static_cast<float>(i / run.fps), true);
   write_cache(path, header, run, surface, true);
+}
+
+std::vector<std::filesystem::path> export_point_caches(const AnimatedSurfaces& run, const ExportRequest& request) {
+  const auto write = request.format == "pc2" ? write_pc2 : write_mdd;
+  std::vector<std::filesystem::path> written;
+  for (std::size_t s = 0; s < run.surfaces.size(); ++s) {
+    written.push_back(request.file(run.surfaces[s].name + ".obj"));
+    write_obj(written.back(), run.frame(0)[s].cast<double>(), run.surfaces[s].triangles);
+    written.push_back(request.file(run.surfaces[s].name + "." + request.format));
+    write(written.back(), run, s);
+  }
+  return written;
 }
 
 }  // namespace selvedge

@@ -1,11 +1,10 @@
-#include "pipeline/exports/usda.hpp"
-
 #include <fmt/format.h>
 
 #include <cctype>
 #include <iterator>
 #include <set>
 
+#include "pipeline/exports/export_formats.hpp"
 #include "pipeline/host/growing_file.hpp"
 
 namespace selvedge {
@@ -87,7 +86,8 @@ void write_samples(GrowingFile& file, const AnimatedSurfaces& run, std::size_t n
 
 }  // namespace
 
-void write_usda(const std::filesystem::path& path, const AnimatedSurfaces& run) {
+std::vector<std::filesystem::path> export_usda(const AnimatedSurfaces& run, const ExportRequest& request) {
+  const std::filesystem::path path = request.one_file();
   GrowingFile file(path);
   file.write(
       fmt::format("#usda 1.0\n(\n    defaultPrim = \"run\"\n    endTimeCode = {}\n    framesPerSecond = {}\n"
@@ -105,6 +105,7 @@ void write_usda(const std::filesystem::path& path, const AnimatedSurfaces& run) 
   }
   file.write("}\n");
   file.keep();
+  return {path};
 }
 
 }  // namespace selvedge

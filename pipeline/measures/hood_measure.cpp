@@ -50,12 +50,7 @@ HoodLosses hood_losses_of(HoodJudge& judge, const JudgedFrame& frame) {
   Points gradient = Points::Zero(frame.next.rows(), 3);
   HoodLosses losses;
   for (const LossTerm& term : add_losses(judged.inputs, judge.losses, judge.search, &gradient)) {
-    const std::pair<const char*, double*> places[]{{"stretching", &losses.stretching}, {"bending", &losses.bending},
-                                                   {"inertia", &losses.inertia},       {"gravity", &losses.gravity},
-                                                   {"forces", &losses.gravity},        {"friction", &losses.friction},
-                                                   {"collision", &losses.collision}};
-    for (const auto& [name, place] : places)
-      if (term.name == name) *place = term.value;
+    losses.terms[term.name == "forces" ? "gravity" : term.name] = term.value;
     losses.total += term.value;
   }
   hold_pins(judge, gradient);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <map>
+
 #include "learned/losses/objective.hpp"
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
@@ -8,8 +10,10 @@ namespace selvedge {
 
 // The energies that HOOD minimises (hood_losses() with full weights), for a frame of any stepper [J].
 struct HoodLosses {
-  double stretching = 0, bending = 0, inertia = 0, gravity = 0, friction = 0, collision = 0, total = 0;
-  // gravity: with the work of the wind, if there is wind.
+  // By the names of the terms. `gravity` has the work of the wind, too, if there is wind.
+  std::map<std::string, double> terms{{"stretching", 0}, {"bending", 0},  {"inertia", 0},
+                                      {"gravity", 0},    {"friction", 0}, {"collision", 0}};
+  double total = 0;
   double grad_norm = 0;  // mean over the vertices that are not pinned of |d total / d x_i| [N]
 };
 

@@ -69,12 +69,7 @@ void RunMeasures::judge(const MeasuredFrame& frame) {
   if (frames_ <= settling_frames) return;
   const HoodLosses losses = hood_losses_of(judge_, last_);
   ++hood_frames_;
-  sums_["hood_stretching"] += losses.stretching;
-  sums_["hood_bending"] += losses.bending;
-  sums_["hood_inertia"] += losses.inertia;
-  sums_["hood_gravity"] += losses.gravity;
-  sums_["hood_friction"] += losses.friction;
-  sums_["hood_collision"] += losses.collision;
+  for (const auto& [name, value] : losses.terms) sums_["hood_" + name] += value;
   sums_["hood_total"] += losses.total;
   sums_["grad_norm"] += losses.grad_norm;
   if (judged_so_far_ >= judged_ || frames_ < (judged_so_far_ + 1) * wanted_ / judged_) return;

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "collision/geometry/error.hpp"
+#include "physics/scene/joint_lists.hpp"
 #include "physics/steppers/finish_step.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
@@ -65,8 +66,9 @@ nb::object described(const Drive& drive) {
 
 // Forces by the names that StepperTraits::ignores has.
 std::vector<std::string> ignored_by(const std::string& kind, const nb::object& stepper) {
-  const std::vector<std::string> known{
-      "membrane", "bending (curvature)", "bending (hinge)", "springs", "stiffness damping", "mass damping", "wind"};
+  std::vector<std::string> known{"membrane",          "bending (curvature)", "bending (hinge)",
+                                 "stiffness damping", "mass damping",        "wind"};
+  for_each_joint_list([&](auto, const JointKind& joints) { known.emplace_back(joints.name); });
   const nb::object given = stepper.attr("ignores");
   if (!nb::isinstance<nb::tuple>(given) && !nb::isinstance<nb::list>(given))
     throw Error("is no tuple", "stepper `" + kind + "`, ignores", "give a tuple of: " + joined(known));

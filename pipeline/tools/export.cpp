@@ -8,18 +8,10 @@
 #include <cmath>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/exports/glb.hpp"
-#include "pipeline/exports/point_cache.hpp"
-#include "pipeline/exports/usda.hpp"
-#include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
-#include "pipeline/formats/xdmf.hpp"
-#include "pipeline/host/write_file.hpp"
 
 namespace selvedge {
 namespace {
-
-using Paths = std::vector<std::filesystem::path>;
 
 std::string file_name(const std::string& name) {
   std::string safe = name;
@@ -108,49 +100,21 @@ class ExportedRun {
   int done_ = 0, all_ = 0;
 };
 
-void export_meshes(const AnimatedSurfaces& run, const ExportRequest& request, Paths& written) {
-  const auto write = request.format == "ply" ? write_ply : write_obj;
-  for (int i = 0; i < run.frame_count; ++i) {
-    const std::vector<PointsF> x = run.frame(i);
-    for (std::size_t s = 0; s < x.size(); ++s) {
-      written.push_back(request.out / fmt::format("{}_{:05}.{}", run.surfaces[s].name, i, request.format));
-      write(written.back(), x[s].cast<double>(), run.surfaces[s].triangles);
-    }
-  }
-}
-
-void export_caches(const AnimatedSurfaces& run, const ExportRequest& request, Paths& written) {
-  const auto write = request.format == "pc2" ? write_pc2 : write_mdd;
-  for (std::size_t s = 0; s < run.surfaces.size(); ++s) {
-    written.push_back(request.out / (run.surfaces[s].name + ".obj"));
-    write_obj(written.back(), run.frame(0)[s].cast<double>(), run.surfaces[s].triangles);
-    written.push_back(request.out / (run.surfaces[s].name + "." + request.format));
-    write(written.back(), run, s);
-  }
-}
-
 }  // namespace
 
-Paths export_trajectory(const ExportRequest& request) {
-  const std::string& format = request.format;
-  const auto is = [&](const std::vector<std::string>& names) { return std::ranges::count(names, format) > 0; };
-  if (!is({"obj", "ply", "pc2", "mdd", "glb", "usda", "xdmf"}))
-    throw Error("unknown format `" + format + "`", "--format", "known: obj, ply, pc2, mdd, glb, usda, xdmf");
-  if (format == "xdmf") return {write_xdmf(request.trajectory)};
-  const bool one_file = is({"glb", "usda"});
-  ExportedRun run(request, one_file);
-  make_folder(request.out);
-  Paths written;
-  if (is({"obj", "ply"})) export_meshes(run.read_so_often(run.frames()), request, written);
-  if (is({"pc2", "mdd"})) export_caches(run.read_so_often(run.surfaces() * (run.frames() + 1)), request, written);
-  if (one_file) {
-    written.push_back(request.out / (request.trajectory.stem().string() + "." + format));
-    if (format == "glb")
-      write_glb(written.back(), run.read_so_often(2 * run.frames()));
-    else
-      write_usda(written.back(), run.read_so_often(run.surfaces() * run.frames()));
-  }
-  return written;
+std::vector<std::filesystem::path> export_trajectory(const ExportRequest& request) {
+  const auto format = std::ranges::find(export_formats, request.format, &ExportFormat::name);
+  if (format == std::end(export_formats))
+    throw Error("unknown format `" + request.format + "`", "--format", "known: " + export_format_list());
+  ExportedRun run(request, format->each_cloth);
+  return format->write(run.read_so_often(format->reads(run.surfaces(), run.frames())), request);
+}
+
+std::string export_format_list() {
+  std::string list;
+  for (const ExportFormat& format : export_formats)
+    list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", format.name, format.about);
+  return list;
 }
 
 }  // namespace selvedge

@@ -176,6 +176,7 @@ void begin(TrainingRun& run) {
   std::filesystem::remove(pause_file(run.folder));
   if (run.request.resume) {
     run.trainer = read_training_checkpoint(run.folder / "checkpoint.h5", run.options, run.history);
+    run.history.steps = with_columns_of_now(run.history.steps);
   } else {
     run.trainer = make_trainer(run.options);
     run.history.steps = steps_header();

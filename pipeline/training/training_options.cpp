@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
+#include "learned/losses/loss_terms.hpp"
 #include "learned/network/architecture.hpp"
 #include "learned/network/architecture_limits.hpp"
 #include "pipeline/garments/outfit.hpp"
@@ -354,30 +355,27 @@ std::string training_reference() {
     all.push_back(section);
   std::string page;
   for (const Section* section : all) page += section_chapter(*section);
+  page +=
+      "### Terms of the objective\n\nEach has two columns in `steps.csv`: its value [J], and `_share`, its share of "
+      "the "
+      "gradient.\n\n| term | weight | what is summed up |\n|---|---|---|\n";
+  for (const LossRow& row : loss_rows())
+    page += fmt::format("| `{}` | `objective.{}` | {} |\n", row.name, row.weighs, row.about);
   return page;
 }
 
 std::vector<std::string> unfinished_ramps(const TrainingOptions& options) {
   std::vector<std::string> complaints;
-  const auto check = [&](const char* name, const LossRamp& ramp) {
-    if (!reaches_its_end(ramp))
-      complaints.push_back(
-          fmt::format("{} goes from {} to {} between {} and {} of the run: it must stand at its full "
-                      "value for the last tenth",
-                      name, ramp.from, ramp.to, ramp.begin, ramp.end));
+  const auto check = [&](const std::string& name, const LossRamp& ramp) {
+    if (reaches_its_end(ramp)) return;
+    complaints.push_back(
+        fmt::format("{} goes from {} to {} between {} and {} of the run: it must stand at its full "
+                    "value for the last tenth",
+                    name, ramp.from, ramp.to, ramp.begin, ramp.end));
   };
-  const LossOptions& losses = options.objective;
   check("pool.frames", options.pool.frames);
-  check("objective.stretching", losses.stretching);
-  check("objective.bending", losses.bending);
-  check("objective.gravity", losses.gravity);
-  check("objective.inertia", losses.inertia);
-  check("objective.collision.weight", losses.collision.weight);
-  check("objective.friction.weight", losses.friction.weight);
-  check("objective.repulsion.weight", losses.repulsion.weight);
-  check("objective.contours.weight", losses.contours.weight);
-  check("objective.volume.weight", losses.volume.weight);
-  check("objective.vertex_repulsion.weight", losses.vertex_repulsion.weight);
+  for (const LossRow& row : loss_rows()) check("objective." + std::string(row.weighs), row.weight(options.objective));
+  complaints.erase(std::ranges::unique(complaints).begin(), complaints.end());  // terms may share a weight
   return complaints;
 }
 

@@ -18,9 +18,11 @@ std::vector<Curve> sizes(std::vector<Curve> curves) {
 std::string training_page(const TrainingOptions& options, const std::string& steps_csv,
                           const std::string& measures_csv) {
   const CsvColumns steps(steps_csv), measures(measures_csv);
-  const std::vector<std::string> terms(loss_names.begin(), loss_names.end());
-  std::vector<std::string> shares;
-  for (const std::string& term : terms) shares.push_back(term + "_share");
+  std::vector<std::string> terms, shares;
+  for (const LossRow& row : loss_rows()) {
+    terms.emplace_back(row.name);
+    shares.push_back(terms.back() + "_share");
+  }
   const std::vector<double>&at = steps["step"], &measured = measures["step"];
   std::string page = page_head("Training " + options.name);
   page += chart("Terms of the objective without sign [J]", at, sizes(columns_of(steps, terms)), true);

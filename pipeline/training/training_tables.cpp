@@ -1,23 +1,23 @@
 #include "pipeline/training/training_tables.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
+#include "pipeline/training/csv_charts.hpp"
+
 namespace selvedge {
+
 void StepWindow::add(const StepRecord& record) {
   if (!record.bad.empty()) {
     ++bad_;
     return;
   }
-  terms_.resize(loss_names.size());
+  terms_.resize(loss_rows().size());
   double gradients = 0;
   for (const LossTerm& term : record.terms) gradients += term.gradient_norm;
   for (const LossTerm& term : record.terms) {
-    const auto at = std::ranges::find(loss_names, term.name);
-    if (at == loss_names.end()) continue;
-    Term& sum = terms_[static_cast<std::size_t>(at - loss_names.begin())];
+    Term& sum = terms_[static_cast<std::size_t>(term.row - loss_rows().data())];
     sum.value += term.value;
     sum.gradient += gradients > 0 ? term.gradient_norm / gradients : 0;
   }
@@ -30,8 +30,21 @@ void StepWindow::add(const StepRecord& record) {
 
 std::string steps_header() {
   std::string line = "step,progress,seconds,learning_rate,samples,bad,lost,sum,gradient_norm,clip_scale";
-  for (const char* name : loss_names) line += fmt::format(",{0},{0}_share", name);
+  for (const LossRow& row : loss_rows()) line += fmt::format(",{0},{0}_share", row.name);
   return line + "\n";
+}
+
+std::string with_columns_of_now(const std::string& steps_csv) {
+  std::string all = steps_header();
+  if (steps_csv.starts_with(all)) return steps_csv;
+  const CsvColumns had(steps_csv), now(all);
+  for (std::size_t i = 0; i < had["step"].size(); ++i) {
+    std::string line;
+    for (const std::string& name : now.names)
+      line += fmt::format(",{:.10g}", had[name].size() > i ? had[name][i] : 0.0);
+    all += line.substr(1) + "\n";
+  }
+  return all;
 }
 
 std::string StepWindow::take_line(const Trainer& trainer, double seconds) {
@@ -39,7 +52,7 @@ std::string StepWindow::take_line(const Trainer& trainer, double seconds) {
   std::string line =
       fmt::format("{},{:.4f},{:.1f},{:.4g},{},{},{},{:.6g},{:.4g},{:.4g}", trainer.counts.step, progress_of(trainer),
                   seconds, rate_, count_, bad_, trainer.counts.lost, sum_ / n, norm_ / n, scale_ / n);
-  terms_.resize(loss_names.size());
+  terms_.resize(loss_rows().size());
   for (const Term& term : terms_) line += fmt::format(",{:.6g},{:.4f}", term.value / n, term.gradient / n);
   const double mean = mean_sum();
   *this = {};

@@ -1,16 +1,11 @@
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
 #include "pipeline/training/training_watch.hpp"
 
 namespace selvedge {
-
-// Terms of the objective as the tables name them: LossTerm::name.
-inline constexpr std::array loss_names{"stretching", "bending",   "gravity",  "forces", "inertia",         "collision",
-                                       "friction",   "repulsion", "contours", "volume", "vertex_repulsion"};
 
 // Means over the steps since the last line, for steps.csv.
 class StepWindow {
@@ -33,6 +28,8 @@ class StepWindow {
 
 // Titles and lines of steps.csv and measures.csv, each with a newline; `seconds` of training so far.
 std::string steps_header();
+// A steps.csv of a version with other terms, by the columns of now: 0 where it has none.
+std::string with_columns_of_now(const std::string& steps_csv);
 std::string measures_header();
 std::string measure_line(const TrainingMeasure&, double seconds);
 

@@ -1,5 +1,5 @@
 #include "collision/geometry/factorisations.hpp"
-#include "physics/energies/springs.hpp"
+#include "physics/energies/joints.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
@@ -31,7 +31,7 @@ Vec6 numeric_gradient(const Spring& spring, const Points& x, double h) {
     Points up = x, down = x;
     up.data()[i] += h;
     down.data()[i] -= h;
-    gradient[i] = (spring_energy(spring, up) - spring_energy(spring, down)) / (2 * h);
+    gradient[i] = (joint_energy(spring, up) - joint_energy(spring, down)) / (2 * h);
   }
   return gradient;
 }
@@ -43,8 +43,8 @@ Mat6 numeric_hessian(const Spring& spring, const Points& x, double h) {
     up.data()[i] += h;
     down.data()[i] -= h;
     Vec6 above, below;
-    spring_derivatives(spring, up, above, nullptr);
-    spring_derivatives(spring, down, below, nullptr);
+    joint_derivatives(spring, up, above, nullptr);
+    joint_derivatives(spring, down, below, nullptr);
     hessian.col(i) = (above - below) / (2 * h);
   }
   return hessian;
@@ -101,9 +101,9 @@ TEST_CASE("springs: derivatives are those of the energy, stretched, compressed, 
     const Points x = two_points(a, a + direction);  // 1 apart
     Vec6 gradient;
     Mat6 exact, filtered;
-    CHECK(spring_derivatives(spring, x, gradient, &exact, false) == spring_energy(spring, x));
-    CHECK(spring_energy(spring, x) == Approx(20 * (1 - rest) * (1 - rest)).margin(1e-14));
-    spring_derivatives(spring, x, gradient, &filtered);
+    CHECK(joint_derivatives(spring, x, gradient, &exact, false) == joint_energy(spring, x));
+    CHECK(joint_energy(spring, x) == Approx(20 * (1 - rest) * (1 - rest)).margin(1e-14));
+    joint_derivatives(spring, x, gradient, &filtered);
     CHECK((gradient - numeric_gradient(spring, x, 1e-5)).norm() < 1e-8);
     CHECK((exact - numeric_hessian(spring, x, 1e-6)).norm() < 1e-7);
     CHECK(least_eigenvalue(filtered) > -1e-12);
@@ -123,22 +123,25 @@ TEST_CASE("springs: at zero length all is finite, and exact where that is the re
       Vec6 gradient;
       Mat6 hessian;
       const Spring spring{0, 1, rest, 7};
-      CHECK(spring_derivatives(spring, x, gradient, &hessian, psd) == Approx(3.5 * rest * rest));
+      CHECK(joint_derivatives(spring, x, gradient, &hessian, psd) == Approx(3.5 * rest * rest));
       CHECK(gradient.isZero(0));
       CHECK((hessian.topLeftCorner<3, 3>() - 7 * Mat3::Identity()).isZero(0));
       CHECK((hessian.topRightCorner<3, 3>() + 7 * Mat3::Identity()).isZero(0));
     }
   Vec6 gradient;
   Mat6 hessian;
-  spring_derivatives({0, 1, 0.1, 7}, two_points({0, 0, 0}, {0, 1e-160, 0}), gradient, &hessian);
+  joint_derivatives({0, 1, 0.1, 7}, two_points({0, 0, 0}, {0, 1e-160, 0}), gradient, &hessian);
   CHECK((gradient.allFinite() && hessian.allFinite()));
 }
 
 TEST_CASE("springs: which parts they join", "[springs]") {
   const std::vector<int> part{0, 0, 1, 2, 3, 4};
-  CHECK(joined_by_springs({}, part, 5) == std::vector<int>{0, 1, 2, 3, 4});
-  const std::vector<Spring> springs{{5, 2}, {3, 5}, {0, 1}};
-  CHECK(joined_by_springs(springs, part, 5) == std::vector<int>{0, 1, 1, 3, 1});
+  Scene scene;
+  CHECK(joined_parts(scene, part, 5) == std::vector<int>{0, 1, 2, 3, 4});
+  scene.springs = {{5, 2}, {3, 5}, {0, 1}};
+  CHECK(joined_parts(scene, part, 5) == std::vector<int>{0, 1, 1, 3, 1});
+  const std::vector<char> there{1, 1, 1, 0, 1, 1};
+  CHECK(joined_parts(scene, part, 5, there) == std::vector<int>{0, 1, 2, 3, 1});
 }
 
 TEST_CASE("springs: a weight stretches its spring by m g / k, whatever solves for it", "[springs]") {

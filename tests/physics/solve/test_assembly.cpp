@@ -59,7 +59,7 @@ TEST_CASE("Assembly adds up every element, each where it belongs", "[assembly]")
   if (rolled)
     REQUIRE(!elastic.curved.empty());
   else
-    REQUIRE((elastic.flat.rows() > 0 && !elastic.hinges.empty() && elastic.springs.size() == 2));
+    REQUIRE((elastic.flat.rows() > 0 && !elastic.hinges.empty() && elastic.joints.springs.size() == 2));
   const Points x = shaken(scene.rest, 0.01);
   const int n = static_cast<int>(x.rows());
 
@@ -92,10 +92,10 @@ TEST_CASE("Assembly adds up every element, each where it belongs", "[assembly]")
     energy += curved_derivatives(vertex, x, g, &h);
     add(vertex.nodes, g, h);
   }
-  for (const Spring& spring : elastic.springs) {
+  for (const Spring& spring : elastic.joints.springs) {
     Vec6 g;
     Mat6 h;
-    energy += spring_derivatives(spring, x, g, &h);
+    energy += joint_derivatives(spring, x, g, &h);
     add(std::array{spring.a, spring.b}, g, h);
   }
   if (elastic.flat.rows() > 0) {
@@ -142,7 +142,7 @@ TEST_CASE("What a scene does not have is not built", "[assembly]") {
   const Elastic elastic = make_elastic(meshes::make_scene(meshes::grid(4, 4, 1, 1), material));
   CHECK(elastic.hinges.empty());
   CHECK(elastic.curved.empty());
-  CHECK(elastic.springs.empty());
+  CHECK(elastic.joints.springs.empty());
   CHECK(elastic.flat.rows() == 0);
   CHECK(elastic.pattern.pairs.size() == 4 * 5 * 2 + 16);  // the mesh's edges
 }

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/drapes/drape_training_options.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
+#include "pipeline/training/csv_charts.hpp"
+#include "pipeline/training/objective_options.hpp"
 #include "pipeline/training/training_options.hpp"
+#include "pipeline/training/training_tables.hpp"
 #include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_training_options {
@@ -41,10 +45,7 @@ TEST_CASE("training options: every loss of every configuration reaches its full 
     const TrainingOptions options = read_training(file);
     CHECK(unfinished_ramps(options).empty());
     const LossOptions& losses = options.objective;
-    for (const LossRamp* ramp : {&losses.stretching, &losses.bending, &losses.gravity, &losses.inertia,
-                                 &losses.collision.weight, &losses.friction.weight, &losses.repulsion.weight,
-                                 &losses.contours.weight, &losses.volume.weight, &losses.vertex_repulsion.weight})
-      CHECK(weight_at(*ramp, 0.9) == ramp->to);
+    for (const LossRow& row : loss_rows()) CHECK(weight_at(row.weight(losses), 0.9) == row.weight(losses).to);
     CHECK(losses.stretching.to == 1);
     CHECK(losses.collision.weight.to >= 5e5);
   }
@@ -52,6 +53,45 @@ TEST_CASE("training options: every loss of every configuration reaches its full 
   late.objective.repulsion.weight = {0, 2e6, 0.5, 1};
   REQUIRE(unfinished_ramps(late).size() == 1);
   CHECK(unfinished_ramps(late)[0].find("objective.repulsion.weight") == 0);
+}
+
+TEST_CASE("training options: each weight of the objective is that of a term, and each term has a key", "[training]") {
+  std::set<std::string> keys, weighed;
+  for (const Key& key : objective_options().section.keys) {
+    if (!key.section) continue;
+    const bool is_ramp = key.section == &ramp_options().section;
+    if (is_ramp || std::ranges::find(key.section->keys, "weight", &Key::name) != key.section->keys.end())
+      keys.insert(is_ramp ? key.name : key.name + ".weight");
+  }
+  for (const LossRow& row : loss_rows()) {
+    INFO(row.name);
+    weighed.insert(row.weighs);
+    const TrainingOptions options =
+        read_training(config_folder() / "training" / "tiny.yaml", {"objective." + std::string(row.weighs) + ".to=7.5"});
+    CHECK(row.weight(options.objective).to == 7.5);
+  }
+  CHECK(keys == weighed);
+}
+
+TEST_CASE("training tables: every term has its columns, also in a history of other columns", "[training]") {
+  const CsvColumns titles(steps_header());
+  for (const LossRow& row : loss_rows())
+    for (const std::string ending : {"", "_share"}) CHECK(std::ranges::count(titles.names, row.name + ending) == 1);
+  StepWindow window;
+  StepRecord record;
+  for (const LossRow& row : loss_rows()) record.terms.push_back({&row, row.name, 1, 2, 3});
+  window.add(record);
+  const Trainer trainer;
+  const std::string now = steps_header() + window.take_line(trainer, 1);
+  const CsvColumns table(now);
+  for (const LossRow& row : loss_rows()) CHECK(table[row.name] == std::vector<double>{2});
+  CHECK(with_columns_of_now(now) == now);
+  const CsvColumns old(with_columns_of_now("step,contours,bending,gone\n100000,5,-6.25,7\n200000,8,9,10\n"));
+  CHECK(old.names == titles.names);
+  CHECK(old["step"] == std::vector<double>{100000, 200000});
+  CHECK(old["bending"] == std::vector<double>{-6.25, 9});
+  CHECK(old["contours"] == std::vector<double>{5, 8});
+  CHECK(old["volume"] == std::vector<double>{0, 0});
 }
 
 TEST_CASE("training options: ablations differ from their base by what they are named for", "[training]") {

@@ -1,4 +1,4 @@
-#include "physics/energies/springs.hpp"
+#include "physics/energies/joints.hpp"
 
 #include <algorithm>
 
@@ -6,12 +6,12 @@
 
 namespace selvedge {
 
-double spring_energy(const Spring& spring, const Points& x) {
+double joint_energy(const Spring& spring, const Points& x) {
   const double stretch = (row(x, spring.b) - row(x, spring.a)).norm() - spring.rest_length;
   return 0.5 * spring.stiffness * stretch * stretch;
 }
 
-double spring_derivatives(const Spring& spring, const Points& x, Vec6& gradient, Mat6* hessian, bool psd) {
+double joint_derivatives(const Spring& spring, const Points& x, Vec6& gradient, Mat6* hessian, bool psd) {
   const Vec3 between = row(x, spring.b) - row(x, spring.a);
   const double length = between.norm(), stretch = length - spring.rest_length;
   const bool directed = length > 0;
@@ -28,9 +28,16 @@ double spring_derivatives(const Spring& spring, const Points& x, Vec6& gradient,
   return 0.5 * spring.stiffness * stretch * stretch;
 }
 
-std::vector<int> joined_by_springs(std::span<const Spring> springs, std::span<const int> part_of_vertex, int parts) {
+std::vector<int> joined_parts(const Scene& scene, std::span<const int> part_of_vertex, int parts,
+                              std::span<const char> there) {
   DisjointSets sets(parts);
-  for (const Spring& spring : springs) sets.join(part_of_vertex[spring.a], part_of_vertex[spring.b]);
+  for_each_joint_list([&](auto list, const JointKind&) {
+    for (const auto& joint : scene.*list) {
+      const auto nodes = nodes_of(joint);
+      if (!there.empty() && std::ranges::any_of(nodes, [&](int node) { return !there[node]; })) continue;
+      for (const int node : nodes) sets.join(part_of_vertex[nodes[0]], part_of_vertex[node]);
+    }
+  });
   std::vector<int> joined(static_cast<std::size_t>(parts));
   for (int part = 0; part < parts; ++part) joined[part] = sets.root(part);
   return joined;
@@ -38,7 +45,7 @@ std::vector<int> joined_by_springs(std::span<const Spring> springs, std::span<co
 
 std::vector<int> joined_components(const Scene& scene) {
   const std::vector<int>& component = scene.surface.component;
-  const std::vector<int> joined = joined_by_springs(scene.springs, component, scene.surface.component_count);
+  const std::vector<int> joined = joined_parts(scene, component, scene.surface.component_count);
   std::vector<int> of_vertex;
   for (const int c : component) of_vertex.push_back(joined[c]);
   return of_vertex;

@@ -1,0 +1,123 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+
+#include "pipeline/commands/command_output.hpp"
+#include "pipeline/commands/commands.hpp"
+#include "pipeline/compare/compare.hpp"
+#include "pipeline/suites/bench.hpp"
+#include "pipeline/suites/stability.hpp"
+#include "pipeline/suites/stress.hpp"
+#include "pipeline/suites/wardrobe.hpp"
+#include "pipeline/validate/validate.hpp"
+
+namespace selvedge {
+
+RunCommand bench_command(CLI::App& command) {
+  const auto request = std::make_shared<BenchRequest>();
+  command.add_option("--sizes", request->sizes, "vertices along a side")->delimiter(',');
+  command.add_option("--scenes", request->scenes, "hang, drop, tube")->delimiter(',');
+  command.add_option("--only", request->only, "of the parts detection, engine, training, scenes")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"detection", "engine", "training", "scenes"}));
+  command.add_option("--frames", request->frames, "instead of the scenes' own");
+  command.add_option("--configs", request->configs, "folder of the scenes");
+  command.add_option("--out", request->out, "folder for the results");
+  return [request](bool json) {
+    warn_of_training();
+    BenchRequest logged = *request;
+    logged.log = &std::cerr;
+    const BenchResult result = bench(logged);
+    return end_command(json, bench_table(result), bench_json(result),
+                       std::ranges::all_of(result.members, [](const BenchMember& m) { return is_clean(m.summary); }));
+  };
+}
+
+RunCommand stress_command(CLI::App& command) {
+  const auto request = std::make_shared<StressRequest>();
+  command.add_option("scenes", request->scenes, "names of scenes (all)");
+  command.add_option("--repeats", request->repeats, "runs of each scene")->check(CLI::PositiveNumber);
+  command.add_option("--seed", request->seed, "of the first repeat's jitter");
+  command.add_option("--jitter", request->jitter, "of the starts, in mean edge lengths")->check(CLI::NonNegativeNumber);
+  command.add_flag("--short", request->short_form, "the scenes' short forms");
+  command.add_option("--configs", request->configs, "folder of the scenes");
+  command.add_option("--out", request->out, "folder for the results");
+  return [request](bool json) {
+    warn_of_training();
+    const InterruptWatch watch;
+    const std::vector<StressRow> rows = stress(followed(*request));
+    const bool finished = !InterruptWatch::interrupted();
+    return end_command(json, stress_table(rows) + stopped_text(finished), stress_json(rows),
+                       finished && std::ranges::all_of(rows, &StressRow::passed));
+  };
+}
+
+RunCommand wardrobe_command(CLI::App& command) {
+  const auto request = std::make_shared<WardrobeRequest>();
+  command.add_option("wear", request->wear, "names of garments and outfits by code (all)");
+  command.add_option("--clips", request->clips, "names of procedural clips (all)")->delimiter(',');
+  command.add_option("--frames", request->most_frames, "of a clip at most")->check(CLI::PositiveNumber);
+  command.add_option("--share", request->share, "K N: every Nth clip from the Kth on, for several processes at once");
+  command.add_option("--configs", request->configs, "folder of the configurations");
+  command.add_option("--out", request->out, "folder for the results");
+  return [request](bool json) {
+    warn_of_training();
+    const InterruptWatch watch;
+    const std::vector<WardrobeRow> rows = wardrobe(followed(*request));
+    const bool finished = !InterruptWatch::interrupted();
+    return end_command(json, wardrobe_table(rows) + stopped_text(finished), wardrobe_json(rows),
+                       finished && std::ranges::all_of(rows, &WardrobeRow::passed));
+  };
+}
+
+RunCommand compare_command(CLI::App& command) {
+  const auto request = std::make_shared<CompareRequest>();
+  command.add_option("comparison", request->file, "comparison file (YAML)")->required();
+  command.add_flag("--short", request->short_form, "the short forms of the comparison and its scenes");
+  command.add_option("--set", request->overrides, "key=value instead of the comparison file's, dotted keys")
+      ->allow_extra_args(false);
+  command.add_option("--out", request->out, "folder for the results");
+  return [request](bool json) {
+    warn_of_training();
+    const InterruptWatch watch;
+    const CompareResult result = compare(followed(*request));
+    return end_command(json,
+                       compare_table(result) + result.evaluation + result.repulsion + result.plots + "\n" +
+                           (request->out / "compare.html").string() + "\n" + stopped_text(result.finished),
+                       compare_json(result), result.finished);
+  };
+}
+
+RunCommand validate_command(CLI::App& command) {
+  const auto request = std::make_shared<ValidateRequest>();
+  command.add_option("cases", request->cases, "names of cases (all)");
+  command.add_option("--set", request->overrides, "parameter=value[,value...] instead of the cases' own")
+      ->allow_extra_args(false);
+  command.add_flag("--short", request->short_form, "the cases' short lists of parameters");
+  command.add_option("--out", request->out, "folder for the results");
+  return [request](bool json) {
+    ValidateRequest logged = *request;
+    logged.log = &std::cerr;
+    const std::vector<ValidationRow> rows = validate(logged);
+    return end_command(json, validate_table(rows), validate_json(rows), passed(rows));
+  };
+}
+
+RunCommand stability_command(CLI::App& command) {
+  const auto request = std::make_shared<StabilityRequest>();
+  command.add_option("suite", request->suite, "suite file (configs/stability.yaml)");
+  command.add_option("--case", request->cases, "names of cases (all)")->allow_extra_args(false);
+  command.add_option("--stepper", request->stepper, "in place of the scenes' own");
+  command.add_option("--weights", request->weights, "weight file of the steppers `learned` and `hybrid`");
+  command.add_flag("--short", request->short_form, "the runs that the suite marks as short");
+  command.add_option("--out", request->out, "folder for the results");
+  return [request](bool json) {
+    warn_of_training();
+    const InterruptWatch watch;
+    const std::vector<StabilityRow> rows = stability(followed(*request));
+    return end_command(json, stability_table(rows), stability_json(rows),
+                       passed(rows) && !InterruptWatch::interrupted());
+  };
+}
+
+}  // namespace selvedge

@@ -1,0 +1,222 @@
+#include <fmt/format.h>
+#include <unistd.h>
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "collision/geometry/stopwatch.hpp"
+#include "pipeline/commands/command_output.hpp"
+#include "pipeline/commands/commands.hpp"
+#include "pipeline/run/progress.hpp"
+#include "pipeline/tools/ccd_report.hpp"
+#include "pipeline/tools/check.hpp"
+#include "pipeline/tools/convert_body.hpp"
+#include "pipeline/tools/dress.hpp"
+#include "pipeline/tools/export.hpp"
+#include "pipeline/tools/fit_report.hpp"
+#include "pipeline/tools/push_mesh.hpp"
+#include "pipeline/tools/sew_garment.hpp"
+#include "pipeline/tools/untangle_mesh.hpp"
+#include "pipeline/view/view.hpp"
+
+namespace selvedge {
+namespace {
+
+struct ViewArguments {
+  std::vector<std::filesystem::path> runs;
+  std::filesystem::path out = "view.html";
+};
+
+}  // namespace
+
+RunCommand check_command(CLI::App& command) {
+  const auto request = std::make_shared<CheckRequest>();
+  command.add_option("file", request->file, "mesh (.obj, .ply) or trajectory (.h5)")->required();
+  command.add_option("--rest", request->rest, "mesh of the same faces at rest, for the stretches");
+  command.add_option("--body", request->bodies, "mesh that must not be touched; may be given again")
+      ->allow_extra_args(false);
+  command.add_option("--against", request->against, "trajectory of the same cloths: measures of papers against it");
+  command.add_option("--audit", request->audit, "own, or fcl: FCL's opinion beside it")
+      ->check(CLI::IsMember({"own", "fcl"}));
+  command.add_option("--horizon", request->horizon, "largest gap looked for [m]")->check(CLI::PositiveNumber);
+  command.add_flag("--volume", request->volume, "the volume that crossings enclose, holes being closed");
+  return [request](bool json) {
+    const CheckReport report = check(*request);
+    return end_command(json, check_text(report), check_json(report), is_clean(report));
+  };
+}
+
+RunCommand untangle_command(CLI::App& command) {
+  const auto request = std::make_shared<UntangleRequest>();
+  command.add_option("file", request->file, "mesh (.obj, .ply)")->required();
+  command.add_option("--out", request->out, "where the untangled mesh goes (.obj, .ply)")->required();
+  command.add_option("--body", request->bodies, "mesh to part from, stands still; may be given again")
+      ->allow_extra_args(false);
+  command.add_option("--unit", request->unit, "of the coordinates: m, dm, cm, mm");
+  command.add_option("--layers", request->layers, "one number a piece of cloth, the innermost lowest")->delimiter(',');
+  command.add_option("--iterations", request->iterations, "at most")->check(CLI::PositiveNumber);
+  return [request](bool json) {
+    UntangleRequest shown = *request;
+    const bool terminal = isatty(STDERR_FILENO) != 0;
+    Clock::time_point last = Clock::now();
+    shown.progress = [&](const UntangleProgress& now) {
+      if (seconds_since(last) < (terminal ? 0.1 : 5)) return;
+      last = Clock::now();
+      const std::string line =
+          fmt::format("iteration {} of {}, {} pairs left", now.iteration, request->iterations, now.pairs);
+      std::cerr << (terminal ? "\r" + line + "\033[K" : line + "\n") << std::flush;
+    };
+    const UntangleReport report = untangle_mesh(shown);
+    if (terminal) std::cerr << "\r\033[K" << std::flush;
+    return end_command(json, untangle_text(report), untangle_json(report), is_clean(report));
+  };
+}
+
+RunCommand push_command(CLI::App& command) {
+  const auto request = std::make_shared<PushRequest>();
+  command.add_option("file", request->file, "garment (.obj, .ply), in metres")->required();
+  command.add_option("--body", request->body, "mesh to push it out of")->required();
+  command.add_option("--truth", request->truth, "mesh of the garment's faces that the result is compared with");
+  command.add_option("--out", request->out, "where the pushed garment goes (.obj, .ply)");
+  command.add_option("--method", request->method, "layer, smooth (a least-squares displacement) or none")
+      ->check(CLI::IsMember({"layer", "smooth", "none"}));
+  command.add_option("--shape", request->shape, "of a body that passes through itself")
+      ->check(CLI::IsMember({"union", "raw"}));
+  command.add_option("--alpha", request->alpha, "the layer's scale")->check(CLI::NonNegativeNumber);
+  command.add_option("--margin", request->margin, "added to each push [m]")->check(CLI::NonNegativeNumber);
+  command.add_option("--recheck", request->recheck, "so often pushed vertices are asked again")
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--edge-pass", request->edge_pass, "rounds that lift crossing edges")
+      ->check(CLI::NonNegativeNumber);
+  return [request](bool json) {
+    const PushReport report = push_mesh(*request);
+    return end_command(json, push_text(report), push_json(report), report.after.collision_free);
+  };
+}
+
+RunCommand dress_command(CLI::App& command) {
+  const auto request = std::make_shared<DressRequest>();
+  command.add_option("mesh", request->mesh, "garment where the body wears it (.obj, .ply)")->required();
+  command.add_option("--out", request->out, "the garment for scenes (.h5)")->required();
+  command.add_option("--unit", request->unit, "of the coordinates: m, dm, cm, mm");
+  command.add_option("--body", request->body, "mannequin, or a file (.npz, .h5)");
+  command.add_option("--shape", request->shape, "of that body: coefficients")->delimiter(',');
+  command.add_option("--pose", request->pose, "clip that the body stands in: a name, .bvh or .npz (zero pose)");
+  command.add_option("--time", request->time, "of the clip [s]");
+  command.add_option("--rotate", request->rotations, "JOINT=x,y,z: its rotation in that pose, axis times angle [rad]")
+      ->allow_extra_args(false);
+  command.add_option("--fit", request->fit, "tight: weights of the nearest vertex; loose: averaged")
+      ->check(CLI::IsMember({"tight", "loose"}));
+  command.add_option("--pin", request->pins, "group that stays with the body, or none; may be given again")
+      ->allow_extra_args(false);
+  return [request](bool json) {
+    const DressReport report = dress(*request);
+    return end_command(json, dress_text(report), dress_json(report), is_clean(report));
+  };
+}
+
+RunCommand pattern_command(CLI::App& command) {
+  const auto request = std::make_shared<PatternRequest>();
+  command.add_option("pattern", request->file, "pattern of GarmentCode (*_specification.json)")->required();
+  command.add_option("--out", request->out, "the garment for scenes (.h5), or its mesh alone (.obj, .ply)")->required();
+  command.add_option("--body", request->body, "mannequin, a body (.npz, .h5) or a mesh in metres (.obj, .ply)");
+  command.add_option("--edge", request->edge, "length of the triangles' edges [m]")->check(CLI::Range(0.002, 0.2));
+  command.add_option("--material", request->material, "of the cloth: a name, as in scenes");
+  command.add_option("--pin", request->pins, "group that stays with the body in scenes; may be given again")
+      ->allow_extra_args(false);
+  command.add_option("--record", request->record, "trajectory of the sewing (.h5)");
+  command.add_flag("--flat", request->flat, "only cut: the panels as a mesh");
+  return [request](bool json) {
+    PatternRequest followed = *request;
+    followed.progress = [](const SewingFrame& frame) {
+      std::cerr << fmt::format("{} {:.2f} s: gaps {:.3g} mm, {:.3g} % move, {} pairs\n",
+                               frame.sewn ? "draping" : "sewing", frame.time, 1e3 * frame.largest_gap,
+                               100 * frame.moving_share, frame.report->collision.pairs_after);
+    };
+    const PatternReport report = sew_garment(followed);
+    return end_command(json, pattern_text(report), pattern_json(report), request->flat || is_clean(report));
+  };
+}
+
+RunCommand body_command(CLI::App& command) {
+  const auto request = std::make_shared<BodyRequest>();
+  command
+      .add_option("file", request->file,
+                  "mesh (.obj, .ply), model of the SMPL family (.npz) or glTF with a skin (.glb, .gltf)")
+      ->required();
+  command.add_option("--skeleton", request->skeleton, "of the mesh, as MakeHuman has it (.mhskel)");
+  command.add_option("--weights", request->weights, "of the mesh, as MakeHuman has them (.mhw)");
+  command.add_option("--joints", request->joints, "where the joints of a mesh are that has neither (.yaml)");
+  command.add_option("--unit", request->unit, "of the mesh: m, dm, cm, mm");
+  command
+      .add_option("--mesh", request->meshes.only, "mesh of glTF, or group, that becomes the body; may be given again")
+      ->allow_extra_args(false);
+  command.add_option("--without", request->meshes.without, "mesh or group that does not; may be given again")
+      ->allow_extra_args(false);
+  command.add_option("--out", request->out, "where the body goes (.h5)")->required();
+  return [request](bool json) {
+    const BodyReport report = convert_body(*request);
+    return end_command(json, body_text(report), body_json(report), true);
+  };
+}
+
+RunCommand ccd_command(CLI::App& command) {
+  const auto files = std::make_shared<std::vector<std::filesystem::path>>();
+  command.add_option("files", *files, "queries with known answers (.csv), in folders edge-edge or vertex-face")
+      ->required();
+  return [files](bool json) {
+    const CcdReport report = ccd_report(*files);
+    return end_command(json, ccd_text(report), ccd_json(report), is_clean(report));
+  };
+}
+
+RunCommand fit_command(CLI::App& command) {
+  const auto request = std::make_shared<FitRequest>();
+  command.add_option("run", request->run, "trajectory (.h5), or the folder of a run")->required();
+  command.add_option("--scene", request->scene, "that it was made of (config.yaml beside it)");
+  command.add_option("--body", request->body, "obstacle to fit (the first body)");
+  command.add_option("--regions", request->regions, "of the body: vertices by name (.json); otherwise by its joints");
+  command.add_option("--frame", request->frame, "the last one if left out")->check(CLI::NonNegativeNumber);
+  command.add_option("--reach", request->reach, "what is nearer touches the skin [m]")->check(CLI::PositiveNumber);
+  command.add_option("--out", request->out, "page, coloured (.html)");
+  return [request](bool json) {
+    const FitReport report = fit(*request);
+    const std::string page = request->out.empty() ? "" : "page to look at: " + request->out.string() + "\n";
+    return end_command(json, fit_text(report) + page, fit_json(report), true);
+  };
+}
+
+RunCommand export_command(CLI::App& command) {
+  const auto request = std::make_shared<ExportRequest>();
+  command.add_option("trajectory", request->trajectory, "run.h5")->required();
+  command.add_option("--format", request->format, export_format_list());
+  command.add_option("--out", request->out, "folder")->default_val("export");
+  command.add_flag("--obstacles", request->obstacles, "also the obstacles");
+  return [request](bool json) {
+    Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
+    ExportRequest shown = *request;
+    shown.progress = [&](int done, int all) {
+      if (done == 1) progress.begin(0, all);
+      progress.frame(done);
+    };
+    const std::vector<std::filesystem::path> written = export_trajectory(shown);
+    progress.end();
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const std::filesystem::path& file : written) list.push_back(file.string());
+    return end_command(json, fmt::format("{} files, the last is {}\n", list.size(), written.back().string()),
+                       nlohmann::ordered_json{{"files", list}}.dump(2) + "\n", true);
+  };
+}
+
+RunCommand view_command(CLI::App& command) {
+  const auto arguments = std::make_shared<ViewArguments>();
+  command.add_option("runs", arguments->runs, "trajectories, shown side by side")->required();
+  command.add_option("--out", arguments->out, "HTML file");
+  return [arguments](bool json) {
+    write_view(arguments->runs, arguments->out);
+    return end_command(json, "page to look at: " + arguments->out.string() + "\n",
+                       nlohmann::ordered_json{{"page", arguments->out.string()}}.dump(2) + "\n", true);
+  };
+}
+
+}  // namespace selvedge

@@ -1,0 +1,86 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "pipeline/commands/command_output.hpp"
+#include "pipeline/commands/commands.hpp"
+#include "pipeline/drapes/make_drapes.hpp"
+#include "pipeline/drapes/train_drapes.hpp"
+#include "pipeline/host/interrupt.hpp"
+#include "pipeline/training/running_mark.hpp"
+#include "pipeline/training/train.hpp"
+
+namespace selvedge {
+namespace {
+
+struct TrainArguments {
+  std::filesystem::path config;
+  std::vector<std::string> overrides;  // key=value
+  std::filesystem::path out;
+  bool resume = false, pause = false;
+};
+
+std::string name_of_run(const TrainArguments& arguments) {
+  return is_drape_training(arguments.config) ? read_drape_training(arguments.config, arguments.overrides).name
+                                             : read_training(arguments.config, arguments.overrides).name;
+}
+
+// Text and JSON of what was trained, and whether it has ended.
+struct TrainedRun {
+  std::string text, json;
+  bool finished = false;
+};
+TrainedRun trained(const TrainRequest& request) {
+  if (is_drape_training(request.config)) {
+    const DrapeTrainSummary summary = train_drapes(request);
+    return {drape_train_text(summary), drape_train_json(summary), summary.finished};
+  }
+  const TrainSummary summary = train(request);
+  return {train_text(summary), train_json(summary), summary.finished};
+}
+
+}  // namespace
+
+RunCommand dataset_command(CLI::App& command) {
+  const auto request = std::make_shared<DatasetRequest>();
+  command.add_option("config", request->config, "data file (YAML), see docs/repulsion.md")->required();
+  command.add_option("--set", request->overrides, "key=value instead of the file's, dotted keys")
+      ->allow_extra_args(false);
+  command.add_option("--out", request->out, "folder for the drapes (out/data/NAME)");
+  return [request](bool json) {
+    const InterruptWatch watch;
+    const DatasetSummary summary = make_dataset(followed(*request));
+    return end_command(json, dataset_text(summary) + stopped_text(summary.finished), dataset_json(summary),
+                       summary.finished);
+  };
+}
+
+RunCommand train_command(CLI::App& command) {
+  const auto arguments = std::make_shared<TrainArguments>();
+  command.add_option("config", arguments->config, "training file (YAML), see docs/training.md")->required();
+  command.add_option("--set", arguments->overrides, "key=value instead of the file's, dotted keys")
+      ->allow_extra_args(false);
+  command.add_option("--out", arguments->out, "folder for weights, checkpoint and tables (out/training/NAME)");
+  command.add_flag("--resume", arguments->resume, "go on from the folder's checkpoint");
+  command.add_flag("--pause", arguments->pause, "ask the run in the folder to stop at a checkpoint");
+  return [arguments](bool json) {
+    if (arguments->pause) {
+      constexpr double longest_wait = 600;  // [s]
+      const std::filesystem::path folder =
+          arguments->out.empty() ? std::filesystem::path("out") / "training" / name_of_run(*arguments) : arguments->out;
+      const bool paused = running_training() && pause_training(folder, longest_wait);
+      people(json) << (paused ? "stopped at a checkpoint: " : "no training has answered in ") << folder.string()
+                   << "\n";
+      return paused ? 0 : 1;
+    }
+    const InterruptWatch watch;
+    const RunningMark mark(arguments->config);
+    if (mark.other()) std::cerr << "warning: another training runs: " << *mark.other() << "\n";
+    TrainRequest request{arguments->config, arguments->overrides, arguments->out,
+                         arguments->resume, &std::cerr,           InterruptWatch::interrupted};
+    const TrainedRun made = trained(request);
+    const char* more = made.finished ? "" : "go on with --resume and the same arguments\n";
+    return end_command(json, made.text + more, made.json, made.finished);
+  };
+}
+
+}  // namespace selvedge
