@@ -22,15 +22,6 @@ Points targets(const Drive& drive, const Points& x) {
   return all;
 }
 
-// What the next guess reads: the targets of this frame, and the motion relative to them.
-std::vector<MemoryBlock> memory_of(const State& from, const Drive& drive, const Points& x) {
-  const Points now = targets(drive, x);
-  Points motion = Points::Zero(x.rows(), 3);
-  if (const MemoryRows* before = find_rows(from.memory, target_block, x.rows()))
-    motion = (x - from.x) - (now - Points(*before));
-  return {{target_block, now, RowsOf::vertices, true}, {motion_block, motion, RowsOf::vertices}};
-}
-
 class CarriedStepper final : public Stepper {
  public:
   CarriedStepper(const Scene& scene, const CarriedOptions& options)
@@ -71,7 +62,7 @@ StepReport CarriedStepper::take_step(const State& from, const Drive& drive, doub
   add(resolved, report);
   report.reason = resolved.stopped ? Reason::stopped : x.allFinite() ? Reason::none : Reason::not_finite;
   if (report.reason != Reason::none) return report;
-  StepEnd end{x, (x - from.x) / dt, std::move(obstacles), memory_of(from, drive, x)};
+  StepEnd end{x, (x - from.x) / dt, std::move(obstacles), carried_memory(from, drive, x)};
   finish_step(from, drive, dt, std::move(end), to, report);
   return report;
 }
@@ -95,6 +86,14 @@ Points carried_guess(const Scene& scene, const State& from, const Drive& drive, 
   for (std::size_t k = 0; k < scene.pins.size(); ++k)
     x.row(scene.pins[k]) = drive.pins.row(static_cast<Eigen::Index>(k));
   return x;
+}
+
+std::vector<MemoryBlock> carried_memory(const State& from, const Drive& drive, const Points& x) {
+  const Points now = targets(drive, x);
+  Points motion = Points::Zero(x.rows(), 3);
+  if (const MemoryRows* before = find_rows(from.memory, target_block, x.rows()))
+    motion = (x - from.x) - (now - Points(*before));
+  return {{target_block, now, RowsOf::vertices, true}, {motion_block, motion, RowsOf::vertices}};
 }
 
 std::unique_ptr<Stepper> make_carried_stepper(const Scene& scene, const CarriedOptions& options) {

@@ -15,6 +15,10 @@ struct CarriedOptions {
 // motion relative to that. Cloth that nothing wears falls freely. Pins are where the drive has them. n x 3 [m].
 Points carried_guess(const Scene&, const State& from, const Drive&, double dt, const CarriedOptions& = {});
 
+// What the next carried guess reads: the targets of this frame, and the motion relative to them. x: the cloth at the
+// end of the step.
+std::vector<MemoryBlock> carried_memory(const State& from, const Drive&, const Points& x);
+
 // The baseline that a learned stepper has to beat: the carried guess, then Bridson's response to contact. It solves
 // nothing and ignores every elastic force. Keeps a reference to the scene.
 std::unique_ptr<Stepper> make_carried_stepper(const Scene&, const CarriedOptions& = {});

@@ -15,6 +15,7 @@
 #include "physics/solve/contact_terms.hpp"
 #include "physics/solve/energy_balance.hpp"
 #include "physics/solve/euler_torque.hpp"
+#include "physics/steppers/carried_stepper.hpp"
 #include "physics/steppers/contact_stage.hpp"
 #include "physics/steppers/finish_step.hpp"
 #include "physics/steppers/substep_solve.hpp"
@@ -30,7 +31,8 @@ struct StepWork {
   const Drive& drive;
   const StepExtras& extras;
   StepReport& report;
-  bool look_for_room;  // obstacles lag at its start, or lacked room in it
+  std::optional<Points> carried;  // where the cloth may be at the end; absent: not asked for
+  bool look_for_room;             // obstacles lag at its start, or lacked room in it
   const Exemption nothing = {};
   const Exemption& left_alone = extras.left_alone ? *extras.left_alone : nothing;
 };
@@ -58,7 +60,7 @@ class ConventionalStepper final : public Stepper {
         energy_(scene),
         edge_length_(mean_edge_length(scene)),
         traits_{.name = "conventional",
-                .past_frames = options.integrator == Integrator::bdf2 ? 1 : 0,
+                .past_frames = options.integrator == Integrator::bdf2 || options.guess == FirstGuess::carried ? 1 : 0,
                 .honours_extras = true,
                 .max_substeps = options.substeps.value_or(options.max_substeps)} {}
 
@@ -256,6 +258,7 @@ SubstepOutcome ConventionalStepper::substep(StepWork& work, Substep& s) {
   const int n = scene_.surface.vertex_count;
   const bool smooth = continues_history(s) && !work.extras.added;
   const StepStart start{s.h, s.start.nodes.topRows(n), s.start.v};
+  if (s.carried.rows() > 0) solve_.choose_guess(problem_of(work, start, s.pins, {}), s, work.report);
   const auto solve_smoothly = [&] { return solve_freely(work, s, bdf2_start(s.start.history, start.x, start.v)); };
   if (!has_contact())
     return (smooth && solve_smoothly()) || solve_freely(work, s, start) ? SubstepOutcome::clean
@@ -288,9 +291,11 @@ Substep ConventionalStepper::begin_substep(const StepWork& work, const SubstepSt
   const int n = scene_.surface.vertex_count;
   Substep s{start, target.pins, target.h, attempt, target.parts, target.nodes};
   s.nodes.topRows(n) = start.nodes.topRows(n) + s.h * start.v;
-  if (work.extras.guess)
-    s.nodes.topRows(n) =
-        start.nodes.topRows(n) + std::min(1.0, s.h / time_left) * (*work.extras.guess - start.nodes.topRows(n));
+  const auto towards = [&](const Points& end) {
+    return start.nodes.topRows(n) + std::min(1.0, s.h / time_left) * (end - start.nodes.topRows(n));
+  };
+  if (work.extras.guess) s.nodes.topRows(n) = towards(*work.extras.guess);
+  if (work.carried) s.carried = towards(*work.carried);
   for (std::size_t k = 0; k < scene_.pins.size(); ++k)
     s.nodes.row(scene_.pins[k]) = s.pins.row(static_cast<Eigen::Index>(k));
   return s;
@@ -410,6 +415,7 @@ StepReport ConventionalStepper::take_step(const State& from, const Drive& drive,
   if (!now.nodes.allFinite() || !now.v.allFinite()) return not_finite(report);
   if (has_contact()) begin_contact(work, now.nodes);
   if (work.left_alone.any()) now.history = {};
+  if (options_.guess == FirstGuess::carried && !extras.guess) work.carried = carried_guess(scene_, from, drive, dt);
   const int planned = planned_substeps(from, drive, dt, now.nodes);
   // An obstacle that had no room will hardly have room now.
   const int halvings = from.pinched ? 0 : options_.substep.max_halvings,
@@ -421,6 +427,8 @@ StepReport ConventionalStepper::take_step(const State& from, const Drive& drive,
   report.counts.candidates = contact_.search.tally().candidates - before.candidates;
   report.doubts.not_converged = report.unsolved > options_.implicit_euler.tolerated_error;
   StepEnd end{now.nodes.topRows(from.x.rows()), std::move(now.v), {}, blocks_of(now.history)};
+  if (options_.guess == FirstGuess::carried)
+    for (MemoryBlock& block : carried_memory(from, drive, end.x)) end.memory.push_back(std::move(block));
   for (std::size_t k = 0; k < from.obstacles.size(); ++k)
     end.obstacles.push_back(now.nodes.middleRows(contact_.world.first_node[k], from.obstacles[k].rows()));
   finish_step(from, drive, dt, std::move(end), to, report);

@@ -14,11 +14,16 @@ namespace selvedge {
 // jump of pins, in the first substep after these, and where the substep's length has changed.
 enum class Integrator { implicit_euler, bdf2 };
 
+// Where the first solve of a step begins. inertia: where the cloth goes as it moves. carried: carried_guess
+// (carried_stepper.hpp), if the incremental potential is lower there.
+enum class FirstGuess { inertia, carried };
+
 struct ConventionalOptions {
   std::optional<int> substeps;      // absent: chosen in each frame from the speed
   std::optional<int> min_substeps;  // absent: least_substeps
   int max_substeps = 12;
   Integrator integrator = Integrator::implicit_euler;
+  FirstGuess guess = FirstGuess::inertia;
   ImplicitEulerOptions implicit_euler;
   SubstepOptions substep;
   ResolveOptions resolve;  // thickness, separation and friction are those of the scene

@@ -30,6 +30,14 @@ NewtonReport SubstepSolve::once(const StepProblem& problem, Points& x, StepRepor
   return newton;
 }
 
+void SubstepSolve::choose_guess(const StepProblem& problem, Substep& s, StepReport& report) {
+  const Timed timed(report.seconds.solve);
+  for (std::size_t k = 0; k < scene_.pins.size(); ++k)
+    s.carried.row(scene_.pins[k]) = s.pins.row(static_cast<Eigen::Index>(k));
+  auto x = s.nodes.topRows(s.carried.rows());
+  if (solver_.potential(problem, s.carried) < solver_.potential(problem, x)) x = s.carried;
+}
+
 std::vector<Impact> SubstepSolve::impacts(const Points& nodes0, const Points& nodes1, StepReport& report) {
   ResolveReport times;
   auto found = find_impacts(stage_.search, stage_.inverse_mass, stage_.options, nodes0, nodes1, stage_.path, times);

@@ -20,6 +20,7 @@ struct Substep {
   SubstepAttempt attempt;
   int max_parts;                      // most parts into which it may be cut
   Points nodes, v = {};               // at its end; at first the wanted obstacles and a guess of the cloth
+  Points carried = {};                // a further first guess of the cloth at its end; empty: none
   Points unbalanced = {};             // unbalanced forces after the last solve [N]
   bool touched = false;               // some pair was near, met, or was left alone
   bool pinched = false;               // obstacles leave the cloth no room
@@ -37,6 +38,8 @@ class SubstepSolve {
   NewtonReport once(const StepProblem&, Points& x, StepReport&);
   // The impacts of the straight motion.
   std::vector<Impact> impacts(const Points& nodes0, const Points& nodes1, StepReport&);
+  // Begins at the carried guess, if the potential without contact is lower there than where the nodes are.
+  void choose_guess(const StepProblem&, Substep&, StepReport&);
   // The proximities at the start.
   std::vector<Proximity> near(const Substep&, StepReport&);
   // Contact terms of proximities, stiff enough for the forces on them at the place where the cloth would go without

@@ -50,8 +50,8 @@ const Options<SubstepOptions>& substep_options() {
               "Factor on the tolerance of the first solve, which finds impacts and normal forces."),
        number("friction_tolerance", &O::friction_tolerance, Unit::none, positive,
               "Factor on the tolerance of solves with friction. Sticking cloth needs a small value."),
-       integer("max_passes", &O::max_passes, at_least_one,
-               "Largest number of solves of a substep after the first one."),
+       integer("max_passes", &O::max_passes, not_negative,
+               "Largest number of solves of a substep after the first one. With 0 the response meets all impacts."),
        number("normal_change", &O::normal_change, Unit::none, positive,
               "Relative change of the lagged normal forces above which a substep is solved again."),
        section(&O::contact, contact_term_options(), "Contact terms of the incremental potential.")},
@@ -141,7 +141,10 @@ const Options<ConventionalOptions>& solver_options() {
       OptionRows<O>{choice("integrator", &O::integrator,
                            {{"implicit_euler", Integrator::implicit_euler}, {"bdf2", Integrator::bdf2}},
                            "Time integrator. `bdf2` is second-order accurate with less damping where nothing touches, "
-                           "and implicit Euler elsewhere; the stepper `icm` lacks it.")} +
+                           "and implicit Euler elsewhere; the stepper `icm` lacks it."),
+                    choice("guess", &O::guess, {{"inertia", FirstGuess::inertia}, {"carried", FirstGuess::carried}},
+                           "Where the first solve of a step begins: as the cloth moves, or (`carried`) where it goes "
+                           "with its body, if the potential is lower there.")} +
           inside(&O::implicit_euler, implicit_euler_options()) +
           OptionRows<O>{section(&O::substep, substep_options(), "Substeps and the contact solve."),
                         section(&O::resolve, response_options(), "Contact response: impulses and impact zones.")});

@@ -8,7 +8,7 @@ namespace selvedge {
 namespace {
 
 struct QualityValue {
-  std::string section, key;
+  std::string key;  // dotted
   double number = 0;
   std::string word = {};  // in place of the number
 };
@@ -20,15 +20,22 @@ struct QualityLevel {
 
 // Measured in docs/benchmarks.md.
 const std::vector<QualityLevel>& levels() {
-  static const std::vector<QualityLevel> all{
-      {"preview",
-       "",
-       {{"run", "substeps", 1},
-        {"solver", "max_newton", 2},
-        {"solver", "relative_tolerance", 0.03},
-        {"solver", "max_newton_step", 16}}},
-      {"standard", "every key's default", {}},
-      {"fine", "", {{"run", "min_substeps", 4}, {"solver", "integrator", 0, "bdf2"}}}};
+  static const std::vector<QualityLevel> all{{"draft",
+                                              "",
+                                              {{"run.substeps", 1},
+                                               {"solver.max_newton", 2},
+                                               {"solver.relative_tolerance", 0.03},
+                                               {"solver.max_newton_step", 16},
+                                               {"solver.substep.max_passes", 0},
+                                               {"solver.guess", 0, "carried"}}},
+                                             {"preview",
+                                              "",
+                                              {{"run.substeps", 1},
+                                               {"solver.max_newton", 2},
+                                               {"solver.relative_tolerance", 0.03},
+                                               {"solver.max_newton_step", 16}}},
+                                             {"standard", "every key's default", {}},
+                                             {"fine", "", {{"run.min_substeps", 4}, {"solver.integrator", 0, "bdf2"}}}};
   return all;
 }
 
@@ -38,7 +45,12 @@ const QualityLevel& level_of(const std::string& name) {
 
 // The stepper `icm` has no other integrator.
 bool applies(const QualityValue& value, const Config& scene) {
-  return value.key != "integrator" || scene["run"]["stepper"].text() != "icm";
+  return value.key != "solver.integrator" || scene["run"]["stepper"].text() != "icm";
+}
+
+Config& entry_of(Config& scene, const std::string& key) {
+  const std::size_t dot = key.find('.');
+  return dot == std::string::npos ? scene[key] : entry_of(scene[key.substr(0, dot)], key.substr(dot + 1));
 }
 
 }  // namespace
@@ -54,7 +66,7 @@ std::string set_quality(Config& scene) {
   std::string text = level.about;
   for (const QualityValue& value : level.values) {
     if (!applies(value, scene)) continue;
-    Config& entry = scene[value.section][value.key];
+    Config& entry = entry_of(scene, value.key);
     const bool own = entry.given;
     if (!own) {
       entry.given = true;
@@ -63,7 +75,7 @@ std::string set_quality(Config& scene) {
       entry.numbers = value.word.empty() ? std::vector{value.number} : std::vector<double>{};
     }
     const std::string shown = entry.words.empty() ? fmt::format("{}", entry.numbers.front()) : entry.words.front();
-    text += (text.empty() ? "" : ", ") + value.section + "." + value.key + " " + shown + (own ? " (given)" : "");
+    text += (text.empty() ? "" : ", ") + value.key + " " + shown + (own ? " (given)" : "");
   }
   return level.name + ": " + text;
 }

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "physics/steppers/carried_stepper.hpp"
+#include "physics/steppers/conventional_stepper.hpp"
 #include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
@@ -69,6 +70,32 @@ TEST_CASE("carried: the response to contact keeps cloth that is carried into clo
   CHECK(report.collision.pairs_after == 0);
   CHECK(report.collision.passed_through == 0);
   CHECK(to.clean);
+}
+
+// The body jumps into motion, and the cloth's velocity does not know it yet.
+TEST_CASE("carried: a solve begins at the carried guess where the potential is lower there", "[carried]") {
+  World world = make_world(testing::sheet(5, 0.2, 1));
+  const auto steps = [&](FirstGuess guess, const Points& target) {
+    ConventionalOptions options;
+    options.substeps = 1;
+    options.guess = guess;
+    options.implicit_euler.max_newton = 1;
+    options.implicit_euler.linear_tolerance = 0.9;  // so rough that the end tells the start
+    const auto stepper = make_conventional_stepper(world.scene, options);
+    State first, second;
+    world.drive.worn = world.state.x;
+    testing::frame(world.scene, *stepper, world.state, world.drive, dt, first);
+    CHECK((guess == FirstGuess::carried) == (find_rows(first.memory, "carried.target", first.x.rows()) != nullptr));
+    world.drive.worn = target;
+    REQUIRE(testing::frame(world.scene, *stepper, first, world.drive, dt, second).status == StepStatus::accepted);
+    return second.x;
+  };
+  // Far from where inertia takes the cloth the potential is higher: the guess is not taken.
+  CHECK(steps(FirstGuess::carried, moved(world, {0.3, 0, 0})) == steps(FirstGuess::inertia, world.state.x));
+  // A sheet that is held at one edge, which moves on: the rest is nearer to its rest shape at the carried guess.
+  for (int v = 0; v < 5; ++v) world.scene.pins.push_back(v);
+  world.drive.pins = moved(world, {0.05, 0, 0}).topRows(5);
+  CHECK(steps(FirstGuess::carried, moved(world, {0.05, 0, 0})) != steps(FirstGuess::inertia, world.state.x));
 }
 
 }  // namespace selvedge::test_carried_stepper

@@ -38,6 +38,13 @@ TEST_CASE("Quality: a word stands for several keys, and a key that is given stay
   CHECK(preview.run.conventional.implicit_euler.max_newton_step == 16);
   CHECK(preview.run.icm.substeps == 1);
 
+  const Setup draft = read(folder, "run: {quality: draft}\n");
+  CHECK(draft.run.conventional.substep.max_passes == 0);
+  CHECK(draft.run.conventional.guess == FirstGuess::carried);
+  CHECK(draft.run.conventional.implicit_euler.max_newton == 2);
+  CHECK_THAT(plan_text(draft), Contains("solver.substep.max_passes 0, solver.guess carried"));
+  CHECK(read_setup(fake::write(folder, "config.yaml", draft.config)).run.conventional.substep.max_passes == 0);
+
   const Setup given = read(folder, "run: {quality: preview, substeps: auto}\nsolver: {max_newton: 5}\n");
   CHECK_FALSE(given.run.conventional.substeps);
   CHECK(given.run.conventional.implicit_euler.max_newton == 5);
