@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/config/section_tree.hpp"
 #include "pipeline/host/read_file.hpp"
 
 namespace selvedge {
@@ -138,13 +139,7 @@ std::string drape_training_yaml(const DrapeTrainingOptions& options) {
   return to_yaml(drape_training_options().written(options));
 }
 
-std::string drape_training_reference() {
-  std::string page;
-  for (const Section* one : {&drape_training_options().section, &backbone_options().section, &mesh_options().section,
-                             &stage_options().section, &layer_options().section, &distance_options().section})
-    page += section_chapter(*one);
-  return page;
-}
+std::string drape_training_reference() { return chapters_below(drape_training_options().section); }
 
 const std::vector<DrapeRow>& known_drape_rows() {
   static const std::vector<DrapeRow> rows{

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/config/section_tree.hpp"
 #include "pipeline/scene/config_scene.hpp"
 
 namespace selvedge {
@@ -57,20 +58,6 @@ const std::vector<Task>& tasks() {
   return all;
 }
 
-void collect(const Section& section, std::vector<const Section*>& found) {
-  if (std::ranges::find(found, &section) != found.end()) return;
-  found.push_back(&section);
-  for (const Key& key : section.keys)
-    if (key.section) collect(*key.section, found);
-}
-
-// Every section of a scene file, the scene itself first.
-std::vector<const Section*> scene_sections() {
-  std::vector<const Section*> found;
-  collect(scene_section(), found);
-  return found;
-}
-
 bool has_word(const std::string& words, const std::string& word) {
   std::istringstream stream(words);
   for (std::string one; stream >> one;)
@@ -97,7 +84,7 @@ bool has_keys(const Section& section, KeyTier tier) {
 // Sections with chapters on a tier's page. Those without a key are the expert's.
 std::vector<const Section*> sections_of(KeyTier tier) {
   std::vector<const Section*> chosen;
-  for (const Section* section : scene_sections())
+  for (const Section* section : sections_below(scene_section()))
     if (section->keys.empty() ? tier == KeyTier::expert : has_keys(*section, tier)) chosen.push_back(section);
   return chosen;
 }
@@ -148,7 +135,7 @@ std::string scene_keys_text(KeyTier tier) {
 
 int scene_key_count(KeyTier tier) {
   int count = 0;
-  for (const Section* section : scene_sections())
+  for (const Section* section : sections_below(scene_section()))
     count += static_cast<int>(
         std::ranges::count_if(section->keys, [&](const Key& key) { return tier_of(*section, key) == tier; }));
   return count;

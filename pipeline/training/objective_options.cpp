@@ -149,10 +149,4 @@ const Options<LossOptions>& objective_options() {
   return table;
 }
 
-std::vector<const Section*> objective_sections() {
-  return {&objective_options().section, &collision_options().section,       &friction_options().section,
-          &repulsion_options().section, &contour_options().section,         &volume_options().section,
-          &region_options().section,    &vertex_repulsion_options().section};
-}
-
 }  // namespace selvedge

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "learned/losses/objective.hpp"
 #include "pipeline/config/options.hpp"
 
@@ -16,8 +14,7 @@ Option<Struct> ramp(std::string name, LossRamp Struct::*member, std::string abou
   return table::renamed(table::section(member, ramp_options(), std::move(about)), std::move(name));
 }
 
-// The table of the losses and their weights, and all its sections, itself first.
+// The table of the losses and their weights.
 const Options<LossOptions>& objective_options();
-std::vector<const Section*> objective_sections();
 
 }  // namespace selvedge

@@ -8,6 +8,7 @@
 #include "learned/losses/loss_terms.hpp"
 #include "learned/network/architecture.hpp"
 #include "learned/network/architecture_limits.hpp"
+#include "pipeline/config/section_tree.hpp"
 #include "pipeline/garments/outfit.hpp"
 #include "pipeline/motions/clip_split.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
@@ -334,27 +335,7 @@ TrainingOptions with_absolute_paths(TrainingOptions options) {
 }
 
 std::string training_reference() {
-  const Section& body = table::body_section();
-  const auto joints = std::ranges::find(body.keys, "joints", &Key::name);
-  std::vector<const Section*> all{&training_options().section,
-                                  &sample_options().section,
-                                  &training_material_options().section,
-                                  &force_sampling_options().section,
-                                  &person_section(),
-                                  &person_clip_section(),
-                                  &wear_section(),
-                                  &body,
-                                  joints->section,
-                                  &garment_options().section,
-                                  &split_options().section,
-                                  &pool_options().section,
-                                  &training_contact_options().section,
-                                  &space_options().section};
-  for (const Section* section : objective_sections()) all.push_back(section);
-  for (const Section* section : {&optimiser_options().section, &watch_options().section, &ramp_options().section})
-    all.push_back(section);
-  std::string page;
-  for (const Section* section : all) page += section_chapter(*section);
+  std::string page = chapters_below(training_options().section);
   page +=
       "### Terms of the objective\n\nEach has two columns in `steps.csv`: its value [J], and `_share`, its share of "
       "the "
