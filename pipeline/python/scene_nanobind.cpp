@@ -38,7 +38,7 @@ class World {
 
   World(const std::filesystem::path& file, const std::vector<std::string>& overrides, const nb::dict& kinds)
       : setup_(read_setup(file, overrides, kinds_with(kinds, held_))) {
-    warn(warnings_of(setup_));
+    warn(scene_warnings(setup_));
     state_ = prepare(setup_)->state;
     stepper_ = make_stepper(setup_);
   }

@@ -95,7 +95,7 @@ std::unique_ptr<Stepper> make_stepper(const Setup& setup) {
   return make_following_stepper(setup.scene, setup.followers, std::move(stepper));
 }
 
-std::vector<std::string> warnings_of(const Setup& setup) {
+std::vector<std::string> scene_warnings(const Setup& setup) {
   std::vector<std::string> warnings = setup.warnings;
   if (setup.kind.network == NetworkUse::none) return warnings;
   const Vec3 gravity = setup.drive_at(0).acceleration;
@@ -105,7 +105,7 @@ std::vector<std::string> warnings_of(const Setup& setup) {
 }
 
 std::vector<std::string> run_warnings(const Setup& setup, const StepperTraits& traits) {
-  std::vector<std::string> warnings = warnings_of(setup);
+  std::vector<std::string> warnings = scene_warnings(setup);
   for (const PlanLine& line : ignored_lines(setup.scene, traits)) warnings.push_back(line.feature + ": " + line.why);
   return warnings;
 }

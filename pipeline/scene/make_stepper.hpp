@@ -24,7 +24,7 @@ void check_accepted(const Setup&, const StepperTraits&);
 std::unique_ptr<Stepper> make_stepper(const Setup&);
 
 // The setup's warnings and those of its network (network_warnings.hpp). Throws what network_of does.
-std::vector<std::string> warnings_of(const Setup&);
+std::vector<std::string> scene_warnings(const Setup&);
 
 // The same, and a sentence for each force of the scene that the stepper ignores.
 std::vector<std::string> run_warnings(const Setup&, const StepperTraits&);

@@ -129,7 +129,7 @@ std::string plan_json(const Setup& setup) {
                                        {"triangles", setup.scene.surface.triangles.rows()},
                                        {"self", setup.scene.contact.self ? "audited" : "not audited"},
                                        {"plan", lines},
-                                       {"warnings", warnings_of(setup)}};
+                                       {"warnings", scene_warnings(setup)}};
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -143,7 +143,7 @@ std::string plan_text(const Setup& setup) {
                   setup.run.fps, setup.run.stepper);
   for (const PlanLine& line : lines)
     text += fmt::format("  {:<3}  {:<{}}  {}\n", line.in ? "in" : "out", line.feature, width, line.why);
-  for (const std::string& warning : warnings_of(setup)) text += "  warning: " + warning + "\n";
+  for (const std::string& warning : scene_warnings(setup)) text += "  warning: " + warning + "\n";
   return text;
 }
 

@@ -207,7 +207,7 @@ TEST_CASE("known steppers: a run says what of the scene its stepper ignores, and
     RunRequest request;
     request.out = folder.path / "out";
     const RunSummary summary = run_scene(setup, *prepare(setup), *stepper, request);
-    CHECK(summary.warnings.size() == warnings_of(setup).size() + ignored.size());
+    CHECK(summary.warnings.size() == scene_warnings(setup).size() + ignored.size());
     CHECK(std::ranges::any_of(summary.left_out, [](const PlanLine& l) { return l.feature == "springs"; }) == none);
     const TrajectoryReader reader(request.out / "run.h5");
     for (int frame = 0; frame < reader.frame_count(); ++frame) {

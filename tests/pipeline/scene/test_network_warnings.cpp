@@ -30,7 +30,7 @@ std::vector<std::string> warnings_of(const std::string& preset, const std::strin
   if (spoiled)
     weight_arrays(network.architecture, network.weights)[0].data[0] = std::numeric_limits<float>::quiet_NaN();
   write_weight_file(folder.path / "w.h5", {network.architecture, network.weights, "", {}, ""});
-  return warnings_of(
+  return scene_warnings(
       read_setup(fake::write(folder, "scene.yaml",
                              "cloths: [{rectangle: {size: [1, 1], resolution: 2}}]\ngravity: " + gravity +
                                  "\nrun: {stepper: " + stepper + ", learned: {weights: w.h5}}\n")));
