@@ -1,7 +1,6 @@
 #include "physics/steppers/carried_stepper.hpp"
 
 #include "collision/geometry/floating_point.hpp"
-#include "collision/geometry/stopwatch.hpp"
 #include "physics/frame/bounded_step.hpp"
 #include "physics/scene/scene_numbers.hpp"
 #include "physics/steppers/contact_stage.hpp"

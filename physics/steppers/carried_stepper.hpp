@@ -20,7 +20,7 @@ Points carried_guess(const Scene&, const State& from, const Drive&, double dt, c
 std::vector<MemoryBlock> carried_memory(const State& from, const Drive&, const Points& x);
 
 // The baseline that a learned stepper has to beat: the carried guess, then Bridson's response to contact. It solves
-// nothing and ignores every elastic force. Keeps a reference to the scene.
+// nothing and ignores every elastic force; dressed cloth has no gravity either. Keeps a reference to the scene.
 std::unique_ptr<Stepper> make_carried_stepper(const Scene&, const CarriedOptions& = {});
 
 }  // namespace selvedge

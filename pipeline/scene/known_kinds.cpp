@@ -24,7 +24,7 @@ StepperKind conventional_kind() {
 
 std::vector<PlanLine> carried_lines(const Setup&) {
   return {{"carried guess", true, "cloth goes along with its skinned target, and on by a part of its last motion"},
-          {"solve", false, "left out by the stepper carried, and with it every elastic force"}};
+          {"solve", false, "left out by the stepper carried, with every elastic force, and gravity on dressed cloth"}};
 }
 
 StepperKind carried_kind() {
@@ -65,9 +65,9 @@ LearnedOptions learned_options(const Setup& setup) {
 }
 
 MakeStepper learned_maker(const Setup& setup) {
-  network_of(setup);
-  return [kept = setup.network, options = learned_options(setup)](const Scene& scene) {
-    return make_learned_stepper(scene, (*kept)->architecture, (*kept)->weights, options);
+  const std::shared_ptr<const WeightFile> network(setup.networks, &network_of(setup));
+  return [network, options = learned_options(setup)](const Scene& scene) {
+    return make_learned_stepper(scene, network->architecture, network->weights, options);
   };
 }
 

@@ -15,15 +15,15 @@
 namespace selvedge {
 
 const WeightFile& network_of(const Setup& setup) {
-  std::optional<WeightFile>& network = *setup.network;
-  if (network) return *network;
   const std::string& weights = setup.run.learned.weights;
   if (weights.empty())
     throw Error("the stepper `" + setup.kind.name + "` needs a weight file",
                 setup.file.string() + ": run.learned.weights",
                 "give this key or --weights; `selvedge weights import` makes such a file of a published checkpoint");
-  network = read_weight_file(setup.file.parent_path() / weights);  // an absolute path stays as it is
-  return *network;
+  const std::filesystem::path file = setup.file.parent_path() / weights;  // an absolute path stays as it is
+  const auto known = setup.networks->find(file);
+  return known != setup.networks->end() ? known->second
+                                        : setup.networks->emplace(file, read_weight_file(file)).first->second;
 }
 
 std::shared_ptr<const NeighbourScale> read_refu_weights(const Setup& setup) {

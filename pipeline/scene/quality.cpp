@@ -18,7 +18,7 @@ struct QualityLevel {
   std::vector<QualityValue> values;
 };
 
-// Measured in docs/benchmarks.md.
+// Measured in docs/benchmarks.md, but for draft.
 const std::vector<QualityLevel>& levels() {
   static const std::vector<QualityLevel> all{{"draft",
                                               "",
@@ -48,9 +48,15 @@ bool applies(const QualityValue& value, const Config& scene) {
   return value.key != "solver.integrator" || scene["run"]["stepper"].text() != "icm";
 }
 
-Config& entry_of(Config& scene, const std::string& key) {
+Config& entry_of(Config& section, const std::string& key) {
   const std::size_t dot = key.find('.');
-  return dot == std::string::npos ? scene[key] : entry_of(scene[key.substr(0, dot)], key.substr(dot + 1));
+  return dot == std::string::npos ? section[key] : entry_of(section[key.substr(0, dot)], key.substr(dot + 1));
+}
+
+// Sections of run and solver on the way to a key are read where they are given.
+void give_sections(Config& scene, const std::string& key) {
+  for (std::size_t dot = key.find('.', key.find('.') + 1); dot != std::string::npos; dot = key.find('.', dot + 1))
+    entry_of(scene, key.substr(0, dot)).given = true;
 }
 
 }  // namespace
@@ -69,6 +75,7 @@ std::string set_quality(Config& scene) {
     Config& entry = entry_of(scene, value.key);
     const bool own = entry.given;
     if (!own) {
+      give_sections(scene, value.key);
       entry.given = true;
       entry.where = scene["run"]["quality"].where;
       entry.words = value.word.empty() ? std::vector<std::string>{} : std::vector{value.word};

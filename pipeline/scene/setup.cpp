@@ -333,7 +333,7 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
   setup.kind = *kinds.find(setup.run.stepper);
   if (setup.kind.options) setup.kind_options = config["run"][setup.kind.name];
   if (setup.kind.check) setup.kind.check(config);
-  setup.network = std::make_shared<std::optional<WeightFile>>();
+  setup.networks = std::make_shared<std::map<std::filesystem::path, WeightFile>>();
   const SceneParts parts = read_parts(config, folder, setup.run.fps);
   const double begin_time = parts.begin_frame / setup.run.fps;
   JoinedScene joined = join_scene(config, parts, begin_time);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -45,8 +46,8 @@ struct Setup {
   std::vector<std::string> short_form;               // overrides that make a shorter run of the scene
   StepperKind kind;                                  // of the stepper
   Config kind_options;                               // what the file gives for it
-  std::shared_ptr<std::optional<WeightFile>> network;  // read by network_of (make_stepper.hpp); copies share it
-  std::shared_ptr<const SceneTable> table;             // by which the file was read
+  std::shared_ptr<std::map<std::filesystem::path, WeightFile>> networks;  // that network_of has read; copies share it
+  std::shared_ptr<const SceneTable> table;                                // by which the file was read
   std::vector<std::string> warnings;  // named and counted: degenerate triangles left out, isolated vertices, ...
 };
 

@@ -55,7 +55,7 @@ TEST_CASE("Step options: what a scene file gives reaches the steppers", "[setup]
   CHECK(set.run.icm.push_softness == 0.03);
   CHECK(set.run.icm.substep.max_passes == 4);
   CHECK_THROWS_WITH(read(folder, {"solver.substep.max_passs=4"}), Contains("max_passes"));
-  CHECK_THROWS_WITH(read(folder, {"solver.substep.max_passes=0"}), Contains("max_passes"));
+  CHECK_THROWS_WITH(read(folder, {"solver.substep.max_passes=-1"}), Contains("max_passes"));
 }
 
 TEST_CASE("Step options: defaults written out give the same bits, other values another step", "[setup]") {
