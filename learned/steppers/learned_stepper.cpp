@@ -15,6 +15,7 @@
 #include "learned/steppers/learned_state.hpp"
 #include "learned/steppers/shown_force.hpp"
 #include "physics/frame/bounded_step.hpp"
+#include "physics/scene/joint_lists.hpp"
 #include "physics/solve/energy_balance.hpp"
 
 namespace selvedge {
@@ -167,7 +168,8 @@ StepperTraits learned_traits(const Architecture& architecture) {
                        .past_frames = 1,
                        .only_dt = learned_dt,
                        .may_leave_out_cloths = false,
-                       .ignores = {"springs", "stiffness damping", "mass damping"}};
+                       .ignores = joint_names()};
+  for (const char* force : {"stiffness damping", "mass damping"}) traits.ignores.push_back(force);
   if (!architecture.features.acceleration_inputs) traits.ignores.push_back("wind");
   return traits;
 }

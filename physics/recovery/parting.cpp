@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "collision/untangle/find_exemption.hpp"
-#include "physics/recovery/carrying.hpp"
+#include "physics/recovery/drawn.hpp"
 #include "physics/recovery/pierced.hpp"
 #include "physics/recovery/put_on.hpp"
 
@@ -48,12 +48,12 @@ bool part_the_rest(const ContactWorld& world, const Eigen::VectorXd& inverse_mas
   if (!tangled.empty() && !parting.left.off.empty())
     tangled = either(std::move(tangled), crossed_as_worn(world, nodes, *where.worn));
   const double reach = options.speed * where.h;
-  Recovery recovery = recover(world, inverse_mass, reach, parting.left, parting.carried, nodes, &budget, options);
+  Recovery recovery = recover(world, inverse_mass, reach, parting.left, parting.drawn, nodes, &budget, options);
   parting.left = std::move(recovery.left);
   parting.gained = std::move(recovery.gained);
   if (!parting.left.off.empty()) {
     parting.waits = without(worn_ones(std::move(recovery.waits), *where.worn), tangled);
-    parting.carried = without(std::move(parting.carried), tangled);
+    parting.drawn = without(std::move(parting.drawn), tangled);
   }
   return recovery.stuck;
 }
@@ -82,13 +82,13 @@ Parting part_at_start(const ContactWorld& world, SelfCrossings& self_crossings, 
     pierced.clear();
   }
   // 4. Without a place, draw it to its skinned targets; likewise cloth where a body crosses itself.
-  parting.carried = either(carried_vertices(world, parting.left, worn, nodes, edge_length), pierced);
+  parting.drawn = either(drawn_vertices(world, parting.left, worn, nodes, edge_length), pierced);
   // 5. Part other tangled cloth.
   const bool stuck = parting.left.cloth() && !opens_itself &&
                      part_the_rest(world, inverse_mass, where, options, nodes, budget, parting);
   // 6. If there is no way out, draw sunken cloth too.
   if (stuck && !placed) pierced = either(std::move(pierced), sunken);
-  parting.carried = either(std::move(parting.carried), pierced);
+  parting.drawn = either(std::move(parting.drawn), pierced);
   parting.left.body = either(std::move(parting.left.body), pierced);
   return parting;
 }

@@ -11,7 +11,7 @@ namespace selvedge {
 struct Parting {
   Exemption left;                  // what is still tangled or switched off: contact leaves it alone
   std::vector<Separation> gained;  // separations that the solve must keep
-  std::vector<char> carried;       // 1 for vertices that are drawn to their skinned targets (carrying.hpp), or empty
+  std::vector<char> drawn;         // 1 for vertices that are drawn to their skinned targets (drawn.hpp), or empty
   std::vector<char> waits;  // 1 for tangled vertices where an obstacle crosses itself, drawn more stiffly, or empty
 };
 

@@ -9,7 +9,7 @@ namespace selvedge {
 
 // Cloth that a limb has gone through, as happens where a body passed through itself, would hang on the limb for good:
 // it could leave only over the limb's end. Once the body is free of itself again, all such cloth is put on
-// (put_on.hpp), or drawn to its skinned targets through the body (carrying.hpp).
+// (put_on.hpp), or drawn to its skinned targets through the body (drawn.hpp).
 
 // 1 for each vertex of a pierced component of the cloth; empty if there is none. A component is pierced if a contour
 // with an obstacle cuts a patch out of it that lies inside the obstacle as a whole, and goes round a part of the

@@ -8,7 +8,7 @@
 
 namespace selvedge {
 
-// Springs (carrying.hpp) draw cloth to within a millimetre of its skinned targets: too far where it fits closer to the
+// Springs (drawn.hpp) draw cloth to within a millimetre of its skinned targets: too far where it fits closer to the
 // body than that. So cloth that is near its targets is set to them.
 
 // Where bodies and obstacles would take the cloth in a step.

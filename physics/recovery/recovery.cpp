@@ -26,8 +26,8 @@ std::vector<char> tangled_at(const ContactWorld& world, const Points& nodes, con
 // 1 for tangled cloth that is connected to drawn cloth, or to a crossing with a switched-off part of a body; empty if
 // there is none.
 std::vector<char> waiting(const ContactWorld& world, const Points& nodes, const std::vector<char>& tangled,
-                          const std::vector<char>& off, const std::vector<char>& carried) {
-  if ((off.empty() && carried.empty()) || tangled.empty()) return {};
+                          const std::vector<char>& off, const std::vector<char>& drawn) {
+  if ((off.empty() && drawn.empty()) || tangled.empty()) return {};
   const WorldSheets sheets(world, nodes);
   std::vector<char> waits(tangled.size(), 0);
   std::vector<int> front;
@@ -36,8 +36,8 @@ std::vector<char> waiting(const ContactWorld& world, const Points& nodes, const 
     waits[v] = 1;
     front.push_back(v);
   };
-  for (int v = 0; v < static_cast<int>(carried.size()); ++v)
-    if (carried[v]) add(v);
+  for (int v = 0; v < static_cast<int>(drawn.size()); ++v)
+    if (drawn[v]) add(v);
   for (const Segment& segment : find_segments(sheets.views).segments) {
     if (off.empty()) break;
     if ((segment.sheet[0] == 0) == (segment.sheet[1] == 0)) continue;
@@ -143,10 +143,10 @@ std::optional<Exemption> hopeless(const ContactWorld& world, const Points& nodes
 }
 
 Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass, double reach, const Exemption& before,
-                 const std::vector<char>& carried, Points& nodes, UntanglingBudget* budget,
+                 const std::vector<char>& drawn, Points& nodes, UntanglingBudget* budget,
                  const RecoveryOptions& limits) {
   const int n = world.cloth->vertex_count;
-  const std::vector<char> waits = waiting(world, nodes, before.body, before.off, carried);
+  const std::vector<char> waits = waiting(world, nodes, before.body, before.off, drawn);
   Recovery recovery{before, {}, false, waits};
   if (!before.cloth() || none_is_left(before, waits)) return recovery;
   UntanglingBudget ample;
@@ -156,7 +156,7 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
   for (int v = 0; v < n; ++v) options.held.push_back(inverse_mass[v] == 0);
   if (std::ranges::find(waits, 1) != waits.end()) {
     options.iterations = limits.waiting_passes;
-    options.let_through = either(waits, carried);
+    options.let_through = either(waits, drawn);
     options.second_rule = false;
   }
   options.iterations = iterations_for(world, nodes, reach, before, options, limits);

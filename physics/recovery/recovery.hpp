@@ -19,8 +19,8 @@ std::optional<Exemption> hopeless(const ContactWorld&, const Points& nodes, cons
 // cloth gets no linear momentum: the two sides move against each other. `left` is what is still tangled then, for
 // contact to leave alone. `gained` are separations that the solve must keep: how far the two sides, or a vertex and an
 // obstacle, have come apart. Otherwise cloth would spring back and untangling would get nowhere.
-// These wait, that is, they are parted from cloth but not from obstacles: cloth that is drawn (`carried`, see
-// carrying.hpp; or empty), tangled cloth connected to it, and tangled cloth at switched-off parts of a body. The cloth
+// These wait, that is, they are parted from cloth but not from obstacles: cloth that is drawn (`drawn`, see
+// drawn.hpp; or empty), tangled cloth connected to it, and tangled cloth at switched-off parts of a body. The cloth
 // does not cross itself in more pairs than before. `before`: what is tangled (find_exemption) and switched off. Without
 // a budget an ample one is used.
 struct Recovery {
@@ -30,7 +30,7 @@ struct Recovery {
   std::vector<char> waits;  // 1 for vertices that wait, or empty
 };
 Recovery recover(const ContactWorld&, const Eigen::VectorXd& inverse_mass, double reach, const Exemption& before,
-                 const std::vector<char>& carried, Points& nodes, UntanglingBudget* = nullptr,
+                 const std::vector<char>& drawn, Points& nodes, UntanglingBudget* = nullptr,
                  const RecoveryOptions& = {});
 
 // Finds obstacles that cross themselves at a step's start or end, and the cloth that is caught there (caught.hpp).

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <string>
+#include <vector>
 
 #include "physics/scene/scene.hpp"
 
@@ -19,6 +21,13 @@ struct JointKind {
 template <class Visit>
 void for_each_joint_list(const Visit& visit) {
   visit(&Scene::springs, JointKind{"springs", "spring", "pair of vertices joined", "pairs of vertices joined"});
+}
+
+// The names of all kinds, for traits of a stepper that models no joints.
+inline std::vector<std::string> joint_names() {
+  std::vector<std::string> names;
+  for_each_joint_list([&](auto, const JointKind& kind) { names.push_back(kind.name); });
+  return names;
 }
 
 inline std::array<int, 2> nodes_of(const Spring& spring) { return {spring.a, spring.b}; }

@@ -2,6 +2,7 @@
 
 #include "collision/geometry/floating_point.hpp"
 #include "physics/frame/bounded_step.hpp"
+#include "physics/scene/joint_lists.hpp"
 #include "physics/scene/scene_numbers.hpp"
 #include "physics/steppers/contact_stage.hpp"
 #include "physics/steppers/finish_step.hpp"
@@ -24,7 +25,9 @@ Points targets(const Drive& drive, const Points& x) {
 class CarriedStepper final : public Stepper {
  public:
   CarriedStepper(const Scene& scene, const CarriedOptions& options)
-      : scene_(scene), options_(options), contact_(scene) {}
+      : scene_(scene), options_(options), contact_(scene) {
+    for (const std::string& joints : joint_names()) traits_.ignores.push_back(joints);
+  }
 
   const StepperTraits& traits() const override { return traits_; }
   StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override {
@@ -38,10 +41,10 @@ class CarriedStepper final : public Stepper {
   const Scene& scene_;
   CarriedOptions options_;
   ContactStage contact_;
-  StepperTraits traits_{.name = "carried",
-                        .past_frames = 1,
-                        .ignores = {"membrane", "bending (curvature)", "bending (hinge)", "stiffness damping",
-                                    "mass damping", "wind", "springs"}};
+  StepperTraits traits_{
+      .name = "carried",
+      .past_frames = 1,
+      .ignores = {"membrane", "bending (curvature)", "bending (hinge)", "stiffness damping", "mass damping", "wind"}};
 };
 
 StepReport CarriedStepper::take_step(const State& from, const Drive& drive, double dt, State& to,

@@ -6,7 +6,7 @@
 #include "collision/geometry/stopwatch.hpp"
 #include "collision/untangle/caught.hpp"
 #include "physics/frame/bounded_step.hpp"
-#include "physics/recovery/carrying.hpp"
+#include "physics/recovery/drawn.hpp"
 #include "physics/recovery/parting.hpp"
 #include "physics/scene/features.hpp"
 #include "physics/solve/contact_terms.hpp"
@@ -62,9 +62,9 @@ AddedTerm RecoveringStepper::added_term(const Parting& parting, const Drive& dri
   const auto draw = [&](const std::vector<char>& marked, double stiffness) {
     if (marked.empty()) return;
     added = sum_of(std::move(added),
-                   carrying_term(marked, masses_, x0, drive.worn, options_.carrying_speed * h, h, stiffness));
+                   drawing_term(marked, masses_, x0, drive.worn, options_.carrying_speed * h, h, stiffness));
   };
-  draw(parting.carried, parting.left.off.empty() ? options_.carrying_stiffness : 1);
+  draw(parting.drawn, parting.left.off.empty() ? options_.carrying_stiffness : 1);
   draw(parting.waits, options_.crossing_stiffness);
   return added;
 }
@@ -99,7 +99,7 @@ StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive,
     return report;
   };
   if (stopped(extras.stop)) return add_parting(stopped_report(traits().name));
-  if (!parting.left.any() && parting.gained.empty() && parting.carried.empty() && nodes.topRows(v.rows()) == from.x)
+  if (!parting.left.any() && parting.gained.empty() && parting.drawn.empty() && nodes.topRows(v.rows()) == from.x)
     return add_parting(inner_->step(from, drive, dt, to, extras));
   State start = from;
   start.x = nodes.topRows(v.rows());
@@ -108,7 +108,7 @@ StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive,
   const Exemption left_alone = extras.left_alone ? both_of(parting.left, *extras.left_alone) : parting.left;
   StepExtras all = extras;
   all.left_alone = &left_alone;
-  if (!parting.gained.empty() || !parting.carried.empty() || !parting.waits.empty())
+  if (!parting.gained.empty() || !parting.drawn.empty() || !parting.waits.empty())
     all.added = [&](const Points& x0, double h) {
       AddedTerm own = added_term(parting, drive, x0, h);
       return extras.added ? sum_of(extras.added(x0, h), std::move(own)) : own;
@@ -116,8 +116,8 @@ StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive,
   const StepReport report = add_parting(inner_->step(start, drive, dt, to, all));
   // Cloth that was drawn stiffly loses its velocity; otherwise it would overshoot its targets.
   if (report.status == StepStatus::accepted && parting.left.off.empty())
-    for (std::size_t k = 0; k < parting.carried.size(); ++k)
-      if (parting.carried[k]) to.v.row(static_cast<Eigen::Index>(k)).setZero();
+    for (std::size_t k = 0; k < parting.drawn.size(); ++k)
+      if (parting.drawn[k]) to.v.row(static_cast<Eigen::Index>(k)).setZero();
   return report;
 }
 

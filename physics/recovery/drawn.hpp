@@ -12,13 +12,13 @@ namespace selvedge {
 // target (Drive::worn), which moves with the body. Contact with faces that are not switched off stays on.
 
 // 1 for each worn vertex of the cloth that is nearer than `reach` [m] to a switched-off node; empty if there is none.
-std::vector<char> carried_vertices(const ContactWorld&, const Exemption&, const Points& worn, const Points& nodes,
-                                   double reach);
+std::vector<char> drawn_vertices(const ContactWorld&, const Exemption&, const Points& worn, const Points& nodes,
+                                 double reach);
 
-// Springs that draw the carried vertices to their skinned targets, or to points `farthest` [m] from x0 toward them.
+// Springs that draw the drawn vertices to their skinned targets, or to points `farthest` [m] from x0 toward them.
 // Their stiffness is firmness * mass / h^2, with the step h [s].
-AddedTerm carrying_term(const std::vector<char>& carried, const Eigen::VectorXd& masses, const Points& x0,
-                        const Points& worn, double farthest, double h, double firmness = 1);
+AddedTerm drawing_term(const std::vector<char>& drawn, const Eigen::VectorXd& masses, const Points& x0,
+                       const Points& worn, double farthest, double h, double firmness = 1);
 
 // The sum of two terms, either of which may be empty.
 AddedTerm sum_of(AddedTerm, AddedTerm);

@@ -1,4 +1,4 @@
-#include "physics/recovery/carrying.hpp"
+#include "physics/recovery/drawn.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -10,7 +10,7 @@ namespace selvedge {
 namespace {
 
 void add_near(const ContactWorld& world, const std::vector<char>& switched_off, const Points& nodes, double reach,
-              std::vector<char>& carried) {
+              std::vector<char>& drawn) {
   std::vector<int> off;
   for (int node = world.cloth->vertex_count; node < world.node_count; ++node)
     if (switched_off[node]) off.push_back(node);
@@ -18,33 +18,33 @@ void add_near(const ContactWorld& world, const std::vector<char>& switched_off, 
   for (int v = 0; v < world.cloth->vertex_count; ++v) {
     if (!nodes.row(v).allFinite()) continue;
     grid.for_each_near(row(nodes, v), reach, [&](int i) {
-      if ((nodes.row(off[static_cast<std::size_t>(i)]) - nodes.row(v)).norm() < reach) carried[v] = 1;
+      if ((nodes.row(off[static_cast<std::size_t>(i)]) - nodes.row(v)).norm() < reach) drawn[v] = 1;
     });
   }
 }
 
 }  // namespace
 
-std::vector<char> carried_vertices(const ContactWorld& world, const Exemption& exemption, const Points& worn,
-                                   const Points& nodes, double reach) {
+std::vector<char> drawn_vertices(const ContactWorld& world, const Exemption& exemption, const Points& worn,
+                                 const Points& nodes, double reach) {
   if (worn.rows() == 0 || exemption.off.empty()) return {};
-  std::vector<char> carried(static_cast<std::size_t>(worn.rows()), 0);
-  add_near(world, exemption.off, nodes, reach, carried);
-  for (std::size_t v = 0; v < carried.size(); ++v)
-    carried[v] = carried[v] && worn.row(static_cast<Eigen::Index>(v)).allFinite();
-  return std::ranges::find(carried, 1) == carried.end() ? std::vector<char>() : carried;
+  std::vector<char> drawn(static_cast<std::size_t>(worn.rows()), 0);
+  add_near(world, exemption.off, nodes, reach, drawn);
+  for (std::size_t v = 0; v < drawn.size(); ++v)
+    drawn[v] = drawn[v] && worn.row(static_cast<Eigen::Index>(v)).allFinite();
+  return std::ranges::find(drawn, 1) == drawn.end() ? std::vector<char>() : drawn;
 }
 
-AddedTerm carrying_term(const std::vector<char>& carried, const Eigen::VectorXd& masses, const Points& x0,
-                        const Points& worn, double farthest, double h, double firmness) {
+AddedTerm drawing_term(const std::vector<char>& drawn, const Eigen::VectorXd& masses, const Points& x0,
+                       const Points& worn, double farthest, double h, double firmness) {
   struct Pull {
     int vertex;
     Vec3 target;
     double stiffness;  // [N/m]
   };
   const auto pulls = std::make_shared<std::vector<Pull>>();
-  for (int v = 0; v < static_cast<int>(carried.size()); ++v) {
-    if (!carried[v]) continue;
+  for (int v = 0; v < static_cast<int>(drawn.size()); ++v) {
+    if (!drawn[v]) continue;
     const Vec3 whole = row(worn, v) - row(x0, v);
     pulls->push_back({v, row(x0, v) + std::min(1.0, farthest / whole.norm()) * whole, firmness * masses[v] / (h * h)});
   }

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <limits>
 
-#include "physics/recovery/carrying.hpp"
+#include "physics/recovery/drawn.hpp"
 #include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
-namespace selvedge::test_carrying {
+namespace selvedge::test_drawn {
 
 using testing::sheet;
 
@@ -32,44 +32,44 @@ struct OverPlate {
 
 }  // namespace
 
-TEST_CASE("carrying: what is near a part that is switched off, and worn, is carried", "[carrying]") {
+TEST_CASE("drawn: what is near a part that is switched off, and worn, is drawn", "[drawn]") {
   OverPlate c;
   Points worn = c.w.state.x;
   const int unworn = 60, undefined = 61;
   c.nodes(undefined, 1) = std::numeric_limits<double>::quiet_NaN();
   worn.row(unworn).setConstant(std::numeric_limits<double>::quiet_NaN());
   const double reach = 0.03;
-  const std::vector<char> carried = carried_vertices(c.world, c.exemption, worn, c.nodes, reach);
-  REQUIRE(carried.size() == static_cast<std::size_t>(c.w.state.x.rows()));
+  const std::vector<char> drawn = drawn_vertices(c.world, c.exemption, worn, c.nodes, reach);
+  REQUIRE(drawn.size() == static_cast<std::size_t>(c.w.state.x.rows()));
   int count = 0;
   for (int v = 0; v < c.w.state.x.rows(); ++v) {
     double nearest = 1;
     for (int node = c.w.scene.surface.vertex_count; node < c.world.node_count; ++node)
       if (c.exemption.off[node]) nearest = std::min(nearest, (c.nodes.row(v) - c.nodes.row(node)).norm());
-    CHECK((carried[v] != 0) == (nearest < reach && v != unworn && v != undefined));
-    count += carried[v];
+    CHECK((drawn[v] != 0) == (nearest < reach && v != unworn && v != undefined));
+    count += drawn[v];
   }
   CHECK(count > 5);
-  CHECK(carried_vertices(c.world, c.exemption, Points(), c.nodes, reach).empty());
-  CHECK(carried_vertices(c.world, {}, worn, c.nodes, reach).empty());
-  CHECK(carried_vertices(c.world, c.exemption, worn, c.nodes, 1e-3).empty());
+  CHECK(drawn_vertices(c.world, c.exemption, Points(), c.nodes, reach).empty());
+  CHECK(drawn_vertices(c.world, {}, worn, c.nodes, reach).empty());
+  CHECK(drawn_vertices(c.world, c.exemption, worn, c.nodes, 1e-3).empty());
 }
 
-TEST_CASE("carrying: the springs' derivatives are those of their value, and where they pull to is worn", "[carrying]") {
+TEST_CASE("drawn: the springs' derivatives are those of their value, and where they pull to is worn", "[drawn]") {
   const OverPlate c;
   const Points& x0 = c.w.state.x;
   const auto n = static_cast<std::size_t>(x0.rows());
   Points worn = x0;
   worn.rowwise() += Eigen::RowVector3d(0.02, 0.01, -0.03);
-  std::vector<char> carried(n, 0);
-  carried[7] = carried[23] = 1;
+  std::vector<char> drawn(n, 0);
+  drawn[7] = drawn[23] = 1;
   const Eigen::VectorXd masses = Eigen::VectorXd::Constant(x0.rows(), 0.01);
   const double h = 0.01;
-  const AddedTerm whole = carrying_term(carried, masses, x0, worn, 1, h);
+  const AddedTerm whole = drawing_term(drawn, masses, x0, worn, 1, h);
   CHECK(whole.value(worn) == Approx(0).margin(1e-20));
   CHECK(whole.value(x0) == Approx(2 * 0.5 * 0.01 / (h * h) * (0.0004 + 0.0001 + 0.0009)));
   // Part of the way, and both terms at once.
-  const AddedTerm term = sum_of(carrying_term(carried, masses, x0, worn, 0.005, h), whole);
+  const AddedTerm term = sum_of(drawing_term(drawn, masses, x0, worn, 0.005, h), whole);
   Points x = x0;
   x.row(7) += Eigen::RowVector3d(0.003, -0.002, 0.001);
   Points gradient = Points::Zero(x.rows(), 3);
@@ -94,8 +94,8 @@ TEST_CASE("carrying: the springs' derivatives are those of their value, and wher
 }
 
 // Decision 32: what comes from outside meets all of a body.
-TEST_CASE("carrying: clean cloth over a body that keeps its shape is not drawn, where that crosses itself either",
-          "[carrying]") {
+TEST_CASE("drawn: clean cloth over a body that keeps its shape is not drawn, where that crosses itself either",
+          "[drawn]") {
   // Two plates that cross at x = 0, and move, under a sheet that touches neither.
   const auto way_of_middle = [](bool worn) {
     testing::World w = testing::make_world(sheet(12, 0.3, 0.012));
@@ -119,4 +119,4 @@ TEST_CASE("carrying: clean cloth over a body that keeps its shape is not drawn, 
   CHECK(std::abs(way_of_middle(false)) < 1e-6);
 }
 
-}  // namespace selvedge::test_carrying
+}  // namespace selvedge::test_drawn
