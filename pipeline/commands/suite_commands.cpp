@@ -12,6 +12,15 @@
 #include "pipeline/validate/validate.hpp"
 
 namespace selvedge {
+namespace {
+
+// The end of a suite that may have been stopped: it passes if it finished and all its rows passed.
+int end_suite(bool json, const std::string& table, const std::string& object, bool rows_passed) {
+  const bool finished = !InterruptWatch::interrupted();
+  return end_command(json, table + stopped_text(finished), object, finished && rows_passed);
+}
+
+}  // namespace
 
 RunCommand bench_command(CLI::App& command) {
   const auto request = std::make_shared<BenchRequest>();
@@ -46,9 +55,7 @@ RunCommand stress_command(CLI::App& command) {
     warn_of_training();
     const InterruptWatch watch;
     const std::vector<StressRow> rows = stress(followed(*request));
-    const bool finished = !InterruptWatch::interrupted();
-    return end_command(json, stress_table(rows) + stopped_text(finished), stress_json(rows),
-                       finished && std::ranges::all_of(rows, &StressRow::passed));
+    return end_suite(json, stress_table(rows), stress_json(rows), std::ranges::all_of(rows, &StressRow::passed));
   };
 }
 
@@ -64,9 +71,7 @@ RunCommand wardrobe_command(CLI::App& command) {
     warn_of_training();
     const InterruptWatch watch;
     const std::vector<WardrobeRow> rows = wardrobe(followed(*request));
-    const bool finished = !InterruptWatch::interrupted();
-    return end_command(json, wardrobe_table(rows) + stopped_text(finished), wardrobe_json(rows),
-                       finished && std::ranges::all_of(rows, &WardrobeRow::passed));
+    return end_suite(json, wardrobe_table(rows), wardrobe_json(rows), std::ranges::all_of(rows, &WardrobeRow::passed));
   };
 }
 

@@ -48,7 +48,7 @@ class Kinds {
   std::vector<StepperKind> kinds_;
 };
 
-// conventional, carried, icm, learned, hybrid.
+// The kinds of the program (known_kinds.cpp).
 Kinds known_kinds();
 
 }  // namespace selvedge
