@@ -43,9 +43,10 @@ class CellGrid {
         for (int p = begin_[cell(i, j, from[2])]; p < begin_[cell(i, j, to[2]) + 1]; ++p) visit(p);
   }
 
-  // Visits the cubes within `rings` of a cube along each axis, with the cube itself, in ascending order.
+  // Visits the cubes within `rings` of a cube along each axis, with the cube itself, in ascending order: the first and
+  // the last cube of each row.
   template <class Visit>
-  void for_each_cube_around(int cube, int rings, Visit visit) const {
+  void for_each_row_around(int cube, int rings, Visit visit) const {
     const std::array<int, 3> at{cube / size_[2] / size_[1], cube / size_[2] % size_[1], cube % size_[2]};
     std::array<int, 3> from, to;
     for (int k = 0; k < 3; ++k) {
@@ -53,8 +54,7 @@ class CellGrid {
       to[k] = std::min(size_[k] - 1, at[k] + rings);
     }
     for (int i = from[0]; i <= to[0]; ++i)
-      for (int j = from[1]; j <= to[1]; ++j)
-        for (int k = from[2]; k <= to[2]; ++k) visit(cell(i, j, k));
+      for (int j = from[1]; j <= to[1]; ++j) visit(cell(i, j, from[2]), cell(i, j, to[2]));
   }
 
  private:

@@ -1,61 +1,83 @@
 #include "collision/untangle/facing.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 #include "collision/geometry/cell_grid.hpp"
 #include "collision/geometry/stop_scope.hpp"
+#include "collision/search/bvh_traversal.hpp"
 
 namespace selvedge {
 namespace {
 
 constexpr double come_closer = 0.5;   // of their distance at rest: vertices that are nearer have come together
 constexpr double deepest_part = 0.7;  // of a part's thickness: deeper, the other part counts as behind it
-constexpr double widened = 1 + 1e-9;  // factor that widens bounds of many vertices, for rounding
+constexpr float widened = 1e-5F;      // widens the limits of single-precision bounds, which are wrong by less than 1e-6
 constexpr int in_a_group = 4;         // vertices of a cube in a group
+constexpr int in_a_block = 8;         // groups that are compared at once
 constexpr int cubes_away = 2;         // length of the reach in cubes
 
-struct Extent {
-  Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
-  void take(const Vec3& at) {
-    lo = lo.cwiseMin(at);
-    hi = hi.cwiseMax(at);
+// Bounds of the places, normals and places at rest of some vertices, one coordinate after the other, rounded outward.
+struct Bounds {
+  std::array<float, 9> lo, hi;
+  Bounds() {
+    lo.fill(std::numeric_limits<float>::infinity());
+    hi.fill(-std::numeric_limits<float>::infinity());
   }
-  void take(const Extent& other) {
-    lo = lo.cwiseMin(other.lo);
-    hi = hi.cwiseMax(other.hi);
+  void take(int coordinate, double value) {
+    const float near = static_cast<float>(value), rounding = std::abs(near) * 0x1p-22F + 1e-30F;
+    lo[coordinate] = std::min(lo[coordinate], near - rounding);
+    hi[coordinate] = std::max(hi[coordinate], near + rounding);
   }
-};
-
-// A lower bound of the dot product of a vector in a and a vector in b.
-double least_dot(const Extent& a, const Extent& b) {
-  const Eigen::Array3d ll = a.lo.array() * b.lo.array(), lh = a.lo.array() * b.hi.array(),
-                       hl = a.hi.array() * b.lo.array(), hh = a.hi.array() * b.hi.array();
-  return ll.min(lh).min(hl).min(hh).sum();
-}
-
-double least_square(const Extent& a, const Extent& b) {
-  return (a.lo - b.hi).cwiseMax(b.lo - a.hi).cwiseMax(0).squaredNorm();
-}
-
-double largest_square(const Extent& a, const Extent& b) {
-  return (a.hi - b.lo).cwiseAbs().cwiseMax((b.hi - a.lo).cwiseAbs()).squaredNorm();
-}
-
-// Bounds of the vertices of a cube, or of a group in it.
-struct Extents {
-  Extent x, normals, rest;
-  void take(const Extents& other) {
-    x.take(other.x);
-    normals.take(other.normals);
-    rest.take(other.rest);
+  void take(const double* x, const double* normal, const double* rest) {
+    for (int k = 0; k < 3; ++k) {
+      take(k, x[k]);
+      take(3 + k, normal[k]);
+      take(6 + k, rest[k]);
+    }
+  }
+  void take(const Bounds& other) {
+    for (int i = 0; i < 9; ++i) {
+      lo[i] = std::min(lo[i], other.lo[i]);
+      hi[i] = std::max(hi[i], other.hi[i]);
+    }
   }
 };
 
-// Vertices [first, last) in the grid's order, all in one cube.
-struct VertexGroup {
-  int first, last;
-  Extents extents;
+// The bounds of eight groups, group i in lane i % 4 of half i / 4. A place that is left over has NaN.
+using Lanes = Bvh::Lanes;
+struct Block {
+  Lanes lo[9][2], hi[9][2];
+};
+[[gnu::always_inline]] inline Lanes smaller(Lanes a, Lanes b) { return a < b ? a : b; }
+[[gnu::always_inline]] inline Lanes larger(Lanes a, Lanes b) { return a > b ? a : b; }
+
+// One bit for each group of the block: 0 only if no vertex of the group is nearer than the square root of `square` to a
+// vertex in the bounds, faces it, and was farther away at rest.
+unsigned may_face(const Bounds& a, const Block& b, double square) {
+  const float most = static_cast<float>(square) * (1 + widened);
+  constexpr float cosine = static_cast<float>(facing_cosine) + widened;
+  constexpr float closer = static_cast<float>(come_closer * come_closer) * (1 + widened);
+  const auto half = [&](int h) {
+    Lanes gap{}, dot{}, at_rest{};
+    for (int x = 0, n = 3, r = 6; x < 3; ++x, ++n, ++r) {
+      const Lanes apart = larger(larger(a.lo[x] - b.hi[x][h], b.lo[x][h] - a.hi[x]), Lanes{});
+      gap += apart * apart;
+      dot += smaller(smaller(a.lo[n] * b.lo[n][h], a.lo[n] * b.hi[n][h]),
+                     smaller(a.hi[n] * b.lo[n][h], a.hi[n] * b.hi[n][h]));
+      const Lanes far = larger(a.hi[r] - b.lo[r][h], b.hi[r][h] - a.lo[r]);
+      at_rest += far * far;
+    }
+    return (gap <= most) & (dot <= cosine) & (gap <= closer * at_rest);
+  };
+  return bits_of(half(0), half(1));
+}
+
+// Groups of a block, one bit each.
+struct Near {
+  int block;
+  unsigned groups;
 };
 
 // A posed body with its vertices also in the order of a grid, so that searches read memory in order.
@@ -63,114 +85,178 @@ struct PosedCubes {
   const FacingBody& body;
   const Points &x, &normals;
   CellGrid grid;
-  Points x_near, normals_near;
-  std::vector<int> filled;       // cubes that hold vertices
-  std::vector<int> place;        // of each cube its index in `filled`; -1: empty
-  std::vector<Extents> extents;  // of these
-  std::vector<int> first_group;  // of each filled cube; one more at the end
-  std::vector<VertexGroup> groups;
+  Points x_near, normals_near, rest_near;
+  std::vector<int> filled;        // cubes that hold vertices
+  std::vector<Bounds> in_filled;  // bounds of these
+  std::vector<int> first_group;   // of each cube; one more at the end
+  std::vector<int> first_vertex;  // of each group, in the grid's order; one more at the end
+  std::vector<Bounds> in_group;   // bounds of the groups, and the same in blocks
+  std::vector<Block> blocks;
+  std::vector<unsigned> moved;  // of each block the groups with a vertex that has moved, one bit each
+  std::vector<char> anew;       // of each vertex in the grid's order: whether it or its partner has moved
 
-  PosedCubes(const FacingBody& b, const Points& posed, const Points& n)
+  PosedCubes(const FacingBody& b, const Points& posed, const Points& n, const Facing* before)
       : body(b),
         x(posed),
         normals(n),
         grid(posed, b.reach / cubes_away),
         x_near(posed(grid.order(), Eigen::all)),
         normals_near(n(grid.order(), Eigen::all)),
-        place(static_cast<std::size_t>(grid.cubes()), -1) {
+        rest_near(b.rest(grid.order(), Eigen::all)) {
     for (int cube = 0; cube < grid.cubes(); ++cube) {
+      first_group.push_back(static_cast<int>(in_group.size()));
       if (grid.first(cube) == grid.first(cube + 1)) continue;
-      place[cube] = static_cast<int>(filled.size());
       filled.push_back(cube);
-      Extents& own = extents.emplace_back();
-      first_group.push_back(static_cast<int>(groups.size()));
-      for (int p = grid.first(cube); p < grid.first(cube + 1); ++p) {
-        if ((p - grid.first(cube)) % in_a_group == 0) groups.push_back({p, p, {}});
-        VertexGroup& group = groups.back();
-        group.last = p + 1;
-        group.extents.x.take(row(x_near, p));
-        group.extents.normals.take(row(normals_near, p));
-        group.extents.rest.take(row(body.rest, grid.order()[p]));
+      in_filled.emplace_back();
+      for (int p = grid.first(cube); p < grid.first(cube + 1); p += in_a_group) {
+        const int end = std::min(p + in_a_group, grid.first(cube + 1));
+        first_vertex.push_back(p);
+        in_group.push_back(bounds_of(p, end));
+        in_filled.back().take(in_group.back());
       }
-      for (std::size_t g = static_cast<std::size_t>(first_group.back()); g < groups.size(); ++g)
-        own.take(groups[g].extents);
     }
-    first_group.push_back(static_cast<int>(groups.size()));
+    first_group.push_back(static_cast<int>(in_group.size()));
+    first_vertex.push_back(static_cast<int>(x.rows()));
+    fill_blocks();
+    mark_moved(before);
+  }
+
+  // Of the vertices [begin, end) in the grid's order.
+  Bounds bounds_of(int begin, int end) const {
+    Bounds bounds;
+    for (int p = begin; p < end; ++p)
+      bounds.take(x_near.data() + 3 * p, normals_near.data() + 3 * p, rest_near.data() + 3 * p);
+    return bounds;
+  }
+
+  void fill_blocks() {
+    const std::size_t count = in_group.size();
+    blocks.resize((count + in_a_block - 1) / in_a_block);
+    for (std::size_t g = 0; g < blocks.size() * in_a_block; ++g)
+      for (int i = 0; i < 9; ++i) {
+        constexpr float none = std::numeric_limits<float>::quiet_NaN();
+        Block& block = blocks[g / in_a_block];
+        block.lo[i][g % in_a_block / 4][g % 4] = g < count ? in_group[g].lo[i] : none;
+        block.hi[i][g % in_a_block / 4][g % 4] = g < count ? in_group[g].hi[i] : none;
+      }
+  }
+
+  // Without a pose before everything has moved.
+  void mark_moved(const Facing* before) {
+    anew.assign(static_cast<std::size_t>(x.rows()), before == nullptr);
+    moved.assign(blocks.size(), before ? 0U : ~0U);
+    if (!before) return;
+    const auto has_moved = [&](int v) {
+      return x.row(v) != before->x.row(v) || normals.row(v) != before->normals.row(v);
+    };
+    for (int g = 0; g < static_cast<int>(in_group.size()); ++g)
+      for (int p = first_vertex[g]; p < first_vertex[g + 1]; ++p) {
+        const int v = grid.order()[p], partner = before->partner[v];
+        const bool own = has_moved(v);
+        anew[p] = own || (partner >= 0 && has_moved(partner));
+        if (own) moved[g / in_a_block] |= 1U << g % in_a_block;
+      }
+  }
+  bool any_anew(int begin, int end) const {
+    return std::any_of(anew.begin() + begin, anew.begin() + end, [](char marked) { return marked != 0; });
+  }
+
+  // Those of the groups that may face a vertex in the bounds within a distance, squared; with `all` false, only those
+  // that have moved.
+  unsigned facing_of(const Bounds& bounds, bool all, Near near, double square) const {
+    const unsigned groups = all ? near.groups : near.groups & moved[near.block];
+    return groups != 0 ? groups & may_face(bounds, blocks[near.block], square) : 0;
+  }
+  void keep_facing(const Bounds& bounds, bool all, Near from, std::vector<Near>& kept) const {
+    from.groups = facing_of(bounds, all, from, body.reach * body.reach);
+    if (from.groups != 0) kept.push_back(from);
+  }
+
+  // The same of the groups of the cubes [first, last].
+  void add_facing(const Bounds& bounds, bool all, int first, int last, std::vector<Near>& near) const {
+    const int begin = first_group[first], end = first_group[last + 1];
+    for (int block = begin / in_a_block; block * in_a_block < end; ++block) {
+      const int from = std::max(begin - block * in_a_block, 0), to = std::min(end - block * in_a_block, in_a_block);
+      keep_facing(bounds, all, {block, (1U << to) - (1U << from)}, near);
+    }
   }
 };
 
-// False only if no vertex of a faces a vertex of b that was farther away at rest.
-bool may_face(const Extents& a, const Extents& b, double reach) {
-  const double square = least_square(a.x, b.x);
-  return square <= widened * reach * reach && least_dot(a.normals, b.normals) <= facing_cosine + (widened - 1) &&
-         square <= widened * come_closer * come_closer * largest_square(a.rest, b.rest);
+// Whether place q of the grid's order comes before vertex w.
+bool comes_before(const CellGrid& grid, int q, int w) {
+  return std::find(grid.order().begin() + q, grid.order().end(), w) != grid.order().end();
 }
 
-// near: groups, ascending.
-int facing_vertex(const PosedCubes& posed, int v, const std::vector<int>& near) {
+// The vertex that faces vertex p of the grid's order; -1: none. near: groups, ascending. known: its partner in the pose
+// before, where neither has moved.
+int facing_vertex(const PosedCubes& posed, int p, const std::vector<Near>& near, int known) {
   const FacingBody& body = posed.body;
-  const Vec3 at = row(posed.x, v), normal = row(posed.normals, v), rest = row(body.rest, v);
-  int found = -1;
-  double nearest = body.reach * body.reach;
-  const auto look_at = [&](int p) {
-    if (row(posed.normals_near, p).dot(normal) > facing_cosine) return;
-    const Vec3 way = at - row(posed.x_near, p);
+  const int v = posed.grid.order()[p];
+  const Vec3 at = row(posed.x_near, p), normal = row(posed.normals_near, p);
+  const Bounds own = posed.bounds_of(p, p + 1);
+  const bool all = posed.anew[p] != 0;
+  int found = all ? -1 : known;
+  double nearest = found < 0 ? body.reach * body.reach : (at - row(posed.x, found)).squaredNorm();
+  const auto look_at = [&](int q) {
+    const Vec3 facing = row(posed.normals_near, q), way = at - row(posed.x_near, q);
+    if (facing.dot(normal) > facing_cosine) return;
     const double square = way.squaredNorm();
-    if (square >= nearest) return;
-    const int w = posed.grid.order()[p];
+    if (square > nearest || (square == nearest && (found < 0 || !comes_before(posed.grid, q, found)))) return;
+    const int w = posed.grid.order()[q];
     const double thin = deepest_part * std::min(body.thickness[v], body.thickness[w]);
-    if (square >= thin * thin && way.dot(row(posed.normals, w)) < 0) return;
-    if (square >= come_closer * come_closer * (body.rest.row(v) - body.rest.row(w)).squaredNorm()) return;
+    if (square >= thin * thin && way.dot(facing) < 0) return;
+    if (square >= come_closer * come_closer * (posed.rest_near.row(p) - posed.rest_near.row(q)).squaredNorm()) return;
     nearest = square;
     found = w;
   };
-  for (const int g : near) {
-    const auto& [first, last, extents] = posed.groups[g];
-    const double gap = (extents.x.lo - at).cwiseMax(at - extents.x.hi).cwiseMax(0).squaredNorm();
-    const double cosine =
-        normal.cwiseProduct(extents.normals.lo).cwiseMin(normal.cwiseProduct(extents.normals.hi)).sum();
-    if (gap > widened * nearest || cosine > facing_cosine + (widened - 1)) continue;
-    const double at_rest =
-        (extents.rest.hi - rest).cwiseAbs().cwiseMax((rest - extents.rest.lo).cwiseAbs()).squaredNorm();
-    if (gap > widened * come_closer * come_closer * at_rest) continue;
-    for (int p = first; p < last; ++p) look_at(p);
-  }
+  for (const auto& [block, groups] : near)
+    for (unsigned bits = posed.facing_of(own, all, {block, groups}, nearest); bits != 0; bits &= bits - 1) {
+      const int group = block * in_a_block + std::countr_zero(bits);
+      for (int q = posed.first_vertex[group]; q < posed.first_vertex[group + 1]; ++q) look_at(q);
+    }
   return found;
+}
+
+bool same_box(const Points& a, const Points& b) {
+  return a.rows() == b.rows() && a.rows() > 0 && a.colwise().minCoeff() == b.colwise().minCoeff() &&
+         a.colwise().maxCoeff() == b.colwise().maxCoeff();
 }
 
 }  // namespace
 
-// Most cubes near a vertex have only vertices of the same part, which face the same way and were as near at rest. Such
-// cubes are skipped for all vertices of a cube at once, and such groups for all vertices of a group.
-std::vector<int> facing_vertices(const FacingBody& body, const Points& x, const Points& normals) {
-  const PosedCubes posed(body, x, normals);
-  std::vector<int> partner(static_cast<std::size_t>(x.rows()));
+// Most groups near a vertex have only vertices of the same part, which face the same way and were as near at rest. They
+// are skipped for all vertices of a cube at once, then for those of a group, then for each.
+Facing facing_vertices(const FacingBody& body, const Points& x, const Points& normals, const Facing* before) {
+  if (before && !same_box(before->x, x)) before = nullptr;  // the grid's order differs
+  const PosedCubes posed(body, x, normals, before);
+  Facing facing{x, normals, std::vector<int>(static_cast<std::size_t>(x.rows()))};
   StopPoll stop;
 #pragma omp parallel
   {
-    std::vector<int> in_cubes, near;  // groups
+    std::vector<Near> near_cube, near_group;
 #pragma omp for schedule(dynamic, 16)
     for (int c = 0; c < static_cast<int>(posed.filled.size()); ++c) {
       if (stop.wanted()) continue;
-      in_cubes.clear();
-      posed.grid.for_each_cube_around(posed.filled[c], cubes_away, [&](int cube) {
-        const int other = posed.place[cube];
-        if (other < 0 || !may_face(posed.extents[c], posed.extents[other], body.reach)) return;
-        for (int g = posed.first_group[other]; g < posed.first_group[other + 1]; ++g)
-          if (may_face(posed.extents[c], posed.groups[g].extents, body.reach)) in_cubes.push_back(g);
+      const int cube = posed.filled[c];
+      near_cube.clear();
+      const bool all = posed.any_anew(posed.grid.first(cube), posed.grid.first(cube + 1));
+      posed.grid.for_each_row_around(cube, cubes_away, [&](int first, int last) {
+        posed.add_facing(posed.in_filled[c], all, first, last, near_cube);
       });
-      for (int own = posed.first_group[c]; own < posed.first_group[c + 1]; ++own) {
-        const VertexGroup& group = posed.groups[own];
-        near.clear();
-        for (const int g : in_cubes)
-          if (may_face(group.extents, posed.groups[g].extents, body.reach)) near.push_back(g);
-        for (int p = group.first; p < group.last; ++p)
-          partner[posed.grid.order()[p]] = facing_vertex(posed, posed.grid.order()[p], near);
+      for (int g = posed.first_group[cube]; g < posed.first_group[cube + 1]; ++g) {
+        near_group.clear();
+        const int begin = posed.first_vertex[g], end = posed.first_vertex[g + 1];
+        const bool all_of_group = posed.any_anew(begin, end);
+        for (const Near from : near_cube) posed.keep_facing(posed.in_group[g], all_of_group, from, near_group);
+        for (int p = begin; p < end; ++p) {
+          const int v = posed.grid.order()[p];
+          facing.partner[v] = facing_vertex(posed, p, near_group, before ? before->partner[v] : -1);
+        }
       }
     }
   }
   stop.check();
-  return partner;
+  return facing;
 }
 
 }  // namespace selvedge

@@ -16,8 +16,14 @@ struct FacingBody {
   double reach;                          // largest distance of vertices that meet [m]
 };
 
-// For each vertex of the body posed to x, the nearest vertex that faces it and was farther away at rest; -1: none. Of
-// several at one distance, the first in the order of a grid of cubes.
-std::vector<int> facing_vertices(const FacingBody&, const Points& x, const Points& normals);
+// A posed body, and for each vertex the nearest one that faces it and was farther away at rest; -1: none. Of several at
+// one distance, the first in the order of a grid of cubes.
+struct Facing {
+  Points x, normals;  // of the pose [m], unit length
+  std::vector<int> partner;
+};
+
+// For the body posed to x. `before`, of a pose from which few vertices have moved, saves time and changes nothing else.
+Facing facing_vertices(const FacingBody&, const Points& x, const Points& normals, const Facing* before = nullptr);
 
 }  // namespace selvedge

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <optional>
 
 #include "collision/geometry/cell_grid.hpp"
@@ -48,6 +49,26 @@ Surface part_of(const Surface& body, const std::vector<int>& vertices) {
 
 }  // namespace
 
+// Caches for detection. Calls at one time have one each; a later call finds a tree that fits a pose like its own.
+class CrossingCaches {
+ public:
+  IntersectionCache take(const IntersectionCache& otherwise) {
+    const std::lock_guard lock(mutex_);
+    if (idle_.empty()) return otherwise;
+    IntersectionCache cache = std::move(idle_.back());
+    idle_.pop_back();
+    return cache;
+  }
+  void give_back(IntersectionCache cache) {
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(cache));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<IntersectionCache> idle_;
+};
+
 // What depends only on the body at rest.
 struct SoftTissue {
   SoftTissue(Surface surface, const Points& rest, const GiveWayOptions& o)
@@ -67,6 +88,7 @@ struct SoftTissue {
   double reach;                   // largest distance of vertices that meet: both move by `most` and leave room [m]
   std::vector<double> thickness;  // under each vertex [m]
   IntersectionCache at_rest;      // its tree is refitted for poses
+  mutable CrossingCaches caches;
 };
 
 namespace {
@@ -81,21 +103,28 @@ struct Meeting {
 
 double gap_of(const Meeting& m, const Points& x) { return m.apart.dot(row(x, m.vertex) - row(x, m.partner)); }
 
-std::vector<Meeting> meetings(const SoftTissue& tissue, const Points& x) {
-  const Points &rest = tissue.shape.x0, normals = vertex_normals(tissue.body, x);
-  const std::vector<int> partner = facing_vertices({rest, tissue.thickness, tissue.reach}, x, normals);
-  std::vector<Meeting> found;
+// A body in a pose and the vertices that meet in it.
+struct Meetings {
+  Facing facing;
+  std::vector<Meeting> close;
+};
+
+// `before`, of a pose from which few vertices have moved, saves time.
+Meetings meetings(const SoftTissue& tissue, const Points& x, const Facing* before) {
+  const Points& rest = tissue.shape.x0;
+  Meetings met{facing_vertices({rest, tissue.thickness, tissue.reach}, x, vertex_normals(tissue.body, x), before), {}};
+  const Points& normals = met.facing.normals;
   for (int v = 0; v < tissue.body.vertex_count; ++v) {
-    const int w = partner[v];
+    const int w = met.facing.partner[v];
     if (w < 0) continue;
     const Vec3 apart = (row(normals, w) - row(normals, v)).normalized(), offset = row(x, v) - row(x, w);
     const double gap = offset.dot(apart), aside = (offset - gap * apart).norm();
     const double least = std::min(tissue.options.room, tissue.options.rest_room * (rest.row(v) - rest.row(w)).norm());
     // Each moves half of what is missing; less if it is beside the other, from an edge to two edges off.
     const double share = 0.5 * std::clamp(2 - aside / tissue.shape.edge_length[v], 0.0, 1.0);
-    if (gap < least && share > 0) found.push_back({v, w, apart, least, share});
+    if (gap < least && share > 0) met.close.push_back({v, w, apart, least, share});
   }
-  return found;
+  return met;
 }
 
 // The marked vertices and those round them that move along.
@@ -224,27 +253,22 @@ DisjointSets moved_together(const SoftTissue& tissue, const Points& from, const 
   return sets;
 }
 
-// A pressed body and its meetings.
-struct Pressed {
-  Points x;
-  std::vector<Meeting> close;
-};
-
 // The body pressed from `once` to `twice`. Sets that move together and get more pinches stay as in `once`, and so does
 // the whole body if more than `most_pairs` pairs would cross.
-Pressed where_it_opens(const SoftTissue& tissue, const Points& skinned, const Pressed& once, const Points& twice,
-                       std::size_t most_pairs, IntersectionCache& cache) {
-  Pressed next{twice, meetings(tissue, twice)};
-  DisjointSets sets = moved_together(tissue, once.x, twice, {&once.close, &next.close});
+Meetings where_it_opens(const SoftTissue& tissue, const Points& skinned, const Meetings& once, const Points& twice,
+                        std::size_t most_pairs, IntersectionCache& cache) {
+  const Points& x = once.facing.x;
+  Meetings next = meetings(tissue, twice, &once.facing);
+  DisjointSets sets = moved_together(tissue, x, twice, {&once.close, &next.close});
   Eigen::VectorXi more = Eigen::VectorXi::Zero(tissue.body.vertex_count);  // pinches, by set
-  for (const Meeting& m : pinches_of(tissue, once.close, skinned, once.x)) --more[sets.root(m.vertex)];
+  for (const Meeting& m : pinches_of(tissue, once.close, skinned, x)) --more[sets.root(m.vertex)];
   for (const Meeting& m : pinches_of(tissue, next.close, skinned, twice)) ++more[sets.root(m.vertex)];
   if (more.maxCoeff() <= 0) return next;
+  Points to = twice;
   for (int v = 0; v < tissue.body.vertex_count; ++v)
-    if (more[sets.root(v)] > 0) next.x.row(v) = once.x.row(v);
-  if (next.x == once.x || intersecting_pairs(tissue.body, next.x, cache).size() > most_pairs) return once;
-  next.close = meetings(tissue, next.x);
-  return next;
+    if (more[sets.root(v)] > 0) to.row(v) = x.row(v);
+  if (to == x || intersecting_pairs(tissue.body, to, cache).size() > most_pairs) return once;
+  return meetings(tissue, to, &next.facing);
 }
 
 // If hardly any room is left between parts over some area, faces that touch would hold cloth that has no room. There
@@ -275,33 +299,34 @@ GiveWay::GiveWay(Surface body, const Points& rest, const GiveWayOptions& options
 // from the skinned one, or else left in the one with fewer crossings. Then presses for more room, where this makes no
 // further pinches.
 Points GiveWay::operator()(const Points& x) const {
-  std::vector<Meeting> found = meetings(*tissue_, x);
-  Pressed body{pressed(*tissue_, x, x, found), {}};
-  IntersectionCache cache = tissue_->at_rest;
-  Pairs left = intersecting_pairs(tissue_->body, body.x, cache);
+  Meetings body = meetings(*tissue_, x, nullptr);
+  Points to = pressed(*tissue_, x, x, body.close);
+  IntersectionCache cache = tissue_->caches.take(tissue_->at_rest);
+  Pairs left = intersecting_pairs(tissue_->body, to, cache);
   if (!left.empty()) {
     for (const Place& place : places_of(*tissue_, intersecting_pairs(tissue_->body, x, cache), left)) {
       std::optional<Points> better;
-      if (place.pressed <= tissue_->options.mend_pressed) better = mended(*tissue_, place, body.x, x);
+      if (place.pressed <= tissue_->options.mend_pressed) better = mended(*tissue_, place, to, x);
       if (!better && place.skinned <= tissue_->options.mend_skinned) better = mended(*tissue_, place, x, x);
       if (!better && place.pressed > place.skinned) better = x(place.vertices, Eigen::all);
-      if (better) body.x(place.vertices, Eigen::all) = *better;
+      if (better) to(place.vertices, Eigen::all) = *better;
     }
-    left = intersecting_pairs(tissue_->body, body.x, cache);
+    left = intersecting_pairs(tissue_->body, to, cache);
   }
-  body.close = body.x == x ? std::move(found) : meetings(*tissue_, body.x);
+  if (to != x) body = meetings(*tissue_, to, &body.facing);
   const auto is_tight = [&](const Meeting& m) {
-    return gap_of(m, body.x) < tissue_->options.tight_part * m.least &&
-           (row(body.x, m.vertex) - row(x, m.vertex)).norm() < tissue_->options.tight_part * tissue_->options.most;
+    return gap_of(m, to) < tissue_->options.tight_part * m.least &&
+           (row(to, m.vertex) - row(x, m.vertex)).norm() < tissue_->options.tight_part * tissue_->options.most;
   };
   for (int press = 0; press < tissue_->options.presses && std::ranges::any_of(body.close, is_tight); ++press) {
-    const Points more = opened(*tissue_, x, body.x, body.close, left, cache);
-    Pressed next = where_it_opens(*tissue_, x, body, more, left.size(), cache);
-    if (next.x == body.x) break;
-    body = std::move(next);
+    const Points more = opened(*tissue_, x, to, body.close, left, cache);
+    body = where_it_opens(*tissue_, x, body, more, left.size(), cache);
+    if (body.facing.x == to) break;
+    to = body.facing.x;
   }
-  let_through(*tissue_, pinches_of(*tissue_, body.close, x, body.x), x, body.x);
-  return body.x;
+  tissue_->caches.give_back(std::move(cache));
+  let_through(*tissue_, pinches_of(*tissue_, body.close, x, to), x, to);
+  return to;
 }
 
 }  // namespace selvedge

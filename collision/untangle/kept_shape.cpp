@@ -25,21 +25,35 @@ Eigen::Matrix2d flattened(const Edges32& edges) {
   return (Eigen::Matrix2d() << base, along, 0, height).finished();
 }
 
-struct Principal {
-  Eigen::Vector2d value;  // ascending
-  Eigen::Matrix2d axis;   // columns, in the plane of the input triangle
+// Where c = F'F stands among the symmetric 2 x 2 matrices: its eigenvalues are mean -+ the length of (half, off).
+struct Symmetric {
+  double mean, half, off;
+  explicit Symmetric(const Edges32& f) {
+    const Eigen::Matrix2d c = f.transpose() * f;
+    mean = 0.5 * (c(0, 0) + c(1, 1));
+    half = 0.5 * (c(0, 0) - c(1, 1));
+    off = c(0, 1);
+  }
 };
 
-// Singular values and right singular vectors of F, from the eigenvalues of F'F.
-Principal principal(const Edges32& f) {
-  const Eigen::Matrix2d c = f.transpose() * f;
-  const double mean = 0.5 * (c(0, 0) + c(1, 1)), half = 0.5 * (c(0, 0) - c(1, 1));
-  const double radius = std::hypot(half, c(0, 1));
-  const double angle = 0.5 * std::atan2(c(0, 1), half);
-  Principal result;
-  result.value << std::sqrt(std::max(0.0, mean - radius)), std::sqrt(std::max(0.0, mean + radius));
-  result.axis << -std::sin(angle), std::cos(angle), std::cos(angle), std::sin(angle);
-  return result;
+// Singular values of F, ascending.
+Eigen::Vector2d principal_values(const Symmetric& c) {
+  const double radius = std::hypot(c.half, c.off);
+  return {std::sqrt(std::max(0.0, c.mean - radius)), std::sqrt(std::max(0.0, c.mean + radius))};
+}
+
+// Right singular vectors of F, columns, in the plane of the input triangle.
+Eigen::Matrix2d principal_axes(const Symmetric& c) {
+  const double angle = 0.5 * std::atan2(c.off, c.half);
+  return (Eigen::Matrix2d() << -std::sin(angle), std::cos(angle), std::cos(angle), std::sin(angle)).finished();
+}
+
+// True only if the singular values are in the range: a quick test that decides most triangles.
+bool surely_within(const Symmetric& c, const StretchRange& range) {
+  constexpr double slack = 1e-12;  // thousands of times the rounding of these few operations
+  const double radius = std::sqrt(c.half * c.half + c.off * c.off);
+  return c.mean - radius - slack * c.mean > (1 + slack) * range.least * range.least &&
+         c.mean + radius < (1 - slack) * range.largest * range.largest;
 }
 
 Edges32 deformation(const KeptShape& shape, const Points& x, int triangle) {
@@ -100,7 +114,7 @@ std::vector<char> within_rings(const KeptShape& shape, const std::vector<char>& 
 
 StretchRange stretch_of(const KeptShape& shape, const Points& x, int triangle) {
   if (!shape.measured[triangle]) return {};
-  const Eigen::Vector2d value = principal(deformation(shape, x, triangle)).value;
+  const Eigen::Vector2d value = principal_values(Symmetric(deformation(shape, x, triangle)));
   return {value[0], value[1]};
 }
 
@@ -133,13 +147,15 @@ void limit_stretch(const KeptShape& shape, std::span<const int> triangles, const
   for (int t : triangles) {
     if (!shape.measured[t]) continue;
     const Edges32 f = deformation(shape, x, t);
-    const Principal p = principal(f);
-    if (p.value[0] >= range.least && p.value[1] <= range.largest) continue;
+    const Symmetric c(f);
+    if (surely_within(c, range)) continue;
+    const Eigen::Vector2d value = principal_values(c);
+    if (value[0] >= range.least && value[1] <= range.largest) continue;
     Eigen::Vector2d factor;
     for (int k = 0; k < 2; ++k)
-      factor[k] = std::min(10.0, std::clamp(p.value[k], range.least, range.largest) / std::max(p.value[k], 1e-12));
+      factor[k] = std::min(10.0, std::clamp(value[k], range.least, range.largest) / std::max(value[k], 1e-12));
     const Edges32 change = edges_of(*shape.surface, x, t);
-    const Eigen::Matrix2d scale = p.axis * factor.asDiagonal() * p.axis.transpose();
+    const Eigen::Matrix2d axes = principal_axes(c), scale = axes * factor.asDiagonal() * axes.transpose();
     const Edges32 wanted = f * scale * shape.rest_inverse[t].inverse() - change;
     std::array<Vec3, 3> move{Vec3::Zero(), wanted.col(0), wanted.col(1)};
     Vec3 fixed = Vec3::Zero(), mean = Vec3::Zero();
@@ -174,6 +190,7 @@ void hold_back(const KeptShape& shape, std::span<const int> triangles, const Str
   for (int round = 0;; ++round) {
     bool clean = true;
     for (int t : triangles) {
+      if (shape.measured[t] && surely_within(Symmetric(deformation(shape, x, t)), range)) continue;
       const StretchRange stretch = stretch_of(shape, x, t);
       if (stretch.least >= range.least && stretch.largest <= range.largest) continue;
       for (int v : shape.surface->triangles.row(t)) {

@@ -59,11 +59,33 @@ TEST_CASE("Facing: cubes that are left out hold no vertex that faces", "[give_wa
   for (const unsigned seed : {1u, 2u, 3u}) {
     const Cloud body = cloud(40, 20, seed);
     constexpr double reach = 0.1;
-    const std::vector<int> found = facing_vertices({body.rest, body.thickness, reach}, body.x, body.normals);
+    const std::vector<int> found = facing_vertices({body.rest, body.thickness, reach}, body.x, body.normals).partner;
     CHECK(found == by_all_pairs(body, reach));
     CHECK(std::ranges::count(found, -1) < 700);
     CHECK(std::ranges::count(found, -1) > 50);
   }
+}
+
+TEST_CASE("Facing: a pose before in which other vertices had moved changes nothing", "[give_way]") {
+  constexpr double reach = 0.1;
+  std::mt19937 random(4);
+  Cloud body = cloud(40, 20, 5);
+  Facing before = facing_vertices({body.rest, body.thickness, reach}, body.x, body.normals);
+  int others = 0;
+  for (int pose = 0; pose < 10; ++pose) {
+    for (int i = 0; i < 20; ++i) {
+      const auto v = static_cast<int>(random() % body.x.rows()), w = static_cast<int>(random() % body.x.rows());
+      body.x.row(v) = 0.5 * (body.x.row(v) + body.x.row(w)).eval();
+      if (i % 4 == 0) body.x.row(w) = body.x.row(v);  // two at one distance from all others
+      body.normals.row(w) *= -1;
+    }
+    const FacingBody rest{body.rest, body.thickness, reach};
+    Facing now = facing_vertices(rest, body.x, body.normals, &before);
+    CHECK(now.partner == facing_vertices(rest, body.x, body.normals).partner);
+    for (std::size_t v = 0; v < now.partner.size(); ++v) others += now.partner[v] != before.partner[v];
+    before = std::move(now);
+  }
+  CHECK(others > 100);
 }
 
 TEST_CASE("Facing: what was as near at rest does not meet", "[give_way]") {
@@ -72,9 +94,9 @@ TEST_CASE("Facing: what was as near at rest does not meet", "[give_way]") {
   normals << 0, 1, 0, 0, -1, 0;
   const std::vector<double> thickness{0.1, 0.1};
   rest << 0, 0, 0, 0, 0.059, 0;
-  CHECK(facing_vertices({rest, thickness, 0.1}, x, normals) == std::vector<int>{-1, -1});
+  CHECK(facing_vertices({rest, thickness, 0.1}, x, normals).partner == std::vector<int>{-1, -1});
   rest(1, 1) = 0.061;
-  CHECK(facing_vertices({rest, thickness, 0.1}, x, normals) == std::vector<int>{1, 0});
+  CHECK(facing_vertices({rest, thickness, 0.1}, x, normals).partner == std::vector<int>{1, 0});
 }
 
 }  // namespace selvedge::test_facing
