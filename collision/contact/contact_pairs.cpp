@@ -128,17 +128,30 @@ PairSearch::PairSearch(const ContactWorld& world) : world_(world), cloth_(*world
     obstacles_.emplace_back(*world.obstacles[k], world.first_node[k]);
 }
 
+// Leaves that a traversal may come to have boxes of their vertices and edges: of two that overlap one is marked.
+void PairSearch::fill(bool only_marked) {
+  const auto box = [](const SearchPart& part, int node) { return part.tree.bvh.nodes[node].box; };
+  cloth_.fill([&](int node) {
+    if (!only_marked || cloth_.marks[node] || meets(cloth_, box(cloth_, node), true)) return true;
+    return std::ranges::any_of(obstacles_,
+                               [&](const SearchPart& obstacle) { return meets(obstacle, box(cloth_, node), true); });
+  });
+  for (SearchPart& obstacle : obstacles_)
+    obstacle.fill([&](int node) { return meets(cloth_, box(obstacle, node), only_marked && !obstacle.marks[node]); });
+}
+
 void PairSearch::find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs,
                       const std::vector<char>& marks) {
   pairs.clear();
   // Boxes at both ends separate more pairs than boxes of whole motions only where motions are longer than the radius.
   const bool ends = !((x1 - x0).rowwise().squaredNorm().maxCoeff() <= radius * radius);
-  const auto prepare = [&](SearchPart& part, const Bvh* other) {
+  const auto move = [&](SearchPart& part) {
     part.move(x0, x1, radius, ends);
-    part.fill(other);
     if (!marks.empty()) part.mark(marks);
   };
-  prepare(cloth_, nullptr);
+  move(cloth_);
+  std::ranges::for_each(obstacles_, move);
+  fill(!marks.empty());
   const auto side = [&](const SearchPart& p) {
     return Side{p, ends ? p.node_ends.data() : nullptr, marks.empty() ? nullptr : p.marks.data()};
   };
@@ -149,10 +162,7 @@ void PairSearch::find(const Points& x0, const Points& x1, double radius, std::ve
            scratch_, pairs, LeafPairs{cloth, other, same});
   };
   if (world_.self) gather_with(cloth, true);
-  for (SearchPart& obstacle : obstacles_) {
-    prepare(obstacle, &cloth_.tree.bvh);
-    gather_with(side(obstacle), false);
-  }
+  for (const SearchPart& obstacle : obstacles_) gather_with(side(obstacle), false);
   ++tally_.searches;
   tally_.candidates += static_cast<std::int64_t>(pairs.size());
   if (!marks.empty())

@@ -54,6 +54,8 @@ class PairSearch {
   const SearchTally& tally() const { return tally_; }
 
  private:
+  void fill(bool only_marked);
+
   const ContactWorld& world_;
   const Exemption* left_out_ = nullptr;
   SearchPart cloth_;

@@ -107,7 +107,7 @@ bool update_pairs(PairSearch& search, double thickness, const Points& x0, const 
     }
   }
   invalidate(path);
-  search.find(x0, x1, reach, path.pairs);
+  search.find(x0, x1, reach, path.pairs, path.marks);
   path.start = x0;
   path.end = x1;
   path.slack = slack_part * thickness;
@@ -117,7 +117,7 @@ bool update_pairs(PairSearch& search, double thickness, const Points& x0, const 
 
 PathMotion::PathMotion(const PathPairs& path, const Points& x0, const Points& x1)
     : path_(path),
-      from_(x0 - path.start),
+      from_(x0 == path.start ? Points() : Points(x0 - path.start)),
       to_(x1 - path.start),
       rounding_(64 * std::numeric_limits<double>::epsilon() *
                 std::max({largest_coordinate(path.start), largest_coordinate(x0), largest_coordinate(x1)})) {}
@@ -127,12 +127,14 @@ bool PathMotion::may_come_within(std::size_t i, double distance) const {
   const double room = path_.gap[i] - distance - rounding_;
   if (!(room > 0)) return true;
   const int split = pair.kind == PairKind::vertex_face ? 1 : 2;
-  double most = 0;
-  for (int a = 0; a < split; ++a)
-    for (int b = split; b < 4; ++b)
-      most = std::max({most, (from_.row(pair.nodes[a]) - from_.row(pair.nodes[b])).squaredNorm(),
-                       (to_.row(pair.nodes[a]) - to_.row(pair.nodes[b])).squaredNorm()});
-  return !(most < room * room);
+  const auto stays = [&](const Points& moved) {
+    double most = 0;
+    for (int a = 0; a < split; ++a)
+      for (int b = split; b < 4; ++b)
+        most = std::max(most, (moved.row(pair.nodes[a]) - moved.row(pair.nodes[b])).squaredNorm());
+    return most < room * room;
+  };
+  return !stays(to_) || (from_.rows() > 0 && !stays(from_));
 }
 
 std::vector<NodePair> pairs_within(const PathPairs& path, const Points& x, double distance) {

@@ -7,6 +7,7 @@ namespace selvedge {
 // The pairs near a motion from `start` to `end`, and how far apart they are at the start. Earlier calls decide the
 // order, and which further pairs are listed that do not come near; results must not depend on either.
 struct PathPairs {
+  std::vector<char> marks;  // by node: only pairs with a marked one are listed; empty: all pairs
   Points start, end;
   std::vector<NodePair> pairs;
   std::vector<double> gap;  // [m]
@@ -31,7 +32,7 @@ class PathMotion {
 
  private:
   const PathPairs& path_;
-  Points from_, to_;  // displacements at both ends
+  Points from_, to_;  // displacements at both ends; from_ is empty where there are none
   double rounding_;   // [m]
 };
 

@@ -52,7 +52,7 @@ Driven driven(const ContactWorld& world, std::span<const int> pins, double thick
 }  // namespace
 
 int pins_give_way(PairSearch& search, const ContactWorld& world, std::span<const int> pins,
-                  const ResolveOptions& options, const Points& x0, Points& x1, PathPairs& path, ResolveReport& report) {
+                  const ResolveOptions& options, const Points& x0, Points& x1, ResolveReport& report) {
   const auto moves = [&](int node) { return x0.row(node) != x1.row(node); };
   if (pins.empty() ||
       (std::ranges::none_of(pins, moves) && std::ranges::count(obstacles_in_motion(world, x0, x1), 1) == 0))
@@ -63,6 +63,9 @@ int pins_give_way(PairSearch& search, const ContactWorld& world, std::span<const
   among.only = &d.met;
   among.friction = among.self_friction = 0;
   const Points wanted = x1;
+  PathPairs path;
+  path.marks.assign(world.node_count, 0);
+  for (const int pin : pins) path.marks[pin] = 1;
   const ResolveReport resolved = resolve(search, world, d.inverse_mass, among, x0, x1, path);
   report.work = resolved.work;
   report.out_of_work = resolved.out_of_work;

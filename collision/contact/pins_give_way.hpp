@@ -13,6 +13,6 @@ namespace selvedge {
 // Returns how many pins end elsewhere: 0, without a search, if no boxes come near each other. Work and times are
 // written to the report.
 int pins_give_way(PairSearch&, const ContactWorld&, std::span<const int> pins, const ResolveOptions&, const Points& x0,
-                  Points& x1, PathPairs&, ResolveReport&);
+                  Points& x1, ResolveReport&);
 
 }  // namespace selvedge

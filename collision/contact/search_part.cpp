@@ -3,24 +3,6 @@
 #include <algorithm>
 
 namespace selvedge {
-namespace {
-
-// Does the box overlap the box of any leaf?
-bool meets(const Bvh& tree, const Box& box) {
-  if (tree.item_count == 0) return false;
-  int stack[64], size = 0;  // a tree of 2^31 leaves is 31 deep
-  stack[size++] = 0;
-  while (size > 0) {
-    const Bvh::Node& node = tree.nodes[stack[--size]];
-    if (!overlap(node.box, box)) continue;
-    if (node.child < 0) return true;
-    stack[size++] = node.child;
-    stack[size++] = node.child + 1;
-  }
-  return false;
-}
-
-}  // namespace
 
 void PrimitiveGroups::share_out(const Bvh& bvh, const Triangles& primitives, const std::vector<int>& owner) {
   groups.clear();
@@ -100,12 +82,13 @@ void SearchPart::fill_ends(int leaf) {
     set_end_boxes(edges.groups[g], start_.edges, end_.edges, g, edges.ends);
 }
 
-void SearchPart::fill(const Bvh* other) {
+void SearchPart::fill(const std::function<bool(int node)>& wanted) {
   std::vector<int> leaves;
-  for (const Bvh::Node& node : tree.bvh.nodes) {
-    if (node.child >= 0 || filled_[~node.child]) continue;
+  for (int n = 0; n < static_cast<int>(tree.bvh.nodes.size()); ++n) {
+    const int child = tree.bvh.nodes[n].child;
+    if (child >= 0 || filled_[~child]) continue;
     // A traversal of two trees with one leaf each does not test their boxes.
-    if (!other || tree.bvh.leaves.size() == 1 || meets(*other, node.box)) leaves.push_back(~node.child);
+    if (tree.bvh.leaves.size() == 1 || wanted(n)) leaves.push_back(~child);
   }
   const int count = static_cast<int>(leaves.size());
 #pragma omp parallel for schedule(static)
@@ -127,6 +110,22 @@ void SearchPart::mark(const std::vector<char>& nodes) {
     const int child = bvh.nodes[i].child;
     marks[i] = child < 0 ? holds_marked(bvh.leaves[~child]) : marks[child] || marks[child + 1];
   }
+}
+
+bool meets(const SearchPart& part, const Box& box, bool marked) {
+  const Bvh& tree = part.tree.bvh;
+  if (tree.item_count == 0) return false;
+  int stack[64], size = 0;  // a tree of 2^31 leaves is 31 deep
+  stack[size++] = 0;
+  while (size > 0) {
+    const int at = stack[--size];
+    const Bvh::Node& node = tree.nodes[at];
+    if ((marked && !part.marks[at]) || !overlap(node.box, box)) continue;
+    if (node.child < 0) return true;
+    stack[size++] = node.child;
+    stack[size++] = node.child + 1;
+  }
+  return false;
 }
 
 }  // namespace selvedge

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "collision/geometry/surface.hpp"
@@ -26,8 +27,8 @@ class SearchPart {
   // Makes boxes round the straight motion x0 -> x1 of all nodes, grown by half the radius [m]; with `ends` also boxes
   // at both ends of the motion. If the motion is the same as in the last call, boxes are kept.
   void move(const Points& x0, const Points& x1, double radius, bool ends);
-  // Fills in boxes of vertices and edges: of the leaves that overlap the other surface's tree, or of all if it is null.
-  void fill(const Bvh* other);
+  // Fills in boxes of vertices and edges, of the leaves whose nodes are wanted.
+  void fill(const std::function<bool(int node)>& wanted);
   // Sets `marks` by node of the tree: 1 if it holds a marked node of the world.
   void mark(const std::vector<char>& nodes);
 
@@ -53,5 +54,8 @@ class SearchPart {
   Boxes boxes_, start_, end_;
   std::vector<char> filled_;  // by leaf
 };
+
+// Does the box overlap that of any leaf, or with `marked` that of any marked leaf?
+bool meets(const SearchPart&, const Box&, bool marked);
 
 }  // namespace selvedge

@@ -168,8 +168,8 @@ bool ConventionalStepper::solve_freely(StepWork& work, Substep& s, const StepSta
 void ConventionalStepper::hold_pins(StepWork& work, Substep& s, Points& pins) {
   Points nodes = s.nodes;
   ResolveReport report;
-  const int held = pins_give_way(contact_.search, contact_.world, scene_.pins, resolve_options(work), s.start.nodes,
-                                 nodes, contact_.path, report);
+  const int held =
+      pins_give_way(contact_.search, contact_.world, scene_.pins, resolve_options(work), s.start.nodes, nodes, report);
   add(report, work.report);
   if (held == 0) return;
   ++work.report.collision.shortened;

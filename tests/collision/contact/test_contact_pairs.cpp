@@ -122,13 +122,16 @@ TEST_CASE("contact pairs: a search for marked nodes finds what has one, and noth
   const Points to = from.rowwise() + Eigen::RowVector3d(way, 0, 0.5 * way);
   std::vector<char> marks(static_cast<std::size_t>(from.rows()), 0);
   marks[marked_node] = 1;
-  PairSearch search(world);
-  std::vector<NodePair> all, some;
-  search.find(from, to, 0.04, all);
-  search.find(from, to, 0.04, some, marks);
+  PairSearch whole(world), search(world);
+  std::vector<NodePair> all, some, then_all;
+  whole.find(from, to, 0.04, all);
+  search.find(from, to, 0.04, some, marks);  // fills in boxes near the marked node alone
+  search.find(from, to, 0.04, then_all);
+  std::sort(then_all.begin(), then_all.end());
+  std::sort(all.begin(), all.end());
+  CHECK(then_all == all);
   std::erase_if(all,
                 [&](const NodePair& pair) { return std::ranges::find(pair.nodes, marked_node) == pair.nodes.end(); });
-  std::sort(all.begin(), all.end());
   std::sort(some.begin(), some.end());
   CHECK(all.size() > 3);
   CHECK(some == all);

@@ -135,6 +135,33 @@ TEST_CASE("path pairs: where few nodes end elsewhere the list is mended, and lis
   CHECK(update_pairs(both.search, thickness, end, end, mended));
 }
 
+TEST_CASE("path pairs: a list for marked nodes has all of their pairs, mended too", "[path_pairs]") {
+  TwoSheets both(join(sheet(8, 0.2, 0), sheet(7, 0.2, 6e-3)));
+  const double thickness = 2e-3;
+  PathPairs of_marked, all;
+  of_marked.marks.assign(static_cast<std::size_t>(both.x.rows()), 0);
+  for (const int node : {3, 40, 41, 100}) of_marked.marks[node] = 1;
+  const auto with_marked = [&](std::vector<NodePair> pairs) {
+    std::erase_if(pairs, [&](const NodePair& pair) {
+      return std::ranges::none_of(pair.nodes, [&](int node) { return of_marked.marks[node] != 0; });
+    });
+    return pairs;
+  };
+  Points end = both.x.rowwise() + Eigen::RowVector3d(0.03, -0.01, 0.02);
+  for (const int node : {40, 60, 62, 64, 66}) end(node, 1) += 8e-3;
+  PairSearch other(both.world);
+  REQUIRE(update_pairs(both.search, thickness, both.x, end, of_marked));
+  REQUIRE(update_pairs(other, thickness, both.x, end, all));
+  CHECK(of_marked.pairs.size() > 3);
+  CHECK(of_marked.pairs.size() < all.pairs.size() / 2);
+  for (const int node : {41, 70}) end(node, 1) += 8e-3;
+  REQUIRE_FALSE(update_pairs(both.search, thickness, both.x, end, of_marked));
+  REQUIRE_FALSE(update_pairs(other, thickness, both.x, end, all));
+  const auto near = with_marked(coming_near(all, both.x, end, thickness));
+  CHECK(near.size() > 3);
+  CHECK(with_marked(coming_near(of_marked, both.x, end, thickness)) == near);
+}
+
 TEST_CASE("path pairs: boxes of long motions overlap, and only what may come near is listed", "[path_pairs]") {
   // Two sheets that turn together, a hand's breadth apart.
   TwoSheets both(join(sheet(8, 1, 0), sheet(8, 1, 0.08)));

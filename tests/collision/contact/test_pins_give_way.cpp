@@ -33,9 +33,8 @@ Moved moved(const Vec3& way, const Vec3& way_of_other, bool obstacle) {
   std::vector<int> pins(static_cast<std::size_t>(first.vertex_count));
   std::iota(pins.begin(), pins.end(), 0);
   PairSearch search(world);
-  PathPairs path;
   ResolveReport report;
-  m.pins = pins_give_way(search, world, pins, {}, both.x, m.x1, path, report);
+  m.pins = pins_give_way(search, world, pins, {}, both.x, m.x1, report);
   m.searches = search.tally().searches;
   m.crossing = audit(both.surface(), m.x1, {}).intersecting_pairs();
   return m;
