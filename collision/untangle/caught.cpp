@@ -140,7 +140,7 @@ bool keeps_shape(const Surface& surface, const Points& x0, const Points& x1) {
   return (moved - x1).rowwise().norm().maxCoeff() <= kept_shape * mean_edge(surface, x0);
 }
 
-void switch_off(const ContactWorld& world, int obstacle, const Points& from, const Points& to, const Points& worn,
+void switch_off(const ContactWorld& world, int obstacle, const Points& from, const Points& to, const Points& targets,
                 Exemption& exemption) {
   const Surface& body = *world.obstacles[obstacle];
   const int first = world.first_node[obstacle];
@@ -149,7 +149,7 @@ void switch_off(const ContactWorld& world, int obstacle, const Points& from, con
   if (!x0.allFinite() || !x1.allFinite()) return;
   const std::vector<char>& tangled = exemption.body;
   const bool kept = keeps_shape(body, x0, x1);
-  if (kept && (tangled.empty() || worn.rows() == 0)) return;
+  if (kept && (tangled.empty() || targets.rows() == 0)) return;
   std::vector<char> off(static_cast<std::size_t>(body.vertex_count), 0);
   add_crossing(body, x0, off);
   add_crossing(body, x1, off);
@@ -162,8 +162,8 @@ void switch_off(const ContactWorld& world, int obstacle, const Points& from, con
   const Closing closing(body, x0, x1, faces, motion + edge);
   std::vector<char> caught(static_cast<std::size_t>(cloth.rows()), 0);
   if (!kept) catch_anew(body, x1, closing, cloth, tangled, caught);
-  for (int v = 0; v < static_cast<int>(std::min<std::size_t>(tangled.size(), worn.rows())); ++v)
-    if (tangled[v] && worn.row(v).allFinite()) caught[v] = closing.is_near(row(cloth, v), edge);
+  for (int v = 0; v < static_cast<int>(std::min<std::size_t>(tangled.size(), targets.rows())); ++v)
+    if (tangled[v] && targets.row(v).allFinite()) caught[v] = closing.is_near(row(cloth, v), edge);
   if (std::ranges::find(caught, 1) == caught.end()) return;
   if (exemption.off.empty()) exemption.off.assign(static_cast<std::size_t>(world.node_count), 0);
   for (std::size_t v = 0; v < caught.size(); ++v)

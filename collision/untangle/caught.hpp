@@ -11,10 +11,10 @@ namespace selvedge {
 // the cloth is caught if the face in front of which it lies, moving with the body, takes it through another face that
 // faces the first; through a face of a closed shell only if it ends inside. An obstacle that keeps its shape catches no
 // further vertices: its parts do not pass through each other. A vertex that is tangled with obstacles
-// (`exemption.body`) within an edge of the crossing is caught too if a body wears it. `worn`: skinned targets, one row
-// for each vertex, NaN where no body wears it; or empty. Marks caught vertices in exemption.off, and if there are any
-// also the obstacle's triangles that cross, are buried, or are next to such.
-void switch_off(const ContactWorld&, int obstacle, const Points& from, const Points& to, const Points& worn,
+// (`exemption.body`) within an edge of the crossing is caught too if a body wears it. `targets`: skinned targets, one
+// row for each vertex, NaN where no body wears it; or empty. Marks caught vertices in exemption.off, and if there are
+// any also the obstacle's triangles that cross, are buried, or are next to such.
+void switch_off(const ContactWorld&, int obstacle, const Points& from, const Points& to, const Points& targets,
                 Exemption& exemption);
 
 // The triangles of a surface at x that switch_off can mark: those that cross, are buried, or are next to such.

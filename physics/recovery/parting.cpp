@@ -12,18 +12,18 @@
 namespace selvedge {
 namespace {
 
-std::vector<char> worn_ones(std::vector<char> marked, const Points& worn) {
+std::vector<char> dressed_ones(std::vector<char> marked, const Points& targets) {
   for (std::size_t v = 0; v < marked.size(); ++v)
-    marked[v] = marked[v] && worn.rows() > 0 && worn.row(static_cast<Eigen::Index>(v)).allFinite();
+    marked[v] = marked[v] && targets.rows() > 0 && targets.row(static_cast<Eigen::Index>(v)).allFinite();
   return marked;
 }
 
-// Vertices of the cloth on or inside contours with itself if all worn vertices were at their skinned targets; empty if
-// there are none.
-std::vector<char> crossed_as_worn(const ContactWorld& world, const Points& nodes, const Points& worn) {
+// Vertices of the cloth on or inside contours with itself if all dressed vertices were at their skinned targets; empty
+// if there are none.
+std::vector<char> crossed_at_targets(const ContactWorld& world, const Points& nodes, const Points& targets) {
   Points there = nodes.topRows(world.cloth->vertex_count);
-  for (Eigen::Index v = 0; v < worn.rows(); ++v)
-    if (worn.row(v).allFinite()) there.row(v) = worn.row(v);
+  for (Eigen::Index v = 0; v < targets.rows(); ++v)
+    if (targets.row(v).allFinite()) there.row(v) = targets.row(v);
   return find_exemption(make_contact_world(*world.cloth, {}, true), there).self;
 }
 
@@ -42,17 +42,17 @@ bool find_tangled(const ContactWorld& world, const Points& nodes, const Recovery
 
 // Parts what is still tangled. Cloth that waits for a body to be free of itself is drawn, unless it is tangled with
 // cloth. True if untangling finds no way to part anything.
-bool part_the_rest(const ContactWorld& world, const Eigen::VectorXd& inverse_mass, const WornPlaces& where,
+bool part_the_rest(const ContactWorld& world, const Eigen::VectorXd& inverse_mass, const RecoveryTargets& where,
                    const RecoveryOptions& options, Points& nodes, UntanglingBudget& budget, Parting& parting) {
   std::vector<char> tangled = parting.left.self;
   if (!tangled.empty() && !parting.left.off.empty())
-    tangled = either(std::move(tangled), crossed_as_worn(world, nodes, *where.worn));
+    tangled = either(std::move(tangled), crossed_at_targets(world, nodes, *where.skinned_targets));
   const double reach = options.speed * where.h;
   Recovery recovery = recover(world, inverse_mass, reach, parting.left, parting.drawn, nodes, &budget, options);
   parting.left = std::move(recovery.left);
   parting.gained = std::move(recovery.gained);
   if (!parting.left.off.empty()) {
-    parting.waits = without(worn_ones(std::move(recovery.waits), *where.worn), tangled);
+    parting.waits = without(dressed_ones(std::move(recovery.waits), *where.skinned_targets), tangled);
     parting.drawn = without(std::move(parting.drawn), tangled);
   }
   return recovery.stuck;
@@ -62,19 +62,19 @@ bool part_the_rest(const ContactWorld& world, const Eigen::VectorXd& inverse_mas
 
 // The order is that of docs/recovery.md.
 Parting part_at_start(const ContactWorld& world, SelfCrossings& self_crossings, const Eigen::VectorXd& inverse_mass,
-                      double edge_length, bool clean, const WornPlaces& where, const RecoveryOptions& options,
+                      double edge_length, bool clean, const RecoveryTargets& where, const RecoveryOptions& options,
                       Points& nodes, Points& v, UntanglingBudget& budget) {
-  const Points &wanted = *where.wanted, &worn = *where.worn;
+  const Points &wanted = *where.wanted, &targets = *where.skinned_targets;
   Parting parting;
   // 1. Find what is tangled.
   const bool opens_itself = !clean && nodes.allFinite() && find_tangled(world, nodes, options, parting.left);
   // 2. Let through cloth that is caught where a body crosses itself.
-  self_crossings.switch_off(nodes, wanted, worn, parting.left);
+  self_crossings.switch_off(nodes, wanted, targets, parting.left);
   // 3. Put on again cloth that a limb has gone through, or that has sunken in.
   std::vector<char> pierced, sunken;
   if (!opens_itself) {
-    pierced = pierced_vertices(world, parting.left, nodes, wanted, worn, options.astray * edge_length, options);
-    sunken = sunken_vertices(world, parting.left, worn, options);
+    pierced = pierced_vertices(world, parting.left, nodes, wanted, targets, options.astray * edge_length, options);
+    sunken = sunken_vertices(world, parting.left, targets, options);
   }
   const bool placed = put_on(world, either(sunken, pierced), where, nodes, v, &budget, options) == PutOn::done;
   if (placed) {
@@ -82,7 +82,7 @@ Parting part_at_start(const ContactWorld& world, SelfCrossings& self_crossings, 
     pierced.clear();
   }
   // 4. Without a place, draw it to its skinned targets; likewise cloth where a body crosses itself.
-  parting.drawn = either(drawn_vertices(world, parting.left, worn, nodes, edge_length), pierced);
+  parting.drawn = either(drawn_vertices(world, parting.left, targets, nodes, edge_length), pierced);
   // 5. Part other tangled cloth.
   const bool stuck = parting.left.cloth() && !opens_itself &&
                      part_the_rest(world, inverse_mass, where, options, nodes, budget, parting);

@@ -18,7 +18,7 @@ struct Parting {
 // Parts a tangled start, in the order of docs/recovery.md. edge_length: the cloth's mean [m]. `clean`: the cloth is not
 // tangled at the start. Overwrites the cloth's rows of `nodes` (at the start of the step) and velocities v.
 Parting part_at_start(const ContactWorld&, SelfCrossings&, const Eigen::VectorXd& inverse_mass, double edge_length,
-                      bool clean, const WornPlaces&, const RecoveryOptions&, Points& nodes, Points& v,
+                      bool clean, const RecoveryTargets&, const RecoveryOptions&, Points& nodes, Points& v,
                       UntanglingBudget&);
 
 }  // namespace selvedge

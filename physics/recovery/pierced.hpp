@@ -19,13 +19,13 @@ namespace selvedge {
 // wears are left out, and those that an obstacle would go through at their targets too. Empty also where an obstacle
 // crosses itself. `exemption`: what is tangled and switched off at `nodes`. `wanted`: obstacles at the step's end.
 std::vector<char> pierced_vertices(const ContactWorld&, const Exemption& exemption, const Points& nodes,
-                                   const Points& wanted, const Points& worn, double astray,
+                                   const Points& wanted, const Points& targets, double astray,
                                    const RecoveryOptions& = {});
 
 // 1 for each vertex of a sunken component of the cloth; empty if there is none: a small part of its vertices is tangled
 // with an obstacle that does not cross itself, as may be left after cloth was drawn. All of it may be put on again
 // (put_on.hpp).
-std::vector<char> sunken_vertices(const ContactWorld&, const Exemption&, const Points& worn,
+std::vector<char> sunken_vertices(const ContactWorld&, const Exemption&, const Points& targets,
                                   const RecoveryOptions& = {});
 
 }  // namespace selvedge

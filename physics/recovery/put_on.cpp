@@ -29,7 +29,7 @@ Points ways_along(const ContactWorld& world, const Points& at, const Points& pla
 
 // Places within `farthest`, the least tangled first: the skinned targets, and where the cloth was clean last, moved
 // along with obstacles since.
-std::vector<Place> places_for(const ContactWorld& world, const std::vector<int>& vertices, const WornPlaces& where,
+std::vector<Place> places_for(const ContactWorld& world, const std::vector<int>& vertices, const RecoveryTargets& where,
                               const Points& nodes, double farthest) {
   std::vector<Place> places;
   const auto add = [&](const Points& there, Points ways) {
@@ -39,9 +39,9 @@ std::vector<Place> places_for(const ContactWorld& world, const std::vector<int>&
     place.pairs = intersecting_pairs(find_segments(WorldSheets(world, place.nodes).views));
     places.push_back(std::move(place));
   };
-  const Points &wanted = *where.wanted, worn = (*where.worn)(vertices, Eigen::all);
-  const Points ways = ways_along(world, wanted, worn, nodes, wanted);
-  add(worn - ways, ways);
+  const Points &wanted = *where.wanted, targets = (*where.skinned_targets)(vertices, Eigen::all);
+  const Points ways = ways_along(world, wanted, targets, nodes, wanted);
+  add(targets - ways, ways);
   if (where.last_clean.rows() > 0) {
     const Points carried = carried_along(world, where.last_clean, nodes, where.thickness)(vertices, Eigen::all);
     add(carried, ways_along(world, nodes, carried, nodes, wanted));
@@ -69,7 +69,7 @@ bool is_tangled(const Exemption& there, const Exemption& before, const std::vect
 
 }  // namespace
 
-PutOn put_on(const ContactWorld& world, const std::vector<char>& marked, const WornPlaces& where, Points& nodes,
+PutOn put_on(const ContactWorld& world, const std::vector<char>& marked, const RecoveryTargets& where, Points& nodes,
              Points& v, UntanglingBudget* budget, const RecoveryOptions& limits) {
   std::vector<int> vertices;
   for (int i = 0; i < static_cast<int>(marked.size()); ++i)

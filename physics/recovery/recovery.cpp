@@ -201,13 +201,13 @@ bool SelfCrossings::crosses(int obstacle, const Points& nodes, Known& known) {
   return known.crosses;
 }
 
-void SelfCrossings::switch_off(const Points& from, const Points& to, const Points& worn, Exemption& exemption) {
+void SelfCrossings::switch_off(const Points& from, const Points& to, const Points& targets, Exemption& exemption) {
   for (std::size_t k = 0; k < known_.size(); ++k) {
     const int obstacle = static_cast<int>(k);
     auto& [start, end] = known_[k];
     std::swap(start, end);  // a step begins where the last one ended
     const bool before = crosses(obstacle, from, start), after = crosses(obstacle, to, end);
-    if (before || after) selvedge::switch_off(world_, obstacle, from, to, worn, exemption);
+    if (before || after) selvedge::switch_off(world_, obstacle, from, to, targets, exemption);
   }
 }
 

@@ -38,7 +38,7 @@ Recovery recover(const ContactWorld&, const Eigen::VectorXd& inverse_mass, doubl
 class SelfCrossings {
  public:
   explicit SelfCrossings(const ContactWorld& world);  // keeps a reference
-  void switch_off(const Points& from, const Points& to, const Points& worn, Exemption&);
+  void switch_off(const Points& from, const Points& to, const Points& targets, Exemption&);
 
  private:
   struct Known {

@@ -25,7 +25,7 @@ struct RecoveryOptions {
   // A shorter displacement counts as none [mean edges].
   static constexpr double negligible_move = 1e-6;
 
-  // Worn cloth that a limb has gone through is put on again, or drawn to its skinned targets.
+  // Dressed cloth that a limb has gone through is put on again, or drawn to its skinned targets.
   // Untangling of cloth that is put on takes at most this many passes, and crossing pairs times passes stay below the
   // second number.
   static constexpr int placing_passes = 60, max_placing_pair_passes = 100'000;

@@ -62,7 +62,7 @@ AddedTerm RecoveringStepper::added_term(const Parting& parting, const Drive& dri
   const auto draw = [&](const std::vector<char>& marked, double stiffness) {
     if (marked.empty()) return;
     added = sum_of(std::move(added),
-                   drawing_term(marked, masses_, x0, drive.worn, options_.carrying_speed * h, h, stiffness));
+                   drawing_term(marked, masses_, x0, drive.skinned_targets, options_.carrying_speed * h, h, stiffness));
   };
   draw(parting.drawn, parting.left.off.empty() ? options_.carrying_stiffness : 1);
   draw(parting.waits, options_.crossing_stiffness);
@@ -86,7 +86,8 @@ StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive,
   Stopwatch watch;
   const Points wanted = gather_nodes(from.x, drive.obstacles);
   const LastClean before = from.clean ? LastClean{} : last_clean(from);
-  const WornPlaces where{&wanted, &drive.worn, gather_nodes(before.x, before.obstacles), scene_.contact.thickness, dt};
+  const RecoveryTargets where{&wanted, &drive.skinned_targets, gather_nodes(before.x, before.obstacles),
+                              scene_.contact.thickness, dt};
   Points nodes = gather_nodes(from.x, from.obstacles), v = from.v;
   UntanglingBudget budget{options_.untangling_passes, &extras.stop};
   const Parting parting = part_at_start(world_, self_crossings_, inverse_mass_, edge_length_, from.clean, where,
@@ -131,7 +132,7 @@ StepReport RecoveringStepper::step(const State& from, const Drive& drive, double
   StepReport report = bounded_step(traits().name, extras.stop, [&] {
     return has_contact_ ? step_parted(from, drive, dt, to, extras) : inner_->step(from, drive, dt, to, extras);
   });
-  if (report.status == StepStatus::accepted && drive.worn.rows() > 0)
+  if (report.status == StepStatus::accepted && drive.skinned_targets.rows() > 0)
     remember(from.clean ? LastClean{from.x, from.obstacles} : last_clean(from), to);
   return report;
 }

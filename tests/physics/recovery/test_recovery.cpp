@@ -162,12 +162,12 @@ TEST_CASE("recovery: cloth between parts that pass through each other is caught,
   CHECK_FALSE(nothing.any());
 }
 
-TEST_CASE("recovery: all that is tangled with a body that crosses itself is drawn to where it is worn", "[recovery]") {
+TEST_CASE("recovery: all that is tangled with a body that crosses itself is drawn to its targets", "[recovery]") {
   World w = make_world(sheet(12, 0.4, 0));
   add_obstacle(w, testing::join(block({-0.05, 0, 0}, 0.06), block({0.05, 0.011, 0.013}, 0.06)));
   w.drive.acceleration.setZero();
-  w.drive.worn = w.state.x;
-  w.drive.worn.col(2).array() += 0.03;
+  w.drive.skinned_targets = w.state.x;
+  w.drive.skinned_targets.col(2).array() += 0.03;
   const ContactWorld world = with_its_obstacle(w);
   const Exemption tangled = find_exemption(world, gather_nodes(w.state.x, w.state.obstacles));
   REQUIRE(std::count(tangled.body.begin(), tangled.body.end(), 1) > 20);
@@ -177,10 +177,10 @@ TEST_CASE("recovery: all that is tangled with a body that crosses itself is draw
   REQUIRE(report.status == StepStatus::accepted);
   CHECK(report.untangling == 0);  // it waits
   for (int v = 0; v < to.x.rows(); ++v)
-    if (tangled.body[v]) CHECK((to.x.row(v) - w.drive.worn.row(v)).norm() < 0.01);
+    if (tangled.body[v]) CHECK((to.x.row(v) - w.drive.skinned_targets.row(v)).norm() < 0.01);
 }
 
-// Two layers over blocks that overlap; the upper one dips through the lower one there, and is worn like that.
+// Two layers over blocks that overlap; the upper one dips through the lower one there, and so do its targets.
 World layers_at_a_crossing() {
   testing::Sheet dipped = sheet(16, 0.4, 0.015);
   for (int v = 0; v < dipped.x.rows(); ++v)
@@ -188,7 +188,7 @@ World layers_at_a_crossing() {
   World w = make_world(testing::join(sheet(12, 0.4, 0), dipped));
   add_obstacle(w, testing::join(block({-0.05, 0, 0}, 0.06), block({0.05, 0.011, 0.013}, 0.06)));
   w.drive.acceleration.setZero();
-  w.drive.worn = w.state.x;
+  w.drive.skinned_targets = w.state.x;
   return w;
 }
 

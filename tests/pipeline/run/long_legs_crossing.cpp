@@ -50,7 +50,7 @@ TEST_CASE("legs that go through each other in wide trousers: what they carry nei
     REQUIRE(report.status == StepStatus::accepted);
     Exemption exemption;
     crossings.switch_off(gather_nodes(state.x, {state.obstacles[0]}), gather_nodes(to.x, {to.obstacles[0]}),
-                         setup.drive_at(state.time + dt).worn, exemption);
+                         setup.drive_at(state.time + dt).skinned_targets, exemption);
     const bool crosses = !exemption.off.empty();
     if (crosses && to.frame < 103) {
       ++frames;

@@ -1,4 +1,4 @@
-#include "pipeline/training/worn_frame.hpp"
+#include "pipeline/training/skinned_frame.hpp"
 
 #include <algorithm>
 
@@ -44,7 +44,7 @@ const TissueDisplacements& tissue_displacements(TrainingWorld& world, TrainingBo
 
 }  // namespace
 
-WornFrame worn_frame(TrainingWorld& world, int wear, int body, int clip, int frame) {
+SkinnedFrame skinned_frame(TrainingWorld& world, int wear, int body, int clip, int frame) {
   TrainingBody& who = world.bodies[static_cast<std::size_t>(body)];
   const TrainingPerson& person = world.people[static_cast<std::size_t>(who.person)];
   const Clip& motion = who.clips[static_cast<std::size_t>(clip)].motion;
@@ -61,7 +61,7 @@ WornFrame worn_frame(TrainingWorld& world, int wear, int body, int clip, int fra
     skinned += moves;
   }
   hold_together(person.joined, skinned);
-  WornFrame result;
+  SkinnedFrame result;
   result.body = skinned.cast<float>();
   const TrainingWear& what = world.wear[static_cast<std::size_t>(wear)];
   Eigen::Index rows = 0;
