@@ -11,14 +11,14 @@ namespace {
 
 void add_near(const ContactWorld& world, const std::vector<char>& switched_off, const Points& nodes, double reach,
               std::vector<char>& drawn) {
-  std::vector<int> off;
+  std::vector<int> nodes_off;
   for (int node = world.cloth->vertex_count; node < world.node_count; ++node)
-    if (switched_off[node]) off.push_back(node);
-  const CellGrid grid(nodes(off, Eigen::all), reach);
+    if (switched_off[node]) nodes_off.push_back(node);
+  const CellGrid grid(nodes(nodes_off, Eigen::all), reach);
   for (int v = 0; v < world.cloth->vertex_count; ++v) {
     if (!nodes.row(v).allFinite()) continue;
     grid.for_each_near(row(nodes, v), reach, [&](int i) {
-      if ((nodes.row(off[static_cast<std::size_t>(i)]) - nodes.row(v)).norm() < reach) drawn[v] = 1;
+      if ((nodes.row(nodes_off[static_cast<std::size_t>(i)]) - nodes.row(v)).norm() < reach) drawn[v] = 1;
     });
   }
 }
@@ -27,9 +27,9 @@ void add_near(const ContactWorld& world, const std::vector<char>& switched_off, 
 
 std::vector<char> drawn_vertices(const ContactWorld& world, const Exemption& exemption, const Points& targets,
                                  const Points& nodes, double reach) {
-  if (targets.rows() == 0 || exemption.off.empty()) return {};
+  if (targets.rows() == 0 || exemption.switched_off.empty()) return {};
   std::vector<char> drawn(static_cast<std::size_t>(targets.rows()), 0);
-  add_near(world, exemption.off, nodes, reach, drawn);
+  add_near(world, exemption.switched_off, nodes, reach, drawn);
   for (std::size_t v = 0; v < drawn.size(); ++v)
     drawn[v] = drawn[v] && targets.row(static_cast<Eigen::Index>(v)).allFinite();
   return std::ranges::find(drawn, 1) == drawn.end() ? std::vector<char>() : drawn;

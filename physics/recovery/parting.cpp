@@ -45,13 +45,13 @@ bool find_tangled(const ContactWorld& world, const Points& nodes, const Recovery
 bool part_the_rest(const ContactWorld& world, const Eigen::VectorXd& inverse_mass, const RecoveryTargets& where,
                    const RecoveryOptions& options, Points& nodes, UntanglingBudget& budget, Parting& parting) {
   std::vector<char> tangled = parting.left.self;
-  if (!tangled.empty() && !parting.left.off.empty())
+  if (!tangled.empty() && !parting.left.switched_off.empty())
     tangled = either(std::move(tangled), crossed_at_targets(world, nodes, *where.skinned_targets));
   const double reach = options.speed * where.h;
   Recovery recovery = recover(world, inverse_mass, reach, parting.left, parting.drawn, nodes, &budget, options);
   parting.left = std::move(recovery.left);
   parting.gained = std::move(recovery.gained);
-  if (!parting.left.off.empty()) {
+  if (!parting.left.switched_off.empty()) {
     parting.waits = without(dressed_ones(std::move(recovery.waits), *where.skinned_targets), tangled);
     parting.drawn = without(std::move(parting.drawn), tangled);
   }
@@ -84,7 +84,7 @@ Parting part_at_start(const ContactWorld& world, SelfCrossings& self_crossings, 
   // 4. Without a place, draw it to its skinned targets; likewise cloth where a body crosses itself.
   parting.drawn = either(drawn_vertices(world, parting.left, targets, nodes, edge_length), pierced);
   // 5. Part other tangled cloth.
-  const bool stuck = parting.left.cloth() && !opens_itself &&
+  const bool stuck = parting.left.tangled() && !opens_itself &&
                      part_the_rest(world, inverse_mass, where, options, nodes, budget, parting);
   // 6. If there is no way out, draw sunken cloth too.
   if (stuck && !placed) pierced = either(std::move(pierced), sunken);

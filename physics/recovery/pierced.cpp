@@ -57,7 +57,7 @@ std::vector<char> far_components(const ContactWorld& world, const Exemption& exe
 }
 
 bool applies(const Exemption& exemption, const Points& targets) {
-  return !exemption.body.empty() && exemption.off.empty() && targets.rows() > 0;
+  return !exemption.body.empty() && exemption.switched_off.empty() && targets.rows() > 0;
 }
 
 // Removes components with a vertex that no body wears, which has no target.

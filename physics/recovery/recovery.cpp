@@ -26,8 +26,8 @@ std::vector<char> tangled_at(const ContactWorld& world, const Points& nodes, con
 // 1 for tangled cloth that is connected to drawn cloth, or to a crossing with a switched-off part of a body; empty if
 // there is none.
 std::vector<char> waiting(const ContactWorld& world, const Points& nodes, const std::vector<char>& tangled,
-                          const std::vector<char>& off, const std::vector<char>& drawn) {
-  if ((off.empty() && drawn.empty()) || tangled.empty()) return {};
+                          const std::vector<char>& switched_off, const std::vector<char>& drawn) {
+  if ((switched_off.empty() && drawn.empty()) || tangled.empty()) return {};
   const WorldSheets sheets(world, nodes);
   std::vector<char> waits(tangled.size(), 0);
   std::vector<int> front;
@@ -39,11 +39,11 @@ std::vector<char> waiting(const ContactWorld& world, const Points& nodes, const 
   for (int v = 0; v < static_cast<int>(drawn.size()); ++v)
     if (drawn[v]) add(v);
   for (const Segment& segment : find_segments(sheets.views).segments) {
-    if (off.empty()) break;
+    if (switched_off.empty()) break;
     if ((segment.sheet[0] == 0) == (segment.sheet[1] == 0)) continue;
     const int side = segment.sheet[0] == 0 ? 0 : 1, obstacle = segment.sheet[1 - side] - 1;
     const auto body = world.obstacles[obstacle]->triangles.row(segment.triangle[1 - side]);
-    if (std::any_of(body.begin(), body.end(), [&](int v) { return off[world.first_node[obstacle] + v] != 0; }))
+    if (std::any_of(body.begin(), body.end(), [&](int v) { return switched_off[world.first_node[obstacle] + v] != 0; }))
       for (const int v : world.cloth->triangles.row(segment.triangle[side])) add(v);
   }
   while (!front.empty()) {
@@ -146,9 +146,9 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
                  const std::vector<char>& drawn, Points& nodes, UntanglingBudget* budget,
                  const RecoveryOptions& limits) {
   const int n = world.cloth->vertex_count;
-  const std::vector<char> waits = waiting(world, nodes, before.body, before.off, drawn);
+  const std::vector<char> waits = waiting(world, nodes, before.body, before.switched_off, drawn);
   Recovery recovery{before, {}, false, waits};
-  if (!before.cloth() || none_is_left(before, waits)) return recovery;
+  if (!before.tangled() || none_is_left(before, waits)) return recovery;
   UntanglingBudget ample;
   const WorldSheets sheets(world, nodes);
   const Points& from = sheets.positions[0];
@@ -178,7 +178,7 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
     if (before.self.empty() ? !left.self.empty() : pairs_within_cloth(world, moved) > pairs) continue;
     nodes = std::move(moved);
     recovery = {std::move(left), std::move(gained), parted.moved == 0, waits};
-    recovery.left.off = before.off;
+    recovery.left.switched_off = before.switched_off;
     break;
   }
   for (Separation& gained : recovery.gained) {

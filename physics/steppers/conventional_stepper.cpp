@@ -375,7 +375,7 @@ bool ConventionalStepper::advance(StepWork& work, SubstepState& now, Stretch who
 // Sets what contact leaves alone, and lists the pairs near the start.
 void ConventionalStepper::begin_contact(StepWork& work, const Points& nodes) {
   const Timed timed(work.report.seconds.broad_phase);
-  work.report.collision.left_alone = work.left_alone.cloth_vertices();
+  work.report.collision.left_alone = work.left_alone.tangled_vertices();
   contact_.leave_alone(&work.left_alone);
   update_pairs(contact_.search, contact_.options.thickness, nodes, nodes, contact_.path);
 }

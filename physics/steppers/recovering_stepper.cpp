@@ -64,13 +64,14 @@ AddedTerm RecoveringStepper::added_term(const Parting& parting, const Drive& dri
     added = sum_of(std::move(added),
                    drawing_term(marked, masses_, x0, drive.skinned_targets, options_.carrying_speed * h, h, stiffness));
   };
-  draw(parting.drawn, parting.left.off.empty() ? options_.carrying_stiffness : 1);
+  draw(parting.drawn, parting.left.switched_off.empty() ? options_.carrying_stiffness : 1);
   draw(parting.waits, options_.crossing_stiffness);
   return added;
 }
 
 Exemption both_of(Exemption a, const Exemption& b) {
-  return {either(std::move(a.self), b.self), either(std::move(a.body), b.body), either(std::move(a.off), b.off)};
+  return {either(std::move(a.self), b.self), either(std::move(a.body), b.body),
+          either(std::move(a.switched_off), b.switched_off)};
 }
 
 StepReport stopped_report(const std::string& by) {
@@ -96,7 +97,7 @@ StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive,
     report.seconds.response += parted;
     report.untangling += budget.used;
     report.out_of_untangling = report.out_of_untangling || budget.ran_out;
-    if (!parting.left.off.empty()) report.switched_off = switched_off(world_, parting.left);
+    if (!parting.left.switched_off.empty()) report.switched_off = switched_off_counts(world_, parting.left);
     return report;
   };
   if (stopped(extras.stop)) return add_parting(stopped_report(traits().name));
@@ -116,7 +117,7 @@ StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive,
     };
   const StepReport report = add_parting(inner_->step(start, drive, dt, to, all));
   // Cloth that was drawn stiffly loses its velocity; otherwise it would overshoot its targets.
-  if (report.status == StepStatus::accepted && parting.left.off.empty())
+  if (report.status == StepStatus::accepted && parting.left.switched_off.empty())
     for (std::size_t k = 0; k < parting.drawn.size(); ++k)
       if (parting.drawn[k]) to.v.row(static_cast<Eigen::Index>(k)).setZero();
   return report;

@@ -55,7 +55,7 @@ struct OwnCrossing {
     if (found <= pairs) return;
     pairs = found;
     worst_frame = frame;
-    triangles = static_cast<int>(may_be_off(surface, x).size());
+    triangles = static_cast<int>(may_be_switched_off(surface, x).size());
   }
 };
 

@@ -24,9 +24,9 @@ struct OverPlate {
     testing::add_obstacle(w, sheet(8, 0.2, 0));
     world = make_contact_world(w.scene.surface, {&w.scene.obstacles[0].surface}, true);
     nodes = gather_nodes(w.state.x, w.state.obstacles);
-    exemption.off.assign(static_cast<std::size_t>(world.node_count), 0);
+    exemption.switched_off.assign(static_cast<std::size_t>(world.node_count), 0);
     for (int node = w.scene.surface.vertex_count; node < world.node_count; ++node)
-      exemption.off[node] = nodes(node, 0) > 0;
+      exemption.switched_off[node] = nodes(node, 0) > 0;
   }
 };
 
@@ -45,7 +45,7 @@ TEST_CASE("drawn: what is near a part that is switched off, and dressed, is draw
   for (int v = 0; v < c.w.state.x.rows(); ++v) {
     double nearest = 1;
     for (int node = c.w.scene.surface.vertex_count; node < c.world.node_count; ++node)
-      if (c.exemption.off[node]) nearest = std::min(nearest, (c.nodes.row(v) - c.nodes.row(node)).norm());
+      if (c.exemption.switched_off[node]) nearest = std::min(nearest, (c.nodes.row(v) - c.nodes.row(node)).norm());
     CHECK((drawn[v] != 0) == (nearest < reach && v != undressed && v != undefined));
     count += drawn[v];
   }

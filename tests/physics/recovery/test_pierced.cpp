@@ -88,7 +88,7 @@ TEST_CASE("pierced: nothing that can be pushed out, or is pierced at its targets
   CHECK(undressed.pierced().empty());
   const Skewer crossing(spindle(0.05, 0.3));
   Exemption exemption = find_exemption(crossing.world, crossing.nodes);
-  exemption.off.assign(static_cast<std::size_t>(crossing.world.node_count), 0);
+  exemption.switched_off.assign(static_cast<std::size_t>(crossing.world.node_count), 0);
   CHECK(pierced_vertices(crossing.world, exemption, crossing.nodes, crossing.nodes, crossing.w.drive.skinned_targets, 0)
             .empty());
 }
@@ -101,7 +101,7 @@ TEST_CASE("pierced: cloth that is tangled far from its targets, until it is near
   CHECK(std::count(marked.begin() + 17 * 17, marked.end(), 1) == 0);  // as far, and not tangled
   CHECK(bump.pierced(0.55).empty());
   const Skewer pinprick(spindle(0.02, 0.03));
-  CHECK(find_exemption(pinprick.world, pinprick.nodes).cloth_vertices() > 0);
+  CHECK(find_exemption(pinprick.world, pinprick.nodes).tangled_vertices() > 0);
   CHECK(pinprick.pierced(0.1).empty());  // a few vertices: the rest of the cloth is where it should be
 }
 
@@ -209,7 +209,7 @@ TEST_CASE("put on: a place that is in the body is untangled, and one that cannot
   targets.col(1).array() -= 0.21;  // just in the spindle's tip
   const auto put = [&] { return put_on(skewer.world, marked, skewer.where(skewer.nodes, targets), nodes, v); };
   CHECK(put() == PutOn::done);
-  CHECK_FALSE(find_exemption(skewer.world, nodes).cloth());
+  CHECK_FALSE(find_exemption(skewer.world, nodes).tangled());
   targets.col(1).array() -= 0.31;  // about its middle
   nodes = skewer.nodes;
   CHECK(put() == PutOn::no_place);
@@ -232,7 +232,7 @@ TEST_CASE("put on: another layer that is in the way makes way, and keeps its vel
   const Points before = nodes;
   const Points wanted = nodes;
   REQUIRE(put_on(world, marked, {&wanted, &targets, {}, 0.002, 0.1}, nodes, v) == PutOn::done);
-  CHECK_FALSE(find_exemption(world, nodes).cloth());
+  CHECK_FALSE(find_exemption(world, nodes).tangled());
   CHECK((nodes - before).middleRows(sheet, 25).cwiseAbs().maxCoeff() > 1e-3);
   CHECK((v.bottomRows(25).array() == 0.3).all());
   CHECK(v.topRows(sheet).isZero());
@@ -255,7 +255,7 @@ TEST_CASE("put on: where cloth was clean last is a place as well, carried to whe
   CHECK(nodes == skewer.nodes);
   last_clean.topRows(sheet).col(1).array() -= 0.13;  // above the spindle
   REQUIRE(put() == PutOn::done);
-  CHECK_FALSE(find_exemption(skewer.world, nodes).cloth());
+  CHECK_FALSE(find_exemption(skewer.world, nodes).tangled());
   CHECK((nodes.topRows(sheet).rowwise() + elsewhere - last_clean.topRows(sheet)).cwiseAbs().maxCoeff() < 1e-12);
   CHECK((v.topRows(sheet).rowwise() - 10 * way).cwiseAbs().maxCoeff() < 1e-12);
   last_clean.resize(0, 3);

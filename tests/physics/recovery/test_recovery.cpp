@@ -136,12 +136,12 @@ TEST_CASE("recovery: cloth between parts that pass through each other is caught,
   Exemption exemption;
   crossings.switch_off(nodes, together, {}, exemption);
   const auto count = upright.x.rows();
-  REQUIRE(exemption.off.size() == static_cast<std::size_t>(nodes.rows()));
-  CHECK(std::count(exemption.off.begin(), exemption.off.begin() + count, 1) == count);
-  CHECK(std::count(exemption.off.begin() + count, exemption.off.begin() + cloths.x.rows(), 1) == 0);
-  const std::vector<int> counted = switched_off(world, exemption);
+  REQUIRE(exemption.switched_off.size() == static_cast<std::size_t>(nodes.rows()));
+  CHECK(std::count(exemption.switched_off.begin(), exemption.switched_off.begin() + count, 1) == count);
+  CHECK(std::count(exemption.switched_off.begin() + count, exemption.switched_off.begin() + cloths.x.rows(), 1) == 0);
+  const std::vector<int> counted = switched_off_counts(world, exemption);
   CHECK(counted[0] > 0);
-  CHECK(may_be_off(w.scene.obstacles[0].surface, together.bottomRows(16)).size() >=
+  CHECK(may_be_switched_off(w.scene.obstacles[0].surface, together.bottomRows(16)).size() >=
         static_cast<std::size_t>(counted[0]));
   w.drive.obstacles = {together.bottomRows(16)};
   State to;
@@ -348,12 +348,12 @@ TEST_CASE("recovery: left alone is what is tangled with cloth wholly, and with a
   exemption.body.assign(9, 0);
   exemption.body[4] = 1;
   CHECK(exemption.leaves_alone(world, {4, 9, 10, 11}));
-  exemption.off.assign(world.node_count, 0);
-  exemption.off[9] = exemption.off[10] = 1;
+  exemption.switched_off.assign(world.node_count, 0);
+  exemption.switched_off[9] = exemption.switched_off[10] = 1;
   CHECK_FALSE(exemption.leaves_alone(world, {0, 9, 10, 11}));
-  exemption.off[11] = 1;
+  exemption.switched_off[11] = 1;
   CHECK_FALSE(exemption.leaves_alone(world, {0, 9, 10, 11}));  // it comes from outside
-  exemption.off[0] = 1;                                        // it is caught
+  exemption.switched_off[0] = 1;                               // it is caught
   CHECK(exemption.leaves_alone(world, {0, 9, 10, 11}));
   CHECK_FALSE(exemption.leaves_alone(world, {0, 9, 10, 12}));
 }

@@ -27,7 +27,7 @@ class AskedStepper final : public Stepper {
   const StepperTraits& traits() const override { return traits_; }
   StepReport step(const State& from, const Drive& drive, double h, State& to, const StepExtras& extras) override {
     asked_ = {from, extras.guess != nullptr, bool(extras.added),
-              extras.left_alone ? extras.left_alone->cloth_vertices() : 0};
+              extras.left_alone ? extras.left_alone->tangled_vertices() : 0};
     StepReport report;
     finish_step(from, drive, h, {from.x, from.v, drive.obstacles}, to, report);
     return report;
