@@ -33,26 +33,26 @@ std::vector<char> without(std::vector<char> marked, const std::vector<char>& tan
   return marked;
 }
 
-// Finds what is tangled. True if the cloth is hopeless: its own stiffness has to open it.
+// Finds what is tangled. True if the cloth is too tangled to be parted: its own stiffness has to open it.
 bool find_tangled(const ContactWorld& world, const Points& nodes, const RecoveryOptions& options, Exemption& tangled) {
-  const std::optional<Exemption> untouched = hopeless(world, nodes, options);
+  const std::optional<Exemption> untouched = too_tangled(world, nodes, options);
   tangled = untouched ? *untouched : find_exemption(world, nodes);
   return untouched.has_value();
 }
 
-// Parts what is still tangled. Cloth that waits for a body to be free of itself is drawn, unless it is tangled with
-// cloth. True if untangling finds no way to part anything.
+// Parts what is still tangled. Trapped cloth is drawn, unless it is tangled with cloth. True if untangling finds no way
+// to part anything.
 bool part_the_rest(const ContactWorld& world, const Eigen::VectorXd& inverse_mass, const RecoveryTargets& where,
                    const RecoveryOptions& options, Points& nodes, UntanglingBudget& budget, Parting& parting) {
-  std::vector<char> tangled = parting.left.self;
-  if (!tangled.empty() && !parting.left.switched_off.empty())
+  std::vector<char> tangled = parting.left_alone.self;
+  if (!tangled.empty() && !parting.left_alone.switched_off.empty())
     tangled = either(std::move(tangled), crossed_at_targets(world, nodes, *where.skinned_targets));
   const double reach = options.speed * where.h;
-  Recovery recovery = recover(world, inverse_mass, reach, parting.left, parting.drawn, nodes, &budget, options);
-  parting.left = std::move(recovery.left);
-  parting.gained = std::move(recovery.gained);
-  if (!parting.left.switched_off.empty()) {
-    parting.waits = without(dressed_ones(std::move(recovery.waits), *where.skinned_targets), tangled);
+  Recovery recovery = recover(world, inverse_mass, reach, parting.left_alone, parting.drawn, nodes, &budget, options);
+  parting.left_alone = std::move(recovery.left_alone);
+  parting.separations = std::move(recovery.separations);
+  if (!parting.left_alone.switched_off.empty()) {
+    parting.trapped = without(dressed_ones(std::move(recovery.trapped), *where.skinned_targets), tangled);
     parting.drawn = without(std::move(parting.drawn), tangled);
   }
   return recovery.stuck;
@@ -67,29 +67,30 @@ Parting part_at_start(const ContactWorld& world, SelfCrossings& self_crossings, 
   const Points &wanted = *where.wanted, &targets = *where.skinned_targets;
   Parting parting;
   // 1. Find what is tangled.
-  const bool opens_itself = !clean && nodes.allFinite() && find_tangled(world, nodes, options, parting.left);
+  const bool opens_itself = !clean && nodes.allFinite() && find_tangled(world, nodes, options, parting.left_alone);
   // 2. Let through cloth that is caught where a body crosses itself.
-  self_crossings.switch_off(nodes, wanted, targets, parting.left);
+  self_crossings.switch_off(nodes, wanted, targets, parting.left_alone);
   // 3. Put on again cloth that a limb has gone through, or that has sunken in.
   std::vector<char> pierced, sunken;
   if (!opens_itself) {
-    pierced = pierced_vertices(world, parting.left, nodes, wanted, targets, options.astray * edge_length, options);
-    sunken = sunken_vertices(world, parting.left, targets, options);
+    pierced = pierced_vertices(world, parting.left_alone, nodes, wanted, targets,
+                               options.pierced_distance * edge_length, options);
+    sunken = sunken_vertices(world, parting.left_alone, targets, options);
   }
   const bool placed = put_on(world, either(sunken, pierced), where, nodes, v, &budget, options) == PutOn::done;
   if (placed) {
-    parting.left = find_exemption(world, nodes);
+    parting.left_alone = find_exemption(world, nodes);
     pierced.clear();
   }
   // 4. Without a place, draw it to its skinned targets; likewise cloth where a body crosses itself.
-  parting.drawn = either(drawn_vertices(world, parting.left, targets, nodes, edge_length), pierced);
+  parting.drawn = either(drawn_vertices(world, parting.left_alone, targets, nodes, edge_length), pierced);
   // 5. Part other tangled cloth.
-  const bool stuck = parting.left.tangled() && !opens_itself &&
+  const bool stuck = parting.left_alone.tangled() && !opens_itself &&
                      part_the_rest(world, inverse_mass, where, options, nodes, budget, parting);
   // 6. If there is no way out, draw sunken cloth too.
   if (stuck && !placed) pierced = either(std::move(pierced), sunken);
   parting.drawn = either(std::move(parting.drawn), pierced);
-  parting.left.body = either(std::move(parting.left.body), pierced);
+  parting.left_alone.body = either(std::move(parting.left_alone.body), pierced);
   return parting;
 }
 

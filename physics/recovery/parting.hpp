@@ -9,10 +9,10 @@ namespace selvedge {
 
 // What a step of cloth that starts tangled has to know.
 struct Parting {
-  Exemption left;                  // what is still tangled or switched off: contact leaves it alone
-  std::vector<Separation> gained;  // separations that the solve must keep
-  std::vector<char> drawn;         // 1 for vertices that are drawn to their skinned targets (drawn.hpp), or empty
-  std::vector<char> waits;  // 1 for tangled vertices where an obstacle crosses itself, drawn more stiffly, or empty
+  Exemption left_alone;                 // what is still tangled or switched off: contact leaves it alone
+  std::vector<Separation> separations;  // that the solve must keep
+  std::vector<char> drawn;              // 1 for vertices that are drawn to their skinned targets (drawn.hpp), or empty
+  std::vector<char> trapped;            // 1 for trapped vertices (recovery.hpp), which are drawn more stiffly, or empty
 };
 
 // Parts a tangled start, in the order of docs/recovery.md. edge_length: the cloth's mean [m]. `clean`: the cloth is not

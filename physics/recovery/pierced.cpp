@@ -41,15 +41,16 @@ std::vector<char> pierced_components(const ContactWorld& world, const Points& no
   return pierced;
 }
 
-// Components with more than `part` of their vertices tangled with obstacles and farther than `astray` from targets.
+// Components with more than `part` of their vertices tangled with obstacles and farther than `min_distance` from
+// targets.
 std::vector<char> far_components(const ContactWorld& world, const Exemption& exemption, const Points& nodes,
-                                 const Points& targets, double part, double astray) {
+                                 const Points& targets, double part, double min_distance) {
   const auto components = static_cast<std::size_t>(world.cloth->component_count);
   std::vector<int> size(components, 0), far(components, 0);
   for (int v = 0; v < targets.rows(); ++v) {
     const int component = world.cloth->component[v];
     ++size[component];
-    far[component] += exemption.body[v] && (targets.row(v) - nodes.row(v)).norm() > astray;
+    far[component] += exemption.body[v] && (targets.row(v) - nodes.row(v)).norm() > min_distance;
   }
   std::vector<char> found(components, 0);
   for (std::size_t c = 0; c < components; ++c) found[c] = far[c] > part * size[c];
@@ -86,11 +87,12 @@ std::vector<char> sunken_vertices(const ContactWorld& world, const Exemption& ex
 }
 
 std::vector<char> pierced_vertices(const ContactWorld& world, const Exemption& exemption, const Points& nodes,
-                                   const Points& wanted, const Points& targets, double astray,
+                                   const Points& wanted, const Points& targets, double min_distance,
                                    const RecoveryOptions& options) {
   if (!applies(exemption, targets)) return {};
-  std::vector<char> pierced = either(pierced_components(world, nodes, options.long_limb),
-                                     far_components(world, exemption, nodes, targets, options.pierced_part, astray));
+  std::vector<char> pierced =
+      either(pierced_components(world, nodes, options.long_limb),
+             far_components(world, exemption, nodes, targets, options.pierced_part, min_distance));
   if (pierced.empty()) return {};
   leave_undressed(world, targets, pierced);
   Points there = wanted;

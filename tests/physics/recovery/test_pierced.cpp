@@ -57,8 +57,8 @@ struct Skewer {
     world = make_contact_world(w.scene.surface, {&w.scene.obstacles[0].surface}, true);
     nodes = gather_nodes(w.state.x, w.state.obstacles);
   }
-  std::vector<char> pierced(double astray = 1) const {
-    return pierced_vertices(world, find_exemption(world, nodes), nodes, nodes, w.drive.skinned_targets, astray);
+  std::vector<char> pierced(double min_distance = 1) const {
+    return pierced_vertices(world, find_exemption(world, nodes), nodes, nodes, w.drive.skinned_targets, min_distance);
   }
   RecoveryTargets where(const Points& wanted, const Points& targets, const Points& last_clean = {}) const {
     return {&wanted, &targets, last_clean, w.scene.contact.thickness, 0.1};

@@ -93,7 +93,7 @@ TEST_CASE("recovery: a clean start is left as it is", "[recovery]") {
   Points nodes = gather_nodes(w.state.x, w.state.obstacles);
   const Points before = nodes;
   CHECK_FALSE(
-      recover(world, Eigen::VectorXd::Ones(nodes.rows()), 1, find_exemption(world, nodes), {}, nodes).left.any());
+      recover(world, Eigen::VectorXd::Ones(nodes.rows()), 1, find_exemption(world, nodes), {}, nodes).left_alone.any());
   CHECK(nodes == before);
 }
 
@@ -175,7 +175,7 @@ TEST_CASE("recovery: all that is tangled with a body that crosses itself is draw
   const StepReport report =
       testing::frame(w.scene, *make_recovering_conventional_stepper(w.scene, {}), w.state, w.drive, 1.0 / 30, to);
   REQUIRE(report.status == StepStatus::accepted);
-  CHECK(report.untangling == 0);  // it waits
+  CHECK(report.untangling == 0);  // it is trapped
   for (int v = 0; v < to.x.rows(); ++v)
     if (tangled.body[v]) CHECK((to.x.row(v) - w.drive.skinned_targets.row(v)).norm() < 0.01);
 }
@@ -207,7 +207,8 @@ TEST_CASE("recovery: where a body crosses itself cloth is parted from cloth, and
     state = to;
     if (frame >= 5) CHECK(pairs_of(w, state) == 0);
   }
-  CHECK_FALSE(find_exemption(with_its_obstacle(w), gather_nodes(state.x, state.obstacles)).body.empty());  // it waits
+  CHECK_FALSE(
+      find_exemption(with_its_obstacle(w), gather_nodes(state.x, state.obstacles)).body.empty());  // it is trapped
 }
 
 TEST_CASE("recovery: nothing is asked of what cannot be parted, the rest goes without momentum", "[recovery]") {
@@ -219,19 +220,19 @@ TEST_CASE("recovery: nothing is asked of what cannot be parted, the rest goes wi
   const Eigen::VectorXd inverse_mass = inverse_masses(w.scene, world.node_count);
   Points nodes = w.state.x;
   const Recovery recovery = recover(world, inverse_mass, 0.01, find_exemption(world, nodes), {}, nodes);
-  REQUIRE_FALSE(recovery.gained.empty());
-  for (const Separation& gained : recovery.gained) {
-    bool hopeful = false;
+  REQUIRE_FALSE(recovery.separations.empty());
+  for (const Separation& one : recovery.separations) {
+    bool can_part = false;
     double sum = 0, value = 0;
-    for (int i = 0; i < gained.count; ++i) {
-      hopeful = hopeful || !there.self[gained.vertex[i]];
-      sum += gained.weight[i];
-      value += gained.weight[i] * gained.direction.dot(row(nodes, gained.vertex[i]));
+    for (int i = 0; i < one.count; ++i) {
+      can_part = can_part || !there.self[one.vertex[i]];
+      sum += one.weight[i];
+      value += one.weight[i] * one.direction.dot(row(nodes, one.vertex[i]));
     }
-    CHECK(hopeful);
-    CHECK(gained.count <= 4);
+    CHECK(can_part);
+    CHECK(one.count <= 4);
     CHECK(std::abs(sum) < 1e-12);
-    CHECK(gained.least == Approx(value));
+    CHECK(one.least == Approx(value));
   }
   const Points moved = nodes - w.state.x;
   CHECK(moved.rowwise().norm().maxCoeff() > 0.005);
@@ -326,7 +327,7 @@ TEST_CASE("recovery: a tangled cloth is put through no floor", "[recovery]") {
     Points nodes = gather_nodes(w.state.x, w.state.obstacles);
     REQUIRE(find_exemption(world, nodes).body.empty());
     const Recovery recovery = recover(world, inverse_mass, 0.03, find_exemption(world, nodes), {}, nodes);
-    CHECK(recovery.left.body.empty());
+    CHECK(recovery.left_alone.body.empty());
     CHECK(nodes.topRows(w.state.x.rows()).col(1).minCoeff() > 0);
   }
 }
