@@ -15,7 +15,7 @@
 namespace selvedge {
 namespace {
 
-constexpr double kept_shape = 1e-3;  // of a mean edge: largest distance of a vertex from a rigid motion
+constexpr double rigid_tolerance = 1e-3;  // of a mean edge: largest distance of a vertex from a rigid motion
 
 // Sets 1 for vertices of triangles that cross or are buried, and of triangles next to these.
 void add_crossing(const Surface& surface, const Points& x, std::vector<char>& marked) {
@@ -133,12 +133,12 @@ std::vector<int> may_be_switched_off(const Surface& surface, const Points& x) {
   return faces_of(surface, marked);
 }
 
-bool keeps_shape(const Surface& surface, const Points& x0, const Points& x1) {
+bool moves_rigidly(const Surface& surface, const Points& x0, const Points& x1) {
   if (x0 == x1) return true;
   const Eigen::Matrix4d motion = Eigen::umeyama(x0.transpose(), x1.transpose(), false);
   const Points moved =
       (x0 * motion.topLeftCorner<3, 3>().transpose()).rowwise() + motion.topRightCorner<3, 1>().transpose();
-  return (moved - x1).rowwise().norm().maxCoeff() <= kept_shape * mean_edge(surface, x0);
+  return (moved - x1).rowwise().norm().maxCoeff() <= rigid_tolerance * mean_edge(surface, x0);
 }
 
 void switch_off(const ContactWorld& world, int obstacle, const Points& from, const Points& to, const Points& targets,
@@ -149,8 +149,8 @@ void switch_off(const ContactWorld& world, int obstacle, const Points& from, con
                cloth = from.topRows(world.cloth->vertex_count);
   if (!x0.allFinite() || !x1.allFinite()) return;
   const std::vector<char>& tangled = exemption.body;
-  const bool kept = keeps_shape(body, x0, x1);
-  if (kept && (tangled.empty() || targets.rows() == 0)) return;
+  const bool rigid = moves_rigidly(body, x0, x1);
+  if (rigid && (tangled.empty() || targets.rows() == 0)) return;
   std::vector<char> marked(static_cast<std::size_t>(body.vertex_count), 0);
   add_crossing(body, x0, marked);
   add_crossing(body, x1, marked);
@@ -162,7 +162,7 @@ void switch_off(const ContactWorld& world, int obstacle, const Points& from, con
   const double edge = mean_edge(*world.cloth, cloth);
   const Closing closing(body, x0, x1, faces, motion + edge);
   std::vector<char> caught(static_cast<std::size_t>(cloth.rows()), 0);
-  if (!kept) catch_anew(body, x1, closing, cloth, tangled, caught);
+  if (!rigid) catch_anew(body, x1, closing, cloth, tangled, caught);
   for (int v = 0; v < static_cast<int>(std::min<std::size_t>(tangled.size(), targets.rows())); ++v)
     if (tangled[v] && targets.row(v).allFinite()) caught[v] = closing.is_near(row(cloth, v), edge);
   if (std::ranges::find(caught, 1) == caught.end()) return;

@@ -24,6 +24,6 @@ std::vector<int> may_be_switched_off(const Surface&, const Points& x);
 std::vector<int> switched_off_counts(const ContactWorld&, const Exemption&);
 
 // Does the surface move from x0 to x1 as a rigid body?
-bool keeps_shape(const Surface&, const Points& x0, const Points& x1);
+bool moves_rigidly(const Surface&, const Points& x0, const Points& x1);
 
 }  // namespace selvedge

@@ -77,7 +77,7 @@ void write_tables(const TrainingRun& run) {
 void save(TrainingRun& run) {
   run.history.seconds = run.seconds();
   const TrainingWorld& world = run.trainer->maker->world;
-  run.trainer->queue->locked([&] { write_soft_tissue(world.kept_in, world); });
+  run.trainer->queue->locked([&] { write_soft_tissue(world.soft_tissue_folder, world); });
   write_weights(run, "weights.h5");
   write_tables(run);
   write_training_checkpoint(run.folder / "checkpoint.h5", *run.trainer, run.history);

@@ -232,7 +232,7 @@ TEST_CASE("training people: the folder of soft tissue is bounded, and so is what
   const OwnData& own = own_data();
   const Folder folder("training_flesh");
   TrainingWorld world = make_training_world(read_training(own.write(""), {"samples.flesh=true"}).samples, 1);
-  world.kept_in = folder.path;
+  world.soft_tissue_folder = folder.path;
   const PointsF before = skinned_frame(world, 0, 0, 0, 3).body;
   skinned_frame(world, 0, 0, 1, 3);
   CHECK(world.tissue_bytes > 0);
