@@ -17,12 +17,12 @@ std::optional<Exemption> too_tangled(const ContactWorld&, const Points& nodes, c
 // The first part of a step that starts tangled. `untangle` says where the cloth should be. Every vertex that may move
 // goes there by at most `reach` [m], and not through an obstacle of which it was clean. Cloth that is tangled with
 // cloth gets no linear momentum: the two sides move against each other. `left_alone` is what is still tangled then, for
-// contact to leave alone. The solve must keep the `separations`: how far the two sides, or a vertex and an
-// obstacle, have come apart. Otherwise cloth would spring back and untangling would get nowhere.
-// Trapped cloth has no way out of an obstacle yet: tangled cloth at switched-off parts of a body, and tangled cloth
-// that is drawn (`drawn`, see drawn.hpp; or empty) or connected to such. Trapped and drawn cloth is parted from cloth
-// but not from obstacles. The cloth does not cross itself in more pairs than before. `before`: what is tangled
-// (find_exemption) and switched off. Without a budget an ample one is used.
+// contact to leave alone. The solve must keep the `separations`: how far the two sides, or a vertex and an obstacle,
+// have come apart. Otherwise cloth would spring back and untangling would get nowhere.
+// Trapped cloth has no way out of an obstacle yet. It is cloth tangled with obstacles that is drawn (`drawn`, see
+// drawn.hpp; or empty) or crosses switched-off parts of a body, and tangled cloth that is connected to it.
+// Trapped and drawn cloth is parted from cloth but not from obstacles. The cloth does not cross itself in more pairs
+// than before. `before`: what is tangled (find_exemption) and switched off. Without a budget an ample one is used.
 struct Recovery {
   Exemption left_alone;
   std::vector<Separation> separations;
