@@ -4,7 +4,7 @@
 
 namespace selvedge {
 
-int Exemption::cloth_vertices() const {
+int Exemption::tangled_vertices() const {
   int count = 0;
   for (std::size_t v = 0; v < std::max(self.size(), body.size()); ++v)
     count += (!self.empty() && self[v]) || (!body.empty() && body[v]);
@@ -14,18 +14,19 @@ int Exemption::cloth_vertices() const {
 // A pair of cloth with cloth is left alone only if all of its vertices are tangled: pairs that are clean stay clean.
 // With an obstacle one tangled vertex is enough, or one caught vertex if all of the obstacle's nodes are switched off.
 bool Exemption::leaves_alone(const ContactWorld& world, const std::array<int, 4>& nodes) const {
-  bool self_alone = !self.empty(), body_alone = false, all_cloth = true, all_off = !off.empty(), any_caught = false;
+  bool self_alone = !self.empty(), body_alone = false, all_cloth = true, all_switched_off = !switched_off.empty(),
+       any_caught = false;
   for (const int node : nodes) {
     if (!world.is_cloth(node)) {
       all_cloth = false;
-      all_off = all_off && off[node];
+      all_switched_off = all_switched_off && switched_off[node];
       continue;
     }
     self_alone = self_alone && self[node];
     body_alone = body_alone || (!body.empty() && body[node]);
-    any_caught = any_caught || (!off.empty() && off[node]);
+    any_caught = any_caught || (!switched_off.empty() && switched_off[node]);
   }
-  return all_cloth ? self_alone : body_alone || (all_off && any_caught);
+  return all_cloth ? self_alone : body_alone || (all_switched_off && any_caught);
 }
 
 std::vector<char> either(std::vector<char> a, const std::vector<char>& b) {

@@ -12,12 +12,12 @@ namespace selvedge {
 struct Exemption {
   std::vector<char> self;  // of the cloth's vertices: on or inside a contour of the cloth with itself
   std::vector<char> body;  // of the cloth's vertices: on a contour with an obstacle, or inside a closed one
-  std::vector<char>
-      off;  // of all nodes: caught vertices of the cloth, and obstacle vertices that are switched off (caught.hpp)
+  // Of all nodes: caught vertices of the cloth, and vertices of obstacles where faces are switched off (caught.hpp).
+  std::vector<char> switched_off;
 
-  bool cloth() const { return !self.empty() || !body.empty(); }
-  int cloth_vertices() const;  // with self or body
-  bool any() const { return cloth() || !off.empty(); }
+  bool tangled() const { return !self.empty() || !body.empty(); }
+  int tangled_vertices() const;  // with self or body
+  bool any() const { return tangled() || !switched_off.empty(); }
   bool leaves_alone(const ContactWorld&, const std::array<int, 4>& nodes) const;
 };
 

@@ -15,7 +15,7 @@ bool crosses_inside(const Closest& c) {
   return c.weights[0] > 0 && c.weights[1] > 0 && c.weights[2] < 0 && c.weights[3] < 0;
 }
 
-constexpr double kept_of_rest = 0.7;  // of the rest distance, for a pair that is close at rest
+constexpr double rest_gap_ratio = 0.7;  // of the rest distance, for a pair that is close at rest
 
 std::vector<Proximity> close_pairs(const ContactWorld& world, std::span<const NodePair> candidates, const Points& x,
                                    double thickness) {
@@ -32,7 +32,7 @@ std::vector<Proximity> close_pairs(const ContactWorld& world, std::span<const No
       if (near.squared_distance >= thickness * thickness || near.squared_distance == 0) continue;
       if (pair.kind == PairKind::edge_edge && !crosses_inside(near)) continue;
       const double gap = std::sqrt(near.squared_distance),
-                   keep = std::min(thickness, kept_of_rest * rest_distance(world, pair));
+                   keep = std::min(thickness, rest_gap_ratio * rest_distance(world, pair));
       if (gap >= keep) continue;
       Vec3 between = Vec3::Zero();
       for (int i = 0; i < 4; ++i) between += near.weights[i] * row(x, pair.nodes[i]);

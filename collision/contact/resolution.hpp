@@ -27,7 +27,7 @@ struct Resolution {
   double violation = 0;  // largest that the last round of zones left [m]
 
   bool is_free(int node) const { return inverse_mass[node] > 0; }
-  bool spent() { return report.out_of_work = report.out_of_work || report.work.reaches(options.most); }
+  bool spent() { return report.out_of_work = report.out_of_work || report.work.reaches(options.budget); }
   bool stopped() { return report.stopped = report.stopped || selvedge::stopped(options.stop); }
 };
 

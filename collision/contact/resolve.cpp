@@ -106,7 +106,7 @@ bool rigidify(Resolution& r, std::span<Impact* const> impacts) {
 
 // The number of sweeps of a zone with so many impacts for which the remaining budget of work suffices.
 int most_sweeps(const Resolution& r, std::size_t impacts) {
-  const std::int64_t left = std::max<std::int64_t>(0, r.options.most.projected - r.report.work.projected);
+  const std::int64_t left = std::max<std::int64_t>(0, r.options.budget.projected - r.report.work.projected);
   const std::int64_t sweeps = left / static_cast<std::int64_t>(4 * impacts) + 1;
   return static_cast<int>(std::min<std::int64_t>(r.options.zone_sweeps, sweeps));
 }

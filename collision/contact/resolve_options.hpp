@@ -56,8 +56,8 @@ struct ResolveOptions {
   int holding_rounds = 8;    // once work is spent: rounds of holding zones before everything is held
   const std::vector<char>* only = nullptr;  // by node: pairs with a node that has 0 are left alone; null: all count
   RoomOptions room;
-  ResponseWork most = unbounded_work;  // once it is spent, the last resort holds still what still meets
-  StopFlag stop = {};                  // asked for each zone and round: true ends resolve, not clean
+  ResponseWork budget = unbounded_work;  // once it is spent, the last resort holds still what still meets
+  StopFlag stop = {};                    // asked for each zone and round: true ends resolve, not clean
 
   // The last resort lets obstacles give way in `yield_rounds` rounds. Their nodes have `yielding_mass` mean masses of
   // cloth vertices in the first round, and half as much in each that follows.
@@ -77,7 +77,7 @@ struct ResolveReport {
   int shortened = 0;     // zones whose motion was shortened, counted for each halving
   int held = 0;          // cloth vertices in these zones
   ResponseWork work;
-  bool out_of_work = false;                       // `most` was reached
+  bool out_of_work = false;                       // the budget was spent
   double broad_phase = 0, ccd = 0, response = 0;  // [s]
 };
 

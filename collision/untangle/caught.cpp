@@ -15,17 +15,17 @@
 namespace selvedge {
 namespace {
 
-constexpr double kept_shape = 1e-3;  // of a mean edge: largest distance of a vertex from a rigid motion
+constexpr double rigid_tolerance = 1e-3;  // of a mean edge: largest distance of a vertex from a rigid motion
 
 // Sets 1 for vertices of triangles that cross or are buried, and of triangles next to these.
-void add_crossing(const Surface& surface, const Points& x, std::vector<char>& off) {
+void add_crossing(const Surface& surface, const Points& x, std::vector<char>& marked) {
   const std::vector<SheetView> view{{&surface, &x}};
   const Segments found = find_segments(view);
   if (found.segments.empty()) return;
   const std::vector<char> crossed = buried_vertices(surface, x, found);
   for (const auto& corners : surface.triangles.rowwise())
     if (crossed[corners[0]] || crossed[corners[1]] || crossed[corners[2]])
-      for (const int v : corners) off[v] = 1;
+      for (const int v : corners) marked[v] = 1;
 }
 
 Vec3 normal_of(const std::array<Vec3, 3>& at) { return (at[1] - at[0]).cross(at[2] - at[0]).normalized(); }
@@ -94,10 +94,11 @@ class Closing {
 };
 
 // The triangles whose vertices are all marked.
-std::vector<int> faces_of(const Surface& body, const std::vector<char>& off) {
+std::vector<int> faces_of(const Surface& body, const std::vector<char>& marked) {
   std::vector<int> faces;
   for (int t = 0; t < body.triangles.rows(); ++t)
-    if (off[body.triangles(t, 0)] && off[body.triangles(t, 1)] && off[body.triangles(t, 2)]) faces.push_back(t);
+    if (marked[body.triangles(t, 0)] && marked[body.triangles(t, 1)] && marked[body.triangles(t, 2)])
+      faces.push_back(t);
   return faces;
 }
 
@@ -126,21 +127,21 @@ void catch_anew(const Surface& body, const Points& x1, const Closing& closing, c
 
 }  // namespace
 
-std::vector<int> may_be_off(const Surface& surface, const Points& x) {
-  std::vector<char> off(static_cast<std::size_t>(surface.vertex_count), 0);
-  add_crossing(surface, x, off);
-  return faces_of(surface, off);
+std::vector<int> may_be_switched_off(const Surface& surface, const Points& x) {
+  std::vector<char> marked(static_cast<std::size_t>(surface.vertex_count), 0);
+  add_crossing(surface, x, marked);
+  return faces_of(surface, marked);
 }
 
-bool keeps_shape(const Surface& surface, const Points& x0, const Points& x1) {
+bool moves_rigidly(const Surface& surface, const Points& x0, const Points& x1) {
   if (x0 == x1) return true;
   const Eigen::Matrix4d motion = Eigen::umeyama(x0.transpose(), x1.transpose(), false);
   const Points moved =
       (x0 * motion.topLeftCorner<3, 3>().transpose()).rowwise() + motion.topRightCorner<3, 1>().transpose();
-  return (moved - x1).rowwise().norm().maxCoeff() <= kept_shape * mean_edge(surface, x0);
+  return (moved - x1).rowwise().norm().maxCoeff() <= rigid_tolerance * mean_edge(surface, x0);
 }
 
-void switch_off(const ContactWorld& world, int obstacle, const Points& from, const Points& to, const Points& worn,
+void switch_off(const ContactWorld& world, int obstacle, const Points& from, const Points& to, const Points& targets,
                 Exemption& exemption) {
   const Surface& body = *world.obstacles[obstacle];
   const int first = world.first_node[obstacle];
@@ -148,35 +149,36 @@ void switch_off(const ContactWorld& world, int obstacle, const Points& from, con
                cloth = from.topRows(world.cloth->vertex_count);
   if (!x0.allFinite() || !x1.allFinite()) return;
   const std::vector<char>& tangled = exemption.body;
-  const bool kept = keeps_shape(body, x0, x1);
-  if (kept && (tangled.empty() || worn.rows() == 0)) return;
-  std::vector<char> off(static_cast<std::size_t>(body.vertex_count), 0);
-  add_crossing(body, x0, off);
-  add_crossing(body, x1, off);
-  const std::vector<int> faces = faces_of(body, off);
+  const bool rigid = moves_rigidly(body, x0, x1);
+  if (rigid && (tangled.empty() || targets.rows() == 0)) return;
+  std::vector<char> marked(static_cast<std::size_t>(body.vertex_count), 0);
+  add_crossing(body, x0, marked);
+  add_crossing(body, x1, marked);
+  const std::vector<int> faces = faces_of(body, marked);
   if (faces.empty()) return;
   double motion = 0;
-  for (std::size_t v = 0; v < off.size(); ++v)
-    if (off[v]) motion = std::max(motion, (x1.row(v) - x0.row(v)).norm());
+  for (std::size_t v = 0; v < marked.size(); ++v)
+    if (marked[v]) motion = std::max(motion, (x1.row(v) - x0.row(v)).norm());
   const double edge = mean_edge(*world.cloth, cloth);
   const Closing closing(body, x0, x1, faces, motion + edge);
   std::vector<char> caught(static_cast<std::size_t>(cloth.rows()), 0);
-  if (!kept) catch_anew(body, x1, closing, cloth, tangled, caught);
-  for (int v = 0; v < static_cast<int>(std::min<std::size_t>(tangled.size(), worn.rows())); ++v)
-    if (tangled[v] && worn.row(v).allFinite()) caught[v] = closing.is_near(row(cloth, v), edge);
+  if (!rigid) catch_anew(body, x1, closing, cloth, tangled, caught);
+  for (int v = 0; v < static_cast<int>(std::min<std::size_t>(tangled.size(), targets.rows())); ++v)
+    if (tangled[v] && targets.row(v).allFinite()) caught[v] = closing.is_near(row(cloth, v), edge);
   if (std::ranges::find(caught, 1) == caught.end()) return;
-  if (exemption.off.empty()) exemption.off.assign(static_cast<std::size_t>(world.node_count), 0);
+  if (exemption.switched_off.empty()) exemption.switched_off.assign(static_cast<std::size_t>(world.node_count), 0);
   for (std::size_t v = 0; v < caught.size(); ++v)
-    if (caught[v]) exemption.off[v] = 1;
+    if (caught[v]) exemption.switched_off[v] = 1;
   for (int v = 0; v < body.vertex_count; ++v)
-    if (off[v]) exemption.off[first + v] = 1;
+    if (marked[v]) exemption.switched_off[first + v] = 1;
 }
 
-std::vector<int> switched_off(const ContactWorld& world, const Exemption& exemption) {
+std::vector<int> switched_off_counts(const ContactWorld& world, const Exemption& exemption) {
   std::vector<int> count(world.obstacles.size(), 0);
-  for (std::size_t k = 0; k < count.size() && !exemption.off.empty(); ++k)
+  for (std::size_t k = 0; k < count.size() && !exemption.switched_off.empty(); ++k)
     for (const auto& corners : world.obstacles[k]->triangles.rowwise())
-      count[k] += std::ranges::all_of(corners, [&](int v) { return exemption.off[world.first_node[k] + v] != 0; });
+      count[k] +=
+          std::ranges::all_of(corners, [&](int v) { return exemption.switched_off[world.first_node[k] + v] != 0; });
   return count;
 }
 

@@ -11,19 +11,19 @@ namespace selvedge {
 // the cloth is caught if the face in front of which it lies, moving with the body, takes it through another face that
 // faces the first; through a face of a closed shell only if it ends inside. An obstacle that keeps its shape catches no
 // further vertices: its parts do not pass through each other. A vertex that is tangled with obstacles
-// (`exemption.body`) within an edge of the crossing is caught too if a body wears it. `worn`: skinned targets, one row
-// for each vertex, NaN where no body wears it; or empty. Marks caught vertices in exemption.off, and if there are any
-// also the obstacle's triangles that cross, are buried, or are next to such.
-void switch_off(const ContactWorld&, int obstacle, const Points& from, const Points& to, const Points& worn,
+// (`exemption.body`) within an edge of the crossing is caught too if a body wears it. `targets`: skinned targets, one
+// row for each vertex, NaN where no body wears it; or empty. Marks caught vertices in exemption.switched_off, and if
+// there are any also the obstacle's triangles that cross, are buried, or are next to such.
+void switch_off(const ContactWorld&, int obstacle, const Points& from, const Points& to, const Points& targets,
                 Exemption& exemption);
 
 // The triangles of a surface at x that switch_off can mark: those that cross, are buried, or are next to such.
-std::vector<int> may_be_off(const Surface&, const Points& x);
+std::vector<int> may_be_switched_off(const Surface&, const Points& x);
 
 // The number of switched-off triangles of each obstacle.
-std::vector<int> switched_off(const ContactWorld&, const Exemption&);
+std::vector<int> switched_off_counts(const ContactWorld&, const Exemption&);
 
 // Does the surface move from x0 to x1 as a rigid body?
-bool keeps_shape(const Surface&, const Points& x0, const Points& x1);
+bool moves_rigidly(const Surface&, const Points& x0, const Points& x1);
 
 }  // namespace selvedge

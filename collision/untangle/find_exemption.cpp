@@ -30,7 +30,7 @@ Exemption find_exemption(const ContactWorld& world, const Points& nodes) {
   for_each_meeting(world, found, [&](int triangle, int partner_sheet) {
     mark_triangle(marks_for(partner_sheet), n, *world.cloth, triangle);
   });
-  if (exemption.cloth())
+  if (exemption.tangled())
     for (const Region& region : enclosed_regions(sheets.views, found, find_contours(sheets.views, found)))
       if (region.sheet == 0 && (region.partner_sheet != 0 || world.self))
         for (const int v : region.vertices) mark(marks_for(region.partner_sheet), n, v);

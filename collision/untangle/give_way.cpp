@@ -10,7 +10,7 @@
 #include "collision/geometry/stop_scope.hpp"
 #include "collision/search/intersections.hpp"
 #include "collision/untangle/facing.hpp"
-#include "collision/untangle/kept_shape.hpp"
+#include "collision/untangle/input_shape.hpp"
 #include "collision/untangle/untangle.hpp"
 
 namespace selvedge {
@@ -73,7 +73,7 @@ class CrossingCaches {
 struct SoftTissue {
   SoftTissue(Surface surface, const Points& rest, const GiveWayOptions& o)
       : body(std::move(surface)),
-        shape(keep_shape(body, rest)),
+        shape(input_shape(body, rest)),
         options(o),
         reach(2 * o.most + o.room),
         thickness(thicknesses(body, rest, reach, o.through)) {
@@ -83,7 +83,7 @@ struct SoftTissue {
   SoftTissue& operator=(const SoftTissue&) = delete;
 
   Surface body;
-  KeptShape shape;
+  InputShape shape;
   GiveWayOptions options;
   double reach;                   // largest distance of vertices that meet: both move by `most` and leave room [m]
   std::vector<double> thickness;  // under each vertex [m]

@@ -16,7 +16,7 @@ std::string name_of(const ContourSide& side) {
 
 // What stopped the cloth round the contour: the limits on its triangles' stretch, or on the motion of vertices away
 // from contours.
-std::string held_by(std::span<const SheetView> sheets, const Contour& contour, const KeptShape& shape,
+std::string held_by(std::span<const SheetView> sheets, const Contour& contour, const InputShape& shape,
                     const std::vector<double>& reach, const StretchRange& range) {
   const Surface& cloth = *sheets[0].surface;
   const Points& x = *sheets[0].x;
@@ -40,7 +40,7 @@ std::string held_by(std::span<const SheetView> sheets, const Contour& contour, c
 }
 
 std::string reason_of(std::span<const SheetView> sheets, const Segments& found, const Contour& contour,
-                      const KeptShape& shape, const std::vector<double>& reach, const StretchRange& range) {
+                      const InputShape& shape, const std::vector<double>& reach, const StretchRange& range) {
   const ContourSide &a = contour.sides[0], &b = contour.sides[1];
   std::string text = (contour.closed ? "closed, " : "open, ") + name_of(a) + " with ";
   text += a.sheet == b.sheet && a.component == b.component ? "itself" : name_of(b);
@@ -59,7 +59,7 @@ std::string reason_of(std::span<const SheetView> sheets, const Segments& found, 
 }  // namespace
 
 std::vector<Remainder> explain_remainders(std::span<const SheetView> sheets, const Segments& found,
-                                          std::span<const Contour> contours, const KeptShape& shape,
+                                          std::span<const Contour> contours, const InputShape& shape,
                                           const std::vector<double>& reach, const StretchRange& range) {
   std::vector<Remainder> remainders;
   for (const Contour& contour : contours) {

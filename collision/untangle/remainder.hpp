@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "collision/contour/contour_regions.hpp"
-#include "collision/untangle/kept_shape.hpp"
+#include "collision/untangle/input_shape.hpp"
 
 namespace selvedge {
 
@@ -19,7 +19,7 @@ struct Remainder {
 // One for each contour, in order, and one for all touching pairs. `reach` [m] and `range` limited the motion of
 // vertices and the stretch of triangles.
 std::vector<Remainder> explain_remainders(std::span<const SheetView> sheets, const Segments&, std::span<const Contour>,
-                                          const KeptShape&, const std::vector<double>& reach,
+                                          const InputShape&, const std::vector<double>& reach,
                                           const StretchRange& range);
 
 }  // namespace selvedge

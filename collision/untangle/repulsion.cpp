@@ -17,7 +17,7 @@ std::vector<const Surface*> surfaces_of(std::span<const SheetView> obstacles) {
 
 }  // namespace
 
-Repulsion::Repulsion(const Surface& cloth, std::span<const SheetView> obstacles, const KeptShape& shape)
+Repulsion::Repulsion(const Surface& cloth, std::span<const SheetView> obstacles, const InputShape& shape)
     : shape_(shape), world_(make_contact_world(cloth, surfaces_of(obstacles), true)), search_(world_) {
   for (const SheetView& obstacle : obstacles) obstacle_points_.push_back(*obstacle.x);
   input_ = gather_nodes(shape.x0, obstacle_points_);

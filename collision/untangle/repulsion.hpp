@@ -5,7 +5,7 @@
 
 #include "collision/contact/contact_pairs.hpp"
 #include "collision/contour/segments.hpp"
-#include "collision/untangle/kept_shape.hpp"
+#include "collision/untangle/input_shape.hpp"
 #include "collision/untangle/separation.hpp"
 
 namespace selvedge {
@@ -14,7 +14,7 @@ namespace selvedge {
 class Repulsion {
  public:
   // Keeps references to all but the span itself.
-  Repulsion(const Surface& cloth, std::span<const SheetView> obstacles, const KeptShape& shape);
+  Repulsion(const Surface& cloth, std::span<const SheetView> obstacles, const InputShape& shape);
 
   // Vertex-face and edge-edge pairs nearer than `horizon` [m] that must stay `gap` [m] apart. Only pairs with a vertex
   // of reach > 0 count, and with a primitive that has no `tangled` vertex (of the cloth, if the pair is with an
@@ -27,7 +27,7 @@ class Repulsion {
   bool neighbours(const NodePair&) const;
   bool is_movable(const NodePair&, const std::vector<double>& reach) const;
   bool is_clear(const NodePair&, const std::vector<char>& tangled, bool wide) const;
-  const KeptShape& shape_;
+  const InputShape& shape_;
   ContactWorld world_;
   std::vector<Points> obstacle_points_;
   Points input_;  // of all nodes

@@ -10,7 +10,7 @@
 #include "collision/geometry/floating_point.hpp"
 #include "collision/geometry/stop_scope.hpp"
 #include "collision/search/bvh.hpp"
-#include "collision/untangle/kept_shape.hpp"
+#include "collision/untangle/input_shape.hpp"
 #include "collision/untangle/let_through.hpp"
 #include "collision/untangle/repulsion.hpp"
 #include "collision/untangle/separation.hpp"
@@ -69,7 +69,7 @@ Segments segments_that_count(std::span<const SheetView> sheets, const UntangleOp
 }
 
 // found: from segments_that_count.
-Tangle tangle_of(std::span<const SheetView> sheets, Segments found, const KeptShape& shape,
+Tangle tangle_of(std::span<const SheetView> sheets, Segments found, const InputShape& shape,
                  const UntangleOptions& options) {
   const std::vector<int>& layers = options.layers;
   const std::vector<char>& through = options.let_through;
@@ -134,9 +134,9 @@ struct Freedom {
 };
 
 // The unit of far_limit: a vertex' own mean edge, or the mesh's if that is shorter [m].
-double far_unit(const KeptShape& shape, int vertex) { return std::min(shape.edge_length[vertex], shape.mean_edge); }
+double far_unit(const InputShape& shape, int vertex) { return std::min(shape.edge_length[vertex], shape.mean_edge); }
 
-Freedom make_freedom(const KeptShape& shape, const std::vector<char>& tangled, const UntangleOptions& options) {
+Freedom make_freedom(const InputShape& shape, const std::vector<char>& tangled, const UntangleOptions& options) {
   const std::vector<char> near = within_rings(shape, tangled, options.rings);
   const std::vector<char> around = within_rings(shape, near, 2 * options.rings);
   Freedom freedom;
@@ -156,7 +156,8 @@ Freedom make_freedom(const KeptShape& shape, const std::vector<char>& tangled, c
 }
 
 // Vertices round contours that are new since the start may move by far_limit too.
-void widen(const KeptShape& shape, const std::vector<char>& tangled, const UntangleOptions& options, Freedom& freedom) {
+void widen(const InputShape& shape, const std::vector<char>& tangled, const UntangleOptions& options,
+           Freedom& freedom) {
   const Freedom more = make_freedom(shape, tangled, options);
   bool wider = false;
   for (int v : more.vertices)
@@ -176,7 +177,7 @@ void widen(const KeptShape& shape, const std::vector<char>& tangled, const Untan
       }
 }
 
-Points propose(const KeptShape& shape, const Freedom& freedom, std::span<const Separation> separations,
+Points propose(const InputShape& shape, const Freedom& freedom, std::span<const Separation> separations,
                std::span<const Separation> repulsions, const UntangleOptions& options, const Points& from) {
   const StretchRange range{options.least_stretch, options.largest_stretch};
   Points x = from;
@@ -196,7 +197,7 @@ Points propose(const KeptShape& shape, const Freedom& freedom, std::span<const S
   return x;
 }
 
-void keep_range(const KeptShape& shape, const Freedom& freedom, const UntangleOptions& options, const Points& before,
+void keep_range(const InputShape& shape, const Freedom& freedom, const UntangleOptions& options, const Points& before,
                 Points& x) {
   const StretchRange range{options.least_stretch, options.largest_stretch};
   const StretchRange outer{0.97 * range.least, 1.03 * range.largest};
@@ -205,7 +206,7 @@ void keep_range(const KeptShape& shape, const Freedom& freedom, const UntangleOp
 
 // Moves vertices back toward `before` until no pair meets whose vertices were all untangled there, and stretches are in
 // range. Returns the tangle of x.
-Tangle keep_clean(const KeptShape& shape, const Freedom& freedom, std::span<const SheetView> obstacles,
+Tangle keep_clean(const InputShape& shape, const Freedom& freedom, std::span<const SheetView> obstacles,
                   const std::vector<char>& tangled, const UntangleOptions& options, const Points& before, Points& x) {
   const Surface& cloth = *shape.surface;
   std::vector<char> offends(cloth.vertex_count, 0);
@@ -233,7 +234,7 @@ Tangle keep_clean(const KeptShape& shape, const Freedom& freedom, std::span<cons
 }
 
 // Lets stretched triangles of a clean cloth recover their shape as far as that makes no new contours.
-void relax(const KeptShape& shape, const Freedom& freedom, std::span<const SheetView> obstacles, Repulsion& repulsion,
+void relax(const InputShape& shape, const Freedom& freedom, std::span<const SheetView> obstacles, Repulsion& repulsion,
            const UntangleOptions& options, Points& x) {
   const std::vector<char> none(shape.surface->vertex_count, 0);
   UntangleOptions tighter = options;
@@ -251,7 +252,7 @@ void relax(const KeptShape& shape, const Freedom& freedom, std::span<const Sheet
   }
 }
 
-void measure(const KeptShape& shape, const std::vector<char>& near, UntangleResult& result) {
+void measure(const InputShape& shape, const std::vector<char>& near, UntangleResult& result) {
   double sum = 0;
   for (int v = 0; v < shape.surface->vertex_count; ++v) {
     const double moved = (result.x.row(v) - shape.x0.row(v)).norm();
@@ -276,8 +277,8 @@ struct Attempt {
 };
 
 // Untangles from the input. wide: the second rule of repulsion, without pairs that have a tangled vertex.
-Attempt attempt(const KeptShape& shape, const StillObstacles& standing, const Tangle& input, Freedom freedom, bool wide,
-                Repulsion& repulsion, const UntangleOptions& options) {
+Attempt attempt(const InputShape& shape, const StillObstacles& standing, const Tangle& input, Freedom freedom,
+                bool wide, Repulsion& repulsion, const UntangleOptions& options) {
   const Surface& cloth = *shape.surface;
   const std::span<const SheetView> obstacles = standing.views;
   const double gap = options.gap * shape.mean_edge, reach = options.horizon * shape.mean_edge;
@@ -329,7 +330,7 @@ UntangleResult untangle(const Surface& cloth, const Points& x, std::span<const S
   restore_standard_arithmetic();
   const StillObstacles standing(around);
   const std::span<const SheetView> obstacles = standing.views;
-  const KeptShape shape = keep_shape(cloth, x);
+  const InputShape shape = input_shape(cloth, x);
   const std::vector<SheetView> sheets = with_cloth(cloth, x, obstacles);
   const Tangle input = tangle_of(sheets, segments_that_count(sheets, options), shape, options);
   const std::vector<char> tangled = tangled_vertices(sheets, input);

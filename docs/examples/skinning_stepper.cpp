@@ -19,7 +19,7 @@ class SkinningStepper final : public Stepper {
   StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override {
     StepEnd end{from.x, from.v, drive.obstacles};
     for (Eigen::Index v = 0; v < from.x.rows(); ++v)
-      if (drive.worn.row(v).allFinite()) end.x.row(v) = drive.worn.row(v);
+      if (drive.skinned_targets.row(v).allFinite()) end.x.row(v) = drive.skinned_targets.row(v);
     for (std::size_t p = 0; p < scene_.pins.size(); ++p)
       end.x.row(scene_.pins[p]) = drive.pins.row(static_cast<Eigen::Index>(p));
     end.v = (end.x - from.x) / dt;
@@ -37,7 +37,7 @@ class SkinningStepper final : public Stepper {
 
  private:
   const Scene& scene_;
-  StepperTraits traits_{.name = "skinning", .needs = {.worn = true}};
+  StepperTraits traits_{.name = "skinning", .needs = {.skinned_targets = true}};
 };
 
 }  // namespace

@@ -39,7 +39,7 @@ void audit_substeps(FrameAudits& audits, bool starts_clean, const StepPath& path
     std::optional<Exemption> found;
     if (!substep.left_alone) {
       found = starts_clean ? Exemption{} : find_exemption(world, *start);
-      report.collision.left_alone = found->cloth_vertices();
+      report.collision.left_alone = found->tangled_vertices();
     }
     ++report.counts.audits;
     add(audit_path(world, found ? *found : *substep.left_alone, *start, substep.nodes, memory), report);

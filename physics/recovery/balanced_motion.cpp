@@ -10,7 +10,7 @@ namespace {
 
 constexpr int sweeps = 10;
 
-bool leans_on_prescribed(const Separation& push, const Eigen::VectorXd& inverse_mass) {
+bool pushes_on_prescribed(const Separation& push, const Eigen::VectorXd& inverse_mass) {
   bool prescribed = false;
   for (int i = 0; i < push.count; ++i) prescribed = prescribed || inverse_mass[push.vertex[i]] == 0;
   return prescribed || is_against_obstacle(push);
@@ -37,16 +37,17 @@ DisjointSets moving_together(const Surface& cloth, std::span<const Separation> p
   return sets;
 }
 
-void take_means(const Eigen::VectorXd& inverse_mass, const std::vector<char>& leans, DisjointSets& sets, Points& move) {
-  std::vector<double> mass(leans.size(), 0.0);
-  std::vector<Vec3> momentum(leans.size(), Vec3::Zero());
+void subtract_means(const Eigen::VectorXd& inverse_mass, const std::vector<char>& keeps_mean, DisjointSets& sets,
+                    Points& move) {
+  std::vector<double> mass(keeps_mean.size(), 0.0);
+  std::vector<Vec3> momentum(keeps_mean.size(), Vec3::Zero());
   for (int v = 0; v < move.rows(); ++v) {
     if (move.row(v).isZero(0)) continue;
     mass[sets.root(v)] += 1 / inverse_mass[v];
     momentum[sets.root(v)] += row(move, v) / inverse_mass[v];
   }
   for (int v = 0; v < move.rows(); ++v)
-    if (const int set = sets.root(v); !leans[set] && !move.row(v).isZero(0))
+    if (const int set = sets.root(v); !keeps_mean[set] && !move.row(v).isZero(0))
       move.row(v) -= (momentum[set] / mass[set]).transpose();
 }
 
@@ -56,7 +57,7 @@ double value_of(const Separation& push, const Points& move) {
   return value;
 }
 
-void meet(std::span<const Separation> pushes, const Eigen::VectorXd& inverse_mass, Points& move) {
+void fulfil(std::span<const Separation> pushes, const Eigen::VectorXd& inverse_mass, Points& move) {
   for (int sweep = 0; sweep < sweeps; ++sweep)
     for (const Separation& push : pushes) {
       const double value = value_of(push, move), compliance = push_compliance(push, inverse_mass);
@@ -75,8 +76,8 @@ void shorten_sets(double reach, DisjointSets& sets, Points& move) {
 }
 
 // A push with a small weight on a vertex moves it many times as far as the gap, and its whole set is scaled down for
-// that. So each set keeps the one of two motions that fulfils its pushes better.
-void keep_better(std::span<const Separation> pushes, const Points& other, DisjointSets& sets, Points& move) {
+// that. So each set takes the one of two motions that fulfils its pushes better.
+void take_better(std::span<const Separation> pushes, const Points& other, DisjointSets& sets, Points& move) {
   std::vector<double> gain(static_cast<std::size_t>(move.rows()), 0.0);  // of `other` over `move`, by set [m]
   for (const Separation& push : pushes)
     gain[sets.root(push.vertex[0])] +=
@@ -91,15 +92,15 @@ Points balanced_motion(const Surface& cloth, const Eigen::VectorXd& inverse_mass
                        const Points& wanted, double reach) {
   Points move = cut_to(reach, inverse_mass, wanted);
   DisjointSets sets = moving_together(cloth, pushes, move);
-  std::vector<char> leans(cloth.vertex_count, 0);
+  std::vector<char> keeps_mean(cloth.vertex_count, 0);
   for (const Separation& push : pushes)
-    if (leans_on_prescribed(push, inverse_mass)) leans[sets.root(push.vertex[0])] = 1;
-  take_means(inverse_mass, leans, sets, move);
+    if (pushes_on_prescribed(push, inverse_mass)) keeps_mean[sets.root(push.vertex[0])] = 1;
+  subtract_means(inverse_mass, keeps_mean, sets, move);
   Points unpushed = move;
-  meet(pushes, inverse_mass, move);
+  fulfil(pushes, inverse_mass, move);
   shorten_sets(reach, sets, move);
   shorten_sets(reach, sets, unpushed);
-  keep_better(pushes, unpushed, sets, move);
+  take_better(pushes, unpushed, sets, move);
   return move;
 }
 

@@ -11,32 +11,32 @@ namespace {
 
 void add_near(const ContactWorld& world, const std::vector<char>& switched_off, const Points& nodes, double reach,
               std::vector<char>& drawn) {
-  std::vector<int> off;
+  std::vector<int> nodes_off;
   for (int node = world.cloth->vertex_count; node < world.node_count; ++node)
-    if (switched_off[node]) off.push_back(node);
-  const CellGrid grid(nodes(off, Eigen::all), reach);
+    if (switched_off[node]) nodes_off.push_back(node);
+  const CellGrid grid(nodes(nodes_off, Eigen::all), reach);
   for (int v = 0; v < world.cloth->vertex_count; ++v) {
     if (!nodes.row(v).allFinite()) continue;
     grid.for_each_near(row(nodes, v), reach, [&](int i) {
-      if ((nodes.row(off[static_cast<std::size_t>(i)]) - nodes.row(v)).norm() < reach) drawn[v] = 1;
+      if ((nodes.row(nodes_off[static_cast<std::size_t>(i)]) - nodes.row(v)).norm() < reach) drawn[v] = 1;
     });
   }
 }
 
 }  // namespace
 
-std::vector<char> drawn_vertices(const ContactWorld& world, const Exemption& exemption, const Points& worn,
+std::vector<char> drawn_vertices(const ContactWorld& world, const Exemption& exemption, const Points& targets,
                                  const Points& nodes, double reach) {
-  if (worn.rows() == 0 || exemption.off.empty()) return {};
-  std::vector<char> drawn(static_cast<std::size_t>(worn.rows()), 0);
-  add_near(world, exemption.off, nodes, reach, drawn);
+  if (targets.rows() == 0 || exemption.switched_off.empty()) return {};
+  std::vector<char> drawn(static_cast<std::size_t>(targets.rows()), 0);
+  add_near(world, exemption.switched_off, nodes, reach, drawn);
   for (std::size_t v = 0; v < drawn.size(); ++v)
-    drawn[v] = drawn[v] && worn.row(static_cast<Eigen::Index>(v)).allFinite();
+    drawn[v] = drawn[v] && targets.row(static_cast<Eigen::Index>(v)).allFinite();
   return std::ranges::find(drawn, 1) == drawn.end() ? std::vector<char>() : drawn;
 }
 
 AddedTerm drawing_term(const std::vector<char>& drawn, const Eigen::VectorXd& masses, const Points& x0,
-                       const Points& worn, double farthest, double h, double firmness) {
+                       const Points& targets, double farthest, double h, double firmness) {
   struct Pull {
     int vertex;
     Vec3 target;
@@ -45,7 +45,7 @@ AddedTerm drawing_term(const std::vector<char>& drawn, const Eigen::VectorXd& ma
   const auto pulls = std::make_shared<std::vector<Pull>>();
   for (int v = 0; v < static_cast<int>(drawn.size()); ++v) {
     if (!drawn[v]) continue;
-    const Vec3 whole = row(worn, v) - row(x0, v);
+    const Vec3 whole = row(targets, v) - row(x0, v);
     pulls->push_back({v, row(x0, v) + std::min(1.0, farthest / whole.norm()) * whole, firmness * masses[v] / (h * h)});
   }
   return {[pulls](const Points& x) {

@@ -41,29 +41,30 @@ std::vector<char> pierced_components(const ContactWorld& world, const Points& no
   return pierced;
 }
 
-// Components with more than `part` of their vertices tangled with obstacles and farther than `astray` from targets.
+// Components with more than `part` of their vertices tangled with obstacles and farther than `min_distance` from
+// targets.
 std::vector<char> far_components(const ContactWorld& world, const Exemption& exemption, const Points& nodes,
-                                 const Points& worn, double part, double astray) {
+                                 const Points& targets, double part, double min_distance) {
   const auto components = static_cast<std::size_t>(world.cloth->component_count);
   std::vector<int> size(components, 0), far(components, 0);
-  for (int v = 0; v < worn.rows(); ++v) {
+  for (int v = 0; v < targets.rows(); ++v) {
     const int component = world.cloth->component[v];
     ++size[component];
-    far[component] += exemption.body[v] && (worn.row(v) - nodes.row(v)).norm() > astray;
+    far[component] += exemption.body[v] && (targets.row(v) - nodes.row(v)).norm() > min_distance;
   }
   std::vector<char> found(components, 0);
   for (std::size_t c = 0; c < components; ++c) found[c] = far[c] > part * size[c];
   return found;
 }
 
-bool applies(const Exemption& exemption, const Points& worn) {
-  return !exemption.body.empty() && exemption.off.empty() && worn.rows() > 0;
+bool applies(const Exemption& exemption, const Points& targets) {
+  return !exemption.body.empty() && exemption.switched_off.empty() && targets.rows() > 0;
 }
 
-// Removes components with an unworn vertex, which has no target.
-void leave_unworn(const ContactWorld& world, const Points& worn, std::vector<char>& components) {
-  for (int v = 0; v < worn.rows(); ++v)
-    if (!worn.row(v).allFinite()) components[world.cloth->component[v]] = 0;
+// Removes components with a vertex that no body wears, which has no target.
+void leave_undressed(const ContactWorld& world, const Points& targets, std::vector<char>& components) {
+  for (int v = 0; v < targets.rows(); ++v)
+    if (!targets.row(v).allFinite()) components[world.cloth->component[v]] = 0;
 }
 
 // 1 for vertices of marked components; empty if there are none.
@@ -76,25 +77,26 @@ std::vector<char> vertices_of(const ContactWorld& world, const std::vector<char>
 
 }  // namespace
 
-std::vector<char> sunken_vertices(const ContactWorld& world, const Exemption& exemption, const Points& worn,
+std::vector<char> sunken_vertices(const ContactWorld& world, const Exemption& exemption, const Points& targets,
                                   const RecoveryOptions& options) {
-  if (!applies(exemption, worn)) return {};
+  if (!applies(exemption, targets)) return {};
   std::vector<char> sunken =
-      far_components(world, exemption, Points::Zero(worn.rows(), 3), worn, options.sunken_part, -1);
-  leave_unworn(world, worn, sunken);
+      far_components(world, exemption, Points::Zero(targets.rows(), 3), targets, options.sunken_part, -1);
+  leave_undressed(world, targets, sunken);
   return vertices_of(world, sunken);
 }
 
 std::vector<char> pierced_vertices(const ContactWorld& world, const Exemption& exemption, const Points& nodes,
-                                   const Points& wanted, const Points& worn, double astray,
+                                   const Points& wanted, const Points& targets, double min_distance,
                                    const RecoveryOptions& options) {
-  if (!applies(exemption, worn)) return {};
-  std::vector<char> pierced = either(pierced_components(world, nodes, options.long_limb),
-                                     far_components(world, exemption, nodes, worn, options.pierced_part, astray));
+  if (!applies(exemption, targets)) return {};
+  std::vector<char> pierced =
+      either(pierced_components(world, nodes, options.long_limb),
+             far_components(world, exemption, nodes, targets, options.pierced_part, min_distance));
   if (pierced.empty()) return {};
-  leave_unworn(world, worn, pierced);
+  leave_undressed(world, targets, pierced);
   Points there = wanted;
-  for (int v = 0; v < worn.rows(); ++v) there.row(v) = worn.row(v).allFinite() ? worn.row(v) : nodes.row(v);
+  for (int v = 0; v < targets.rows(); ++v) there.row(v) = targets.row(v).allFinite() ? targets.row(v) : nodes.row(v);
   const std::vector<char> anyway = pierced_components(world, there, options.long_limb);
   for (std::size_t c = 0; c < pierced.size(); ++c) pierced[c] = pierced[c] && !anyway[c];
   return vertices_of(world, pierced);

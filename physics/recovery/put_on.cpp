@@ -12,39 +12,39 @@ namespace selvedge {
 namespace {
 
 struct Place {
-  Points nodes, ways;  // with the marked vertices at this place, and their displacements in the step
-  int pairs;           // number of pairs of triangles that cross there
+  Points nodes, displacements;  // with the marked vertices at this place, and their displacements in the step
+  int pairs;                    // number of pairs of triangles that cross there
 };
 
 // The displacements in the step of the obstacle nodes nearest to `places`, with obstacles as in `at`.
-Points ways_along(const ContactWorld& world, const Points& at, const Points& places, const Points& nodes,
-                  const Points& wanted) {
-  Points ways(places.rows(), 3);
+Points obstacle_displacements(const ContactWorld& world, const Points& at, const Points& places, const Points& nodes,
+                              const Points& wanted) {
+  Points displacements(places.rows(), 3);
   for (Eigen::Index k = 0; k < places.rows(); ++k) {
     const int nearest = nearest_obstacle_node(world, at, places.row(k).transpose());
-    ways.row(k) = wanted.row(nearest) - nodes.row(nearest);
+    displacements.row(k) = wanted.row(nearest) - nodes.row(nearest);
   }
-  return ways;
+  return displacements;
 }
 
 // Places within `farthest`, the least tangled first: the skinned targets, and where the cloth was clean last, moved
 // along with obstacles since.
-std::vector<Place> places_for(const ContactWorld& world, const std::vector<int>& vertices, const WornPlaces& where,
+std::vector<Place> places_for(const ContactWorld& world, const std::vector<int>& vertices, const RecoveryTargets& where,
                               const Points& nodes, double farthest) {
   std::vector<Place> places;
-  const auto add = [&](const Points& there, Points ways) {
+  const auto add = [&](const Points& there, Points displacements) {
     if (!((there - nodes(vertices, Eigen::all)).rowwise().squaredNorm().maxCoeff() <= farthest * farthest)) return;
-    Place place{nodes, std::move(ways), 0};
+    Place place{nodes, std::move(displacements), 0};
     place.nodes(vertices, Eigen::all) = there;
     place.pairs = intersecting_pairs(find_segments(WorldSheets(world, place.nodes).views));
     places.push_back(std::move(place));
   };
-  const Points &wanted = *where.wanted, worn = (*where.worn)(vertices, Eigen::all);
-  const Points ways = ways_along(world, wanted, worn, nodes, wanted);
-  add(worn - ways, ways);
+  const Points &wanted = *where.wanted, targets = (*where.skinned_targets)(vertices, Eigen::all);
+  const Points displacements = obstacle_displacements(world, wanted, targets, nodes, wanted);
+  add(targets - displacements, displacements);
   if (where.last_clean.rows() > 0) {
     const Points carried = carried_along(world, where.last_clean, nodes, where.thickness)(vertices, Eigen::all);
-    add(carried, ways_along(world, nodes, carried, nodes, wanted));
+    add(carried, obstacle_displacements(world, nodes, carried, nodes, wanted));
   }
   std::ranges::stable_sort(places, {}, &Place::pairs);
   return places;
@@ -69,7 +69,7 @@ bool is_tangled(const Exemption& there, const Exemption& before, const std::vect
 
 }  // namespace
 
-PutOn put_on(const ContactWorld& world, const std::vector<char>& marked, const WornPlaces& where, Points& nodes,
+PutOn put_on(const ContactWorld& world, const std::vector<char>& marked, const RecoveryTargets& where, Points& nodes,
              Points& v, UntanglingBudget* budget, const RecoveryOptions& limits) {
   std::vector<int> vertices;
   for (int i = 0; i < static_cast<int>(marked.size()); ++i)
@@ -84,7 +84,7 @@ PutOn put_on(const ContactWorld& world, const std::vector<char>& marked, const W
     place.nodes.topRows(parted.x.rows()) = parted.x;  // moves other layers too, which the place may cross
     if (is_tangled(find_exemption(world, place.nodes), before, marked)) continue;
     nodes = std::move(place.nodes);
-    v(vertices, Eigen::all) = place.ways / where.h;
+    v(vertices, Eigen::all) = place.displacements / where.h;
     return PutOn::done;
   }
   return PutOn::no_place;

@@ -12,12 +12,12 @@ namespace selvedge {
 // body than that. So cloth that is near its targets is set to them.
 
 // Where bodies and obstacles would take the cloth in a step.
-struct WornPlaces {
-  const Points* wanted;  // all nodes, with obstacles at the step's end
-  const Points* worn;    // the cloth's skinned targets then, a row a vertex
-  Points last_clean;     // all nodes when the cloth was last clean; empty: never
-  double thickness;      // of contact [m]
-  double h;              // of the step [s]
+struct RecoveryTargets {
+  const Points* wanted;           // all nodes, with obstacles at the step's end
+  const Points* skinned_targets;  // the cloth's then, a row a vertex
+  Points last_clean;              // all nodes when the cloth was last clean; empty: never
+  double thickness;               // of contact [m]
+  double h;                       // of the step [s]
 };
 
 enum class PutOn { nothing, too_far, no_place, done };
@@ -29,7 +29,7 @@ enum class PutOn { nothing, too_far, no_place, done };
 // were if nothing is marked (`nothing`), if a marked vertex would move too far (`too_far`), or if the passes do not
 // untangle it at any place (`no_place`). All positions must be finite, targets at marked vertices. Without a budget an
 // ample one is used.
-PutOn put_on(const ContactWorld&, const std::vector<char>& marked, const WornPlaces&, Points& nodes, Points& v,
+PutOn put_on(const ContactWorld&, const std::vector<char>& marked, const RecoveryTargets&, Points& nodes, Points& v,
              UntanglingBudget* = nullptr, const RecoveryOptions& = {});
 
 }  // namespace selvedge

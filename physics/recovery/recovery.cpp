@@ -25,25 +25,25 @@ std::vector<char> tangled_at(const ContactWorld& world, const Points& nodes, con
 
 // 1 for tangled cloth that is connected to drawn cloth, or to a crossing with a switched-off part of a body; empty if
 // there is none.
-std::vector<char> waiting(const ContactWorld& world, const Points& nodes, const std::vector<char>& tangled,
-                          const std::vector<char>& off, const std::vector<char>& drawn) {
-  if ((off.empty() && drawn.empty()) || tangled.empty()) return {};
+std::vector<char> trapped_vertices(const ContactWorld& world, const Points& nodes, const std::vector<char>& tangled,
+                                   const std::vector<char>& switched_off, const std::vector<char>& drawn) {
+  if ((switched_off.empty() && drawn.empty()) || tangled.empty()) return {};
   const WorldSheets sheets(world, nodes);
-  std::vector<char> waits(tangled.size(), 0);
+  std::vector<char> trapped(tangled.size(), 0);
   std::vector<int> front;
   const auto add = [&](int v) {
-    if (!tangled[v] || waits[v]) return;
-    waits[v] = 1;
+    if (!tangled[v] || trapped[v]) return;
+    trapped[v] = 1;
     front.push_back(v);
   };
   for (int v = 0; v < static_cast<int>(drawn.size()); ++v)
     if (drawn[v]) add(v);
   for (const Segment& segment : find_segments(sheets.views).segments) {
-    if (off.empty()) break;
+    if (switched_off.empty()) break;
     if ((segment.sheet[0] == 0) == (segment.sheet[1] == 0)) continue;
     const int side = segment.sheet[0] == 0 ? 0 : 1, obstacle = segment.sheet[1 - side] - 1;
     const auto body = world.obstacles[obstacle]->triangles.row(segment.triangle[1 - side]);
-    if (std::any_of(body.begin(), body.end(), [&](int v) { return off[world.first_node[obstacle] + v] != 0; }))
+    if (std::any_of(body.begin(), body.end(), [&](int v) { return switched_off[world.first_node[obstacle] + v] != 0; }))
       for (const int v : world.cloth->triangles.row(segment.triangle[side])) add(v);
   }
   while (!front.empty()) {
@@ -52,11 +52,11 @@ std::vector<char> waiting(const ContactWorld& world, const Points& nodes, const 
     for (const int t : world.cloth->triangles_of(v))
       for (const int other : world.cloth->triangles.row(t)) add(other);
   }
-  return waits;
+  return trapped;
 }
 
-bool none_is_left(const Exemption& found, const std::vector<char>& waits) {
-  return found.self.empty() && (found.body.empty() || found.body == waits);
+bool none_is_left(const Exemption& found, const std::vector<char>& trapped) {
+  return found.self.empty() && (found.body.empty() || found.body == trapped);
 }
 
 // A contact term has four vertices. An edge through a face has five: the edge's nearer end replaces it.
@@ -71,9 +71,9 @@ Separation on_four(Separation s) {
 
 // The pushes that follow from the `wanted` displacement to the untangled cloth. For each separation its sides (two of
 // cloth, or cloth and an obstacle) move in the direction in which `wanted` moves them apart, by the same distance but
-// at most `reach` [m]. None for separations whose vertices are all `lost`.
-std::vector<Separation> pushes_along(const Points& wanted, const std::vector<char>& lost, const WorldSheets& sheets,
-                                     double shortest, double reach) {
+// at most `reach` [m]. None for separations whose vertices are all `still_tangled`.
+std::vector<Separation> pushes_along(const Points& wanted, const std::vector<char>& still_tangled,
+                                     const WorldSheets& sheets, double shortest, double reach) {
   const Segments found = find_segments(sheets.views);
   const std::vector<Contour> contours = find_contours(sheets.views, found);
   std::vector<Separation> pushes;
@@ -81,13 +81,13 @@ std::vector<Separation> pushes_along(const Points& wanted, const std::vector<cha
        part_contours(sheets.views, found, contours, enclosed_regions(sheets.views, found, contours), {})) {
     Separation push = on_four(s);
     Vec3 apart = Vec3::Zero();
-    bool hopeful = false;
+    bool can_part = false;
     for (int i = 0; i < push.count; ++i) {
       apart += push.weight[i] * row(wanted, push.vertex[i]);
-      hopeful = hopeful || lost.empty() || !lost[push.vertex[i]];
+      can_part = can_part || still_tangled.empty() || !still_tangled[push.vertex[i]];
     }
     const double length = apart.norm();
-    if (!hopeful || length <= shortest) continue;
+    if (!can_part || length <= shortest) continue;
     push.direction = apart / length;
     push.least = std::min(length, reach);
     pushes.push_back(push);
@@ -131,9 +131,9 @@ Exemption stop_at_obstacles(const ContactWorld& world, const Exemption& before, 
 
 }  // namespace
 
-std::optional<Exemption> hopeless(const ContactWorld& world, const Points& nodes, const RecoveryOptions& options) {
+std::optional<Exemption> too_tangled(const ContactWorld& world, const Points& nodes, const RecoveryOptions& options) {
   if (!world.self) return {};
-  if (pairs_within_cloth(world, nodes) <= options.hopeless_pairs * std::size_t(world.cloth->triangles.rows()))
+  if (pairs_within_cloth(world, nodes) <= options.max_pairs_per_triangle * std::size_t(world.cloth->triangles.rows()))
     return {};
   ContactWorld bodies = world;
   bodies.self = false;
@@ -146,45 +146,44 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
                  const std::vector<char>& drawn, Points& nodes, UntanglingBudget* budget,
                  const RecoveryOptions& limits) {
   const int n = world.cloth->vertex_count;
-  const std::vector<char> waits = waiting(world, nodes, before.body, before.off, drawn);
-  Recovery recovery{before, {}, false, waits};
-  if (!before.cloth() || none_is_left(before, waits)) return recovery;
+  const std::vector<char> trapped = trapped_vertices(world, nodes, before.body, before.switched_off, drawn);
+  Recovery recovery{before, {}, false, trapped};
+  if (!before.tangled() || none_is_left(before, trapped)) return recovery;
   UntanglingBudget ample;
   const WorldSheets sheets(world, nodes);
   const Points& from = sheets.positions[0];
   UntangleOptions options;
   for (int v = 0; v < n; ++v) options.held.push_back(inverse_mass[v] == 0);
-  if (std::ranges::find(waits, 1) != waits.end()) {
-    options.iterations = limits.waiting_passes;
-    options.let_through = either(waits, drawn);
+  if (std::ranges::find(trapped, 1) != trapped.end()) {
+    options.iterations = limits.trapped_passes;
+    options.let_through = either(trapped, drawn);
     options.second_rule = false;
   }
   options.iterations = iterations_for(world, nodes, reach, before, options, limits);
   const UntangleResult parted =
       (budget ? *budget : ample).untangle(*world.cloth, from, std::span(sheets.views).subspan(1), options);
-  const std::vector<char> lost = tangled_at(world, nodes, parted);
+  const std::vector<char> still_tangled = tangled_at(world, nodes, parted);
   const Points whole = parted.x - from;
   Points wanted = whole;
   for (int v = 0; v < n; ++v)
-    if (!lost.empty() && lost[v]) wanted.row(v).setZero();
+    if (!still_tangled.empty() && still_tangled[v]) wanted.row(v).setZero();
   const std::size_t pairs = before.self.empty() ? 0 : pairs_within_cloth(world, nodes);
   for (int halving = 0; halving <= limits.max_halvings; ++halving, reach /= 2) {
-    std::vector<Separation> gained =
-        pushes_along(whole, lost, sheets, limits.negligible_move * parted.mean_edge, reach);
-    drop_let_through(options.let_through, gained);
+    std::vector<Separation> separations =
+        pushes_along(whole, still_tangled, sheets, limits.negligible_move * parted.mean_edge, reach);
+    drop_let_through(options.let_through, separations);
     Points moved = nodes;
-    moved.topRows(n) += balanced_motion(*world.cloth, inverse_mass, gained, wanted, reach);
+    moved.topRows(n) += balanced_motion(*world.cloth, inverse_mass, separations, wanted, reach);
     Exemption left = stop_at_obstacles(world, before, from, moved);
     if (before.self.empty() ? !left.self.empty() : pairs_within_cloth(world, moved) > pairs) continue;
     nodes = std::move(moved);
-    recovery = {std::move(left), std::move(gained), parted.moved == 0, waits};
-    recovery.left.off = before.off;
+    recovery = {std::move(left), std::move(separations), parted.moved == 0, trapped};
+    recovery.left_alone.switched_off = before.switched_off;
     break;
   }
-  for (Separation& gained : recovery.gained) {
-    gained.least = 0;
-    for (int i = 0; i < gained.count; ++i)
-      gained.least += gained.weight[i] * gained.direction.dot(row(nodes, gained.vertex[i]));
+  for (Separation& one : recovery.separations) {
+    one.least = 0;
+    for (int i = 0; i < one.count; ++i) one.least += one.weight[i] * one.direction.dot(row(nodes, one.vertex[i]));
   }
   return recovery;
 }
@@ -201,13 +200,13 @@ bool SelfCrossings::crosses(int obstacle, const Points& nodes, Known& known) {
   return known.crosses;
 }
 
-void SelfCrossings::switch_off(const Points& from, const Points& to, const Points& worn, Exemption& exemption) {
+void SelfCrossings::switch_off(const Points& from, const Points& to, const Points& targets, Exemption& exemption) {
   for (std::size_t k = 0; k < known_.size(); ++k) {
     const int obstacle = static_cast<int>(k);
     auto& [start, end] = known_[k];
     std::swap(start, end);  // a step begins where the last one ended
     const bool before = crosses(obstacle, from, start), after = crosses(obstacle, to, end);
-    if (before || after) selvedge::switch_off(world_, obstacle, from, to, worn, exemption);
+    if (before || after) selvedge::switch_off(world_, obstacle, from, to, targets, exemption);
   }
 }
 

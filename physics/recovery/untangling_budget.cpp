@@ -7,7 +7,7 @@ namespace selvedge {
 
 UntangleResult UntanglingBudget::untangle(const Surface& cloth, const Points& x, std::span<const SheetView> obstacles,
                                           UntangleOptions options) {
-  const int left = std::max(0, most - used), wanted = options.iterations;
+  const int left = std::max(0, max_passes - used), wanted = options.iterations;
   options.iterations = std::min(wanted, left);
   // The second rule of repulsion takes as many passes again.
   if (options.second_rule && 2 * options.iterations > left) {

@@ -7,7 +7,7 @@ namespace selvedge {
 
 // The passes of untangling that a step may take, and has taken.
 struct UntanglingBudget {
-  int most = 1000;                 // passes
+  int max_passes = 1000;
   const StopFlag* stop = nullptr;  // asked in each pass
   int used = 0;
   bool ran_out = false;  // more passes were wanted

@@ -158,7 +158,7 @@ Drive drive_of(const PartOfScene& part, const Drive& whole) {
           whole.obstacles,
           whole.wind,
           whole.acceleration,
-          whole.worn.rows() == 0 ? Points() : rows_of(whole.worn, part.vertices),
+          whole.skinned_targets.rows() == 0 ? Points() : rows_of(whole.skinned_targets, part.vertices),
           whole.bodies};
 }
 

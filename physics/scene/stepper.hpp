@@ -42,8 +42,8 @@ struct Drive {
   std::vector<Points> obstacles;     // wanted positions [m]
   Vec3 wind = Vec3::Zero();          // [m/s]
   Vec3 acceleration = Vec3::Zero();  // gravity [m/s2]
-  Points worn;                       // one row per vertex: its skinned target, where its body takes it without forces;
-                                     // NaN where no body wears it; empty if no cloth is worn
+  Points skinned_targets;            // one row per vertex: where its body takes it without forces [m]; NaN where no
+                                     // body wears it; empty if no cloth is dressed
   std::vector<BodyFrame> bodies;     // one per obstacle, without joints if it is no body; empty: there are no bodies
 };
 
@@ -184,9 +184,9 @@ struct StepExtras {
 
 // What a scene must have for a stepper.
 struct StepperNeeds {
-  bool worn = false;       // Drive::worn
-  bool bodies = false;     // Drive::bodies
-  bool obstacles = false;  // at least one
+  bool skinned_targets = false;  // Drive::skinned_targets
+  bool bodies = false;           // Drive::bodies
+  bool obstacles = false;        // at least one
 };
 
 struct StepperTraits {

@@ -12,13 +12,13 @@ namespace {
 
 constexpr const char *target_block = "carried.target", *motion_block = "carried.motion";
 
-bool has_target(const Points& worn, Eigen::Index v) { return worn.rows() > 0 && worn.row(v).allFinite(); }
+bool has_target(const Points& targets, Eigen::Index v) { return targets.rows() > 0 && targets.row(v).allFinite(); }
 
 // The skinned target of cloth that a body wears, the place of all other cloth.
-Points targets(const Drive& drive, const Points& x) {
+Points all_targets(const Drive& drive, const Points& x) {
   Points all = x;
   for (Eigen::Index v = 0; v < x.rows(); ++v)
-    if (has_target(drive.worn, v)) all.row(v) = drive.worn.row(v);
+    if (has_target(drive.skinned_targets, v)) all.row(v) = drive.skinned_targets.row(v);
   return all;
 }
 
@@ -77,13 +77,13 @@ Points carried_guess(const Scene& scene, const State& from, const Drive& drive, 
                    *motion = find_rows(from.memory, motion_block, from.x.rows());
   Points x = from.x;
   for (Eigen::Index v = 0; v < x.rows(); ++v) {
-    if (!has_target(drive.worn, v))
+    if (!has_target(drive.skinned_targets, v))
       x.row(v) += dt * (from.v.row(v) + dt * drive.acceleration.transpose());
     else if (target)
-      x.row(v) += drive.worn.row(v) - target->row(v);
+      x.row(v) += drive.skinned_targets.row(v) - target->row(v);
     else
       x.row(v) += dt * from.v.row(v);
-    if (has_target(drive.worn, v) && motion) x.row(v) += options.kept * motion->row(v);
+    if (has_target(drive.skinned_targets, v) && motion) x.row(v) += options.kept * motion->row(v);
   }
   for (std::size_t k = 0; k < scene.pins.size(); ++k)
     x.row(scene.pins[k]) = drive.pins.row(static_cast<Eigen::Index>(k));
@@ -91,7 +91,7 @@ Points carried_guess(const Scene& scene, const State& from, const Drive& drive, 
 }
 
 std::vector<MemoryBlock> carried_memory(const State& from, const Drive& drive, const Points& x) {
-  const Points now = targets(drive, x);
+  const Points now = all_targets(drive, x);
   Points motion = Points::Zero(x.rows(), 3);
   if (const MemoryRows* before = find_rows(from.memory, target_block, x.rows()))
     motion = (x - from.x) - (now - Points(*before));

@@ -15,7 +15,7 @@ ResolveOptions resolve_options(const Scene& scene, ResolveOptions options) {
   options.self_friction = contact.self_friction;
   options.rigid_zones = contact.rigid_zones;
   const ResponseWork most = most_response(scene.surface.vertex_count);
-  options.most = {std::min(options.most.swept, most.swept), std::min(options.most.projected, most.projected)};
+  options.budget = {std::min(options.budget.swept, most.swept), std::min(options.budget.projected, most.projected)};
   return options;
 }
 

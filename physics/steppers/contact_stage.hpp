@@ -13,8 +13,8 @@ namespace selvedge {
 ResponseWork most_response(int cloth_vertices);
 
 // What contact of a scene needs from step to step: the numbering of nodes, the trees, the settings. Thickness,
-// separation and friction of `limits` are replaced by the scene's contact settings, and `most` by most_response. Holds
-// references to the scene, and caches.
+// separation and friction of `limits` are replaced by the scene's contact settings, and the `budget` by most_response.
+// Holds references to the scene, and caches.
 struct ContactStage {
   explicit ContactStage(const Scene&, const ResolveOptions& limits = {});
   ContactStage(const ContactStage&) = delete;

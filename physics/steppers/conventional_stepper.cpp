@@ -40,7 +40,7 @@ struct StepWork {
 enum class SubstepOutcome { clean, impact_too_deep, zones_not_converged, too_many_pairs, not_finite, stopped };
 
 // Substeps of one length that are still to be taken; at their end obstacles are as in `nodes` and pins as in `pins`.
-struct Stretch {
+struct SubstepRun {
   Points nodes, pins;
   double h;      // of each [s]
   int count;     // substeps left
@@ -81,14 +81,14 @@ class ConventionalStepper final : public Stepper {
   bool solve_freely(StepWork&, Substep&, const StepStart&);
   void hold_pins(StepWork&, Substep&, Points& pins);
   bool yield_obstacles(StepWork&, const std::vector<Proximity>&, Substep&);
-  bool torn(const StepProblem&, const Points& x, const Points& after);
+  bool raises_energy(const StepProblem&, const Points& x, const Points& after);
   void stop_short(StepWork&, const Points& wanted, Substep&);
   SubstepOutcome respond(StepWork&, Substep&, const StepProblem&, const NewtonReport&, const Contacts&, Points& x);
   SubstepOutcome substep(StepWork&, Substep&);
-  Substep begin_substep(const StepWork&, const SubstepState&, const Stretch& target, SubstepAttempt,
+  Substep begin_substep(const StepWork&, const SubstepState&, const SubstepRun& target, SubstepAttempt,
                         double time_left) const;
   void end_substep(StepWork&, Substep&&, SubstepState&);
-  bool advance(StepWork&, SubstepState&, Stretch whole);
+  bool advance(StepWork&, SubstepState&, SubstepRun whole);
   int planned_substeps(const State& from, const Drive&, double dt, const Points& nodes) const;
   void begin_contact(StepWork&, const Points& nodes);
 
@@ -106,8 +106,8 @@ class ConventionalStepper final : public Stepper {
 ResolveOptions ConventionalStepper::resolve_options(const StepWork& work) const {
   ResolveOptions options = contact_.options;
   options.stop = work.extras.stop;
-  options.most.swept -= work.report.counts.swept;
-  options.most.projected -= work.report.counts.projected;
+  options.budget.swept -= work.report.counts.swept;
+  options.budget.projected -= work.report.counts.projected;
   return options;
 }
 
@@ -195,18 +195,18 @@ bool ConventionalStepper::yield_obstacles(StepWork& work, const std::vector<Prox
 
 // Whether the response moved the cloth from x to where it stores far more energy than there was. Impulses do not take
 // elasticity into account: a small motion may be many times the width of a thin triangle.
-bool ConventionalStepper::torn(const StepProblem& problem, const Points& x, const Points& after) {
+bool ConventionalStepper::raises_energy(const StepProblem& problem, const Points& x, const Points& after) {
   const double moving =
       0.5 * solve_.solver().masses().dot((x - *problem.x0).rowwise().squaredNorm()) / (problem.h * problem.h);
   return solve_.solver().potential(problem, after) >
-         options_.substep.tearing * (solve_.solver().potential(problem, x) + moving);
+         options_.substep.max_energy_ratio * (solve_.solver().potential(problem, x) + moving);
 }
 
 // Moves everything along the straight path up to the first impact.
 void ConventionalStepper::stop_short(StepWork& work, const Points& wanted, Substep& s) {
   double first = 1;
   for (const Impact& impact : solve_.impacts(s.start.nodes, wanted, work.report)) first = std::min(first, impact.time);
-  s.nodes = s.start.nodes + options_.substep.kept_motion * first * (wanted - s.start.nodes);
+  s.nodes = s.start.nodes + options_.substep.part_to_impact * first * (wanted - s.start.nodes);
   update_pairs(contact_.search, contact_.options.thickness, s.start.nodes, s.nodes, contact_.path);
   ++work.report.collision.shortened;
   work.report.collision.held_vertices += scene_.surface.vertex_count;
@@ -228,7 +228,7 @@ SubstepOutcome ConventionalStepper::respond(StepWork& work, Substep& s, const St
   if (s.pinched) options.zone_rounds = options_.substep.pinched_zone_rounds;
   const Points wanted = s.nodes;
   const auto resolve_wanted = [&] {
-    options.most = resolve_options(work).most;
+    options.budget = resolve_options(work).budget;
     s.nodes = wanted;
     const ResolveReport resolved =
         resolve(contact_.search, contact_.world, s.inverse_mass, options, s.start.nodes, s.nodes, contact_.path);
@@ -243,7 +243,7 @@ SubstepOutcome ConventionalStepper::respond(StepWork& work, Substep& s, const St
   if (resolved.stopped) return SubstepOutcome::stopped;
   if (!s.nodes.allFinite()) return SubstepOutcome::not_finite;
   if (!resolved.clean && !options.last_resort) return SubstepOutcome::zones_not_converged;
-  if (resolved.impulses > 0 && torn(problem, x, s.nodes.topRows(n))) {
+  if (resolved.impulses > 0 && raises_energy(problem, x, s.nodes.topRows(n))) {
     if (!options.last_resort) return SubstepOutcome::zones_not_converged;
     stop_short(work, wanted, s);
   }
@@ -286,7 +286,7 @@ SubstepOutcome ConventionalStepper::substep(StepWork& work, Substep& s) {
 
 // The substep with obstacles and pins of the target. The cloth's guess follows its velocity, or a guess of the step's
 // end.
-Substep ConventionalStepper::begin_substep(const StepWork& work, const SubstepState& start, const Stretch& target,
+Substep ConventionalStepper::begin_substep(const StepWork& work, const SubstepState& start, const SubstepRun& target,
                                            SubstepAttempt attempt, double time_left) const {
   const int n = scene_.surface.vertex_count;
   Substep s{start, target.pins, target.h, attempt, target.parts, target.nodes};
@@ -315,28 +315,24 @@ void ConventionalStepper::end_substep(StepWork& work, Substep&& s, SubstepState&
 // Takes all substeps. A substep with impacts in fast motion is cut into parts. One whose zones do not converge is tried
 // again with obstacles that give way, then halved; only the last halves take the last resort. One with too many near
 // pairs is halved too. False if the step is rejected; the report says why.
-bool ConventionalStepper::advance(StepWork& work, SubstepState& now, Stretch whole) {
+bool ConventionalStepper::advance(StepWork& work, SubstepState& now, SubstepRun whole) {
   const auto reject = [&](Reason reason) {
     work.report.status = StepStatus::rejected;
     work.report.reason = reason;
     return false;
   };
   double time_left = whole.h * whole.count;
-  std::vector<Stretch> to_do{std::move(whole)};
+  std::vector<SubstepRun> to_do{std::move(whole)};
   while (!to_do.empty()) {
-    Stretch& stretch = to_do.back();
-    if (stretch.count == 0) {
+    SubstepRun& run = to_do.back();
+    if (run.count == 0) {
       to_do.pop_back();
       continue;
     }
-    const double part = 1.0 / stretch.count--;
+    const double part = 1.0 / run.count--;
     const Points held = pinned_rows(scene_, now.nodes);
-    Stretch target{now.nodes + part * (stretch.nodes - now.nodes),
-                   held + part * (stretch.pins - held),
-                   stretch.h,
-                   0,
-                   stretch.halvings,
-                   stretch.parts};
+    SubstepRun target{
+        now.nodes + part * (run.nodes - now.nodes), held + part * (run.pins - held), run.h, 0, run.halvings, run.parts};
     std::optional<Substep> s;
     const auto attempt = [&](SubstepAttempt kind) {
       const bool first = !s;
@@ -375,7 +371,7 @@ bool ConventionalStepper::advance(StepWork& work, SubstepState& now, Stretch who
 // Sets what contact leaves alone, and lists the pairs near the start.
 void ConventionalStepper::begin_contact(StepWork& work, const Points& nodes) {
   const Timed timed(work.report.seconds.broad_phase);
-  work.report.collision.left_alone = work.left_alone.cloth_vertices();
+  work.report.collision.left_alone = work.left_alone.tangled_vertices();
   contact_.leave_alone(&work.left_alone);
   update_pairs(contact_.search, contact_.options.thickness, nodes, nodes, contact_.path);
 }

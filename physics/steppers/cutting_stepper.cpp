@@ -58,7 +58,7 @@ StepReport step_nothing(const State& from, const Drive& drive, double dt, const 
   return report;
 }
 
-// A step of the cloth that is not cut out; the rest follows Drive::worn.
+// A step of the cloth that is not cut out; the rest follows Drive::skinned_targets.
 StepReport CuttingStepper::step_rest(const State& from, const Drive& drive, double dt, const StopFlag& stop,
                                      State& to) {
   cut(from.cut_out);
@@ -71,7 +71,7 @@ StepReport CuttingStepper::step_rest(const State& from, const Drive& drive, doub
   to.time = end.time;
   to.frame = end.frame;
   for (Eigen::Index v = 0; v < to.x.rows(); ++v)
-    if (drive.worn.row(v).allFinite()) to.x.row(v) = drive.worn.row(v);
+    if (drive.skinned_targets.row(v).allFinite()) to.x.row(v) = drive.skinned_targets.row(v);
   for (std::size_t p = 0; p < scene_.pins.size(); ++p)
     to.x.row(scene_.pins[p]) = drive.pins.row(static_cast<Eigen::Index>(p));
   to.v = (to.x - from.x) / dt;

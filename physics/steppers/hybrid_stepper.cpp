@@ -48,8 +48,8 @@ StepperTraits joint_traits(const HybridParts& parts) {
   const StepperTraits &proposer = parts.proposer->traits(), &parent = parts.parent->traits();
   return {.name = "hybrid",
           .past_frames = std::max({1, proposer.past_frames, parent.past_frames}),
-          .needs = {proposer.needs.worn || parent.needs.worn, proposer.needs.bodies || parent.needs.bodies,
-                    proposer.needs.obstacles || parent.needs.obstacles},
+          .needs = {proposer.needs.skinned_targets || parent.needs.skinned_targets,
+                    proposer.needs.bodies || parent.needs.bodies, proposer.needs.obstacles || parent.needs.obstacles},
           .only_dt = proposer.only_dt ? proposer.only_dt : parent.only_dt,
           .may_leave_out_cloths = false,
           .honours_extras = false,

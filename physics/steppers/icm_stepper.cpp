@@ -224,11 +224,11 @@ StepReport IcmStepper::take_step(const State& from, const Drive& drive, double d
     now.v = std::move(work.v);
     if (s == 0) report.path.start = now.nodes;
     report.path.substeps.push_back({next, work.exemption});
-    if (s == 0) report.collision.left_alone = work.exemption.cloth_vertices();
-    all.off = either(std::move(all.off), work.exemption.off);
+    if (s == 0) report.collision.left_alone = work.exemption.tangled_vertices();
+    all.switched_off = either(std::move(all.switched_off), work.exemption.switched_off);
     now.nodes = std::move(next);
   }
-  if (!all.off.empty()) report.switched_off = switched_off(world_, all);
+  if (!all.switched_off.empty()) report.switched_off = switched_off_counts(world_, all);
   finish_step(from, drive, dt, {now.nodes.topRows(n), std::move(now.v), drive.obstacles}, to, report);
   if (energy_(from, drive, to).from_nowhere()) {
     report.status = StepStatus::rejected;

@@ -19,7 +19,7 @@ bool read_trust(const State& state, ProposalTrust& trust) {
 
 void remember(const ProposalTrust& trust, State& state) {
   MemoryRows row(1, 3);
-  row << trust.wait, trust.stretch, trust.admitted;
+  row << trust.wait, trust.next_wait, trust.admitted;
   replace_blocks("hybrid", {{trust_block, row}}, state.memory);
 }
 
@@ -30,12 +30,12 @@ ProposalTrust after_wait(ProposalTrust trust) {
 
 ProposalTrust after_admission(ProposalTrust trust, int to_halve) {
   if (++trust.admitted < to_halve) return trust;
-  return {0, std::max(1, trust.stretch / 2), 0};
+  return {0, std::max(1, trust.next_wait / 2), 0};
 }
 
-ProposalTrust after_refusal(ProposalTrust trust, int longest_stretch) {
-  const int stretch = std::min(trust.stretch, longest_stretch);
-  return {stretch, std::min(2 * stretch, longest_stretch), 0};
+ProposalTrust after_refusal(ProposalTrust trust, int longest_wait) {
+  const int wait = std::min(trust.next_wait, longest_wait);
+  return {wait, std::min(2 * wait, longest_wait), 0};
 }
 
 }  // namespace selvedge

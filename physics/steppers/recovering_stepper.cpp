@@ -52,25 +52,26 @@ class RecoveringStepper final : public Stepper {
   SelfCrossings self_crossings_;
 };
 
-// Terms that keep the gained separations, and draw cloth to its skinned targets: stiffly if no part of a body is
+// Terms that keep separations, and draw cloth to its skinned targets: stiffly if no part of a body is
 // switched off.
 AddedTerm RecoveringStepper::added_term(const Parting& parting, const Drive& drive, const Points& x0, double h) const {
   AddedTerm added;
-  if (!parting.gained.empty())
-    added =
-        added_pushes(push_terms(parting.gained, inverse_mass_, options_.push_softness * scene_.contact.thickness, h));
+  if (!parting.separations.empty())
+    added = added_pushes(
+        push_terms(parting.separations, inverse_mass_, options_.push_softness * scene_.contact.thickness, h));
   const auto draw = [&](const std::vector<char>& marked, double stiffness) {
     if (marked.empty()) return;
     added = sum_of(std::move(added),
-                   drawing_term(marked, masses_, x0, drive.worn, options_.carrying_speed * h, h, stiffness));
+                   drawing_term(marked, masses_, x0, drive.skinned_targets, options_.drawing_speed * h, h, stiffness));
   };
-  draw(parting.drawn, parting.left.off.empty() ? options_.carrying_stiffness : 1);
-  draw(parting.waits, options_.crossing_stiffness);
+  draw(parting.drawn, parting.left_alone.switched_off.empty() ? options_.drawing_stiffness : 1);
+  draw(parting.trapped, options_.trapped_stiffness);
   return added;
 }
 
 Exemption both_of(Exemption a, const Exemption& b) {
-  return {either(std::move(a.self), b.self), either(std::move(a.body), b.body), either(std::move(a.off), b.off)};
+  return {either(std::move(a.self), b.self), either(std::move(a.body), b.body),
+          either(std::move(a.switched_off), b.switched_off)};
 }
 
 StepReport stopped_report(const std::string& by) {
@@ -86,7 +87,8 @@ StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive,
   Stopwatch watch;
   const Points wanted = gather_nodes(from.x, drive.obstacles);
   const LastClean before = from.clean ? LastClean{} : last_clean(from);
-  const WornPlaces where{&wanted, &drive.worn, gather_nodes(before.x, before.obstacles), scene_.contact.thickness, dt};
+  const RecoveryTargets where{&wanted, &drive.skinned_targets, gather_nodes(before.x, before.obstacles),
+                              scene_.contact.thickness, dt};
   Points nodes = gather_nodes(from.x, from.obstacles), v = from.v;
   UntanglingBudget budget{options_.untangling_passes, &extras.stop};
   const Parting parting = part_at_start(world_, self_crossings_, inverse_mass_, edge_length_, from.clean, where,
@@ -95,27 +97,28 @@ StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive,
     report.seconds.response += parted;
     report.untangling += budget.used;
     report.out_of_untangling = report.out_of_untangling || budget.ran_out;
-    if (!parting.left.off.empty()) report.switched_off = switched_off(world_, parting.left);
+    if (!parting.left_alone.switched_off.empty()) report.switched_off = switched_off_counts(world_, parting.left_alone);
     return report;
   };
   if (stopped(extras.stop)) return add_parting(stopped_report(traits().name));
-  if (!parting.left.any() && parting.gained.empty() && parting.drawn.empty() && nodes.topRows(v.rows()) == from.x)
+  if (!parting.left_alone.any() && parting.separations.empty() && parting.drawn.empty() &&
+      nodes.topRows(v.rows()) == from.x)
     return add_parting(inner_->step(from, drive, dt, to, extras));
   State start = from;
   start.x = nodes.topRows(v.rows());
   start.v = v;
   if (start.x != from.x) forget_motion(start.memory);
-  const Exemption left_alone = extras.left_alone ? both_of(parting.left, *extras.left_alone) : parting.left;
+  const Exemption left_alone = extras.left_alone ? both_of(parting.left_alone, *extras.left_alone) : parting.left_alone;
   StepExtras all = extras;
   all.left_alone = &left_alone;
-  if (!parting.gained.empty() || !parting.drawn.empty() || !parting.waits.empty())
+  if (!parting.separations.empty() || !parting.drawn.empty() || !parting.trapped.empty())
     all.added = [&](const Points& x0, double h) {
       AddedTerm own = added_term(parting, drive, x0, h);
       return extras.added ? sum_of(extras.added(x0, h), std::move(own)) : own;
     };
   const StepReport report = add_parting(inner_->step(start, drive, dt, to, all));
   // Cloth that was drawn stiffly loses its velocity; otherwise it would overshoot its targets.
-  if (report.status == StepStatus::accepted && parting.left.off.empty())
+  if (report.status == StepStatus::accepted && parting.left_alone.switched_off.empty())
     for (std::size_t k = 0; k < parting.drawn.size(); ++k)
       if (parting.drawn[k]) to.v.row(static_cast<Eigen::Index>(k)).setZero();
   return report;
@@ -131,7 +134,7 @@ StepReport RecoveringStepper::step(const State& from, const Drive& drive, double
   StepReport report = bounded_step(traits().name, extras.stop, [&] {
     return has_contact_ ? step_parted(from, drive, dt, to, extras) : inner_->step(from, drive, dt, to, extras);
   });
-  if (report.status == StepStatus::accepted && drive.worn.rows() > 0)
+  if (report.status == StepStatus::accepted && drive.skinned_targets.rows() > 0)
     remember(from.clean ? LastClean{from.x, from.obstacles} : last_clean(from), to);
   return report;
 }

@@ -30,9 +30,9 @@ struct SubstepOptions {
   // Zones take this many rounds in a substep that may still be halved, and this many where there is no room.
   static constexpr int halving_zone_rounds = 12, pinched_zone_rounds = 4;
   // A response is refused if it raises the potential to this many times the energy before.
-  static constexpr double tearing = 10;
+  static constexpr double max_energy_ratio = 10;
   // Where the last resort is refused, cloth and obstacles keep this part of their motion up to the first impact.
-  static constexpr double kept_motion = 0.5;
+  static constexpr double part_to_impact = 0.5;
 };
 
 }  // namespace selvedge

@@ -103,13 +103,13 @@ SkinWeights shares_of_body(const Points& x, const BodyModel& body, double width)
   return all;
 }
 
-Points worn(const Garment& garment, const BodyModel& body, const Eigen::VectorXd& shape, const BodyPose& pose) {
+Points skinned(const Garment& garment, const BodyModel& body, const Eigen::VectorXd& shape, const BodyPose& pose) {
   return posed(garment.skin, shape, pose, joint_transforms(body, joint_positions(body, shape), pose));
 }
 
 Points rest_shape(const Garment& garment, const BodyModel& body, const Eigen::VectorXd& shape) {
   return garment.made_in.rotations.rows() == 0 ? shaped(garment.skin, shape)
-                                               : worn(garment, body, shape, garment.made_in);
+                                               : skinned(garment, body, shape, garment.made_in);
 }
 
 }  // namespace selvedge

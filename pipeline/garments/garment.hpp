@@ -42,7 +42,7 @@ SkinnedSurface attached(const Points& x, const Triangles&, const BodyModel&, Fit
 SkinWeights shares_of_body(const Points& x, const BodyModel&, double width);
 
 // The garment on the body in a shape and pose [m]. It is only skinned, so that it may be tangled.
-Points worn(const Garment&, const BodyModel&, const Eigen::VectorXd& shape, const BodyPose&);
+Points skinned(const Garment&, const BodyModel&, const Eigen::VectorXd& shape, const BodyPose&);
 
 // Its rest shape for a body of that shape: as made, resized by the shape directions [m].
 Points rest_shape(const Garment&, const BodyModel&, const Eigen::VectorXd& shape);

@@ -61,7 +61,7 @@ nb::object described(const Drive& drive) {
   return steppers_module().attr("StepDrive")(
       "pins"_a = copy_of(drive.pins), "obstacles"_a = copies_of(drive.obstacles), "wind"_a = three(drive.wind),
       "acceleration"_a = three(drive.acceleration),
-      "worn"_a = drive.worn.rows() > 0 ? copy_of(drive.worn) : nb::object(nb::none()));
+      "worn"_a = drive.skinned_targets.rows() > 0 ? copy_of(drive.skinned_targets) : nb::object(nb::none()));
 }
 
 // Forces by the names that StepperTraits::ignores has.
@@ -84,7 +84,8 @@ std::vector<std::string> ignored_by(const std::string& kind, const nb::object& s
 
 StepperTraits traits_of(const std::string& kind, const nb::object& stepper) {
   const auto yes = [&](const char* name) { return nb::cast<bool>(nb::bool_(stepper.attr(name))); };
-  StepperTraits traits{.name = kind, .needs = {.worn = yes("needs_worn"), .obstacles = yes("needs_obstacles")}};
+  StepperTraits traits{.name = kind,
+                       .needs = {.skinned_targets = yes("needs_worn"), .obstacles = yes("needs_obstacles")}};
   traits.may_leave_out_cloths = yes("may_leave_out_cloths");
   traits.ignores = ignored_by(kind, stepper);
   return traits;

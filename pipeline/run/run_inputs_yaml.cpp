@@ -113,7 +113,7 @@ std::uint64_t scene_hash(const Setup& setup) {
   for (const Obstacle& obstacle : setup.scene.obstacles) all.matrix(obstacle.surface.triangles);
   const Drive begin = setup.drive_at(0);
   all.matrix(begin.pins);
-  all.matrix(begin.worn);
+  all.matrix(begin.skinned_targets);
   for (const Points& obstacle : begin.obstacles) all.matrix(obstacle);
   return all.hash;
 }

@@ -165,22 +165,22 @@ const Options<RecoveryOptions>& recovery_options() {
        number("push_softness", &O::push_softness, Unit::none, positive,
               "Distance over which the force sets in that keeps untangled cloth apart, in contact thicknesses.")},
       {}, {},
-      constants("physics/recovery/recovery_options.hpp", {{"hopeless_pairs", O::hopeless_pairs},
+      constants("physics/recovery/recovery_options.hpp", {{"hopeless_pairs", O::max_pairs_per_triangle},
                                                           {"max_pair_passes", O::max_pair_passes},
                                                           {"useful_motions", O::useful_motions},
                                                           {"min_passes", O::min_passes},
-                                                          {"waiting_passes", O::waiting_passes},
+                                                          {"waiting_passes", O::trapped_passes},
                                                           {"max_halvings", O::max_halvings},
                                                           {"negligible_move", O::negligible_move},
                                                           {"placing_passes", O::placing_passes},
                                                           {"max_placing_pair_passes", O::max_placing_pair_passes},
                                                           {"pierced_part", O::pierced_part},
-                                                          {"astray", O::astray},
+                                                          {"astray", O::pierced_distance},
                                                           {"sunken_part", O::sunken_part},
                                                           {"long_limb", O::long_limb},
-                                                          {"carrying_speed", O::carrying_speed},
-                                                          {"carrying_stiffness", O::carrying_stiffness},
-                                                          {"crossing_stiffness", O::crossing_stiffness}}));
+                                                          {"carrying_speed", O::drawing_speed},
+                                                          {"carrying_stiffness", O::drawing_stiffness},
+                                                          {"crossing_stiffness", O::trapped_stiffness}}));
   return table;
 }
 

@@ -64,8 +64,8 @@ const Options<SubstepOptions>& substep_options() {
                                                          {"max_halvings", O::max_halvings},
                                                          {"halving_zone_rounds", O::halving_zone_rounds},
                                                          {"pinched_zone_rounds", O::pinched_zone_rounds},
-                                                         {"tearing", O::tearing},
-                                                         {"kept_motion", O::kept_motion}}));
+                                                         {"tearing", O::max_energy_ratio},
+                                                         {"kept_motion", O::part_to_impact}}));
   return table;
 }
 

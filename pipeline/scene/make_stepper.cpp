@@ -48,9 +48,9 @@ std::vector<Refusal> refusals(const Setup& setup, const StepperTraits& traits) {
     all.push_back({"it steps no cloth that is cut out", "cloths", "give the garments another start"});
   if (traits.needs.obstacles && setup.scene.obstacles.empty())
     all.push_back({"it needs an obstacle", "obstacles", "add one"});
-  if (!traits.needs.worn && !traits.needs.bodies) return all;
+  if (!traits.needs.skinned_targets && !traits.needs.bodies) return all;
   const Drive start = setup.drive_at(setup.initial.time);
-  if (traits.needs.worn && start.worn.rows() == 0)
+  if (traits.needs.skinned_targets && start.skinned_targets.rows() == 0)
     all.push_back({"it needs cloth that a body wears", "cloths", "give a garment"});
   if (traits.needs.bodies && std::ranges::none_of(start.bodies, [](const BodyFrame& b) { return b.is_body(); }))
     all.push_back({"it needs a body", "obstacles", "give an obstacle with a `body`"});

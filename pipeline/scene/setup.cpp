@@ -40,7 +40,7 @@ struct World {
   std::vector<PinGroup> pins;
   std::vector<std::function<Points(double time)>> obstacles;
   std::vector<std::function<BodyFrame(double time)>> bodies;  // one an obstacle; empty: it is none
-  std::function<Points(double)> worn;                         // empty: nothing is worn
+  std::function<Points(double)> skinned_targets;              // empty: nothing is worn
   Vec3 gravity = Vec3::Zero();
   std::vector<double> wind_times;
   std::vector<Vec3> wind;
@@ -55,7 +55,7 @@ Drive drive(const World& world, double time) {
   for (const auto& at : world.obstacles) d.obstacles.push_back(at(time));
   if (!world.wind.empty()) d.wind = keyed_vector(world.wind_times, world.wind, world.wind_interpolation, time);
   d.acceleration = world.gravity;
-  if (world.worn) d.worn = world.worn(time);
+  if (world.skinned_targets) d.skinned_targets = world.skinned_targets(time);
   if (std::ranges::any_of(world.bodies, [](const auto& body) { return body != nullptr; }))
     for (const auto& body : world.bodies) d.bodies.push_back(body ? body(time) : BodyFrame{});
   return d;
@@ -277,7 +277,7 @@ JoinedScene join_scene(const Config& config, const SceneParts& parts, double beg
   warn_of_pins_inside(parts.cloths, scene, joined.x, joined.start.obstacles, joined.warnings);
   warn_of_stretched_seams(parts.cloths, scene, joined.x, joined.warnings);
   scene.springs = read_springs(config["springs"], parts.cloths, scene, joined.x, joined.warnings);
-  world->worn = worn_in_scene(parts.cloths, scene);
+  world->skinned_targets = skinned_targets_of(parts.cloths, scene);
   joined.drive_at = [world](double time) { return drive(*world, time); };
   return joined;
 }
@@ -292,7 +292,7 @@ std::vector<WornCloth> worn_cloths(const SceneParts& parts, const JoinedScene& j
     const auto o = static_cast<std::size_t>(
         std::ranges::find_if(parts.bodies, [&](const auto& who) { return who == worn->by; }) - parts.bodies.begin());
     WornWatch watch{parts.cloths[c].name, parts.obstacles[o].obstacle.name, {}};
-    watch.part = worn_part(worn_at(*worn, begin_time), joined.start.obstacles[o]);
+    watch.part = worn_part(skinned_at(*worn, begin_time), joined.start.obstacles[o]);
     if (watch.part.places.empty())
       warnings.push_back(
           fmt::format("garment `{}` is not worn: hardly a vertex lies on its body `{}`, so that it is "

@@ -106,7 +106,7 @@ void read_shape(const Config& section, const std::filesystem::path& folder, std:
   warnings.insert(warnings.end(), part.mesh.warnings.begin(), part.mesh.warnings.end());
   const Config& placement = worn ? part.worn->by->section : section;
   read_rest(section["rest"], part.mesh, !section["mesh"].given, placement["scale"].number(), folder, part);
-  part.mesh.x = worn ? worn_at(*part.worn, 0) : placed(section, part.mesh.x);
+  part.mesh.x = worn ? skinned_at(*part.worn, 0) : placed(section, part.mesh.x);
   refuse_far(section, "cloth `" + part.name + "`", part.mesh.x);
   if (section["mesh"].given)
     warn_of_extent(section["mesh"], "cloth `" + part.name + "`", largest_cloth, part.mesh.x, warnings);
@@ -114,7 +114,7 @@ void read_shape(const Config& section, const std::filesystem::path& folder, std:
   if (section["mesh"].given) warn_of_coincident(part, warnings);
   leave_out_massless(part, warnings);
   if (worn && section["start"]["moving"].flag())
-    part.velocity = worn_velocity(*part.worn, 0);
+    part.velocity = skinned_velocity(*part.worn, 0);
   else
     part.velocity = section["velocity"].vector().transpose().replicate(part.mesh.x.rows(), 1);
 }

@@ -174,17 +174,17 @@ Mesh rest_mesh(const Wearing& wearing) {
   return mesh;
 }
 
-Points worn_at(const Wearing& wearing, double time) {
+Points skinned_at(const Wearing& wearing, double time) {
   const Performance& who = *wearing.by;
-  return in_scene(who, worn(wearing.garment, who.body, who.shape, pose_at(who, time)), time);
+  return in_scene(who, skinned(wearing.garment, who.body, who.shape, pose_at(who, time)), time);
 }
 
 namespace {
 
-// Before it is placed.
-Points carried(const Wearing& wearing, double time) {
+// The garment skinned and moved with the soft tissue, before it is placed.
+Points with_soft_tissue(const Wearing& wearing, double time) {
   const Performance& who = *wearing.by;
-  Points x = worn(wearing.garment, who.body, who.shape, pose_at(who, time));
+  Points x = skinned(wearing.garment, who.body, who.shape, pose_at(who, time));
   if (!who.soft_tissue) return x;
   const PosedBody& body = posed_at(who, time);
   return x + wearing.skin * (body.given - body.skinned);
@@ -198,19 +198,19 @@ Points squeezed_at(const Wearing& wearing, const Footing& footing, double time, 
 }  // namespace
 
 Points held_at(const Wearing& wearing, const std::vector<int>& vertices, double time) {
-  const Points x = carried(wearing, time)(vertices, Eigen::all);
+  const Points x = with_soft_tissue(wearing, time)(vertices, Eigen::all);
   return in_scene(*wearing.by, squeezed_at(wearing, footing_of(wearing.footing, vertices), time, x), time);
 }
 
-Points drawn_at(const Wearing& wearing, double time) {
-  Points x = carried(wearing, time);
+Points targets_at(const Wearing& wearing, double time) {
+  Points x = with_soft_tissue(wearing, time);
   if (wearing.by->garments > 1) x = squeezed_at(wearing, wearing.footing, time, x);
   return in_scene(*wearing.by, x, time);
 }
 
-Points worn_velocity(const Wearing& wearing, double time) {
+Points skinned_velocity(const Wearing& wearing, double time) {
   const double fps = wearing.by->clip.fps;
-  return fps * (worn_at(wearing, time + 1 / fps) - worn_at(wearing, time));
+  return fps * (skinned_at(wearing, time + 1 / fps) - skinned_at(wearing, time));
 }
 
 }  // namespace selvedge

@@ -31,16 +31,16 @@ std::vector<std::shared_ptr<const Wearing>> read_wearings(const Config& cloth, c
 Mesh rest_mesh(const Wearing&);
 
 // The skinned positions at a time [s], as placed, and their velocities, from the next frame of the clip.
-Points worn_at(const Wearing&, double time);
-Points worn_velocity(const Wearing&, double time);
+Points skinned_at(const Wearing&, double time);
+Points skinned_velocity(const Wearing&, double time);
 
 // Target positions of pins: skinned, moved with the soft tissue, and squeezed between parts of the body that have come
 // near each other.
 Points held_at(const Wearing&, const std::vector<int>& vertices, double time);
 
-// Target positions of cloth that is drawn to its skinned target: as held_at, but not squeezed if this is the only
+// The skinned targets at a time [s] (Drive::skinned_targets): as held_at, but not squeezed if this is the only
 // garment on the body. Layers need their share of the gap. A single layer is untangled from the skin, and cloth that
 // hangs over a raised knee would be drawn under it.
-Points drawn_at(const Wearing&, double time);
+Points targets_at(const Wearing&, double time);
 
 }  // namespace selvedge

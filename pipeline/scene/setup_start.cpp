@@ -53,7 +53,7 @@ int begin_draped(const Performances& bodies, double fps, std::vector<ClothPart>&
   for (const auto& who : bodies)
     if (who) come_from(made_in(parts, *who), -frames / fps, seconds, *who);
   for (ClothPart& part : parts)
-    if (part.worn) part.first = worn_at(*part.worn, -frames / fps);
+    if (part.worn) part.first = skinned_at(*part.worn, -frames / fps);
   return frames;
 }
 
@@ -68,7 +68,7 @@ void begin_cut(const std::vector<ClothPart>& parts, const Scene& scene, State& i
   if (any) initial.cut_out = cut_out_at_start(scene, initial, may);
 }
 
-std::function<Points(double)> worn_in_scene(const std::vector<ClothPart>& parts, const Scene& scene) {
+std::function<Points(double)> skinned_targets_of(const std::vector<ClothPart>& parts, const Scene& scene) {
   std::vector<std::pair<int, std::shared_ptr<const Wearing>>> worn;  // from which vertex on
   for (std::size_t c = 0; c < parts.size(); ++c)
     if (parts[c].worn) worn.emplace_back(scene.cloths[c].first_vertex, parts[c].worn);
@@ -76,7 +76,7 @@ std::function<Points(double)> worn_in_scene(const std::vector<ClothPart>& parts,
   return [worn, vertices = scene.surface.vertex_count](double time) {
     Points all = Points::Constant(vertices, 3, std::numeric_limits<double>::quiet_NaN());
     for (const auto& [first, wearing] : worn)
-      all.middleRows(first, wearing->garment.skin.rest.rows()) = drawn_at(*wearing, time);
+      all.middleRows(first, wearing->garment.skin.rest.rows()) = targets_at(*wearing, time);
     return all;
   };
 }

@@ -19,7 +19,7 @@ int begin_draped(const Performances&, double fps, std::vector<ClothPart>&);
 // Where garments are to start by cutting, cuts what of them is tangled out of the scene's state at time 0.
 void begin_cut(const std::vector<ClothPart>&, const Scene&, State&);
 
-// Where the scene's garments are worn at a time, as Drive::worn has it; nothing where there is no garment.
-std::function<Points(double time)> worn_in_scene(const std::vector<ClothPart>&, const Scene&);
+// Drive::skinned_targets of the scene at a time [s]; empty if it has no garment.
+std::function<Points(double time)> skinned_targets_of(const std::vector<ClothPart>&, const Scene&);
 
 }  // namespace selvedge

@@ -46,16 +46,16 @@ constexpr int frames_looked_at = 24;  // of a run, evenly, beside its start
 // Where an obstacle crosses itself in the frames that are looked at.
 struct OwnCrossing {
   int frames = 0, pairs = 0, worst_frame = 0, triangles = 0;
-  bool keeps_shape = true;
+  bool moves_rigidly = true;
 
   void look(const Surface& surface, const Points& start, const Points& x, int frame, IntersectionCache& cache) {
-    keeps_shape = keeps_shape && selvedge::keeps_shape(surface, start, x);
+    moves_rigidly = moves_rigidly && selvedge::moves_rigidly(surface, start, x);
     const int found = static_cast<int>(intersecting_pairs(surface, x, cache).size());
     frames += found > 0;
     if (found <= pairs) return;
     pairs = found;
     worst_frame = frame;
-    triangles = static_cast<int>(may_be_off(surface, x).size());
+    triangles = static_cast<int>(may_be_switched_off(surface, x).size());
   }
 };
 
@@ -63,7 +63,7 @@ std::string text_of(const OwnCrossing& found, const std::string& name, int looke
   const std::string where =
       fmt::format("`{}` crosses itself in {} of {} frames looked at, in {} pairs in frame {}: ", name, found.frames,
                   looked, found.pairs, found.worst_frame);
-  return where + (found.keeps_shape
+  return where + (found.moves_rigidly
                       ? "it keeps its shape, so that contact with its outside stays on"
                       : fmt::format("up to {} of its triangles can be switched off, for cloth that its parts catch",
                                     found.triangles));
@@ -87,7 +87,7 @@ void append_crossing_lines(const Setup& setup, std::vector<PlanLine>& lines) {
   for (std::size_t k = 0; k < count; ++k)
     if (found[k].frames > 0)
       lines.push_back(
-          {"switching off", !found[k].keeps_shape, text_of(found[k], setup.scene.obstacles[k].name, steps + 1)});
+          {"switching off", !found[k].moves_rigidly, text_of(found[k], setup.scene.obstacles[k].name, steps + 1)});
   if (lines.size() == before)
     lines.push_back(
         {"switching off", false, fmt::format("no obstacle crosses itself in {} frames looked at", steps + 1)});

@@ -45,8 +45,8 @@ void set_surroundings(RollingState& state) {
 bool is_lost(const RollingState& state, double reset_distance) {
   if (!state.now.x.allFinite() || !state.now.velocity.allFinite()) return true;
   const int entry = state.frame + (state.roll.request.still ? 0 : 1);
-  const Points worn = wide(state.roll.cloth[static_cast<std::size_t>(entry)]);
-  return (state.now.x - worn).rowwise().norm().maxCoeff() > reset_distance;
+  const Points target = wide(state.roll.cloth[static_cast<std::size_t>(entry)]);
+  return (state.now.x - target).rowwise().norm().maxCoeff() > reset_distance;
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ void write_tables(const TrainingRun& run) {
 void save(TrainingRun& run) {
   run.history.seconds = run.seconds();
   const TrainingWorld& world = run.trainer->maker->world;
-  run.trainer->queue->locked([&] { write_soft_tissue(world.kept_in, world); });
+  run.trainer->queue->locked([&] { write_soft_tissue(world.soft_tissue_folder, world); });
   write_weights(run, "weights.h5");
   write_tables(run);
   write_training_checkpoint(run.folder / "checkpoint.h5", *run.trainer, run.history);
@@ -90,7 +90,7 @@ std::string measure_text(const TrainingMeasure& m) {
   return fmt::format(
       "step {}: gap closed {:.3f} worn, {:.3f} minimised; roll-out of {} frames: objective {:.4g} J, strain {:.2f} % "
       "(99 %: {:.1f} %), {:.2f} % of the vertices deep in the body, {:.0f} pairs at the end",
-      m.step, m.worn.closed, m.minimised.closed, r.frames, r.energy, 100 * r.strain, 100 * r.strain_99, 100 * r.deep,
+      m.step, m.skinned.closed, m.minimised.closed, r.frames, r.energy, 100 * r.strain, 100 * r.strain_99, 100 * r.deep,
       static_cast<double>(r.pairs_at_end));
 }
 
@@ -250,7 +250,7 @@ std::string train_json(const TrainSummary& s) {
                                 {"seconds", s.seconds},
                                 {"best_step", s.best_step},
                                 {"best_score", s.best_score},
-                                {"worn_closed", s.last.worn.closed},
+                                {"worn_closed", s.last.skinned.closed},
                                 {"minimised_closed", s.last.minimised.closed},
                                 {"strain", r.strain},
                                 {"strain_99", r.strain_99},

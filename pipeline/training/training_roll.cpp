@@ -158,12 +158,12 @@ std::shared_ptr<const TrainingScene> scene_of(RollMaker& maker, const RollReques
 }
 
 // Body and garments in a frame, turned as the roll-out is.
-WornFrame frame_of(RollMaker& maker, const RollRequest& request, const RollRequest& at, int k) {
-  WornFrame frame;
+SkinnedFrame frame_of(RollMaker& maker, const RollRequest& request, const RollRequest& at, int k) {
+  SkinnedFrame frame;
   if (request.sheet != HungStart::none)
     frame.cloth = hung_sheet(maker.options.samples.edge).rest.cast<float>();
   else
-    frame = worn_frame(maker.world, at.wear, at.body, at.clip, at.first_frame - 1 + k);
+    frame = skinned_frame(maker.world, at.wear, at.body, at.clip, at.first_frame - 1 + k);
   turn(request, frame.body);
   turn(request, frame.cloth);
   if (!request.with_body) frame.body = PointsF(0, 3);
@@ -233,7 +233,7 @@ RollRequest tangled_place(RollMaker& maker, const RollRequest& asked, int& pairs
   pairs = -1;
   for (int attempt = 0; attempt < most_attempts && pairs < many_pairs; ++attempt) {
     const std::shared_ptr<const TrainingScene> scene = scene_of(maker, tried);
-    const WornFrame frame = worn_frame(maker.world, tried.wear, tried.body, tried.clip, tried.first_frame);
+    const SkinnedFrame frame = skinned_frame(maker.world, tried.wear, tried.body, tried.clip, tried.first_frame);
     Points x = frame.cloth.cast<double>();
     if (tried.mirrored) x.col(0) *= -1;
     const auto found = static_cast<int>(intersecting_pairs(scene->scene.surface, x, cache).size());
@@ -383,7 +383,7 @@ Roll make_roll(RollMaker& maker, const RollRequest& request) {
   const bool crosses_itself = request.with_body && !maker.options.samples.soft_tissue;
   IntersectionCache cache;
   for (int k = 0; k < request.frames + 2; ++k) {
-    WornFrame frame = frame_of(maker, request, at, k);
+    SkinnedFrame frame = frame_of(maker, request, at, k);
     if (crosses_itself) roll.body_left_out.push_back(meeting(roll.scene->graph.body, frame.body.cast<double>(), cache));
     roll.body.push_back(std::move(frame.body));
     roll.cloth.push_back(std::move(frame.cloth));

@@ -73,7 +73,7 @@ std::string measure_line(const TrainingMeasure& m, double seconds) {
   const RollMeasure& r = m.roll;
   return fmt::format(
       "{},{:.1f},{},{},{:d},{},{:.6g},{:.5f},{:.5f},{:.4f},{:.5f},{:.5f},{:.6g},{:.6g},{:.2f},{},{:.4g}\n", m.step,
-      seconds, gap(m.worn), gap(m.minimised), r.finite, r.frames, r.energy, r.strain, r.strain_99, r.strain_most,
+      seconds, gap(m.skinned), gap(m.minimised), r.finite, r.frames, r.energy, r.strain, r.strain_99, r.strain_most,
       r.deep, r.deepest, r.kinetic, r.jitter, r.pairs, r.pairs_at_end, 1e6 * r.volume);
 }
 

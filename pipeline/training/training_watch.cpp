@@ -65,13 +65,13 @@ RollRequest watched(const WatchOptions& options, const TrainingWorld& world) {
 }
 
 // Every frame of a network of several passes counts as one.
-FixedState fixed_state(const FrameMaking& making, Roll roll, bool worn) {
+FixedState fixed_state(const FrameMaking& making, Roll roll, bool skinned) {
   FixedState fixed;
-  fixed.worn = worn;
+  fixed.skinned = skinned;
   begin_roll(std::move(roll), fixed.state);
   FrameMaking whole = making;
   whole.passes = 1;
-  for (int k = 0; !worn && k < frames_before && !fixed.state.over; ++k) {
+  for (int k = 0; !skinned && k < frames_before && !fixed.state.over; ++k) {
     const Points x = inertial_of(whole, fixed.state);
     const Minimised made = minimised(whole, fixed.state, x, most_evaluations);
     const SeenPositions seen = seen_positions(fixed.state.roll.scene->rest, fixed.state.now, making.features);
@@ -87,11 +87,11 @@ FixedState fixed_state(const FrameMaking& making, Roll roll, bool worn) {
   return fixed;
 }
 
-GapMeasure gap_of(Trainer& trainer, const FrameMaking& making, std::vector<FixedState>& states, bool worn) {
+GapMeasure gap_of(Trainer& trainer, const FrameMaking& making, std::vector<FixedState>& states, bool skinned) {
   GapMeasure gap;
   int count = 0;
   for (FixedState& fixed : states) {
-    if (fixed.worn != worn) continue;
+    if (fixed.skinned != skinned) continue;
     const KeptRolling before = kept(fixed.state);
     NextCloth next;
     bool made = true;
@@ -200,10 +200,10 @@ TrainingWatch make_training_watch(const TrainingOptions& options, Trainer& train
     const double noise = std::exchange(maker.options.samples.noise, 0);
     watch.roll = make_roll(maker, watched_request(options, world, who, who.clip, 0, options.watch.frames + 1, true));
     for (int k = 0; k < options.watch.fixed_states; ++k) {
-      const bool worn = k % 2 == 0;
-      const int at = (who.clip + k / 2) % clips, frames = worn ? 1 : frames_before + 1;
+      const bool skinned = k % 2 == 0;
+      const int at = (who.clip + k / 2) % clips, frames = skinned ? 1 : frames_before + 1;
       const int first = frame_count(world, who.body, at) / 3 + 10 * (k / 2 / clips);
-      rolls.push_back(make_roll(maker, watched_request(options, world, who, at, first, frames, !worn)));
+      rolls.push_back(make_roll(maker, watched_request(options, world, who, at, first, frames, !skinned)));
     }
     maker.options.samples.noise = noise;
   });
@@ -216,7 +216,7 @@ TrainingMeasure measure(Trainer& trainer, TrainingWatch& watch) {
   const FrameMaking making = full_making(trainer);
   TrainingMeasure result;
   result.step = trainer.counts.step;
-  result.worn = gap_of(trainer, making, watch.states, true);
+  result.skinned = gap_of(trainer, making, watch.states, true);
   result.minimised = gap_of(trainer, making, watch.states, false);
   result.roll = measure_roll(trainer, watch.roll, 0);
   return result;

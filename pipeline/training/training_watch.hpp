@@ -12,7 +12,7 @@ struct FixedState {
   RollingState state;
   double inertial = 0, optimum = 0;  // loss of the motion without forces, and least loss [J]
   Points best;
-  bool worn = true;  // the skinned garment; false: a state after minimised frames
+  bool skinned = true;  // the skinned garment; false: a state after minimised frames
 };
 
 // The states and the roll-out on which a run is measured. All of them are of the training split.
@@ -49,7 +49,7 @@ struct RollMeasure {
 
 struct TrainingMeasure {
   long step = 0;
-  GapMeasure worn, minimised;
+  GapMeasure skinned, minimised;
   RollMeasure roll;
 };
 

@@ -66,10 +66,10 @@ struct TrainingWorld {
   std::vector<TrainingPerson> people;
   std::vector<TrainingWear> wear;
   std::vector<TrainingBody> bodies;
-  std::filesystem::path kept_in;         // folder in which frames of soft tissue are kept; empty: they are not
-  std::size_t tissue_bytes = 0;          // of frames of soft tissue in memory,
-  std::size_t most_tissue = 512u << 20;  // and how many there may be
-  std::vector<std::string> warnings;     // of files
+  std::filesystem::path soft_tissue_folder;  // folder in which frames of soft tissue are kept; empty: they are not
+  std::size_t tissue_bytes = 0;              // of frames of soft tissue in memory,
+  std::size_t most_tissue = 512u << 20;      // and how many there may be
+  std::vector<std::string> warnings;         // of files
 };
 
 // The people whom the options name, with garments and clips for training: the mannequin with garments by code and

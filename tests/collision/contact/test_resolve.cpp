@@ -164,7 +164,7 @@ TEST_CASE("resolve: where its work is done what still meets is held, clean, and 
   REQUIRE(whole.work.projected > 10000);
   for (const ResponseWork& most : {ResponseWork{0, 0}, ResponseWork{whole.work.swept / 3, unbounded_work.projected},
                                    ResponseWork{unbounded_work.swept, whole.work.projected / 3}}) {
-    options.most = most;
+    options.budget = most;
     x1 = c.x1;
     PathPairs path;
     const ResolveReport report = run(c, x1, path, options);

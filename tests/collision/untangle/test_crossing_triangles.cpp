@@ -94,7 +94,7 @@ TEST_CASE("crossing triangles: vertices in no triangle are inside nothing", "[cr
   const ContactWorld world = make_contact_world(surface, {&body}, true);
   CHECK_FALSE(find_exemption(world, gather_nodes(cloth.x, {tetrahedron.x})).any());
   cloth.x.col(1).setZero();
-  CHECK(find_exemption(world, gather_nodes(cloth.x, {tetrahedron.x})).cloth_vertices() == count);
+  CHECK(find_exemption(world, gather_nodes(cloth.x, {tetrahedron.x})).tangled_vertices() == count);
 }
 
 }  // namespace selvedge::test_crossing_triangles

@@ -5,7 +5,7 @@
 
 #include "collision/audit/audit.hpp"
 #include "collision/contour/find_contours.hpp"
-#include "collision/untangle/kept_shape.hpp"
+#include "collision/untangle/input_shape.hpp"
 #include "collision/untangle/separation.hpp"
 #include "collision/untangle/untangle.hpp"
 #include "tests/collision/sheets.hpp"
@@ -56,7 +56,7 @@ UntangleOutcome untangled(const testing::Sheet& mesh, const UntangleOptions& opt
   CHECK(out.audited.intersecting_pairs() == out.result.pairs_after);
   CHECK(static_cast<int>(out.audited.vertex_pairs.size()) == out.result.vertex_pairs_after);
   CHECK(audit(out.surface, mesh.x, {}).intersecting_pairs() == out.result.pairs_before);
-  const StretchRange stretch = extreme_stretch(keep_shape(out.surface, mesh.x), out.result.x);
+  const StretchRange stretch = extreme_stretch(input_shape(out.surface, mesh.x), out.result.x);
   CHECK(stretch.least > 0.5);
   CHECK(stretch.largest < 2);
   CHECK(stretch.least == out.result.least_stretch);

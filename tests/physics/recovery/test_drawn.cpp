@@ -24,52 +24,52 @@ struct OverPlate {
     testing::add_obstacle(w, sheet(8, 0.2, 0));
     world = make_contact_world(w.scene.surface, {&w.scene.obstacles[0].surface}, true);
     nodes = gather_nodes(w.state.x, w.state.obstacles);
-    exemption.off.assign(static_cast<std::size_t>(world.node_count), 0);
+    exemption.switched_off.assign(static_cast<std::size_t>(world.node_count), 0);
     for (int node = w.scene.surface.vertex_count; node < world.node_count; ++node)
-      exemption.off[node] = nodes(node, 0) > 0;
+      exemption.switched_off[node] = nodes(node, 0) > 0;
   }
 };
 
 }  // namespace
 
-TEST_CASE("drawn: what is near a part that is switched off, and worn, is drawn", "[drawn]") {
+TEST_CASE("drawn: what is near a part that is switched off, and dressed, is drawn", "[drawn]") {
   OverPlate c;
-  Points worn = c.w.state.x;
-  const int unworn = 60, undefined = 61;
+  Points targets = c.w.state.x;
+  const int undressed = 60, undefined = 61;
   c.nodes(undefined, 1) = std::numeric_limits<double>::quiet_NaN();
-  worn.row(unworn).setConstant(std::numeric_limits<double>::quiet_NaN());
+  targets.row(undressed).setConstant(std::numeric_limits<double>::quiet_NaN());
   const double reach = 0.03;
-  const std::vector<char> drawn = drawn_vertices(c.world, c.exemption, worn, c.nodes, reach);
+  const std::vector<char> drawn = drawn_vertices(c.world, c.exemption, targets, c.nodes, reach);
   REQUIRE(drawn.size() == static_cast<std::size_t>(c.w.state.x.rows()));
   int count = 0;
   for (int v = 0; v < c.w.state.x.rows(); ++v) {
     double nearest = 1;
     for (int node = c.w.scene.surface.vertex_count; node < c.world.node_count; ++node)
-      if (c.exemption.off[node]) nearest = std::min(nearest, (c.nodes.row(v) - c.nodes.row(node)).norm());
-    CHECK((drawn[v] != 0) == (nearest < reach && v != unworn && v != undefined));
+      if (c.exemption.switched_off[node]) nearest = std::min(nearest, (c.nodes.row(v) - c.nodes.row(node)).norm());
+    CHECK((drawn[v] != 0) == (nearest < reach && v != undressed && v != undefined));
     count += drawn[v];
   }
   CHECK(count > 5);
   CHECK(drawn_vertices(c.world, c.exemption, Points(), c.nodes, reach).empty());
-  CHECK(drawn_vertices(c.world, {}, worn, c.nodes, reach).empty());
-  CHECK(drawn_vertices(c.world, c.exemption, worn, c.nodes, 1e-3).empty());
+  CHECK(drawn_vertices(c.world, {}, targets, c.nodes, reach).empty());
+  CHECK(drawn_vertices(c.world, c.exemption, targets, c.nodes, 1e-3).empty());
 }
 
-TEST_CASE("drawn: the springs' derivatives are those of their value, and where they pull to is worn", "[drawn]") {
+TEST_CASE("drawn: the springs' derivatives are those of their value, and they pull to the targets", "[drawn]") {
   const OverPlate c;
   const Points& x0 = c.w.state.x;
   const auto n = static_cast<std::size_t>(x0.rows());
-  Points worn = x0;
-  worn.rowwise() += Eigen::RowVector3d(0.02, 0.01, -0.03);
+  Points targets = x0;
+  targets.rowwise() += Eigen::RowVector3d(0.02, 0.01, -0.03);
   std::vector<char> drawn(n, 0);
   drawn[7] = drawn[23] = 1;
   const Eigen::VectorXd masses = Eigen::VectorXd::Constant(x0.rows(), 0.01);
   const double h = 0.01;
-  const AddedTerm whole = drawing_term(drawn, masses, x0, worn, 1, h);
-  CHECK(whole.value(worn) == Approx(0).margin(1e-20));
+  const AddedTerm whole = drawing_term(drawn, masses, x0, targets, 1, h);
+  CHECK(whole.value(targets) == Approx(0).margin(1e-20));
   CHECK(whole.value(x0) == Approx(2 * 0.5 * 0.01 / (h * h) * (0.0004 + 0.0001 + 0.0009)));
   // Part of the way, and both terms at once.
-  const AddedTerm term = sum_of(drawing_term(drawn, masses, x0, worn, 0.005, h), whole);
+  const AddedTerm term = sum_of(drawing_term(drawn, masses, x0, targets, 0.005, h), whole);
   Points x = x0;
   x.row(7) += Eigen::RowVector3d(0.003, -0.002, 0.001);
   Points gradient = Points::Zero(x.rows(), 3);
@@ -97,7 +97,7 @@ TEST_CASE("drawn: the springs' derivatives are those of their value, and where t
 TEST_CASE("drawn: clean cloth over a body that keeps its shape is not drawn, where that crosses itself either",
           "[drawn]") {
   // Two plates that cross at x = 0, and move, under a sheet that touches neither.
-  const auto way_of_middle = [](bool worn) {
+  const auto way_of_middle = [](bool dressed) {
     testing::World w = testing::make_world(sheet(12, 0.3, 0.012));
     w.drive.acceleration.setZero();
     testing::add_obstacle(w, testing::join(sheet(24, 0.3, 0), testing::tilted(sheet(23, 0.3, 3e-4), 0.05)));
@@ -105,9 +105,9 @@ TEST_CASE("drawn: clean cloth over a body that keeps its shape is not drawn, whe
     const Points start = w.state.x;
     for (int frame = 0; frame < 10; ++frame) {
       w.drive.obstacles[0].col(0).array() += 0.005;
-      if (worn) {
-        w.drive.worn = start;
-        w.drive.worn.col(0).array() += 0.005 * (frame + 1);
+      if (dressed) {
+        w.drive.skinned_targets = start;
+        w.drive.skinned_targets.col(0).array() += 0.005 * (frame + 1);
       }
       State to;
       REQUIRE(testing::frame(w.scene, *stepper, w.state, w.drive, 1.0 / 30, to).status == StepStatus::accepted);

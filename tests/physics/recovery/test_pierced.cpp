@@ -39,7 +39,8 @@ Sheet spindle(double radius, double half_length) {
   return s;
 }
 
-// A sheet with a body through its middle, and a second sheet beside them; both are worn 0.5 m farther up.
+// A sheet with a body through its middle, and a second sheet beside them; the skinned targets of both are 0.5 m farther
+// up.
 struct Skewer {
   testing::World w;
   ContactWorld world;
@@ -51,16 +52,16 @@ struct Skewer {
     w = testing::make_world(testing::join(testing::sheet(16, 0.6, 0.013), beside));
     testing::add_obstacle(w, body);
     w.state.clean = false;
-    w.drive.worn = w.state.x;
-    w.drive.worn.col(1).array() += 0.5;
+    w.drive.skinned_targets = w.state.x;
+    w.drive.skinned_targets.col(1).array() += 0.5;
     world = make_contact_world(w.scene.surface, {&w.scene.obstacles[0].surface}, true);
     nodes = gather_nodes(w.state.x, w.state.obstacles);
   }
-  std::vector<char> pierced(double astray = 1) const {
-    return pierced_vertices(world, find_exemption(world, nodes), nodes, nodes, w.drive.worn, astray);
+  std::vector<char> pierced(double min_distance = 1) const {
+    return pierced_vertices(world, find_exemption(world, nodes), nodes, nodes, w.drive.skinned_targets, min_distance);
   }
-  WornPlaces where(const Points& wanted, const Points& worn, const Points& last_clean = {}) const {
-    return {&wanted, &worn, last_clean, w.scene.contact.thickness, 0.1};
+  RecoveryTargets where(const Points& wanted, const Points& targets, const Points& last_clean = {}) const {
+    return {&wanted, &targets, last_clean, w.scene.contact.thickness, 0.1};
   }
 };
 
@@ -73,62 +74,64 @@ TEST_CASE("pierced: all of a cloth that something long has gone through, and no 
   CHECK(std::count(marked.begin() + 17 * 17, marked.end(), 1) == 0);
 }
 
-TEST_CASE("pierced: nothing that can be pushed out, or is so where it is worn, or has no place to go to", "[pierced]") {
+TEST_CASE("pierced: nothing that can be pushed out, or is pierced at its targets, or has no place to go to",
+          "[pierced]") {
   CHECK(Skewer(spindle(0.05, 0.06)).pierced().empty());  // a bump
   Skewer there(spindle(0.05, 0.3));
-  there.w.drive.worn.col(1).array() -= 0.52;
+  there.w.drive.skinned_targets.col(1).array() -= 0.52;
   CHECK(there.pierced().empty());
-  Skewer unworn(spindle(0.05, 0.3));
-  unworn.w.drive.worn.row(40).setConstant(std::numeric_limits<double>::quiet_NaN());
-  CHECK(unworn.pierced().empty());
-  CHECK(unworn.pierced(0).empty());
-  unworn.w.drive.worn.resize(0, 3);
-  CHECK(unworn.pierced().empty());
+  Skewer undressed(spindle(0.05, 0.3));
+  undressed.w.drive.skinned_targets.row(40).setConstant(std::numeric_limits<double>::quiet_NaN());
+  CHECK(undressed.pierced().empty());
+  CHECK(undressed.pierced(0).empty());
+  undressed.w.drive.skinned_targets.resize(0, 3);
+  CHECK(undressed.pierced().empty());
   const Skewer crossing(spindle(0.05, 0.3));
   Exemption exemption = find_exemption(crossing.world, crossing.nodes);
-  exemption.off.assign(static_cast<std::size_t>(crossing.world.node_count), 0);
-  CHECK(pierced_vertices(crossing.world, exemption, crossing.nodes, crossing.nodes, crossing.w.drive.worn, 0).empty());
+  exemption.switched_off.assign(static_cast<std::size_t>(crossing.world.node_count), 0);
+  CHECK(pierced_vertices(crossing.world, exemption, crossing.nodes, crossing.nodes, crossing.w.drive.skinned_targets, 0)
+            .empty());
 }
 
-TEST_CASE("pierced: cloth that is tangled far from where it is worn, until it is near", "[pierced]") {
-  const Skewer bump(spindle(0.05, 0.06));  // the sheet is worn 0.5 m away
+TEST_CASE("pierced: cloth that is tangled far from its targets, until it is near", "[pierced]") {
+  const Skewer bump(spindle(0.05, 0.06));  // its targets are 0.5 m away
   const std::vector<char> marked = bump.pierced(0.45);
   REQUIRE(marked.size() == 17 * 17 + 25);
   CHECK(std::count(marked.begin(), marked.begin() + 17 * 17, 1) == 17 * 17);
   CHECK(std::count(marked.begin() + 17 * 17, marked.end(), 1) == 0);  // as far, and not tangled
   CHECK(bump.pierced(0.55).empty());
   const Skewer pinprick(spindle(0.02, 0.03));
-  CHECK(find_exemption(pinprick.world, pinprick.nodes).cloth_vertices() > 0);
+  CHECK(find_exemption(pinprick.world, pinprick.nodes).tangled_vertices() > 0);
   CHECK(pinprick.pierced(0.1).empty());  // a few vertices: the rest of the cloth is where it should be
 }
 
-TEST_CASE("pierced: the stepper takes the cloth off, through the body, and only to where it is worn", "[pierced]") {
+TEST_CASE("pierced: the stepper takes the cloth off, through the body, and only to its targets", "[pierced]") {
   Skewer skewer(spindle(0.05, 0.3));
   skewer.w.drive.acceleration.setZero();
-  skewer.w.drive.worn.col(1).array() -= 1;  // below: by itself it would leave over the nearer end, above
+  skewer.w.drive.skinned_targets.col(1).array() -= 1;  // below: by itself it would leave over the nearer end, above
   const testing::Run off = testing::run(skewer.w, 12);
   CHECK(off.state.clean);
   CHECK(off.state.x.topRows(17 * 17).col(1).maxCoeff() < -0.25);
   CHECK(off.state.v.topRows(17 * 17).rowwise().norm().maxCoeff() < 0.5);  // it does not fly on as it was drawn
-  skewer.w.drive.worn.resize(0, 3);
+  skewer.w.drive.skinned_targets.resize(0, 3);
   CHECK(testing::run(skewer.w, 12).state.x.topRows(17 * 17).col(1).mean() > 0.01);
 }
 
-TEST_CASE("pierced: cloth is drawn to where it is worn also while it cannot be put there", "[pierced]") {
+TEST_CASE("pierced: cloth is drawn to its targets also while it cannot be put there", "[pierced]") {
   Skewer skewer(spindle(0.05, 0.3));
   skewer.w.drive.acceleration.setZero();
-  Points& worn = skewer.w.drive.worn;
-  for (int v = 0; v < 17 * 17; ++v) worn.row(v) += 0.1 * Eigen::RowVector3d(std::sin(v * v), -3, std::cos(v * v));
+  Points& targets = skewer.w.drive.skinned_targets;
+  for (int v = 0; v < 17 * 17; ++v) targets.row(v) += 0.1 * Eigen::RowVector3d(std::sin(v * v), -3, std::cos(v * v));
   const std::vector<char> marked = skewer.pierced();
   REQUIRE_FALSE(marked.empty());
   Points nodes = skewer.nodes, v = skewer.w.state.v;
-  const PutOn put = put_on(skewer.world, marked, skewer.where(skewer.nodes, worn), nodes, v);
+  const PutOn put = put_on(skewer.world, marked, skewer.where(skewer.nodes, targets), nodes, v);
   REQUIRE(put == PutOn::no_place);  // it crosses itself there
   const auto height = [](const Points& x) { return x.topRows(17 * 17).col(1).mean(); };
   CHECK(height(testing::run(skewer.w, 1).state.x) > height(skewer.w.state.x) + 0.05);
 }
 
-TEST_CASE("sunken: cloth that has no way out, and is too far to be put on, is drawn to where it is worn", "[pierced]") {
+TEST_CASE("sunken: cloth that has no way out, and is too far to be put on, is drawn to its targets", "[pierced]") {
   const int n = 16;
   Sheet barbed = testing::sheet(n, 0.6, 0);
   const auto first = barbed.x.rows();
@@ -147,26 +150,26 @@ TEST_CASE("sunken: cloth that has no way out, and is too far to be put on, is dr
   const ContactWorld world = make_contact_world(w.scene.surface, {&w.scene.obstacles[0].surface}, true);
   Points nodes = gather_nodes(w.state.x, w.state.obstacles);
   const Exemption exemption = find_exemption(world, nodes);
-  w.drive.worn = w.state.x.rowwise() + Eigen::RowVector3d(0, 1.5, 0);
-  CHECK(pierced_vertices(world, exemption, nodes, nodes, w.drive.worn, 0.02).empty());
-  REQUIRE_FALSE(sunken_vertices(world, exemption, w.drive.worn).empty());
+  w.drive.skinned_targets = w.state.x.rowwise() + Eigen::RowVector3d(0, 1.5, 0);
+  CHECK(pierced_vertices(world, exemption, nodes, nodes, w.drive.skinned_targets, 0.02).empty());
+  REQUIRE_FALSE(sunken_vertices(world, exemption, w.drive.skinned_targets).empty());
   REQUIRE(recover(world, inverse_masses(w.scene, world.node_count), 1.0 / 30, exemption, {}, nodes).stuck);
   const auto height = [](const Points& x) { return x.col(1).mean(); };
   CHECK(height(testing::run(w, 1).state.x) > height(w.state.x) + 0.05);
-  w.drive.worn.resize(0, 3);
+  w.drive.skinned_targets.resize(0, 3);
   CHECK(height(testing::run(w, 1).state.x) < height(w.state.x) + 0.01);
 }
 
 TEST_CASE("sunken: all of a cloth of which one vertex in a hundred is tangled, however near", "[pierced]") {
   const auto sunken = [](const Skewer& skewer) {
-    return sunken_vertices(skewer.world, find_exemption(skewer.world, skewer.nodes), skewer.w.drive.worn);
+    return sunken_vertices(skewer.world, find_exemption(skewer.world, skewer.nodes), skewer.w.drive.skinned_targets);
   };
   Skewer bump(spindle(0.05, 0.06));
   const std::vector<char> marked = sunken(bump);
   REQUIRE(marked.size() == 17 * 17 + 25);
   CHECK(std::count(marked.begin(), marked.begin() + 17 * 17, 1) == 17 * 17);
   CHECK(std::count(marked.begin() + 17 * 17, marked.end(), 1) == 0);
-  bump.w.drive.worn.row(40).setConstant(std::numeric_limits<double>::quiet_NaN());
+  bump.w.drive.skinned_targets.row(40).setConstant(std::numeric_limits<double>::quiet_NaN());
   CHECK(sunken(bump).empty());
   Exemption few;
   few.body.assign(17 * 17 + 25, 0);
@@ -176,21 +179,23 @@ TEST_CASE("sunken: all of a cloth of which one vertex in a hundred is tangled, h
   CHECK_FALSE(sunken_vertices(bump.world, few, bump.w.state.x).empty());
 }
 
-TEST_CASE("put on: cloth is where it is worn, clean, and moves along with what it is worn on", "[pierced]") {
+TEST_CASE("put on: cloth is at its targets, clean, and moves along with its body", "[pierced]") {
   Skewer skewer(spindle(0.05, 0.2));
   const std::vector<char> marked = skewer.pierced();
   const Vec3 way(0.01, 0.02, -0.01);
   Points wanted = skewer.nodes;
   wanted.bottomRows(wanted.rows() - skewer.w.state.x.rows()).rowwise() += way.transpose();
   Points nodes = skewer.nodes, v = skewer.w.state.v;
-  const auto put = [&] { return put_on(skewer.world, marked, skewer.where(wanted, skewer.w.drive.worn), nodes, v); };
-  skewer.w.drive.worn.col(1).array() += 0.1;
+  const auto put = [&] {
+    return put_on(skewer.world, marked, skewer.where(wanted, skewer.w.drive.skinned_targets), nodes, v);
+  };
+  skewer.w.drive.skinned_targets.col(1).array() += 0.1;
   CHECK(put() == PutOn::too_far);  // half a metre away
   CHECK(nodes == skewer.nodes);
-  skewer.w.drive.worn.col(1).array() -= 0.3;
+  skewer.w.drive.skinned_targets.col(1).array() -= 0.3;
   REQUIRE(put() == PutOn::done);
   const int sheet = 17 * 17;
-  const Points place = skewer.w.drive.worn.topRows(sheet).rowwise() - way.transpose();
+  const Points place = skewer.w.drive.skinned_targets.topRows(sheet).rowwise() - way.transpose();
   CHECK((nodes.topRows(sheet) - place).cwiseAbs().maxCoeff() < 1e-12);
   CHECK((v.topRows(sheet).rowwise() - 10 * way.transpose()).cwiseAbs().maxCoeff() < 1e-12);
   CHECK(nodes.bottomRows(nodes.rows() - sheet) == skewer.nodes.bottomRows(nodes.rows() - sheet));
@@ -200,34 +205,34 @@ TEST_CASE("put on: cloth is where it is worn, clean, and moves along with what i
 TEST_CASE("put on: a place that is in the body is untangled, and one that cannot be is left alone", "[pierced]") {
   Skewer skewer(spindle(0.05, 0.3));
   const std::vector<char> marked = skewer.pierced();
-  Points worn = skewer.w.drive.worn, nodes = skewer.nodes, v = skewer.w.state.v;
-  worn.col(1).array() -= 0.21;  // just in the spindle's tip
-  const auto put = [&] { return put_on(skewer.world, marked, skewer.where(skewer.nodes, worn), nodes, v); };
+  Points targets = skewer.w.drive.skinned_targets, nodes = skewer.nodes, v = skewer.w.state.v;
+  targets.col(1).array() -= 0.21;  // just in the spindle's tip
+  const auto put = [&] { return put_on(skewer.world, marked, skewer.where(skewer.nodes, targets), nodes, v); };
   CHECK(put() == PutOn::done);
-  CHECK_FALSE(find_exemption(skewer.world, nodes).cloth());
-  worn.col(1).array() -= 0.31;  // about its middle
+  CHECK_FALSE(find_exemption(skewer.world, nodes).tangled());
+  targets.col(1).array() -= 0.31;  // about its middle
   nodes = skewer.nodes;
   CHECK(put() == PutOn::no_place);
   CHECK(nodes == skewer.nodes);
-  CHECK(put_on(skewer.world, {}, skewer.where(skewer.nodes, worn), nodes, v) == PutOn::nothing);
+  CHECK(put_on(skewer.world, {}, skewer.where(skewer.nodes, targets), nodes, v) == PutOn::nothing);
 }
 
 TEST_CASE("put on: another layer that is in the way makes way, and keeps its velocity", "[pierced]") {
   const int sheet = 17 * 17;
   Sheet upright = testing::tilted(testing::sheet(4, 0.2, 0), std::numbers::pi / 2);
-  upright.x.col(1).array() += 0.28;  // its lowest two centimetres reach through where the sheet is worn
+  upright.x.col(1).array() += 0.28;  // its lowest two centimetres reach through the sheet's targets
   testing::World w = testing::make_world(testing::join(testing::sheet(16, 0.6, 0), upright));
   testing::add_obstacle(w, spindle(0.05, 0.06));
-  Points worn = w.state.x, nodes = gather_nodes(w.state.x, w.state.obstacles), v = w.state.v;
-  worn.col(1).array() += 0.2;
+  Points targets = w.state.x, nodes = gather_nodes(w.state.x, w.state.obstacles), v = w.state.v;
+  targets.col(1).array() += 0.2;
   v.bottomRows(25).setConstant(0.3);
   std::vector<char> marked(static_cast<std::size_t>(sheet) + 25, 0);
   std::fill_n(marked.begin(), sheet, 1);
   const ContactWorld world = make_contact_world(w.scene.surface, {&w.scene.obstacles[0].surface}, true);
   const Points before = nodes;
   const Points wanted = nodes;
-  REQUIRE(put_on(world, marked, {&wanted, &worn, {}, 0.002, 0.1}, nodes, v) == PutOn::done);
-  CHECK_FALSE(find_exemption(world, nodes).cloth());
+  REQUIRE(put_on(world, marked, {&wanted, &targets, {}, 0.002, 0.1}, nodes, v) == PutOn::done);
+  CHECK_FALSE(find_exemption(world, nodes).tangled());
   CHECK((nodes - before).middleRows(sheet, 25).cwiseAbs().maxCoeff() > 1e-3);
   CHECK((v.bottomRows(25).array() == 0.3).all());
   CHECK(v.topRows(sheet).isZero());
@@ -237,20 +242,20 @@ TEST_CASE("put on: where cloth was clean last is a place as well, carried to whe
   const Skewer skewer(spindle(0.05, 0.25));
   const int sheet = 17 * 17;
   const std::vector<char> marked = skewer.pierced();
-  Points worn = skewer.w.drive.worn, wanted = skewer.nodes, nodes = skewer.nodes, v = skewer.w.state.v;
+  Points targets = skewer.w.drive.skinned_targets, wanted = skewer.nodes, nodes = skewer.nodes, v = skewer.w.state.v;
   for (int i = 0; i < sheet; ++i)  // no place: it crosses itself there
-    worn.row(i) = skewer.nodes.row(i) + 0.1 * Eigen::RowVector3d(std::sin(i * i), 0, std::cos(i * i));
+    targets.row(i) = skewer.nodes.row(i) + 0.1 * Eigen::RowVector3d(std::sin(i * i), 0, std::cos(i * i));
   const Eigen::RowVector3d elsewhere(0.4, 1, -2), way(0.01, 0.02, -0.01);
   wanted.bottomRows(wanted.rows() - skewer.w.state.x.rows()).rowwise() += way;
   Points last_clean = skewer.nodes.rowwise() + elsewhere;
-  const auto put = [&] { return put_on(skewer.world, marked, skewer.where(wanted, worn, last_clean), nodes, v); };
+  const auto put = [&] { return put_on(skewer.world, marked, skewer.where(wanted, targets, last_clean), nodes, v); };
   CHECK(put() == PutOn::no_place);  // both
   last_clean.topRows(sheet).col(1).array() += 0.4;
   CHECK(put() == PutOn::no_place);  // that one is too far
   CHECK(nodes == skewer.nodes);
   last_clean.topRows(sheet).col(1).array() -= 0.13;  // above the spindle
   REQUIRE(put() == PutOn::done);
-  CHECK_FALSE(find_exemption(skewer.world, nodes).cloth());
+  CHECK_FALSE(find_exemption(skewer.world, nodes).tangled());
   CHECK((nodes.topRows(sheet).rowwise() + elsewhere - last_clean.topRows(sheet)).cwiseAbs().maxCoeff() < 1e-12);
   CHECK((v.topRows(sheet).rowwise() - 10 * way).cwiseAbs().maxCoeff() < 1e-12);
   last_clean.resize(0, 3);
@@ -269,7 +274,7 @@ TEST_CASE("put on: cloth that a body closed on, through itself, is back between 
   testing::World w = testing::make_world(testing::sheet(16, 0.4, 0));
   testing::add_obstacle(w, lenses(0.07));
   w.drive.acceleration.setZero();
-  w.drive.worn = w.state.x;
+  w.drive.skinned_targets = w.state.x;
   w.state.clean = true;
   const auto end = [&](int renew) {
     auto stepper = testing::conventional(w.scene);
@@ -279,7 +284,7 @@ TEST_CASE("put on: cloth that a body closed on, through itself, is back between 
       if (++frame == renew) stepper = testing::conventional(w.scene);
       State to;
       w.drive.obstacles = {lenses(apart).x};
-      w.drive.worn.col(1).setConstant(apart);  // in the upper one's middle
+      w.drive.skinned_targets.col(1).setConstant(apart);  // in the upper one's middle
       REQUIRE(testing::frame(w.scene, *stepper, at, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
       CHECK(to.clean == (frame == 1 || frame == 6));
       CHECK(last_clean(to).x == (at.clean ? at.x : Points(last_clean(at).x)));  // the frame before, or still that one

@@ -93,7 +93,7 @@ TEST_CASE("recovery: a clean start is left as it is", "[recovery]") {
   Points nodes = gather_nodes(w.state.x, w.state.obstacles);
   const Points before = nodes;
   CHECK_FALSE(
-      recover(world, Eigen::VectorXd::Ones(nodes.rows()), 1, find_exemption(world, nodes), {}, nodes).left.any());
+      recover(world, Eigen::VectorXd::Ones(nodes.rows()), 1, find_exemption(world, nodes), {}, nodes).left_alone.any());
   CHECK(nodes == before);
 }
 
@@ -136,12 +136,12 @@ TEST_CASE("recovery: cloth between parts that pass through each other is caught,
   Exemption exemption;
   crossings.switch_off(nodes, together, {}, exemption);
   const auto count = upright.x.rows();
-  REQUIRE(exemption.off.size() == static_cast<std::size_t>(nodes.rows()));
-  CHECK(std::count(exemption.off.begin(), exemption.off.begin() + count, 1) == count);
-  CHECK(std::count(exemption.off.begin() + count, exemption.off.begin() + cloths.x.rows(), 1) == 0);
-  const std::vector<int> counted = switched_off(world, exemption);
+  REQUIRE(exemption.switched_off.size() == static_cast<std::size_t>(nodes.rows()));
+  CHECK(std::count(exemption.switched_off.begin(), exemption.switched_off.begin() + count, 1) == count);
+  CHECK(std::count(exemption.switched_off.begin() + count, exemption.switched_off.begin() + cloths.x.rows(), 1) == 0);
+  const std::vector<int> counted = switched_off_counts(world, exemption);
   CHECK(counted[0] > 0);
-  CHECK(may_be_off(w.scene.obstacles[0].surface, together.bottomRows(16)).size() >=
+  CHECK(may_be_switched_off(w.scene.obstacles[0].surface, together.bottomRows(16)).size() >=
         static_cast<std::size_t>(counted[0]));
   w.drive.obstacles = {together.bottomRows(16)};
   State to;
@@ -162,12 +162,12 @@ TEST_CASE("recovery: cloth between parts that pass through each other is caught,
   CHECK_FALSE(nothing.any());
 }
 
-TEST_CASE("recovery: all that is tangled with a body that crosses itself is drawn to where it is worn", "[recovery]") {
+TEST_CASE("recovery: all that is tangled with a body that crosses itself is drawn to its targets", "[recovery]") {
   World w = make_world(sheet(12, 0.4, 0));
   add_obstacle(w, testing::join(block({-0.05, 0, 0}, 0.06), block({0.05, 0.011, 0.013}, 0.06)));
   w.drive.acceleration.setZero();
-  w.drive.worn = w.state.x;
-  w.drive.worn.col(2).array() += 0.03;
+  w.drive.skinned_targets = w.state.x;
+  w.drive.skinned_targets.col(2).array() += 0.03;
   const ContactWorld world = with_its_obstacle(w);
   const Exemption tangled = find_exemption(world, gather_nodes(w.state.x, w.state.obstacles));
   REQUIRE(std::count(tangled.body.begin(), tangled.body.end(), 1) > 20);
@@ -175,12 +175,12 @@ TEST_CASE("recovery: all that is tangled with a body that crosses itself is draw
   const StepReport report =
       testing::frame(w.scene, *make_recovering_conventional_stepper(w.scene, {}), w.state, w.drive, 1.0 / 30, to);
   REQUIRE(report.status == StepStatus::accepted);
-  CHECK(report.untangling == 0);  // it waits
+  CHECK(report.untangling == 0);  // it is trapped
   for (int v = 0; v < to.x.rows(); ++v)
-    if (tangled.body[v]) CHECK((to.x.row(v) - w.drive.worn.row(v)).norm() < 0.01);
+    if (tangled.body[v]) CHECK((to.x.row(v) - w.drive.skinned_targets.row(v)).norm() < 0.01);
 }
 
-// Two layers over blocks that overlap; the upper one dips through the lower one there, and is worn like that.
+// Two layers over blocks that overlap; the upper one dips through the lower one there, and so do its targets.
 World layers_at_a_crossing() {
   testing::Sheet dipped = sheet(16, 0.4, 0.015);
   for (int v = 0; v < dipped.x.rows(); ++v)
@@ -188,7 +188,7 @@ World layers_at_a_crossing() {
   World w = make_world(testing::join(sheet(12, 0.4, 0), dipped));
   add_obstacle(w, testing::join(block({-0.05, 0, 0}, 0.06), block({0.05, 0.011, 0.013}, 0.06)));
   w.drive.acceleration.setZero();
-  w.drive.worn = w.state.x;
+  w.drive.skinned_targets = w.state.x;
   return w;
 }
 
@@ -207,7 +207,8 @@ TEST_CASE("recovery: where a body crosses itself cloth is parted from cloth, and
     state = to;
     if (frame >= 5) CHECK(pairs_of(w, state) == 0);
   }
-  CHECK_FALSE(find_exemption(with_its_obstacle(w), gather_nodes(state.x, state.obstacles)).body.empty());  // it waits
+  CHECK_FALSE(
+      find_exemption(with_its_obstacle(w), gather_nodes(state.x, state.obstacles)).body.empty());  // it is trapped
 }
 
 TEST_CASE("recovery: nothing is asked of what cannot be parted, the rest goes without momentum", "[recovery]") {
@@ -219,19 +220,19 @@ TEST_CASE("recovery: nothing is asked of what cannot be parted, the rest goes wi
   const Eigen::VectorXd inverse_mass = inverse_masses(w.scene, world.node_count);
   Points nodes = w.state.x;
   const Recovery recovery = recover(world, inverse_mass, 0.01, find_exemption(world, nodes), {}, nodes);
-  REQUIRE_FALSE(recovery.gained.empty());
-  for (const Separation& gained : recovery.gained) {
-    bool hopeful = false;
+  REQUIRE_FALSE(recovery.separations.empty());
+  for (const Separation& one : recovery.separations) {
+    bool can_part = false;
     double sum = 0, value = 0;
-    for (int i = 0; i < gained.count; ++i) {
-      hopeful = hopeful || !there.self[gained.vertex[i]];
-      sum += gained.weight[i];
-      value += gained.weight[i] * gained.direction.dot(row(nodes, gained.vertex[i]));
+    for (int i = 0; i < one.count; ++i) {
+      can_part = can_part || !there.self[one.vertex[i]];
+      sum += one.weight[i];
+      value += one.weight[i] * one.direction.dot(row(nodes, one.vertex[i]));
     }
-    CHECK(hopeful);
-    CHECK(gained.count <= 4);
+    CHECK(can_part);
+    CHECK(one.count <= 4);
     CHECK(std::abs(sum) < 1e-12);
-    CHECK(gained.least == Approx(value));
+    CHECK(one.least == Approx(value));
   }
   const Points moved = nodes - w.state.x;
   CHECK(moved.rowwise().norm().maxCoeff() > 0.005);
@@ -326,7 +327,7 @@ TEST_CASE("recovery: a tangled cloth is put through no floor", "[recovery]") {
     Points nodes = gather_nodes(w.state.x, w.state.obstacles);
     REQUIRE(find_exemption(world, nodes).body.empty());
     const Recovery recovery = recover(world, inverse_mass, 0.03, find_exemption(world, nodes), {}, nodes);
-    CHECK(recovery.left.body.empty());
+    CHECK(recovery.left_alone.body.empty());
     CHECK(nodes.topRows(w.state.x.rows()).col(1).minCoeff() > 0);
   }
 }
@@ -348,12 +349,12 @@ TEST_CASE("recovery: left alone is what is tangled with cloth wholly, and with a
   exemption.body.assign(9, 0);
   exemption.body[4] = 1;
   CHECK(exemption.leaves_alone(world, {4, 9, 10, 11}));
-  exemption.off.assign(world.node_count, 0);
-  exemption.off[9] = exemption.off[10] = 1;
+  exemption.switched_off.assign(world.node_count, 0);
+  exemption.switched_off[9] = exemption.switched_off[10] = 1;
   CHECK_FALSE(exemption.leaves_alone(world, {0, 9, 10, 11}));
-  exemption.off[11] = 1;
+  exemption.switched_off[11] = 1;
   CHECK_FALSE(exemption.leaves_alone(world, {0, 9, 10, 11}));  // it comes from outside
-  exemption.off[0] = 1;                                        // it is caught
+  exemption.switched_off[0] = 1;                               // it is caught
   CHECK(exemption.leaves_alone(world, {0, 9, 10, 11}));
   CHECK_FALSE(exemption.leaves_alone(world, {0, 9, 10, 12}));
 }

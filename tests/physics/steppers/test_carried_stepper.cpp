@@ -26,10 +26,10 @@ TEST_CASE("carried: cloth goes along with its skinned target, and keeps a part o
   const auto stepper = make_carried_stepper(world.scene, {.kept = 0.6});
   State first, second, third;
   world.state.v.setConstant(0.3);
-  world.drive.worn = moved(world, {0, 0, 0});
+  world.drive.skinned_targets = moved(world, {0, 0, 0});
   REQUIRE(testing::frame(world.scene, *stepper, world.state, world.drive, dt, first).status == StepStatus::accepted);
   CHECK((first.x - moved(world, {0.01, 0.01, 0.01})).cwiseAbs().maxCoeff() < 1e-12);  // nothing is known of before
-  world.drive.worn = moved(world, {0, 0, 0.02});
+  world.drive.skinned_targets = moved(world, {0, 0, 0.02});
   testing::frame(world.scene, *stepper, first, world.drive, dt, second);
   CHECK((second.x - first.x).isApprox(moved(world, {0, 0, 0.02}) - world.state.x, 1e-12));
   Points pushed = second.x;
@@ -37,7 +37,7 @@ TEST_CASE("carried: cloth goes along with its skinned target, and keeps a part o
   for (MemoryBlock& block : second.memory)
     if (block.name == "carried.motion") block.rows.col(0).array() += 0.01;
   second.x = pushed;
-  world.drive.worn = moved(world, {0, 0, 0.05});
+  world.drive.skinned_targets = moved(world, {0, 0, 0.05});
   testing::frame(world.scene, *stepper, second, world.drive, dt, third);
   CHECK((third.x - pushed).isApprox(moved(world, {0.006, 0, 0.03}) - world.state.x, 1e-9));
 }
@@ -61,9 +61,9 @@ TEST_CASE("carried: the response to contact keeps cloth that is carried into clo
   Points target = world.state.x;
   const auto stepper = make_carried_stepper(world.scene);
   State first, to;
-  world.drive.worn = target;
+  world.drive.skinned_targets = target;
   testing::frame(world.scene, *stepper, world.state, world.drive, dt, first);
-  world.drive.worn.bottomRows(36).col(1).array() -= 0.02;  // through the lower sheet
+  world.drive.skinned_targets.bottomRows(36).col(1).array() -= 0.02;  // through the lower sheet
   const StepReport report = testing::frame(world.scene, *stepper, first, world.drive, dt, to);
   REQUIRE(report.status == StepStatus::accepted);
   CHECK(report.collision.impulses + report.collision.zones > 0);
@@ -83,10 +83,10 @@ TEST_CASE("carried: a solve begins at the carried guess where the potential is l
     options.implicit_euler.linear_tolerance = 0.9;  // so rough that the end tells the start
     const auto stepper = make_conventional_stepper(world.scene, options);
     State first, second;
-    world.drive.worn = world.state.x;
+    world.drive.skinned_targets = world.state.x;
     testing::frame(world.scene, *stepper, world.state, world.drive, dt, first);
     CHECK((guess == FirstGuess::carried) == (find_rows(first.memory, "carried.target", first.x.rows()) != nullptr));
-    world.drive.worn = target;
+    world.drive.skinned_targets = target;
     REQUIRE(testing::frame(world.scene, *stepper, first, world.drive, dt, second).status == StepStatus::accepted);
     return second.x;
   };

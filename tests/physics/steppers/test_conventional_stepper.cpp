@@ -153,12 +153,12 @@ TEST_CASE("conventional stepper: pins that cannot all be where they are wanted a
   World w = make_world(testing::join(testing::sheet(5, 0.2, 0.04), testing::sheet(5, 0.3, 0)));
   for (int v = 36; v < 72; ++v) w.scene.pins.push_back(v);
   ConventionalOptions options;
-  options.resolve.most = {1000, 1000};
+  options.resolve.budget = {1000, 1000};
   const Drawn d = drawn(w, 6, 0.3, 4, options);
   CHECK(d.out_of_response > 0);
   CHECK(d.pairs == 0);
   CHECK(d.shortened > 0);
-  CHECK(d.projected < 2 * options.resolve.most.projected);
+  CHECK(d.projected < 2 * options.resolve.budget.projected);
 }
 
 TEST_CASE("conventional stepper: caches carry no state", "[conventional_stepper]") {

@@ -44,7 +44,7 @@ testing::Sheet band(double height) {
   return s;
 }
 
-// A sheet, held at its boundary, with something through its middle; what is cut out of it stays where it is worn.
+// A sheet, held at its boundary, with something through its middle; what is cut out of it stays at its targets.
 World pierced(const testing::Sheet& sheet, const testing::Sheet& by, bool held = true) {
   World w = make_world(sheet);
   add_obstacle(w, by);
@@ -54,7 +54,7 @@ World pierced(const testing::Sheet& sheet, const testing::Sheet& by, bool held =
       if (sheet.x.row(v).cwiseAbs().maxCoeff() > 0.199) w.scene.pins.push_back(v);
   w.drive.pins = sheet.x(w.scene.pins, Eigen::all);
   w.drive.acceleration.setZero();
-  w.drive.worn = sheet.x;
+  w.drive.skinned_targets = sheet.x;
   return w;
 }
 
@@ -119,13 +119,13 @@ TEST_CASE("cutting stepper: what is cut out comes back when it is free, and the 
   CHECK((states.back().x - cloth.x).rowwise().norm().maxCoeff() < 0.03);
 }
 
-TEST_CASE("cutting stepper: vertices that only cut triangles have go where they are worn, pins where they are held",
+TEST_CASE("cutting stepper: vertices that only cut triangles have go to their targets, pins where they are held",
           "[cutting]") {
   World w = pierced(cloth, spike(0.25));
   w.scene.pins.insert(std::ranges::lower_bound(w.scene.pins, middle), middle);
   w.state.cut_out = cut_out_at_start(w.scene, w.state, all(w));
   w.drive.pins = cloth.x(w.scene.pins, Eigen::all);
-  w.drive.worn = cloth.x.rowwise() + Eigen::RowVector3d(0, 0.004, 0);
+  w.drive.skinned_targets = cloth.x.rowwise() + Eigen::RowVector3d(0, 0.004, 0);
   State to;
   REQUIRE(testing::frame(w.scene, *cutting(w.scene), w.state, w.drive, dt, to).status == StepStatus::accepted);
   int followed = 0;
@@ -136,7 +136,7 @@ TEST_CASE("cutting stepper: vertices that only cut triangles have go where they 
       CHECK((cut && to.x.row(v) == cloth.x.row(v)));
     } else if (cut) {
       ++followed;
-      CHECK(to.x.row(v) == w.drive.worn.row(v));
+      CHECK(to.x.row(v) == w.drive.skinned_targets.row(v));
       CHECK(to.v(v, 1) == Approx(0.004 / dt));
     } else {
       CHECK(to.x(v, 1) < 0.002);
@@ -188,10 +188,10 @@ TEST_CASE("cutting stepper: all may be cut out, and nothing", "[cutting]") {
   World w = pierced(testing::sheet(1, 0.2, 0), spike(0.1), false);
   w.state.cut_out = cut_out_at_start(w.scene, w.state, all(w));
   REQUIRE(w.state.cut_out == std::vector<int>{0, 1});
-  w.drive.worn.col(0).array() += 0.01;
+  w.drive.skinned_targets.col(0).array() += 0.01;
   State to;
   REQUIRE(testing::frame(w.scene, *cutting(w.scene), w.state, w.drive, dt, to).status == StepStatus::accepted);
-  CHECK(to.x == w.drive.worn);
+  CHECK(to.x == w.drive.skinned_targets);
   CHECK(to.frame == 1);
   CHECK(to.time == Approx(dt));
   CHECK(to.cut_out == w.state.cut_out);

@@ -207,9 +207,9 @@ TEST_CASE("hybrid: refused proposals wait for longer and longer, and come back",
 
   ProposalTrust trust{0, 4, 0};
   for (int k = 0; k < 3; ++k) trust = after_admission(trust, HybridOptions{}.admitted_to_halve);
-  CHECK(trust.stretch == 2);
+  CHECK(trust.next_wait == 2);
   CHECK(after_refusal(trust, 32).wait == 2);
-  CHECK(after_refusal(trust, 32).stretch == 4);
+  CHECK(after_refusal(trust, 32).next_wait == 4);
 }
 
 TEST_CASE("hybrid: with a clock it costs at most a tenth more than its parent, whatever proposals cost and come to",

@@ -27,7 +27,7 @@ class AskedStepper final : public Stepper {
   const StepperTraits& traits() const override { return traits_; }
   StepReport step(const State& from, const Drive& drive, double h, State& to, const StepExtras& extras) override {
     asked_ = {from, extras.guess != nullptr, bool(extras.added),
-              extras.left_alone ? extras.left_alone->cloth_vertices() : 0};
+              extras.left_alone ? extras.left_alone->tangled_vertices() : 0};
     StepReport report;
     finish_step(from, drive, h, {from.x, from.v, drive.obstacles}, to, report);
     return report;
@@ -93,11 +93,11 @@ TEST_CASE("recovering stepper: of a tangled start the cloth is moved, the motion
   CHECK(asked.left_alone == w.state.x.rows());
 }
 
-TEST_CASE("recovering stepper: remembers where worn cloth was clean last, until it is clean again", "[recovering]") {
+TEST_CASE("recovering stepper: remembers where dressed cloth was clean last, until it is clean again", "[recovering]") {
   World w = make_world(testing::sheet(4, 0.2, 0.05));
   add_obstacle(w, testing::sheet(3, 0.6, 0));
   w.state.clean = true;
-  w.drive.worn = w.state.x;
+  w.drive.skinned_targets = w.state.x;
   Asked asked;
   const auto stepper = make_recovering_stepper(w.scene, std::make_unique<AskedStepper>(asked, true));
   State dirty;
@@ -107,7 +107,7 @@ TEST_CASE("recovering stepper: remembers where worn cloth was clean last, until 
   REQUIRE_FALSE(dirty.clean);
   CHECK(last_clean(dirty).x == w.state.x);
   CHECK(last_clean(dirty).obstacles == w.state.obstacles);
-  through.worn.resize(0, 3);
+  through.skinned_targets.resize(0, 3);
   testing::frame(w.scene, *stepper, w.state, through, dt, dirty);
   CHECK(last_clean(dirty).x.rows() == 0);
 }

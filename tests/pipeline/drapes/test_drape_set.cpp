@@ -85,10 +85,10 @@ TEST_CASE("drapes: frames of vertices are the skinning of the garment", "[drapes
   const Eigen::VectorXd shape = draw_body_shape(random, 10, 0.7);
   const BodyPose pose = draw_pose(random, world.body.joints, 1);
   const std::vector<VertexFrame> frames = vertex_frames(world, shape, pose);
-  const Points rest = shaped(world.garment.skin, shape), skinned = worn(world.garment, world.body, shape, pose);
+  const Points rest = shaped(world.garment.skin, shape), posed = skinned(world.garment, world.body, shape, pose);
   for (int v = 0; v < rest.rows(); v += 17) {
     const VertexFrame& frame = frames[static_cast<std::size_t>(v)];
-    CHECK((frame.leftCols<3>() * row(rest, v) + frame.col(3) - row(skinned, v)).norm() < 1e-12);
+    CHECK((frame.leftCols<3>() * row(rest, v) + frame.col(3) - row(posed, v)).norm() < 1e-12);
   }
 }
 

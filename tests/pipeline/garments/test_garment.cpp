@@ -42,7 +42,7 @@ Eigen::VectorXd person() {
 TEST_CASE("A tight garment that is the body's own surface goes where the body goes", "[garment]") {
   const BodyModel& body = mannequin();
   const Garment garment{"skin", attached(body.skin.rest, body.skin.triangles, body, Fit::tight), {}, {}, {}};
-  const Points cloth = worn(garment, body, person(), bent()), skin = posed(body, person(), bent());
+  const Points cloth = skinned(garment, body, person(), bent()), skin = posed(body, person(), bent());
   CHECK((cloth - skin).cwiseAbs().maxCoeff() < 1e-12);
   CHECK((rest_shape(garment, body, person()) - shaped(body.skin, person())).cwiseAbs().maxCoeff() < 1e-12);
 }

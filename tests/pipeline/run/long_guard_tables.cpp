@@ -114,11 +114,11 @@ std::string text(const std::string& name, const Counts& c) {
 // What stands in for a step of another time of the body: worn cloth is carried along with the body for some frames.
 Points of_another_body_frame(const Setup& setup, const RecordedStep& step) {
   constexpr int frames = 4;
-  const Points later = setup.drive_at(step.to.time + frames * dt).worn;
+  const Points later = setup.drive_at(step.to.time + frames * dt).skinned_targets;
   Points x = step.to.x;
   for (Eigen::Index v = 0; v < x.rows(); ++v)
-    if (step.drive.worn.rows() > v && step.drive.worn.row(v).allFinite())
-      x.row(v) += later.row(v) - step.drive.worn.row(v);
+    if (step.drive.skinned_targets.rows() > v && step.drive.skinned_targets.row(v).allFinite())
+      x.row(v) += later.row(v) - step.drive.skinned_targets.row(v);
   for (const int pin : setup.scene.pins) x.row(pin) = step.to.x.row(pin);
   return x;
 }

@@ -16,8 +16,8 @@ namespace {
 std::vector<char> near_switched_off(const ContactWorld& world, const Exemption& exemption) {
   const Surface& body = *world.obstacles[0];
   std::vector<char> near(static_cast<std::size_t>(body.vertex_count), 0);
-  if (exemption.off.empty()) return near;
-  for (int v = 0; v < body.vertex_count; ++v) near[v] = exemption.off[world.first_node[0] + v];
+  if (exemption.switched_off.empty()) return near;
+  for (int v = 0; v < body.vertex_count; ++v) near[v] = exemption.switched_off[world.first_node[0] + v];
   for (int ring = 0; ring < 2; ++ring) {
     std::vector<char> next = near;
     for (const auto& triangle : body.triangles.rowwise())
@@ -50,8 +50,8 @@ TEST_CASE("legs that go through each other in wide trousers: what they carry nei
     REQUIRE(report.status == StepStatus::accepted);
     Exemption exemption;
     crossings.switch_off(gather_nodes(state.x, {state.obstacles[0]}), gather_nodes(to.x, {to.obstacles[0]}),
-                         setup.drive_at(state.time + dt).worn, exemption);
-    const bool crosses = !exemption.off.empty();
+                         setup.drive_at(state.time + dt).skinned_targets, exemption);
+    const bool crosses = !exemption.switched_off.empty();
     if (crosses && to.frame < 103) {
       ++frames;
       most = std::max(most, report.iterations);

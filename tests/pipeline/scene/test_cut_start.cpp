@@ -41,11 +41,11 @@ TEST_CASE("A cut start has no pair in any frame, says what is out, and ends whol
   CHECK(setup.initial.frame == 0);
   CHECK(setup.initial.x == skinned.initial.x);
   CHECK(skinned.initial.cut_out.empty());
-  CHECK(skinned.drive_at(0).worn == skinned.initial.x);
+  CHECK(skinned.drive_at(0).skinned_targets == skinned.initial.x);
   const int out = static_cast<int>(setup.initial.cut_out.size());
   CHECK(out > 2);
   CHECK(out < setup.scene.surface.triangles.rows() / 4);
-  CHECK(setup.drive_at(0).worn == setup.initial.x);
+  CHECK(setup.drive_at(0).skinned_targets == setup.initial.x);
   CHECK_THAT(plan_text(setup), Contains("cut start") && Contains("cut: " + std::to_string(out) + " of "));
 
   const RunSummary summary = run(setup, folder, "whole");

@@ -113,7 +113,7 @@ TEST_CASE("kinds: without it the file is refused, and faults in its options are 
 TEST_CASE("kinds: one error names all that a scene lacks", "[kinds]") {
   const Folder folder("kinds_needs");
   const Setup setup =
-      read(folder, "{stepper: counting}", with_counting({.worn = true, .bodies = true, .obstacles = true}));
+      read(folder, "{stepper: counting}", with_counting({.skinned_targets = true, .bodies = true, .obstacles = true}));
   CHECK_THROWS_WITH(make_stepper(setup), Contains("`counting` does not take this scene") &&
                                              Contains("it needs an obstacle") && Contains("it needs a body") &&
                                              Contains("it needs cloth that a body wears"));

@@ -74,7 +74,7 @@ TEST_CASE("Where a body gives way to itself, the garment's pins go along", "[set
     const Drive drive = setup.drive_at(time);
     const Points skin = drive.obstacles.at(0)(piece.from, Eigen::all);
     given = std::max(given, farthest(skin, plain.drive_at(time).pins));
-    apart = std::max({apart, farthest(skin, drive.pins), farthest(skin, drive.worn)});
+    apart = std::max({apart, farthest(skin, drive.pins), farthest(skin, drive.skinned_targets)});
   }
   CAPTURE(given, apart);
   CHECK(given > 0.01);
@@ -113,7 +113,7 @@ TEST_CASE("What is pinned to one part of a body is not run through by another th
   const auto apart = [&](const std::string& cloths) {
     const Drive drive =
         read(folder, cloths, "{body: {clip: arms_through_thighs, blend_in: 1 s, room: 1.5 cm}}").drive_at(53 / 30.0);
-    return farthest(drive.worn, drive.pins);
+    return farthest(drive.skinned_targets, drive.pins);
   };
   CHECK(apart("{garment: belt.h5}") > 0.01);
   CHECK(apart("{name: a, garment: belt.h5}\n  - {name: b, garment: belt.h5}") == 0);

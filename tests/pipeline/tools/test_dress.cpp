@@ -106,7 +106,7 @@ TEST_CASE("A mesh in a pose and shape comes back there to a nanometre, and rests
     CHECK(report.body_pairs + report.inside_vertices == 0);
     CHECK(report.mean_distance == Approx(0.01).margin(0.002));
     const Garment garment = read_garment(request.out);
-    CHECK(farthest(worn(garment, body, shape, pose), as_read(folder)) < 1e-9);
+    CHECK(farthest(skinned(garment, body, shape, pose), as_read(folder)) < 1e-9);
     CHECK(farthest(rest_shape(garment, body, shape), as_read(folder)) < 1e-9);
     for (const std::string name : {"neck", "hem", "cuff_left", "cuff_right"})
       CHECK_FALSE(members(garment, name).empty());

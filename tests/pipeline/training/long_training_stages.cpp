@@ -113,14 +113,14 @@ TEST_CASE("training: three stages of `tiny` from scratch, judged on an unseen cl
                         end = judged(folder.path / "third", third, Judge::everything);
   for (const auto& [name, m] : {std::pair("first", &first), std::pair("third, without contact", &alone),
                                 std::pair("second", &before), std::pair("third", &end)})
-    log << name << ": gap closed " << m->worn.closed << " worn, " << m->minimised.closed << " minimised, pairs "
+    log << name << ": gap closed " << m->skinned.closed << " worn, " << m->minimised.closed << " minimised, pairs "
         << m->roll.pairs << ", at the end " << m->roll.pairs_at_end << ", strain " << m->roll.strain << "\n";
   const double tangled_before = tangled_pairs(folder.path / "second", second),
                tangled_end = tangled_pairs(folder.path / "third", third);
   log << "from tangled starts: pairs " << tangled_before << " before the third stage, " << tangled_end << " after it\n";
   WARN(log.str());
-  CHECK(first.worn.closed > 0.5);
-  CHECK(alone.worn.closed > 0.5);
+  CHECK(first.skinned.closed > 0.5);
+  CHECK(alone.skinned.closed > 0.5);
   CHECK(tangled_end < tangled_before);
   for (const TrainingMeasure* m : {&first, &before, &end}) {
     CHECK(m->roll.finite);

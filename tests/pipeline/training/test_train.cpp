@@ -211,7 +211,7 @@ TEST_CASE("training: a few hundred steps close part of the gap", "[training][.lo
       train({config_folder() / "training" / "tiny.yaml", {"steps=2500"}, folder.path, false, &log, {}});
   INFO(log.str());
   CHECK(summary.counts.bad == 0);
-  CHECK(summary.last.worn.closed > 0.3);
+  CHECK(summary.last.skinned.closed > 0.3);
   CHECK(summary.last.minimised.closed > 0.5);
   CHECK(summary.last.roll.finite);
 }

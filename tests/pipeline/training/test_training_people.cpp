@@ -131,8 +131,8 @@ TEST_CASE("training people: a glTF rig with its animation, and a body file with 
   CHECK(world.bodies[1].clips[0].name == "swing");
   // Both move the skirt, each as its file says.
   for (const int person : {0, 1}) {
-    const PointsF first = worn_frame(whole->maker->world, person, person, 0, 0).cloth,
-                  later = worn_frame(whole->maker->world, person, person, 0, 5).cloth;
+    const PointsF first = skinned_frame(whole->maker->world, person, person, 0, 0).cloth,
+                  later = skinned_frame(whole->maker->world, person, person, 0, 5).cloth;
     CHECK(first.allFinite());
     CHECK((later - first).rowwise().norm().maxCoeff() > 0.02);
   }
@@ -232,17 +232,17 @@ TEST_CASE("training people: the folder of soft tissue is bounded, and so is what
   const OwnData& own = own_data();
   const Folder folder("training_flesh");
   TrainingWorld world = make_training_world(read_training(own.write(""), {"samples.flesh=true"}).samples, 1);
-  world.kept_in = folder.path;
-  const PointsF before = worn_frame(world, 0, 0, 0, 3).body;
-  worn_frame(world, 0, 0, 1, 3);
+  world.soft_tissue_folder = folder.path;
+  const PointsF before = skinned_frame(world, 0, 0, 0, 3).body;
+  skinned_frame(world, 0, 0, 1, 3);
   CHECK(world.tissue_bytes > 0);
   world.bodies[0].clips[0].looked = false;
   world.most_tissue = 0;  // the next look forgets, after writing
-  CHECK(worn_frame(world, 0, 0, 0, 3).body == before);
+  CHECK(skinned_frame(world, 0, 0, 0, 3).body == before);
   CHECK(world.bodies[0].clips[1].given.empty());
   const auto files = [&] { return std::distance(std::filesystem::directory_iterator(folder.path / "flesh"), {}); };
   CHECK(files() == 2);
-  worn_frame(world, 0, 0, 0, 5);
+  skinned_frame(world, 0, 0, 0, 5);
   write_soft_tissue(folder.path, world, 1);
   CHECK(files() == 0);
 }

@@ -165,7 +165,7 @@ TEST_CASE("training starts: every second roll-out looks for a place with 20 pair
   maker.world = make_training_world(maker.options.samples, 1);
   const auto pairs_at = [&](const RollRequest& place) {
     IntersectionCache cache;
-    Points x = worn_frame(maker.world, place.wear, place.body, place.clip, place.first_frame).cloth.cast<double>();
+    Points x = skinned_frame(maker.world, place.wear, place.body, place.clip, place.first_frame).cloth.cast<double>();
     const auto scene = make_training_scene(maker, place, drawn_materials(maker, place));
     if (place.mirrored) x.col(0) *= -1;
     return static_cast<int>(intersecting_pairs(scene->scene.surface, x, cache).size());

@@ -1,4 +1,4 @@
-#include "pipeline/training/worn_frame.hpp"
+#include "pipeline/training/skinned_frame.hpp"
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ std::size_t bytes_of(const TissueDisplacements& tissue) {
 
 // Forgets what is in memory, once it is in the folder.
 void forget_tissue(TrainingWorld& world) {
-  write_soft_tissue(world.kept_in, world);
+  write_soft_tissue(world.soft_tissue_folder, world);
   for (TrainingBody& body : world.bodies)
     for (TrainingClip& clip : body.clips) {
       clip.given.clear();
@@ -28,7 +28,7 @@ const TissueDisplacements& tissue_displacements(TrainingWorld& world, TrainingBo
   if (world.tissue_bytes > world.most_tissue) forget_tissue(world);
   TrainingClip& of = body.clips[static_cast<std::size_t>(clip)];
   if (!of.looked) {
-    of.given.merge(read_soft_tissue(world.kept_in, world, body, of));
+    of.given.merge(read_soft_tissue(world.soft_tissue_folder, world, body, of));
     of.looked = true;
     for (const auto& [_, known] : of.given) world.tissue_bytes += bytes_of(known);
   }
@@ -44,7 +44,7 @@ const TissueDisplacements& tissue_displacements(TrainingWorld& world, TrainingBo
 
 }  // namespace
 
-WornFrame worn_frame(TrainingWorld& world, int wear, int body, int clip, int frame) {
+SkinnedFrame skinned_frame(TrainingWorld& world, int wear, int body, int clip, int frame) {
   TrainingBody& who = world.bodies[static_cast<std::size_t>(body)];
   const TrainingPerson& person = world.people[static_cast<std::size_t>(who.person)];
   const Clip& motion = who.clips[static_cast<std::size_t>(clip)].motion;
@@ -61,7 +61,7 @@ WornFrame worn_frame(TrainingWorld& world, int wear, int body, int clip, int fra
     skinned += moves;
   }
   hold_together(person.joined, skinned);
-  WornFrame result;
+  SkinnedFrame result;
   result.body = skinned.cast<float>();
   const TrainingWear& what = world.wear[static_cast<std::size_t>(wear)];
   Eigen::Index rows = 0;

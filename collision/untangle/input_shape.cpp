@@ -1,4 +1,4 @@
-#include "collision/untangle/kept_shape.hpp"
+#include "collision/untangle/input_shape.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -56,11 +56,11 @@ bool surely_within(const Symmetric& c, const StretchRange& range) {
          c.mean + radius < (1 - slack) * range.largest * range.largest;
 }
 
-Edges32 deformation(const KeptShape& shape, const Points& x, int triangle) {
+Edges32 deformation(const InputShape& shape, const Points& x, int triangle) {
   return edges_of(*shape.surface, x, triangle) * shape.rest_inverse[triangle];
 }
 
-void make_neighbours(KeptShape& shape) {
+void make_neighbours(InputShape& shape) {
   const Surface& s = *shape.surface;
   shape.neighbour_begin.assign(s.vertex_count + 1, 0);
   for (int v : s.edges.reshaped()) ++shape.neighbour_begin[v + 1];
@@ -85,8 +85,8 @@ void make_neighbours(KeptShape& shape) {
 
 }  // namespace
 
-KeptShape keep_shape(const Surface& surface, const Points& x0) {
-  KeptShape shape;
+InputShape input_shape(const Surface& surface, const Points& x0) {
+  InputShape shape;
   shape.surface = &surface;
   shape.x0 = x0;
   make_neighbours(shape);
@@ -99,7 +99,7 @@ KeptShape keep_shape(const Surface& surface, const Points& x0) {
   return shape;
 }
 
-std::vector<char> within_rings(const KeptShape& shape, const std::vector<char>& marked, int rings) {
+std::vector<char> within_rings(const InputShape& shape, const std::vector<char>& marked, int rings) {
   std::vector<char> reached = marked;
   for (int ring = 0; ring < rings; ++ring) {
     const std::vector<char> before = reached;
@@ -112,13 +112,13 @@ std::vector<char> within_rings(const KeptShape& shape, const std::vector<char>& 
   return reached;
 }
 
-StretchRange stretch_of(const KeptShape& shape, const Points& x, int triangle) {
+StretchRange stretch_of(const InputShape& shape, const Points& x, int triangle) {
   if (!shape.measured[triangle]) return {};
   const Eigen::Vector2d value = principal_values(Symmetric(deformation(shape, x, triangle)));
   return {value[0], value[1]};
 }
 
-StretchRange extreme_stretch(const KeptShape& shape, const Points& x) {
+StretchRange extreme_stretch(const InputShape& shape, const Points& x) {
   StretchRange extreme;
   for (int t = 0; t < shape.surface->triangles.rows(); ++t) {
     const StretchRange stretch = stretch_of(shape, x, t);
@@ -128,7 +128,7 @@ StretchRange extreme_stretch(const KeptShape& shape, const Points& x) {
   return extreme;
 }
 
-void smooth_displacement(const KeptShape& shape, const Points& from, std::span<const int> vertices, double share,
+void smooth_displacement(const InputShape& shape, const Points& from, std::span<const int> vertices, double share,
                          Points& x) {
   std::vector<Vec3> moved;
   moved.reserve(vertices.size());
@@ -142,7 +142,7 @@ void smooth_displacement(const KeptShape& shape, const Points& from, std::span<c
   for (std::size_t i = 0; i < vertices.size(); ++i) x.row(vertices[i]) = from.row(vertices[i]) + moved[i].transpose();
 }
 
-void limit_stretch(const KeptShape& shape, std::span<const int> triangles, const std::vector<double>& reach,
+void limit_stretch(const InputShape& shape, std::span<const int> triangles, const std::vector<double>& reach,
                    const StretchRange& range, Points& x) {
   for (int t : triangles) {
     if (!shape.measured[t]) continue;
@@ -175,7 +175,7 @@ void limit_stretch(const KeptShape& shape, std::span<const int> triangles, const
   }
 }
 
-void limit_displacement(const KeptShape& shape, std::span<const int> vertices, const std::vector<double>& reach,
+void limit_displacement(const InputShape& shape, std::span<const int> vertices, const std::vector<double>& reach,
                         Points& x) {
   for (int v : vertices) {
     const Vec3 moved = row(x, v) - row(shape.x0, v);
@@ -184,7 +184,7 @@ void limit_displacement(const KeptShape& shape, std::span<const int> vertices, c
   }
 }
 
-void hold_back(const KeptShape& shape, std::span<const int> triangles, const StretchRange& range, const Points& before,
+void hold_back(const InputShape& shape, std::span<const int> triangles, const StretchRange& range, const Points& before,
                Points& x) {
   std::vector<char> offends(shape.surface->vertex_count, 0);
   for (int round = 0;; ++round) {

@@ -5,9 +5,9 @@
 namespace selvedge {
 
 // Body and garments in a frame of a clip, the garments one behind the other [m].
-struct WornFrame {
+struct SkinnedFrame {
   PointsF body, cloth;
 };
-WornFrame worn_frame(TrainingWorld&, int wear, int body, int clip, int frame);
+SkinnedFrame skinned_frame(TrainingWorld&, int wear, int body, int clip, int frame);
 
 }  // namespace selvedge
