@@ -37,15 +37,13 @@ enum class MeshOrder { larger_sends, smaller_sends };
 // pair (Grigorev et al. 2024, algorithm 2).
 enum class ContourRule { all_repel, vertex, all_vertices };
 
-// Which cloth vertices that are near each other get an edge, beside those of the mesh (Liao et al. 2024,
-// section 3.1.2).
+// Which cloth vertices that are near each other get an edge, beside those of the mesh (Liao et al. 2024, section
+// 3.1.2). Members are described where keys are bound to them: pipeline/training/training_options.cpp.
 struct SpaceOptions {
-  double radius = 0.02;        // [m]
-  double radius_in_edges = 0;  // above 0: the radius in mean mesh edges at rest, in place of `radius`
-  bool mesh_pairs = false;     // with pairs that a mesh edge joins (an ablation of the paper)
-  bool rest_pairs = true;      // with pairs that are as near at rest
-  int nearest = 0;             // above 0: only so many nearest of each vertex, and one direction (10: as released)
-  int pairs_per_vertex = 32;   // on average; those farthest apart beyond are left out and counted
+  double radius = 0.02, radius_in_edges = 0;
+  bool mesh_pairs = false, rest_pairs = true;
+  int nearest = 0;
+  int pairs_per_vertex = 32;
 };
 
 // What a model was trained to see. A plain value, part of a model's architecture. The defaults are HOOD's.

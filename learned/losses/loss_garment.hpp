@@ -10,12 +10,12 @@
 
 namespace selvedge {
 
-// What the losses know of a vertex's cloth.
+// What the losses know of a vertex's cloth. The defaults are HOOD's. Members are described where keys are bound to
+// them: pipeline/training/training_options.cpp.
 struct VertexMaterial {
-  double density = 0.20022;             // areal [kg/m2]
-  double lame_mu = 23600 * 4.7e-4;      // membrane coefficients, thickness included [N/m]
-  double lame_lambda = 44400 * 4.7e-4;  // (the defaults are HOOD's)
-  double bending = 3.9626e-5;           // the papers' hinge coefficient
+  double density = 0.20022;
+  double lame_mu = 23600 * 4.7e-4, lame_lambda = 44400 * 4.7e-4;
+  double bending = 3.9626e-5;
   bool operator==(const VertexMaterial&) const = default;
 };
 

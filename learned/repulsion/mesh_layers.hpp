@@ -26,10 +26,10 @@ struct MeshLayer {
   int channels_out() const { return kernels.outputs() / (mix.inputs() + 1); }
 };
 
+// Convolutions over a garment's mesh. Members are described where keys are bound to them:
+// pipeline/drapes/drape_training_options.cpp.
 struct MeshShape {
-  int levels = 4;     // of pooling
-  int channels = 16;  // of the finest level, doubled from level to level up to four times as many
-  int kernels = 9;    // matrices that an edge mixes
+  int levels = 4, channels = 16, kernels = 9;
 };
 
 // Vertices of a coarser mesh: of each fine one its coarse one, and which coarse ones are adjacent. Centres are taken in

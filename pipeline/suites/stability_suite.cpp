@@ -11,13 +11,18 @@ using namespace table;
 const Options<StabilityLimits>& limits_options() {
   using O = StabilityLimits;
   static const Options<O> table(
-      "limits", "What every run must keep.",
-      {number("growth", &O::growth, Unit::none, positive,
-              "energy that nothing accounts for, of the largest kinetic and elastic energy of the run"),
+      "limits", "What every run must keep, whatever its scene.",
+      {number(
+           "growth", &O::growth, Unit::none, positive,
+           "Largest energy that nothing accounts for, in units of the largest kinetic and elastic energy of the run."),
        number("speed", &O::speed, Unit::none, positive,
-              "RMS speed in the last tenth of the run, of that of a fall by the cloth's extent"),
-       integer("newton", &O::newton, at_least_one, "iterations a substep"),
-       integer("linear", &O::linear, at_least_one, "iterations a Newton iteration")});
+              "Largest RMS speed in the last tenth of the run, in units of the speed of a fall by the cloth's extent."),
+       integer("newton", &O::newton, at_least_one,
+               "Largest number of Newton iterations in a substep, averaged over a frame. Seven solves of at most 32 "
+               "iterations take 224."),
+       integer("linear", &O::linear, at_least_one,
+               "Largest number of linear iterations in a Newton iteration, averaged over a frame. A linear solve may "
+               "take twice the default.")});
   return table;
 }
 

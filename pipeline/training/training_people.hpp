@@ -13,9 +13,10 @@ namespace selvedge {
 enum class Split { training, validation, test };
 std::string split_name(Split);
 
-// Names of people, of what they wear and of their clips that are held out; `*` stands for any characters.
+// What is held out of training. Members are described where keys are bound to them:
+// pipeline/training/training_people.cpp.
 struct SplitOptions {
-  std::string file;  // with the same two lists; empty: none
+  std::string file;
   std::vector<std::string> validation, test;
 };
 
