@@ -32,32 +32,33 @@ const Section& run_section() {
       "",
       "name",
       {},
-      {needed(text("name", "what differs, for people")), texts("set", "overrides of the scene, key=value"),
-       flag("short", false, "whether it is in the short form too"),
+      {needed(text("name", "What differs, for readers.")), texts("set", "`key=value` overrides of the scene."),
+       flag("short", false, "True: the run is in the short form too."),
        word("fault", weight_faults(), "",
-            "what is wrong with the weights, for steppers with a network; `huge`: the network returns 1e6")}};
+            "What is wrong with the weights, for steppers with a network. `huge`: the network returns 1e6.")}};
   return table;
 }
 
 const Section& case_section() {
-  static const Section table{
-      "case",
-      "",
-      "",
-      {},
-      {needed(text("name", "short")), text("about", "one line, for people"),
-       needed(path("scene", "scene file, seen from the suite's folder")), texts("set", "overrides for all its runs"),
-       needed(sections("runs", run_section(), "", "at least one"))}};
+  static const Section table{"case",
+                             "",
+                             "",
+                             {},
+                             {needed(text("name", "Short name of the case.")), text("about", "One line for readers."),
+                              needed(path("scene", "Scene file, relative to the suite's folder.")),
+                              texts("set", "`key=value` overrides of all its runs."),
+                              needed(sections("runs", run_section(), "", "Runs: at least one."))}};
   return table;
 }
 
 const Section& suite_section() {
-  static const Section table{"suite",
-                             "The whole file.",
-                             "",
-                             {},
-                             {text("description", "for people"), section(limits_options().section, "{}", ""),
-                              needed(sections("cases", case_section(), "", "at least one"))}};
+  static const Section table{
+      "suite",
+      "The whole file.",
+      "",
+      {},
+      {text("description", "Free text for readers."), section(limits_options().section, "{}", ""),
+       needed(sections("cases", case_section(), "", "Cases: at least one."))}};
   return table;
 }
 
