@@ -19,7 +19,7 @@ std::vector<WeightArray> trained_arrays(const Architecture& a, NetworkWeights& w
   return arrays;
 }
 
-// For reading: arrays point to what is never written to.
+// The pointers of these arrays are only read.
 std::vector<WeightArray> trained_arrays(const Architecture& a, const NetworkWeights& weights) {
   return trained_arrays(a, const_cast<NetworkWeights&>(weights));
 }
@@ -34,7 +34,7 @@ void check_same_shapes(const std::vector<WeightArray>& arrays, const std::vector
   if (!same) throw Error("gradients, moments and weights have different shapes", "a step of Adam", "");
 }
 
-// In double, array by array in their order.
+// In double precision, with an order of summation that does not depend on threads.
 double norm_of(const std::vector<WeightArray>& arrays) {
   std::vector<double> squares(arrays.size());
   const int count = static_cast<int>(arrays.size());
@@ -60,7 +60,7 @@ double median_of(std::vector<float> values) {
   return static_cast<double>(*middle);
 }
 
-// What the gradient is multiplied with, by the rules of the options.
+// The factor by which the gradient is clipped.
 double clip_scale(const AdamOptions& options, double norm, const std::vector<float>& norms) {
   double most = options.clip_norm > 0 ? options.clip_norm : norm;
   if (options.clip_median > 0 && !norms.empty()) most = std::min(most, options.clip_median * median_of(norms));

@@ -11,13 +11,13 @@ namespace selvedge {
 // order at the end. So any number of threads gives the same bits.
 class GradientParts {
  public:
-  // Forgets what was there. Memory is kept.
+  // Forgets all arrays and keeps the memory.
   void begin(int parts);
-  // Columns [begin, begin + columns) of a matrix, or a whole vector. Returns its place in each part.
+  // Adds columns [begin, begin + columns) of a matrix, or a vector. Returns its place in each part.
   int add(FeatureRows& gradient, Eigen::Index begin, Eigen::Index columns);
   int add(std::vector<float>& gradient);
   void allocate();
-  // Zeros one part and gives it: to be called by the thread that fills it.
+  // Zeros one part and returns it. The thread that fills the part calls this.
   float* start(int part);
   // Adds all parts to the gradients.
   void finish();

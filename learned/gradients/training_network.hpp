@@ -7,7 +7,7 @@
 
 namespace selvedge {
 
-// Weights in the shapes of NetworkWeights. Statistics have no gradient: theirs stay zero.
+// Derivatives in the shapes of the weights. Those of statistics stay zero.
 using WeightGradients = NetworkWeights;
 WeightGradients zero_gradients(const Architecture&);
 void set_zero(const Architecture&, WeightGradients&);
@@ -46,8 +46,8 @@ class Tape {
   std::unique_ptr<TrainingTape> tape_;
 };
 
-// The decoder's output, cloth_nodes x outputs, as `infer` gives it (to rounding: 1e-5 of the largest). Errors are those
-// of `infer`. 1 and n threads give the same bits.
+// Returns the decoder's output, cloth_nodes x outputs, as `infer` does (rounding differs: 1e-5 of the largest). Throws
+// as `infer` does. 1 and n threads give the same bits.
 FeatureRows run_forward(const TrainingNetwork&, const Graph&, Tape&);
 
 // Adds to `gradients` the derivatives of a scalar with respect to every weight. `d_output` (cloth_nodes x outputs) is

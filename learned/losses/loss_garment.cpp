@@ -15,7 +15,7 @@ bool is_usable(const VertexMaterial& m) {
   return good(m.density) && good(m.lame_mu) && good(m.lame_lambda) && good(m.bending);
 }
 
-// One cloth whose hinges have the coefficient 1.
+// A scene of one cloth whose hinges have the coefficient 1.
 Scene cloth_alone(const Surface& surface, const Points& rest, HingeLength length) {
   Scene scene;
   scene.surface = surface;
@@ -48,7 +48,7 @@ void check_material(const VertexMaterial& material) {
     throw Error("a material has a number that is negative or not finite", garment_place, "give positive numbers");
 }
 
-// material_of(vertex)
+// `material_of(vertex)` returns a VertexMaterial.
 template <class MaterialOf>
 void set_masses_and_hinges(LossGarment& garment, const MaterialOf& material_of) {
   garment.mass.assign(static_cast<std::size_t>(garment.surface.vertex_count), 0);

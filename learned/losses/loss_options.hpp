@@ -5,8 +5,8 @@
 
 namespace selvedge {
 
-// A weight that goes linearly from one value to another between two points of the run. Points are fractions of it,
-// never iteration counts: no run is too short for its losses.
+// A weight that goes linearly from one value to another between two points of the run. Points are fractions of the run,
+// so that they suit a run of any length.
 struct LossRamp {
   double from = 1, to = 1;    // at `begin` and before, at `end` and after
   double begin = 0, end = 0;  // in [0, 1]
@@ -14,16 +14,15 @@ struct LossRamp {
 double weight_at(const LossRamp&, double progress);
 inline bool is_used(const LossRamp& ramp) { return ramp.from != 0 || ramp.to != 0; }
 
-// Which face of the body, where it is now, belongs to a cloth vertex where that is now: the one with the nearest
-// centroid, however far (HOOD), or the one with the nearest point within a radius (ContourCraft).
+// The face of the body that belongs to a cloth vertex, both where they are now: the face with the nearest centroid,
+// however far (HOOD), or with the nearest point within a radius (ContourCraft).
 enum class BodyMatching { nearest_centroid, nearest_face };
 
 // The penalty of a depth p = max(eps - d, 0): w p^3 [w in N/m^2], as published, or the softer w p^2 / 2 [w in N/m].
 enum class DepthPenalty { cubic, quadratic };
 
-// Places of the cloth that are kept out of the body: its vertices, as published; the middles of its edges too; the
-// centroids of its triangles too. Each counts as a vertex does. Edges between vertices that are outside cut a round
-// arm.
+// Samples of the cloth that are kept out of the body: the vertices, as published; also the middles of edges; also the
+// centroids of triangles. Each counts as a vertex does. Edges between vertices that are outside cut a round arm.
 enum class ClothSamples { vertices, edges, faces };
 
 struct CollisionLoss {
@@ -35,7 +34,7 @@ struct CollisionLoss {
   ClothSamples samples = ClothSamples::vertices;
 };
 
-// The axis whose share in the slide slackens friction: the released code takes z in a world where y is up.
+// Friction is weaker for slides along this axis. The released code takes z in a world where y is up.
 enum class SlopeAxis { x, y, z };
 
 struct FrictionLoss {
@@ -80,7 +79,7 @@ struct VertexRepulsionLoss {
   int power = 2;           // or 1; the paper's is lost
 };
 
-// What is summed up. A term whose weight is zero is not evaluated. The defaults are HOOD's.
+// The options of all terms. A term whose weight is zero is not evaluated. The defaults are HOOD's.
 struct LossOptions {
   LossRamp stretching, bending, gravity, inertia;
   CollisionLoss collision;
@@ -93,9 +92,9 @@ struct LossOptions {
   double relaxation_dt = 1.0 / 3;  // of the inertia of a frame in which cloth falls to rest [s]
 };
 
-// As published, iterations being fractions of the run (parity README): of HOOD's 150,000; of the 56,000 of
-// ContourCraft's stages 1 and 2, which are blind to contours; of the 11,000 of its stage 3, in whose first 5,000 the
-// contour loss rises. The released ContourCraft trains without friction.
+// Options as published, with iterations as fractions of the run (parity README). HOOD's run has 150,000. ContourCraft's
+// stages 1 and 2 have 56,000 and do not see contours. Its stage 3 has 11,000, and the contour loss rises in the first
+// 5,000. The released ContourCraft trains without friction.
 LossOptions hood_losses();
 LossOptions senc_losses();  // its two phases of 120,000 and 70,000 in one run
 LossOptions contourcraft_losses();

@@ -29,7 +29,6 @@ void check_inputs(const LossInputs& in) {
     throw Error("what is left out of the body is not a flag for each face", "inputs of the losses", "");
 }
 
-// The weight at this progress of the run.
 double weight_now(const LossRamp& ramp, const LossInputs& in) { return weight_at(ramp, in.progress); }
 
 const std::vector<char>& left_out_of(const LossInputs& in) {
@@ -62,7 +61,7 @@ bool looks_for_contours(const LossInputs& in, const LossOptions& options) {
   return in.contours && weight_now(options.contours.weight, in) != 0;
 }
 
-// What depends on the prediction.
+// Finds the matches that depend on the prediction.
 void find_of_prediction(const LossInputs& in, const LossOptions& options, LossSearch& search) {
   if (has_body(in) && weight_now(options.friction.weight, in) != 0)
     search.matches.friction_after =
