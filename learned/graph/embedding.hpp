@@ -8,7 +8,7 @@
 
 namespace selvedge {
 
-// Copies the table's row for each value into the columns from `first` on. Without columns nothing happens; throws Error
+// Copies the table's row for each value into the columns from `first` on, or does nothing without columns. Throws Error
 // for a table of another width, or without a row for a value.
 inline void embed(const FeatureRows& table, const std::vector<int>& values, int first, int columns, FeatureRows& rows) {
   if (columns == 0) return;

@@ -4,7 +4,7 @@
 namespace selvedge {
 namespace {
 
-// The member of tables or sums that is for a set of edges.
+// The member of tables or sums for a set of edges.
 template <class Tables>
 auto& part_for(const std::string& key, const FeatureOptions& options, Tables& tables) {
   if (key == options.body_key) return key == "body_edge" ? tables.body_edge : tables.world_edge;

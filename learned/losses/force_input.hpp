@@ -13,10 +13,10 @@ struct ForceOptions {
   bool inertia = false;             // include inertia: for a second pass, whose guess is not free flight
 };
 
-// The displacement d = -dE/dx / D at inputs.predicted, the guess. D is the Jacobi diagonal: m / dt^2 + sum of (2 mu +
-// lambda) A |grad phi|^2 over the vertex' triangles + twice the stiffness of its springs, whose other end moves too.
-// The length of d is compressed to log(1 + |d| / length). V x 3; zero at pinned vertices and where not finite. E is the
-// objective with the options' contact and contours.
+// The displacement d = -dE/dx / D at inputs.predicted, the guess. E is the cloth's objective with the options' contact
+// and contours. D is the Jacobi diagonal: m / dt^2 + sum of (2 mu + lambda) A |grad phi|^2 over the vertex' triangles +
+// twice the stiffness of its springs, whose other end moves too. The length of d is compressed to log(1 + |d| /
+// length). V x 3; zero at pinned vertices and where it is not finite.
 Points force_input(const LossInputs&, const LossOptions&, const ForceOptions&, LossSearch&);
 
 // The diagonal D [N/m]. `dt` is that of the inertia [s].
