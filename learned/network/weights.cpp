@@ -26,7 +26,7 @@ Statistics blank_statistics(int columns) {
 
 FeatureRows blank_table(const TableSize& size) { return FeatureRows::Zero(size.rows, size.columns); }
 
-// Walks through the arrays of `weights`, which may be of any shape.
+// Lists the arrays of weights of any shape.
 class ArrayList {
  public:
   std::vector<WeightArray> arrays;
