@@ -5,7 +5,7 @@
 namespace selvedge {
 namespace {
 
-// From the pose into each joint's own frame in the zero pose.
+// Maps the posed body into each joint's own frame in the zero pose.
 QueryMap query_of_bones(const JointTransforms& transforms, const Points& joints) {
   std::vector<Eigen::Matrix<double, 3, 4>> frames;
   for (std::size_t j = 0; j < transforms.size(); ++j) {
