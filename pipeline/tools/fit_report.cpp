@@ -23,7 +23,7 @@ std::string listed_names(const std::vector<TrajectoryInfo::Body>& obstacles) {
   return names.empty() ? "none" : joined(names);
 }
 
-// The obstacle that the cloth is to fit.
+// The obstacle that the cloth should fit.
 std::size_t obstacle_to_fit(const FitRequest& request, const TrajectoryInfo& info, const Performances& bodies) {
   const auto& obstacles = info.obstacles;
   for (std::size_t k = 0; k < obstacles.size(); ++k)
@@ -63,7 +63,7 @@ std::filesystem::path scene_file(const FitRequest& request) {
               "name the scene that the run was made of with --scene");
 }
 
-// A value of each vertex: `of` a row where it is in one.
+// A value per vertex: that of its row, or NaN.
 template <class Value>
 std::vector<float> by_row(const FitMeasures& measures, const Value& of) {
   std::vector<float> values;

@@ -44,7 +44,7 @@ struct DirectoryPlace {
   std::uint64_t at, size, count;
 };
 
-// Where the end record begins in the last bytes of a file: behind it stands a comment of the length it states.
+// The place of the end record in the last bytes of a file. A comment of the stated length follows it.
 std::size_t find_end_record(std::string_view tail) {
   for (std::size_t from = tail.size(); from >= end_size; --from) {
     const std::size_t at = from - end_size;
@@ -53,7 +53,7 @@ std::size_t find_end_record(std::string_view tail) {
   return std::string_view::npos;
 }
 
-// Replaces what the entry's 32-bit fields leave to the ZIP64 record among its extra fields: size, packed size, offset.
+// Takes size, packed size and offset from the entry's ZIP64 record where the 32-bit fields refer to it.
 void read_wide_fields(std::string_view extra, std::array<std::uint64_t*, 3> fields) {
   for (std::size_t at = 0; at + 4 <= extra.size();) {
     const std::uint64_t id = number_at(extra, at, 2), length = number_at(extra, at + 2, 2);
@@ -73,7 +73,7 @@ void read_wide_fields(std::string_view extra, std::array<std::uint64_t*, 3> fiel
 }  // namespace
 
 void StoredArchive::fail(const std::string& what) const {
-  std::string line = what;  // names of entries are the file's own
+  std::string line = what;  // names of entries come from the file
   std::ranges::replace_if(
       line, [](char c) { return c < ' ' || c > '~'; }, '?');
   throw Error(line, path_.string(), "the file is damaged, incomplete or not made by torch.save; copy or save it again");
@@ -95,7 +95,7 @@ StoredArchive::StoredArchive(const std::filesystem::path& path) : path_(path) {
   file_.open(path, std::ios::binary);
   if (!file_) throw Error("cannot be opened", path.string(), "check the path and the rights");
 
-  // The end record stands before a comment of at most 65,535 bytes.
+  // The end record is followed by a comment of at most 65,535 bytes.
   const std::uint64_t tail_at = size_ - std::min<std::uint64_t>(size_, end_size + 0xFFFF);
   const std::string tail = read(tail_at, size_ - tail_at);
   const std::size_t end = find_end_record(tail);

@@ -7,9 +7,9 @@
 
 namespace selvedge {
 
-// What a network was trained with, from the training text of its weight file: of imported files nothing is known.
+// Options of the training by the text in the weight file. Imported files have none.
 struct TrainedWith {
-  std::optional<VertexMaterial> material;  // absent where materials were drawn from ranges, too
+  std::optional<VertexMaterial> material;  // absent also if materials were drawn from ranges
   std::optional<double> edge;              // of garments by code [m]
 };
 
