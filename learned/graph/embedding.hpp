@@ -15,10 +15,11 @@ inline void embed(const FeatureRows& table, const std::vector<int>& values, int 
   if (table.cols() != columns)
     throw Error(
         "an embedding table has " + std::to_string(table.cols()) + " columns in place of " + std::to_string(columns),
-        "weights of a learned stepper", "");
+        "weights of a learned stepper", "use weights with their own architecture");
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (values[i] < 0 || values[i] >= table.rows())
-      throw Error("an embedding table has no row " + std::to_string(values[i]), "weights of a learned stepper", "");
+      throw Error("an embedding table has no row " + std::to_string(values[i]), "weights of a learned stepper",
+                  "use weights with their own architecture");
     rows.row(static_cast<Eigen::Index>(i)).segment(first, columns) = table.row(values[i]);
   }
 }

@@ -24,7 +24,7 @@ void check_width(const std::string& what, std::size_t columns, int wanted) {
   if (columns != static_cast<std::size_t>(wanted))
     throw Error(
         "statistics of " + what + " have " + std::to_string(columns) + " columns in place of " + std::to_string(wanted),
-        "weights of a learned stepper", "");
+        "weights of a learned stepper", "use weights with their own architecture");
 }
 
 }  // namespace

@@ -28,7 +28,8 @@ void embed_columns(const FeatureRows& table, const std::vector<int>& values, int
   for (Eigen::Index k = 0; k < normal.cols(); ++k) {
     const auto at = static_cast<std::size_t>(first + k);
     if (at >= statistics.mean.size())
-      throw Error("statistics have too few columns", "weights of a learned stepper", "");
+      throw Error("statistics have too few columns", "weights of a learned stepper",
+                  "use weights with their own architecture");
     normal.col(k) = (normal.col(k).array() - statistics.mean[at]) / statistics.deviation[at];
   }
   embed(normal, values, first, columns, rows);

@@ -224,7 +224,8 @@ void write_weight_file(const std::filesystem::path& path, const WeightFile& cont
   write_seal(beside.path);
   std::error_code error;
   std::filesystem::rename(beside.path, path, error);
-  if (error) throw Error("cannot rename to it (" + error.message() + ")", path.string(), "check the folder");
+  if (error)
+    throw Error("cannot rename the new file to it (" + error.message() + ")", path.string(), "check the folder");
 }
 
 WeightFile read_weight_file(const std::filesystem::path& path) {
@@ -241,7 +242,7 @@ WeightFile read_weight_file(const std::filesystem::path& path) {
   content.architecture = parse_architecture(read_text(store, "architecture"), path.string() + ": architecture");
   require_fitting_architecture(store, content.architecture, bytes);
   const std::vector<std::string> names = read_texts(store, "origin_names"), values = read_texts(store, "origin_values");
-  if (names.size() != values.size()) store.fail("origin_values", "they are not as many as the names");
+  if (names.size() != values.size()) store.fail("origin_values", "their number is not that of the names");
   for (std::size_t i = 0; i < names.size(); ++i) content.origin.emplace_back(names[i], values[i]);
   content.weights = blank_weights(content.architecture);
   for (const WeightArray& array : weight_arrays(content.architecture, content.weights)) read_array(store, array);

@@ -121,7 +121,7 @@ std::vector<Vec3> edge_middles(const Points& x, const Adjacency& ring, const Nei
 
 NeighbourScale make_neighbour_scale(const NeighbourShape& shape, std::uint64_t seed) {
   if (!(shape.unit > 0) || !(shape.edge_unit > 0) || shape.width < 1)
-    throw Error("sizes that make no network", "scales by neighbours", "give width and units above 0");
+    throw Error("no network has these sizes", "scales by neighbours", "give width and units above 0");
   NeighbourScale made;
   made.shape = shape;
   made.first = make_plain_network({2 * own_columns, {shape.width, shape.width}}, seed);

@@ -128,7 +128,8 @@ PlainNetwork make_plain_network(const PlainShape& shape, std::uint64_t seed) {
     if (static_cast<int>(l) == shape.again_layer) inputs += shape.again_columns;
     const int outputs = shape.outputs[l];
     if (inputs < 1 || outputs < 1)
-      throw Error("a layer without inputs or outputs", "layer " + std::to_string(l), "give it some");
+      throw Error("the layer has no inputs or no outputs", "layer " + std::to_string(l),
+                  "give it one of each at least");
     AffineLayer layer{FeatureRows(outputs, inputs), std::vector<float>(static_cast<std::size_t>(outputs), 0)};
     const double reach = std::sqrt(6.0 / inputs);
     for (float& w : layer.weight.reshaped<Eigen::RowMajor>())

@@ -84,7 +84,7 @@ ScaleNetwork make_scale_network(const ScaleShape& shape, std::uint64_t seed) {
   const bool has_latents = shape.form != ScaleForm::distance_only;
   if (!(shape.unit > 0) || (has_latents && (shape.inputs < 1 || shape.vertices < 1 || shape.latent < 1)) ||
       shape.per_vertex < 0)
-    throw Error("sizes that make no network", "scale network", "give inputs, vertices, latent and unit above 0");
+    throw Error("no network has these sizes", "scale network", "give inputs, vertices, latent and unit above 0");
   ScaleNetwork made;
   made.shape = shape;
   const int columns = latent_columns(shape);

@@ -14,10 +14,9 @@ struct RefuOptions {
   double alpha = 1;                                  // scale of every vertex, unless there are `neighbours`
   std::shared_ptr<const NeighbourScale> neighbours;  // networks that predict the scale of each vertex
   EdgePassOptions edge_pass{.rounds = 0, .count = false};
-  bool budget = true;  // skips queries of vertices that provably stay outside; changes the time alone
+  bool budget = true;  // skips queries of vertices that provably stay outside; saves time and changes nothing else
 };
 
-// The repulsive layer behind any stepper. Vertices that a step leaves inside a closed obstacle are pushed out
 // The repulsive layer after any stepper. It pushes vertices out that a step leaves inside a closed obstacle
 // (repulsive_layer.hpp), by accurate distances to the union of the obstacles. Pinned vertices stay. The push adds no
 // speed, and removes the part of the vertex' velocity that leads back in. If nothing is inside, or the step is

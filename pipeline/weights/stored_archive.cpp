@@ -80,7 +80,7 @@ void StoredArchive::fail(const std::string& what) const {
 }
 
 std::string StoredArchive::read(std::uint64_t at, std::uint64_t count) {
-  if (at > size_ || count > size_ - at) fail("is cut short: its parts are said to lie behind its end");
+  if (at > size_ || count > size_ - at) fail("is cut short: parts of it would lie after its end");
   std::string bytes(count, '\0');
   file_.seekg(static_cast<std::streamoff>(at));
   if (!file_.read(bytes.data(), static_cast<std::streamsize>(count))) fail("cannot be read");
@@ -143,7 +143,7 @@ void StoredArchive::read_directory(const std::string& directory, std::uint64_t c
     if (packed != entry.size) fail(fmt::format("claims {} bytes of {} stored ones", entry.size, packed));
     if (!entries_.emplace(name, entry).second) fail(fmt::format("has two entries of one name, number {}", k + 1));
   }
-  if (at != directory.size()) fail("has more in its directory than it says");
+  if (at != directory.size()) fail("has a directory with more entries than it states");
 }
 
 std::vector<std::string> StoredArchive::names() const {
@@ -165,12 +165,12 @@ std::string StoredArchive::bytes(const std::string& name) {
     fail("has a damaged entry " + name + ": its header is missing");
   const std::uint64_t name_size = number_at(header, 26, 2), extra_size = number_at(header, 28, 2);
   if (read(entry.header_at + header_size, name_size) != name)
-    fail("has a damaged entry " + name + ": its header is of another");
+    fail("has a damaged entry " + name + ": its header has another name");
   const std::uint64_t from = entry.header_at + header_size + name_size + extra_size;
   if (from > directory_at_ || entry.size > directory_at_ - from)
     fail("has a damaged entry " + name + ": it does not lie before the directory");
   std::string content = read(from, entry.size);
-  if (checksum_of(content) != entry.checksum) fail("has a damaged entry " + name + ": its checksum is another");
+  if (checksum_of(content) != entry.checksum) fail("has a damaged entry " + name + ": its checksum is wrong");
   return content;
 }
 

@@ -27,7 +27,7 @@ std::string recorded_edges_name(const std::string& key) {
 EdgePairs recorded_pairs(const Npz& file, const std::string& name) {
   const NpyArray<std::int64_t> array = file.integers(name);
   if (array.shape.size() != 2 || array.shape[0] != 2)
-    throw Error("has no two rows", file.place(name).text(), "row 0 holds the senders, row 1 the receivers");
+    throw Error("needs two rows", file.place(name).text(), "row 0 holds the senders, row 1 the receivers");
   EdgePairs pairs;
   const auto count = static_cast<std::size_t>(array.shape[1]);
   for (std::size_t e = 0; e < count; ++e)
