@@ -14,16 +14,15 @@ struct AdamOptions {
   double learning_rate = 1e-3;
   RateSchedule schedule = RateSchedule::cosine;
   double beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8;
-  double clip_norm = 0;  // the gradient is scaled down to this norm; 0: it is not
-  double clip_median =
-      0;  // the gradient is scaled down to this multiple of the median norm of the last steps; 0: it is not
+  double clip_norm = 0;    // largest norm of the gradient; 0: no limit
+  double clip_median = 0;  // largest norm in medians of the last steps' norms; 0: no limit
 };
 
 // The state between steps. Moments have the shapes of the weights.
 struct AdamState {
   long long steps = 0;
   NetworkWeights first, second;
-  std::vector<float> norms;  // of the gradients of the last steps, the oldest first; at most `median_window`
+  std::vector<float> norms;  // of the last gradients, the oldest first; at most `median_window`
 };
 constexpr std::size_t median_window = 101;
 
@@ -40,7 +39,7 @@ struct AdamReport {
   double scale = 1;  // factor of the gradient
 };
 
-// One step. Afterwards call `lay_out`. 1 and n threads give the same bits. Throws Error where shapes differ.
+// Takes one step. Call `lay_out` afterwards. 1 and n threads give the same bits. Throws Error where shapes differ.
 AdamReport adam_step(const Architecture&, const AdamOptions&, double progress, const WeightGradients&, AdamState&,
                      NetworkWeights&);
 

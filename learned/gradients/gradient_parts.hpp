@@ -7,8 +7,8 @@
 
 namespace selvedge {
 
-// Sums up derivatives of arrays of weights. Each part of the work has sums of its own, and the parts are added in their
-// order at the end. So any number of threads gives the same bits.
+// Sums up derivatives of arrays of weights. Each part of the work has its own sums, and they are added in the
+// order of the parts at the end. So any number of threads gives the same bits.
 class GradientParts {
  public:
   // Forgets all arrays and keeps the memory.

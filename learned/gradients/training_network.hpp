@@ -14,8 +14,8 @@ void set_zero(const Architecture&, WeightGradients&);
 
 struct TrainingLayout;
 
-// A network that is trained. `weights` may be read at any time. Whoever changes them calls `lay_out` before the next
-// forward: the kernels read a layout of their own.
+// A network in training. `weights` may be read at any time. Call `lay_out` after changing them and before the next
+// forward run, because the kernels read their own layout.
 struct TrainingNetwork {
   Architecture architecture;
   NetworkWeights weights;
@@ -32,8 +32,8 @@ void lay_out(TrainingNetwork&);
 
 struct TrainingTape;
 
-// What a forward run stores for the backward one. The next run reuses its memory. One run of a network at a time writes
-// to a tape; networks and graphs may be shared by several tapes.
+// The stored results of a forward run for the backward one. The next run reuses its memory. One run of a network at a
+// time writes to a tape; networks and graphs may be shared by several tapes.
 class Tape {
  public:
   Tape();

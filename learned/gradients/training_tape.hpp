@@ -78,7 +78,7 @@ struct TrainingRun {
 // Gives each thread its rows.
 TrainingRun start_run(const TrainingNetwork&, const Graph&, TrainingTape&);
 
-// Plans the graph unless the tape's plan is of the same one, and gives all rows their sizes.
+// Plans the graph unless the tape has its plan already, and sets the sizes of all rows.
 void prepare_tape(const Architecture&, const Graph&, TrainingTape&);
 
 // The tile of a layer that reads the rows `input` and writes `out`.

@@ -4,7 +4,7 @@
 
 namespace selvedge {
 
-// Which forces are an input of a network (docs/training.md).
+// The forces that are an input of a network (docs/training.md).
 struct ForceOptions {
   double contact_stiffness = 300;   // of a quadratic contact with the body [N/m]; 0: none
   double contact_thickness = 3e-3;  // [m]

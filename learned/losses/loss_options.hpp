@@ -58,8 +58,8 @@ struct ContourLoss {
   double share = 0;  // of a sample's gradient, held in training whatever the weight (held_share.hpp); 0: not held
 };
 
-// enclosed: of all crossings, garments closed by fans (Liao et al. 2024). winding: what each garment does to itself is
-// judged by its winding number, without fans; what garments do to each other, as above.
+// enclosed: all crossings, with garments closed by fans (Liao et al. 2024). winding: crossings of a garment with itself
+// by its winding number, without fans; crossings between garments as above.
 enum class VolumeForm { enclosed, winding };
 
 // L_sc. As published the weight is 3e4 from 0.632 of the run on.

@@ -29,7 +29,7 @@ struct LossInputs {
 
 bool has_body(const LossInputs&);  // the body has a face at least
 
-// Contacts and crossings that the losses need. They depend on the state; only the last two depend on the prediction.
+// Contacts and crossings that the losses need. Only friction_after and crossings depend on the prediction.
 struct LossMatches {
   std::vector<int> collision_face;  // one per sample of the cloth (CollisionLoss::samples), -1: none
   std::vector<int> friction_before, friction_after;

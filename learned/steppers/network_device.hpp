@@ -19,7 +19,7 @@ enum class NetworkDevice {
   automatic  // cuda where libtorch's part is beside the program and finds a device, else cpu
 };
 
-// The words for them in scene and training files.
+// The names of the devices in scene and training files.
 std::vector<std::pair<std::string, NetworkDevice>> network_devices();
 
 // The network by libtorch if `device` selects it; null: the kernels run. Throws Error where libtorch's part is not

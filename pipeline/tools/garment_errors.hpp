@@ -18,8 +18,7 @@ struct GarmentErrors {
   int pairs = 0;                          // pairs of garment and body triangles that meet, by exact signs
   bool judges_agree = true;               // FCL, if the build has it, agrees on all pairs except for rounding
   int vertex_face = 0, edge_edge = 0;     // garment triangles with a crossing of this kind
-  std::optional<double> laplacian_error;  // mean over the vertices that were inside before: of the difference of
-                                          // x - mean of the ring [mm]
+  std::optional<double> laplacian_error;  // mean difference of x - mean of the ring, over vertices inside before [mm]
   double energy = 0;                      // penetration energy: sum of f^2 over vertices inside [m2]
   std::optional<double> overshoot;        // mean of max(f, 0) over the vertices that were inside before [mm]
 };

@@ -26,7 +26,7 @@ struct ForceSampling {
 enum class GarmentStart {
   skinned,   // where skinning puts the garment, perhaps tangled
   untangle,  // the same, untangled by minimised contours before the roll-out starts
-  cut,       // the same without the triangles that intersect; vertices left alone go as the garment is worn
+  cut,       // the same without intersecting triangles; vertices left without any follow the skinned garment
   tangled    // skinned without gaps between layers and without soft tissue, with a wide spread of shapes
 };
 

@@ -51,17 +51,16 @@ struct TrainingScene {
 struct Roll {
   RollRequest request;
   std::shared_ptr<const TrainingScene> scene;
-  std::vector<PointsF> body, cloth;  // cloth: as worn; body: empty matrices where there is none
-  Points start;                      // where free vertices begin: as worn, parted where that is asked for, with noise
+  std::vector<PointsF> body, cloth;  // cloth: skinned; body: empty matrices if there is none
+  Points start;                      // start of free vertices: skinned, perhaps untangled, perhaps with noise
   bool usable = true;                // false: the start is not untangled, or wholly cut out
   int parting = 0;                   // iterations that untangled the start
   int cut = 0;                       // triangles cut out at the start
-  std::vector<std::vector<char>>
-      body_left_out;          // of each entry, faces of the body that meet others; empty: it gives way
-  int pairs = 0;              // intersecting pairs of triangles at a tangled start
-  bool space_edges = true;    // false: no space edges, because cloth has no contact with cloth
-  bool shows_forces = false;  // the network has inputs for accelerations
-  Drive forces;               // acceleration, including gravity, and wind
+  std::vector<std::vector<char>> body_left_out;  // by entry: faces of the body that meet others; empty: soft tissue
+  int pairs = 0;                                 // intersecting pairs of triangles at a tangled start
+  bool space_edges = true;                       // false: no space edges, because cloth has no contact with cloth
+  bool shows_forces = false;                     // the network has inputs for accelerations
+  Drive forces;                                  // acceleration, including gravity, and wind
 };
 
 // Draws the request number `number`. `progress` of the run limits its length.
