@@ -36,7 +36,8 @@ enum class MeshOrder { larger_sends, smaller_sends };
 // vertices of a pair (Grigorev et al. 2024, algorithm 2). The other pairs repel.
 enum class ContourRule { all_repel, vertex, all_vertices };
 
-// Edges between cloth vertices near each other, beside those of the mesh (Liao et al. 2024, section 3.1.2).
+// Which cloth vertices that are near each other get an edge, beside those of the mesh (Liao et al. 2024,
+// section 3.1.2).
 struct SpaceOptions {
   double radius = 0.02;        // [m]
   double radius_in_edges = 0;  // above 0: the radius in mean mesh edges at rest, in place of `radius`

@@ -5,8 +5,8 @@
 
 namespace selvedge {
 
-// A weight that goes linearly from one value to another between two points of the run. Points are fractions of the run,
-// so that they suit a run of any length.
+// A weight that goes linearly from one value to another between two points of the run. Points are fractions of it,
+// never iteration counts: no run is too short for its losses.
 struct LossRamp {
   double from = 1, to = 1;    // at `begin` and before, at `end` and after
   double begin = 0, end = 0;  // in [0, 1]
@@ -79,7 +79,7 @@ struct VertexRepulsionLoss {
   int power = 2;           // or 1; the paper's is lost
 };
 
-// The options of all terms. A term whose weight is zero is not evaluated. The defaults are HOOD's.
+// What is summed up. A term whose weight is zero is not evaluated. The defaults are HOOD's.
 struct LossOptions {
   LossRamp stretching, bending, gravity, inertia;
   CollisionLoss collision;

@@ -15,8 +15,8 @@
 
 namespace selvedge {
 
-// Forces on the cloth beside gravity, for networks with accelerations as inputs (Liao et al. 2024, section 3.1). Each
-// roll-out has its own strength and its own direction on the sphere.
+// Forces on the cloth beside gravity, of networks that see accelerations (Liao et al. 2024, section 3.1): each roll-out
+// has a direction on the sphere and a strength of its own.
 struct ForceSampling {
   double strongest = 0;     // the strength is uniform up to here [m/s2]; 0: there are no such forces
   double wind_share = 0.5;  // of roll-outs: a wind on each triangle, as strong on one that faces it
@@ -79,7 +79,7 @@ struct PoolOptions {
   double no_contact_share = 0;  // of roll-outs without cloth-cloth edges and terms
 };
 
-// The pairs of cloth in the graph.
+// Which pairs of cloth see each other.
 struct ContactOptions {
   bool edges = false;      // of cloth with cloth, in the graph
   bool classify = false;   // by contours; false: all repel

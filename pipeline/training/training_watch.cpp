@@ -64,7 +64,7 @@ RollRequest watched(const WatchOptions& options, const TrainingWorld& world) {
   return request;
 }
 
-// A frame of a network with several passes counts as one.
+// Every frame of a network of several passes counts as one.
 FixedState fixed_state(const FrameMaking& making, Roll roll, bool worn) {
   FixedState fixed;
   fixed.worn = worn;

@@ -66,9 +66,9 @@ struct TrainingWorld {
   std::vector<TrainingPerson> people;
   std::vector<TrainingWear> wear;
   std::vector<TrainingBody> bodies;
-  std::filesystem::path kept_in;         // folder with frames of soft tissue; empty: none
-  std::size_t tissue_bytes = 0;          // of frames of soft tissue in memory
-  std::size_t most_tissue = 512u << 20;  // limit of tissue_bytes
+  std::filesystem::path kept_in;         // folder in which frames of soft tissue are kept; empty: they are not
+  std::size_t tissue_bytes = 0;          // of frames of soft tissue in memory,
+  std::size_t most_tissue = 512u << 20;  // and how many there may be
   std::vector<std::string> warnings;     // of files
 };
 

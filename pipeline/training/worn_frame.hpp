@@ -4,7 +4,7 @@
 
 namespace selvedge {
 
-// Body and garments in a frame of a clip, with the garments one after the other [m].
+// Body and garments in a frame of a clip, the garments one behind the other [m].
 struct WornFrame {
   PointsF body, cloth;
 };
