@@ -29,6 +29,7 @@ struct CcdReport {
 // There contact begins or ends without crossing, edges are parallel, motion is coplanar or faces have no area.
 bool is_degenerate(const CcdQuery&);
 
+// Answers all queries of the files. Throws Error as read_ccd_queries does.
 CcdReport ccd_report(const std::vector<std::filesystem::path>& files);
 
 // Whether no contact is denied.

@@ -43,6 +43,8 @@ struct CheckReport {
   int frames() const { return static_cast<int>(pairs_by_frame.size()); }
 };
 
+// Checks a mesh or all frames of a trajectory. Throws Error for files that cannot be read, for a rest mesh or reference
+// with other triangles, and for `fcl` in a build without FCL.
 CheckReport check(const CheckRequest&);
 
 // The number of triangles whose height is hidden by the rounding of their coordinates.

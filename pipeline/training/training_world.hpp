@@ -81,6 +81,7 @@ TrainingWorld make_training_world(const SampleOptions&, std::uint64_t seed);
 const TrainingPerson& wearer(const TrainingWorld&, int wear);
 int layer_count(const TrainingWorld&, const TrainingPerson&);  // of the outfit with the most garments
 
+// The number of poses in the clip number `clip` of the body number `body`.
 int frame_count(const TrainingWorld&, int body, int clip);
 
 // A hash of bodies, shapes, garments and poses, as files and code made them.

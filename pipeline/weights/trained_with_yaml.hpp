@@ -13,6 +13,7 @@ struct TrainedWith {
   std::optional<double> edge;              // of garments by code [m]
 };
 
+// Reads the training text of a weight file. Any other text gives no options.
 TrainedWith trained_with(const std::string& training);
 
 }  // namespace selvedge

@@ -13,6 +13,7 @@ struct WeightsInfo {
   int constant_columns = 0;                 // columns whose deviation is the floor of 1e-8
 };
 
+// Counts parameters, numbers that are not finite and constant columns.
 WeightsInfo weights_info(const WeightFile&);
 std::string weights_info_text(const WeightsInfo&);
 std::string weights_info_json(const WeightsInfo&);
