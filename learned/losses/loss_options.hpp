@@ -14,16 +14,15 @@ struct LossRamp {
 double weight_at(const LossRamp&, double progress);
 inline bool is_used(const LossRamp& ramp) { return ramp.from != 0 || ramp.to != 0; }
 
-// Which face of the body, where it is now, belongs to a cloth vertex where that is now: the one with the nearest
-// centroid, however far (HOOD), or the one with the nearest point within a radius (ContourCraft).
+// The face of the body that belongs to a cloth vertex, both where they are now: the face with the nearest centroid,
+// however far (HOOD), or with the nearest point within a radius (ContourCraft).
 enum class BodyMatching { nearest_centroid, nearest_face };
 
 // The penalty of a depth p = max(eps - d, 0): w p^3 [w in N/m^2], as published, or the softer w p^2 / 2 [w in N/m].
 enum class DepthPenalty { cubic, quadratic };
 
-// Places of the cloth that are kept out of the body: its vertices, as published; the middles of its edges too; the
-// centroids of its triangles too. Each counts as a vertex does. Edges between vertices that are outside cut a round
-// arm.
+// Samples of the cloth that are kept out of the body: the vertices, as published; also the middles of edges; also the
+// centroids of triangles. Each counts as a vertex does. Edges between vertices that are outside cut a round arm.
 enum class ClothSamples { vertices, edges, faces };
 
 // Penetration of the body. Members are described where keys are bound to them: pipeline/training/objective_options.cpp.
@@ -36,7 +35,7 @@ struct CollisionLoss {
   ClothSamples samples = ClothSamples::vertices;
 };
 
-// The axis whose share in the slide slackens friction: the released code takes z in a world where y is up.
+// Friction is weaker for slides along this axis. The released code takes z in a world where y is up.
 enum class SlopeAxis { x, y, z };
 
 // Friction on the body. Members are described where keys are bound to them: pipeline/training/objective_options.cpp.
@@ -65,8 +64,8 @@ struct ContourLoss {
   double share = 0;
 };
 
-// enclosed: of all crossings, garments closed by fans (Liao et al. 2024). winding: what each garment does to itself is
-// judged by its winding number, without fans; what garments do to each other, as above.
+// enclosed: all crossings, with garments closed by fans (Liao et al. 2024). winding: crossings of a garment with itself
+// by its winding number, without fans; crossings between garments as above.
 enum class VolumeForm { enclosed, winding };
 
 // The volume that self-penetrating cloth encloses: L_sc. Members are described where keys are bound to them:
@@ -102,9 +101,9 @@ struct LossOptions {
   double relaxation_dt = 1.0 / 3;
 };
 
-// As published, iterations being fractions of the run (parity README): of HOOD's 150,000; of the 56,000 of
-// ContourCraft's stages 1 and 2, which are blind to contours; of the 11,000 of its stage 3, in whose first 5,000 the
-// contour loss rises. The released ContourCraft trains without friction.
+// Options as published, with iterations as fractions of the run (parity README). HOOD's run has 150,000. ContourCraft's
+// stages 1 and 2 have 56,000 and do not see contours. Its stage 3 has 11,000, and the contour loss rises in the first
+// 5,000. The released ContourCraft trains without friction.
 LossOptions hood_losses();
 LossOptions senc_losses();  // its two phases of 120,000 and 70,000 in one run
 LossOptions contourcraft_losses();

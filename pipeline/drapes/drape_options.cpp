@@ -63,7 +63,7 @@ DrapeOptions read_drape_options(const std::filesystem::path& file, const std::ve
         throw Error("`" + name + "` is no procedural clip", file.string() + ": clips",
                     "one of " + joined(clips) + suggestion(name, clips));
   if (options.clips.empty() != options.test_clips.empty())
-    throw Error("has clips to train on or to measure on, and not both", file.string() + ": clips",
+    throw Error("names training clips or test clips, but not both", file.string() + ": clips",
                 "give `clips` and `test_clips`, or neither");
   if (!options.clips.empty()) {
     options.training = options.shapes * static_cast<int>(options.clips.size());

@@ -29,7 +29,7 @@ struct DrapeOptions {
   double thickness = 0.003;
 };
 
-// The table of a data file, a file read (throws Error, also for an unknown garment), and the options as YAML.
+// The table of a data file; a file read (throws Error, also for an unknown garment); and the options as YAML.
 const Options<DrapeOptions>& drape_options();
 DrapeOptions read_drape_options(const std::filesystem::path&, const std::vector<std::string>& overrides = {});
 std::string drape_yaml(const DrapeOptions&);

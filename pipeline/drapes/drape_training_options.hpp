@@ -70,23 +70,23 @@ struct DrapeTrainingOptions {
   double checkpoint_minutes = 2;
 };
 
-// The table of such a file.
+// The table of a training file with the key `drapes`.
 const Options<DrapeTrainingOptions>& drape_training_options();
-// Whether a training file is one of these.
+// Whether a training file has the key `drapes`.
 bool is_drape_training(const std::filesystem::path&);
-// Throws Error, also for unknown rows. The folder of the drapes is seen from the working folder.
+// Throws Error, also for unknown rows. The folder of the drapes is relative to the working folder.
 DrapeTrainingOptions read_drape_training(const std::filesystem::path&, const std::vector<std::string>& overrides = {});
 std::string drape_training_yaml(const DrapeTrainingOptions&);
 std::string drape_training_reference();  // sections as Markdown
 
-// One row of the table: what is trained behind the backbone.
+// One row of the table: a variant of the training after the backbone.
 struct DrapeRow {
   std::string name;
   std::string about;
   bool layer = false, learned = false;  // learned: scales by a network
   bool collision_loss = false;
   bool neural_layer = false, neural_loss = false;
-  bool neighbours = false;  // scales by what neighbours know, for any garment
+  bool neighbours = false;  // scales by neighbours, for any garment
   ScaleForm form = ScaleForm::vertex_latents;
 };
 const std::vector<DrapeRow>& known_drape_rows();

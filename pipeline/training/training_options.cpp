@@ -57,7 +57,7 @@ Option<SampleOptions> people_option() {
   return option;
 }
 
-// Written where it holds something out.
+// Written only if it holds something out.
 Option<SampleOptions> split_option() {
   Option<SampleOptions> option = section(&SampleOptions::split, split_options(), "What of `people` is held out.");
   option.write = [write = option.write](const SampleOptions& options, Config& entry) {

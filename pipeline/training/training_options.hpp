@@ -23,13 +23,13 @@ struct ForceSampling {
 };
 
 enum class GarmentStart {
-  skinned,   // where the body takes the garment, maybe tangled
-  untangle,  // the same, parted by minimised contours before the roll-out starts
-  cut,       // the same without the triangles that intersect; vertices left alone go as the garment is worn
-  tangled    // skinned without layers' gaps and soft tissue, with shapes of a wide spread
+  skinned,   // where skinning puts the garment, perhaps tangled
+  untangle,  // the same, untangled by minimised contours before the roll-out starts
+  cut,       // the same without intersecting triangles; vertices left without any follow the skinned garment
+  tangled    // skinned without gaps between layers and without soft tissue, with a wide spread of shapes
 };
 
-// How far a drawn material reaches, over the authors' ranges.
+// The extent of one random material, drawn from the authors' ranges.
 enum class MaterialSampling {
   none,     // all have the material of the configuration
   garment,  // each garment of a roll-out has its own
@@ -61,7 +61,7 @@ struct SampleOptions {
 
 bool has_mannequin(const SampleOptions&);
 
-// The procedural clips that the mannequin is trained in.
+// The procedural clips in which the mannequin is trained.
 std::vector<std::string> training_clip_names(const SampleOptions&);
 
 // How states are rolled out. Members are described where keys are bound to them:
@@ -135,23 +135,23 @@ struct TrainingOptions {
 // The table of a training file.
 const Options<TrainingOptions>& training_options();
 
-// A training file over its base, the base's base, and so on; overrides are key=value. Throws Error, also for a base
-// that leads back, for clips, garments or outfits of the validation split and for names that are unknown.
+// Reads a training file over its base, the base's base, and so on. Overrides are key=value. Throws Error, also for a
+// circular base, for clips, garments or outfits of the validation split, and for unknown names.
 TrainingOptions read_training(const std::filesystem::path&, const std::vector<std::string>& overrides = {});
 
-// The whole configuration as YAML that reads back to the same from a file in `samples.folder`.
+// The whole configuration as YAML. A file in `samples.folder` with this text gives the same options.
 std::string training_yaml(const TrainingOptions&);
 
-// The weights of the earlier stage, where there are some.
+// The path of the earlier stage's weights, if there are some.
 std::filesystem::path weights_path(const TrainingOptions&);
 
-// The same options with absolute paths, which read back to the same from any folder.
+// The same options with absolute paths, so that they can be read from any folder.
 TrainingOptions with_absolute_paths(TrainingOptions);
 
 // Every section of a training file as Markdown: the end of docs/training.md.
 std::string training_reference();
 
-// Complaints, a line each, about ramps that do not reach their full value before the run ends.
+// Complaints, one per line, about ramps that do not reach their full value before the run ends.
 std::vector<std::string> unfinished_ramps(const TrainingOptions&);
 
 }  // namespace selvedge
