@@ -4,7 +4,7 @@
 
 namespace selvedge::testing {
 
-// A frame as a run makes it, without what audits remember.
+// A frame as a run makes it, without the memory of audits.
 inline StepReport frame(const Scene& scene, Stepper& stepper, const State& from, const Drive& drive, double dt,
                         State& to, const StepExtras& extras = {}) {
   FrameAudits audits(scene);

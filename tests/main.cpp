@@ -5,9 +5,9 @@
 
 namespace {
 
-// Appends a line for each beginning and end of a test case to the file that SELVEDGE_TALLY names, so that several
-// processes can be counted together and a case that crashed is seen to be missing. A case that passes and warned
-// WARN("skipped: why") counts as skipped.
+// Appends a line for each beginning and end of a test case to the file named by SELVEDGE_TALLY, so that several
+// processes can be counted together and a crashed case is noticed. A case that passes and warns WARN("skipped: why")
+// counts as skipped.
 class Tally : public Catch::TestEventListenerBase {
  public:
   using TestEventListenerBase::TestEventListenerBase;

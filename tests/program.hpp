@@ -2,8 +2,8 @@
 
 namespace selvedge {
 
-// Path of the program that was built beside the tests. In a file of its own, for it differs between builds: a compile
-// cache serves all other files in each of them.
+// The path of the program that was built beside the tests. It differs between builds. Its own file lets a compile cache
+// serve all other files.
 const char* tested_program();
 
 }  // namespace selvedge

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-// Reads the repository's own sources, for tests that hold them to its rules. Each rule is a function from texts to
-// complaints "file:line: what", so that it is also tried on texts that break it.
+// Reads the repository's sources, for tests of its rules. Each rule is a function from texts to complaints "file:line:
+// what", so that tests also try it on texts that break it.
 namespace selvedge::sources {
 
 namespace fs = std::filesystem;
@@ -74,10 +74,10 @@ inline std::string listed(const Complaints& complaints) {
   return text;
 }
 
-// The path without its extension: header and implementation of one thing have the same.
+// The path without its extension, which a header and its implementation share.
 inline std::string stem_of(const std::string& file) { return file.substr(0, file.rfind('.')); }
 
-// Of each stem those that its header and its implementation include of ours, but for itself.
+// For each stem, the other stems of ours that its header and its implementation include.
 inline std::map<std::string, std::set<std::string>> included_stems(const Texts& sources) {
   std::map<std::string, std::set<std::string>> found;
   for (const auto& [file, text] : sources) {

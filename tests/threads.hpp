@@ -8,7 +8,7 @@
 
 namespace selvedge {
 
-// Runs `work` with that many threads (one where the build has no OpenMP).
+// Runs `work` with that many threads (one if the build has no OpenMP).
 inline void with_threads(int threads, const std::function<void()>& work) {
   const ThreadLimit limit(threads);
   work();

@@ -8,10 +8,10 @@
 
 namespace selvedge {
 
-// How obstacles that would close on cloth give way before the solve (room.hpp).
+// How obstacles that would close on cloth give way before the solve (room.hpp). Members are described where keys are
+// bound to them: pipeline/scene/config_solver.cpp.
 struct RoomOptions {
-  int sweeps = 25;     // of projected Gauss-Seidel, in each block
-  int max_rounds = 6;  // most searches for pairs
+  int sweeps = 25, max_rounds = 6;
 
   // The mass of an obstacle's node that gives way, in mean masses of cloth vertices. More presses layers together.
   static constexpr double obstacle_mass = 30;
@@ -43,14 +43,14 @@ struct ResponseWork {
 constexpr ResponseWork unbounded_work{std::numeric_limits<std::int64_t>::max(),
                                       std::numeric_limits<std::int64_t>::max()};
 
+// How impacts in a step are resolved. Members are described where keys are bound to them:
+// pipeline/scene/config_solver.cpp.
 struct ResolveOptions {
   double thickness = 2e-3;   // distance that resting layers keep [m]
   double separation = 2e-4;  // no pair that started farther apart comes closer [m]; the same fraction of the rest
                              // distance holds for pairs of one cloth that rest closer than the thickness
   double friction = 0.3, self_friction = 0.3;
-  int impulse_rounds = 4;  // rounds of single impulses before zones
-  int zone_rounds = 30;    // rounds of impact zones before the last resort
-  int zone_sweeps = 200;
+  int impulse_rounds = 4, zone_rounds = 30, zone_sweeps = 200;
   bool rigid_zones = false;  // zones of free nodes move as rigid bodies
   bool last_resort = true;   // false: impacts that zones do not solve are left, and the report is not clean
   int holding_rounds = 8;    // once work is spent: rounds of holding zones before everything is held

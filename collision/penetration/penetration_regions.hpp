@@ -14,6 +14,8 @@ namespace selvedge {
 // that no parity exists are judged alone.
 enum class RegionRule { single, parity };
 
+// How contours bound volumes. Members are described where keys are bound to them:
+// pipeline/training/objective_options.cpp.
 struct PenetrationOptions {
   RegionRule regions = RegionRule::parity;
   SmallerSide smaller = SmallerSide::faces;

@@ -19,7 +19,7 @@ std::vector<WeightArray> trained_arrays(const Architecture& a, NetworkWeights& w
   return arrays;
 }
 
-// For reading: arrays point to what is never written to.
+// The pointers of these arrays are only read.
 std::vector<WeightArray> trained_arrays(const Architecture& a, const NetworkWeights& weights) {
   return trained_arrays(a, const_cast<NetworkWeights&>(weights));
 }
@@ -31,10 +31,12 @@ void check_same_shapes(const std::vector<WeightArray>& arrays, const std::vector
   for (std::size_t i = 0; same && i < arrays.size(); ++i)
     same =
         arrays[i].name == others[i].name && arrays[i].rows == others[i].rows && arrays[i].columns == others[i].columns;
-  if (!same) throw Error("gradients, moments and weights have different shapes", "a step of Adam", "");
+  if (!same)
+    throw Error("gradients, moments and weights have different shapes", "a step of Adam",
+                "make all of them for one architecture");
 }
 
-// In double, array by array in their order.
+// In double precision, with an order of summation that does not depend on threads.
 double norm_of(const std::vector<WeightArray>& arrays) {
   std::vector<double> squares(arrays.size());
   const int count = static_cast<int>(arrays.size());
@@ -60,7 +62,7 @@ double median_of(std::vector<float> values) {
   return static_cast<double>(*middle);
 }
 
-// What the gradient is multiplied with, by the rules of the options.
+// The factor by which the gradient is clipped.
 double clip_scale(const AdamOptions& options, double norm, const std::vector<float>& norms) {
   double most = options.clip_norm > 0 ? options.clip_norm : norm;
   if (options.clip_median > 0 && !norms.empty()) most = std::min(most, options.clip_median * median_of(norms));
@@ -118,10 +120,10 @@ AdamState adam_from_arrays(const Architecture& a, const std::vector<NamedFloats>
   std::map<std::string, const std::vector<float>*> left;
   for (const NamedFloats& array : arrays)
     if (!left.emplace(array.name, &array.values).second)
-      throw Error("it is there twice", where + ": " + array.name, cure);
+      throw Error("the array is stored twice", where + ": " + array.name, cure);
   const auto take = [&](const std::string& name) -> const std::vector<float>& {
     const auto found = left.find(name);
-    if (found == left.end()) throw Error("it is missing", where + ": " + name, cure);
+    if (found == left.end()) throw Error("the array is missing", where + ": " + name, cure);
     const std::vector<float>& values = *found->second;
     left.erase(found);
     return values;
@@ -131,7 +133,7 @@ AdamState adam_from_arrays(const Architecture& a, const std::vector<NamedFloats>
     for (const WeightArray& array : trained_arrays(a, *moments)) {
       const std::vector<float>& values = take(prefix + array.name);
       if (static_cast<std::ptrdiff_t>(values.size()) != size_of(array))
-        throw Error("it has " + std::to_string(values.size()) + " numbers, the architecture asks for " +
+        throw Error("the array has " + std::to_string(values.size()) + " numbers, the architecture asks for " +
                         std::to_string(size_of(array)),
                     where + ": " + prefix + array.name, cure);
       std::copy(values.begin(), values.end(), array.data);
@@ -139,14 +141,14 @@ AdamState adam_from_arrays(const Architecture& a, const std::vector<NamedFloats>
   const std::vector<float>& steps = take("adam/steps");
   const auto is_count = [](float x) { return x >= 0 && x < steps_base && x == std::floor(x); };
   if (steps.size() != 2 || !is_count(steps[0]) || !is_count(steps[1]))
-    throw Error("it is no number of steps", where + ": adam/steps", cure);
+    throw Error("the array holds no number of steps", where + ": adam/steps", cure);
   state.steps =
       static_cast<long long>(steps[0]) * static_cast<long long>(steps_base) + static_cast<long long>(steps[1]);
   state.norms = take("adam/norms");
   if (state.norms.size() > median_window ||
       !std::all_of(state.norms.begin(), state.norms.end(), [](float x) { return std::isfinite(x) && x >= 0; }))
-    throw Error("these are no norms", where + ": adam/norms", cure);
-  if (!left.empty()) throw Error("the architecture has no place for it", where + ": " + left.begin()->first, cure);
+    throw Error("the norms are negative, not finite or too many", where + ": adam/norms", cure);
+  if (!left.empty()) throw Error("the architecture has no such array", where + ": " + left.begin()->first, cure);
   return state;
 }
 

@@ -5,12 +5,12 @@
 
 namespace selvedge {
 
-// The numbers of one step of Adam (Kingma and Ba 2015, algorithm 1), rounded once.
+// Factors of one step of Adam (Kingma and Ba 2015, algorithm 1), each rounded to float once.
 struct AdamNumbers {
   float scale, beta1, rest1, beta2, rest2, step, root, epsilon;  // scale: of the gradient; rest: 1 - beta
 };
 
-// Of step number `steps`, the first is 1.
+// `steps` counts from 1.
 inline AdamNumbers adam_numbers(double rate, double beta1, double beta2, double epsilon, long long steps,
                                 double scale = 1) {
   const auto t = static_cast<double>(steps);
@@ -24,7 +24,7 @@ inline AdamNumbers adam_numbers(double rate, double beta1, double beta2, double 
           static_cast<float>(epsilon)};
 }
 
-// Moves both moments and the values.
+// Updates both moments and the values.
 inline void take_adam_step(const AdamNumbers& n, std::ptrdiff_t size, const float* gradient, float* first,
                            float* second, float* values) {
   for (std::ptrdiff_t k = 0; k < size; ++k) {

@@ -5,7 +5,7 @@
 namespace selvedge {
 namespace {
 
-// Rows of the same value are added up first, in their order: there are few values.
+// Sums the rows of each value first, because there are few values.
 template <class ValueOf>
 void add_table_gradient(const ValueOf& value_of, Eigen::Index rows, const LatentRows& d_first,
                         const FeatureRows& first_layer, const Statistics& statistics, int column,

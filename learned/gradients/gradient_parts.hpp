@@ -7,17 +7,17 @@
 
 namespace selvedge {
 
-// Sums up derivatives of arrays of weights. Each part of the work has sums of its own, and the parts are added in their
-// order at the end. So any number of threads gives the same bits.
+// Sums up derivatives of arrays of weights. Each part of the work has its own sums, and they are added in the
+// order of the parts at the end. So any number of threads gives the same bits.
 class GradientParts {
  public:
-  // Forgets what was there. Memory is kept.
+  // Forgets all arrays and keeps the memory.
   void begin(int parts);
-  // Columns [begin, begin + columns) of a matrix, or a whole vector. Returns its place in each part.
+  // Adds columns [begin, begin + columns) of a matrix, or a vector. Returns its place in each part.
   int add(FeatureRows& gradient, Eigen::Index begin, Eigen::Index columns);
   int add(std::vector<float>& gradient);
   void allocate();
-  // Zeros one part and gives it: to be called by the thread that fills it.
+  // Zeros one part and returns it. The thread that fills the part calls this.
   float* start(int part);
   // Adds all parts to the gradients.
   void finish();

@@ -10,7 +10,7 @@ namespace selvedge {
 NetworkWeights initial_weights(const Architecture& a, std::uint64_t seed, const InitialWeights& options) {
   NetworkWeights weights = blank_weights(a);
   UniformNumbers random(seed);
-  // Box and Muller 1958, one number of each pair.
+  // Box and Muller 1958. One number of each pair is used.
   const auto normal = [&random] {
     const double radius = std::sqrt(-2 * std::log(random.in_unit())), turn = 2 * std::numbers::pi * random.in_unit();
     return static_cast<float>(radius * std::cos(turn));

@@ -10,9 +10,9 @@ struct InitialWeights {
   double last_layer_scale = 1;  // of the decoder's last layer; 0 or 0.01 in the fast recipe
 };
 
-// Weights that training starts from, as the published code starts: weights and biases of a layer uniform in
-// +-1 / sqrt(inputs), embeddings normal with deviation 1, layer norms the identity. Statistics mean 0 and deviation 1:
-// they are gathered (learned/graph/warm_up.hpp). The same bits on every machine.
+// Weights at the start of training, drawn as in the published code: weights and biases of a layer uniform in +-1 /
+// sqrt(inputs), embeddings normal with deviation 1, layer norms the identity. Statistics have mean 0 and deviation 1
+// until they are gathered (learned/graph/warm_up.hpp). The same bits on every machine.
 NetworkWeights initial_weights(const Architecture&, std::uint64_t seed, const InitialWeights& = {});
 
 }  // namespace selvedge

@@ -7,7 +7,7 @@
 
 namespace selvedge {
 
-// Places of a perceptron's layers behind the first, of all biases and of the norm, in each part of the work.
+// Places in each part of the work: of the layers after the first, of all biases and of the norm.
 struct PartPlaces {
   std::vector<int> layers, biases;
   int scale = 0, shift = 0;
@@ -21,24 +21,24 @@ struct PerceptronBack {
   PartPlaces places;
 };
 
-// From the derivatives by the results of the tile at `slot`, in the thread's first rows, to those by the first layer's
-// results before max(0, .), which are written to `to`. Derivatives of weights, biases behind the first layer and norm
-// are added to the part.
+// Goes back from the results of the tile at `slot` to the first layer's results before max(0, .). Takes derivatives
+// from the thread's first rows and writes them to `to`. Adds those of weights, of biases after the first and of the
+// norm to the part.
 void back_to_first(const TrainingRun&, const PerceptronBack&, int slot, int rows, float* part, float* to,
                    int to_stride);
 
-// Pointers to `count` rows, one behind the other.
+// Pointers to `count` contiguous rows, filled up to a whole tile.
 void contiguous_rows(const float* first, int stride, int count, const float** rows);
 
 // Adds outer products of `d` and the rows `input` to a matrix, and `d` to its bias unless that is null.
 void add_outer(const TrainingRun&, const float* d, int stride, int results, const float* const* input, int inputs,
                int rows, float* out, float* bias);
 
-// Rows of `result` += the transposed layer of the rows `d`. Overwrites the thread's third rows.
+// Multiplies the rows `d` with the transposed layer and adds them to `result`. Overwrites the thread's third rows.
 void add_product(const TrainingRun&, const PackedLayer& transposed, const float* d, int stride, int rows,
                  float* const* result, int result_stride);
 
-// Calls work(part's sums, begin, end) for parts of `rows`, each by one thread, then adds up the parts.
+// Calls work(sums of the part, begin, end) in parallel for each part of the rows, then adds up the parts.
 void for_parts(GradientParts&, int rows, int in_part, const std::function<void(float*, int, int)>& work);
 
 }  // namespace selvedge

@@ -28,7 +28,7 @@ const TorchCalls& torch_calls(const std::filesystem::path& library) {
   return *entry();
 }
 
-// Debian's OpenBLAS has threads of its own, which libtorch does not set. `name` becomes what it says of itself.
+// Sets the threads of Debian's OpenBLAS, which libtorch does not set. `name` becomes its description of itself.
 void set_blas_threads(int threads, std::string& name) {
   void* blas = dlopen("libopenblas.so.0", RTLD_NOW | RTLD_NOLOAD);
   if (!blas) return;
@@ -71,7 +71,7 @@ GraphView::GraphView(const Architecture& a, const Graph& graph) {
     sets.push_back({a.edge_kinds[static_cast<std::size_t>(edge_kind(a, set.key))].encoder, set.features.rows(),
                     set.features.cols(), set.features.data(), used ? 1 : 0});
   }
-  std::vector<TorchSelection> kinds;  // of each selection of the plan
+  std::vector<TorchSelection> kinds;  // one per selection of the plan
   for (const EdgeSelection& selection : plan.selections) {
     const auto set = static_cast<std::size_t>(selection.set);
     std::vector<std::int64_t> edge;
@@ -98,7 +98,7 @@ GraphView::GraphView(const Architecture& a, const Graph& graph) {
 struct FeatureGradients {
   FeatureRows nodes;
   std::vector<FeatureRows> sets;
-  std::vector<TorchFeatureGradient> wanted;  // points into those
+  std::vector<TorchFeatureGradient> wanted;  // points to the members above
 
   FeatureGradients(const Architecture& a, const Graph& graph) : sets(graph.edge_sets.size()) {
     if (a.features.type_columns + a.features.level_columns > 0) want(-1, graph.nodes, nodes);
@@ -121,7 +121,7 @@ LatentRows latent_rows(const FeatureRows& rows) {
   return copy;
 }
 
-// The features are what the first layer sees, so that the layer in between is the identity.
+// These derivatives are by features, so the first layer is replaced by the identity.
 void add_embedding_gradients(const Architecture& a, const Graph& graph, const FeatureTables& tables,
                              const FeatureGradients& features, FeatureTables& gradients) {
   const auto identity = [](const FeatureRows& rows) { return FeatureRows::Identity(rows.cols(), rows.cols()); };
@@ -143,7 +143,7 @@ struct TorchNetwork::Handle {
   const TorchCalls& calls;
   void* model = nullptr;
   TorchFacts facts;
-  int cloth_nodes = -1;  // of the last forward run
+  int cloth_nodes = -1;  // of the last forward run; -1: none
 
   ~Handle() {
     if (model) calls.discard(model);

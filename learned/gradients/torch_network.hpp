@@ -8,23 +8,24 @@
 
 namespace selvedge {
 
-// Where the shared library with libtorch is looked for: beside the running program.
+// The path of the shared library with libtorch: beside the running program.
 std::filesystem::path torch_library_path();
 
-// Found out at start-up.
+// Facts that are found at start-up.
 struct TorchFacts {
   std::string version, device, blas;
   int threads = 0;
-  double gemm_flops = 0;           // a second
+  double gemm_flops = 0;           // [1/s]
   bool flushes_denormals = false;  // after loading; standard arithmetic is restored by then
 };
 
-// The same network, computed by libtorch: what the kernels are compared with, and what runs on a GPU where there is
-// one. It has the textbook form, but for first layers split per node. All sums have a fixed order, on a GPU too.
+// The same network, computed by libtorch. Tests compare the kernels with it, and it runs on a GPU where there is one.
+// Its layers have the textbook form, except that first layers are split per node. All sums have a fixed order, on a GPU
+// too.
 class TorchNetwork {
  public:
-  // `device`: auto, cpu or cuda. `threads`: 0 leaves libtorch's. Throws Error where there is no library at `library`,
-  // where it is of another version, or where the device is not there. It is never unloaded.
+  // `device`: auto, cpu or cuda. `threads`: 0 keeps libtorch's number. Throws Error where there is no library at
+  // `library`, where it is of another version, or where the device is missing. The library is never unloaded.
   TorchNetwork(const Architecture&, const NetworkWeights&, const std::string& device, int threads,
                const std::filesystem::path& library = torch_library_path());
   ~TorchNetwork();
@@ -32,14 +33,14 @@ class TorchNetwork {
 
   const TorchFacts& facts() const;
   void set_weights(const NetworkWeights&);
-  void get_weights(NetworkWeights&) const;  // all but embeddings and statistics, which stay
+  void get_weights(NetworkWeights&) const;  // leaves embeddings and statistics unchanged
 
   FeatureRows infer(const Graph&);
-  // As run_forward, run_backward of training_network.hpp; several backward runs may follow a forward one. `tables` are
-  // those that the graph's features were normalised with.
+  // They work as run_forward and run_backward of training_network.hpp. Several backward runs may follow a forward one.
+  // `tables` are those that normalised the graph's features.
   FeatureRows run_forward(const Graph&);
   void run_backward(const Graph&, const FeatureTables& tables, const FeatureRows& d_output, WeightGradients&);
-  // Forward, backward and a step of libtorch's own Adam; the output before the step. Embeddings stay.
+  // Runs forward, backward and one step of libtorch's Adam. Returns the output before the step. Embeddings stay.
   FeatureRows train(const Graph&, const FeatureRows& d_output, double learning_rate);
 
  private:

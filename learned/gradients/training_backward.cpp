@@ -7,8 +7,8 @@
 namespace selvedge {
 namespace {
 
-// A perceptron whose input is one block of features: an encoder. `d` are the derivatives by its results, row by row;
-// those by the first layer's results are left in d_first. Row i of the results came of row order[i] of `features`.
+// Goes back through an encoder, whose input is one block of features. `d` has the derivatives by its results, row by
+// row. Leaves those by the first layer's results in d_first. Row i belongs to row order[i] of `features`.
 void back_encoder(const TrainingRun& run, const PackedPerceptron& forward, const PackedPerceptron& backward,
                   const PerceptronTape& tape, const FeatureRows& features, const std::vector<int>* order,
                   const LatentRows& d, Perceptron& gradient) {
@@ -78,8 +78,8 @@ void back_decoder(const TrainingRun& run, const PackedNetwork& forward, const Pa
   });
 }
 
-// The sums of one kind of edges that nodes [begin, begin + count) have, with the derivatives by the first layer's
-// results packed one behind the other. Returns how many there are.
+// Picks the edge sums of one kind at nodes [begin, begin + count), and packs the matching rows of `d_first`. Sets the
+// rows of `d_sums` to zero. Returns how many there are.
 int pick_sums(const EdgeSelection& selection, const LatentRows& sums, LatentRows& d_sums, const float* d_first,
               int stride, int begin, int count, float* packed, const float** input, float** result) {
   int found = 0;
@@ -96,8 +96,8 @@ int pick_sums(const EdgeSelection& selection, const LatentRows& sums, LatentRows
   return found;
 }
 
-// Derivatives by the nodes behind a step become those by the nodes before it, as far as they come through the node
-// network; those by the sums are left in d_sums.
+// Turns derivatives by the nodes after a step into those by the nodes before it, as far as they pass the node network.
+// Leaves those by the sums in d_sums.
 void back_nodes(const TrainingRun& run, const PackedPerceptron& forward, const PackedPerceptron& backward,
                 std::size_t step, Perceptron& gradient) {
   const int rows = static_cast<int>(run.graph.nodes.rows()), width = run.width();
@@ -145,8 +145,8 @@ void back_nodes(const TrainingRun& run, const PackedPerceptron& forward, const P
   });
 }
 
-// Derivatives by the latents of one end of the edges: `d_row(thread's row, i)` gives those by the first layer's product
-// with node list[i], which lie in the thread's first rows afterwards.
+// Adds derivatives by the latents of one end of the edges. `d_row(row, i)` writes the derivative by the first layer's
+// product with node list[i]; the row is one of the thread's first rows.
 template <class DRow>
 void back_ends(const TrainingRun& run, const PackedLayer& transposed, const LatentRows& nodes,
                const std::vector<int>& list, FeatureRows& gradient, Eigen::Index block, DRow&& d_row) {
@@ -182,7 +182,7 @@ struct EdgeBack {
   LatentRows& d_edges;
 };
 
-// Edges [begin, begin + count), the first of which lies at `slot`.
+// Goes back through edges [begin, begin + count), the first of which lies at `slot`.
 void back_edge_tile(const TrainingRun& run, const EdgeBack& back, int begin, int count, int slot, float* part,
                     int place) {
   const EdgeSelection& selection = back.selection;
@@ -205,8 +205,8 @@ void back_edge_tile(const TrainingRun& run, const EdgeBack& back, int begin, int
   run.training.add({d_first.row(slot), d_first.stride, d_first.stride, count, d_receiver});
 }
 
-// Edges of the step's key k. Derivatives by the edges behind the step become those by the edges before it; those by the
-// nodes are added to d_nodes.
+// Goes back through the edges of the step's key k. Turns derivatives by the edges after the step into those before it,
+// and adds those by the nodes to d_nodes.
 void back_edges(const TrainingRun& run, const PackedPerceptron& forward, const PackedPerceptron& backward,
                 std::size_t step, std::size_t k, Perceptron& gradient) {
   TrainingTape& tape = run.tape;

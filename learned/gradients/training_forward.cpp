@@ -7,14 +7,14 @@
 namespace selvedge {
 namespace {
 
-// Where the results of a tile of a perceptron go.
+// The destination of the results of a perceptron's tile.
 struct Destination {
-  const float* const* from = nullptr;  // latents that they are added to; null: none
+  const float* const* from = nullptr;  // latents to which the results are added; null: none
   float* const* latent = nullptr;
   float* const* sum = nullptr;
 };
 
-// The layers behind the first, whose results lie on the tape from `slot` on, then the layer norm.
+// Computes the layers after the first, then the layer norm. Results lie on the tape from `slot` on.
 void finish_forward(const TrainingRun& run, const PackedPerceptron& p, PerceptronTape& tape, int slot, int rows,
                     const Destination& to) {
   const float* input[training_rows];
@@ -41,8 +41,8 @@ void for_each_tile(int rows, const Work& work) {
   });
 }
 
-// Row i of `to` becomes the perceptron's result for row order[i] of `from` (row i without an order). Its input is one
-// block. Slots are rows.
+// Row i of `to` becomes the perceptron's result for row order[i] of `from` (row i without an order). The input is one
+// block, and slots are rows.
 void forward_rows(const TrainingRun& run, const PackedPerceptron& p, const float* from, std::ptrdiff_t from_stride,
                   const std::vector<int>* order, int rows, PerceptronTape& tape, float* to, std::ptrdiff_t to_stride) {
   for_each_tile(rows, [&](int begin, int count) {
@@ -84,7 +84,7 @@ struct EdgeUpdate {
   PerceptronTape& tape;
 };
 
-// Edges [begin, begin + count), the first of which lies at `slot`.
+// Computes edges [begin, begin + count), the first of which lies at `slot`.
 void forward_edge_tile(const TrainingRun& run, const EdgeUpdate& update, int begin, int count, int slot) {
   const EdgeSelection& selection = update.selection;
   const float *input[training_rows], *other[training_rows];

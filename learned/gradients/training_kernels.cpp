@@ -5,7 +5,8 @@
 #include "collision/geometry/error.hpp"
 #include "learned/network/row_norms.hpp"
 
-// As engine_kernels.cpp: templates over the lanes, inlined into one function an instruction set; contraction allowed.
+// Built as engine_kernels.cpp: templates over the lanes, inlined into one function per instruction set. Contraction is
+// allowed.
 
 namespace selvedge {
 namespace {
@@ -63,7 +64,7 @@ template <int Lanes>
   }
 }
 
-// With g = d scale and u the normalised values: factor (g - mean(g) - u mean(g u)).
+// Each row becomes factor (g - mean(g) - u mean(g u)), where g = d scale and u are the normalised values.
 template <int Lanes, int Rows>
 [[gnu::always_inline]] inline void norm_back_rows(const NormBackTile& t, int row) {
   float* d = t.d + static_cast<std::ptrdiff_t>(row) * t.stride;
@@ -114,7 +115,7 @@ template <int Lanes>
   for (; row < t.rows; ++row) norm_back_rows<Lanes, 1>(t, row);
 }
 
-// Columns [i, i + Columns) of a with two vectors of b: their sums stay in registers while the rows go by.
+// Adds products of columns [i, i + Columns) of a with two vectors of b. The sums stay in registers.
 template <int Lanes, int Columns>
 [[gnu::always_inline]] inline void outer_block(const OuterTile& t, int i, int j) {
   Vector<Lanes> sums[Columns][2];
@@ -145,7 +146,7 @@ template <int Lanes, int Columns>
 [[gnu::always_inline]] inline void outer_tile(const OuterTile& t) {
   for (int j = 0; j < t.b_columns; j += 2 * Lanes) {
     int i = 0;
-    for (; (t.a_columns - i) % Columns != 0; i += 4) outer_block<Lanes, 4>(t, i, j);  // 32 and 64 are not whole sixes
+    for (; (t.a_columns - i) % Columns != 0; i += 4) outer_block<Lanes, 4>(t, i, j);  // 32 and 64 are no multiples of 6
     for (; i < t.a_columns; i += Columns) outer_block<Lanes, Columns>(t, i, j);
   }
   if (!t.bias) return;

@@ -4,24 +4,24 @@
 
 namespace selvedge {
 
-// Rows that pass forward and back through all layers of a perceptron at a time: whole register blocks of every set.
+// Rows of a tile, which passes through all layers of a perceptron at once: whole register blocks of every set.
 constexpr int training_rows = 48;
 
-// The end of a perceptron's forward pass: row r of `values` becomes (x - mean) / deviation, and `factor` of it 1 /
-// deviation; without `scale` it stays. Then latent = from + result, or the result where `from` is null, and sum +=
-// result. Epsilon 1e-5.
+// The end of a perceptron's forward pass. Row r of `values` becomes (x - mean) / deviation, and factor[r] becomes 1 /
+// deviation; without `scale` both stay. Then latent = from + result, or the result where `from` is null, and sum +=
+// result. Epsilon is 1e-5.
 struct NormTile {
   float* values = nullptr;
   int stride = 0, columns = 0, rows = 0;
   const float *scale = nullptr, *shift = nullptr;
-  float* factor = nullptr;  // one a row
+  float* factor = nullptr;  // one per row
   const float* const* from = nullptr;
   float* const* latent = nullptr;
   float* const* sum = nullptr;  // may be null
 };
 
-// The layer norm backward: row r of `d` goes from the derivative with respect to the result to that with respect to the
-// values. Adds to the derivatives of scale and shift.
+// The backward pass of the layer norm. Row r of `d` is the derivative by the result and becomes that by the values.
+// Adds to the derivatives of scale and shift.
 struct NormBackTile {
   float* d = nullptr;
   int stride = 0, columns = 0, rows = 0;
@@ -32,12 +32,12 @@ struct NormBackTile {
   float *d_scale = nullptr, *d_shift = nullptr;
 };
 
-// out += sum of outer products a_r b_r, and bias += sum of a_r: the weights of a layer, whose results have derivatives
-// a and whose inputs are b. Columns are padded to whole panels.
+// out += sum of outer products a_r b_r, and bias += sum of a_r. These are derivatives by weights and biases of a layer,
+// if a has those by its results and b its inputs. Columns are padded to whole panels.
 struct OuterTile {
   const float* a = nullptr;
   int a_stride = 0, a_columns = 0;
-  const float* const* b = nullptr;  // one pointer a row
+  const float* const* b = nullptr;  // one pointer per row
   int b_columns = 0;
   float* out = nullptr;   // a_columns x b_columns
   float* bias = nullptr;  // may be null

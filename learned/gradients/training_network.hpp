@@ -7,15 +7,15 @@
 
 namespace selvedge {
 
-// Weights in the shapes of NetworkWeights. Statistics have no gradient: theirs stay zero.
+// Derivatives in the shapes of the weights. Those of statistics stay zero.
 using WeightGradients = NetworkWeights;
 WeightGradients zero_gradients(const Architecture&);
 void set_zero(const Architecture&, WeightGradients&);
 
 struct TrainingLayout;
 
-// A network that is trained. `weights` may be read at any time. Whoever changes them calls `lay_out` before the next
-// forward: the kernels read a layout of their own.
+// A network in training. `weights` may be read at any time. Call `lay_out` after changing them and before the next
+// forward run, because the kernels read their own layout.
 struct TrainingNetwork {
   Architecture architecture;
   NetworkWeights weights;
@@ -32,8 +32,8 @@ void lay_out(TrainingNetwork&);
 
 struct TrainingTape;
 
-// What a forward run stores for the backward one. The next run reuses its memory. One run of a network at a time writes
-// to a tape; networks and graphs may be shared by several tapes.
+// The stored results of a forward run for the backward one. The next run reuses its memory. One run of a network at a
+// time writes to a tape; networks and graphs may be shared by several tapes.
 class Tape {
  public:
   Tape();
@@ -46,8 +46,8 @@ class Tape {
   std::unique_ptr<TrainingTape> tape_;
 };
 
-// The decoder's output, cloth_nodes x outputs, as `infer` gives it (to rounding: 1e-5 of the largest). Errors are those
-// of `infer`. 1 and n threads give the same bits.
+// Returns the decoder's output, cloth_nodes x outputs, as `infer` does (rounding differs: 1e-5 of the largest). Throws
+// as `infer` does. 1 and n threads give the same bits.
 FeatureRows run_forward(const TrainingNetwork&, const Graph&, Tape&);
 
 // Adds to `gradients` the derivatives of a scalar with respect to every weight. `d_output` (cloth_nodes x outputs) is

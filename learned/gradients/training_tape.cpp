@@ -21,11 +21,11 @@ int this_thread() {
 #endif
 }
 
-constexpr int block_rows = 12;  // of every register block: slots of a chunk begin at a whole number of them
+constexpr int block_rows = 12;  // rows of every register block; a chunk's slots begin at a multiple of it
 
 int whole_blocks(int rows) { return (rows + block_rows - 1) / block_rows * block_rows; }
 
-// Enough chunks for many threads, and not so many that adding up their sums counts.
+// Enough chunks for many threads, but few enough that adding up their sums takes little time.
 int edges_in_part(const Graph& graph) {
   std::size_t most = 0;
   for (const EdgeSet& set : graph.edge_sets) most = std::max(most, set.senders.size());

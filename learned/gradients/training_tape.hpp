@@ -8,35 +8,35 @@
 
 namespace selvedge {
 
-// What the forward pass of one perceptron stores, one row a slot: outputs of the hidden layers, and the result before
+// Stored by the forward pass of one perceptron, one row per slot: outputs of the hidden layers, and the result before
 // scale and shift.
 struct PerceptronTape {
   std::vector<LatentRows> hidden;
   LatentRows values;
-  std::vector<float> factor;  // of the layer norm
+  std::vector<float> factor;  // 1 / deviation of the layer norm
 };
 
-// Where the edges of a selection lie on a tape: each chunk has slots of its own, whole register blocks of them.
+// Places of a selection's edges on a tape. Each chunk has its own slots, in whole register blocks.
 struct SlotPlan {
   std::vector<int> chunk_slot;  // first slot of each chunk
   int slots = 0;
-  std::vector<int> sender_begin, sender_slots;  // of each sender, the slots of its edges: sender_slots[begin ..]
+  std::vector<int> sender_begin, sender_slots;  // slots of sender s: sender_slots[sender_begin[s] ..]
 };
 
-// Rows for one thread.
+// Buffers of one thread.
 struct ThreadRows {
   LatentRows first, second, third;
 };
 
 struct StepTape {
-  std::vector<PerceptronTape> edges;  // of each key
-  std::vector<LatentRows> sums;       // of each key: one row a receiver
-  std::vector<int> version;           // of each key: which version of the set's latents the step reads
+  std::vector<PerceptronTape> edges;  // one per key
+  std::vector<LatentRows> sums;       // one per key, with one row per receiver
+  std::vector<int> version;           // one per key: which version of the set's latents the step reads
   PerceptronTape node;
 };
 
 struct TrainingTape {
-  // What the plan was made for; it is kept while these stay the same.
+  // The inputs of the plan, which is kept while they stay the same.
   std::vector<EdgeKind> kinds;
   std::vector<MessageStep> planned_steps;
   std::vector<std::vector<int>> senders, receivers;
@@ -44,13 +44,13 @@ struct TrainingTape {
   int cloth_nodes = -1;
   Eigen::Index node_rows = -1;
   GraphPlan plan;
-  std::vector<SlotPlan> slots;  // of each selection
+  std::vector<SlotPlan> slots;  // one per selection
   std::vector<char> used;       // whether a step uses the set
 
-  std::vector<LatentRows> nodes;               // latents behind the encoder and each step
-  std::vector<std::vector<LatentRows>> edges;  // of each set: latents behind its encoder and each step that uses it
+  std::vector<LatentRows> nodes;               // latents after the encoder and after each step
+  std::vector<std::vector<LatentRows>> edges;  // of each set: latents after its encoder and each step that uses it
   PerceptronTape node_encoder, decoder;
-  std::vector<PerceptronTape> edge_encoders;  // of each set
+  std::vector<PerceptronTape> edge_encoders;  // one per set
   std::vector<StepTape> steps;
 
   // Memory for both passes.
@@ -78,18 +78,18 @@ struct TrainingRun {
 // Gives each thread its rows.
 TrainingRun start_run(const TrainingNetwork&, const Graph&, TrainingTape&);
 
-// Plans the graph unless the tape's plan is of the same one, and gives all rows their sizes.
+// Plans the graph unless the tape has its plan already, and sets the sizes of all rows.
 void prepare_tape(const Architecture&, const Graph&, TrainingTape&);
 
-// A layer that reads the rows and writes `out`.
+// The tile of a layer that reads the rows `input` and writes `out`.
 LayerTile training_tile(const PackedLayer&, const float* const* input, float* out, int stride, int rows);
 
-// Entries behind the last row are read and not used.
+// Kernels read whole tiles, and results of the rows added here are not used.
 inline void fill_rows_up(const float** rows, int count) {
   for (int r = count; r < training_rows; ++r) rows[r] = rows[0];
 }
 
-// Work on many rows of nodes: parts that one thread does at a time, whole tiles each.
+// The number of rows in one thread's part: whole tiles.
 int rows_in_part(int rows);
 
 }  // namespace selvedge

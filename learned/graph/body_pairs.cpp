@@ -11,7 +11,7 @@ double squared_to_face(const Surface& body, const Points& x, const Vec3& p, int 
   return point_triangle(p, row(x, v[0]), row(x, v[1]), row(x, v[2])).squared_distance;
 }
 
-// Of the face's vertices the nearest, the first of several.
+// The nearest vertex of the face, the first of several.
 int nearest_corner(const Surface& body, const Points& x, const Vec3& p, int face) {
   int best = body.triangles(face, 0);
   for (int k = 1; k < 3; ++k) {
@@ -32,7 +32,7 @@ void refresh_trees(const GraphScene& scene, BodyPartner partner, const Points& c
   update(search.cloth, search.boxes);
 }
 
-// Nearest items of all cloth vertices; -1 where none is within the radius. Vertices that lie together search together.
+// Finds the nearest item of each cloth vertex; -1 where none is within the radius. A tree's leaf searches together.
 template <class SquaredOf>
 void search_all(const Points& cloth, double radius, BodySearch& search, SquaredOf&& squared_of) {
   const std::vector<Bvh::Leaf>& groups = search.cloth.bvh.leaves;

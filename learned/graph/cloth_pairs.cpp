@@ -6,7 +6,7 @@
 namespace selvedge {
 namespace {
 
-// The first corner if it is nearer than the others, else the nearer of these, the third if both are as near.
+// The first corner if it is nearer than both others. Else the nearer of these, or the third if they tie.
 int nearest_of(const int* corner, const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const double to_a = (p - a).squaredNorm(), to_b = (p - b).squaredNorm(), to_c = (p - c).squaredNorm();
   if (to_a < to_b && to_a < to_c) return corner[0];

@@ -8,16 +8,16 @@
 namespace selvedge {
 namespace {
 
-constexpr double first_radius = 2.5;  // in mean edges
-constexpr double growth = 2.4;        // of the radius, by level
+constexpr double first_radius = 2.5;  // of the first level [mean edges]
+constexpr double growth = 2.4;        // factor of the radius from level to level
 
 struct DiscCells {
   std::vector<int> centre;       // of each vertex
-  std::vector<double> distance;  // to it, along edges
+  std::vector<double> distance;  // distance to it along edges
 };
 
-// Dijkstra's search from the centre up to the radius. Vertices that are nearer to it than to their present centre are
-// assigned to it.
+// Dijkstra's search from the centre up to the radius. It takes the vertices that are nearer to this centre than to
+// their present one.
 void grow_disc(const Adjacency& graph, const Points& rest, double radius, int centre, DiscCells& cells) {
   using Reached = std::pair<double, int>;
   std::priority_queue<Reached, std::vector<Reached>, std::greater<>> next;

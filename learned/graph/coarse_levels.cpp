@@ -23,7 +23,7 @@ std::vector<int> component_centres(const Surface& surface, const Adjacency& grap
   return centres;
 }
 
-// Edges past every vertex at an odd depth, from its neighbours nearer the centre to its neighbours farther away.
+// Adds edges past each vertex at an odd depth, from neighbours nearer the centre to neighbours farther away.
 void join_across(const Adjacency& graph, const std::vector<int>& depth, VertexPairs& pairs) {
   for (int v = 0; v < graph.vertex_count(); ++v) {
     if (depth[v] % 2 != 1) continue;
@@ -33,8 +33,8 @@ void join_across(const Adjacency& graph, const std::vector<int>& depth, VertexPa
   }
 }
 
-// At the far end a vertex at an odd depth has no neighbour farther away. Edges between its nearer neighbours, unless
-// they are close already.
+// At the far end a vertex at an odd depth has no neighbour farther away. Adds edges between its nearer neighbours,
+// unless they are close already.
 void join_before_ends(const Adjacency& graph, const std::vector<int>& depth, const Adjacency& joined,
                       VertexPairs& pairs) {
   for (int v = 0; v < graph.vertex_count(); ++v) {
@@ -47,7 +47,7 @@ void join_before_ends(const Adjacency& graph, const std::vector<int>& depth, con
   }
 }
 
-// Edges between neighbours at the same even depth, unless they are close already.
+// Adds edges between neighbours at the same even depth, unless they are close already.
 void join_beside(const Adjacency& graph, const std::vector<int>& depth, const Adjacency& joined, VertexPairs& pairs) {
   for (int v = 0; v < graph.vertex_count(); ++v) {
     if (depth[v] < 0 || depth[v] % 2 != 0) continue;

@@ -7,7 +7,7 @@
 namespace selvedge {
 namespace {
 
-// A vector and its norm, in four columns.
+// Writes a vector and its norm into four columns.
 template <class Row>
 void put_vector(Row&& features, int first, const Vec3& vector) {
   features.template segment<3>(first) = vector.transpose().cast<float>();
@@ -19,7 +19,7 @@ float time_value(const GraphState& state, const FeatureOptions& options) {
   return state.is_init ? 1.0f : 0.0f;
 }
 
-// Edges of rest length zero have no strain.
+// The strain is 0 where the rest length is zero.
 float strain_of(double length, double rest) { return rest > 0 ? static_cast<float>((length - rest) / rest) : 0.f; }
 
 int body_node(const std::vector<int>& body_vertices, int vertex, int cloth_nodes) {
@@ -27,7 +27,7 @@ int body_node(const std::vector<int>& body_vertices, int vertex, int cloth_nodes
   return cloth_nodes + static_cast<int>(at - body_vertices.begin());
 }
 
-// A body edge from the cloth: now, next, and velocity where the options have it.
+// The row of an edge from cloth to body: now, next, and velocity where the options have it.
 void put_body_row(const BodyPair& pair, const GraphState& state, const SeenPositions& seen,
                   const FeatureOptions& options, FeatureRows& rows, Eigen::Index e) {
   const Vec3 x = row(seen.x, pair.cloth), body = row(state.body, pair.vertex),

@@ -7,18 +7,18 @@
 
 namespace selvedge {
 
-// Edge sets with raw rows; relative vectors are sender - receiver. A set's memory is used again.
+// These fill edge sets with raw rows and use their memory again. Relative vectors are sender - receiver.
 
-// Mesh or coarse edges at seen.mesh; strains at seen.mesh and at the guess (guess_of), where the options ask for them.
+// Mesh or coarse edges at seen.mesh. Strains, where asked for, are at seen.mesh and at the guess (guess_of).
 void fill_mesh_edges(const RestEdges&, const GraphState&, const SeenPositions&, const Points& guess,
                      const FeatureOptions&, EdgeSet&);
 
-// Edges from cloth to body, then the same from body to cloth: relative vectors negated, all else alike. Body nodes
-// stand behind the cloth in the order of `body_vertices`, which has every vertex of the pairs, ascending.
+// Edges from cloth to body, then the same edges from body to cloth with negated relative vectors. Body nodes follow the
+// cloth in the order of `body_vertices`, which has every body vertex of the pairs, ascending.
 void fill_body_edges(const std::vector<BodyPair>&, const std::vector<int>& body_vertices, const GraphState&,
                      const SeenPositions&, const FeatureOptions&, EdgeSet&);
 
-// Edges from the vertex of each pair to the nearest vertex of its face, one way.
+// One-way edges from the vertex of each pair to the nearest vertex of its face.
 void fill_cloth_edges(const std::vector<ClothPair>&, const GraphScene&, const GraphState&, const SeenPositions&,
                       const FeatureOptions&, const FeatureTables&, EdgeSet&);
 

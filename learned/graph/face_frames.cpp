@@ -6,10 +6,10 @@
 namespace selvedge {
 namespace {
 
-// Vectors whose products with a vector in the plane of e and f are its coordinates along these.
+// Products of u and w with a vector in the plane of e and f are its coordinates along e and f.
 struct DualFrame {
   Vec3 u, w, n;
-  bool flat = true;  // no plane
+  bool flat = true;  // e and f span no plane
 };
 
 DualFrame dual_frame(const Vec3& e, const Vec3& f) {
@@ -27,7 +27,7 @@ Bvh::Lanes product(const Bvh::Lanes (&a)[3][2], const Bvh::Lanes (&b)[3], int ha
   return a[0][half] * b[0] + a[1][half] * b[1] + a[2][half] * b[2];
 }
 
-// A weight is a sum of three products; a coordinate is wrong by its rounding to float, twice.
+// A weight is a sum of three products. Rounding to float enters each coordinate twice.
 float slack_of(const DualFrame& frame, double reach) {
   const double steepest = std::max(frame.u.cwiseAbs().sum(), frame.w.cwiseAbs().sum());
   return static_cast<float>(1e-6 + 1e-6 * steepest * reach);
@@ -79,7 +79,7 @@ void make_frames(const Surface& surface, const Points& x, const Bvh& tree, std::
       set_lane(frame.u, place, dual.flat ? zero : dual.u);
       set_lane(frame.w, place, dual.flat ? zero : dual.w);
       set_lane(frame.n, place, dual.flat ? zero : dual.n);
-      const float slack = dual.flat ? -1.0f : slack_of(dual, a.cwiseAbs().maxCoeff() + 1);  // below 0: no vertex
+      const float slack = dual.flat ? -1.0f : slack_of(dual, a.cwiseAbs().maxCoeff() + 1);  // below 0: none projects
       frame.slack[place / 4][place % 4] = slack;
     }
 }

@@ -59,7 +59,7 @@ namespace {
 
 constexpr int materials = 3;
 
-// A time column is among the normalised ones, or the first behind them.
+// A time column is the last normalised one, or the first after them.
 FeatureWidths with_time(const FeatureOptions& options, int normalised, int behind) {
   const bool dt = options.time == TimeFeature::timestep;
   return {normalised + 1 + behind, normalised + (dt ? 1 : 0)};

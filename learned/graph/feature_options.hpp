@@ -5,53 +5,50 @@
 
 namespace selvedge {
 
-// How a model was shown time: HOOD as a normalised column with the time step [s], ContourCraft as a flag that is not
-// normalised.
+// The time feature: the time step [s] in a normalised column (HOOD), or a flag that is not normalised (ContourCraft).
 enum class TimeFeature { timestep, is_init };
 
-// How coarse edges are made: by even depths from a centre (HOOD, make_coarse_levels), or between the centres of discs
-// (make_coarse_discs).
+// The vertices that coarse edges join: those at even depths from a centre (HOOD, make_coarse_levels), or the centres of
+// discs (make_coarse_discs).
 enum class CoarseForm { depths, discs };
 
-// What a mesh or coarse edge knows of the rest shape: the relative position with its norm (HOOD), or the length alone.
+// The rest shape in the features of mesh and coarse edges: relative position and norm (HOOD), or length alone.
 enum class RestFeature { vector, length };
 
 // The obstacle vertex that a cloth vertex gets an edge to, if the distance is at most body_radius: the nearest vertex
-// (HOOD), or of the face that is nearest the vertex that is nearest, which may be farther away (ContourCraft).
+// (HOOD), or the nearest vertex of the nearest face, which may be farther away (ContourCraft).
 enum class BodyPartner { nearest_vertex, nearest_face };
 
 // The velocity feature of obstacle vertices: pos - previous (HOOD), or target - pos.
 enum class BodyVelocity { current, next };
 
-// The velocity feature of cloth vertices: what the state carries, or pos - previous (hood_cvpr).
+// The velocity feature of cloth vertices: the state's velocity, or pos - previous (hood_cvpr).
 enum class ClothVelocity { carried, difference };
 
-// Pinned vertices (parity README, 1): HOOD moves them to their target before anything else; ContourCraft sees them
-// there in mesh and coarse edges only.
+// The treatment of pinned vertices (parity README, 1): HOOD moves them to their target before anything else.
+// ContourCraft sees them there in mesh and coarse edges only.
 enum class PinnedForm { moved, moved_for_mesh_edges };
 
-// Which end of a mesh edge is the sender in the first half of its set; the second half is the reverse of the first.
+// The end of a mesh edge that sends in the first half of its set. The second half is the reverse of the first.
 enum class MeshOrder { larger_sends, smaller_sends };
 
-// Whether cloth-cloth pairs repel or attract: all repel; by the vertex of a pair (released code); by all vertices of a
-// pair (Grigorev et al. 2024, algorithm 2).
+// The rule that tells which cloth-cloth pairs attract: none does; by the vertex of a pair (released code); by all
+// vertices of a pair (Grigorev et al. 2024, algorithm 2). The other pairs repel.
 enum class ContourRule { all_repel, vertex, all_vertices };
 
-// Which cloth vertices that are near each other get an edge, beside those of the mesh (Liao et al. 2024,
-// section 3.1.2).
+// Which cloth vertices that are near each other get an edge, beside those of the mesh (Liao et al. 2024, section
+// 3.1.2). Members are described where keys are bound to them: pipeline/training/training_options.cpp.
 struct SpaceOptions {
-  double radius = 0.02;        // [m]
-  double radius_in_edges = 0;  // above 0: the radius in mean mesh edges at rest, in place of `radius`
-  bool mesh_pairs = false;     // with pairs that a mesh edge joins (an ablation of the paper)
-  bool rest_pairs = true;      // with pairs that are as near at rest
-  int nearest = 0;             // above 0: only so many nearest of each vertex, and one direction (10: as released)
-  int pairs_per_vertex = 32;   // on average; those farthest apart beyond are left out and counted
+  double radius = 0.02, radius_in_edges = 0;
+  bool mesh_pairs = false, rest_pairs = true;
+  int nearest = 0;
+  int pairs_per_vertex = 32;
 };
 
-// What a model was trained to see. A plain value, part of a model's architecture. The defaults are HOOD's.
+// The inputs of a model, as part of its architecture. The defaults are HOOD's.
 struct FeatureOptions {
-  // Nodes: velocity 3, type embedding, level embedding, normal 3, (dt,) mass | (is_init,) bending, mu, lambda.
-  // What stands behind | is not normalised.
+  // Nodes: velocity 3, type embedding, level embedding, normal 3, (dt,) mass | (is_init,) bending, mu, lambda. Columns
+  // after | are not normalised.
   int type_columns = 9;
   int level_columns = 4;  // 0: no level embedding (fine15, fine48)
   int highest_level = 3;  // levels above are seen as this one
@@ -61,25 +58,25 @@ struct FeatureOptions {
   BodyVelocity body_velocity = BodyVelocity::current;
   PinnedForm pinned = PinnedForm::moved;
 
-  // More columns of cloth nodes, for our own networks (docs/training.md). Among the normalised ones: body 14, force 3,
-  // move 3; behind the materials: flags, in the order pinned, near the body, pass. Obstacle vertices have zeros there.
+  // More columns of cloth nodes, for our own networks (docs/training.md). Normalised ones: body 14, force 3, move 3.
+  // After the materials: flags, in the order pinned, near the body, pass. Obstacle vertices have zeros there.
   bool pinned_flag = false;
-  bool body_inputs = false;          // of the nearest face of the body within body_radius: node_features.hpp
-  bool force_inputs = false;         // GraphState::force, its length l made log(1 + l / 1 mm)
-  bool acceleration_inputs = false;  // behind these: GraphState::acceleration
+  bool body_inputs = false;          // relation to the nearest face of the body within body_radius: node_features.hpp
+  bool force_inputs = false;         // GraphState::force, its length l compressed to log(1 + l / 1 mm)
+  bool acceleration_inputs = false;  // GraphState::acceleration, after these
   bool pass_inputs = false;          // GraphState::guess - (x + velocity), and the flag GraphState::pass
-  double contour_force = 0;  // weight of the intersection contours in that force [N/m]; 0: they have no part in it
+  double contour_force = 0;          // weight of the intersection contours in that force [N/m]; 0: none
 
   // Mesh and coarse edges: x_s - x_r 3 + 1, rest 3 + 1 or 1, (dt) | (is_init,) bending, mu, lambda.
   MeshOrder mesh_order = MeshOrder::larger_sends;
   RestFeature rest = RestFeature::vector;
-  int coarse_levels = 3;                  // that are built; they give the vertex levels
+  int coarse_levels = 3;                  // number of levels that are built; they give the vertex levels
   std::vector<int> coarse_sets{0, 1, 2};  // levels whose edges are sets of the graph
   CoarseForm coarse_form = CoarseForm::depths;
-  bool shared_mesh_statistics = true;  // mesh and coarse edges are normalised alike
-  bool strain_inputs = false;          // (l - L) / L at x and at the guess, behind the rest columns
+  bool shared_mesh_statistics = true;  // mesh and coarse edges have the same statistics
+  bool strain_inputs = false;          // (l - L) / L at x and at the guess, after the rest columns
   bool edge_context = true;            // the columns dt or is_init, bending, mu, lambda
-  bool approximate_centre = false;     // of a component: the middle of a long path in place of the exact centre
+  bool approximate_centre = false;     // the centre is the middle of a long path, in place of the exact one
 
   // Edges between cloth and obstacle, both ways: now 3 + 1, next 3 + 1, (velocity 3 + 1, no dt | is_init), or dt.
   std::string body_key = "world_edge";  // empty: none
@@ -93,12 +90,12 @@ struct FeatureOptions {
   bool cloth_edges = false;
   double cloth_radius = 0.03;       // [m]
   int cloth_pairs_per_vertex = 32;  // on average; pairs beyond are left out and counted
-  bool future_pinned = true;        // pairs with pinned vertices where they will be (label 1)
+  bool future_pinned = true;        // include pairs with pinned vertices where they will be (label 1)
   int label_columns = 4;
   ContourRule contours = ContourRule::vertex;
-  bool attraction_edges = true;  // pairs that do not repel are edges; false: they are left out (paper, 4.3)
+  bool attraction_edges = true;  // pairs that do not repel become edges; false: they are left out (paper, 4.3)
 
-  // Edges of the set space_edge between cloth vertices near each other, with the columns of mesh edges.
+  // Edges of the set space_edge join cloth vertices near each other. They have the columns of mesh edges.
   bool space_edges = false;
   SpaceOptions space;
 };
@@ -110,12 +107,12 @@ FeatureOptions contourcraft_features();        // released: 24, 9, 20 and 13 col
 FeatureOptions senc_features();                // HOOD's, 27 node columns, space edges
 FeatureOptions contourcraft_paper_features();  // two coarse levels, contours judged by all vertices of a pair
 
-// Columns of each kind of row, and how many of them, the first, are normalised.
+// The number of columns of each kind of row. The first `normalised` ones are normalised.
 struct FeatureWidths {
   int all = 0, normalised = 0;
 };
 FeatureWidths node_widths(const FeatureOptions&);
-int objective_columns(const FeatureOptions&);           // of a node: body, force and move
+int objective_columns(const FeatureOptions&);           // body, force, move and acceleration of a node
 FeatureWidths mesh_edge_widths(const FeatureOptions&);  // coarse edges too
 FeatureWidths body_edge_widths(const FeatureOptions&);
 FeatureWidths cloth_edge_widths(const FeatureOptions&);

@@ -7,7 +7,7 @@
 namespace selvedge {
 namespace {
 
-// The lowest of the vertices that are deepest. `order` is that of a breadth-first search.
+// The lowest of the deepest vertices. `order` is that of a breadth-first search.
 int farthest(const std::vector<int>& order, const std::vector<int>& depth) {
   int found = order.back();
   for (auto v = order.rbegin(); v != order.rend() && depth[*v] == depth[found]; ++v) found = std::min(found, *v);

@@ -9,19 +9,19 @@ struct NextCloth {
   Points x, velocity;  // [m], [m/frame]
 };
 
-// From the network's output (V x 3, normalised) to the next frame, per frame and without dt (parity README, 11): a =
-// output * deviation + mean, velocity + a, x + velocity + a, from where the options see x (seen_positions.hpp). Pinned
-// vertices go to their targets; their velocity is target - x: zero where pinned vertices are moved beforehand (parity
-// README, 1). Where the state has a guess, a is added to guess - x in place of the velocity: each pass of a frame
-// starts from the result of the one before.
+// The next frame from the network's output (V x 3, normalised), per frame and without dt (parity README, 11): a =
+// output * deviation + mean, velocity + a, x + velocity + a. x is where the options see it (seen_positions.hpp). Pinned
+// vertices go to their targets, with the velocity target - x; it is zero where they were moved beforehand (parity
+// README, 1). Where the state has a guess, a is added to guess - x in place of the velocity, so that each pass of a
+// frame starts from the last one's result. Throws Error for another shape of the output.
 NextCloth integrate(const RestGraph&, const GraphState&, const FeatureOptions&, const Statistics& output,
                     const FeatureRows& decoded);
 
-// The accelerations that the output's statistics are gathered of: target - 2 x + previous (V x 3) [m/frame^2].
+// The accelerations from which the output's statistics are gathered: target - 2 x + previous (V x 3) [m/frame^2].
 FeatureRows target_accelerations(const RestGraph&, const GraphState&, const FeatureOptions&);
 
-// Pushes vertices out of the body to `margin` [m] in front of the plane of the face with the nearest centroid (HOOD's
-// first frame, parity README, 18). The lowest of several such faces counts. Returns how many it moved.
+// Pushes vertices to at least `margin` [m] in front of the plane of the body's face with the nearest centroid, the
+// lowest of several (HOOD's first frame, parity README, 18). Returns how many it moved.
 int push_out(const Surface& body, const Points& body_x, double margin, Points& x);
 constexpr double push_out_margin = 2e-3;  // HOOD's
 

@@ -24,10 +24,10 @@ void check_sizes(const GraphScene& scene, const RestGraph& rest, const GraphStat
     throw Error("a state has another number of vertices than its scene", "graph of a learned stepper", "");
 }
 
-// Far beyond any scene; squares and products of three fit into float.
+// Far beyond any scene. Squares and products of three fit into float.
 constexpr double largest = 1e12;
 
-bool is_usable(const Points& points) { return (points.array().abs() < largest).all(); }  // NaN is not below anything
+bool is_usable(const Points& points) { return (points.array().abs() < largest).all(); }  // NaN fails too
 
 std::string complaint(const GraphState& state) {
   if (!is_usable(state.x) || !is_usable(state.previous) || !is_usable(state.velocity) || !is_usable(state.target))
@@ -40,7 +40,7 @@ std::string complaint(const GraphState& state) {
   return {};
 }
 
-// Drops pairs with omitted vertices, and lists those that are left, each once.
+// Drops pairs with omitted vertices, and lists the body vertices of the others, each once.
 std::vector<int> active_vertices(const GraphScene& scene, GraphReport& report) {
   report.omitted_body_pairs = static_cast<int>(std::erase_if(report.body_pairs, [&](const BodyPair& pair) {
     return scene.body_types[static_cast<std::size_t>(pair.vertex)] == omitted_body_vertex;
@@ -59,13 +59,13 @@ void keep_within(const FeatureOptions& options, std::size_t queries, std::vector
   report.cloth_pairs_beyond += keep_nearest_pairs(pairs, most);
 }
 
-// Those of the vertices that a triangle has. Others, such as vertices of parts that are cut out, see no pair.
+// The vertices that have a triangle. Others, such as those of cut-out parts, get no pair.
 std::vector<int> on_cloth(const Surface& cloth, std::vector<int> vertices) {
   std::erase_if(vertices, [&](int v) { return cloth.triangles_of(v).empty(); });
   return vertices;
 }
 
-// Pinned vertices against the cloth, all where their velocity takes them.
+// Pairs of pinned vertices with the cloth, all moved by their velocity.
 std::vector<ClothPair> future_pairs(const GraphScene& scene, const RestGraph& rest, const GraphState& state,
                                     const SeenPositions& seen, const FeatureOptions& options, ClothSearch& search) {
   if (!options.future_pinned || rest.pinned.empty()) return {};
@@ -98,7 +98,7 @@ void find_classes(const GraphScene& scene, const RestGraph& rest, const GraphSta
   if (!options.attraction_edges) report.cloth_pairs.attraction.clear();
 }
 
-// Both ways, the second half the reverse of the first; or one way, from the lower vertex to the higher, as released.
+// Both ways, the second half the reverse of the first; or one way, from the lower to the higher vertex, as released.
 void fill_space_edges(const std::vector<SpacePair>& pairs, const GraphScene& scene, const GraphState& state,
                       const SeenPositions& seen, const Points& guess, const FeatureOptions& options, EdgeSet& set) {
   RestEdges edges{set.key, {}, {}, {}, {}};

@@ -27,7 +27,7 @@ bool same_rows(const Rows& a, const Rows& b) {
   return a.rows() == b.rows() && a == b;
 }
 
-// What of a question is new; it is noted. Undefined positions are never the same.
+// The new parts of a query, which is noted. Undefined positions are never the same.
 struct NewInQuestion {
   bool faces = false, points = false;
 };

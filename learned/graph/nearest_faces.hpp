@@ -7,7 +7,7 @@
 
 namespace selvedge {
 
-// What was asked for.
+// The last query.
 struct NearestQuery {
   Triangles triangles;
   Points x, points;
@@ -15,21 +15,21 @@ struct NearestQuery {
   double radius = -1;
 };
 
-// Kept between calls. It saves time and does not change what is found; the same question again costs next to nothing.
+// Memory between calls. It saves time and does not change the result. To repeat a query costs next to nothing.
 struct NearestFaces {
   NearestQuery query;
   KeptBvh faces, points;
   std::vector<Box> boxes;
   Points centroids;
-  std::vector<int> last;  // what was found
+  std::vector<int> last;  // the result
 };
 
-// For each point the face whose centroid is nearest, the lowest of several; -1 without faces. Faces with a flag in
-// `left_out` (empty: none) are not looked at. The result lies in `last`.
+// The face with the nearest centroid for each point, the lowest of several; -1 without faces. Faces with a flag in
+// `left_out` (empty: none) are ignored. The result lies in `last`.
 const std::vector<int>& nearest_centroids(const Surface&, const Points& x, const std::vector<char>& left_out,
                                           const Points& points, NearestFaces&);
 
-// For each point the face with the nearest point within the radius, the lowest of several; -1 where there is none.
+// The face with the nearest point within the radius, for each point: the lowest of several, or -1.
 const std::vector<int>& nearest_faces(const Surface&, const Points& x, const std::vector<char>& left_out, double radius,
                                       const Points& points, NearestFaces&);
 

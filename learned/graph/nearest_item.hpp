@@ -10,8 +10,8 @@
 
 namespace selvedge {
 
-// One bit a place of the leaf: false only where the box there is surely farther from p than a distance whose square is
-// `squared`. In float, with room for its rounding.
+// One bit per place of the leaf. It is false only where the box is surely farther from p than sqrt(squared). Computed
+// in float, with a margin for rounding.
 inline unsigned may_be_within(const Bvh::Leaf& leaf, const Vec3& p, double squared) {
   const double reach = std::sqrt(squared) * (1 + 1e-5) + 1e-6 * p.cwiseAbs().maxCoeff();
   const auto most = static_cast<float>(reach * reach * (1 + 1e-5));
@@ -21,7 +21,7 @@ inline unsigned may_be_within(const Bvh::Leaf& leaf, const Vec3& p, double squar
     for (int k = 0; k < 3; ++k) {
       const auto at = static_cast<float>(p[k]);
       const Bvh::Lanes below = leaf.lo[k][half] - at, above = at - leaf.hi[k][half];
-      Bvh::Lanes out = below > above ? below : above;  // NaN in a place that is left over
+      Bvh::Lanes out = below > above ? below : above;  // NaN in an empty place
       out = out < 0 ? Bvh::Lanes{} : out;
       sum += out * out;
     }
@@ -32,10 +32,10 @@ inline unsigned may_be_within(const Bvh::Leaf& leaf, const Vec3& p, double squar
 
 struct NearestItem {
   double squared = 0;  // distance [m2]
-  int item = -1;       // -1: none is as near
+  int item = -1;       // -1: none is near enough
 };
 
-// Points that lie together, at most a leaf of them, and what is nearest each.
+// Points that lie together, at most a leaf of them, and the nearest item of each.
 struct NearGroup {
   int size = 0;
   std::array<Vec3, Bvh::leaf_size> p;
@@ -51,7 +51,7 @@ struct NearGroup {
     }
   }
 
-  // Squared, not more than from any of the points to anything in the box; rounding must not tell equal distances apart.
+  // A squared lower bound of the distance from all points to the box. The margin keeps equal distances equal.
   double distance_to(const Box& box) const {
     double sum = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -69,13 +69,13 @@ struct NearGroup {
   }
 };
 
-// For each point of the group the item of the tree that is nearest, the lowest of several, if it is nearer than `best`
-// or as near and lower (an item of -1 is higher than any). `squared_of(p, item)` is its squared distance. A good guess
-// in `best` saves most of the search and does not change the result.
+// Finds the nearest item of the tree for each point of the group, the lowest of several, if it is nearer than `best`,
+// or as near and lower (-1 is higher than any item). `squared_of(p, item)` is the squared distance. A good guess in
+// `best` saves most of the search and does not change the result.
 template <class SquaredOf>
 void find_nearest(const Bvh& tree, NearGroup& group, SquaredOf&& squared_of) {
   if (tree.nodes.empty() || group.size == 0) return;
-  std::array<std::pair<double, int>, 64> stack;  // of a balanced tree, two a level: 2^32 items
+  std::array<std::pair<double, int>, 64> stack;  // a balanced tree needs two per level: 2^32 items
   std::size_t height = 0;
   stack[height++] = {group.distance_to(tree.nodes[0].box), 0};
   double limit = group.farthest();

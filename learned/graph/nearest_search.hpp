@@ -6,9 +6,9 @@
 
 namespace selvedge {
 
-// For the points in a leaf of `groups`, a tree of points, what is nearest of the items of another tree within a
-// distance whose square is `squared`: -1 without any. `last` (as long as the points) holds guesses, such as what was
-// found before, and then the result; guesses save time and change nothing. squared_of(p, item) is a squared distance.
+// Finds the nearest item of a tree for each point of a leaf, within sqrt(squared); -1 where there is none. `last` has
+// an entry per point: a guess, such as the last result, and then the result. Guesses save time and change nothing.
+// `squared_of(p, item)` is the squared distance.
 template <class SquaredOf>
 void find_nearest_of_leaf(const Points& points, const Bvh::Leaf& group_leaf, const Bvh& items, double squared,
                           std::vector<int>& last, SquaredOf&& squared_of) {

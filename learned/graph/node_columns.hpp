@@ -4,7 +4,7 @@
 
 namespace selvedge {
 
-// First columns in a row of a node: velocity 3, type, level, normal 3, (dt,) mass, objective, (is_init,) bending, mu,
+// First columns in the row of a node: velocity 3, type, level, normal 3, (dt,) mass, objective, (is_init,) bending, mu,
 // lambda, flags.
 struct NodeColumns {
   int type, level, normal, mass, time, objective, materials, flags;
@@ -14,7 +14,7 @@ struct NodeColumns {
         level(embedding_columns(options).level),
         normal(level + options.level_columns) {
     const bool dt = options.time == TimeFeature::timestep;
-    const int behind = normal + 5 + objective_columns(options);  // without is_init
+    const int behind = normal + 5 + objective_columns(options);  // of the materials
     mass = dt ? normal + 4 : normal + 3;
     objective = mass + 1;
     time = dt ? normal + 3 : behind - 1;

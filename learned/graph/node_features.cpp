@@ -8,7 +8,7 @@
 namespace selvedge {
 namespace {
 
-// Sum of the face normals round a vertex, each as long as twice its area, made one long; zero where there is none.
+// The unit vector along the area-weighted normals of the faces round a vertex; zero where there is none.
 Eigen::RowVector3f vertex_normal(const Surface& surface, const Points& x, int vertex) {
   Vec3 sum = Vec3::Zero();
   for (const int t : surface.triangles_of(vertex)) {

@@ -11,9 +11,9 @@ namespace selvedge {
 void fill_node_rows(const GraphScene&, const RestGraph&, const GraphState&, const SeenPositions&, const FeatureOptions&,
                     const FeatureTables&, Graph&);
 
-// Fills the objective's columns and the flags of cloth nodes. Of the body, p being the point of the pair's face that is
-// nearest x now and p' the same point of it in the next pose: x - p, x - p', the face's next normal, the signed
-// distances of x to its plane now and of the guess to its plane next, p' - p; zeros without a pair.
+// Fills the objective's columns and the flags of cloth nodes. p is the point of the pair's face that is nearest x now,
+// and p' is the same point in the next pose. The body columns are x - p, x - p', the face's next normal, the signed
+// distances of x from its plane now and of the guess from its next plane, and p' - p. They are zero without a pair.
 void fill_objective_columns(const GraphScene&, const GraphState&, const SeenPositions&, const Points& guess,
                             const Points& inertial, const FeatureOptions&, const std::vector<BodyPair>&, Graph&);
 

@@ -4,7 +4,7 @@
 namespace selvedge {
 namespace {
 
-// The member of tables or sums that is for a set of edges.
+// The member of tables or sums for a set of edges.
 template <class Tables>
 auto& part_for(const std::string& key, const FeatureOptions& options, Tables& tables) {
   if (key == options.body_key) return key == "body_edge" ? tables.body_edge : tables.world_edge;
@@ -24,7 +24,7 @@ void check_width(const std::string& what, std::size_t columns, int wanted) {
   if (columns != static_cast<std::size_t>(wanted))
     throw Error(
         "statistics of " + what + " have " + std::to_string(columns) + " columns in place of " + std::to_string(wanted),
-        "weights of a learned stepper", "");
+        "weights of a learned stepper", "use weights with their own architecture");
 }
 
 }  // namespace

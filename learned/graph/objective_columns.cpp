@@ -7,7 +7,7 @@
 namespace selvedge {
 namespace {
 
-// A face of the body in one pose, and the point of it that a cloth vertex is matched with.
+// A face of the body in one pose, with the point that a cloth vertex is matched with.
 struct FacePose {
   Vec3 centroid, normal, point;
 };
@@ -38,7 +38,7 @@ void fill_body_columns(const GraphScene& scene, const GraphState& state, const S
   features.segment<3>(first + 11) = (next.point - now.point).transpose().cast<float>();
 }
 
-// Long vectors are shortened, so that a strong contact force does not dominate the feature.
+// Shortens long vectors, so that a strong contact force does not dominate the feature.
 Eigen::RowVector3f compressed(const Vec3& force) {
   constexpr double unit = 1e-3;  // [m]
   const double length = force.norm();

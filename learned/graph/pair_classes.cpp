@@ -8,12 +8,12 @@
 namespace selvedge {
 namespace {
 
-// A curve is known by its number: twice the contour's, and one more on side 1. A vertex has the curves that cross its
-// edges or enclose it; a face has those whose edges pierce it, and those whose other side encloses one of its vertices.
+// A curve is one side of a contour; its number is 2 * contour + side. A vertex has the curves that cross its edges or
+// enclose it. A face has those whose edges pierce it, and those whose other side encloses one of its vertices.
 struct CurvesRound {
-  std::vector<std::vector<int>> of_vertex, of_face;  // numbers, ascending, perhaps more than once
-  std::vector<char> enclosed;                        // of each vertex
-  std::vector<char> encloses;                        // of each curve
+  std::vector<std::vector<int>> of_vertex, of_face;  // numbers, ascending, with repeats
+  std::vector<char> enclosed;                        // one flag per vertex
+  std::vector<char> encloses;                        // one flag per curve
 
   explicit CurvesRound(const Surface& surface, std::size_t contours)
       : of_vertex(static_cast<std::size_t>(surface.vertex_count)),

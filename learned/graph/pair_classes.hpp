@@ -8,20 +8,20 @@
 
 namespace selvedge {
 
-// Cloth-cloth pairs told apart by intersection contours.
+// Cloth-cloth pairs, classified by intersection contours.
 struct PairClasses {
   std::vector<ClothPair> repulsion, attraction;
-  int contours = 0;           // of the cloth with itself
-  int nested = 0;             // sides of contours that lie inside another, which count for nothing
-  int enclosed_vertices = 0;  // by a contour side that is not nested
-  int without_contour = 0;    // pairs left out: the vertex is enclosed, and its face has no contour with it
+  int contours = 0;           // number of contours of the cloth with itself
+  int nested = 0;             // sides of contours inside another side, which are ignored
+  int enclosed_vertices = 0;  // vertices inside a side that is not nested
+  int without_contour = 0;    // pairs left out: the vertex is enclosed, and shares no contour with its face
 };
 
 // ContourRule::vertex, the released code (parity README, 22): a pair attracts if its vertex is enclosed, or lies on
-// contours of which none encloses anything; if it is enclosed and the face has no contour in common with it, the pair
-// is left out. ContourRule::all_vertices, algorithm 2 of Grigorev et al. 2024: a pair attracts if one of its four
-// vertices is enclosed or lies on a contour that encloses nothing; none is left out. With ContourRule::all_repel, or
-// without contours, all repel. `cloth` is the only sheet that the contours are of; the order of the pairs stays.
+// contours of which none encloses anything. It is left out if the vertex is enclosed and shares no contour with the
+// face. ContourRule::all_vertices (Grigorev et al. 2024, algorithm 2): a pair attracts if one of its four vertices is
+// enclosed or lies on a contour that encloses nothing, and none is left out. With ContourRule::all_repel or without
+// contours all repel. `cloth` is the only sheet of the contours. Pairs keep their order.
 PairClasses classify_pairs(const std::vector<ClothPair>&, const SheetView& cloth, const Segments&,
                            const std::vector<Contour>&, ContourRule);
 

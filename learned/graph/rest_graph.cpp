@@ -40,8 +40,8 @@ using VertexPair = std::pair<int, int>;  // the larger vertex first
 
 VertexPair pair_of(int a, int b) { return {std::max(a, b), std::min(a, b)}; }
 
-// Edges of triangles and springs between vertices that no triangle joins, each once: by the larger vertex, then by the
-// smaller one.
+// Edges of triangles, and springs between vertices that no triangle joins, each once. Sorted by the larger vertex, then
+// by the smaller one.
 Edges mesh_order(const Edges& edges, const std::vector<Spring>& springs) {
   std::vector<VertexPair> sorted;
   for (const auto& edge : edges.rowwise()) sorted.emplace_back(edge[1], edge[0]);
@@ -65,7 +65,7 @@ RestEdges both_ways(std::string key, const Edges& edges, MeshOrder order) {
   return set;
 }
 
-// A vertex without triangles has no mass: the logarithm of a microgram stands for it.
+// A vertex without triangles has no mass; it gets the logarithm of a microgram.
 float mass_column(const FeatureOptions& options, double mass) {
   return static_cast<float>(options.log_mass ? std::log(std::max(mass, 1e-9)) : mass);
 }
@@ -88,7 +88,7 @@ void fill_rest_columns(const GraphScene& scene, const FeatureOptions& options, R
 
 namespace {
 
-// Springs are as long at rest as they say, wherever their ends lie in the rest shape.
+// A spring's rest length holds, wherever its ends lie in the rest shape.
 void set_spring_lengths(const GraphScene& scene, const FeatureOptions& options, RestEdges& set) {
   std::map<VertexPair, double> lengths;
   for (const Spring& spring : scene.springs) lengths[pair_of(spring.a, spring.b)] = spring.rest_length;

@@ -10,7 +10,7 @@
 
 namespace selvedge {
 
-// A set of mesh or coarse edges: both ways, the second half the reverse of the first.
+// Mesh or coarse edges both ways, the second half the reverse of the first.
 struct RestEdges {
   std::string key;
   std::vector<int> senders, receivers;
@@ -18,19 +18,18 @@ struct RestEdges {
   FeatureRows materials;  // E x 3: mean of both ends
 };
 
-// What of a scene's graph stays the same between frames. Made once; to be made anew where the scene's cloth, rest
-// positions or materials change.
+// The constant part of a scene's graph. Make it again when the scene's cloth, rest positions or materials change.
 struct RestGraph {
   std::vector<RestEdges> sets;  // mesh_edge, then coarse_sets
   CoarseLevels coarse;
-  std::vector<int> vertex_levels;  // as the embedding knows them: at most highest_level
+  std::vector<int> vertex_levels;  // rows of the embedding: at most highest_level
   std::vector<float> mass;         // the mass column of each cloth vertex
   std::vector<int> pinned;         // cloth vertices, ascending
 };
 
-// Throws Error for a scene whose parts do not fit together or whose numbers are not finite. Centres: see
-// make_coarse_levels. Mesh edges are sorted by their larger, then their smaller vertex. Springs are mesh edges too, as
-// long at rest as they say; coarse levels know nothing of them.
+// Throws Error for a scene whose parts do not fit together or whose numbers are not finite. Centres are those of
+// make_coarse_levels. Mesh edges are sorted by their larger, then their smaller vertex. Springs are mesh edges with
+// their own rest length, and coarse levels ignore them.
 RestGraph make_rest_graph(const GraphScene&, const FeatureOptions&, std::span<const int> centres = {});
 
 // Fills in the columns of edges whose senders and receivers are given.

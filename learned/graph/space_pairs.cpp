@@ -14,7 +14,7 @@
 namespace selvedge {
 namespace {
 
-constexpr double least_distance = 1e-7;  // [m]; what lies closer is one place
+constexpr double least_distance = 1e-7;  // [m]; vertices that are closer coincide
 constexpr int vertex_chunk = 1024, cell_chunk = 64;
 
 struct CellPlace {
@@ -22,7 +22,7 @@ struct CellPlace {
   auto operator<=>(const CellPlace&) const = default;
 };
 
-// Vertices by the cells of an endless grid, which share a table.
+// Vertices in the cells of an unbounded grid, which share a hash table.
 class HashedGrid {
  public:
   struct Entry {
@@ -32,7 +32,7 @@ class HashedGrid {
   using Entries = std::span<const Entry>;
   struct Cell {
     CellPlace place;
-    int begin, end;  // of its entries, by vertex
+    int begin, end;  // of its entries, sorted by vertex
   };
 
   HashedGrid(const Points& x, double edge) : mask_(std::bit_ceil(2 * static_cast<std::uint64_t>(x.rows()) + 1) - 1) {
@@ -70,7 +70,7 @@ class HashedGrid {
   const std::vector<Cell>& cells() const { return cells_; }
   Entries entries(const Cell& cell) const { return Entries(entries_).subspan(cell.begin, cell.end - cell.begin); }
 
-  // The entries of the cells round a cell, of each two neighbours only one if `half`.
+  // Lists the entries of the cells round a cell. With `half` each pair of neighbours is listed from one side only.
   void list_round(const CellPlace& own, bool half, std::vector<Entries>& found) const {
     found.clear();
     for (int step = half ? 14 : 0; step < 27; ++step) {
@@ -90,9 +90,9 @@ class HashedGrid {
   }
 
   std::uint64_t mask_;
-  std::vector<int> begin_;      // of each bucket's cells
-  std::vector<Cell> cells_;     // by bucket
-  std::vector<Entry> entries_;  // by cell
+  std::vector<int> begin_;      // first cell of each bucket
+  std::vector<Cell> cells_;     // sorted by bucket
+  std::vector<Entry> entries_;  // sorted by cell
 };
 
 struct NearVertex {
@@ -103,7 +103,7 @@ struct NearVertex {
   }
 };
 
-// What the lists of pairs of a vertex need.
+// Inputs of the lists of pairs.
 struct PairLister {
   const GraphScene& scene;
   const SpaceOptions& options;
@@ -118,14 +118,14 @@ struct PairLister {
     return options.mesh_pairs || !std::binary_search(joined.begin(), joined.end(), b);
   }
 
-  // The pairs of a vertex with some others.
+  // Lists the pairs of a vertex with some others.
   void list_all(const HashedGrid::Entry& own, HashedGrid::Entries others, std::vector<SpacePair>& list) const {
     for (const HashedGrid::Entry& other : others)
       if (are_near((other.x - own.x).squaredNorm()) && are_wanted(own.vertex, other.vertex))
         list.push_back({std::min(own.vertex, other.vertex), std::max(own.vertex, other.vertex)});
   }
 
-  // The pairs of a vertex with the nearest ones that are wanted among the nearest.
+  // Lists the pairs of a vertex with its nearest vertices, as far as they are wanted.
   void list_nearest(const HashedGrid::Entry& own, const std::vector<HashedGrid::Entries>& round,
                     std::vector<SpacePair>& list) const {
     std::vector<NearVertex> near;
@@ -140,7 +140,7 @@ struct PairLister {
   }
 };
 
-// Puts pairs in order, each once.
+// Sorts pairs and removes duplicates.
 std::vector<SpacePair> sorted_pairs(const std::vector<std::vector<SpacePair>>& lists, int vertices) {
   std::vector<int> begin(static_cast<std::size_t>(vertices) + 1, 0);
   for (const std::vector<SpacePair>& list : lists)

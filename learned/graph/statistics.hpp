@@ -11,25 +11,25 @@ struct Statistics {
   std::vector<float> mean, deviation;
 };
 
-// Whether nothing was ever gathered for them: mean 0 and deviation 1 everywhere, as weights begin.
+// Whether they are as weights begin, mean 0 and deviation 1 everywhere, because nothing was gathered.
 bool are_blank(const Statistics&);
 
-// What is summed up of the normalised columns of a feature set while a network is trained. Float holds what the
-// authors' checkpoints hold; own training sums in double.
+// Sums of the normalised columns of a feature set in training. Authors' checkpoints hold them as float. Own training
+// sums in double.
 template <class Real>
 struct BasicAccumulators {
   Real rows = 0, updates = 0;
-  std::vector<Real> sum, sum_squared;  // one a column
+  std::vector<Real> sum, sum_squared;  // one per column
 
   explicit BasicAccumulators(int columns = 0) : sum(columns, 0), sum_squared(columns, 0) {}
 };
 using Accumulators = BasicAccumulators<float>;
 using DoubleAccumulators = BasicAccumulators<double>;
 
-constexpr int most_updates = 1000000;  // after so many nothing more is summed up
+constexpr int most_updates = 1000000;  // later updates are ignored
 
-// Adds the first columns of the rows, as many as there are sums. Counted as an update without rows too; nothing happens
-// after `most_updates`. A batch is summed in double and rounded once.
+// Adds the first columns of the rows, as many as there are sums. It counts as an update without rows too, and does
+// nothing after `most_updates`. A batch is summed in double and rounded once.
 template <class Real>
 void accumulate(BasicAccumulators<Real>&, const FeatureRows& raw);
 

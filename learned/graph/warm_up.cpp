@@ -8,7 +8,7 @@
 namespace selvedge {
 namespace {
 
-constexpr double least_variation = 1e-4;  // of a column's root mean square, above which its deviation is used
+constexpr double least_variation = 1e-4;  // least deviation that is used, as a fraction of a column's root mean square
 
 void freeze(const DoubleAccumulators& sums, Statistics& statistics) {
   if (sums.rows <= 0) return;
@@ -20,7 +20,7 @@ void freeze(const DoubleAccumulators& sums, Statistics& statistics) {
   }
 }
 
-// Writes columns of a table that were normalised with others.
+// Writes the columns of a table into rows that were normalised with other values.
 void embed_columns(const FeatureRows& table, const std::vector<int>& values, int first, int columns,
                    const Statistics& statistics, FeatureRows& rows) {
   if (columns == 0 || table.rows() == 0) return;
@@ -28,7 +28,8 @@ void embed_columns(const FeatureRows& table, const std::vector<int>& values, int
   for (Eigen::Index k = 0; k < normal.cols(); ++k) {
     const auto at = static_cast<std::size_t>(first + k);
     if (at >= statistics.mean.size())
-      throw Error("statistics have too few columns", "weights of a learned stepper", "");
+      throw Error("statistics have too few columns", "weights of a learned stepper",
+                  "use weights with their own architecture");
     normal.col(k) = (normal.col(k).array() - statistics.mean[at]) / statistics.deviation[at];
   }
   embed(normal, values, first, columns, rows);

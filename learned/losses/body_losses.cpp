@@ -18,14 +18,14 @@ BodyPlane plane_of_body(const Surface& body, const Points& x, int face) {
   return {(a + b + c) / 3, across / length, length > 0};
 }
 
-// c |t| and its derivative by t.
+// The friction's c |t| and its derivative by t.
 struct Slide {
   double value = 0;
   Vec3 slope = Vec3::Zero();
 };
 
 Slide slide_of(const Vec3& t, SlopeAxis axis) {
-  constexpr double least = 1e-4;  // so that the root's slope stays finite
+  constexpr double least = 1e-4;  // keeps the slope of the root finite
   const double length = t.norm();
   if (!(length > 0)) return {};
   const Vec3 along = t / length, up = Vec3::Unit(static_cast<int>(axis));
@@ -37,7 +37,7 @@ Slide slide_of(const Vec3& t, SlopeAxis axis) {
 
 int vertices_in(const std::array<int, 3>& sample) { return sample[1] < 0 ? 1 : sample[2] < 0 ? 2 : 3; }
 
-// No loss has what has no mass.
+// Samples with a massless vertex take part in no loss.
 bool has_mass(const LossGarment& garment, const std::array<int, 3>& sample) {
   for (int i = 0; i < vertices_in(sample); ++i)
     if (!(garment.mass[static_cast<std::size_t>(sample[static_cast<std::size_t>(i)])] > 0)) return false;

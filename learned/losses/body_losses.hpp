@@ -8,24 +8,24 @@
 
 namespace selvedge {
 
-// The losses of cloth and body, without their weights. Which face of the body belongs to a vertex is given, -1: none
-// (learned/graph/nearest_faces.hpp), and no part of the derivative; nor are faces without area. Each returns its value
-// and adds the derivative by the cloth's positions x where `gradient` is not null.
+// The losses of cloth and body, without their weights. The caller gives each vertex' face of the body, or -1
+// (learned/graph/nearest_faces.hpp); derivatives take it as fixed. Faces without area give nothing. Each function
+// returns its value and adds the derivative by the cloth's positions x [m] where `gradient` is not null.
 
-// The samples of the options: the vertices of each, -1 behind them. They lie in the mean of these.
+// The vertices of each sample, -1 after the last. A sample lies at their mean.
 std::vector<std::array<int, 3>> cloth_samples(const LossGarment&, ClothSamples);
 Points sample_points(const std::vector<std::array<int, 3>>& samples, const Points& x);
 
-// Over the samples, of which each has a face: the sum of p^3 [m^3] or p^2 / 2 [m^2], p = max(eps - d, 0), d the
-// distance of the sample from the plane through the face's centroid where the body will be (parity README, 13).
+// The sum over the samples with a face of p^3 [m^3] or p^2 / 2 [m^2]. p = max(eps - d, 0), and d is the distance from
+// the plane through the centroid of face[sample], where the body will be (parity README, 13).
 double collision_loss(const LossGarment&, const CollisionLoss&, const std::vector<int>& face, const Surface& body,
                       const Points& body_next, const Points& x, Points* gradient);
 
-// Sum of m mu g c |t| [J] as HOOD's released code has it (parity README, 14). The cloth goes from `now` to x while the
-// body goes from `body_previous` to `body_now`, a frame behind. t is the part across n of what x has slid, beside the
-// motion of the centroid of the face `before`; n is the mean of that face's normal before the motion and of the normal
-// of face `after` after it, not of unit length; c = sqrt(|1 - cos^2| + 1e-4), with the angle between t and the slope
-// axis. Only vertices count whose centroids are within the radius at both ends.
+// Sum of m mu g c |t| [J] as in HOOD's released code (parity README, 14). The cloth goes from `now` to x, while the
+// body goes from `body_previous` to `body_now`, a frame late. A vertex slides by its motion less that of the centroid
+// of face `before`, and t is the part of the slide across n. n is the mean, not of unit length, of this face's normal
+// before the motion and the normal of face `after` after it. c = sqrt(|1 - cos^2| + 1e-4) of the angle between t and
+// the slope axis. A vertex counts if the centroids are within the radius both times.
 double friction_loss(const LossGarment&, const FrictionLoss&, double strength, const std::vector<int>& before,
                      const std::vector<int>& after, const Surface& body, const Points& body_previous,
                      const Points& body_now, const Points& now, const Points& x, Points* gradient);

@@ -9,7 +9,7 @@
 namespace selvedge {
 namespace {
 
-// A face's plane with what its derivative needs: the distance of p is normal . (p - third corner).
+// A face's plane and what its derivative needs. The distance of p is normal . (p - third corner).
 struct TurningPlane {
   Vec3 normal, side_a, side_b;  // sides: from the first corner to the second and the third
   double twice_area = 0;
@@ -26,10 +26,10 @@ TurningPlane plane_of_face(const Points& x, const int* corner) {
   return plane;
 }
 
-// Adds pull times the derivative of the distance from p, which the vertex and all corners have a part in.
+// Adds `pull` times the derivative of the vertex' distance by the vertex and all corners.
 void add_distance_slope(const TurningPlane& plane, const int* corner, int vertex, const Vec3& from_third,
                         double distance, double pull, Points& gradient) {
-  const Vec3 lever = (from_third - distance * plane.normal) / plane.twice_area;  // of the normal's turning
+  const Vec3 lever = (from_third - distance * plane.normal) / plane.twice_area;  // of the rotation of the normal
   const Vec3 second = plane.side_b.cross(lever), third = lever.cross(plane.side_a);
   gradient.row(vertex) += (pull * plane.normal).transpose();
   gradient.row(corner[0]) -= (pull * (second + third)).transpose();

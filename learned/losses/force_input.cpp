@@ -9,12 +9,12 @@ namespace {
 
 constexpr LossRamp never{0, 0};
 
-// Forces of the cloth itself, softer ones of the body, and where asked for those that shorten contours.
+// The losses whose forces are seen: those of the cloth, a softer contact with the body, and perhaps contours.
 LossOptions losses_of_forces(const LossOptions& options, const ForceOptions& force) {
   LossOptions soft = options;
   soft.collision.weight = {force.contact_stiffness, force.contact_stiffness};
   soft.collision.penalty = DepthPenalty::quadratic;
-  soft.collision.samples = ClothSamples::vertices;  // as in a run, which has no loss
+  soft.collision.samples = ClothSamples::vertices;  // as in a run, which has no loss options
   soft.collision.thickness = force.contact_thickness;
   soft.contours.weight = {force.contour_weight, force.contour_weight};
   soft.friction.weight = soft.repulsion.weight = never;

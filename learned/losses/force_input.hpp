@@ -4,7 +4,7 @@
 
 namespace selvedge {
 
-// Which forces are an input of a network (docs/training.md).
+// The forces that are an input of a network (docs/training.md).
 struct ForceOptions {
   double contact_stiffness = 300;   // of a quadratic contact with the body [N/m]; 0: none
   double contact_thickness = 3e-3;  // [m]
@@ -13,17 +13,17 @@ struct ForceOptions {
   bool inertia = false;             // include inertia: for a second pass, whose guess is not free flight
 };
 
-// -dE/dx at inputs.predicted, the guess, divided by the Jacobi diagonal m / dt^2 + sum of (2 mu + lambda) A |grad
-// phi|^2 over the vertex' triangles + twice the stiffness of its springs, whose other end moves too: a displacement d,
-// whose length is compressed to log(1 + |d| / length). V x 3; zero at pinned vertices and where the force is not
-// finite. The bending and gravity are those of the objective.
+// The displacement d = -dE/dx / D at inputs.predicted, the guess. E is the cloth's objective with the options' contact
+// and contours. D is the Jacobi diagonal: m / dt^2 + sum of (2 mu + lambda) A |grad phi|^2 over the vertex' triangles +
+// twice the stiffness of its springs, whose other end moves too. The length of d is compressed to log(1 + |d| /
+// length). V x 3; zero at pinned vertices and where it is not finite.
 Points force_input(const LossInputs&, const LossOptions&, const ForceOptions&, LossSearch&);
 
-// The diagonal [N/m]; dt as the inputs' inertia takes it.
+// The diagonal D [N/m]. `dt` is that of the inertia [s].
 std::vector<double> jacobi_diagonal(const LossGarment&, double dt);
 
-// Gives the garment, whose materials are set, the springs of its scene, none stiffer than the diagonal that the cloth
-// alone has at either end: beside stiffer ones no other force would be seen, and no other loss learned from.
+// Gives the garment, whose materials are set, the springs of its scene. None becomes stiffer than the diagonal of the
+// cloth alone at either end. Stiffer springs would hide every other force and loss.
 void set_springs(std::span<const Spring>, LossGarment&);
 
 }  // namespace selvedge

@@ -15,7 +15,7 @@ bool is_usable(const VertexMaterial& m) {
   return good(m.density) && good(m.lame_mu) && good(m.lame_lambda) && good(m.bending);
 }
 
-// One cloth whose hinges have the coefficient 1.
+// A scene of one cloth whose hinges have the coefficient 1.
 Scene cloth_alone(const Surface& surface, const Points& rest, HingeLength length) {
   Scene scene;
   scene.surface = surface;
@@ -48,7 +48,7 @@ void check_material(const VertexMaterial& material) {
     throw Error("a material has a number that is negative or not finite", garment_place, "give positive numbers");
 }
 
-// material_of(vertex)
+// `material_of(vertex)` returns a VertexMaterial.
 template <class MaterialOf>
 void set_masses_and_hinges(LossGarment& garment, const MaterialOf& material_of) {
   garment.mass.assign(static_cast<std::size_t>(garment.surface.vertex_count), 0);
@@ -69,9 +69,10 @@ void set_masses_and_hinges(LossGarment& garment, const MaterialOf& material_of) 
 LossGarment make_loss_garment(const Surface& surface, const Points& rest, const std::vector<char>& pinned,
                               const VertexMaterial& material, HingeLength length) {
   if (rest.rows() != surface.vertex_count || !rest.allFinite())
-    throw Error("the rest shape has not a finite position for each vertex", garment_place, "");
+    throw Error("the rest shape needs a finite position for each vertex", garment_place,
+                "give the rest shape of this surface");
   if (!pinned.empty() && pinned.size() != static_cast<std::size_t>(surface.vertex_count))
-    throw Error("the pins are not a flag for each vertex", garment_place, "");
+    throw Error("the pins need one flag for each vertex", garment_place, "give flags of this surface, or none");
   const Scene scene = cloth_alone(surface, rest, length);
   LossGarment garment;
   garment.surface = surface;
@@ -93,7 +94,7 @@ void set_material(LossGarment& garment, const VertexMaterial& material) {
 
 void set_materials(LossGarment& garment, std::span<const VertexMaterial> materials) {
   if (materials.size() != static_cast<std::size_t>(garment.surface.vertex_count))
-    throw Error("there is not a material for each vertex", garment_place, "");
+    throw Error("each vertex needs a material", garment_place, "give as many materials as the surface has vertices");
   for (const VertexMaterial& material : materials) check_material(material);
   const auto material_of = [&](int v) -> const VertexMaterial& { return materials[static_cast<std::size_t>(v)]; };
   garment.materials.clear();

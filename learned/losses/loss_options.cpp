@@ -5,7 +5,7 @@
 namespace selvedge {
 namespace {
 
-// Iterations of one run as fractions of another's length.
+// A ramp between iterations of a run, as fractions of its length.
 LossRamp ramp_over(double from, double to, double begin, double end, double iterations) {
   return {from, to, begin / iterations, end / iterations};
 }

@@ -6,81 +6,89 @@
 namespace selvedge {
 
 // A weight that goes linearly from one value to another between two points of the run. Points are fractions of it,
-// never iteration counts: no run is too short for its losses.
+// never iteration counts: no run is too short for its losses. Members are described where keys are bound to them:
+// pipeline/training/objective_options.cpp.
 struct LossRamp {
-  double from = 1, to = 1;    // at `begin` and before, at `end` and after
-  double begin = 0, end = 0;  // in [0, 1]
+  double from = 1, to = 1, begin = 0, end = 0;
 };
 double weight_at(const LossRamp&, double progress);
 inline bool is_used(const LossRamp& ramp) { return ramp.from != 0 || ramp.to != 0; }
 
-// Which face of the body, where it is now, belongs to a cloth vertex where that is now: the one with the nearest
-// centroid, however far (HOOD), or the one with the nearest point within a radius (ContourCraft).
+// The face of the body that belongs to a cloth vertex, both where they are now: the face with the nearest centroid,
+// however far (HOOD), or with the nearest point within a radius (ContourCraft).
 enum class BodyMatching { nearest_centroid, nearest_face };
 
 // The penalty of a depth p = max(eps - d, 0): w p^3 [w in N/m^2], as published, or the softer w p^2 / 2 [w in N/m].
 enum class DepthPenalty { cubic, quadratic };
 
-// Places of the cloth that are kept out of the body: its vertices, as published; the middles of its edges too; the
-// centroids of its triangles too. Each counts as a vertex does. Edges between vertices that are outside cut a round
-// arm.
+// Samples of the cloth that are kept out of the body: the vertices, as published; also the middles of edges; also the
+// centroids of triangles. Each counts as a vertex does. Edges between vertices that are outside cut a round arm.
 enum class ClothSamples { vertices, edges, faces };
 
+// Penetration of the body. Members are described where keys are bound to them: pipeline/training/objective_options.cpp.
 struct CollisionLoss {
   LossRamp weight{5e3, 5e5, 1.0 / 3, 1};
-  double thickness = 2e-3;  // eps [m]
+  double thickness = 2e-3;
   BodyMatching matching = BodyMatching::nearest_centroid;
-  double radius = 3e-2;  // of nearest_face [m]
+  double radius = 3e-2;
   DepthPenalty penalty = DepthPenalty::cubic;
   ClothSamples samples = ClothSamples::vertices;
 };
 
-// The axis whose share in the slide slackens friction: the released code takes z in a world where y is up.
+// Friction is weaker for slides along this axis. The released code takes z in a world where y is up.
 enum class SlopeAxis { x, y, z };
 
+// Friction on the body. Members are described where keys are bound to them: pipeline/training/objective_options.cpp.
 struct FrictionLoss {
   LossRamp weight{0, 0};
   double coefficient = 0.5;
-  double squared_radius = 3e-3;  // of nearest centroids before and after [m^2]: 5.5 cm
+  double squared_radius = 3e-3;
   SlopeAxis slope = SlopeAxis::z;
 };
 
+// Repulsion between layers of cloth. Members are described where keys are bound to them:
+// pipeline/training/objective_options.cpp.
 struct RepulsionLoss {
   LossRamp weight{0, 0};
-  double thickness = 3e-3;       // released configs; the paper writes 1e-3 [m]
-  double correspondence = 1e-2;  // pairs farther apart now take no part [m]
-  double pinned_factor = 100;    // inside the cube, where the vertex or one of the face is pinned
+  double thickness = 3e-3;
+  double correspondence = 1e-2;
+  double pinned_factor = 100;
 };
 
+// Length of intersection contours. Members are described where keys are bound to them:
+// pipeline/training/objective_options.cpp.
 struct ContourLoss {
   LossRamp weight{0, 0};
   ContourGradient gradient = ContourGradient::translational;
-  ContourNormal normal = ContourNormal::frozen;  // frozen as released; turning: the exact derivative
-  double share = 0;  // of a sample's gradient, held in training whatever the weight (held_share.hpp); 0: not held
+  ContourNormal normal = ContourNormal::frozen;
+  double share = 0;
 };
 
-// enclosed: of all crossings, garments closed by fans (Liao et al. 2024). winding: what each garment does to itself is
-// judged by its winding number, without fans; what garments do to each other, as above.
+// enclosed: all crossings, with garments closed by fans (Liao et al. 2024). winding: crossings of a garment with itself
+// by its winding number, without fans; crossings between garments as above.
 enum class VolumeForm { enclosed, winding };
 
-// L_sc. As published the weight is 3e4 from 0.632 of the run on.
+// The volume that self-penetrating cloth encloses: L_sc. Members are described where keys are bound to them:
+// pipeline/training/objective_options.cpp.
 struct VolumeLoss {
   LossRamp weight{0, 0};
   VolumeForm form = VolumeForm::enclosed;
   PenetrationOptions regions;
   PenetrationMeasure measure = PenetrationMeasure::volume;
   CrossingMotion crossings = CrossingMotion::exact;
-  double saturation = 0;  // PenetrationLossOptions [m^3]
+  double saturation = 0;
 };
 
-// The repulsion that the paper compares L_sc with: (distance - d)^power of vertices without a common edge.
+// The repulsion that the paper compares L_sc with: (distance - d)^power of vertices without a common edge. Members are
+// described where keys are bound to them: pipeline/training/objective_options.cpp.
 struct VertexRepulsionLoss {
   LossRamp weight{0, 0};
-  double distance = 0.05;  // [m]
-  int power = 2;           // or 1; the paper's is lost
+  double distance = 0.05;
+  int power = 2;
 };
 
-// What is summed up. A term whose weight is zero is not evaluated. The defaults are HOOD's.
+// What is summed up. A term whose weight is zero is not evaluated. The defaults are HOOD's. Members are described where
+// keys are bound to them: pipeline/training/objective_options.cpp.
 struct LossOptions {
   LossRamp stretching, bending, gravity, inertia;
   CollisionLoss collision;
@@ -89,13 +97,13 @@ struct LossOptions {
   ContourLoss contours;
   VolumeLoss volume;
   VertexRepulsionLoss vertex_repulsion;
-  double gravity_strength = 9.81;  // against y [m/s2]
-  double relaxation_dt = 1.0 / 3;  // of the inertia of a frame in which cloth falls to rest [s]
+  double gravity_strength = 9.81;
+  double relaxation_dt = 1.0 / 3;
 };
 
-// As published, iterations being fractions of the run (parity README): of HOOD's 150,000; of the 56,000 of
-// ContourCraft's stages 1 and 2, which are blind to contours; of the 11,000 of its stage 3, in whose first 5,000 the
-// contour loss rises. The released ContourCraft trains without friction.
+// Options as published, with iterations as fractions of the run (parity README). HOOD's run has 150,000. ContourCraft's
+// stages 1 and 2 have 56,000 and do not see contours. Its stage 3 has 11,000, and the contour loss rises in the first
+// 5,000. The released ContourCraft trains without friction.
 LossOptions hood_losses();
 LossOptions senc_losses();  // its two phases of 120,000 and 70,000 in one run
 LossOptions contourcraft_losses();

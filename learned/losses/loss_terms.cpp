@@ -8,7 +8,7 @@
 namespace selvedge {
 namespace {
 
-// The weight that a member of the options is, or has.
+// The weight of a term: a member of the options, or the `weight` of that member.
 template <auto member>
 const LossRamp& weight_in(const LossOptions& options) {
   if constexpr (requires { (options.*member).weight; })

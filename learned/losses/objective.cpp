@@ -10,11 +10,12 @@ namespace {
 
 void check_rows(const Points* points, int rows, const char* what) {
   if (!points || points->rows() != rows)
-    throw Error(std::string(what) + " have not a row for each vertex", "inputs of the losses", "");
+    throw Error(std::string(what) + " need one row for each vertex", "inputs of the losses",
+                "give arrays of this garment and body");
 }
 
 void check_inputs(const LossInputs& in) {
-  if (!in.garment) throw Error("there is no garment", "inputs of the losses", "");
+  if (!in.garment) throw Error("there is no garment", "inputs of the losses", "set `garment`");
   const int vertices = in.garment->surface.vertex_count;
   check_rows(in.x, vertices, "positions");
   check_rows(in.velocity, vertices, "velocities");
@@ -26,10 +27,10 @@ void check_inputs(const LossInputs& in) {
   check_rows(in.body_next, in.body->vertex_count, "the body's next positions");
   if (in.body_left_out && !in.body_left_out->empty() &&
       in.body_left_out->size() != static_cast<std::size_t>(in.body->triangles.rows()))
-    throw Error("what is left out of the body is not a flag for each face", "inputs of the losses", "");
+    throw Error("faces left out of the body need one flag for each face", "inputs of the losses",
+                "give flags of this body, or none");
 }
 
-// The weight at this progress of the run.
 double weight_now(const LossRamp& ramp, const LossInputs& in) { return weight_at(ramp, in.progress); }
 
 const std::vector<char>& left_out_of(const LossInputs& in) {
@@ -62,7 +63,7 @@ bool looks_for_contours(const LossInputs& in, const LossOptions& options) {
   return in.contours && weight_now(options.contours.weight, in) != 0;
 }
 
-// What depends on the prediction.
+// Finds the matches that depend on the prediction.
 void find_of_prediction(const LossInputs& in, const LossOptions& options, LossSearch& search) {
   if (has_body(in) && weight_now(options.friction.weight, in) != 0)
     search.matches.friction_after =
@@ -93,8 +94,7 @@ void check_match(const std::vector<int>& faces, const LossInputs& in, const Loss
                  ClothSamples samples = ClothSamples::vertices) {
   if (!has_body(in) || weight_now(ramp, in) == 0) return;
   if (faces.size() != cloth_samples(*in.garment, samples).size())
-    throw Error("there is not a face of the body, or none, for each vertex or other sample", "matches of the losses",
-                "");
+    throw Error("each sample of the cloth needs a face of the body, or -1", "matches of the losses", "");
 }
 
 }  // namespace

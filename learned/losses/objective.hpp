@@ -11,11 +11,11 @@
 
 namespace selvedge {
 
-// The inputs that a state of a graph gives. All arguments are referred to.
+// The inputs of the losses for a state of a graph. They refer to all arguments.
 LossInputs loss_inputs(const LossGarment&, const GraphScene&, const GraphState&, const SeenPositions&,
                        const Points& predicted);
 
-// Kept between calls. It saves time and changes nothing.
+// Memory between calls. It saves time and changes nothing.
 struct LossSearch {
   NearestFaces collision, before, after;
   ClothSearch cloth;
@@ -25,9 +25,9 @@ struct LossSearch {
 struct LossTerm {
   const LossRow* row = nullptr;
   std::string name;          // of the row
-  double weight = 0;         // now, inside value and gradient
+  double weight = 0;         // weight now, inside value and gradient
   double value = 0;          // [J]
-  double gradient_norm = 0;  // over vertices that are not pinned [N]
+  double gradient_norm = 0;  // norm over vertices that are not pinned [N]
 };
 
 // Adds to `gradient` (V x 3, may be null) the derivative of the weighted sum with respect to the predicted positions,
@@ -41,12 +41,12 @@ std::vector<LossTerm> add_losses(const LossInputs&, const LossOptions&, const Lo
 
 double sum_of(std::span<const LossTerm>);  // [J]
 
-// The sum at predicted = base + t (inputs.predicted - base) for each t: the gate of the fast recipe takes the least.
-// Body faces are matched once, for they depend on where the cloth is now.
+// The sum at predicted = base + t (inputs.predicted - base) for each t. The gate of the fast recipe takes the least.
+// Body faces are matched once, because they depend on where the cloth is now.
 std::vector<double> losses_along(const LossInputs&, const LossOptions&, const Points& base, std::span<const double> t,
                                  LossSearch&);
 
-// From and to single precision, V x 3 by rows.
+// Read V x 3 numbers by rows in single precision, and add to such numbers.
 Points points_of(std::span<const float>);
 void add_to(const Points&, std::span<float>);
 

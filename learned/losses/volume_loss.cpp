@@ -11,7 +11,7 @@
 namespace selvedge {
 namespace {
 
-// The segments within garments, or those between two.
+// The segments between two garments, or those within one.
 Segments segments_of_kind(const ClosedSurface& closed, const Segments& all, bool between) {
   Segments kept{all.crossings, {}, {}};
   for (const Segment& segment : all.segments)

@@ -13,10 +13,10 @@ struct VolumeCounts {
   double rim_share = 0;  // WindingReport
 };
 
-// The self-collision loss L_sc without its weight of 3e4: sum of 6 |V| over the regions, each as saturated_volume
-// counts it [m^3], or of their area [m^2]; by winding numbers 6 x the integral of their cost. Adds the derivative by
-// the cloth's positions x where `gradient` is not null. `closed` is of the cloth (close_surface); made once a garment.
-// Positions that are not finite give 0.
+// The self-collision loss L_sc without its weight of 3e4: the sum over the regions of 6 |V| as saturated_volume counts
+// it [m^3], or of their area [m^2]. By winding numbers it is 6 times the integral of their cost. Adds the derivative by
+// the cloth's positions x where `gradient` is not null. `closed` is the closed cloth (close_surface), made once per
+// garment. Positions that are not finite give 0.
 double volume_loss(const ClosedSurface& closed, const VolumeLoss&, const Points& x, Points* gradient,
                    VolumeCounts* counts = nullptr);
 
@@ -24,8 +24,8 @@ double volume_loss(const ClosedSurface& closed, const VolumeLoss&, const Points&
 // [m/s2]. Adds the derivative where `gradient` is not null.
 double force_loss(const std::vector<double>& mass, const Points& acceleration, const Points& x, Points* gradient);
 
-// The repulsion that the paper compares with (its appendix A): sum over pairs of cloth vertices closer than `distance`
-// that no edge joins of (distance - d)^power, power 1 or 2 [m or m^2].
+// The repulsion that the paper compares with (its appendix A): the sum of (distance - d)^power over pairs of cloth
+// vertices that are closer than `distance` and share no edge. The power is 1 or 2 [m or m^2].
 double vertex_repulsion_loss(const Surface&, double distance, int power, const Points& x, Points* gradient);
 
 }  // namespace selvedge

@@ -17,7 +17,7 @@ AlignedFloats::AlignedFloats(std::size_t size) : size_(size) {
   data_.reset(static_cast<float*>(std::aligned_alloc(alignment, bytes)));
   if (!data_) throw std::bad_alloc();
 #if defined(__linux__)
-  if (alignment == large_page) madvise(data_.get(), bytes, MADV_HUGEPAGE);  // a wish: what comes of it does not matter
+  if (alignment == large_page) madvise(data_.get(), bytes, MADV_HUGEPAGE);  // a request only, which may fail
 #endif
   std::memset(data_.get(), 0, bytes);
 }

@@ -6,8 +6,8 @@
 
 namespace selvedge {
 
-// Zeros that begin at a cache line. What is large begins at a large page, and the system is asked for such pages: rows
-// that are gathered from all over it are found sooner.
+// Zeros that begin at a cache line. Large arrays begin at a large page, and the system is asked for such pages, so that
+// scattered rows are found faster.
 class AlignedFloats {
  public:
   AlignedFloats() = default;

@@ -8,7 +8,7 @@
 namespace selvedge {
 namespace {
 
-// Layers of one perceptron: weights and biases, and the layer norm where it has one.
+// The number of weights, biases and layer norms of one perceptron.
 long long perceptron_size(const Architecture& a, long long inputs, long long outputs, bool norm) {
   const long long width = a.width;
   return (inputs + 1) * width + (a.hidden_layers - 1) * (width + 1) * width + (width + 1) * outputs +

@@ -8,28 +8,27 @@
 
 namespace selvedge {
 
-// A network that turns the features of one kind of edges into latents. Kinds may share one.
+// A network that turns the features of edges into latents. Several kinds of edges may share one.
 struct EdgeEncoder {
-  std::string name;  // as the published checkpoints call it: mesh, world, body, coarse0..
+  std::string name;  // name in the published checkpoints: mesh, world, body, coarse0..
   int inputs = 0;
 };
 
-// Edges of one key, which encoder reads their features, and how many of its columns are normalised.
 struct EdgeKind {
   std::string key;
   int encoder = 0;     // index into Architecture::encoders
   int normalised = 0;  // the first columns of the features
 };
 
-// Edges of one key take part in a step only where every cloth end of theirs has an edge in one of the sets `near`.
+// Edges of this key take part in a step only if each cloth end of theirs has an edge in one of the sets `near`.
 struct EdgeFilter {
   std::string key;
   std::vector<std::string> near;
 };
 
-// One step of message passing with weights of its own. The sums enter the node network in the order of `edge_keys`,
-// which is alphabetical (row 3 of the parity README). Latents of edges that a filter drops stay as they are; an edge
-// must pass every filter of its key (row 5).
+// One step of message passing with its own weights. The sums enter the node network in the order of `edge_keys`, which
+// is alphabetical (row 3 of the parity README). Latents of edges that a filter drops stay unchanged. An edge must pass
+// every filter of its key (row 5).
 struct MessageStep {
   std::vector<std::string> edge_keys;
   std::vector<EdgeFilter> filters;
@@ -40,8 +39,8 @@ struct TableSize {
   int rows = 0, columns = 0;
 };
 
-// Columns that each set of statistics covers; zero where a model lacks it. Kinds of edges name theirs by key: the
-// published HOOD calls its edges to the body `world_edge`, and so do its statistics.
+// Columns of each set of statistics; zero where a model lacks it. Kinds of edges name their set by key. The published
+// HOOD calls edges to the body and their statistics `world_edge`.
 struct StatisticsSizes {
   int node = 0, mesh_edge = 0, coarse_edge = 0, world_edge = 0, body_edge = 0, output = 3, space_edge = 0;
 };
@@ -52,14 +51,14 @@ enum class Integration {
   start_flag,        // ContourCraft: a flag among the features says that a sample starts (is_init)
 };
 
-// A network as a value: what it reads, how it passes messages, what it writes. Weights stand beside it.
+// A network as a value: inputs, message passing and outputs. Its weights are separate (NetworkWeights).
 struct Architecture {
   std::string name;
-  int width = 128;         // of every latent
-  int hidden_layers = 2;   // of every multi-layer perceptron; each is as wide as a latent
+  int width = 128;         // width of every latent
+  int hidden_layers = 2;   // of every perceptron, each as wide as a latent
   bool layer_norm = true;  // on the output of every perceptron but the decoder
   int node_inputs = 0;
-  FeatureOptions features;  // what the inputs are
+  FeatureOptions features;  // description of the inputs
   std::vector<EdgeEncoder> encoders;
   std::vector<EdgeKind> edge_kinds;
   std::vector<MessageStep> steps;
@@ -67,18 +66,18 @@ struct Architecture {
   TableSize node_type, vertex_level, edge_type;
   StatisticsSizes statistics;
   Integration integration = Integration::relaxation_frame;
-  int passes = 1;  // runs of the network a frame, all with the same weights
+  int passes = 1;  // runs of the network per frame with the same weights
 };
 
 // hood, hood_cvpr, fine15, fine48, contourcraft, contourcraft_paper, senc, small, small_contour, small_senc,
-// small_senc_layers, tiny (`preset_names`). Sizes: docs/learned.md. The last five are ours: `small` is blind to contact
-// of cloth with cloth, `small_senc` sees what SENC does, `small_senc_layers` that and the edges of `small_contour`,
-// `tiny` is for tests. Throws Error at any other name.
+// small_senc_layers, tiny (`preset_names`). Sizes: docs/learned.md. The last five are ours. `small` has no contact of
+// cloth with cloth, `small_senc` has SENC's inputs, `small_senc_layers` adds the edges of `small_contour`, and `tiny`
+// is for tests. Throws Error at any other name.
 Architecture architecture_preset(const std::string& name);
 std::vector<std::string> preset_names();
 
-// Throws Error, with `where` as its place, unless the value can be built: counts within bounds (width at most 4096, at
-// most 1024 steps, ...), every key known, keys of a step in alphabetical order, encoders in range.
+// Throws Error, which names `where`, unless the network can be built: counts within bounds (width at most 4096, at most
+// 1024 steps, ...), every key known, keys of a step in alphabetical order, encoders in range.
 void check_architecture(const Architecture&, const std::string& where);
 
 // Trainable numbers: weights, biases, layer norms, embeddings. Statistics are not counted.

@@ -2,7 +2,7 @@
 
 namespace selvedge {
 
-// What a network may have at most: files and options that ask for more are refused.
+// Limits of a network. Files and options that exceed them are refused.
 inline constexpr int most_latents = 4096;
 inline constexpr int most_message_steps = 1024;
 

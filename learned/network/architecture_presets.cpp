@@ -12,8 +12,8 @@ void add_edges(Architecture& a, const std::string& encoder, int inputs, int norm
 
 void add_steps(Architecture& a, int count, const MessageStep& step) { a.steps.insert(a.steps.end(), count, step); }
 
-// Three steps each on: mesh and c0, c0 and c1, c1 alone, and back. `down1` and `down2` say near which edges those to
-// the body are kept on the way down.
+// Adds three steps each on: mesh and c0, c0 and c1, c1 alone, and back. `down1` and `down2` select the edges to the
+// body on the way down.
 void add_hierarchy(Architecture& a, const EdgeFilter& down1, const EdgeFilter& down2) {
   const MessageStep fine{{"coarse_edge0", "mesh_edge", "world_edge"}, {}};
   const MessageStep middle{{"coarse_edge0", "coarse_edge1", "world_edge"}, {down1}};
@@ -37,7 +37,7 @@ Architecture hood() {
   return a;
 }
 
-// models/cvpr.py: one encoder for all coarse edges, and going down looks at one level only.
+// models/cvpr.py: one encoder for all coarse edges. A filter on the way down looks at one level only.
 Architecture hood_cvpr() {
   Architecture a = hood();
   a.name = "hood_cvpr";
@@ -66,8 +66,8 @@ Architecture fine(const std::string& name, int steps) {
   return a;
 }
 
-// SENC (Liao et al. 2024): HOOD with the acceleration by forces without contact among the node features, and edges in
-// space, which take part wherever mesh edges or those of the coarse level do.
+// SENC (Liao et al. 2024): HOOD with accelerations by forces without contact among the node features, and with edges in
+// space, which take part wherever mesh edges or those of the step's coarse levels do.
 Architecture senc() {
   Architecture a = hood();
   a.name = "senc";
@@ -85,7 +85,7 @@ Architecture senc() {
   return a;
 }
 
-// ContourCraft (Grigorev et al. 2024) with the coarse levels `encoded`, of which every step uses `used`.
+// ContourCraft (Grigorev et al. 2024). It encodes the coarse levels `encoded`, and every step uses `used`.
 Architecture contour(const std::string& name, const FeatureOptions& features, const std::vector<std::string>& encoded,
                      const std::vector<std::string>& used) {
   Architecture a;
@@ -109,9 +109,9 @@ Architecture contour(const std::string& name, const FeatureOptions& features, co
   return a;
 }
 
-// What our small networks see (docs/learned.md). Nodes: velocity 3, normal 3, time step 1, log mass 1, nearest body
-// face 14, the objective's preconditioned gradient 3, move so far 3 | bending, mu, lambda 3, pinned 1, near the body 1,
-// pass 1. Edges: x_s - x_r 3, norm, rest length, strain at x and at the guess.
+// The inputs of our small networks (docs/learned.md). Nodes: velocity 3, normal 3, time step 1, log mass 1, nearest
+// body face 14, the objective's preconditioned gradient 3, move so far 3 | bending, mu, lambda 3, pinned 1, near the
+// body 1, pass 1. Edges: x_s - x_r 3, norm, rest length, strain at x and at the guess.
 FeatureOptions own_features() {
   FeatureOptions options;
   options.type_columns = options.level_columns = 0;
@@ -130,8 +130,8 @@ FeatureOptions own_features() {
   return options;
 }
 
-// Ours, for two cores. With `contact`, cloth sees cloth by vertices and faces; with `forces`, a network sees what SENC
-// does: accelerations by forces without contact, and edges in space.
+// Our networks for two cores. `contact` adds vertex-face edges of cloth with cloth. `forces` adds SENC's inputs:
+// accelerations by forces without contact, and edges in space.
 Architecture own(const std::string& name, int width, int steps, bool contact, bool forces = false) {
   Architecture a;
   a.name = name;

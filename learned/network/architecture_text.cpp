@@ -9,7 +9,7 @@
 namespace selvedge {
 namespace {
 
-// Fields that are lists of so many entries each, at most: more is an error before anything is made.
+// The limit of entries in a list; longer lists are refused before memory is allocated.
 constexpr int most_entries = 1024;
 
 template <class Number>
@@ -31,7 +31,7 @@ std::vector<std::string> split(const std::string& text) {
   return all;
 }
 
-// Appends a line a field.
+// Appends one line per field.
 struct FieldWriter {
   std::string text;
 
@@ -55,7 +55,7 @@ struct FieldWriter {
   }
 };
 
-// Takes fields away from the lines of a text.
+// Parses the lines of a text and gives each field once.
 class FieldReader {
  public:
   FieldReader(const std::string& text, std::string where) : where_(std::move(where)) {
@@ -129,7 +129,7 @@ void visit_table(Visitor& visit, const std::string& name, Size& table) {
   visit(name + ".columns", table.columns);
 }
 
-// Every field that is one value, in the order of the text; `a` and `visit` either write or read.
+// Visits every field that is one value, in the order of the text. `visit` reads or writes.
 template <class Visitor, class Options>
 void visit_features(Visitor& visit, Options& f) {
   visit("features.type_columns", f.type_columns);

@@ -8,8 +8,8 @@ namespace selvedge {
 
 using RowsView = Eigen::Ref<const FeatureRows>;
 
-// Products of matrices stored by rows. Eigen's product takes seconds to compile wherever it is used. So it is compiled
-// here alone.
+// Products of matrices stored by rows. They are compiled only here, because each use of Eigen's product takes seconds
+// to compile.
 FeatureRows product(const RowsView& a, const RowsView& b);                                       // a b
 FeatureRows product_transposed(const RowsView& a, const RowsView& b);                            // a b^T
 void add_transposed_product(const RowsView& a, const RowsView& b, Eigen::Ref<FeatureRows> sum);  // sum += a^T b

@@ -11,10 +11,10 @@
 namespace selvedge {
 namespace {
 
-// A chunk is what one thread does at a time: some tiles of edges, or one tile of nodes.
+// One thread's unit of work: a chunk has some tiles of edges, or one tile of nodes.
 constexpr int edges_in_chunk = 192;
 
-// What one thread needs for one tile.
+// Memory of one thread for one tile.
 struct TileBuffers {
   int stride;
   AlignedFloats first, second;
@@ -39,14 +39,14 @@ struct Pass {
   const Graph& graph;
   GraphPlan plan;
   LatentRows nodes;
-  std::vector<LatentRows> edges;      // of each set, sorted by receiver
-  LatentRows to_receiver, to_sender;  // first layers' products of the nodes, of the selection at hand
-  std::vector<LatentRows> sums;       // of each key of a step: one row a receiver
+  std::vector<LatentRows> edges;      // one per set, sorted by receiver
+  LatentRows to_receiver, to_sender;  // products of the nodes in the first layers of the current selection
+  std::vector<LatentRows> sums;       // one per key of a step, with one row per receiver
 
   int width() const { return network.architecture.width; }
 };
 
-// Entries behind the last row are read and not used.
+// Kernels read whole tiles, and results of the rows added here are not used.
 void fill_up(const float** input, int rows) { std::fill(input + rows, input + tile_rows, input[0]); }
 
 LayerTile layer_tile(const PackedLayer& layer, const float* const* input, float* out, int stride, int rows) {
@@ -63,8 +63,8 @@ LayerTile layer_tile(const PackedLayer& layer, const float* const* input, float*
           false};
 }
 
-// The layers behind the first, whose results lie in `first`; then the layer norm; then the results go to
-// `buffers.latent`, and to `buffers.sum` where it is asked for.
+// Computes the layers after the first, whose results lie in `first`, then the layer norm. Writes or adds the results to
+// `buffers.latent`, and adds them to `buffers.sum` if `sum`.
 void finish_tile(const Pass& pass, const PackedPerceptron& p, TileBuffers& buffers, int rows, bool add, bool sum) {
   const float* const* input = buffers.first_row;
   float* values = buffers.first.data();
@@ -81,7 +81,7 @@ void finish_tile(const Pass& pass, const PackedPerceptron& p, TileBuffers& buffe
                        sum ? buffers.sum : nullptr});
 }
 
-// Row i of `to` becomes the perceptron's result for row order[i] of `from` (row i without an order). Its input is one
+// Row i of `to` becomes the perceptron's result for row order[i] of `from` (row i without an order). The input is one
 // block.
 void evaluate_rows(const Pass& pass, const PackedPerceptron& p, const float* from, std::ptrdiff_t from_stride,
                    const std::vector<int>* order, int rows, float* to, std::ptrdiff_t to_stride) {
@@ -124,8 +124,8 @@ void prefetch_edge_tile(const Pass& pass, const EdgeSelection& selection, int be
   }
 }
 
-// Edges [begin, begin + count) of the selection: products of both nodes and the edge, the other layers, layer norm; the
-// new value is added to the edge's latent and to the receiver's sum.
+// Computes edges [begin, begin + count) of the selection from the products of both nodes. Adds the new value to the
+// edge's latent and to the receiver's sum.
 void update_edge_tile(const Pass& pass, const PackedPerceptron& p, const EdgeSelection& selection, int begin, int count,
                       LatentRows& latents, LatentRows& sums, TileBuffers& buffers) {
   for (int r = 0; r < count; ++r) {
@@ -166,8 +166,8 @@ void update_edges(Pass& pass, const PackedPerceptron& p, const EdgeSelection& se
   }
 }
 
-// Row by row, the sums of one kind of edges for the nodes [begin, begin + count), or zeros where a node has none. False
-// if none of them has any.
+// Sets `rows` to the sums of one kind of edges for nodes [begin, begin + count), or to zeros where a node has none.
+// Returns false if none of them has a sum.
 bool find_sums(const EdgeSelection& selection, const LatentRows& sums, int begin, int count, const float* zeros,
                const float** rows) {
   bool any = false;
@@ -180,8 +180,8 @@ bool find_sums(const EdgeSelection& selection, const LatentRows& sums, int begin
   return any;
 }
 
-// Nodes [begin, begin + count): own latent and sums through the first layer, block by block. A block of sums that none
-// of these nodes has is zero and left out.
+// Computes nodes [begin, begin + count): the own latent and the sums pass the first layer block by block. A block of
+// sums is left out if none of these nodes has one.
 void update_node_tile(const Pass& pass, const PackedPerceptron& p, const std::vector<int>& selections, int begin,
                       int count, const float* zeros, LatentRows& nodes, TileBuffers& buffers) {
   for (int r = 0; r < count; ++r) buffers.input[r] = buffers.latent[r] = nodes.row(begin + r);
@@ -215,7 +215,7 @@ void update_nodes(Pass& pass, const PackedPerceptron& p, const std::vector<int>&
   }
 }
 
-// All edges from the old latents of the nodes, then the nodes.
+// Updates all edges from the old latents of the nodes, then the nodes.
 void pass_messages(Pass& pass, std::size_t step) {
   const std::vector<int>& selections = pass.plan.steps[step];
   for (std::size_t k = 0; k < selections.size(); ++k)
@@ -224,7 +224,7 @@ void pass_messages(Pass& pass, std::size_t step) {
   update_nodes(pass, pass.network.steps[step].node, selections);
 }
 
-// Only sets that a step uses are encoded, unless all are asked for.
+// Encodes the sets that a step uses, or all.
 void encode(Pass& pass, bool all) {
   const Architecture& a = pass.network.architecture;
   evaluate_rows(pass, pass.network.node_encoder, pass.graph.nodes.data(), a.node_inputs, nullptr,
@@ -263,7 +263,7 @@ FeatureRows copy_nodes(const Pass& pass) {
   return rows;
 }
 
-// In the order of the graph.
+// Rows are in the order of the graph.
 std::vector<FeatureRows> copy_edges(const Pass& pass) {
   std::vector<FeatureRows> copies;
   for (std::size_t s = 0; s < pass.edges.size(); ++s) {

@@ -16,10 +16,10 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Seconds that the threads of this process ran so far, all together.
+// Seconds of all threads of this process together.
 double busy_seconds_now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-// Six operations of one cycle each, every one of which waits for the one before.
+// Six operations of one cycle each, each of which waits for the last one.
 std::uint64_t chain(std::uint64_t x, long iterations) {
   for (long i = 0; i < iterations; ++i) {
     x ^= x << 13;
@@ -37,7 +37,7 @@ double measure_clock() {
   return 6.0 * iterations / (seconds_now() - begin);
 }
 
-// Runs the chains on every thread at once; returns how many threads there were.
+// Runs the chains on every thread at once and returns the number of threads.
 int exercise_all(const EngineKernels& kernels, long iterations) {
   int threads = 0;
   float kept = 0;

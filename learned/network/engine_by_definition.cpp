@@ -48,7 +48,7 @@ FeatureRows evaluate_rows(const Perceptron& p, const FeatureRows& inputs) {
   return results;
 }
 
-// New values of the edges of one set, without residual; edges that do not take part have zero.
+// New values of the edges of one set, without residual. They are zero for edges that take no part.
 FeatureRows update_edges(const Perceptron& p, const EdgeSet& set, const std::vector<char>& takes_part,
                          const FeatureRows& nodes, const FeatureRows& edges) {
   FeatureRows updated = FeatureRows::Zero(edges.rows(), edges.cols());

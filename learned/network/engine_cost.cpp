@@ -55,7 +55,7 @@ double count_bytes(const Architecture& a, const Graph& graph) {
     receivers = std::max(receivers, tile_padded(selection.receivers.size()));
     senders = std::max(senders, tile_padded(selection.senders.size()));
   }
-  std::vector<int> sums;  // of each key of a step: the most over all steps
+  std::vector<int> sums;  // one per key of a step: the most over all steps
   for (const std::vector<int>& step : plan.steps)
     for (std::size_t k = 0; k < step.size(); ++k) {
       if (sums.size() <= k) sums.push_back(0);

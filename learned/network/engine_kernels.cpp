@@ -5,14 +5,14 @@
 #include "collision/geometry/error.hpp"
 #include "learned/network/row_norms.hpp"
 
-// The inner loops are templates over the number of lanes, inlined into one function an instruction set. CMake lets the
-// compiler contract a * b + c here: exact bits do not matter, the same ones on every thread do.
+// Inner loops are templates over the number of lanes, inlined into one function per instruction set. CMake lets the
+// compiler contract a * b + c here, because bits need to be the same on every thread only.
 
 namespace selvedge {
 namespace {
 
-// Rows x two vectors of results stay in registers while the inputs go by. `Fetch`: the next panel of weights is brought
-// into the first cache meanwhile, one line a line that is read.
+// `Rows` x two vectors of results stay in registers over all inputs. `Fetch` brings the next panel of weights into the
+// first cache meanwhile, a line for each line that is read.
 template <int Lanes, int Rows, bool Fetch>
 [[gnu::always_inline]] inline void multiply_block(const LayerTile& t, int row, int column, const float* next) {
   Vector<Lanes> sums[Rows][2];
@@ -71,7 +71,7 @@ template <int Lanes>
   }
 }
 
-// One piece of a row: Value is a vector, or a float behind the last whole vector.
+// One piece of a row. Value is a vector, or a float after the last whole vector.
 template <class Value>
 [[gnu::always_inline]] inline Value normalised(Value x, float mean, float factor, Value scale, Value shift) {
   return (x - mean) * factor * scale + shift;
@@ -126,7 +126,7 @@ template <int Lanes>
   return sum_lanes<Lanes>(sums[0]);
 }
 
-// Blocks of twelve sums fit the sixteen registers of the smaller sets, of twenty-four the thirty-two of AVX-512.
+// Blocks of 12 sums fit the 16 registers of the smaller sets, and 24 sums fit the 32 registers of AVX-512.
 void multiply_plain(const LayerTile& t) { multiply_tile<4, 6>(t); }
 void add_pairs_plain(const PairTile& t) { add_pairs_tile<4>(t); }
 void finish_plain(const ResultTile& t) { finish_tile<4>(t); }

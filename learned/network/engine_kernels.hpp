@@ -4,33 +4,32 @@
 
 namespace selvedge {
 
-// Rows of activations that pass all layers of a perceptron while they lie in the cache.
+// Rows of activations that pass all layers of a perceptron while they are in the cache.
 constexpr int tile_rows = 24;
-// Rows of floats are padded with zeros to a multiple of this many: whole panels for every instruction set.
+// Rows of floats are padded with zeros to a multiple of this: whole panels for every instruction set.
 constexpr int padding = 32;
 
 inline int padded(int columns) { return (columns + padding - 1) / padding * padding; }
 
-// One layer on one tile: out = [max(0, .)] (start + input x weight), where start is the bias, or what `out` holds. Of
-// `input` and `out` whole register blocks are read and written: `input` has tile_rows entries that can be read, `out`
-// has tile_rows rows.
+// One layer on one tile: out = [max(0, .)] (start + input x weight). The start is the bias, or the content of `out`.
+// Whole register blocks are read and written: `input` must have tile_rows valid pointers, and `out` tile_rows rows.
 struct LayerTile {
-  const float* const* input = nullptr;  // one pointer a row
+  const float* const* input = nullptr;  // one pointer per row
   int inputs = 0;
-  const float* weight = nullptr;  // panels of outputs, one after the other; in a panel, one row an input
+  const float* weight = nullptr;  // panels of outputs, one after the other; a panel has one row per input
   const float* bias = nullptr;    // padded
   float* out = nullptr;
   int stride = 0;                      // of `out`
   int outputs = 0;                     // padded to whole panels
-  const float* next_weight = nullptr;  // what will be read after this layer; only fetched
+  const float* next_weight = nullptr;  // weights of the next layer, which are prefetched
   int rows = 0;                        // one at least
-  bool go_on = false;                  // start from what `out` holds
+  bool go_on = false;                  // start from the content of `out`
   bool rectify = false;
-  const float* mask = nullptr;  // results become zero where it is not above zero; null: none do
+  const float* mask = nullptr;  // results are zero unless the mask is above zero; null: no mask
   int mask_stride = 0;
 };
 
-// out = a + b, row by row: the products of an edge's two nodes.
+// out = a + b, row by row: the sum of the products of an edge's two nodes.
 struct PairTile {
   const float* const* a = nullptr;
   const float* const* b = nullptr;
@@ -38,11 +37,11 @@ struct PairTile {
   int stride = 0, columns = 0, rows = 0;  // columns: padded
 };
 
-// What happens to the results of a perceptron: layer norm where it has one, then `latent` = or += result, `sum` += it.
+// The end of a perceptron: layer norm if it has one, then `latent` = or += result, and `sum` += result.
 struct ResultTile {
   const float* values = nullptr;
   int stride = 0, columns = 0, rows = 0;
-  const float* scale = nullptr;  // no layer norm where it is null
+  const float* scale = nullptr;  // null: no layer norm
   const float* shift = nullptr;
   float* const* latent = nullptr;
   bool add = false;
@@ -51,12 +50,12 @@ struct ResultTile {
 
 // The inner loops, compiled for one instruction set.
 struct EngineKernels {
-  int panel;  // outputs in a panel
-  int lanes;  // floats in a vector
+  int panel;  // outputs per panel
+  int lanes;  // floats per vector
   void (*multiply)(const LayerTile&);
   void (*add_pairs)(const PairTile&);
   void (*finish)(const ResultTile&);
-  // Twelve independent chains of multiplications with addition, in registers only. The result keeps them alive.
+  // Chains of multiplications with addition, in registers only. The result keeps the compiler from removing them.
   float (*exercise)(long iterations, float factor);
 };
 constexpr int exercise_chains = 12;

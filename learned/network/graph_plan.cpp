@@ -37,7 +37,7 @@ void check_set(const Architecture& a, const Graph& graph, const EdgeSet& set) {
          where, "an edge leads to a node that does not exist");
 }
 
-// Nodes that have an entry in `ends`, ascending; `at` becomes each node's index among them, or -1.
+// Returns the nodes in `ends`, ascending. `at` becomes the index of each node there, or -1.
 std::vector<int> occurring(const std::vector<int>& ends, Eigen::Index nodes, std::vector<int>& at) {
   at.assign(nodes, -1);
   for (const int node : ends) at[node] = 0;
@@ -58,7 +58,7 @@ std::vector<int> chunks_of(const std::vector<int>& receiver, int chunk) {
   return begins;
 }
 
-// Edges of the set, as rows of its sorted latents, that pass all filters of its key.
+// The edges of the set that pass all filters of its key, as rows of its sorted latents.
 EdgeSelection select(const Graph& graph, int set, const std::vector<int>& order, const std::vector<EdgeFilter>& filters,
                      int chunk) {
   const EdgeSet& edges = graph.edge_sets[set];
@@ -121,7 +121,7 @@ GraphPlan plan_graph(const Architecture& a, const Graph& graph, int chunk) {
     std::stable_sort(order.begin(), order.end(), [&set](int i, int j) { return set.receivers[i] < set.receivers[j]; });
     plan.order.push_back(std::move(order));
   }
-  std::vector<std::vector<EdgeFilter>> filters_of;  // of each selection
+  std::vector<std::vector<EdgeFilter>> filters_of;  // one per selection
   for (const MessageStep& step : a.steps) {
     std::vector<int>& used = plan.steps.emplace_back();
     for (const std::string& key : step.edge_keys) {

@@ -4,12 +4,12 @@
 
 namespace selvedge {
 
-// What the kernels are compiled for: plain x86-64 (or whatever the machine is), AVX2 with FMA, AVX-512. Results differ
-// between them by rounding.
+// Instruction sets of the kernels: plain x86-64 (or the machine's own), AVX2 with FMA, AVX-512. Results differ by
+// rounding.
 enum class InstructionSet { plain, avx2, avx512 };
 
 bool is_supported(InstructionSet);      // by this machine
-InstructionSet best_instruction_set();  // of those that are supported
+InstructionSet best_instruction_set();  // of the supported ones
 std::string name_of(InstructionSet);
 
 }  // namespace selvedge

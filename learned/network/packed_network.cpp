@@ -37,7 +37,7 @@ PackedPerceptron perceptron_shape(const Architecture& a, int blocks, int block, 
   return packed;
 }
 
-// Columns [begin, begin + inputs) of the layer, in panels of outputs.
+// Packs columns [begin, begin + inputs) of the layer in panels of outputs.
 void fill_forward(const FeatureRows& weight, Eigen::Index begin, int panel, PackedLayer& packed) {
   const auto outputs = static_cast<int>(weight.rows());
   float* panels = packed.weight.data();
@@ -48,7 +48,7 @@ void fill_forward(const FeatureRows& weight, Eigen::Index begin, int panel, Pack
   }
 }
 
-// The same, transposed: in panels of these columns.
+// Packs the same columns transposed, in panels of these columns.
 void fill_backward(const FeatureRows& weight, Eigen::Index begin, Eigen::Index columns, int panel,
                    PackedLayer& packed) {
   float* to = packed.weight.data();
@@ -57,7 +57,7 @@ void fill_backward(const FeatureRows& weight, Eigen::Index begin, Eigen::Index c
       std::copy_n(weight.row(k).data() + begin + first, std::min<Eigen::Index>(panel, columns - first), to);
 }
 
-// One layer to be filled in.
+// One layer to fill in.
 struct PackTask {
   const AffineLayer* from;
   Eigen::Index begin, columns;
@@ -81,7 +81,7 @@ void copy_vectors(const Perceptron& p, PackedPerceptron& packed) {
   std::copy(p.shift.begin(), p.shift.end(), packed.shift.data());
 }
 
-// Calls visit(perceptron, packed perceptron) for all of them.
+// Calls visit(perceptron, packed perceptron) for each perceptron.
 template <class Visit>
 void visit_perceptrons(const NetworkWeights& weights, PackedNetwork& packed, Visit&& visit) {
   visit(weights.node_encoder, packed.node_encoder);

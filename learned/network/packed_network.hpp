@@ -9,16 +9,16 @@
 
 namespace selvedge {
 
-// Weights of one layer, or of those columns that one block of its inputs meets, in panels (LayerTile).
+// Weights of one layer, or of its columns for one block of inputs, in panels (LayerTile).
 struct PackedLayer {
   int inputs = 0, outputs = 0;  // outputs: padded
-  AlignedFloats weight, bias;   // bias: zero where another block brings it
+  AlignedFloats weight, bias;   // bias: zero except in the first block
 };
 
-// A perceptron whose first layer reads several blocks of inputs: an edge network target, source and edge, a node
-// network its node and the sums of each kind of edges.
+// A perceptron whose first layer reads several blocks: an edge network reads target, source and edge, a node network
+// reads its node and the sums of each kind of edges.
 struct PackedPerceptron {
-  std::vector<PackedLayer> blocks, layers;  // the first layer, and those behind it
+  std::vector<PackedLayer> blocks, layers;  // the first layer, and the layers after it
   AlignedFloats scale, shift;               // empty without layer norm
   int outputs = 0;                          // not padded
 };
@@ -28,7 +28,7 @@ struct PackedStep {
   PackedPerceptron node;
 };
 
-// Weights laid out for the kernels of one instruction set. It is read only; threads may share it.
+// Weights laid out for the kernels of one instruction set. Threads may share it, for it is only read.
 struct PackedNetwork {
   Architecture architecture;
   InstructionSet set = InstructionSet::plain;
@@ -38,16 +38,16 @@ struct PackedNetwork {
   PackedPerceptron decoder;
 };
 
-// backward: from the derivatives with respect to a layer's results to those with respect to its inputs. Layers are
-// transposed, and have neither bias nor norm.
+// backward: from derivatives by a layer's results to those by its inputs. Layers are transposed and have neither bias
+// nor norm.
 enum class PackedWay { forward, backward };
 
 // Throws Error unless the weights have the architecture's shapes (`check_weights`) and the machine has the set.
 std::shared_ptr<const PackedNetwork> pack_network(const Architecture&, const NetworkWeights&,
                                                   InstructionSet = best_instruction_set());
 
-// One direction, first without weights; pack_again fills them in after every change. Their shapes must be the same;
-// nothing is checked.
+// The network packed in one direction, without weights. pack_again fills the weights in after every change. Shapes must
+// agree and are not checked.
 PackedNetwork packed_shapes(const Architecture&, InstructionSet, PackedWay);
 void pack_again(const NetworkWeights&, PackedWay, PackedNetwork&);
 

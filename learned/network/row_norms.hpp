@@ -6,8 +6,8 @@
 
 namespace selvedge {
 
-// What a row is normalised with: (x - mean) * factor * scale + shift. Epsilon 1e-5, as in the published networks.
-// Several rows at once, so that their chains of sums run side by side.
+// Finds mean and factor of the layer norm (x - mean) * factor * scale + shift. Epsilon is 1e-5, as in the published
+// networks. Several rows at once overlap their chains of sums.
 template <int Lanes, int Rows>
 [[gnu::always_inline]] inline void find_norms(const float* values, std::ptrdiff_t stride, int columns, float* mean,
                                               float* factor) {

@@ -2,8 +2,8 @@
 
 #include <cstring>
 
-// For files of inner loops only. They are templates over the number of lanes, all inlined into one function an
-// instruction set, so that no vector is passed to a function.
+// For files of inner loops only. They are templates over the number of lanes, inlined into one function per instruction
+// set, so that no function takes a vector.
 
 #if defined(__x86_64__)
 #define SELVEDGE_TARGET(set) __attribute__((target(set)))
@@ -11,7 +11,7 @@
 #define SELVEDGE_TARGET(set)
 #endif
 
-// Loops over the rows of a block: their sums stay in registers only if they are unrolled.
+// For loops over the rows of a block, whose sums stay in registers only if the loop is unrolled.
 #if defined(__clang__)
 #define SELVEDGE_UNROLL _Pragma("unroll")
 #else

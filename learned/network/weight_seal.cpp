@@ -20,7 +20,7 @@ std::string seal_text(std::uint64_t checksum, long long length) {
   return padded;
 }
 
-// Of the bytes behind the seal: the seal that they should have.
+// The seal that the bytes after it should have.
 std::string wanted_seal(std::istream& file, long long& length) {
   file.seekg(seal_bytes);
   std::vector<char> bytes(1 << 20);

@@ -26,7 +26,7 @@ Statistics blank_statistics(int columns) {
 
 FeatureRows blank_table(const TableSize& size) { return FeatureRows::Zero(size.rows, size.columns); }
 
-// Walks through the arrays of `weights`, which may be of any shape.
+// Lists the arrays of weights of any shape.
 class ArrayList {
  public:
   std::vector<WeightArray> arrays;
@@ -126,11 +126,11 @@ void check_weights(const Architecture& a, const NetworkWeights& weights, const s
   };
   for (std::size_t i = 0; i < std::max(all.size(), have.size()); ++i) {
     if (i < have.size() && !is_wanted(have[i]))
-      throw Error("the architecture has no place for it", where + ": " + have[i].name, cure);
+      throw Error("the architecture has no such array", where + ": " + have[i].name, cure);
     if (i >= have.size() || all[i].name != have[i].name)
-      throw Error("the weights lack it", where + ": " + all[i].name, cure);
+      throw Error("the weights lack this array", where + ": " + all[i].name, cure);
     if (all[i].rows != have[i].rows || all[i].columns != have[i].columns)
-      throw Error("it is " + shape(have[i]) + ", the architecture asks for " + shape(all[i]),
+      throw Error("the array is " + shape(have[i]) + ", the architecture asks for " + shape(all[i]),
                   where + ": " + all[i].name, cure);
   }
 }

@@ -15,21 +15,21 @@ struct AffineLayer {
   std::vector<float> bias;
 };
 
-// Affine layers with max(0, x) between them, then, unless `scale` is empty, a layer norm of the result (row 2 of the
-// parity README; epsilon 1e-5).
+// Affine layers with max(0, x) between them, then a layer norm of the result (row 2 of the parity README; epsilon 1e-5)
+// unless `scale` is empty.
 struct Perceptron {
   std::vector<AffineLayer> layers;
   std::vector<float> scale, shift;
 };
 
-// Weights of one message-passing step. `edges` stands parallel to MessageStep::edge_keys. An edge network reads target
-// node, source node, edge; the node network its node, then the sums in the order of the keys.
+// Weights of one message-passing step. `edges` is parallel to MessageStep::edge_keys. An edge network reads target
+// node, source node and edge. The node network reads its node, then the sums in the order of the keys.
 struct StepWeights {
   std::vector<Perceptron> edges;
   Perceptron node;
 };
 
-// All that a network has learned, beside its architecture. `encoders` stands parallel to Architecture::encoders.
+// All learned numbers of a network. `encoders` is parallel to Architecture::encoders.
 struct NetworkWeights {
   Perceptron node_encoder;
   std::vector<Perceptron> encoders;
@@ -38,28 +38,28 @@ struct NetworkWeights {
   FeatureTables tables;  // statistics and embeddings
 };
 
-// One array of the weights, row by row: a matrix rows x columns, or a vector with columns = 1. `name` is its path in
-// the weight file, such as "steps/03/edges/mesh_edge/layer0/weight".
+// One array of the weights, row by row: a matrix, or a vector with columns = 1. `name` is its path in the weight file,
+// such as "steps/03/edges/mesh_edge/layer0/weight".
 struct WeightArray {
   std::string name;
   float* data = nullptr;
   int rows = 0, columns = 1;
-  int inputs = 0;       // of the layer that it belongs to; 0 elsewhere
-  bool trained = true;  // false for statistics
+  int inputs = 0;       // inputs of its layer; 0: it belongs to no layer
+  bool trained = true;  // false: statistics
 };
 
-// Arrays of the shapes that the architecture asks for: weights and biases zero, layer norms the identity, deviations
-// one.
+// Arrays in the architecture's shapes: weights and biases zero, layer norms the identity, deviations one.
 NetworkWeights blank_weights(const Architecture&);
 
-// Every array of weights that have the architecture's shapes, in a fixed order, pointing into `weights`.
+// Pointers to every array of the weights, whose shapes must be the architecture's, in a fixed order.
 std::vector<WeightArray> weight_arrays(const Architecture&, NetworkWeights& weights);
 
-// Throws Error that names the first array whose shape is not what the architecture asks for; `where` is its file.
+// Throws Error that names the first array whose shape is not the architecture's. `where` names the file.
 void check_weights(const Architecture&, const NetworkWeights&, const std::string& where);
 
-// Weights for tests and for the start of training: uniform in +-sqrt(3 / inputs), biases in +-0.1, embeddings in
-// +-1; layer norms the identity, statistics mean 0 and deviation 1. The same bits on every machine.
+// Random weights, for tests and for new parts of widened networks: uniform in +-sqrt(3 / inputs), with biases in +-0.1
+// and embeddings in +-1. Layer norms are the identity, statistics have mean 0 and deviation 1. The same bits on every
+// machine.
 NetworkWeights random_weights(const Architecture&, std::uint64_t seed);
 
 }  // namespace selvedge

@@ -18,7 +18,7 @@ constexpr const char* form_name = "selvedge weights 1";
 constexpr long long bytes_of_half = 2;
 constexpr hsize_t most_text = 1 << 24, most_texts = 4096;
 
-// An HDF5 identifier that closes itself, of one kind.
+// An HDF5 identifier of one kind that closes itself.
 template <herr_t (*Close)(hid_t)>
 struct Hdf5Id {
   hid_t id;
@@ -34,7 +34,7 @@ using SpaceId = Hdf5Id<H5Sclose>;
 using TypeId = Hdf5Id<H5Tclose>;
 using PropertyId = Hdf5Id<H5Pclose>;
 
-// An open file and its name, for errors.
+// An open file with its name for errors.
 struct WeightStore {
   FileId file;
   std::string name;
@@ -57,7 +57,8 @@ std::vector<hsize_t> shape_of(const WeightStore& store, hid_t dataset, const std
   return shape;
 }
 
-// Its values lie in this file, one after the other: no link to another file, no external storage, nothing compressed.
+// Throws Error unless the values lie in this file as one block: no links to other files, external storage or
+// compression.
 void check_storage(const WeightStore& store, hid_t dataset, const std::string& field) {
   const PropertyId creation(store.good(H5Dget_create_plist(dataset), field, "cannot be read"));
   if (H5Pget_layout(creation.id) != H5D_CONTIGUOUS || H5Pget_external_count(creation.id) != 0)
@@ -80,7 +81,7 @@ hid_t half_type() {
   return type;
 }
 
-// `data` are of the type `memory`; the file holds them as `type`.
+// `data` has the type `memory` and is stored as `type`.
 void write_dataset(const WeightStore& store, const std::string& field, hid_t type, hid_t memory,
                    const std::vector<hsize_t>& shape, const void* data) {
   const PropertyId links(H5Pcreate(H5P_LINK_CREATE));
@@ -156,7 +157,7 @@ bool stored_half(const WeightArray& array, WeightStorage storage) {
 
 constexpr float largest_half = 65504, smallest_normal_half = 0x1p-14f;
 
-// HDF5 converts numbers below the smallest normal half wrongly (1.10): they become zero.
+// HDF5 1.10 converts numbers below the smallest normal half wrongly. They become zero.
 void drop_small(const WeightArray& array) {
   Eigen::Map<Eigen::ArrayXf> values(array.data, Eigen::Index{array.rows} * array.columns);
   values = (values.abs() < smallest_normal_half).select(0.f, values);
@@ -196,7 +197,7 @@ void write_content(const std::filesystem::path& path, const WeightFile& content,
   store.good(H5Fflush(store.file.id, H5F_SCOPE_LOCAL), "end of the file", "cannot be written");
 }
 
-// The file removes itself unless it was renamed.
+// Removes the file unless it was renamed.
 struct FileBeside {
   std::filesystem::path path;
   ~FileBeside() {
@@ -223,7 +224,8 @@ void write_weight_file(const std::filesystem::path& path, const WeightFile& cont
   write_seal(beside.path);
   std::error_code error;
   std::filesystem::rename(beside.path, path, error);
-  if (error) throw Error("cannot rename to it (" + error.message() + ")", path.string(), "check the folder");
+  if (error)
+    throw Error("cannot rename the new file to it (" + error.message() + ")", path.string(), "check the folder");
 }
 
 WeightFile read_weight_file(const std::filesystem::path& path) {
@@ -240,7 +242,7 @@ WeightFile read_weight_file(const std::filesystem::path& path) {
   content.architecture = parse_architecture(read_text(store, "architecture"), path.string() + ": architecture");
   require_fitting_architecture(store, content.architecture, bytes);
   const std::vector<std::string> names = read_texts(store, "origin_names"), values = read_texts(store, "origin_values");
-  if (names.size() != values.size()) store.fail("origin_values", "they are not as many as the names");
+  if (names.size() != values.size()) store.fail("origin_values", "their number is not that of the names");
   for (std::size_t i = 0; i < names.size(); ++i) content.origin.emplace_back(names[i], values[i]);
   content.weights = blank_weights(content.architecture);
   for (const WeightArray& array : weight_arrays(content.architecture, content.weights)) read_array(store, array);

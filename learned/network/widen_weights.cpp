@@ -13,7 +13,7 @@ void refuse_widening(bool wrong, const std::string& what) {
                 "start from weights of the same steps, widths and features");
 }
 
-// Columns [first, first + count) of a first layer become zero, in front of those that were there.
+// Inserts zero columns [first, first + count) into a first layer.
 void insert_zero_inputs(Perceptron& p, Eigen::Index first, Eigen::Index count) {
   FeatureRows& weight = p.layers.front().weight;
   FeatureRows wide = FeatureRows::Zero(weight.rows(), weight.cols() + count);
@@ -27,7 +27,7 @@ void insert_zero_statistics(Statistics& s, std::size_t first, std::size_t count)
   s.deviation.insert(s.deviation.begin() + static_cast<std::ptrdiff_t>(first), count, 1.f);
 }
 
-// `wide` begins as random weights of the step in `to`. Kinds that `to` lacks must be among `unseen`.
+// `wide` begins as random weights of the step `to`. Kinds that `to` lacks must be among `unseen`.
 void widen_step(const MessageStep& from, const StepWeights& weights, const MessageStep& to, int width,
                 const std::vector<std::string>& unseen, StepWeights& wide) {
   const FeatureRows old = weights.node.layers.front().weight;
@@ -48,7 +48,7 @@ void widen_step(const MessageStep& from, const StepWeights& weights, const Messa
         "a step lacks a kind of edges");
 }
 
-// Edges of cloth with cloth that a network has and was never trained with.
+// The cloth-cloth edges that a network has and was never trained with.
 std::vector<std::string> unseen_edges(const Architecture& from, const NetworkWeights& weights) {
   if (!from.features.cloth_edges || from.features.body_key == "world_edge" || !are_blank(weights.tables.world_edge))
     return {};

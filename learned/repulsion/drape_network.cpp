@@ -9,7 +9,7 @@
 namespace selvedge {
 namespace {
 
-// The truth's displacement from the rest shape, taken back into garment space.
+// The truth's displacement from the rest shape, in garment space.
 Points garment_displacement(const DrapeCase& drape) {
   Points result(drape.rest.rows(), 3);
   for (int v = 0; v < result.rows(); ++v) {
@@ -78,7 +78,7 @@ void fit_linear_part(std::span<const DrapeCase* const> cases, double ridge, std:
 
 FeatureRows drape_outputs(const DrapeNetwork& network, const FeatureRows& inputs) {
   FeatureRows outputs = evaluate(network.mesh, evaluate(network.plain, inputs));
-  // By columns it lies in memory as its transpose does by rows.
+  // A column-major matrix is the row-major transpose.
   const Eigen::Map<const FeatureRows> transposed(network.linear.data(), network.linear.cols(), network.linear.rows());
   if (network.linear.size() > 0) outputs += product(inputs, transposed);
   return outputs;

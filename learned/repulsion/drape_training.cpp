@@ -17,7 +17,7 @@ void add(std::vector<float>& sum, const std::vector<float>& part, float factor) 
   for (std::size_t k = 0; k < part.size(); ++k) sum[k] += factor * part[k];
 }
 
-// Vertices that a layer has pushed, and how deep they lay.
+// The vertices that a layer pushed, and their distances before.
 struct PushedOnes {
   std::vector<int> vertices;
   std::vector<double> distances;
@@ -31,7 +31,7 @@ PushedOnes pushed_ones(const Repelled& made) {
   return ones;
 }
 
-// Adds the gradient by the scales' networks of one drape, and to the losses' by_x what positions do through the scales.
+// Adds the gradient by the scale networks of one drape, and adds to by_x the gradient by positions through the scales.
 void add_scales(const DrapeModel& model, const DrapeLesson& lesson, const Points& x, const Adjacency& ring,
                 const Repelled& made, float share, RepulsionLosses& losses, std::vector<std::vector<float>>& parts) {
   if (made.pushed.empty()) return;

@@ -9,7 +9,7 @@
 
 namespace selvedge {
 
-// A network for drapes and the scales of the layer behind it. Unused scale networks have no layers.
+// A network for drapes and the scales of the layer after it. Unused scale networks have no layers.
 struct DrapeModel {
   DrapeNetwork drape;
   ScaleNetwork scale;
@@ -23,19 +23,19 @@ struct DrapeModel {
 struct DrapePart {
   std::string name;
   PlainNetwork* network;
-  bool scales = false;  // it belongs to the networks of scales
+  bool scales = false;  // one of the scale networks
 };
 std::vector<DrapePart> parts_of(DrapeModel&);
 
-// The layer behind the network, and the loss of its result.
+// The layer after the network, and the loss of its result.
 struct DrapeRecipe {
-  bool layer = false;  // with the model's scales, or `alpha` without them
+  bool layer = false;  // whether there is one, with the model's scales or else `alpha`
   double alpha = 1;
-  RepulsionOptions repulsion;  // without rechecks where a network is trained
-  RepulsionLossOptions loss;   // collision 0: no loss 9, and `judge` is not called
+  RepulsionOptions repulsion;  // without rechecks in training
+  RepulsionLossOptions loss;   // collision 0: no loss 9 and no call of `judge`
 };
 
-// A training drape with two distances of its body: `layer` is read by the layer, `judge` by the loss.
+// A training drape with two distances of its body: the layer reads `layer`, and the loss reads `judge`.
 struct DrapeLesson {
   const DrapeCase* drape = nullptr;
   AskDistance layer, judge;
@@ -45,11 +45,11 @@ struct DrapeLesson {
 Repelled behind_drape(const DrapeModel&, const DrapeCase&, const Points& x, const Adjacency& ring,
                       const AskDistance& ask, const DrapeRecipe&);
 
-// Mean over the lessons of the losses 7 to 9, and its gradient by all parameters.
+// The mean of the losses 7 to 9 over the lessons, and its gradient by all parameters.
 struct DrapeGradients {
   double total = 0, reconstruction = 0, collision = 0;
-  double pushed = 0, alpha = 0;           // vertices a drape, and their mean scale
-  std::vector<std::vector<float>> parts;  // of each of parts_of, in the order of parameters_of; empty: of none pushed
+  double pushed = 0, alpha = 0;           // pushed vertices per drape, and their mean scale
+  std::vector<std::vector<float>> parts;  // as parts_of, in the order of parameters_of; empty: no vertex was pushed
 };
 DrapeGradients drape_gradients(const DrapeModel&, std::span<const DrapeLesson>, const Adjacency& ring,
                                const DrapeRecipe&);
@@ -57,10 +57,10 @@ DrapeGradients drape_gradients(const DrapeModel&, std::span<const DrapeLesson>, 
 // The optimiser: Adam for each part of a model.
 struct DrapeAdam {
   std::vector<PlainAdam> parts;
-  double scale_rate = 1;  // times the rate, for the networks of scales
-  double decay = 0;       // of the first part
+  double scale_rate = 1;  // factor of the rate for the scale networks
+  double decay = 0;       // weight decay of the first part
 };
-// One step of the optimiser. False if a gradient is not finite; then nothing has changed.
+// Takes one step. Returns false and changes nothing if a gradient is not finite.
 bool take_step(DrapeAdam&, const DrapeGradients&, double rate, DrapeModel&);
 
 }  // namespace selvedge

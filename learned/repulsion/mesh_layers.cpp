@@ -10,7 +10,7 @@ namespace {
 
 constexpr int targets_at_once = 64;
 
-// The sources of each target, ascending.
+// Sets the sources of each target, ascending.
 void set_sources(const std::vector<std::vector<int>>& sources, MeshLayer& layer) {
   layer.begin = {0};
   for (const std::vector<int>& own : sources) {
@@ -19,7 +19,7 @@ void set_sources(const std::vector<std::vector<int>>& sources, MeshLayer& layer)
   }
 }
 
-// What a fine vertex reads one level up: its own coarse vertex and those of its neighbours.
+// The sources of a fine vertex one level up: its own coarse vertex and those of its neighbours.
 std::vector<std::vector<int>> sources_above(const Adjacency& ring, const std::vector<int>& coarse_of) {
   std::vector<std::vector<int>> sources(coarse_of.size());
   for (int v = 0; v < ring.vertex_count(); ++v) {
@@ -42,7 +42,7 @@ std::vector<std::vector<int>> sources_beside(const Adjacency& ring) {
   return sources;
 }
 
-// Mixtures begin at random, so that features keep their variance; pooling begins as the mean.
+// Mixtures begin at random, so that features keep their variance. Pooling begins as the mean.
 void begin_layer(int channels_in, int channels_out, int kernels, std::uint64_t seed, MeshLayer& layer) {
   PlainShape shape;
   shape.inputs = channels_in;
@@ -60,12 +60,12 @@ void begin_layer(int channels_in, int channels_out, int kernels, std::uint64_t s
   }
 }
 
-// Cases on end, a row a vertex.
+// All cases, with one row per vertex.
 FeatureRows rectified_vertices(const FeatureRows& cases, int channels) {
   return Eigen::Map<const FeatureRows>(cases.data(), cases.size() / channels, channels).cwiseMax(0.0f);
 }
 
-// What the kernels say of each source of each case.
+// The kernels' values of each source of each case.
 FeatureRows kernel_values(const MeshLayer& layer, const FeatureRows& inputs) {
   return evaluate(layer.kernels, rectified_vertices(inputs, layer.channels_in()));
 }
@@ -86,7 +86,7 @@ FeatureRows mixed(const MeshLayer& layer, const FeatureRows& values, Eigen::Inde
   return outputs;
 }
 
-// Derivatives by the kernels' values: each case has rows of its own.
+// Derivatives by the kernels' values. Each case has its own rows.
 FeatureRows by_kernel_values(const MeshLayer& layer, const FeatureRows& by_outputs) {
   const int channels = layer.channels_out(), kernels = layer.mix.inputs();
   const AffineLayer& mix = layer.mix.layers[0];
@@ -104,7 +104,7 @@ FeatureRows by_kernel_values(const MeshLayer& layer, const FeatureRows& by_outpu
   return result;
 }
 
-// Derivatives by the edges' coefficients, in the order of parameters_of: each edge has one target.
+// Derivatives by the edges' coefficients, in the order of parameters_of. Each edge has one target.
 std::vector<float> by_mix(const MeshLayer& layer, const FeatureRows& values, const FeatureRows& by_outputs) {
   const int channels = layer.channels_out(), kernels = layer.mix.inputs();
   const auto edges = static_cast<int>(layer.source.size());

@@ -33,7 +33,7 @@ FeatureRows with_neighbours(const FeatureRows& rows, const NeighbourPatch& patch
   return both;
 }
 
-// Its transpose: from the derivative by the result the one by all `rows` rows.
+// The transpose: from the derivative by the result to that by all `rows` rows.
 FeatureRows back_to_neighbours(const FeatureRows& by_both, const NeighbourPatch& patch, Eigen::Index rows) {
   const Eigen::Index columns = by_both.cols() / 2;
   FeatureRows by = FeatureRows::Zero(rows, columns);
@@ -51,7 +51,7 @@ FeatureRows through_bend(const FeatureRows& by, const FeatureRows& sums) {
   return (sums.array() > 0).select(by, FeatureRows::Zero(by.rows(), by.cols()));
 }
 
-// All that one evaluation makes.
+// Intermediate results of one evaluation.
 struct NeighbourTrace {
   FeatureRows first_in, first_sum, second_in, second_sum, end_in, end_sum;
 };
@@ -71,7 +71,7 @@ NeighbourTrace trace_scales(const NeighbourScale& network, const NeighbourPatch&
   return made;
 }
 
-// The patch's vertices in their order. `place`: of each vertex of the garment, -1: not in it.
+// Lists the patch's vertices in order. `place` is the place of each vertex of the garment; -1: not in the patch.
 void gather_vertices(const Adjacency& ring, std::span<const int> pushed, NeighbourPatch& patch,
                      std::vector<int>& place) {
   const auto add = [&](int v) {
@@ -95,7 +95,7 @@ void gather_vertices(const Adjacency& ring, std::span<const int> pushed, Neighbo
   }
 }
 
-// The middles of all edges at the patch's vertices, each once; `number`: of each edge from each vertex, in turn.
+// The midpoints of all edges at the patch's vertices, each once. `number` has the midpoint of each edge of each vertex.
 std::vector<Vec3> edge_middles(const Points& x, const Adjacency& ring, const NeighbourPatch& patch,
                                const std::vector<int>& place, std::vector<std::vector<int>>& number) {
   std::vector<Vec3> middles;
@@ -121,7 +121,7 @@ std::vector<Vec3> edge_middles(const Points& x, const Adjacency& ring, const Nei
 
 NeighbourScale make_neighbour_scale(const NeighbourShape& shape, std::uint64_t seed) {
   if (!(shape.unit > 0) || !(shape.edge_unit > 0) || shape.width < 1)
-    throw Error("sizes that make no network", "scales by neighbours", "give width and units above 0");
+    throw Error("no network has these sizes", "scales by neighbours", "give width and units above 0");
   NeighbourScale made;
   made.shape = shape;
   made.first = make_plain_network({2 * own_columns, {shape.width, shape.width}}, seed);

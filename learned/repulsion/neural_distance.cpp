@@ -14,7 +14,7 @@ FeatureRows query_rows(const QueryMap& query, const Points& at) {
   return rows;
 }
 
-// What the network reads of samples: the query of each, then its body's numbers.
+// The network's inputs for samples: the query of each, then its body's numbers.
 FeatureRows sample_inputs(const PlainNetwork& network, const DistanceSamples& samples) {
   FeatureRows inputs(samples.points.rows(), network.inputs());
   for (Eigen::Index i = 0; i < inputs.rows(); ++i) {
@@ -32,7 +32,7 @@ struct SampleLoss {
   Eigen::Vector3f by_gradient = Eigen::Vector3f::Zero();  // dL/d(grad f)
 };
 
-// Adds one sample's part to the sums; `surface` and `free` are how many there are of each kind.
+// Adds one sample's part to the sums. `surface` and `free` are the numbers of samples of each kind.
 SampleLoss sample_loss(const DistanceSamples& samples, std::size_t i, float f, const Eigen::Vector3f& gradient,
                        const DistanceLossWeights& weights, double surface, double free, DistanceLosses& losses) {
   const auto count = static_cast<double>(samples.distance.size());
@@ -116,7 +116,7 @@ DistanceLosses distance_losses(const PlainNetwork& network, const DistanceSample
   for (const char on : samples.on_surface) surface += on;
   const double free = static_cast<double>(samples.on_surface.size()) - surface;
 
-  // A derivative of (grad f . v) with v held is one of the tangent in the direction v.
+  // With v held, a derivative of (grad f . v) is that of the tangent in the direction v.
   DistanceLosses losses;
   FeatureRows directions = FeatureRows::Zero(inputs.rows(), inputs.cols());
   PlainAdjoints adjoints{FeatureRows(inputs.rows(), 1), FeatureRows::Ones(inputs.rows(), 1)};

@@ -10,68 +10,68 @@
 namespace selvedge {
 
 // Signed distance by a network that reads a query and the body's numbers (Tan et al. 2022, equation 10). The query is
-// the point itself, or the point in the frame of each bone: an affine function of the point, so that derivatives by the
-// point go through it.
+// the point itself, or the point in the frame of each bone. It is an affine function of the point, so that derivatives
+// by the point can be computed.
 struct QueryMap {
   Eigen::Matrix<float, Eigen::Dynamic, 3> linear;
   Eigen::VectorXf offset;
   int size() const { return static_cast<int>(offset.size()); }
 };
 QueryMap point_query();
-// `frames` take a point of space into a bone's frame (3 x 4 each).
+// `frames` map a point of space into the frame of each bone (3 x 4).
 QueryMap bone_query(const std::vector<Eigen::Matrix<double, 3, 4>>& frames);
 
 struct NeuralDistanceShape {
-  int query = 3, condition = 82;  // numbers that say where the point is, and which body (shape 10, pose 72)
+  int query = 3, condition = 82;  // numbers of the query (the point) and of the body (shape 10, pose 72)
   int layers = 9, width = 1024;
   double beta = 100;    // of softplus
-  int again_layer = 3;  // the fourth reads the query again
+  int again_layer = 3;  // this layer reads the query again
 };
 PlainNetwork make_neural_distance(const NeuralDistanceShape&, std::uint64_t seed);
 
-// For one body: its numbers are folded into the layer that reads them.
+// The distance to one body. The body's numbers are folded into the layer that reads them.
 class NeuralDistance {
  public:
-  // Throws Error where query and condition are not what the network reads.
+  // Throws Error where query and condition do not fit the network's inputs.
   NeuralDistance(const PlainNetwork&, const QueryMap&, std::span<const float> condition);
-  // Values and gradients, which need not have unit length; every place counts as a face. Points must be finite.
+  // Values and gradients. Gradients need not have unit length, and every place is a face. Points must be finite.
   void ask(const Points& at, std::vector<SignedDistance>& found) const;
 
  private:
-  PlainNetwork network_;  // of the query alone
+  PlainNetwork network_;  // reads the query only
   QueryMap query_;
 };
 
-// Samples of distances of several bodies.
+// Distance samples of several bodies.
 struct DistanceSamples {
   Points points;
   std::vector<float> distance;  // true values [m]
-  FeatureRows normals;          // of points on the surface, else zero; n x 3
+  FeatureRows normals;          // of points on the surface, n x 3; zero elsewhere
   std::vector<char> on_surface;
-  std::vector<int> body;          // a row each
-  std::vector<QueryMap> queries;  // by body
-  FeatureRows conditions;         // a row a body
+  std::vector<int> body;          // row of each sample's body
+  std::vector<QueryMap> queries;  // one per body
+  FeatureRows conditions;         // one row per body
 };
 
-// Equations 11 to 14: value * mean |f - s| + surface_gradient * mean over surface points |grad f - n|
-// + eikonal * mean over the others (|grad f| - 1)^2.
+// Equations 11 to 14: value * mean |f - s| + surface_gradient * mean over surface points |grad f - n| + eikonal * mean
+// over the others (|grad f| - 1)^2.
 struct DistanceLossWeights {
   double value = 2, surface_gradient = 1, eikonal = 0.1;
 };
 struct DistanceLosses {
-  double value = 0, surface_gradient = 0, eikonal = 0, total = 0;  // the three without weights
+  double value = 0, surface_gradient = 0, eikonal = 0, total = 0;  // the first three without weights
   std::vector<float> gradient;                                     // by the network's parameters
 };
 DistanceLosses distance_losses(const PlainNetwork&, const DistanceSamples&, const DistanceLossWeights&);
 
-// Mean |f - s| of all samples, of those on the surface or nearer to it than 5 cm [m], and mean |f - s| / |s| [%] over
-// samples with |s| of 0.1 mm and more (equation 15); of the near ones, how many are told to lie on the wrong side [%].
+// absolute, near: mean |f - s| over all samples, and over those within 5 cm of the surface [m]. relative: mean |f - s|
+// / |s| [%] over samples with |s| >= 0.1 mm (equation 15). wrong_side: near samples with the wrong sign [%].
 struct DistanceErrors {
   double absolute = 0, near = 0, relative = 0, wrong_side = 0;
 };
 DistanceErrors distance_errors(const PlainNetwork&, const DistanceSamples&);
 
-// Multiplications and additions of one forward pass.
+// Number of multiplications and additions of one forward pass.
 double forward_operations(const PlainNetwork&, double rows);
 
 }  // namespace selvedge

@@ -11,13 +11,13 @@
 namespace selvedge {
 namespace {
 
-constexpr int rows_at_once = 128;  // of a chunk: what they make stays in the cache
+constexpr int rows_at_once = 128;  // per chunk, whose results stay in the cache
 
-// What one layer makes of a chunk of rows.
+// Intermediate results of one layer for a chunk of rows.
 struct LayerTrace {
-  FeatureRows input, input_tangent;  // what it reads
-  FeatureRows sum, sum_tangent;      // before the bend
-  FeatureRows slope;                 // of the bend there; none behind the last layer
+  FeatureRows input, input_tangent;
+  FeatureRows sum, sum_tangent;  // before the activation
+  FeatureRows slope;             // of the activation; empty for the last layer
 };
 
 struct Bent {
@@ -29,7 +29,7 @@ Bent bent(const PlainNetwork& n, float a) {
   const float e = std::exp(-beta * std::abs(a));
   return {std::max(a, 0.0f) + std::log1p(e) / beta, (a >= 0 ? 1 : e) / (1 + e)};
 }
-// The slope's derivative, from the slope.
+// The derivative of the slope, from the slope.
 float bend_curvature(const PlainNetwork& n, float slope) {
   return n.bend == Bend::rectified ? 0 : static_cast<float>(n.beta) * slope * (1 - slope);
 }
@@ -40,7 +40,7 @@ FeatureRows beside(const FeatureRows& left, const FeatureRows& right) {
   return both;
 }
 
-// Forward over one chunk. Without directions no tangents are made.
+// Goes forward over one chunk. Without directions there are no tangents.
 std::vector<LayerTrace> trace(const PlainNetwork& n, const FeatureRows& inputs, const FeatureRows& directions) {
   const bool tangents = directions.rows() > 0;
   std::vector<LayerTrace> made(n.layers.size());
@@ -81,7 +81,7 @@ FeatureRows some_rows(const FeatureRows& rows, int first, int count) {
   return rows.rows() > 0 ? FeatureRows(rows.middleRows(first, count)) : FeatureRows(0, rows.cols());
 }
 
-// Backward over one chunk. Writes the parameters' gradient to `gradient`, and returns the inputs'.
+// Goes back over one chunk. Writes the parameters' gradient to `gradient`, and returns that of the inputs.
 FeatureRows trace_back(const PlainNetwork& n, const std::vector<LayerTrace>& made, FeatureRows value,
                        FeatureRows tangent, std::span<float> gradient) {
   const bool tangents = tangent.rows() > 0;
@@ -90,7 +90,7 @@ FeatureRows trace_back(const PlainNetwork& n, const std::vector<LayerTrace>& mad
   std::size_t end = gradient.size();
   for (std::size_t l = n.layers.size(); l-- > 0;) {
     const LayerTrace& layer = made[l];
-    if (l + 1 < n.layers.size()) {  // through the bend
+    if (l + 1 < n.layers.size()) {  // through the activation
       if (tangents) {
         const FeatureRows curved = layer.slope.binaryExpr(
             layer.sum_tangent, [&](float slope, float d) { return d * bend_curvature(n, slope); });
@@ -128,7 +128,8 @@ PlainNetwork make_plain_network(const PlainShape& shape, std::uint64_t seed) {
     if (static_cast<int>(l) == shape.again_layer) inputs += shape.again_columns;
     const int outputs = shape.outputs[l];
     if (inputs < 1 || outputs < 1)
-      throw Error("a layer without inputs or outputs", "layer " + std::to_string(l), "give it some");
+      throw Error("the layer has no inputs or no outputs", "layer " + std::to_string(l),
+                  "give it one of each at least");
     AffineLayer layer{FeatureRows(outputs, inputs), std::vector<float>(static_cast<std::size_t>(outputs), 0)};
     const double reach = std::sqrt(6.0 / inputs);
     for (float& w : layer.weight.reshaped<Eigen::RowMajor>())

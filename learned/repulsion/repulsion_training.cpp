@@ -5,7 +5,7 @@
 namespace selvedge {
 namespace {
 
-// Derivative of x' by x of one pushed vertex.
+// The derivative of x' by x for one pushed vertex.
 Mat3 layer_jacobian(const PushedVertex& pushed, LayerGradient gradient) {
   SignedDistance at = pushed.at;
   const bool turned = (at.gradient.normalized() - pushed.direction).norm() > 1e-9;
@@ -21,7 +21,7 @@ FeatureRows as_rows(std::span<const float> values) {
   return Eigen::Map<const FeatureRows>(values.data(), 1, static_cast<Eigen::Index>(values.size()));
 }
 
-// Adds the gradient with respect to the vertices' latents to that of k, and returns the gradient with respect to z.
+// Writes k's gradient from that by the vertices' latents, and returns the gradient by z.
 FeatureRows back_through_k(const ScaleNetwork& network, const FeatureRows& z, std::span<const int> vertices,
                            const FeatureRows& by_latents, std::vector<float>& gradient) {
   const AffineLayer& layer = network.k.layers.front();

@@ -20,7 +20,7 @@ std::vector<PushedVertex> inside_vertices(const std::vector<SignedDistance>& fou
   return pushed;
 }
 
-// Places of vertices in the list, -1: not in it.
+// Places of vertices in the list; -1: not in it.
 std::vector<int> places_of(const std::vector<PushedVertex>& pushed, int count) {
   std::vector<int> place(static_cast<std::size_t>(count), -1);
   for (int i = 0; i < static_cast<int>(pushed.size()); ++i) place[pushed[i].vertex] = i;
@@ -34,8 +34,8 @@ void set_scale(double alpha, double slope, double most_beyond, PushedVertex& ver
   vertex.slope = vertex.bounded ? most_beyond / (f * f) : slope;
 }
 
-// Deep inside a body the nearest points lie in all directions. From the rim of the penetrating patch inward, each deep
-// vertex takes the mean direction of those neighbours that have one already. Vertices that reach no rim keep their own.
+// Deep inside a body the directions to nearest points differ widely. From the rim of the penetrating patch inward, each
+// deep vertex takes the mean direction of those neighbours that are done. Vertices that reach no rim keep their own.
 int turn_deep_ones(const Adjacency& ring, const std::vector<int>& place, double deep,
                    std::vector<PushedVertex>& pushed) {
   std::vector<char> known(pushed.size());
@@ -71,7 +71,7 @@ int count_torn(const Adjacency& ring, const std::vector<int>& place, const std::
   return torn;
 }
 
-// Projects those of the pushed vertices that are inside onto the nearest surface, and returns how many.
+// Projects the pushed vertices that are inside onto the nearest surface, if `move`, and returns their number.
 int project(const std::vector<PushedVertex>& pushed, const AskDistance& ask, double margin, bool move, Points& x) {
   Points at(static_cast<Eigen::Index>(pushed.size()), 3);
   for (std::size_t i = 0; i < pushed.size(); ++i) at.row(static_cast<Eigen::Index>(i)) = x.row(pushed[i].vertex);
@@ -87,8 +87,8 @@ int project(const std::vector<PushedVertex>& pushed, const AskDistance& ask, dou
   return count;
 }
 
-// Pushed vertices go at least as far as the order of layers wants, and those over them go along. Returns these and the
-// pushed ones.
+// Pushes vertices at least as far as the order of layers demands, and moves those over them. Returns all moved
+// vertices.
 std::vector<PushedVertex> keep_order(const std::vector<SignedDistance>& found, const RepulsionOptions& options,
                                      std::span<const char> held, Repelled& result, const Points& x) {
   std::vector<PushedVertex> moved = result.pushed;

@@ -12,12 +12,12 @@
 
 namespace selvedge {
 
-// The layer of ReFU (Tan et al. 2022, equations 2-5): a garment vertex with f(x) < 0 goes to x - alpha f n, where n is
-// the direction of the distance's gradient and alpha comes from the vertex and f; the others stay.
+// The layer of ReFU (Tan et al. 2022, equations 2-5). A garment vertex with f(x) < 0 moves to x - alpha f n, where n is
+// the direction of the distance's gradient and alpha depends on the vertex and f. Others stay.
 
-// Signed distances of points, accurate or by a network. A network's gradients need not have unit length.
+// Signed distances of points, exact or by a network. A network's gradients need not have unit length.
 using AskDistance = std::function<void(const Points& at, std::vector<SignedDistance>& found)>;
-// Scales of vertices with these distances.
+// Scales of vertices at these distances.
 using AskScale = std::function<Scales(std::span<const int> vertices, std::span<const double> distances)>;
 Scales constant_scale(std::span<const int> vertices, double alpha);
 
@@ -33,19 +33,19 @@ struct RepulsionOptions {
   LayerOrder order = {};  // cloth over pushed vertices moves with them; the paper: it does not
 };
 
-// One vertex that was moved.
+// A vertex that was moved.
 struct PushedVertex {
   int vertex = 0;
   double alpha = 1, slope = 0;    // the scale and its derivative by the distance [1/m]
   bool bounded = false;           // `most_beyond` limits the push, so the scale has no influence
-  SignedDistance at;              // where it was
-  Vec3 direction = Vec3::Zero();  // of the push, unit length
+  SignedDistance at;              // distance before the push
+  Vec3 direction = Vec3::Zero();  // direction of the push, unit length
 };
 
 struct Repelled {
   Points x;
   std::vector<PushedVertex> pushed;  // ascending
-  int deep = 0;                      // of them deeper than the options' `deep`
+  int deep = 0;                      // number of them deeper than the options' `deep`
   int torn = 0;                      // edges whose ends were pushed in directions over 90 degrees apart
   int carried = 0;                   // vertices outside that moved with pushed ones
   int projected = 0;                 // vertices still inside at a recheck, sum over rechecks

@@ -9,12 +9,12 @@
 namespace selvedge {
 namespace {
 
-constexpr int end_width = 10;             // of g's two hidden layers
-constexpr double first_overshoot = 0.02;  // scales begin at 1 and this
+constexpr int end_width = 10;             // width of g's two hidden layers
+constexpr double first_overshoot = 0.02;  // scales begin at 1 plus this
 
 double soft_plus(double x) { return std::max(x, 0.0) + std::log1p(std::exp(-std::abs(x))); }
 
-// Where softplus is y.
+// The argument at which softplus is y.
 double inverse_soft_plus(double y) { return y + std::log(-std::expm1(-y)); }
 
 int latent_columns(const ScaleShape& shape) {
@@ -74,7 +74,7 @@ double scale_end_slope(ScaleRange, double sum) {
 PlainNetwork make_scale_end(int inputs, ScaleRange range, std::uint64_t seed) {
   PlainNetwork made = make_plain_network({inputs, {end_width, end_width, 1}}, seed);
   AffineLayer& last = made.layers.back();
-  last.weight *= 0.01f;  // begins near its bias whatever the latents are
+  last.weight *= 0.01f;  // begins near its bias for any latents
   last.bias[0] =
       static_cast<float>(inverse_soft_plus(range == ScaleRange::at_least_one ? first_overshoot : 1 + first_overshoot));
   return made;
@@ -84,7 +84,7 @@ ScaleNetwork make_scale_network(const ScaleShape& shape, std::uint64_t seed) {
   const bool has_latents = shape.form != ScaleForm::distance_only;
   if (!(shape.unit > 0) || (has_latents && (shape.inputs < 1 || shape.vertices < 1 || shape.latent < 1)) ||
       shape.per_vertex < 0)
-    throw Error("sizes that make no network", "scale network", "give inputs, vertices, latent and unit above 0");
+    throw Error("no network has these sizes", "scale network", "give inputs, vertices, latent and unit above 0");
   ScaleNetwork made;
   made.shape = shape;
   const int columns = latent_columns(shape);

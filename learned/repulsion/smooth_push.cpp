@@ -9,14 +9,14 @@ struct SmoothProblem {
   const Adjacency& ring;
   const SmoothPushOptions& options;
   std::span<const char> held;
-  std::vector<int> inside;       // vertices
-  std::vector<Vec3> normals;     // of them, unit length
+  std::vector<int> inside;       // penetrating vertices
+  std::vector<Vec3> normals;     // one per penetrating vertex, unit length
   std::vector<double> shortage;  // along the normal [m]: gap - n . (x - c)
 
   bool is_held(int v) const { return !held.empty() && held[v]; }
 };
 
-// u_i - mean of the neighbours' u, and the transpose of that; vertices without neighbours count as their own mean.
+// u_i - mean of the neighbours' u, and the transpose of this map. Vertices without neighbours give 0.
 Points unevenness(const Adjacency& ring, const Points& u) {
   Points result = Points::Zero(u.rows(), 3);
   for (int v = 0; v < u.rows(); ++v) {

@@ -7,7 +7,7 @@
 
 namespace selvedge {
 
-// Lines for `selvedge plan`: which inputs of the network the scene uses or leaves out, and what of the scene the
+// Lines for `selvedge plan`: inputs of the network that the scene uses or leaves out, and parts of the scene that the
 // network ignores.
 std::vector<PlanLine> learned_plan_lines(const Scene&, const Architecture&, const LearnedOptions&);
 

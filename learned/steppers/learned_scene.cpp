@@ -13,7 +13,7 @@ namespace {
 constexpr double published_thickness = 4.7e-4;  // [m]
 constexpr double hinge_per_curvature = 4;
 
-// What networks were trained with.
+// A range of materials in training.
 struct TrainedRange {
   const char* quantity;
   const char* unit;
@@ -26,7 +26,7 @@ constexpr TrainedRange trained_lambda{"lambda", "N/m", 3535.41 * published_thick
                                       false};
 constexpr TrainedRange trained_density{"density", "kg/m2", 0.0434, 0.7, false};
 
-// Where the value lies between the ends, 0 to 1; one outside adds a sentence.
+// The place of the value between the ends, 0 to 1. A value outside adds a sentence.
 float input_of(const TrainedRange& range, double value, const std::string& cloth, std::vector<std::string>& clamped) {
   const double counted = std::isfinite(value) ? std::clamp(value, range.low, range.high) : range.low;
   if (counted != value) {

@@ -4,9 +4,9 @@
 namespace selvedge {
 namespace {
 
-constexpr const char* carried_block = "learned.velocity";    // [m/frame], a row a vertex of the cloth
-constexpr const char* previous_block = "learned.previous";   // [m], a row a vertex of the cloth
-constexpr const char* body_block = "learned.body_previous";  // [m], a row a vertex of the obstacles, on end
+constexpr const char* carried_block = "learned.velocity";    // [m/frame], one row per vertex of the cloth
+constexpr const char* previous_block = "learned.previous";   // [m], one row per vertex of the cloth
+constexpr const char* body_block = "learned.body_previous";  // [m], one row per vertex of all obstacles
 
 Eigen::Index obstacle_rows(const State& state) {
   Eigen::Index rows = 0;

@@ -9,7 +9,7 @@
 
 namespace selvedge {
 
-constexpr double learned_dt = 1.0 / 30;    // of a frame [s]; networks are trained with it
+constexpr double learned_dt = 1.0 / 30;    // of a frame [s], as in the training of all networks
 constexpr double settling_time = 1.0 / 3;  // time step of the pass in which cloth falls to rest [s]
 
 // Acceleration by the drive and, in a scene with wind, by the wind on each triangle, V x 3 [m/s2]; v in m/s.
@@ -18,8 +18,8 @@ Points free_acceleration(const Scene&, const Points& x, const Points& v, const D
 // Whether the graph has edges between cloths: if there are several cloths, or contact of a cloth with itself is on.
 bool sees_cloth_edges(const Scene&);
 
-// Whether a roll-out begins at this state, because no network has made it: its memory is not a learned stepper's, or is
-// of another scene.
+// Whether a roll-out begins at this state, because no network made it: its memory is not a learned stepper's, or is of
+// another scene.
 bool begins_rollout(const State&);
 
 // The graph state from which a network starts a frame. This is the only place where velocities in m/s become
@@ -38,8 +38,8 @@ StepEnd learned_end(const Scene&, const State& from, const Drive&, const GraphSt
 // roll-out begins there. The velocity is the cloth's motion in the frame.
 void carry_frame(const State& from, State& to);
 
-// What a network carries of these vertices' velocities becomes what State::v has of them. Nothing happens to a state
-// that no network made.
+// Sets the velocities that a network carries for these vertices to those of State::v. Does nothing to a state that no
+// network made.
 void carry_velocities(std::span<const int> vertices, State&);
 
 }  // namespace selvedge

@@ -21,9 +21,9 @@
 namespace selvedge {
 namespace {
 
-constexpr double farthest_away = 1e6;  // of a vertex from the origin, and in a frame [m]
+constexpr double farthest_away = 1e6;  // limit of positions and of motions in a frame [m]
 
-bool is_near(const Points& points) { return (points.array().abs() < farthest_away).all(); }  // NaN is not
+bool is_near(const Points& points) { return (points.array().abs() < farthest_away).all(); }  // NaN fails too
 
 class LearnedStepper final : public Stepper {
  public:
@@ -65,7 +65,7 @@ class LearnedStepper final : public Stepper {
   std::shared_ptr<const PackedNetwork> network_;
   std::unique_ptr<TorchNetwork> torch_;  // in place of the kernels
   GraphScene graph_scene_;
-  LossGarment losses_;  // of networks that are shown the objective's force
+  LossGarment losses_;  // of networks with the objective's force as an input
   RestGraph rest_;
   StepperTraits traits_;
   EnergyBalance energy_;
@@ -88,7 +88,7 @@ void LearnedStepper::show_force(GraphState& state) {
   state.force = shown_force(inputs, state.pass, features_.contour_force, force_search_);
 }
 
-// All passes of a frame, each from the result of the one before. False: a number is not finite.
+// Runs all passes of a frame, each from the result of the last. Returns false if a number is not finite.
 bool LearnedStepper::predict(GraphState state, NextCloth& next, StepReport& report) {
   for (state.pass = 0; state.pass < passes_; ++state.pass) {
     Stopwatch watch;

@@ -14,7 +14,7 @@ std::vector<std::pair<std::string, NetworkDevice>> network_devices() {
 
 namespace {
 
-// Throws Error that names the key and what to do without such a device.
+// Throws Error that names the key and a cure for machines without such a device.
 std::unique_ptr<TorchNetwork> on_libtorch(const char* device, const Architecture& architecture,
                                           const NetworkWeights& weights) {
   try {

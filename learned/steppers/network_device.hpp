@@ -11,7 +11,7 @@ struct Architecture;
 struct NetworkWeights;
 class TorchNetwork;
 
-// What computes a network, in a roll-out or in training.
+// The device that computes a network, in a roll-out or in training.
 enum class NetworkDevice {
   cpu,       // the program's own kernels
   libtorch,  // libtorch on the CPU: the code that a GPU runs, for machines without one
@@ -19,14 +19,14 @@ enum class NetworkDevice {
   automatic  // cuda where libtorch's part is beside the program and finds a device, else cpu
 };
 
-// The words for them in scene and training files.
+// The names of the devices in scene and training files.
 std::vector<std::pair<std::string, NetworkDevice>> network_devices();
 
-// The network by libtorch where `device` takes it; null: the kernels run. Throws Error where libtorch's part is not
-// beside the program or has no such device.
+// The network by libtorch if `device` selects it; null: the kernels run. Throws Error where libtorch's part is not
+// beside the program or lacks the device.
 std::unique_ptr<TorchNetwork> torch_network_for(NetworkDevice device, const Architecture&, const NetworkWeights&);
 
-// Whether libtorch is asked for, in words for `selvedge plan`.
+// Whether libtorch is used, as a sentence for `selvedge plan`.
 std::string device_sentence(NetworkDevice);
 
 }  // namespace selvedge

@@ -13,15 +13,15 @@
 namespace selvedge {
 namespace {
 
-// A closed obstacle and the nearest faces that cloth vertices had last.
+// A closed obstacle, and the faces nearest to cloth vertices at the last query.
 struct RefuBody {
   int obstacle;
   DistanceField field;
-  std::vector<int> faces;  // one a cloth vertex
+  std::vector<int> faces;  // one per cloth vertex
   EdgePassMemory edges;
 };
 
-// What is known of a vertex: its distance from the obstacle in which it lies deepest.
+// The distance of a vertex from the obstacle in which it lies deepest.
 struct DeepestIn {
   SignedDistance at;
   int body = -1;
@@ -63,7 +63,7 @@ class RefuStepper final : public Stepper {
   OutsideBudget budget_;
 };
 
-// `vertices` say where the search begins: one a point, or none.
+// `vertices` has the cloth vertex of each point, whose last face starts the search; or it is empty.
 std::vector<DeepestIn> RefuStepper::ask(const Points& at, std::span<const int> vertices) {
   std::vector<DeepestIn> deepest(static_cast<std::size_t>(at.rows()));
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -80,7 +80,7 @@ std::vector<DeepestIn> RefuStepper::ask(const Points& at, std::span<const int> v
   return deepest;
 }
 
-// Moves the bodies, and asks the vertices that may have come inside.
+// Moves the bodies, and queries the vertices that may have come inside.
 bool RefuStepper::any_inside(const State& state) {
   for (RefuBody& body : bodies_) body.field.move_to(state.obstacles[static_cast<std::size_t>(body.obstacle)]);
   if (!options_.budget) budget_ = {};
@@ -112,8 +112,8 @@ void RefuStepper::pass_all_edges(Points& x) {
   for (RefuBody& body : bodies_) pass_edges(body.field, scene_.surface, options_.edge_pass, x, held_, &body.edges);
 }
 
-// Pushed vertices do not go on inward: relative to the surface that they were pushed to, the part of their velocities
-// against its normal is taken away.
+// Stops pushed vertices from going inward again: removes the part of their velocity, relative to the surface that they
+// were pushed to, against its normal.
 void RefuStepper::calm(const State& from, double dt, const Repelled& pushed, State& to) {
   std::vector<int> vertices;
   Points at(static_cast<Eigen::Index>(pushed.pushed.size()), 3);

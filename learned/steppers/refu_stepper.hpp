@@ -14,14 +14,14 @@ struct RefuOptions {
   double alpha = 1;                                  // scale of every vertex, unless there are `neighbours`
   std::shared_ptr<const NeighbourScale> neighbours;  // networks that predict the scale of each vertex
   EdgePassOptions edge_pass{.rounds = 0, .count = false};
-  bool budget = true;  // skips queries of vertices that provably stay outside; changes the time alone
+  bool budget = true;  // skips queries of vertices that provably stay outside; saves time and changes nothing else
 };
 
-// The repulsive layer behind any stepper. Vertices that a step leaves inside a closed obstacle are pushed out
-// (repulsive_layer.hpp), by accurate distances to the unions of the obstacles. Pinned vertices stay. The push adds no
-// speed, and removes the part of a pushed vertex's velocity that would bring it back in. If nothing is inside, or the
-// step is rejected, the result of the inner stepper is returned bit for bit. A pushed state is audited again, and an
-// integrator of two steps starts again from it.
+// The repulsive layer after any stepper. It pushes vertices out that a step leaves inside a closed obstacle
+// (repulsive_layer.hpp), by accurate distances to the union of the obstacles. Pinned vertices stay. The push adds no
+// speed, and removes the part of the vertex' velocity that leads back in. If nothing is inside, or the step is
+// rejected, the result of the inner stepper is returned bit for bit. A pushed state is audited again, and an integrator
+// of two steps starts again from it.
 //
 // Without closed obstacles the inner stepper is returned. Keeps a reference to the scene.
 std::unique_ptr<Stepper> make_refu_stepper(const Scene&, std::unique_ptr<Stepper>, const RefuOptions& = {});

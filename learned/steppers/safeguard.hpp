@@ -8,17 +8,17 @@
 
 namespace selvedge {
 
-// When the response to a motion is given up (ContourCraft's released code). Zero: never for that reason.
+// Limits beyond which the response to a motion is given up (ContourCraft's released code). Zero: no limit.
 struct SafeguardOptions {
   int largest_zone = 30;          // vertices of an impact zone
-  double largest_impulse = 5e-2;  // that a vertex is moved by it [m]
-  int most_contacts = 2000;       // of the motion as proposed
+  double largest_impulse = 5e-2;  // motion of a vertex [m]
+  int most_contacts = 2000;       // contacts of the proposed motion
   double thickness = 2e-3;        // of cloth [m]
 };
 
 struct SafeguardReport {
   bool kept = true;
-  std::string why;  // it was given up; empty: it was not
+  std::string why;  // reason for giving up; empty: none
   int impulses = 0, zones = 0;
 };
 
@@ -27,8 +27,8 @@ struct SafeguardReport {
 class Safeguard {
  public:
   explicit Safeguard(const Scene&, const SafeguardOptions& = {});
-  // Changes `to` so that the straight motion from -> to meets nothing; where it gives up, `to` is undefined. It also
-  // gives up where `from` intersects itself.
+  // Changes `to` so that nothing meets on the straight motion from -> to. Gives up also where `from` intersects itself;
+  // then `to` is undefined.
   SafeguardReport operator()(const Points& from, Points& to);
 
  private:

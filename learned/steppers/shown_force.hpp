@@ -4,9 +4,9 @@
 
 namespace selvedge {
 
-// The force that networks with force inputs are shown, in training and roll-outs alike: that of the energies and of a
-// soft contact with the body at inputs.predicted, the guess. From the second pass on it includes inertia; the guess of
-// the first pass has none. `contour_weight` [N/m]: of the part that shortens intersection contours; 0: there is none.
+// The force that networks with force inputs see, in training and in roll-outs. It comes from the energies and a soft
+// contact with the body at inputs.predicted, the guess. It includes inertia from the second pass on, because the first
+// guess has none. `contour_weight` [N/m] weighs the part that shortens intersection contours; 0: none.
 Points shown_force(const LossInputs&, int pass, double contour_weight, LossSearch&);
 
 }  // namespace selvedge

@@ -9,7 +9,7 @@ namespace {
 
 using torch::Tensor;
 
-// Small arrays that go to the device in one copy, one behind the other: a copy each would cost more than the network.
+// Small arrays that go to the device in one copy, one after the other. A copy each would cost more than the network.
 template <class Number>
 class Parcel {
  public:
@@ -17,7 +17,7 @@ class Parcel {
     pieces_.emplace_back(values, count);
     size_ += count;
   }
-  // Where each piece lies there.
+  // The place of each piece.
   std::vector<Tensor> sent(const torch::Device& device) const {
     const auto options = torch::TensorOptions(c10::CppTypeToScalarType<Number>::value).pinned_memory(device.is_cuda());
     const Tensor host = torch::empty({size_}, options);
@@ -38,7 +38,7 @@ class Parcel {
   std::int64_t size_ = 0;
 };
 
-// The lists of TorchEnds, one behind the other.
+// The lists of TorchEnds, one after the other.
 struct EndLists {
   std::vector<std::int64_t> node, count, edge;
 
@@ -56,7 +56,7 @@ struct EndLists {
   }
 };
 
-// Different selections of a graph, and which of them each key of each step takes: most take the same.
+// The different selections of a graph, and the selection of each key of each step. Most steps share them.
 struct DifferentSelections {
   std::vector<const TorchSelection*> all;
   std::vector<std::size_t> of_key;

@@ -8,7 +8,7 @@
 
 namespace selvedge {
 
-// The node at one end of each edge; and, by node, how many edges it has there and which, node after node.
+// The node at one end of each edge. By node: the number of its edges, and the edges, one node after the other.
 struct TorchEnds {
   torch::Tensor node, count, edge;
 };
@@ -21,11 +21,12 @@ struct TorchEdges {
 // A graph as tensors.
 struct TorchGraph {
   torch::Tensor nodes;
-  std::vector<torch::Tensor> features;  // of each set
+  std::vector<torch::Tensor> features;  // one per set
   std::vector<TorchEdges> selections;
 };
 
-// Copies a graph to the device: all features in one copy, all indices in another. `keys`: selections of the view.
+// Copies a graph to the device: all features in one copy, all indices in another. `keys` is the number of selections of
+// the view.
 TorchGraph tensors_of(const TorchGraphView&, std::int64_t node_inputs, std::size_t keys, const torch::Device&);
 
 }  // namespace selvedge

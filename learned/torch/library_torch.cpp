@@ -18,7 +18,7 @@ using torch::Tensor;
 
 void put_text(char* to, std::size_t size, const std::string& text) { std::snprintf(to, size, "%s", text.c_str()); }
 
-// Runs `work`; what it throws becomes a sentence.
+// Runs `work` and turns an exception into a message.
 template <class Work>
 int guarded(TorchReport* report, Work&& work) {
   try {
@@ -30,7 +30,7 @@ int guarded(TorchReport* report, Work&& work) {
   }
 }
 
-// Weights of one perceptron: weight and bias of each layer, then scale and shift or nothing.
+// Weights of one perceptron: weight and bias of each layer, then scale and shift if it has a norm.
 struct TorchPerceptron {
   std::vector<Tensor> weight, bias;
   Tensor scale, shift;
@@ -44,17 +44,17 @@ struct TorchStep {
 struct TorchModel {
   torch::Device device = torch::kCPU;
   std::int64_t width = 0;
-  Tensor flat;                     // all weights, one behind the other
+  Tensor flat;                     // all weights, one after the other
   std::vector<Tensor> parameters;  // views of it, in the order of the arrays
   TorchPerceptron node_encoder, decoder;
   std::vector<TorchPerceptron> encoders;
   std::vector<TorchStep> steps;
   std::unique_ptr<torch::optim::Adam> adam;
-  Tensor output;     // of the last forward run that was to be kept
-  TorchGraph graph;  // of the same
+  Tensor output;     // of the last forward run with `keep`
+  TorchGraph graph;  // of the same run
 };
 
-// Hands out the parameters in their order.
+// Gives the parameters in their order.
 struct ParameterReader {
   const TorchModel& model;
   std::size_t next = 0;
@@ -108,7 +108,7 @@ void build(TorchModel& model, const TorchShape& shape) {
   if (reader.next != model.parameters.size()) throw std::runtime_error("the arrays are not those of the architecture");
 }
 
-// The layers behind the first, whose results are `x`, then the layer norm.
+// The layers after the first, whose results are `x`, then the layer norm.
 Tensor behind_first(const TorchPerceptron& p, Tensor x) {
   for (std::size_t layer = 1; layer < p.weight.size(); ++layer)
     x = torch::addmm(p.bias[layer], torch::relu(x), p.weight[layer].t());
@@ -125,12 +125,12 @@ TorchGraph tensors_of(const TorchModel& model, const TorchGraphView& view) {
   return tensors_of(view, model.node_encoder.weight[0].size(1), keys, model.device);
 }
 
-// Rows of edges summed up node by node, in the order of the edges: the same bits each time, unlike index_add on a GPU.
+// Sums rows of edges per node in the order of the edges: the same bits each time, unlike index_add on a GPU.
 Tensor summed(const Tensor& rows, const Tensor& count, const Tensor& edge) {
   return at::segment_reduce(rows.index_select(0, edge), "sum", count, {}, {}, 0, /*unsafe=*/true, 0.0);
 }
 
-// Rows of nodes at the ends of edges; its derivative is `summed`.
+// Rows of nodes at the ends of edges. Its derivative is `summed`.
 struct AtEnds : torch::autograd::Function<AtEnds> {
   static Tensor forward(torch::autograd::AutogradContext* context, const Tensor& rows, const TorchEnds& ends) {
     context->save_for_backward({ends.count, ends.edge});
@@ -143,7 +143,7 @@ struct AtEnds : torch::autograd::Function<AtEnds> {
   }
 };
 
-// `summed`, whose derivative is what `AtEnds` gives.
+// `summed` with the derivative `AtEnds`.
 struct SumAtEnds : torch::autograd::Function<SumAtEnds> {
   static Tensor forward(torch::autograd::AutogradContext* context, const Tensor& rows, const TorchEnds& ends) {
     context->save_for_backward({ends.node});
@@ -155,7 +155,7 @@ struct SumAtEnds : torch::autograd::Function<SumAtEnds> {
   }
 };
 
-// New values of the edges of a selection. The first layer's products with the nodes are made once a node.
+// New values of the edges of a selection. The first layer multiplies each node once.
 Tensor edge_values(const TorchModel& model, const TorchPerceptron& p, const Tensor& nodes, const Tensor& latents,
                    const TorchEdges& edges) {
   const std::int64_t w = model.width;
@@ -194,7 +194,7 @@ Tensor run(const TorchModel& model, const TorchGraphView& view, const TorchGraph
   return evaluate(model.decoder, nodes.slice(0, 0, view.cloth_nodes));
 }
 
-// What the library multiplies matrices with, from the text that describes how it was built.
+// The name of the library that multiplies matrices, from libtorch's description of its build.
 std::string blas_name() {
   const std::string text = at::show_config();
   const std::size_t at = text.find("BLAS_INFO=");
@@ -283,7 +283,7 @@ void add_to(const TorchArray& array, const float* values) {
   for (std::int64_t k = 0; k < size_of(array); ++k) array.data[k] += values[k];
 }
 
-// Derivatives of tensors that the output does not depend on are zero. All of them come back in one copy.
+// Derivatives of tensors that do not affect the output are zero. All come back in one copy.
 int backward(void* handle, const float* d_output, const TorchArray* gradients, int count,
              const TorchFeatureGradient* features, int feature_count, TorchReport* report) {
   return guarded(report, [&] {

@@ -2,12 +2,13 @@
 
 namespace selvedge {
 
-// How a step that starts tangled prepares the cloth (parting.hpp).
+// How a step that starts tangled prepares the cloth (parting.hpp). Members are described where keys are bound to them:
+// pipeline/scene/config_run.cpp.
 struct RecoveryOptions {
-  int untangling_passes = 400;  // A step takes at most this many passes of untangling; the next one continues.
-  double speed = 1;             // A tangled vertex moves at most this fast [m/s].
-  double farthest_place = 0.3;  // Putting on moves a vertex at most this far [m].
-  double push_softness = 0.1;   // The force that keeps parted cloth apart sets in over this part of the thickness.
+  int untangling_passes = 400;
+  double speed = 1;
+  double farthest_place = 0.3;
+  double push_softness = 0.1;
 
   // Untangling of cloth that crosses itself or lies in an obstacle.
   // Cloth with more crossing pairs per triangle is not untangled: its own stiffness opens it.

@@ -14,19 +14,17 @@ enum class BendingModel { curvature, hinge };
 // losses.
 enum class HingeLength { rest, current };
 
+// What a cloth is made of. Members are described where keys are bound to them: pipeline/scene/config_cloth.cpp.
 struct Material {
   std::string name = "cotton";
-  double density = 0.2;  // areal [kg/m2]
+  double density = 0.2;
   MembraneModel membrane = MembraneModel::stvk;
-  double lame_mu = 384.6;           // membrane Lame coefficients, thickness included [N/m]
-  double lame_lambda = 329.7;       // (E h = 1000 N/m, nu = 0.3, plane stress)
-  double warp = 1000, weft = 1000;  // Baraff-Witkin stretch stiffness along u and v [N/m]
-  double shear = 400;               // Baraff-Witkin shear stiffness [N/m]
+  double lame_mu = 384.6, lame_lambda = 329.7;
+  double warp = 1000, weft = 1000, shear = 400;
   BendingModel bending_model = BendingModel::curvature;
-  double bending = 1e-5;  // B, bending stiffness per width [N m]; for hinge: the papers' coefficient
+  double bending = 1e-5;
   HingeLength hinge_length = HingeLength::rest;
-  double stiffness_damping = 0;  // Rayleigh: damping force = -(stiffness_damping * K + mass_damping * M) v; [s]
-  double mass_damping = 0;       // [1/s]
+  double stiffness_damping = 0, mass_damping = 0;
 };
 
 // Where a cloth lies in the joint numbering of Scene::surface.
@@ -46,27 +44,28 @@ struct Obstacle {
   bool moving = false;
 };
 
+// The air round the cloth. Members are described where keys are bound to them: pipeline/scene/config_scene.cpp.
 struct Wind {
   bool on = false;
-  double air_density = 1.2;  // [kg/m3]
-  double drag = 1.0;         // coefficient along the normal wind
-  double lift = 0.0;         // coefficient of the tangential part
+  double air_density = 1.2;
+  double drag = 1.0, lift = 0.0;
 };
 
 // Joins two vertices of the same cloth or of different ones, as a button does. It resists both extension and
-// compression.
+// compression. Members are described where keys are bound to them: pipeline/scene/config_sewing.cpp.
 struct Spring {
   int a = 0, b = 0;        // vertices of the scene
   double rest_length = 0;  // [m]
-  double stiffness = 1e4;  // [N/m]
+  double stiffness = 1e4;
 };
 
+// Contact of cloth with itself and with obstacles. Members are described where keys are bound to them:
+// pipeline/scene/config_scene.cpp.
 struct ContactSettings {
-  double thickness = 2e-3;     // distance between resting layers [m]
-  double friction = 0.3;       // cloth on obstacle
-  double self_friction = 0.3;  // cloth on cloth
-  bool self = true;            // false: cloth-cloth contact is left out and not audited
-  bool rigid_zones = false;    // impact zones of cloth alone move as rigid bodies
+  double thickness = 2e-3;
+  double friction = 0.3, self_friction = 0.3;
+  bool self = true;
+  bool rigid_zones = false;
 };
 
 // Constant during a run. All cloths are one surface: vertices and triangles numbered cloth after cloth.

@@ -2,10 +2,11 @@
 
 namespace selvedge {
 
-// How contact enters the incremental potential of a step (contact_terms.hpp).
+// How contact enters the incremental potential of a step (contact_terms.hpp). Members are described where keys are
+// bound to them: pipeline/scene/config_solver.cpp.
 struct ContactTermOptions {
-  double stiffness = 200;  // A term begins this many times as stiff as its pair's mass over the time step squared.
-  double overlap_removed = 0.1;  // A step removes this part of an overlap; a load sinks by this part of a gap.
+  double stiffness = 200;
+  double overlap_removed = 0.1;
 
   // The force rises smoothly over this part of the thickness.
   static constexpr double onset = 0.02;

@@ -8,9 +8,10 @@
 
 namespace selvedge {
 
-// When Newton uses longer steps, exact Hessians and more iterations.
+// When Newton uses longer steps, exact Hessians and more iterations. Members are described where keys are bound to
+// them: pipeline/scene/config_solver.cpp.
 struct NewtonOptions {
-  int exact_from = 3;  // The exact Hessian is tried after this many filtered ones.
+  int exact_from = 3;
 
   // A longer step is tried if the change of the potential over its linear prediction is larger. Exact quadratics have
   // 0.5.
@@ -27,18 +28,16 @@ struct NewtonOptions {
   static constexpr int more_iterations = 8;
 };
 
+// When a solve by Newton's method ends, and how it solves linear systems. Members are described where keys are bound to
+// them: pipeline/scene/config_solver.cpp.
 struct ImplicitEulerOptions {
-  double velocity_tolerance = 1.7e-3;  // Newton ends when the RMS of its displacement is below this times the time
-                                       // step [m/s],
-  double relative_tolerance = 1.7e-3;  // or below this part of the RMS motion in the step
-  int max_newton = 8;                  // iterations of a solve
+  double velocity_tolerance = 1.7e-3, relative_tolerance = 1.7e-3;
+  int max_newton = 8;
   LinearSolver linear_solver = LinearSolver::automatic;
-  double linear_tolerance = 0.25;  // of PCG in a Newton iteration, in the norm of its preconditioner
+  double linear_tolerance = 0.25;
   int max_linear = 2000;
-  // Newton iterations of a whole step. Once they are used up every further solve takes one, and the report says so
-  // (out_of_newton): contact still holds, but the cloth is not where it should be.
   int max_newton_step = 1000;
-  double slip_speed = 2e-3;  // below this speed lagged friction is viscous [m/s]
+  double slip_speed = 2e-3;
   // A step counts as not converged if StepReport::unsolved, an RMS distance, is larger [m].
   double tolerated_error = 5e-4;
   NewtonOptions newton;

@@ -18,15 +18,17 @@ enum class Integrator { implicit_euler, bdf2 };
 // (carried_stepper.hpp), if the incremental potential is lower there.
 enum class FirstGuess { inertia, carried };
 
+// Options of the stepper `conventional`, which sets thickness, separation and friction in `resolve` to those of the
+// scene. Members are described where keys are bound to them: pipeline/scene/config_run.cpp,
+// pipeline/scene/config_solver.cpp.
 struct ConventionalOptions {
-  std::optional<int> substeps;      // absent: chosen in each frame from the speed
-  std::optional<int> min_substeps;  // absent: least_substeps
+  std::optional<int> substeps, min_substeps;
   int max_substeps = 12;
   Integrator integrator = Integrator::implicit_euler;
   FirstGuess guess = FirstGuess::inertia;
   ImplicitEulerOptions implicit_euler;
   SubstepOptions substep;
-  ResolveOptions resolve;  // thickness, separation and friction are those of the scene
+  ResolveOptions resolve;
 };
 
 // Implicit Euler or BDF2, then the response to contact in Bridson's order. Keeps a reference to the scene.

@@ -10,21 +10,18 @@ namespace selvedge {
 
 // Bounds that a proposed step must keep. On training scenes no conventional step exceeds a third of the bounds of the
 // residual, and noise of 3 mm exceeds other bounds first (tests/pipeline/run/long_guard_tables.cpp prints both;
-// docs/results/hybrid.md).
+// docs/results/hybrid.md). Members are described where keys are bound to them: pipeline/scene/config_run.cpp.
 struct GuardOptions {
-  double acceleration = 300;       // of any vertex in the step [m/s2]
-  double mean_acceleration = 6;    // RMS of all vertices [m/s2]; or
-  double change_of_motion = 0.8;   // RMS change of the motion, divided by the motion; the weaker of both bounds holds
-  double stretch = 1.3;            // largest of a triangle; or
-  double stretch_growth = 1.1;     // over the largest at the start; the weaker of both bounds holds
-  double energy_growth = 10;       // of the elastic energy, divided by the cloth's weight times its mean edge
-  double patch_acceleration = 60;  // RMS of the unexplained force on patches, divided by their mass [m/s2]
-  double unexplained = 0.8;        // the same, divided by the mean acceleration, if change_of_motion is exceeded
-  double imbalance = 1e-3;         // RMS of how far a Jacobi sweep of the step's potential would move vertices [m]
-  double decrement = 5;            // energy that this sweep would gain, in the unit of energy_growth
-  int patch_size = 20;             // about this many vertices
-  double still = 1e-4;             // an RMS motion below this in a step counts as none [m]
-  double slight = 1;               // mean acceleration that needs no explanation [m/s2]
+  double acceleration = 300, mean_acceleration = 6;
+  double change_of_motion = 0.8;
+  double stretch = 1.3, stretch_growth = 1.1;
+  double energy_growth = 10;
+  double patch_acceleration = 60;
+  double unexplained = 0.8;
+  double imbalance = 1e-3, decrement = 5;
+  int patch_size = 20;
+  double still = 1e-4;
+  double slight = 1;
 };
 
 // What the guard measures, in the order of cost.

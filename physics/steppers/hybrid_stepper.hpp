@@ -18,16 +18,16 @@ enum class HybridMode {
   after_k     // as gated, but the line begins where k Newton iterations end
 };
 
+// Options of the stepper `hybrid`. Members are described where keys are bound to them: pipeline/scene/config_run.cpp.
 struct HybridOptions {
   HybridMode mode = HybridMode::corrected;
   GuardOptions guard;
-  std::optional<int> newton;  // iterations: k of `after_k`, else 2; for a solve of `refined`, else the solver's own
-  int gate_steps = 6;         // points between start and proposal where the potential is evaluated
-  int longest_stretch = 32;   // steps without a proposal, after refusals (proposal_trust.hpp)
-  int admitted_to_halve = 3;  // proposals in a row that halve this stretch
-  // Stop asking for proposals when they cost more time than they save. Steps then depend on the clock.
+  std::optional<int> newton;
+  int gate_steps = 6;
+  int longest_stretch = 32;
+  int admitted_to_halve = 3;
   bool stop_when_slow = false;
-  double extra_time = 0.05;  // share of the time so far that proposals may cost
+  double extra_time = 0.05;
   ImplicitEulerOptions implicit_euler;
 };
 

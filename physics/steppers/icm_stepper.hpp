@@ -10,15 +10,16 @@
 
 namespace selvedge {
 
+// Options of the stepper `icm`. Members are described where keys are bound to them: pipeline/scene/config_run.cpp.
 struct IcmOptions {
   std::optional<int> substeps;  // absent: chosen in each frame from the speed
   int max_substeps = 12;
-  int outer_iterations = 2;     // in each substep: a search for pairs, then a minimisation
-  double contour_weight = 0.1;  // of the contour energy, in units of mean vertex mass / h^2
+  int outer_iterations = 2;
+  double contour_weight = 0.1;
   ContourGradient contour_gradient = ContourGradient::translational;
-  double push_speed = 0.5;      // speed at which vertices on the wrong side are pushed back [m/s]; 0: no pushes
-  double reach = 0.01;          // distance within which pairs are kept from passing each other [m]
-  double push_softness = 0.02;  // The force of a push rises over this part of the thickness.
+  double push_speed = 0.5;
+  double reach = 0.01;
+  double push_softness = 0.02;
   ImplicitEulerOptions implicit_euler;
   SubstepOptions substep;
 };

@@ -18,9 +18,9 @@ struct Rest {
 Rest rest_of(const State&);
 void remember(const Rest&, State&);
 
+// When a cloth rests. Members are described where keys are bound to them: pipeline/scene/config_run.cpp.
 struct RestingOptions {
-  double still_edges = 0.005;  // Cloth rests if no vertex moves by more than this many mean edges
-  double still_seconds = 0.5;  // in this time [s].
+  double still_edges = 0.005, still_seconds = 0.5;
 };
 
 // A stepper that leaves out every cloth that rests: none of its vertices has moved for a while, its pins, wind and

@@ -4,13 +4,13 @@
 
 namespace selvedge {
 
-// How a step is cut into substeps, and how a substep alternates implicit solves with Bridson's response.
+// How a step is cut into substeps, and how a substep alternates implicit solves with Bridson's response. Members are
+// described where keys are bound to them: pipeline/scene/config_solver.cpp.
 struct SubstepOptions {
-  double longest = 1.0 / 48;   // A longer step takes at least two substeps, since implicit Euler damps visibly [s].
-  double first_tolerance = 8;  // Tolerance scale of the first solve, which only finds impacts and normal forces.
-  double friction_tolerance = 0.2;  // Tolerance scale of solves with friction: sticking needs accuracy.
-  int max_passes = 6;               // A substep solves again at most this often.
-  double normal_change = 0.05;      // It solves again while lagged normal forces change by more than this share.
+  double longest = 1.0 / 48;
+  double first_tolerance = 8, friction_tolerance = 0.2;
+  int max_passes = 6;
+  double normal_change = 0.05;
   ContactTermOptions contact;
 
   // A step is cut so that pairs that meet (with icm: all vertices) move by at most this many mean edges in a substep,

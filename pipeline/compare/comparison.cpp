@@ -13,11 +13,13 @@ const Options<CompareScene>& compared_scene_options() {
   using O = CompareScene;
   static const Options<O> table(
       "compared_scene", "",
-      {needed(path("file", "scene file, from this file's folder")), text("name", "left out: the file's"),
-       texts("set", &O::overrides, "`key=value` overrides of the scene"),
-       integer("states", &O::states, not_negative, "common states, spread over the run; 0: no references"),
-       integer("horizon", &O::horizon, at_least_one, "frames from each of them"),
-       text("group", &O::outfit, "what it is counted with in an evaluation, such as the garment")},
+      {needed(path("file", "Scene file, relative to this file's folder.")),
+       text("name", "Name of the scene. Default: that of the file."),
+       texts("set", &O::overrides, "`key=value` overrides of the scene."),
+       integer("states", &O::states, not_negative,
+               "Number of common states, spread over the run. 0: no references are made, and no errors measured."),
+       integer("horizon", &O::horizon, at_least_one, "Number of frames from each common state."),
+       text("group", &O::outfit, "Group of the scene in an evaluation, such as its garment.")},
       "file");
   return table;
 }
@@ -28,9 +30,9 @@ const Section& setting_section() {
       "",
       "",
       {},
-      {needed(text("name", "")), text("stepper", "in place of the scene's"),
-       text("weights", "file in `weights_folder`; a row whose file is not there is left out, and says so"),
-       texts("set", "`key=value` overrides of every scene; none: its defaults")}};
+      {needed(text("name", "Name of the row.")), text("stepper", "Stepper, in place of the scene's."),
+       text("weights", "File in `weights_folder`. A row whose file is not there is left out, and says so."),
+       texts("set", "`key=value` overrides of every scene.")}};
   return table;
 }
 
@@ -38,18 +40,22 @@ const Options<SequenceOptions>& sequence_options() {
   using O = SequenceOptions;
   static const Options<O> table(
       "sequences", "Outfits on clips, each a scene. The tangled ones start where training's third stage starts.",
-      {text("file", &O::file, "scene of an outfit on a body `person`"),
-       texts("outfits", &O::outfits, "of outfits.yaml"),
-       texts("clips", &O::clips, "procedural; each outfit goes through each in turn"),
-       integer("count", &O::count, not_negative, "of sequences"),
-       integer("tangled", &O::tangled, not_negative, "of them: every second one, up to this number"),
-       integer("frames", &O::frames, at_least_one, ""), integer("seed", &O::seed, not_negative, "of tangled starts"),
+      {text("file", &O::file, "Scene of an outfit on a body `person`, relative to this file's folder."),
+       texts("outfits", &O::outfits, "Outfits of outfits.yaml."),
+       texts("clips", &O::clips, "Procedural clips. Each outfit goes through each in turn."),
+       integer("count", &O::count, not_negative, "Number of sequences. With `training`, 0: all that there are."),
+       integer("tangled", &O::tangled, not_negative,
+               "Number of sequences that start tangled: every second one up to this number, or all."),
+       integer("frames", &O::frames, at_least_one, "Number of frames of a sequence."),
+       integer("seed", &O::seed, not_negative, "Seed of tangled starts."),
        number("shape_spread", &O::shape_spread, Unit::none, not_negative,
-              "of the bodies of tangled ones, in standard deviations"),
+              "Standard deviation of the shape coefficients of bodies in tangled sequences. None goes beyond 3."),
        text("training", &O::training,
-            "training file; in place of outfits and clips the sequences are those of its people whom `split` names"),
+            "Training file, relative to this file's folder. The sequences are those of its people whom `split` names, "
+            "in place of outfits and clips."),
        word("split", &O::split, {"training", "validation", "test"},
-            "of `training`: what is worn, a clip or a person is of it, and nothing is of a later one")});
+            "Split of `training`. The person, the clip or what is worn belongs to it, and none of them to a later "
+            "one.")});
   return table;
 }
 
@@ -57,12 +63,12 @@ const Options<ComparedDrapes>& compared_drapes_options() {
   using O = ComparedDrapes;
   static const Options<O> table(
       "compared_drapes", "",
-      {needed(text("run", "folder of a finished `selvedge train` of drapes, seen from the working folder")),
-       text("name", &O::name, "left out: the folder's"),
+      {needed(text("run", "Folder of a finished `selvedge train` of drapes, relative to the working folder.")),
+       text("name", &O::name, "Name of the training. Default: that of the folder."),
        choice("of", &O::use,
               {{"garments", DrapesUse::garments}, {"gcnn", DrapesUse::graph_network}, {"clips", DrapesUse::clips}},
-              "the tables that it stands in: those of garments, of graph networks, or of unseen clips"),
-       flag("counted", &O::counted, "in the means over all garments")},
+              "Tables that the training stands in: those of garments, of graph networks, or of unseen clips."),
+       flag("counted", &O::counted, "True: the training counts in the means over all garments.")},
       "run");
   return table;
 }
@@ -71,10 +77,13 @@ const Options<EvaluationOptions>& evaluation_options() {
   using O = EvaluationOptions;
   static const Options<O> table(
       "evaluation", "Tables of what rows leave of intersections, with paired intervals.",
-      {text("baseline", &O::baseline, "the row that the others are held against; left out: no evaluation"),
-       integer("resamples", &O::resamples, at_least_one, "of the bootstrap"),
-       flag("volume", &O::volume, "the volume that cloth encloses with itself too, of the runs kept (`keep_runs`)"),
-       integer("left_frames", &O::left_frames, at_least_one, "over which what is left of the first pairs is shown")});
+      {text("baseline", &O::baseline, "Row that the others are compared with. Default: there is no evaluation."),
+       integer("resamples", &O::resamples, at_least_one, "Number of resamples of the bootstrap."),
+       flag("volume", &O::volume,
+            "True: the volume that self-penetrating cloth encloses is measured too, in the runs that are kept "
+            "(`keep_runs`)."),
+       integer("left_frames", &O::left_frames, at_least_one,
+               "Number of frames in the plot of the part of the first pairs that is left.")});
   return table;
 }
 
@@ -82,12 +91,12 @@ const Options<RowLimits>& row_limit_options() {
   using O = RowLimits;
   static const Options<O> table(
       "limits", "When a row ends before its last frame. It stays in table and plot, marked, with what was measured.",
-      {integer("pairs", &O::pairs, not_negative,
-               "intersecting pairs of cloth, a triangle, at the end of a frame; 0: any number"),
-       number(
-           "seconds", &O::seconds, Unit::time, not_negative,
-           "of a run, measuring included, and of a row's frames from the common states; 0: any time. Where it ends a "
-           "row depends on the machine")});
+      {integer(
+           "pairs", &O::pairs, not_negative,
+           "Largest number of intersecting pairs of cloth for each triangle, at the end of a frame. 0: any number."),
+       number("seconds", &O::seconds, Unit::time, not_negative,
+              "Longest time of a run, measuring included, and of all frames of a row from the common states. 0: any "
+              "time. Where it ends a row depends on the machine.")});
   return table;
 }
 
@@ -95,22 +104,27 @@ const Options<Comparison>& comparison_options() {
   using O = Comparison;
   static const Options<O> table(
       "comparison", "The whole file.",
-      {text("description", "for people"),
-       sections("scenes", compared_scene_options().section, "[]", "at least one, or sequences, or drapes"),
-       sections("drapes", compared_drapes_options().section, "[]", "trainings for the tables of the repulsive layer"),
+      {text("description", "Free text for readers."),
+       sections("scenes", compared_scene_options().section, "[]",
+                "Scenes: at least one, unless there are sequences or drapes."),
+       sections("drapes", compared_drapes_options().section, "[]", "Trainings for the tables of the repulsive layer."),
        section(&O::sequences, sequence_options(), ""), section(&O::evaluation, evaluation_options(), ""),
        section(&O::limits, row_limit_options(), ""),
-       text("weights_folder", &O::weights_folder, "of the settings' weights, seen from this file"),
+       text("weights_folder", &O::weights_folder, "Folder of the settings' weights, relative to this file's folder."),
        integer("keep_runs", &O::keep_runs, not_negative,
-               "of how many scenes the trajectories of the rows' first repeats are kept, with a page that plays them"),
-       needed(sections("settings", setting_section(), "", "at least one")),
-       texts("reference", &O::reference, "`key=value` overrides of the temporal reference, beside its time step"),
-       texts("algebraic", &O::algebraic, "and of the algebraic one, beside its one step a frame"),
+               "Number of scenes of which the trajectories of the rows' first repeats are kept, with a page that plays "
+               "them."),
+       needed(sections("settings", setting_section(), "", "Rows: at least one.")),
+       texts("reference", &O::reference, "`key=value` overrides of the temporal reference, beside its time step."),
+       texts("algebraic", &O::algebraic,
+             "`key=value` overrides of the algebraic reference, beside its one step a frame and its tolerances."),
        integer("judged_frames", &O::judged_frames, not_negative,
-               "of a run, of which the distance to the optimum is found"),
-       integer("repeats", &O::repeats, at_least_one, "timed runs of each setting"),
-       number("jitter", &O::jitter, Unit::none, not_negative, "of the floor's states, in mean edge lengths"),
-       texts("short_form", "`key=value` overrides of this file that make it shorter (`--short`)")});
+               "Number of frames of a run whose distance to the optimum is found."),
+       integer("repeats", &O::repeats, at_least_one, "Number of timed runs of each setting."),
+       number("jitter", &O::jitter, Unit::none, not_negative,
+              "Size of the random displacements of common states by which the floor of errors is found, in mean edge "
+              "lengths."),
+       texts("short_form", "`key=value` overrides of this file that make it shorter (`--short`).")});
   return table;
 }
 

@@ -6,10 +6,11 @@
 
 namespace selvedge {
 
-// Limits of a row on a scene, so that a row that cannot be measured does not hold up the others.
+// Limits of a row on a scene, so that a row that cannot be measured does not hold up the others. Members are described
+// where keys are bound to them: pipeline/compare/comparison.cpp.
 struct RowLimits {
-  int pairs = 10;      // intersecting pairs of cloth for each triangle, at the end of a frame; 0: no limit
-  double seconds = 0;  // for a run, and for all frames from the common states together; 0: no limit
+  int pairs = 10;
+  double seconds = 0;
 };
 
 // Intersecting pairs of cloth in the positions as a file stores them, or at the end of an audited step. The second one

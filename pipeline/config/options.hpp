@@ -9,14 +9,14 @@
 #include "pipeline/config/config_tables.hpp"
 
 // Keys that are bound to members of a struct. One row of a table reads the key, takes its default from the struct's
-// initialiser, documents it and prints it:
+// initialiser, documents it and prints it. The struct does not describe such members a second time:
 //
 //   const Options<TrainingOptions>& training_options() {
 //     using O = TrainingOptions;
 //     static const Options<O> table("training", "", {
-//         number("learning_rate", &O::learning_rate, Unit::none, positive, "of Adam"),
-//         integer("batch", &O::batch, at_least_one, "samples a step"),
-//         choice("loss", &O::loss, {{"physics", Loss::physics}, {"squares", Loss::squares}}, "what is minimised")});
+//         number("learning_rate", &O::learning_rate, Unit::none, positive, "Learning rate of Adam."),
+//         integer("batch", &O::batch, at_least_one, "Number of samples in a step."),
+//         choice("loss", &O::loss, {{"physics", Loss::physics}, {"squares", Loss::squares}}, "What is minimised.")});
 //     return table;
 //   }
 //   const TrainingOptions options = training_options().read(config["training"]);

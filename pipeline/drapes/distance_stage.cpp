@@ -7,7 +7,7 @@
 namespace selvedge {
 namespace {
 
-// A point of a triangle drawn by area. `areas` are running sums.
+// A point drawn on a surface, uniformly by area. `areas` are running sums.
 struct SurfacePoint {
   Vec3 at, normal;
 };
@@ -41,7 +41,7 @@ Vec3 noise_of(double deviation, RandomStream& random) {
   return noise;
 }
 
-// Bodies' samples that the errors are printed of: the same whenever it is asked.
+// The samples on which errors are printed. They are the same at each call.
 DistanceSamples samples_to_watch(const DistanceOptions& options, const DrapeLessons& lessons,
                                  const std::vector<std::unique_ptr<DrapeBody>>& bodies, std::size_t most_bodies) {
   RandomStream random = stream_of(7, 0);

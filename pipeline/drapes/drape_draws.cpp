@@ -8,7 +8,7 @@
 namespace selvedge {
 namespace {
 
-// Ranges of axis times angle by coordinate [deg]. Of a pair the left one: the right one is its mirror image.
+// Ranges of axis times angle per coordinate [deg]. A pair has the range of the left joint; the right one is mirrored.
 struct JointRange {
   int joint;
   bool paired;

@@ -5,7 +5,7 @@
 namespace selvedge {
 namespace {
 
-// From the pose into each joint's own frame in the zero pose.
+// Maps the posed body into each joint's own frame in the zero pose.
 QueryMap query_of_bones(const JointTransforms& transforms, const Points& joints) {
   std::vector<Eigen::Matrix<double, 3, 4>> frames;
   for (std::size_t j = 0; j < transforms.size(); ++j) {
@@ -53,7 +53,7 @@ DrapeLessons make_drape_lessons(const std::filesystem::path& drapes, int validat
         k < paths - validation_paths ? lessons.training : lessons.validation);
   for (const DrapePath& path : lessons.set->test) add(path, lessons.test);
   if (lessons.training.empty() || lessons.validation.empty() || lessons.test.empty())
-    throw Error("there are no drapes to train on, to watch or to measure on", drapes.string(),
+    throw Error("the training, validation or test part has no drapes", drapes.string(),
                 "make more paths, or keep fewer for `validation_paths`");
   return lessons;
 }

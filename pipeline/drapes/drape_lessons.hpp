@@ -14,26 +14,26 @@ namespace selvedge {
 // One drape, and the distances of its body.
 struct DrapeBody {
   DrapeSample sample;
-  std::unique_ptr<DistanceField> field;  // of the body as it stands there
-  std::vector<int> faces;                // where a search begins
-  QueryMap query;                        // of a network of distances
+  std::unique_ptr<DistanceField> field;  // of the posed body
+  std::vector<int> faces;                // faces at which a search begins
+  QueryMap query;                        // input of a distance network
   std::vector<float> condition;          // pose and shape
   std::unique_ptr<NeuralDistance> neural;
 
-  AskDistance accurate();    // keeps a reference
-  AskDistance by_network();  // the same; needs `neural`
+  AskDistance accurate();    // keeps a reference to this
+  AskDistance by_network();  // as above; needs `neural`
 };
 
 struct DrapeLessons {
-  std::unique_ptr<const DrapeSet> set;  // distances point into it
+  std::unique_ptr<const DrapeSet> set;  // distances refer to it
   Adjacency ring;
   std::vector<std::unique_ptr<DrapeBody>> training, validation, test;
 };
-// `bones`: what a network of distances reads. The last `validation_paths` of those to train on are kept apart. Throws
-// Error where a part has no drapes.
+// `bones` selects the query of a distance network. The last `validation_paths` training paths are kept for validation.
+// Throws Error where a part has no drapes.
 DrapeLessons make_drape_lessons(const std::filesystem::path& drapes, int validation_paths, bool bones);
 
-// Has the bodies' distances answered by the network as well.
+// Adds distances by the network to all bodies.
 void use_network(const PlainNetwork&, DrapeLessons&);
 
 }  // namespace selvedge

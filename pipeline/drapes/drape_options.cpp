@@ -13,36 +13,39 @@ using namespace table;
 const Options<DrapeOptions>& drape_options() {
   using O = DrapeOptions;
   static const Options<O> table(
-      "drapes", "A set of drapes at rest.",
-      {text("description", "a note for people; the program ignores it"),
-       text("name", &O::name, "name of the set; left out: that of the file"),
-       text("garment", &O::garment, "name of a garment by code"),
-       number("edge", &O::edge, Unit::length, positive, "edge length of the garment's triangles"),
-       integer("seed", &O::seed, not_negative, "seed of poses, shapes and styles"),
-       integer("poses", &O::poses, at_least_one, "poses of a path; each drape starts from the last one"),
-       integer("training", &O::training, at_least_one, "number of training paths; each has one shape and one style"),
-       integer("test", &O::test, at_least_one, "number of test paths, with other poses, shapes and styles"),
+      "drapes", "Drapes at rest of one garment on the mannequin.",
+      {text("description", "Free text for readers."),
+       text("name", &O::name, "Name of the set. Default: that of the file."),
+       text("garment", &O::garment, "Name of a garment that the program makes (docs/garments.md)."),
+       number("edge", &O::edge, Unit::length, positive, "Edge length of the garment's triangles."),
+       integer("seed", &O::seed, not_negative, "Random seed of poses, shapes and styles."),
+       integer("poses", &O::poses, at_least_one, "Number of poses in a path. Each drape starts from the one before."),
+       integer("training", &O::training, at_least_one, "Number of training paths. Each has one shape and one style."),
+       integer("test", &O::test, at_least_one, "Number of test paths, with other poses, shapes and styles."),
        texts("clips", &O::clips,
-             "procedural clips that give the poses, instead of random ones; `training` is then `shapes` times their "
-             "number"),
-       texts("test_clips", &O::test_clips, "clips of the test paths, for the same bodies"),
-       integer("shapes", &O::shapes, at_least_one, "number of bodies that go through each clip"),
-       number("pose_range", &O::pose_range, Unit::none, not_negative, "factor on the ranges of the joints' angles"),
+             "Procedural clips that give the poses of training paths, in place of random ones. `training` is then "
+             "`shapes` times their number."),
+       texts("test_clips", &O::test_clips, "Clips of the test paths, for the same bodies."),
+       integer("shapes", &O::shapes, at_least_one,
+               "Number of bodies that go through each clip. Each body in each clip is a path."),
+       number("pose_range", &O::pose_range, Unit::none, not_negative, "Factor on the ranges of the joints' angles."),
        number("shape_spread", &O::shape_spread, Unit::none, not_negative,
-              "standard deviation of the shape's coefficients"),
+              "Standard deviation of the shape's coefficients."),
        number("style_spread", &O::style_spread, Unit::none, not_negative,
-              "factor on the ranges of width, length, sleeve and neck"),
-       number("fps", &O::fps, Unit::none, positive, "frames a second of the simulation"),
-       integer("move_frames", &O::move_frames, at_least_one, "frames of the motion from pose to pose"),
+              "Factor on the ranges of width, length, sleeve and neck. 0: all garments are alike."),
+       number("fps", &O::fps, Unit::none, positive, "Frames a second of the simulation."),
+       integer("move_frames", &O::move_frames, at_least_one,
+               "Number of frames in which the body moves from pose to pose."),
        integer("settle_frames", &O::settle_frames, not_negative,
-               "least frames after the motion before a drape is taken"),
+               "Smallest number of frames after the motion before a drape is taken."),
        integer("most_settle_frames", &O::most_settle_frames, at_least_one,
-               "most frames after the motion; a drape that is not at rest then is dropped"),
+               "Largest number of frames after the motion. A drape that is not at rest then is dropped."),
        number("rest_speed", &O::rest_speed, Unit::none, positive,
-              "the cloth rests if its fastest hundredth of the vertices is slower [m/s]"),
-       number("friction", &O::friction, Unit::none, not_negative, "friction with the body"),
-       number("damping", &O::damping, Unit::none, not_negative, "damping by mass [1/s]"),
-       number("thickness", &O::thickness, Unit::length, positive, "distance that cloth keeps from the body")});
+              "The cloth rests if all vertices but the fastest hundredth are slower than this [m/s]."),
+       number("friction", &O::friction, Unit::none, not_negative,
+              "Friction coefficient of cloth on the body. If it is small, a drape depends little on its path."),
+       number("damping", &O::damping, Unit::none, not_negative, "Rayleigh coefficient of damping by mass [1/s]."),
+       number("thickness", &O::thickness, Unit::length, positive, "Distance that cloth keeps from the body.")});
   return table;
 }
 
@@ -60,7 +63,7 @@ DrapeOptions read_drape_options(const std::filesystem::path& file, const std::ve
         throw Error("`" + name + "` is no procedural clip", file.string() + ": clips",
                     "one of " + joined(clips) + suggestion(name, clips));
   if (options.clips.empty() != options.test_clips.empty())
-    throw Error("has clips to train on or to measure on, and not both", file.string() + ": clips",
+    throw Error("names training clips or test clips, but not both", file.string() + ": clips",
                 "give `clips` and `test_clips`, or neither");
   if (!options.clips.empty()) {
     options.training = options.shapes * static_cast<int>(options.clips.size());

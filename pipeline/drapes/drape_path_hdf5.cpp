@@ -85,7 +85,7 @@ DrapeSet read_drape_set(const std::filesystem::path& folder) {
   for (int k = 0; k < options.training + options.test; ++k) {
     if (!std::filesystem::exists(drape_path_file(folder, k)))
       throw Error("path " + std::to_string(k) + " of the drapes is missing", folder.string(),
-                  "go on with the `selvedge dataset` that began them");
+                  "repeat the `selvedge dataset` that began them");
     (k < options.training ? set.training : set.test)
         .push_back(read_drape_path(drape_path_file(folder, k), joints, set.world.surface.vertex_count));
   }

@@ -6,12 +6,12 @@
 
 namespace selvedge {
 
-// Paths in our HDF5 form (docs/repulsion.md): shape, style, rotations (drapes on end, a row a joint), positions, counts
-// of what was dropped. Written beside and renamed. Both throw Error.
+// Paths in our HDF5 form (docs/repulsion.md): shape, style, rotations (drape by drape, one row per joint), positions,
+// and counts of dropped drapes. A new file is written and renamed. Both throw Error.
 void write_drape_path(const std::filesystem::path&, const DrapePath&);
 DrapePath read_drape_path(const std::filesystem::path&, int joints, int vertices);
 
-// Drapes of a folder that make_dataset has filled.
+// The drapes of a folder that make_dataset filled.
 struct DrapeSet {
   DrapeWorld world;
   std::vector<DrapePath> training, test;

@@ -13,8 +13,8 @@ StageFile finished_stage(const std::filesystem::path& folder, const std::string&
   const std::filesystem::path file = folder / (name + ".h5");
   StageFile stage = read_stage_file(file);
   if (stage.step < options.steps)
-    throw Error("has come to step " + std::to_string(stage.step) + " of " + std::to_string(options.steps),
-                file.string(), "go on with `selvedge train --resume`");
+    throw Error("the stage is at step " + std::to_string(stage.step) + " of " + std::to_string(options.steps),
+                file.string(), "continue it with `selvedge train --resume`");
   return stage;
 }
 
@@ -30,7 +30,7 @@ PlainNetwork read_distance_network(const std::filesystem::path& file, int inputs
   const StageFile stage = read_stage_file(file);
   const StagePart* part = stage.find("distance");
   if (!part || part->network.inputs() != inputs)
-    throw Error("is no network of distances that reads these bodies", file.string(),
+    throw Error("is not a distance network for these bodies", file.string(),
                 "train it with the same `bones`, or leave `distance.weights` out");
   return part->network;
 }

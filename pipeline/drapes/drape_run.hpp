@@ -7,26 +7,26 @@
 
 namespace selvedge {
 
-// What a training of drapes has made: its networks as they were trained, and the drapes.
+// The result of a drape training: the drapes and the trained networks.
 struct DrapeRun {
   DrapeTrainingOptions options;
   DrapeLessons lessons;
   DrapeModel backbone;
-  PlainNetwork distance{};                                     // without layers: there is none
+  PlainNetwork distance{};                                     // without layers: none
   std::vector<std::pair<const DrapeRow*, DrapeModel>> rows{};  // in the order of the options
 };
 
-const DrapeRow& drape_row(const std::string& name);  // a known one (assert)
+const DrapeRow& drape_row(const std::string& name);  // the name must be known (assert)
 
-// The network of distances in a stage's file, where it reads as many inputs as it must. Throws Error.
+// The distance network in a stage's file. Throws Error if it reads another number of inputs.
 PlainNetwork read_distance_network(const std::filesystem::path&, int inputs);
 
-// The folder of a training that has ended; the drapes are where its config.yaml says. Throws Error, also where a stage
-// has not come to its end.
+// Opens the folder of a finished training; its config.yaml names the drapes. Throws Error, also where a stage is not
+// finished.
 DrapeRun open_drape_run(const std::filesystem::path& folder);
 
-// The rows of a run's table: the backbone, every row, post-processing of the control, and edge passes. Points into the
-// run.
+// The rows of a run's table: the backbone, every row, post-processing of the control, and edge passes. They refer to
+// the run.
 struct MeasuredMethod {
   CollisionMethod method;
   const DrapeModel* model;

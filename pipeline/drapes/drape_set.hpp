@@ -10,18 +10,18 @@
 
 namespace selvedge {
 
-// A path of drapes of one shape and one style.
+// A path of drapes with one shape and one style.
 struct DrapePath {
   Eigen::VectorXd shape;
   Style style{};
-  std::vector<Points> rotations;       // of each drape's pose
-  std::vector<Points> x;               // where the garment came to rest, n x 3 [m]
-  std::map<std::string, int> dropped;  // drapes that were left out, by reason
-  int poses_redrawn = 0;               // because the body passed through itself there
+  std::vector<Points> rotations;       // of the pose of each drape
+  std::vector<Points> x;               // positions of the garment at rest, n x 3 [m]
+  std::map<std::string, int> dropped;  // number of drapes left out, by reason
+  int poses_redrawn = 0;               // number of poses in which the body intersects itself
   double seconds = 0;
 };
 
-// What paths are made of.
+// The body and the garment of all paths.
 struct DrapeWorld {
   DrapeOptions options;
   BodyModel body;
@@ -31,13 +31,13 @@ struct DrapeWorld {
 };
 DrapeWorld make_drape_world(const DrapeOptions&);
 
-// Garment in zero pose on the body of that shape, with the style.
+// The garment in the zero pose on the body of that shape, with the style.
 Points styled_rest(const DrapeWorld&, const Eigen::VectorXd& shape, const Style&);
 // Affine maps of the garment's vertices from the zero pose into the pose.
 std::vector<VertexFrame> vertex_frames(const DrapeWorld&, const Eigen::VectorXd& shape, const BodyPose&);
 
-// One drape as networks read it: pose (three a joint), shape (ten) and style (four), garment space and truth, and the
-// body that it lies on.
+// One drape as networks read it: pose (three per joint), shape (ten), style (four), garment space and truth. Also the
+// body under it.
 struct DrapeSample {
   DrapeCase drape;
   Points body;

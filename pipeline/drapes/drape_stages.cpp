@@ -51,7 +51,7 @@ struct StepSums {
   int count = 0, bad = 0;
 };
 
-// Trains the model on drapes, with the recipe behind it.
+// The stage that trains the model on drapes by the recipe.
 TrainingStage drape_stage(const std::string& name, const StageOptions& options, const DrapeRow& row,
                           const DrapeRecipe& recipe, double scale_rate, DrapeLessons& lessons, DrapeModel& model) {
   auto adam = std::make_shared<DrapeAdam>();
@@ -88,7 +88,7 @@ TrainingStage drape_stage(const std::string& name, const StageOptions& options, 
   return stage;
 }
 
-// Joints that hardly carry a vertex of the garment move it hardly.
+// Joints that carry little of the garment hardly move it.
 std::vector<char> unread_inputs(const DrapeTrainingOptions& options, const DrapeLessons& lessons) {
   const SkinWeights& weights = lessons.set->world.garment.skin.weights;
   std::vector<double> carried(static_cast<std::size_t>(weights.cols()), 0);
@@ -101,8 +101,8 @@ std::vector<char> unread_inputs(const DrapeTrainingOptions& options, const Drape
   return unread;
 }
 
-// Ridge, and trust in shape and style beside the pose, are those that are best on the drapes kept apart: a set has few
-// shapes and styles.
+// Takes the ridge, and the trust in shape and style beside the pose, that are best on the validation drapes, because a
+// set has few shapes and styles.
 void fit_best_linear_part(std::span<const DrapeCase* const> cases, const DrapeLessons& lessons, DrapeModel& model) {
   constexpr std::array ridges{0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0};
   constexpr std::array trusts{0.0, 0.2, 0.5, 1.0};

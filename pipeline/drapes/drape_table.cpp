@@ -11,14 +11,14 @@
 namespace selvedge {
 namespace {
 
-// Numbers of each drape, by what they are of.
+// Measurements of all drapes, one number per drape.
 struct DrapeColumns {
   std::vector<double> vertex_error, inside, free, vertex_face, edge_edge, laplacian, overshoot, energy, pairs, pushed,
       backbone_ms, distance_ms, push_ms, edges_ms, alphas;
   std::vector<std::pair<double, double>> ratio_and_alpha;
 };
 
-// Takes one drape through the row's parts and times each of them.
+// Applies the method to one drape and times its parts.
 Points apply_method(const CollisionMethod& method, const DrapeModel& model, const DrapeTrainingOptions& options,
                     const DrapeLessons& lessons, DrapeBody& body, EdgePassMemory& edges, Points& before,
                     DrapeColumns& columns) {

@@ -15,12 +15,13 @@ const Options<StageOptions>& stage_options() {
   using O = StageOptions;
   static const Options<O> table(
       "stage", "How long one network is trained.",
-      {integer("steps", &O::steps, at_least_one, "steps of Adam"),
-       integer("batch", &O::batch, at_least_one, "drapes a step; the distance network takes `bodies` instead"),
+      {integer("steps", &O::steps, at_least_one, "Number of steps of Adam."),
+       integer("batch", &O::batch, at_least_one,
+               "Number of drapes in a step. The distance network takes `bodies` instead."),
        number("learning_rate", &O::learning_rate, Unit::none, positive,
-              "rate at the start; it falls to zero as half a cosine"),
+              "Learning rate at the start. It falls to zero over the stage as half a cosine."),
        number("weight_decay", &O::weight_decay, Unit::none, not_negative,
-              "decay of the backbone's perceptron in each step, times the rate")});
+              "Decay of the weights of the backbone's perceptron in each step, in learning rates.")});
   return table;
 }
 
@@ -33,10 +34,10 @@ const Options<MeshShape>& mesh_options() {
   using O = MeshShape;
   static const Options<O> table(
       "mesh", "Convolutions over the garment's mesh, of the backbone `gcnn`.",
-      {integer("levels", &O::levels, at_least_one, "levels of pooling"),
+      {integer("levels", &O::levels, at_least_one, "Number of levels of pooling."),
        integer("channels", &O::channels, at_least_one,
-               "channels of the finest level; coarser ones have twice and four times as many"),
-       integer("kernels", &O::kernels, at_least_one, "matrices that each edge mixes")});
+               "Number of channels of the finest level. Coarser levels have twice, then four times as many."),
+       integer("kernels", &O::kernels, at_least_one, "Number of matrices that each edge mixes.")});
   return table;
 }
 
@@ -45,14 +46,14 @@ const Options<BackboneOptions>& backbone_options() {
   static const Options<O> table(
       "backbone", "The network that predicts a drape from pose, shape and style.",
       {choice("kind", &O::kind, {{"mlp", BackboneKind::perceptron}, {"gcnn", BackboneKind::mesh}},
-              "`mlp`: a perceptron; `gcnn`: a perceptron for the coarsest level, and convolutions with locally varying "
-              "kernels up to the garment"),
-       section(&O::mesh, mesh_options(), "the convolutions of `gcnn`"),
-       integer("layers", &O::layers, at_least_one, "layers of the perceptron"),
-       integer("width", &O::width, at_least_one, "width of all layers except the last"),
-       flag("linear", &O::linear, "adds a linear regression of the training drapes to the perceptron's output"),
+              "`mlp`: a perceptron. `gcnn`: a perceptron for the coarsest level, and convolutions with locally varying "
+              "kernels from there to the garment."),
+       section(&O::mesh, mesh_options(), "Convolutions of `gcnn`."),
+       integer("layers", &O::layers, at_least_one, "Number of layers of the perceptron."),
+       integer("width", &O::width, at_least_one, "Width of all layers except the last."),
+       flag("linear", &O::linear, "True: a linear regression of the training drapes is added to the network's output."),
        number("least_carried", &O::least_carried, Unit::none, not_negative,
-              "leaves out joints that carry a smaller share of the garment, by its skin weights"),
+              "Joints that carry a smaller share of the garment, by its skin weights, are left out."),
        stage("stage", &O::stage, "")});
   return table;
 }
@@ -62,15 +63,16 @@ const Options<DistanceOptions>& distance_options() {
   static const Options<O> table(
       "distance", "The network of the body's signed distance, for rows such as `approximate` and `hybrid`.",
       {text("weights", &O::weights,
-            "file of an earlier run, seen from the working folder; left out: the network is trained"),
-       integer("layers", &O::layers, at_least_one, "number of layers before the last"),
-       integer("width", &O::width, at_least_one, "width of these layers"),
-       number("beta", &O::beta, Unit::none, positive, "sharpness of softplus"),
-       flag("bones", &O::bones, "the network reads the point in each bone's frame; false: in space"),
-       integer("bodies", &O::bodies, at_least_one, "bodies of a batch"),
-       integer("points", &O::points, at_least_one, "points of each body in a batch"),
-       number("noise", &O::noise, Unit::length, not_negative, "standard deviation of points round surfaces"),
-       number("box", &O::box, Unit::length, positive, "edge of the cube in which points are drawn"),
+            "File of an earlier run, relative to the working folder. Default: the network is trained."),
+       integer("layers", &O::layers, at_least_one, "Number of layers before the last."),
+       integer("width", &O::width, at_least_one, "Width of these layers."),
+       number("beta", &O::beta, Unit::none, positive, "Sharpness of softplus."),
+       flag("bones", &O::bones,
+            "True: the network reads a point in each bone's frame. False: it reads the point in space."),
+       integer("bodies", &O::bodies, at_least_one, "Number of bodies in a batch."),
+       integer("points", &O::points, at_least_one, "Number of points of each body in a batch."),
+       number("noise", &O::noise, Unit::length, not_negative, "Standard deviation of points round surfaces."),
+       number("box", &O::box, Unit::length, positive, "Edge of the cube in which points are drawn."),
        stage("stage", &O::stage, "")});
   return table;
 }
@@ -79,21 +81,21 @@ const Options<LayerOptions>& layer_options() {
   using O = LayerOptions;
   static const Options<O> table(
       "layer", "The repulsive layer and the losses 7 to 9.",
-      {integer("latent", &O::latent, at_least_one, "M, the width of z and of the layers of h; the paper: 1024"),
-       integer("per_vertex", &O::per_vertex, at_least_one, "D, the width of each vertex's latent"),
-       number("unit", &O::unit, Unit::length, positive, "unit in which g reads distances"),
+      {integer("latent", &O::latent, at_least_one, "M, the width of z and of the layers of h. The paper has 1024."),
+       integer("per_vertex", &O::per_vertex, at_least_one, "D, the width of each vertex's latent vector."),
+       number("unit", &O::unit, Unit::length, positive, "Unit in which g reads distances."),
        number("scale_rate", &O::scale_rate, Unit::none, positive,
-              "factor on the learning rate of the scale networks, which begin untrained"),
-       number("deep", &O::deep, Unit::length, positive, "deeper vertices take their neighbours' direction"),
+              "Factor on the learning rate of the scale networks, which begin untrained."),
+       number("deep", &O::deep, Unit::length, positive, "Depth beyond which a vertex takes its neighbours' direction."),
        number("most_beyond", &O::most_beyond, Unit::length, positive,
-              "no scale takes a vertex farther out of the body; the paper has no such bound"),
-       integer("recheck", &O::recheck, not_negative, "number of rechecks of pushed vertices in measurements"),
-       number("reconstruction", &O::reconstruction, Unit::none, not_negative, "weight of loss 8"),
-       number("collision", &O::collision, Unit::none, not_negative, "weight of loss 9"),
+              "Largest distance from the body to which a scale takes a vertex. The paper has no such bound."),
+       integer("recheck", &O::recheck, not_negative, "Number of rechecks of pushed vertices in measurements."),
+       number("reconstruction", &O::reconstruction, Unit::none, not_negative, "Weight of loss 8."),
+       number("collision", &O::collision, Unit::none, not_negative, "Weight of loss 9."),
        number("loss_unit", &O::loss_unit, Unit::length, positive,
-              "unit of lengths in the losses; the paper gives none"),
+              "Unit of lengths in the losses. The paper gives none."),
        choice("gradient", &O::gradient, {{"full", LayerGradient::full}, {"frozen", LayerGradient::frozen}},
-              "Jacobian of the layer: complete, or with a constant direction")});
+              "Jacobian of the layer: `full`, or with a constant direction (`frozen`).")});
   return table;
 }
 
@@ -103,17 +105,18 @@ const Options<DrapeTrainingOptions>& drape_training_options() {
   using O = DrapeTrainingOptions;
   static const Options<O> table(
       "drape training", "A training file with the key `drapes`.",
-      {text("description", "a note for people; the program ignores it"),
-       text("name", &O::name, "name of the run; left out: that of the file"),
-       needed(text("drapes", &O::drapes, "folder that `selvedge dataset` made, seen from the working folder")),
-       integer("seed", &O::seed, not_negative, "seed of all random numbers"),
-       integer("validation_paths", &O::validation_paths, at_least_one, "training paths that are kept for validation"),
-       texts("rows", &O::rows, "rows of the table; all are trained equally long from one checkpoint"),
+      {text("description", "Free text for readers."),
+       text("name", &O::name, "Name of the run. Default: that of the file."),
+       needed(text("drapes", &O::drapes, "Folder that `selvedge dataset` made, relative to the working folder.")),
+       integer("seed", &O::seed, not_negative, "Seed of all random numbers."),
+       integer("validation_paths", &O::validation_paths, at_least_one,
+               "Number of training paths, the last ones, that are kept for validation."),
+       texts("rows", &O::rows, "Rows of the table. All are trained equally long from one checkpoint."),
        flag("from_scratch", &O::from_scratch,
-            "rows begin where the backbone began, and are trained as it was; false: they continue from its end"),
-       section(&O::backbone, backbone_options(), ""), stage("fine_tuning", &O::fine_tuning, "training of each row"),
+            "True: rows begin where the backbone began, and are trained as it was. False: they go on from its end."),
+       section(&O::backbone, backbone_options(), ""), stage("fine_tuning", &O::fine_tuning, "Training of each row."),
        section(&O::layer, layer_options(), ""), section(&O::distance, distance_options(), ""),
-       number("checkpoint_minutes", &O::checkpoint_minutes, Unit::none, not_negative, "minutes between checkpoints")});
+       number("checkpoint_minutes", &O::checkpoint_minutes, Unit::none, not_negative, "Minutes between checkpoints.")});
   return table;
 }
 

@@ -50,7 +50,7 @@ struct PathMaker {
   std::unique_ptr<Stepper> stepper;
   BodyPose pose;
   IntersectionCache body_cache;
-  std::optional<Clip> clip;  // that poses are taken from; none: they are drawn
+  std::optional<Clip> clip;  // source of the poses; none: they are drawn
   FrameAudits audits{scene};
 
   Points body_in(const BodyPose& at) const {
@@ -72,7 +72,7 @@ void dress(PathMaker& maker) {
   maker.stepper = make_recovering_conventional_stepper(maker.scene);
 }
 
-// The pose of the clip at that time; where the body passes through itself, the first later one in which it does not.
+// The pose of the clip at that time, or the first later one in which the body does not intersect itself.
 BodyPose clip_pose(PathMaker& maker, double time) {
   const Clip& clip = *maker.clip;
   BodyPose pose;
@@ -84,7 +84,7 @@ BodyPose clip_pose(PathMaker& maker, double time) {
   return pose;
 }
 
-// Of the path's drape number k.
+// The pose of the path's drape k.
 BodyPose next_pose(PathMaker& maker, int k) {
   if (maker.clip) {
     const double length = static_cast<double>(maker.clip->poses.size()) / maker.clip->fps;
@@ -99,7 +99,7 @@ BodyPose next_pose(PathMaker& maker, int k) {
   return pose;
 }
 
-// False: rejected.
+// Returns false if the step is rejected.
 bool advance(PathMaker& maker, const BodyPose& at) {
   Drive drive = at_rest(maker.scene, maker.state);
   drive.obstacles = {maker.body_in(at)};
@@ -127,7 +127,7 @@ double speed_of_fast_ones(const Points& v) {
   return speeds[place];
 }
 
-// Why the drape is not kept; empty: it is.
+// The reason to drop the drape; empty: it is kept.
 std::string reason_to_drop(const PathMaker& maker, bool at_rest) {
   if (!at_rest) return "not at rest";
   const State& state = maker.state;

@@ -16,13 +16,13 @@
 namespace selvedge {
 namespace {
 
-// A run that is being made.
+// A run in progress.
 struct DrapeTraining {
   DrapeRun run;
   StageRun stage;
 };
 
-// False: stopped.
+// Returns false if it is stopped.
 bool get_distance(DrapeTraining& training) {
   DrapeRun& run = training.run;
   const bool by_network = std::ranges::any_of(run.options.rows, [](const std::string& name) {

@@ -13,7 +13,7 @@
 namespace selvedge {
 namespace {
 
-constexpr int lines_of_a_stage = 50;  // in its table
+constexpr int lines_of_a_stage = 50;  // lines of its table
 
 double rate_at(const StageOptions& options, long step) {
   const double part = static_cast<double>(step) / options.steps;
@@ -31,7 +31,7 @@ void save(const StageRun& run, const TrainingStage& stage, const StageFile& at) 
   write_file(run.folder / (stage.name + ".csv"), at.csv);
 }
 
-// A fresh stage, or the one that the folder has.
+// A fresh stage, or the one in the folder.
 StageFile begin_stage(const StageRun& run, const TrainingStage& stage) {
   const std::filesystem::path file = run.folder / (stage.name + ".h5");
   StageFile at;

@@ -9,16 +9,16 @@
 
 namespace selvedge {
 
-// One stage: a network is trained for a number of steps into a file of the run's folder. The file is the checkpoint
+// One stage trains a network for a number of steps, and writes a file into the run's folder. The file is the checkpoint
 // during the stage and the result after it.
 struct TrainingStage {
   std::string name;
   StageOptions options;
-  std::string header;  // of the table, without step, seconds and rate
-  // Takes one step and returns its columns for the table. `last`: the line is written, so that it may measure more.
+  std::string header;  // columns of the table after step, seconds and rate
+  // Takes one step and returns its columns of the table. If `last`, the line is written, so the step may measure more.
   std::function<std::string(double rate, RandomStream&, bool last)> step;
-  std::function<StageFile()> state;               // networks and numbers as they are; the rest is filled in
-  std::function<void(const StageFile&)> restore;  // from them
+  std::function<StageFile()> state;               // networks and numbers now; the caller fills in the rest
+  std::function<void(const StageFile&)> restore;  // from such a file
 };
 
 struct StageRun {
@@ -28,8 +28,8 @@ struct StageRun {
   double seconds = 0;  // of all stages so far
 };
 
-// Trains it to its end, or goes on with it: false if it was stopped at a checkpoint. A stage of other options than the
-// run's is refused (Error). Leaves NAME.h5 and NAME.csv.
+// Trains the stage to its end, or continues it. Returns false if it was stopped at a checkpoint. Throws Error for a
+// checkpoint of other options. Writes NAME.h5 and NAME.csv.
 bool run_stage(StageRun&, const TrainingStage&);
 
 }  // namespace selvedge

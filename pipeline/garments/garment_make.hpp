@@ -9,10 +9,11 @@
 
 namespace selvedge {
 
-// The length of edges, and the distance of a garment from those under it [m].
+// How the program makes a garment. Members are described where keys are bound to them:
+// pipeline/scene/config_garment.cpp.
 struct GarmentOptions {
   double edge = 0.02;
-  double gap = 0.008;
+  double gap = 0.008;  // distance of a garment from those under it [m]
 };
 
 // Makes a garment for the mannequin, over others in the order in which they are put on; docs/garments.md has the

@@ -14,7 +14,7 @@
 
 namespace selvedge {
 
-// Times of a draped start [s]: of the motion from the pose in which the garments were made, and of the hold after it.
+// Times of a draped start. Members are described where keys are bound to them: pipeline/scene/config_garment.cpp.
 struct Draping {
   double seconds = 1, hold = 0.5;
   bool operator==(const Draping&) const = default;

@@ -16,7 +16,8 @@ const OptionRows<Material>& material_options() {
               {"baraff_witkin", MembraneModel::baraff_witkin}},
              "Model of the in-plane (membrane) elasticity."),
       number("youngs_modulus", Unit::stiffness, range_of(&Elasticity::youngs_modulus), "",
-             "Young's modulus times thickness. With `poisson` it replaces the Lame coefficients."),
+             "Young's modulus times thickness. With `poisson` it replaces the Lame coefficients, whose defaults are "
+             "those of 1000 N/m and Poisson's ratio 0.3."),
       number("modulus", Unit::pressure, not_negative, "",
              "Young's modulus E of the cloth as a plate. With `thickness` and `poisson` it replaces `youngs_modulus`, "
              "and `bending` unless that is given."),
@@ -35,7 +36,8 @@ const OptionRows<Material>& material_options() {
              "`curvature` is physical and independent of the mesh. `hinge` penalises dihedral angles, as HOOD and "
              "ContourCraft do."),
       number("bending", &O::bending, Unit::bending, range_of(&O::bending),
-             "Bending stiffness per width, as of a plate (flexural rigidity)."),
+             "Bending stiffness per width, as of a plate (flexural rigidity). With `bending_model: hinge` it is the "
+             "coefficient k of `hinge_bending`."),
       number("hinge_bending", Unit::bending, range_of(&O::bending), "",
              "Coefficient k of the hinge energy k l^2 / (4 (A0 + A1)) angle^2 / 2, for an edge of length l between "
              "triangles of areas A0 and A1. It selects the model `hinge` and replaces `bending`."),

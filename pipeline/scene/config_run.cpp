@@ -107,7 +107,7 @@ const Options<HybridOptions>& hybrid_options() {
                        "`auto`: 2 for `after_k`, `max_newton` for `refined`."),
                "auto"),
        integer("gate_steps", &O::gate_steps, at_least_one,
-               "Number of points at which the line search of `gated` evaluates the potential."),
+               "Number of points at which the line search of `gated` and `after_k` evaluates the potential."),
        integer("admitted_to_halve", &O::admitted_to_halve, at_least_one,
                "Number of proposals that must be admitted in a row to halve the pause after the next refusal."),
        integer(
@@ -117,7 +117,7 @@ const Options<HybridOptions>& hybrid_options() {
             "True: no proposals are made while they take more time than they save. Results then depend on the clock."),
        number(
            "extra_time", &O::extra_time, Unit::none, not_negative,
-           "Share of the total time that proposals may lose against the conventional stepper, with `stop_when_slow`."),
+           "Share of the time so far that proposals may lose against the conventional stepper, with `stop_when_slow`."),
        section(&O::guard, guard_options(), "Limits of a proposed step.")});
   return table;
 }
@@ -132,7 +132,7 @@ const Options<RefuRun>& refu_options() {
               "projected onto the surface."),
        path("weights", &O::weights,
             "Weights of a network that predicts `alpha` for each vertex (configs/weights/refu.h5). The path is "
-            "relative to the scene file."),
+            "relative to the scene file. Default: `alpha` is the same for all."),
        integer("edge_pass", &O::edge_pass, not_negative,
                "Number of rounds that move edges which still cross the body out of it."),
        number("order", &O::order, Unit::length, not_negative,
@@ -158,7 +158,7 @@ const Options<RecoveryOptions>& recovery_options() {
       "A step that starts tangled first untangles the cloth, or puts a garment on its body again. Its skinned target "
       "is where skinning alone would put it.",
       {integer("untangling_passes", &O::untangling_passes, at_least_one,
-               "Largest number of untangling passes in a step. The next step continues."),
+               "Largest number of untangling passes in a step. The next step goes on where they end."),
        number("speed", &O::speed, Unit::speed, positive, "Largest speed at which untangling moves a vertex."),
        number("farthest_place", &O::farthest_place, Unit::length, not_negative,
               "Largest distance that a vertex moves when a garment is put on again."),
@@ -188,13 +188,13 @@ const OptionRows<ConventionalOptions>& substep_count_options() {
   using O = ConventionalOptions;
   static const OptionRows<O> rows{
       or_word(integer("substeps", &O::substeps, at_least_one,
-                      "Number of time steps in a frame. `auto` chooses it from the speed of what touches."),
+                      "Number of time steps in a frame. `auto` chooses it from the speed of what touches, for `icm` "
+                      "from the largest speed of all."),
               "auto"),
-      or_word(
-          integer(
-              "min_substeps", &O::min_substeps, at_least_one,
-              "Smallest number of substeps that `auto` chooses. `auto`: 2 if a frame is longer than 1/48 s, else 1."),
-          "auto"),
+      or_word(integer("min_substeps", &O::min_substeps, at_least_one,
+                      "Smallest number of substeps that `auto` chooses. `auto`, which `icm` always has: 2 if a frame "
+                      "is longer than `solver.substep.longest`, else 1."),
+              "auto"),
       integer("max_substeps", &O::max_substeps, at_least_one, "Largest number of substeps that `auto` chooses.")};
   return rows;
 }

@@ -29,7 +29,7 @@ const Options<ContactTermOptions>& contact_term_options() {
       {number("stiffness", &O::stiffness, Unit::none, positive,
               "Stiffness of a new contact, in masses of the pair over the time step squared."),
        number("overlap_removed", &O::overlap_removed, Unit::none, not_negative,
-              "Fraction of an overlap by which a step lifts, and of the gap by which a load may sink in a step.")},
+              "Fraction of an overlap that a substep removes, and of a gap by which a load may sink in a substep.")},
       {}, {},
       constants("physics/solve/contact_term_options.hpp", {{"onset", O::onset},
                                                            {"load_sink", O::load_sink},
@@ -45,11 +45,13 @@ const Options<SubstepOptions>& substep_options() {
   static const Options<O> table(
       "substep", "How a step is divided into substeps, and how a substep alternates solves with the contact response.",
       {number("longest", &O::longest, Unit::time, positive,
-              "Longest step that may stay undivided. A longer one takes at least two substeps."),
+              "Longest step that may stay undivided, since implicit Euler damps longer ones visibly. A longer one "
+              "takes at least two substeps."),
        number("first_tolerance", &O::first_tolerance, Unit::none, positive,
-              "Factor on the tolerance of the first solve, which finds impacts and normal forces."),
+              "Factor on the tolerance of the first solve, which only finds impacts and normal forces."),
        number("friction_tolerance", &O::friction_tolerance, Unit::none, positive,
-              "Factor on the tolerance of solves with friction. Sticking cloth needs a small value."),
+              "Factor on the tolerance from the third solve of a substep on, and of all solves with friction where "
+              "touching cloth does not move. Cloth sticks only if it is small."),
        integer("max_passes", &O::max_passes, not_negative,
                "Largest number of solves of a substep after the first one. With 0 the response meets all impacts."),
        number("normal_change", &O::normal_change, Unit::none, positive,
@@ -76,7 +78,7 @@ const Options<RoomOptions>& room_options() {
       "How obstacles yield before the solve where they would pinch cloth. A constraint here is a pair that must not "
       "come closer.",
       {integer("sweeps", &O::sweeps, at_least_one, "Number of projected Gauss-Seidel sweeps in a block."),
-       integer("max_rounds", &O::max_rounds, at_least_one, "Largest number of searches for pairs.")},
+       integer("max_rounds", &O::max_rounds, at_least_one, "Largest number of rounds, each with a search for pairs.")},
       {}, {},
       constants("collision/contact/resolve_options.hpp", {{"obstacle_mass", O::obstacle_mass},
                                                           {"min_blocks", O::min_blocks},
@@ -93,10 +95,12 @@ const Options<ResolveOptions>& response_options() {
   static const Options<O> table(
       "response",
       "Contact response to impacts during a step: impulses, impact zones and a last resort (Bridson et al. 2002).",
-      {integer("impulse_rounds", &O::impulse_rounds, not_negative, "Number of rounds of impulses before impact zones."),
+      {integer("impulse_rounds", &O::impulse_rounds, not_negative,
+               "Largest number of rounds of single impulses before impact zones."),
        integer("zone_rounds", &O::zone_rounds, at_least_one,
-               "Number of rounds of impact zones before the last resort."),
-       integer("zone_sweeps", &O::zone_sweeps, at_least_one, "Number of Gauss-Seidel sweeps in an impact zone."),
+               "Largest number of rounds of impact zones before the last resort."),
+       integer("zone_sweeps", &O::zone_sweeps, at_least_one,
+               "Largest number of Gauss-Seidel sweeps over an impact zone in a round."),
        section(&O::room, room_options(), "How obstacles yield before the solve.")},
       {}, {},
       constants("collision/contact/resolve_options.hpp", {{"yield_rounds", O::yield_rounds},
@@ -114,7 +118,9 @@ const OptionRows<ImplicitEulerOptions>& implicit_euler_options() {
       number("relative_tolerance", &O::relative_tolerance, Unit::none, not_negative,
              "Newton also ends when the RMS displacement of its step is below this fraction of the RMS displacement in "
              "the time step."),
-      integer("max_newton", &O::max_newton, at_least_one, "Largest number of Newton iterations in a solve."),
+      integer("max_newton", &O::max_newton, at_least_one,
+              "Largest number of Newton iterations in a solve. Solves with contact take half as many, and a solve that "
+              "is still far from its minimum takes more."),
       choice("linear_solver", &O::linear_solver,
              {{"automatic", LinearSolver::automatic},
               {"cholmod", LinearSolver::cholmod},
@@ -123,11 +129,12 @@ const OptionRows<ImplicitEulerOptions>& implicit_euler_options() {
              "Linear solver. `automatic` takes `cholmod` for the smallest scenes, else `multigrid`."),
       number("linear_tolerance", &O::linear_tolerance, Unit::none,
              {.low = 0, .high = 1, .low_in = false, .high_in = false},
-             "Relative residual at which PCG ends, in the norm of its preconditioner."),
+             "Relative residual at which PCG ends, in the norm of its preconditioner. It is lowered for stiff cloth."),
       integer("max_linear", &O::max_linear, at_least_one, "Largest number of PCG iterations."),
       number("slip_speed", &O::slip_speed, Unit::speed, positive, "Sliding speed below which friction is viscous."),
       integer("max_newton_step", &O::max_newton_step, at_least_one,
-              "Largest number of Newton iterations in a whole step, over all its solves."),
+              "Largest number of Newton iterations in a whole step, over all its solves. Beyond it each solve takes "
+              "one, and the report says `out_of_newton`: contact holds, but the cloth is not where it should be."),
       section(&O::newton, newton_options(), "When Newton's method goes beyond its usual step.")};
   return rows;
 }

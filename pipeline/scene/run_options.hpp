@@ -11,30 +11,32 @@
 
 namespace selvedge {
 
-// Of the stepper `learned`.
+// Options of the stepper `learned`. Members are described where keys are bound to them: pipeline/scene/config_run.cpp.
 struct LearnedRun {
-  std::string weights;  // weight file, seen from the scene file's folder
+  std::string weights;
   bool settle = false;
   NetworkDevice device = NetworkDevice::cpu;
 };
 
-// The repulsive layer behind the stepper (learned/steppers/refu_stepper.hpp).
+// The repulsive layer behind the stepper (learned/steppers/refu_stepper.hpp). Members are described where keys are
+// bound to them: pipeline/scene/config_run.cpp.
 struct RefuRun {
   bool on = false;
   double alpha = 1;
-  std::string weights;  // of scales by neighbours, seen from the scene file's folder; empty: alpha
-  int edge_pass = 0;    // rounds
-  double order = 0.03;  // height over the body up to which cloth goes along with what is pushed [m]
+  std::string weights;
+  int edge_pass = 0;
+  double order = 0.03;
 };
 
-// What a scene file says of the run beside the Scene itself.
+// What a scene file says of the run beside the Scene itself. Members are described where keys are bound to them:
+// pipeline/scene/config_run.cpp.
 struct RunOptions {
   int frames = 60;
   double fps = 30;
-  std::string quality = "standard";  // quality.hpp
+  std::string quality = "standard";
   std::string stepper = "conventional";
-  bool rest = true;    // cloths that rest are left out
-  std::string output;  // folder for the results; empty: chosen by the command
+  bool rest = true;
+  std::string output;
   ConventionalOptions conventional;
   RecoveryOptions recovery;
   RestingOptions resting;

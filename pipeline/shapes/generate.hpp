@@ -9,9 +9,11 @@ namespace selvedge {
 
 enum class Triangulation { one_diagonal, alternating, unstructured };
 
+// How a sheet is divided into triangles. Members are described where keys are bound to them:
+// pipeline/scene/config_sheets.cpp.
 struct SheetOptions {
   Triangulation triangulation = Triangulation::alternating;
-  std::uint64_t seed = 1;  // of unstructured meshes: the same seed gives the same mesh
+  std::uint64_t seed = 1;
 };
 
 // All cloths have flat coordinates uv [m], one row per vertex (uv_triangles = triangles), and named groups.
@@ -46,12 +48,13 @@ Mesh make_ribbon(const std::vector<LinePoint>& line, double width, int along, in
 double line_length(const std::vector<LinePoint>& line);
 double least_normal_angle(const std::vector<LinePoint>& line);
 
+// The shape of a T-shirt. Members are described where keys are bound to them: pipeline/scene/config_sheets.cpp.
 struct TshirtShape {
-  double width = 0.5, length = 0.65;                // of the body [m]
-  double sleeve_length = 0.15, sleeve_width = 0.2;  // of the sleeves beyond the body [m]
-  double neck = 0.2;                                // width of the opening [m]
-  double depth = 0.04;                              // from front to back, away from the seams [m]
-  double edge = 0.02;                               // side of the squares that are cut into triangles [m]
+  double width = 0.5, length = 0.65;
+  double sleeve_length = 0.15, sleeve_width = 0.2;
+  double neck = 0.2;
+  double depth = 0.04;
+  double edge = 0.02;
 };
 
 // A T-shirt of a front and a back with straight edges, joined at sides, shoulders and sleeves; upright, front to +Z,

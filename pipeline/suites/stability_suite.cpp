@@ -11,13 +11,18 @@ using namespace table;
 const Options<StabilityLimits>& limits_options() {
   using O = StabilityLimits;
   static const Options<O> table(
-      "limits", "What every run must keep.",
-      {number("growth", &O::growth, Unit::none, positive,
-              "energy that nothing accounts for, of the largest kinetic and elastic energy of the run"),
+      "limits", "What every run must keep, whatever its scene.",
+      {number(
+           "growth", &O::growth, Unit::none, positive,
+           "Largest energy that nothing accounts for, in units of the largest kinetic and elastic energy of the run."),
        number("speed", &O::speed, Unit::none, positive,
-              "RMS speed in the last tenth of the run, of that of a fall by the cloth's extent"),
-       integer("newton", &O::newton, at_least_one, "iterations a substep"),
-       integer("linear", &O::linear, at_least_one, "iterations a Newton iteration")});
+              "Largest RMS speed in the last tenth of the run, in units of the speed of a fall by the cloth's extent."),
+       integer("newton", &O::newton, at_least_one,
+               "Largest number of Newton iterations in a substep, averaged over a frame. Seven solves of at most 32 "
+               "iterations take 224."),
+       integer("linear", &O::linear, at_least_one,
+               "Largest number of linear iterations in a Newton iteration, averaged over a frame. A linear solve may "
+               "take twice the default.")});
   return table;
 }
 
@@ -27,32 +32,33 @@ const Section& run_section() {
       "",
       "name",
       {},
-      {needed(text("name", "what differs, for people")), texts("set", "overrides of the scene, key=value"),
-       flag("short", false, "whether it is in the short form too"),
+      {needed(text("name", "What differs, for readers.")), texts("set", "`key=value` overrides of the scene."),
+       flag("short", false, "True: the run is in the short form too."),
        word("fault", weight_faults(), "",
-            "what is wrong with the weights, for steppers with a network; `huge`: the network returns 1e6")}};
+            "What is wrong with the weights, for steppers with a network. `huge`: the network returns 1e6.")}};
   return table;
 }
 
 const Section& case_section() {
-  static const Section table{
-      "case",
-      "",
-      "",
-      {},
-      {needed(text("name", "short")), text("about", "one line, for people"),
-       needed(path("scene", "scene file, seen from the suite's folder")), texts("set", "overrides for all its runs"),
-       needed(sections("runs", run_section(), "", "at least one"))}};
+  static const Section table{"case",
+                             "",
+                             "",
+                             {},
+                             {needed(text("name", "Short name of the case.")), text("about", "One line for readers."),
+                              needed(path("scene", "Scene file, relative to the suite's folder.")),
+                              texts("set", "`key=value` overrides of all its runs."),
+                              needed(sections("runs", run_section(), "", "Runs: at least one."))}};
   return table;
 }
 
 const Section& suite_section() {
-  static const Section table{"suite",
-                             "The whole file.",
-                             "",
-                             {},
-                             {text("description", "for people"), section(limits_options().section, "{}", ""),
-                              needed(sections("cases", case_section(), "", "at least one"))}};
+  static const Section table{
+      "suite",
+      "The whole file.",
+      "",
+      {},
+      {text("description", "Free text for readers."), section(limits_options().section, "{}", ""),
+       needed(sections("cases", case_section(), "", "Cases: at least one."))}};
   return table;
 }
 

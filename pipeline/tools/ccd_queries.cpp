@@ -42,7 +42,7 @@ bool is_whole(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-// Is that what was read? Nineteen digits always fit.
+// Whether `value` is exactly the number in `text`. Nineteen digits always fit.
 bool is_exact(std::string_view text, long double value) {
   if (text.size() <= 19) return true;
   std::array<char, std::numeric_limits<long double>::max_exponent10 + 3> digits;
@@ -51,7 +51,7 @@ bool is_exact(std::string_view text, long double value) {
   return problem == std::errc() && std::string_view(digits.data(), end) == text;
 }
 
-// Extended range and precision: the denominator of a small double is beyond the largest one.
+// Extended range and precision are needed: the denominator of a small double can exceed the largest double.
 long double read_whole(const Place& place, std::string_view text) {
   if (!is_whole(text)) place.fail(fmt::format("`{}` is not a whole number", text), fmt::format("rows are {}", form));
   long double value = 0;

@@ -43,13 +43,13 @@ void add_body_files(const CheckRequest& request, Bodies& bodies, CheckReport& re
   }
 }
 
-// A triangle without a plane: its height is lost in the rounding of its coordinates.
+// A triangle without a plane: the rounding of its coordinates hides its height.
 bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
   return !((b - a).cross(c - a).norm() > 1e-10 * longest);
 }
 
-// The search widens until it finds something, since its cost grows with the square of the distance.
+// Widens the search until it finds something, because its cost grows with the square of the distance.
 double smallest_gap(const Surface& surface, const Points& x, const std::vector<AuditBody>& bodies, double horizon) {
   for (double distance = horizon / 64;; distance = std::min(4 * distance, horizon)) {
     const double gap = min_gap(surface, x, bodies, distance);
@@ -57,7 +57,7 @@ double smallest_gap(const Surface& surface, const Points& x, const std::vector<A
   }
 }
 
-// `rest` holds what principal_stretches needs; without a rest shape it has no rest triangles.
+// `rest` is the scene for principal_stretches. Without a rest shape it has no rest triangles.
 void check_frame(const Scene& rest, const Points& x, const Bodies& bodies, double horizon,
                  const std::optional<VolumeCheck>& volume, CheckReport& report) {
   const std::vector<AuditBody> audited = bodies.for_audit();
@@ -74,7 +74,7 @@ void check_frame(const Scene& rest, const Points& x, const Bodies& bodies, doubl
   report.nonfinite += found.nonfinite;
   report.inside_vertices = std::max(report.inside_vertices, found.inside_vertices);
   report.degenerate_triangles = std::max(report.degenerate_triangles, count_degenerate(rest.surface, x));
-  if (found.nonfinite > 0) {  // FCL and distances need all of it
+  if (found.nonfinite > 0) {  // FCL and distances need finite positions
     if (report.fcl) report.fcl->pairs_by_frame.push_back(0);
     return;
   }
@@ -89,7 +89,7 @@ void check_frame(const Scene& rest, const Points& x, const Bodies& bodies, doubl
   report.max_stretch = std::max(report.max_stretch.value_or(stretches.col(1).maxCoeff()), stretches.col(1).maxCoeff());
 }
 
-// Each cloth of a trajectory is a garment, and each component of a mesh.
+// Each cloth of a trajectory is a garment, and so is each component of a mesh.
 std::optional<VolumeCheck> volume_check(const CheckRequest& request, const Surface& surface,
                                         const std::vector<int>& first_vertex, CheckReport& report) {
   if (!request.volume) return {};
@@ -97,7 +97,7 @@ std::optional<VolumeCheck> volume_check(const CheckRequest& request, const Surfa
   return VolumeCheck(surface, garments_of_vertices(first_vertex));
 }
 
-// The first frame of a trajectory was put, and its fans are measured at rest.
+// The first frame of a trajectory was given, not simulated. Its fans are measured at rest.
 std::optional<VolumeCheck> volume_check(const CheckRequest& request, const Surface& surface, const TrajectoryInfo& info,
                                         CheckReport& report) {
   auto volume = volume_check(request, surface, info.cloth_first_vertex, report);

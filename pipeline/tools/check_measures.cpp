@@ -13,7 +13,7 @@
 namespace selvedge {
 namespace {
 
-// A trajectory's cloths of HOOD's material, its rest shape and its obstacles.
+// A scene with the trajectory's cloths, rest shape and obstacles, and with HOOD's material.
 Scene scene_of(const TrajectoryInfo& info) {
   const VertexMaterial hood;
   Scene scene;

@@ -14,7 +14,7 @@ namespace {
 using Pairs = std::vector<std::pair<int, int>>;
 using Corners = std::array<Vec3, 3>;
 
-// Triangle of all bodies on end.
+// The corners of a triangle; `triangle` counts through all bodies.
 Corners corners_in(std::span<const AuditBody> bodies, int triangle) {
   for (const AuditBody& body : bodies) {
     const int count = static_cast<int>(body.surface->triangles.rows());
@@ -49,7 +49,7 @@ double size_of(const Points& x, std::span<const AuditBody> bodies) {
   return size;
 }
 
-// Pairs of the cloth, with bodies or with itself, in one list but not in the other.
+// The pairs of the cloth, with bodies or with itself, that only one list has.
 std::vector<Disagreement> disagreements(const Surface& cloth, const Points& x, std::span<const AuditBody> bodies,
                                         const Pairs& ours, const Pairs& fcl, bool with_body) {
   Pairs other;

@@ -8,36 +8,36 @@
 
 namespace selvedge {
 
-// A pair of triangles that intersects in one opinion only. In pairs with a body `second` is the body's triangle, bodies
-// numbered on end.
+// A pair of triangles that intersects in one opinion only. In pairs with a body, `second` counts through the triangles
+// of all bodies.
 struct Disagreement {
   int frame = 0;
   int first = 0, second = 0;
   bool with_body = false;
-  bool ours = false;    // exact signs say that it intersects; FCL says the opposite
-  double margin = 0;    // how far the triangles would have to be moved for the answer to change, at most [m]
-  bool beyond = false;  // margin above 1e-9 of the size: there plain floating point must not err
+  bool ours = false;    // exact signs find an intersection and FCL does not; false: the opposite
+  double margin = 0;    // upper bound of the motion that changes the answer [m]
+  bool beyond = false;  // margin above 1e-9 of the size, where floating point must not err
 };
 
-// What FCL says of the frames of a check.
+// FCL's opinion of the frames of a check.
 struct Opinion {
-  std::vector<int> pairs_by_frame;  // self and bodies
-  int frames_against_body = 0;      // frames in which the cloth is not collision-free against the bodies
+  std::vector<int> pairs_by_frame;  // with itself and with bodies
+  int frames_against_body = 0;      // frames in which FCL finds a pair with a body
   std::vector<Disagreement> disagreements;
-  int beyond_rounding = 0;  // of them
+  int beyond_rounding = 0;  // number of disagreements with `beyond`
 };
 
-// Adds FCL's opinion of one frame to that of the audit. Frames must be finite. Throws Error where the build has no FCL.
+// Adds FCL's opinion of one frame to that of the audit. Frames must be finite. Throws Error if the build has no FCL.
 void add_opinion(const Surface& cloth, const Points& x, std::span<const AuditBody> bodies, const Audit& ours, int frame,
                  Opinion&);
 
-// Whether FCL says the same of every pair of cloth and bodies, but for pairs within rounding. `ours`: the audit's
-// pairs, sorted, bodies' triangles numbered on end. Throws Error where the build has no FCL.
+// Whether FCL agrees on every pair of cloth and bodies, except for pairs within rounding. `ours` has the audit's pairs,
+// sorted; bodies' triangles are numbered through all bodies. Throws Error if the build has no FCL.
 bool agrees_on_bodies(const Surface& cloth, const Points& x, std::span<const AuditBody> bodies,
                       const std::vector<std::pair<int, int>>& ours);
 
-// Widest gap along any direction in which two triangles can be told apart, negative where they intersect: the least
-// depth along one [m].
+// The widest gap of two triangles along any separating direction [m]. It is negative if they intersect, and then minus
+// the least depth.
 double separation(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 std::string opinion_text(const Opinion&);

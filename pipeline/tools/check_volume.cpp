@@ -86,7 +86,9 @@ VolumeFindings volume_findings(const std::filesystem::path& trajectory) {
   findings.of_fans = check.of_fans(info.rest);
   for (int i = 0; i < reader.frame_count(); ++i) {
     const Points x = reader.frame(i).x.cast<double>();
-    if (!x.allFinite()) throw Error(fmt::format("frame {} is not finite", i), trajectory.string(), "");
+    if (!x.allFinite())
+      throw Error(fmt::format("frame {} is not finite", i), trajectory.string(),
+                  "give a run whose positions are finite");
     check.add(x, findings);
   }
   return findings;

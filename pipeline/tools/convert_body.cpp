@@ -44,7 +44,7 @@ BodyModel read(const BodyRequest& request, BodyReport& report) {
   const double metres = metres_per_unit(request.unit);
   const bool rigged = !request.skeleton.empty() || !request.weights.empty();
   if (!request.joints.empty() && rigged)
-    throw Error("has its joints twice", request.file.string(), "give --joints, or --skeleton and --weights");
+    throw Error("gets its joints twice", request.file.string(), "give --joints, or --skeleton and --weights");
   if (!request.joints.empty()) return read_jointed(request.file, request.joints, metres, request.meshes);
   if (request.skeleton.empty() || request.weights.empty())
     throw Error("is a mesh without a skeleton or weights", request.file.string(),

@@ -19,7 +19,7 @@
 namespace selvedge {
 namespace {
 
-constexpr double far_away = 0.3;  // on average, from the body: more is a mistake [m]
+constexpr double far_away = 0.3;  // a larger mean distance from the body is a mistake [m]
 
 // The body with its shape and clip, read as a scene reads them.
 Performance read_wearer(const DressRequest& request) {
@@ -45,7 +45,7 @@ Vec3 read_rotation(const std::string& text, const std::string& where) {
   return rotation;
 }
 
-// No rows: the zero pose.
+// The pose; without rows it is the zero pose.
 BodyPose read_pose(const DressRequest& request, const Performance& who) {
   if (!request.pose && request.rotations.empty()) return {};
   BodyPose pose = pose_at(who, request.time);

@@ -10,35 +10,35 @@
 namespace selvedge {
 
 struct DressRequest {
-  std::filesystem::path mesh;          // of the garment, where the body wears it (OBJ, PLY)
-  std::filesystem::path out;           // its HDF5 form
-  std::string unit = "m";              // of the mesh
-  std::string body = "mannequin";      // or a file, as a scene's `model`
-  std::vector<double> shape;           // of the body that wears the mesh
-  std::optional<std::string> pose;     // a clip, as a scene's `clip`; absent: the zero pose
-  double time = 0;                     // of the clip [s]
-  std::vector<std::string> rotations;  // JOINT=x,y,z: axis times angle [rad], in place of the pose's
-  std::string fit = "loose";           // or tight
-  std::vector<std::string> pins;       // groups that stay with the body, or none; empty: waists of what would fall
+  std::filesystem::path mesh;          // mesh of the garment on the body (OBJ, PLY)
+  std::filesystem::path out;           // garment file (HDF5)
+  std::string unit = "m";              // unit of the mesh
+  std::string body = "mannequin";      // or a file, as `model` of a scene
+  std::vector<double> shape;           // shape of the body under the mesh
+  std::optional<std::string> pose;     // a clip, as `clip` of a scene; absent: the zero pose
+  double time = 0;                     // time in the clip [s]
+  std::vector<std::string> rotations;  // JOINT=x,y,z: axis times angle [rad], which replaces the pose's
+  std::string fit = "loose";           // loose or tight
+  std::vector<std::string> pins;  // groups that stay with the body, or none; empty: waists of garments that would fall
 };
 
 struct DressReport {
   Garment garment;
   int components = 0;
-  std::vector<std::string> pinned;  // groups
-  double reposed = 0;               // largest distance of the garment, put into the pose again, from the mesh [m]
+  std::vector<std::string> pinned;  // names of groups
+  double reposed = 0;               // largest distance between the mesh and the garment in the same pose [m]
   double least_distance = 0, mean_distance = 0;  // from vertices to the body's surface [m]
-  bool on_body = true;                           // as worn_part.hpp has it
-  int inside_vertices = 0;                       // in a closed body
+  bool on_body = true;                           // result of worn_part.hpp
+  int inside_vertices = 0;                       // vertices inside a closed body
   int self_pairs = 0, body_pairs = 0;            // intersecting triangles, with itself and with the body
   std::vector<std::string> warnings;
 };
 
-// Makes a garment of a mesh that a body wears: weights and directions from the surface of the body as it is there,
-// groups of the mesh and of its boundaries, pins; and writes it. Throws Error for what cannot be read or written.
+// Makes a garment from a mesh on a body and writes it: weights and directions come from the body's surface there,
+// groups from the mesh and its boundaries, and pins. Throws Error for files that cannot be read or written.
 DressReport dress(const DressRequest&);
 
-// On the body, without pairs, and nothing inside the body.
+// Whether the garment is on the body, without intersecting pairs and without vertices inside the body.
 bool is_clean(const DressReport&);
 
 std::string dress_json(const DressReport&);

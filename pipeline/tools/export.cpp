@@ -20,7 +20,7 @@ std::string file_name(const std::string& name) {
   return safe;
 }
 
-// The colours of the page (pipeline/view/palette.js), which are sRGB, as linear ones.
+// The colours of the page (pipeline/view/palette.js) in linear form; there they are sRGB.
 Eigen::Vector3d colour_of(int cloth) {
   constexpr std::array<std::array<int, 3>, 5> colours = {
       {{0x4a, 0x7f, 0xb5}, {0xc9, 0x8a, 0x5a}, {0x5d, 0x9c, 0x84}, {0x8d, 0x76, 0xb3}, {0xb9, 0xbd, 0xc2}}};
@@ -44,7 +44,8 @@ bool cloths_are_apart(const TrajectoryInfo& info) {
   return !info.cloth_names.empty();
 }
 
-// One surface a cloth, or one of all on end; then the obstacles. Positions are read once a call of `frame`.
+// The surfaces of a run: one per cloth, or one of all cloths; then the obstacles. `frame` reads positions once per
+// call.
 class ExportedRun {
  public:
   ExportedRun(const ExportRequest& request, bool each_cloth) : request_(request), reader_(request.trajectory) {
@@ -69,7 +70,7 @@ class ExportedRun {
   }
   ExportedRun(const ExportedRun&) = delete;
   ExportedRun& operator=(const ExportedRun&) = delete;
-  // `reads`: so often a frame is read, for the progress.
+  // `reads` is the number of frames that will be read, for the progress.
   const AnimatedSurfaces& read_so_often(int reads) {
     all_ = reads;
     return run_;

@@ -4,11 +4,11 @@
 
 namespace selvedge {
 
-// Returns the files written, in order. Throws Error for an unknown format, a run without a frame, and what the format
-// cannot hold.
+// Returns the written files in order. Throws Error for an unknown format, a run without a frame, and content that the
+// format cannot hold.
 std::vector<std::filesystem::path> export_trajectory(const ExportRequest&);
 
-// The names of the formats, each with what it is in brackets.
+// The names of the formats, each with a description in brackets.
 std::string export_format_list();
 
 }  // namespace selvedge

@@ -23,14 +23,14 @@ std::string listed_names(const std::vector<TrajectoryInfo::Body>& obstacles) {
   return names.empty() ? "none" : joined(names);
 }
 
-// The obstacle that the cloth is to fit.
+// The obstacle that the cloth should fit.
 std::size_t obstacle_to_fit(const FitRequest& request, const TrajectoryInfo& info, const Performances& bodies) {
   const auto& obstacles = info.obstacles;
   for (std::size_t k = 0; k < obstacles.size(); ++k)
     if (request.body.empty() ? bodies[k] != nullptr : obstacles[k].name == request.body) return k;
   if (request.body.empty() && obstacles.size() == 1) return 0;
   if (request.body.empty())
-    throw Error("it has no body, and not one obstacle alone", request.run.string(),
+    throw Error("the run has no body, and not exactly one obstacle", request.run.string(),
                 "name one with --body; obstacles: " + listed_names(obstacles));
   throw Error("names the unknown obstacle `" + request.body + "`", "--body", "obstacles: " + listed_names(obstacles));
 }
@@ -59,11 +59,11 @@ std::filesystem::path scene_file(const FitRequest& request) {
   if (!request.scene.empty()) return request.scene;
   const auto folder = std::filesystem::is_directory(request.run) ? request.run : request.run.parent_path();
   if (std::filesystem::exists(folder / "config.yaml")) return folder / "config.yaml";
-  throw Error("no config.yaml lies beside it, which says what the cloth is made of", request.run.string(),
+  throw Error("there is no config.yaml beside it with the materials of the cloth", request.run.string(),
               "name the scene that the run was made of with --scene");
 }
 
-// A value of each vertex: `of` a row where it is in one.
+// A value per vertex: that of its row, or NaN.
 template <class Value>
 std::vector<float> by_row(const FitMeasures& measures, const Value& of) {
   std::vector<float> values;

@@ -33,8 +33,8 @@ Vec3 from_ring(const Adjacency& ring, const Points& x, int v) {
   return neighbours.empty() ? Vec3::Zero() : Vec3(row(x, v) - sum / static_cast<double>(neighbours.size()));
 }
 
-// A crossing of two triangles ends twice on edges of one of them (a vertex has gone through a face), or on an edge of
-// each.
+// A crossing of two triangles has two ends. If both lie on edges of one triangle, a vertex has gone through a face.
+// Otherwise edges cross.
 void count_kinds(const DistanceField& body, const Surface& garment, const Points& x, GarmentErrors& errors) {
   const std::array<SheetView, 2> sheets{SheetView{&garment, &x}, SheetView{&body.surface(), &body.positions()}};
   const Segments found = find_segments(sheets);
@@ -57,7 +57,7 @@ void count_pairs(const DistanceField& body, const Surface& garment, const Points
   if (obstacle_available()) errors.judges_agree = agrees_on_bodies(garment, x, {&solid, 1}, pairs);
 }
 
-// What happened to the vertices that were inside before.
+// Measures the vertices that were inside before.
 void judge_moved(const DistanceField& body, const Surface& garment, const Points& x,
                  const std::vector<SignedDistance>& now, const KnownOfGarment& known, GarmentErrors& errors) {
   if (!known.before) return;

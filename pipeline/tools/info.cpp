@@ -26,7 +26,7 @@ std::string hdf5_version() {
   return fmt::format("{}.{}.{}", major, minor, release);
 }
 
-// Asked at run time: which BLAS is behind CHOLMOD is decided by the system's alternatives.
+// Found at run time, because the system's alternatives select the BLAS behind CHOLMOD.
 std::string blas() {
   if (!Cholesky::available()) return "not used";
   using Config = char* (*)();
@@ -34,7 +34,7 @@ std::string blas() {
   return dlsym(RTLD_DEFAULT, "dgemm_") ? "unknown (not OpenBLAS)" : "none found";
 }
 
-// How threads wait for work; see process_threads.cpp.
+// The way in which threads wait for work; see process_threads.cpp.
 std::string waiting() {
   for (const char* name : {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT"})
     if (const char* value = std::getenv(name)) return fmt::format("{}={}", name, value);

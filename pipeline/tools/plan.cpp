@@ -28,7 +28,7 @@ std::string linear_solver_of(const Setup& setup) {
                      count);
 }
 
-// What stands round a stepper of any kind. Throws Error where a run would not find it.
+// Lines for a stepper of any kind. Throws Error where a run would throw for missing weights.
 void append_common_lines(const Setup& setup, std::vector<PlanLine>& lines) {
   const RefuRun& refu = setup.run.refu;
   if (refu.on) read_refu_weights(setup);
@@ -41,9 +41,9 @@ void append_common_lines(const Setup& setup, std::vector<PlanLine>& lines) {
   if (!setup.initial.cut_out.empty()) lines.push_back({"cut start", true, setup.prepared + " until they are free"});
 }
 
-constexpr int frames_looked_at = 24;  // of a run, evenly, beside its start
+constexpr int frames_looked_at = 24;  // of a run, evenly spaced, beside its start
 
-// Where an obstacle crosses itself in the frames that are looked at.
+// An obstacle's crossings with itself in the frames looked at.
 struct OwnCrossing {
   int frames = 0, pairs = 0, worst_frame = 0, triangles = 0;
   bool moves_rigidly = true;
@@ -69,7 +69,7 @@ std::string text_of(const OwnCrossing& found, const std::string& name, int looke
                                     found.triangles));
 }
 
-// What contact can switch off, by obstacle.
+// Lines on the contact that can be switched off, by obstacle.
 void append_crossing_lines(const Setup& setup, std::vector<PlanLine>& lines) {
   const std::size_t count = setup.scene.obstacles.size();
   if (count == 0) return;
@@ -93,7 +93,7 @@ void append_crossing_lines(const Setup& setup, std::vector<PlanLine>& lines) {
         {"switching off", false, fmt::format("no obstacle crosses itself in {} frames looked at", steps + 1)});
 }
 
-// What the scene needs of a stepper that solves.
+// Lines on the needs of a stepper that solves.
 void append_solver_lines(const Setup& setup, std::vector<PlanLine>& lines) {
   for (PlanLine& line : plan_lines(setup.scene)) lines.push_back(std::move(line));
   append_crossing_lines(setup, lines);

@@ -6,7 +6,7 @@
 
 namespace selvedge {
 
-// What this scene needs, what is left out, and why.
+// The features that this scene needs and those that are left out, with reasons.
 std::string plan_json(const Setup&);
 std::string plan_text(const Setup&);
 

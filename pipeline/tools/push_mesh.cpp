@@ -16,7 +16,7 @@ namespace {
 BodyShape shape_named(const std::string& name) {
   if (name == "union") return BodyShape::united;
   if (name == "raw") return BodyShape::raw;
-  throw Error("'" + name + "' is no shape of a body", "--shape", "write union or raw");
+  throw Error("'" + name + "' is not a shape of the body", "--shape", "write union or raw");
 }
 
 Mesh read_truth(const PushRequest& request, const Mesh& garment) {
@@ -54,7 +54,7 @@ void push_by(const PushRequest& request, const DistanceField& body, const Surfac
     x = std::move(made.x);
     report.pushed = made.penetrating;
   } else if (request.method != "none") {
-    throw Error("'" + request.method + "' is no way to push", "--method", "write layer, smooth or none");
+    throw Error("'" + request.method + "' is not a method", "--method", "write layer, smooth or none");
   }
 }
 

@@ -13,7 +13,7 @@
 namespace selvedge {
 namespace {
 
-// What a user wants to do, and the sections with the keys that this needs. All other keys are the expert's.
+// A user's task, with the sections and keys that it needs. All other keys are the expert's.
 struct Task {
   std::string title;
   std::vector<std::pair<std::string, std::string>> sections;  // name, keys
@@ -81,7 +81,7 @@ bool has_keys(const Section& section, KeyTier tier) {
   return std::ranges::any_of(section.keys, [&](const Key& key) { return tier_of(section, key) == tier; });
 }
 
-// Sections with chapters on a tier's page. Those without a key are the expert's.
+// Sections with chapters on a tier's page. Sections without a key are the expert's.
 std::vector<const Section*> sections_of(KeyTier tier) {
   std::vector<const Section*> chosen;
   for (const Section* section : sections_below(scene_section()))

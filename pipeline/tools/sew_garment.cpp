@@ -25,12 +25,12 @@
 namespace selvedge {
 namespace {
 
-// Of a stitch that did not close [m]. Those of garments that came out well were 0.2 mm apart at most.
+// A stitch with a larger gap did not close [m]. In good garments gaps were at most 0.2 mm.
 constexpr double open_gap = 5e-3;
 
 bool is_mesh(const std::filesystem::path& file) { return file.extension() == ".obj" || file.extension() == ".ply"; }
 
-// A body of one joint, which carries all of it.
+// A body with one joint that carries all of it.
 BodyModel body_of_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings) {
   Mesh mesh = read_mesh(file);
   warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
@@ -58,7 +58,7 @@ BodyModel body_to_sew_on(const PatternRequest& request, std::vector<std::string>
   return std::move(who.body);
 }
 
-// Frames of the sewing as a trajectory of the panels, which has one topology.
+// Records the sewing as a trajectory of the panels, which has one topology.
 class SewingRecorder {
  public:
   SewingRecorder(const PatternRequest& request, const PatternMesh& mesh, const Points& body, const Triangles& triangles)
@@ -108,7 +108,7 @@ Garment garment_of(const PatternRequest& request, const Pattern& pattern, const 
   return garment;
 }
 
-// Of the garment as it is written, against the body as it was given.
+// Measures the garment as it is written, against the body as it was given.
 void measure(const BodyModel& body, PatternReport& report) {
   const SewnPattern& sewn = report.sewn;
   Scene scene;

@@ -41,9 +41,9 @@ Points folded(const Points& flat, RandomStream& random) {
   Points x = flat;
   for (Eigen::Index v = 0; v < x.rows(); ++v) {
     const Vec3 p = x.row(v).transpose();
-    const double beyond = size - (p - corner).dot(inward);  // of the line, towards the corner
+    const double beyond = size - (p - corner).dot(inward);  // distance beyond the line, towards the corner
     if (beyond <= 0) continue;
-    // First half a circle of radius lift, then straight on, tilted towards the sheet.
+    // First half a circle of radius `lift`, then straight on, tilted towards the sheet.
     const double arc = std::numbers::pi * lift;
     Vec3 at = p + beyond * inward;  // on the line
     if (beyond < arc)

@@ -6,7 +6,7 @@
 namespace selvedge {
 
 // The prediction with the least sum of losses [J] that L-BFGS, preconditioned by the Jacobi diagonal, finds from
-// `start`; pinned vertices stay. No network can do better in this frame.
+// `start`. Pinned vertices stay. No network can be better in this frame.
 Minimised minimised(const FrameMaking&, RollingState&, const Points& start, int most_evaluations);
 
 }  // namespace selvedge

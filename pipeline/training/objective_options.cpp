@@ -44,7 +44,8 @@ const Options<FrictionLoss>& friction_options() {
       {ramp("weight", &O::weight, "Weight of the term."),
        number("coefficient", &O::coefficient, Unit::none, not_negative, "Friction coefficient."),
        number("squared_radius", &O::squared_radius, Unit::none, positive,
-              "Squared distance from the nearest centroid of the body within which a vertex has friction [m2]."),
+              "Squared distance from the nearest centroid of the body within which a vertex must be before and after "
+              "the frame to have friction [m2]."),
        choice("slope", &O::slope, {{"x", SlopeAxis::x}, {"y", SlopeAxis::y}, {"z", SlopeAxis::z}},
               "Axis along which sliding has less friction. The released code takes `z`, although y is up.")});
   return table;
@@ -56,7 +57,8 @@ const Options<RepulsionLoss>& repulsion_options() {
       "repulsion", "Repulsion between layers of cloth, for pairs that repel.",
       {ramp("weight", &O::weight, "Weight [N/m2]."),
        number("thickness", &O::thickness, Unit::length, positive,
-              "Repulsion thickness: the distance below which a pair repels."),
+              "Repulsion thickness: the distance below which a pair repels. The paper has 0.001, its released "
+              "configurations have 0.003."),
        number("correspondence", &O::correspondence, Unit::length, positive,
               "Distance above which a pair does not take part."),
        number("pinned_factor", &O::pinned_factor, Unit::none, positive,
@@ -96,7 +98,9 @@ const Options<VolumeLoss>& volume_options() {
   using O = VolumeLoss;
   static const Options<O> table(
       "volume", "The volume that self-penetrating cloth encloses (Liao et al. 2024).",
-      {ramp("weight", &O::weight, "Weight of 6 times the volume [J/m3], 3e4 as published, or of the area [J/m2]."),
+      {ramp("weight", &O::weight,
+            "Weight of 6 times the volume [J/m3], or of the area [J/m2]. As published it is 3e4 from 0.632 of the run "
+            "on."),
        choice("form", &O::form, {{"enclosed", VolumeForm::enclosed}, {"winding", VolumeForm::winding}},
               "`enclosed` closes the holes of garments by fans of triangles. `winding` uses winding numbers and needs "
               "no fans."),
@@ -121,8 +125,9 @@ const Options<VertexRepulsionLoss>& vertex_repulsion_options() {
       "vertex_repulsion", "Repulsion between vertices that no edge joins (Liao et al. 2024, appendix A).",
       {ramp("weight", &O::weight, "Weight [J/m], or [J/m2] for the power 2."),
        number("distance", &O::distance, Unit::length, positive, "Distance below which two vertices repel."),
-       integer("power", &O::power, {.low = 1, .high = 2},
-               "Power of the amount by which two vertices are nearer than `distance`.")});
+       integer(
+           "power", &O::power, {.low = 1, .high = 2},
+           "Power of the amount by which two vertices are nearer than `distance`. That of the paper is not known.")});
   return table;
 }
 

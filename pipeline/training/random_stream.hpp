@@ -6,7 +6,7 @@
 
 namespace selvedge {
 
-// Random numbers whose whole state is one number, the same on every machine (splitmix64, Steele et al. 2014).
+// Random numbers with one number as the whole state, the same on every machine (splitmix64, Steele et al. 2014).
 struct RandomStream {
   std::uint64_t state = 0;
 
@@ -20,13 +20,13 @@ struct RandomStream {
   double between(double low, double high) { return low + (high - low) * uniform(); }
   int below(int count) { return static_cast<int>(uniform() * count); }  // 0 to count - 1
   bool heads(double share) { return uniform() < share; }
-  double normal() {  // Box and Muller 1958, one of the two
+  double normal() {  // Box and Muller 1958, one of the pair
     const double radius = std::sqrt(-2 * std::log(1 - uniform()));
     return radius * std::cos(2 * std::numbers::pi * uniform());
   }
 };
 
-// A stream of its own for each number, whatever was drawn before.
+// A separate stream for each number, independent of earlier draws.
 inline RandomStream stream_of(std::uint64_t seed, std::uint64_t number) {
   RandomStream mixed{seed * 0xD1342543DE82EF95 + number};
   return RandomStream{mixed.next()};

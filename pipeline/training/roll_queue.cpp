@@ -44,7 +44,7 @@ std::vector<RollRequest> RollQueue::waiting() const {
 
 void RollQueue::work() {
   restore_standard_arithmetic();
-  use_threads(1);  // the others are training
+  use_threads(1);  // the other threads train
   std::unique_lock hold(mutex_);
   while (true) {
     const auto next = [this] { return std::ranges::find(places_, false, &Place::done); };
@@ -66,7 +66,7 @@ void RollQueue::work() {
       changed_.notify_all();
       return;
     }
-    const auto place = next();  // places are taken from the front alone, when they are done
+    const auto place = next();  // places leave only from the front, after they are done
     place->roll = std::move(roll);
     place->done = true;
     changed_.notify_all();

@@ -10,21 +10,21 @@
 
 namespace selvedge {
 
-// Prepares roll-outs in a thread of its own, in the order of the requests. The result depends on the requests alone,
-// never on time.
+// Prepares roll-outs in its own thread, in the order of the requests. The result depends on the requests only, not on
+// time.
 class RollQueue {
  public:
-  explicit RollQueue(RollMaker&);  // the maker is the thread's until the queue ends, but for `locked`
+  explicit RollQueue(RollMaker&);  // only the thread may use the maker until the queue ends, except in `locked`
   ~RollQueue();
   RollQueue(const RollQueue&) = delete;
   RollQueue& operator=(const RollQueue&) = delete;
 
   void ask(const RollRequest&);
-  // The first request that was not taken yet; waits until it is prepared. Throws the error of its preparation.
+  // Waits until the first request is prepared, and takes it. Throws the error of its preparation.
   Roll take();
-  // Not taken yet, the first one first.
+  // The requests that were not taken, the first one first.
   std::vector<RollRequest> waiting() const;
-  // Runs while nothing is being prepared.
+  // Runs `work` while nothing is being prepared.
   template <class Work>
   void locked(const Work& work) {
     const std::lock_guard hold(making_);

@@ -11,11 +11,11 @@ namespace {
 
 Points wide(const PointsF& x) { return x.cast<double>(); }
 
-// Sets the body, and where the garment is worn when the frame is over.
+// Sets the body, and the skinned target of the garment at the end of the frame.
 void set_surroundings(RollingState& state) {
   const Roll& roll = state.roll;
   const bool settling = is_settling(state);
-  const int entry = state.frame + (roll.request.still ? 0 : 1);  // of the body now; a settling frame stands at the next
+  const int entry = state.frame + (roll.request.still ? 0 : 1);  // of the body now; a settling frame uses the next one
   const auto body_at = [&](int k) { return wide(roll.body[static_cast<std::size_t>(k)]); };
   const bool after_settling = roll.request.still && state.frame == 1;
   state.now.body = body_at(settling ? 1 : entry);
@@ -122,7 +122,7 @@ void take_pass(const FrameMaking& making, const NextCloth& next, double reset_di
   state.now.velocity = next.velocity;
   if (settled) {
     state.now.previous = state.now.x;
-    if (making.passes > 1) state.now.velocity.setZero();  // HOOD goes on with what the settling frame gave
+    if (making.passes > 1) state.now.velocity.setZero();  // HOOD continues with the settling frame's velocity
   }
   ++state.frame;
   state.over = state.frame >= state.roll.request.frames || is_lost(state, reset_distance);

@@ -10,13 +10,13 @@
 
 namespace selvedge {
 
-// A roll-out in progress: which frame is to be made, in which pass, and what was made.
+// A roll-out in progress: the next frame and pass, and the results so far.
 struct RollingState {
   Roll roll;
   int frame = 0, pass = 0;
   GraphState now;                    // the start of the frame, with guess and number of the next pass
   bool over = true;                  // the roll-out has ended
-  std::unique_ptr<Safeguard> guard;  // filters the motion of the roll-out; null: there is none
+  std::unique_ptr<Safeguard> guard;  // filters the motion of the roll-out; null: none
   std::vector<char> body_left_out;   // faces of the body that meet others now or next; empty: none
   // Memory that is used again:
   GraphSearch search;
@@ -27,7 +27,7 @@ struct RollingState {
 // Begins a roll-out: at rest and outside the body before a frame of 1/3 s, or with the motion of the clip.
 void begin_roll(Roll, RollingState&);
 
-// What a checkpoint keeps of a roll-out, and how the roll-out continues from it.
+// The part of a roll-out that a checkpoint keeps, and the start from it.
 struct KeptRolling {
   int frame = 0, pass = 0;
   Points x, previous, velocity, guess;
@@ -35,13 +35,13 @@ struct KeptRolling {
 KeptRolling kept(const RollingState&);
 void resume_roll(Roll, const KeptRolling&, RollingState&);
 
-// Whether the frame to be made is the one in which cloth falls to rest.
+// Whether the cloth falls to rest in the next frame.
 bool is_settling(const RollingState&);
 
-// What losses see of the frame and of a prediction. Refers to the state.
+// The losses' inputs for the frame and a prediction. They refer to the state.
 LossInputs inputs_of(const RollingState&, const SeenPositions&, const Points& predicted, double progress);
 
-// How a network's frame is made.
+// The options of a network's frames.
 struct FrameMaking {
   FeatureOptions features;
   LossOptions losses;
@@ -49,17 +49,17 @@ struct FrameMaking {
   double progress = 1;  // of the run
 };
 
-// The graph of the pass to come, raw. False: refused, for something is not finite.
+// Makes the raw graph of the next pass. Returns false if something is not finite.
 bool raw_graph_of(const FrameMaking&, const FeatureTables&, RollingState&, Graph&);
 
 // Takes the result of a pass, and proceeds to the next pass or frame. The roll-out ends after its last frame, or if a
 // free vertex is not finite or farther than `reset_distance` from the skinned garment.
 void take_pass(const FrameMaking&, const NextCloth& next, double reset_distance, RollingState&);
 
-// Lets the guard of the state, if there is one, correct the last pass of the frame. False if it gives up.
+// Lets the guard of the state, if there is one, correct the last pass of the frame. Returns false if it gives up.
 bool pass_guard(const FrameMaking&, RollingState&, NextCloth& next);
 
-// The gate: of the candidates base + t (next - base), with `count` values of t up to 1.2, returns the one with the
+// The gate. Of the candidates base + t (next - base), with `count` values of t up to 1.2, it returns the one with the
 // least loss. base is the motion without forces.
 NextCloth gated(const FrameMaking&, int count, const NextCloth& next, RollingState&);
 

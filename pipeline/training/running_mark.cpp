@@ -14,7 +14,7 @@ std::filesystem::path mark_path() { return cache_folder() / "training-running"; 
 
 }  // namespace
 
-// A lock on a file: the system lets go of it when the process ends.
+// A lock on a file, which the system releases when the process ends.
 RunningMark::RunningMark(const std::filesystem::path& configuration) {
   if (cache_folder().empty()) return;
   std::error_code ignored;

@@ -6,8 +6,8 @@
 
 namespace selvedge {
 
-// While it lives, other processes of this user see that a training runs (running_training). It ends with the process,
-// however that ends. Where another training runs already, `other` says which.
+// While it exists, other processes of this user see that a training runs (running_training). It ends with the process,
+// even after a crash. If another training runs already, `other` names it.
 class RunningMark {
  public:
   explicit RunningMark(const std::filesystem::path& configuration);
@@ -21,7 +21,7 @@ class RunningMark {
   std::optional<std::string> other_;
 };
 
-// The configuration of a training that runs on this machine now, for commands that take times; nothing: none does.
+// The configuration of a training that runs on this machine now, for commands that measure times. Empty: none runs.
 std::optional<std::string> running_training();
 
 }  // namespace selvedge

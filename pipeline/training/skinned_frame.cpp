@@ -12,7 +12,7 @@ std::size_t bytes_of(const TissueDisplacements& tissue) {
   return tissue.vertices.size() * (sizeof(int) + 3 * sizeof(float)) + sizeof(TissueDisplacements);
 }
 
-// Forgets what is in memory, once it is in the folder.
+// Writes frames to the folder and frees their memory.
 void forget_tissue(TrainingWorld& world) {
   write_soft_tissue(world.soft_tissue_folder, world);
   for (TrainingBody& body : world.bodies)

@@ -13,11 +13,11 @@
 namespace selvedge {
 namespace {
 
-constexpr int soft_tissue_recipe = 1;  // to be raised with every change of how bodies give way
+constexpr int soft_tissue_recipe = 1;  // raise it with every change of the soft tissue's motion
 
 const h5::FileForm soft_tissue_form{"selvedge flesh 1", "flesh", "docs/training.md"};
 
-// Of the body as it is and of the clip's poses: another body or clip has another file.
+// The name has a hash of body and poses, so that another body or clip has another file.
 std::filesystem::path soft_tissue_file(const std::filesystem::path& folder, const TrainingWorld& world,
                                        const TrainingBody& body, const TrainingClip& clip) {
   const Clip& motion = clip.motion;
@@ -32,7 +32,7 @@ std::filesystem::path soft_tissue_file(const std::filesystem::path& folder, cons
   return folder / "flesh" / fmt::format("{}-{:016x}.h5", motion.name, hash_of(text));
 }
 
-// All frames on end: number of a frame, how many vertices move in it, which, and how far.
+// Writes all frames in one: the number of each frame, the count of its moving vertices, their numbers and motions.
 void write_clip(const std::filesystem::path& path, const std::map<int, TissueDisplacements>& given) {
   std::vector<int> frames, counts, vertices;
   Points moves(0, 3);
@@ -79,7 +79,7 @@ std::map<int, TissueDisplacements> read_clip(const std::filesystem::path& path, 
   return given;
 }
 
-// Takes away the files that were used longest ago, until the folder has no more than `most` bytes.
+// Removes the least recently used files until the folder has at most `most` bytes.
 void keep_within(const std::filesystem::path& folder, std::uintmax_t most) {
   std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> files;
   std::uintmax_t bytes = 0;
@@ -107,9 +107,9 @@ std::map<int, TissueDisplacements> read_soft_tissue(const std::filesystem::path&
   try {
     std::map<int, TissueDisplacements> given =
         read_clip(path, world.people[static_cast<std::size_t>(body.person)].surface.vertex_count);
-    std::filesystem::last_write_time(path, std::filesystem::file_time_type::clock::now(), ignored);  // it was used
+    std::filesystem::last_write_time(path, std::filesystem::file_time_type::clock::now(), ignored);  // marks its use
     return given;
-  } catch (const Error&) {  // they are found anew
+  } catch (const Error&) {  // they are computed again
     return {};
   }
 }

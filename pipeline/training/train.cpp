@@ -21,7 +21,7 @@
 namespace selvedge {
 namespace {
 
-constexpr int lines_of_a_run = 200;  // in steps.csv
+constexpr int lines_of_a_run = 200;  // lines of steps.csv
 
 // A training in progress.
 struct TrainingRun {
@@ -45,7 +45,7 @@ struct TrainingRun {
   }
 };
 
-// A path for a file that travels: a relative one as it is, of an absolute one the last folder and the name.
+// A path for a file that is copied elsewhere: a relative path, or the last folder and the name of an absolute one.
 std::string travelling(const std::filesystem::path& path) {
   return (path.is_absolute() ? path.parent_path().filename() / path.filename() : path).string();
 }
@@ -94,7 +94,7 @@ std::string measure_text(const TrainingMeasure& m) {
       static_cast<double>(r.pairs_at_end));
 }
 
-// How tangled the roll-outs began; empty where that is not counted.
+// Statistics of the tangled starts; empty if none are counted.
 std::string starts_text(std::vector<int> pairs) {
   if (pairs.empty()) return "";
   std::ranges::sort(pairs);
@@ -133,13 +133,13 @@ void tell(TrainingRun& run, bool now = false) {
                       counts.bad, counts.lost));
 }
 
-// Whether this step is one after which something is to be done `times` times in the run.
+// Whether something that is done `times` times in the run is due after this step.
 bool is_due(const TrainingRun& run, long step, int times) {
   const long every = std::max(1L, static_cast<long>(run.options.steps) / times);
   return step % every == 0 || step == run.options.steps;
 }
 
-// Whether this step is the first at or after the part of the run at which weights are kept.
+// Whether this step is the first at or after the fraction of the run at which weights are kept.
 bool is_kept_now(const TrainingRun& run) {
   const double at = run.options.watch.keep_at * run.options.steps;
   const auto step = static_cast<double>(run.trainer->counts.step);
@@ -148,7 +148,7 @@ bool is_kept_now(const TrainingRun& run) {
 
 bool is_paused(const TrainingRun& run) { return std::filesystem::exists(pause_file(run.folder)); }
 
-// False: stopped before the last step.
+// Returns false if it was stopped before the last step.
 bool run_steps(TrainingRun& run) {
   Trainer& trainer = *run.trainer;
   Clock::time_point looked = Clock::now();

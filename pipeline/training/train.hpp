@@ -15,35 +15,35 @@ struct TrainRequest {
   std::filesystem::path config;
   std::vector<std::string> overrides;  // key=value
   std::filesystem::path out;           // folder; empty: out/training/NAME
-  bool resume = false;                 // go on from the folder's checkpoint
-  std::ostream* log = nullptr;         // a line now and then
-  std::function<bool()> stop;          // asked after every step; true ends the run at a checkpoint
+  bool resume = false;                 // continue from the folder's checkpoint
+  std::ostream* log = nullptr;         // gets a line now and then
+  std::function<bool()> stop;          // called after every step; true ends the run at a checkpoint
 };
 
 struct TrainSummary {
   std::filesystem::path folder;
   bool finished = false;  // false: stopped at a checkpoint
   TrainingCounts counts;
-  double seconds = 0;  // of training, over all parts of the run
+  double seconds = 0;  // time of training over all parts of the run
   long best_step = 0;
   double best_score = 0;
   TrainingMeasure last;
 };
 
 // Trains a network into a folder: checkpoint.h5, weights.h5 (the last), best.h5 (with the least energy of the measuring
-// roll-out), steps.csv, measures.csv, training.html and config.yaml. Stops at a checkpoint where it is asked to, by
-// `stop` or by pause_training. Throws Error.
+// roll-out), steps.csv, measures.csv, training.html and config.yaml. `stop` or pause_training stops it at a checkpoint.
+// Throws Error.
 TrainSummary train(const TrainRequest&);
 
 // The summary for people and as one JSON object.
 std::string train_text(const TrainSummary&);
 std::string train_json(const TrainSummary&);
 
-// While it is there, the run in the folder is asked to stop.
+// The file that asks the run in the folder to stop while it exists.
 std::filesystem::path pause_file(const std::filesystem::path& folder);
 
-// Asks the run in the folder to stop at a checkpoint and waits until it has, at most that long [s]. False: it has not,
-// or none runs there.
+// Asks the run in the folder to stop at a checkpoint and waits for at most `seconds`. Returns false if it has not
+// stopped, or none runs there.
 bool pause_training(const std::filesystem::path& folder, double seconds);
 
 }  // namespace selvedge

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Hashes of what configurations name: of files by their bytes, of anything else by its name.
+// Hashes of names in configurations: of the bytes of a file, or of any other name itself.
 struct Contents {
   std::map<std::string, std::uint64_t> files;
 
@@ -55,7 +55,7 @@ TrainedPerson mannequin(const SampleOptions& samples) {
   return person;
 }
 
-// The items that are trained on.
+// Drops the items that the split holds out.
 template <class SplitOf>
 void drop_held_out(const Config& list, const SplitOf& split_of_item, std::vector<TrainedItem>& items) {
   std::size_t kept = 0;

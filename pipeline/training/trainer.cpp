@@ -18,8 +18,8 @@
 namespace selvedge {
 namespace {
 
-// Weights of an earlier stage, or of a network that sees less. Features that stages may change are not compared. What
-// the earlier stage was trained on is added to `on`.
+// Weights of an earlier stage, or of a network with fewer inputs. Features that stages may change are not compared. The
+// earlier stage's record is added to `on`.
 NetworkWeights first_weights(const TrainingOptions& options, const Architecture& architecture, TrainedOn& on) {
   if (options.weights.empty())
     return initial_weights(architecture, options.seed, {.last_layer_scale = options.optimiser.decoder_scale});
@@ -52,8 +52,8 @@ NetworkWeights first_weights(const TrainingOptions& options, const Architecture&
   return widen_weights(theirs, file.weights, architecture, options.seed);
 }
 
-// Adds one state to the sums of the statistics: a first pass or, for half of the states of networks of several passes,
-// a second one. Its guess lies at random between free flight and the skinned garment.
+// Adds one state to the sums of the statistics, in its first pass. Half of the states of networks with several passes
+// are in their second pass, with a random guess between free flight and the skinned garment.
 void gather_state(Trainer& trainer, RollingState& state) {
   const FrameMaking making = frame_making(trainer);
   const TrainingScene& scene = *state.roll.scene;
@@ -80,7 +80,7 @@ void gather_warm_up(Trainer& trainer) {
   }
 }
 
-// The columns of accelerations are the last ones that are normalised.
+// Accelerations are the last normalised columns.
 constexpr std::ptrdiff_t acceleration_columns = 3;
 bool are_accelerations_new(const Trainer& trainer) {
   if (!trainer.architecture.features.acceleration_inputs) return false;
@@ -95,14 +95,14 @@ bool are_space_edges_new(const Trainer& trainer) {
 
 bool is_cloth_edge(const std::string& key) { return key == "repulsion_edge" || key == "attraction_edge"; }
 
-// Whether edges of cloth with cloth are new to weights of an earlier stage: their statistics were never gathered.
+// Whether weights of an earlier stage lack statistics of cloth-cloth edges, because it had none.
 bool are_cloth_edges_new(const Trainer& trainer) {
   return trainer.architecture.features.cloth_edges && trainer.options.contact.edges &&
          are_blank(trainer.network.weights.tables.world_edge);
 }
 
-// Cloth-cloth edges get zero weights in the node networks. Where they are new, the network begins with the same output
-// as before; where the run has none, the weights stay zero.
+// Cloth-cloth edges get zero weights in the node networks. New edges then do not change the output at first, and the
+// weights stay zero in runs without such edges.
 void silence_cloth_edges(const Architecture& architecture, NetworkWeights& weights) {
   for (std::size_t s = 0; s < architecture.steps.size(); ++s) {
     const std::vector<std::string>& keys = architecture.steps[s].edge_keys;
@@ -115,7 +115,7 @@ void silence_cloth_edges(const Architecture& architecture, NetworkWeights& weigh
   }
 }
 
-// Statistics of all inputs; with weights of an earlier stage only of those that it did not have.
+// Gathers the statistics of all inputs; with weights of an earlier stage, only of its missing ones.
 void warm_up(Trainer& trainer) {
   FeatureTables& tables = trainer.network.weights.tables;
   const bool begins = trainer.options.weights.empty(), cloth_edges = are_cloth_edges_new(trainer),
@@ -141,15 +141,14 @@ void warm_up(Trainer& trainer) {
   silence_cloth_edges(trainer.architecture, trainer.network.weights);
 }
 
-// The derivative of the sample's objective with respect to the network's output. False: it is not finite.
+// The derivative of the sample's objective by the network's output. Returns false if it is not finite.
 bool output_gradient(const Trainer& trainer, const RollingState& state, Points gradient, FeatureRows& d_output) {
   const TrainingScene& scene = *state.roll.scene;
   for (const int pin : scene.rest.pinned) gradient.row(pin).setZero();
   const std::vector<float>& deviation = trainer.network.weights.tables.output.deviation;
   double scale = 1;
   if (trainer.options.optimiser.normalise_samples) {
-    // The gradient is divided by its norm over the inverse masses, then scaled so that its rows' lengths sum up to
-    // about one.
+    // Divides the gradient by its norm over the inverse masses, so that the lengths of its rows sum up to about one.
     double mass = 0;
     for (const double m : scene.losses.mass) mass += m;
     mass /= static_cast<double>(scene.losses.mass.size());
@@ -175,7 +174,7 @@ AdamOptions adam_options(const Trainer& trainer) {
   return adam;
 }
 
-// The graph of the sample, normalised; statistics go on being gathered where they are not frozen.
+// The normalised graph of the sample. Statistics are gathered on unless they are frozen.
 bool sample_graph(Trainer& trainer, const FrameMaking& making, RollingState& state) {
   FeatureTables& tables = trainer.network.weights.tables;
   if (!raw_graph_of(making, tables, state, trainer.graph)) return false;
@@ -233,7 +232,7 @@ void backward(Trainer& trainer, const FeatureRows& d_output) {
     run_backward(trainer.network, trainer.graph, trainer.tape, d_output, trainer.gradients);
 }
 
-// Forward, losses, backward and the optimiser; `next` is what the network made.
+// Forward, losses, backward and the optimiser. `next` becomes the network's result.
 void learn(Trainer& trainer, const FrameMaking& making, RollingState& state, StepRecord& record, NextCloth& next) {
   const TrainingScene& scene = *state.roll.scene;
   if (!sample_graph(trainer, making, state)) {

@@ -14,22 +14,22 @@
 
 namespace selvedge {
 
-// What a run has counted.
+// Counts of a run.
 struct TrainingCounts {
-  long step = 0;                   // of the optimiser, bad samples not counted
-  std::uint64_t rolls = 0;         // roll-outs that were asked for
-  long frames = 0;                 // made in roll-outs
+  long step = 0;                   // steps of the optimiser, without bad samples
+  std::uint64_t rolls = 0;         // roll-outs requested
+  long frames = 0;                 // frames made in roll-outs
   long lost = 0;                   // roll-outs that went too far from the skinned garment
-  long given_up = 0;               // .. that Bridson's response gave up
+  long given_up = 0;               // roll-outs in which Bridson's response gave up
   long bad = 0, bad_in_a_row = 0;  // samples without a finite loss or gradient
 };
 
-// All that the next step depends on, beside what options and requests say.
+// The state of a training, beside its options and requests.
 struct Trainer {
   TrainingOptions options;
   Architecture architecture;
   TrainingNetwork network;
-  std::unique_ptr<TorchNetwork> torch;  // computes `network` where the options name libtorch or a GPU; else null
+  std::unique_ptr<TorchNetwork> torch;  // runs `network` if the options name libtorch or a GPU; else null
   AdamState adam;
   FeatureSums<double> sums;
   RandomStream random;
@@ -37,49 +37,49 @@ struct Trainer {
   std::vector<RollingState> pool;
   std::unique_ptr<RollMaker> maker;
   std::unique_ptr<RollQueue> queue;
-  RunInputs inputs;              // files of people, and a hash of what they and code have made
-  TrainedOn trained_on;          // by this run and those whose weights it began with
-  std::vector<int> start_pairs;  // of the roll-outs that this process has begun, where they are counted
+  RunInputs inputs;              // files of people, and a hash of the training world
+  TrainedOn trained_on;          // includes the runs whose weights it began with
+  std::vector<int> start_pairs;  // of the roll-outs begun by this process, where they are counted
   // Memory that is used again:
   Tape tape;
   Graph graph;
   WeightGradients gradients;
 };
 
-// What one step saw.
+// The result of one step.
 struct StepRecord {
-  std::vector<LossTerm> terms;  // weights of now
+  std::vector<LossTerm> terms;  // with their current weights
   double sum = 0;               // [J]
   AdamReport adam;
   int pass = 0;
   bool settling = false;
-  std::string bad;  // why the sample was left; empty: it was not
+  std::string bad;  // reason why the sample was dropped; empty: none
 };
 
 // The network that the options name.
 Architecture trained_architecture(const TrainingOptions&);
 
-// A trainer before its first step: world, first weights or those of an earlier stage, statistics of the warm-up, a full
-// pool. Throws Error for weights of another network.
+// A trainer before its first step: world, first weights or those of an earlier stage, warm-up statistics, and requests
+// for the first roll-outs. Throws Error for weights of another network.
 std::unique_ptr<Trainer> make_trainer(const TrainingOptions&);
-// Everything but weights, statistics and states: what a resumed run begins with.
+// A trainer without weights, statistics and states, for a resumed run.
 std::unique_ptr<Trainer> make_empty_trainer(const TrainingOptions&);
 
-// Hands changed weights to what computes the network.
+// Passes changed weights to the kernels or to libtorch.
 void place_network(Trainer&);
 
-double progress_of(const Trainer&);  // part of the run, 0 to 1
+double progress_of(const Trainer&);  // fraction of the run, 0 to 1
 
-// How frames are made at this point of the run.
+// The options of frames at this point of the run.
 FrameMaking frame_making(const Trainer&);
 
-// One sample and one step of the optimiser. Throws Error where too many samples in a row had no finite loss.
+// Takes one sample and one step of the optimiser. Throws Error after too many samples in a row without a finite loss.
 StepRecord train_step(Trainer&);
 
-// Gives a roll-out that has begun the guard that the options ask for.
+// Gives a new roll-out the guard that the options ask for.
 void set_guard(const TrainingOptions&, RollingState&);
 
-// Rolls that are asked for and not in the pool yet; the queue is kept at this length.
+// The number of requested roll-outs before the pool.
 constexpr int rolls_ahead = 4;
 void ask_for_roll(Trainer&);
 

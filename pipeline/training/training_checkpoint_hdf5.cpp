@@ -231,7 +231,7 @@ void write_pool(FieldsOut& out, const Trainer& trainer) {
   }
 }
 
-// The roll-outs are prepared again.
+// Prepares the roll-outs again.
 void read_pool(FieldsIn& in, Trainer& trainer) {
   const std::vector<double> waiting = in.numbers("waiting");
   std::vector<KeptRolling> states(trainer.pool.size());
@@ -291,7 +291,7 @@ void read_counts(FieldsIn& in, Trainer& trainer, TrainingHistory& history) {
   history.best_step = in.whole("history", h[2], 1e15);
 }
 
-// The device is left out: a run may go on with another.
+// The device is left out, because a run may continue with another.
 std::string configuration(TrainingOptions options) {
   options.device = {};
   return training_yaml(options);
@@ -307,7 +307,7 @@ std::string named_weights(const std::string& text) {
   return value;
 }
 
-// As an earlier version of this program wrote it: people with absolute paths, weights as seen from the working folder.
+// Whether `text` is of an earlier version: people with absolute paths, weights relative to the working folder.
 bool is_former_configuration(const std::string& text, const TrainingOptions& options) {
   TrainingOptions former = with_absolute_paths(options);
   if (const std::string weights = named_weights(text);
@@ -323,7 +323,7 @@ void check_configuration(FieldsIn& in, const TrainingOptions& options) {
                 "resume with the same file and --set, or begin anew without --resume");
 }
 
-// A line a file, after that of the world.
+// One line per file, after that of the world.
 std::string inputs_text(const RunInputs& inputs) {
   std::string text = fmt::format("{:016x}\n", inputs.scene);
   for (const InputFile& file : inputs.files) text += fmt::format("{:016x} {}\n", file.hash, file.name);
@@ -340,13 +340,13 @@ RunInputs inputs_of(const std::string& text) {
   return inputs;
 }
 
-// Names of files as they are seen from the training file become absolute: the folder may have moved.
+// Makes names of files relative to the training file absolute, because the folder may have moved.
 std::vector<InputFile> located(std::vector<InputFile> files, const std::filesystem::path& folder) {
   for (InputFile& file : files) file.name = (folder / file.name).lexically_normal().string();
   return files;
 }
 
-// What the run began with; nothing where an earlier version of this program wrote the checkpoint, which took no files.
+// The inputs at the start of the run; nothing if an earlier version wrote the checkpoint.
 std::optional<RunInputs> checked_inputs(FieldsIn& in, const TrainingOptions& options) {
   if (!in.file.has("inputs")) return {};
   RunInputs before = inputs_of(in.text("inputs"));
@@ -390,7 +390,7 @@ std::unique_ptr<Trainer> read_training_checkpoint(const std::filesystem::path& p
                                                   TrainingHistory& history) {
   if (!std::filesystem::exists(path))
     throw Error("there is nothing to resume: no checkpoint", path.string(), "run without --resume");
-  const h5::Fields form(path, checkpoint_form);  // the form is checked
+  const h5::Fields form(path, checkpoint_form);  // checks the form
   const h5::File file = h5::File::open(path);
   FieldsIn in{file};
   check_configuration(in, options);

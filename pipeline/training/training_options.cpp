@@ -57,7 +57,7 @@ Option<SampleOptions> people_option() {
   return option;
 }
 
-// Written where it holds something out.
+// Written only if it holds something out.
 Option<SampleOptions> split_option() {
   Option<SampleOptions> option = section(&SampleOptions::split, split_options(), "What of `people` is held out.");
   option.write = [write = option.write](const SampleOptions& options, Config& entry) {
@@ -77,13 +77,12 @@ const Options<SampleOptions>& sample_options() {
       "samples", "What a network is trained on. The validation split is not used.",
       {texts("garments", &O::garments,
              "Garments that the program makes (docs/garments.md), or outfits of outfits.yaml. `none`: the mannequin "
-             "takes "
-             "no part."),
+             "takes no part."),
        number("edge", &O::edge, Unit::length, positive, "Edge length of garments that the program makes."),
        texts("clips", &O::clips, "Procedural clips. Default: all of the training split."),
        integer("shapes", &O::shapes, at_least_one, "Number of body shapes. The first is the mean shape."),
        number("shape_spread", &O::shape_spread, Unit::none, not_negative,
-              "Spread of the body shapes, in standard deviations of the shape coefficients."),
+              "Standard deviation of the shape coefficients about those of the body. None changes by more than 3."),
        section(&O::material, training_material_options(),
                "Material of the garments. Values that are left out are HOOD's."),
        choice("sample_materials", &O::sample_materials,
@@ -94,7 +93,8 @@ const Options<SampleOptions>& sample_options() {
               "`vertex`: two for each garment, mixed over its rest shape. `none`: all have `material`."),
        number("still_share", &O::still_share, Unit::none, from_0_to_1,
               "Fraction of roll-outs that begin at rest, with a first frame of 1/3 s in which the cloth falls."),
-       number("noise", &O::noise, Unit::length, not_negative, "Standard deviation of the noise on start positions."),
+       number("noise", &O::noise, Unit::length, not_negative,
+              "Standard deviation of the noise on each coordinate of start positions."),
        flag("yaw", &O::yaw, "True: each roll-out is rotated about the vertical by a random angle."),
        flag("mirror", &O::mirror, "True: a random half of the roll-outs is mirrored left to right."),
        number("no_body_share", &O::no_body_share, Unit::none, from_0_to_1, "Fraction of roll-outs without the body."),
@@ -211,7 +211,7 @@ const Options<WatchOptions>& watch_options() {
                "Number of measurements in the run: of roll-outs, and of the gap to the optimum on fixed states."),
        integer("frames", &O::frames, at_least_one, "Number of frames in a measuring roll-out."),
        text("garment", &O::garment, "Garment of the measuring roll-out. Default: the first one."),
-       text("clip", &O::clip, "Clip of the measuring roll-out."),
+       text("clip", &O::clip, "Clip of the measuring roll-out, of the training split."),
        integer("fixed_states", &O::fixed_states, at_least_one,
                "Number of fixed states whose gap to the optimum is measured."),
        integer("most_bad_samples", &O::most_bad_samples, at_least_one,

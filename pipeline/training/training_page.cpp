@@ -6,7 +6,7 @@
 namespace selvedge {
 namespace {
 
-// Gravity is below zero: without its sign it fits the logarithm.
+// Gravity is negative. Without its sign it can be drawn on a logarithmic axis.
 std::vector<Curve> sizes(std::vector<Curve> curves) {
   for (Curve& curve : curves)
     for (double& y : curve.y) y = std::abs(y);

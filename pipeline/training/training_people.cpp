@@ -25,7 +25,7 @@ Key weight_key(const std::string& what) {
   return number("weight", Unit::none, positive, "1", "How often " + what + " is drawn, beside the others' weights.");
 }
 
-// `*` stands for any characters, slashes among them.
+// `*` stands for any characters, including slashes.
 bool matches(std::string_view pattern, std::string_view text) {
   if (pattern.empty()) return text.empty();
   if (pattern[0] != '*') return !text.empty() && text[0] == pattern[0] && matches(pattern.substr(1), text.substr(1));
@@ -37,7 +37,7 @@ bool matches(std::string_view pattern, std::string_view text) {
 bool is_pattern(const std::string& text) { return text.find('*') != std::string::npos; }
 bool is_file(const std::string& text) { return fs::path(text).has_extension(); }
 
-// The name of a clip that a file was named by.
+// The default name of a clip.
 std::string clip_name(const Config& clip) {
   std::string name = is_file(clip["clip"].text()) ? fs::path(clip["clip"].text()).replace_extension().generic_string()
                                                   : clip["clip"].text();
@@ -55,7 +55,7 @@ void set_path(const PathsOfFile& paths, Config& entry) {
   set_text(paths.seen(entry), entry);
 }
 
-// The files below the pattern's first folder, without `*`, that it matches, ascending.
+// The files that the pattern matches, ascending. They are searched below the folder before the first `*`.
 std::vector<std::string> found_files(const Config& clip, const fs::path& folder) {
   const std::string& pattern = clip.text();
   const std::string begin = pattern.substr(0, pattern.find('*'));
@@ -75,7 +75,7 @@ std::vector<std::string> found_files(const Config& clip, const fs::path& folder)
   return files;
 }
 
-// An entry of one section in the place of another section's, under its own key.
+// Copies an entry of one section into another section, under that section's key.
 void take_over(const Config& from, Config& entry) {
   const Key* own = entry.key;
   entry = from;
@@ -121,7 +121,7 @@ void check_names(const std::vector<Config>& items) {
       item.fail("has the name `" + item["name"].text() + "` of another", "give every one a `name` of its own");
 }
 
-// All entries that name a file.
+// Visits all entries that name a file.
 template <class Visit>
 void visit_files(std::vector<Config>& people, const Visit& visit) {
   const auto look = [&](Config& entry) {

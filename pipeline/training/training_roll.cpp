@@ -15,7 +15,7 @@
 namespace selvedge {
 namespace {
 
-// Streams of different uses of one number.
+// Separate random streams for the uses of one number.
 enum Use : std::uint64_t { drawing = 1, start_noise = 2, material_draw = 3, place = 4 };
 
 RandomStream stream_for(std::uint64_t seed, Use use, std::uint64_t number) { return stream_of(seed * 8 + use, number); }
@@ -61,7 +61,7 @@ void add_materials(const MaterialDraw& draw, const Points& rest, std::vector<Ver
   for (const double at : along) materials.push_back(mixed(draw, length > 0 ? (at - low) / length : 0));
 }
 
-// Graph and losses of a scene whose cloths, rest shape and pins are set.
+// Adds graph and losses to a scene with cloths, rest shape and pins.
 std::shared_ptr<const TrainingScene> with_graph(const RollMaker& maker, const RollRequest& request,
                                                 const Triangles& triangles, std::shared_ptr<TrainingScene> made) {
   Scene& scene = made->scene;
@@ -83,7 +83,7 @@ std::shared_ptr<const TrainingScene> with_graph(const RollMaker& maker, const Ro
   return made;
 }
 
-// Mirrors x at x = 0, then turns it about the vertical, as the roll-out asks for.
+// Mirrors x at x = 0, then turns it about the vertical, as the request says.
 void turn(const RollRequest& request, PointsF& x) {
   if (request.mirrored) x.col(0) *= -1;
   if (request.yaw == 0) return;
@@ -92,7 +92,7 @@ void turn(const RollRequest& request, PointsF& x) {
   x = (x * rotation).eval();
 }
 
-// The start folded, or with noise, or parted and then without noise, which would tangle it again.
+// Sets the start: folded, or with noise, or untangled without noise, which would tangle it again.
 void set_start(const TrainingOptions& options, Roll& roll) {
   if (roll.request.sheet == HungStart::folded) {
     RandomStream fold = stream_for(options.seed, place, roll.request.number);
@@ -110,7 +110,7 @@ void set_start(const TrainingOptions& options, Roll& roll) {
     roll.start += noise;
     return;
   }
-  // What comes apart does so soon; of what does not, most of the time would be spent.
+  // Tangles that come apart do so soon; the others would take most of the time.
   UntangleOptions untangling;
   untangling.iterations = 60;
   untangling.patience = 15;
@@ -121,7 +121,7 @@ void set_start(const TrainingOptions& options, Roll& roll) {
   roll.start = parted.x;
 }
 
-// Cuts out what meets other cloth where the roll-out begins.
+// Cuts out the triangles that meet other cloth at the start.
 void cut_start(const RollMaker& maker, Roll& roll) {
   Scene alone = roll.scene->scene;
   alone.obstacles.clear();
@@ -137,7 +137,7 @@ void cut_start(const RollMaker& maker, Roll& roll) {
   for (const int pin : roll.scene->rest.pinned) roll.start.row(pin) = roll.cloth[1].row(pin).cast<double>();
 }
 
-// Of each triangle, 1 where it meets another one.
+// One flag per triangle: it meets another one.
 std::vector<char> meeting(const Surface& surface, const Points& x, IntersectionCache& cache) {
   std::vector<char> marks(static_cast<std::size_t>(surface.triangles.rows()), 0);
   for (const auto& [a, b] : intersecting_pairs(surface, x, cache))
@@ -145,7 +145,7 @@ std::vector<char> meeting(const Surface& surface, const Points& x, IntersectionC
   return marks;
 }
 
-// With the fixed material, each scene is made once.
+// A scene with the fixed material is made once.
 std::shared_ptr<const TrainingScene> scene_of(RollMaker& maker, const RollRequest& request) {
   if (maker.options.samples.sample_materials != MaterialSampling::none)
     return make_training_scene(maker, request, drawn_materials(maker, request));
@@ -170,7 +170,7 @@ SkinnedFrame frame_of(RollMaker& maker, const RollRequest& request, const RollRe
   return frame;
 }
 
-// Gravity and the roll-out's own force; a wind is set by its speed.
+// Sets gravity and the roll-out's own force. A wind is given by its speed.
 void set_forces(const RollMaker& maker, Roll& roll) {
   const RollRequest& request = roll.request;
   roll.shows_forces = maker.features.acceleration_inputs;
@@ -199,7 +199,7 @@ void draw_force(const ForceSampling& forces, RandomStream& random, RollRequest& 
   request.force = random.between(0, forces.strongest) * Vec3(across * std::cos(turned), up, across * std::sin(turned));
 }
 
-// One of `all`, as often as its weight says.
+// Draws one of `all` by weight.
 template <class List, class Weight>
 std::size_t drawn(const List& all, RandomStream& random, const Weight& weight) {
   if (std::ranges::all_of(all, [&](const auto& one) { return weight(one) == weight(all[0]); }))
@@ -212,7 +212,7 @@ std::size_t drawn(const List& all, RandomStream& random, const Weight& weight) {
   return all.size() - 1;
 }
 
-// A body of the person, and a clip of that body.
+// Draws a body of the person, and a clip of that body.
 void draw_performance(const TrainingWorld& world, const TrainingPerson& who, RandomStream& random,
                       RollRequest& request) {
   const auto body = [&](int k) -> const TrainingBody& { return world.bodies[static_cast<std::size_t>(k)]; };
@@ -222,7 +222,7 @@ void draw_performance(const TrainingWorld& world, const TrainingPerson& who, Ran
 }
 
 constexpr int many_pairs = 20;    // of a start that counts as tangled (Grigorev et al. 2024, figure 5, has more)
-constexpr int most_attempts = 8;  // to find one
+constexpr int most_attempts = 8;  // to find such a start
 
 }  // namespace
 
@@ -276,7 +276,7 @@ RollRequest draw_roll(const TrainingOptions& options, const TrainingWorld& world
   draw_force(samples.forces, random, request);
   if (samples.folded_share > 0 && request.cloth_contact && random.heads(samples.folded_share)) {
     hang(HungStart::folded, request);
-    request.still = false;  // in a settling frame cloth does not meet cloth
+    request.still = false;  // cloth does not meet cloth in a settling frame
   }
   return request;
 }

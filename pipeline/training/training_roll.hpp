@@ -12,12 +12,12 @@
 
 namespace selvedge {
 
-// A hung sheet without a body, in place of a garment: as it hangs, or with a corner folded through it.
+// The start of a hanging sheet, without a body and in place of a garment: flat, or with a corner folded through it.
 enum class HungStart { none, flat, folded };
 
-// What a roll-out starts from and how long it goes on: enough to prepare it again, to the bit.
+// The start and the length of a roll-out. The same request gives the same bits.
 struct RollRequest {
-  std::uint64_t number = 0;  // of all roll-outs of the run
+  std::uint64_t number = 0;  // number of the roll-out in the run
   int wear = 0, body = 0, clip = 0;
   int first_frame = 0, frames = 1;
   bool still = true;  // begins at rest, with a frame of 1/3 s in which the cloth falls
@@ -26,74 +26,73 @@ struct RollRequest {
   bool cloth_contact = false;
   double yaw = 0;  // [rad]
   HungStart sheet = HungStart::none;
-  bool wind = false;          // the force is a wind's
-  Vec3 force = Vec3::Zero();  // beside gravity [m/s2]; of wind: what it does to a triangle that faces it
+  bool wind = false;          // the force is that of a wind
+  Vec3 force = Vec3::Zero();  // beside gravity [m/s2]; for wind: on a triangle that faces it
   bool operator==(const RollRequest&) const = default;
 };
 
-// A garment's material: `one` at the lower end of its rest shape along `direction`, `other` at the upper end, and mixed
-// in between, mu and bending by their logarithms.
+// The material of a garment: `one` at the lower end of its rest shape along `direction`, `other` at the upper end, and
+// mixed in between, mu and bending by their logarithms.
 struct MaterialDraw {
   VertexMaterial one, other;
   Vec3 direction{0, 1, 0};
 };
 
-// A scene as network and losses see it.
+// A scene as network and losses take it.
 struct TrainingScene {
-  std::vector<VertexMaterial> materials;  // of each vertex
+  std::vector<VertexMaterial> materials;  // one per vertex
   Scene scene;
   GraphScene graph;
   RestGraph rest;
   LossGarment losses;
 };
 
-// A roll-out's world, prepared: entry k is frame first_frame - 1 + k of the clip, frames + 2 in all.
+// The prepared world of a roll-out: entry k is frame first_frame - 1 + k of the clip, frames + 2 in all.
 struct Roll {
   RollRequest request;
   std::shared_ptr<const TrainingScene> scene;
-  std::vector<PointsF> body, cloth;  // cloth: as worn; body: empty matrices where there is none
-  Points start;                      // where free vertices begin: as worn, parted where that is asked for, with noise
-  bool usable = true;                // false: what was to be parted did not come apart
-  int parting = 0;                   // iterations that parted the start
-  int cut = 0;                       // triangles that were cut out where it begins
-  std::vector<std::vector<char>>
-      body_left_out;          // of each entry, faces of the body that meet others; empty: it gives way
-  int pairs = 0;              // of triangles of cloth that intersect where it begins; counted of tangled starts
-  bool space_edges = true;    // of networks that have them; false: left out with all contact of cloth with cloth
-  bool shows_forces = false;  // the network has inputs for accelerations
-  Drive forces;               // acceleration, gravity with it, and wind
+  std::vector<PointsF> body, cloth;  // cloth: skinned; body: empty matrices if there is none
+  Points start;                      // start of free vertices: skinned, perhaps untangled, perhaps with noise
+  bool usable = true;                // false: the start is not untangled, or wholly cut out
+  int parting = 0;                   // iterations that untangled the start
+  int cut = 0;                       // triangles cut out at the start
+  std::vector<std::vector<char>> body_left_out;  // by entry: faces of the body that meet others; empty: soft tissue
+  int pairs = 0;                                 // intersecting pairs of triangles at a tangled start
+  bool space_edges = true;                       // false: no space edges, because cloth has no contact with cloth
+  bool shows_forces = false;                     // the network has inputs for accelerations
+  Drive forces;                                  // acceleration, including gravity, and wind
 };
 
-// The number-th roll-out; `progress` of the run says how long it may be.
+// Draws the request number `number`. `progress` of the run limits its length.
 RollRequest draw_roll(const TrainingOptions&, const TrainingWorld&, std::uint64_t number, double progress);
 
-// Prepares roll-outs of a world. One thread at a time.
+// Prepares roll-outs of a world. One thread at a time may use it.
 struct RollMaker {
   TrainingOptions options;
   FeatureOptions features;
   TrainingWorld world;
-  std::map<std::array<int, 6>, std::shared_ptr<const TrainingScene>> scenes;  // of the fixed material
+  std::map<std::array<int, 6>, std::shared_ptr<const TrainingScene>> scenes;  // with the fixed material
 };
 Roll make_roll(RollMaker&, const RollRequest&);
 
-// Where a tangled start is taken from: of every second number, by which it is random, the first of up to eight places
-// in the clips at which the skinned garment has 20 intersecting pairs or more, or the one with the most; of others the
-// place that was asked for. Says how many pairs there are.
+// Chooses the place of a tangled start and counts its intersecting pairs. For even numbers it is the first of up to
+// eight random places in the clips with 20 pairs or more in the skinned garment, or the one with most. For odd numbers
+// it is `asked`.
 RollRequest tangled_place(RollMaker&, const RollRequest& asked, int& pairs);
 
-// A material over the ranges of the authors' training (their configurations): density and lambda uniform, mu and
+// A material drawn over the ranges of the authors' training (their configurations): density and lambda uniform, mu and
 // bending by their logarithms.
 VertexMaterial random_material(RandomStream&);
 
-// The materials that the roll-out's garments have, one a garment.
+// The materials of the roll-out, one per garment.
 std::vector<MaterialDraw> drawn_materials(const RollMaker&, const RollRequest&);
 
-// The garment, outfit or sheet that the roll-out asks for, with these materials, as network and losses see it.
+// The garment, outfit or sheet of the roll-out with these materials.
 std::shared_ptr<const TrainingScene> make_training_scene(const RollMaker&, const RollRequest&,
                                                          const std::vector<MaterialDraw>&);
 
-// The same scene without some triangles, which are ascending. Vertices that are left alone are pinned: they go as the
-// garment is worn, and no loss, edge or pair has them (Grigorev et al. 2024, as released).
+// The same scene without some triangles, which are ascending. Vertices without a triangle are pinned to the skinned
+// target, and take part in no loss, edge or pair (Grigorev et al. 2024, as released).
 std::shared_ptr<const TrainingScene> cut_scene(const RollMaker&, const RollRequest&, const TrainingScene&,
                                                const std::vector<int>& triangles);
 

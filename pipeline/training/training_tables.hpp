@@ -7,14 +7,14 @@
 
 namespace selvedge {
 
-// Means over the steps since the last line, for steps.csv.
+// Means over the steps since the last line of steps.csv.
 class StepWindow {
  public:
   void add(const StepRecord&);
   int count() const { return count_; }
-  // Of the sums of losses since the last line, or in it where there was none since [J].
+  // Mean of the sums of losses since the last line, or in the last line if there are none since [J].
   double mean_sum() const { return count_ > 0 ? sum_ / count_ : last_mean_; }
-  // The line of what was added, and begins anew.
+  // Returns the line and starts the next one.
   std::string take_line(const Trainer&, double seconds);
 
  private:
@@ -26,14 +26,14 @@ class StepWindow {
   double sum_ = 0, norm_ = 0, scale_ = 0, rate_ = 0, last_mean_ = 0;
 };
 
-// Titles and lines of steps.csv and measures.csv, each with a newline; `seconds` of training so far.
+// Headers and lines of steps.csv and measures.csv, each with a newline. `seconds` is the time of training so far.
 std::string steps_header();
-// A steps.csv of a version with other terms, by the columns of now: 0 where it has none.
+// Converts a steps.csv of a version with other terms to the current columns. New columns are 0.
 std::string with_columns_of_now(const std::string& steps_csv);
 std::string measures_header();
 std::string measure_line(const TrainingMeasure&, double seconds);
 
-// The run as one HTML page that needs nothing else: every term, its share of the gradient, gaps and the roll-out.
+// The run as one HTML page without other files: every term, its share of the gradient, gaps and the roll-out.
 std::string training_page(const TrainingOptions&, const std::string& steps_csv, const std::string& measures_csv);
 
 }  // namespace selvedge

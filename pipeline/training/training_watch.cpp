@@ -13,9 +13,9 @@ namespace selvedge {
 namespace {
 
 constexpr int most_evaluations = 500;
-constexpr int frames_before = 5;  // that are minimised before a fixed state
+constexpr int frames_before = 5;  // minimised frames before a fixed state
 
-// With all losses at full weight.
+// The options of frames with all losses at full weight.
 FrameMaking full_making(const Trainer& trainer) {
   FrameMaking making = frame_making(trainer);
   making.progress = 1;
@@ -46,7 +46,7 @@ RollRequest watched_request(const TrainingOptions& options, const TrainingWorld&
   return request;
 }
 
-// The garment and clip that the options name, where they are, on a body of theirs.
+// The garment and the clip of the options, if they exist, on a body that has them.
 RollRequest watched(const WatchOptions& options, const TrainingWorld& world) {
   RollRequest request;
   const auto wear = std::ranges::find(world.wear, options.garment, &TrainingWear::name);

@@ -10,40 +10,40 @@ namespace selvedge {
 // A fixed state, and the optimum of its frame.
 struct FixedState {
   RollingState state;
-  double inertial = 0, optimum = 0;  // loss of the motion without forces, and least loss [J]
+  double inertial = 0, optimum = 0;  // losses [J] of the motion without forces, and of the optimum
   Points best;
   bool skinned = true;  // the skinned garment; false: a state after minimised frames
 };
 
-// The states and the roll-out on which a run is measured. All of them are of the training split.
+// The states and the roll-out for measurements. All are of the training split.
 struct TrainingWatch {
   std::vector<FixedState> states;
   Roll roll;
 };
 
-// Prepares them; takes seconds. The same for every run with these options.
+// Prepares the measurements in some seconds. The options determine the result.
 TrainingWatch make_training_watch(const TrainingOptions&, Trainer&);
 
-// What is seen of one kind of fixed states.
+// Means over the fixed states of one kind, where E* is the least loss.
 struct GapMeasure {
   double closed = 0;      // mean of (E(x + v) - E) / (E(x + v) - E*)
   double excess = 0;      // mean of E - E* [J]
-  double log_excess = 0;  // mean of its decimal logarithm
-  double rms = 0;         // mean distance to the optimum [m]
+  double log_excess = 0;  // mean decimal logarithm of E - E*
+  double rms = 0;         // distance to the optimum [m]
 };
 
-// What is seen of a roll-out, means over its frames but for what says otherwise.
+// Measurements of a roll-out: means over its frames unless stated.
 struct RollMeasure {
   bool finite = true;
   int frames = 0;
   double energy = 0;                                  // sum of losses at full weights [J]
-  double strain = 0, strain_99 = 0, strain_most = 0;  // principal, |s - 1|: mean, 99th percentile; most of all frames
-  double deep = 0;                                    // part of the vertices deeper than 1 mm in the body
-  double deepest = 0;                                 // of all frames [m]
+  double strain = 0, strain_99 = 0, strain_most = 0;  // principal, |s - 1|: mean, 99th percentile, most of all frames
+  double deep = 0;                                    // fraction of the vertices deeper than 1 mm in the body
+  double deepest = 0;                                 // maximum over all frames [m]
   double kinetic = 0;                                 // [J]
   double jitter = 0;                                  // RMS of the change of acceleration [m/frame^2]
-  double pairs = 0;                                   // of triangles of cloth that intersect
-  double volume = 0;                                  // that cloth encloses with itself [m^3]
+  double pairs = 0;                                   // intersecting pairs of cloth triangles
+  double volume = 0;                                  // volume that cloth encloses with itself [m^3]
   int pairs_at_end = 0;
 };
 
@@ -53,13 +53,13 @@ struct TrainingMeasure {
   RollMeasure roll;
 };
 
-// Measures the weights as they are: both kinds of fixed states and the roll-out. Changes nothing of the training.
+// Measures the current weights on both kinds of fixed states and the roll-out. The training does not change.
 TrainingMeasure measure(Trainer&, TrainingWatch&);
 
-// One run of the network on the state's pass; false: refused. Does not change the network.
+// Runs the network once for the state's pass. Returns false if the graph is refused.
 bool predict(Trainer&, const FrameMaking&, RollingState&, NextCloth&);
 
-// Rolls out with the trainer's weights and looks at each frame. `gate`: as in PoolOptions.
+// Rolls out with the trainer's weights and measures each frame. `gate` is that of PoolOptions.
 RollMeasure measure_roll(Trainer&, const Roll&, int gate);
 
 }  // namespace selvedge

@@ -19,15 +19,15 @@
 namespace selvedge {
 namespace {
 
-constexpr double tissue_skin_width = 0.02;  // of the skin that a garment's vertex goes along with [m]
+constexpr double tissue_skin_width = 0.02;  // width of the skin that moves a garment's vertex [m]
 
-// Who is to be in the world: sections as a scene has them.
+// A person to add to the world, as sections of a scene.
 struct Cast {
   std::string name;
   double weight = 1;
   Config body;
-  std::vector<std::pair<std::string, Config>> clips;  // with the body's section that has the clip
-  std::vector<double> weights;                        // of clips
+  std::vector<std::pair<std::string, Config>> clips;  // each with the body's section that has the clip
+  std::vector<double> weights;                        // one per clip
 };
 
 Cast mannequin_cast(const SampleOptions& options) {
@@ -86,7 +86,7 @@ void add_wear(const SampleOptions& options, const BodyModel& body, TrainingWear 
   world.wear.push_back(std::move(wear));
 }
 
-// The body of the index-th shape, about the one that the file gives.
+// The shape number `index`, around the one in the file.
 Eigen::VectorXd drawn_shape(const SampleOptions& options, std::uint64_t seed, int index, const Eigen::VectorXd& given,
                             Eigen::Index directions) {
   Eigen::VectorXd shape = Eigen::VectorXd::Zero(directions);
@@ -98,7 +98,7 @@ Eigen::VectorXd drawn_shape(const SampleOptions& options, std::uint64_t seed, in
   return shape;
 }
 
-// As a roll-out takes it, one pose a time step.
+// The clip with one pose per time step.
 Clip in_time_steps(Clip clip) {
   if (std::abs(clip.fps * learned_dt - 1) < 1e-9) return clip;
   Clip made = clip;
@@ -119,14 +119,14 @@ void check_garments_take(const Config& section, const TrainingWorld& world, cons
                      "make the garment anew for this body with `selvedge dress`, or give a shorter `shape`");
 }
 
-// Of what the frames of soft tissue depend on beside shape, layers and poses. 0: the mannequin's with the usual room.
+// A hash of the inputs of soft tissue beside shape, layers and poses. 0: the mannequin with the usual room.
 std::uint64_t tissue_key(const Config& section, const TrainingPerson& person) {
   const std::vector<double>& room = section["room"].numbers;
   if (person.body.name.starts_with("mannequin") && room.empty()) return 0;
   return hash_of(fmt::format("{}", fmt::join(room, " ")), person.hash);
 }
 
-// The person's body of this shape, one of those from `first` on or a new one.
+// The person's body of this shape: one from `first` on, or a new one.
 TrainingBody& body_of(const SampleOptions& options, const Config& section, const Eigen::VectorXd& shape,
                       std::size_t first, Performance& who, TrainingWorld& world) {
   for (std::size_t k = first; k < world.bodies.size(); ++k)
@@ -148,13 +148,13 @@ TrainingBody& body_of(const SampleOptions& options, const Config& section, const
   return world.bodies.emplace_back(std::move(body));
 }
 
-// All clips by the index-th shape. Clips that give their body a shape of its own are of bodies of their own.
+// Adds all clips with the shape number `index`. A clip with its own shape gets its own body.
 void add_shape(const SampleOptions& options, std::uint64_t seed, int index, const Cast& cast, Performance& who,
                TrainingWorld& world) {
   const std::size_t first = world.bodies.size();
   for (std::size_t k = 0; k < cast.clips.size(); ++k) {
     Config section = cast.clips[k].second;
-    const auto go = [&] {  // without soft tissue, which takes a while to make
+    const auto go = [&] {  // without soft tissue, which takes long
       Config stiff = section;
       stiff["room"].numbers = {0};
       perform(stiff, options.folder, who);
@@ -213,7 +213,7 @@ void add_person(const SampleOptions& options, std::uint64_t seed, const Cast& ca
                "name the person in `split`, to hold it out as a whole");
   const bool shapes = who.body.skin.shape_directions.cols() > 0;
   for (int k = 0; k < (shapes ? options.shapes : 1); ++k) add_shape(options, seed, k, cast, who, world);
-  for (const std::string& warning : who.warnings)  // a clip that was read again warns again
+  for (const std::string& warning : who.warnings)  // a clip that is read again warns again
     if (std::ranges::find(world.warnings, warning) == world.warnings.end()) world.warnings.push_back(warning);
 }
 

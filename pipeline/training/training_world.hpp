@@ -19,33 +19,33 @@ namespace selvedge {
 struct TrainingWear {
   std::string name;
   std::vector<Garment> garments;
-  std::vector<SkinWeights> skin;  // how each vertex follows the displacements of soft tissue; empty: it does not
+  std::vector<SkinWeights> skin;  // how each vertex follows soft tissue; empty: not at all
   int person = 0;                 // who wears it
-  double weight = 1;              // how often it is drawn, beside the others' of the person
+  double weight = 1;              // weight in the draw among the person's
 };
 
-// Displacements of the soft tissue in a pose. Vertices that do not move are left out.
+// Displacements of the soft tissue in a pose, without vertices that do not move.
 struct TissueDisplacements {
   std::vector<int> vertices;
   PointsF displacements;  // [m]
 };
 
-// A clip, 30 poses a second. Frames of soft tissue are found when they are first asked for.
+// A clip with 30 poses per second. Frames of soft tissue are computed at the first request.
 struct TrainingClip {
   std::string name;
-  Clip motion;  // made for its body's joints
+  Clip motion;  // for its body's joints
   double weight = 1;
   std::map<int, TissueDisplacements> given = {};
-  bool looked = false;  // whether the folder of what is kept was asked for frames
+  bool looked = false;  // whether the folder was searched for frames
 };
 
-// A person's body of one shape and what it does.
+// A person's body of one shape, with its clips.
 struct TrainingBody {
   Eigen::VectorXd shape;
   Points joints;
-  std::shared_ptr<const GiveWay> soft_tissue;  // null: it passes through itself
+  std::shared_ptr<const GiveWay> soft_tissue;  // null: the body may intersect itself
   std::vector<TrainingClip> clips;
-  std::uint64_t tissue_key = 0;  // of what its frames depend on beside shape, layers and poses
+  std::uint64_t tissue_key = 0;  // hash of the inputs of soft tissue beside shape, layers and poses
   int person = 0;
   double weight = 1;
 };
@@ -54,14 +54,14 @@ struct TrainingBody {
 struct TrainingPerson {
   std::string name;
   BodyModel body;
-  Surface surface, mirrored;      // of its skin; with the sides of triangles exchanged
-  std::vector<int> joined;        // of each vertex the one that stands for it in `surface`; empty: none is joined
-  std::vector<int> wear, bodies;  // numbers in the world
+  Surface surface, mirrored;      // of the skin; the same with reversed triangles
+  std::vector<int> joined;        // the vertex of `surface` for each vertex; empty: none are joined
+  std::vector<int> wear, bodies;  // indices into the world's lists
   std::uint64_t hash = 0;         // of the body's arrays
   double weight = 1;
 };
 
-// Everything that samples are made of. One thread at a time.
+// The source of all samples. One thread at a time may use it.
 struct TrainingWorld {
   std::vector<TrainingPerson> people;
   std::vector<TrainingWear> wear;
@@ -72,21 +72,22 @@ struct TrainingWorld {
   std::vector<std::string> warnings;         // of files
 };
 
-// The people whom the options name, with garments and clips for training: the mannequin with garments by code and
-// procedural clips, and those of the file. Takes seconds where garments are not in the cache. Throws Error for files
-// that cannot be read or do not fit each other.
+// The people of the options, with garments and clips for training: the mannequin with garments by code and procedural
+// clips, and those of the file. Takes seconds if garments are not in the cache. Throws Error for files that cannot be
+// read or do not fit each other.
 TrainingWorld make_training_world(const SampleOptions&, std::uint64_t seed);
 
-// Who wears the garments.
+// The person who wears the garments.
 const TrainingPerson& wearer(const TrainingWorld&, int wear);
 int layer_count(const TrainingWorld&, const TrainingPerson&);  // of the outfit with the most garments
 
+// The number of poses in the clip number `clip` of the body number `body`.
 int frame_count(const TrainingWorld&, int body, int clip);
 
-// A hash of what files and code have made: bodies, shapes, garments and poses.
+// A hash of bodies, shapes, garments and poses, as files and code made them.
 std::uint64_t world_hash(const TrainingWorld&);
 
-// Who is trained on and what is held out, a line a person.
+// The people of the training, and what is held out, one line per person.
 std::string people_text(const TrainingWorld&, const SampleOptions&);
 
 }  // namespace selvedge

@@ -14,7 +14,7 @@ void add_matrix(const Matrix& values, std::uint64_t& hash) {
   hash = hash_of({reinterpret_cast<const char*>(values.data()), bytes}, hash_of(fmt::format("{} ", bytes), hash));
 }
 
-// "2 clips in validation, 1 in test"; empty where nothing is held out.
+// "2 clips in validation, 1 in test"; empty: nothing is held out.
 std::string held_out_text(const std::vector<Split>& splits, const std::string& noun) {
   std::string text;
   for (const Split split : {Split::validation, Split::test})

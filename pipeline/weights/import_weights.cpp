@@ -17,7 +17,7 @@ constexpr long long most_parameters = 64'000'000;  // 256 MB; the largest publis
 const char* const published_cure =
     "take the file as the authors published it, or as their own code saves it; docs/weights.md lists the kinds";
 
-// The tensors of a state dictionary by name. What is read is crossed out, so that extra ones are seen.
+// The tensors of a state dictionary by name. Tensors that were taken are erased, so that extra ones are found.
 class StateDict {
  public:
   StateDict(TorchArchive& archive, const PickleDict& dict) : archive_(archive), where_(archive.path().string()) {
@@ -34,7 +34,7 @@ class StateDict {
 
   const std::vector<std::string>& names() const { return names_; }
 
-  // Extent of a dimension of a tensor that must be there.
+  // Extent of a dimension of a tensor. Throws Error if the tensor is missing.
   std::int64_t extent(const std::string& name, std::size_t dimension) const {
     const TorchTensor& tensor = at(name);
     if (dimension >= tensor.shape.size())
@@ -54,7 +54,7 @@ class StateDict {
     return numbers;
   }
 
-  // Throws Error if anything is left.
+  // Throws Error if a tensor is left.
   long long finish(const std::string& kind) const {
     for (const std::string& name : names_)
       if (tensors_.contains(name))
@@ -93,7 +93,7 @@ const PickleDict& training_module(const TorchArchive& archive) {
               archive.path().string(), published_cure);
 }
 
-// The network that the names and the width of the decoder speak of.
+// The network, by the names of the tensors and the width of the decoder.
 Architecture architecture_of(const StateDict& tensors, const std::string& where) {
   const std::string kind = published_kind(tensors.names());
   if (kind.empty())

@@ -95,7 +95,7 @@ void read_body(ParityDump& dump) {
 
 using EdgePair = std::pair<int, int>;
 
-// Of the recorded coarse edges each once, the smaller vertex first, sorted.
+// The recorded coarse edges, each once with the smaller vertex first, sorted.
 std::vector<EdgePair> recorded_level(const Npz& file, int level, Eigen::Index vertices) {
   const std::string name = fmt::format("coarse{}_edge_index", level);
   if (!file.has(name)) return {};
@@ -107,7 +107,7 @@ std::vector<EdgePair> recorded_level(const Npz& file, int level, Eigen::Index ve
   return edges;
 }
 
-// Whether the edges of one component of the cloth are the same.
+// Whether the edges in one component of the cloth are the same.
 bool follow_from(const std::vector<std::vector<EdgePair>>& recorded, const CoarseLevels& ours,
                  const std::vector<int>& components, int component) {
   for (std::size_t level = 0; level < recorded.size(); ++level) {
@@ -121,8 +121,8 @@ bool follow_from(const std::vector<std::vector<EdgePair>>& recorded, const Coars
   return true;
 }
 
-// The authors take one of several centres, and their samples say only which edges came of it. A centre is at depth 0
-// and so in every level that its component has: few vertices are.
+// The authors take one of several centres, and their samples record only the edges. A centre has depth 0, so it is in
+// every level of its component; few vertices are.
 std::vector<int> centres_of(const ParityDump& dump, int levels) {
   const Surface& cloth = dump.scene.cloth;
   std::vector<std::vector<EdgePair>> recorded;

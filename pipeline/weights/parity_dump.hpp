@@ -9,18 +9,18 @@
 
 namespace selvedge {
 
-// One step that the authors' code took, in the layout of the parity pack (docs/weights.md lists the arrays): what their
-// model was given, as a scene and a state of ours, and the file with what it computed.
+// One step of the authors' code, in the layout of the parity pack (docs/weights.md lists the arrays): the inputs of
+// their model as our scene and state, and the file with its results.
 struct ParityDump {
   Npz file;
   GraphScene scene;
   GraphState state;
-  std::vector<int> centres;  // of the coarse levels, one a component that has them
-  bool gathered = false;     // statistics took this step's features first; arrays after_* say what their sums became
+  std::vector<int> centres;  // of the coarse levels, one per component that has them
+  bool gathered = false;     // statistics took this step's features first; arrays after_* hold the new sums
 };
 
-// Throws Error, naming file and array, for an array that is missing, of another shape, or of indices outside of their
-// mesh; and where no vertex is a centre from which the recorded coarse edges follow.
+// Throws Error, which names file and array, for an array that is missing, of another shape, or with indices outside of
+// its mesh, and where the recorded coarse edges follow from no centre.
 ParityDump read_parity_dump(const std::filesystem::path&, const Architecture&);
 
 }  // namespace selvedge

@@ -49,7 +49,7 @@ enum Opcode : unsigned char {
   long1 = 0x8a
 };
 
-// Names of opcodes that other pickles use and this reader does not know, for messages.
+// Names of opcodes that this reader refuses, for messages.
 std::string refused_name(unsigned char code) {
   constexpr std::array<std::pair<unsigned char, const char*>, 34> names{{
       {'0', "POP"},
@@ -92,7 +92,7 @@ std::string refused_name(unsigned char code) {
   return fmt::format("0x{:02x}", code);
 }
 
-// A machine with a stack that builds plain values. One function an opcode or a family of them.
+// A stack machine that builds plain values, with one function for an opcode or a family of them.
 class PickleReader {
  public:
   PickleReader(std::string_view bytes, const std::string& where) : bytes_(bytes), where_(where) {}
@@ -151,7 +151,7 @@ class PickleReader {
     return text;
   }
 
-  // The newest `count` values above the last mark leave the stack.
+  // Removes the newest `count` values above the last mark from the stack.
   std::vector<PickleIndex> pop(std::size_t count) {
     const std::size_t floor = marks_.empty() ? 0 : marks_.back();
     if (stack_.size() - floor < count) fail("takes a value from an empty stack");
@@ -224,7 +224,7 @@ class PickleReader {
     }
   }
 
-  // torch hangs `_metadata`, versions of modules, on the dictionary of weights. Nothing reads it here.
+  // torch adds `_metadata`, the versions of modules, to the dictionary of weights. Nothing reads it here.
   void read_build() {
     const PickleValue& state = pickle_.values[pop()];
     topmost<PickleDict>("dictionary");

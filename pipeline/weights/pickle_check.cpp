@@ -11,10 +11,10 @@ namespace {
 
 constexpr std::int64_t deepest_nesting = 100, most_unfolded = 20'000'000;
 
-// What is known of a value once all that it holds is known.
+// The size of a value with everything that it contains.
 struct Unfolded {
   enum class State { unseen, open, closed } state = State::unseen;
-  std::int64_t depth = 1, count = 1;  // count: values there are when everything shared is written out
+  std::int64_t depth = 1, count = 1;  // count: values if everything shared is written out
 };
 
 std::vector<PickleIndex> held_by(const PickleValue& value) {
@@ -60,7 +60,7 @@ void refuse_pickle(const std::string& what, const std::string& where) {
 }
 
 void check_pickle(const Pickle& pickle, const std::string& where) {
-  // Depth first with a stack of its own. A value is counted when all that it holds has been.
+  // Depth first with an explicit stack. A value is counted after everything that it contains.
   struct Visit {
     PickleIndex value;
     std::vector<PickleIndex> held;
@@ -89,7 +89,7 @@ void check_pickle(const Pickle& pickle, const std::string& where) {
     if (theirs.state == Unfolded::State::open) refuse_pickle("has a value that contains itself", where);
     if (theirs.state == Unfolded::State::unseen) {
       enter(value);
-      continue;  // it is added when it is closed
+      continue;  // it is added after it is closed
     }
     ++visit.next;
     mine.depth = std::max(mine.depth, theirs.depth + 1);

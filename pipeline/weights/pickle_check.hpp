@@ -4,11 +4,11 @@
 
 namespace selvedge {
 
-// Throws Error if the values below the root contain themselves, nest too deeply, unfold to too many, have a key twice,
-// or hold a global or a bare storage.
+// Throws Error if the values below the root contain themselves, nest too deeply, unfold to too many, have a duplicate
+// key, or contain a global or a bare storage.
 void check_pickle(const Pickle&, const std::string& where);
 
-// Throws the Error of a file that this reader does not take.
+// Throws the Error for a file that this reader refuses.
 [[noreturn]] void refuse_pickle(const std::string& what, const std::string& where);
 
 }  // namespace selvedge

@@ -9,20 +9,20 @@
 
 namespace selvedge {
 
-// Where in a Pickle a value stands. Values refer to each other by it, so that reading and freeing need no recursion.
+// The index of a value in a Pickle. Values refer to each other by it, so that reading and freeing need no recursion.
 using PickleIndex = std::uint32_t;
 
 enum class TorchNumber { float32, int64 };
 
-// Numbers that lie together in an archive under `key`; tensors are views of it.
+// Numbers stored together in an archive under `key`. Tensors are views of them.
 struct TorchStorage {
   TorchNumber number = TorchNumber::float32;
   std::string key;
   std::int64_t count = 0;
 };
 
-// Element (i, j, ..) is number offset + i stride[0] + j stride[1] + .. of the storage; all of them lie inside of it,
-// and there are no more elements than the storage has numbers.
+// Element (i, j, ..) is number offset + i stride[0] + j stride[1] + .. of the storage. All elements lie inside the
+// storage, which has at least as many numbers.
 struct TorchTensor {
   TorchStorage storage;
   std::int64_t offset = 0, elements = 0;
@@ -40,7 +40,7 @@ struct PickleDict {
   std::vector<std::pair<PickleIndex, PickleIndex>> entries;  // in the order of the file; keys are text or integers
 };
 
-// What a file may call. A finished Pickle has none of them left, and no bare storage.
+// The globals that a file may call. A finished Pickle has none of them, and no bare storage.
 enum class PickleGlobal { ordered_dict, float_storage, long_storage, rebuild_tensor };
 
 using PickleValue = std::variant<PickleNone, bool, std::int64_t, double, std::string, PickleList, PickleTuple,
@@ -51,7 +51,7 @@ struct Pickle {
   PickleIndex root = 0;
 };
 
-// Text of a file for a message: short, one line, printable.
+// Text of a file for a message: short, printable, on one line.
 std::string shown(std::string_view);
 
 }  // namespace selvedge

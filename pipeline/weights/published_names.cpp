@@ -26,7 +26,7 @@ std::vector<std::string> parts_between_slashes(const std::string& path) {
 
 bool is_fine(const Architecture& a) { return a.name.starts_with("fine"); }
 
-// Published models group their steps: HOOD three to a level, ContourCraft all in one.
+// Published models group their steps: HOOD has three per level, ContourCraft all in one.
 std::string step_prefix(const Architecture& a, int step) {
   if (is_fine(a)) return fmt::format("processor_steps.{}.", step);
   if (a.name == "hood_cvpr") return fmt::format("processor_steps{}.{}.", step / 3 + 1, step % 3);
@@ -40,8 +40,8 @@ std::string edge_network(const Architecture& a, const std::string& key) {
 
 std::string node_network(const Architecture& a) { return is_fine(a) ? "node_processor" : "node_processor_dict.node"; }
 
-// layer1/weight is layers.2.weight: the activations between the layers are counted. A perceptron with a layer norm is
-// a pair of both.
+// layer1/weight is layers.2.weight, because activations between the layers are counted. A perceptron with a layer norm
+// is a pair of both.
 std::string inside_perceptron(const std::string& group, const std::string& field, bool pair) {
   if (group == "norm") return field == "scale" ? ".1.weight" : ".1.bias";
   return fmt::format("{}.layers.{}.{}", pair ? ".0" : "", 2 * std::atoi(group.c_str() + 5), field);

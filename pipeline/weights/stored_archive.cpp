@@ -44,7 +44,7 @@ struct DirectoryPlace {
   std::uint64_t at, size, count;
 };
 
-// Where the end record begins in the last bytes of a file: behind it stands a comment of the length it states.
+// The place of the end record in the last bytes of a file. A comment of the stated length follows it.
 std::size_t find_end_record(std::string_view tail) {
   for (std::size_t from = tail.size(); from >= end_size; --from) {
     const std::size_t at = from - end_size;
@@ -53,7 +53,7 @@ std::size_t find_end_record(std::string_view tail) {
   return std::string_view::npos;
 }
 
-// Replaces what the entry's 32-bit fields leave to the ZIP64 record among its extra fields: size, packed size, offset.
+// Takes size, packed size and offset from the entry's ZIP64 record where the 32-bit fields refer to it.
 void read_wide_fields(std::string_view extra, std::array<std::uint64_t*, 3> fields) {
   for (std::size_t at = 0; at + 4 <= extra.size();) {
     const std::uint64_t id = number_at(extra, at, 2), length = number_at(extra, at + 2, 2);
@@ -73,14 +73,14 @@ void read_wide_fields(std::string_view extra, std::array<std::uint64_t*, 3> fiel
 }  // namespace
 
 void StoredArchive::fail(const std::string& what) const {
-  std::string line = what;  // names of entries are the file's own
+  std::string line = what;  // names of entries come from the file
   std::ranges::replace_if(
       line, [](char c) { return c < ' ' || c > '~'; }, '?');
   throw Error(line, path_.string(), "the file is damaged, incomplete or not made by torch.save; copy or save it again");
 }
 
 std::string StoredArchive::read(std::uint64_t at, std::uint64_t count) {
-  if (at > size_ || count > size_ - at) fail("is cut short: its parts are said to lie behind its end");
+  if (at > size_ || count > size_ - at) fail("is cut short: parts of it would lie after its end");
   std::string bytes(count, '\0');
   file_.seekg(static_cast<std::streamoff>(at));
   if (!file_.read(bytes.data(), static_cast<std::streamsize>(count))) fail("cannot be read");
@@ -95,7 +95,7 @@ StoredArchive::StoredArchive(const std::filesystem::path& path) : path_(path) {
   file_.open(path, std::ios::binary);
   if (!file_) throw Error("cannot be opened", path.string(), "check the path and the rights");
 
-  // The end record stands before a comment of at most 65,535 bytes.
+  // The end record is followed by a comment of at most 65,535 bytes.
   const std::uint64_t tail_at = size_ - std::min<std::uint64_t>(size_, end_size + 0xFFFF);
   const std::string tail = read(tail_at, size_ - tail_at);
   const std::size_t end = find_end_record(tail);
@@ -143,7 +143,7 @@ void StoredArchive::read_directory(const std::string& directory, std::uint64_t c
     if (packed != entry.size) fail(fmt::format("claims {} bytes of {} stored ones", entry.size, packed));
     if (!entries_.emplace(name, entry).second) fail(fmt::format("has two entries of one name, number {}", k + 1));
   }
-  if (at != directory.size()) fail("has more in its directory than it says");
+  if (at != directory.size()) fail("has a directory with more entries than it states");
 }
 
 std::vector<std::string> StoredArchive::names() const {
@@ -165,12 +165,12 @@ std::string StoredArchive::bytes(const std::string& name) {
     fail("has a damaged entry " + name + ": its header is missing");
   const std::uint64_t name_size = number_at(header, 26, 2), extra_size = number_at(header, 28, 2);
   if (read(entry.header_at + header_size, name_size) != name)
-    fail("has a damaged entry " + name + ": its header is of another");
+    fail("has a damaged entry " + name + ": its header has another name");
   const std::uint64_t from = entry.header_at + header_size + name_size + extra_size;
   if (from > directory_at_ || entry.size > directory_at_ - from)
     fail("has a damaged entry " + name + ": it does not lie before the directory");
   std::string content = read(from, entry.size);
-  if (checksum_of(content) != entry.checksum) fail("has a damaged entry " + name + ": its checksum is another");
+  if (checksum_of(content) != entry.checksum) fail("has a damaged entry " + name + ": its checksum is wrong");
   return content;
 }
 

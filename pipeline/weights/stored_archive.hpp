@@ -9,24 +9,25 @@
 
 namespace selvedge {
 
-// Where an archive's directory says that an entry is.
+// The place of an entry by the archive's directory.
 struct StoredEntry {
   std::uint64_t header_at = 0, size = 0;
   std::uint32_t checksum = 0;
 };
 
-// A ZIP archive of entries that are not compressed, as torch.save writes it; ZIP64 included. It has a reader of its own
-// because every size is checked before anything is allocated: the directory has at most 16 MiB and 100,000 entries, an
-// entry 256 MiB, and all that one archive object reads 1 GiB. A compressed or encrypted entry is an Error, so that no
-// entry is larger than the file. Layout: APPNOTE.TXT of PKWARE, sections 4.3 to 4.5.
+// A ZIP archive of uncompressed entries, as torch.save writes it, including ZIP64. This reader checks every size before
+// it allocates memory: the directory has at most 16 MiB and 100,000 entries, an entry 256 MiB, and all reads of one
+// object together 1 GiB. Compressed and encrypted entries are refused, so that no entry is larger than the file.
+// Layout: APPNOTE.TXT of PKWARE, sections 4.3 to 4.5.
 class StoredArchive {
  public:
-  explicit StoredArchive(const std::filesystem::path&);  // throws Error for what cannot be opened or is no such archive
+  explicit StoredArchive(const std::filesystem::path&);  // throws Error for a file that is no such archive
 
   std::vector<std::string> names() const;  // sorted
   bool has(const std::string& name) const { return entries_.contains(name); }
 
-  // Content of an entry, its checksum compared. Throws Error, naming file and entry, also for one that is missing.
+  // The content of an entry, after a test of its checksum. Throws Error, which names file and entry, also if it is
+  // missing.
   std::string bytes(const std::string& name);
 
  private:

@@ -14,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "storages are read as they lie in the file");
 
-// The folder inside of the archive, which torch names after the file it saved.
+// The folder inside of the archive, which torch names after the saved file.
 std::string archive_stem(const std::vector<std::string>& names, const std::string& where) {
   constexpr std::string_view pickle = "/data.pkl";
   std::vector<std::string> stems;
@@ -25,7 +25,7 @@ std::string archive_stem(const std::vector<std::string>& names, const std::strin
   return stems.front();
 }
 
-// Position in the storage of each element, the last index fastest.
+// Calls `take` with each element and its position in the storage, the last index fastest.
 template <class Take>
 void for_each_element(const TorchTensor& tensor, const Take& take) {
   std::vector<std::int64_t> index(tensor.shape.size(), 0);

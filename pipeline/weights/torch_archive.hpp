@@ -9,8 +9,8 @@
 
 namespace selvedge {
 
-// A file of torch.save (torch 1.6 or newer): a ZIP archive with one pickle of plain values and a storage an entry. The
-// pickle is read at once, a tensor's numbers when they are asked for. Throws Error for everything that pickle.hpp and
+// A file of torch.save (torch 1.6 or newer): a ZIP archive with one pickle of plain values and one entry per storage.
+// The pickle is read at once, and a tensor's numbers on request. Throws Error for everything that pickle.hpp and
 // stored_archive.hpp refuse.
 class TorchArchive {
  public:
@@ -21,7 +21,7 @@ class TorchArchive {
   const PickleValue& root() const { return pickle_.values[pickle_.root]; }
 
   // The tensor's numbers, the last index fastest. `name` is for messages. Throws Error for a tensor of integers, and
-  // for a storage that is missing or is of another size than the pickle says.
+  // for a storage that is missing or of another size than the pickle says.
   std::vector<float> floats(const TorchTensor&, const std::string& name);
 
  private:

@@ -82,12 +82,12 @@ TorchTensor torch_tensor(const Pickle& pickle, const PickleTuple& arguments, con
   tensor.elements = empty ? 0 : 1;
   std::int64_t last = *offset;
   for (std::size_t k = 0; k < tensor.shape.size() && !empty; ++k) {
-    // Before, both are below 2^31, and so are the factors: nothing overflows.
+    // Before this, both are below 2^31, and so are the factors: nothing overflows.
     tensor.elements *= tensor.shape[k];
     last += (tensor.shape[k] - 1) * tensor.stride[k];
     if (tensor.elements > there || last >= there) outside();
   }
-  if (!empty && last >= there) outside();  // without dimensions there is one number
+  if (!empty && last >= there) outside();  // a tensor without dimensions has one number
   return tensor;
 }
 

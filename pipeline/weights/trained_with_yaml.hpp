@@ -7,12 +7,13 @@
 
 namespace selvedge {
 
-// What a network was trained with, from the training text of its weight file: of imported files nothing is known.
+// Options of the training by the text in the weight file. Imported files have none.
 struct TrainedWith {
-  std::optional<VertexMaterial> material;  // absent where materials were drawn from ranges, too
+  std::optional<VertexMaterial> material;  // absent also if materials were drawn from ranges
   std::optional<double> edge;              // of garments by code [m]
 };
 
+// Reads the training text of a weight file. Any other text gives no options.
 TrainedWith trained_with(const std::string& training);
 
 }  // namespace selvedge

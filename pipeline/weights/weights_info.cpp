@@ -27,7 +27,7 @@ std::string integration_name(Integration integration) {
   return integration == Integration::relaxation_frame ? "relaxation_frame" : "start_flag";
 }
 
-// Steps that follow each other with the same edges count as one line.
+// Successive steps with the same edges count as one line.
 std::vector<std::pair<int, MessageStep>> grouped_steps(const Architecture& a) {
   std::vector<std::pair<int, MessageStep>> groups;
   for (const MessageStep& step : a.steps)
@@ -42,7 +42,7 @@ std::vector<std::pair<int, MessageStep>> grouped_steps(const Architecture& a) {
 
 WeightsInfo weights_info(const WeightFile& file) {
   WeightsInfo info{file, parameter_count(file.architecture), 0, 0};
-  NetworkWeights& copy = info.file.weights;  // weight_arrays gives pointers that may be written to
+  NetworkWeights& copy = info.file.weights;  // weight_arrays returns writable pointers
   for (const WeightArray& array : weight_arrays(file.architecture, copy))
     for (std::ptrdiff_t k = 0; k < std::ptrdiff_t{array.rows} * array.columns; ++k) {
       if (!std::isfinite(array.data[k])) ++info.nonfinite;

@@ -27,7 +27,7 @@ std::string recorded_edges_name(const std::string& key) {
 EdgePairs recorded_pairs(const Npz& file, const std::string& name) {
   const NpyArray<std::int64_t> array = file.integers(name);
   if (array.shape.size() != 2 || array.shape[0] != 2)
-    throw Error("has no two rows", file.place(name).text(), "row 0 holds the senders, row 1 the receivers");
+    throw Error("needs two rows", file.place(name).text(), "row 0 holds the senders, row 1 the receivers");
   EdgePairs pairs;
   const auto count = static_cast<std::size_t>(array.shape[1]);
   for (std::size_t e = 0; e < count; ++e)
@@ -35,7 +35,7 @@ EdgePairs recorded_pairs(const Npz& file, const std::string& name) {
   return pairs;
 }
 
-// Of edges between cloth and body, both ways in the graph, one way, with the body's own numbers.
+// The edges of the set. Edges between cloth and body are given one way only, with the body's own vertex numbers.
 EdgePairs graph_pairs(const Graph& graph, const EdgeSet& set) {
   EdgePairs pairs;
   for (std::size_t e = 0; e < set.senders.size(); ++e) {
@@ -54,7 +54,7 @@ double not_in_both(EdgePairs a, EdgePairs b) {
   return static_cast<double>(apart.size());
 }
 
-// Largest difference; infinite for another shape or what is not finite in one of both only.
+// The largest difference; infinite for another shape, or if only one of both is finite.
 double recorded_distance(const Eigen::MatrixXd& ours, const NpyArray<double>& theirs) {
   if (theirs.shape.size() != 2 || theirs.shape[0] != ours.rows() || theirs.shape[1] != ours.cols())
     return std::numeric_limits<double>::infinity();
@@ -86,7 +86,7 @@ void compare_graph(const Graph& graph, const RestGraph& rest, const Npz& file, P
   }
 }
 
-// Sums in float32 of the same numbers in another order: they agree to about 1e-7 of the largest.
+// Sums in float32 of the same numbers in another order agree to about 1e-7 of the largest.
 void compare_sums(const FeatureSums<float>& sums, const StatisticsSizes& sizes, const Npz& file, ParityReport& report) {
   const auto compare = [&](const std::string& set, const Accumulators& ours, int columns) {
     if (columns == 0) return;

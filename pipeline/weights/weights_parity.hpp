@@ -8,7 +8,7 @@
 
 namespace selvedge {
 
-// One quantity of a step: how far ours is from the recorded one. Of edges it is how many only one of both has.
+// The difference between our result and the recorded one. For edges it is the number that only one of both has.
 struct ParityRow {
   std::string quantity, unit;
   double difference = 0, limit = 0;
@@ -20,10 +20,10 @@ struct ParityReport {
   std::vector<ParityRow> rows;
 };
 
-// Takes the dump's step with our graph and engine, and compares. Limits: parity README, "Tolerances"; that of the
-// output is for values up to 4.2 and that of positions for coordinates up to 1 m, and both grow with them, for their
-// errors are rounding. A step that gathered statistics needs the sums before it, which a checkpoint has and a weight
-// file has not. Throws Error where they are missing and where the network does not fit the step.
+// Takes the dump's step with our graph and engine, and compares. Limits: parity README, "Tolerances". The limit of the
+// output is for values up to 4.2 and that of positions for coordinates up to 1 m. Both grow with larger values, because
+// the differences are rounding. A step that gathered statistics needs the sums before it, which a checkpoint has and a
+// weight file lacks. Throws Error where they are missing and where the network does not fit the step.
 ParityReport weights_parity(const Architecture&, const NetworkWeights&, const ParityDump&,
                             const FeatureSums<float>* sums = nullptr);
 

@@ -9,12 +9,12 @@
 
 namespace selvedge::testing {
 
-// Searches are held against all pairs of triangles. A mesh is anything with a surface and positions x.
+// Tests compare searches with all pairs of triangles. A mesh is anything with a surface and positions x.
 
 using Corners = std::array<Vec3, 3>;
 using Pairs = std::vector<std::pair<int, int>>;
 
-// The audit's opinion, in the form of the solver's triangles_meet.
+// The audit's answer in the form of the solver's triangles_meet.
 inline bool audit_sees_meet(const Corners& a, const Corners& b) {
   return triangles_intersect(a[0], a[1], a[2], b[0], b[1], b[2]);
 }
@@ -25,7 +25,7 @@ Corners corners(const Mesh& m, int t) {
           row(m.x, m.surface.triangles(t, 2))};
 }
 
-// Triangles without a common vertex that meet(corners, corners).
+// Pairs of triangles without a common vertex for which meet(corners, corners) is true.
 template <class Mesh, class Meet>
 Pairs brute_self(const Mesh& m, const Meet& meet) {
   Pairs pairs;

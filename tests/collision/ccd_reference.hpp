@@ -10,9 +10,9 @@
 #include "collision/exact/moving_polygon.hpp"
 #include "collision/geometry/points.hpp"
 
-// Continuous detection decided by algebra, for coordinates that are small whole numbers. Every time at which a contact
-// can begin is 0 or a root of one of a few polynomials; there the signs of all others are found with Sturm's chains and
-// greatest common divisors. Slow; shares whole numbers with what it checks, but neither conditions nor method.
+// Continuous detection by algebra, for coordinates that are small whole numbers. A contact can begin only at time 0 or
+// at a root of one of a few polynomials; Sturm's chains and greatest common divisors give the signs of all others
+// there. It is slow. It shares whole numbers with the tested code, but neither conditions nor method.
 namespace selvedge::reference {
 
 using Four = std::array<Vec3, 4>;
@@ -81,7 +81,7 @@ inline Polynomial divisor(Polynomial a, Polynomial b) {
   return a;
 }
 
-// Sign at a double.
+// The sign at a double.
 inline int sign_at(const Polynomial& p, double time) {
   const int exponent = std::min(0, lowest_exponent(time));
   const ExactInteger t(time, exponent), one(1, exponent);
@@ -96,7 +96,7 @@ inline int sign_at(const Polynomial& p, double time) {
   return value.sign();
 }
 
-// Sturm: distinct roots between lo and hi, where p is not zero at either.
+// Sturm's theorem: the number of distinct roots between lo and hi, where p is not zero at either.
 inline int count_roots(const Polynomial& p, double lo, double hi) {
   std::vector<Polynomial> chain{p, derivative(p)};
   while (!chain.back().is_zero()) {
@@ -122,7 +122,7 @@ struct Root {
   double lo, hi;
 };
 
-// A time between, off the centre as far as it takes not to be a root.
+// A time inside the interval that is not a root.
 inline double split(const Polynomial& p, double lo, double hi) {
   for (double part = 0.5;; part = part > 0.5 ? 1 - part + 0.0625 : 0.5 + (0.5 - part) + 0.0625) {
     const double at = lo + part * (hi - lo);
@@ -198,7 +198,7 @@ inline std::vector<Triangle> triangles(PairKind kind, const Four& x0, const Four
   return {triangle(d00, d10, d11), triangle(d00, d11, d01)};
 }
 
-// The first time of contact: a root of a polynomial, 0 as one of the polynomial t, or none.
+// The first time of contact: a root of a polynomial, 0 as the root of the polynomial t, or none.
 inline std::optional<Root> first_contact(PairKind kind, const Four& x0, const Four& x1) {
   std::optional<Root> first;
   for (const Triangle& t : triangles(kind, x0, x1)) {
@@ -211,7 +211,7 @@ inline std::optional<Root> first_contact(PairKind kind, const Four& x0, const Fo
     }
     for (const Polynomial& p : candidates) {
       if (p.is_zero()) continue;
-      // 1 may be a root itself, so isolate beyond it and keep what is not later.
+      // 1 may be a root itself, so the search goes beyond it and drops later roots.
       double lo = -0x1p-10, hi = 1 + 0x1p-10;
       while (sign_at(p, lo) == 0) lo *= 0.75;
       while (sign_at(p, hi) == 0) hi = 1 + 0.75 * (hi - 1);
@@ -225,7 +225,7 @@ inline std::optional<Root> first_contact(PairKind kind, const Four& x0, const Fo
             if (b.hi <= a.lo) return false;
             halve(a), halve(b);
           }
-          return false;  // the same to twelve digits
+          return false;  // equal to twelve digits
         };
         if (!first || before(r, *first)) first = r;
       }
@@ -234,7 +234,7 @@ inline std::optional<Root> first_contact(PairKind kind, const Four& x0, const Fo
   return first;
 }
 
-// Is `time` at or before the root, by `early` at most?
+// Whether `time` is at or before the root, by at most `early`.
 inline bool is_just_before(double time, Root r, double early) {
   if (time > r.lo && time < r.hi) {
     if (sign_at(r.of, time) != 0 && count_roots(r.of, r.lo, time) > 0) return false;

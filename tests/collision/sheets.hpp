@@ -13,7 +13,7 @@ struct Sheet {
   Surface surface() const { return make_surface(static_cast<int>(x.rows()), triangles); }
 };
 
-// A square sheet of n x n quads in the plane y = height, centred on the origin, one diagonal a quad.
+// A square sheet of n x n quads in the plane y = height, centred on the origin, with one diagonal per quad.
 inline Sheet sheet(int n, double size, double height) {
   Sheet s{Points((n + 1) * (n + 1), 3), Triangles(2 * n * n, 3)};
   for (int j = 0; j <= n; ++j)
@@ -44,7 +44,7 @@ inline Sheet flat(int n, const Vec2& jitter) {
   return bent(n, jitter, [](double a, double b) { return Vec3(a, 0, b); });
 }
 
-// n rings of m vertices round the x axis, of radius r(x, angle) for |x| <= half_length; open at both ends.
+// A tube round the x axis, open at both ends: n rings of m vertices with radius r(x, angle) for |x| <= half_length.
 template <class Radius>
 Sheet round_tube(int n, int m, double turn, const Radius& radius, double half_length = 0.5) {
   Sheet s{Points((n + 1) * m, 3), Triangles(2 * n * m, 3)};
@@ -63,7 +63,7 @@ Sheet round_tube(int n, int m, double turn, const Radius& radius, double half_le
   return s;
 }
 
-// Joint numbering: b behind a.
+// Joins two meshes; the numbers of b follow those of a.
 inline Sheet join(const Sheet& a, const Sheet& b) {
   Sheet s{Points(a.x.rows() + b.x.rows(), 3), Triangles(a.triangles.rows() + b.triangles.rows(), 3)};
   s.x << a.x, b.x;
@@ -71,8 +71,8 @@ inline Sheet join(const Sheet& a, const Sheet& b) {
   return s;
 }
 
-// Two tubes that overlap for |x - 0.35| < 0.15: the second is inside of the first but for a third of the way round.
-// Their contours run from a boundary of the one to a boundary of the other.
+// Two tubes that overlap for |x - 0.35| < 0.15. The second is inside of the first except for a third of the way round.
+// Their contours run from a boundary of one tube to a boundary of the other.
 inline Sheet tucked() {
   Sheet second = round_tube(24, 48, 0.37, [](double, double angle) { return 0.312 + 0.02 * std::cos(angle); });
   second.x.col(0).array() += 0.7;

@@ -45,7 +45,7 @@ inline Solid ball(int rings) {
   return solid_of(points, triangles);
 }
 
-// A ball with bumps, for which nothing is symmetric.
+// A ball with bumps and without symmetry.
 inline Solid blob(int rings) {
   Solid made = ball(rings);
   for (int v = 0; v < made.x.rows(); ++v) {
@@ -55,7 +55,7 @@ inline Solid blob(int rings) {
   return made;
 }
 
-// Between the corners lo and hi, n x n squares a side.
+// A box between the corners lo and hi, with n x n squares per side.
 inline Solid block(const Vec3& lo, const Vec3& hi, int n) {
   std::vector<Vec3> points;
   std::map<std::array<int, 3>, int> number;
@@ -122,7 +122,7 @@ inline Solid both(const Solid& a, const Solid& b) {
 
 inline Points rotated(const Points& x, const Mat3& rotation) { return x * rotation.transpose(); }
 
-// Without the triangles whose number divided by `step` leaves 0.
+// The mesh without the triangles whose number is a multiple of `step`.
 inline Solid without_some(const Solid& solid, int step) {
   std::vector<int> left;
   for (int t = 0; t < solid.surface.triangles.rows(); ++t)

@@ -62,7 +62,7 @@ inline Tangle tube(int n, int m, double radius, double height) {
   return t;
 }
 
-// Surfaces that make trouble for searches and for culling: some clean, some not.
+// Surfaces that are difficult for searches and for culling: some clean, some not.
 inline std::vector<Tangle> tangles(int n) {
   const double pi = std::numbers::pi;
   std::vector<Tangle> all;
@@ -86,8 +86,8 @@ inline std::vector<Tangle> tangles(int n) {
   add(grid_surface("fold through itself", n, n, [](double u, double v) {
     return Vec3(std::min(u, 1 - u) + 0.01 * v, u < 0.5 ? 0 : 0.03 - 0.06 * v, v);
   }));
-  // In one plane: a ribbon that runs round for more than one turn and lies on its own beginning. All normals are the
-  // same, and only the boundary tells.
+  // In one plane, a ribbon that winds more than once and lies on its own beginning. All normals are the same, so that
+  // only the boundary tells.
   add(grid_surface("flat spiral", 4 * n, 2, [&](double u, double v) {
     const double angle = 2.6 * pi * u, radius = 1 + 0.2 * v - 0.05 * u;
     return Vec3(radius * std::cos(angle), 0, radius * std::sin(angle));
@@ -96,7 +96,7 @@ inline std::vector<Tangle> tangles(int n) {
     const double angle = 2.6 * pi * u, radius = 1 + 0.2 * v;
     return Vec3(radius * std::cos(angle), 0.01 * u, radius * std::sin(angle));
   }));
-  // As the spiral, but it comes back through itself at a shallow angle.
+  // Like the spiral, but it comes back through itself at a shallow angle.
   add(grid_surface("shallow spiral", 4 * n, 3, [&](double u, double v) {
     const double angle = 2.6 * pi * u, radius = 1 + 0.2 * v;
     return Vec3(radius * std::cos(angle), 0.02 * std::sin(3 * u) + 0.03 * u * (v - 0.5), radius * std::sin(angle));

@@ -10,7 +10,7 @@
 namespace selvedge::transversal {
 
 // Random motions of a pair whose nodes are coplanar at a known time `root`, a multiple of 1/64, and not before (nor
-// after, where there is no contact). There the pair touches inside the primitives, or misses: then it never does. All
+// after, if there is no contact). At that time the pair touches inside the primitives, or misses and never touches. All
 // coordinates are exact.
 struct Query {
   PairKind kind;
@@ -30,7 +30,7 @@ inline Vec3 whole_vector(Random& random, int size) {
   return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
 }
 
-// A vertex at a whole combination of a face's corners, in sixteenths: all parts positive, or one negative.
+// A vertex at a combination of a face's corners in whole sixteenths: all parts are positive, or one is negative.
 inline std::array<Vec3, 4> vertex_in_plane(Random& random, bool contact) {
   const Vec3 a = 16 * whole_vector(random, 8), b = 16 * whole_vector(random, 8), c = 16 * whole_vector(random, 8);
   const int i = contact ? whole(random, 1, 14) : whole(random, -12, -1);
@@ -38,7 +38,7 @@ inline std::array<Vec3, 4> vertex_in_plane(Random& random, bool contact) {
   return {(i * a + j * b + (16 - i - j) * c) / 16, a, b, c};
 }
 
-// Two edges, each a multiple of a vector from where they cross, within both or beyond an end of the first.
+// Two edges, each a multiple of a vector from their crossing, within both or beyond an end of the first.
 inline std::array<Vec3, 4> crossing_edges(Random& random, bool contact) {
   const Vec3 crossing = whole_vector(random, 64), d = whole_vector(random, 8), e = whole_vector(random, 8);
   const int i = contact ? whole(random, 1, 15) : whole(random, 17, 24),
@@ -54,7 +54,7 @@ inline std::array<double, 3> other_roots(const std::array<Vec3, 4>& x, const std
           det(dp, dq, dr)};
 }
 
-// Is c0 + c1 s + c2 s^2 of one sign over [lo, hi], by its Bernstein coefficients?
+// Whether c0 + c1 s + c2 s^2 has one sign over [lo, hi], by its Bernstein coefficients.
 inline bool of_one_sign(const std::array<double, 3>& c, double lo, double hi) {
   const auto value = [&](double s) { return c[0] + s * c[1] + s * s * c[2]; };
   const double middle = c[0] + 0.5 * (lo + hi) * c[1] + lo * hi * c[2];
@@ -81,7 +81,8 @@ inline Query query(Random& random) {
   }
 }
 
-// Positions and time step in other units, far away: by powers of two and multiples of 1/64, so that all stays exact.
+// Changes units of positions and time, and moves far away, by powers of two and multiples of 1/64, so that all is
+// exact.
 inline Query scaled(Query q, int exponent, const Vec3& shift) {
   for (auto* x : {&q.x0, &q.x1})
     for (Vec3& node : *x)

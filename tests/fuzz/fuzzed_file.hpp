@@ -12,15 +12,15 @@
 
 #include "collision/geometry/error.hpp"
 
-// A target gives its bytes to a reader. An Error is a right answer; any other exception ends the program, and so do the
-// sanitizers' findings.
+// A target gives its bytes to a reader. An Error is a right answer. Any other exception and any finding of the
+// sanitizers ends the program.
 namespace selvedge::fuzz {
 
 inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-// A file of this process in memory, for readers that want a path.
+// A file in the memory of this process, for readers that need a path.
 inline std::filesystem::path path_of(const std::string& extension) {
   std::error_code ignored;
   const std::filesystem::path memory = "/dev/shm";

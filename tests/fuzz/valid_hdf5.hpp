@@ -8,8 +8,8 @@
 
 namespace selvedge::fuzz {
 
-// Gives `read` a file that has been made from the valid one that `write` writes: with fields altered, or, where the
-// environment sets SELVEDGE_FUZZ_DAMAGE, with bytes of the file changed, which HDF5 itself may not survive.
+// Calls `read` with a changed copy of the valid file that `write` writes. Fields are altered, or, if
+// SELVEDGE_FUZZ_DAMAGE is set, bytes of the file, which can crash HDF5 itself.
 template <class Write, class Read>
 int with_altered_file(const std::uint8_t* data, std::size_t size, const Write& write, const Read& read) {
   static const std::filesystem::path path = path_of(".h5");

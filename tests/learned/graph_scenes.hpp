@@ -14,7 +14,7 @@ struct Mesh {
 
 inline Surface surface_of(const Mesh& mesh) { return make_surface(static_cast<int>(mesh.x.rows()), mesh.triangles); }
 
-// n x m vertices in the plane y = 0, from the origin on.
+// n x m vertices in the plane y = 0, starting at the origin.
 inline Mesh grid(int n, int m, double spacing = 0.02) {
   Mesh mesh{Points(n * m, 3), Triangles(2 * (n - 1) * (m - 1), 3)};
   for (int i = 0; i < n; ++i)
@@ -50,7 +50,7 @@ struct World {
   GraphState state;
 };
 
-// A cloth that moves a little, and a body that stands still.
+// A cloth that moves a little, and a body at rest.
 inline World world(const Mesh& cloth, const Mesh& body = {}) {
   World made;
   const auto count = static_cast<std::size_t>(cloth.x.rows());
@@ -92,7 +92,7 @@ struct MadeGraph {
   GraphReport report;
 };
 
-// `kept`: search and memory of an earlier frame.
+// `kept` has search and memory of an earlier frame.
 inline void make_again(const World& world, const FeatureOptions& options, GraphSearch& search, MadeGraph& kept) {
   make_graph(world.scene, make_rest_graph(world.scene, options), world.state, options, tables(options), search,
              kept.graph, kept.report);

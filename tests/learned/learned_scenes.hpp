@@ -11,10 +11,10 @@ namespace selvedge::fake {
 struct LearnedCase {
   Scene scene;
   State state;
-  std::vector<Drive> drives;  // one a frame
+  std::vector<Drive> drives;  // one per frame
 };
 
-// A cloth at rest whose first vertex is pinned, above a body that moves by `way` a frame.
+// A cloth at rest whose first vertex is pinned, above a body that moves by `way` per frame.
 inline LearnedCase learned_case(const Mesh& cloth, const Mesh& body, const Eigen::RowVector3d& way, int frames) {
   LearnedCase made;
   Scene& scene = made.scene;
@@ -39,7 +39,8 @@ inline LearnedCase learned_case(const Mesh& cloth, const Mesh& body, const Eigen
   return made;
 }
 
-// A network of a published kind with narrow latents and random weights, whose output moves vertices by `reach` a frame.
+// A network of a published kind with narrow latents and random weights, whose output moves vertices by `reach` per
+// frame.
 struct NarrowNetwork {
   Architecture architecture;
   NetworkWeights weights;

@@ -77,7 +77,7 @@ struct LossScene {
   }
 };
 
-// Every loss at once, with weights that make each count.
+// Every loss at once, with weights that make each one matter.
 inline LossOptions all_losses() {
   LossOptions options = hood_losses();
   options.collision.weight = {5e3, 5e5, 0, 1};

@@ -8,7 +8,7 @@
 #include "learned/network/graph_plan.hpp"
 #include "learned/network/weights.hpp"
 
-// The network once more, in double and matrix by matrix, from weights by name: what derivatives are compared with.
+// The network in double, matrix by matrix, from weights by name. Tests compare derivatives with it.
 namespace selvedge::in_double {
 
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

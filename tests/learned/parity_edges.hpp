@@ -4,14 +4,14 @@
 
 #include "tests/learned/parity_pack.hpp"
 
-// Which row of ours is which of theirs.
+// Matches our rows with theirs.
 namespace selvedge::parity {
 
 using Pairs = std::vector<std::pair<int, int>>;
 using Triples = std::vector<std::array<int, 3>>;
 
-// Directed edges between a cloth and a body vertex, both by their own numbers: first the cloth's, then the body's, then
-// 0 from cloth to body and 1 back.
+// The key of a directed edge between a cloth and a body vertex: the cloth's own number, the body's own number, and 0
+// from cloth to body or 1 back.
 inline Triples body_edge_keys(const Graph& graph, const EdgeSet& set) {
   Triples keys;
   for (std::size_t e = 0; e < set.senders.size(); ++e) {
@@ -47,7 +47,7 @@ inline Triples their_cloth_pairs(const Case& c, const std::string& kind) {
   return keys;
 }
 
-// Rows of one of our edge sets, raw or normalised, in the order of the file.
+// The rows of one of our edge sets, raw or normalised, in the order of the file.
 inline FeatureRows their_order(const Case& c, const Graph& graph, const GraphReport& report, const std::string& key) {
   const EdgeSet& set = edge_set(graph, key);
   if (key == c.options.body_key) return in_their_order(body_edge_keys(graph, set), set.features, their_body_edges(c));

@@ -10,7 +10,7 @@
 #include "learned/graph/make_graph.hpp"
 #include "pipeline/formats/npz.hpp"
 
-// What the authors' code computes (shared/data/parity/README.md), as scenes and states of ours.
+// Results of the authors' code (shared/data/parity/README.md), as scenes and states of ours.
 namespace selvedge::parity {
 
 inline std::filesystem::path folder() {
@@ -20,7 +20,7 @@ inline std::filesystem::path folder() {
          "parity";
 }
 
-// Says so where the pack is absent.
+// Prints a warning if the pack is absent.
 inline bool is_here() {
   if (std::filesystem::exists(folder() / "README.md")) return true;
   WARN("skipped: no parity pack in " << folder());
@@ -53,7 +53,7 @@ inline Surface surface(const Npz& npz, const std::string& name, int vertices) {
                       Eigen::Map<const Triangles>(faces.data(), static_cast<Eigen::Index>(faces.size() / 3), 3));
 }
 
-// Pairs of an index array of two rows.
+// The pairs in an index array of two rows.
 inline std::vector<std::pair<int, int>> index_pairs(const Npz& npz, const std::string& name) {
   const std::vector<int> flat = integers(npz, name);
   const std::size_t count = flat.size() / 2;
@@ -68,7 +68,7 @@ struct Case {
   FeatureOptions options;
   GraphScene scene;
   GraphState state;
-  std::vector<int> centres;  // that the authors' coarse edges were made with
+  std::vector<int> centres;  // centres of the authors' coarse edges
 };
 
 inline FeatureRows material_inputs(const Npz& npz, Eigen::Index vertices) {
@@ -92,7 +92,7 @@ inline void load_body(Case& c) {
   c.scene.body_types = integers(c.npz, "body_vertex_type");
 }
 
-// `name` is that of a step file.
+// `name` is the name of a step file.
 inline Case load(const std::string& name) {
   Case c{name, open(name), name.starts_with("hood") ? hood_features() : contourcraft_features(), {}, {}, {}};
   c.state.x = points(c.npz, "cloth_pos");
@@ -128,7 +128,7 @@ inline std::vector<std::string> all_steps() {
   return all;
 }
 
-// Largest difference in the columns [first, first + count); infinite for arrays of different shapes.
+// The largest difference in the columns [first, first + count); infinite for arrays of different shapes.
 inline double difference(const FeatureRows& a, const FeatureRows& b, Eigen::Index first, Eigen::Index count) {
   if (a.rows() != b.rows() || a.cols() < first + count || b.cols() < first + count) return INFINITY;
   if (a.rows() == 0 || count == 0) return 0;
@@ -141,8 +141,7 @@ inline double difference(const FeatureRows& a, const FeatureRows& b) {
   return a.cols() == b.cols() ? difference(a, b, 0, a.cols()) : INFINITY;
 }
 
-// The rows of `ours` in the order of `theirs`, by keys that say which row is which. Fails where the keys are not the
-// same, each as often.
+// The rows of `ours` in the order of `theirs`, matched by keys. Fails unless both have the same keys, equally often.
 template <class Key>
 FeatureRows in_their_order(const std::vector<Key>& ours, const FeatureRows& our_rows, const std::vector<Key>& theirs) {
   std::multimap<Key, int> places;

@@ -6,8 +6,8 @@
 
 namespace selvedge::in_tests {
 
-// Edges of every kind of the network between random nodes; one node receives a tenth of them all, so that a sum reaches
-// over many tiles. Types, levels and labels are rows of the architecture's embeddings.
+// Edges of every kind of the network between random nodes. One node receives a tenth of them, so that its sum spans
+// many tiles. Types, levels and labels are rows of the architecture's embeddings.
 inline Graph random_graph(const Architecture& a, int cloth, int others, int edges, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> uniform(-1, 1);

@@ -9,20 +9,20 @@
 
 namespace selvedge::recorded {
 
-// Where the packs of the authors' numbers lie, beside the checkout; empty, with one line of warning, where they do not.
+// The folder with packs of the authors' numbers, beside the checkout; empty, with one line of warning: there is none.
 std::filesystem::path pack_folder();
 
-// The steps that were recorded, by file name without extension, for model "hood" or "ccraft".
+// The recorded steps, as file names without extension, for model "hood" or "ccraft".
 std::vector<std::string> step_cases(const std::string& model);
 
-// The preset as recorded: with latents of 16.
+// The recorded preset, with latents of 16.
 Architecture recorded_architecture(const std::string& model);
 
 // Weights by the formula of the packs' README, except the few columns of embeddings that it changes afterwards, and
 // statistics: the networks read neither.
 NetworkWeights formula_weights(const std::string& model);
 
-// The graph that the network saw, from the recorded features and edges.
+// The network's graph, from the recorded features and edges.
 Graph recorded_graph(const std::filesystem::path& file);
 
 FeatureRows recorded_rows(const std::filesystem::path& file, const std::string& name);

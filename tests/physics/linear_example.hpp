@@ -7,7 +7,7 @@
 
 namespace selvedge::testing {
 
-// A linear system that owns what LinearSystem borrows.
+// A linear system that owns the data of a LinearSystem.
 struct LinearExample {
   PairPattern pattern;
   PairBlocks pairs;
@@ -16,16 +16,16 @@ struct LinearExample {
   std::vector<ContactBlock> contacts;
   ContactLists lists;
   std::vector<char> free;
-  std::vector<Mat3> blocks;  // diagonal ones
+  std::vector<Mat3> blocks;  // on the diagonal
 
   LinearSystem system() const { return {pattern, pairs, diagonal, flat, flat_scale, contacts, lists, free}; }
-  void finish() {  // once all else is there
+  void finish() {  // call it after everything else
     lists = list_contacts(contacts, pattern.rows);
     diagonal_blocks(system(), blocks);
   }
 };
 
-// Two triangles a square of a side x side grid of vertices, as elements for make_pair_pattern().
+// Two triangles per square of a side x side grid of vertices, as elements for make_pair_pattern().
 struct GridElements {
   std::vector<int> begin{0}, nodes;
 };

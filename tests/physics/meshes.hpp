@@ -16,9 +16,8 @@ struct Mesh {
 
 enum class Pattern { one_diagonal, alternating, jittered };  // jittered: one_diagonal with inner vertices moved
 
-// Jitter 0.25 of a cell is where the first triangle can lose its area.
-// columns x rows cells over width (u) x height (v), lying in the plane y = 0 with its normal up: (u, v) is at
-// (u, 0, -v). Vertex (i, j) is j * (columns + 1) + i.
+// columns x rows cells over width (u) x height (v) in the plane y = 0 with the normal up: (u, v) is at (u, 0, -v).
+// Vertex (i, j) is j * (columns + 1) + i. From a jitter of 0.25 of a cell on a triangle can lose its area.
 inline Mesh grid(int columns, int rows, double width, double height, Pattern pattern = Pattern::one_diagonal,
                  double jitter = 0.2) {
   Mesh mesh;

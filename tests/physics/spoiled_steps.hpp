@@ -5,15 +5,15 @@
 #include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
-// Steps as the conventional stepper makes them, and the same steps spoiled, for tests of the guard.
+// Steps of the conventional stepper, and the same steps spoiled, for tests of the guard.
 namespace selvedge::testing {
 
 struct RecordedStep {
-  State before, from, to;  // `before`: a step earlier
+  State before, from, to;  // `before`: one step earlier
   Drive drive;
 };
 
-// A sheet that hangs by one side and swings.
+// A swinging sheet that hangs by one side.
 inline World swinging_sheet() {
   World w = make_world(sheet(10, 0.4, 0));
   for (int i = 0; i <= 10; ++i) w.scene.pins.push_back(i);
@@ -49,7 +49,7 @@ inline Points with_noise(const Scene& scene, const RecordedStep& step, double si
   return x;
 }
 
-// Ways that need no layers and no body, by name.
+// Names of the ways to spoil a step that need no layers and no body.
 inline std::vector<std::pair<std::string, Spoil>> spoils() {
   const auto noise = [](double size) {
     return [size](const Scene& scene, const RecordedStep& step) { return with_noise(scene, step, size); };

@@ -56,7 +56,7 @@ inline std::unique_ptr<Stepper> conventional(const Scene& scene) {
   return make_recovering_conventional_stepper(scene, {});
 }
 
-// Drops the stepper, and with it all caches, every `renew` frames.
+// Every `renew` frames it makes the stepper and all caches anew.
 inline Run run(const World& w, int frames, int renew = 1 << 30, const MakeStepper& make = conventional) {
   Run r{w.state};
   auto stepper = make(w.scene);

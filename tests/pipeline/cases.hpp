@@ -8,8 +8,8 @@
 
 namespace selvedge::fake {
 
-// A file or a folder of ../shared/cases, which other people's files have broken; its README says what is right.
-// Nothing, and a line that says so, where it is absent.
+// A file or a folder of ../shared/cases, with problems found by other people; its README has the right results.
+// Nothing, with a line of warning, if it is absent.
 inline std::optional<std::filesystem::path> case_file(const std::string& name) {
   const std::filesystem::path file = std::filesystem::path(SELVEDGE_SOURCE_DIR) / ".." / "shared" / "cases" / name;
   if (std::filesystem::exists(file)) return file;

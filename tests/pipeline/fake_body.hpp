@@ -22,7 +22,7 @@ struct Dice {
   }
 };
 
-// No shape of anything: random points, triangles, tree, weights and directions. As real ones, weights are sparse.
+// A body without a shape: random points, triangles, tree, weights and directions. Weights are sparse, as real ones are.
 inline BodyModel body(int joints, int vertices, int shapes, bool corrections, unsigned seed = 1) {
   Dice dice{std::mt19937(seed)};
   BodyModel body;

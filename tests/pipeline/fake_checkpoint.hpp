@@ -10,7 +10,7 @@
 
 namespace selvedge::fake {
 
-// One tensor of a checkpoint, its numbers with the last index fastest.
+// One tensor of a checkpoint. Its numbers have the last index fastest.
 struct CheckpointTensor {
   std::string name;
   std::vector<std::int64_t> shape;
@@ -19,18 +19,18 @@ struct CheckpointTensor {
 
 std::vector<std::string> published_kinds();  // hood, hood_cvpr, fine15, fine48, contourcraft
 
-// Tensors of a published checkpoint without their numbers, in the order of its state dictionary. `width` is 128 in
-// the published ones.
+// Tensors of a published checkpoint without numbers, in the order of its state dictionary. Published ones have the
+// width 128.
 std::vector<CheckpointTensor> published_shapes(const std::string& kind, int width);
 
-// The same with numbers: by the formula of the parity pack, whose SEED is `seed`, and sums of statistics such that
-// column c has mean c + 1 and deviation 2.
+// The same with numbers: by the formula of the parity pack with SEED `seed`, and sums of statistics that give column c
+// the mean c + 1 and the deviation 2.
 std::vector<CheckpointTensor> published_tensors(const std::string& kind, int width, std::uint64_t seed);
 
 // Number k of the parity pack's formula, in [-1, 1).
 float formula_number(std::uint64_t seed, std::uint64_t k);
 
-// Writes a pickle of protocol 2, opcode by opcode, texts and globals remembered as Python remembers them.
+// Writes a pickle of protocol 2, opcode by opcode. It remembers texts and globals as Python does.
 class PickleText {
  public:
   std::string bytes = "\x80\x02";
@@ -54,16 +54,16 @@ class PickleText {
 
 using Entries = std::vector<std::pair<std::string, std::string>>;  // names and contents, in the order of the file
 
-// A ZIP archive of stored entries, with correct checksums; `wide` adds the ZIP64 records that torch always writes.
+// A ZIP archive of stored entries with correct checksums. `wide` adds the ZIP64 records that torch always writes.
 std::string stored_zip(const Entries&, bool wide = true);
 
-// What a checkpoint may have beside the weights.
+// Parts of a checkpoint beside the weights.
 struct CheckpointExtras {
   bool settings = true;         // config, optimizer and scheduler, as the authors' save function writes them
   bool material_stack = false;  // as in fine-tuned files
 };
 
-// Entries of a checkpoint that torch.save would write under the name `stem`.
+// Entries of a checkpoint as torch.save writes it under the name `stem`.
 Entries checkpoint_entries(const std::vector<CheckpointTensor>&, const CheckpointExtras& = {},
                            const std::string& stem = "step_0000056000");
 

@@ -24,7 +24,7 @@ struct Piece {
   std::vector<int> from;  // the body's vertex of each vertex
 };
 
-// All triangles whose corners `chosen` has, `out` along the normals.
+// All triangles whose corners are in `chosen`, moved by `out` along the normals.
 template <class Chosen>
 Piece piece_of(const BodyModel& body, const Chosen& chosen, double out) {
   const Surface surface = make_surface(static_cast<int>(body.skin.rest.rows()), body.skin.triangles);
@@ -59,8 +59,8 @@ inline Piece trunk(const BodyModel& body, double low, double high, double out) {
       body, [&](const Vec3& p) { return p.y() > low && p.y() < high && std::abs(p.x()) < 0.24; }, out);
 }
 
-// A skirt round the mannequin, from `high` down to `low`: elliptic rings that nowhere get narrower and keep `room` from
-// the body. Vertices ring by ring, the waist first, `around` each.
+// A skirt round the mannequin from `high` down to `low`. Its elliptic rings never get narrower and keep the distance
+// `room` from the body. Vertices are in rings of `around`, the waist first.
 inline Piece skirt(const BodyModel& body, double low, double high, double room, int around, int rings) {
   const Points& skin = body.skin.rest;
   Piece piece;

@@ -15,17 +15,17 @@
 
 namespace selvedge::fake {
 
-// A body in MakeHuman's files: an octahedron round each of SMPL's 24 joints, half of it the joint's and half its
-// parent's, and behind them helpers, which say where bones begin: off the middles.
+// A body in MakeHuman's files: an octahedron round each of SMPL's 24 joints, with half of its weights on the parent,
+// then helpers, which mark the beginnings of bones, away from the middles.
 struct MakeHuman {
   static constexpr double radius = 0.02;
   Points joints;  // 24 x 3 [m]
   Vec3 off = Vec3(0.003, -0.002, 0.001);
   double unit = 0.1;  // of the files [m]
   nlohmann::json skeleton, weights;
-  bool helpers = true;  // in the mesh
+  bool helpers = true;  // the mesh has helpers
 
-  // SMPL's name, the bone that a joint's vertices are weighted to, and the bones that begin there.
+  // SMPL's name, the bone with the weights of the joint's vertices, and the bones that begin there.
   struct Bone {
     std::string joint, weighted;
     std::vector<std::string> heads;
@@ -52,7 +52,7 @@ struct MakeHuman {
     return all;
   }
 
-  // Parents of the bones, as far as the default skeleton goes.
+  // The parents of the bones of the default skeleton.
   static std::map<std::string, std::string> parents() {
     std::map<std::string, std::string> above = {{"pelvis.L", "root"},   {"pelvis.R", "root"},   {"spine05", "root"},
                                                 {"spine03", "spine05"}, {"spine02", "spine03"}, {"breast.L", "spine02"},
@@ -99,7 +99,7 @@ struct MakeHuman {
     };
     for (int v = 0; v < 144; ++v) {
       const int joint = v / 6, parent = smpl_joint_parents()[static_cast<std::size_t>(joint)];
-      add(v, joint, 0.45);  // sums are not quite 1
+      add(v, joint, 0.45);  // sums are not exactly 1
       add(v, std::max(parent, 0), 0.45);
     }
     for (int v = 144; v < 192; ++v) add(v, (v - 144) / 2, 1);
@@ -127,7 +127,7 @@ struct MakeHuman {
   }
 };
 
-// A skeleton that stands as MakeHuman's: arms down by 45 degrees, forearms bent forward, legs apart.
+// A skeleton in MakeHuman's pose: arms down by 45 degrees, forearms bent forward, legs apart.
 inline Points lowered(Points x) {
   for (int side = 0; side < 2; ++side) {
     const double m = side ? -1 : 1;

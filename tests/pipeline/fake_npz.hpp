@@ -13,7 +13,7 @@
 
 namespace selvedge::fake {
 
-// An .npy file from its parts, as the format's description has them.
+// An .npy file from its parts, by the description of the format.
 inline std::string npy_of(const std::string& descr, bool fortran, const std::string& shape, const std::string& values,
                           int version = 1) {
   std::string header =

@@ -11,7 +11,7 @@
 
 namespace selvedge::fake {
 
-// A folder of its own, removed at the end of the test.
+// A separate folder, which is removed at the end of the test.
 struct Folder {
   std::filesystem::path path;
   explicit Folder(const std::string& name)
@@ -25,7 +25,7 @@ struct Folder {
   }
 };
 
-// Square of side 1 in the plane y = 0 of n x n vertices.
+// A square of side 1 in the plane y = 0 with n x n vertices.
 inline Points grid_points(int n) {
   Points x(n * n, 3);
   for (int i = 0; i < n; ++i)
@@ -45,7 +45,7 @@ inline Triangles grid_triangles(int n) {
   return triangles;
 }
 
-// One cloth above a still tetrahedron and beside a moving one.
+// One cloth above a tetrahedron at rest and beside a moving one.
 inline Scene scene(int n = 5) {
   Scene scene;
   add_cloth(scene, grid_points(n), grid_triangles(n), {}, "sheet");
@@ -135,7 +135,7 @@ inline Setup setup(int frames = 12) {
   return setup;
 }
 
-// Runs a scene into a folder, or goes on with it, and is interrupted after `stop_after` frames.
+// Runs a scene into a folder, or continues it, and is interrupted after `stop_after` frames.
 inline RunSummary run(const Setup& setup, Stepper& stepper, const std::filesystem::path& out, bool resume = false,
                       int stop_after = 1 << 30) {
   RunRequest request;

@@ -5,7 +5,7 @@
 
 namespace selvedge::fake {
 
-// The 24 joints of an upright body with round measures, arms out, standing on y = 0 [m]. Arms and legs are not quite
+// The 24 joints of an upright body with round sizes and arms out, standing on y = 0 [m]. Arms and legs are not exactly
 // straight, as those of real bodies.
 inline Points skeleton(double size = 1, double legs = 1) {
   Points x(24, 3);
@@ -31,7 +31,7 @@ inline Points skeleton(double size = 1, double legs = 1) {
   return size * x;
 }
 
-// Where the joints are in a pose.
+// The positions of the joints in a pose.
 inline Points posed_joints(const Points& joints, const BodyPose& pose) {
   BodyModel body;
   body.parents = smpl_joint_parents();

@@ -17,8 +17,8 @@ std::string dense(const std::vector<std::size_t>& shape, const Eigen::MatrixXd& 
   return npy(shape, values);
 }
 
-// The fields of the published files, each in its published shape; what the models carry besides is there too, some of
-// it pickled, as in the originals.
+// The fields of the published files in their published shapes. Additional fields of the models are there too, some of
+// them pickled, as in the originals.
 template <class Real, class Whole>
 NpzEntries published(const BodyModel& body) {
   const auto n = static_cast<std::size_t>(body.skin.rest.rows()), joints = body.parents.size();

@@ -24,7 +24,7 @@ inline bool has(const std::string& text, const std::string& part) { return text.
 // The largest distance between rows of the same number.
 inline double farthest(const Points& a, const Points& b) { return (a - b).rowwise().norm().maxCoeff(); }
 
-// Where the open data lie; they may be absent.
+// The folder of the open data, which may be absent.
 inline std::filesystem::path open_data() {
   const char* set = std::getenv("SELVEDGE_DATA");
   return set && *set ? std::filesystem::path(set)

@@ -14,7 +14,7 @@ namespace selvedge::fake {
 inline const std::vector<std::string> stress_each_time{"spike", "impact", "tshirt", "layers", "knot"};
 inline const std::vector<std::string> stress_at_length{"pinch", "spin", "funnel", "tablecloth", "hold", "twist"};
 
-// What the run found in a frame is in the frame that it stored.
+// Whether the stored frames have the run's findings.
 inline void check_audits_agree(const std::filesystem::path& file) {
   CheckRequest request;
   request.file = file;
@@ -24,14 +24,15 @@ inline void check_audits_agree(const std::filesystem::path& file) {
   REQUIRE(report.frames() == reader.frame_count());
   for (int i = 0; i < reader.frame_count(); ++i) {
     const Frame frame = reader.frame(i);
-    if (frame.report.collision.cut_out > 0) continue;  // of which the run counts no pairs
+    if (frame.report.collision.cut_out > 0) continue;  // for which the run counts no pairs
     INFO(file << " frame " << i);
     CHECK(report.pairs_by_frame[static_cast<std::size_t>(i)] == frame.self_pairs + frame.obstacle_pairs);
     CHECK(report.vertex_pairs_by_frame[static_cast<std::size_t>(i)] == frame.vertex_pairs);
   }
 }
 
-// Each of the scenes comes true once in its short form. Sanitized, the first alone: they take ten times as long.
+// Runs each of the scenes once in its short form. Sanitized, only the first one runs, because they take ten times as
+// long.
 inline void check_short_forms(std::vector<std::string> scenes) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   scenes.resize(1);

@@ -77,7 +77,7 @@ inline Solid ball(int times) {
   return s;
 }
 
-// Star-shaped round the origin: vertices of a ball drawn in or out by a factor between `least` and 1.
+// Star-shaped round the origin: vertices of a ball, each scaled by a factor between `least` and 1.
 template <class Random>
 Solid star(int times, double least, Random& random) {
   Solid s = ball(times);

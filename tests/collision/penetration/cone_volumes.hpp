@@ -7,15 +7,15 @@
 
 namespace selvedge::closed {
 
-// Volumes by brute force, in long double, for tests: a closed surface is the signed sum of the tetrahedra between its
+// Volumes by brute force in long double, for tests. A closed surface is the signed sum of the tetrahedra between its
 // faces and a point, and the volume that two surfaces wind round is that of the overlaps of their tetrahedra. Two
-// different points, so that the tetrahedra of one surface with itself are in general position.
+// different points put the tetrahedra of one surface and itself in general position.
 using Exactly = Eigen::Matrix<long double, 3, 1>;
 using Cone = std::array<Exactly, 4>;
 
 inline long double signed_volume(const Cone& t) { return (t[1] - t[0]).cross(t[2] - t[0]).dot(t[3] - t[0]) / 6; }
 
-// Appends what of the tetrahedron lies above the plane of a, b, c, where above is the side of d.
+// Appends the part of the tetrahedron above the plane of a, b, c, on the side of d.
 inline void clip_cone(const Cone& t, const Exactly& a, const Exactly& normal, std::vector<Cone>& out) {
   std::array<long double, 4> height;
   std::vector<int> above, below;
@@ -74,7 +74,7 @@ inline double mesh_volume(const Points& x, const Triangles& triangles) {
   return static_cast<double>(sum);
 }
 
-// Integral of the product of both winding numbers.
+// The integral of the product of both winding numbers.
 inline double common_volume(const std::vector<Cone>& a, const std::vector<Cone>& b) {
   long double sum = 0;
   for (const Cone& s : a)

@@ -48,9 +48,9 @@ std::vector<FeatureRows> output_derivatives(const std::filesystem::path& folder,
   return derivatives;
 }
 
-// A hidden unit whose sum is zero but for rounding may count or not, and then all arrays before it change by up
-// to 1 % of their norm. With plain kernels it falls as in the recording, but for one in eight changes of
-// the inputs by 2e-7; so the bound for kernels that round otherwise is wider.
+// A hidden unit whose sum is zero except for rounding may count or not. Then all arrays before it change by up to 1 %
+// of their norm. Plain kernels agree with the recording, except for one in eight changes of the inputs by 2e-7. The
+// bound for kernels that round otherwise is wider.
 double bound_for(InstructionSet set) { return set == InstructionSet::plain ? 1e-3 : 2e-2; }
 
 void check_step(const RecordedStep& step, InstructionSet set) {

@@ -5,7 +5,7 @@
 
 namespace selvedge::fake {
 
-// A ball-shaped garment that a lumpy body sticks out of in places, with exact distances from the body.
+// A ball-shaped garment with a lumpy body that sticks out in places, and exact distances from the body.
 struct DressedBlob {
   testing::Solid body, garment;
   DistanceField field;
@@ -18,7 +18,7 @@ struct DressedBlob {
     ring = adjacency_of(garment.surface.vertex_count, garment.surface.edges);
     ask = [this](const Points& at, std::vector<SignedDistance>& found) { found = field.ask(at); };
   }
-  DressedBlob(const DressedBlob&) = delete;  // `ask` holds its address
+  DressedBlob(const DressedBlob&) = delete;  // `ask` has its address
   DressedBlob& operator=(const DressedBlob&) = delete;
 };
 

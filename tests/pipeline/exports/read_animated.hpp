@@ -7,7 +7,7 @@
 
 #include "pipeline/formats/trajectory.hpp"
 
-// Readers of what `selvedge export` writes, by the formats' own texts and without a line of the writers.
+// Readers of exported files, written from the formats' texts without any code of the writers.
 namespace selvedge::read_animated {
 
 struct Surface {
@@ -19,7 +19,7 @@ struct Surface {
 // Point caches, without triangles.
 Surface pc2(const std::filesystem::path&);
 Surface mdd(const std::filesystem::path&);
-// By the name of node or prim. What stands still has one time.
+// Surfaces by the name of node or prim. A surface at rest has one time.
 std::map<std::string, Surface> glb(const std::filesystem::path&);
 std::map<std::string, Surface> usda(const std::filesystem::path&);
 

@@ -10,7 +10,7 @@
 
 namespace selvedge::fake {
 
-// What SMPL's joints are called in a rig; empty: the rig lacks it.
+// The names of SMPL's joints in a rig; empty: the rig lacks the joint.
 using Names = std::vector<std::string>;
 inline const Names mixamo = {"Hips",
                              "LeftUpLeg",
@@ -37,8 +37,8 @@ inline const Names mixamo = {"Hips",
                              "",
                              ""};
 
-// A figure as a file of its own: joints where `rest` says, in the file's axes and unit, and the rotations of each frame
-// [degrees, X Y Z], one row a joint.
+// A figure as a separate file: joints at `rest`, in the file's axes and unit, and the rotations of each frame [degrees,
+// X Y Z], one row per joint.
 struct Rig {
   Names names;
   Points rest;
@@ -61,7 +61,7 @@ inline void append(const Rig& rig, std::size_t joint, std::string& text, std::ve
   text += leaf ? "End Site\n{\nOFFSET 0 1 0\n}\n}\n" : "}\n";
 }
 
-// As a BVH file; `roots`: where the root is in each frame.
+// The figure as a BVH file. `roots` has the position of the root in each frame.
 inline std::string text_of(const Rig& rig, const std::vector<Vec3>& roots) {
   std::string text = "HIERARCHY\n";
   std::vector<std::size_t> order;

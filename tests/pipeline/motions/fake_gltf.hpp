@@ -11,9 +11,9 @@
 
 namespace selvedge::fake {
 
-// A body and a motion of it as other programs' exporters write them: below an armature that has another unit and other
-// axes, with a joint above the root that nothing hangs on, bones with axes of their own, and every corner of a triangle
-// a vertex of its own.
+// A body and its motion as other programs export them. They are below an armature with another unit and other axes. A
+// joint without vertices is above the root, bones have their own axes, and every corner of a triangle is a separate
+// vertex.
 struct GltfFile {
   nlohmann::ordered_json json;
   std::string bytes;                                                   // of the one buffer
@@ -22,7 +22,7 @@ struct GltfFile {
   std::string glb() const;
 };
 
-// `names`: of the joints, in place of the body's. A clip without poses is left out.
+// `names` of the joints replace the body's. A clip without poses is left out.
 GltfFile gltf_of(const BodyModel&, const Clip&, const std::vector<std::string>& names);
 
 }  // namespace selvedge::fake

@@ -17,9 +17,9 @@
 #include "tests/physics/spoiled_steps.hpp"
 #include "tests/pipeline/files.hpp"
 
-// The guard on recorded conventional steps of worn garments: quantiles on training scenes, from which its bounds are
-// set; what it refuses on validation scenes, of steps as they are, spoiled, and proposed by a network
-// (SELVEDGE_WEIGHTS). The tables are printed. SELVEDGE_GUARD_FRAMES: of each scene.
+// Prints tables of the guard on recorded conventional steps of garments on bodies. They have quantiles on training
+// scenes, which set its bounds, and its refusals on validation scenes: of unchanged steps, of spoiled ones, and of a
+// network's (SELVEDGE_WEIGHTS). SELVEDGE_GUARD_FRAMES: frames per scene.
 namespace selvedge::test_guard_tables {
 
 using fake::Folder;

@@ -28,9 +28,9 @@ struct SharedCount {
 
 }  // namespace
 
-// A file is there only once it can be opened, and each frame it counts is whole, wherever its writer is killed: from
-// before the file is made to dozens of frames later. How far the writer gets is waited for and not timed, so that a
-// busy machine sees as much; only the moment within the frame that is then being written is one of chance.
+// Wherever its writer is killed, a file exists only if it can be opened, and each frame that it counts is whole. The
+// kill comes between the start and dozens of frames later. The test waits for frames instead of time, so that a busy
+// machine sees as much; only the moment within the current frame is random.
 TEST_CASE("a trajectory opens after kill -9 at random moments") {
   const fake::Folder folder("kill");
   const Scene scene = fake::scene(12);

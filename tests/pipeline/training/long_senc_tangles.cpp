@@ -8,9 +8,9 @@
 #include "pipeline/training/training_watch.hpp"
 #include "tests/pipeline/training/tiny_training.hpp"
 
-// Four tangles of a T-shirt that never change: what a network learns of them in 200 steps, with the volume loss and
-// without. Where a clip leaves the garment, the body's collision and stretching alone take three quarters of the volume
-// away in one frame: so the tangles have come to rest under all losses but that of the volume, over a body that stands.
+// Trains a network on four fixed tangles of a T-shirt for 200 steps, with the volume loss and without. The body's
+// collision and stretching alone would remove three quarters of a clip's volume in one frame. So the tangles are at
+// rest under all losses except that of the volume, over a body at rest.
 
 namespace selvedge::test_senc_tangles {
 

@@ -12,10 +12,10 @@
 #include "tests/pipeline/files.hpp"
 #include "tests/pipeline/training/small_person.hpp"
 
-// A user's own data for training, in a folder.
+// A folder with a user's own data for training.
 namespace selvedge::fake {
 
-// AMASS, 60 frames a second, the right thigh swinging; `size` of the swing [rad].
+// An AMASS file with 60 frames per second, in which the right thigh swings by `size` [rad].
 inline void write_amass(const std::filesystem::path& path, std::size_t frames, double size, double first_beta = 0) {
   std::vector<double> poses(frames * 156, 0.0), trans(frames * 3, 0.0), betas(16, 0.0);
   betas[0] = first_beta;

@@ -9,10 +9,10 @@
 #include "pipeline/formats/mesh.hpp"
 #include "tests/pipeline/fake_skeleton.hpp"
 
-// A body with SMPL's joints and a skirt for it, small enough that tests of training read, dress and skin them at once.
+// A body with SMPL's joints and a skirt for it, small enough that tests of training read, dress and skin them quickly.
 namespace selvedge::fake {
 
-// A surface about the vertical axis: rings of `columns` vertices at these heights with these radii. `closed`: with a
+// A surface about the vertical axis: rings of `columns` vertices at these heights with these radii. `closed` adds a
 // vertex at either end.
 inline Mesh turned(const std::vector<double>& heights, const std::vector<double>& radii, int columns, bool closed) {
   const auto rings = static_cast<int>(heights.size());
@@ -43,8 +43,8 @@ inline Mesh turned(const std::vector<double>& heights, const std::vector<double>
   return mesh;
 }
 
-// A skittle of 290 vertices, the pelvis at the origin: head, waist and both legs in one. Its joints are those of the
-// upright skeleton, its first shape makes it larger.
+// A skittle of 290 vertices with the pelvis at the origin: head, waist and both legs in one. Its joints are those of
+// the upright skeleton. Its first shape makes it larger.
 inline BodyModel small_body() {
   const Mesh mesh = turned(
       {-0.92, -0.8, -0.65, -0.5, -0.35, -0.2, -0.08, 0.05, 0.15, 0.25, 0.35, 0.42, 0.5, 0.56, 0.62, 0.68, 0.74, 0.78},
@@ -87,7 +87,7 @@ inline BodyModel small_body() {
   return body;
 }
 
-// From the waist of the small body down [m].
+// The skirt of the small body, from the waist down [m].
 inline Mesh small_skirt() {
   return turned({-0.4, -0.33, -0.26, -0.19, -0.12, -0.05, 0.02, 0.08, 0.13},
                 {0.26, 0.245, 0.23, 0.215, 0.195, 0.18, 0.165, 0.145, 0.125}, 20, false);

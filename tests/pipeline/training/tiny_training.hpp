@@ -8,7 +8,7 @@ namespace selvedge::fake {
 
 inline TrainingOptions tiny_training() { return read_training(config_folder() / "training" / "tiny.yaml"); }
 
-// Of the configuration `tiny`, made once: garment and mannequin take a while.
+// The roll-outs of the configuration `tiny`, made once, because garment and mannequin take long.
 inline RollMaker& tiny_maker() {
   static RollMaker maker{tiny_training(),
                          trained_architecture(tiny_training()).features,

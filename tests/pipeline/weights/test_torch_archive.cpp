@@ -74,17 +74,17 @@ TEST_CASE("stored archive: compressed, encrypted, doubled and lying entries are 
   CHECK(complaint_with(directory, 0x02014b50, 4) == "");  // nothing changed
   CHECK(has(complaint_with(directory + 8, 1, 2), "encrypted entry"));
   CHECK(has(complaint_with(directory + 10, 8, 2), "compressed entry"));
-  CHECK(has(complaint_with(directory + 16, 7, 4), "its checksum is another"));
+  CHECK(has(complaint_with(directory + 16, 7, 4), "its checksum is wrong"));
   CHECK(has(complaint_with(directory + 20, 6, 4), "claims 5 bytes of 6 stored ones"));
   CHECK(has(complaint_with(directory + 42, 0xFFFFFFF0, 4), "is cut short"));
   CHECK(has(complaint_with(directory + 42, 1, 4), "its header is missing"));
   CHECK(has(complaint_with(directory + 28, 0xFFFF, 2), "damaged directory"));
   CHECK(has(complaint_with(end + 10, 3, 2), "entry 3 of 3 is missing"));
-  CHECK(has(complaint_with(end + 10, 1, 2), "more in its directory than it says"));
+  CHECK(has(complaint_with(end + 10, 1, 2), "more entries than it states"));
   CHECK(has(complaint_with(end + 12, 0xFFFFFF00, 4), "claims a directory of 4294967040 bytes"));
   CHECK(has(complaint_with(end + 16, 0xFFFFFF00, 4), "does not lie before its end"));
   CHECK(has(complaint_with(end + 20, 5, 2), "is no ZIP archive"));
-  CHECK(has(complaint_with(whole.find("x/one"), 'y', 1), "its header is of another"));
+  CHECK(has(complaint_with(whole.find("x/one"), 'y', 1), "its header has another name"));
 
   // An entry that claims 200 GB, with the wide size that it needs for that.
   std::string large = whole;
