@@ -38,6 +38,8 @@ struct GiveWayOptions {
 // itself. Except for single spots, parts then leave room or cross; they do not merely touch.
 class GiveWay {
  public:
+  static constexpr int recipe = 1;  // to be raised with every change of what it gives, for caches of results
+
   // rest: the body in a pose in which its parts are apart, such as the zero pose [m].
   GiveWay(Surface body, const Points& rest, const GiveWayOptions& = {});
 

@@ -13,6 +13,7 @@ PhaseTimes& PhaseTimes::operator+=(const PhaseTimes& other) {
   graph += other.graph;
   network += other.network;
   guard += other.guard;
+  body += other.body;
   return *this;
 }
 

@@ -64,7 +64,8 @@ struct PhaseTimes {  // [s]
   double solve = 0, broad_phase = 0, ccd = 0, response = 0, audit = 0;
   double graph = 0, network = 0;  // of a learned stepper
   double guard = 0;               // of a hybrid one
-  double total() const { return solve + broad_phase + ccd + response + audit + graph + network + guard; }
+  double body = 0;                // of the drive, as far as the step waited for it
+  double total() const { return solve + broad_phase + ccd + response + audit + graph + network + guard + body; }
   PhaseTimes& operator+=(const PhaseTimes&);
 };
 

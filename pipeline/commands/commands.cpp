@@ -13,6 +13,8 @@
 #include "pipeline/host/folder_lock.hpp"
 #include "pipeline/host/interrupt.hpp"
 #include "pipeline/host/write_file.hpp"
+#include "pipeline/obstacles/setup_body.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/run_scene.hpp"
 #include "pipeline/scene/kinds.hpp"
@@ -38,6 +40,7 @@ struct SimulateArguments {
   std::optional<std::filesystem::path> out;  // otherwise out/NAME-OF-SCENE
   bool resume = false;
   bool view = true;
+  bool cache = true;
 };
 
 Setup read_scene(const SceneArguments& arguments) {
@@ -75,8 +78,18 @@ bool report_outcome(const std::vector<Outcome>& outcomes, const std::vector<Outc
   return all_came_true(results);
 }
 
+// A cache that cannot be written costs the next run time, and this one nothing.
+void keep_for_later(const Setup& setup) {
+  try {
+    write_tissue(setup.bodies);
+  } catch (const Error& error) {
+    std::cerr << "warning: soft tissue is not kept: " << error.what() << "\n";
+  }
+}
+
 int simulate(const SimulateArguments& arguments, bool json) {
   const Setup setup = read_scene(arguments.scene);
+  if (arguments.cache) read_tissue(cache_folder(), setup.bodies);
   warn_of_training();
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
   for (const std::string& warning : run_warnings(setup, stepper->traits())) std::cerr << "warning: " << warning << "\n";
@@ -107,6 +120,7 @@ int simulate(const SimulateArguments& arguments, bool json) {
     people(json) << "stopped before the first frame\n";
     return 1;
   }
+  keep_for_later(setup);
   people(json) << summary_text(summary) << fmt::format("{:<20}{}\n", "trajectory", (request.out / "run.h5").string());
   if (arguments.view) people(json) << fmt::format("{:<20}{}\n", "page to look at", page_text(request.out, summary));
   const bool came_true = arguments.resume || report_outcome(setup.outcomes, outcome.results(), people(json));
@@ -133,6 +147,7 @@ RunCommand simulate_command(CLI::App& command) {
                      "folder for the results (the scene's output.folder, or out/NAME-OF-SCENE)");
   command.add_flag("--resume", arguments->resume, "go on from the checkpoint of an interrupted run");
   command.add_flag("!--no-view", arguments->view, "do not make the page");
+  command.add_flag("!--no-cache", arguments->cache, "compute soft tissue anew, and do not keep it");
   return [arguments](bool json) { return simulate(*arguments, json); };
 }
 

@@ -63,7 +63,8 @@ constexpr PageColumn page_columns[]{{"temporal_1", "temporal 1 [mm]", 1000, "{:.
                                     {"ms_broad_phase", "search [ms]", 1, "{:.1f}"},
                                     {"ms_ccd", "ccd [ms]", 1, "{:.1f}"},
                                     {"ms_response", "response [ms]", 1, "{:.1f}"},
-                                    {"ms_audit", "audit [ms]", 1, "{:.1f}"}};
+                                    {"ms_audit", "audit [ms]", 1, "{:.1f}"},
+                                    {"ms_body", "body [ms]", 1, "{:.1f}"}};
 
 std::string cell(double value, const char* format) {
   return "<td>" + (std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : std::string()) + "</td>";

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "collision/geometry/stopwatch.hpp"
 #include "collision/geometry/welded_surface.hpp"
 #include "pipeline/bodies/body_hdf5.hpp"
 #include "pipeline/bodies/body_outward.hpp"
@@ -17,6 +18,7 @@
 #include "pipeline/bodies/skin_places.hpp"
 #include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/host/bounds.hpp"
+#include "pipeline/host/kept_rows.hpp"
 #include "pipeline/motions/clip_amass.hpp"
 #include "pipeline/motions/clip_bvh.hpp"
 #include "pipeline/motions/clip_procedural.hpp"
@@ -152,12 +154,39 @@ void forget(PosedBodies& known) {
   known.skin.reset();
 }
 
+// Of all that decides which poses with soft tissue a run meets: it only names a file.
+std::uint64_t hash_of_performance(const Performance& who, double room) {
+  std::uint64_t hash = hash_of(fmt::format("{} {:a} {} {:a}", GiveWay::recipe, room, who.clip.name, who.clip.fps));
+  const auto take = [&](const auto& matrix) {
+    hash = hash_of({reinterpret_cast<const char*>(matrix.data()),
+                    sizeof(*matrix.data()) * static_cast<std::size_t>(matrix.size())},
+                   hash);
+  };
+  take(who.surface.triangles);
+  take(shaped(who.body.skin, who.shape));
+  for (const BodyPose& pose : who.clip.poses) take(pose.rotations);
+  return hash;
+}
+
 void leave_room(double room, Performance& who) {
   who.soft_tissue = nullptr;
   if (room > 0)
     who.soft_tissue =
         std::make_shared<GiveWay>(who.surface, shaped(who.body.skin, who.shape), GiveWayOptions{.room = room});
   forget(*who.known);
+  who.known->room = room;
+  who.known->performance = room > 0 ? hash_of_performance(who, room) : 0;
+}
+
+Points with_soft_tissue(const GiveWay& tissue, const Points& skinned, PosedBodies& known) {
+  if (known.store)
+    if (std::optional<Points> given = known_tissue(*known.store, skinned)) return *given;
+  Stopwatch watch;
+  Points given = tissue(skinned);
+  ++known.poses;
+  known.seconds += watch.lap();
+  if (known.store) keep_tissue(skinned, given, *known.store);
+  return given;
 }
 
 }  // namespace
@@ -236,6 +265,17 @@ void come_from(const Points& rotations, double begins, double seconds, Performan
   forget(*who.known);
 }
 
+void read_tissue(const std::filesystem::path& folder, const std::vector<std::shared_ptr<PosedBodies>>& bodies) {
+  for (const auto& body : bodies)
+    if (body && body->performance != 0 && !folder.empty())
+      body->store = std::make_shared<TissueStore>(read_tissue_store(folder / "tissue", body->performance));
+}
+
+void write_tissue(const std::vector<std::shared_ptr<PosedBodies>>& bodies) {
+  for (const auto& body : bodies)
+    if (body && body->store) write_tissue_store(*body->store);
+}
+
 BodyPose pose_at(const Performance& who, double time) {
   if (time < 0 && !who.before.poses.empty()) return pose_at(who.before, time - who.begins);
   if (who.clip.poses.empty()) return {Points::Zero(static_cast<Eigen::Index>(who.body.joints.size()), 3)};
@@ -248,7 +288,7 @@ const PosedBody& posed_at(const Performance& who, double time) {
   if (const auto found = at.find(time); found != at.end()) return found->second;
   if (!who.known->keeps_all && at.size() >= most) at.clear();
   PosedBody body{posed(who.body, who.shape, pose_at(who, time)), {}};
-  body.given = who.soft_tissue ? (*who.soft_tissue)(body.skinned) : body.skinned;
+  body.given = who.soft_tissue ? with_soft_tissue(*who.soft_tissue, body.skinned, *who.known) : body.skinned;
   hold_together(who.joined, body.given);
   return at.emplace(time, std::move(body)).first->second;
 }

@@ -10,6 +10,7 @@
 #include "pipeline/garments/footing.hpp"
 #include "pipeline/motions/clip.hpp"
 #include "pipeline/obstacles/setup_obstacle.hpp"
+#include "pipeline/obstacles/tissue_store_hdf5.hpp"
 #include "pipeline/shapes/motion.hpp"
 
 namespace selvedge {
@@ -32,6 +33,11 @@ struct PosedBodies {
   bool keeps_all = false;  // false: keeps only the last poses
   double skin_at = 0;      // time of `skin` [s]
   std::optional<PosedSkin> skin;
+  std::uint64_t performance = 0;       // a hash of the body, its room and its clip; 0: it has no soft tissue
+  std::shared_ptr<TissueStore> store;  // of soft tissue from earlier runs; null: none is kept
+  double room = 0;                     // that soft tissue leaves between the body's parts [m]; 0: there is none
+  int poses = 0;                       // that were computed with soft tissue
+  double seconds = 0;                  // that it took
 };
 
 // A body of a scene with its motion and placement. The obstacle and the garments on it share it.
@@ -72,6 +78,11 @@ void wear(int garments, Performance&);
 // Lets the scene's time begin before 0, at `begins`. The body moves from these rotations of its joints into its pose at
 // time 0 within `seconds`, and holds it from then on.
 void come_from(const Points& rotations, double begins, double seconds, Performance&);
+
+// Gives the bodies the stores of soft tissue that a cache folder has for them; empty: none.
+void read_tissue(const std::filesystem::path& folder, const std::vector<std::shared_ptr<PosedBodies>>& bodies);
+// Writes stores that have grown. Throws Error if the folder cannot be written.
+void write_tissue(const std::vector<std::shared_ptr<PosedBodies>>& bodies);
 
 BodyPose pose_at(const Performance&, double time);
 

@@ -98,6 +98,7 @@ MadeFrame FramesAhead::take_step(const State& from, Drive drive, double waited, 
   MadeFrame made;
   made.drive = std::move(drive);
   made.report = stepper_.step(from, made.drive, dt_, made.state, {.stop = stop});
+  made.report.seconds.body += waited;
   made.seconds = waited + watch.lap();
   return made;
 }
@@ -106,8 +107,10 @@ MadeFrame FramesAhead::make_alone() {
   Stopwatch watch;
   MadeFrame made;
   made.drive = coming_drive(state_.time + dt_);
+  const double waited = watch.lap();
   made.report = make_frame(stepper_, audits_, state_, made.drive, dt_, made.state, {.stop = asked_});
-  made.seconds = watch.lap();
+  made.report.seconds.body += waited;
+  made.seconds = waited + watch.lap();
   return made;
 }
 

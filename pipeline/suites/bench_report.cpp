@@ -38,6 +38,7 @@ const std::vector<Column>& columns() {
       {"ms_ccd", "ccd", 1, [](M m) { return per_frame(m, m.summary.seconds.ccd); }},
       {"ms_response", "response", 1, [](M m) { return per_frame(m, m.summary.seconds.response); }},
       {"ms_audit", "audit", 1, [](M m) { return per_frame(m, m.summary.seconds.audit); }},
+      {"ms_body", "body", 1, [](M m) { return per_frame(m, m.summary.seconds.body); }},
       {"ms_worst", "worst ms", 1, [](M m) { return worst_milliseconds(m.summary); }},
       {"iterations", "Newton", 1, [](M m) { return a_frame(m, total(m, "iterations").sum); }},
       {"linear_iterations", "V-cycles", 1, [](M m) { return a_frame(m, total(m, "linear_iterations").sum); }},

@@ -10,6 +10,7 @@
 #include "physics/linear/linear_solver.hpp"
 #include "physics/scene/features.hpp"
 #include "physics/solve/step_potential.hpp"
+#include "pipeline/obstacles/setup_body.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 
 namespace selvedge {
@@ -93,10 +94,27 @@ void append_crossing_lines(const Setup& setup, std::vector<PlanLine>& lines) {
         {"switching off", false, fmt::format("no obstacle crosses itself in {} frames looked at", steps + 1)});
 }
 
+// Lines on what soft tissue costs, by body. They follow the look at a run's frames, which has posed the bodies.
+void append_tissue_lines(const Setup& setup, std::vector<PlanLine>& lines) {
+  for (std::size_t k = 0; k < setup.bodies.size(); ++k) {
+    if (!setup.bodies[k]) continue;
+    const PosedBodies& body = *setup.bodies[k];
+    const std::string& name = setup.scene.obstacles[k].name;
+    if (body.room > 0)
+      lines.push_back({"soft tissue", true,
+                       fmt::format("the parts of `{}` leave {:.3g} mm for cloth, {:.2g} ms a pose here; its `room: 0` "
+                                   "leaves this out",
+                                   name, 1000 * body.room, 1000 * body.seconds / std::max(1, body.poses))});
+    else
+      lines.push_back({"soft tissue", false, fmt::format("`{}` stands still, or its room is 0", name)});
+  }
+}
+
 // Lines on the needs of a stepper that solves.
 void append_solver_lines(const Setup& setup, std::vector<PlanLine>& lines) {
   for (PlanLine& line : plan_lines(setup.scene)) lines.push_back(std::move(line));
   append_crossing_lines(setup, lines);
+  append_tissue_lines(setup, lines);
   lines.push_back({"quality", true, setup.quality});
   lines.push_back({"linear solver", true, linear_solver_of(setup)});
   const bool networked = setup.kind.network != NetworkUse::none, rest = setup.run.rest && !networked;

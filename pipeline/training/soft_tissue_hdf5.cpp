@@ -1,19 +1,16 @@
 #include "pipeline/training/soft_tissue_hdf5.hpp"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/bodies/mannequin.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/host/bounded_folder.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/write_file.hpp"
 
 namespace selvedge {
 namespace {
-
-constexpr int soft_tissue_recipe = 1;  // raise it with every change of the soft tissue's motion
 
 const h5::FileForm soft_tissue_form{"selvedge flesh 1", "flesh", "docs/training.md"};
 
@@ -22,7 +19,7 @@ std::filesystem::path soft_tissue_file(const std::filesystem::path& folder, cons
                                        const TrainingBody& body, const TrainingClip& clip) {
   const Clip& motion = clip.motion;
   const TrainingPerson& person = world.people[static_cast<std::size_t>(body.person)];
-  std::string text = fmt::format("{} {} {} {} {}", soft_tissue_recipe, mannequin_recipe, person.body.name,
+  std::string text = fmt::format("{} {} {} {} {}", GiveWay::recipe, mannequin_recipe, person.body.name,
                                  layer_count(world, person), motion.fps);
   for (const double s : body.shape) text += fmt::format(" {:a}", s);
   if (body.tissue_key != 0) text += fmt::format(" of {:x} ", body.tissue_key);
@@ -79,23 +76,6 @@ std::map<int, TissueDisplacements> read_clip(const std::filesystem::path& path, 
   return given;
 }
 
-// Removes the least recently used files until the folder has at most `most` bytes.
-void keep_within(const std::filesystem::path& folder, std::uintmax_t most) {
-  std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> files;
-  std::uintmax_t bytes = 0;
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-    if (!entry.is_regular_file(ignored)) continue;
-    bytes += entry.file_size(ignored);
-    files.emplace_back(entry.last_write_time(ignored), entry.path());
-  }
-  std::ranges::sort(files);
-  for (std::size_t k = 0; k < files.size() && bytes > most; ++k) {
-    bytes -= std::filesystem::file_size(files[k].second, ignored);
-    std::filesystem::remove(files[k].second, ignored);
-  }
-}
-
 }  // namespace
 
 std::map<int, TissueDisplacements> read_soft_tissue(const std::filesystem::path& folder, const TrainingWorld& world,
@@ -107,7 +87,7 @@ std::map<int, TissueDisplacements> read_soft_tissue(const std::filesystem::path&
   try {
     std::map<int, TissueDisplacements> given =
         read_clip(path, world.people[static_cast<std::size_t>(body.person)].surface.vertex_count);
-    std::filesystem::last_write_time(path, std::filesystem::file_time_type::clock::now(), ignored);  // marks its use
+    mark_used(path);
     return given;
   } catch (const Error&) {  // they are computed again
     return {};
