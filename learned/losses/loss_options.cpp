@@ -25,12 +25,6 @@ LossOptions hood_losses() {
   return options;
 }
 
-LossOptions senc_losses() {
-  LossOptions options = hood_losses();
-  options.volume.weight = {0, 3e4, 120.0 / 190, 120.0 / 190};
-  return options;
-}
-
 LossOptions contourcraft_losses() {
   LossOptions options;
   options.collision.thickness = 3e-3;
