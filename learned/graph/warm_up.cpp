@@ -27,13 +27,8 @@ void gather(const FeatureOptions& options, const Graph& raw, const FeatureRows& 
 }
 
 void freeze_statistics(const FeatureSums<double>& sums, FeatureTables& tables) {
-  freeze(sums.node, tables.node);
-  freeze(sums.mesh_edge, tables.mesh_edge);
-  freeze(sums.coarse_edge, tables.coarse_edge);
-  freeze(sums.world_edge, tables.world_edge);
-  freeze(sums.body_edge, tables.body_edge);
-  freeze(sums.output, tables.output);
-  freeze(sums.space_edge, tables.space_edge);
+  visit_statistics([](const char*, const DoubleAccumulators& of_set, Statistics& made) { freeze(of_set, made); }, sums,
+                   tables);
 }
 
 }  // namespace selvedge

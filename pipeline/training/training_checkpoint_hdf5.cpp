@@ -165,17 +165,6 @@ void set_weights(const FieldsIn& in, const Architecture& architecture, const std
   if (at != all.size()) in.fail("has too many weights");
 }
 
-template <class Sums, class Visit>
-void visit_sums(Sums& sums, const Visit& visit) {
-  visit("node", sums.node);
-  visit("mesh_edge", sums.mesh_edge);
-  visit("coarse_edge", sums.coarse_edge);
-  visit("world_edge", sums.world_edge);
-  visit("body_edge", sums.body_edge);
-  visit("output", sums.output);
-  visit("space_edge", sums.space_edge);
-}
-
 void write_adam(FieldsOut& out, const Trainer& trainer) {
   std::string names;
   std::vector<double> sizes;
@@ -374,12 +363,13 @@ void write_training_checkpoint(const std::filesystem::path& path, const Trainer&
     out.text("trained_on", trained_on_json(trainer.trained_on));
     write_counts(out, trainer, history);
     out.floats("weights", all_weights(trainer.architecture, trainer.network.weights));
-    visit_sums(trainer.sums, [&](const std::string& name, const DoubleAccumulators& sums) {
+    const auto write_sums = [&](const std::string& name, const DoubleAccumulators& sums) {
       std::vector<double> values{sums.rows, sums.updates};
       values.insert(values.end(), sums.sum.begin(), sums.sum.end());
       values.insert(values.end(), sums.sum_squared.begin(), sums.sum_squared.end());
       out.numbers("sums_" + name, values);
-    });
+    };
+    visit_statistics(write_sums, trainer.sums);
     write_adam(out, trainer);
     write_pool(out, trainer);
     file.write_text("checksum", fmt::format("{:016x}", out.sum));
@@ -404,7 +394,7 @@ std::unique_ptr<Trainer> read_training_checkpoint(const std::filesystem::path& p
   read_counts(in, *trainer, history);
   NetworkWeights weights = blank_weights(trainer->architecture);
   set_weights(in, trainer->architecture, in.floats("weights"), weights);
-  visit_sums(trainer->sums, [&](const std::string& name, DoubleAccumulators& sums) {
+  const auto read_sums = [&](const std::string& name, DoubleAccumulators& sums) {
     const std::vector<double> values = in.numbers("sums_" + name);
     const auto columns = static_cast<std::ptrdiff_t>(sums.sum.size());
     if (values.size() != 2 + 2 * sums.sum.size()) in.fail("sums of " + name + " have another length");
@@ -412,7 +402,8 @@ std::unique_ptr<Trainer> read_training_checkpoint(const std::filesystem::path& p
     sums.updates = values[1];
     std::copy_n(values.begin() + 2, columns, sums.sum.begin());
     std::copy_n(values.begin() + 2 + columns, columns, sums.sum_squared.begin());
-  });
+  };
+  visit_statistics(read_sums, trainer->sums);
   trainer->adam = read_adam(in, trainer->architecture);
   read_pool(in, *trainer);
   if (fmt::format("{:016x}", in.sum) != file.read_text("checksum")) in.fail("its checksum is wrong: it is damaged");

@@ -11,15 +11,11 @@ namespace {
 using StatisticsColumns = std::vector<std::pair<std::string, int>>;
 
 StatisticsColumns statistics_columns(const Architecture& a) {
-  const StatisticsSizes& s = a.statistics;
   StatisticsColumns present;
-  for (const auto& [name, columns] : StatisticsColumns{{"node", s.node},
-                                                       {"mesh_edge", s.mesh_edge},
-                                                       {"coarse_edge", s.coarse_edge},
-                                                       {"world_edge", s.world_edge},
-                                                       {"body_edge", s.body_edge},
-                                                       {"output", s.output}})
+  const auto add = [&present](const char* name, int columns) {
     if (columns > 0) present.emplace_back(name, columns);
+  };
+  visit_statistics(add, a.statistics);
   return present;
 }
 

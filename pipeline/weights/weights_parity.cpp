@@ -100,12 +100,7 @@ void compare_sums(const FeatureSums<float>& sums, const StatisticsSizes& sizes, 
     add("acc_sum", ours.sum);
     add("acc_sum_squared", ours.sum_squared);
   };
-  compare("node", sums.node, sizes.node);
-  compare("mesh_edge", sums.mesh_edge, sizes.mesh_edge);
-  compare("coarse_edge", sums.coarse_edge, sizes.coarse_edge);
-  compare("world_edge", sums.world_edge, sizes.world_edge);
-  compare("body_edge", sums.body_edge, sizes.body_edge);
-  compare("output", sums.output, sizes.output);
+  visit_statistics(compare, sums, sizes);
 }
 
 }  // namespace
