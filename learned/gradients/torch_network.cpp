@@ -153,6 +153,15 @@ struct TorchNetwork::Handle {
     if (failed != 0)
       throw Error(std::string("libtorch says: ") + report.error, "network `" + architecture.name + "`", "");
   }
+  // `keep`: for a backward run.
+  FeatureRows forward(const Graph& graph, bool keep) {
+    const GraphView view(architecture, graph);
+    FeatureRows output(graph.cloth_nodes, architecture.outputs);
+    TorchReport report;
+    check(calls.forward(model, &view.view, keep ? 1 : 0, output.data(), &report), report);
+    cloth_nodes = keep ? graph.cloth_nodes : -1;
+    return output;
+  }
 };
 
 std::filesystem::path torch_library_path() {
@@ -214,23 +223,8 @@ void TorchNetwork::get_weights(NetworkWeights& weights) const {
                  report);
 }
 
-FeatureRows TorchNetwork::infer(const Graph& graph) {
-  const GraphView view(handle_->architecture, graph);
-  FeatureRows output(graph.cloth_nodes, handle_->architecture.outputs);
-  TorchReport report;
-  handle_->check(handle_->calls.forward(handle_->model, &view.view, 0, output.data(), &report), report);
-  handle_->cloth_nodes = -1;
-  return output;
-}
-
-FeatureRows TorchNetwork::run_forward(const Graph& graph) {
-  const GraphView view(handle_->architecture, graph);
-  FeatureRows output(graph.cloth_nodes, handle_->architecture.outputs);
-  TorchReport report;
-  handle_->check(handle_->calls.forward(handle_->model, &view.view, 1, output.data(), &report), report);
-  handle_->cloth_nodes = graph.cloth_nodes;
-  return output;
-}
+FeatureRows TorchNetwork::infer(const Graph& graph) { return handle_->forward(graph, false); }
+FeatureRows TorchNetwork::run_forward(const Graph& graph) { return handle_->forward(graph, true); }
 
 void TorchNetwork::run_backward(const Graph& graph, const FeatureTables& tables, const FeatureRows& d_output,
                                 WeightGradients& gradients) {

@@ -47,13 +47,7 @@ template <class SquaredOf>
 void search_from_all(const Points& points, double squared, NearestFaces& search, SquaredOf&& squared_of) {
   vertex_boxes(points, points, 0, search.boxes);
   update(search.points, search.boxes);
-  const std::vector<Bvh::Leaf>& groups = search.points.bvh.leaves;
-  const int count = static_cast<int>(groups.size());
-  search.last.resize(static_cast<std::size_t>(points.rows()), -1);
-#pragma omp parallel for schedule(dynamic, 16)
-  for (int leaf = 0; leaf < count; ++leaf)
-    find_nearest_of_leaf(points, groups[static_cast<std::size_t>(leaf)], search.faces.bvh, squared, search.last,
-                         squared_of);
+  find_nearest_of_all(points, search.points.bvh, search.faces.bvh, squared, search.last, squared_of);
 }
 
 }  // namespace

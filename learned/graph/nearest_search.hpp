@@ -25,4 +25,15 @@ void find_nearest_of_leaf(const Points& points, const Bvh::Leaf& group_leaf, con
     last[static_cast<std::size_t>(group_leaf.item[i])] = group.best[static_cast<std::size_t>(i)].item;
 }
 
+// The same for every point. `groups` is a tree of the points, whose leaves search together.
+template <class SquaredOf>
+void find_nearest_of_all(const Points& points, const Bvh& groups, const Bvh& items, double squared,
+                         std::vector<int>& last, SquaredOf&& squared_of) {
+  const int count = static_cast<int>(groups.leaves.size());
+  last.resize(static_cast<std::size_t>(points.rows()), -1);
+#pragma omp parallel for schedule(dynamic, 16)
+  for (int leaf = 0; leaf < count; ++leaf)
+    find_nearest_of_leaf(points, groups.leaves[static_cast<std::size_t>(leaf)], items, squared, last, squared_of);
+}
+
 }  // namespace selvedge

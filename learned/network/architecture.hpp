@@ -18,12 +18,14 @@ struct EdgeKind {
   std::string key;
   int encoder = 0;     // index into Architecture::encoders
   int normalised = 0;  // the first columns of the features
+  bool operator==(const EdgeKind&) const = default;
 };
 
 // Edges of this key take part in a step only if each cloth end of theirs has an edge in one of the sets `near`.
 struct EdgeFilter {
   std::string key;
   std::vector<std::string> near;
+  bool operator==(const EdgeFilter&) const = default;
 };
 
 // One step of message passing with its own weights. The sums enter the node network in the order of `edge_keys`, which
@@ -32,6 +34,7 @@ struct EdgeFilter {
 struct MessageStep {
   std::vector<std::string> edge_keys;
   std::vector<EdgeFilter> filters;
+  bool operator==(const MessageStep&) const = default;
 };
 
 // Rows and columns of a learned embedding; none where rows are zero.
