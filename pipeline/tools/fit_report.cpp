@@ -202,9 +202,9 @@ std::string fit_json(const FitReport& report) {
                     {"contact", row.contact},
                     {"pressure", number_or_null(row.pressure)},
                     {"pressure_99", number_or_null(row.pressure_99)}});
-  const Json all = {{"run", report.run},   {"body", report.body},       {"frame", report.frame},
-                    {"time", report.time}, {"regions", report.regions}, {"rows", rows}};
-  return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  const Json json = {{"run", report.run},   {"body", report.body},       {"frame", report.frame},
+                     {"time", report.time}, {"regions", report.regions}, {"rows", rows}};
+  return json_text(json);
 }
 
 }  // namespace selvedge

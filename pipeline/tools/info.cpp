@@ -14,6 +14,7 @@
 #include "collision/search/obstacle.hpp"
 #include "physics/linear/cholesky.hpp"
 #include "pipeline/config/config.hpp"
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/scene/kinds.hpp"
 
@@ -63,7 +64,7 @@ std::string info_json() {
   nlohmann::ordered_json json;
   for (const auto& [name, value] : facts()) json[name] = value;
   json["threads"] = most_threads();
-  return json.dump(2) + "\n";
+  return json_text(json);
 }
 
 std::string info_text() {

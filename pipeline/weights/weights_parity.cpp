@@ -169,11 +169,10 @@ std::string parity_json(const ParityReport& report) {
                     {"difference", number_or_null(row.difference)},
                     {"limit", row.limit},
                     {"same", row.difference <= row.limit}});
-  return nlohmann::ordered_json{{"network", report.network}, {"cloth_vertices", report.cloth_vertices},
-                                {"nodes", report.nodes},     {"edges", report.edges},
-                                {"same", is_clean(report)},  {"quantities", rows}}
-             .dump(2) +
-         "\n";
+  const nlohmann::ordered_json json = {{"network", report.network}, {"cloth_vertices", report.cloth_vertices},
+                                       {"nodes", report.nodes},     {"edges", report.edges},
+                                       {"same", is_clean(report)},  {"quantities", rows}};
+  return json_text(json);
 }
 
 }  // namespace selvedge
