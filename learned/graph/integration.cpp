@@ -43,11 +43,9 @@ int push_out(const Surface& body, const Points& body_x, double margin, Points& x
   for (int v = 0; v < static_cast<int>(x.rows()); ++v) {
     const int face = nearest[static_cast<std::size_t>(v)];
     if (face < 0) continue;
-    const int* corner = body.triangles.data() + 3 * face;
-    const Vec3 p = row(x, v), a = row(body_x, corner[0]);
-    const Vec3 normal = (row(body_x, corner[1]) - a).cross(row(body_x, corner[2]) - a).normalized();
-    const double short_of = (p - row(search.centroids, face)).dot(normal) - margin;
-    x.row(v) = (p - std::min(short_of, 0.0) * normal).transpose();
+    const FacePlane plane = face_plane(body, body_x, face);
+    const double short_of = (row(x, v) - plane.centroid).dot(plane.normal) - margin;
+    x.row(v) -= (std::min(short_of, 0.0) * plane.normal).transpose();
     moved += short_of < 0;
   }
   return moved;

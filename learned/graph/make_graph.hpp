@@ -48,7 +48,5 @@ BasicAccumulators<double>& sums_for(const std::string& key, const FeatureOptions
 // make_raw_graph and normalise together, for rollouts.
 void make_graph(const GraphScene&, const RestGraph&, const GraphState&, const FeatureOptions&, const FeatureTables&,
                 GraphSearch&, Graph&, GraphReport&);
-Graph make_graph(const GraphScene&, const RestGraph&, const GraphState&, const FeatureOptions&, const FeatureTables&,
-                 GraphSearch&, GraphReport&);
 
 }  // namespace selvedge

@@ -73,7 +73,7 @@ Surface joined_surface(const std::vector<Obstacle>& obstacles) {
 
 }  // namespace
 
-LearnedScene learned_scene(const Scene& scene) {
+LearnedScene learned_scene(const Scene& scene, const std::vector<int>& omitted_body_vertices) {
   LearnedScene result;
   GraphScene& graph = result.graph;
   const int vertices = scene.surface.vertex_count;
@@ -89,11 +89,6 @@ LearnedScene learned_scene(const Scene& scene) {
   graph.springs = scene.springs;
   graph.body = joined_surface(scene.obstacles);
   graph.body_types.assign(static_cast<std::size_t>(graph.body.vertex_count), body_vertex);
-  return result;
-}
-
-LearnedScene learned_scene(const Scene& scene, const std::vector<int>& omitted_body_vertices) {
-  LearnedScene result = learned_scene(scene);
   for (const int vertex : omitted_body_vertices) {
     if (vertex < 0 || vertex >= result.graph.body.vertex_count)
       throw Error("the obstacles have no vertex " + std::to_string(vertex), "omitted vertices of a learned stepper",
@@ -117,6 +112,16 @@ VertexMaterial vertex_material(const Material& m) {
   const bool woven = m.membrane == MembraneModel::baraff_witkin;
   return {m.density, woven ? (m.warp + m.weft) / 4 : m.lame_mu, woven ? 0 : m.lame_lambda,
           (m.bending_model == BendingModel::hinge ? 1 : hinge_per_curvature) * m.bending};
+}
+
+Material isotropic_material(const VertexMaterial& values) {
+  Material material;
+  material.density = values.density;
+  material.lame_mu = values.lame_mu;
+  material.lame_lambda = values.lame_lambda;
+  material.bending_model = BendingModel::hinge;
+  material.bending = values.bending;
+  return material;
 }
 
 LossGarment loss_garment(const Scene& scene) {

@@ -2,7 +2,6 @@
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "collision/geometry/stopwatch.hpp"
 #include "pipeline/commands/command_output.hpp"

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "pipeline/compare/evaluation.hpp"
 #include "pipeline/host/numbers_json.hpp"

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "collision/audit/audit.hpp"
 #include "collision/geometry/error.hpp"

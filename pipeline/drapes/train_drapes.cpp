@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "collision/geometry/floating_point.hpp"
 #include "pipeline/drapes/drape_run.hpp"

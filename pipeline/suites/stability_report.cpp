@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "pipeline/host/json_csv.hpp"
 #include "pipeline/host/numbers_json.hpp"

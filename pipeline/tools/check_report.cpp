@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "pipeline/host/label_lines.hpp"
 #include "pipeline/host/numbers_json.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/host/numbers_json.hpp"

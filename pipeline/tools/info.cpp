@@ -6,7 +6,6 @@
 
 #include <Eigen/Core>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 

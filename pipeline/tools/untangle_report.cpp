@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "pipeline/host/label_lines.hpp"
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/tools/untangle_mesh.hpp"

@@ -6,7 +6,6 @@
 #include <thread>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/floating_point.hpp"

@@ -99,45 +99,36 @@ struct FieldsIn {
   }
 };
 
-std::vector<double> numbers_of(const RollRequest& r) {
-  return {static_cast<double>(r.number),
-          double(r.wear),
-          double(r.body),
-          double(r.clip),
-          double(r.first_frame),
-          double(r.frames),
-          double(r.still),
-          double(r.mirrored),
-          double(r.with_body),
-          double(r.cloth_contact),
-          r.yaw,
-          double(r.sheet),
-          double(r.wind),
-          r.force.x(),
-          r.force.y(),
-          r.force.z()};
+// The numbers of a roll-out in the order of the file.
+template <class Request, class Visit>
+void visit_request(Request& r, const Visit& visit) {
+  const auto visit_all = [&visit](auto&... fields) { (visit(fields), ...); };
+  visit_all(r.number, r.wear, r.body, r.clip, r.first_frame, r.frames, r.still, r.mirrored, r.with_body,
+            r.cloth_contact, r.yaw, r.sheet, r.wind, r.force[0], r.force[1], r.force[2]);
+}
+
+std::vector<double> numbers_of(const RollRequest& request) {
+  std::vector<double> numbers;
+  visit_request(request, [&numbers](const auto& field) { numbers.push_back(static_cast<double>(field)); });
+  return numbers;
 }
 
 constexpr std::size_t request_numbers = 16;
 
 RollRequest request_of(const FieldsIn& in, const TrainingWorld& world, std::span<const double> n) {
-  const auto integer = [&](std::size_t k) { return static_cast<int>(in.whole("roll-out", n[k], 1e9)); };
   if (!std::ranges::all_of(n.first(request_numbers), [](double v) { return std::isfinite(v); }))
     in.fail("has a roll-out of numbers that are not finite");
-  RollRequest r{static_cast<std::uint64_t>(in.whole("roll-out", n[0], 1e15)),
-                integer(1),
-                integer(2),
-                integer(3),
-                integer(4),
-                integer(5),
-                n[6] != 0,
-                n[7] != 0,
-                n[8] != 0,
-                n[9] != 0,
-                n[10],
-                static_cast<HungStart>(integer(11)),
-                n[12] != 0,
-                {n[13], n[14], n[15]}};
+  RollRequest r;
+  std::size_t at = 0;
+  visit_request(r, [&]<class Field>(Field& field) {
+    const double number = n[at++];
+    if constexpr (std::is_same_v<Field, double>)
+      field = number;
+    else if constexpr (std::is_same_v<Field, bool>)
+      field = number != 0;
+    else
+      field = static_cast<Field>(in.whole("roll-out", number, sizeof(Field) > 4 ? 1e15 : 1e9));
+  });
   const bool known = r.wear < int(world.wear.size()) && r.body < int(world.bodies.size()) &&
                      world.wear[std::size_t(r.wear)].person == world.bodies[std::size_t(r.body)].person &&
                      r.clip < int(world.bodies[std::size_t(r.body)].clips.size()) && r.frames >= 1 &&

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "collision/geometry/error.hpp"
 #include "learned/graph/integration.hpp"

@@ -7,6 +7,8 @@
 namespace selvedge::test_objective {
 
 using testing::all_losses;
+using testing::contourcraft_final_losses;
+using testing::contourcraft_losses;
 using testing::LossScene;
 
 namespace {

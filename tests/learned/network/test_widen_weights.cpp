@@ -19,7 +19,8 @@ FeatureRows result_of(const Architecture& a, const NetworkWeights& weights, cons
   GraphSearch search;
   GraphReport report;
   const RestGraph rest = make_rest_graph(world.scene, a.features);
-  const Graph graph = make_graph(world.scene, rest, world.state, a.features, weights.tables, search, report);
+  Graph graph;
+  make_graph(world.scene, rest, world.state, a.features, weights.tables, search, graph, report);
   return infer_by_definition(a, weights, graph);
 }
 

@@ -1,3 +1,4 @@
+#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -106,8 +107,9 @@ Mat9 numeric_hessian(const Material& material, const MembraneElement& element, c
 }
 
 Mat9 clamped(const Mat9& matrix) {
-  const Spectrum spectrum = symmetric_spectrum(matrix);
-  return spectrum.vectors * spectrum.values.cwiseMax(0).asDiagonal() * spectrum.vectors.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(matrix);
+  return spectrum.eigenvectors() * spectrum.eigenvalues().cwiseMax(0).asDiagonal() *
+         spectrum.eigenvectors().transpose();
 }
 
 // Stretch pairs that meet every case: rest, equal, compressed, nearly and fully degenerate.
