@@ -15,7 +15,7 @@ void back_encoder(const TrainingRun& run, const PackedPerceptron& forward, const
   const int rows = static_cast<int>(features.rows()), inputs = static_cast<int>(features.cols());
   if (rows == 0) return;
   GradientParts& parts = run.tape.parts;
-  parts.begin(parts_of(rows));
+  parts.begin(tile_parts_of(rows));
   const PerceptronBack p{forward, backward, tape, add_places(parts, gradient)};
   const int first = parts.add(gradient.layers.front().weight, 0, inputs);
   parts.allocate();
@@ -42,7 +42,7 @@ void back_decoder(const TrainingRun& run, const PackedNetwork& forward, const Pa
   const int rows = run.graph.cloth_nodes, outputs = run.architecture.outputs;
   if (rows == 0) return;
   GradientParts& parts = run.tape.parts;
-  parts.begin(parts_of(rows));
+  parts.begin(tile_parts_of(rows));
   const PerceptronBack p{forward.decoder, backward.decoder, run.tape.decoder, add_places(parts, gradients.decoder)};
   const int first = parts.add(gradients.decoder.layers.front().weight, 0, run.width());
   parts.allocate();
@@ -96,7 +96,7 @@ void back_nodes(const TrainingRun& run, const PackedPerceptron& forward, const P
   TrainingTape& tape = run.tape;
   const std::vector<int>& selections = tape.plan.steps[step];
   GradientParts& parts = tape.parts;
-  parts.begin(parts_of(rows));
+  parts.begin(tile_parts_of(rows));
   const PerceptronBack p{forward, backward, tape.steps[step].node, add_places(parts, gradient)};
   std::vector<int> blocks;
   for (std::size_t k = 0; k <= selections.size(); ++k)
@@ -139,7 +139,7 @@ void back_ends(const TrainingRun& run, const PackedLayer& transposed, const Late
                const std::vector<int>& list, FeatureRows& gradient, Eigen::Index block, DRow&& d_row) {
   const int rows = static_cast<int>(list.size()), width = run.width();
   GradientParts& parts = run.tape.parts;
-  parts.begin(parts_of(rows));
+  parts.begin(tile_parts_of(rows));
   const int place = parts.add(gradient, block * width, width);
   parts.allocate();
   for_tiles(parts, rows, [&](float* part, int begin, int count) {

@@ -164,7 +164,7 @@ TrainingRun start_run(const TrainingNetwork& network, const Graph& graph, Traini
   return {network.architecture, graph, tape, kernels_for(set), training_kernels_for(set)};
 }
 
-int parts_of(int rows) { return tiles_of(rows, rows_in_part(rows)); }
+int tile_parts_of(int rows) { return tiles_of(rows, rows_in_part(rows)); }
 
 int rows_in_part(int rows) { return std::max(3, tiles_of(tiles_of(rows, 24), training_rows)) * training_rows; }
 

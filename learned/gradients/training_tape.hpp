@@ -88,6 +88,6 @@ inline void fill_rows_up(const float** rows, int count) {
 
 // The number of rows in one thread's part, whole tiles, and the number of parts.
 int rows_in_part(int rows);
-int parts_of(int rows);
+int tile_parts_of(int rows);
 
 }  // namespace selvedge

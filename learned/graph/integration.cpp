@@ -43,7 +43,7 @@ int push_out(const Surface& body, const Points& body_x, double margin, Points& x
   for (int v = 0; v < static_cast<int>(x.rows()); ++v) {
     const int face = nearest[static_cast<std::size_t>(v)];
     if (face < 0) continue;
-    const FacePlane plane = face_plane(body, body_x, face);
+    const CentroidPlane plane = centroid_plane(body, body_x, face);
     const double short_of = (row(x, v) - plane.centroid).dot(plane.normal) - margin;
     x.row(v) -= (std::min(short_of, 0.0) * plane.normal).transpose();
     moved += short_of < 0;

@@ -52,7 +52,7 @@ void search_from_all(const Points& points, double squared, NearestFaces& search,
 
 }  // namespace
 
-FacePlane face_plane(const Surface& surface, const Points& x, int face) {
+CentroidPlane centroid_plane(const Surface& surface, const Points& x, int face) {
   const int* corner = surface.triangles.data() + 3 * face;
   const Vec3 a = row(x, corner[0]), b = row(x, corner[1]), c = row(x, corner[2]);
   return {(a + b + c) / 3, (b - a).cross(c - a).normalized()};

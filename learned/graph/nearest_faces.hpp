@@ -25,11 +25,11 @@ struct NearestFaces {
 };
 
 // A face's centroid and unit normal, zero without area.
-struct FacePlane {
+struct CentroidPlane {
   Vec3 centroid, normal;
   bool has_area() const { return normal.squaredNorm() > 0; }
 };
-FacePlane face_plane(const Surface&, const Points& x, int face);
+CentroidPlane centroid_plane(const Surface&, const Points& x, int face);
 
 // The face with the nearest centroid for each point, the lowest of several; -1 without faces. Faces with a flag in
 // `left_out` (empty: none) are ignored. The result lies in `last`.

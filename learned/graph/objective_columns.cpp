@@ -9,13 +9,14 @@ namespace selvedge {
 namespace {
 
 // A face of the body in one pose, with the point that a cloth vertex is matched with.
-struct FacePose : FacePlane {
+struct FacePose : CentroidPlane {
   Vec3 point;
 };
 
 FacePose face_pose(const Surface& body, const Points& x, int face, const Vec3& weights) {
   const int* v = body.triangles.data() + 3 * face;
-  return {face_plane(body, x, face), weights[0] * row(x, v[0]) + weights[1] * row(x, v[1]) + weights[2] * row(x, v[2])};
+  return {centroid_plane(body, x, face),
+          weights[0] * row(x, v[0]) + weights[1] * row(x, v[1]) + weights[2] * row(x, v[2])};
 }
 
 void fill_body_columns(const GraphScene& scene, const GraphState& state, const SeenPositions& seen, const Points& guess,

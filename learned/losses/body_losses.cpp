@@ -66,7 +66,7 @@ double collision_loss(const LossGarment& garment, const CollisionLoss& options, 
   double sum = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (face[k] < 0 || !has_mass(garment, samples[k])) continue;
-    const FacePlane plane = face_plane(body, body_next, face[k]);
+    const CentroidPlane plane = centroid_plane(body, body_next, face[k]);
     if (!plane.has_area()) continue;
     const double depth = options.thickness - (row(points, static_cast<int>(k)) - plane.centroid).dot(plane.normal);
     if (!(depth > 0)) continue;
@@ -88,8 +88,9 @@ double friction_loss(const LossGarment& garment, const FrictionLoss& options, do
     const auto at = static_cast<std::size_t>(v);
     const double grip = garment.mass[at] * options.coefficient * strength;
     if (before[at] < 0 || after[at] < 0 || !(grip > 0)) continue;
-    const FacePlane start = face_plane(body, body_previous, before[at]);
-    const FacePlane moved = face_plane(body, body_now, before[at]), end = face_plane(body, body_now, after[at]);
+    const CentroidPlane start = centroid_plane(body, body_previous, before[at]);
+    const CentroidPlane moved = centroid_plane(body, body_now, before[at]),
+                        end = centroid_plane(body, body_now, after[at]);
     const Vec3 p = now.row(v).transpose(), q = x.row(v).transpose();
     if (!((p - start.centroid).squaredNorm() < options.squared_radius) ||
         !((q - end.centroid).squaredNorm() < options.squared_radius) || !start.has_area() || !end.has_area())

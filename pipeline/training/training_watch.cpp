@@ -120,7 +120,7 @@ void add_depth(const Surface& body, const Points& body_x, const Points& x, Neare
   const std::vector<int>& faces = nearest_centroids(body, body_x, {}, x, search);
   int count = 0;
   for (Eigen::Index v = 0; v < x.rows(); ++v) {
-    const FacePlane plane = face_plane(body, body_x, faces[static_cast<std::size_t>(v)]);
+    const CentroidPlane plane = centroid_plane(body, body_x, faces[static_cast<std::size_t>(v)]);
     const double depth = -(row(x, static_cast<int>(v)) - plane.centroid).dot(plane.normal);
     if (depth > deep) ++count;
     roll.deepest = std::max(roll.deepest, depth);

@@ -6,8 +6,14 @@
 #include "physics/energies/membrane.hpp"
 #include "physics/energies/membrane_lanes.hpp"
 #include "tests/physics/meshes.hpp"
+#include "tests/physics/single_elements.hpp"
 
 namespace selvedge::test_membrane {
+
+using single::Mat9;
+using single::membrane_derivatives;
+using single::membrane_energy;
+using single::Vec9;
 
 namespace {
 
