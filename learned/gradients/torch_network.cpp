@@ -66,10 +66,8 @@ GraphView::GraphView(const Architecture& a, const Graph& graph) {
   const GraphPlan plan = plan_graph(a, graph, 1);
   for (std::size_t s = 0; s < graph.edge_sets.size(); ++s) {
     const EdgeSet& set = graph.edge_sets[s];
-    const bool used = std::any_of(plan.selections.begin(), plan.selections.end(),
-                                  [s](const EdgeSelection& selection) { return selection.set == static_cast<int>(s); });
-    sets.push_back({a.edge_kinds[static_cast<std::size_t>(edge_kind(a, set.key))].encoder, set.features.rows(),
-                    set.features.cols(), set.features.data(), used ? 1 : 0});
+    sets.push_back({encoder_of(a, set.key), set.features.rows(), set.features.cols(), set.features.data(),
+                    is_used(plan, s) ? 1 : 0});
   }
   std::vector<TorchSelection> kinds;  // one per selection of the plan
   for (const EdgeSelection& selection : plan.selections) {

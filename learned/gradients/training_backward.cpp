@@ -234,8 +234,7 @@ void back_encoders(const TrainingRun& run, const PackedNetwork& forward, const P
   for (std::size_t s = 0; s < tape.keys.size(); ++s) {
     if (!tape.used[s]) continue;
     const EdgeSet& set = run.graph.edge_sets[s];
-    const auto encoder =
-        static_cast<std::size_t>(a.edge_kinds[static_cast<std::size_t>(edge_kind(a, set.key))].encoder);
+    const auto encoder = static_cast<std::size_t>(encoder_of(a, set.key));
     back_encoder(run, forward.encoders[encoder], backward.encoders[encoder], tape.edge_encoders[s], set.features,
                  &tape.plan.order[s], tape.d_edges[s], gradients.encoders[encoder]);
     add_label_gradients(a, set, tape.plan.order[s], weights.encoders[encoder].layers.front().weight, tables,

@@ -197,8 +197,7 @@ void encode_forward(const TrainingRun& run, const PackedNetwork& network) {
   for (std::size_t s = 0; s < tape.keys.size(); ++s) {
     if (!tape.used[s]) continue;
     const EdgeSet& set = run.graph.edge_sets[s];
-    const auto encoder =
-        static_cast<std::size_t>(a.edge_kinds[static_cast<std::size_t>(edge_kind(a, set.key))].encoder);
+    const auto encoder = static_cast<std::size_t>(encoder_of(a, set.key));
     LatentRows& latents = tape.edges[s].front();
     forward_rows(run, network.encoders[encoder], set.features.data(), a.encoders[encoder].inputs, &tape.plan.order[s],
                  static_cast<int>(set.senders.size()), tape.edge_encoders[s], latents.values.data(), latents.stride);

@@ -61,6 +61,10 @@ int edge_kind(const Architecture& a, const std::string& key) {
   return -1;
 }
 
+int encoder_of(const Architecture& a, const std::string& key) {
+  return a.edge_kinds[static_cast<std::size_t>(edge_kind(a, key))].encoder;
+}
+
 void check_architecture(const Architecture& a, const std::string& where) {
   require_name(a.name, where, "name");
   require_range(a.width, 1, most_latents, where, "width");

@@ -88,5 +88,7 @@ long long parameter_count(const Architecture&);
 
 // Index of the kind with this key, or -1.
 int edge_kind(const Architecture&, const std::string& key);
+// Index of its encoder. There must be such a kind.
+int encoder_of(const Architecture&, const std::string& key);
 
 }  // namespace selvedge

@@ -216,10 +216,9 @@ void encode(Pass& pass, bool all) {
   evaluate_rows(pass, pass.network.node_encoder, pass.graph.nodes.data(), a.node_inputs, nullptr,
                 static_cast<int>(pass.graph.nodes.rows()), pass.nodes.values.data(), pass.nodes.stride);
   for (std::size_t s = 0; s < pass.edges.size(); ++s) {
-    const auto used = [s](const EdgeSelection& selection) { return selection.set == static_cast<int>(s); };
-    if (!all && std::none_of(pass.plan.selections.begin(), pass.plan.selections.end(), used)) continue;
+    if (!all && !is_used(pass.plan, s)) continue;
     const EdgeSet& set = pass.graph.edge_sets[s];
-    const int encoder = a.edge_kinds[edge_kind(a, set.key)].encoder, rows = static_cast<int>(set.senders.size());
+    const int encoder = encoder_of(a, set.key), rows = static_cast<int>(set.senders.size());
     pass.edges[s] = LatentRows(rows, a.width);
     evaluate_rows(pass, pass.network.encoders[encoder], set.features.data(), a.encoders[encoder].inputs,
                   &pass.plan.order[s], rows, pass.edges[s].values.data(), pass.edges[s].stride);

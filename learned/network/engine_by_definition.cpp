@@ -100,7 +100,7 @@ FeatureRows infer_by_definition(const Architecture& a, const NetworkWeights& wei
   FeatureRows nodes = evaluate_rows(weights.node_encoder, graph.nodes);
   std::vector<FeatureRows> edges;
   for (const EdgeSet& set : graph.edge_sets)
-    edges.push_back(evaluate_rows(weights.encoders[a.edge_kinds[edge_kind(a, set.key)].encoder], set.features));
+    edges.push_back(evaluate_rows(weights.encoders[encoder_of(a, set.key)], set.features));
   if (trace) *trace = {{nodes}, edges, {}};
   for (std::size_t step = 0; step < a.steps.size(); ++step) {
     pass_messages(a.steps[step], weights.steps[step], graph, nodes, edges);

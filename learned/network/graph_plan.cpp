@@ -108,6 +108,10 @@ std::vector<char> passes_filter(const Graph& graph, const EdgeSet& set, const Ed
   return passes;
 }
 
+bool is_used(const GraphPlan& plan, std::size_t set) {
+  return std::ranges::find(plan.selections, static_cast<int>(set), &EdgeSelection::set) != plan.selections.end();
+}
+
 GraphPlan plan_graph(const Architecture& a, const Graph& graph, int chunk) {
   GraphPlan plan;
   for (const EdgeSet& set : graph.edge_sets) {

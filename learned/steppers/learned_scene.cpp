@@ -145,11 +145,8 @@ void check_runnable(const Architecture& architecture) {
   bool fits = node_widths(options).all == architecture.node_inputs && architecture.outputs == 3 &&
               (architecture.passes == 1 || options.pass_inputs);
   for (const std::string& key : edge_set_keys(options)) {
-    const int kind = edge_kind(architecture, key);
-    fits =
-        fits && kind >= 0 &&
-        architecture.encoders[static_cast<std::size_t>(architecture.edge_kinds[static_cast<std::size_t>(kind)].encoder)]
-                .inputs == inputs_of(key);
+    fits = fits && edge_kind(architecture, key) >= 0 &&
+           architecture.encoders[static_cast<std::size_t>(encoder_of(architecture, key))].inputs == inputs_of(key);
   }
   if (!fits)
     throw Error("the network `" + architecture.name + "` has inputs that the learned stepper does not make",

@@ -149,16 +149,6 @@ TEST_CASE("objective: what does not fit is an error", "[losses]") {
   CHECK_THROWS_AS(add_losses({}, hood_losses(), search, nullptr), Error);
 }
 
-TEST_CASE("objective: to and from single precision", "[losses]") {
-  const std::vector<float> rows{1, 2, 3, 4, 5, 6};
-  const Points points = points_of(rows);
-  CHECK((points.rows() == 2 && points(1, 0) == 4));
-  std::vector<float> sums = rows;
-  add_to(points, sums);
-  CHECK(sums[5] == 12);
-  CHECK(points_of({}).rows() == 0);
-}
-
 TEST_CASE("force input: a hanging triangle, by hand", "[losses]") {
   Points rest(3, 3);
   rest << 0, 0, 0, 1, 0, 0, 0, 0, 1;
