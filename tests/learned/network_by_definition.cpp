@@ -1,9 +1,10 @@
+#include "tests/learned/network_by_definition.hpp"
+
 #include <cmath>
 
-#include "learned/network/engine.hpp"
 #include "learned/network/graph_plan.hpp"
 
-namespace selvedge {
+namespace selvedge::by_definition {
 namespace {
 
 constexpr float norm_epsilon = 1e-5f;
@@ -93,8 +94,7 @@ void pass_messages(const MessageStep& step, const StepWeights& weights, const Gr
 
 }  // namespace
 
-FeatureRows infer_by_definition(const Architecture& a, const NetworkWeights& weights, const Graph& graph,
-                                LatentTrace* trace) {
+FeatureRows infer(const Architecture& a, const NetworkWeights& weights, const Graph& graph, LatentTrace* trace) {
   check_weights(a, weights, "network");
   check_graph(a, graph);
   FeatureRows nodes = evaluate_rows(weights.node_encoder, graph.nodes);
@@ -110,4 +110,4 @@ FeatureRows infer_by_definition(const Architecture& a, const NetworkWeights& wei
   return evaluate_rows(weights.decoder, nodes.topRows(graph.cloth_nodes));
 }
 
-}  // namespace selvedge
+}  // namespace selvedge::by_definition

@@ -4,6 +4,7 @@
 #include "learned/network/engine.hpp"
 #include "learned/network/widen_weights.hpp"
 #include "tests/learned/graph_scenes.hpp"
+#include "tests/learned/network_by_definition.hpp"
 
 namespace selvedge::test_widen_weights {
 
@@ -21,7 +22,7 @@ FeatureRows result_of(const Architecture& a, const NetworkWeights& weights, cons
   const RestGraph rest = make_rest_graph(world.scene, a.features);
   Graph graph;
   make_graph(world.scene, rest, world.state, a.features, weights.tables, search, graph, report);
-  return infer_by_definition(a, weights, graph);
+  return by_definition::infer(a, weights, graph);
 }
 
 }  // namespace
