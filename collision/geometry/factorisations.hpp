@@ -9,14 +9,10 @@ namespace selvedge {
 // Factorisations of symmetric matrices. Eigen's take seconds to compile in every file that uses them; here they are
 // compiled once. For tiny matrices the call costs too much for inner loops.
 
-// Eigenvalues in ascending order, and eigenvectors as columns.
-struct Spectrum {
-  Eigen::VectorXd values;
-  Eigen::MatrixXd vectors;
-};
-Spectrum symmetric_spectrum(const Eigen::MatrixXd& matrix);
+// In ascending order.
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
 
+// Eigenvalues in ascending order, and eigenvectors as columns.
 struct Spectrum3 {
   Vec3 values;
   Mat3 vectors;

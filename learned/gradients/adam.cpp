@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "collision/geometry/error.hpp"
 #include "learned/gradients/adam_rule.hpp"
@@ -73,18 +72,13 @@ double clip_scale(const AdamOptions& options, double norm, const std::vector<flo
 
 AdamState start_adam(const Architecture& a) { return {0, zero_gradients(a), zero_gradients(a), {}}; }
 
-double learning_rate_at(const AdamOptions& options, double progress) {
-  if (options.schedule == RateSchedule::constant) return options.learning_rate;
-  return options.learning_rate * 0.5 * (1 + std::cos(std::numbers::pi * std::clamp(progress, 0.0, 1.0)));
-}
-
-AdamReport adam_step(const Architecture& a, const AdamOptions& options, double progress,
-                     const WeightGradients& gradients, AdamState& state, NetworkWeights& weights) {
+AdamReport adam_step(const Architecture& a, const AdamOptions& options, const WeightGradients& gradients,
+                     AdamState& state, NetworkWeights& weights) {
   const std::vector<WeightArray> g = trained_arrays(a, gradients), m = trained_arrays(a, state.first),
                                  v = trained_arrays(a, state.second), w = trained_arrays(a, weights);
   for (const std::vector<WeightArray>* others : {&g, &m, &v}) check_same_shapes(w, *others);
   AdamReport report;
-  report.learning_rate = learning_rate_at(options, progress);
+  report.learning_rate = options.learning_rate;
   report.norm = norm_of(g);
   if (!std::isfinite(report.norm)) {
     report.taken = false;

@@ -7,12 +7,9 @@
 
 namespace selvedge {
 
-enum class RateSchedule { constant, cosine };  // cosine: falls from the rate to 0 over the run
-
 // Kingma and Ba 2015, algorithm 1, with bias correction.
 struct AdamOptions {
   double learning_rate = 1e-3;
-  RateSchedule schedule = RateSchedule::cosine;
   double beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8;
   double clip_norm = 0;    // largest norm of the gradient; 0: no limit
   double clip_median = 0;  // largest norm in medians of the last steps' norms; 0: no limit
@@ -29,9 +26,6 @@ constexpr std::size_t median_window = 101;
 // Zero moments in the architecture's shapes.
 AdamState start_adam(const Architecture&);
 
-// The learning rate when the fraction `progress` of the run is over, in [0, 1].
-double learning_rate_at(const AdamOptions&, double progress);
-
 struct AdamReport {
   bool taken = true;  // false: the gradient is not finite, and nothing has changed
   double learning_rate = 0;
@@ -40,8 +34,7 @@ struct AdamReport {
 };
 
 // Takes one step. Call `lay_out` afterwards. 1 and n threads give the same bits. Throws Error where shapes differ.
-AdamReport adam_step(const Architecture&, const AdamOptions&, double progress, const WeightGradients&, AdamState&,
-                     NetworkWeights&);
+AdamReport adam_step(const Architecture&, const AdamOptions&, const WeightGradients&, AdamState&, NetworkWeights&);
 
 // A state as plain arrays, for a checkpoint: "adam/first/ARRAY", "adam/second/ARRAY" for each trained array
 // (`weight_arrays`), "adam/steps" (two numbers, high and low), "adam/norms". Training that continues from a checkpoint

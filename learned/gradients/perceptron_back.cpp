@@ -45,7 +45,7 @@ void back_to_first(const TrainingRun& run, const PerceptronBack& p, int slot, in
     add_outer(run, d, stride, transposed.inputs, input, run.width(), rows, part + p.places.layers[layer],
               part + p.places.biases[layer + 1]);
     contiguous_rows(d, stride, rows, input);
-    LayerTile tile = training_tile(transposed, input, layer == 0 ? to : other, layer == 0 ? to_stride : stride, rows);
+    LayerTile tile = transposed.tile(input, layer == 0 ? to : other, layer == 0 ? to_stride : stride, rows);
     tile.mask = hidden.row(slot);
     tile.mask_stride = hidden.stride;
     run.kernels.multiply(tile);
@@ -58,7 +58,7 @@ void add_product(const TrainingRun& run, const PackedLayer& transposed, const fl
   LatentRows& mine = run.thread_rows().third;
   const float* input[training_rows];
   contiguous_rows(d, stride, rows, input);
-  run.kernels.multiply(training_tile(transposed, input, mine.row(0), mine.stride, rows));
+  run.kernels.multiply(transposed.tile(input, mine.row(0), mine.stride, rows));
   run.training.add({mine.row(0), mine.stride, result_stride, rows, result});
 }
 
@@ -68,6 +68,12 @@ void for_parts(GradientParts& parts, int rows, int in_part, const std::function<
   for (int part = 0; part < count; ++part)
     work(parts.start(part), part * in_part, std::min(rows, (part + 1) * in_part));
   parts.finish();
+}
+
+void for_tiles(GradientParts& parts, int rows, const std::function<void(float*, int, int)>& work) {
+  for_parts(parts, rows, rows_in_part(rows), [&work](float* part, int from, int end) {
+    for (int begin = from; begin < end; begin += training_rows) work(part, begin, std::min(training_rows, end - begin));
+  });
 }
 
 }  // namespace selvedge

@@ -41,4 +41,8 @@ void add_product(const TrainingRun&, const PackedLayer& transposed, const float*
 // Calls work(sums of the part, begin, end) in parallel for each part of the rows, then adds up the parts.
 void for_parts(GradientParts&, int rows, int in_part, const std::function<void(float*, int, int)>& work);
 
+// Calls work(sums of the part, begin, count) in parallel for each tile of the rows, then adds up the parts, of which
+// there are as many as `tile_parts_of` says.
+void for_tiles(GradientParts&, int rows, const std::function<void(float*, int, int)>& work);
+
 }  // namespace selvedge

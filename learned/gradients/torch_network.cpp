@@ -66,10 +66,8 @@ GraphView::GraphView(const Architecture& a, const Graph& graph) {
   const GraphPlan plan = plan_graph(a, graph, 1);
   for (std::size_t s = 0; s < graph.edge_sets.size(); ++s) {
     const EdgeSet& set = graph.edge_sets[s];
-    const bool used = std::any_of(plan.selections.begin(), plan.selections.end(),
-                                  [s](const EdgeSelection& selection) { return selection.set == static_cast<int>(s); });
-    sets.push_back({a.edge_kinds[static_cast<std::size_t>(edge_kind(a, set.key))].encoder, set.features.rows(),
-                    set.features.cols(), set.features.data(), used ? 1 : 0});
+    sets.push_back({encoder_of(a, set.key), set.features.rows(), set.features.cols(), set.features.data(),
+                    is_used(plan, s) ? 1 : 0});
   }
   std::vector<TorchSelection> kinds;  // one per selection of the plan
   for (const EdgeSelection& selection : plan.selections) {
@@ -153,6 +151,15 @@ struct TorchNetwork::Handle {
     if (failed != 0)
       throw Error(std::string("libtorch says: ") + report.error, "network `" + architecture.name + "`", "");
   }
+  // `keep`: for a backward run.
+  FeatureRows forward(const Graph& graph, bool keep) {
+    const GraphView view(architecture, graph);
+    FeatureRows output(graph.cloth_nodes, architecture.outputs);
+    TorchReport report;
+    check(calls.forward(model, &view.view, keep ? 1 : 0, output.data(), &report), report);
+    cloth_nodes = keep ? graph.cloth_nodes : -1;
+    return output;
+  }
 };
 
 std::filesystem::path torch_library_path() {
@@ -214,23 +221,8 @@ void TorchNetwork::get_weights(NetworkWeights& weights) const {
                  report);
 }
 
-FeatureRows TorchNetwork::infer(const Graph& graph) {
-  const GraphView view(handle_->architecture, graph);
-  FeatureRows output(graph.cloth_nodes, handle_->architecture.outputs);
-  TorchReport report;
-  handle_->check(handle_->calls.forward(handle_->model, &view.view, 0, output.data(), &report), report);
-  handle_->cloth_nodes = -1;
-  return output;
-}
-
-FeatureRows TorchNetwork::run_forward(const Graph& graph) {
-  const GraphView view(handle_->architecture, graph);
-  FeatureRows output(graph.cloth_nodes, handle_->architecture.outputs);
-  TorchReport report;
-  handle_->check(handle_->calls.forward(handle_->model, &view.view, 1, output.data(), &report), report);
-  handle_->cloth_nodes = graph.cloth_nodes;
-  return output;
-}
+FeatureRows TorchNetwork::infer(const Graph& graph) { return handle_->forward(graph, false); }
+FeatureRows TorchNetwork::run_forward(const Graph& graph) { return handle_->forward(graph, true); }
 
 void TorchNetwork::run_backward(const Graph& graph, const FeatureTables& tables, const FeatureRows& d_output,
                                 WeightGradients& gradients) {

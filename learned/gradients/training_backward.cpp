@@ -15,27 +15,23 @@ void back_encoder(const TrainingRun& run, const PackedPerceptron& forward, const
   const int rows = static_cast<int>(features.rows()), inputs = static_cast<int>(features.cols());
   if (rows == 0) return;
   GradientParts& parts = run.tape.parts;
-  const int in_part = rows_in_part(rows);
-  parts.begin(tiles_of(rows, in_part));
+  parts.begin(tile_parts_of(rows));
   const PerceptronBack p{forward, backward, tape, add_places(parts, gradient)};
   const int first = parts.add(gradient.layers.front().weight, 0, inputs);
   parts.allocate();
   LatentRows& d_first = run.tape.d_first;
-  for_parts(parts, rows, in_part, [&](float* part, int from, int end) {
+  for_tiles(parts, rows, [&](float* part, int begin, int count) {
     ThreadRows& mine = run.thread_rows();
-    for (int begin = from; begin < end; begin += training_rows) {
-      const int count = std::min(training_rows, end - begin);
-      for (int r = 0; r < count; ++r) std::copy_n(d.row(begin + r), d.stride, mine.first.row(r));
-      back_to_first(run, p, begin, count, part, d_first.row(begin), d_first.stride);
-      const float* input[training_rows];
-      for (int r = 0; r < count; ++r) {
-        const int row = order ? (*order)[static_cast<std::size_t>(begin + r)] : begin + r;
-        std::copy_n(features.row(row).data(), inputs, mine.third.row(r));
-        input[r] = mine.third.row(r);
-      }
-      add_outer(run, d_first.row(begin), d_first.stride, run.width(), input, inputs, count, part + first,
-                part + p.places.biases.front());
+    for (int r = 0; r < count; ++r) std::copy_n(d.row(begin + r), d.stride, mine.first.row(r));
+    back_to_first(run, p, begin, count, part, d_first.row(begin), d_first.stride);
+    const float* input[training_rows];
+    for (int r = 0; r < count; ++r) {
+      const int row = order ? (*order)[static_cast<std::size_t>(begin + r)] : begin + r;
+      std::copy_n(features.row(row).data(), inputs, mine.third.row(r));
+      input[r] = mine.third.row(r);
     }
+    add_outer(run, d_first.row(begin), d_first.stride, run.width(), input, inputs, count, part + first,
+              part + p.places.biases.front());
   });
 }
 
@@ -46,35 +42,30 @@ void back_decoder(const TrainingRun& run, const PackedNetwork& forward, const Pa
   const int rows = run.graph.cloth_nodes, outputs = run.architecture.outputs;
   if (rows == 0) return;
   GradientParts& parts = run.tape.parts;
-  const int in_part = rows_in_part(rows);
-  parts.begin(tiles_of(rows, in_part));
+  parts.begin(tile_parts_of(rows));
   const PerceptronBack p{forward.decoder, backward.decoder, run.tape.decoder, add_places(parts, gradients.decoder)};
   const int first = parts.add(gradients.decoder.layers.front().weight, 0, run.width());
   parts.allocate();
   const LatentRows& nodes = run.tape.nodes.back();
-  for_parts(parts, rows, in_part, [&](float* part, int from, int end) {
+  for_tiles(parts, rows, [&](float* part, int begin, int count) {
     ThreadRows& mine = run.thread_rows();
     float* d_first = mine.third.row(0);
-    for (int begin = from; begin < end; begin += training_rows) {
-      const int count = std::min(training_rows, end - begin);
-      const float* input[training_rows];
-      float* result[training_rows];
-      for (int r = 0; r < count; ++r) {
-        std::fill_n(mine.first.row(r), mine.first.stride, 0.f);
-        std::copy_n(d_output.row(begin + r).data(), outputs, mine.first.row(r));
-      }
-      back_to_first(run, p, begin, count, part, d_first, mine.third.stride);
-      for (int r = 0; r < count; ++r) {
-        input[r] = nodes.row(begin + r);
-        result[r] = d_nodes.row(begin + r);
-      }
-      add_outer(run, d_first, mine.third.stride, run.width(), input, run.width(), count, part + first,
-                part + p.places.biases.front());
-      contiguous_rows(d_first, mine.third.stride, count, input);
-      run.kernels.multiply(
-          training_tile(backward.decoder.blocks.front(), input, mine.first.row(0), mine.first.stride, count));
-      run.training.add({mine.first.row(0), mine.first.stride, d_nodes.stride, count, result});
+    const float* input[training_rows];
+    float* result[training_rows];
+    for (int r = 0; r < count; ++r) {
+      std::fill_n(mine.first.row(r), mine.first.stride, 0.f);
+      std::copy_n(d_output.row(begin + r).data(), outputs, mine.first.row(r));
     }
+    back_to_first(run, p, begin, count, part, d_first, mine.third.stride);
+    for (int r = 0; r < count; ++r) {
+      input[r] = nodes.row(begin + r);
+      result[r] = d_nodes.row(begin + r);
+    }
+    add_outer(run, d_first, mine.third.stride, run.width(), input, run.width(), count, part + first,
+              part + p.places.biases.front());
+    contiguous_rows(d_first, mine.third.stride, count, input);
+    run.kernels.multiply(backward.decoder.blocks.front().tile(input, mine.first.row(0), mine.first.stride, count));
+    run.training.add({mine.first.row(0), mine.first.stride, d_nodes.stride, count, result});
   });
 }
 
@@ -105,8 +96,7 @@ void back_nodes(const TrainingRun& run, const PackedPerceptron& forward, const P
   TrainingTape& tape = run.tape;
   const std::vector<int>& selections = tape.plan.steps[step];
   GradientParts& parts = tape.parts;
-  const int in_part = rows_in_part(rows);
-  parts.begin(tiles_of(rows, in_part));
+  parts.begin(tile_parts_of(rows));
   const PerceptronBack p{forward, backward, tape.steps[step].node, add_places(parts, gradient)};
   std::vector<int> blocks;
   for (std::size_t k = 0; k <= selections.size(); ++k)
@@ -115,32 +105,29 @@ void back_nodes(const TrainingRun& run, const PackedPerceptron& forward, const P
                          : parts.add(gradient.layers.front().weight, static_cast<Eigen::Index>(k) * width, width));
   parts.allocate();
   const LatentRows& nodes = tape.nodes[step];
-  for_parts(parts, rows, in_part, [&](float* part, int from, int end) {
+  for_tiles(parts, rows, [&](float* part, int begin, int count) {
     ThreadRows& mine = run.thread_rows();
-    for (int begin = from; begin < end; begin += training_rows) {
-      const int count = std::min(training_rows, end - begin);
-      const float* input[training_rows];
-      float* result[training_rows];
-      for (int r = 0; r < count; ++r) {
-        result[r] = tape.d_nodes.row(begin + r);
-        std::copy_n(result[r], tape.d_nodes.stride, mine.first.row(r));
-      }
-      float* d_first = tape.d_first.row(begin);
-      const int d_stride = tape.d_first.stride;
-      back_to_first(run, p, begin, count, part, d_first, d_stride);
-      for (int r = 0; r < count; ++r) input[r] = nodes.row(begin + r);
-      add_outer(run, d_first, d_stride, width, input, width, count, part + blocks[0], part + p.places.biases.front());
-      add_product(run, backward.blocks[0], d_first, d_stride, count, result, tape.d_nodes.stride);
-      for (std::size_t k = 0; k < selections.size(); ++k) {
-        if (selections[k] < 0) continue;
-        float* packed = mine.first.row(0);
-        const int found =
-            pick_sums(tape.plan.selections[static_cast<std::size_t>(selections[k])], tape.steps[step].sums[k],
-                      tape.d_sums[k], d_first, d_stride, begin, count, packed, input, result);
-        if (found == 0) continue;
-        add_outer(run, packed, d_stride, width, input, width, found, part + blocks[1 + k], nullptr);
-        add_product(run, backward.blocks[1 + k], packed, d_stride, found, result, tape.d_sums[k].stride);
-      }
+    const float* input[training_rows];
+    float* result[training_rows];
+    for (int r = 0; r < count; ++r) {
+      result[r] = tape.d_nodes.row(begin + r);
+      std::copy_n(result[r], tape.d_nodes.stride, mine.first.row(r));
+    }
+    float* d_first = tape.d_first.row(begin);
+    const int d_stride = tape.d_first.stride;
+    back_to_first(run, p, begin, count, part, d_first, d_stride);
+    for (int r = 0; r < count; ++r) input[r] = nodes.row(begin + r);
+    add_outer(run, d_first, d_stride, width, input, width, count, part + blocks[0], part + p.places.biases.front());
+    add_product(run, backward.blocks[0], d_first, d_stride, count, result, tape.d_nodes.stride);
+    for (std::size_t k = 0; k < selections.size(); ++k) {
+      if (selections[k] < 0) continue;
+      float* packed = mine.first.row(0);
+      const int found =
+          pick_sums(tape.plan.selections[static_cast<std::size_t>(selections[k])], tape.steps[step].sums[k],
+                    tape.d_sums[k], d_first, d_stride, begin, count, packed, input, result);
+      if (found == 0) continue;
+      add_outer(run, packed, d_stride, width, input, width, found, part + blocks[1 + k], nullptr);
+      add_product(run, backward.blocks[1 + k], packed, d_stride, found, result, tape.d_sums[k].stride);
     }
   });
 }
@@ -152,25 +139,21 @@ void back_ends(const TrainingRun& run, const PackedLayer& transposed, const Late
                const std::vector<int>& list, FeatureRows& gradient, Eigen::Index block, DRow&& d_row) {
   const int rows = static_cast<int>(list.size()), width = run.width();
   GradientParts& parts = run.tape.parts;
-  const int in_part = rows_in_part(rows);
-  parts.begin(tiles_of(rows, in_part));
+  parts.begin(tile_parts_of(rows));
   const int place = parts.add(gradient, block * width, width);
   parts.allocate();
-  for_parts(parts, rows, in_part, [&](float* part, int from, int end) {
+  for_tiles(parts, rows, [&](float* part, int begin, int count) {
     LatentRows& mine = run.thread_rows().first;
-    for (int begin = from; begin < end; begin += training_rows) {
-      const int count = std::min(training_rows, end - begin);
-      const float* input[training_rows];
-      float* result[training_rows];
-      for (int r = 0; r < count; ++r) {
-        d_row(mine.row(r), begin + r);
-        const int node = list[static_cast<std::size_t>(begin + r)];
-        input[r] = nodes.row(node);
-        result[r] = run.tape.d_nodes.row(node);
-      }
-      add_outer(run, mine.row(0), mine.stride, width, input, width, count, part + place, nullptr);
-      add_product(run, transposed, mine.row(0), mine.stride, count, result, run.tape.d_nodes.stride);
+    const float* input[training_rows];
+    float* result[training_rows];
+    for (int r = 0; r < count; ++r) {
+      d_row(mine.row(r), begin + r);
+      const int node = list[static_cast<std::size_t>(begin + r)];
+      input[r] = nodes.row(node);
+      result[r] = run.tape.d_nodes.row(node);
     }
+    add_outer(run, mine.row(0), mine.stride, width, input, width, count, part + place, nullptr);
+    add_product(run, transposed, mine.row(0), mine.stride, count, result, run.tape.d_nodes.stride);
   });
 }
 
@@ -251,8 +234,7 @@ void back_encoders(const TrainingRun& run, const PackedNetwork& forward, const P
   for (std::size_t s = 0; s < tape.keys.size(); ++s) {
     if (!tape.used[s]) continue;
     const EdgeSet& set = run.graph.edge_sets[s];
-    const auto encoder =
-        static_cast<std::size_t>(a.edge_kinds[static_cast<std::size_t>(edge_kind(a, set.key))].encoder);
+    const auto encoder = static_cast<std::size_t>(encoder_of(a, set.key));
     back_encoder(run, forward.encoders[encoder], backward.encoders[encoder], tape.edge_encoders[s], set.features,
                  &tape.plan.order[s], tape.d_edges[s], gradients.encoders[encoder]);
     add_label_gradients(a, set, tape.plan.order[s], weights.encoders[encoder].layers.front().weight, tables,

@@ -23,7 +23,7 @@ void finish_forward(const TrainingRun& run, const PackedPerceptron& p, Perceptro
     fill_rows_up(input, rows);
     const bool last = layer + 1 == p.layers.size();
     LatentRows& out = last ? tape.values : tape.hidden[layer + 1];
-    LayerTile tile = training_tile(p.layers[layer], input, out.row(slot), out.stride, rows);
+    LayerTile tile = p.layers[layer].tile(input, out.row(slot), out.stride, rows);
     tile.rectify = !last;
     run.kernels.multiply(tile);
   }
@@ -54,7 +54,7 @@ void forward_rows(const TrainingRun& run, const PackedPerceptron& p, const float
     }
     fill_rows_up(input, count);
     LatentRows& hidden = tape.hidden.front();
-    LayerTile first = training_tile(p.blocks.front(), input, hidden.row(begin), hidden.stride, count);
+    LayerTile first = p.blocks.front().tile(input, hidden.row(begin), hidden.stride, count);
     first.rectify = true;
     run.kernels.multiply(first);
     finish_forward(run, p, tape, begin, count, {nullptr, latent, nullptr});
@@ -71,7 +71,7 @@ void multiply_nodes(const TrainingRun& run, const PackedLayer& layer, const Late
     const float* input[training_rows];
     for (int r = 0; r < count; ++r) input[r] = nodes.row(list[static_cast<std::size_t>(begin + r)]);
     fill_rows_up(input, count);
-    run.kernels.multiply(training_tile(layer, input, products.row(begin), products.stride, count));
+    run.kernels.multiply(layer.tile(input, products.row(begin), products.stride, count));
   }
 }
 
@@ -104,7 +104,7 @@ void forward_edge_tile(const TrainingRun& run, const EdgeUpdate& update, int beg
     sum[r] = update.sums.row(selection.receiver[e]);
   }
   fill_rows_up(input, count);
-  LayerTile first = training_tile(update.p.blocks[2], input, hidden.row(slot), hidden.stride, count);
+  LayerTile first = update.p.blocks[2].tile(input, hidden.row(slot), hidden.stride, count);
   first.go_on = first.rectify = true;
   run.kernels.multiply(first);
   finish_forward(run, update.p, update.tape, slot, count, {input, latent, sum});
@@ -152,13 +152,13 @@ void add_sums(const TrainingRun& run, const PackedLayer& layer, const EdgeSelect
   if (found == 0) return;
   fill_rows_up(input, found);
   if (found == count) {
-    LayerTile tile = training_tile(layer, input, out.row(begin), out.stride, count);
+    LayerTile tile = layer.tile(input, out.row(begin), out.stride, count);
     tile.go_on = true;
     run.kernels.multiply(tile);
     return;
   }
   LatentRows& mine = run.thread_rows().first;
-  run.kernels.multiply(training_tile(layer, input, mine.row(0), mine.stride, found));
+  run.kernels.multiply(layer.tile(input, mine.row(0), mine.stride, found));
   run.training.add({mine.row(0), mine.stride, out.stride, found, to});
 }
 
@@ -181,7 +181,7 @@ void forward_nodes(const TrainingRun& run, const PackedPerceptron& p, std::size_
         add_sums(run, p.blocks[1 + k], run.tape.plan.selections[static_cast<std::size_t>(selections[k])], tape.sums[k],
                  begin, count, hidden);
     fill_rows_up(input, count);
-    LayerTile own = training_tile(p.blocks.front(), input, hidden.row(begin), hidden.stride, count);
+    LayerTile own = p.blocks.front().tile(input, hidden.row(begin), hidden.stride, count);
     own.go_on = own.rectify = true;
     run.kernels.multiply(own);
     finish_forward(run, p, tape.node, begin, count, {input, latent, nullptr});
@@ -197,8 +197,7 @@ void encode_forward(const TrainingRun& run, const PackedNetwork& network) {
   for (std::size_t s = 0; s < tape.keys.size(); ++s) {
     if (!tape.used[s]) continue;
     const EdgeSet& set = run.graph.edge_sets[s];
-    const auto encoder =
-        static_cast<std::size_t>(a.edge_kinds[static_cast<std::size_t>(edge_kind(a, set.key))].encoder);
+    const auto encoder = static_cast<std::size_t>(encoder_of(a, set.key));
     LatentRows& latents = tape.edges[s].front();
     forward_rows(run, network.encoders[encoder], set.features.data(), a.encoders[encoder].inputs, &tape.plan.order[s],
                  static_cast<int>(set.senders.size()), tape.edge_encoders[s], latents.values.data(), latents.stride);

@@ -52,27 +52,9 @@ SlotPlan slot_plan(const EdgeSelection& selection) {
   return plan;
 }
 
-bool same_kinds(const std::vector<EdgeKind>& a, const std::vector<EdgeKind>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const EdgeKind& one, const EdgeKind& other) {
-    return one.key == other.key && one.encoder == other.encoder;
-  });
-}
-
-bool same_steps(const std::vector<MessageStep>& a, const std::vector<MessageStep>& b) {
-  const auto same_filter = [](const EdgeFilter& one, const EdgeFilter& other) {
-    return one.key == other.key && one.near == other.near;
-  };
-  return std::equal(
-      a.begin(), a.end(), b.begin(), b.end(), [&same_filter](const MessageStep& one, const MessageStep& other) {
-        return one.edge_keys == other.edge_keys && std::equal(one.filters.begin(), one.filters.end(),
-                                                              other.filters.begin(), other.filters.end(), same_filter);
-      });
-}
-
 bool is_planned(const Architecture& a, const Graph& graph, const TrainingTape& tape) {
   if (tape.cloth_nodes != graph.cloth_nodes || tape.node_rows != graph.nodes.rows() ||
-      tape.keys.size() != graph.edge_sets.size() || !same_kinds(a.edge_kinds, tape.kinds) ||
-      !same_steps(a.steps, tape.planned_steps))
+      tape.keys.size() != graph.edge_sets.size() || a.edge_kinds != tape.kinds || a.steps != tape.planned_steps)
     return false;
   for (std::size_t s = 0; s < tape.keys.size(); ++s)
     if (tape.keys[s] != graph.edge_sets[s].key || tape.senders[s] != graph.edge_sets[s].senders ||
@@ -182,18 +164,7 @@ TrainingRun start_run(const TrainingNetwork& network, const Graph& graph, Traini
   return {network.architecture, graph, tape, kernels_for(set), training_kernels_for(set)};
 }
 
-LayerTile training_tile(const PackedLayer& layer, const float* const* input, float* out, int stride, int rows) {
-  LayerTile tile;
-  tile.input = input;
-  tile.inputs = layer.inputs;
-  tile.weight = tile.next_weight = layer.weight.data();
-  tile.bias = layer.bias.data();
-  tile.out = out;
-  tile.stride = stride;
-  tile.outputs = layer.outputs;
-  tile.rows = rows;
-  return tile;
-}
+int tile_parts_of(int rows) { return tiles_of(rows, rows_in_part(rows)); }
 
 int rows_in_part(int rows) { return std::max(3, tiles_of(tiles_of(rows, 24), training_rows)) * training_rows; }
 

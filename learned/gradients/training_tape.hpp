@@ -81,15 +81,13 @@ TrainingRun start_run(const TrainingNetwork&, const Graph&, TrainingTape&);
 // Plans the graph unless the tape has its plan already, and sets the sizes of all rows.
 void prepare_tape(const Architecture&, const Graph&, TrainingTape&);
 
-// The tile of a layer that reads the rows `input` and writes `out`.
-LayerTile training_tile(const PackedLayer&, const float* const* input, float* out, int stride, int rows);
-
 // Kernels read whole tiles, and results of the rows added here are not used.
 inline void fill_rows_up(const float** rows, int count) {
   for (int r = count; r < training_rows; ++r) rows[r] = rows[0];
 }
 
-// The number of rows in one thread's part: whole tiles.
+// The number of rows in one thread's part, whole tiles, and the number of parts.
 int rows_in_part(int rows);
+int tile_parts_of(int rows);
 
 }  // namespace selvedge

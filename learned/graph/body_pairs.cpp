@@ -32,18 +32,6 @@ void refresh_trees(const GraphScene& scene, BodyPartner partner, const Points& c
   update(search.cloth, search.boxes);
 }
 
-// Finds the nearest item of each cloth vertex; -1 where none is within the radius. A tree's leaf searches together.
-template <class SquaredOf>
-void search_all(const Points& cloth, double radius, BodySearch& search, SquaredOf&& squared_of) {
-  const std::vector<Bvh::Leaf>& groups = search.cloth.bvh.leaves;
-  const int count = static_cast<int>(groups.size());
-  search.last.resize(static_cast<std::size_t>(cloth.rows()), -1);
-#pragma omp parallel for schedule(dynamic, 16)
-  for (int leaf = 0; leaf < count; ++leaf)
-    find_nearest_of_leaf(cloth, groups[static_cast<std::size_t>(leaf)], search.body.bvh, radius * radius, search.last,
-                         squared_of);
-}
-
 }  // namespace
 
 std::vector<BodyPair> find_body_pairs(const GraphScene& scene, const FeatureOptions& options, const Points& cloth,
@@ -52,12 +40,14 @@ std::vector<BodyPair> find_body_pairs(const GraphScene& scene, const FeatureOpti
   if (body.rows() == 0) return pairs;
   const bool vertices = options.body_partner == BodyPartner::nearest_vertex;
   refresh_trees(scene, options.body_partner, cloth, body, search);
+  const auto search_all = [&](const auto& squared_of) {
+    find_nearest_of_all(cloth, search.cloth.bvh, search.body.bvh, options.body_radius * options.body_radius,
+                        search.last, squared_of);
+  };
   if (vertices)
-    search_all(cloth, options.body_radius, search,
-               [&](const Vec3& p, int v) { return (row(body, v) - p).squaredNorm(); });
+    search_all([&](const Vec3& p, int v) { return (row(body, v) - p).squaredNorm(); });
   else
-    search_all(cloth, options.body_radius, search,
-               [&](const Vec3& p, int face) { return squared_to_face(scene.body, body, p, face); });
+    search_all([&](const Vec3& p, int face) { return squared_to_face(scene.body, body, p, face); });
   for (int v = 0; v < static_cast<int>(search.last.size()); ++v) {
     const int item = search.last[static_cast<std::size_t>(v)];
     if (item < 0) continue;

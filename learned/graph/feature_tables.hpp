@@ -19,4 +19,16 @@ struct FeatureSums {
   BasicAccumulators<Real> node, mesh_edge, coarse_edge, world_edge, body_edge, output, space_edge;
 };
 
+// Calls `visit` with the name of each set and its member in the tables, sums or sizes (StatisticsSizes) that are given.
+template <class Visit, class... Sets>
+void visit_statistics(const Visit& visit, Sets&... sets) {
+  visit("node", sets.node...);
+  visit("mesh_edge", sets.mesh_edge...);
+  visit("coarse_edge", sets.coarse_edge...);
+  visit("world_edge", sets.world_edge...);
+  visit("body_edge", sets.body_edge...);
+  visit("output", sets.output...);
+  visit("space_edge", sets.space_edge...);
+}
+
 }  // namespace selvedge

@@ -1,10 +1,9 @@
 #include "learned/graph/integration.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "collision/geometry/error.hpp"
-#include "learned/graph/nearest_item.hpp"
+#include "learned/graph/nearest_faces.hpp"
 
 namespace selvedge {
 
@@ -38,29 +37,15 @@ FeatureRows target_accelerations(const RestGraph& rest, const GraphState& state,
 }
 
 int push_out(const Surface& body, const Points& body_x, double margin, Points& x) {
-  const auto faces = static_cast<int>(body.triangles.rows());
-  Points centroids(faces, 3);
-  for (int f = 0; f < faces; ++f)
-    centroids.row(f) =
-        (body_x.row(body.triangles(f, 0)) + body_x.row(body.triangles(f, 1)) + body_x.row(body.triangles(f, 2))) / 3;
-  std::vector<Box> boxes;
-  vertex_boxes(centroids, centroids, 0, boxes);
-  const Bvh tree = build_bvh(boxes);
-  const int count = static_cast<int>(x.rows());
+  NearestFaces search;
+  const std::vector<int>& nearest = nearest_centroids(body, body_x, {}, x, search);
   int moved = 0;
-#pragma omp parallel for schedule(static, 64) reduction(+ : moved)
-  for (int v = 0; v < count; ++v) {
-    const Vec3 p = row(x, v);
-    NearGroup alone;
-    alone.add(p, {std::numeric_limits<double>::infinity(), -1});
-    find_nearest(tree, alone, [&](const Vec3& q, int f) { return (row(centroids, f) - q).squaredNorm(); });
-    const int face = alone.best[0].item;
+  for (int v = 0; v < static_cast<int>(x.rows()); ++v) {
+    const int face = nearest[static_cast<std::size_t>(v)];
     if (face < 0) continue;
-    const int* corner = body.triangles.data() + 3 * face;
-    const Vec3 a = row(body_x, corner[0]);
-    const Vec3 normal = (row(body_x, corner[1]) - a).cross(row(body_x, corner[2]) - a).normalized();
-    const double short_of = (p - row(centroids, face)).dot(normal) - margin;
-    x.row(v) = (p - std::min(short_of, 0.0) * normal).transpose();
+    const CentroidPlane plane = centroid_plane(body, body_x, face);
+    const double short_of = (row(x, v) - plane.centroid).dot(plane.normal) - margin;
+    x.row(v) -= (std::min(short_of, 0.0) * plane.normal).transpose();
     moved += short_of < 0;
   }
   return moved;

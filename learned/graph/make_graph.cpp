@@ -164,11 +164,4 @@ void make_graph(const GraphScene& scene, const RestGraph& rest, const GraphState
   if (report.refused.empty()) normalise(options, tables, graph);
 }
 
-Graph make_graph(const GraphScene& scene, const RestGraph& rest, const GraphState& state, const FeatureOptions& options,
-                 const FeatureTables& tables, GraphSearch& search, GraphReport& report) {
-  Graph graph;
-  make_graph(scene, rest, state, options, tables, search, graph, report);
-  return graph;
-}
-
 }  // namespace selvedge

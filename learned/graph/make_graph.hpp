@@ -40,17 +40,13 @@ void normalise(const FeatureOptions&, const FeatureTables&, Graph&);
 
 // For training: each set first adds to the sums and then is normalised by them; nodes come last (parity README, 10).
 // The tables get these statistics, except those of the output.
-template <class Real>
-void gather_and_normalise(const FeatureOptions&, FeatureSums<Real>&, FeatureTables&, Graph&);
-template <class Real>
-FeatureSums<Real> empty_sums(const FeatureOptions&);
+void gather_and_normalise(const FeatureOptions&, FeatureSums<float>&, FeatureTables&, Graph&);
+FeatureSums<double> empty_sums(const FeatureOptions&);
 // The sums of a set of edges.
 BasicAccumulators<double>& sums_for(const std::string& key, const FeatureOptions&, FeatureSums<double>&);
 
 // make_raw_graph and normalise together, for rollouts.
 void make_graph(const GraphScene&, const RestGraph&, const GraphState&, const FeatureOptions&, const FeatureTables&,
                 GraphSearch&, Graph&, GraphReport&);
-Graph make_graph(const GraphScene&, const RestGraph&, const GraphState&, const FeatureOptions&, const FeatureTables&,
-                 GraphSearch&, GraphReport&);
 
 }  // namespace selvedge

@@ -47,16 +47,16 @@ template <class SquaredOf>
 void search_from_all(const Points& points, double squared, NearestFaces& search, SquaredOf&& squared_of) {
   vertex_boxes(points, points, 0, search.boxes);
   update(search.points, search.boxes);
-  const std::vector<Bvh::Leaf>& groups = search.points.bvh.leaves;
-  const int count = static_cast<int>(groups.size());
-  search.last.resize(static_cast<std::size_t>(points.rows()), -1);
-#pragma omp parallel for schedule(dynamic, 16)
-  for (int leaf = 0; leaf < count; ++leaf)
-    find_nearest_of_leaf(points, groups[static_cast<std::size_t>(leaf)], search.faces.bvh, squared, search.last,
-                         squared_of);
+  find_nearest_of_all(points, search.points.bvh, search.faces.bvh, squared, search.last, squared_of);
 }
 
 }  // namespace
+
+CentroidPlane centroid_plane(const Surface& surface, const Points& x, int face) {
+  const int* corner = surface.triangles.data() + 3 * face;
+  const Vec3 a = row(x, corner[0]), b = row(x, corner[1]), c = row(x, corner[2]);
+  return {(a + b + c) / 3, (b - a).cross(c - a).normalized()};
+}
 
 const std::vector<int>& nearest_centroids(const Surface& surface, const Points& x, const std::vector<char>& left_out,
                                           const Points& points, NearestFaces& search) {

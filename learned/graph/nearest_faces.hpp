@@ -24,6 +24,13 @@ struct NearestFaces {
   std::vector<int> last;  // the result
 };
 
+// A face's centroid and unit normal, zero without area.
+struct CentroidPlane {
+  Vec3 centroid, normal;
+  bool has_area() const { return normal.squaredNorm() > 0; }
+};
+CentroidPlane centroid_plane(const Surface&, const Points& x, int face);
+
 // The face with the nearest centroid for each point, the lowest of several; -1 without faces. Faces with a flag in
 // `left_out` (empty: none) are ignored. The result lies in `last`.
 const std::vector<int>& nearest_centroids(const Surface&, const Points& x, const std::vector<char>& left_out,

@@ -47,20 +47,19 @@ void normalise(const FeatureOptions& options, const FeatureTables& tables, Graph
   normalise(tables.node, graph.nodes);
 }
 
-template <class Real>
-FeatureSums<Real> empty_sums(const FeatureOptions& options) {
-  FeatureSums<Real> sums;
-  sums.node = BasicAccumulators<Real>(node_widths(options).normalised);
-  sums.output = BasicAccumulators<Real>(3);
+FeatureSums<double> empty_sums(const FeatureOptions& options) {
+  FeatureSums<double> sums;
+  sums.node = DoubleAccumulators(node_widths(options).normalised);
+  sums.output = DoubleAccumulators(3);
   for (const std::string& key : edge_set_keys(options))
-    part_for(key, options, sums) = BasicAccumulators<Real>(width_for(key, options));
+    part_for(key, options, sums) = DoubleAccumulators(width_for(key, options));
   return sums;
 }
 
-template <class Real>
-void gather_and_normalise(const FeatureOptions& options, FeatureSums<Real>& sums, FeatureTables& tables, Graph& graph) {
+void gather_and_normalise(const FeatureOptions& options, FeatureSums<float>& sums, FeatureTables& tables,
+                          Graph& graph) {
   for (EdgeSet& set : graph.edge_sets) {
-    BasicAccumulators<Real>& of_set = part_for(set.key, options, sums);
+    Accumulators& of_set = part_for(set.key, options, sums);
     check_width(set.key, of_set.sum.size(), width_for(set.key, options));
     accumulate(of_set, set.features);
     Statistics& statistics = part_for(set.key, options, tables);
@@ -71,10 +70,5 @@ void gather_and_normalise(const FeatureOptions& options, FeatureSums<Real>& sums
   tables.node = statistics_of(sums.node);
   normalise(tables.node, graph.nodes);
 }
-
-template FeatureSums<float> empty_sums(const FeatureOptions&);
-template FeatureSums<double> empty_sums(const FeatureOptions&);
-template void gather_and_normalise(const FeatureOptions&, FeatureSums<float>&, FeatureTables&, Graph&);
-template void gather_and_normalise(const FeatureOptions&, FeatureSums<double>&, FeatureTables&, Graph&);
 
 }  // namespace selvedge

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "collision/geometry/distance.hpp"
+#include "learned/graph/nearest_faces.hpp"
 #include "learned/graph/node_columns.hpp"
 #include "learned/graph/node_features.hpp"
 
@@ -8,17 +9,14 @@ namespace selvedge {
 namespace {
 
 // A face of the body in one pose, with the point that a cloth vertex is matched with.
-struct FacePose {
-  Vec3 centroid, normal, point;
+struct FacePose : CentroidPlane {
+  Vec3 point;
 };
 
 FacePose face_pose(const Surface& body, const Points& x, int face, const Vec3& weights) {
   const int* v = body.triangles.data() + 3 * face;
-  const Vec3 a = row(x, v[0]), b = row(x, v[1]), c = row(x, v[2]);
-  const Vec3 area = (b - a).cross(c - a);
-  const double size = area.norm();
-  return {(a + b + c) / 3, size > 0 ? Vec3(area / size) : Vec3(Vec3::Zero()),
-          weights[0] * a + weights[1] * b + weights[2] * c};
+  return {centroid_plane(body, x, face),
+          weights[0] * row(x, v[0]) + weights[1] * row(x, v[1]) + weights[2] * row(x, v[2])};
 }
 
 void fill_body_columns(const GraphScene& scene, const GraphState& state, const SeenPositions& seen, const Points& guess,

@@ -5,7 +5,7 @@
 namespace selvedge {
 
 // Feature statistics for own training: summed over the states of a warm-up, noise included, then frozen. Sums start
-// from empty_sums<double>.
+// from empty_sums.
 
 // Adds a raw graph (make_raw_graph) and the accelerations that its output is trained for (target_accelerations).
 // Columns of learned embeddings are summed too.
@@ -14,9 +14,5 @@ void gather(const FeatureOptions&, const Graph& raw, const FeatureRows& accelera
 // Sets statistics from the sums. Sets without rows keep theirs. A column that varied by 1e-4 of its root mean square or
 // less gets deviation 1, so that its rounding and the gradient of an embedding stay small (parity README, 15).
 void freeze_statistics(const FeatureSums<double>&, FeatureTables&);
-
-// Writes the tables' embeddings into a normalised graph that was made with older ones. Embeddings change with every
-// step of training, but graphs are made ahead.
-void embed_again(const FeatureOptions&, const FeatureTables&, Graph&);
 
 }  // namespace selvedge

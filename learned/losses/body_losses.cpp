@@ -2,21 +2,10 @@
 
 #include <cmath>
 
+#include "learned/graph/nearest_faces.hpp"
+
 namespace selvedge {
 namespace {
-
-struct BodyPlane {
-  Vec3 centroid, normal;
-  bool has_area = false;
-};
-
-BodyPlane plane_of_body(const Surface& body, const Points& x, int face) {
-  const int* corner = body.triangles.data() + 3 * face;
-  const Vec3 a = row(x, corner[0]), b = row(x, corner[1]), c = row(x, corner[2]);
-  const Vec3 across = (b - a).cross(c - a);
-  const double length = across.norm();
-  return {(a + b + c) / 3, across / length, length > 0};
-}
 
 // The friction's c |t| and its derivative by t.
 struct Slide {
@@ -77,8 +66,8 @@ double collision_loss(const LossGarment& garment, const CollisionLoss& options, 
   double sum = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (face[k] < 0 || !has_mass(garment, samples[k])) continue;
-    const BodyPlane plane = plane_of_body(body, body_next, face[k]);
-    if (!plane.has_area) continue;
+    const CentroidPlane plane = centroid_plane(body, body_next, face[k]);
+    if (!plane.has_area()) continue;
     const double depth = options.thickness - (row(points, static_cast<int>(k)) - plane.centroid).dot(plane.normal);
     if (!(depth > 0)) continue;
     sum += cubic ? depth * depth * depth : 0.5 * depth * depth;
@@ -99,11 +88,12 @@ double friction_loss(const LossGarment& garment, const FrictionLoss& options, do
     const auto at = static_cast<std::size_t>(v);
     const double grip = garment.mass[at] * options.coefficient * strength;
     if (before[at] < 0 || after[at] < 0 || !(grip > 0)) continue;
-    const BodyPlane start = plane_of_body(body, body_previous, before[at]);
-    const BodyPlane moved = plane_of_body(body, body_now, before[at]), end = plane_of_body(body, body_now, after[at]);
+    const CentroidPlane start = centroid_plane(body, body_previous, before[at]);
+    const CentroidPlane moved = centroid_plane(body, body_now, before[at]),
+                        end = centroid_plane(body, body_now, after[at]);
     const Vec3 p = now.row(v).transpose(), q = x.row(v).transpose();
     if (!((p - start.centroid).squaredNorm() < options.squared_radius) ||
-        !((q - end.centroid).squaredNorm() < options.squared_radius) || !start.has_area || !end.has_area)
+        !((q - end.centroid).squaredNorm() < options.squared_radius) || !start.has_area() || !end.has_area())
       continue;
     const Vec3 normal = 0.5 * (start.normal + end.normal), slid = q - (p + (moved.centroid - start.centroid));
     const Slide slide = slide_of(slid - slid.dot(normal) * normal, options.slope);

@@ -60,10 +60,7 @@ Points force_input(const LossInputs& in, const LossOptions& options, const Force
     const Eigen::RowVector3d step = -slope.row(v) / diagonal[at];
     const double length = step.norm();
     const bool counts = !in.garment->pinned[at] && diagonal[at] > 0 && std::isfinite(length) && length > 0;
-    if (counts)
-      slope.row(v) = force.length > 0 ? Eigen::RowVector3d(step * (std::log1p(length / force.length) / length)) : step;
-    else
-      slope.row(v).setZero();
+    slope.row(v) = counts ? step : Eigen::RowVector3d::Zero();
   }
   return slope;
 }

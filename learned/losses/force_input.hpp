@@ -9,14 +9,13 @@ struct ForceOptions {
   double contact_stiffness = 300;   // of a quadratic contact with the body [N/m]; 0: none
   double contact_thickness = 3e-3;  // [m]
   double contour_weight = 0;        // [N/m]; 0: contours are not looked for
-  double length = 1e-3;             // length that is compressed to log 2 [m]; 0: no compression
   bool inertia = false;             // include inertia: for a second pass, whose guess is not free flight
 };
 
 // The displacement d = -dE/dx / D at inputs.predicted, the guess. E is the cloth's objective with the options' contact
 // and contours. D is the Jacobi diagonal: m / dt^2 + sum of (2 mu + lambda) A |grad phi|^2 over the vertex' triangles +
-// twice the stiffness of its springs, whose other end moves too. The length of d is compressed to log(1 + |d| /
-// length). V x 3; zero at pinned vertices and where it is not finite.
+// twice the stiffness of its springs, whose other end moves too. V x 3; zero at pinned vertices and where it is not
+// finite.
 Points force_input(const LossInputs&, const LossOptions&, const ForceOptions&, LossSearch&);
 
 // The diagonal D [N/m]. `dt` is that of the inertia [s].

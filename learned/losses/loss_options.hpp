@@ -101,13 +101,8 @@ struct LossOptions {
   double relaxation_dt = 1.0 / 3;
 };
 
-// Options as published, with iterations as fractions of the run (parity README). HOOD's run has 150,000. ContourCraft's
-// stages 1 and 2 have 56,000 and do not see contours. Its stage 3 has 11,000, and the contour loss rises in the first
-// 5,000. The released ContourCraft trains without friction.
+// Options as published, with iterations as fractions of the run, which has 150,000 (parity README).
 LossOptions hood_losses();
-LossOptions senc_losses();  // its two phases of 120,000 and 70,000 in one run
-LossOptions contourcraft_losses();
-LossOptions contourcraft_final_losses();
 // The fast recipe of docs/training.md: collision 5e3 to 1e6 between a tenth and half of the run, eps 3 mm, contours 30
 // N/m.
 LossOptions fast_losses();

@@ -168,13 +168,4 @@ std::vector<double> losses_along(const LossInputs& inputs, const LossOptions& op
   return sums;
 }
 
-Points points_of(std::span<const float> rows) {
-  using Rows = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
-  return Eigen::Map<const Rows>(rows.data(), static_cast<Eigen::Index>(rows.size() / 3), 3).cast<double>();
-}
-
-void add_to(const Points& points, std::span<float> rows) {
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] += static_cast<float>(points.data()[i]);
-}
-
 }  // namespace selvedge

@@ -46,8 +46,4 @@ double sum_of(std::span<const LossTerm>);  // [J]
 std::vector<double> losses_along(const LossInputs&, const LossOptions&, const Points& base, std::span<const double> t,
                                  LossSearch&);
 
-// Read V x 3 numbers by rows in single precision, and add to such numbers.
-Points points_of(std::span<const float>);
-void add_to(const Points&, std::span<float>);
-
 }  // namespace selvedge

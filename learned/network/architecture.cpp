@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "collision/geometry/error.hpp"
+#include "learned/graph/feature_tables.hpp"
 #include "learned/network/architecture_limits.hpp"
 
 namespace selvedge {
@@ -60,6 +61,10 @@ int edge_kind(const Architecture& a, const std::string& key) {
   return -1;
 }
 
+int encoder_of(const Architecture& a, const std::string& key) {
+  return a.edge_kinds[static_cast<std::size_t>(edge_kind(a, key))].encoder;
+}
+
 void check_architecture(const Architecture& a, const std::string& where) {
   require_name(a.name, where, "name");
   require_range(a.width, 1, most_latents, where, "width");
@@ -88,9 +93,7 @@ void check_architecture(const Architecture& a, const std::string& where) {
   require_table(a.node_type, where, "node_type");
   require_table(a.vertex_level, where, "vertex_level");
   require_table(a.edge_type, where, "edge_type");
-  const StatisticsSizes& s = a.statistics;
-  for (const int size : {s.node, s.mesh_edge, s.coarse_edge, s.world_edge, s.body_edge, s.output, s.space_edge})
-    require_range(size, 0, 4096, where, "statistics");
+  visit_statistics([&](const char*, int size) { require_range(size, 0, 4096, where, "statistics"); }, a.statistics);
 }
 
 long long parameter_count(const Architecture& a) {

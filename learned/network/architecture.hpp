@@ -18,12 +18,14 @@ struct EdgeKind {
   std::string key;
   int encoder = 0;     // index into Architecture::encoders
   int normalised = 0;  // the first columns of the features
+  bool operator==(const EdgeKind&) const = default;
 };
 
 // Edges of this key take part in a step only if each cloth end of theirs has an edge in one of the sets `near`.
 struct EdgeFilter {
   std::string key;
   std::vector<std::string> near;
+  bool operator==(const EdgeFilter&) const = default;
 };
 
 // One step of message passing with its own weights. The sums enter the node network in the order of `edge_keys`, which
@@ -32,6 +34,7 @@ struct EdgeFilter {
 struct MessageStep {
   std::vector<std::string> edge_keys;
   std::vector<EdgeFilter> filters;
+  bool operator==(const MessageStep&) const = default;
 };
 
 // Rows and columns of a learned embedding; none where rows are zero.
@@ -85,5 +88,7 @@ long long parameter_count(const Architecture&);
 
 // Index of the kind with this key, or -1.
 int edge_kind(const Architecture&, const std::string& key);
+// Index of its encoder. There must be such a kind.
+int encoder_of(const Architecture&, const std::string& key);
 
 }  // namespace selvedge

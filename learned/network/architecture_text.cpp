@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "collision/geometry/error.hpp"
+#include "learned/graph/feature_tables.hpp"
 
 namespace selvedge {
 namespace {
@@ -189,13 +190,7 @@ void visit_values(Visitor& visit, Value& a) {
   visit_table(visit, "node_type", a.node_type);
   visit_table(visit, "vertex_level", a.vertex_level);
   visit_table(visit, "edge_type", a.edge_type);
-  visit("statistics.node", a.statistics.node);
-  visit("statistics.mesh_edge", a.statistics.mesh_edge);
-  visit("statistics.coarse_edge", a.statistics.coarse_edge);
-  visit("statistics.world_edge", a.statistics.world_edge);
-  visit("statistics.body_edge", a.statistics.body_edge);
-  visit("statistics.output", a.statistics.output);
-  visit("statistics.space_edge", a.statistics.space_edge);
+  visit_statistics([&visit](const std::string& set, auto& size) { visit("statistics." + set, size); }, a.statistics);
   visit_features(visit, a.features);
   visit("encoders", a.encoders);
   visit("edge_kinds", a.edge_kinds);

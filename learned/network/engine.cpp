@@ -49,20 +49,6 @@ struct Pass {
 // Kernels read whole tiles, and results of the rows added here are not used.
 void fill_up(const float** input, int rows) { std::fill(input + rows, input + tile_rows, input[0]); }
 
-LayerTile layer_tile(const PackedLayer& layer, const float* const* input, float* out, int stride, int rows) {
-  return {input,
-          layer.inputs,
-          layer.weight.data(),
-          layer.bias.data(),
-          out,
-          stride,
-          layer.outputs,
-          layer.weight.data(),
-          rows,
-          false,
-          false};
-}
-
 // Computes the layers after the first, whose results lie in `first`, then the layer norm. Writes or adds the results to
 // `buffers.latent`, and adds them to `buffers.sum` if `sum`.
 void finish_tile(const Pass& pass, const PackedPerceptron& p, TileBuffers& buffers, int rows, bool add, bool sum) {
@@ -71,7 +57,7 @@ void finish_tile(const Pass& pass, const PackedPerceptron& p, TileBuffers& buffe
   for (std::size_t layer = 0; layer < p.layers.size(); ++layer) {
     const bool from_first = input == buffers.first_row;
     values = from_first ? buffers.second.data() : buffers.first.data();
-    LayerTile tile = layer_tile(p.layers[layer], input, values, buffers.stride, rows);
+    LayerTile tile = p.layers[layer].tile(input, values, buffers.stride, rows);
     tile.rectify = layer + 1 < p.layers.size();
     tile.next_weight = (tile.rectify ? p.layers[layer + 1] : p.blocks.back()).weight.data();
     pass.kernels.multiply(tile);
@@ -96,7 +82,7 @@ void evaluate_rows(const Pass& pass, const PackedPerceptron& p, const float* fro
         buffers.latent[r] = to + to_stride * (begin + r);
       }
       fill_up(buffers.input, count);
-      LayerTile first = layer_tile(p.blocks.front(), buffers.input, buffers.first.data(), buffers.stride, count);
+      LayerTile first = p.blocks.front().tile(buffers.input, buffers.first.data(), buffers.stride, count);
       first.rectify = true;
       pass.kernels.multiply(first);
       finish_tile(pass, p, buffers, count, false, false);
@@ -113,7 +99,7 @@ void multiply_nodes(const Pass& pass, const PackedLayer& layer, const std::vecto
     const float* input[tile_rows];
     for (int r = 0; r < count; ++r) input[r] = pass.nodes.row(list[begin + r]);
     fill_up(input, count);
-    pass.kernels.multiply(layer_tile(layer, input, products.row(begin), products.stride, count));
+    pass.kernels.multiply(layer.tile(input, products.row(begin), products.stride, count));
   }
 }
 
@@ -138,7 +124,7 @@ void update_edge_tile(const Pass& pass, const PackedPerceptron& p, const EdgeSel
     buffers.sum[r] = sums.row(selection.receiver[begin + r]);
   }
   fill_up(buffers.input, count);
-  LayerTile first = layer_tile(p.blocks[2], buffers.input, buffers.first.data(), buffers.stride, count);
+  LayerTile first = p.blocks[2].tile(buffers.input, buffers.first.data(), buffers.stride, count);
   first.go_on = first.rectify = true;
   first.next_weight = p.layers.front().weight.data();
   pass.kernels.multiply(first);
@@ -186,14 +172,14 @@ void update_node_tile(const Pass& pass, const PackedPerceptron& p, const std::ve
                       int count, const float* zeros, LatentRows& nodes, TileBuffers& buffers) {
   for (int r = 0; r < count; ++r) buffers.input[r] = buffers.latent[r] = nodes.row(begin + r);
   fill_up(buffers.input, count);
-  LayerTile tile = layer_tile(p.blocks[0], buffers.input, buffers.first.data(), buffers.stride, count);
+  LayerTile tile = p.blocks[0].tile(buffers.input, buffers.first.data(), buffers.stride, count);
   for (std::size_t k = 0; k < selections.size(); ++k) {
     if (selections[k] < 0) continue;
     const EdgeSelection& selection = pass.plan.selections[selections[k]];
     if (!find_sums(selection, pass.sums[k], begin, count, zeros, buffers.other)) continue;
     pass.kernels.multiply(tile);
     std::swap(buffers.input, buffers.other);
-    tile = layer_tile(p.blocks[1 + k], buffers.input, buffers.first.data(), buffers.stride, count);
+    tile = p.blocks[1 + k].tile(buffers.input, buffers.first.data(), buffers.stride, count);
     tile.go_on = true;
   }
   tile.rectify = true;
@@ -230,10 +216,9 @@ void encode(Pass& pass, bool all) {
   evaluate_rows(pass, pass.network.node_encoder, pass.graph.nodes.data(), a.node_inputs, nullptr,
                 static_cast<int>(pass.graph.nodes.rows()), pass.nodes.values.data(), pass.nodes.stride);
   for (std::size_t s = 0; s < pass.edges.size(); ++s) {
-    const auto used = [s](const EdgeSelection& selection) { return selection.set == static_cast<int>(s); };
-    if (!all && std::none_of(pass.plan.selections.begin(), pass.plan.selections.end(), used)) continue;
+    if (!all && !is_used(pass.plan, s)) continue;
     const EdgeSet& set = pass.graph.edge_sets[s];
-    const int encoder = a.edge_kinds[edge_kind(a, set.key)].encoder, rows = static_cast<int>(set.senders.size());
+    const int encoder = encoder_of(a, set.key), rows = static_cast<int>(set.senders.size());
     pass.edges[s] = LatentRows(rows, a.width);
     evaluate_rows(pass, pass.network.encoders[encoder], set.features.data(), a.encoders[encoder].inputs,
                   &pass.plan.order[s], rows, pass.edges[s].values.data(), pass.edges[s].stride);

@@ -26,9 +26,6 @@ struct PackedNetwork;
 // edges of a set, and two products per node, in floats.
 FeatureRows infer(const PackedNetwork&, const Graph&, LatentTrace* = nullptr);
 
-// The same network by plain matrix products, node by node and edge by edge. Tests compare `infer` with it.
-FeatureRows infer_by_definition(const Architecture&, const NetworkWeights&, const Graph&, LatentTrace* = nullptr);
-
 // Floating-point operations of the matrix products in `infer`. A multiplication with addition counts as two.
 double count_operations(const Architecture&, const Graph&);
 // Bytes that a run of `infer` allocates for latents, sums and products.

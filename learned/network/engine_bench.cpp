@@ -112,7 +112,7 @@ Graph grid_graph(const Architecture& a, int nodes) {
   const std::vector<int> senders = set.senders;
   set.senders.insert(set.senders.end(), set.receivers.begin(), set.receivers.end());
   set.receivers.insert(set.receivers.end(), senders.begin(), senders.end());
-  const int inputs = a.encoders[a.edge_kinds[edge_kind(a, set.key)].encoder].inputs;
+  const int inputs = a.encoders[encoder_of(a, set.key)].inputs;
   set.features = FeatureRows::Random(static_cast<Eigen::Index>(set.senders.size()), inputs);
   graph.edge_sets.push_back(std::move(set));
   return graph;

@@ -6,11 +6,6 @@
 namespace selvedge {
 namespace {
 
-bool is_used(const GraphPlan& plan, std::size_t set) {
-  return std::any_of(plan.selections.begin(), plan.selections.end(),
-                     [set](const EdgeSelection& selection) { return selection.set == static_cast<int>(set); });
-}
-
 int tile_padded(std::size_t rows) { return (static_cast<int>(rows) + tile_rows - 1) / tile_rows * tile_rows; }
 
 }  // namespace
@@ -27,8 +22,8 @@ double count_operations(const Architecture& a, const Graph& graph) {
   for (std::size_t s = 0; s < graph.edge_sets.size(); ++s) {
     const EdgeSet& set = graph.edge_sets[s];
     if (is_used(plan, s))
-      products += static_cast<double>(set.senders.size()) *
-                  perceptron(a.encoders[a.edge_kinds[edge_kind(a, set.key)].encoder].inputs, width);
+      products +=
+          static_cast<double>(set.senders.size()) * perceptron(a.encoders[encoder_of(a, set.key)].inputs, width);
   }
   for (const std::vector<int>& step : plan.steps) {
     double blocks = static_cast<double>(graph.nodes.rows());

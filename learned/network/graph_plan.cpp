@@ -84,11 +84,6 @@ EdgeSelection select(const Graph& graph, int set, const std::vector<int>& order,
   return selection;
 }
 
-bool same_filters(const std::vector<EdgeFilter>& a, const std::vector<EdgeFilter>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const EdgeFilter& one, const EdgeFilter& other) { return one.near == other.near; });
-}
-
 }  // namespace
 
 void check_graph(const Architecture& a, const Graph& graph) {
@@ -113,6 +108,10 @@ std::vector<char> passes_filter(const Graph& graph, const EdgeSet& set, const Ed
   return passes;
 }
 
+bool is_used(const GraphPlan& plan, std::size_t set) {
+  return std::ranges::find(plan.selections, static_cast<int>(set), &EdgeSelection::set) != plan.selections.end();
+}
+
 GraphPlan plan_graph(const Architecture& a, const Graph& graph, int chunk) {
   GraphPlan plan;
   for (const EdgeSet& set : graph.edge_sets) {
@@ -134,7 +133,7 @@ GraphPlan plan_graph(const Architecture& a, const Graph& graph, int chunk) {
         if (filter.key == key) filters.push_back(filter);
       int& selection = used.back();
       for (std::size_t s = 0; s < plan.selections.size(); ++s)
-        if (plan.selections[s].set == index && same_filters(filters_of[s], filters)) selection = static_cast<int>(s);
+        if (plan.selections[s].set == index && filters_of[s] == filters) selection = static_cast<int>(s);
       if (selection >= 0) continue;
       selection = static_cast<int>(plan.selections.size());
       plan.selections.push_back(select(graph, index, plan.order[index], filters, chunk));

@@ -32,6 +32,9 @@ void check_graph(const Architecture&, const Graph&);
 // `chunk` is the least number of edges in a chunk, except the last.
 GraphPlan plan_graph(const Architecture&, const Graph&, int chunk);
 
+// Whether a step uses the set.
+bool is_used(const GraphPlan&, std::size_t set);
+
 // One flag per edge of the set: each cloth end of it has an edge in one of the sets `near`.
 std::vector<char> passes_filter(const Graph&, const EdgeSet&, const EdgeFilter&);
 

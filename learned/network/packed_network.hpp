@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "learned/network/aligned_floats.hpp"
-#include "learned/network/instruction_set.hpp"
+#include "learned/network/engine_kernels.hpp"
 #include "learned/network/weights.hpp"
 
 namespace selvedge {
@@ -13,6 +13,11 @@ namespace selvedge {
 struct PackedLayer {
   int inputs = 0, outputs = 0;  // outputs: padded
   AlignedFloats weight, bias;   // bias: zero except in the first block
+
+  // The tile that reads the rows `input` and writes `out`, for the kernels.
+  LayerTile tile(const float* const* input, float* out, int stride, int rows) const {
+    return {input, inputs, weight.data(), bias.data(), out, stride, outputs, weight.data(), rows};
+  }
 };
 
 // A perceptron whose first layer reads several blocks: an edge network reads target, source and edge, a node network

@@ -78,11 +78,11 @@ NetworkWeights blank_weights(const Architecture& a) {
                        blank_perceptron(a, (1 + sets) * a.width, a.width, true)});
   }
   w.decoder = blank_perceptron(a, a.width, a.outputs, false);
-  const StatisticsSizes& s = a.statistics;
-  w.tables = {blank_statistics(s.node),       blank_statistics(s.mesh_edge), blank_statistics(s.coarse_edge),
-              blank_statistics(s.world_edge), blank_statistics(s.body_edge), blank_statistics(s.output),
-              blank_table(a.node_type),       blank_table(a.vertex_level),   blank_table(a.edge_type),
-              blank_statistics(s.space_edge)};
+  visit_statistics([](const char*, int columns, Statistics& set) { set = blank_statistics(columns); }, a.statistics,
+                   w.tables);
+  w.tables.node_type = blank_table(a.node_type);
+  w.tables.vertex_level = blank_table(a.vertex_level);
+  w.tables.edge_type = blank_table(a.edge_type);
   return w;
 }
 
@@ -101,13 +101,11 @@ std::vector<WeightArray> weight_arrays(const Architecture& a, NetworkWeights& w)
   }
   list.add("decoder", w.decoder);
   FeatureTables& t = w.tables;
-  list.add("statistics/node", t.node);
-  list.add("statistics/mesh_edge", t.mesh_edge);
-  list.add("statistics/coarse_edge", t.coarse_edge);
-  list.add("statistics/world_edge", t.world_edge);
-  list.add("statistics/body_edge", t.body_edge);
-  if (a.statistics.space_edge > 0) list.add("statistics/space_edge", t.space_edge);
-  list.add("statistics/output", t.output);
+  const auto add_statistics = [&list](const std::string& name, Statistics& set) {
+    if (name != "output") list.add("statistics/" + name, set);
+  };
+  visit_statistics(add_statistics, t);
+  list.add("statistics/output", t.output);  // last, as in files
   list.add_table("embeddings/node_type", t.node_type);
   list.add_table("embeddings/vertex_level", t.vertex_level);
   list.add_table("embeddings/edge_type", t.edge_type);

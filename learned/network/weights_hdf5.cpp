@@ -249,6 +249,4 @@ WeightFile read_weight_file(const std::filesystem::path& path) {
   return content;
 }
 
-void seal_weight_file(const std::filesystem::path& path) { write_seal(path); }
-
 }  // namespace selvedge

@@ -37,7 +37,4 @@ void write_weight_file(const std::filesystem::path&, const WeightFile&, WeightSt
 // compressed datasets are refused. Nothing in the file is executed.
 WeightFile read_weight_file(const std::filesystem::path&);
 
-// Writes the checksum into the user block. Only for files that another program has changed on purpose.
-void seal_weight_file(const std::filesystem::path&);
-
 }  // namespace selvedge

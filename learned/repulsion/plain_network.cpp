@@ -194,16 +194,6 @@ ValueAndGradient evaluate_with_gradient(const PlainNetwork& n, const FeatureRows
   return result;
 }
 
-ValueAndTangent evaluate_with_tangent(const PlainNetwork& n, const FeatureRows& inputs, const FeatureRows& directions) {
-  ValueAndTangent result{FeatureRows(inputs.rows(), n.outputs()), FeatureRows(inputs.rows(), n.outputs())};
-  for_each_chunk(inputs.rows(), [&](int, int first, int count) {
-    const auto made = trace(n, some_rows(inputs, first, count), some_rows(directions, first, count));
-    result.value.middleRows(first, count) = made.back().sum;
-    result.tangent.middleRows(first, count) = made.back().sum_tangent;
-  });
-  return result;
-}
-
 PlainGradients backward(const PlainNetwork& n, const FeatureRows& inputs, const FeatureRows& directions,
                         const PlainAdjoints& adjoints) {
   const auto size = static_cast<std::size_t>(parameter_count(n));

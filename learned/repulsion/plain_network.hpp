@@ -49,13 +49,8 @@ struct ValueAndGradient {
 };
 ValueAndGradient evaluate_with_gradient(const PlainNetwork&, const FeatureRows& inputs, int columns);
 
-// Outputs and their derivatives along one direction per row in the space of the inputs.
-struct ValueAndTangent {
-  FeatureRows value, tangent;
-};
-ValueAndTangent evaluate_with_tangent(const PlainNetwork&, const FeatureRows& inputs, const FeatureRows& directions);
-
-// Derivatives of a loss L by outputs y and by their derivatives y' along the directions: dL/dy and dL/dy'.
+// Derivatives of a loss L by outputs y and by their derivatives y' along one direction per row in the space of the
+// inputs: dL/dy and dL/dy'.
 struct PlainAdjoints {
   FeatureRows value, tangent;  // tangent has no rows if the loss has no y'
 };

@@ -47,19 +47,6 @@ EndResult evaluate_end(const ScaleNetwork& network, const Eigen::VectorXf& input
 
 }  // namespace
 
-ScaleShape paper_scale_shape(int inputs, int vertices) {
-  ScaleShape shape;
-  shape.inputs = inputs;
-  shape.vertices = vertices;
-  return shape;
-}
-
-ScaleShape small_scale_shape(int inputs, int vertices) {
-  ScaleShape shape = paper_scale_shape(inputs, vertices);
-  shape.latent = 64;
-  return shape;
-}
-
 int shared_latent_width(const ScaleShape& shape) {
   const double of_vertices = static_cast<double>(shape.per_vertex) * shape.vertices * (shape.latent + 1);
   return std::max(1, static_cast<int>(of_vertices / (shape.latent + 1 + end_width)));

@@ -20,14 +20,12 @@ enum class ScaleRange { at_least_one, at_least_zero };
 struct ScaleShape {
   int inputs = 0;       // of h: pose, shape and style
   int vertices = 0;     // number of the garment's vertices
-  int latent = 1024;    // M: width of z and of each layer of h
+  int latent = 1024;    // M: width of z and of each layer of h; as in the paper
   int per_vertex = 10;  // D: latents per vertex
   ScaleForm form = ScaleForm::vertex_latents;
   ScaleRange range = ScaleRange::at_least_one;
   double unit = 0.01;  // unit of distances in g [m]; the paper gives none
 };
-ScaleShape paper_scale_shape(int inputs, int vertices);  // M = 1024
-ScaleShape small_scale_shape(int inputs, int vertices);  // M = 64
 
 struct ScaleNetwork {
   ScaleShape shape;

@@ -107,15 +107,4 @@ SmoothlyPushed push_smoothly(const Points& x, const Adjacency& ring, const AskDi
   return result;
 }
 
-double smooth_push_objective(const Points& x, const Points& u, const Adjacency& ring,
-                             const std::vector<SignedDistance>& at_x, const SmoothPushOptions& options) {
-  const SmoothProblem problem = problem_at(x, ring, at_x, options, {});
-  double sum = options.smoothness * unevenness(ring, u).squaredNorm() + options.damping * u.squaredNorm();
-  for (std::size_t i = 0; i < problem.inside.size(); ++i) {
-    const double miss = u.row(problem.inside[i]).dot(problem.normals[i].transpose()) - problem.shortage[i];
-    sum += miss * miss;
-  }
-  return sum;
-}
-
 }  // namespace selvedge

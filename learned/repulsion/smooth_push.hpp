@@ -27,8 +27,4 @@ struct SmoothlyPushed {
 SmoothlyPushed push_smoothly(const Points& x, const Adjacency& ring, const AskDistance&, const SmoothPushOptions&,
                              std::span<const char> held = {});
 
-// The minimised sum at x + u for the nearest points and normals at x. Tests use it.
-double smooth_push_objective(const Points& x, const Points& u, const Adjacency& ring,
-                             const std::vector<SignedDistance>& at_x, const SmoothPushOptions&);
-
 }  // namespace selvedge

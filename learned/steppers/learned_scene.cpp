@@ -73,7 +73,7 @@ Surface joined_surface(const std::vector<Obstacle>& obstacles) {
 
 }  // namespace
 
-LearnedScene learned_scene(const Scene& scene) {
+LearnedScene learned_scene(const Scene& scene, const std::vector<int>& omitted_body_vertices) {
   LearnedScene result;
   GraphScene& graph = result.graph;
   const int vertices = scene.surface.vertex_count;
@@ -89,11 +89,6 @@ LearnedScene learned_scene(const Scene& scene) {
   graph.springs = scene.springs;
   graph.body = joined_surface(scene.obstacles);
   graph.body_types.assign(static_cast<std::size_t>(graph.body.vertex_count), body_vertex);
-  return result;
-}
-
-LearnedScene learned_scene(const Scene& scene, const std::vector<int>& omitted_body_vertices) {
-  LearnedScene result = learned_scene(scene);
   for (const int vertex : omitted_body_vertices) {
     if (vertex < 0 || vertex >= result.graph.body.vertex_count)
       throw Error("the obstacles have no vertex " + std::to_string(vertex), "omitted vertices of a learned stepper",
@@ -119,6 +114,16 @@ VertexMaterial vertex_material(const Material& m) {
           (m.bending_model == BendingModel::hinge ? 1 : hinge_per_curvature) * m.bending};
 }
 
+Material isotropic_material(const VertexMaterial& values) {
+  Material material;
+  material.density = values.density;
+  material.lame_mu = values.lame_mu;
+  material.lame_lambda = values.lame_lambda;
+  material.bending_model = BendingModel::hinge;
+  material.bending = values.bending;
+  return material;
+}
+
 LossGarment loss_garment(const Scene& scene) {
   std::vector<char> pinned(static_cast<std::size_t>(scene.surface.vertex_count), 0);
   for (const int pin : scene.pins) pinned[static_cast<std::size_t>(pin)] = 1;
@@ -140,11 +145,8 @@ void check_runnable(const Architecture& architecture) {
   bool fits = node_widths(options).all == architecture.node_inputs && architecture.outputs == 3 &&
               (architecture.passes == 1 || options.pass_inputs);
   for (const std::string& key : edge_set_keys(options)) {
-    const int kind = edge_kind(architecture, key);
-    fits =
-        fits && kind >= 0 &&
-        architecture.encoders[static_cast<std::size_t>(architecture.edge_kinds[static_cast<std::size_t>(kind)].encoder)]
-                .inputs == inputs_of(key);
+    fits = fits && edge_kind(architecture, key) >= 0 &&
+           architecture.encoders[static_cast<std::size_t>(encoder_of(architecture, key))].inputs == inputs_of(key);
   }
   if (!fits)
     throw Error("the network `" + architecture.name + "` has inputs that the learned stepper does not make",

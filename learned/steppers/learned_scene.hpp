@@ -22,16 +22,18 @@ struct LearnedScene {
 // divided by the authors' thickness of 0.47 mm. A curvature stiffness B becomes the hinge coefficient 4 B, which stores
 // the same energy in a cylinder on a mesh of equilateral triangles, averaged over directions. Woven cloth
 // (Baraff-Witkin) counts as isotropic, with the mean of warp and weft and without lateral contraction.
-LearnedScene learned_scene(const Scene&);
-
-// The same, with body vertices that get no edges. Throws Error for a vertex that does not exist.
-LearnedScene learned_scene(const Scene&, const std::vector<int>& omitted_body_vertices);
+//
+// `omitted_body_vertices` get no edges. Throws Error for a vertex that does not exist.
+LearnedScene learned_scene(const Scene&, const std::vector<int>& omitted_body_vertices = {});
 
 // The same numbers for materials given per vertex, V x 3.
 FeatureRows material_inputs(std::span<const VertexMaterial>);
 
 // A material as losses and networks take it: isotropic, with a hinge coefficient (learned_scene).
 VertexMaterial vertex_material(const Material&);
+
+// The other way: a material of a scene with these numbers.
+Material isotropic_material(const VertexMaterial&);
 
 // The cloth of a scene as losses need it.
 LossGarment loss_garment(const Scene&);

@@ -4,7 +4,6 @@ namespace selvedge {
 
 Points shown_force(const LossInputs& inputs, int pass, double contour_weight, LossSearch& search) {
   ForceOptions force;
-  force.length = 0;  // the features compress it
   force.inertia = pass > 0;
   force.contour_weight = inputs.contours ? contour_weight : 0;
   return force_input(inputs, LossOptions{}, force, search);

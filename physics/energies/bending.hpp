@@ -9,8 +9,6 @@
 
 namespace selvedge {
 
-using Vec12 = Eigen::Matrix<double, 12, 1>;
-using Mat12 = Eigen::Matrix<double, 12, 12>;
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 
 // Curvature form: the plate of physical stiffness B [N m] and Poisson's ratio nu, independent of the mesh's diagonals,
@@ -53,10 +51,5 @@ std::vector<Hinge> hinges(const Scene&);  // cloths with BendingModel::hinge and
 // e0 -> e1 in the triangle with a). Zero where a triangle is degenerate.
 double dihedral_angle(const Vec3& e0, const Vec3& e1, const Vec3& a, const Vec3& b);
 double hinge_energy(const Hinge&, const Points& x);  // [J]
-// Returns the energy [J]. Exact gradient [N], x y z of each node in turn; exact Hessian [N/m] with psd = false. With
-// psd = true a closed-form PSD bound of it: Gauss-Newton part plus the clamped second derivative of the angle, triangle
-// by triangle; with the current length more of the edge's own stretching besides. Zero where a triangle is degenerate;
-// bounded for slivers (height below 1e-4 of the edge), where it is no longer exact.
-double hinge_derivatives(const Hinge&, const Points& x, Vec12& gradient, Mat12* hessian, bool psd = true);
 
 }  // namespace selvedge

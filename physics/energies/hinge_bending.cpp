@@ -87,26 +87,4 @@ double hinge_energy(std::span<const Hinge> hinges, const Points& x) {
   return sum;
 }
 
-double hinge_derivatives(const Hinge& hinge, const Points& x, Vec12& gradient, Mat12* hessian, bool psd) {
-  HingeLanes lanes;
-  hinge_energies({&hinge, 1}, x, true, lanes);
-  for (int k = 0; k < 12; ++k) gradient[k] = lanes.force[k][0];
-  if (!hessian) return lanes.energy[0];
-  hinge_hessians(psd, lanes);
-  hessian->setZero();
-  for (int i = 0, pair = 0; i < 4; ++i)
-    for (int j = i + 1; j < 4; ++j, ++pair) {
-      const Mat3 block = block_of(lanes, pair, 0);
-      hessian->block<3, 3>(3 * i, 3 * j) = block;
-      hessian->block<3, 3>(3 * j, 3 * i) = block.transpose();
-    }
-  for (int i = 0; i < 4; ++i) {
-    Mat3 sum = Mat3::Zero();
-    for (int j = 0; j < 4; ++j)
-      if (j != i) sum += hessian->block<3, 3>(3 * i, 3 * j);
-    hessian->block<3, 3>(3 * i, 3 * i) = -0.5 * (sum + sum.transpose());
-  }
-  return lanes.energy[0];
-}
-
 }  // namespace selvedge

@@ -7,8 +7,8 @@
 
 namespace selvedge {
 
-// Several hinges side by side, a lane each, so that the same arithmetic goes over them in wide registers. Of
-// each of them what hinge_energy, but for rounding, and hinge_derivatives give.
+// Several hinges side by side, a lane each, so that the same arithmetic goes over them in wide registers. The energy is
+// that of hinge_energy, but for rounding.
 struct HingeLanes {
   static constexpr int width = 16;
   using Lane = double[width];
@@ -29,7 +29,10 @@ struct HingeLanes {
 // The first hinges, as many as fit: `energy`, and `force` where asked for.
 void hinge_energies(std::span<const Hinge>, const Points& x, bool gradient, HingeLanes&);
 
-// `block` of the hinges that are loaded, exact or as hinge_derivatives bounds it.
+// `block` of the hinges that are loaded: exact, or with `psd` a closed-form PSD bound, the Gauss-Newton part plus the
+// clamped second derivative of the angle, triangle by triangle; with the current length more of the edge's own
+// stretching besides. Derivatives are zero where a triangle is degenerate, and bounded for slivers (height below 1e-4
+// of the edge), where they are no longer exact.
 void hinge_hessians(bool psd, HingeLanes&);
 
 // The sum [J].

@@ -106,35 +106,6 @@ Mat32 deformation_gradient(const MembraneElement& element, const Points& x) {
   return edges * element.inverse;
 }
 
-double membrane_energy(const Material& material, MembraneElement element, const Points& x) {
-  MembraneLanes lanes;
-  element.material = 0;
-  membrane_energies({&material, 1}, {&element, 1}, x, lanes);
-  return lanes.energy[0];
-}
-
-void membrane_derivatives(const Material& material, MembraneElement element, const Points& x, Vec9& gradient,
-                          Mat9* hessian, bool psd) {
-  MembraneLanes lanes;
-  element.material = 0;
-  membrane_derivatives({&material, 1}, {&element, 1}, x, hessian != nullptr, psd, lanes);
-  for (int k = 0; k < 6; ++k) gradient[3 + k] = lanes.force[k][0];
-  gradient.head<3>() = -gradient.segment<3>(3) - gradient.tail<3>();
-  if (!hessian) return;
-  hessian->setZero();
-  for (int i = 0, pair = 0; i < 3; ++i)
-    for (int j = i + 1; j < 3; ++j, ++pair) {
-      const Mat3 block = block_of(lanes, pair, 0);
-      hessian->block<3, 3>(3 * i, 3 * j) = block;
-      hessian->block<3, 3>(3 * j, 3 * i) = block.transpose();
-    }
-  // Forces do not see a translation.
-  for (int i = 0; i < 3; ++i) {
-    const Mat3 sum = hessian->block<3, 3>(3 * i, 3 * ((i + 1) % 3)) + hessian->block<3, 3>(3 * i, 3 * ((i + 2) % 3));
-    hessian->block<3, 3>(3 * i, 3 * i) = -0.5 * (sum + sum.transpose());
-  }
-}
-
 int together(std::span<const Material> materials, std::span<const MembraneElement> elements) {
   const auto model = [&](std::size_t e) { return materials[elements[e].material].membrane; };
   std::size_t count = 1;

@@ -6,8 +6,6 @@
 
 namespace selvedge {
 
-using Vec9 = Eigen::Matrix<double, 9, 1>;
-using Mat9 = Eigen::Matrix<double, 9, 9>;
 using Mat32 = Eigen::Matrix<double, 3, 2>;
 
 // One constant-strain triangle: F = [x1 - x0, x2 - x0] * inverse maps its flat rest shape into space.

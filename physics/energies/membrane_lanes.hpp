@@ -31,7 +31,8 @@ struct MembraneLanes {
 // How many of the first elements, at least one, go into lanes together. Materials are those of the cloths.
 int together(std::span<const Material> materials, std::span<const MembraneElement> elements);
 
-// Writes `energy`, or `force` and `block`, of elements that go together. Without `hessian` no block is written.
+// Writes `energy`, or `force` and `block`, of elements that go together. Without `hessian` no block is written. With
+// `psd` the Hessian is projected to PSD in closed form.
 void membrane_energies(std::span<const Material>, std::span<const MembraneElement>, const Points& x, MembraneLanes&);
 void membrane_derivatives(std::span<const Material>, std::span<const MembraneElement>, const Points& x, bool hessian,
                           bool psd, MembraneLanes&);

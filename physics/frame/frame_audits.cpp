@@ -116,8 +116,7 @@ bool judge_frame(FrameAudits& audits, const State& from, const Drive& drive, con
           whole_audit(*part, audit_state(part->scene, state_of(*part, to), drive, memory_of(audits, part), report));
     }
   } catch (const TooManyPairs&) {
-    report.status = StepStatus::rejected;
-    report.reason = Reason::too_many_pairs;
+    reject(Reason::too_many_pairs, report);
     return false;
   }
   const int pairs = report.audit->intersecting_pairs();

@@ -167,6 +167,11 @@ struct StepReport {  // starts as a failure
   StepPath path;               // kept until its audit (judge_frame)
 };
 
+inline void reject(Reason reason, StepReport& report) {
+  report.status = StepStatus::rejected;
+  report.reason = reason;
+}
+
 struct AddedTerm;  // physics/solve/step_problem.hpp
 
 // What one stepper may hand to another for a step, beside state and drive. Traits say whether a stepper honours it;

@@ -316,9 +316,8 @@ void ConventionalStepper::end_substep(StepWork& work, Substep&& s, SubstepState&
 // again with obstacles that give way, then halved; only the last halves take the last resort. One with too many near
 // pairs is halved too. False if the step is rejected; the report says why.
 bool ConventionalStepper::advance(StepWork& work, SubstepState& now, SubstepRun whole) {
-  const auto reject = [&](Reason reason) {
-    work.report.status = StepStatus::rejected;
-    work.report.reason = reason;
+  const auto give_up = [&](Reason reason) {
+    reject(reason, work.report);
     return false;
   };
   double time_left = whole.h * whole.count;
@@ -345,21 +344,21 @@ bool ConventionalStepper::advance(StepWork& work, SubstepState& now, SubstepRun 
         return SubstepOutcome::too_many_pairs;
       }
     };
-    if (stopped(work.extras.stop)) return reject(Reason::stopped);
+    if (stopped(work.extras.stop)) return give_up(Reason::stopped);
     SubstepOutcome outcome = attempt(target.halvings == 0 ? SubstepAttempt::last_resort : SubstepAttempt::first);
     if (outcome == SubstepOutcome::zones_not_converged && !work.look_for_room && features_.obstacles) {
       target.parts = 1;
       outcome = attempt(SubstepAttempt::pinched);
     }
-    if (outcome == SubstepOutcome::stopped || stopped(work.extras.stop)) return reject(Reason::stopped);
-    if (outcome == SubstepOutcome::not_finite) return reject(Reason::not_finite);
+    if (outcome == SubstepOutcome::stopped || stopped(work.extras.stop)) return give_up(Reason::stopped);
+    if (outcome == SubstepOutcome::not_finite) return give_up(Reason::not_finite);
     if (outcome == SubstepOutcome::clean) {
       end_substep(work, *std::move(s), now);
       time_left -= target.h;
       continue;
     }
     const bool crowded = outcome == SubstepOutcome::too_many_pairs;
-    if (crowded && target.halvings == 0) return reject(Reason::too_many_pairs);
+    if (crowded && target.halvings == 0) return give_up(Reason::too_many_pairs);
     const bool halve = crowded || outcome == SubstepOutcome::zones_not_converged;
     if (halve) ++work.report.collision.halved_substeps;
     const int count = halve ? 2 : s->parts;
@@ -389,8 +388,7 @@ int ConventionalStepper::planned_substeps(const State& from, const Drive& drive,
 }
 
 StepReport not_finite(StepReport report) {
-  report.status = StepStatus::rejected;
-  report.reason = Reason::not_finite;
+  reject(Reason::not_finite, report);
   return report;
 }
 

@@ -216,8 +216,7 @@ StepReport IcmStepper::take_step(const State& from, const Drive& drive, double d
     IcmWork work;
     work.stop = &extras.stop;
     if (!now.nodes.allFinite() || !substep(now, held + part * (drive.pins - held), drive, h, next, work, report)) {
-      report.status = StepStatus::rejected;
-      report.reason = stopped(extras.stop) ? Reason::stopped : Reason::not_finite;
+      reject(stopped(extras.stop) ? Reason::stopped : Reason::not_finite, report);
       return report;
     }
     ++report.substeps;
@@ -231,8 +230,7 @@ StepReport IcmStepper::take_step(const State& from, const Drive& drive, double d
   if (!all.switched_off.empty()) report.switched_off = switched_off_counts(world_, all);
   finish_step(from, drive, dt, {now.nodes.topRows(n), std::move(now.v), drive.obstacles}, to, report);
   if (energy_(from, drive, to).from_nowhere()) {
-    report.status = StepStatus::rejected;
-    report.reason = Reason::energy_gain;
+    reject(Reason::energy_gain, report);
   }
   return report;
 }

@@ -77,8 +77,7 @@ Exemption both_of(Exemption a, const Exemption& b) {
 StepReport stopped_report(const std::string& by) {
   StepReport report;
   report.by = by;
-  report.status = StepStatus::rejected;
-  report.reason = Reason::stopped;
+  reject(Reason::stopped, report);
   return report;
 }
 

@@ -131,14 +131,17 @@ int simulate(const SimulateArguments& arguments, bool json) {
 
 void add_scene_options(CLI::App& command, SceneArguments& arguments) {
   command.add_option("scene", arguments.scene, "scene file (YAML)")->required();
-  command.add_option("--set", arguments.overrides, "key=value instead of the scene's, dotted keys")
-      ->allow_extra_args(false);
+  add_overrides(command, arguments.overrides, "the scene's");
   command.add_option("--stepper", arguments.stepper, joined(known_kinds().names()));
   command.add_option("--weights", arguments.weights, "weight file of the steppers `learned` and `hybrid`");
   command.add_option("--device", arguments.device, "that runs their network: cpu, libtorch, cuda or auto");
 }
 
 }  // namespace
+
+void add_overrides(CLI::App& command, std::vector<std::string>& overrides, const std::string& whose) {
+  command.add_option("--set", overrides, "key=value instead of " + whose + ", dotted keys")->allow_extra_args(false);
+}
 
 RunCommand simulate_command(CLI::App& command) {
   const auto arguments = std::make_shared<SimulateArguments>();

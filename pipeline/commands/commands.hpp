@@ -1,6 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -15,6 +17,9 @@ using RunCommand = std::function<int(bool json)>;
 
 // Adds the options of a command.
 using AddCommand = RunCommand(CLI::App&);
+
+// The option `--set`, whose values stand in place of those of a file, such as "the scene's".
+void add_overrides(CLI::App&, std::vector<std::string>& overrides, const std::string& whose);
 
 AddCommand simulate_command, plan_command, info_command;  // commands.cpp
 // tool_commands.cpp

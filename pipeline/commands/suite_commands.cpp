@@ -79,8 +79,7 @@ RunCommand compare_command(CLI::App& command) {
   const auto request = std::make_shared<CompareRequest>();
   command.add_option("comparison", request->file, "comparison file (YAML)")->required();
   command.add_flag("--short", request->short_form, "the short forms of the comparison and its scenes");
-  command.add_option("--set", request->overrides, "key=value instead of the comparison file's, dotted keys")
-      ->allow_extra_args(false);
+  add_overrides(command, request->overrides, "the comparison file's");
   command.add_option("--out", request->out, "folder for the results");
   return [request](bool json) {
     warn_of_training();

@@ -2,11 +2,11 @@
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "collision/geometry/stopwatch.hpp"
 #include "pipeline/commands/command_output.hpp"
 #include "pipeline/commands/commands.hpp"
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/run/progress.hpp"
 #include "pipeline/tools/ccd_report.hpp"
 #include "pipeline/tools/check.hpp"
@@ -204,7 +204,7 @@ RunCommand export_command(CLI::App& command) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const std::filesystem::path& file : written) list.push_back(file.string());
     return end_command(json, fmt::format("{} files, the last is {}\n", list.size(), written.back().string()),
-                       nlohmann::ordered_json{{"files", list}}.dump(2) + "\n", true);
+                       json_text({{"files", list}}), true);
   };
 }
 
@@ -215,7 +215,7 @@ RunCommand view_command(CLI::App& command) {
   return [arguments](bool json) {
     write_view(arguments->runs, arguments->out);
     return end_command(json, "page to look at: " + arguments->out.string() + "\n",
-                       nlohmann::ordered_json{{"page", arguments->out.string()}}.dump(2) + "\n", true);
+                       json_text({{"page", arguments->out.string()}}), true);
   };
 }
 

@@ -43,8 +43,7 @@ TrainedRun trained(const TrainRequest& request) {
 RunCommand dataset_command(CLI::App& command) {
   const auto request = std::make_shared<DatasetRequest>();
   command.add_option("config", request->config, "data file (YAML), see docs/repulsion.md")->required();
-  command.add_option("--set", request->overrides, "key=value instead of the file's, dotted keys")
-      ->allow_extra_args(false);
+  add_overrides(command, request->overrides, "the file\'s");
   command.add_option("--out", request->out, "folder for the drapes (out/data/NAME)");
   return [request](bool json) {
     const InterruptWatch watch;
@@ -57,8 +56,7 @@ RunCommand dataset_command(CLI::App& command) {
 RunCommand train_command(CLI::App& command) {
   const auto arguments = std::make_shared<TrainArguments>();
   command.add_option("config", arguments->config, "training file (YAML), see docs/training.md")->required();
-  command.add_option("--set", arguments->overrides, "key=value instead of the file's, dotted keys")
-      ->allow_extra_args(false);
+  add_overrides(command, arguments->overrides, "the file\'s");
   command.add_option("--out", arguments->out, "folder for weights, checkpoint and tables (out/training/NAME)");
   command.add_flag("--resume", arguments->resume, "go on from the folder's checkpoint");
   command.add_flag("--pause", arguments->pause, "ask the run in the folder to stop at a checkpoint");

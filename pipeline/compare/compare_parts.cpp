@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "pipeline/host/kept_row_json.hpp"
 #include "pipeline/host/numbers_json.hpp"

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "collision/geometry/path_beside.hpp"
@@ -135,9 +134,8 @@ std::string compare_json(const CompareResult& result) {
   Json scenes = Json::array(), rows = Json::array();
   for (const CompareFloor& floor : result.floors) scenes.push_back(floor_json(floor));
   for (const CompareRow& row : result.rows) rows.push_back(row_json(row));
-  const Json json = {
-      {"program_version", program_version()}, {"finished", result.finished}, {"scenes", scenes}, {"rows", rows}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(
+      {{"program_version", program_version()}, {"finished", result.finished}, {"scenes", scenes}, {"rows", rows}});
 }
 
 void write_compare_hdf5(const std::filesystem::path& path, const CompareResult& result) {

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "pipeline/compare/evaluation.hpp"
 #include "pipeline/host/numbers_json.hpp"
@@ -120,7 +119,7 @@ std::string evaluation_json(const Evaluation& e) {
   const Json json = {{"baseline", e.baseline}, {"outfits", outfits},       {"tangled", e.tangled},
                      {"rows", rows},           {"ratios", ratios},         {"shown", e.shown},
                      {"by_frame", by_frame},   {"frames_a_second", speeds}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 }  // namespace selvedge

@@ -112,8 +112,7 @@ std::string distance_text(const DistanceOptions& options, const DrapeLessons& le
   const double queries = lessons.set->world.surface.vertex_count;
   return fmt::format(
       "distances by a network of {} numbers on the bodies to measure on: mean error {:.2f} mm, {:.2f} mm within 5 cm "
-      "of "
-      "the surface (of these {:.1f} % on the wrong side), relative {:.1f} %; {:.3f} GFLOP forward for {:.0f} "
+      "of the surface (of these {:.1f} % on the wrong side), relative {:.1f} %; {:.3f} GFLOP forward for {:.0f} "
       "vertices\n",
       parameter_count(network), 1e3 * errors.absolute, 1e3 * errors.near, errors.wrong_side, errors.relative,
       1e-9 * forward_operations(network, queries), queries);

@@ -11,7 +11,6 @@ namespace selvedge {
 // Changes of a garment by code, each from 0 (unchanged) to 1: width 8 % round the trunk, length 12 % below the armpits,
 // sleeve 20 % beyond the shoulders, neck 25 % of the opening's width.
 using Style = std::array<double, 4>;
-inline constexpr std::array style_names{"width", "length", "sleeve", "neck"};
 
 // Draws a pose with joints in fixed ranges times `range`, which suit garments on trunk and arms. `joints` are the
 // body's names. Joints that SMPL lacks stay unrotated.

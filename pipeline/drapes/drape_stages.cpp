@@ -167,10 +167,8 @@ void add_scales(const DrapeRow& row, const DrapeTrainingOptions& options, const 
     model.neighbours = make_neighbour_scale(shape, options.seed + 100);
   }
   if (!row.learned) return;
-  ScaleShape shape =
-      small_scale_shape(static_cast<int>(model.drape.input_mean.size()), lessons.set->world.surface.vertex_count);
-  shape.latent = options.layer.latent;
-  shape.per_vertex = options.layer.per_vertex;
+  ScaleShape shape{static_cast<int>(model.drape.input_mean.size()), lessons.set->world.surface.vertex_count,
+                   options.layer.latent, options.layer.per_vertex};
   shape.form = row.form;
   shape.unit = options.layer.unit;
   shape.range = row.neural_layer ? ScaleRange::at_least_zero : ScaleRange::at_least_one;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "collision/audit/audit.hpp"
 #include "collision/geometry/error.hpp"
@@ -17,6 +16,7 @@
 #include "pipeline/drapes/drape_path_hdf5.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/host/folder_lock.hpp"
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/read_file.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/motions/clip_procedural.hpp"
@@ -264,11 +264,11 @@ std::string dataset_text(const DatasetSummary& s) {
 }
 
 std::string dataset_json(const DatasetSummary& s) {
-  return nlohmann::ordered_json{{"folder", s.folder.string()},      {"finished", s.finished}, {"vertices", s.vertices},
-                                {"training", s.training},           {"test", s.test},         {"dropped", s.dropped},
-                                {"poses_redrawn", s.poses_redrawn}, {"seconds", s.seconds}}
-             .dump(2) +
-         "\n";
+  const nlohmann::ordered_json json = {
+      {"folder", s.folder.string()},      {"finished", s.finished}, {"vertices", s.vertices},
+      {"training", s.training},           {"test", s.test},         {"dropped", s.dropped},
+      {"poses_redrawn", s.poses_redrawn}, {"seconds", s.seconds}};
+  return json_text(json);
 }
 
 }  // namespace selvedge

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "collision/geometry/floating_point.hpp"
 #include "pipeline/drapes/drape_run.hpp"
 #include "pipeline/formats/neighbour_scale_hdf5.hpp"
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/read_file.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/run/progress.hpp"
@@ -131,10 +131,7 @@ std::string drape_train_json(const DrapeTrainSummary& s) {
                     {"cfmp", row.free.mean},
                     {"laplacian_mm", row.laplacian.mean},
                     {"overshoot_mm", row.overshoot.mean}});
-  return nlohmann::ordered_json{
-             {"folder", s.folder.string()}, {"finished", s.finished}, {"seconds", s.seconds}, {"rows", rows}}
-             .dump(2) +
-         "\n";
+  return json_text({{"folder", s.folder.string()}, {"finished", s.finished}, {"seconds", s.seconds}, {"rows", rows}});
 }
 
 }  // namespace selvedge

@@ -5,13 +5,15 @@
 #include <string>
 #include <type_traits>
 
+#include "pipeline/host/numbers_json.hpp"
+
 namespace selvedge {
 
 // The text of a kept row (kept_rows.hpp): its fields behind its key. What is no UTF-8 in them is replaced.
 inline std::string kept_row_json(const nlohmann::ordered_json& fields, const std::string& key) {
   nlohmann::ordered_json json = {{"key", key}};
   json.update(fields);
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 // What read(json, row) makes of a kept row's text; nothing where the key is another, or a field is missing or of

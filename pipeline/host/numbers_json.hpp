@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 
 namespace selvedge {
 
@@ -12,6 +13,11 @@ inline nlohmann::ordered_json number_or_null(double value) {
 }
 inline nlohmann::ordered_json number_or_null(const std::optional<double>& value) {
   return value ? number_or_null(*value) : nlohmann::ordered_json(nullptr);
+}
+
+// JSON as a command's output and a file have it. What is no UTF-8 is replaced.
+inline std::string json_text(const nlohmann::ordered_json& json) {
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace selvedge

@@ -40,8 +40,7 @@ std::optional<MadeFrame> FramesAhead::next() {
   } catch (const Stopped&) {
     judged.emplace();
     judged->report.by = stepper_.traits().name;
-    judged->report.status = StepStatus::rejected;
-    judged->report.reason = Reason::stopped;
+    reject(Reason::stopped, judged->report);
   }
   return judged;
 }

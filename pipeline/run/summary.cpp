@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "pipeline/host/label_lines.hpp"
 #include "pipeline/host/numbers_json.hpp"
 
 namespace selvedge {
@@ -216,7 +216,7 @@ std::string summary_json(const RunSummary& s) {
   put_totals(s, json);
   json["left_out"] = left_out;
   json["warnings"] = s.warnings;
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 std::string summary_text(const RunSummary& s) {
@@ -225,10 +225,7 @@ std::string summary_text(const RunSummary& s) {
     if (milliseconds >= 0.05) phases += fmt::format("{}{} {:.1f}", phases.empty() ? "" : ", ", name, milliseconds);
   for (const PlanLine& line : s.left_out) out += (out.empty() ? "" : ", ") + line.feature;
 
-  std::string text;
-  const auto add = [&](const char* label, const std::string& value) {
-    text += fmt::format("{:<20}{}\n", label, value);
-  };
+  LabelLines add{20};
   const std::string end = s.end == RunEnd::finished ? "" : fmt::format(", {} {}", end_name(s.end), s.reason);
   if (!s.prepared.empty()) add("start", s.prepared);
   add("frames", fmt::format("{} of {}{}", s.frames, s.frames_wanted, end));
@@ -279,7 +276,7 @@ std::string summary_text(const RunSummary& s) {
   for (const auto& [label, sentence] : label_lines(s)) add(label, sentence);
   add("left out", out.empty() ? "nothing" : out);
   for (const std::string& warning : s.warnings) add("warning", warning);
-  return text;
+  return add.text;
 }
 
 }  // namespace selvedge

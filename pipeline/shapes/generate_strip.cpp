@@ -176,16 +176,4 @@ Mesh make_strip(const StripShape& shape) {
   return mesh;
 }
 
-double smallest_angle(const Mesh& mesh) {
-  double least = std::numbers::pi;
-  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const Eigen::RowVector2d at = mesh.uv.row(mesh.triangles(t, k)),
-                               a = mesh.uv.row(mesh.triangles(t, (k + 1) % 3)) - at,
-                               b = mesh.uv.row(mesh.triangles(t, (k + 2) % 3)) - at;
-      least = std::min(least, std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)));
-    }
-  return least;
-}
-
 }  // namespace selvedge

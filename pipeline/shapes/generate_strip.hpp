@@ -21,7 +21,4 @@ struct StripShape {
 // tip (u = length), grip (the row behind it), side (v = 0).
 Mesh make_strip(const StripShape&);
 
-// The smallest angle of all triangles in their flat coordinates [rad].
-double smallest_angle(const Mesh&);
-
 }  // namespace selvedge

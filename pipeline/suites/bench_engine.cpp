@@ -31,7 +31,7 @@ EdgeSet random_edge_set(const Architecture& a, const std::string& key, const Edg
       set.senders.push_back(edge[sender]);
       set.receivers.push_back(edge[1 - sender]);
     }
-  const int inputs = a.encoders[static_cast<std::size_t>(a.edge_kinds[edge_kind(a, key)].encoder)].inputs;
+  const int inputs = a.encoders[static_cast<std::size_t>(encoder_of(a, key))].inputs;
   set.features = FeatureRows::Random(static_cast<Eigen::Index>(set.senders.size()), inputs);
   return set;
 }

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/suites/bench.hpp"
 
@@ -151,7 +151,7 @@ std::string bench_json(const BenchResult& result) {
   if (result.engine) json["engine"] = engine_json(*result.engine);
   if (!result.training.empty()) json["training"] = training_json(result.training);
   json["members"] = list;
-  return json.dump(2) + "\n";
+  return json_text(json);
 }
 
 std::string bench_csv(const std::vector<BenchMember>& members) {

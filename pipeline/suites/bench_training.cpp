@@ -62,7 +62,6 @@ TrainingTiming time_training(const std::string& preset, int side, int threads, i
   AdamState state = start_adam(a);
   AdamOptions options;
   options.learning_rate = 1e-5;
-  options.schedule = RateSchedule::constant;
   WeightGradients gradients = zero_gradients(a);
   const FeatureRows d_output = FeatureRows::Constant(graph.cloth_nodes, a.outputs, 1e-3f);
   Laps forward, fused, other;
@@ -72,7 +71,7 @@ TrainingTiming time_training(const std::string& preset, int side, int threads, i
       forward.time([&] { output = run_forward(network, graph, tape); });
       set_zero(a, gradients);
       run_backward(network, graph, tape, d_output, gradients);
-      adam_step(a, options, 0, gradients, state, network.weights);
+      adam_step(a, options, gradients, state, network.weights);
       lay_out(network);
     });
     if (torch) other.time([&] { torch_output = torch->train(graph, d_output, options.learning_rate); });

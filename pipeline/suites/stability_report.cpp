@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "pipeline/host/json_csv.hpp"
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/suites/stability.hpp"
 
@@ -100,11 +100,10 @@ std::string stability_csv(const std::vector<StabilityRow>& rows) {
 std::string stability_json(const std::vector<StabilityRow>& rows) {
   Json runs = Json::array();
   for (const StabilityRow& row : rows) runs.push_back(to_json(row));
-  const Json json = {{"program_version", program_version()},
-                     {"passed", failed(rows) == 0},
-                     {"seconds", seconds(rows)},
-                     {"runs", runs}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text({{"program_version", program_version()},
+                    {"passed", failed(rows) == 0},
+                    {"seconds", seconds(rows)},
+                    {"runs", runs}});
 }
 
 }  // namespace selvedge

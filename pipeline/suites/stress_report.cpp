@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "pipeline/host/json_csv.hpp"
 #include "pipeline/host/kept_row_json.hpp"
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/suites/stress.hpp"
 
@@ -84,7 +84,7 @@ std::string stress_json(const std::vector<StressRow>& rows) {
   });
   const Json json = {
       {"program_version", program_version()}, {"passed", failed(rows) == 0}, {"scenes", scenes}, {"repeats", repeats}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 std::string stress_csv(const std::vector<StressRow>& rows) {

@@ -71,8 +71,7 @@ Setup read_row(const WardrobeRequest& request, const Wear& wear, const ClipEntry
 // All outfits of as many garments share this in a clip, because the body's room depends on that number: the body's
 // positions at the frames, and in which frames it passes through itself or did so a few frames before.
 struct ClipBody {
-  PosedBodies known;
-  known.keeps_all = true;
+  PosedBodies known{.at = {}, .keeps_all = true, .skin = {}, .store = {}};
   std::vector<char> excused;
 };
 using ClipBodies = std::map<std::size_t, ClipBody>;  // by the number of garments

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "pipeline/host/json_csv.hpp"
 #include "pipeline/host/kept_row_json.hpp"
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/suites/wardrobe.hpp"
 
@@ -52,8 +52,7 @@ std::string wardrobe_json(const std::vector<WardrobeRow>& rows) {
   Json list = Json::array();
   for (const WardrobeRow& row : rows) list.push_back(to_json(row));
   const bool passed = std::all_of(rows.begin(), rows.end(), [](const WardrobeRow& row) { return row.passed(); });
-  const Json json = {{"program_version", program_version()}, {"passed", passed}, {"rows", list}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text({{"program_version", program_version()}, {"passed", passed}, {"rows", list}});
 }
 
 std::string wardrobe_csv(const std::vector<WardrobeRow>& rows) {

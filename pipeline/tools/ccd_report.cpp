@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
-#include <nlohmann/json.hpp>
 
 #include <fmt/format.h>
 
 #include "collision/contact/ccd.hpp"
 #include "collision/exact/orientation.hpp"
 #include "collision/geometry/floating_point.hpp"
+#include "pipeline/host/label_lines.hpp"
+#include "pipeline/host/numbers_json.hpp"
 
 namespace selvedge {
 namespace {
@@ -81,32 +82,28 @@ CcdReport ccd_report(const std::vector<std::filesystem::path>& files) {
 }
 
 std::string ccd_json(const CcdReport& r) {
-  const nlohmann::ordered_json json = {{"files", r.files},
-                                       {"queries", r.all.queries},
-                                       {"positives", r.all.positives},
-                                       {"false_negatives", r.all.false_negatives},
-                                       {"false_positives", r.all.false_positives},
-                                       {"degenerate", r.degenerate.queries},
-                                       {"degenerate_positives", r.degenerate.positives},
-                                       {"degenerate_false_negatives", r.degenerate.false_negatives},
-                                       {"degenerate_false_positives", r.degenerate.false_positives},
-                                       {"mean_us", r.mean_us},
-                                       {"max_us", r.max_us},
-                                       {"slowest", r.slowest},
-                                       {"wrong", r.wrong}};
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text({{"files", r.files},
+                    {"queries", r.all.queries},
+                    {"positives", r.all.positives},
+                    {"false_negatives", r.all.false_negatives},
+                    {"false_positives", r.all.false_positives},
+                    {"degenerate", r.degenerate.queries},
+                    {"degenerate_positives", r.degenerate.positives},
+                    {"degenerate_false_negatives", r.degenerate.false_negatives},
+                    {"degenerate_false_positives", r.degenerate.false_positives},
+                    {"mean_us", r.mean_us},
+                    {"max_us", r.max_us},
+                    {"slowest", r.slowest},
+                    {"wrong", r.wrong}});
 }
 
 std::string ccd_text(const CcdReport& r) {
-  std::string text;
-  const auto add_line = [&](const char* label, const std::string& value) {
-    text += fmt::format("{:<22}{}\n", label, value);
-  };
-  add_line("all", counted(r.all));
-  add_line("degenerate", counted(r.degenerate));
-  add_line("time", fmt::format("{:.2f} us a query, {:.1f} us at worst ({})", r.mean_us, r.max_us, r.slowest));
-  for (const std::string& name : r.wrong) add_line("wrong", name);
-  return text;
+  LabelLines add{22};
+  add("all", counted(r.all));
+  add("degenerate", counted(r.degenerate));
+  add("time", fmt::format("{:.2f} us a query, {:.1f} us at worst ({})", r.mean_us, r.max_us, r.slowest));
+  for (const std::string& name : r.wrong) add("wrong", name);
+  return add.text;
 }
 
 }  // namespace selvedge

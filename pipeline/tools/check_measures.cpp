@@ -4,6 +4,7 @@
 
 #include "collision/exact/penetration_depth.hpp"
 #include "collision/geometry/error.hpp"
+#include "learned/steppers/learned_scene.hpp"
 #include "physics/energies/measures.hpp"
 #include "physics/scene/make_scene.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
@@ -15,18 +16,13 @@ namespace {
 
 // A scene with the trajectory's cloths, rest shape and obstacles, and with HOOD's material.
 Scene scene_of(const TrajectoryInfo& info) {
-  const VertexMaterial hood;
   Scene scene;
   scene.surface = make_surface(static_cast<int>(info.rest.rows()), info.triangles);
   scene.rest = info.rest;
   scene.rest_triangle = info.rest_triangle;
   scene.pins = info.pins;
   Cloth cloth;
-  cloth.material.density = hood.density;
-  cloth.material.lame_mu = hood.lame_mu;
-  cloth.material.lame_lambda = hood.lame_lambda;
-  cloth.material.bending_model = BendingModel::hinge;
-  cloth.material.bending = hood.bending;
+  cloth.material = isotropic_material(VertexMaterial{});
   cloth.vertex_count = scene.surface.vertex_count;
   cloth.triangle_count = static_cast<int>(info.triangles.rows());
   scene.cloths.push_back(cloth);

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "pipeline/host/label_lines.hpp"
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/measures/run_measures.hpp"
 #include "pipeline/tools/check.hpp"
@@ -68,14 +68,11 @@ std::string check_json(const CheckReport& r) {
   if (r.fcl) json["fcl"] = opinion_json(*r.fcl);
   if (r.volume) json["volume"] = volume_json(*r.volume);
   for (const auto& [name, value] : r.measures) json["measures"][name] = number_or_null(value);
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 std::string check_text(const CheckReport& r) {
-  std::string text;
-  const auto add = [&](const char* label, const std::string& value) {
-    text += fmt::format("{:<22}{}\n", label, value);
-  };
+  LabelLines add{22};
   add(r.trajectory ? "trajectory" : "mesh",
       fmt::format("{} frames, {} vertices, {} triangles, {} bodies", r.frames(), r.vertices, r.triangles, r.bodies));
   add("intersecting pairs",
@@ -88,9 +85,9 @@ std::string check_text(const CheckReport& r) {
   add("degenerate triangles", fmt::format("{}", r.degenerate_triangles));
   if (r.fcl) add("FCL's opinion", opinion_text(*r.fcl));
   if (r.volume) add("enclosed volume", volume_text(*r.volume));
-  for (const auto& [name, value] : r.measures) add(name.c_str(), fmt::format("{:<12.6g} {}", value, meaning_of(name)));
+  for (const auto& [name, value] : r.measures) add(name, fmt::format("{:<12.6g} {}", value, meaning_of(name)));
   for (const std::string& warning : r.warnings) add("warning", warning);
-  return text;
+  return add.text;
 }
 
 }  // namespace selvedge

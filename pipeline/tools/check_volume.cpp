@@ -99,8 +99,7 @@ std::string volume_text(const VolumeFindings& f) {
   const double most = worst == f.volume_by_frame.end() ? 0 : *worst;
   return fmt::format(
       "mean L_sc {:.4g} J, above 0.1 in {:.2f} %, above 0.01 in {:.2f} % of the frames that were made, less {:.4g} J "
-      "of "
-      "the fans at rest; {:.4g} J as published, of all frames; at most {:.4g} cm3, in frame {}; "
+      "of the fans at rest; {:.4g} J as published, of all frames; at most {:.4g} cm3, in frame {}; "
       "{} contours: {} enclose a volume, {} open, {} not orientable, {} unassigned; {} holes closed",
       f.mean_net_loss(), 100 * f.share_above(0.1), 100 * f.share_above(0.01), f.of_fans, f.mean_loss(), 1e6 * most,
       worst - f.volume_by_frame.begin(), f.contours, f.enclosed, f.open, f.not_orientable, f.unassigned,

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "collision/geometry/error.hpp"
@@ -16,6 +15,8 @@
 #include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/config/config_units.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/host/label_lines.hpp"
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/motions/rig_gltf.hpp"
 #include "pipeline/motions/t_pose.hpp"
 
@@ -93,14 +94,11 @@ std::string body_json(const BodyReport& r) {
                                        {"animations", r.animations}, {"meshes", r.meshes},
                                        {"own_pairs", own},           {"own_pairs_counted", !r.crossings.too_many},
                                        {"warnings", r.warnings}};
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 std::string body_text(const BodyReport& r) {
-  std::string text;
-  const auto add = [&](const char* label, const std::string& value) {
-    text += fmt::format("{:<20}{}\n", label, value);
-  };
+  LabelLines add{20};
   add("surface",
       fmt::format("{} vertices, {} triangles, {}", r.vertices, r.triangles, r.closed ? "closed" : "not closed"));
   add("joints", fmt::format("{}, {} shapes", r.joints, r.shapes));
@@ -116,7 +114,7 @@ std::string body_text(const BodyReport& r) {
   add("crosses itself", crossings.empty() ? "nowhere in its zero pose" : "in its zero pose in " + crossings);
   for (const std::string& warning : r.warnings) add("warning", warning);
   add("body", r.out.string());
-  return text;
+  return add.text;
 }
 
 }  // namespace selvedge

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "pipeline/config/config.hpp"
+#include "pipeline/host/label_lines.hpp"
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/tools/dress.hpp"
 
 namespace selvedge {
@@ -11,32 +11,28 @@ std::string dress_json(const DressReport& report) {
   const Garment& garment = report.garment;
   nlohmann::ordered_json groups = nlohmann::ordered_json::object();
   for (const auto& [name, vertices] : garment.groups) groups[name] = vertices.size();
-  const nlohmann::ordered_json json = {{"clean", is_clean(report)},
-                                       {"name", garment.name},
-                                       {"made_for", garment.made_for},
-                                       {"vertices", garment.skin.rest.rows()},
-                                       {"triangles", garment.skin.triangles.rows()},
-                                       {"components", report.components},
-                                       {"groups", groups},
-                                       {"pinned_groups", report.pinned},
-                                       {"pins", garment.pins.size()},
-                                       {"least_distance", report.least_distance},
-                                       {"mean_distance", report.mean_distance},
-                                       {"on_body", report.on_body},
-                                       {"inside_vertices", report.inside_vertices},
-                                       {"self_pairs", report.self_pairs},
-                                       {"body_pairs", report.body_pairs},
-                                       {"reposed", report.reposed},
-                                       {"warnings", report.warnings}};
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text({{"clean", is_clean(report)},
+                    {"name", garment.name},
+                    {"made_for", garment.made_for},
+                    {"vertices", garment.skin.rest.rows()},
+                    {"triangles", garment.skin.triangles.rows()},
+                    {"components", report.components},
+                    {"groups", groups},
+                    {"pinned_groups", report.pinned},
+                    {"pins", garment.pins.size()},
+                    {"least_distance", report.least_distance},
+                    {"mean_distance", report.mean_distance},
+                    {"on_body", report.on_body},
+                    {"inside_vertices", report.inside_vertices},
+                    {"self_pairs", report.self_pairs},
+                    {"body_pairs", report.body_pairs},
+                    {"reposed", report.reposed},
+                    {"warnings", report.warnings}});
 }
 
 std::string dress_text(const DressReport& report) {
   const Garment& garment = report.garment;
-  std::string text;
-  const auto add = [&](const std::string& label, const std::string& value) {
-    text += fmt::format("{:<24}{}\n", label, value);
-  };
+  LabelLines add{24};
   add("garment",
       fmt::format("{}: {} vertices, {} triangles, pieces: {}, for the body {}", garment.name, garment.skin.rest.rows(),
                   garment.skin.triangles.rows(), report.components, garment.made_for));
@@ -49,7 +45,7 @@ std::string dress_text(const DressReport& report) {
   add("intersecting pairs", fmt::format("{} with itself, {} with the body", report.self_pairs, report.body_pairs));
   add("put back into its pose", fmt::format("within {:.2g} m", report.reposed));
   for (const std::string& warning : report.warnings) add("warning", warning);
-  return text;
+  return add.text;
 }
 
 }  // namespace selvedge

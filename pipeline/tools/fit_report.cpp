@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/host/numbers_json.hpp"
@@ -202,9 +201,9 @@ std::string fit_json(const FitReport& report) {
                     {"contact", row.contact},
                     {"pressure", number_or_null(row.pressure)},
                     {"pressure_99", number_or_null(row.pressure_99)}});
-  const Json all = {{"run", report.run},   {"body", report.body},       {"frame", report.frame},
-                    {"time", report.time}, {"regions", report.regions}, {"rows", rows}};
-  return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  const Json json = {{"run", report.run},   {"body", report.body},       {"frame", report.frame},
+                     {"time", report.time}, {"regions", report.regions}, {"rows", rows}};
+  return json_text(json);
 }
 
 }  // namespace selvedge

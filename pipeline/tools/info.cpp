@@ -6,7 +6,6 @@
 
 #include <Eigen/Core>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "collision/search/obstacle.hpp"
 #include "physics/linear/cholesky.hpp"
 #include "pipeline/config/config.hpp"
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/scene/kinds.hpp"
 
@@ -63,7 +63,7 @@ std::string info_json() {
   nlohmann::ordered_json json;
   for (const auto& [name, value] : facts()) json[name] = value;
   json["threads"] = most_threads();
-  return json.dump(2) + "\n";
+  return json_text(json);
 }
 
 std::string info_text() {

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "pipeline/config/config.hpp"
+#include "pipeline/host/label_lines.hpp"
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/tools/sew_garment.hpp"
 
 namespace selvedge {
@@ -47,20 +47,17 @@ std::string pattern_json(const PatternReport& report) {
                  {"seconds", sewn.seconds}});
   }
   json["warnings"] = report.warnings;
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 std::string pattern_text(const PatternReport& report) {
-  std::string text;
-  const auto add = [&](const std::string& label, const std::string& value) {
-    text += fmt::format("{:<24}{}\n", label, value);
-  };
+  LabelLines add{24};
   add("pattern", fmt::format("{} panels, {} seams of {} stitches, {:.3g} m2", report.panels, report.seams,
                              report.stitches, report.area));
   add("smallest angle", fmt::format("{:.3g} degrees", degrees * report.least_angle));
   for (const std::string& warning : report.warnings) add("warning", warning);
   const SewnPattern& sewn = report.sewn;
-  if (sewn.x.rows() == 0) return text;
+  if (sewn.x.rows() == 0) return add.text;
   add("garment", fmt::format("{}: {} vertices, {} triangles, for the body {}", report.garment.name, sewn.x.rows(),
                              sewn.triangles.rows(), report.garment.made_for));
   for (const auto& [name, vertices] : report.garment.groups)
@@ -78,7 +75,7 @@ std::string pattern_text(const PatternReport& report) {
       fmt::format("{} of sewing, {} of draping, {:.3g} s", sewn.closing_frames, sewn.draping_frames, sewn.seconds));
   if (report.raised > 0) add("floor", fmt::format("the soles of the body, {:.3g} m below its origin", report.raised));
   for (const std::string& fault : faults_of(report)) add("not good", fault);
-  return text;
+  return add.text;
 }
 
 }  // namespace selvedge

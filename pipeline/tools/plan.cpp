@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "collision/search/intersections.hpp"
 #include "collision/untangle/caught.hpp"
 #include "physics/linear/linear_solver.hpp"
 #include "physics/scene/features.hpp"
 #include "physics/solve/step_potential.hpp"
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/obstacles/setup_body.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 
@@ -139,16 +139,15 @@ std::string plan_json(const Setup& setup) {
   nlohmann::ordered_json lines = nlohmann::ordered_json::array();
   for (const PlanLine& line : lines_of(setup))
     lines.push_back({{"feature", line.feature}, {"in", line.in}, {"why", line.why}});
-  const nlohmann::ordered_json json = {{"scene", setup.file.string()},
-                                       {"stepper", setup.run.stepper},
-                                       {"frames", setup.run.frames},
-                                       {"fps", setup.run.fps},
-                                       {"vertices", setup.scene.surface.vertex_count},
-                                       {"triangles", setup.scene.surface.triangles.rows()},
-                                       {"self", setup.scene.contact.self ? "audited" : "not audited"},
-                                       {"plan", lines},
-                                       {"warnings", scene_warnings(setup)}};
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text({{"scene", setup.file.string()},
+                    {"stepper", setup.run.stepper},
+                    {"frames", setup.run.frames},
+                    {"fps", setup.run.fps},
+                    {"vertices", setup.scene.surface.vertex_count},
+                    {"triangles", setup.scene.surface.triangles.rows()},
+                    {"self", setup.scene.contact.self ? "audited" : "not audited"},
+                    {"plan", lines},
+                    {"warnings", scene_warnings(setup)}});
 }
 
 std::string plan_text(const Setup& setup) {

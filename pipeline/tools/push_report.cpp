@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/tools/push_mesh.hpp"
 
@@ -24,24 +22,23 @@ nlohmann::ordered_json errors_as_json(const GarmentErrors& errors) {
 }  // namespace
 
 std::string push_json(const PushReport& report) {
-  const nlohmann::ordered_json json = {{"vertices", report.vertices},
-                                       {"triangles", report.triangles},
-                                       {"body_triangles", report.body_triangles},
-                                       {"body_closed", report.body_closed},
-                                       {"body_crosses_itself", report.body_crosses_itself},
-                                       {"before", errors_as_json(report.before)},
-                                       {"after", errors_as_json(report.after)},
-                                       {"pushed", report.pushed},
-                                       {"deep", report.deep},
-                                       {"torn", report.torn},
-                                       {"projected", report.projected},
-                                       {"edges_moved", report.edges},
-                                       {"faces_moved", report.faces},
-                                       {"seconds_distance", report.seconds_distance},
-                                       {"seconds_push", report.seconds_push},
-                                       {"seconds_edges", report.seconds_edges},
-                                       {"warnings", report.warnings}};
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text({{"vertices", report.vertices},
+                    {"triangles", report.triangles},
+                    {"body_triangles", report.body_triangles},
+                    {"body_closed", report.body_closed},
+                    {"body_crosses_itself", report.body_crosses_itself},
+                    {"before", errors_as_json(report.before)},
+                    {"after", errors_as_json(report.after)},
+                    {"pushed", report.pushed},
+                    {"deep", report.deep},
+                    {"torn", report.torn},
+                    {"projected", report.projected},
+                    {"edges_moved", report.edges},
+                    {"faces_moved", report.faces},
+                    {"seconds_distance", report.seconds_distance},
+                    {"seconds_push", report.seconds_push},
+                    {"seconds_edges", report.seconds_edges},
+                    {"warnings", report.warnings}});
 }
 
 std::string push_text(const PushReport& report) {

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
+#include "pipeline/host/label_lines.hpp"
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/tools/untangle_mesh.hpp"
 
 namespace selvedge {
@@ -11,41 +11,37 @@ std::string untangle_json(const UntangleReport& report) {
   nlohmann::ordered_json left = nlohmann::ordered_json::array();
   for (const Remainder& one : r.left)
     left.push_back({{"pairs", one.pairs}, {"length", one.length}, {"reason", one.reason}});
-  const nlohmann::ordered_json json = {{"clean", is_clean(report)},
-                                       {"vertices", report.vertices},
-                                       {"triangles", report.triangles},
-                                       {"bodies", report.bodies},
-                                       {"pairs_before", r.pairs_before},
-                                       {"pairs_after", r.pairs_after},
-                                       {"audited_pairs", report.audited_pairs},
-                                       {"vertex_sharing_pairs_before", r.vertex_pairs_before},
-                                       {"vertex_sharing_pairs_after", r.vertex_pairs_after},
-                                       {"inside_before", report.inside_before},
-                                       {"inside_after", report.inside_after},
-                                       {"contour_length_before", r.length_before},
-                                       {"contour_length_after", r.length_after},
-                                       {"left", left},
-                                       {"iterations", r.iterations},
-                                       {"mean_edge", report.mean_edge},
-                                       {"moved", r.moved},
-                                       {"mean_move", r.mean_move},
-                                       {"max_move", r.max_move},
-                                       {"far_move", r.far_move},
-                                       {"min_stretch", r.least_stretch},
-                                       {"max_stretch", r.largest_stretch},
-                                       {"degenerate_before", report.degenerate_before},
-                                       {"degenerate_after", report.degenerate_after},
-                                       {"seconds", report.seconds},
-                                       {"warnings", report.warnings}};
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text({{"clean", is_clean(report)},
+                    {"vertices", report.vertices},
+                    {"triangles", report.triangles},
+                    {"bodies", report.bodies},
+                    {"pairs_before", r.pairs_before},
+                    {"pairs_after", r.pairs_after},
+                    {"audited_pairs", report.audited_pairs},
+                    {"vertex_sharing_pairs_before", r.vertex_pairs_before},
+                    {"vertex_sharing_pairs_after", r.vertex_pairs_after},
+                    {"inside_before", report.inside_before},
+                    {"inside_after", report.inside_after},
+                    {"contour_length_before", r.length_before},
+                    {"contour_length_after", r.length_after},
+                    {"left", left},
+                    {"iterations", r.iterations},
+                    {"mean_edge", report.mean_edge},
+                    {"moved", r.moved},
+                    {"mean_move", r.mean_move},
+                    {"max_move", r.max_move},
+                    {"far_move", r.far_move},
+                    {"min_stretch", r.least_stretch},
+                    {"max_stretch", r.largest_stretch},
+                    {"degenerate_before", report.degenerate_before},
+                    {"degenerate_after", report.degenerate_after},
+                    {"seconds", report.seconds},
+                    {"warnings", report.warnings}});
 }
 
 std::string untangle_text(const UntangleReport& report) {
   const UntangleResult& r = report.result;
-  std::string text;
-  const auto add = [&](const char* label, const std::string& value) {
-    text += fmt::format("{:<22}{}\n", label, value);
-  };
+  LabelLines add{22};
   add("mesh", fmt::format("{} vertices, {} triangles, {} bodies", report.vertices, report.triangles, report.bodies));
   add("intersecting pairs", fmt::format("{} before, {} after", r.pairs_before, r.pairs_after));
   add("crossing at a vertex", fmt::format("{} before, {} after", r.vertex_pairs_before, r.vertex_pairs_after));
@@ -60,7 +56,7 @@ std::string untangle_text(const UntangleReport& report) {
   for (const Remainder& left : r.left)
     add("left", fmt::format("{} pairs, {:.3g} m: {}", left.pairs, left.length, left.reason));
   for (const std::string& warning : report.warnings) add("warning", warning);
-  return text;
+  return add.text;
 }
 
 }  // namespace selvedge

@@ -4,18 +4,15 @@
 #include <cstdint>
 #include <numbers>
 
+#include "learned/network/uniform_numbers.hpp"
+
 namespace selvedge {
 
-// Random numbers with one number as the whole state, the same on every machine (splitmix64, Steele et al. 2014).
+// Random numbers with one number as the whole state (splitmix64).
 struct RandomStream {
   std::uint64_t state = 0;
 
-  std::uint64_t next() {
-    std::uint64_t z = state += 0x9E3779B97F4A7C15;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
-    return z ^ (z >> 31);
-  }
+  std::uint64_t next() { return splitmix64(state); }
   double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }  // [0, 1)
   double between(double low, double high) { return low + (high - low) * uniform(); }
   int below(int count) { return static_cast<int>(uniform() * count); }  // 0 to count - 1

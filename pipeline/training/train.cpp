@@ -6,11 +6,11 @@
 #include <thread>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/floating_point.hpp"
 #include "learned/network/weights_hdf5.hpp"
+#include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/run/progress.hpp"
@@ -241,22 +241,21 @@ std::string train_text(const TrainSummary& s) {
 
 std::string train_json(const TrainSummary& s) {
   const RollMeasure& r = s.last.roll;
-  return nlohmann::ordered_json{{"folder", s.folder.string()},
-                                {"finished", s.finished},
-                                {"steps", s.counts.step},
-                                {"frames", s.counts.frames},
-                                {"bad_samples", s.counts.bad},
-                                {"lost_rolls", s.counts.lost},
-                                {"seconds", s.seconds},
-                                {"best_step", s.best_step},
-                                {"best_score", s.best_score},
-                                {"worn_closed", s.last.skinned.closed},
-                                {"minimised_closed", s.last.minimised.closed},
-                                {"strain", r.strain},
-                                {"strain_99", r.strain_99},
-                                {"pairs_at_end", r.pairs_at_end}}
-             .dump(2) +
-         "\n";
+  const nlohmann::ordered_json json = {{"folder", s.folder.string()},
+                                       {"finished", s.finished},
+                                       {"steps", s.counts.step},
+                                       {"frames", s.counts.frames},
+                                       {"bad_samples", s.counts.bad},
+                                       {"lost_rolls", s.counts.lost},
+                                       {"seconds", s.seconds},
+                                       {"best_step", s.best_step},
+                                       {"best_score", s.best_score},
+                                       {"worn_closed", s.last.skinned.closed},
+                                       {"minimised_closed", s.last.minimised.closed},
+                                       {"strain", r.strain},
+                                       {"strain_99", r.strain_99},
+                                       {"pairs_at_end", r.pairs_at_end}};
+  return json_text(json);
 }
 
 }  // namespace selvedge

@@ -167,7 +167,6 @@ bool output_gradient(const Trainer& trainer, const RollingState& state, Points g
 AdamOptions adam_options(const Trainer& trainer) {
   const OptimiserOptions& options = trainer.options.optimiser;
   AdamOptions adam;
-  adam.schedule = RateSchedule::constant;
   adam.learning_rate = options.learning_rate * learning_factor(options.decay, progress_of(trainer), trainer.counts.step,
                                                                options.halving_steps, options.floor);
   (options.clip_median ? adam.clip_median : adam.clip_norm) = options.clip;
@@ -252,8 +251,8 @@ void learn(Trainer& trainer, const FrameMaking& making, RollingState& state, Ste
     return;
   }
   backward(trainer, d_output);
-  record.adam = adam_step(trainer.architecture, adam_options(trainer), progress_of(trainer), trainer.gradients,
-                          trainer.adam, trainer.network.weights);
+  record.adam = adam_step(trainer.architecture, adam_options(trainer), trainer.gradients, trainer.adam,
+                          trainer.network.weights);
   if (record.adam.taken)
     place_network(trainer);
   else
@@ -285,7 +284,7 @@ std::unique_ptr<Trainer> make_empty_trainer(const TrainingOptions& options) {
   trainer->options = options;
   trainer->architecture = trained_architecture(options);
   trainer->adam = start_adam(trainer->architecture);
-  trainer->sums = empty_sums<double>(trainer->architecture.features);
+  trainer->sums = empty_sums(trainer->architecture.features);
   trainer->gradients = zero_gradients(trainer->architecture);
   trainer->random = stream_of(options.seed, 0);
   trainer->pool.resize(static_cast<std::size_t>(options.pool.states));

@@ -99,45 +99,36 @@ struct FieldsIn {
   }
 };
 
-std::vector<double> numbers_of(const RollRequest& r) {
-  return {static_cast<double>(r.number),
-          double(r.wear),
-          double(r.body),
-          double(r.clip),
-          double(r.first_frame),
-          double(r.frames),
-          double(r.still),
-          double(r.mirrored),
-          double(r.with_body),
-          double(r.cloth_contact),
-          r.yaw,
-          double(r.sheet),
-          double(r.wind),
-          r.force.x(),
-          r.force.y(),
-          r.force.z()};
+// The numbers of a roll-out in the order of the file.
+template <class Request, class Visit>
+void visit_request(Request& r, const Visit& visit) {
+  const auto visit_all = [&visit](auto&... fields) { (visit(fields), ...); };
+  visit_all(r.number, r.wear, r.body, r.clip, r.first_frame, r.frames, r.still, r.mirrored, r.with_body,
+            r.cloth_contact, r.yaw, r.sheet, r.wind, r.force[0], r.force[1], r.force[2]);
+}
+
+std::vector<double> numbers_of(const RollRequest& request) {
+  std::vector<double> numbers;
+  visit_request(request, [&numbers](const auto& field) { numbers.push_back(static_cast<double>(field)); });
+  return numbers;
 }
 
 constexpr std::size_t request_numbers = 16;
 
 RollRequest request_of(const FieldsIn& in, const TrainingWorld& world, std::span<const double> n) {
-  const auto integer = [&](std::size_t k) { return static_cast<int>(in.whole("roll-out", n[k], 1e9)); };
   if (!std::ranges::all_of(n.first(request_numbers), [](double v) { return std::isfinite(v); }))
     in.fail("has a roll-out of numbers that are not finite");
-  RollRequest r{static_cast<std::uint64_t>(in.whole("roll-out", n[0], 1e15)),
-                integer(1),
-                integer(2),
-                integer(3),
-                integer(4),
-                integer(5),
-                n[6] != 0,
-                n[7] != 0,
-                n[8] != 0,
-                n[9] != 0,
-                n[10],
-                static_cast<HungStart>(integer(11)),
-                n[12] != 0,
-                {n[13], n[14], n[15]}};
+  RollRequest r;
+  std::size_t at = 0;
+  visit_request(r, [&]<class Field>(Field& field) {
+    const double number = n[at++];
+    if constexpr (std::is_same_v<Field, double>)
+      field = number;
+    else if constexpr (std::is_same_v<Field, bool>)
+      field = number != 0;
+    else
+      field = static_cast<Field>(in.whole("roll-out", number, sizeof(Field) > 4 ? 1e15 : 1e9));
+  });
   const bool known = r.wear < int(world.wear.size()) && r.body < int(world.bodies.size()) &&
                      world.wear[std::size_t(r.wear)].person == world.bodies[std::size_t(r.body)].person &&
                      r.clip < int(world.bodies[std::size_t(r.body)].clips.size()) && r.frames >= 1 &&
@@ -163,17 +154,6 @@ void set_weights(const FieldsIn& in, const Architecture& architecture, const std
     at += count;
   }
   if (at != all.size()) in.fail("has too many weights");
-}
-
-template <class Sums, class Visit>
-void visit_sums(Sums& sums, const Visit& visit) {
-  visit("node", sums.node);
-  visit("mesh_edge", sums.mesh_edge);
-  visit("coarse_edge", sums.coarse_edge);
-  visit("world_edge", sums.world_edge);
-  visit("body_edge", sums.body_edge);
-  visit("output", sums.output);
-  visit("space_edge", sums.space_edge);
 }
 
 void write_adam(FieldsOut& out, const Trainer& trainer) {
@@ -374,12 +354,13 @@ void write_training_checkpoint(const std::filesystem::path& path, const Trainer&
     out.text("trained_on", trained_on_json(trainer.trained_on));
     write_counts(out, trainer, history);
     out.floats("weights", all_weights(trainer.architecture, trainer.network.weights));
-    visit_sums(trainer.sums, [&](const std::string& name, const DoubleAccumulators& sums) {
+    const auto write_sums = [&](const std::string& name, const DoubleAccumulators& sums) {
       std::vector<double> values{sums.rows, sums.updates};
       values.insert(values.end(), sums.sum.begin(), sums.sum.end());
       values.insert(values.end(), sums.sum_squared.begin(), sums.sum_squared.end());
       out.numbers("sums_" + name, values);
-    });
+    };
+    visit_statistics(write_sums, trainer.sums);
     write_adam(out, trainer);
     write_pool(out, trainer);
     file.write_text("checksum", fmt::format("{:016x}", out.sum));
@@ -404,7 +385,7 @@ std::unique_ptr<Trainer> read_training_checkpoint(const std::filesystem::path& p
   read_counts(in, *trainer, history);
   NetworkWeights weights = blank_weights(trainer->architecture);
   set_weights(in, trainer->architecture, in.floats("weights"), weights);
-  visit_sums(trainer->sums, [&](const std::string& name, DoubleAccumulators& sums) {
+  const auto read_sums = [&](const std::string& name, DoubleAccumulators& sums) {
     const std::vector<double> values = in.numbers("sums_" + name);
     const auto columns = static_cast<std::ptrdiff_t>(sums.sum.size());
     if (values.size() != 2 + 2 * sums.sum.size()) in.fail("sums of " + name + " have another length");
@@ -412,7 +393,8 @@ std::unique_ptr<Trainer> read_training_checkpoint(const std::filesystem::path& p
     sums.updates = values[1];
     std::copy_n(values.begin() + 2, columns, sums.sum.begin());
     std::copy_n(values.begin() + 2 + columns, columns, sums.sum_squared.begin());
-  });
+  };
+  visit_statistics(read_sums, trainer->sums);
   trainer->adam = read_adam(in, trainer->architecture);
   read_pool(in, *trainer);
   if (fmt::format("{:016x}", in.sum) != file.read_text("checksum")) in.fail("its checksum is wrong: it is damaged");

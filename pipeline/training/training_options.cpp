@@ -338,8 +338,7 @@ std::string training_reference() {
   std::string page = chapters_below(training_options().section);
   page +=
       "### Terms of the objective\n\nEach has two columns in `steps.csv`: its value [J], and `_share`, its share of "
-      "the "
-      "gradient.\n\n| term | weight | what is summed up |\n|---|---|---|\n";
+      "the gradient.\n\n| term | weight | what is summed up |\n|---|---|---|\n";
   for (const LossRow& row : loss_rows())
     page += fmt::format("| `{}` | `objective.{}` | {} |\n", row.name, row.weighs, row.about);
   return page;

@@ -37,16 +37,6 @@ void add_cloth_part(const std::string& name, Points rest, Triangles own, const s
   for (const int pin : pins) scene.pins.push_back(v + pin);
 }
 
-Material isotropic(const VertexMaterial& values) {
-  Material material;
-  material.density = values.density;
-  material.lame_mu = values.lame_mu;
-  material.lame_lambda = values.lame_lambda;
-  material.bending_model = BendingModel::hinge;
-  material.bending = values.bending;
-  return material;
-}
-
 VertexMaterial mixed(const MaterialDraw& draw, double part) {
   if (draw.one == draw.other) return draw.one;
   const auto plain = [&](double a, double b) { return a + part * (b - a); };
@@ -317,7 +307,7 @@ std::shared_ptr<const TrainingScene> make_training_scene(const RollMaker& maker,
                        const std::vector<int>& pins) {
     const MaterialDraw& draw = draws[scene.cloths.size()];
     add_materials(draw, rest, made->materials);
-    add_cloth_part(name, rest, own, pins, request.mirrored, isotropic(mixed(draw, 0.5)), scene, triangles);
+    add_cloth_part(name, rest, own, pins, request.mirrored, isotropic_material(mixed(draw, 0.5)), scene, triangles);
   };
   if (request.sheet != HungStart::none) {
     const HungSheet sheet = hung_sheet(maker.options.samples.edge);

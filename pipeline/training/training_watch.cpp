@@ -120,9 +120,8 @@ void add_depth(const Surface& body, const Points& body_x, const Points& x, Neare
   const std::vector<int>& faces = nearest_centroids(body, body_x, {}, x, search);
   int count = 0;
   for (Eigen::Index v = 0; v < x.rows(); ++v) {
-    const int* corner = body.triangles.data() + 3 * faces[static_cast<std::size_t>(v)];
-    const Vec3 a = row(body_x, corner[0]), b = row(body_x, corner[1]), c = row(body_x, corner[2]);
-    const double depth = -(row(x, static_cast<int>(v)) - (a + b + c) / 3).dot((b - a).cross(c - a).normalized());
+    const CentroidPlane plane = centroid_plane(body, body_x, faces[static_cast<std::size_t>(v)]);
+    const double depth = -(row(x, static_cast<int>(v)) - plane.centroid).dot(plane.normal);
     if (depth > deep) ++count;
     roll.deepest = std::max(roll.deepest, depth);
   }

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/version.hpp"
@@ -110,7 +109,7 @@ std::string validate_json(const std::vector<ValidationRow>& rows) {
                     {"counts", row.counts},
                     {"passed", row.passed},
                     {"seconds", row.seconds}});
-  return Json{{"program_version", program_version()}, {"passed", passed(rows)}, {"rows", list}}.dump(2) + "\n";
+  return json_text({{"program_version", program_version()}, {"passed", passed(rows)}, {"rows", list}});
 }
 
 }  // namespace selvedge

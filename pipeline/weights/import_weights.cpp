@@ -147,15 +147,10 @@ ImportedWeights read_published_weights(const std::filesystem::path& path) {
   imported.architecture = architecture_of(tensors, path.string());
   imported.weights = blank_weights(imported.architecture);
   take_weights(tensors, imported.architecture, imported.weights);
-  const StatisticsSizes& sizes = imported.architecture.statistics;
-  FeatureTables& tables = imported.weights.tables;
-  FeatureSums<float>& sums = imported.sums;
-  take_statistics(tensors, "output", sizes.output, sums.output, tables.output);
-  take_statistics(tensors, "node", sizes.node, sums.node, tables.node);
-  take_statistics(tensors, "mesh_edge", sizes.mesh_edge, sums.mesh_edge, tables.mesh_edge);
-  take_statistics(tensors, "coarse_edge", sizes.coarse_edge, sums.coarse_edge, tables.coarse_edge);
-  take_statistics(tensors, "world_edge", sizes.world_edge, sums.world_edge, tables.world_edge);
-  take_statistics(tensors, "body_edge", sizes.body_edge, sums.body_edge, tables.body_edge);
+  const auto take = [&tensors](const std::string& set, int columns, Accumulators& sums, Statistics& statistics) {
+    take_statistics(tensors, set, columns, sums, statistics);
+  };
+  visit_statistics(take, imported.architecture.statistics, imported.sums, imported.weights.tables);
   imported.numbers = tensors.finish(imported.architecture.name);
   imported.file = shown(path.filename().string());
   imported.bytes = std::filesystem::file_size(path);

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
+
+#include "pipeline/host/label_lines.hpp"
+#include "pipeline/host/numbers_json.hpp"
 
 namespace selvedge {
 namespace {
@@ -11,15 +13,11 @@ namespace {
 using StatisticsColumns = std::vector<std::pair<std::string, int>>;
 
 StatisticsColumns statistics_columns(const Architecture& a) {
-  const StatisticsSizes& s = a.statistics;
   StatisticsColumns present;
-  for (const auto& [name, columns] : StatisticsColumns{{"node", s.node},
-                                                       {"mesh_edge", s.mesh_edge},
-                                                       {"coarse_edge", s.coarse_edge},
-                                                       {"world_edge", s.world_edge},
-                                                       {"body_edge", s.body_edge},
-                                                       {"output", s.output}})
+  const auto add = [&present](const char* name, int columns) {
     if (columns > 0) present.emplace_back(name, columns);
+  };
+  visit_statistics(add, a.statistics);
   return present;
 }
 
@@ -54,26 +52,24 @@ WeightsInfo weights_info(const WeightFile& file) {
 
 std::string weights_info_text(const WeightsInfo& info) {
   const Architecture& a = info.file.architecture;
-  const auto line = [](const std::string& name, const std::string& value) {
-    return fmt::format("{:<20}{}\n", name, value);
-  };
-  std::string text = line("network", a.name);
-  text += line("parameters", fmt::format("{}", info.parameters));
-  text += line("width", fmt::format("{}, {} hidden layers", a.width, a.hidden_layers));
-  text += line("node inputs", fmt::format("{}", a.node_inputs));
+  LabelLines add{20};
+  add("network", a.name);
+  add("parameters", fmt::format("{}", info.parameters));
+  add("width", fmt::format("{}, {} hidden layers", a.width, a.hidden_layers));
+  add("node inputs", fmt::format("{}", a.node_inputs));
   for (const EdgeEncoder& encoder : a.encoders)
-    text += line("edge encoder", fmt::format("{}, {} inputs", encoder.name, encoder.inputs));
+    add("edge encoder", fmt::format("{}, {} inputs", encoder.name, encoder.inputs));
   for (const auto& [count, step] : grouped_steps(a))
-    text += line("steps", fmt::format("{} of {}", count, fmt::join(step.edge_keys, ", ")));
+    add("steps", fmt::format("{} of {}", count, fmt::join(step.edge_keys, ", ")));
   for (const auto& [name, columns] : statistics_columns(a))
-    text += line("statistics", fmt::format("{}, {} columns", name, columns));
-  text += line("integration", fmt::format("{}, {} passes a frame", integration_name(a.integration), a.passes));
-  text += line("constant columns", fmt::format("{}", info.constant_columns));
-  text += line("not finite", fmt::format("{}", info.nonfinite));
-  for (const auto& [name, value] : info.file.origin) text += line(name, value);
-  if (!info.file.training.empty()) text += line("training", info.file.training);
-  text += line("written by", "selvedge " + info.file.version);
-  return text;
+    add("statistics", fmt::format("{}, {} columns", name, columns));
+  add("integration", fmt::format("{}, {} passes a frame", integration_name(a.integration), a.passes));
+  add("constant columns", fmt::format("{}", info.constant_columns));
+  add("not finite", fmt::format("{}", info.nonfinite));
+  for (const auto& [name, value] : info.file.origin) add(name, value);
+  if (!info.file.training.empty()) add("training", info.file.training);
+  add("written by", "selvedge " + info.file.version);
+  return add.text;
 }
 
 std::string weights_info_json(const WeightsInfo& info) {
@@ -85,23 +81,22 @@ std::string weights_info_json(const WeightsInfo& info) {
   for (const MessageStep& step : a.steps) steps.push_back(step.edge_keys);
   for (const auto& [name, columns] : statistics_columns(a)) statistics[name] = columns;
   for (const auto& [name, value] : info.file.origin) origin[name] = value;
-  return Json{{"network", a.name},
-              {"parameters", info.parameters},
-              {"width", a.width},
-              {"hidden_layers", a.hidden_layers},
-              {"node_inputs", a.node_inputs},
-              {"edge_encoders", encoders},
-              {"steps", steps},
-              {"statistics", statistics},
-              {"integration", integration_name(a.integration)},
-              {"passes", a.passes},
-              {"constant_columns", info.constant_columns},
-              {"nonfinite", info.nonfinite},
-              {"origin", origin},
-              {"training", info.file.training},
-              {"version", info.file.version}}
-             .dump(2) +
-         "\n";
+  const Json json = {{"network", a.name},
+                     {"parameters", info.parameters},
+                     {"width", a.width},
+                     {"hidden_layers", a.hidden_layers},
+                     {"node_inputs", a.node_inputs},
+                     {"edge_encoders", encoders},
+                     {"steps", steps},
+                     {"statistics", statistics},
+                     {"integration", integration_name(a.integration)},
+                     {"passes", a.passes},
+                     {"constant_columns", info.constant_columns},
+                     {"nonfinite", info.nonfinite},
+                     {"origin", origin},
+                     {"training", info.file.training},
+                     {"version", info.file.version}};
+  return json_text(json);
 }
 
 }  // namespace selvedge

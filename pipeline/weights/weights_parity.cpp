@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "collision/geometry/error.hpp"
 #include "learned/graph/integration.hpp"
@@ -100,12 +99,7 @@ void compare_sums(const FeatureSums<float>& sums, const StatisticsSizes& sizes, 
     add("acc_sum", ours.sum);
     add("acc_sum_squared", ours.sum_squared);
   };
-  compare("node", sums.node, sizes.node);
-  compare("mesh_edge", sums.mesh_edge, sizes.mesh_edge);
-  compare("coarse_edge", sums.coarse_edge, sizes.coarse_edge);
-  compare("world_edge", sums.world_edge, sizes.world_edge);
-  compare("body_edge", sums.body_edge, sizes.body_edge);
-  compare("output", sums.output, sizes.output);
+  visit_statistics(compare, sums, sizes);
 }
 
 }  // namespace
@@ -174,11 +168,10 @@ std::string parity_json(const ParityReport& report) {
                     {"difference", number_or_null(row.difference)},
                     {"limit", row.limit},
                     {"same", row.difference <= row.limit}});
-  return nlohmann::ordered_json{{"network", report.network}, {"cloth_vertices", report.cloth_vertices},
-                                {"nodes", report.nodes},     {"edges", report.edges},
-                                {"same", is_clean(report)},  {"quantities", rows}}
-             .dump(2) +
-         "\n";
+  const nlohmann::ordered_json json = {{"network", report.network}, {"cloth_vertices", report.cloth_vertices},
+                                       {"nodes", report.nodes},     {"edges", report.edges},
+                                       {"same", is_clean(report)},  {"quantities", rows}};
+  return json_text(json);
 }
 
 }  // namespace selvedge

@@ -1,5 +1,6 @@
 #include <cstdlib>
 
+#include "learned/network/weight_seal.hpp"
 #include "learned/network/weights_hdf5.hpp"
 #include "tests/fuzz/valid_hdf5.hpp"
 
@@ -21,7 +22,7 @@ WeightFile small_network() {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto write = [](const std::filesystem::path& path) { write_weight_file(path, small_network()); };
   return fuzz::with_altered_file(data, size, write, [](const std::filesystem::path& path) {
-    if (std::getenv("SELVEDGE_FUZZ_DAMAGE") == nullptr) seal_weight_file(path);
+    if (std::getenv("SELVEDGE_FUZZ_DAMAGE") == nullptr) write_seal(path);
     const WeightFile file = read_weight_file(path);
     check_weights(file.architecture, file.weights, path.string());
   });

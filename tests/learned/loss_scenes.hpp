@@ -7,6 +7,25 @@
 // Small garments and bodies for the losses.
 namespace selvedge::testing {
 
+// The authors' options, with iterations as fractions of the run. ContourCraft's stages 1 and 2 have 56,000 and do not
+// see contours. Its stage 3 has 11,000, and the contour loss rises in the first 5,000. The released ContourCraft trains
+// without friction.
+inline LossOptions contourcraft_losses() {
+  LossOptions options;
+  options.collision.thickness = 3e-3;
+  options.collision.matching = BodyMatching::nearest_face;
+  options.collision.weight = {5e3, 1e6, 30.0 / 56, 40.0 / 56};
+  options.repulsion.weight = {0, 2e6, 30.0 / 56, 40.0 / 56};
+  return options;
+}
+inline LossOptions contourcraft_final_losses() {
+  LossOptions options = contourcraft_losses();
+  options.collision.weight = {1e6, 1e6};
+  options.repulsion.weight = {2e6, 2e6};
+  options.contours.weight = {0, 1e7, 0, 5.0 / 11};
+  return options;
+}
+
 // Two sheets of n x n cells that cross each other, the second one upright, near a block below.
 struct LossScene {
   Surface cloth, body;

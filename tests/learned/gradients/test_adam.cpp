@@ -36,13 +36,12 @@ TEST_CASE("adam: the first steps by hand", "[learned]") {
   AdamState state = start_adam(a);
   AdamOptions options;
   options.learning_rate = 0.1;
-  options.schedule = RateSchedule::constant;
   double expected = 0;
   const double g[] = {1, -2, .5}, m[] = {.1, -.11, -.049}, v[] = {.001, .004999, .005244001};
   for (int t = 0; t < 3; ++t) {
     WeightGradients gradients = zero_gradients(a);
     gradients.decoder.layers[0].bias[0] = static_cast<float>(g[t]);
-    const AdamReport report = adam_step(a, options, 0, gradients, state, weights);
+    const AdamReport report = adam_step(a, options, gradients, state, weights);
     CHECK(report.taken);
     CHECK(report.norm == Approx(std::abs(g[t])));
     CHECK(report.scale == 1);
@@ -56,18 +55,6 @@ TEST_CASE("adam: the first steps by hand", "[learned]") {
   CHECK(state.steps == 3);
 }
 
-TEST_CASE("adam: the cosine goes from the rate to zero", "[learned]") {
-  AdamOptions options;
-  options.learning_rate = 2;
-  CHECK(learning_rate_at(options, 0) == 2);
-  CHECK(learning_rate_at(options, .5) == Approx(1));
-  CHECK(learning_rate_at(options, 1. / 3) == Approx(1.5));
-  CHECK(learning_rate_at(options, 1) == Approx(0).margin(1e-15));
-  CHECK(learning_rate_at(options, 1.2) == Approx(0).margin(1e-15));
-  options.schedule = RateSchedule::constant;
-  CHECK(learning_rate_at(options, .7) == 2);
-}
-
 TEST_CASE("adam: gradients are clipped to a norm, or to a multiple of the median of the last norms", "[learned]") {
   const Architecture a = with_size("tiny", 4, 1);
   NetworkWeights weights = random_weights(a, 1);
@@ -75,7 +62,7 @@ TEST_CASE("adam: gradients are clipped to a norm, or to a multiple of the median
   AdamOptions options;
   options.clip_norm = 2;
   const WeightGradients gradients = gradients_at(a, 3, 1);
-  const AdamReport report = adam_step(a, options, 0, gradients, state, weights);
+  const AdamReport report = adam_step(a, options, gradients, state, weights);
   CHECK(report.norm > 2);
   CHECK(report.scale * report.norm == Approx(2));
   CHECK(state.first.decoder.layers[0].bias[0] ==
@@ -83,22 +70,22 @@ TEST_CASE("adam: gradients are clipped to a norm, or to a multiple of the median
   options.clip_norm = 0;
   options.clip_median = 3;
   state = start_adam(a);
-  for (int i = 0; i < 5; ++i) CHECK(adam_step(a, options, 0, gradients, state, weights).scale == 1);
-  CHECK(adam_step(a, options, 0, gradients_at(a, 3, 2.9f), state, weights).scale == 1);
-  CHECK(adam_step(a, options, 0, gradients_at(a, 3, 30), state, weights).scale == Approx(.1));
+  for (int i = 0; i < 5; ++i) CHECK(adam_step(a, options, gradients, state, weights).scale == 1);
+  CHECK(adam_step(a, options, gradients_at(a, 3, 2.9f), state, weights).scale == 1);
+  CHECK(adam_step(a, options, gradients_at(a, 3, 30), state, weights).scale == Approx(.1));
 }
 
 TEST_CASE("adam: a gradient that is not finite changes nothing", "[learned]") {
   const Architecture a = with_size("tiny", 4, 1);
   NetworkWeights weights = random_weights(a, 1);
   AdamState state = start_adam(a);
-  adam_step(a, {}, 0, gradients_at(a, 2, 1), state, weights);
+  adam_step(a, {}, gradients_at(a, 2, 1), state, weights);
   const NetworkWeights before = weights;
   const AdamState kept = state;
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     WeightGradients gradients = gradients_at(a, 3, 1);
     gradients.steps[0].node.layers[0].weight(1, 1) = bad;
-    CHECK_FALSE(adam_step(a, {}, 0, gradients, state, weights).taken);
+    CHECK_FALSE(adam_step(a, {}, gradients, state, weights).taken);
     CHECK(same_weights(a, before, weights));
     CHECK(same_weights(a, kept.first, state.first));
     CHECK(state.steps == 1);
@@ -118,8 +105,8 @@ TEST_CASE("adam: training goes on from its arrays with the same bits", "[learned
     }
     const WeightGradients gradients =
         gradients_at(a, 100 + static_cast<unsigned>(step), 1 + .01f * static_cast<float>(step % 7));
-    adam_step(a, options, step / 140., gradients, state, weights);
-    if (step >= 110) adam_step(a, options, step / 140., gradients, again, resumed);
+    adam_step(a, options, gradients, state, weights);
+    if (step >= 110) adam_step(a, options, gradients, again, resumed);
   }
   CHECK(same_weights(a, weights, resumed));
   CHECK(again.steps == 140);
@@ -148,7 +135,7 @@ TEST_CASE("adam: arrays that do not fit are errors that name them", "[learned]")
   CHECK(place([](auto& list) { list.back().values = {-1}; }) == "file: adam/norms");
   NetworkWeights weights = random_weights(a, 1);
   AdamState state = start_adam(a);
-  CHECK_THROWS_AS(adam_step(a, {}, 0, zero_gradients(with_size("tiny", 5, 1)), state, weights), Error);
+  CHECK_THROWS_AS(adam_step(a, {}, zero_gradients(with_size("tiny", 5, 1)), state, weights), Error);
 }
 
 TEST_CASE("initial weights: as published, and a last layer that is nearly zero", "[learned]") {

@@ -138,11 +138,11 @@ TEST_CASE("graph statistics: sums of no rows, of some, and of enough", "[graph]"
   sums.updates = most_updates;
   accumulate(sums, some);
   CHECK(sums.rows == 4);
-  const FeatureSums<double> empty = empty_sums<double>(contourcraft_features());
+  const FeatureSums<double> empty = empty_sums(contourcraft_features());
   CHECK(empty.node.sum.size() == 20);
   CHECK(empty.world_edge.sum.size() == 16);
   CHECK(empty.body_edge.sum.size() == 12);
-  CHECK(empty_sums<double>(hood_features()).world_edge.sum.size() == 9);
+  CHECK(empty_sums(hood_features()).world_edge.sum.size() == 9);
 }
 
 }  // namespace selvedge::test_graph_statistics

@@ -3,6 +3,7 @@
 
 #include "collision/geometry/distance.hpp"
 #include "learned/losses/objective.hpp"
+#include "tests/learned/loss_scenes.hpp"
 #include "tests/learned/parity_pack.hpp"
 
 namespace selvedge::test_loss_parity {
@@ -122,7 +123,7 @@ Segments their_crossings(const LossFile& file, std::size_t state) {
 
 // In a file's state: every term alone, with the weight that is inside the authors' values.
 LossOptions options_at(const LossFile& file, std::size_t state) {
-  LossOptions options = file.hood ? hood_losses() : contourcraft_final_losses();
+  LossOptions options = file.hood ? hood_losses() : testing::contourcraft_final_losses();
   const auto fix = [](LossRamp& ramp, double weight) { ramp = {weight, weight}; };
   if (file.hood) {
     fix(options.collision.weight, file.npz.numbers("collision_weight").values[state]);
@@ -259,8 +260,9 @@ TEST_CASE("loss parity: ramps give the weights of the authors' iterations", "[lo
   const NpyArray<double> weights = fold.npz.numbers("weights");
   for (std::size_t i = 0; i < stage.size(); ++i) {
     const auto theirs = [&](const char* loss) { return weights.values[i * fold.losses.size() + column(loss)]; };
-    CHECK(weight_at(contourcraft_losses().collision.weight, stage[i] / 56e3) == Approx(theirs("collision_penalty")));
-    CHECK(weight_at(contourcraft_final_losses().contours.weight, (stage[i] - 45e3) / 11e3) ==
+    CHECK(weight_at(testing::contourcraft_losses().collision.weight, stage[i] / 56e3) ==
+          Approx(theirs("collision_penalty")));
+    CHECK(weight_at(testing::contourcraft_final_losses().contours.weight, (stage[i] - 45e3) / 11e3) ==
           Approx(theirs("icontour")));
   }
 }

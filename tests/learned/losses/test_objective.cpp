@@ -7,6 +7,8 @@
 namespace selvedge::test_objective {
 
 using testing::all_losses;
+using testing::contourcraft_final_losses;
+using testing::contourcraft_losses;
 using testing::LossScene;
 
 namespace {
@@ -147,16 +149,6 @@ TEST_CASE("objective: what does not fit is an error", "[losses]") {
   CHECK_THROWS_AS(add_losses({}, hood_losses(), search, nullptr), Error);
 }
 
-TEST_CASE("objective: to and from single precision", "[losses]") {
-  const std::vector<float> rows{1, 2, 3, 4, 5, 6};
-  const Points points = points_of(rows);
-  CHECK((points.rows() == 2 && points(1, 0) == 4));
-  std::vector<float> sums = rows;
-  add_to(points, sums);
-  CHECK(sums[5] == 12);
-  CHECK(points_of({}).rows() == 0);
-}
-
 TEST_CASE("force input: a hanging triangle, by hand", "[losses]") {
   Points rest(3, 3);
   rest << 0, 0, 0, 1, 0, 0, 0, 0, 1;
@@ -179,7 +171,7 @@ TEST_CASE("force input: a hanging triangle, by hand", "[losses]") {
   LossSearch search;
   const Points force = force_input(in, hood_losses(), {}, search);
   CHECK(force.row(0).norm() == 0);
-  CHECK(force(1, 1) == Approx(-std::log1p(9.81 / 105.5 / 1e-3)));
+  CHECK(force(1, 1) == Approx(-9.81 / 105.5));
   CHECK(force(1, 0) == Approx(0).margin(1e-15));
 }
 
@@ -196,9 +188,11 @@ TEST_CASE("force input: a soft body, contours and inertia join where they are as
   inertia.inertia = true;
   const Points bare = input(none);
   CHECK(bare.allFinite());
-  CHECK((input({}) - bare).norm() > 1e-3);
-  CHECK((input(contours) - bare).norm() > 1e-3);
-  CHECK((input(inertia) - bare).norm() > 1e-3);
+  const double least = 1e-3 * bare.norm();
+  CHECK(least > 0);
+  CHECK((input({}) - bare).norm() > least);
+  CHECK((input(contours) - bare).norm() > least);
+  CHECK((input(inertia) - bare).norm() > least);
   Points far = scene.predicted;
   far(5, 0) = std::numeric_limits<double>::infinity();
   LossInputs in = scene.inputs();

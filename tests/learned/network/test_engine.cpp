@@ -6,6 +6,7 @@
 #include "collision/geometry/stop_scope.hpp"
 #include "learned/network/engine_bench.hpp"
 #include "learned/network/packed_network.hpp"
+#include "tests/learned/network_by_definition.hpp"
 #include "tests/learned/random_graph.hpp"
 #include "tests/threads.hpp"
 
@@ -33,7 +34,7 @@ void check_same(const Architecture& a, const Graph& graph, InstructionSet set) {
   const NetworkWeights weights = random_weights(a, 5);
   LatentTrace ours, theirs;
   const FeatureRows output = infer(*pack_network(a, weights, set), graph, &ours);
-  CHECK(difference(output, infer_by_definition(a, weights, graph, &theirs)) < 1e-5f);
+  CHECK(difference(output, by_definition::infer(a, weights, graph, &theirs)) < 1e-5f);
   CHECK(output.rows() == graph.cloth_nodes);
   REQUIRE(ours.nodes.size() == theirs.nodes.size());
   for (std::size_t i = 0; i < ours.nodes.size(); ++i) CHECK(difference(ours.nodes[i], theirs.nodes[i]) < 1e-5f);

@@ -2,6 +2,7 @@
 
 #include "learned/network/engine.hpp"
 #include "learned/network/packed_network.hpp"
+#include "tests/learned/network_by_definition.hpp"
 #include "tests/learned/recorded_network.hpp"
 
 namespace selvedge::test_network_parity {
@@ -99,7 +100,7 @@ TEST_CASE("network parity: by definition, every recorded step has the authors' o
     const Architecture a = recorded::recorded_architecture(model);
     const NetworkWeights weights = recorded::formula_weights(model);
     check_all(model,
-              [&](const Graph& graph, LatentTrace* trace) { return infer_by_definition(a, weights, graph, trace); });
+              [&](const Graph& graph, LatentTrace* trace) { return by_definition::infer(a, weights, graph, trace); });
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "learned/network/architecture_text.hpp"
+#include "learned/network/weight_seal.hpp"
 #include "learned/network/weights_hdf5.hpp"
 #include "tests/pipeline/files.hpp"
 
@@ -52,7 +53,7 @@ void replace(const std::filesystem::path& path, const std::string& field, hid_t 
     H5Sclose(space);
   }
   H5Fclose(file);
-  seal_weight_file(path);
+  write_seal(path);
 }
 
 void replace_text(const std::filesystem::path& path, const std::string& field, const std::string& text) {
@@ -246,7 +247,7 @@ TEST_CASE("weight file: values that lie elsewhere are refused", "[learned]") {
   H5Ldelete(file, field.c_str(), H5P_DEFAULT);
   H5Lcreate_external(other.c_str(), field.c_str(), file, field.c_str(), H5P_DEFAULT, H5P_DEFAULT);
   H5Fclose(file);
-  seal_weight_file(path);
+  write_seal(path);
   CHECK_THAT(problem(path), Catch::Matchers::Contains("another file"));
 
   fake::write(folder, "raw", std::string(12, 'x'));
@@ -261,7 +262,7 @@ TEST_CASE("weight file: values that lie elsewhere are refused", "[learned]") {
   H5Sclose(space);
   H5Pclose(creation);
   H5Fclose(file);
-  seal_weight_file(path);
+  write_seal(path);
   CHECK_THAT(problem(path), Catch::Matchers::Contains("does not write"));
 }
 

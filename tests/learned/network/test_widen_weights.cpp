@@ -4,6 +4,7 @@
 #include "learned/network/engine.hpp"
 #include "learned/network/widen_weights.hpp"
 #include "tests/learned/graph_scenes.hpp"
+#include "tests/learned/network_by_definition.hpp"
 
 namespace selvedge::test_widen_weights {
 
@@ -19,8 +20,9 @@ FeatureRows result_of(const Architecture& a, const NetworkWeights& weights, cons
   GraphSearch search;
   GraphReport report;
   const RestGraph rest = make_rest_graph(world.scene, a.features);
-  const Graph graph = make_graph(world.scene, rest, world.state, a.features, weights.tables, search, report);
-  return infer_by_definition(a, weights, graph);
+  Graph graph;
+  make_graph(world.scene, rest, world.state, a.features, weights.tables, search, graph, report);
+  return by_definition::infer(a, weights, graph);
 }
 
 }  // namespace

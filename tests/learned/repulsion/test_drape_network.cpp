@@ -62,7 +62,7 @@ std::vector<const DrapeCase*> pointers(const Ball& ball) {
 DrapeModel model_of(const Ball& ball, bool learned) {
   DrapeModel model{make_drape_network({3, 12, 0.5}, pointers(ball), 3), {}};
   if (!learned) return model;
-  ScaleShape shape = small_scale_shape(3, 16);
+  ScaleShape shape{3, 16, 64};
   shape.latent = 8;
   shape.per_vertex = 4;
   model.scale = make_scale_network(shape, 5);

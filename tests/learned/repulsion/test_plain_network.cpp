@@ -29,12 +29,17 @@ PlainNetwork skipping_network() {
   return made;
 }
 
+FeatureRows tangents_of(const ValueAndGradient& made, const FeatureRows& directions) {
+  return made.gradient.cwiseProduct(directions).rowwise().sum();
+}
+
 // A loss of outputs and of their derivatives in the directions, in double.
 double loss_of(const PlainNetwork& n, const FeatureRows& inputs, const FeatureRows& directions) {
-  const ValueAndTangent made = evaluate_with_tangent(n, inputs, directions);
+  const ValueAndGradient made = evaluate_with_gradient(n, inputs, n.inputs());
+  const FeatureRows tangents = tangents_of(made, directions);
   double loss = 0;
   for (Eigen::Index i = 0; i < inputs.rows(); ++i)
-    loss += 0.5 * std::pow(made.value(i, 0) - 0.3, 2) + 0.25 * std::pow(made.tangent(i, 0) - 0.1, 2);
+    loss += 0.5 * std::pow(made.value(i, 0) - 0.3, 2) + 0.25 * std::pow(tangents(i, 0) - 0.1, 2);
   return loss;
 }
 
@@ -43,8 +48,8 @@ double loss_of(const PlainNetwork& n, const FeatureRows& inputs, const FeatureRo
 TEST_CASE("plain network: gradients of values and of derivatives agree with differences", "[plain_network]") {
   PlainNetwork network = skipping_network();
   const FeatureRows inputs = random_rows(7, 5, 1), directions = random_rows(7, 5, 2);
-  const ValueAndTangent made = evaluate_with_tangent(network, inputs, directions);
-  PlainAdjoints adjoints{made.value.array() - 0.3f, 0.5f * (made.tangent.array() - 0.1f)};
+  const ValueAndGradient made = evaluate_with_gradient(network, inputs, network.inputs());
+  PlainAdjoints adjoints{made.value.array() - 0.3f, 0.5f * (tangents_of(made, directions).array() - 0.1f)};
   const PlainGradients gradients = backward(network, inputs, directions, adjoints);
 
   constexpr float step = 3e-3f;
@@ -76,19 +81,15 @@ TEST_CASE("plain network: gradients of values and of derivatives agree with diff
   }
 }
 
-TEST_CASE("plain network: the gradient by the inputs is the tangents of unit directions", "[plain_network]") {
+TEST_CASE("plain network: the gradient by the inputs is what goes back from the output", "[plain_network]") {
   for (const Bend bend : {Bend::softplus, Bend::rectified}) {
     PlainNetwork network = skipping_network();
     network.bend = bend;
     const FeatureRows inputs = random_rows(300, 5, 4);
     const ValueAndGradient made = evaluate_with_gradient(network, inputs, 3);
     CHECK(made.value == evaluate(network, inputs));
-    for (int k = 0; k < 3; ++k) {
-      FeatureRows directions = FeatureRows::Zero(inputs.rows(), 5);
-      directions.col(k).setOnes();
-      const FeatureRows tangents = evaluate_with_tangent(network, inputs, directions).tangent;
-      CHECK((tangents - made.gradient.col(k)).cwiseAbs().maxCoeff() < 1e-5f);
-    }
+    const PlainGradients gradients = backward(network, inputs, {}, {FeatureRows::Ones(inputs.rows(), 1), {}});
+    CHECK((gradients.inputs.leftCols(3) - made.gradient).cwiseAbs().maxCoeff() < 1e-5f);
   }
 }
 
@@ -105,9 +106,9 @@ TEST_CASE("plain network: threads change no bit; shapes without a layer are refu
 }
 
 TEST_CASE("scale network: the paper's sizes have the paper's numbers of parameters", "[plain_network]") {
-  const ScaleShape paper = paper_scale_shape(72 + 10 + 4, 9723);
+  const ScaleShape paper{72 + 10 + 4, 9723};
   CHECK(shared_latent_width(paper) / 9723.0 == Approx(9.9).epsilon(0.01));
-  ScaleShape shape = paper_scale_shape(86, 30);
+  ScaleShape shape{86, 30};
   const ScaleNetwork made = make_scale_network(shape, 1);
   CHECK(parameter_count(made.h) == 2188288);
   CHECK(parameter_count(made.k) == 10250 * 30);
@@ -124,7 +125,7 @@ TEST_CASE("scale network: rows of k alone give what the whole of it gives, and t
           "[plain_network]") {
   for (const ScaleForm form : {ScaleForm::vertex_latents, ScaleForm::shared_latent, ScaleForm::distance_only})
     for (const ScaleRange range : {ScaleRange::at_least_one, ScaleRange::at_least_zero}) {
-      ScaleShape shape = small_scale_shape(6, 20);
+      ScaleShape shape{6, 20, 64};
       shape.form = form;
       shape.range = range;
       ScaleNetwork network = make_scale_network(shape, 3);
@@ -154,8 +155,8 @@ TEST_CASE("scale network: rows of k alone give what the whole of it gives, and t
         CHECK(found.alpha[i] == Approx(scale_end(range, sum)).epsilon(1e-5));
       }
     }
-  CHECK_THROWS_AS(make_scale_network(small_scale_shape(0, 20), 1), Error);
-  const ScaleNetwork network = make_scale_network(small_scale_shape(2, 3), 1);
+  CHECK_THROWS_AS(make_scale_network({0, 20, 64}, 1), Error);
+  const ScaleNetwork network = make_scale_network({2, 3, 64}, 1);
   CHECK_THROWS_AS(ScaleEvaluator(network, std::vector<float>{1}), Error);
 }
 

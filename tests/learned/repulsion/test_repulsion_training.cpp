@@ -16,7 +16,7 @@ struct LayerCase : fake::DressedBlob {
   double most_beyond = std::numeric_limits<double>::infinity();
 
   explicit LayerCase(ScaleForm form) : DressedBlob(10, 8), truth(1.3 * garment.x) {
-    ScaleShape shape = small_scale_shape(3, garment.surface.vertex_count);
+    ScaleShape shape{3, garment.surface.vertex_count, 64};
     shape.latent = 12;
     shape.unit = 0.1;
     shape.form = form;

@@ -53,7 +53,8 @@ struct ByHand {
     GraphSearch search;
     GraphReport found;
     const FeatureTables& tables = network.weights.tables;
-    const Graph graph = make_graph(graph_scene, rest, state, network.architecture.features, tables, search, found);
+    Graph graph;
+    make_graph(graph_scene, rest, state, network.architecture.features, tables, search, graph, found);
     return integrate(rest, state, network.architecture.features, tables.output,
                      infer(*pack_network(network.architecture, network.weights), graph));
   }

@@ -5,6 +5,7 @@
 #include "collision/geometry/factorisations.hpp"
 #include "physics/energies/bending.hpp"
 #include "tests/physics/meshes.hpp"
+#include "tests/physics/single_elements.hpp"
 
 namespace selvedge::test_bending {
 
@@ -12,6 +13,9 @@ using meshes::grid;
 using meshes::make_scene;
 using meshes::Mesh;
 using meshes::Pattern;
+using single::hinge_derivatives;
+using single::Mat12;
+using single::Vec12;
 
 namespace {
 

@@ -4,9 +4,14 @@
 #include <numbers>
 #include <random>
 
-#include "physics/energies/hinge_lanes.hpp"
+#include "tests/physics/single_elements.hpp"
 
 namespace selvedge::test_hinge_lanes {
+
+using single::hinge_derivatives;
+using single::Mat12;
+using single::Vec12;
+
 namespace {
 
 // Loose hinges with four vertices each, of every kind; the last ones are degenerate.

@@ -3,6 +3,7 @@
 #include "physics/energies/measures.hpp"
 #include "physics/scene/stepper.hpp"
 #include "tests/physics/meshes.hpp"
+#include "tests/physics/single_elements.hpp"
 
 namespace selvedge::test_measures {
 
@@ -55,7 +56,7 @@ TEST_CASE("measures: elastic energies are sums over the terms, each cloth with i
   CHECK(terms.membrane.size() == 24 + 18);
   double membrane = 0, bending = 0;
   for (const MembraneElement& element : terms.membrane)
-    membrane += membrane_energy(scene.cloths[element.material].material, element, x);
+    membrane += single::membrane_energy(scene.cloths[element.material].material, element, x);
   for (const Hinge& hinge : terms.hinges) bending += hinge_energy(hinge, x);
   CHECK(bending > 0);
   for (int k = 0; k < 3; ++k) bending += 0.5 * x.col(k).dot(terms.curvature.flat * x.col(k));

@@ -1,3 +1,4 @@
+#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -5,8 +6,14 @@
 #include "physics/energies/membrane.hpp"
 #include "physics/energies/membrane_lanes.hpp"
 #include "tests/physics/meshes.hpp"
+#include "tests/physics/single_elements.hpp"
 
 namespace selvedge::test_membrane {
+
+using single::Mat9;
+using single::membrane_derivatives;
+using single::membrane_energy;
+using single::Vec9;
 
 namespace {
 
@@ -106,8 +113,9 @@ Mat9 numeric_hessian(const Material& material, const MembraneElement& element, c
 }
 
 Mat9 clamped(const Mat9& matrix) {
-  const Spectrum spectrum = symmetric_spectrum(matrix);
-  return spectrum.vectors * spectrum.values.cwiseMax(0).asDiagonal() * spectrum.vectors.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(matrix);
+  return spectrum.eigenvectors() * spectrum.eigenvalues().cwiseMax(0).asDiagonal() *
+         spectrum.eigenvectors().transpose();
 }
 
 // Stretch pairs that meet every case: rest, equal, compressed, nearly and fully degenerate.

@@ -4,6 +4,7 @@
 
 #include "physics/solve/assembly.hpp"
 #include "tests/physics/meshes.hpp"
+#include "tests/physics/single_elements.hpp"
 #include "tests/threads.hpp"
 
 namespace selvedge::test_assembly {
@@ -74,16 +75,16 @@ TEST_CASE("Assembly adds up every element, each where it belongs", "[assembly]")
     }
   };
   for (const MembraneElement& element : elastic.membrane) {
-    Vec9 g;
-    Mat9 h;
-    energy += membrane_energy(elastic.materials[element.material], element, x);
-    membrane_derivatives(elastic.materials[element.material], element, x, g, &h);
+    single::Vec9 g;
+    single::Mat9 h;
+    energy += single::membrane_energy(elastic.materials[element.material], element, x);
+    single::membrane_derivatives(elastic.materials[element.material], element, x, g, &h);
     add(element.nodes, g, h);
   }
   for (const Hinge& hinge : elastic.hinges) {
-    Vec12 g;
-    Mat12 h;
-    energy += hinge_derivatives(hinge, x, g, &h);
+    single::Vec12 g;
+    single::Mat12 h;
+    energy += single::hinge_derivatives(hinge, x, g, &h);
     add(hinge.nodes, g, h);
   }
   for (const CurvedVertex& vertex : elastic.curved) {

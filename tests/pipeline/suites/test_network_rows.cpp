@@ -77,9 +77,10 @@ TEST_CASE("stability: the pile has more pairs within reach than a graph takes", 
   const State& start = setup.initial;
   GraphSearch search;
   GraphReport found;
+  Graph graph;
   make_graph(scene, make_rest_graph(scene, architecture.features, {}),
              graph_state(setup.scene, start, setup.drive_at(0)), architecture.features,
-             random_weights(architecture, 1).tables, search, found);
+             random_weights(architecture, 1).tables, search, graph, found);
   CHECK(found.refused.empty());
   CHECK(found.cloth_pairs_beyond > setup.scene.surface.vertex_count);
 }

@@ -12,6 +12,23 @@
 
 namespace selvedge::test_validate {
 
+namespace {
+
+// Of all triangles in their flat coordinates [rad].
+double smallest_angle(const Mesh& mesh) {
+  double least = std::numbers::pi;
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::RowVector2d at = mesh.uv.row(mesh.triangles(t, k)),
+                               a = mesh.uv.row(mesh.triangles(t, (k + 1) % 3)) - at,
+                               b = mesh.uv.row(mesh.triangles(t, (k + 2) % 3)) - at;
+      least = std::min(least, std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)));
+    }
+  return least;
+}
+
+}  // namespace
+
 TEST_CASE("the elastica has the master curve of the literature") {
   const std::vector<std::pair<double, double>> curve{{0.1, 0.012500}, {1, 0.124562}, {2, 0.246673}, {5, 0.585721},
                                                      {10, 1.0668},    {20, 1.8639},  {50, 3.7056},  {100, 5.8881}};

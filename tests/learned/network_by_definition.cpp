@@ -1,9 +1,10 @@
+#include "tests/learned/network_by_definition.hpp"
+
 #include <cmath>
 
-#include "learned/network/engine.hpp"
 #include "learned/network/graph_plan.hpp"
 
-namespace selvedge {
+namespace selvedge::by_definition {
 namespace {
 
 constexpr float norm_epsilon = 1e-5f;
@@ -93,14 +94,13 @@ void pass_messages(const MessageStep& step, const StepWeights& weights, const Gr
 
 }  // namespace
 
-FeatureRows infer_by_definition(const Architecture& a, const NetworkWeights& weights, const Graph& graph,
-                                LatentTrace* trace) {
+FeatureRows infer(const Architecture& a, const NetworkWeights& weights, const Graph& graph, LatentTrace* trace) {
   check_weights(a, weights, "network");
   check_graph(a, graph);
   FeatureRows nodes = evaluate_rows(weights.node_encoder, graph.nodes);
   std::vector<FeatureRows> edges;
   for (const EdgeSet& set : graph.edge_sets)
-    edges.push_back(evaluate_rows(weights.encoders[a.edge_kinds[edge_kind(a, set.key)].encoder], set.features));
+    edges.push_back(evaluate_rows(weights.encoders[encoder_of(a, set.key)], set.features));
   if (trace) *trace = {{nodes}, edges, {}};
   for (std::size_t step = 0; step < a.steps.size(); ++step) {
     pass_messages(a.steps[step], weights.steps[step], graph, nodes, edges);
@@ -110,4 +110,4 @@ FeatureRows infer_by_definition(const Architecture& a, const NetworkWeights& wei
   return evaluate_rows(weights.decoder, nodes.topRows(graph.cloth_nodes));
 }
 
-}  // namespace selvedge
+}  // namespace selvedge::by_definition
