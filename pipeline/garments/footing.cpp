@@ -8,6 +8,7 @@ namespace {
 constexpr double first_part = 0.25, last_part = 0.5;  // of a gap: squeezed from the first on, toward the second
 constexpr double near = 0.03, far = 0.06;             // from the foot: nearer squeezed in full, farther not [m]
 constexpr double beside = 0.01;                       // this near to the line out from the foot counts as on it [m]
+constexpr double cell = far / 2;                      // edge of the cubes in which other parts are looked for [m]
 constexpr double facing = -0.3;                       // largest cosine of its normal with the direction out
 
 // For each foot the distance along the line out to x at which another part of the body begins [m]. A part beside the
@@ -35,7 +36,7 @@ std::vector<double> gaps(const std::vector<int>& foot, const PosedSkin& body, co
 
 PosedSkin::PosedSkin(const Surface& body, const Points& posed)
     : x(posed),
-      grid(posed, far),
+      grid(posed, cell),
       x_in_order(posed(grid.order(), Eigen::all)),
       normals_in_order(vertex_normals(body, posed)(grid.order(), Eigen::all)) {}
 
