@@ -15,7 +15,7 @@
 namespace selvedge {
 namespace {
 
-constexpr std::size_t most_numbers = std::size_t{25} << 20;  // that a store holds
+constexpr std::size_t most_in_store = std::size_t{25} << 20;  // that a store holds
 
 const h5::FileForm tissue_form{"selvedge tissue 1", "soft tissue", "docs/bodies.md"};
 
@@ -76,7 +76,7 @@ void keep_tissue(const Points& skinned, const Points& given, TissueStore& store)
     if (given.row(v) != skinned.row(v)) pose.vertices.push_back(v);
   pose.x = given(pose.vertices, Eigen::all);
   const auto count = static_cast<std::size_t>(pose.x.size());
-  if (store.numbers + count > most_numbers) return;
+  if (store.numbers + count > most_in_store) return;
   store.numbers += count;
   store.grown = true;
   store.poses[key_of(skinned)] = std::move(pose);
