@@ -25,6 +25,10 @@ void add_if_close(const Surface& surface, const Points& x, int vertex, int face,
 
 auto place_of(const ClothPair& pair) { return std::pair(pair.vertex, pair.face); }
 
+void sort_by_place(std::vector<ClothPair>& pairs) {
+  std::sort(pairs.begin(), pairs.end(), [](const auto& a, const auto& b) { return place_of(a) < place_of(b); });
+}
+
 }  // namespace
 
 SheetView refreshed_sheet(const Surface& surface, const Points& x, ClothSearch& search) {
@@ -61,20 +65,18 @@ std::vector<ClothPair> find_cloth_pairs(const Surface& surface, const Points& x,
     }
     return looked;
   });
-  std::sort(pairs.begin(), pairs.end(), [](const auto& a, const auto& b) { return place_of(a) < place_of(b); });
+  sort_by_place(pairs);
   return pairs;
 }
 
 int keep_nearest_pairs(std::vector<ClothPair>& pairs, std::size_t most) {
   if (pairs.size() <= most) return 0;
   const int left_out = static_cast<int>(pairs.size() - most);
-  std::vector<ClothPair> sorted = pairs;
-  std::sort(sorted.begin(), sorted.end(), [](const ClothPair& a, const ClothPair& b) {
+  std::sort(pairs.begin(), pairs.end(), [](const ClothPair& a, const ClothPair& b) {
     return std::pair(a.height, place_of(a)) < std::pair(b.height, place_of(b));
   });
-  sorted.resize(most);
-  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return place_of(a) < place_of(b); });
-  pairs = std::move(sorted);
+  pairs.resize(most);
+  sort_by_place(pairs);
   return left_out;
 }
 

@@ -19,6 +19,7 @@
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/read_file.hpp"
 #include "pipeline/host/write_file.hpp"
+#include "pipeline/measures/motion_measures.hpp"
 #include "pipeline/motions/clip_procedural.hpp"
 #include "pipeline/run/progress.hpp"
 
@@ -121,10 +122,8 @@ bool advance(PathMaker& maker, const BodyPose& at) {
 }
 
 double speed_of_fast_ones(const Points& v) {
-  Eigen::VectorXd speeds = v.rowwise().norm();
-  const auto place = static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(speeds.size() - 1));
-  std::nth_element(speeds.begin(), speeds.begin() + place, speeds.end());
-  return speeds[place];
+  const Eigen::VectorXd speeds = v.rowwise().norm();
+  return percentile({speeds.begin(), speeds.end()}, 0.99);
 }
 
 // The reason to drop the drape; empty: it is kept.
