@@ -214,6 +214,23 @@ NpyArray<T> read_array(std::string_view bytes, const NpyPlace& place, const Conv
   return array;
 }
 
+void append_utf8(std::string& text, std::uint32_t code) {
+  const auto put = [&](std::uint32_t byte) { text += static_cast<char>(byte); };
+  if (code < 0x80) return put(code);
+  if (code < 0x800) {
+    put(0xC0 | code >> 6);
+  } else {
+    if (code < 0x10000) {
+      put(0xE0 | code >> 12);
+    } else {
+      put(0xF0 | (code >> 18 & 7));
+      put(0x80 | (code >> 12 & 0x3F));
+    }
+    put(0x80 | (code >> 6 & 0x3F));
+  }
+  put(0x80 | (code & 0x3F));
+}
+
 }  // namespace
 
 NpyArray<double> npy_numbers(std::string_view bytes, const NpyPlace& place) {
@@ -231,6 +248,28 @@ NpyArray<std::int64_t> npy_integers(std::string_view bytes, const NpyPlace& plac
         throw Error(fmt::format("has the value {}, which is no index", value), place.text(), "save it as int64");
     }
     return static_cast<std::int64_t>(value);
+  });
+}
+
+NpyArray<std::string> npy_texts(std::string_view bytes, const NpyPlace& place) {
+  const Header header = read_header(bytes, place);
+  const std::size_t kind = header.type.find_first_of("SU");
+  std::size_t length = 0;
+  if (kind == std::string::npos ||
+      std::from_chars(&header.type[kind] + 1, header.type.data() + header.type.size(), length).ec != std::errc())
+    throw Error(fmt::format("has values of type {}, not texts", header.type), place.text(), "save it as text");
+  const std::size_t unit = header.type[kind] == 'U' ? 4 : 1;
+  if (length > bytes.size()) fail_broken("is shorter than one of its texts", place);
+  if (length == 0 && header.count > 0) fail_broken("has texts of no length", place);
+  const std::string_view values = values_of(bytes, header, unit * length, place);
+  return in_c_order<std::string>(header, [&](std::size_t i) {
+    const std::string_view padded = values.substr(i * unit * length, unit * length);
+    if (unit == 1) return std::string(padded.substr(0, padded.find_last_not_of('\0') + 1));
+    std::string text;
+    for (std::size_t k = 0; k < length; ++k)
+      if (const std::size_t code = little_endian(padded.substr(4 * k, 4)); code != 0)
+        append_utf8(text, static_cast<std::uint32_t>(code));
+    return text;
   });
 }
 

@@ -33,4 +33,7 @@ NpyArray<double> npy_numbers(std::string_view bytes, const NpyPlace&);
 // Integers, booleans, and floats whose values are whole.
 NpyArray<std::int64_t> npy_integers(std::string_view bytes, const NpyPlace&);
 
+// Unicode and byte strings, as UTF-8.
+NpyArray<std::string> npy_texts(std::string_view bytes, const NpyPlace&);
+
 }  // namespace selvedge

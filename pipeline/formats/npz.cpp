@@ -110,4 +110,6 @@ NpyArray<double> Npz::numbers(const std::string& name) const { return npy_number
 
 NpyArray<std::int64_t> Npz::integers(const std::string& name) const { return npy_integers(bytes(name), place(name)); }
 
+NpyArray<std::string> Npz::texts(const std::string& name) const { return npy_texts(bytes(name), place(name)); }
+
 }  // namespace selvedge

@@ -25,6 +25,7 @@ class Npz {
   // See npy.hpp. They throw Error, naming the file and the array, also if it is missing or damaged.
   NpyArray<double> numbers(const std::string& name) const;
   NpyArray<std::int64_t> integers(const std::string& name) const;
+  NpyArray<std::string> texts(const std::string& name) const;
 
  private:
   struct Archive;

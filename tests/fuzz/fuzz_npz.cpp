@@ -12,7 +12,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const NpyPlace place{"fuzzed.npz", "array"};
   if (data[0] % 2 == 0) {
     fuzz::read_or_refuse([&] { npy_numbers(bytes, place); });
-    return fuzz::read_or_refuse([&] { npy_integers(bytes, place); });
+    fuzz::read_or_refuse([&] { npy_integers(bytes, place); });
+    return fuzz::read_or_refuse([&] { npy_texts(bytes, place); });
   }
   const std::filesystem::path file = fuzz::file_of(".npz", bytes);
   fuzz::read_or_refuse([&] { read_smpl(file); });

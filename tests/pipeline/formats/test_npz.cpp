@@ -70,10 +70,11 @@ TEST_CASE("arrays that numpy has written are read") {
   CHECK_FALSE(npz.has("f.npy"));
   CHECK(npz.numbers("f").shape == Shape{2, 3});
   CHECK(npz.numbers("f").values == std::vector<double>{0, 1, 2, 3, 4, 5});
+  CHECK(npz.texts("s").values == std::vector<std::string>{"ma\xC3\x9F"});
   const std::string error = error_of([&] { npz.numbers("o"); });
   CHECK(has(error, "a.npz: o: is stored as pickled"));
   CHECK(has(error, "allow_pickle=True"));
-  CHECK(has(error_of([&] { npz.numbers("s"); }), "not numbers"));
+  CHECK(has(error_of([&] { npz.texts("o"); }), "pickled"));
 }
 
 TEST_CASE("every type of number is read, stored and compressed, in all versions of the format") {
@@ -108,7 +109,9 @@ TEST_CASE("every type of number is read, stored and compressed, in all versions 
     CHECK(npz.numbers("single").shape.empty());
     CHECK(npz.numbers("single").values == std::vector<double>{30});
     CHECK(npz.numbers("none").shape == Shape{0, 3});
+    CHECK(npz.texts("bytes").values == std::vector<std::string>{"ab", "male"});
     CHECK_THROWS_AS(npz.integers("f8"), Error);
+    CHECK_THROWS_AS(npz.texts("f8"), Error);
     CHECK_THROWS_AS(npz.numbers("bytes"), Error);
     CHECK(has(error_of([&] { npz.numbers("g8"); }), "a.npz: g8: is missing\n  cure: the file has: b1, bytes, f4"));
   }
@@ -163,6 +166,8 @@ TEST_CASE("what is no array or not whole is refused with its reason") {
                   Error);
   CHECK_THROWS_AS(npy_integers(fake::npy<double>({1}, {0.5}), place), Error);
   CHECK_THROWS_AS(npy_integers(fake::npy<double>({1}, {std::numeric_limits<double>::quiet_NaN()}), place), Error);
+  CHECK_THROWS_AS(npy_texts(fake::npy_of("'<U99999999999999999'", false, "(1,)", eight), place), Error);
+  CHECK_THROWS_AS(npy_texts(fake::npy_of("'<U0'", false, "(999999999999999999,)", ""), place), Error);
 }
 
 TEST_CASE("an archive that is damaged is refused") {
