@@ -15,8 +15,8 @@ namespace {
 // ask for its row in pipeline/reports/report_fields.cpp.
 template <class F>
 void each_member(PhaseTimes& all, const F& f) {
-  auto& [a, b, c, d, e, g, h, i] = all;
-  for (double* one : {&a, &b, &c, &d, &e, &g, &h, &i}) f(*one);
+  auto& [a, b, c, d, e, g, h, i, j] = all;
+  for (double* one : {&a, &b, &c, &d, &e, &g, &h, &i, &j}) f(*one);
 }
 template <class F>
 void each_member(Doubts& all, const F& f) {
