@@ -35,10 +35,11 @@ const BoundFields<PhaseTimes>& phase_fields() {
       field("network", &P::network, "s", "of a learned stepper: the network", where_there),
       field("guard", &P::guard, "s", "of [the hybrid](hybrid.md): the judgement of proposals", where_there),
       field("audit", &P::audit, "s", "audits of motions and positions", mean),
-      field("body", &P::body, "s",
-            "the drive: posed bodies with their soft tissue, and what is held or drawn to them; beside a step, the time "
-            "that the step waited for it",
-            mean)};
+      field(
+          "body", &P::body, "s",
+          "the drive: posed bodies with their soft tissue, and what is held or drawn to them; beside a step, the time "
+          "that the step waited for it",
+          mean)};
   return all;
 }
 

@@ -251,8 +251,8 @@ void learn(Trainer& trainer, const FrameMaking& making, RollingState& state, Ste
     return;
   }
   backward(trainer, d_output);
-  record.adam = adam_step(trainer.architecture, adam_options(trainer), trainer.gradients, trainer.adam,
-                          trainer.network.weights);
+  record.adam =
+      adam_step(trainer.architecture, adam_options(trainer), trainer.gradients, trainer.adam, trainer.network.weights);
   if (record.adam.taken)
     place_network(trainer);
   else
