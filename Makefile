@@ -28,9 +28,9 @@ program:
 	@$(MAKE) --no-print-directory build/release/configured
 	@cmake --build --preset release --parallel $(JOBS) --target selvedge
 
-DEMO := $(PROGRAM) simulate configs/demo.yaml --weights configs/weights/contourcraft_shown.h5
+DEMO := $(PROGRAM) simulate configs/demo.yaml --no-cache --weights configs/weights/contourcraft_shown.h5
 demo: program  ## Build the program, simulate configs/demo.yaml by three steppers, make the page that shows them
-	@$(PROGRAM) simulate configs/demo.yaml --out out/demo/conventional
+	@$(PROGRAM) simulate configs/demo.yaml --no-cache --out out/demo/conventional
 	@$(DEMO) --stepper learned --out out/demo/learned || [ $$? -eq 1 ]  # 1: its cloth intersects; the page shows where
 	@$(DEMO) --stepper hybrid --out out/demo/hybrid
 	@$(PROGRAM) view out/demo/conventional out/demo/learned out/demo/hybrid --out out/demo/view.html
