@@ -128,7 +128,7 @@ void tell(TrainingRun& run, bool now = false) {
   const TrainingCounts& counts = run.trainer->counts;
   const double rate = static_cast<double>(counts.step - run.steps_before) / seconds_since(run.started);
   run.say(fmt::format("step {} of {}, {:.3g} samples/s, {} left, mean loss {:.4g} J, {} bad samples, {} lost roll-outs",
-                      counts.step, run.options.steps, rate,
+                      counts.step, run.options.steps, rate * run.options.optimiser.batch,
                       rate > 0 ? duration_text((run.options.steps - counts.step) / rate) : "?", run.window.mean_sum(),
                       counts.bad, counts.lost));
 }
@@ -155,7 +155,7 @@ bool run_steps(TrainingRun& run) {
   while (trainer.counts.step < run.options.steps) {
     const StepRecord record = train_step(trainer);
     run.window.add(record);
-    if (record.bad.empty()) {
+    if (record.adam.taken) {
       if (is_kept_now(run)) write_weights(run, "kept.h5");
       if (is_due(run, trainer.counts.step, lines_of_a_run))
         run.history.steps += run.window.take_line(trainer, run.seconds());

@@ -9,7 +9,6 @@
 #include "learned/gradients/initial_weights.hpp"
 #include "learned/graph/integration.hpp"
 #include "learned/graph/warm_up.hpp"
-#include "learned/losses/held_share.hpp"
 #include "learned/network/architecture_text.hpp"
 #include "learned/network/weights_hdf5.hpp"
 #include "learned/network/widen_weights.hpp"
@@ -141,124 +140,6 @@ void warm_up(Trainer& trainer) {
   silence_cloth_edges(trainer.architecture, trainer.network.weights);
 }
 
-// The derivative of the sample's objective by the network's output. Returns false if it is not finite.
-bool output_gradient(const Trainer& trainer, const RollingState& state, Points gradient, FeatureRows& d_output) {
-  const TrainingScene& scene = *state.roll.scene;
-  for (const int pin : scene.rest.pinned) gradient.row(pin).setZero();
-  const std::vector<float>& deviation = trainer.network.weights.tables.output.deviation;
-  double scale = 1;
-  if (trainer.options.optimiser.normalise_samples) {
-    // Divides the gradient by its norm over the inverse masses, so that the lengths of its rows sum up to about one.
-    double mass = 0;
-    for (const double m : scene.losses.mass) mass += m;
-    mass /= static_cast<double>(scene.losses.mass.size());
-    const double size = inverse_mass_norm(scene.losses, gradient);
-    const double unit = (static_cast<double>(deviation[0]) + deviation[1] + deviation[2]) / 3;
-    scale = 1 / (size * std::sqrt(mass) * unit);
-    if (!std::isfinite(scale)) return false;
-  }
-  d_output.resize(gradient.rows(), 3);
-  for (Eigen::Index k = 0; k < 3; ++k)
-    d_output.col(k) =
-        (scale * static_cast<double>(deviation[static_cast<std::size_t>(k)]) * gradient.col(k)).cast<float>();
-  return d_output.allFinite();
-}
-
-AdamOptions adam_options(const Trainer& trainer) {
-  const OptimiserOptions& options = trainer.options.optimiser;
-  AdamOptions adam;
-  adam.learning_rate = options.learning_rate * learning_factor(options.decay, progress_of(trainer), trainer.counts.step,
-                                                               options.halving_steps, options.floor);
-  (options.clip_median ? adam.clip_median : adam.clip_norm) = options.clip;
-  return adam;
-}
-
-// The normalised graph of the sample. Statistics are gathered on unless they are frozen.
-bool sample_graph(Trainer& trainer, const FrameMaking& making, RollingState& state) {
-  FeatureTables& tables = trainer.network.weights.tables;
-  if (!raw_graph_of(making, tables, state, trainer.graph)) return false;
-  if (!trainer.options.optimiser.freeze_statistics && trainer.options.weights.empty()) {
-    gather(making.features, trainer.graph, target_accelerations(state.roll.scene->rest, state.now, making.features),
-           trainer.sums);
-    freeze_statistics(trainer.sums, tables);
-  }
-  normalise(making.features, tables, trainer.graph);
-  return true;
-}
-
-bool are_finite(const std::vector<LossTerm>& terms) {
-  for (const LossTerm& term : terms)
-    if (!std::isfinite(term.value) || !std::isfinite(term.gradient_norm)) return false;
-  return true;
-}
-
-RollingState& chosen_state(Trainer& trainer) {
-  auto& pool = trainer.pool;
-  RollingState& state = pool[static_cast<std::size_t>(trainer.random.below(static_cast<int>(pool.size())))];
-  while (state.over) {
-    Roll roll = trainer.queue->take();
-    ask_for_roll(trainer);
-    if (!roll.usable) continue;
-    if (trainer.options.samples.start == GarmentStart::tangled && roll.request.cloth_contact &&
-        roll.request.sheet == HungStart::none)
-      trainer.start_pairs.push_back(roll.pairs);
-    begin_roll(std::move(roll), state);
-    set_guard(trainer.options, state);
-  }
-  return state;
-}
-
-void count_bad(Trainer& trainer, RollingState& state, const StepRecord& record) {
-  state.over = true;
-  ++trainer.counts.bad;
-  if (++trainer.counts.bad_in_a_row > trainer.options.watch.most_bad_samples)
-    throw Error(
-        fmt::format("{} samples in a row had no finite loss, the last: {}", trainer.counts.bad_in_a_row, record.bad),
-        "training " + trainer.options.name,
-        "take a smaller learning rate, or go on from an earlier checkpoint with another seed");
-}
-
-FeatureRows forward(Trainer& trainer) {
-  return trainer.torch ? trainer.torch->run_forward(trainer.graph)
-                       : run_forward(trainer.network, trainer.graph, trainer.tape);
-}
-
-void backward(Trainer& trainer, const FeatureRows& d_output) {
-  set_zero(trainer.architecture, trainer.gradients);
-  if (trainer.torch)
-    trainer.torch->run_backward(trainer.graph, trainer.network.weights.tables, d_output, trainer.gradients);
-  else
-    run_backward(trainer.network, trainer.graph, trainer.tape, d_output, trainer.gradients);
-}
-
-// Forward, losses, backward and the optimiser. `next` becomes the network's result.
-void learn(Trainer& trainer, const FrameMaking& making, RollingState& state, StepRecord& record, NextCloth& next) {
-  const TrainingScene& scene = *state.roll.scene;
-  if (!sample_graph(trainer, making, state)) {
-    record.bad = state.found.refused;
-    return;
-  }
-  const FeatureRows output = forward(trainer);
-  next = integrate(scene.rest, state.now, making.features, trainer.network.weights.tables.output, output);
-  const SeenPositions seen = seen_positions(scene.rest, state.now, making.features);
-  Points gradient = Points::Zero(next.x.rows(), 3);
-  record.terms =
-      add_losses_with_share(inputs_of(state, seen, next.x, making.progress), making.losses, state.losses, gradient);
-  record.sum = sum_of(record.terms);
-  FeatureRows d_output;
-  if (!output.allFinite() || !are_finite(record.terms) || !output_gradient(trainer, state, gradient, d_output)) {
-    record.bad = "a loss or its gradient is not finite";
-    return;
-  }
-  backward(trainer, d_output);
-  record.adam =
-      adam_step(trainer.architecture, adam_options(trainer), trainer.gradients, trainer.adam, trainer.network.weights);
-  if (record.adam.taken)
-    place_network(trainer);
-  else
-    record.bad = "the gradient of the weights is not finite";
-}
-
 }  // namespace
 
 Architecture trained_architecture(const TrainingOptions& options) {
@@ -334,33 +215,6 @@ FrameMaking frame_making(const Trainer& trainer) {
 
 void ask_for_roll(Trainer& trainer) {
   trainer.queue->ask(draw_roll(trainer.options, trainer.maker->world, trainer.counts.rolls++, progress_of(trainer)));
-}
-
-StepRecord train_step(Trainer& trainer) {
-  RollingState& state = chosen_state(trainer);
-  const FrameMaking making = frame_making(trainer);
-  StepRecord record;
-  record.pass = state.pass;
-  record.settling = is_settling(state);
-  NextCloth next;
-  learn(trainer, making, state, record, next);
-  if (!record.bad.empty()) {
-    count_bad(trainer, state, record);
-    return record;
-  }
-  trainer.counts.bad_in_a_row = 0;
-  ++trainer.counts.step;
-  const bool last_pass = state.pass + 1 == making.passes;
-  if (last_pass && trainer.options.pool.gate > 0) next = gated(making, trainer.options.pool.gate, next, state);
-  if (last_pass && !pass_guard(making, state, next)) {
-    ++trainer.counts.given_up;
-    state.over = true;
-    return record;
-  }
-  take_pass(making, next, trainer.options.pool.reset_distance, state);
-  if (last_pass) ++trainer.counts.frames;
-  if (state.over && state.frame < state.roll.request.frames) ++trainer.counts.lost;
-  return record;
 }
 
 }  // namespace selvedge

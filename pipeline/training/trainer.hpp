@@ -24,6 +24,23 @@ struct TrainingCounts {
   long bad = 0, bad_in_a_row = 0;  // samples without a finite loss or gradient
 };
 
+// What one sample gave in a step.
+struct SampleRecord {
+  std::vector<LossTerm> terms;  // with their current weights
+  double sum = 0;               // [J]
+  int pass = 0;
+  std::string bad;  // reason why the sample was dropped; empty: none
+};
+
+// A state of the pool in a step.
+struct Sample {
+  RollingState* state = nullptr;
+  Graph graph;
+  NextCloth next;        // the network's result
+  FeatureRows d_output;  // derivative of the objective by the network's output
+  SampleRecord record;
+};
+
 // The state of a training, beside its options and requests.
 struct Trainer {
   TrainingOptions options;
@@ -42,18 +59,9 @@ struct Trainer {
   std::vector<int> start_pairs;  // of the roll-outs begun by this process, where they are counted
   // Memory that is used again:
   Tape tape;
-  Graph graph;
+  std::vector<Sample> samples;
+  Graph graph;  // of all samples, or of a state that is measured
   WeightGradients gradients;
-};
-
-// The result of one step.
-struct StepRecord {
-  std::vector<LossTerm> terms;  // with their current weights
-  double sum = 0;               // [J]
-  AdamReport adam;
-  int pass = 0;
-  bool settling = false;
-  std::string bad;  // reason why the sample was dropped; empty: none
 };
 
 // The network that the options name.
@@ -72,9 +80,6 @@ double progress_of(const Trainer&);  // fraction of the run, 0 to 1
 
 // The options of frames at this point of the run.
 FrameMaking frame_making(const Trainer&);
-
-// Takes one sample and one step of the optimiser. Throws Error after too many samples in a row without a finite loss.
-StepRecord train_step(Trainer&);
 
 // Gives a new roll-out the guard that the options ask for.
 void set_guard(const TrainingOptions&, RollingState&);

@@ -180,8 +180,12 @@ const Options<SpaceOptions>& space_options() {
 const Options<OptimiserOptions>& optimiser_options() {
   using O = OptimiserOptions;
   static const Options<O> table(
-      "optimiser", "Adam, with one sample in each step.",
-      {number("learning_rate", &O::learning_rate, Unit::none, positive, "Learning rate at the start."),
+      "optimiser", "Adam.",
+      {integer(
+           "batch", &O::batch, at_least_one,
+           "Number of samples in each step, each of another state of the pool. They are joined in one graph, and the "
+           "step is along the mean of their gradients."),
+       number("learning_rate", &O::learning_rate, Unit::none, positive, "Learning rate at the start."),
        choice("decay", &O::decay, {{"cosine", Decay::cosine}, {"halving", Decay::halving}, {"none", Decay::none}},
               "How the learning rate decays: `cosine` goes to zero over the run, `halving` is as published."),
        integer("halving_steps", &O::halving_steps, at_least_one,
@@ -320,6 +324,10 @@ TrainingOptions read_training(const std::filesystem::path& file, const std::vect
   options.samples.folder = std::filesystem::absolute(file).parent_path().lexically_normal();
   read_over_base(file, overrides, 0, options);
   if (options.name.empty()) options.name = file.stem().string();
+  if (options.optimiser.batch > options.pool.states)
+    throw Error(fmt::format("takes {} samples in a step, and the pool has {} states", options.optimiser.batch,
+                            options.pool.states),
+                file.string() + ": optimiser.batch", "give `pool.states` at least as many");
   check_names(options, file.string());
   return options;
 }

@@ -89,6 +89,7 @@ struct ContactOptions {
 // How weights are optimised. Members are described where keys are bound to them:
 // pipeline/training/training_options.cpp.
 struct OptimiserOptions {
+  int batch = 1;
   double learning_rate = 1.5e-3;
   Decay decay = Decay::cosine;
   int halving_steps = 50000;

@@ -9,23 +9,25 @@
 namespace selvedge {
 
 void StepWindow::add(const StepRecord& record) {
-  if (!record.bad.empty()) {
-    ++bad_;
-    return;
-  }
   terms_.resize(loss_rows().size());
-  double gradients = 0;
-  for (const LossTerm& term : record.terms) gradients += term.gradient_norm;
-  for (const LossTerm& term : record.terms) {
-    Term& sum = terms_[static_cast<std::size_t>(term.row - loss_rows().data())];
-    sum.value += term.value;
-    sum.gradient += gradients > 0 ? term.gradient_norm / gradients : 0;
+  for (const SampleRecord& sample : record.samples) {
+    if (!sample.bad.empty()) {
+      ++bad_;
+      continue;
+    }
+    double gradients = 0;
+    for (const LossTerm& term : sample.terms) gradients += term.gradient_norm;
+    for (const LossTerm& term : sample.terms) {
+      Term& sum = terms_[static_cast<std::size_t>(term.row - loss_rows().data())];
+      sum.value += term.value;
+      sum.gradient += gradients > 0 ? term.gradient_norm / gradients : 0;
+    }
+    ++count_;
+    sum_ += sample.sum;
+    norm_ += record.adam.norm;
+    scale_ += record.adam.scale;
+    rate_ = record.adam.learning_rate;
   }
-  ++count_;
-  sum_ += record.sum;
-  norm_ += record.adam.norm;
-  scale_ += record.adam.scale;
-  rate_ = record.adam.learning_rate;
 }
 
 std::string steps_header() {

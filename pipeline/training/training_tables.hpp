@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/training/training_step.hpp"
 #include "pipeline/training/training_watch.hpp"
 
 namespace selvedge {

@@ -99,7 +99,7 @@ double left_after(const Lesson& lesson) {
       trainer->pool[k].now.velocity.setZero();
       trainer->pool[k].now.previous = trainer->pool[k].now.x;
     }
-    REQUIRE(train_step(*trainer).bad.empty());
+    REQUIRE(train_step(*trainer).adam.taken);
   }
   return left_of(*trainer, judged, lesson.name);
 }

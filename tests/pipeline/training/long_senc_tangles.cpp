@@ -89,7 +89,7 @@ double left_after(double weight) {
   };
   for (int step = 0; step < trainer->options.steps; ++step) {
     begin();
-    REQUIRE(train_step(*trainer).bad.empty());
+    REQUIRE(train_step(*trainer).adam.taken);
   }
   begin();
   double before = 0, after = 0;

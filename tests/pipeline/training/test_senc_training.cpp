@@ -158,7 +158,7 @@ TEST_CASE("training of SENC begins as the network that it starts from, and what 
   auto resumed = read_training_checkpoint(folder.path / "checkpoint.h5", options, history);
   bool volume = false;
   for (int k = 0; k < 12; ++k) {
-    const StepRecord one = train_step(*trainer), other = train_step(*resumed);
+    const SampleRecord one = train_step(*trainer).samples[0], other = train_step(*resumed).samples[0];
     CHECK(one.sum == other.sum);
     for (const LossTerm& term : one.terms) volume |= term.name == "volume";
   }

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -12,6 +13,7 @@
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
 #include "tests/pipeline/files.hpp"
 #include "tests/pipeline/training/tiny_training.hpp"
+#include "tests/threads.hpp"
 
 namespace selvedge::test_train {
 
@@ -104,6 +106,46 @@ TEST_CASE("training: libtorch goes the steps of the kernels, and a run may chang
   CHECK(read_training_checkpoint(folder.path / "checkpoint.h5", options, history)->counts.step == 4);
 }
 
+TEST_CASE("training: a batch has the same bits on any number of threads and when it is resumed", "[training]") {
+  const Folder folder("train_batch");
+  TrainingOptions options = few_steps();
+  options.pool.states = 5;
+  options.optimiser.batch = 3;
+  auto whole = make_trainer(options), other = make_trainer(options);
+  for (int k = 0; k < 6; ++k) {
+    with_threads(1, [&] { CHECK(train_step(*whole).samples.size() == 3); });
+    with_threads(2, [&] { train_step(*other); });
+  }
+  CHECK(weights_of(*whole) == weights_of(*other));
+  CHECK(whole->counts.step == 6);
+  write_training_checkpoint(folder.path / "checkpoint.h5", *whole, {"a\n", "b\n", 0, 0, 0});
+  TrainingHistory history;
+  auto resumed = read_training_checkpoint(folder.path / "checkpoint.h5", options, history);
+  for (int k = 0; k < 6; ++k)
+    for (Trainer* trainer : {whole.get(), resumed.get()}) train_step(*trainer);
+  CHECK(weights_of(*whole) == weights_of(*resumed));
+  CHECK(whole->counts.frames == resumed->counts.frames);
+}
+
+TEST_CASE("training: a sample of a batch without a finite loss is dropped, and the others are learned", "[training]") {
+  TrainingOptions options = few_steps();
+  options.optimiser.batch = options.pool.states;
+  auto trainer = make_trainer(options);
+  train_step(*trainer);
+  for (RollingState& state : trainer->pool) REQUIRE_FALSE(state.over);
+  trainer->pool[1].now.velocity(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<float> before = weights_of(*trainer);
+  const StepRecord record = train_step(*trainer);
+  CHECK(record.adam.taken);
+  CHECK(std::ranges::count_if(record.samples, [](const SampleRecord& s) { return !s.bad.empty(); }) == 1);
+  CHECK(trainer->counts.bad == 1);
+  CHECK(trainer->counts.step == 2);
+  CHECK(trainer->pool[1].over);
+  const std::vector<float> after = weights_of(*trainer);
+  CHECK(after != before);
+  CHECK(std::ranges::all_of(after, [](float w) { return std::isfinite(w); }));
+}
+
 TEST_CASE("training: damaged and foreign checkpoints are one error", "[training]") {
   const Folder folder("train_damage");
   TrainingOptions options = few_steps();
@@ -135,7 +177,7 @@ TEST_CASE("training: samples without a finite loss are left and counted, many in
   const std::vector<float> before = weights_of(*trainer);
   trainer->network.weights.decoder.layers.back().bias[0] = std::numeric_limits<float>::quiet_NaN();
   lay_out(trainer->network);
-  for (int k = 0; k < 5; ++k) CHECK_FALSE(train_step(*trainer).bad.empty());
+  for (int k = 0; k < 5; ++k) CHECK_FALSE(train_step(*trainer).adam.taken);
   CHECK(trainer->counts.bad == 5);
   CHECK(trainer->counts.step == 1);
   CHECK_THROWS_WITH(train_step(*trainer), Catch::Contains("in a row had no finite loss"));

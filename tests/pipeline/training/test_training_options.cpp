@@ -78,8 +78,8 @@ TEST_CASE("training tables: every term has its columns, also in a history of oth
   for (const LossRow& row : loss_rows())
     for (const std::string ending : {"", "_share"}) CHECK(std::ranges::count(titles.names, row.name + ending) == 1);
   StepWindow window;
-  StepRecord record;
-  for (const LossRow& row : loss_rows()) record.terms.push_back({&row, row.name, 1, 2, 3});
+  StepRecord record{.samples = {{}}, .adam = {}};
+  for (const LossRow& row : loss_rows()) record.samples[0].terms.push_back({&row, row.name, 1, 2, 3});
   window.add(record);
   const Trainer trainer;
   const std::string now = steps_header() + window.take_line(trainer, 1);
@@ -208,6 +208,7 @@ TEST_CASE("training options: nothing of the validation split, and one clear erro
   CHECK(error_of(file, {"message_steps=100000"}).find("0 to 1024") != std::string::npos);
   CHECK(error_of(file, {"steps=0"}).find("steps") != std::string::npos);
   CHECK(error_of(file, {"optimiser.decay=slow"}).find("halving") != std::string::npos);
+  CHECK(error_of(file, {"optimiser.batch=5", "pool.states=4"}).find("give `pool.states`") != std::string::npos);
   CHECK(error_of(file, {"learning_rate=1"}).find("learning_rate") != std::string::npos);
   fake::write(folder, "b.yaml", "base: c.yaml\n");
   const auto circle = fake::write(folder, "c.yaml", "base: b.yaml\n");

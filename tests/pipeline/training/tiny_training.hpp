@@ -2,7 +2,7 @@
 
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/training/rolling_state.hpp"
-#include "pipeline/training/trainer.hpp"
+#include "pipeline/training/training_step.hpp"
 
 namespace selvedge::fake {
 

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "pipeline/training/trainer.hpp"
+
+namespace selvedge {
+
+// The result of one step.
+struct StepRecord {
+  std::vector<SampleRecord> samples;
+  AdamReport adam{.taken = false};  // not taken: no sample had a finite loss and gradient
+};
+
+// Takes `optimiser.batch` samples, each of another state of the pool, as one graph, and one step of the optimiser along
+// the mean of their gradients. Samples without a finite loss are dropped. Throws Error after too many of them in a row.
+// 1 and n threads give the same bits.
+StepRecord train_step(Trainer&);
+
+}  // namespace selvedge
