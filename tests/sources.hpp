@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/source_root.hpp"
+
 // Reads the repository's sources, for tests of its rules. Each rule is a function from texts to complaints "file:line:
 // what", so that tests also try it on texts that break it.
 namespace selvedge::sources {
@@ -19,7 +21,7 @@ using Complaints = std::vector<std::string>;
 using Texts = std::map<std::string, std::string>;  // by path from the root
 
 inline const std::vector<std::string> chain = {"collision", "physics", "learned", "pipeline"};
-inline const fs::path root = SELVEDGE_SOURCE_DIR;
+inline const fs::path root = source_root();
 
 struct Include {
   int line;

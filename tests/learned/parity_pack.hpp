@@ -9,15 +9,14 @@
 
 #include "learned/graph/make_graph.hpp"
 #include "pipeline/formats/npz.hpp"
+#include "tests/source_root.hpp"
 
 // Results of the authors' code (shared/data/parity/README.md), as scenes and states of ours.
 namespace selvedge::parity {
 
 inline std::filesystem::path folder() {
   const char* set = std::getenv("SELVEDGE_DATA");
-  return (set && *set ? std::filesystem::path(set)
-                      : std::filesystem::path(SELVEDGE_SOURCE_DIR) / ".." / "shared" / "data") /
-         "parity";
+  return (set && *set ? std::filesystem::path(set) : source_root() / ".." / "shared" / "data") / "parity";
 }
 
 // Prints a warning if the pack is absent.

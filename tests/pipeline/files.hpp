@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "tests/pipeline/fake_run.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::fake {
 
@@ -27,8 +28,7 @@ inline double farthest(const Points& a, const Points& b) { return (a - b).rowwis
 // The folder of the open data, which may be absent.
 inline std::filesystem::path open_data() {
   const char* set = std::getenv("SELVEDGE_DATA");
-  return set && *set ? std::filesystem::path(set)
-                     : std::filesystem::path(SELVEDGE_SOURCE_DIR) / ".." / "shared" / "data";
+  return set && *set ? std::filesystem::path(set) : source_root() / ".." / "shared" / "data";
 }
 
 }  // namespace selvedge::fake

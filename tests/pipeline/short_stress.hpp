@@ -6,6 +6,7 @@
 #include "pipeline/suites/stress.hpp"
 #include "pipeline/tools/check.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::fake {
 
@@ -39,7 +40,7 @@ inline void check_short_forms(std::vector<std::string> scenes) {
 #endif
   const Folder folder("short_stress_" + scenes[0]);
   StressRequest request;
-  request.configs = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs" / "stress";
+  request.configs = source_root() / "configs" / "stress";
   request.scenes = scenes;
   request.out = folder.path;
   request.repeats = 1;

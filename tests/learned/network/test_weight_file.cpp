@@ -11,6 +11,7 @@
 #include "learned/network/weight_seal.hpp"
 #include "learned/network/weights_hdf5.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::test_weight_file {
 
@@ -267,7 +268,7 @@ TEST_CASE("weight file: values that lie elsewhere are refused", "[learned]") {
 }
 
 TEST_CASE("weight file: another file of this program is not taken for a checkpoint", "[learned]") {
-  const std::filesystem::path scales = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs/weights/refu.h5";
+  const std::filesystem::path scales = source_root() / "configs/weights/refu.h5";
   CHECK_THROWS_WITH(read_weight_file(scales),
                     Catch::Contains("holds no weights of a network") && Catch::Contains("run.refu.weights"));
 }

@@ -9,6 +9,7 @@
 #include "learned/network/weights_hdf5.hpp"
 #include "tests/frame.hpp"
 #include "tests/learned/learned_scenes.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::test_stitches {
 
@@ -61,8 +62,7 @@ Pocketed pocketed(int frames) {
 
 // The largest difference of a stitch from its length, over all frames [m].
 double largest_gap(const fake::LearnedCase& run, const Scene& seen, const std::string& weights) {
-  const WeightFile file =
-      read_weight_file(std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs" / "weights" / weights);
+  const WeightFile file = read_weight_file(source_root() / "configs" / "weights" / weights);
   const auto stepper = make_learned_stepper(seen, file.architecture, file.weights);
   State state = run.state;
   double gap = 0;

@@ -18,6 +18,7 @@
 #include "pipeline/tools/dress.hpp"
 #include "tests/pipeline/fake_garment.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::test_body_jointed {
 
@@ -236,7 +237,7 @@ TEST_CASE("jointed body: MakeHuman's body wears its helpers' skirt and tights an
   }
   const Folder folder("body_jointed_real");
   BodyRequest body{data / "body.obj", {}, {}, "dm", folder.path / "body.h5", ""};
-  body.joints = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs/real/makehuman_joints.yaml";
+  body.joints = source_root() / "configs/real/makehuman_joints.yaml";
   const BodyReport made = convert_body(body);
   CHECK((made.vertices == 13380 && made.closed && !made.t_pose));
   for (const auto& [name, pairs] : {std::pair("skirt", 0), std::pair("tights", 96)}) {

@@ -9,6 +9,7 @@
 
 #include "tests/pipeline/fake_run.hpp"
 #include "tests/program.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::test_main {
 
@@ -142,7 +143,7 @@ TEST_CASE("a weight file may lie anywhere, and one that nothing runs is named") 
   write_scene(folder);
   const std::filesystem::path odd = folder.path / "a #1: [b] 'c'";
   std::filesystem::create_directory(odd);
-  std::filesystem::copy_file(std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs/weights/hood.h5", odd / "w #2.h5");
+  std::filesystem::copy_file(source_root() / "configs/weights/hood.h5", odd / "w #2.h5");
   const std::string weights =
       (folder.path / "scene.yaml").string() + " --weights \"" + (odd / "w #2.h5").string() + "\"";
   const Ended learned = selvedge_program(folder, "plan --json --stepper learned " + weights);

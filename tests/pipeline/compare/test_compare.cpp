@@ -9,6 +9,7 @@
 #include "pipeline/compare/algebraic_error.hpp"
 #include "pipeline/compare/compare_reference.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::test_compare {
 
@@ -17,7 +18,7 @@ using fake::Folder;
 
 namespace {
 
-const std::filesystem::path configs = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs" / "compare";
+const std::filesystem::path configs = source_root() / "configs" / "compare";
 
 const std::string hanging =
     "cloths: [{rectangle: {size: [0.5, 0.5], resolution: 7}, translate: [0, 1, 0], pins: [{group: [top]}]}]\n"

@@ -11,6 +11,7 @@
 #include "pipeline/host/gnuplot.hpp"
 #include "tests/learned/learned_scenes.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::test_compare_rows {
 
@@ -19,7 +20,7 @@ using fake::Folder;
 
 namespace {
 
-const std::filesystem::path configs = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs";
+const std::filesystem::path configs = source_root() / "configs";
 
 const CompareRow& row_named(const CompareResult& result, const std::string& setting) {
   const auto found = std::ranges::find(result.rows, setting, &CompareRow::setting);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/compare/sequences.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::test_evaluation {
 namespace {
@@ -103,7 +104,7 @@ TEST_CASE("evaluation: tables by hand", "[evaluation]") {
 }
 
 TEST_CASE("evaluation: bodies of tangled starts are not those with which a bare network was trained", "[evaluation]") {
-  const std::filesystem::path configs = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs";
+  const std::filesystem::path configs = source_root() / "configs";
   const auto with_seed = [&](const std::string& seed) {
     Comparison comparison = read_comparison(configs / "evaluation" / "contourcraft.yaml", true,
                                             {"sequences.seed=" + seed, "sequences.count=2", "sequences.tangled=2"});

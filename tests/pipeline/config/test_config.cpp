@@ -9,6 +9,7 @@
 #include "pipeline/scene/setup.hpp"
 #include "pipeline/tools/scene_pages.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::test_config {
 
@@ -39,7 +40,7 @@ std::string check_refused(const std::string& scene, const std::vector<std::strin
   return message;
 }
 
-const std::filesystem::path page = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "docs" / "scene.md";
+const std::filesystem::path page = source_root() / "docs" / "scene.md";
 const std::vector<std::pair<std::filesystem::path, KeyTier>> tier_pages{
     {page, KeyTier::user}, {page.parent_path() / "expert.md", KeyTier::expert}};
 const std::string marker = "<!-- tables -->\n";
@@ -213,7 +214,7 @@ TEST_CASE("A file whose aliases stand for more than memory holds is refused", "[
 }
 
 TEST_CASE("No beginning of a scene file crashes", "[config]") {
-  const std::string scene = whole(std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs/bench/tube.yaml");
+  const std::string scene = whole(source_root() / "configs/bench/tube.yaml");
   for (std::size_t length = 0; length < scene.size(); length += 3) {
     refusal(scene.substr(0, length), {"cloths.0.tube.resolution=8"});
     std::string torn = scene;

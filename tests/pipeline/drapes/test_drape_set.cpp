@@ -7,6 +7,7 @@
 #include "pipeline/drapes/stage_file_hdf5.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::test_drape_set {
 
@@ -138,7 +139,7 @@ TEST_CASE("drapes: the shipped files are of their kinds, and unknown rows are re
 
 namespace {
 
-const std::filesystem::path repulsion_page_file = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "docs" / "repulsion.md";
+const std::filesystem::path repulsion_page_file = source_root() / "docs" / "repulsion.md";
 const std::string drape_reference_begins = "<!-- written by: selvedge_tests \"[write-docs]\" -->\n";
 std::string drape_references() { return "\n" + drape_reference() + drape_training_reference(); }
 

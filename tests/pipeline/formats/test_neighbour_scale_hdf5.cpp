@@ -4,6 +4,7 @@
 #include "pipeline/formats/neighbour_scale_hdf5.hpp"
 #include "pipeline/formats/plain_network_hdf5.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::test_neighbour_scale_hdf5 {
 
@@ -25,8 +26,8 @@ TEST_CASE("scales by neighbours: a file gives back what was written, and the one
   write_neighbour_scale(file, scale);
   CHECK_THROWS_AS(read_neighbour_scale(file), Error);
   CHECK_THROWS_AS(read_neighbour_scale(folder.path / "none.h5"), Error);
-  CHECK(read_neighbour_scale(std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs" / "weights" / "refu.h5")
-            .shape.range == ScaleRange::at_least_one);
+  CHECK(read_neighbour_scale(source_root() / "configs" / "weights" / "refu.h5").shape.range ==
+        ScaleRange::at_least_one);
 }
 
 }  // namespace selvedge::test_neighbour_scale_hdf5

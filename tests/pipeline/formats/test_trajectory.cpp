@@ -11,6 +11,7 @@
 #include "pipeline/formats/trajectory_hdf5.hpp"
 #include "pipeline/formats/trajectory_row.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::test_trajectory {
 
@@ -214,7 +215,7 @@ TEST_CASE("the reason of an accepted step of an older file becomes what it leave
   }
 }
 
-const std::filesystem::path files_page = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "docs" / "files.md";
+const std::filesystem::path files_page = source_root() / "docs" / "files.md";
 const std::string columns_begin = "<!-- written by: selvedge_tests \"[write-docs]\" -->\n";
 
 TEST_CASE("docs/files.md has the columns as the program has them", "[reports]") {

@@ -12,6 +12,7 @@
 #include "pipeline/shapes/motion.hpp"
 #include "tests/pipeline/fake_skeleton.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::test_clip_procedural {
 
@@ -213,7 +214,7 @@ TEST_CASE("clip_procedural: keys are met softly", "[clip]") {
 }
 
 TEST_CASE("clip_procedural: the split names every clip once, eight of them for validation", "[clip]") {
-  const auto path = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs" / "clips.yaml";
+  const auto path = source_root() / "configs" / "clips.yaml";
   const std::vector<ClipEntry> entries = read_clip_split(path);
   std::vector<std::string> names = procedural_clip_names(), listed;
   for (const ClipEntry& entry : entries) {

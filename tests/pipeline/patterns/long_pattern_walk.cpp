@@ -2,6 +2,7 @@
 
 #include "tests/pipeline/files.hpp"
 #include "tests/program.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::long_pattern_walk {
 
@@ -39,8 +40,7 @@ TEST_CASE("GarmentCode's shirt is sewn on GarmentCode's body and walks 100 clean
   const fake::Folder folder("pattern_walk");
   fake::write(folder, "walk.yaml", scene_text);
   const std::string from = "'" + std::filesystem::absolute(data).string() + "/";
-  REQUIRE(runs_well(folder, "body " + from +
-                                "mean_all.obj' --joints '" SELVEDGE_SOURCE_DIR
+  REQUIRE(runs_well(folder, "body " + from + "mean_all.obj' --joints '" + source_root().string() +
                                 "/configs/real/mean_all_joints.yaml' --out body.h5"));
   REQUIRE(runs_well(folder,
                     "pattern " + from + "shirt_mean_specification.json' --body body.h5 --edge 0.03 --out shirt.h5"));

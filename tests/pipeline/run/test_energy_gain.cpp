@@ -4,6 +4,7 @@
 #include "pipeline/run/simulate.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "tests/pipeline/cases.hpp"
+#include "tests/source_root.hpp"
 
 // Scenes whose energy grew from nowhere without a word, and scenes where all of it is explained.
 namespace selvedge::test_energy_gain {
@@ -55,7 +56,7 @@ TEST_CASE("energy gain: frames in which the contact of needles lifts them say so
 }
 
 TEST_CASE("energy gain: none in cloth that drops, hangs, or flies, by the steppers that solve", "[energy_gain]") {
-  const std::filesystem::path configs = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs";
+  const std::filesystem::path configs = source_root() / "configs";
   for (const char* stepper : {"conventional", "icm"})
     for (const auto& [file, resolution] : std::vector<std::pair<std::string, std::string>>{
              {"bench/drop.yaml", "cloths.sheet.rectangle.resolution=11"},

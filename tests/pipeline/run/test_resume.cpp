@@ -8,6 +8,7 @@
 #include "pipeline/scene/make_stepper.hpp"
 #include "tests/frame.hpp"
 #include "tests/pipeline/run/sheet_over_ball.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::test_resume {
 using Catch::Matchers::Contains;
@@ -290,8 +291,7 @@ TEST_CASE("A run is resumed only with what code has made of its files", "[resume
 
 // Folders that outsiders have broken; see their README.
 TEST_CASE("The folders of the cases are refused with file and field", "[resume]") {
-  const std::filesystem::path cases =
-      std::filesystem::path(SELVEDGE_SOURCE_DIR) / ".." / "shared" / "cases" / "resume_files";
+  const std::filesystem::path cases = source_root() / ".." / "shared" / "cases" / "resume_files";
   if (!std::filesystem::exists(cases)) {
     WARN("skipped: " << cases << " is not there");
     return;

@@ -9,6 +9,7 @@
 #include "pipeline/scene/setup.hpp"
 #include "pipeline/scene/setup_cloth.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::test_setup {
 
@@ -17,9 +18,7 @@ using fake::Folder;
 
 namespace {
 
-std::filesystem::path config(const std::string& name) {
-  return std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs" / name;
-}
+std::filesystem::path config(const std::string& name) { return source_root() / "configs" / name; }
 
 Setup read(const Folder& folder, const std::string& scene) {
   return read_setup(fake::write(folder, "scene.yaml", scene));
@@ -117,7 +116,7 @@ TEST_CASE("Every shipped material is physical and found by name", "[setup]") {
 
 TEST_CASE("Every number of a shipped material has a unit or a source beside it, every material a row in the docs",
           "[setup]") {
-  const std::string page = fake::whole(std::filesystem::path(SELVEDGE_SOURCE_DIR) / "docs" / "materials.md");
+  const std::string page = fake::whole(source_root() / "docs" / "materials.md");
   for (const auto& entry : std::filesystem::directory_iterator(config("materials"))) {
     INFO(entry.path().stem().string());
     CHECK_THAT(page, Contains("\n| `" + entry.path().stem().string() + "` |"));

@@ -8,6 +8,7 @@
 #include "pipeline/suites/stability.hpp"
 #include "tests/learned/learned_scenes.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/source_root.hpp"
 
 // Rows of the suite of stability that steppers with a network go through.
 namespace selvedge::test_network_rows {
@@ -70,8 +71,7 @@ TEST_CASE("stability: a run may name weights of its own", "[stability]") {
 }
 
 TEST_CASE("stability: the pile has more pairs within reach than a graph takes", "[stability]") {
-  const Setup setup = read_setup(std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs/stability/pile.yaml",
-                                 {"run.stepper=conventional"});
+  const Setup setup = read_setup(source_root() / "configs/stability/pile.yaml", {"run.stepper=conventional"});
   const GraphScene scene = learned_scene(setup.scene).graph;
   const Architecture architecture = architecture_preset("contourcraft");
   const State& start = setup.initial;

@@ -9,6 +9,7 @@
 #include "pipeline/suites/stability_suite.hpp"
 #include "pipeline/suites/stability_watch.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::test_stability {
 
@@ -17,7 +18,7 @@ using fake::Folder;
 
 namespace {
 
-const std::filesystem::path suite_file = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs/stability.yaml";
+const std::filesystem::path suite_file = source_root() / "configs/stability.yaml";
 
 const char* falling_sheet = "cloths: [{name: sheet, rectangle: {size: [0.3, 0.3], resolution: 4}}]\nrun: {frames: 4}";
 

@@ -8,6 +8,7 @@
 #include "pipeline/suites/stress.hpp"
 #include "tests/pipeline/files.hpp"
 #include "tests/pipeline/short_stress.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::test_stress {
 
@@ -16,7 +17,7 @@ using fake::Folder;
 
 namespace {
 
-const std::filesystem::path configs = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs" / "stress";
+const std::filesystem::path configs = source_root() / "configs" / "stress";
 
 std::vector<std::string> scene_names() {
   std::vector<std::string> names;

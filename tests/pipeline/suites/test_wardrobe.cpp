@@ -6,6 +6,7 @@
 #include "collision/geometry/stopwatch.hpp"
 #include "pipeline/suites/wardrobe.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::test_wardrobe {
 
@@ -17,7 +18,7 @@ namespace {
 // What is worn through the first frames of clips, and the body's way into them.
 WardrobeRequest short_form(const Folder& folder) {
   WardrobeRequest request;
-  request.configs = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "configs";
+  request.configs = source_root() / "configs";
   request.wear = {"tshirt"};
   request.clips = {"walk"};
   request.most_frames = 10;

@@ -12,6 +12,7 @@
 #include "pipeline/training/training_options.hpp"
 #include "pipeline/training/training_tables.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/source_root.hpp"
 
 namespace selvedge::test_training_options {
 
@@ -229,7 +230,7 @@ TEST_CASE("training options: learning rates fall as they are said to", "[trainin
 
 namespace {
 
-const std::filesystem::path training_page_file = std::filesystem::path(SELVEDGE_SOURCE_DIR) / "docs" / "training.md";
+const std::filesystem::path training_page_file = source_root() / "docs" / "training.md";
 const std::string reference_begins = "<!-- written by: selvedge_tests \"[write-docs]\" -->\n";
 
 }  // namespace
