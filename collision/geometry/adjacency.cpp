@@ -2,21 +2,15 @@
 
 #include <algorithm>
 
+#include "collision/geometry/lists.hpp"
+
 namespace selvedge {
 
 Adjacency adjacency_of(int vertex_count, const Edges& edges) {
-  Adjacency result{std::vector<int>(static_cast<std::size_t>(vertex_count) + 1, 0), {}};
-  for (const auto& edge : edges.rowwise()) {
-    ++result.begin[edge[0] + 1];
-    ++result.begin[edge[1] + 1];
-  }
-  for (int v = 0; v < vertex_count; ++v) result.begin[v + 1] += result.begin[v];
-  result.neighbour.resize(static_cast<std::size_t>(result.begin.back()));
-  std::vector<int> at(result.begin.begin(), result.begin.end() - 1);
-  for (const auto& edge : edges.rowwise()) {
-    result.neighbour[at[edge[0]]++] = edge[1];
-    result.neighbour[at[edge[1]]++] = edge[0];
-  }
+  const std::span<const int> ends(edges.data(), static_cast<std::size_t>(edges.size()));
+  Lists by = indices_by_value(ends, vertex_count);
+  for (int& i : by.item) i = ends[i ^ 1];  // the other end of the edge
+  Adjacency result{std::move(by.begin), std::move(by.item)};
   for (int v = 0; v < vertex_count; ++v)
     std::sort(result.neighbour.begin() + result.begin[v], result.neighbour.begin() + result.begin[v + 1]);
   return result;

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "collision/geometry/lists.hpp"
 #include "collision/geometry/points.hpp"
 
 namespace selvedge {
@@ -17,16 +18,16 @@ class CellGrid {
   static constexpr int most_cubes = 1 << 24;
 
   // The points, sorted by the cubes in which they lie.
-  const std::vector<int>& order() const { return point_; }
+  const std::vector<int>& order() const { return points_.item; }
 
   // The number of cubes, and the place in `order` where a cube's points begin. first(cubes()) is the end of `order`.
-  int cubes() const { return static_cast<int>(begin_.size()) - 1; }
-  int first(int cube) const { return begin_[cube]; }
+  int cubes() const { return static_cast<int>(points_.begin.size()) - 1; }
+  int first(int cube) const { return points_.begin[cube]; }
 
   // Visits the points of all cubes that the ball's box meets, the ball's own among them, in a fixed order.
   template <class Visit>
   void for_each_near(const Vec3& at, double radius, Visit visit) const {
-    for_each_place_near(at, radius, [&](int p) { visit(point_[p]); });
+    for_each_place_near(at, radius, [&](int p) { visit(points_.item[p]); });
   }
 
   // The same, but visits the points' places in `order`, ascending.
@@ -40,7 +41,7 @@ class CellGrid {
     if (from[2] > to[2]) return;
     for (int i = from[0]; i <= to[0]; ++i)
       for (int j = from[1]; j <= to[1]; ++j)
-        for (int p = begin_[cell(i, j, from[2])]; p < begin_[cell(i, j, to[2]) + 1]; ++p) visit(p);
+        for (int p = first(cell(i, j, from[2])); p < first(cell(i, j, to[2]) + 1); ++p) visit(p);
   }
 
   // Visits the cubes within `rings` of a cube along each axis, with the cube itself, in ascending order: the first and
@@ -64,7 +65,7 @@ class CellGrid {
   Vec3 lo_ = Vec3::Zero();
   double cell_;
   std::array<int, 3> size_{1, 1, 1};
-  std::vector<int> begin_, point_;  // of each cell: where its points begin; the points
+  Lists points_;  // of each cell
 };
 
 }  // namespace selvedge

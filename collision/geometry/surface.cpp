@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <numeric>
 #include <tuple>
 
 #include "collision/geometry/disjoint_sets.hpp"
@@ -47,19 +46,11 @@ void make_edges(Surface& s) {
 }
 
 void make_vertex_triangles(Surface& s) {
-  s.vertex_triangle_begin.assign(s.vertex_count + 1, 0);
-  for (int t = 0; t < s.triangles.rows(); ++t)
-    for (int k = 0; k < 3; ++k) ++s.vertex_triangle_begin[s.triangles(t, k) + 1];
-  std::partial_sum(s.vertex_triangle_begin.begin(), s.vertex_triangle_begin.end(), s.vertex_triangle_begin.begin());
-  s.vertex_triangle.resize(3 * static_cast<std::size_t>(s.triangles.rows()));
-  s.vertex_owner.assign(s.vertex_count, -1);
-  std::vector<int> next(s.vertex_triangle_begin.begin(), s.vertex_triangle_begin.end() - 1);
-  for (int t = 0; t < s.triangles.rows(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const int v = s.triangles(t, k);
-      s.vertex_triangle[next[v]++] = t;
-      if (s.vertex_owner[v] < 0) s.vertex_owner[v] = t;
-    }
+  const std::span<const int> corners(s.triangles.data(), static_cast<std::size_t>(s.triangles.size()));
+  s.vertex_triangles = indices_by_value(corners, s.vertex_count);
+  for (int& t : s.vertex_triangles.item) t /= 3;
+  for (int v = 0; v < s.vertex_count; ++v)
+    s.vertex_owner.push_back(s.triangles_of(v).empty() ? -1 : s.triangles_of(v).front());
   s.isolated_vertices = static_cast<int>(std::count(s.vertex_owner.begin(), s.vertex_owner.end(), -1));
 }
 

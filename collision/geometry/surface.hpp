@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "collision/geometry/lists.hpp"
 #include "collision/geometry/points.hpp"
 
 namespace selvedge {
@@ -16,19 +17,15 @@ struct Surface {
   std::vector<std::array<int, 2>>
       edge_triangles;        // the two triangles of an edge, -1 at a boundary; the first two where non-manifold
   Triangles triangle_edges;  // edge k of a triangle joins its corners k and (k + 1) % 3
-  std::vector<int> vertex_triangle_begin;  // size n + 1: the triangles round vertex v are
-  std::vector<int> vertex_triangle;  //   vertex_triangle[vertex_triangle_begin[v] .. vertex_triangle_begin[v + 1])
-  std::vector<int> vertex_owner;     // the lowest triangle that has the vertex, -1 for an isolated one
-  std::vector<int> edge_owner;       // the lowest triangle that has the edge
-  std::vector<int> component;        // connected component of each vertex (isolated vertices: their own)
+  Lists vertex_triangles;    // the triangles round each vertex, ascending
+  std::vector<int> vertex_owner;  // the lowest triangle that has the vertex, -1 for an isolated one
+  std::vector<int> edge_owner;    // the lowest triangle that has the edge
+  std::vector<int> component;     // connected component of each vertex (isolated vertices: their own)
   int component_count = 0;
   int nonmanifold_edges = 0;  // edges with more than two triangles
   int isolated_vertices = 0;
 
-  std::span<const int> triangles_of(int vertex) const {
-    const int begin = vertex_triangle_begin[vertex];
-    return {vertex_triangle.data() + begin, static_cast<std::size_t>(vertex_triangle_begin[vertex + 1] - begin)};
-  }
+  std::span<const int> triangles_of(int vertex) const { return vertex_triangles.of(vertex); }
 };
 
 // Indices must lie in [0, vertex_count) and differ within a triangle (assert; readers check and throw).

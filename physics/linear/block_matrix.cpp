@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "collision/geometry/lists.hpp"
+
 namespace selvedge {
 
 PairPattern make_pair_pattern(int rows, std::span<const int> element_begin, std::span<const int> element_nodes) {
@@ -17,23 +19,15 @@ PairPattern make_pair_pattern(int rows, std::span<const int> element_begin, std:
   std::sort(pattern.pairs.begin(), pattern.pairs.end());
   pattern.pairs.erase(std::unique(pattern.pairs.begin(), pattern.pairs.end()), pattern.pairs.end());
 
-  pattern.row_begin.assign(rows + 1, 0);
-  for (const auto& [low, high] : pattern.pairs) {
-    ++pattern.row_begin[low + 1];
-    ++pattern.row_begin[high + 1];
+  std::vector<int> ends;
+  for (const auto& pair : pattern.pairs) ends.insert(ends.end(), pair.begin(), pair.end());
+  Lists by = indices_by_value(ends, rows);
+  // As pairs are ascending, so are the columns of a row.
+  for (const int i : by.item) {
+    pattern.column.push_back(ends[i ^ 1]);
+    pattern.pair.push_back(i / 2);
   }
-  for (int i = 0; i < rows; ++i) pattern.row_begin[i + 1] += pattern.row_begin[i];
-  pattern.column.resize(pattern.row_begin[rows]);
-  pattern.pair.resize(pattern.row_begin[rows]);
-  std::vector<int> next(pattern.row_begin.begin(), pattern.row_begin.end() - 1);
-  // Two passes keep the columns of a row ascending: smaller neighbours first.
-  for (const bool lower : {true, false})
-    for (std::size_t p = 0; p < pattern.pairs.size(); ++p) {
-      const auto [low, high] = pattern.pairs[p];
-      const int entry = next[lower ? high : low]++;
-      pattern.column[entry] = lower ? low : high;
-      pattern.pair[entry] = static_cast<int>(p);
-    }
+  pattern.row_begin = std::move(by.begin);
   return pattern;
 }
 

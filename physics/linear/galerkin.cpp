@@ -4,10 +4,19 @@
 #include <cmath>
 #include <numeric>
 
+#include "collision/geometry/lists.hpp"
+
 namespace selvedge {
 namespace {
 
 constexpr double rounding = 1e-12;
+
+// Of each item the number of its list; `begin` as in Lists.
+std::vector<int> lists_of_items(const std::vector<int>& begin) {
+  std::vector<int> list;
+  for (int i = 0; i + 1 < static_cast<int>(begin.size()); ++i) list.resize(begin[i + 1], i);
+  return list;
+}
 
 // Collects the terms of coarse rows, one row after the other, on the diagonal and right of it, and assigns slots to
 // columns.
@@ -59,24 +68,16 @@ void RowCollector::sort_by_target() {
 // The product of the collected terms and their mirror images in one pattern: each row's left part first.
 Product RowCollector::with_mirrored(RowPattern& whole) {
   const int rows = static_cast<int>(begin_.size()) - 1;
-  std::vector<int> left_begin(rows + 1, 0), left_slot(column_.size()), left_row(column_.size());
-  for (const int b : column_) ++left_begin[b + 1];
-  std::partial_sum(left_begin.begin(), left_begin.end(), left_begin.begin());
-  std::vector<int> next(left_begin.begin(), left_begin.end() - 1);
-  for (int a = 0; a < rows; ++a)
-    for (int k = begin_[a]; k < begin_[a + 1]; ++k) {
-      const int at = next[column_[k]]++;
-      left_slot[at] = k;
-      left_row[at] = a;
-    }
+  const Lists left = indices_by_value(column_, rows);  // slots
+  const std::vector<int> row_of_slot = lists_of_items(begin_);
   std::vector<int> entry(column_.size());  // of each slot its entry in the whole pattern
   whole.begin = {0};
   whole.column.clear();
   product_.mirror.clear();
   for (int a = 0; a < rows; ++a) {
-    for (int at = left_begin[a]; at < left_begin[a + 1]; ++at) {
-      whole.column.push_back(left_row[at]);
-      product_.mirror.push_back(entry[left_slot[at]]);
+    for (const int slot : left.of(a)) {
+      whole.column.push_back(row_of_slot[slot]);
+      product_.mirror.push_back(entry[slot]);
     }
     for (int k = begin_[a]; k < begin_[a + 1]; ++k) {
       entry[k] = static_cast<int>(whole.column.size());
@@ -142,19 +143,13 @@ CoarseContacts interpolate(std::span<const ContactBlock> contacts, const Prolong
 }  // namespace
 
 Restriction transpose(const Prolongation& p) {
-  Restriction result;
-  result.begin.assign(p.coarse_count() + 1, 0);
-  for (int a : p.coarse) ++result.begin[a + 1];
-  std::partial_sum(result.begin.begin(), result.begin.end(), result.begin.begin());
-  result.fine.resize(p.coarse.size());
-  result.weight.resize(p.coarse.size());
-  std::vector<int> next(result.begin.begin(), result.begin.end() - 1);
-  for (int i = 0; i < p.fine_count(); ++i)
-    for (int k = p.begin[i]; k < p.begin[i + 1]; ++k) {
-      const int place = next[p.coarse[k]]++;
-      result.fine[place] = i;
-      result.weight[place] = p.weight[k];
-    }
+  const Lists by = indices_by_value(p.coarse, p.coarse_count());
+  const std::vector<int> fine = lists_of_items(p.begin);
+  Restriction result{by.begin, {}, {}};
+  for (const int k : by.item) {
+    result.fine.push_back(fine[k]);
+    result.weight.push_back(p.weight[k]);
+  }
   return result;
 }
 
@@ -192,22 +187,14 @@ Product make_product(const RowPattern& fine, bool diagonal, const Prolongation& 
 
 Product make_product(std::span<const ContactBlock> contacts, const Prolongation& p, RowPattern& coarse) {
   const CoarseContacts all = interpolate(contacts, p);
-  std::vector<int> begin(p.coarse_count() + 1, 0), contact(all.node.size()), place(all.node.size());
-  for (int a : all.node) ++begin[a + 1];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<int> next(begin.begin(), begin.end() - 1);
-  for (int c = 0; c < static_cast<int>(contacts.size()); ++c)
-    for (int k = all.begin[c]; k < all.begin[c + 1]; ++k) {
-      const int at = next[all.node[k]]++;
-      contact[at] = c;
-      place[at] = k;
-    }
+  const Lists places = indices_by_value(all.node, p.coarse_count());
+  const std::vector<int> contact = lists_of_items(all.begin);
   RowCollector rows(p.coarse_count());
   for (int a = 0; a < p.coarse_count(); ++a) {
     rows.start(a);
-    for (int at = begin[a]; at < begin[a + 1]; ++at) {
-      const int c = contact[at];
-      const double own = all.weight[place[at]];
+    for (const int place : places.of(a)) {
+      const int c = contact[place];
+      const double own = all.weight[place];
       rows.add(c, a, own * all.sum[c]);
       for (int k = all.begin[c]; k < all.begin[c + 1]; ++k)
         if (all.node[k] != a) rows.add(c, all.node[k], own * all.weight[k]);

@@ -1,5 +1,7 @@
 #include "physics/linear/linear_system.hpp"
 
+#include "collision/geometry/lists.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -30,21 +32,17 @@ Mat3 contact_matrix(const ContactBlock& contact) {
 ContactLists list_contacts(std::span<const ContactBlock> contacts, int vertices) {
   ContactLists lists;
   if (contacts.empty()) return lists;
-  lists.begin.assign(vertices + 1, 0);
-  for (const ContactBlock& contact : contacts)
-    for (int node : contact.nodes)
-      if (node >= 0) ++lists.begin[node + 1];
-  for (int i = 0; i < vertices; ++i) lists.begin[i + 1] += lists.begin[i];
-  lists.contact.resize(lists.begin[vertices]);
-  lists.weight.resize(lists.begin[vertices]);
-  std::vector<int> next(lists.begin.begin(), lists.begin.end() - 1);
-  for (std::size_t c = 0; c < contacts.size(); ++c)
-    for (int k = 0; k < 4; ++k) {
-      const int node = contacts[c].nodes[k];
-      if (node < 0) continue;
-      lists.contact[next[node]] = static_cast<int>(c);
-      lists.weight[next[node]++] = contacts[c].weights[k];
-    }
+  std::vector<int> nodes;
+  nodes.reserve(4 * contacts.size());
+  for (const ContactBlock& contact : contacts) nodes.insert(nodes.end(), contact.nodes.begin(), contact.nodes.end());
+  Lists by = indices_by_value(nodes, vertices);
+  lists.weight.reserve(by.item.size());
+  for (int& i : by.item) {
+    lists.weight.push_back(contacts[i / 4].weights[i % 4]);
+    i /= 4;
+  }
+  lists.begin = std::move(by.begin);
+  lists.contact = std::move(by.item);
   return lists;
 }
 

@@ -21,25 +21,15 @@ void append_element(Elastic& elastic, const Nodes& nodes) {
   elastic.pair_begin.push_back(elastic.pair_begin.back() + count * (count - 1) / 2);
 }
 
-// Lists the indices at which each value 0 .. count - 1 is in `values`, ascending.
-void invert(const std::vector<int>& values, int count, std::vector<int>& begin, std::vector<int>& positions) {
-  begin.assign(count + 1, 0);
-  for (int value : values) ++begin[value + 1];
-  for (int i = 0; i < count; ++i) begin[i + 1] += begin[i];
-  positions.resize(values.size());
-  std::vector<int> next(begin.begin(), begin.end() - 1);
-  for (std::size_t i = 0; i < values.size(); ++i) positions[next[values[i]]++] = static_cast<int>(i);
-}
-
 void make_gather_lists(Elastic& elastic, int vertices) {
-  invert(elastic.element_nodes, vertices, elastic.force_gather_begin, elastic.force_gather);
+  elastic.force_slots = indices_by_value(elastic.element_nodes, vertices);
   std::vector<int> pair_of_slot;
   pair_of_slot.reserve(elastic.pair_begin.back());
   for (int e = 0; e < element_count(elastic); ++e)
     for (int i = elastic.element_begin[e]; i < elastic.element_begin[e + 1]; ++i)
       for (int j = i + 1; j < elastic.element_begin[e + 1]; ++j)
         pair_of_slot.push_back(find_pair(elastic.pattern, elastic.element_nodes[i], elastic.element_nodes[j]));
-  invert(pair_of_slot, static_cast<int>(elastic.pattern.pairs.size()), elastic.pair_gather_begin, elastic.pair_gather);
+  elastic.pair_slots = indices_by_value(pair_of_slot, static_cast<int>(elastic.pattern.pairs.size()));
 }
 
 template <class Gradient, class Hessian>
@@ -252,8 +242,7 @@ void elastic_derivatives(const Elastic& elastic, const Points& x, AssemblyScratc
 #pragma omp for schedule(static) nowait
       for (int i = 0; i < vertices; ++i) {
         Vec3 sum = Vec3::Zero();
-        for (int k = elastic.force_gather_begin[i]; k < elastic.force_gather_begin[i + 1]; ++k)
-          sum += row(scratch.forces, elastic.force_gather[k]);
+        for (const int slot : elastic.force_slots.of(i)) sum += row(scratch.forces, slot);
         if (elastic.flat.rows() > 0) sum += multiply_flat_row(elastic.flat, x, i);
         gradient->row(i) = sum.transpose();
       }
@@ -261,9 +250,9 @@ void elastic_derivatives(const Elastic& elastic, const Points& x, AssemblyScratc
     if (hessian) {
 #pragma omp for schedule(static)
       for (int p = 0; p < pairs; ++p) {
-        Mat3 sum = scratch.pairs[elastic.pair_gather[elastic.pair_gather_begin[p]]];
-        for (int k = elastic.pair_gather_begin[p] + 1; k < elastic.pair_gather_begin[p + 1]; ++k)
-          sum += scratch.pairs[elastic.pair_gather[k]];
+        const std::span<const int> slots = elastic.pair_slots.of(p);
+        Mat3 sum = scratch.pairs[slots.front()];
+        for (const int slot : slots.subspan(1)) sum += scratch.pairs[slot];
         (*hessian)[p] = sum;
       }
     }

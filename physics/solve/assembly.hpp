@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "collision/geometry/lists.hpp"
 #include "physics/energies/bending.hpp"
 #include "physics/energies/joints.hpp"
 #include "physics/energies/membrane.hpp"
@@ -26,8 +27,8 @@ struct Elastic {
   std::vector<double> element_damping;  // stiffness damping of the element's cloth; for a joint the mean of its own [s]
   std::vector<double> vertex_damping;   // the same of each vertex
   PairPattern pattern;
-  std::vector<int> force_gather_begin, force_gather;  // the force slots of each vertex
-  std::vector<int> pair_gather_begin, pair_gather;    // the pair slots of each pair
+  Lists force_slots;  // of each vertex
+  Lists pair_slots;   // of each pair
 };
 Elastic make_elastic(const Scene&);
 
