@@ -170,7 +170,7 @@ void list_round_vertex(const SheetView& sheet, int vertex, std::vector<RoundVert
   round.clear();
   for (const int t : sheet.surface->triangles_of(vertex)) {
     const int* v = sheet.surface->triangles.data() + 3 * t;
-    const int k = v[0] == vertex ? 0 : v[1] == vertex ? 1 : 2, first = v[(k + 1) % 3], second = v[(k + 2) % 3];
+    const int k = sheet.surface->corner_of(t, vertex), first = v[(k + 1) % 3], second = v[(k + 2) % 3];
     round.push_back({t, {first, second}, {row(*sheet.x, first), row(*sheet.x, second)}});
   }
 }

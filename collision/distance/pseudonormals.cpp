@@ -10,16 +10,10 @@ Vec3 unit_or_zero(const Vec3& v) {
   return length > 1e-12 ? Vec3(v / length) : Vec3::Zero();
 }
 
-int corner_at(const Surface& surface, int triangle, int vertex) {
-  return surface.triangles(triangle, 0) == vertex ? 0 : surface.triangles(triangle, 1) == vertex ? 1 : 2;
-}
-
 // Does the triangle run along the edge from its lower to its higher vertex?
 bool passes_upward(const Surface& surface, int triangle, int edge) {
-  for (int k = 0; k < 3; ++k)
-    if (surface.triangle_edges(triangle, k) == edge)
-      return surface.triangles(triangle, k) < surface.triangles(triangle, (k + 1) % 3);
-  return false;
+  const int k = surface.side_of(triangle, edge);
+  return surface.triangles(triangle, k) < surface.triangles(triangle, (k + 1) % 3);
 }
 
 // The number of triangles in the fan of the vertex's first triangle: all that are reached by turning round the vertex.
@@ -27,9 +21,8 @@ int fan_size(const Surface& surface, int vertex) {
   const int first = surface.triangles_of(vertex).front();
   int at = first, size = 0;
   do {
-    const int k = corner_at(surface, at, vertex);
-    const auto& pair = surface.edge_triangles[surface.triangle_edges(at, (k + 2) % 3)];  // the edge that enters
-    at = pair[0] == at ? pair[1] : pair[0];
+    const int k = surface.corner_of(at, vertex);
+    at = surface.across(surface.triangle_edges(at, (k + 2) % 3), at);  // the edge that enters
     ++size;
   } while (at != first);
   return size;
@@ -72,7 +65,7 @@ Vec3 edge_pseudonormal(const Surface& surface, const Points& x, int edge) {
 Vec3 vertex_pseudonormal(const Surface& surface, const Points& x, int vertex) {
   Vec3 sum = Vec3::Zero();
   for (const int t : surface.triangles_of(vertex)) {
-    const int k = corner_at(surface, t, vertex);
+    const int k = surface.corner_of(t, vertex);
     const Vec3 at = row(x, vertex);
     const Vec3 p = row(x, surface.triangles(t, (k + 1) % 3)) - at, q = row(x, surface.triangles(t, (k + 2) % 3)) - at;
     const Vec3 normal = p.cross(q);

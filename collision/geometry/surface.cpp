@@ -113,6 +113,21 @@ std::vector<std::vector<int>> boundary_loops(const Surface& s) {
   return loops;
 }
 
+std::optional<std::vector<EdgeRound>> edges_round(const Surface& surface, int vertex, int from, int to, bool forward) {
+  std::vector<EdgeRound> edges;
+  int previous = -1;
+  for (int t = from; t != to;) {
+    const int k = surface.corner_of(t, vertex);
+    const int ahead = surface.triangle_edges(t, k), behind = surface.triangle_edges(t, (k + 2) % 3);
+    const int edge = previous < 0 ? (forward ? ahead : behind) : (ahead == previous ? behind : ahead);
+    edges.push_back({edge, t});
+    previous = edge;
+    t = surface.across(edge, t);
+    if (t < 0 || t == from || edges.size() > surface.triangles_of(vertex).size()) return std::nullopt;
+  }
+  return edges;
+}
+
 Points vertex_normals(const Surface& s, const Points& x) {
   const int faces = static_cast<int>(s.triangles.rows());
   Points twice_area(faces, 3), normals(s.vertex_count, 3);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,20 @@ struct Surface {
   int isolated_vertices = 0;
 
   std::span<const int> triangles_of(int vertex) const { return vertex_triangles.of(vertex); }
+
+  // The other one of an edge's two triangles; -1 at a boundary.
+  int across(int edge, int triangle) const {
+    const auto [first, second] = edge_triangles[edge];
+    return first == triangle ? second : first;
+  }
+
+  // Which corner of a triangle one of its vertices is, and which of its edges an edge is.
+  int corner_of(int triangle, int vertex) const {
+    return triangles(triangle, 0) == vertex ? 0 : triangles(triangle, 1) == vertex ? 1 : 2;
+  }
+  int side_of(int triangle, int edge) const {
+    return triangle_edges(triangle, 0) == edge ? 0 : triangle_edges(triangle, 1) == edge ? 1 : 2;
+  }
 };
 
 // Indices must lie in [0, vertex_count) and differ within a triangle (assert; readers check and throw).
@@ -36,6 +51,13 @@ bool is_closed(const Surface&);  // every edge has exactly two triangles
 // Closed loops of boundary vertices, each in the direction of its triangles' edges and each vertex at most once in a
 // loop. Edges that do not close, which only triangles of clashing orientation have, are left out.
 std::vector<std::vector<int>> boundary_loops(const Surface&);
+
+// The edges at a vertex between two of its triangles, going round in one direction, each with the triangle before it;
+// nothing if a boundary or a branching edge comes between.
+struct EdgeRound {
+  int edge, triangle;
+};
+std::optional<std::vector<EdgeRound>> edges_round(const Surface&, int vertex, int from, int to, bool forward);
 
 double mean_edge(const Surface&, const Points&);  // length [m]; 0 without edges
 

@@ -3,14 +3,9 @@
 namespace selvedge {
 namespace {
 
-int corner_at_edge(const Surface& surface, int triangle, int edge) {
-  const auto& edges = surface.triangle_edges;
-  return edges(triangle, 0) == edge ? 0 : edges(triangle, 1) == edge ? 1 : 2;
-}
-
 // Do both triangles of an edge run along it in the same direction?
 bool same_direction(const Surface& surface, int edge, int a, int b) {
-  const int i = corner_at_edge(surface, a, edge), j = corner_at_edge(surface, b, edge);
+  const int i = surface.side_of(a, edge), j = surface.side_of(b, edge);
   return surface.triangles(a, i) == surface.triangles(b, j);
 }
 
@@ -34,8 +29,7 @@ TurnedAlike turned_alike(const Surface& surface) {
       alike.part[t] = part;
       for (int k = 0; k < 3; ++k) {
         const int edge = surface.triangle_edges(t, k);
-        const auto [first, second] = surface.edge_triangles[edge];
-        const int next = first == t ? second : first;
+        const int next = surface.across(edge, t);
         if (uses[edge] > 2) orientable = false;
         if (next < 0 || next == t) continue;
         const int wanted = same_direction(surface, edge, t, next) ? -alike.turn[t] : alike.turn[t];

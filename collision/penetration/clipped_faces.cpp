@@ -157,18 +157,15 @@ ClippedPart clip_faces(const ClosedSurface& closed, const std::vector<Crossing>&
 
 std::array<double, 3> weights_in(const Surface& surface, const std::vector<Crossing>& crossings, int face,
                                  CurvePoint at) {
-  const auto corner = [&](int vertex) {
-    return surface.triangles(face, 0) == vertex ? 0 : surface.triangles(face, 1) == vertex ? 1 : 2;
-  };
   std::array<double, 3> weight{};
   if (at < 0) {
-    weight[corner(~at)] = 1;
+    weight[surface.corner_of(face, ~at)] = 1;
     return weight;
   }
   const Crossing& c = crossings[at];
   if (c.face == face) return c.weight;
-  weight[corner(surface.edges(c.edge, 0))] = 1 - c.s;
-  weight[corner(surface.edges(c.edge, 1))] = c.s;
+  weight[surface.corner_of(face, surface.edges(c.edge, 0))] = 1 - c.s;
+  weight[surface.corner_of(face, surface.edges(c.edge, 1))] = c.s;
   return weight;
 }
 

@@ -111,7 +111,7 @@ class Closer {
       }
       if (chosen < 0 || path.points.size() > most) return false;
       leave(face, chosen, share, curve, path);
-      face = beyond(chosen, face);
+      face = surface_.across(chosen, face);
       if (face < 0 || closed_.is_fan(face)) return false;
       last = chosen;
     }
@@ -154,7 +154,7 @@ class Closer {
       front.erase(front.begin());
       if (crossed[edge]) continue;
       crossed[edge] = 1;
-      const int next = beyond(edge, steps[place].face);
+      const int next = surface_.across(edge, steps[place].face);
       if (next == last) reached = place;
       if (next >= 0 && !closed_.is_fan(next)) spread(middle(edge), length, next, place);
     }
@@ -164,10 +164,6 @@ class Closer {
   }
 
   Vec3 middle(int edge) const { return (row(x_, surface_.edges(edge, 0)) + row(x_, surface_.edges(edge, 1))) / 2; }
-  int beyond(int edge, int face) const {
-    const auto [first, second] = surface_.edge_triangles[edge];
-    return first == face ? second : first;
-  }
 
   // Continues the path to a point on an edge of the face, and into the next face.
   void leave(int face, int edge, double share, SurfaceCurve& curve, ContourClosing::Path& path) {

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "collision/penetration/lockstep_flood.hpp"
+#include "collision/contour/lockstep_flood.hpp"
+#include "collision/geometry/corners.hpp"
 
 namespace selvedge {
 namespace {
@@ -138,34 +139,11 @@ std::vector<int> with_one_part(LockstepFlood& flood, int curves) {
   return found;
 }
 
-// Colours 0 and 1 of the fronts, different on both sides of each curve, 0 at `start`; empty if there is no such
-// colouring.
-std::vector<int> two_colouring(LockstepFlood& flood, int curves, int start) {
-  std::vector<std::vector<int>> beside(static_cast<std::size_t>(flood.count()));
-  for (int i = 0; i < curves; ++i) {
-    const int r = flood.root(right_of(i)), l = flood.root(left_of(i));
-    beside[r].push_back(l);
-    beside[l].push_back(r);
-  }
-  std::vector<int> colour(beside.size(), -1);
-  const auto spread = [&](int from) {
-    if (colour[from] >= 0) return true;
-    colour[from] = 0;
-    for (std::vector<int> stack{from}; !stack.empty();) {
-      const int at = stack.back();
-      stack.pop_back();
-      for (const int next : beside[at]) {
-        if (colour[next] == colour[at]) return false;
-        if (colour[next] >= 0) continue;
-        colour[next] = 1 - colour[at];
-        stack.push_back(next);
-      }
-    }
-    return true;
-  };
-  bool fits = start < 0 || spread(start);
-  for (int i = 0; i < 2 * curves && fits; ++i) fits = spread(flood.root(i));
-  return fits ? colour : std::vector<int>();
+// Colours of the fronts, different on both sides of each curve, 0 at `start`; empty if there is no such colouring.
+std::vector<int> colours_beside(LockstepFlood& flood, int curves, int start) {
+  std::vector<std::array<int, 2>> joined;
+  for (int i = 0; i < curves; ++i) joined.push_back({flood.root(right_of(i)), flood.root(left_of(i))});
+  return two_colours(flood.count(), joined, start);
 }
 
 int whole_faces(const PartingSpace& space, const std::vector<int>& vertices) {
@@ -176,9 +154,8 @@ int whole_faces(const PartingSpace& space, const std::vector<int>& vertices) {
 }
 
 double face_area(const PartingSpace& space, int face) {
-  const Triangles& corners = space.closed.surface.triangles;
-  const Vec3 a = row(space.x, corners(face, 0));
-  return 0.5 * (row(space.x, corners(face, 1)) - a).cross(row(space.x, corners(face, 2)) - a).norm();
+  const auto [a, b, c] = corners_of(space.closed.surface, space.x, face);
+  return 0.5 * (b - a).cross(c - a).norm();
 }
 
 // The counted area (area times count) as a fraction of the component's area.
@@ -237,7 +214,7 @@ std::optional<PartedTogether> part_together(PartingSpace& space, std::span<const
   const int open = flood.grow(1);
   culprits = with_one_part(flood, count);
   if (!culprits.empty()) return std::nullopt;
-  const std::vector<int> colour = two_colouring(flood, count, open);
+  const std::vector<int> colour = colours_beside(flood, count, open);
   if (colour.empty()) return std::nullopt;
   const int inner = odd_is_larger(space, curves, marks.faces(), colour, flood) ? 0 : 1;
   if (open >= 0 && inner == 0) flood.grow(0);

@@ -1,36 +1,9 @@
 #include "collision/penetration/surface_curve.hpp"
 
 #include <algorithm>
-#include <optional>
 
 namespace selvedge {
 namespace {
-
-int corner_on(const Surface& surface, int triangle, int vertex) {
-  for (int k = 0; k < 3; ++k)
-    if (surface.triangles(triangle, k) == vertex) return k;
-  return -1;
-}
-
-// The edges at a vertex between two of its triangles, going round in one direction, each with the triangle before it;
-// nothing if a boundary comes between.
-std::optional<std::vector<std::array<int, 2>>> edges_round(const Surface& surface, int vertex, int from, int to,
-                                                           bool forward) {
-  std::vector<std::array<int, 2>> edges;
-  const std::size_t most = surface.triangles_of(vertex).size();
-  int previous = -1;
-  for (int t = from; t != to;) {
-    const int k = corner_on(surface, t, vertex);
-    const int ahead = surface.triangle_edges(t, k), behind = surface.triangle_edges(t, (k + 2) % 3);
-    const int edge = previous < 0 ? (forward ? ahead : behind) : (ahead == previous ? behind : ahead);
-    edges.push_back({edge, t});
-    previous = edge;
-    const auto [first, second] = surface.edge_triangles[edge];
-    t = first == t ? second : first;
-    if (t < 0 || t == from || edges.size() > most) return std::nullopt;
-  }
-  return edges;
-}
 
 // Leads the curve round the loop vertex at which it turns from one side of the contour to the other, in the direction
 // with fewer edges.
@@ -73,8 +46,7 @@ bool ends_at_vertices(const Contour& contour) {
 
 int jump_on_leaving(const ClosedSurface& closed, int triangle, int edge) {
   const Surface& surface = closed.surface;
-  const auto& edges = surface.triangle_edges;
-  const int k = edges(triangle, 0) == edge ? 0 : edges(triangle, 1) == edge ? 1 : 2;
+  const int k = surface.side_of(triangle, edge);
   const bool rises = surface.triangles(triangle, k) < surface.triangles(triangle, (k + 1) % 3);
   return (rises ? 1 : -1) * closed.turn[triangle];
 }

@@ -41,11 +41,6 @@ struct PartFinder {
   bool within(const QuietParts::Part& part, int t) const {
     return t >= 0 && leaf_of[t] >= part.first_leaf && leaf_of[t] < part.first_leaf + part.leaves;
   }
-  int across(int t, int k) const {
-    const auto& sides = s.edge_triangles[s.triangle_edges(t, k)];
-    return sides[0] == t ? sides[1] : sides[0];
-  }
-
   // Triangles that can be reached from the first one over edges within the part.
   int reachable(const QuietParts::Part& part) {
     std::vector<int> stack{tree.leaves[part.first_leaf].item[0]};
@@ -56,7 +51,8 @@ struct PartFinder {
       stack.pop_back();
       ++count;
       for (int k = 0; k < 3; ++k)
-        if (const int other = across(t, k); within(part, other) && seen_triangle[other] != part.node) {
+        if (const int other = s.across(s.triangle_edges(t, k), t);
+            within(part, other) && seen_triangle[other] != part.node) {
           seen_triangle[other] = part.node;
           stack.push_back(other);
         }
@@ -76,7 +72,7 @@ struct PartFinder {
           if (irregular[s.triangle_edges(t, k)]) return false;
           vertices += seen_vertex[v] != part.node;
           seen_vertex[v] = part.node;
-          if (within(part, across(t, k))) {
+          if (within(part, s.across(s.triangle_edges(t, k), t))) {
             ++half_edges;
             continue;
           }

@@ -43,10 +43,10 @@ Corners corners_of(const RestTriangle& rest) {
 // round it are not one closed fan: at a boundary, a non-manifold edge, a pinched or isolated vertex.
 std::vector<int> ordered_ring(const Surface& surface, int vertex) {
   std::vector<std::array<int, 2>> links;
-  for (const int t : surface.triangles_of(vertex))
-    for (int k = 0; k < 3; ++k)
-      if (surface.triangles(t, k) == vertex)
-        links.push_back({surface.triangles(t, (k + 1) % 3), surface.triangles(t, (k + 2) % 3)});
+  for (const int t : surface.triangles_of(vertex)) {
+    const int k = surface.corner_of(t, vertex);
+    links.push_back({surface.triangles(t, (k + 1) % 3), surface.triangles(t, (k + 2) % 3)});
+  }
   if (links.size() < 3) return {};
   std::vector<int> ring{links[0][0]};
   int end = links[0][1];

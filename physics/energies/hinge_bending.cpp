@@ -11,13 +11,6 @@ double rest_length(const RestTriangle& rest, int corner) {
   return (rest.col((corner + 1) % 3) - rest.col(corner)).norm();
 }
 
-// The corner of triangle t from which `edge` starts.
-int corner_of_edge(const Surface& surface, int t, int edge) {
-  int k = 0;
-  while (surface.triangle_edges(t, k) != edge) ++k;
-  return k;
-}
-
 double angle_at(const Hinge& hinge, const Points& x) {
   return dihedral_angle(row(x, hinge.nodes[0]), row(x, hinge.nodes[1]), row(x, hinge.nodes[2]), row(x, hinge.nodes[3]));
 }
@@ -49,7 +42,7 @@ std::vector<Hinge> hinges(const Scene& scene) {
     const double k = stiffness[surface.edges(e, 0)];
     const auto [first, second] = surface.edge_triangles[e];
     if (!(k > 0) || second < 0) continue;
-    const int i = corner_of_edge(surface, first, e), j = corner_of_edge(surface, second, e);
+    const int i = surface.side_of(first, e), j = surface.side_of(second, e);
     const RestTriangle &rest0 = scene.rest_triangle[first], &rest1 = scene.rest_triangle[second];
     const double areas = std::abs(area(rest0)) + std::abs(area(rest1));
     const double length = 0.5 * (rest_length(rest0, i) + rest_length(rest1, j));

@@ -8,10 +8,8 @@ namespace {
 
 double rest_length(const Scene& scene, int edge) {
   const int t = scene.surface.edge_owner[edge];
-  for (int k = 0; k < 3; ++k)
-    if (scene.surface.triangle_edges(t, k) == edge)
-      return (scene.rest_triangle[t].col(k) - scene.rest_triangle[t].col((k + 1) % 3)).norm();
-  return 0;
+  const int k = scene.surface.side_of(t, edge);
+  return (scene.rest_triangle[t].col(k) - scene.rest_triangle[t].col((k + 1) % 3)).norm();
 }
 
 }  // namespace

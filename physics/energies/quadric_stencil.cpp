@@ -75,8 +75,7 @@ Chart lay_out(const Scene& scene, int vertex, int layers) {
   if (own.empty()) return chart;
   const int start = *own.begin();
   const auto corner = surface.triangles.row(start);
-  int k = 0;
-  while (corner(k) != vertex) ++k;
+  const int k = surface.corner_of(start, vertex);
   const Vec2 origin = scene.rest_triangle[start].col(k);
   chart.nodes = {vertex, corner((k + 1) % 3), corner((k + 2) % 3)};
   for (int m = 0; m < 3; ++m) chart.points.emplace_back(scene.rest_triangle[start].col((k + m) % 3) - origin);
@@ -87,8 +86,7 @@ Chart lay_out(const Scene& scene, int vertex, int layers) {
     for (std::size_t i = 0; i < wave.size(); ++i) {
       const int t = wave[i];
       for (int m = 0; m < 3; ++m) {
-        const auto [s, u] = surface.edge_triangles[surface.triangle_edges(t, m)];
-        const int other = s == t ? u : s;
+        const int other = surface.across(surface.triangle_edges(t, m), t);
         if (other < 0 || chart.triangles.count(other)) continue;
         const auto theirs = surface.triangles.row(other);
         const bool at_vertex = (theirs.array() == vertex).any();

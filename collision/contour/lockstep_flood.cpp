@@ -1,6 +1,6 @@
-#include "collision/penetration/lockstep_flood.hpp"
+#include "collision/contour/lockstep_flood.hpp"
 
-#include <algorithm>
+#include <utility>
 
 namespace selvedge {
 
@@ -73,6 +73,33 @@ int LockstepFlood::grow(int open) {
         expand(f);
       }
   }
+}
+
+std::vector<int> two_colours(int fronts, std::span<const std::array<int, 2>> joined, int start) {
+  std::vector<std::vector<int>> beside(static_cast<std::size_t>(fronts));
+  for (const auto& [a, b] : joined) {
+    beside[a].push_back(b);
+    beside[b].push_back(a);
+  }
+  std::vector<int> colour(beside.size(), -1);
+  const auto spread = [&](int from) {
+    if (colour[from] >= 0) return true;
+    colour[from] = 0;
+    for (std::vector<int> stack{from}; !stack.empty();) {
+      const int at = stack.back();
+      stack.pop_back();
+      for (const int next : beside[at]) {
+        if (colour[next] == colour[at]) return false;
+        if (colour[next] >= 0) continue;
+        colour[next] = 1 - colour[at];
+        stack.push_back(next);
+      }
+    }
+    return true;
+  };
+  bool fits = start < 0 || spread(start);
+  for (const auto& [a, b] : joined) fits = fits && spread(a) && spread(b);
+  return fits ? colour : std::vector<int>();
 }
 
 }  // namespace selvedge

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <span>
 #include <vector>
 
 #include "collision/geometry/surface.hpp"
@@ -39,5 +41,9 @@ class LockstepFlood {
   std::vector<int> parent_;
   std::vector<std::vector<int>> waiting_, reached_;
 };
+
+// Colours 0 and 1 of the fronts, different for two that are joined, 0 at `start` (-1: none in particular); -1 for
+// fronts that are joined to none. Empty if there is no such colouring.
+std::vector<int> two_colours(int fronts, std::span<const std::array<int, 2>> joined, int start);
 
 }  // namespace selvedge
