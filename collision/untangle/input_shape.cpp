@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace selvedge {
 namespace {
@@ -62,23 +61,17 @@ Edges32 deformation(const InputShape& shape, const Points& x, int triangle) {
 
 void make_neighbours(InputShape& shape) {
   const Surface& s = *shape.surface;
-  shape.neighbour_begin.assign(s.vertex_count + 1, 0);
-  for (int v : s.edges.reshaped()) ++shape.neighbour_begin[v + 1];
-  for (int v = 0; v < s.vertex_count; ++v) shape.neighbour_begin[v + 1] += shape.neighbour_begin[v];
-  shape.neighbour.resize(2 * static_cast<std::size_t>(s.edges.rows()));
+  shape.neighbours = adjacency_of(s.vertex_count, s.edges);
   shape.edge_length.assign(s.vertex_count, 0);
-  std::vector<int> next(shape.neighbour_begin.begin(), shape.neighbour_begin.end() - 1);
   for (int e = 0; e < s.edges.rows(); ++e) {
     const int a = s.edges(e, 0), b = s.edges(e, 1);
     const double length = (row(shape.x0, a) - row(shape.x0, b)).norm();
-    shape.neighbour[next[a]++] = b;
-    shape.neighbour[next[b]++] = a;
     shape.edge_length[a] += length;
     shape.edge_length[b] += length;
   }
   shape.mean_edge = mean_edge(s, shape.x0);
   for (int v = 0; v < s.vertex_count; ++v) {
-    const int count = shape.neighbour_begin[v + 1] - shape.neighbour_begin[v];
+    const auto count = static_cast<double>(shape.neighbours.of(v).size());
     if (count > 0) shape.edge_length[v] /= count;
   }
 }
@@ -133,11 +126,11 @@ void smooth_displacement(const InputShape& shape, const Points& from, std::span<
   std::vector<Vec3> moved;
   moved.reserve(vertices.size());
   for (int v : vertices) {
-    const int begin = shape.neighbour_begin[v], end = shape.neighbour_begin[v + 1];
+    const std::span<const int> round = shape.neighbours.of(v);
     const Vec3 own = row(x, v) - row(from, v);
     Vec3 mean = Vec3::Zero();
-    for (int i = begin; i < end; ++i) mean += row(x, shape.neighbour[i]) - row(from, shape.neighbour[i]);
-    moved.push_back(end > begin ? Vec3(own + share * (mean / (end - begin) - own)) : own);
+    for (const int w : round) mean += row(x, w) - row(from, w);
+    moved.push_back(round.empty() ? own : Vec3(own + share * (mean / static_cast<double>(round.size()) - own)));
   }
   for (std::size_t i = 0; i < vertices.size(); ++i) x.row(vertices[i]) = from.row(vertices[i]) + moved[i].transpose();
 }

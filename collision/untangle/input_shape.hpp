@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "collision/geometry/adjacency.hpp"
 #include "collision/geometry/surface.hpp"
 
 namespace selvedge {
@@ -11,9 +12,9 @@ namespace selvedge {
 struct InputShape {
   const Surface* surface = nullptr;
   Points x0;
-  std::vector<int> neighbour_begin, neighbour;  // of each vertex, along edges
-  std::vector<double> edge_length;              // mean over each vertex' edges [m]
-  std::vector<Eigen::Matrix2d> rest_inverse;    // of each triangle's two edges in its plane
+  Adjacency neighbours;                       // along edges
+  std::vector<double> edge_length;            // mean over each vertex' edges [m]
+  std::vector<Eigen::Matrix2d> rest_inverse;  // of each triangle's two edges in its plane
   std::vector<char> measured;  // 0: the input triangle has no area, so that its stretches are not defined
   double mean_edge = 0;        // [m]
 };

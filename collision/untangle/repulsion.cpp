@@ -30,8 +30,7 @@ bool Repulsion::neighbours(const NodePair& pair) const {
     const int v = pair.nodes[i];
     if (!world_.is_cloth(v)) return false;
     for (int j = first; j < 4; ++j)
-      for (int k = shape_.neighbour_begin[v]; k < shape_.neighbour_begin[v + 1]; ++k)
-        if (shape_.neighbour[k] == pair.nodes[j]) return true;
+      if (std::ranges::binary_search(shape_.neighbours.of(v), pair.nodes[j])) return true;
   }
   return false;
 }
