@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/geometry/corners.hpp"
 #include "collision/geometry/disjoint_sets.hpp"
 #include "collision/search/nearest_face.hpp"
 
@@ -13,12 +14,6 @@ constexpr double parallel = 0.5;   // least cosine of the normals of layers that
 constexpr double agreeing = 0.75;  // share of crossed edges whose ends must be on different sides
 
 bool parts_nothing(const Contour& contour) { return !contour.sides[0].cuts && !contour.sides[1].cuts; }
-
-Vec3 between(const Points& points, const Surface& surface, int face, const std::array<double, 3>& weight) {
-  Vec3 sum = Vec3::Zero();
-  for (int k = 0; k < 3; ++k) sum += weight[k] * row(points, surface.triangles(face, k));
-  return sum;
-}
 
 bool at_boundary(const Surface& surface, const NearestFace& near) {
   for (int k = 0; k < 3; ++k) {
@@ -106,7 +101,7 @@ void Pair::vote(int k, const Crossing& c) {
   const Surface& surface = *other.surface;
   const auto corner = [&](int i) { return row(*other.x, surface.triangles(c.face, i)); };
   const Vec3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
-  const Vec3 point = between(*other.x, surface, c.face, c.weight);
+  const Vec3 point = weighted_corners(surface, *other.x, c.face, c.weight);
   for (int end = 0; end < 2; ++end) {
     const int v = own.surface->edges(c.edge, end);
     const double along = normal.dot(row(own.normals, v)), side = normal.dot(row(*own.x, v) - point) > 0 ? 1 : -1;
@@ -119,10 +114,10 @@ int Pair::facing_side(int k, int v) const {
   const Layer &own = layers_[k], &other = layers_[1 - k];
   const NearestFace near = nearest_face(other.faces, -1, row(*own.x, v));
   if (near.face < 0 || at_boundary(*other.surface, near)) return 0;
-  const Vec3 normal = between(other.normals, *other.surface, near.face, near.weight).normalized();
+  const Vec3 normal = weighted_corners(*other.surface, other.normals, near.face, near.weight).normalized();
   const double along = normal.dot(row(own.normals, v));
   if (!(std::abs(along) >= parallel)) return 0;
-  const double height = normal.dot(row(*own.x, v) - between(*other.x, *other.surface, near.face, near.weight));
+  const double height = normal.dot(row(*own.x, v) - weighted_corners(*other.surface, *other.x, near.face, near.weight));
   const double side = k == 0 ? height : -along * height;
   return side > 0 ? 1 : side < 0 ? -1 : 0;
 }

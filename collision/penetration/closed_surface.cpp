@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "collision/geometry/corners.hpp"
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/turned_alike.hpp"
 
@@ -80,6 +81,11 @@ Points closed_positions(const ClosedSurface& closed, const Points& cloth) {
     x.row(centre++) = (sum / static_cast<double>(loop.size())).transpose();
   }
   return x;
+}
+
+Vec3 turned_normal(const ClosedSurface& closed, const Points& x, int face) {
+  const auto [a, b, c] = corners_of(closed.surface, x, face);
+  return closed.turn[face] * (b - a).cross(c - a);
 }
 
 Points by_cloth_positions(const ClosedSurface& closed, const Points& gradient) {

@@ -30,6 +30,9 @@ ClosedSurface close_surface(const Surface& cloth, std::span<const int> garments 
 // Cloth positions [m], then the centres of the fans.
 Points closed_positions(const ClosedSurface&, const Points& cloth);
 
+// Twice the vector area of a face, with its turn; x: closed_positions.
+Vec3 turned_normal(const ClosedSurface&, const Points& x, int face);
+
 // Turns a derivative by closed_positions into one by the cloth's positions: each of a loop's n vertices gets 1/n of the
 // centre's.
 Points by_cloth_positions(const ClosedSurface&, const Points& gradient);

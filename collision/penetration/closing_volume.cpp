@@ -3,15 +3,9 @@
 namespace selvedge {
 namespace {
 
-Vec3 twice_area(const ClosedSurface& closed, const Points& x, int face) {
-  const Triangles& corners = closed.surface.triangles;
-  const Vec3 a = row(x, corners(face, 0));
-  return closed.turn[face] * (row(x, corners(face, 1)) - a).cross(row(x, corners(face, 2)) - a);
-}
-
 // The sum of twice the vector areas at both ends of a path.
 Vec3 normal_of(const ClosedSurface& closed, const Points& x, const ContourClosing::Path& path) {
-  return twice_area(closed, x, path.end_faces[0]) + twice_area(closed, x, path.end_faces[1]);
+  return turned_normal(closed, x, path.end_faces[0]) + turned_normal(closed, x, path.end_faces[1]);
 }
 
 // The sign of a side's normal in the sum: -1 for side 1 if the normals are more than a right angle apart, since the
@@ -54,7 +48,7 @@ class MovingClosing {
   // Adds the derivative through a crossing, which slides along its edge as its face moves.
   void pull_end(CurvePoint point, const Vec3& by) {
     const Crossing& c = crossings_[point];
-    const Vec3 normal = twice_area(closed_, x_, c.face);
+    const Vec3 normal = turned_normal(closed_, x_, c.face);
     const int low = surface_.edges(c.edge, 0), high = surface_.edges(c.edge, 1);
     const Vec3 along = row(x_, high) - row(x_, low);
     const double rise = normal.dot(along);

@@ -1,8 +1,8 @@
 #include "collision/penetration/penetration_loss.hpp"
 
-#include <algorithm>
-#include <cassert>
 #include <cmath>
+
+#include "collision/geometry/corners.hpp"
 
 namespace selvedge {
 namespace {
@@ -15,10 +15,7 @@ class FrozenPatches {
 
   Vec3 at(CurvePoint point) const {
     if (point < 0 || !is_on_face(point)) return position_of(surface_, x_, crossings_, point);
-    const Crossing& c = crossings_[point];
-    Vec3 sum = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) sum += c.weight[k] * row(x_, surface_.triangles(c.face, k));
-    return sum;
+    return weighted_corners(surface_, x_, crossings_[point].face, crossings_[point].weight);
   }
   void pull(CurvePoint point, const Vec3& by, Points& gradient) const {
     if (point < 0) {
@@ -34,9 +31,7 @@ class FrozenPatches {
     gradient.row(surface_.edges(c.edge, 1)) += c.s * by.transpose();
   }
   // Twice the vector area of a face, with its turn.
-  Vec3 normal(int face) const {
-    return closed_.turn[face] * (corner(face, 1) - corner(face, 0)).cross(corner(face, 2) - corner(face, 0));
-  }
+  Vec3 normal(int face) const { return turned_normal(closed_, x_, face); }
   int turn(int face) const { return closed_.turn[face]; }
   Vec3 corner(int face, int k) const { return row(x_, surface_.triangles(face, k)); }
 

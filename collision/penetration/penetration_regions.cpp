@@ -159,12 +159,6 @@ class Planner {
   std::vector<RegionPlan> plans_;
 };
 
-Vec3 face_normal(const ClosedSurface& closed, const Points& x, int face) {
-  const Triangles& corners = closed.surface.triangles;
-  const Vec3 a = row(x, corners(face, 0));
-  return closed.turn[face] * (row(x, corners(face, 1)) - a).cross(row(x, corners(face, 2)) - a);
-}
-
 Vec3 mean_crossing(const PartingSpace& space, const std::vector<ClippedPiece>& pieces) {
   Vec3 sum = Vec3::Zero();
   double count = 0;
@@ -189,7 +183,7 @@ bool measure(PartingSpace& space, const RegionPlan& plan, PenetrationRegion& reg
   }
   region.centre = mean_crossing(space, region.pieces);
   for (const ClippedFace& clipped : region.faces) {
-    const Vec3 normal = face_normal(space.closed, space.x, clipped.face);
+    const Vec3 normal = turned_normal(space.closed, space.x, clipped.face);
     const Vec3 corner = row(space.x, space.closed.surface.triangles(clipped.face, 0)) - region.centre;
     region.volume += normal.dot(corner) * clipped.covered() / 3;
     region.area += normal.norm() * std::abs(clipped.covered());

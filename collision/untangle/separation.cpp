@@ -8,6 +8,7 @@
 #include "collision/contour/contour_translation.hpp"
 #include "collision/exact/inside.hpp"
 #include "collision/geometry/closed_shells.hpp"
+#include "collision/geometry/corners.hpp"
 #include "collision/search/nearest_face.hpp"
 
 namespace selvedge {
@@ -51,19 +52,14 @@ struct Setting {
   std::vector<Points> normals;               // of the vertices of each sheet
 
   Vec3 face_normal(int sheet, int face) const {
-    const Points& x = *sheets[sheet].x;
-    const auto corner = [&](int k) { return row(x, sheets[sheet].surface->triangles(face, k)); };
-    return (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
+    const auto [a, b, c] = corners_of(*sheets[sheet].surface, *sheets[sheet].x, face);
+    return (b - a).cross(c - a).normalized();
   }
   Vec3 at(int sheet, int face, const std::array<double, 3>& w) const {
-    Vec3 sum = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) sum += w[k] * row(*sheets[sheet].x, sheets[sheet].surface->triangles(face, k));
-    return sum;
+    return weighted_corners(*sheets[sheet].surface, *sheets[sheet].x, face, w);
   }
   Vec3 smooth_normal(int sheet, int face, const std::array<double, 3>& w) const {
-    Vec3 sum = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) sum += w[k] * row(normals[sheet], sheets[sheet].surface->triangles(face, k));
-    return sum.normalized();
+    return weighted_corners(*sheets[sheet].surface, normals[sheet], face, w).normalized();
   }
   int region_of(const Contour& contour, int side) const {
     const ContourSide &own = contour.sides[side], &other = contour.sides[1 - side];
