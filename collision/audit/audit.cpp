@@ -37,25 +37,16 @@ struct Soup {
   std::vector<ExactBox> boxes;
 };
 
-// Adds the triangle if its box, grown by the margin, overlaps the bounds.
-void add_triangle(const Triangle& triangle, double margin, const ExactBox& bounds, Soup& soup) {
-  if (!triangle.is_finite()) return;
-  const auto& p = triangle.corners;
-  ExactBox box;
-  for (int k = 0; k < 3; ++k) {
-    const auto [lo, hi] = std::minmax({p[0][k], p[1][k], p[2][k]});
-    box.lo[k] = lo - margin;
-    box.hi[k] = hi + margin;
-  }
-  if (!overlap(box, bounds)) return;
-  soup.triangles.push_back(triangle);
-  soup.boxes.push_back(box);
-}
-
+// Adds the triangles whose boxes, grown by the margin, overlap the bounds.
 void add_triangles(const Surface& surface, const Points& x, int first_number, double margin, const ExactBox& bounds,
                    Soup& soup) {
-  for (int t = 0; t < surface.triangles.rows(); ++t)
-    add_triangle(triangle_of(surface, x, t, first_number), margin, bounds, soup);
+  for (int t = 0; t < surface.triangles.rows(); ++t) {
+    const Triangle triangle = triangle_of(surface, x, t, first_number);
+    const ExactBox box = box_of(surface, x, t, margin);
+    if (!triangle.is_finite() || !overlap(box, bounds)) continue;
+    soup.triangles.push_back(triangle);
+    soup.boxes.push_back(box);
+  }
 }
 
 Soup soup_of(const Surface& surface, const Points& x, double margin) {

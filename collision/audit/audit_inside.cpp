@@ -30,16 +30,6 @@ std::vector<int> one_sided_groups(const Surface& cloth, const std::vector<char>&
   return up;
 }
 
-ExactBox box_of(std::initializer_list<Vec3> points) {
-  ExactBox box;
-  for (int k = 0; k < 3; ++k) {
-    const auto order = [k](const Vec3& a, const Vec3& b) { return a[k] < b[k]; };
-    box.lo[k] = std::min(points, order)[k];
-    box.hi[k] = std::max(points, order)[k];
-  }
-  return box;
-}
-
 enum class Passage { beside, through, on_face, unclear };
 
 // How the segment from p to q, a point outside of the body, passes a face. Unclear: through an edge or along the face.
@@ -62,7 +52,10 @@ struct Ray {
 
 void trace(std::vector<Ray>& rays, std::span<const ExactBox> faces, const Surface& body, const Points& y) {
   std::vector<ExactBox> boxes;
-  for (const Ray& ray : rays) boxes.push_back(box_of({ray.from, ray.to}));
+  for (const Ray& ray : rays) {
+    const Vec3 lo = ray.from.cwiseMin(ray.to), hi = ray.from.cwiseMax(ray.to);
+    boxes.push_back({{lo.x(), lo.y(), lo.z()}, {hi.x(), hi.y(), hi.z()}});
+  }
   AuditBudget budget(boxes.size() + faces.size());
   for (const Cell& cell : bisect(boxes, faces, false))
     visit_pairs(
@@ -87,8 +80,7 @@ std::vector<char> inside_body(const Surface& cloth, const Points& x, const std::
   std::vector<ExactBox> faces(static_cast<std::size_t>(body.triangles.rows()));
   const int count = static_cast<int>(faces.size());
 #pragma omp parallel for schedule(static) if (count > 1000)
-  for (int t = 0; t < count; ++t)
-    faces[t] = box_of({row(y, body.triangles(t, 0)), row(y, body.triangles(t, 1)), row(y, body.triangles(t, 2))});
+  for (int t = 0; t < count; ++t) faces[t] = box_of(body, y, t);
   const ExactBox hull = hull_of(faces);
   const Vec3 lo = Vec3::Map(hull.lo.data()), hi = Vec3::Map(hull.hi.data());
   int axis = 0;

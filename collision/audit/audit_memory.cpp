@@ -1,8 +1,6 @@
 #include "collision/audit/audit_memory.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "collision/audit/bisection.hpp"
 
@@ -107,16 +105,9 @@ struct Faces {
   void add(const Surface& surface, const Points& x, double margin) {
     for (int t = 0; t < surface.triangles.rows(); ++t) {
       const std::array<int, 3> v{surface.triangles(t, 0), surface.triangles(t, 1), surface.triangles(t, 2)};
-      const Corners p{row(x, v[0]), row(x, v[1]), row(x, v[2])};
-      ExactBox box;
-      for (int k = 0; k < 3; ++k) {
-        const auto [lo, hi] = std::minmax({p[0][k], p[1][k], p[2][k]});
-        box.lo[k] = lo - margin;
-        box.hi[k] = hi + margin;
-      }
-      corners.push_back(p);
+      corners.push_back({row(x, v[0]), row(x, v[1]), row(x, v[2])});
       vertices.push_back(v);
-      boxes.push_back(box);
+      boxes.push_back(box_of(surface, x, t, margin));
     }
   }
 };

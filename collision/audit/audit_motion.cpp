@@ -26,25 +26,6 @@ struct Side {
 
 bool finite(const Points& x0, const Points& x1, int v) { return x0.row(v).allFinite() && x1.row(v).allFinite(); }
 
-ExactBox box_of(const Side::Face& face, const Points& x) {
-  const int* v = face.surface().triangles.data() + 3 * face.triangle;
-  ExactBox box;
-  for (int k = 0; k < 3; ++k) {
-    box.lo[k] = std::min({x(v[0], k), x(v[1], k), x(v[2], k)});
-    box.hi[k] = std::max({x(v[0], k), x(v[1], k), x(v[2], k)});
-  }
-  return box;
-}
-
-ExactBox round_both(const ExactBox& a, const ExactBox& b) {
-  ExactBox box;
-  for (int k = 0; k < 3; ++k) {
-    box.lo[k] = std::min(a.lo[k], b.lo[k]);
-    box.hi[k] = std::max(a.hi[k], b.hi[k]);
-  }
-  return box;
-}
-
 // Is one of the faces above the other along an axis, at both ends and so all the way? This separates faces that move
 // along together, without rounding, however far they move.
 bool stay_apart_along_an_axis(const Side& a, int i, const Side& b, int j) {
@@ -79,8 +60,8 @@ int add(const MovingBody& body, int first_node, int first_number, double margin,
   for (int t = 0; t < s.triangles.rows(); ++t) {
     if (!good[s.triangles(t, 0)] || !good[s.triangles(t, 1)] || !good[s.triangles(t, 2)]) continue;
     const Side::Face face{&body, t, first_node, first_number + t};
-    const ExactBox start = box_of(face, *body.x0), end = box_of(face, *body.x1),
-                   both = grown(round_both(start, end), margin);
+    const ExactBox start = box_of(s, *body.x0, t), end = box_of(s, *body.x1, t),
+                   both = grown(hull_of(std::array{start, end}), margin);
     if (!overlap(both, bounds)) continue;
     side.faces.push_back(face);
     side.start.push_back(start);

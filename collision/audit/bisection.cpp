@@ -101,6 +101,17 @@ std::vector<Cell> cut(const Boxes& boxes, Cell whole, std::size_t enough) {
 
 }  // namespace
 
+ExactBox box_of(const Surface& surface, const Points& x, int triangle, double margin) {
+  const int* v = surface.triangles.data() + 3 * triangle;
+  ExactBox box;
+  for (int k = 0; k < 3; ++k) {
+    const auto [lo, hi] = std::minmax({x(v[0], k), x(v[1], k), x(v[2], k)});
+    box.lo[k] = lo - margin;
+    box.hi[k] = hi + margin;
+  }
+  return box;
+}
+
 ExactBox hull_of(std::span<const ExactBox> boxes) {
   ExactBox hull{{endless, endless, endless}, {-endless, -endless, -endless}};
   for (const ExactBox& box : boxes)

@@ -8,6 +8,7 @@
 
 #include "collision/geometry/pair_budget.hpp"
 #include "collision/geometry/stop_scope.hpp"
+#include "collision/geometry/surface.hpp"
 
 namespace selvedge {
 
@@ -18,6 +19,7 @@ struct ExactBox {
 
 inline constexpr double endless = std::numeric_limits<double>::infinity();
 inline constexpr ExactBox everywhere{{-endless, -endless, -endless}, {endless, endless, endless}};
+ExactBox box_of(const Surface&, const Points& x, int triangle, double margin = 0);  // grown by the margin
 ExactBox hull_of(std::span<const ExactBox>);  // of no boxes: a box that overlaps nothing
 bool overlap(const ExactBox&, const ExactBox&);
 
