@@ -3,15 +3,6 @@
 #include "collision/contact/resolution.hpp"
 
 namespace selvedge {
-namespace {
-
-void join_nodes(DisjointSets& sets, const Impact& impact, const auto& belongs) {
-  int first = -1;
-  for (const int node : impact.pair.nodes)
-    if (belongs(node)) sets.join(first < 0 ? first = node : first, node);
-}
-
-}  // namespace
 
 std::vector<Impact> yield_rounds(Resolution& r, std::vector<Impact> impacts) {
   const std::vector<char> moving = obstacles_in_motion(r.world, r.x0, r.x1);

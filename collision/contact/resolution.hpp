@@ -34,6 +34,14 @@ struct Resolution {
 // Impacts of the pairs with a node whose path has changed since the last call.
 std::vector<Impact> new_impacts(Resolution&);
 
+// Joins the nodes of an impact for which belongs(node) is true.
+template <class Belongs>
+void join_nodes(DisjointSets& sets, const Impact& impact, const Belongs& belongs) {
+  int first = -1;
+  for (const int node : impact.pair.nodes)
+    if (belongs(node)) sets.join(first < 0 ? first = node : first, node);
+}
+
 // Adds the impacts to the zones, joining those that share a free node, and projects every zone that got a new one.
 void zone_round(Resolution&, const std::vector<Impact>& fresh);
 

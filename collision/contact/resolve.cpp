@@ -97,8 +97,7 @@ int zone_of(Resolution& r, const Impact& impact) {
 bool rigidify(Resolution& r, std::span<Impact* const> impacts) {
   std::vector<int> nodes;
   for (const Impact* impact : impacts) nodes.insert(nodes.end(), impact->pair.nodes.begin(), impact->pair.nodes.end());
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  sort_once(nodes);
   if (!std::all_of(nodes.begin(), nodes.end(), [&r](int node) { return r.is_free(node); })) return false;
   rigidify_zone(nodes, r.inverse_mass, r.x0, r.x1);
   return true;
@@ -128,9 +127,7 @@ std::vector<Impact> new_impacts(Resolution& r) {
 
 void zone_round(Resolution& r, const std::vector<Impact>& fresh) {
   for (const Impact& impact : fresh) {
-    int first = -1;
-    for (const int node : impact.pair.nodes)
-      if (r.is_free(node)) r.zones.join(first < 0 ? first = node : first, node);
+    join_nodes(r.zones, impact, [&](int node) { return r.is_free(node); });
     r.impacts.push_back(impact);
   }
   std::map<int, std::vector<Impact*>> touched;

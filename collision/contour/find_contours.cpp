@@ -99,24 +99,6 @@ void fill_sides(std::span<const SheetView> sheets, const Segments& found, Contou
   }
 }
 
-std::vector<Contour> trace(std::span<const SheetView> sheets, const Segments& found) {
-  const Joints joints(found);
-  const int count = static_cast<int>(found.segments.size());
-  std::vector<char> taken(found.segments.size(), 0);
-  std::vector<Contour> contours;
-  for (int i = 0; i < count; ++i)
-    for (int end = 0; end < 2 && !taken[i]; ++end) {
-      if (joints.goes_on(found.segments[i].end[end])) continue;
-      Contour contour = walk(found, joints, {i, 1 - end}, taken);
-      contour.ends = {end_kind(joints, contour.points.front()), end_kind(joints, contour.points.back())};
-      contours.push_back(std::move(contour));
-    }
-  for (int i = 0; i < count; ++i)
-    if (!taken[i]) contours.push_back(walk(found, joints, {i, 1}, taken));
-  for (Contour& contour : contours) fill_sides(sheets, found, contour);
-  return contours;
-}
-
 bool same_component(const Contour& contour) {
   return contour.sides[0].sheet == contour.sides[1].sheet && contour.sides[0].component == contour.sides[1].component;
 }
@@ -195,12 +177,26 @@ void mark_nested(std::span<const SheetView> sheets, std::vector<Contour>& contou
 
 }  // namespace
 
-std::vector<Contour> trace_contours(std::span<const SheetView> sheets, const Segments& segments) {
-  return trace(sheets, segments);
+std::vector<Contour> trace_contours(std::span<const SheetView> sheets, const Segments& found) {
+  const Joints joints(found);
+  const int count = static_cast<int>(found.segments.size());
+  std::vector<char> taken(found.segments.size(), 0);
+  std::vector<Contour> contours;
+  for (int i = 0; i < count; ++i)
+    for (int end = 0; end < 2 && !taken[i]; ++end) {
+      if (joints.goes_on(found.segments[i].end[end])) continue;
+      Contour contour = walk(found, joints, {i, 1 - end}, taken);
+      contour.ends = {end_kind(joints, contour.points.front()), end_kind(joints, contour.points.back())};
+      contours.push_back(std::move(contour));
+    }
+  for (int i = 0; i < count; ++i)
+    if (!taken[i]) contours.push_back(walk(found, joints, {i, 1}, taken));
+  for (Contour& contour : contours) fill_sides(sheets, found, contour);
+  return contours;
 }
 
 std::vector<Contour> find_contours(std::span<const SheetView> sheets, const Segments& segments) {
-  std::vector<Contour> contours = trace(sheets, segments);
+  std::vector<Contour> contours = trace_contours(sheets, segments);
   std::vector<std::vector<int>> sizes;
   for (const SheetView& sheet : sheets) sizes.push_back(component_sizes(*sheet.surface));
   for (Contour& contour : contours) judge_sides(sheets, sizes, contour);

@@ -137,12 +137,6 @@ struct Candidate {
   int sheet, a, b;  // a is a triangle of sheet 0, b of `sheet`
 };
 
-bool have_common_corner(const int* a, const int* b) {
-  bool common = false;
-  for (int i = 0; i < 3; ++i) common |= (a[i] == b[0]) | (a[i] == b[1]) | (a[i] == b[2]);
-  return common;
-}
-
 std::vector<FacePlane> face_planes(const SheetView& sheet) {
   std::vector<FacePlane> planes(static_cast<std::size_t>(sheet.surface->triangles.rows()));
   const int count = static_cast<int>(planes.size());
@@ -216,7 +210,6 @@ std::vector<Candidate> candidates(std::span<const SheetView> sheets) {
   PartLists<Candidate> lists;
   const Bvh& own = tree_of(sheets[0], built);
   const std::vector<FacePlane> planes = face_planes(sheets[0]);
-  const int* corners = sheets[0].surface->triangles.data();
   add_round_vertices(sheets[0], planes, result);
   for (int k = 0; k < static_cast<int>(sheets.size()); ++k) {
     const Bvh& other = k == 0 ? own : tree_of(sheets[k], other_built);
@@ -224,16 +217,10 @@ std::vector<Candidate> candidates(std::span<const SheetView> sheets) {
     const std::vector<FacePlane>& planes_b = k == 0 ? planes : other_planes;
     const bool knows_quiet = k == 0 && sheets[0].tree && sheets[0].quiet;
     const BvhTraversal traversal{own, other, k == 0, knows_quiet ? sheets[0].quiet : nullptr};
-    gather(traversal, lists, result, [&](NodeWork w, std::vector<Candidate>& found) {
-      const Bvh::Leaf &of_a = traversal.leaf_a(w), &of_b = traversal.leaf_b(w);
-      const auto test = [&](int i, int j) {
-        const int a = of_a.item[i], b = of_b.item[j];
-        if (k == 0 && have_common_corner(corners + 3 * a, corners + 3 * b)) return;  // add_round_vertices
-        if (!may_meet(sheets[0], planes[a], a, sheets[k], planes_b[b], b)) return;
-        found.push_back(k == 0 ? Candidate{0, std::min(a, b), std::max(a, b)} : Candidate{k, a, b});
-      };
-      return traversal.is_self(w) ? for_each_overlap(of_a, test)
-                                  : for_each_overlap(of_a, of_b, other.nodes[w.b].box, test);
+    gather_pairs(traversal, lists, result, [&](int a, int b, std::vector<Candidate>& found) {
+      if (k == 0 && share_vertex(sheets[0].surface->triangles, a, b)) return;  // add_round_vertices
+      if (!may_meet(sheets[0], planes[a], a, sheets[k], planes_b[b], b)) return;
+      found.push_back(k == 0 ? Candidate{0, std::min(a, b), std::max(a, b)} : Candidate{k, a, b});
     });
   }
   return result;

@@ -37,10 +37,8 @@ Touched touched_by(const DistanceField& body, const Surface& garment, const Poin
     touched.triangles.push_back(t);
     for (int k = 0; k < 3; ++k) touched.edges.push_back(garment.triangle_edges(t, k));
   }
-  for (std::vector<int>* list : {&touched.edges, &touched.triangles}) {
-    std::sort(list->begin(), list->end());
-    list->erase(std::unique(list->begin(), list->end()), list->end());
-  }
+  sort_once(touched.edges);
+  sort_once(touched.triangles);
   return touched;
 }
 
@@ -95,8 +93,7 @@ std::vector<SignedDistance> ask_ends(const DistanceField& body, const Surface& g
                                      const Points& x) {
   std::vector<int> ends;
   for (const int e : edges) ends.insert(ends.end(), {garment.edges(e, 0), garment.edges(e, 1)});
-  std::ranges::sort(ends);
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  sort_once(ends);
   Points at(std::ssize(ends), 3);
   for (std::size_t k = 0; k < ends.size(); ++k) at.row(static_cast<Eigen::Index>(k)) = x.row(ends[k]);
   const std::vector<SignedDistance> found = body.ask(at);

@@ -39,13 +39,8 @@ std::vector<int> first_alike(const Triangles& triangles, const std::vector<int>&
   std::map<std::array<int, 3>, int> seen;
   std::vector<int> first;
   for (int t = 0; t < static_cast<int>(triangles.rows()); ++t) {
-    std::array<int, 3> at{places[triangles(t, 0)], places[triangles(t, 1)], places[triangles(t, 2)]};
-    if (at[0] == at[1] || at[1] == at[2] || at[2] == at[0]) {
-      first.push_back(-1);
-      continue;
-    }
-    std::ranges::rotate(at, std::ranges::min_element(at));
-    first.push_back(seen.emplace(at, t).first->second);
+    const std::optional<std::array<int, 3>> at = placed_corners(triangles, t, places);
+    first.push_back(at ? seen.emplace(*at, t).first->second : -1);
   }
   return first;
 }
@@ -62,8 +57,7 @@ struct Shells {
 };
 
 void count_edges(Shells& all) {
-  std::vector<int> uses(static_cast<std::size_t>(all.surface.edges.rows()), 0);
-  for (const int edge : all.surface.triangle_edges.reshaped()) ++uses[edge];
+  const std::vector<int> uses = face_counts(all.surface);
   for (std::size_t e = 0; e < uses.size(); ++e) {
     Shell& shell = all.shells[all.alike.part[all.surface.edge_owner[e]]];
     shell.open_edges += uses[e] == 1;
@@ -110,8 +104,7 @@ void measure(const Points& x, const Shells& all, Measured& part, Shell& shell) {
       part.lo = part.lo.cwiseMin(row(x, v));
       part.hi = part.hi.cwiseMax(row(x, v));
     }
-  std::sort(part.vertices.begin(), part.vertices.end());
-  part.vertices.erase(std::unique(part.vertices.begin(), part.vertices.end()), part.vertices.end());
+  sort_once(part.vertices);
   if (shell.branching_edges > 0 || !shell.orientable) return;
   const Vec3 origin = 0.5 * (part.lo + part.hi);
   double volume = 0;

@@ -44,8 +44,7 @@ std::vector<int> breadth_first(const Adjacency& graph, std::span<const int> sour
 Edges unique_edges(std::vector<std::pair<int, int>> pairs) {
   for (auto& [a, b] : pairs)
     if (b < a) std::swap(a, b);
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  sort_once(pairs);
   Edges edges(static_cast<Eigen::Index>(pairs.size()), 2);
   for (std::size_t i = 0; i < pairs.size(); ++i)
     edges.row(static_cast<Eigen::Index>(i)) << pairs[i].first, pairs[i].second;

@@ -5,8 +5,7 @@ namespace selvedge {
 std::vector<char> closed_shells(const Surface& s) {
   std::vector<char> closed(static_cast<std::size_t>(s.component_count), 0);
   for (const int v : s.triangles.reshaped()) closed[s.component[v]] = 1;
-  std::vector<int> faces(static_cast<std::size_t>(s.edges.rows()), 0);
-  for (const int edge : s.triangle_edges.reshaped()) ++faces[edge];
+  const std::vector<int> faces = face_counts(s);
   for (Eigen::Index e = 0; e < s.edges.rows(); ++e)
     if (faces[e] != 2) closed[s.component[s.edges(e, 0)]] = 0;
   return closed;

@@ -12,6 +12,14 @@ inline std::array<Vec3, 3> corners_of(const Surface& surface, const Points& x, i
   return {row(x, v[0]), row(x, v[1]), row(x, v[2])};
 }
 
+// Do two triangles have a common vertex? Without branches, since half of them would be mispredicted.
+inline bool share_vertex(const Triangles& triangles, int s, int t) {
+  const int *a = triangles.data() + 3 * s, *b = triangles.data() + 3 * t;
+  bool share = false;
+  for (int i = 0; i < 3; ++i) share |= (a[i] == b[0]) | (a[i] == b[1]) | (a[i] == b[2]);
+  return share;
+}
+
 // The weighted sum of the corners' rows in `points`.
 inline Vec3 weighted_corners(const Surface& surface, const Points& points, int triangle,
                              const std::array<double, 3>& weight) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -16,5 +17,12 @@ struct Lists {
 
 // For each value 0 .. count - 1 the indices at which it stands in `values`, ascending. Values below 0 are left out.
 Lists indices_by_value(std::span<const int> values, int count);
+
+// Sorts a list and leaves out repeats.
+template <class Item>
+void sort_once(std::vector<Item>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
 
 }  // namespace selvedge

@@ -80,6 +80,12 @@ double mean_edge(const Surface& surface, const Points& x) {
   return surface.edges.rows() > 0 ? sum / static_cast<double>(surface.edges.rows()) : 0;
 }
 
+std::vector<int> face_counts(const Surface& s) {
+  std::vector<int> count(static_cast<std::size_t>(s.edges.rows()), 0);
+  for (const int edge : s.triangle_edges.reshaped()) ++count[edge];
+  return count;
+}
+
 bool is_closed(const Surface& s) {
   return s.triangles.rows() > 0 && s.nonmanifold_edges == 0 &&
          std::all_of(s.edge_triangles.begin(), s.edge_triangles.end(), [](const auto& t) { return t[1] >= 0; });

@@ -46,6 +46,7 @@ struct Surface {
 // Indices must lie in [0, vertex_count) and differ within a triangle (assert; readers check and throw).
 Surface make_surface(int vertex_count, const Triangles& triangles);
 
+std::vector<int> face_counts(const Surface&);  // of each edge the number of its triangles
 bool is_closed(const Surface&);  // every edge has exactly two triangles
 
 // Closed loops of boundary vertices, each in the direction of its triangles' edges and each vertex at most once in a

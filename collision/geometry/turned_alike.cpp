@@ -13,8 +13,7 @@ bool same_direction(const Surface& surface, int edge, int a, int b) {
 
 TurnedAlike turned_alike(const Surface& surface) {
   const int count = static_cast<int>(surface.triangles.rows());
-  std::vector<int> uses(static_cast<std::size_t>(surface.edges.rows()), 0);
-  for (const int edge : surface.triangle_edges.reshaped()) ++uses[edge];
+  const std::vector<int> uses = face_counts(surface);
   TurnedAlike alike{std::vector<signed char>(static_cast<std::size_t>(count), 0),
                     std::vector<int>(static_cast<std::size_t>(count), -1),
                     {}};

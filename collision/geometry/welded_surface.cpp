@@ -9,22 +9,11 @@
 namespace selvedge {
 namespace {
 
-using Corners = std::array<int, 3>;
-
-Corners corners_of(const Surface& surface, int t) {
-  return {surface.triangles(t, 0), surface.triangles(t, 1), surface.triangles(t, 2)};
-}
-
 // The faces with three different places, without repeats, ascending.
 std::vector<int> kept_faces(const Surface& surface, const std::vector<int>& places) {
-  std::vector<std::pair<Corners, int>> faces;
-  for (int t = 0; t < surface.triangles.rows(); ++t) {
-    Corners at = corners_of(surface, t);
-    for (int& v : at) v = places[v];
-    if (at[0] == at[1] || at[1] == at[2] || at[2] == at[0]) continue;
-    std::ranges::rotate(at, std::ranges::min_element(at));
-    faces.emplace_back(at, t);
-  }
+  std::vector<std::pair<std::array<int, 3>, int>> faces;
+  for (int t = 0; t < surface.triangles.rows(); ++t)
+    if (const auto at = placed_corners(surface.triangles, t, places)) faces.emplace_back(*at, t);
   std::ranges::sort(faces);
   const auto repeated = std::ranges::unique(faces, {}, [](const auto& face) { return face.first; });
   faces.erase(repeated.begin(), repeated.end());
@@ -50,13 +39,6 @@ std::vector<PlacedEdge> placed_edges(const Surface& surface, const std::vector<i
     }
   std::ranges::stable_sort(edges, {}, &PlacedEdge::places);
   return edges;
-}
-
-// The number of faces of each edge.
-std::vector<int> face_counts(const Surface& surface) {
-  std::vector<int> count(static_cast<std::size_t>(surface.edges.rows()), 0);
-  for (const int edge : surface.triangle_edges.reshaped()) ++count[edge];
-  return count;
 }
 
 // The surface of the kept faces, with vertices joined.
@@ -90,6 +72,13 @@ bool bar_crowded(const Surface& before, const std::vector<int>& kept, const Surf
 }
 
 }  // namespace
+
+std::optional<std::array<int, 3>> placed_corners(const Triangles& triangles, int t, const std::vector<int>& places) {
+  std::array<int, 3> at{places[triangles(t, 0)], places[triangles(t, 1)], places[triangles(t, 2)]};
+  if (at[0] == at[1] || at[1] == at[2] || at[2] == at[0]) return {};
+  std::ranges::rotate(at, std::ranges::min_element(at));
+  return at;
+}
 
 std::optional<WeldedSurface> welded_surface(const Surface& surface, const std::vector<int>& places) {
   const std::vector<int> kept = kept_faces(surface, places);

@@ -14,6 +14,9 @@ struct WeldedSurface {
   std::vector<int> joined;  // of each vertex the one that stands for it, the lowest
 };
 
+// The places of a triangle's corners in its order, the lowest first; nothing where two are the same.
+std::optional<std::array<int, 3>> placed_corners(const Triangles&, int triangle, const std::vector<int>& places);
+
 // `places`: of each vertex the lowest one at its place (same_places.hpp). Faces are joined along an edge only where
 // exactly two meet, so that no edge gains a third face. Faces whose corners lie at fewer than three places are left
 // out, and so are those that repeat a face. Absent where nothing was joined.

@@ -28,25 +28,15 @@ std::vector<NodeWork> BvhTraversal::frontier() const {
 void self_pairs(const Bvh& tree, Pairs& pairs) {
   pairs.clear();
   PartLists<std::pair<int, int>> parts;
-  const BvhTraversal traversal{tree, tree, true};
-  gather(traversal, parts, pairs, [&](NodeWork w, Pairs& found) {
-    const Bvh::Leaf &a = traversal.leaf_a(w), &b = traversal.leaf_b(w);
-    const auto add = [&](int i, int j) {
-      found.emplace_back(std::min(a.item[i], b.item[j]), std::max(a.item[i], b.item[j]));
-    };
-    return w.a == w.b ? for_each_overlap(a, add) : for_each_overlap(a, b, tree.nodes[w.b].box, add);
-  });
+  gather_pairs(BvhTraversal{tree, tree, true}, parts, pairs,
+               [](int i, int j, Pairs& found) { found.emplace_back(std::min(i, j), std::max(i, j)); });
 }
 
 void cross_pairs(const Bvh& first, const Bvh& second, Pairs& pairs) {
   pairs.clear();
   PartLists<std::pair<int, int>> parts;
-  const BvhTraversal traversal{first, second, false};
-  gather(traversal, parts, pairs, [&](NodeWork w, Pairs& found) {
-    const Bvh::Leaf &a = traversal.leaf_a(w), &b = traversal.leaf_b(w);
-    return for_each_overlap(a, b, second.nodes[w.b].box,
-                            [&](int i, int j) { found.emplace_back(a.item[i], b.item[j]); });
-  });
+  gather_pairs(BvhTraversal{first, second, false}, parts, pairs,
+               [](int i, int j, Pairs& found) { found.emplace_back(i, j); });
 }
 
 }  // namespace selvedge

@@ -186,4 +186,15 @@ void gather(const BvhTraversal& traversal, PartLists<Item>& parts, std::vector<I
   parallel_for(count, 8, [&](int i) { std::copy(parts[i].begin(), parts[i].end(), out.data() + begin[i]); });
 }
 
+// gather for pairs of items whose boxes overlap: calls test(item of the first tree, item of the second, list).
+template <class Item, class Test>
+void gather_pairs(const BvhTraversal& traversal, PartLists<Item>& parts, std::vector<Item>& out, const Test& test) {
+  gather(traversal, parts, out, [&](NodeWork w, std::vector<Item>& list) {
+    const Bvh::Leaf &a = traversal.leaf_a(w), &b = traversal.leaf_b(w);
+    const auto visit = [&](int i, int j) { test(a.item[i], b.item[j], list); };
+    return traversal.is_self(w) ? for_each_overlap(a, visit)
+                                : for_each_overlap(a, b, traversal.second.nodes[w.b].box, visit);
+  });
+}
+
 }  // namespace selvedge

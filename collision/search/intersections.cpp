@@ -1,7 +1,6 @@
 #include "collision/search/intersections.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "collision/exact/triangle_pair.hpp"
@@ -12,13 +11,6 @@ namespace {
 
 using Pairs = std::vector<std::pair<int, int>>;
 using Corners = std::array<Vec3, 3>;
-
-bool share_vertex(const Triangles& triangles, int s, int t) {
-  const int *a = triangles.data() + 3 * s, *b = triangles.data() + 3 * t;
-  bool share = false;
-  for (int i = 0; i < 3; ++i) share |= (a[i] == b[0]) | (a[i] == b[1]) | (a[i] == b[2]);
-  return share;
-}
 
 bool all_finite(const Corners& c) { return c[0].allFinite() && c[1].allFinite() && c[2].allFinite(); }
 
@@ -117,14 +109,9 @@ Pairs intersecting_pairs(const Surface& surface, const Points& x, IntersectionCa
   }
   const BvhTraversal traversal{tree, tree, true, cache.cull ? &cache.parts.quiet : nullptr};
   Pairs pairs;
-  gather(traversal, cache.lists, pairs, [&](NodeWork w, Pairs& found) {
-    const Bvh::Leaf &a = traversal.leaf_a(w), &b = traversal.leaf_b(w);
-    const auto test = [&](int i, int j) {
-      const int s = a.item[i], t = b.item[j];
-      if (!share_vertex(surface.triangles, s, t) && intersect(corners_of(surface, x, s), corners_of(surface, x, t)))
-        found.emplace_back(std::min(s, t), std::max(s, t));
-    };
-    return w.a == w.b ? for_each_overlap(a, test) : for_each_overlap(a, b, tree.nodes[w.b].box, test);
+  gather_pairs(traversal, cache.lists, pairs, [&](int s, int t, Pairs& found) {
+    if (!share_vertex(surface.triangles, s, t) && intersect(corners_of(surface, x, s), corners_of(surface, x, t)))
+      found.emplace_back(std::min(s, t), std::max(s, t));
   });
   std::sort(pairs.begin(), pairs.end());
   return pairs;
@@ -134,15 +121,10 @@ Pairs intersecting_pairs(const Surface& first, const Points& x_first, Intersecti
                          const Surface& second, const Points& x_second, IntersectionCache& cache_second) {
   refresh(first, x_first, cache_first);
   refresh(second, x_second, cache_second);
-  const Bvh& other = cache_second.tree.bvh;
-  const BvhTraversal traversal{cache_first.tree.bvh, other, false};
+  const BvhTraversal traversal{cache_first.tree.bvh, cache_second.tree.bvh, false};
   Pairs pairs;
-  gather(traversal, cache_first.lists, pairs, [&](NodeWork w, Pairs& found) {
-    const Bvh::Leaf &a = traversal.leaf_a(w), &b = traversal.leaf_b(w);
-    return for_each_overlap(a, b, other.nodes[w.b].box, [&](int i, int j) {
-      if (intersect(corners_of(first, x_first, a.item[i]), corners_of(second, x_second, b.item[j])))
-        found.emplace_back(a.item[i], b.item[j]);
-    });
+  gather_pairs(traversal, cache_first.lists, pairs, [&](int s, int t, Pairs& found) {
+    if (intersect(corners_of(first, x_first, s), corners_of(second, x_second, t))) found.emplace_back(s, t);
   });
   std::sort(pairs.begin(), pairs.end());
   return pairs;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "collision/geometry/corners.hpp"
+#include "collision/geometry/lists.hpp"
 #include "collision/search/obstacle.hpp"
 
 namespace selvedge {
@@ -33,17 +35,6 @@ std::vector<std::pair<int, int>> contacts(const ObstacleModel& a, const Obstacle
   for (std::size_t i = 0; i < result.numContacts(); ++i)
     pairs.emplace_back(static_cast<int>(result.getContact(i).b1), static_cast<int>(result.getContact(i).b2));
   return pairs;
-}
-
-bool share_vertex(const Triangles& triangles, int s, int t) {
-  for (int k = 0; k < 9; ++k)
-    if (triangles(s, k / 3) == triangles(t, k % 3)) return true;
-  return false;
-}
-
-void sort_once(std::vector<std::pair<int, int>>& pairs) {
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 
 }  // namespace

@@ -197,8 +197,7 @@ Target target_of(const Setting& setting, const Patch& patch, std::span<const Reg
   for (int v = 0; v < surface.vertex_count; ++v)
     if (partner[v])
       target.faces.insert(target.faces.end(), surface.triangles_of(v).begin(), surface.triangles_of(v).end());
-  std::sort(target.faces.begin(), target.faces.end());
-  target.faces.erase(std::unique(target.faces.begin(), target.faces.end()), target.faces.end());
+  sort_once(target.faces);
   target.sign = votes;
   return target;
 }

@@ -16,8 +16,7 @@ PairPattern make_pair_pattern(int rows, std::span<const int> element_begin, std:
         const auto [low, high] = std::minmax({element_nodes[i], element_nodes[j]});
         pattern.pairs.push_back({low, high});
       }
-  std::sort(pattern.pairs.begin(), pattern.pairs.end());
-  pattern.pairs.erase(std::unique(pattern.pairs.begin(), pattern.pairs.end()), pattern.pairs.end());
+  sort_once(pattern.pairs);
 
   std::vector<int> ends;
   for (const auto& pair : pattern.pairs) ends.insert(ends.end(), pair.begin(), pair.end());

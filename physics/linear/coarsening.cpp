@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "collision/geometry/factorisations.hpp"
+#include "collision/geometry/lists.hpp"
 
 namespace selvedge {
 namespace {
@@ -44,8 +45,7 @@ std::vector<Candidate> candidates(const Vertices& fine, const std::vector<char>&
     for (; first < last; ++first)
       for (const int neighbour : fine.graph.of(ring[first])) ring.push_back(neighbour);
   }
-  std::sort(ring.begin(), ring.end());
-  ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+  sort_once(ring);
   std::vector<Candidate> found;
   for (int j : ring)
     if (kept[j] && j != i) found.push_back({j, (row(fine.rest, j) - row(fine.rest, i)).norm(), Vec2::Zero()});

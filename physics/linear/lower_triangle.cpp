@@ -55,8 +55,7 @@ bool update_pattern(const LinearSystem& system, LowerTriangle& lower) {
   });
   next.block_begin = next.column_begin = {0};
   for (int b = 0; b < blocks; ++b) {
-    std::sort(below[b].begin(), below[b].end());
-    below[b].erase(std::unique(below[b].begin(), below[b].end()), below[b].end());
+    sort_once(below[b]);
     next.block_row.insert(next.block_row.end(), below[b].begin(), below[b].end());
     next.block_begin.push_back(static_cast<int>(next.block_row.size()));
     for (int c = 0; c < 3; ++c) {
