@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <iterator>
-#include <utility>
+
+#include "collision/contact/contact_world.hpp"
 
 namespace selvedge {
 
@@ -24,17 +25,7 @@ void forget_motion(Memory& memory) {
   });
 }
 
-Points joined_rows(const std::vector<Points>& parts) {
-  Eigen::Index count = 0;
-  for (const Points& part : parts) count += part.rows();
-  Points all(count, 3);
-  count = 0;
-  for (const Points& part : parts) {
-    all.middleRows(count, part.rows()) = part;
-    count += part.rows();
-  }
-  return all;
-}
+Points joined_rows(const std::vector<Points>& parts) { return gather_nodes(Points(0, 3), parts); }
 
 std::vector<Points> split_rows(const MemoryRows& joined, const std::vector<Points>& like) {
   std::vector<Points> parts;

@@ -9,16 +9,6 @@
 namespace selvedge {
 namespace {
 
-Points rows_of(const Points& whole, const std::vector<int>& rows) {
-  Points part(static_cast<Eigen::Index>(rows.size()), 3);
-  for (std::size_t i = 0; i < rows.size(); ++i) part.row(static_cast<Eigen::Index>(i)) = whole.row(rows[i]);
-  return part;
-}
-
-void put_rows(const Points& part, const std::vector<int>& rows, Points& whole) {
-  for (std::size_t i = 0; i < rows.size(); ++i) whole.row(rows[i]) = part.row(static_cast<Eigen::Index>(i));
-}
-
 // The numbers of the rows of a block that the part has; null: all.
 const std::vector<int>* numbers_of(const PartOfScene& part, RowsOf rows_of) {
   switch (rows_of) {
@@ -90,7 +80,7 @@ PartOfScene part_with(const Scene& whole, std::span<const char> has_vertex, std:
     scene.rest_triangle.push_back(whole.rest_triangle[part.triangles[t]]);
   }
   scene.surface = make_surface(static_cast<int>(part.vertices.size()), triangles);
-  scene.rest = rows_of(whole.rest, part.vertices);
+  scene.rest = whole.rest(part.vertices, Eigen::all);
   scene.rest_is_flat = whole.rest_is_flat;
   for (std::size_t p = 0; p < whole.pins.size(); ++p) {
     const int pin = renumbered[whole.pins[p]];
@@ -144,8 +134,8 @@ State state_of(const PartOfScene& part, const State& whole) {
   State state;
   state.time = whole.time;
   state.frame = whole.frame;
-  state.x = rows_of(whole.x, part.vertices);
-  state.v = rows_of(whole.v, part.vertices);
+  state.x = whole.x(part.vertices, Eigen::all);
+  state.v = whole.v(part.vertices, Eigen::all);
   state.obstacles = whole.obstacles;
   state.pinched = whole.pinched;
   state.clean = whole.clean;
@@ -154,17 +144,17 @@ State state_of(const PartOfScene& part, const State& whole) {
 }
 
 Drive drive_of(const PartOfScene& part, const Drive& whole) {
-  return {rows_of(whole.pins, part.pins),
+  return {whole.pins(part.pins, Eigen::all),
           whole.obstacles,
           whole.wind,
           whole.acceleration,
-          whole.skinned_targets.rows() == 0 ? Points() : rows_of(whole.skinned_targets, part.vertices),
+          whole.skinned_targets.rows() == 0 ? Points() : Points(whole.skinned_targets(part.vertices, Eigen::all)),
           whole.bodies};
 }
 
 void put(const PartOfScene& part, const State& state, State& whole) {
-  put_rows(state.x, part.vertices, whole.x);
-  put_rows(state.v, part.vertices, whole.v);
+  whole.x(part.vertices, Eigen::all) = state.x;
+  whole.v(part.vertices, Eigen::all) = state.v;
   whole.obstacles = state.obstacles;
   whole.pinched = state.pinched;
   whole.clean = state.clean;

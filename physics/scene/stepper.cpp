@@ -5,15 +5,10 @@
 namespace selvedge {
 
 PhaseTimes& PhaseTimes::operator+=(const PhaseTimes& other) {
-  solve += other.solve;
-  broad_phase += other.broad_phase;
-  ccd += other.ccd;
-  response += other.response;
-  audit += other.audit;
-  graph += other.graph;
-  network += other.network;
-  guard += other.guard;
-  body += other.body;
+  for (const auto phase :
+       {&PhaseTimes::solve, &PhaseTimes::broad_phase, &PhaseTimes::ccd, &PhaseTimes::response, &PhaseTimes::audit,
+        &PhaseTimes::graph, &PhaseTimes::network, &PhaseTimes::guard, &PhaseTimes::body})
+    this->*phase += other.*phase;
   return *this;
 }
 

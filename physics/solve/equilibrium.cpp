@@ -11,12 +11,6 @@ namespace {
 constexpr double first_step = 0.3;  // in units of the time in which the load moves the cloth by its size
 constexpr double growth = 3, long_step = 100, longest_step = 300;
 
-Points pins_at(const Scene& scene, const Points& x) {
-  Points pins(static_cast<Eigen::Index>(scene.pins.size()), 3);
-  for (std::size_t p = 0; p < scene.pins.size(); ++p) pins.row(static_cast<Eigen::Index>(p)) = x.row(scene.pins[p]);
-  return pins;
-}
-
 }  // namespace
 
 ImplicitEulerOptions to_the_end() {
@@ -37,7 +31,7 @@ double weight_norm(const Scene& scene, const Vec3& acceleration) {
 
 Equilibrium settle(const Scene& scene, const Points& start, const StaticLoad& load, const EquilibriumOptions& options) {
   ImplicitEuler solver(scene, options.implicit_euler);
-  const Points rest_velocity = Points::Zero(start.rows(), 3), pins = pins_at(scene, start);
+  const Points rest_velocity = Points::Zero(start.rows(), 3), pins = start(scene.pins, Eigen::all);
   const double extent = (start.colwise().maxCoeff() - start.colwise().minCoeff()).norm();
   const double typical = std::sqrt(extent * solver.masses().norm() / load.size);
   Equilibrium result;

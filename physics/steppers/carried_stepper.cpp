@@ -85,8 +85,7 @@ Points carried_guess(const Scene& scene, const State& from, const Drive& drive, 
       x.row(v) += dt * from.v.row(v);
     if (has_target(drive.skinned_targets, v) && motion) x.row(v) += options.kept * motion->row(v);
   }
-  for (std::size_t k = 0; k < scene.pins.size(); ++k)
-    x.row(scene.pins[k]) = drive.pins.row(static_cast<Eigen::Index>(k));
+  x(scene.pins, Eigen::all) = drive.pins;
   return x;
 }
 

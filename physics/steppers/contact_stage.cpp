@@ -60,8 +60,7 @@ ResolveReport resolve_proposal(ContactStage& stage, const ResolveOptions& option
   const ResolveReport report =
       resolve(stage.search, stage.world, stage.inverse_mass, options, nodes0, nodes1, stage.path);
   x = nodes1.topRows(x.rows());
-  for (std::size_t k = 0; k < obstacles.size(); ++k)
-    obstacles[k] = nodes1.middleRows(stage.world.first_node[k], obstacles[k].rows());
+  obstacles = split_rows(nodes1.bottomRows(nodes1.rows() - x.rows()), obstacles);
   return report;
 }
 

@@ -174,8 +174,8 @@ void ConventionalStepper::hold_pins(StepWork& work, Substep& s, Points& pins) {
   if (held == 0) return;
   ++work.report.collision.shortened;
   work.report.collision.held_vertices += held;
-  pins = pinned_rows(scene_, nodes);
-  for (const int pin : scene_.pins) s.nodes.row(pin) = nodes.row(pin);
+  pins = nodes(scene_.pins, Eigen::all);
+  s.nodes(scene_.pins, Eigen::all) = pins;
 }
 
 // Lets obstacles without room give way, in attempts that look for that. False if the attempt looked and there is room
@@ -296,8 +296,7 @@ Substep ConventionalStepper::begin_substep(const StepWork& work, const SubstepSt
   };
   if (work.extras.guess) s.nodes.topRows(n) = towards(*work.extras.guess);
   if (work.carried) s.carried = towards(*work.carried);
-  for (std::size_t k = 0; k < scene_.pins.size(); ++k)
-    s.nodes.row(scene_.pins[k]) = s.pins.row(static_cast<Eigen::Index>(k));
+  s.nodes(scene_.pins, Eigen::all) = s.pins;
   return s;
 }
 
@@ -329,7 +328,7 @@ bool ConventionalStepper::advance(StepWork& work, SubstepState& now, SubstepRun 
       continue;
     }
     const double part = 1.0 / run.count--;
-    const Points held = pinned_rows(scene_, now.nodes);
+    const Points held = now.nodes(scene_.pins, Eigen::all);
     SubstepRun target{
         now.nodes + part * (run.nodes - now.nodes), held + part * (run.pins - held), run.h, 0, run.halvings, run.parts};
     std::optional<Substep> s;
@@ -420,11 +419,11 @@ StepReport ConventionalStepper::take_step(const State& from, const Drive& drive,
   report.counts.searches = contact_.search.tally().searches - before.searches;
   report.counts.candidates = contact_.search.tally().candidates - before.candidates;
   report.doubts.not_converged = report.unsolved > options_.implicit_euler.tolerated_error;
-  StepEnd end{now.nodes.topRows(from.x.rows()), std::move(now.v), {}, blocks_of(now.history)};
+  StepEnd end{now.nodes.topRows(from.x.rows()), std::move(now.v),
+              split_rows(now.nodes.bottomRows(now.nodes.rows() - from.x.rows()), from.obstacles),
+              blocks_of(now.history)};
   if (options_.guess == FirstGuess::carried)
     for (MemoryBlock& block : carried_memory(from, drive, end.x)) end.memory.push_back(std::move(block));
-  for (std::size_t k = 0; k < from.obstacles.size(); ++k)
-    end.obstacles.push_back(now.nodes.middleRows(contact_.world.first_node[k], from.obstacles[k].rows()));
   finish_step(from, drive, dt, std::move(end), to, report);
   if (!extras.added) energy_.label(from, drive, to, report);  // recovery does work without a bound
   return report;

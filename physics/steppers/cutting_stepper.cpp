@@ -72,8 +72,7 @@ StepReport CuttingStepper::step_rest(const State& from, const Drive& drive, doub
   to.frame = end.frame;
   for (Eigen::Index v = 0; v < to.x.rows(); ++v)
     if (drive.skinned_targets.row(v).allFinite()) to.x.row(v) = drive.skinned_targets.row(v);
-  for (std::size_t p = 0; p < scene_.pins.size(); ++p)
-    to.x.row(scene_.pins[p]) = drive.pins.row(static_cast<Eigen::Index>(p));
+  to.x(scene_.pins, Eigen::all) = drive.pins;
   to.v = (to.x - from.x) / dt;
   put(*part_, end, to);
   report.path.part = part_;

@@ -1,7 +1,6 @@
 #include "physics/steppers/icm_stepper.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "collision/contact/proximity.hpp"
@@ -212,7 +211,7 @@ StepReport IcmStepper::take_step(const State& from, const Drive& drive, double d
     const double h = dt / planned;
     Points next = now.nodes + part * (wanted - now.nodes);
     next.topRows(n) = now.nodes.topRows(n) + h * now.v;
-    const Points held = pinned_rows(scene_, now.nodes);
+    const Points held = now.nodes(scene_.pins, Eigen::all);
     IcmWork work;
     work.stop = &extras.stop;
     if (!now.nodes.allFinite() || !substep(now, held + part * (drive.pins - held), drive, h, next, work, report)) {

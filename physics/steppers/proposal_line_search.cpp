@@ -29,8 +29,7 @@ bool search_along(ProposalLineSearch& line, ContactStage& stage, const State& fr
                   int steps, Points& x) {
   const Scene& scene = line.scene;
   Points begin = from.x + dt * from.v;
-  for (std::size_t p = 0; p < scene.pins.size(); ++p)
-    begin.row(scene.pins[p]) = drive.pins.row(static_cast<Eigen::Index>(p));
+  begin(scene.pins, Eigen::all) = drive.pins;
   const Contacts contacts = contacts_at_start(scene, stage, from, drive, dt, x);
   const StepProblem problem{dt, &from.x, &from.v, &drive.pins, drive.acceleration, drive.wind, contacts.terms, 1};
   if (line.newton > 0) line.solver.solve(problem, begin);

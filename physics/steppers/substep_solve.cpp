@@ -32,8 +32,7 @@ NewtonReport SubstepSolve::once(const StepProblem& problem, Points& x, StepRepor
 
 void SubstepSolve::choose_guess(const StepProblem& problem, Substep& s, StepReport& report) {
   const Timed timed(report.seconds.solve);
-  for (std::size_t k = 0; k < scene_.pins.size(); ++k)
-    s.carried.row(scene_.pins[k]) = s.pins.row(static_cast<Eigen::Index>(k));
+  s.carried(scene_.pins, Eigen::all) = s.pins;
   auto x = s.nodes.topRows(s.carried.rows());
   if (solver_.potential(problem, s.carried) < solver_.potential(problem, x)) x = s.carried;
 }

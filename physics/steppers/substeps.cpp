@@ -90,10 +90,4 @@ std::optional<Restart> restart_of(const State& from, const Drive& drive, int max
   return restart;
 }
 
-Points pinned_rows(const Scene& scene, const Points& nodes) {
-  Points pins(scene.pins.size(), 3);
-  for (std::size_t k = 0; k < scene.pins.size(); ++k) pins.row(static_cast<Eigen::Index>(k)) = nodes.row(scene.pins[k]);
-  return pins;
-}
-
 }  // namespace selvedge

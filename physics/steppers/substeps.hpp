@@ -52,6 +52,4 @@ struct Restart {
 // Absent if no obstacle jumps, or if the state's obstacles lag, since these are on their way.
 std::optional<Restart> restart_of(const State& from, const Drive&, int max_substeps);
 
-Points pinned_rows(const Scene&, const Points& nodes);  // one row a Scene::pins entry
-
 }  // namespace selvedge
