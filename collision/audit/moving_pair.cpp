@@ -1,7 +1,6 @@
 #include "collision/audit/moving_pair.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace selvedge {

@@ -1,7 +1,6 @@
 #include "collision/contact/exact_contact.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 
 #include "collision/exact/exact_integer.hpp"

@@ -5,8 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "collision/geometry/distance.hpp"
-
 namespace selvedge {
 namespace {
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <span>
-
 #include "collision/geometry/surface.hpp"
 
 namespace selvedge {

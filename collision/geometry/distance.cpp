@@ -1,6 +1,5 @@
 #include "collision/geometry/distance.hpp"
 
-#include <algorithm>
 #include <array>
 #include <limits>
 

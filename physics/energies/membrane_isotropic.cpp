@@ -1,4 +1,3 @@
-#include <cassert>
 #include <cmath>
 
 #include "physics/energies/membrane_lanes.hpp"

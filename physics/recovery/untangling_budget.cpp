@@ -1,7 +1,6 @@
 #include "physics/recovery/untangling_budget.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace selvedge {
 

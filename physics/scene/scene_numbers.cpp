@@ -1,6 +1,5 @@
 #include "physics/scene/scene_numbers.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstdio>
 

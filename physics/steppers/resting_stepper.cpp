@@ -1,7 +1,6 @@
 #include "physics/steppers/resting_stepper.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <map>
 #include <utility>
