@@ -99,8 +99,7 @@ void Pair::for_each_edge(int number, Visit visit) const {
 void Pair::vote(int k, const Crossing& c) {
   Layer &own = layers_[k], &other = layers_[1 - k];
   const Surface& surface = *other.surface;
-  const auto corner = [&](int i) { return row(*other.x, surface.triangles(c.face, i)); };
-  const Vec3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
+  const Vec3 normal = twice_area(surface.triangles, *other.x, c.face).normalized();
   const Vec3 point = weighted_corners(surface, *other.x, c.face, c.weight);
   for (int end = 0; end < 2; ++end) {
     const int v = own.surface->edges(c.edge, end);

@@ -4,6 +4,7 @@
 
 #include "collision/contour/segments.hpp"
 #include "collision/distance/pseudonormals.hpp"
+#include "collision/geometry/corners.hpp"
 #include "collision/geometry/disjoint_sets.hpp"
 
 namespace selvedge {
@@ -78,8 +79,7 @@ Regions find_regions(const Surface& surface, const Points& x, const Crossed& cro
       regions.of_triangle[t] = -1;
       continue;
     }
-    const Vec3 a = row(x, surface.triangles(t, 0));
-    const double size = (row(x, surface.triangles(t, 1)) - a).cross(row(x, surface.triangles(t, 2)) - a).squaredNorm();
+    const double size = twice_area(surface.triangles, x, t).squaredNorm();
     const int region = regions.of_triangle[t];
     if (size > area[region]) {
       area[region] = size;
@@ -112,9 +112,8 @@ ExposedFaces classify(const Surface& surface, const Points& x, const Crossed& cr
 
   Points at(static_cast<Eigen::Index>(samples.size()), 3);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const auto corner = [&](int k) { return row(x, surface.triangles(samples[i].triangle, k)); };
-    const Vec3 middle =
-        samples[i].polygon.empty() ? mean_of({corner(0), corner(1), corner(2)}) : mean_of(samples[i].polygon);
+    const auto [a, b, c] = corners_of(surface, x, samples[i].triangle);
+    const Vec3 middle = mean_of(samples[i].polygon.empty() ? Polygon{a, b, c} : samples[i].polygon);
     at.row(static_cast<Eigen::Index>(i)) = (middle + step * face_normal(surface, x, samples[i].triangle)).transpose();
   }
   const std::vector<char> covered = winds_round(at);

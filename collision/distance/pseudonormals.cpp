@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "collision/geometry/corners.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -44,9 +46,7 @@ bool is_closed_manifold(const Surface& surface) {
 }
 
 Vec3 face_normal(const Surface& surface, const Points& x, int t) {
-  const Vec3 a = row(x, surface.triangles(t, 0)), b = row(x, surface.triangles(t, 1)),
-             c = row(x, surface.triangles(t, 2));
-  const Vec3 normal = (b - a).cross(c - a);
+  const Vec3 normal = twice_area(surface.triangles, x, t);
   const double length = normal.norm();
   return length > 0 ? Vec3(normal / length) : Vec3::Zero();
 }

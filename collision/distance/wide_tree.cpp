@@ -1,17 +1,11 @@
 #include "collision/distance/wide_tree.hpp"
 
-#include <algorithm>
 #include <limits>
 
 namespace selvedge {
 namespace {
 
 constexpr float nowhere = std::numeric_limits<float>::infinity();
-
-double half_area(const Box& box) {
-  const double x = box.hi[0] - box.lo[0], y = box.hi[1] - box.lo[1], z = box.hi[2] - box.lo[2];
-  return x * y + y * z + z * x;
-}
 
 // Up to eight nodes that together cover `root`, found by opening the largest ones first.
 std::vector<int> open_node(const Bvh& tree, int root) {

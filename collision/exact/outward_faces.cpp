@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "collision/exact/inside.hpp"
+#include "collision/geometry/corners.hpp"
 #include "collision/geometry/turned_alike.hpp"
 #include "collision/geometry/welded_surface.hpp"
 
@@ -22,11 +23,6 @@ struct Measured {
   Vec3 lo, hi;        // its box in the first frame
   double volume = 0;  // [m3]; 0 if it has no volume or no inside
 };
-
-Vec3 twice_area(const Triangles& triangles, int t, const Points& x) {
-  const Vec3 a = row(x, triangles(t, 0));
-  return (row(x, triangles(t, 1)) - a).cross(row(x, triangles(t, 2)) - a);
-}
 
 void turn(Triangles& triangles, int t) { std::swap(triangles(t, 1), triangles(t, 2)); }
 
@@ -70,7 +66,7 @@ void face_as_most(const Points& x, Shells& all) {
   const auto count = static_cast<int>(all.alike.turn.size());
   std::vector<double> vote(all.shells.size(), 0);
   for (int t = 0; t < count; ++t)
-    vote[all.alike.part[t]] += all.alike.turn[t] * twice_area(all.surface.triangles, t, x).norm();
+    vote[all.alike.part[t]] += all.alike.turn[t] * twice_area(all.surface.triangles, x, t).norm();
   all.faced = all.surface.triangles;
   for (int t = 0; t < count; ++t) {
     if (vote[all.alike.part[t]] < 0) all.alike.turn[t] = static_cast<signed char>(-all.alike.turn[t]);
@@ -82,7 +78,7 @@ void face_as_most(const Points& x, Shells& all) {
 double close_holes(const Shells& all, const Measured& part, const Points& x, const Vec3& origin, Shell& shell) {
   const Surface open = make_surface(all.surface.vertex_count, all.faced(part.triangles, Eigen::all));
   double area = 0, opening = 0, volume = 0;
-  for (const int t : part.triangles) area += 0.5 * twice_area(all.faced, t, x).norm();
+  for (const int t : part.triangles) area += 0.5 * twice_area(all.faced, x, t).norm();
   for (const std::vector<int>& loop : boundary_loops(open)) {
     Vec3 centre = Vec3::Zero();
     for (const int v : loop) centre += row(x, v) / static_cast<double>(loop.size());

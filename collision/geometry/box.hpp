@@ -67,6 +67,11 @@ inline Box hull(const Box& a, const Box& b, const Box& c) {
   return is_empty(a) || is_empty(b) || is_empty(c) ? empty_box : join(join(a, b), c);
 }
 
+inline double half_area(const Box& box) {  // of its surface
+  const double x = box.hi[0] - box.lo[0], y = box.hi[1] - box.lo[1], z = box.hi[2] - box.lo[2];
+  return x * y + y * z + z * x;
+}
+
 // How far the farthest corner of a box lies from a point.
 inline double farthest_corner(const Box& box, const Vec3& from) {
   double squared = 0;

@@ -12,6 +12,12 @@ inline std::array<Vec3, 3> corners_of(const Surface& surface, const Points& x, i
   return {row(x, v[0]), row(x, v[1]), row(x, v[2])};
 }
 
+inline Vec3 twice_area(const Triangles& triangles, const Points& x, int triangle) {  // as a vector
+  const int* v = triangles.data() + 3 * triangle;
+  const Vec3 a = row(x, v[0]);
+  return (row(x, v[1]) - a).cross(row(x, v[2]) - a);
+}
+
 // Do two triangles have a common vertex? Without branches, since half of them would be mispredicted.
 inline bool share_vertex(const Triangles& triangles, int s, int t) {
   const int *a = triangles.data() + 3 * s, *b = triangles.data() + 3 * t;

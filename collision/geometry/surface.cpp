@@ -4,6 +4,7 @@
 #include <cassert>
 #include <tuple>
 
+#include "collision/geometry/corners.hpp"
 #include "collision/geometry/disjoint_sets.hpp"
 
 namespace selvedge {
@@ -136,18 +137,15 @@ std::optional<std::vector<EdgeRound>> edges_round(const Surface& surface, int ve
 
 Points vertex_normals(const Surface& s, const Points& x) {
   const int faces = static_cast<int>(s.triangles.rows());
-  Points twice_area(faces, 3), normals(s.vertex_count, 3);
+  Points areas(faces, 3), normals(s.vertex_count, 3);
 #pragma omp parallel if (faces > 1000)
   {
 #pragma omp for schedule(static)
-    for (int t = 0; t < faces; ++t) {
-      const Vec3 a = row(x, s.triangles(t, 0)), b = row(x, s.triangles(t, 1)), c = row(x, s.triangles(t, 2));
-      twice_area.row(t) = (b - a).cross(c - a).transpose();
-    }
+    for (int t = 0; t < faces; ++t) areas.row(t) = twice_area(s.triangles, x, t).transpose();
 #pragma omp for schedule(static)
     for (int v = 0; v < s.vertex_count; ++v) {
       Vec3 sum = Vec3::Zero();
-      for (const int t : s.triangles_of(v)) sum += row(twice_area, t);
+      for (const int t : s.triangles_of(v)) sum += row(areas, t);
       const double length = sum.norm();
       normals.row(v) = (length > 0 ? Vec3(sum / length) : sum).transpose();
     }

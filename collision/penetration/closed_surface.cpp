@@ -84,8 +84,7 @@ Points closed_positions(const ClosedSurface& closed, const Points& cloth) {
 }
 
 Vec3 turned_normal(const ClosedSurface& closed, const Points& x, int face) {
-  const auto [a, b, c] = corners_of(closed.surface, x, face);
-  return closed.turn[face] * (b - a).cross(c - a);
+  return closed.turn[face] * twice_area(closed.surface.triangles, x, face);
 }
 
 Points by_cloth_positions(const ClosedSurface& closed, const Points& gradient) {

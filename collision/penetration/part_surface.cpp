@@ -81,7 +81,7 @@ void join_round(const PartingSpace& space, std::span<const SurfaceCurve* const> 
   double area = 0;
   for (const CurveRun& run : curves[i]->runs) {
     const Vec2 p = flat(run.from), q = flat(run.to);
-    area += p.x() * q.y() - p.y() * q.x();
+    area += cross(p, q);
     if (p.sum() < start.sum()) start = p;
   }
   const int outer = area > 0 ? right_of(i) : left_of(i);
@@ -92,10 +92,9 @@ void join_round(const PartingSpace& space, std::span<const SurfaceCurve* const> 
     for (const CurveRun& run : curves[other]->runs) {
       if (run.face != face) continue;
       const Vec2 p = flat(run.from), along = flat(run.to) - p;
-      const auto side = [&](const Vec2& at) { return along.x() * (at - p).y() - along.y() * (at - p).x(); };
+      const auto side = [&](const Vec2& at) { return cross(along, at - p); };
       const double here = side(start), there = side(Vec2::Zero());
-      const double first = start.x() * p.y() - start.y() * p.x(),
-                   last = first + start.x() * along.y() - start.y() * along.x();
+      const double first = cross(start, p), last = first + start.x() * along.y() - start.y() * along.x();
       if ((here > 0) == (there > 0) || (first > 0) == (last > 0)) continue;
       const double share = here / (here - there);
       if (share >= nearest) continue;
@@ -154,8 +153,7 @@ int whole_faces(const PartingSpace& space, const std::vector<int>& vertices) {
 }
 
 double face_area(const PartingSpace& space, int face) {
-  const auto [a, b, c] = corners_of(space.closed.surface, space.x, face);
-  return 0.5 * (b - a).cross(c - a).norm();
+  return 0.5 * twice_area(space.closed.surface.triangles, space.x, face).norm();
 }
 
 // The counted area (area times count) as a fraction of the component's area.
@@ -174,6 +172,15 @@ double share_of_area(PartingSpace& space, int component, const CountedPart& part
   return all > 0 ? sum / all : 0;
 }
 
+// The vertices of the fronts with another level than `base`, with the difference.
+std::vector<std::pair<int, int>> listed_levels(LockstepFlood& flood, const std::vector<int>& level, int base) {
+  std::vector<std::pair<int, int>> listed;
+  for (int f = 0; f < flood.count(); ++f)
+    if (flood.root(f) == f && level[f] != base)
+      for (const int v : flood.reached(f)) listed.emplace_back(v, level[f] - base);
+  return listed;
+}
+
 // Is the part with colour 1 the larger one?
 bool odd_is_larger(PartingSpace& space, std::span<const SurfaceCurve* const> curves, int cut_faces,
                    const std::vector<int>& colour, LockstepFlood& flood) {
@@ -183,10 +190,7 @@ bool odd_is_larger(PartingSpace& space, std::span<const SurfaceCurve* const> cur
     if (flood.root(f) == f && colour[f] == 1) odd += whole_faces(space, flood.reached(f));
   const int even = space.closed.component_faces[component] - cut_faces - odd;
   if (odd != even && space.smaller == SmallerSide::faces) return odd > even;
-  CountedPart part;
-  for (int f = 0; f < flood.count(); ++f)
-    if (flood.root(f) == f && colour[f] == 1)
-      for (const int v : flood.reached(f)) part.vertices.emplace_back(v, 1);
+  CountedPart part{listed_levels(flood, colour, 0), {}};
   for (int i = 0; i < static_cast<int>(curves.size()); ++i)
     part.curves.emplace_back(curves[i], colour[flood.root(left_of(i))] == 1 ? 1 : -1);
   return share_of_area(space, component, part) > 0.5;
@@ -276,14 +280,6 @@ std::vector<int> levels_of(const Surface& surface, const std::vector<std::pair<i
     }
   }
   return level;
-}
-
-std::vector<std::pair<int, int>> listed_levels(LockstepFlood& flood, const std::vector<int>& level, int base) {
-  std::vector<std::pair<int, int>> listed;
-  for (int f = 0; f < flood.count(); ++f)
-    if (flood.root(f) == f && level[f] != base)
-      for (const int v : flood.reached(f)) listed.emplace_back(v, level[f] - base);
-  return listed;
 }
 
 // The level that most of the component has.

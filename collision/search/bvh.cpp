@@ -9,11 +9,6 @@ namespace {
 
 constexpr std::size_t enough_blocks = 32;
 
-double surface_area(const Box& box) {
-  const double x = box.hi[0] - box.lo[0], y = box.hi[1] - box.lo[1], z = box.hi[2] - box.lo[2];
-  return 2 * (x * y + y * z + z * x);
-}
-
 struct Centre {
   std::array<float, 3> at;
   int item;
@@ -190,10 +185,10 @@ double bvh_cost(const Bvh& tree) {
   if (tree.nodes.size() < 2) return 0;
   double sum = 0;
   for (const Bvh::Node& node : tree.nodes) {
-    const double area = surface_area(node.box);
+    const double area = half_area(node.box);
     if (std::isfinite(area)) sum += area;
   }
-  const double root = surface_area(tree.nodes.front().box);
+  const double root = half_area(tree.nodes.front().box);
   return root > 0 && std::isfinite(root) ? sum / root : 0;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "collision/geometry/corners.hpp"
 #include "collision/geometry/distance.hpp"
 
 namespace selvedge {
@@ -29,10 +30,8 @@ void take_nearer(const Surface& surface, const Points& x, int t, const Vec3& p, 
 FaceTree make_face_tree(const Surface& surface, const Points& x, std::vector<int> faces) {
   std::vector<Box> boxes;
   for (const int t : faces) {
-    const auto box = [&](int k) {
-      return moving_point_box(row(x, surface.triangles(t, k)), row(x, surface.triangles(t, k)), 0);
-    };
-    boxes.push_back(hull(box(0), box(1), box(2)));
+    const auto [a, b, c] = corners_of(surface, x, t);
+    boxes.push_back(hull(moving_point_box(a, a, 0), moving_point_box(b, b, 0), moving_point_box(c, c, 0)));
   }
   return {&surface, &x, std::move(faces), build_bvh(boxes)};
 }

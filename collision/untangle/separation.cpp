@@ -52,8 +52,7 @@ struct Setting {
   std::vector<Points> normals;               // of the vertices of each sheet
 
   Vec3 face_normal(int sheet, int face) const {
-    const auto [a, b, c] = corners_of(*sheets[sheet].surface, *sheets[sheet].x, face);
-    return (b - a).cross(c - a).normalized();
+    return twice_area(sheets[sheet].surface->triangles, *sheets[sheet].x, face).normalized();
   }
   Vec3 at(int sheet, int face, const std::array<double, 3>& w) const {
     return weighted_corners(*sheets[sheet].surface, *sheets[sheet].x, face, w);
