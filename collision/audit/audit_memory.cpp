@@ -134,8 +134,7 @@ AuditMemory::Pair measured(const Faces& cloth, int a, int b) {
 
 double largest(std::span<const Points> all) {
   double size = 0;
-  for (const Points& x : all)
-    if (x.rows() > 0) size = std::max(size, x.cwiseAbs().maxCoeff());
+  for (const Points& x : all) size = std::max(size, largest_coordinate(x));
   return size;
 }
 

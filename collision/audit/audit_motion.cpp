@@ -24,8 +24,6 @@ struct Side {
   std::vector<ExactBox> start, end, boxes;  // at the start, at the end, and round both
 };
 
-bool finite(const Points& x0, const Points& x1, int v) { return x0.row(v).allFinite() && x1.row(v).allFinite(); }
-
 // Is one of the faces above the other along an axis, at both ends and so all the way? This separates faces that move
 // along together, without rounding, however far they move.
 bool stay_apart_along_an_axis(const Side& a, int i, const Side& b, int j) {
@@ -56,7 +54,7 @@ ExactBox grown(ExactBox box, double margin) {
 int add(const MovingBody& body, int first_node, int first_number, double margin, const ExactBox& bounds, Side& side) {
   const Surface& s = *body.surface;
   std::vector<char> good(s.vertex_count);
-  for (int v = 0; v < s.vertex_count; ++v) good[v] = finite(*body.x0, *body.x1, v);
+  for (int v = 0; v < s.vertex_count; ++v) good[v] = body.x0->row(v).allFinite() && body.x1->row(v).allFinite();
   for (int t = 0; t < s.triangles.rows(); ++t) {
     if (!good[s.triangles(t, 0)] || !good[s.triangles(t, 1)] || !good[s.triangles(t, 2)]) continue;
     const Side::Face face{&body, t, first_node, first_number + t};

@@ -15,8 +15,8 @@ std::vector<Impact> yield_rounds(Resolution& r, std::vector<Impact> impacts) {
       for (const int node : impact.pair.nodes)
         if (r.is_free(node)) stuck[r.zones.root(node)] = 1;
     const auto is_stuck = [&](const Impact& impact) {
-      return std::any_of(impact.pair.nodes.begin(), impact.pair.nodes.end(),
-                         [&](int node) { return r.is_free(node) && stuck[r.zones.root(node)]; });
+      return std::ranges::any_of(impact.pair.nodes,
+                                 [&](int node) { return r.is_free(node) && stuck[r.zones.root(node)]; });
     };
     std::vector<int> yielding;
     const auto collect = [&](const Impact& impact) {
@@ -65,9 +65,7 @@ bool shorten_rounds(Resolution& r, std::vector<Impact> impacts) {
     r.report.response += r.watch.lap();
     impacts = new_impacts(r);
     const auto found = impacts.size();
-    std::erase_if(impacts, [&](const Impact& impact) {
-      return std::none_of(impact.pair.nodes.begin(), impact.pair.nodes.end(), moves);
-    });
+    std::erase_if(impacts, [&](const Impact& impact) { return std::ranges::none_of(impact.pair.nodes, moves); });
     clean = clean && impacts.size() == found;
   }
   for (int node = 0; node < r.world.node_count; ++node)

@@ -7,13 +7,6 @@
 
 namespace selvedge {
 
-void EdgeParity::add_detour(int vertex, int from_triangle, int to_triangle) {
-  auto round = edges_round(surface_, vertex, from_triangle, to_triangle, true);
-  if (!round) round = edges_round(surface_, vertex, from_triangle, to_triangle, false);
-  if (!round) return;
-  for (const EdgeRound& passed : *round) flip(passed.edge);
-}
-
 void EdgeParity::flip(int edge) {
   odd_[edge] ^= 1;
   flipped_.push_back(edge);
@@ -28,7 +21,10 @@ void EdgeParity::add(const Contour& contour, int side) {
     const auto triangle = [&](int s) {
       return end == 0 ? contour.sides[s].triangles.front() : contour.sides[s].triangles.back();
     };
-    add_detour(~at, triangle(0), triangle(1));
+    auto round = edges_round(surface_, ~at, triangle(0), triangle(1), true);
+    if (!round) round = edges_round(surface_, ~at, triangle(0), triangle(1), false);
+    if (!round) continue;
+    for (const EdgeRound& passed : *round) flip(passed.edge);
   }
 }
 

@@ -21,7 +21,6 @@ class EdgeParity {
 
  private:
   void flip(int edge);
-  void add_detour(int vertex, int from_triangle, int to_triangle);
   const Surface& surface_;
   std::vector<char> odd_;
   std::vector<int> flipped_;  // every odd edge, and some that were odd before

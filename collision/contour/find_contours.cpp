@@ -115,8 +115,7 @@ void judge_sides(std::span<const SheetView> sheets, std::span<const std::vector<
   const bool loop = contour.ends[0] == ContourEnd::vertex || contour.ends[1] == ContourEnd::vertex;
   if (loop || contour.one_trace) {
     if (!ends_outside(contour, 0) || !ends_outside(contour, 1) || !same_component(contour)) return;
-    const Surface& surface = *sheets[contour.sides[0].sheet].surface;
-    EdgeParity parity(surface);
+    EdgeParity parity(*sheets[contour.sides[0].sheet].surface);
     parity.add(contour, 0);
     parity.add(contour, 1);
     ContourSide &first = contour.sides[0], &second = contour.sides[1];
@@ -128,16 +127,13 @@ void judge_sides(std::span<const SheetView> sheets, std::span<const std::vector<
   for (int k = 0; k < 2; ++k) {
     ContourSide& side = contour.sides[k];
     if (!ends_outside(contour, k)) continue;
-    const Surface& surface = *sheets[side.sheet].surface;
-    EdgeParity parity(surface);
+    EdgeParity parity(*sheets[side.sheet].surface);
     parity.add(contour, k);
     judge_cut(parity, sizes[side.sheet], side);
   }
 }
 
-bool contains(const std::vector<int>& sorted, int value) {
-  return std::binary_search(sorted.begin(), sorted.end(), value);
-}
+bool contains(const std::vector<int>& sorted, int value) { return std::ranges::binary_search(sorted, value); }
 
 // Does the curve of `inner` run among the vertices inside `outer`?
 bool lies_inside(const Surface& surface, const ContourSide& inner, const ContourSide& outer) {
@@ -169,9 +165,8 @@ void mark_nested(std::span<const SheetView> sheets, std::vector<Contour>& contou
       const Surface& surface = *sheets[side.sheet].surface;
       const int one = side.inside.empty() ? surface.triangles(side.triangles.front(), 0) : side.inside.front();
       const std::vector<Enclosure>& all = round[side.sheet][one];
-      side.nested = std::any_of(all.begin(), all.end(), [&](const Enclosure& outer) {
-        return outer.contour != c && lies_inside(surface, side, *outer.side);
-      });
+      side.nested = std::ranges::any_of(
+          all, [&](const Enclosure& outer) { return outer.contour != c && lies_inside(surface, side, *outer.side); });
     }
 }
 

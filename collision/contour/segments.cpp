@@ -232,8 +232,7 @@ auto key(const Segment& s) { return std::tie(s.sheet, s.triangle); }
 // Sorts and numbers the crossings. Segment ends, which are indices of `all`, become these numbers.
 void number_crossings(std::vector<Crossing>& all, Segments& found) {
   found.crossings = all;
-  std::sort(found.crossings.begin(), found.crossings.end(),
-            [](const Crossing& a, const Crossing& b) { return key(a) < key(b); });
+  std::ranges::sort(found.crossings, [](const Crossing& a, const Crossing& b) { return key(a) < key(b); });
   found.crossings.erase(std::unique(found.crossings.begin(), found.crossings.end()), found.crossings.end());
   for (Segment& segment : found.segments)
     for (int& end : segment.end) {
@@ -280,8 +279,7 @@ Segments find_segments(std::span<const SheetView> sheets) {
                               {pair.a, pair.b},
                               {at_vertex ? ~result.shared_vertex : first, at_vertex ? first : first + 1}});
   }
-  std::sort(found.segments.begin(), found.segments.end(),
-            [](const Segment& a, const Segment& b) { return key(a) < key(b); });
+  std::ranges::sort(found.segments, [](const Segment& a, const Segment& b) { return key(a) < key(b); });
   std::sort(found.touching.begin(), found.touching.end());
   number_crossings(all, found);
   return found;
@@ -300,8 +298,7 @@ Vec3 end_point(std::span<const SheetView> sheets, const Segments& found, const S
 
 int intersecting_pairs(const Segments& found) {
   return static_cast<int>(found.touching.size()) +
-         static_cast<int>(std::count_if(found.segments.begin(), found.segments.end(),
-                                        [](const Segment& s) { return !s.at_vertex(); }));
+         static_cast<int>(std::ranges::count_if(found.segments, [](const Segment& s) { return !s.at_vertex(); }));
 }
 
 }  // namespace selvedge

@@ -13,10 +13,6 @@ void mark(std::vector<char>& marks, int size, int node) {
   marks[node] = 1;
 }
 
-void mark_triangle(std::vector<char>& marks, int size, const Surface& surface, int triangle, int first = 0) {
-  for (int k = 0; k < 3; ++k) mark(marks, size, first + surface.triangles(triangle, k));
-}
-
 }  // namespace
 
 Exemption find_exemption(const ContactWorld& world, const Points& nodes) {
@@ -28,7 +24,7 @@ Exemption find_exemption(const ContactWorld& world, const Points& nodes) {
   };
   const Segments found = find_segments(sheets.views);
   for_each_meeting(world, found, [&](int triangle, int partner_sheet) {
-    mark_triangle(marks_for(partner_sheet), n, *world.cloth, triangle);
+    for (const int v : world.cloth->triangles.row(triangle)) mark(marks_for(partner_sheet), n, v);
   });
   if (exemption.tangled())
     for (const Region& region : enclosed_regions(sheets.views, found, find_contours(sheets.views, found)))

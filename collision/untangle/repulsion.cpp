@@ -36,8 +36,7 @@ bool Repulsion::neighbours(const NodePair& pair) const {
 }
 
 bool Repulsion::is_movable(const NodePair& pair, const std::vector<double>& reach) const {
-  return std::any_of(pair.nodes.begin(), pair.nodes.end(),
-                     [&](int node) { return world_.is_cloth(node) && reach[node] > 0; });
+  return std::ranges::any_of(pair.nodes, [&](int node) { return world_.is_cloth(node) && reach[node] > 0; });
 }
 
 // Is one of the primitives (with an obstacle: that of the cloth) away from contours and enclosed regions? wide: are

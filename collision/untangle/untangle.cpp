@@ -1,7 +1,6 @@
 #include "collision/untangle/untangle.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <deque>
 #include <limits>
 
@@ -136,6 +135,15 @@ struct Freedom {
 // The unit of far_limit: a vertex' own mean edge, or the mesh's if that is shorter [m].
 double far_unit(const InputShape& shape, int vertex) { return std::min(shape.edge_length[vertex], shape.mean_edge); }
 
+// The triangles with a vertex that counts.
+template <class Counts>
+std::vector<int> triangles_at(const Surface& surface, const Counts& counts) {
+  std::vector<int> triangles;
+  for (int t = 0; t < surface.triangles.rows(); ++t)
+    if (std::ranges::any_of(surface.triangles.row(t), counts)) triangles.push_back(t);
+  return triangles;
+}
+
 Freedom make_freedom(const InputShape& shape, const std::vector<char>& tangled, const UntangleOptions& options) {
   const std::vector<char> near = within_rings(shape, tangled, options.rings);
   const std::vector<char> around = within_rings(shape, near, 2 * options.rings);
@@ -146,12 +154,7 @@ Freedom make_freedom(const InputShape& shape, const std::vector<char>& tangled, 
     freedom.reach[v] = near[v] ? std::numeric_limits<double>::infinity() : options.far_limit * far_unit(shape, v);
     freedom.vertices.push_back(v);
   }
-  for (int t = 0; t < shape.surface->triangles.rows(); ++t)
-    for (int v : shape.surface->triangles.row(t))
-      if (around[v]) {
-        freedom.triangles.push_back(t);
-        break;
-      }
+  freedom.triangles = triangles_at(*shape.surface, [&](int v) { return around[v] != 0; });
   return freedom;
 }
 
@@ -168,13 +171,7 @@ void widen(const InputShape& shape, const std::vector<char>& tangled, const Unta
     }
   if (!wider) return;
   std::sort(freedom.vertices.begin(), freedom.vertices.end());
-  freedom.triangles.clear();
-  for (int t = 0; t < shape.surface->triangles.rows(); ++t)
-    for (int v : shape.surface->triangles.row(t))
-      if (freedom.reach[v] > 0) {
-        freedom.triangles.push_back(t);
-        break;
-      }
+  freedom.triangles = triangles_at(*shape.surface, [&](int v) { return freedom.reach[v] > 0; });
 }
 
 Points propose(const InputShape& shape, const Freedom& freedom, std::span<const Separation> separations,
@@ -197,21 +194,15 @@ Points propose(const InputShape& shape, const Freedom& freedom, std::span<const 
   return x;
 }
 
-void keep_range(const InputShape& shape, const Freedom& freedom, const UntangleOptions& options, const Points& before,
-                Points& x) {
-  const StretchRange range{options.least_stretch, options.largest_stretch};
-  const StretchRange outer{0.97 * range.least, 1.03 * range.largest};
-  hold_back(shape, freedom.triangles, outer, before, x);
-}
-
 // Moves vertices back toward `before` until no pair meets whose vertices were all untangled there, and stretches are in
 // range. Returns the tangle of x.
 Tangle keep_clean(const InputShape& shape, const Freedom& freedom, std::span<const SheetView> obstacles,
                   const std::vector<char>& tangled, const UntangleOptions& options, const Points& before, Points& x) {
   const Surface& cloth = *shape.surface;
+  const StretchRange range{0.97 * options.least_stretch, 1.03 * options.largest_stretch};
   std::vector<char> offends(cloth.vertex_count, 0);
   for (int round = 0;; ++round) {
-    keep_range(shape, freedom, options, before, x);
+    hold_back(shape, freedom.triangles, range, before, x);
     const std::vector<SheetView> sheets = with_cloth(cloth, x, obstacles);
     Segments found = segments_that_count(sheets, options);
     bool clean = true;

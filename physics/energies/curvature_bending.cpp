@@ -81,9 +81,7 @@ Stencil make_stencil(const Scene& scene, const std::vector<Corners>& corners, in
   if (stencil.nodes.empty()) return stencil;
   stencil.nodes.insert(stencil.nodes.begin(), vertex);
   stencil.laplacian.assign(stencil.nodes.size(), 0);
-  const auto slot = [&stencil](int node) {
-    return std::find(stencil.nodes.begin(), stencil.nodes.end(), node) - stencil.nodes.begin();
-  };
+  const auto slot = [&stencil](int node) { return std::ranges::find(stencil.nodes, node) - stencil.nodes.begin(); };
   double thirds = 0;
   for (const int t : scene.surface.triangles_of(vertex))
     for (int k = 0; k < 3; ++k) {

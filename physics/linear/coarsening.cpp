@@ -49,8 +49,7 @@ std::vector<Candidate> candidates(const Vertices& fine, const std::vector<char>&
   std::vector<Candidate> found;
   for (int j : ring)
     if (kept[j] && j != i) found.push_back({j, (row(fine.rest, j) - row(fine.rest, i)).norm(), Vec2::Zero()});
-  std::stable_sort(found.begin(), found.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
+  std::ranges::stable_sort(found, {}, &Candidate::distance);
   if (found.size() > most_candidates) found.resize(most_candidates);
   return found;
 }

@@ -21,8 +21,7 @@ std::string count(long long n, const std::string& singular, const std::string& p
 
 template <class Predicate>
 int cloths_with(const Scene& scene, const Predicate& predicate) {
-  return static_cast<int>(
-      std::count_if(scene.cloths.begin(), scene.cloths.end(), [&](const Cloth& cloth) { return predicate(cloth); }));
+  return static_cast<int>(std::ranges::count_if(scene.cloths, [&](const Cloth& cloth) { return predicate(cloth); }));
 }
 
 bool has_membrane(const Cloth& cloth) {
@@ -104,8 +103,7 @@ std::string why_wind(const Scene& scene, bool in) {
 Features features_of(const Scene& scene) {
   Features f;
   f.obstacles = !scene.obstacles.empty();
-  f.moving_obstacles =
-      std::any_of(scene.obstacles.begin(), scene.obstacles.end(), [](const Obstacle& o) { return o.moving; });
+  f.moving_obstacles = std::ranges::any_of(scene.obstacles, [](const Obstacle& o) { return o.moving; });
   f.self_contact = scene.contact.self && scene.surface.triangles.rows() > 0;
   f.friction = (f.obstacles && scene.contact.friction > 0) || (f.self_contact && scene.contact.self_friction > 0);
   f.membrane = cloths_with(scene, has_membrane) > 0;
@@ -130,8 +128,7 @@ std::vector<PlanLine> plan_lines(const Scene& scene) {
   const auto damped = [&](double Material::*rate) {
     return cloths_with(scene, [rate](const Cloth& cloth) { return cloth.material.*rate > 0; });
   };
-  const auto moving =
-      std::count_if(scene.obstacles.begin(), scene.obstacles.end(), [](const Obstacle& o) { return o.moving; });
+  const auto moving = std::ranges::count_if(scene.obstacles, [](const Obstacle& o) { return o.moving; });
   const int membranes = cloths_with(scene, has_membrane);
   const auto damping_why = [&](bool in, double Material::*rate) {
     return in ? count(damped(rate), "cloth") + " with a rate > 0"

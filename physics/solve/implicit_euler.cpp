@@ -47,13 +47,11 @@ bool below_rounding(const Points& gradient, std::span<const Mat3> diagonal, cons
 }
 
 Vertices rest_vertices(const Scene& scene) {
-  std::vector<std::array<int, 2>> border;
-  for (int e = 0; e < scene.surface.edges.rows(); ++e)
-    if (scene.surface.edge_triangles[e][1] < 0)
-      border.push_back({scene.surface.edges(e, 0), scene.surface.edges(e, 1)});
-  Edges open(border.size(), 2);
-  for (std::size_t e = 0; e < border.size(); ++e) open.row(e) << border[e][0], border[e][1];
-  return {scene.rest, adjacency_of(scene.surface.vertex_count, scene.surface.edges), rims(scene.rest, open)};
+  const Surface& surface = scene.surface;
+  std::vector<std::pair<int, int>> border;
+  for (int e = 0; e < surface.edges.rows(); ++e)
+    if (surface.edge_triangles[e][1] < 0) border.emplace_back(surface.edges(e, 0), surface.edges(e, 1));
+  return {scene.rest, adjacency_of(surface.vertex_count, surface.edges), rims(scene.rest, unique_edges(border))};
 }
 
 // Components that nothing holds or touches.
