@@ -13,16 +13,13 @@ namespace {
 
 // The least distance of each pair. It is smaller for pairs of one cloth whose rest distance is below the thickness, in
 // the same ratio; otherwise every motion would force elements apart that are smaller than the thickness.
-class Separations {
- public:
-  Separations(const ContactWorld& world, const ResolveOptions& options)
-      : world_(world), most_(options.separation), part_(options.separation / options.thickness) {}
-  double most() const { return most_; }
-  double operator()(const NodePair& pair) const { return std::min(most_, part_ * rest_distance(world_, pair)); }
+struct Separations {
+  const ContactWorld& world;
+  double most, part;
 
- private:
-  const ContactWorld& world_;
-  double most_, part_;
+  Separations(const ContactWorld& w, const ResolveOptions& options)
+      : world(w), most(options.separation), part(options.separation / options.thickness) {}
+  double operator()(const NodePair& pair) const { return std::min(most, part * rest_distance(world, pair)); }
 };
 
 // Impacts of the pairs that have a free node and a node in `moved` (empty: every node), sorted by pair.
@@ -44,11 +41,11 @@ std::vector<Impact> impacts_of(const PathPairs& path, const Eigen::VectorXd& inv
       const auto any = [&](auto&& test) { return std::any_of(pair.nodes.begin(), pair.nodes.end(), test); };
       if (only && any([&](int n) { return (*only)[n] == 0; })) continue;
       if (!moved.empty() && !any([&](int n) { return moved[n] != 0; })) continue;
-      if (!motion.may_come_within(i, separation.most()) || !any([&](int n) { return inverse_mass[n] > 0; })) continue;
+      if (!motion.may_come_within(i, separation.most) || !any([&](int n) { return inverse_mass[n] > 0; })) continue;
       ++tested[c];
-      auto impact = find_impact(pair, x0, x1, separation.most(), normals_of);
+      auto impact = find_impact(pair, x0, x1, separation.most, normals_of);
       if (!impact) continue;
-      if (const double own = separation(pair); own < separation.most())
+      if (const double own = separation(pair); own < separation.most)
         impact = find_impact(pair, x0, x1, own, normals_of);
       if (impact) found[c].push_back(*impact);
     }

@@ -8,27 +8,15 @@
 
 namespace selvedge {
 
-bool has_openmp() {
 #ifdef _OPENMP
-  return true;
+bool has_openmp() { return true; }
+int most_threads() { return omp_get_max_threads(); }
+void use_threads(int count) { omp_set_num_threads(count); }
 #else
-  return false;
+bool has_openmp() { return false; }
+int most_threads() { return 1; }
+void use_threads(int) {}
 #endif
-}
-
-int most_threads() {
-#ifdef _OPENMP
-  return omp_get_max_threads();
-#else
-  return 1;
-#endif
-}
-
-void use_threads([[maybe_unused]] int count) {
-#ifdef _OPENMP
-  omp_set_num_threads(count);
-#endif
-}
 
 void parallel_for(int count, [[maybe_unused]] int grain, const std::function<void(int)>& body) {
   StopPoll stop;

@@ -1,7 +1,6 @@
 #include "collision/penetration/open_contours.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <tuple>
 
@@ -38,14 +37,10 @@ double length_along(const ClosedSurface& closed, const Points& x, const std::vec
   return length;
 }
 
+// The edge between two corners of a triangle.
 int edge_between(const Surface& surface, int triangle, int a, int b) {
-  for (int k = 0; k < 3; ++k) {
-    const int edge = surface.triangle_edges(triangle, k);
-    if ((surface.edges(edge, 0) == a && surface.edges(edge, 1) == b) ||
-        (surface.edges(edge, 0) == b && surface.edges(edge, 1) == a))
-      return edge;
-  }
-  return -1;
+  const int i = surface.corner_of(triangle, a), j = surface.corner_of(triangle, b);
+  return surface.triangle_edges(triangle, j == (i + 1) % 3 ? i : j);
 }
 
 // The path round a hole from one crossing of its rim to another, forward or backward in the order of the loop.

@@ -15,15 +15,14 @@ template <class Take>
 StepReport bounded_step(const std::string& by, const StopFlag& stop, Take&& take) {
   StepReport rejected;
   rejected.by = by;
-  rejected.status = StepStatus::rejected;
   std::optional<StopScope> scope;
   if (stop) scope.emplace(stop);
   try {
     return take();
   } catch (const TooManyPairs&) {
-    rejected.reason = Reason::too_many_pairs;
+    reject(Reason::too_many_pairs, rejected);
   } catch (const Stopped&) {
-    rejected.reason = Reason::stopped;
+    reject(Reason::stopped, rejected);
   }
   return rejected;
 }

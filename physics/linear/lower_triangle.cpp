@@ -6,17 +6,23 @@
 namespace selvedge {
 namespace {
 
-// Calls visit(i, j) for every pair of different vertices that the system couples, possibly more than once.
+// Calls visit(i, j, block) for every pair of different vertices that the system couples, possibly more than once.
+// block() makes the block with the rows of vertex i and the columns of vertex j.
 template <class Visit>
 void for_each_coupling(const LinearSystem& system, Visit visit) {
-  for (const auto& [i, j] : system.pattern.pairs) visit(i, j);
+  for (std::size_t p = 0; p < system.pattern.pairs.size(); ++p)
+    visit(system.pattern.pairs[p][0], system.pattern.pairs[p][1], [&] { return system.pairs[p]; });
   for (int i = 0; i < system.flat.rows(); ++i)
     for (SparseMatrix::InnerIterator entry(system.flat, i); entry; ++entry)
-      if (entry.col() > i) visit(i, static_cast<int>(entry.col()));
+      if (entry.col() > i)
+        visit(i, static_cast<int>(entry.col()),
+              [&] { return Mat3(system.flat_scale[i] * entry.value() * Mat3::Identity()); });
   for (const ContactBlock& contact : system.contacts)
     for (int k = 0; k < 4; ++k)
       for (int l = k + 1; l < 4; ++l)
-        if (contact.nodes[k] >= 0 && contact.nodes[l] >= 0) visit(contact.nodes[k], contact.nodes[l]);
+        if (contact.nodes[k] >= 0 && contact.nodes[l] >= 0)
+          visit(contact.nodes[k], contact.nodes[l],
+                [&] { return Mat3(contact.weights[k] * contact.weights[l] * contact_matrix(contact)); });
 }
 
 // Adds `block` (rows of vertex i, columns of vertex j) at its place below the diagonal.
@@ -49,7 +55,7 @@ bool update_pattern(const LinearSystem& system, LowerTriangle& lower) {
   if (next.free_index == lower.free_index && next.contact_nodes == lower.contact_nodes) return false;
   const int blocks = static_cast<int>(next.vertex.size());
   std::vector<std::vector<int>> below(blocks);
-  for_each_coupling(system, [&](int i, int j) {
+  for_each_coupling(system, [&](int i, int j, const auto&) {
     const auto [low, high] = std::minmax({next.free_index[i], next.free_index[j]});
     if (low >= 0) below[low].push_back(high);
   });
@@ -74,18 +80,7 @@ void fill_values(const LinearSystem& system, std::span<const Mat3> diagonal, Low
   for (int b = 0; b < static_cast<int>(lower.vertex.size()); ++b)
     for (int c = 0; c < 3; ++c)
       for (int r = c; r < 3; ++r) lower.value[lower.column_begin[3 * b + c] + r - c] = diagonal[lower.vertex[b]](r, c);
-  for (std::size_t p = 0; p < system.pairs.size(); ++p)
-    add_block(lower, system.pattern.pairs[p][0], system.pattern.pairs[p][1], system.pairs[p]);
-  for (int i = 0; i < system.flat.rows(); ++i)
-    for (SparseMatrix::InnerIterator entry(system.flat, i); entry; ++entry)
-      if (entry.col() > i)
-        add_block(lower, i, static_cast<int>(entry.col()), system.flat_scale[i] * entry.value() * Mat3::Identity());
-  for (const ContactBlock& contact : system.contacts)
-    for (int k = 0; k < 4; ++k)
-      for (int l = k + 1; l < 4; ++l)
-        if (contact.nodes[k] >= 0 && contact.nodes[l] >= 0)
-          add_block(lower, contact.nodes[k], contact.nodes[l],
-                    contact.weights[k] * contact.weights[l] * contact_matrix(contact));
+  for_each_coupling(system, [&](int i, int j, const auto& block) { add_block(lower, i, j, block()); });
 }
 
 }  // namespace selvedge

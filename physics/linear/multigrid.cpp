@@ -1,7 +1,6 @@
 #include "physics/linear/multigrid.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -339,8 +338,7 @@ bool Multigrid::fill(const LinearSystem& system, std::span<const Mat3> diagonal,
       impl.fill_coarser(impl.levels[l - 1], impl.levels[l]);
     if (!impl.invert_diagonal(impl.levels[l])) return false;
   }
-  if (!impl.factor_coarsest()) return false;
-  return true;
+  return impl.factor_coarsest();
 }
 
 // Steps of the iteration. The residual is `residual` minus `product_of_step`, which is still to be subtracted. Adds the

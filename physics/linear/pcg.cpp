@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 #include <Eigen/LU>
 
@@ -16,11 +17,7 @@ constexpr int pcg_chunk = 64;   // rows of one partial sum; fixed, so that sums 
 constexpr double foreseen = 4;  // safety factor on the expected square of the norm
 constexpr int small = 8;        // with fewer chunks one thread is faster than a team
 
-double sum(const std::vector<double>& partial) {
-  double total = 0;
-  for (double part : partial) total += part;
-  return total;
-}
+double sum(const std::vector<double>& partial) { return std::accumulate(partial.begin(), partial.end(), 0.0); }
 
 template <class Real>
 void set(const Vec3& v, Quad<Real>& quad) {

@@ -53,8 +53,7 @@ StepReport CarriedStepper::take_step(const State& from, const Drive& drive, doub
   StepReport report;
   report.by = traits_.name;
   report.substeps = 1;
-  report.status = StepStatus::rejected;
-  report.reason = Reason::not_finite;
+  reject(Reason::not_finite, report);
   Points x = carried_guess(scene_, from, drive, dt, options_);
   if (!x.allFinite()) return report;
   std::vector<Points> obstacles = drive.obstacles;

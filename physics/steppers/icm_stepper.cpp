@@ -228,9 +228,7 @@ StepReport IcmStepper::take_step(const State& from, const Drive& drive, double d
   }
   if (!all.switched_off.empty()) report.switched_off = switched_off_counts(world_, all);
   finish_step(from, drive, dt, {now.nodes.topRows(n), std::move(now.v), drive.obstacles}, to, report);
-  if (energy_(from, drive, to).from_nowhere()) {
-    reject(Reason::energy_gain, report);
-  }
+  if (energy_(from, drive, to).from_nowhere()) reject(Reason::energy_gain, report);
   return report;
 }
 

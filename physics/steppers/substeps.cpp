@@ -40,9 +40,7 @@ double fastest_past(std::span<const NodePair> pairs, const State& from, const Dr
     obstacles.push_back((drive.obstacles[k] - from.obstacles[k]) / dt);
   const Points v = gather_nodes(from.v, obstacles);
   double fastest = 0;
-  for (const NodePair& pair : pairs) {
-    fastest = std::max(fastest, (v.row(pair.nodes[0]) - v.row(pair.nodes[3])).norm());
-  }
+  for (const NodePair& pair : pairs) fastest = std::max(fastest, (v.row(pair.nodes[0]) - v.row(pair.nodes[3])).norm());
   return fastest;
 }
 
