@@ -94,9 +94,7 @@ std::vector<SignedDistance> ask_ends(const DistanceField& body, const Surface& g
   std::vector<int> ends;
   for (const int e : edges) ends.insert(ends.end(), {garment.edges(e, 0), garment.edges(e, 1)});
   sort_once(ends);
-  Points at(std::ssize(ends), 3);
-  for (std::size_t k = 0; k < ends.size(); ++k) at.row(static_cast<Eigen::Index>(k)) = x.row(ends[k]);
-  const std::vector<SignedDistance> found = body.ask(at);
+  const std::vector<SignedDistance> found = body.ask(x(ends, Eigen::all));
   std::vector<SignedDistance> of_vertex(static_cast<std::size_t>(x.rows()));
   for (std::size_t k = 0; k < ends.size(); ++k) of_vertex[static_cast<std::size_t>(ends[k])] = found[k];
   return of_vertex;

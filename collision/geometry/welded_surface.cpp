@@ -45,10 +45,8 @@ std::vector<PlacedEdge> placed_edges(const Surface& surface, const std::vector<i
 WeldedSurface joined_at(const Surface& surface, const std::vector<int>& kept, DisjointSets& sets) {
   WeldedSurface result;
   for (int v = 0; v < surface.vertex_count; ++v) result.joined.push_back(sets.root(v));
-  Triangles triangles(static_cast<Eigen::Index>(kept.size()), 3);
-  for (std::size_t i = 0; i < kept.size(); ++i)
-    for (int k = 0; k < 3; ++k)
-      triangles(static_cast<Eigen::Index>(i), k) = result.joined[surface.triangles(kept[i], k)];
+  Triangles triangles = surface.triangles(kept, Eigen::all);
+  for (int& v : triangles.reshaped()) v = result.joined[v];
   result.surface = make_surface(surface.vertex_count, triangles);
   return result;
 }

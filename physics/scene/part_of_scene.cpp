@@ -11,16 +11,10 @@ namespace {
 
 // The numbers of the rows of a block that the part has; null: all.
 const std::vector<int>* numbers_of(const PartOfScene& part, RowsOf rows_of) {
-  switch (rows_of) {
-    case RowsOf::vertices:
-      return &part.vertices;
-    case RowsOf::triangles:
-      return &part.triangles;
-    case RowsOf::cloths:
-      return &part.cloths;
-    default:
-      return nullptr;
-  }
+  return rows_of == RowsOf::vertices    ? &part.vertices
+         : rows_of == RowsOf::triangles ? &part.triangles
+         : rows_of == RowsOf::cloths    ? &part.cloths
+                                        : nullptr;
 }
 
 Memory memory_of_part(const PartOfScene& part, const Memory& whole) {
@@ -73,12 +67,9 @@ PartOfScene part_with(const Scene& whole, std::span<const char> has_vertex, std:
     part.cloths.push_back(c);
   }
   for (std::size_t i = 0; i < part.vertices.size(); ++i) renumbered[part.vertices[i]] = static_cast<int>(i);
-  Triangles triangles(static_cast<Eigen::Index>(part.triangles.size()), 3);
-  for (std::size_t t = 0; t < part.triangles.size(); ++t) {
-    for (int k = 0; k < 3; ++k)
-      triangles(static_cast<Eigen::Index>(t), k) = renumbered[whole.surface.triangles(part.triangles[t], k)];
-    scene.rest_triangle.push_back(whole.rest_triangle[part.triangles[t]]);
-  }
+  Triangles triangles = whole.surface.triangles(part.triangles, Eigen::all);
+  for (int& v : triangles.reshaped()) v = renumbered[v];
+  for (const int t : part.triangles) scene.rest_triangle.push_back(whole.rest_triangle[t]);
   scene.surface = make_surface(static_cast<int>(part.vertices.size()), triangles);
   scene.rest = whole.rest(part.vertices, Eigen::all);
   scene.rest_is_flat = whole.rest_is_flat;
