@@ -1,7 +1,5 @@
 #include "learned/gradients/training_kernels.hpp"
 
-#include <cmath>
-
 #include "collision/geometry/error.hpp"
 #include "learned/network/row_norms.hpp"
 

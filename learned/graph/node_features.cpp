@@ -1,7 +1,5 @@
 #include "learned/graph/node_features.hpp"
 
-#include <algorithm>
-
 #include "learned/graph/embedding.hpp"
 #include "learned/graph/node_columns.hpp"
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "learned/network/engine.hpp"
 #include "learned/network/instruction_set.hpp"
 

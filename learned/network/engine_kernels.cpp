@@ -1,7 +1,5 @@
 #include "learned/network/engine_kernels.hpp"
 
-#include <cmath>
-
 #include "collision/geometry/error.hpp"
 #include "learned/network/row_norms.hpp"
 

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <cstring>
-#include <memory>
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/path_beside.hpp"

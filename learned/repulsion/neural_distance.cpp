@@ -1,6 +1,5 @@
 #include "learned/repulsion/neural_distance.hpp"
 
-#include <cassert>
 #include <cmath>
 
 #include "collision/geometry/error.hpp"

@@ -1,6 +1,5 @@
 #include "learned/repulsion/repulsive_layer.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace selvedge {

@@ -1,7 +1,5 @@
 #include "learned/repulsion/smooth_push.hpp"
 
-#include <cmath>
-
 namespace selvedge {
 namespace {
 

@@ -1,8 +1,5 @@
 #include "learned/steppers/learned_stepper.hpp"
 
-#include <cmath>
-#include <utility>
-
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/floating_point.hpp"
 #include "collision/geometry/stopwatch.hpp"

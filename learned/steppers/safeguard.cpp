@@ -1,8 +1,5 @@
 #include "learned/steppers/safeguard.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "collision/geometry/floating_point.hpp"
 #include "collision/geometry/pair_budget.hpp"
 

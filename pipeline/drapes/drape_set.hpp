@@ -1,7 +1,6 @@
 #pragma once
 
 #include <map>
-#include <memory>
 
 #include "collision/geometry/surface.hpp"
 #include "learned/repulsion/drape_network.hpp"

@@ -1,9 +1,6 @@
 #include "pipeline/training/trainer.hpp"
 
 #include <algorithm>
-#include <cmath>
-
-#include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
 #include "learned/gradients/initial_weights.hpp"

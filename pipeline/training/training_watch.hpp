@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 #include "collision/search/intersections.hpp"
 #include "pipeline/training/trainer.hpp"
 
