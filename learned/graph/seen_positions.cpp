@@ -2,20 +2,12 @@
 
 namespace selvedge {
 
-void move_pinned(const RestGraph& rest, const Points& target, Points& x, Points& previous) {
-  for (const int v : rest.pinned) {
-    previous.row(v) = x.row(v);
-    x.row(v) = target.row(v);
-  }
-}
-
 SeenPositions seen_positions(const RestGraph& rest, const GraphState& state, const FeatureOptions& options) {
   SeenPositions seen{state.x, state.previous, state.x};
+  for (const int v : rest.pinned) seen.mesh.row(v) = state.target.row(v);
   if (options.pinned == PinnedForm::moved) {
-    move_pinned(rest, state.target, seen.x, seen.previous);
-    seen.mesh = seen.x;
-  } else {
-    for (const int v : rest.pinned) seen.mesh.row(v) = state.target.row(v);
+    for (const int v : rest.pinned) seen.previous.row(v) = state.x.row(v);
+    seen.x = seen.mesh;
   }
   return seen;
 }

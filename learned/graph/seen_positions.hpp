@@ -19,7 +19,4 @@ Points inertial_guess(const RestGraph&, const GraphState&, const SeenPositions&,
 // state.guess, or the inertial guess if that is empty.
 Points guess_of(const RestGraph&, const GraphState&, const SeenPositions&, const FeatureOptions&);
 
-// Moves pinned vertices to their targets: previous <- x, x <- target.
-void move_pinned(const RestGraph&, const Points& target, Points& x, Points& previous);
-
 }  // namespace selvedge
