@@ -10,7 +10,6 @@
 #include "learned/network/packed_network.hpp"
 #include "learned/steppers/learned_scene.hpp"
 #include "learned/steppers/learned_state.hpp"
-#include "learned/steppers/shown_force.hpp"
 #include "physics/frame/bounded_step.hpp"
 #include "physics/scene/joint_lists.hpp"
 #include "physics/solve/energy_balance.hpp"

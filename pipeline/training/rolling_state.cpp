@@ -2,9 +2,8 @@
 
 #include <cmath>
 
-#include "learned/graph/integration.hpp"
+#include "learned/losses/force_input.hpp"
 #include "learned/steppers/learned_state.hpp"
-#include "learned/steppers/shown_force.hpp"
 
 namespace selvedge {
 namespace {
