@@ -7,7 +7,7 @@
 
 namespace selvedge {
 
-NetworkWeights initial_weights(const Architecture& a, std::uint64_t seed, const InitialWeights& options) {
+NetworkWeights initial_weights(const Architecture& a, std::uint64_t seed, double last_layer_scale) {
   NetworkWeights weights = blank_weights(a);
   UniformNumbers random(seed);
   // Box and Muller 1958. One number of each pair is used.
@@ -23,8 +23,8 @@ NetworkWeights initial_weights(const Architecture& a, std::uint64_t seed, const 
       array.data[i] = table ? normal() : bound * random.in_both_signs();
   }
   AffineLayer& last = weights.decoder.layers.back();
-  last.weight *= static_cast<float>(options.last_layer_scale);
-  for (float& bias : last.bias) bias *= static_cast<float>(options.last_layer_scale);
+  last.weight *= static_cast<float>(last_layer_scale);
+  for (float& bias : last.bias) bias *= static_cast<float>(last_layer_scale);
   return weights;
 }
 

@@ -41,9 +41,16 @@ void normalise(const FeatureOptions&, const FeatureTables&, Graph&);
 // For training: each set first adds to the sums and then is normalised by them; nodes come last (parity README, 10).
 // The tables get these statistics, except those of the output.
 void gather_and_normalise(const FeatureOptions&, FeatureSums<float>&, FeatureTables&, Graph&);
+
+// Feature statistics for own training: summed over the states of a warm-up, noise included, then frozen. Sums start
+// empty. Each graph is raw (make_raw_graph), with the accelerations that its output is trained for
+// (target_accelerations). Columns of learned embeddings are summed too.
 FeatureSums<double> empty_sums(const FeatureOptions&);
-// The sums of a set of edges.
-BasicAccumulators<double>& sums_for(const std::string& key, const FeatureOptions&, FeatureSums<double>&);
+void gather(const FeatureOptions&, const Graph& raw, const FeatureRows& accelerations, FeatureSums<double>&);
+
+// Sets statistics from the sums. Sets without rows keep theirs. A column that varied by 1e-4 of its root mean square or
+// less gets deviation 1, so that its rounding and the gradient of an embedding stay small (parity README, 15).
+void freeze_statistics(const FeatureSums<double>&, FeatureTables&);
 
 // make_raw_graph and normalise together, for rollouts.
 void make_graph(const GraphScene&, const RestGraph&, const GraphState&, const FeatureOptions&, const FeatureTables&,

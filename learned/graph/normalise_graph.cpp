@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "collision/geometry/error.hpp"
 #include "learned/graph/make_graph.hpp"
 
@@ -27,14 +29,22 @@ void check_width(const std::string& what, std::size_t columns, int wanted) {
         "weights of a learned stepper", "use weights with their own architecture");
 }
 
+constexpr double least_variation = 1e-4;  // least deviation that is used, as a fraction of a column's root mean square
+
+void freeze(const DoubleAccumulators& sums, Statistics& statistics) {
+  if (sums.rows <= 0) return;
+  statistics = statistics_of(sums);
+  for (std::size_t k = 0; k < statistics.mean.size(); ++k) {
+    const double size = std::sqrt(sums.sum_squared[k] / sums.rows);
+    if (static_cast<double>(statistics.deviation[k]) <= least_variation * size || size == 0)
+      statistics.deviation[k] = 1.f;
+  }
+}
+
 }  // namespace
 
 const Statistics& statistics_for(const std::string& key, const FeatureOptions& options, const FeatureTables& tables) {
   return part_for(key, options, tables);
-}
-
-BasicAccumulators<double>& sums_for(const std::string& key, const FeatureOptions& options, FeatureSums<double>& sums) {
-  return part_for(key, options, sums);
 }
 
 void normalise(const FeatureOptions& options, const FeatureTables& tables, Graph& graph) {
@@ -69,6 +79,18 @@ void gather_and_normalise(const FeatureOptions& options, FeatureSums<float>& sum
   accumulate(sums.node, graph.nodes);
   tables.node = statistics_of(sums.node);
   normalise(tables.node, graph.nodes);
+}
+
+void gather(const FeatureOptions& options, const Graph& raw, const FeatureRows& accelerations,
+            FeatureSums<double>& sums) {
+  for (const EdgeSet& set : raw.edge_sets) accumulate(part_for(set.key, options, sums), set.features);
+  accumulate(sums.node, raw.nodes);
+  accumulate(sums.output, accelerations);
+}
+
+void freeze_statistics(const FeatureSums<double>& sums, FeatureTables& tables) {
+  visit_statistics([](const char*, const DoubleAccumulators& of_set, Statistics& made) { freeze(of_set, made); }, sums,
+                   tables);
 }
 
 }  // namespace selvedge

@@ -5,7 +5,6 @@
 #include "collision/geometry/error.hpp"
 #include "learned/gradients/initial_weights.hpp"
 #include "learned/graph/integration.hpp"
-#include "learned/graph/warm_up.hpp"
 #include "learned/network/architecture_text.hpp"
 #include "learned/network/weights_hdf5.hpp"
 #include "learned/network/widen_weights.hpp"
@@ -17,8 +16,7 @@ namespace {
 // Weights of an earlier stage, or of a network with fewer inputs. Features that stages may change are not compared. The
 // earlier stage's record is added to `on`.
 NetworkWeights first_weights(const TrainingOptions& options, const Architecture& architecture, TrainedOn& on) {
-  if (options.weights.empty())
-    return initial_weights(architecture, options.seed, {.last_layer_scale = options.optimiser.decoder_scale});
+  if (options.weights.empty()) return initial_weights(architecture, options.seed, options.optimiser.decoder_scale);
   WeightFile file = read_weight_file(weights_path(options));
   add_earlier(file.trained_on, weights_path(options).string() + ": trained_on", on);
   Architecture& theirs = file.architecture;

@@ -9,7 +9,6 @@
 #include "collision/geometry/error.hpp"
 #include "learned/graph/integration.hpp"
 #include "learned/graph/unite_graphs.hpp"
-#include "learned/graph/warm_up.hpp"
 #include "learned/losses/held_share.hpp"
 
 namespace selvedge {

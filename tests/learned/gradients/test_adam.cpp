@@ -151,7 +151,7 @@ TEST_CASE("initial weights: as published, and a last layer that is nearly zero",
   const FeatureRows& table = first.tables.node_type;  // 81 numbers of deviation 1
   CHECK(table.squaredNorm() / static_cast<float>(table.size()) == Approx(1).epsilon(.5));
   CHECK(first.node_encoder.scale.front() == 1);
-  NetworkWeights nearly = initial_weights(a, 3, {.01});
+  NetworkWeights nearly = initial_weights(a, 3, .01);
   CHECK(nearly.decoder.layers.back().weight(1, 2) == Approx(.01f * first.decoder.layers.back().weight(1, 2)));
   CHECK(nearly.decoder.layers.back().bias[1] == Approx(.01f * first.decoder.layers.back().bias[1]));
   CHECK(nearly.decoder.layers.front().weight == first.decoder.layers.front().weight);

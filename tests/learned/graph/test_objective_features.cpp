@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "learned/graph/integration.hpp"
-#include "learned/graph/warm_up.hpp"
 #include "learned/network/architecture.hpp"
 #include "tests/learned/graph_scenes.hpp"
 

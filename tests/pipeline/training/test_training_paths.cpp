@@ -25,7 +25,7 @@ TEST_CASE("training paths: a folder that has moved goes on with the same bits", 
   WeightFile earlier;
   TrainingOptions options = read_training(inside / "own.yaml");
   earlier.architecture = trained_architecture(options);
-  earlier.weights = initial_weights(earlier.architecture, 3, {});
+  earlier.weights = initial_weights(earlier.architecture, 3);
   write_weight_file(inside / "earlier.h5", earlier);
   const std::vector<std::string> overrides{"weights=earlier.h5"};
   options = read_training(inside / "own.yaml", overrides);
