@@ -2,7 +2,6 @@
 
 #include <functional>
 
-#include "learned/gradients/training_layout.hpp"
 #include "learned/gradients/training_tape.hpp"
 
 namespace selvedge {

@@ -1,7 +1,6 @@
 #include <algorithm>
 
 #include "collision/geometry/parallel.hpp"
-#include "learned/gradients/training_layout.hpp"
 #include "learned/gradients/training_tape.hpp"
 
 namespace selvedge {

@@ -19,7 +19,7 @@ struct TrainingLayout;
 struct TrainingNetwork {
   Architecture architecture;
   NetworkWeights weights;
-  std::shared_ptr<TrainingLayout> layout;  // training_layout.hpp
+  std::shared_ptr<TrainingLayout> layout;  // training_tape.hpp
 
   TrainingNetwork() = default;
   TrainingNetwork(TrainingNetwork&&) = default;
@@ -37,13 +37,11 @@ struct TrainingTape;
 class Tape {
  public:
   Tape();
-  ~Tape();
-  Tape(Tape&&) noexcept;
-  Tape& operator=(Tape&&) noexcept;
+  Tape(Tape&&) = default;
   TrainingTape& operator*() const { return *tape_; }
 
  private:
-  std::unique_ptr<TrainingTape> tape_;
+  std::shared_ptr<TrainingTape> tape_;
 };
 
 // Returns the decoder's output, cloth_nodes x outputs, as `infer` does (rounding differs: 1e-5 of the largest). Throws

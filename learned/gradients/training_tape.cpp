@@ -8,7 +8,6 @@
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/parallel.hpp"
-#include "learned/gradients/training_layout.hpp"
 
 namespace selvedge {
 namespace {
@@ -168,10 +167,7 @@ int tile_parts_of(int rows) { return tiles_of(rows, rows_in_part(rows)); }
 
 int rows_in_part(int rows) { return std::max(3, tiles_of(tiles_of(rows, 24), training_rows)) * training_rows; }
 
-Tape::Tape() : tape_(std::make_unique<TrainingTape>()) {}
-Tape::~Tape() = default;
-Tape::Tape(Tape&&) noexcept = default;
-Tape& Tape::operator=(Tape&&) noexcept = default;
+Tape::Tape() : tape_(std::make_shared<TrainingTape>()) {}
 
 WeightGradients zero_gradients(const Architecture& a) {
   WeightGradients gradients = blank_weights(a);

@@ -8,6 +8,11 @@
 
 namespace selvedge {
 
+// Weights as the kernels read them.
+struct TrainingLayout {
+  PackedNetwork forward, backward;
+};
+
 // Stored by the forward pass of one perceptron, one row per slot: outputs of the hidden layers, and the result before
 // scale and shift.
 struct PerceptronTape {
