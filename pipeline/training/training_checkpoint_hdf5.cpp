@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <span>
 #include <sstream>
 
@@ -276,28 +275,8 @@ std::string configuration(TrainingOptions options) {
   return training_yaml(options);
 }
 
-// The weights that a configuration names; empty: none.
-std::string named_weights(const std::string& text) {
-  const std::string key = "\nweights: ";
-  const std::size_t at = text.find(key), begin = at + key.size();
-  if (at == std::string::npos) return "";
-  std::string value = text.substr(begin, text.find('\n', begin) - begin);
-  if (value.size() > 1 && value.front() == '"' && value.back() == '"') value = value.substr(1, value.size() - 2);
-  return value;
-}
-
-// Whether `text` is of an earlier version: people with absolute paths, weights relative to the working folder.
-bool is_former_configuration(const std::string& text, const TrainingOptions& options) {
-  TrainingOptions former = with_absolute_paths(options);
-  if (const std::string weights = named_weights(text);
-      !weights.empty() && std::filesystem::absolute(weights).lexically_normal() == former.weights)
-    former.weights = weights;
-  return text == configuration(former);
-}
-
 void check_configuration(FieldsIn& in, const TrainingOptions& options) {
-  const std::string text = in.text("config");
-  if (text != configuration(options) && !is_former_configuration(text, options))
+  if (in.text("config") != configuration(options))
     throw Error("the checkpoint was made under another configuration", in.file.path().string(),
                 "resume with the same file and --set, or begin anew without --resume");
 }
@@ -325,9 +304,8 @@ std::vector<InputFile> located(std::vector<InputFile> files, const std::filesyst
   return files;
 }
 
-// The inputs at the start of the run; nothing if an earlier version wrote the checkpoint.
-std::optional<RunInputs> checked_inputs(FieldsIn& in, const TrainingOptions& options) {
-  if (!in.file.has("inputs")) return {};
+// The inputs at the start of the run.
+RunInputs checked_inputs(FieldsIn& in, const TrainingOptions& options) {
   RunInputs before = inputs_of(in.text("inputs"));
   const std::filesystem::path& folder = options.samples.folder;
   check_input_files(in.file.path(), located(before.files, folder),
@@ -335,8 +313,8 @@ std::optional<RunInputs> checked_inputs(FieldsIn& in, const TrainingOptions& opt
   return before;
 }
 
-void check_world(const FieldsIn& in, const std::optional<RunInputs>& before, const RunInputs& now) {
-  if (before && before->scene != now.scene)
+void check_world(const FieldsIn& in, const RunInputs& before, const RunInputs& now) {
+  if (before.scene != now.scene)
     throw Error("was made with other bodies, garments or clips, though no file has changed",
                 in.file.path().string() + ": inputs",
                 "go on with the version of the program that began the run, or begin anew without --resume");
@@ -374,13 +352,10 @@ std::unique_ptr<Trainer> read_training_checkpoint(const std::filesystem::path& p
   const h5::File file = h5::File::open(path);
   FieldsIn in{file};
   check_configuration(in, options);
-  const std::optional<RunInputs> before = checked_inputs(in, options);
+  const RunInputs before = checked_inputs(in, options);
   auto trainer = make_empty_trainer(options);
   check_world(in, before, trainer->inputs);
-  if (file.has("trained_on"))
-    trainer->trained_on = read_trained_on(in.text("trained_on"), path.string() + ": trained_on");
-  else if (!options.weights.empty())
-    trainer->trained_on.whole = false;
+  trainer->trained_on = read_trained_on(in.text("trained_on"), path.string() + ": trained_on");
   read_counts(in, *trainer, history);
   NetworkWeights weights = blank_weights(trainer->architecture);
   set_weights(in, trainer->architecture, in.floats("weights"), weights);
