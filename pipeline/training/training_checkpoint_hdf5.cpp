@@ -22,14 +22,17 @@ std::string bytes_of(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), sizeof(T) * values.size()};
 }
 
-// Writes fields, and at last a checksum of them all.
-struct FieldsOut {
+// A file, and a checksum of its fields so far.
+struct SummedFields {
   const h5::File& file;
   std::uint64_t sum = 0;
 
   void add(const std::string& name, const std::string& bytes) {
     sum = hash_of(fmt::format("{:016x} {} ", sum, name) + bytes);
   }
+};
+
+struct FieldsOut : SummedFields {
   void numbers(const std::string& name, const std::vector<double>& values) {
     h5::write_numbers(file, name, values);
     add(name, bytes_of(values));
@@ -48,15 +51,9 @@ struct FieldsOut {
 };
 
 // Reads what FieldsOut wrote, in the same order.
-struct FieldsIn {
-  const h5::File& file;
-  std::uint64_t sum = 0;
-
+struct FieldsIn : SummedFields {
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(what, file.path().string(), "begin the training anew, without --resume");
-  }
-  void add(const std::string& name, const std::string& bytes) {
-    sum = hash_of(fmt::format("{:016x} {} ", sum, name) + bytes);
   }
   // A count that was written as a floating-point number.
   std::int64_t whole(const std::string& name, double value, double most) const {
@@ -64,24 +61,21 @@ struct FieldsIn {
       fail(fmt::format("`{}` has the value {:g}, not a whole number from 0 to {:g}", name, value, most));
     return static_cast<std::int64_t>(value);
   }
-  std::size_t length(const std::string& name) const {
+  void need(const std::string& name) const {
     if (!file.has(name)) fail("the field `" + name + "` is missing");
-    return static_cast<std::size_t>(file.shape_of(name, 1)[0]);
   }
-  std::vector<double> numbers(const std::string& name) {
-    std::vector<double> values(length(name));
-    if (!values.empty()) file.read_all(name, H5T_NATIVE_DOUBLE, {values.size()}, values.data());
+  template <class T>
+  std::vector<T> list(const std::string& name, hid_t type) {
+    need(name);
+    std::vector<T> values(static_cast<std::size_t>(file.shape_of(name, 1)[0]));
+    if (!values.empty()) file.read_all(name, type, {values.size()}, values.data());
     add(name, bytes_of(values));
     return values;
   }
-  std::vector<float> floats(const std::string& name) {
-    std::vector<float> values(length(name));
-    if (!values.empty()) file.read_all(name, H5T_NATIVE_FLOAT, {values.size()}, values.data());
-    add(name, bytes_of(values));
-    return values;
-  }
+  std::vector<double> numbers(const std::string& name) { return list<double>(name, H5T_NATIVE_DOUBLE); }
+  std::vector<float> floats(const std::string& name) { return list<float>(name, H5T_NATIVE_FLOAT); }
   std::string text(const std::string& name) {
-    if (!file.has(name)) fail("the field `" + name + "` is missing");
+    need(name);
     std::string value = file.read_text(name);
     if (value.empty()) fail("the field `" + name + "` is empty");
     value.pop_back();
@@ -325,7 +319,7 @@ void check_world(const FieldsIn& in, const RunInputs& before, const RunInputs& n
 void write_training_checkpoint(const std::filesystem::path& path, const Trainer& trainer,
                                const TrainingHistory& history) {
   h5::write_form(path, checkpoint_form, [&](const h5::File& file) {
-    FieldsOut out{file};
+    FieldsOut out{{file}};
     out.text("config", configuration(trainer.options));
     out.text("inputs", inputs_text(trainer.inputs));
     out.text("trained_on", trained_on_json(trainer.trained_on));
@@ -350,7 +344,7 @@ std::unique_ptr<Trainer> read_training_checkpoint(const std::filesystem::path& p
     throw Error("there is nothing to resume: no checkpoint", path.string(), "run without --resume");
   const h5::Fields form(path, checkpoint_form);  // checks the form
   const h5::File file = h5::File::open(path);
-  FieldsIn in{file};
+  FieldsIn in{{file}};
   check_configuration(in, options);
   const RunInputs before = checked_inputs(in, options);
   auto trainer = make_empty_trainer(options);
