@@ -35,10 +35,12 @@ Points quasi_newton(const std::deque<CurvaturePair>& pairs, const Eigen::VectorX
 
 }  // namespace
 
-Minimised minimised(const FunctionOfPoints& function, const Eigen::VectorXd& inverse, const Points& start,
+Minimised minimised(const FunctionOfPoints& function, const std::vector<double>& diagonal, const Points& start,
                     int most_evaluations) {
   constexpr std::size_t memory = 12;
   constexpr double sufficient = 1e-4;  // of the slope
+  Eigen::VectorXd inverse(start.rows());
+  for (int v = 0; v < start.rows(); ++v) inverse[v] = diagonal[v] > 0 ? 1 / diagonal[v] : 0;
   Minimised best{start, 0, 0};
   const auto evaluate = [&](const Points& x, Points& gradient) {
     ++best.evaluations;

@@ -14,14 +14,8 @@ Minimised minimised(const FrameMaking& making, RollingState& state, const Points
     for (const int pin : scene.rest.pinned) gradient.row(pin).setZero();
     return sum;
   };
-  const std::vector<double> diagonal =
-      jacobi_diagonal(scene.losses, is_settling(state) ? making.losses.relaxation_dt : state.now.timestep);
-  Eigen::VectorXd inverse(start.rows());
-  for (Eigen::Index v = 0; v < inverse.size(); ++v) {
-    const double entry = diagonal[static_cast<std::size_t>(v)];
-    inverse[v] = entry > 0 ? 1 / entry : 0;
-  }
-  return minimised(evaluate, inverse, start, most_evaluations);
+  const double dt = is_settling(state) ? making.losses.relaxation_dt : state.now.timestep;
+  return minimised(evaluate, jacobi_diagonal(scene.losses, dt), start, most_evaluations);
 }
 
 }  // namespace selvedge

@@ -117,7 +117,7 @@ TEST_CASE("measures: the least of a quadratic function", "[measures]") {
         gradient.row(0).setZero();
         return (x - aim).bottomRows(2).squaredNorm();
       },
-      Eigen::VectorXd::Ones(3), Points::Constant(3, 3, 2), 50);
+      {1, 1, 1}, Points::Constant(3, 3, 2), 50);
   CHECK(found.value == Approx(0).margin(1e-12));
   CHECK((found.x.bottomRows(2) - aim.bottomRows(2)).norm() < 1e-6);
   CHECK(found.x.row(0) == Points::Constant(1, 3, 2));  // what has no gradient stays
