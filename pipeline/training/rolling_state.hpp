@@ -6,6 +6,7 @@
 #include "learned/graph/make_graph.hpp"
 #include "learned/losses/objective.hpp"
 #include "learned/steppers/safeguard.hpp"
+#include "pipeline/measures/minimise.hpp"
 #include "pipeline/training/training_roll.hpp"
 
 namespace selvedge {
@@ -62,5 +63,9 @@ bool pass_guard(const FrameMaking&, RollingState&, NextCloth& next);
 // The gate. Of the candidates base + t (next - base), with `count` values of t up to 1.2, it returns the one with the
 // least loss. base is the motion without forces.
 NextCloth gated(const FrameMaking&, int count, const NextCloth& next, RollingState&);
+
+// The prediction with the least sum of losses [J] that L-BFGS, preconditioned by the Jacobi diagonal, finds from
+// `start`. Pinned vertices stay. No network can be better in this frame.
+Minimised minimised(const FrameMaking&, RollingState&, const Points& start, int most_evaluations);
 
 }  // namespace selvedge

@@ -200,12 +200,7 @@ void set_guard(const TrainingOptions& options, RollingState& state) {
 double progress_of(const Trainer& trainer) { return static_cast<double>(trainer.counts.step) / trainer.options.steps; }
 
 FrameMaking frame_making(const Trainer& trainer) {
-  FrameMaking making;
-  making.features = trainer.architecture.features;
-  making.losses = trainer.options.objective;
-  making.passes = trainer.architecture.passes;
-  making.progress = progress_of(trainer);
-  return making;
+  return {trainer.architecture.features, trainer.options.objective, trainer.architecture.passes, progress_of(trainer)};
 }
 
 void ask_for_roll(Trainer& trainer) {

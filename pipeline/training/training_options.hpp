@@ -8,9 +8,9 @@
 
 #include "learned/graph/feature_options.hpp"
 #include "learned/losses/loss_garment.hpp"
+#include "learned/losses/loss_options.hpp"
 #include "learned/steppers/network_device.hpp"
 #include "pipeline/config/options.hpp"
-#include "pipeline/training/schedule.hpp"
 #include "pipeline/training/training_people.hpp"
 
 namespace selvedge {
@@ -85,6 +85,8 @@ struct ContactOptions {
   bool edges = false, classify = false;
   bool attraction = true;
 };
+
+enum class Decay { cosine, halving, none };
 
 // How weights are optimised. Members are described where keys are bound to them:
 // pipeline/training/training_options.cpp.

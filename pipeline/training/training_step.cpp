@@ -1,8 +1,10 @@
 #include "pipeline/training/training_step.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <functional>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -238,6 +240,12 @@ void advance(Trainer& trainer, const FrameMaking& making) {
 }
 
 }  // namespace
+
+double learning_factor(Decay decay, double progress, long step, long halving_steps, double floor) {
+  if (decay == Decay::cosine) return 0.5 * (1 + std::cos(std::numbers::pi * std::clamp(progress, 0.0, 1.0)));
+  if (decay == Decay::none) return 1;
+  return std::pow(0.5, static_cast<double>(step / std::max(halving_steps, 1L))) + floor;
+}
 
 StepRecord train_step(Trainer& trainer) {
   draw_samples(trainer);

@@ -7,7 +7,6 @@
 #include "learned/graph/nearest_faces.hpp"
 #include "learned/losses/volume_loss.hpp"
 #include "pipeline/measures/motion_measures.hpp"
-#include "pipeline/training/minimised.hpp"
 
 namespace selvedge {
 namespace {

@@ -4,7 +4,6 @@
 
 #include "learned/graph/integration.hpp"
 #include "learned/losses/volume_loss.hpp"
-#include "pipeline/training/minimised.hpp"
 #include "pipeline/training/training_watch.hpp"
 #include "tests/pipeline/training/tiny_training.hpp"
 

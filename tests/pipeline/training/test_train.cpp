@@ -8,7 +8,6 @@
 
 #include "collision/geometry/error.hpp"
 #include "learned/network/weights_hdf5.hpp"
-#include "pipeline/training/minimised.hpp"
 #include "pipeline/training/train.hpp"
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
 #include "tests/pipeline/files.hpp"
