@@ -20,14 +20,11 @@ Segments segments_of_kind(const ClosedSurface& closed, const Segments& all, bool
   return kept;
 }
 
-void count_contours(const Penetration& found, VolumeCounts& counts) {
-  const auto number = [&](ContourVolume what) { return static_cast<int>(std::ranges::count(found.contours, what)); };
-  counts.contours = static_cast<int>(found.contours.size());
-  counts.enclosed = number(ContourVolume::enclosed);
-  counts.open = number(ContourVolume::open);
-  counts.not_orientable = number(ContourVolume::not_orientable);
-  counts.unassigned = number(ContourVolume::unassigned);
+VolumeCounts counts_of(const Penetration& found) {
+  VolumeCounts counts{static_cast<int>(found.contours.size()),
+                      static_cast<int>(std::ranges::count(found.contours, ContourVolume::enclosed))};
   for (const PenetrationRegion& region : found.regions) counts.volume += std::abs(region.volume);
+  return counts;
 }
 
 bool share_edge(const Surface& surface, int a, int b) {
@@ -52,20 +49,15 @@ double volume_loss(const ClosedSurface& closed, const VolumeLoss& loss, const Po
   Points by_closed, by_winding;
   const PenetrationLossOptions options{loss.measure, loss.crossings, 1, loss.saturation};
   double value = penetration_loss(closed, at, found, options, gradient ? &by_closed : nullptr);
-  VolumeCounts counted;
-  counted.pairs = static_cast<int>(all.segments.size());
-  count_contours(found, counted);
   if (winding) {
     WindingOptions turns;
     turns.weight = 6;
-    const WindingReport report =
-        winding_loss(closed, at, segments_of_kind(closed, all, false), turns, gradient ? &by_winding : nullptr);
-    value += report.value;
-    counted.rim_share = report.rim_share;
+    const Segments own = segments_of_kind(closed, all, false);
+    value += winding_loss(closed, at, own, turns, gradient ? &by_winding : nullptr).value;
     if (gradient) by_closed += by_winding;
   }
   if (gradient) *gradient += by_cloth_positions(closed, by_closed);
-  if (counts) *counts = counted;
+  if (counts) *counts = counts_of(found);
   return value;
 }
 

@@ -8,9 +8,8 @@ namespace selvedge {
 
 // Counts of the contours of a frame, and the volume that they enclose.
 struct VolumeCounts {
-  int pairs = 0, contours = 0, enclosed = 0, open = 0, not_orientable = 0, unassigned = 0;
-  double volume = 0;     // enclosed [m^3]
-  double rim_share = 0;  // WindingReport
+  int contours = 0, enclosed = 0;
+  double volume = 0;  // enclosed [m^3]
 };
 
 // The self-collision loss L_sc without its weight of 3e4: the sum over the regions of 6 |V| as saturated_volume counts
