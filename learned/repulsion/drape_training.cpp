@@ -17,25 +17,11 @@ void add(std::vector<float>& sum, const std::vector<float>& part, float factor) 
   for (std::size_t k = 0; k < part.size(); ++k) sum[k] += factor * part[k];
 }
 
-// The vertices that a layer pushed, and their distances before.
-struct PushedOnes {
-  std::vector<int> vertices;
-  std::vector<double> distances;
-};
-PushedOnes pushed_ones(const Repelled& made) {
-  PushedOnes ones;
-  for (const PushedVertex& pushed : made.pushed) {
-    ones.vertices.push_back(pushed.vertex);
-    ones.distances.push_back(pushed.at.value);
-  }
-  return ones;
-}
-
 // Adds the gradient by the scale networks of one drape, and adds to by_x the gradient by positions through the scales.
 void add_scales(const DrapeModel& model, const DrapeLesson& lesson, const Points& x, const Adjacency& ring,
                 const Repelled& made, float share, RepulsionLosses& losses, std::vector<std::vector<float>>& parts) {
   if (made.pushed.empty()) return;
-  const PushedOnes ones = pushed_ones(made);
+  const PushedOnes ones = pushed_ones(made.pushed);
   std::size_t next = 1;
   if (model.has_scale()) {
     const ScaleGradients own = scale_gradients(model.scale, scale_inputs_of(model, *lesson.drape), ones.vertices,

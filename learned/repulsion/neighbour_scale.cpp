@@ -181,12 +181,7 @@ NeighbourGradients neighbour_gradients(const NeighbourScale& network, const Neig
                                        const Adjacency& ring, std::span<const double> by_alpha) {
   assert(static_cast<int>(by_alpha.size()) == patch.pushed);
   const NeighbourTrace made = trace_scales(network, patch);
-  PlainAdjoints of_end{FeatureRows(patch.pushed, 1), {}};
-  for (int i = 0; i < patch.pushed; ++i)
-    of_end.value(i, 0) =
-        static_cast<float>(by_alpha[static_cast<std::size_t>(i)] *
-                           scale_end_slope(network.shape.range, static_cast<double>(made.end_sum(i, 0))));
-  PlainGradients end = backward(network.end, made.end_in, {}, of_end);
+  PlainGradients end = backward(network.end, made.end_in, {}, scale_adjoints(made.end_sum, by_alpha));
   const FeatureRows by_q = through_bend(end.inputs.leftCols(network.shape.width), made.second_sum);
   PlainGradients second = backward(network.second, made.second_in, {}, {by_q, {}});
   const FeatureRows by_p = through_bend(back_to_neighbours(second.inputs, patch, patch.near), made.first_sum);

@@ -85,11 +85,7 @@ ScaleGradients scale_gradients(const ScaleNetwork& network, std::span<const floa
     }
   }
   const FeatureRows read = scale_inputs(network, latents, distances), sums = evaluate(network.g, read);
-  PlainAdjoints adjoints{FeatureRows(count, 1), {}};
-  for (Eigen::Index i = 0; i < count; ++i)
-    adjoints.value(i, 0) = static_cast<float>(by_alpha[static_cast<std::size_t>(i)] *
-                                              scale_end_slope(network.shape.range, static_cast<double>(sums(i, 0))));
-  PlainGradients of_end = backward(network.g, read, {}, adjoints);
+  PlainGradients of_end = backward(network.g, read, {}, scale_adjoints(sums, by_alpha));
   ScaleGradients gradients{{}, {}, std::move(of_end.parameters)};
   if (!has_latents) return gradients;
   FeatureRows by_z = back_through_k(network, z, vertices, of_end.inputs.leftCols(columns), gradients.k);

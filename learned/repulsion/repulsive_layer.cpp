@@ -112,6 +112,15 @@ std::vector<PushedVertex> keep_order(const std::vector<SignedDistance>& found, c
 
 }  // namespace
 
+PushedOnes pushed_ones(std::span<const PushedVertex> pushed) {
+  PushedOnes ones;
+  for (const PushedVertex& vertex : pushed) {
+    ones.vertices.push_back(vertex.vertex);
+    ones.distances.push_back(vertex.at.value);
+  }
+  return ones;
+}
+
 Scales constant_scale(std::span<const int> vertices, double alpha) {
   return {std::vector<double>(vertices.size(), alpha), std::vector<double>(vertices.size(), 0)};
 }
@@ -125,13 +134,8 @@ Repelled repel(const Points& x, const Adjacency& ring, const AskDistance& ask, c
   result.pushed = inside_vertices(found, held);
   if (result.pushed.empty()) return result;
 
-  std::vector<int> vertices;
-  std::vector<double> distances;
-  for (const PushedVertex& vertex : result.pushed) {
-    vertices.push_back(vertex.vertex);
-    distances.push_back(vertex.at.value);
-  }
-  const Scales scales = scale(vertices, distances);
+  const PushedOnes ones = pushed_ones(result.pushed);
+  const Scales scales = scale(ones.vertices, ones.distances);
   const std::vector<int> place = places_of(result.pushed, static_cast<int>(x.rows()));
   result.deep = turn_deep_ones(ring, place, options.deep, result.pushed);
   result.torn = count_torn(ring, place, result.pushed);

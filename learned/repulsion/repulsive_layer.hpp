@@ -42,6 +42,13 @@ struct PushedVertex {
   Vec3 direction = Vec3::Zero();  // direction of the push, unit length
 };
 
+// The numbers of moved vertices, and their distances before.
+struct PushedOnes {
+  std::vector<int> vertices;
+  std::vector<double> distances;
+};
+PushedOnes pushed_ones(std::span<const PushedVertex>);
+
 struct Repelled {
   Points x;
   std::vector<PushedVertex> pushed;  // ascending

@@ -13,6 +13,7 @@ constexpr int end_width = 10;             // width of g's two hidden layers
 constexpr double first_overshoot = 0.02;  // scales begin at 1 plus this
 
 double soft_plus(double x) { return std::max(x, 0.0) + std::log1p(std::exp(-std::abs(x))); }
+double soft_plus_slope(double x) { return x >= 0 ? 1 / (1 + std::exp(-x)) : std::exp(x) / (1 + std::exp(x)); }
 
 // The argument at which softplus is y.
 double inverse_soft_plus(double y) { return y + std::log(-std::expm1(-y)); }
@@ -41,7 +42,7 @@ EndResult evaluate_end(const ScaleNetwork& network, const Eigen::VectorXf& input
     for (Eigen::Index i = 0; i < at.size(); ++i)
       if (!(at[i] > 0)) at[i] = at[i] < 0 ? 0 : at[i], along[i] = 0;
   }
-  const double sum = at[0], slope = scale_end_slope(network.shape.range, sum) * along[0];
+  const double sum = at[0], slope = soft_plus_slope(sum) * along[0];
   return {scale_end(network.shape.range, sum), slope / network.shape.unit};
 }
 
@@ -54,8 +55,11 @@ int shared_latent_width(const ScaleShape& shape) {
 
 double scale_end(ScaleRange range, double sum) { return (range == ScaleRange::at_least_one ? 1 : 0) + soft_plus(sum); }
 
-double scale_end_slope(ScaleRange, double sum) {
-  return sum >= 0 ? 1 / (1 + std::exp(-sum)) : std::exp(sum) / (1 + std::exp(sum));
+PlainAdjoints scale_adjoints(const FeatureRows& sums, std::span<const double> by_alpha) {
+  PlainAdjoints adjoints{FeatureRows(sums.rows(), 1), {}};
+  for (Eigen::Index i = 0; i < sums.rows(); ++i)
+    adjoints.value(i, 0) = static_cast<float>(by_alpha[i] * soft_plus_slope(static_cast<double>(sums(i, 0))));
+  return adjoints;
 }
 
 PlainNetwork make_scale_end(int inputs, ScaleRange range, std::uint64_t seed) {

@@ -59,8 +59,8 @@ class ScaleEvaluator {
 FeatureRows scale_inputs(const ScaleNetwork&, const FeatureRows& latents, std::span<const double> distances);
 // A network g with that number of inputs, two layers of width 10 and one output, whose scales begin near 1.02.
 PlainNetwork make_scale_end(int inputs, ScaleRange, std::uint64_t seed);
-// The output activation of g, and its derivative by the argument `sum`.
+// The output activation of g, and the adjoints of g's outputs `sums` from derivatives by the scales.
 double scale_end(ScaleRange, double sum);
-double scale_end_slope(ScaleRange, double sum);
+PlainAdjoints scale_adjoints(const FeatureRows& sums, std::span<const double> by_alpha);
 
 }  // namespace selvedge
