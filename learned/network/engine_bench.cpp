@@ -1,20 +1,16 @@
 #include "learned/network/engine_bench.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <ctime>
 
+#include "collision/geometry/stopwatch.hpp"
 #include "learned/network/engine_kernels.hpp"
 #include "learned/network/packed_network.hpp"
 
 namespace selvedge {
 namespace {
-
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // Seconds of all threads of this process together.
 double busy_seconds_now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
@@ -32,9 +28,9 @@ std::uint64_t chain(std::uint64_t x, long iterations) {
 double measure_clock() {
   constexpr long iterations = 5000000;
   volatile std::uint64_t keep = 88172645463325252u;
-  const double begin = seconds_now();
+  Stopwatch watch;
   keep = chain(keep, iterations);
-  return 6.0 * iterations / (seconds_now() - begin);
+  return 6.0 * iterations / watch.lap();
 }
 
 // Runs the chains on every thread at once and returns the number of threads.
@@ -59,10 +55,11 @@ PeakMeasurement measure_peak(InstructionSet set, int rounds) {
   constexpr long iterations = 2000000;
   for (int round = 0; round < rounds; ++round) {
     peak.clock = std::max(peak.clock, measure_clock());
-    const double begin = seconds_now(), busy_begin = busy_seconds_now();
+    Stopwatch watch;
+    const double busy_begin = busy_seconds_now();
     peak.threads = exercise_all(kernels, iterations);
     const double operations = 2.0 * iterations * exercise_chains * kernels.lanes * peak.threads;
-    peak.flops = std::max(peak.flops, operations / (seconds_now() - begin));
+    peak.flops = std::max(peak.flops, operations / watch.lap());
     peak.flops_busy = std::max(peak.flops_busy, operations / (busy_seconds_now() - busy_begin));
   }
   peak.share_of_ports = peak.flops / (peak.lanes * 2.0 * 2.0 * peak.clock * peak.threads);
@@ -76,9 +73,10 @@ EngineMeasurement measure_engine(const PackedNetwork& network, const Graph& grap
   result.operations = count_operations(network.architecture, graph);
   result.bytes = count_bytes(network.architecture, graph);
   for (int round = 0; round < rounds; ++round) {
-    const double begin = seconds_now(), busy_begin = busy_seconds_now();
+    Stopwatch watch;
+    const double busy_begin = busy_seconds_now();
     infer(network, graph);
-    const double taken = seconds_now() - begin, busy = busy_seconds_now() - busy_begin;
+    const double taken = watch.lap(), busy = busy_seconds_now() - busy_begin;
     result.seconds = round == 0 ? taken : std::min(result.seconds, taken);
     result.busy_seconds = round == 0 ? busy : std::min(result.busy_seconds, busy);
   }

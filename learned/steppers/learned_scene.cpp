@@ -1,7 +1,6 @@
 #include "learned/steppers/learned_scene.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -38,22 +37,22 @@ float input_of(const TrainedRange& range, double value, const std::string& cloth
   return static_cast<float>((scaled(counted) - scaled(range.low)) / (scaled(range.high) - scaled(range.low)));
 }
 
-std::array<float, 3> material_numbers(const VertexMaterial& m, const std::string& cloth,
-                                      std::vector<std::string>& clamped) {
+Eigen::RowVector3f material_numbers(const VertexMaterial& m, const std::string& cloth,
+                                    std::vector<std::string>& clamped) {
   return {input_of(trained_bending, m.bending, cloth, clamped), input_of(trained_mu, m.lame_mu, cloth, clamped),
           input_of(trained_lambda, m.lame_lambda, cloth, clamped)};
 }
 
 Eigen::RowVector3f material_row(const Cloth& cloth, std::vector<std::string>& clamped) {
   const VertexMaterial m = vertex_material(cloth.material);
-  const auto [bending, mu, lambda] = material_numbers(m, cloth.name, clamped);
+  const Eigen::RowVector3f numbers = material_numbers(m, cloth.name, clamped);
   if (m.density < trained_density.low || m.density > trained_density.high) {
     std::ostringstream text;
     text << cloth.name << ": density " << m.density << " kg/m2 is outside of " << trained_density.low << " to "
          << trained_density.high << " and stays as it is";
     clamped.push_back(text.str());
   }
-  return {bending, mu, lambda};
+  return numbers;
 }
 
 Surface joined_surface(const std::vector<Obstacle>& obstacles) {
@@ -101,10 +100,8 @@ LearnedScene learned_scene(const Scene& scene, const std::vector<int>& omitted_b
 FeatureRows material_inputs(std::span<const VertexMaterial> materials) {
   FeatureRows rows(static_cast<Eigen::Index>(materials.size()), 3);
   std::vector<std::string> clamped;
-  for (std::size_t v = 0; v < materials.size(); ++v) {
-    const auto [bending, mu, lambda] = material_numbers(materials[v], "", clamped);
-    rows.row(static_cast<Eigen::Index>(v)) << bending, mu, lambda;
-  }
+  for (std::size_t v = 0; v < materials.size(); ++v)
+    rows.row(static_cast<Eigen::Index>(v)) = material_numbers(materials[v], "", clamped);
   return rows;
 }
 

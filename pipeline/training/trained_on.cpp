@@ -55,13 +55,16 @@ TrainedPerson mannequin(const SampleOptions& samples) {
   return person;
 }
 
-// Drops the items that the split holds out.
-template <class SplitOf>
-void drop_held_out(const Config& list, const SplitOf& split_of_item, std::vector<TrainedItem>& items) {
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < items.size(); ++k)
-    if (split_of_item(list.items[k]) == Split::training) items[kept++] = items[k];
-  items.resize(kept);
+// The person with the wear and the clips of training, or with all.
+TrainedPerson content_of(const Contents& all, const SampleOptions& samples, const Config& person, bool whole) {
+  TrainedPerson one{person["name"].text(), all.of_body(person["body"]), {}, {}};
+  for (const Config& wear : person["wear"].items)
+    if (whole || split_of_wear(samples.split, wear, samples.folder) == Split::training)
+      one.wear.push_back({wear["name"].text(), all.of_wear(wear)});
+  for (const Config& clip : person["clips"].items)
+    if (whole || split_of_clip(samples.split, clip) == Split::training)
+      one.clips.push_back({clip["name"].text(), all.of_clip(clip)});
+  return one;
 }
 
 std::string names_text(const std::vector<TrainedItem>& items) {
@@ -94,28 +97,17 @@ std::vector<TrainedItem> items_of(const Json& list) {
 std::vector<TrainedPerson> contents_of(const SampleOptions& samples) {
   const Contents all = contents(samples);
   std::vector<TrainedPerson> people;
-  for (const Config& person : samples.people) {
-    TrainedPerson& one = people.emplace_back(TrainedPerson{person["name"].text(), all.of_body(person["body"]), {}, {}});
-    for (const Config& wear : person["wear"].items) one.wear.push_back({wear["name"].text(), all.of_wear(wear)});
-    for (const Config& clip : person["clips"].items) one.clips.push_back({clip["name"].text(), all.of_clip(clip)});
-  }
+  for (const Config& person : samples.people) people.push_back(content_of(all, samples, person, true));
   return people;
 }
 
 TrainedOn trained_on(const SampleOptions& samples) {
   TrainedOn on;
   if (has_mannequin(samples)) on.people.push_back(mannequin(samples));
-  std::vector<TrainedPerson> all = contents_of(samples);
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    const Config& person = samples.people[k];
-    if (split_of(samples.split, person["name"].text()) != Split::training) continue;
-    drop_held_out(
-        person["wear"], [&](const Config& wear) { return split_of_wear(samples.split, wear, samples.folder); },
-        all[k].wear);
-    drop_held_out(
-        person["clips"], [&](const Config& clip) { return split_of_clip(samples.split, clip); }, all[k].clips);
-    on.people.push_back(std::move(all[k]));
-  }
+  const Contents all = contents(samples);
+  for (const Config& person : samples.people)
+    if (split_of(samples.split, person["name"].text()) == Split::training)
+      on.people.push_back(content_of(all, samples, person, false));
   return on;
 }
 
