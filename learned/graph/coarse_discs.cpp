@@ -1,9 +1,8 @@
-#include "learned/graph/coarse_discs.hpp"
-
 #include <limits>
 #include <queue>
 
 #include "collision/geometry/adjacency.hpp"
+#include "learned/graph/coarse_levels.hpp"
 
 namespace selvedge {
 namespace {

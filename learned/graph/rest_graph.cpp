@@ -5,7 +5,6 @@
 #include <map>
 
 #include "collision/geometry/error.hpp"
-#include "learned/graph/coarse_discs.hpp"
 
 namespace selvedge {
 namespace {

@@ -1,5 +1,6 @@
 #include "learned/losses/objective.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "collision/geometry/error.hpp"
@@ -143,6 +144,28 @@ std::vector<LossTerm> add_losses(const LossInputs& in, const LossOptions& option
                                  Points* gradient) {
   find_matches(in, options, search);
   return add_losses(in, options, search.matches, gradient);
+}
+
+std::vector<LossTerm> add_losses_with_share(const LossInputs& in, const LossOptions& options, LossSearch& search,
+                                            Points& gradient) {
+  Points all = Points::Zero(gradient.rows(), 3);
+  std::vector<LossTerm> terms = add_losses(in, options, search, &all);
+  const auto contours = std::ranges::find(terms, "contours", &LossTerm::name);
+  if (options.contours.share > 0 && contours != terms.end()) {
+    LossOptions without = options;
+    without.contours.weight = {0, 0};
+    Points others = Points::Zero(gradient.rows(), 3);
+    add_losses(in, without, search.matches, &others);
+    const Points own = all - others;
+    const double wanted = options.contours.share / (1 - options.contours.share);
+    const double scale = wanted * inverse_mass_norm(*in.garment, others) / inverse_mass_norm(*in.garment, own);
+    if (std::isfinite(scale) && scale > 0) {
+      all = others + scale * own;
+      for (double* one : {&contours->weight, &contours->value, &contours->gradient_norm}) *one *= scale;
+    }
+  }
+  gradient += all;
+  return terms;
 }
 
 double sum_of(std::span<const LossTerm> terms) {

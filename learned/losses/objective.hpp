@@ -41,6 +41,11 @@ std::vector<LossTerm> add_losses(const LossInputs&, const LossOptions&, const Lo
 
 double sum_of(std::span<const LossTerm>);  // [J]
 
+// Works as add_losses, but scales the contours' term to ContourLoss::share of the sample's gradient: its norm over the
+// inverse masses is share / (1 - share) of that of all other terms together. Returns the scaled terms. Without a share,
+// without crossings, or where a norm is zero, it is the same as add_losses.
+std::vector<LossTerm> add_losses_with_share(const LossInputs&, const LossOptions&, LossSearch&, Points& gradient);
+
 // The sum at predicted = base + t (inputs.predicted - base) for each t. The gate of the fast recipe takes the least.
 // Body faces are matched once, because they depend on where the cloth is now.
 std::vector<double> losses_along(const LossInputs&, const LossOptions&, const Points& base, std::span<const double> t,

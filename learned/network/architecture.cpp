@@ -4,7 +4,6 @@
 
 #include "collision/geometry/error.hpp"
 #include "learned/graph/feature_tables.hpp"
-#include "learned/network/architecture_limits.hpp"
 
 namespace selvedge {
 namespace {

@@ -8,6 +8,10 @@
 
 namespace selvedge {
 
+// Limits of a network. Files and options that exceed them are refused.
+inline constexpr int most_latents = 4096;
+inline constexpr int most_message_steps = 1024;
+
 // A network that turns the features of edges into latents. Several kinds of edges may share one.
 struct EdgeEncoder {
   std::string name;  // name in the published checkpoints: mesh, world, body, coarse0..

@@ -4,7 +4,6 @@
 
 #include "learned/repulsion/drape_network.hpp"
 #include "learned/repulsion/neighbour_scale.hpp"
-#include "learned/repulsion/plain_adam.hpp"
 #include "learned/repulsion/repulsion_training.hpp"
 
 namespace selvedge {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "learned/repulsion/plain_adam.hpp"
+#include "learned/repulsion/plain_network.hpp"
 
 namespace selvedge {
 

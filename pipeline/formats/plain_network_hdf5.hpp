@@ -1,6 +1,6 @@
 #pragma once
 
-#include "learned/repulsion/plain_adam.hpp"
+#include "learned/repulsion/plain_network.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
 
 namespace selvedge {

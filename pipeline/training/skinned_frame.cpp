@@ -1,5 +1,3 @@
-#include "pipeline/training/skinned_frame.hpp"
-
 #include <algorithm>
 
 #include "collision/geometry/welded_surface.hpp"

@@ -7,7 +7,6 @@
 #include "collision/geometry/error.hpp"
 #include "learned/losses/loss_terms.hpp"
 #include "learned/network/architecture.hpp"
-#include "learned/network/architecture_limits.hpp"
 #include "pipeline/config/section_tree.hpp"
 #include "pipeline/garments/outfit.hpp"
 #include "pipeline/motions/clip_split.hpp"
@@ -227,11 +226,9 @@ const Options<WatchOptions>& watch_options() {
 
 void check_names(const TrainingOptions& options, const std::string& where) {
   const Wardrobe wardrobe = read_wardrobe(config_folder() / "outfits.yaml");
-  std::vector<std::string> known = wardrobe.training, clips;
+  std::vector<std::string> known = wardrobe.training, clips = training_clip_names({});
   for (const Outfit& outfit : wardrobe.outfits)
     if (!outfit.validation) known.push_back(outfit.name);
-  for (const ClipEntry& entry : read_clip_split(config_folder() / "clips.yaml"))
-    if (!entry.validation) clips.push_back(entry.name);
   const auto refuse = [&](const std::string& key, const std::string& name, const std::vector<std::string>& allowed) {
     if (std::ranges::find(allowed, name) == allowed.end())
       throw Error(fmt::format("`{}` is not for training, or unknown", name), where + ": " + key,

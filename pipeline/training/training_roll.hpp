@@ -8,7 +8,7 @@
 #include "learned/losses/loss_garment.hpp"
 #include "physics/scene/stepper.hpp"
 #include "pipeline/training/random_stream.hpp"
-#include "pipeline/training/skinned_frame.hpp"
+#include "pipeline/training/training_world.hpp"
 
 namespace selvedge {
 

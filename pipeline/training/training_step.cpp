@@ -11,7 +11,6 @@
 #include "collision/geometry/error.hpp"
 #include "learned/graph/integration.hpp"
 #include "learned/graph/unite_graphs.hpp"
-#include "learned/losses/held_share.hpp"
 
 namespace selvedge {
 namespace {

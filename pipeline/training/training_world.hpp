@@ -90,4 +90,10 @@ std::uint64_t world_hash(const TrainingWorld&);
 // The people of the training, and what is held out, one line per person.
 std::string people_text(const TrainingWorld&, const SampleOptions&);
 
+// Body and garments in a frame of a clip, the garments one behind the other [m].
+struct SkinnedFrame {
+  PointsF body, cloth;
+};
+SkinnedFrame skinned_frame(TrainingWorld&, int wear, int body, int clip, int frame);
+
 }  // namespace selvedge

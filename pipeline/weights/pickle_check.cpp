@@ -53,6 +53,13 @@ void check_one(const Pickle& pickle, const PickleValue& value, const std::string
 
 }  // namespace
 
+std::string shown(std::string_view text) {
+  constexpr std::size_t longest = 120;
+  std::string line;
+  for (const char c : text.substr(0, longest)) line += c >= ' ' && c <= '~' ? std::string(1, c) : "?";
+  return text.size() > longest ? line + ".." : line;
+}
+
 void refuse_pickle(const std::string& what, const std::string& where) {
   throw Error(what, where,
               "selvedge reads what torch.save makes of a dictionary of tensors and plain settings, and nothing else; "

@@ -3,7 +3,6 @@
 #include <random>
 
 #include "collision/geometry/adjacency.hpp"
-#include "learned/graph/coarse_discs.hpp"
 #include "learned/graph/coarse_levels.hpp"
 #include "learned/graph/graph_centre.hpp"
 #include "tests/learned/graph_scenes.hpp"

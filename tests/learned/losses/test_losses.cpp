@@ -2,7 +2,6 @@
 
 #include "learned/losses/body_losses.hpp"
 #include "learned/losses/cloth_losses.hpp"
-#include "learned/losses/held_share.hpp"
 #include "tests/learned/loss_scenes.hpp"
 
 namespace selvedge::test_losses {

@@ -4,7 +4,6 @@
 
 #include "collision/geometry/error.hpp"
 #include "learned/repulsion/neural_distance.hpp"
-#include "learned/repulsion/plain_adam.hpp"
 
 namespace selvedge::test_neural_distance {
 
