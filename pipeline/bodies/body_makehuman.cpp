@@ -1,7 +1,6 @@
 #include "pipeline/bodies/body_makehuman.hpp"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <utility>
 

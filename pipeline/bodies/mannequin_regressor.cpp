@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 
 #include "pipeline/bodies/joint_regressor.hpp"

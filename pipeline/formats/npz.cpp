@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <zip.h>
 
-#include <algorithm>
-
 #include "collision/geometry/error.hpp"
 #include "pipeline/host/bounds.hpp"
 

@@ -1,7 +1,5 @@
 #include "pipeline/formats/plain_network_hdf5.hpp"
 
-#include <cmath>
-
 namespace selvedge {
 namespace {
 

@@ -1,6 +1,5 @@
 #include "pipeline/garments/garment.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 

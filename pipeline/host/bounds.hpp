@@ -18,7 +18,6 @@ inline constexpr std::int64_t most_file_bytes = std::int64_t{1} << 31;
 inline constexpr double farthest_coordinate = 1e9;          // of a mesh file, in the unit of the file
 inline constexpr double largest_length = limits::farthest;  // from the origin, and the largest length [m]
 inline constexpr double most_start_stretch = 10;            // by which a start draws a cloth out
-inline constexpr double largest_time = limits::longest;     // time [s]
 
 // Throws Error with the count and the bound where `count` is above `most`, or is not a number. `noun` is what is
 // counted: "vertices".

@@ -10,7 +10,6 @@
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/obstacles/setup_mesh.hpp"
 #include "pipeline/obstacles/setup_motion.hpp"
-#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/shapes/outward_mesh.hpp"
 #include "pipeline/shapes/own_crossings.hpp"
 #include "pipeline/shapes/primitives.hpp"

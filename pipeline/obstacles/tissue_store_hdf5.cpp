@@ -1,7 +1,6 @@
 #include "pipeline/obstacles/tissue_store_hdf5.hpp"
 
 #include <algorithm>
-#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>

@@ -1,7 +1,5 @@
 #include "pipeline/patterns/pattern_mesh.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>

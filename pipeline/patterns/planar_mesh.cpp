@@ -1,13 +1,8 @@
 #include "pipeline/patterns/planar_mesh.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 
-#include "collision/exact/orientation.hpp"
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/polygon.hpp"
 #include "pipeline/patterns/flip_mesh.hpp"
