@@ -1,5 +1,7 @@
 #include "pipeline/motions/clip_procedural.hpp"
 
+#include <cmath>
+
 #include "collision/geometry/error.hpp"
 #include "pipeline/bodies/body_smpl.hpp"
 #include "pipeline/config/config.hpp"
@@ -28,6 +30,23 @@ Movement movement(const Skeleton& k, double seconds) {
 void hold(Movement& m, double from, double to, const Figure& figure) {
   m.keys.push_back({from, figure});
   m.keys.push_back({to, figure});
+}
+
+Movement from_rest(const Skeleton& k, double seconds, double smoothing, double rest) {
+  Movement m = movement(k, seconds);
+  m.smoothing = smoothing;
+  hold(m, 0, rest, standing());
+  return m;
+}
+
+Movement to_rest(Movement m, double rest, const Figure& figure) {
+  hold(m, rest, m.seconds, figure);
+  return m;
+}
+
+Vec3 turned_left(const Vec3& place, double yaw) {
+  const double c = std::cos(yaw), s = std::sin(yaw);
+  return {c * place.x() + s * place.z(), 0, -s * place.x() + c * place.z()};
 }
 
 std::vector<std::string> procedural_clip_names() {

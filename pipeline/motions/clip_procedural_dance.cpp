@@ -7,9 +7,7 @@ namespace {
 
 // Side steps to and fro, arms swinging across.
 Movement dance_sway(const Skeleton& k) {
-  Movement m = movement(k, 8);
-  m.smoothing = 0.15;
-  hold(m, 0, 0.4, standing());
+  Movement m = from_rest(k, 8, 0.15, 0.4);
   const double beat = 0.55, wide = 0.35 * k.leg;
   for (int i = 0; i < 12; ++i) {
     // Left foot out, right foot to it, right foot out, left foot to it.
@@ -28,15 +26,12 @@ Movement dance_sway(const Skeleton& k) {
     set_arm(f, 1, open ? 1.1 : 0.5, 0.4 - 0.3 * to, 0.4, 0.9);
     m.keys.push_back({t + 0.85 * beat, f});
   }
-  hold(m, 7.6, 8, standing());
-  return m;
+  return to_rest(m, 7.6);
 }
 
 // A box of six steps, turning a little, arms held as if round a partner.
 Movement dance_waltz(const Skeleton& k) {
-  Movement m = movement(k, 9);
-  m.smoothing = 0.2;
-  hold(m, 0, 0.4, standing());
+  Movement m = from_rest(k, 9, 0.2, 0.4);
   const double beat = 0.6, side_way = 0.35 * k.leg, way = 0.4 * k.leg;
   Vec3 at[2] = {Vec3::Zero(), Vec3::Zero()};
   for (int i = 0; i < 12; ++i) {
@@ -58,15 +53,12 @@ Movement dance_waltz(const Skeleton& k) {
     set_arm(f, 1, 1.15, 0.75, 0.3, 1.1);
     m.keys.push_back({t + 0.8 * beat, f});
   }
-  hold(m, 8.6, 9, standing());
-  return m;
+  return to_rest(m, 8.6);
 }
 
 // Knees bent, hips and shoulders turning against each other, on the balls of the feet.
 Movement dance_twist(const Skeleton& k) {
-  Movement m = movement(k, 7);
-  m.smoothing = 0.11;
-  hold(m, 0, 0.4, standing());
+  Movement m = from_rest(k, 7, 0.11, 0.4);
   for (int i = 0; i < 12; ++i) {
     const double to = i % 2 == 0 ? 1 : -1, depth = 0.1 + 0.08 * std::sin(0.52 * i);
     Figure f = standing();
@@ -80,15 +72,12 @@ Movement dance_twist(const Skeleton& k) {
     f.heel_up(0) = f.heel_up(1) = 0.2;
     m.keys.push_back({0.9 + 0.45 * i, f});
   }
-  hold(m, 6.6, 7, standing());
-  return m;
+  return to_rest(m, 6.6);
 }
 
 // One arm up to the side and down across, hips going along.
 Movement dance_disco(const Skeleton& k) {
-  Movement m = movement(k, 7);
-  m.smoothing = 0.13;
-  hold(m, 0, 0.4, standing());
+  Movement m = from_rest(k, 7, 0.13, 0.4);
   m.steps.push_back({0, 0.4, 0.85, stance(k, 0) + Vec3(0.22 * k.leg, 0, 0), 0.2, 0.05 * k.leg, 0.2, 0});
   for (int i = 0; i < 10; ++i) {
     const bool up = i % 2 == 0;
@@ -109,27 +98,20 @@ Movement dance_disco(const Skeleton& k) {
     m.keys.push_back({1.1 + 0.5 * i, f});
   }
   m.steps.push_back({0, 5.95, 6.4, stance(k, 0), 0, 0.05 * k.leg, 0.2, 0});
-  hold(m, 6.6, 7, standing());
-  return m;
+  return to_rest(m, 6.6);
 }
 
 // Round in a circle on quick small steps with the arms flowing up and down; a skirt flies.
 Movement dance_pirouette(const Skeleton& k) {
-  Movement m = movement(k, 7);
-  m.smoothing = 0.22;
+  Movement m = from_rest(k, 7, 0.22, 0.4);
   Figure f = standing();
-  hold(m, 0, 0.4, f);
   double yaw = 0;
   for (int i = 0; i < 12; ++i) {
     const double t = 0.7 + 0.42 * i, turn = i < 2 || i > 9 ? 0.7 : 1.2;
     yaw += turn;
     const int side = i % 2;
-    const Vec3 stand = 0.8 * stance(k, side);
     const double at = yaw + (side == 0 ? 0.1 : -0.1);
-    m.steps.push_back({side, t, t + 0.36,
-                       Vec3(std::cos(at) * stand.x() + std::sin(at) * stand.z(), 0,
-                            -std::sin(at) * stand.x() + std::cos(at) * stand.z()),
-                       at, 0.06 * k.leg, 0.3, 0});
+    m.steps.push_back({side, t, t + 0.36, turned_left(0.8 * stance(k, side), at), at, 0.06 * k.leg, 0.3, 0});
     f.yaw() = yaw - 0.2;
     f.pelvis() = Vec3(0, 0.02 * k.leg, 0);
     f.spine() = Vec3(-0.06, 0, 0.15);
@@ -138,17 +120,12 @@ Movement dance_pirouette(const Skeleton& k) {
     set_arms(f, 0.9 + 1.3 * rise, 0.35, 0.1, 0.45);
     m.keys.push_back({t + 0.35, f});
   }
-  for (int side = 0; side < 2; ++side) {
-    const Vec3 stand = stance(k, side);
-    m.steps.push_back({side, 5.9 + 0.02 + 0.3 * side, 6.2 + 0.3 * side,
-                       Vec3(std::cos(yaw) * stand.x() + std::sin(yaw) * stand.z(), 0,
-                            -std::sin(yaw) * stand.x() + std::cos(yaw) * stand.z()),
-                       yaw, 0.03 * k.leg, 0.1, 0});
-  }
+  for (int side = 0; side < 2; ++side)
+    m.steps.push_back({side, 5.9 + 0.02 + 0.3 * side, 6.2 + 0.3 * side, turned_left(stance(k, side), yaw), yaw,
+                       0.03 * k.leg, 0.1, 0});
   Figure end = standing();
   end.yaw() = yaw;
-  hold(m, 6.4, 7, end);
-  return m;
+  return to_rest(m, 6.4, end);
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "pipeline/motions/clip_procedural_moves.hpp"
 
 // Movements on the spot.
@@ -7,43 +5,36 @@ namespace selvedge {
 namespace {
 
 Movement arms_up_down(const Skeleton& k) {
-  Movement m = movement(k, 5);
-  m.smoothing = 0.2;
+  Movement m = from_rest(k, 5, 0.2, 0.4);
   Figure side = standing(), up = standing(), front = standing();
   set_arms(side, 1.55, 0, 0, 0.1);
   set_arms(up, 2.8, 0, 0.2, 0.15);
   set_arms(front, 0.2, 1.55, 0, 0.1);
-  hold(m, 0, 0.4, standing());
   m.keys.push_back({1.1, side});
   hold(m, 1.7, 2.0, up);
   hold(m, 2.8, 3.1, front);
-  hold(m, 4.2, 5, standing());
-  return m;
+  return to_rest(m, 4.2);
 }
 
 // Both arms go round in circles: out, up, forward and down.
 Movement arm_circles(const Skeleton& k) {
-  Movement m = movement(k, 6);
+  Movement m = from_rest(k, 6, 0.12, 0.4);
   Figure out = standing(), up = standing(), front = standing(), low = standing();
   set_arms(out, 1.45, -0.2, 0, 0.1);
   set_arms(up, 2.7, 0.2, 0, 0.1);
   set_arms(front, 0.5, 1.6, 0, 0.1);
   set_arms(low, 0.35, 0.3, 0, 0.15);
-  hold(m, 0, 0.4, standing());
   for (int round = 0; round < 3; ++round) {
     const double t = 0.8 + 1.6 * round;
     m.keys.insert(m.keys.end(), {{t, out}, {t + 0.4, up}, {t + 0.8, front}, {t + 1.2, low}});
   }
-  hold(m, 5.5, 6, standing());
-  return m;
+  return to_rest(m, 5.5);
 }
 
 // Once round and back, in steps of a quarter turn.
 Movement spin(const Skeleton& k) {
-  Movement m = movement(k, 7);
-  m.smoothing = 0.25;
+  Movement m = from_rest(k, 7, 0.25, 0.5);
   Figure f = standing();
-  hold(m, 0, 0.5, f);
   set_arms(f, 1.2, 0.1, 0, 0.2);
   double yaw = 0;
   for (int i = 0; i < 8; ++i) {
@@ -51,16 +42,13 @@ Movement spin(const Skeleton& k) {
     yaw += quarter;
     for (int step = 0; step < 2; ++step) {
       const int side = (i < 4) == (step == 0) ? 0 : 1;  // the foot on the side of the turn goes first
-      const Vec3 stand = stance(k, side);
-      const Vec3 place(std::cos(yaw) * stand.x() + std::sin(yaw) * stand.z(), 0,
-                       -std::sin(yaw) * stand.x() + std::cos(yaw) * stand.z());
-      m.steps.push_back({side, t + 0.34 * step, t + 0.34 * (step + 1) - 0.02, place, yaw, 0.05 * k.leg, 0.15, 0});
+      m.steps.push_back({side, t + 0.34 * step, t + 0.34 * (step + 1) - 0.02, turned_left(stance(k, side), yaw), yaw,
+                         0.05 * k.leg, 0.15, 0});
     }
     f.yaw() = yaw;
     m.keys.push_back({t + 0.6, f});
   }
-  hold(m, 6.5, 7, standing());
-  return m;
+  return to_rest(m, 6.5);
 }
 
 Figure squatting(const Skeleton& k, double depth) {
@@ -75,22 +63,17 @@ Figure squatting(const Skeleton& k, double depth) {
 }
 
 Movement squat(const Skeleton& k) {
-  Movement m = movement(k, 6);
-  m.smoothing = 0.25;
-  hold(m, 0, 0.5, standing());
+  Movement m = from_rest(k, 6, 0.25, 0.5);
   for (int i = 0; i < 2; ++i) {
     const double t = 1.6 + 2.5 * i;
     hold(m, t, t + 0.4, squatting(k, i == 0 ? 0.42 : 0.56));
     hold(m, t + 1.5, t + 1.6, standing());
   }
-  hold(m, 5.8, 6, standing());
-  return m;
+  return to_rest(m, 5.8);
 }
 
 Movement jump(const Skeleton& k) {
-  Movement m = movement(k, 5);
-  m.smoothing = 0.1;
-  hold(m, 0, 0.4, standing());
+  Movement m = from_rest(k, 5, 0.1, 0.4);
   for (int i = 0; i < 2; ++i) {
     const double t = 0.5 + 2.2 * i, leave = t + 0.85, land = leave + 0.42;
     Figure low = squatting(k, 0.36), high = standing(), soft = squatting(k, 0.3);
@@ -105,15 +88,12 @@ Movement jump(const Skeleton& k) {
     // The feet stay in place and only point down in flight.
     for (const int side : {0, 1}) m.steps.push_back({side, leave, land, stance(k, side), 0, 0, 0.6, 0});
   }
-  hold(m, 4.8, 5, standing());
-  return m;
+  return to_rest(m, 4.8);
 }
 
 // Legs apart with the arms up, and back, in small jumps.
 Movement jumping_jacks(const Skeleton& k) {
-  Movement m = movement(k, 6);
-  m.smoothing = 0.11;
-  hold(m, 0, 0.4, standing());
+  Movement m = from_rest(k, 6, 0.11, 0.4);
   for (int i = 0; i < 6; ++i) {
     const double t = 0.7 + 0.8 * i;
     const bool apart = i % 2 == 0;
@@ -133,14 +113,11 @@ Movement jumping_jacks(const Skeleton& k) {
       m.steps.push_back({side, t, t + 0.3, Vec3(x, 0, stand.z()), 0, 0, 0.25, 0});
     }
   }
-  hold(m, 5.5, 6, standing());
-  return m;
+  return to_rest(m, 5.5);
 }
 
 Movement side_bends(const Skeleton& k) {
-  Movement m = movement(k, 6);
-  m.smoothing = 0.25;
-  hold(m, 0, 0.5, standing());
+  Movement m = from_rest(k, 6, 0.25, 0.5);
   for (int i = 0; i < 2; ++i) {
     Figure f = standing();
     const double to = i == 0 ? 1 : -1;
@@ -153,16 +130,13 @@ Movement side_bends(const Skeleton& k) {
     hold(m, 1.6 + 2.5 * i, 2.0 + 2.5 * i, f);
     if (i == 0) m.keys.push_back({2.9, standing()});
   }
-  hold(m, 5.6, 6, standing());
-  return m;
+  return to_rest(m, 5.6);
 }
 
 Movement twist(const Skeleton& k) {
-  Movement m = movement(k, 5);
-  m.smoothing = 0.16;
+  Movement m = from_rest(k, 5, 0.16, 0.4);
   Figure middle = standing();
   set_arms(middle, 1.4, 0.1, 0, 0.5);
-  hold(m, 0, 0.4, standing());
   m.keys.push_back({0.9, middle});
   for (int i = 0; i < 4; ++i) {
     Figure f = middle;
@@ -172,14 +146,11 @@ Movement twist(const Skeleton& k) {
     f.head() = Vec3(0, 0, 0.3 * to);
     m.keys.push_back({1.5 + 0.75 * i, f});
   }
-  hold(m, 4.6, 5, standing());
-  return m;
+  return to_rest(m, 4.6);
 }
 
 Movement kick(const Skeleton& k) {
-  Movement m = movement(k, 6);
-  m.smoothing = 0.13;
-  hold(m, 0, 0.4, standing());
+  Movement m = from_rest(k, 6, 0.13, 0.4);
   for (const int side : {0, 1}) {
     const double t = 0.7 + 2.6 * side, s = k.mirror[side];
     const Vec3 stand = stance(k, side);
@@ -199,14 +170,11 @@ Movement kick(const Skeleton& k) {
     m.steps.push_back({side, t + 0.85, t + 1.55, stand, 0, 0, 0, 0});
     m.swings.push_back({side, t + 0.1, t + 1.55, 0.72 * k.leg});
   }
-  hold(m, 5.8, 6, standing());
-  return m;
+  return to_rest(m, 5.8);
 }
 
 Movement lunge(const Skeleton& k) {
-  Movement m = movement(k, 8);
-  m.smoothing = 0.22;
-  hold(m, 0, 0.4, standing());
+  Movement m = from_rest(k, 8, 0.22, 0.4);
   for (const int side : {0, 1}) {
     const double t = 0.6 + 3.5 * side;
     const Vec3 stand = stance(k, side);
@@ -224,8 +192,7 @@ Movement lunge(const Skeleton& k) {
     m.keys.push_back({t + 2.3, f});
     hold(m, t + 3.1, t + 3.3, standing());
   }
-  hold(m, 7.8, 8, standing());
-  return m;
+  return to_rest(m, 7.8);
 }
 
 }  // namespace

@@ -37,8 +37,7 @@ Place on_path(double way, double curvature) {
 }
 
 Vec3 beside(const Place& place, double left, double ahead) {
-  const double c = std::cos(place.heading), s = std::sin(place.heading);
-  return place.at + Vec3(c * left + s * ahead, 0, -s * left + c * ahead);
+  return place.at + turned_left({left, 0, ahead}, place.heading);
 }
 
 Movement walked(const Skeleton& k, const Gait& g, double seconds) {
@@ -100,118 +99,90 @@ Movement walked(const Skeleton& k, const Gait& g, double seconds) {
   return m;
 }
 
-Movement walk(const Skeleton& k) { return walked(k, {}, 6); }
-Movement walk_slow(const Skeleton& k) {
-  return walked(k, {.steps = 7, .step = 0.5, .time = 0.8, .lift = 0.045, .toe_off = 0.8, .strike = 0.2, .arm = 0.2},
-                7.5);
-}
-Movement walk_fast(const Skeleton& k) {
-  return walked(k,
-                {.steps = 10,
-                 .step = 0.8,
-                 .time = 0.45,
-                 .toe_off = 1.15,
-                 .strike = 0.3,
-                 .arm = 0.6,
-                 .elbow = 0.6,
-                 .twist = 0.16,
-                 .lean = 0.08},
-                6);
-}
-Movement walk_arms(const Skeleton& k) {
-  return walked(k,
-                {.steps = 8,
-                 .step = 0.7,
-                 .time = 0.56,
-                 .arm = 1.0,
-                 .elbow = 0.15,
-                 .elbow_swing = 0.1,
-                 .arm_out = 0.3,
-                 .twist = 0.2},
-                6);
-}
-Movement walk_turning(const Skeleton& k) { return walked(k, {.steps = 10, .step = 0.6, .turn = 0.35}, 7); }
-Movement walk_backward(const Skeleton& k) {
-  return walked(k, {.step = -0.5, .time = 0.62, .lift = 0.07, .toe_off = 0.25, .strike = 0, .arm = -0.2}, 6.5);
-}
-Movement strut(const Skeleton& k) {
-  return walked(k,
-                {.steps = 8,
-                 .step = 0.66,
-                 .time = 0.6,
-                 .toe_off = 1.0,
-                 .arm = 0.5,
-                 .elbow = 0.25,
-                 .sway = 0.04,
-                 .twist = 0.25,
-                 .roll = 0.16,
-                 .lean = -0.04,
-                 .width = 0.5},
-                7);
-}
-Movement march(const Skeleton& k) {
-  return walked(k,
-                {.steps = 8,
-                 .step = 0.55,
-                 .time = 0.55,
-                 .lift = 0.08,
-                 .toe_off = 0.3,
-                 .strike = 0,
-                 .arm = 0.9,
-                 .elbow = 0.2,
-                 .elbow_swing = 0.1,
-                 .lean = 0,
-                 .knee_lift = 0.28},
-                6);
-}
-Movement sneak(const Skeleton& k) {
-  return walked(k,
-                {.steps = 7,
-                 .step = 0.6,
-                 .time = 0.8,
-                 .lift = 0.12,
-                 .toe_off = 0.5,
-                 .strike = 0.05,
-                 .arm = 0.25,
-                 .elbow = 1.2,
-                 .lean = 0.4,
-                 .crouch = 0.2},
-                7.5);
-}
-Movement run(const Skeleton& k) {
-  return walked(k,
-                {.steps = 12,
-                 .step = 0.95,
-                 .time = 0.37,
-                 .swing = 0.64,
-                 .lift = 0.2,
-                 .toe_off = 1.1,
-                 .strike = 0.1,
-                 .arm = 0.75,
-                 .elbow = 1.5,
-                 .elbow_swing = 0.2,
-                 .bob = 0.02,
-                 .sway = 0.012,
-                 .twist = 0.16,
-                 .lean = 0.14,
-                 .crouch = 0.05,
-                 .width = 0.4},
-                6);
+NamedMovement gait(const std::string& name, double seconds, const Gait& g) {
+  return {name, [g, seconds](const Skeleton& k) { return walked(k, g, seconds); }};
 }
 
 }  // namespace
 
 std::vector<NamedMovement> gait_movements() {
-  return {{"walk", walk},
-          {"walk_slow", walk_slow},
-          {"walk_fast", walk_fast},
-          {"walk_arms", walk_arms},
-          {"walk_turning", walk_turning},
-          {"walk_backward", walk_backward},
-          {"strut", strut},
-          {"march", march},
-          {"sneak", sneak},
-          {"run", run}};
+  return {
+      gait("walk", 6, {}),
+      gait("walk_slow", 7.5,
+           {.steps = 7, .step = 0.5, .time = 0.8, .lift = 0.045, .toe_off = 0.8, .strike = 0.2, .arm = 0.2}),
+      gait("walk_fast", 6,
+           {.steps = 10,
+            .step = 0.8,
+            .time = 0.45,
+            .toe_off = 1.15,
+            .strike = 0.3,
+            .arm = 0.6,
+            .elbow = 0.6,
+            .twist = 0.16,
+            .lean = 0.08}),
+      gait("walk_arms", 6,
+           {.steps = 8,
+            .step = 0.7,
+            .time = 0.56,
+            .arm = 1.0,
+            .elbow = 0.15,
+            .elbow_swing = 0.1,
+            .arm_out = 0.3,
+            .twist = 0.2}),
+      gait("walk_turning", 7, {.steps = 10, .step = 0.6, .turn = 0.35}),
+      gait("walk_backward", 6.5, {.step = -0.5, .time = 0.62, .lift = 0.07, .toe_off = 0.25, .strike = 0, .arm = -0.2}),
+      gait("strut", 7,
+           {.steps = 8,
+            .step = 0.66,
+            .time = 0.6,
+            .toe_off = 1.0,
+            .arm = 0.5,
+            .elbow = 0.25,
+            .sway = 0.04,
+            .twist = 0.25,
+            .roll = 0.16,
+            .lean = -0.04,
+            .width = 0.5}),
+      gait("march", 6,
+           {.steps = 8,
+            .step = 0.55,
+            .time = 0.55,
+            .lift = 0.08,
+            .toe_off = 0.3,
+            .strike = 0,
+            .arm = 0.9,
+            .elbow = 0.2,
+            .elbow_swing = 0.1,
+            .lean = 0,
+            .knee_lift = 0.28}),
+      gait("sneak", 7.5,
+           {.steps = 7,
+            .step = 0.6,
+            .time = 0.8,
+            .lift = 0.12,
+            .toe_off = 0.5,
+            .strike = 0.05,
+            .arm = 0.25,
+            .elbow = 1.2,
+            .lean = 0.4,
+            .crouch = 0.2}),
+      gait("run", 6,
+           {.steps = 12,
+            .step = 0.95,
+            .time = 0.37,
+            .swing = 0.64,
+            .lift = 0.2,
+            .toe_off = 1.1,
+            .strike = 0.1,
+            .arm = 0.75,
+            .elbow = 1.5,
+            .elbow_swing = 0.2,
+            .bob = 0.02,
+            .sway = 0.012,
+            .twist = 0.16,
+            .lean = 0.14,
+            .crouch = 0.05,
+            .width = 0.4})};
 }
 
 }  // namespace selvedge

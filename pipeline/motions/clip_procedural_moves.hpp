@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,7 @@ namespace selvedge {
 
 struct NamedMovement {
   std::string name;
-  Movement (*make)(const Skeleton&);
+  std::function<Movement(const Skeleton&)> make;
 };
 
 std::vector<NamedMovement> gait_movements();      // walking, running
@@ -24,5 +25,14 @@ Movement movement(const Skeleton&, double seconds);
 
 // Keeps a figure from one time to another.
 void hold(Movement&, double from, double to, const Figure&);
+
+// A movement that starts so and stands until `rest` [s].
+Movement from_rest(const Skeleton&, double seconds, double smoothing, double rest);
+
+// The movement, with that figure from `rest` [s] on to its end.
+Movement to_rest(Movement, double rest, const Figure& = standing());
+
+// A place on the ground turned to the left about the origin.
+Vec3 turned_left(const Vec3& place, double yaw);
 
 }  // namespace selvedge

@@ -5,44 +5,36 @@ namespace selvedge {
 namespace {
 
 Movement hands_through_torso(const Skeleton& k) {
-  Movement m = movement(k, 6);
-  m.smoothing = 0.2;
+  Movement m = from_rest(k, 6, 0.2, 0.4);
   Figure front = standing(), inside = standing(), through = standing();
   reach_both(front, k, Vec3(0.2, -0.5, 0.6), Vec3(1, -0.6, 0));
   reach_both(inside, k, Vec3(0.05, -0.55, 0.05), Vec3(1, -0.5, 0.1));
   reach_both(through, k, Vec3(-0.05, -0.5, -0.22), Vec3(1, -0.5, 0.2));
-  hold(m, 0, 0.4, standing());
   m.keys.push_back({1.1, front});
   hold(m, 2.0, 2.5, inside);
   hold(m, 3.2, 3.7, through);
   m.keys.push_back({4.6, front});
-  hold(m, 5.5, 6, standing());
-  return m;
+  return to_rest(m, 5.5);
 }
 
 // The forearms sink into the chest and into each other.
 Movement arms_folded(const Skeleton& k) {
-  Movement m = movement(k, 6);
-  m.smoothing = 0.22;
+  Movement m = from_rest(k, 6, 0.22, 0.4);
   Figure front = standing(), folded = standing(), deep = standing();
   reach_both(front, k, Vec3(0.25, -0.3, 0.65), Vec3(1, -0.7, 0));
   reach(folded, k, 0, Vec3(-0.3, -0.38, 0.3), Vec3(1, -0.8, 0.2));
   reach(folded, k, 1, Vec3(-0.3, -0.44, 0.33), Vec3(1, -0.8, 0.2));
   reach_both(deep, k, Vec3(-0.32, -0.36, 0.12), Vec3(1, -0.7, 0.1));
-  hold(m, 0, 0.4, standing());
   m.keys.push_back({1.2, front});
   hold(m, 2.0, 2.5, folded);
   hold(m, 3.2, 3.9, deep);
   m.keys.push_back({4.7, front});
-  hold(m, 5.6, 6, standing());
-  return m;
+  return to_rest(m, 5.6);
 }
 
 // Each foot in turn steps across to the far side of the other one; thighs and shins go through each other.
 Movement legs_crossing(const Skeleton& k) {
-  Movement m = movement(k, 7);
-  m.smoothing = 0.2;
-  hold(m, 0, 0.4, standing());
+  Movement m = from_rest(k, 7, 0.2, 0.4);
   for (const int side : {0, 1}) {
     const double t = 0.7 + 3.0 * side;
     const Vec3 stand = stance(k, side), other = stance(k, 1 - side);
@@ -55,32 +47,26 @@ Movement legs_crossing(const Skeleton& k) {
     m.steps.push_back({side, t + 1.5, t + 2.3, stand, 0, 0.05 * k.leg, 0.2, 0});
     m.keys.push_back({t + 2.4, standing()});
   }
-  hold(m, 6.6, 7, standing());
-  return m;
+  return to_rest(m, 6.6);
 }
 
 // Both hands go round to the back, the upper arms through the chest.
 Movement hug(const Skeleton& k) {
-  Movement m = movement(k, 6);
-  m.smoothing = 0.22;
+  Movement m = from_rest(k, 6, 0.22, 0.4);
   Figure open = standing(), closed = standing();
   set_arms(open, 1.3, 0.7, 0.1, 0.5);
   reach_both(closed, k, Vec3(-0.4, -0.2, 0.02), Vec3(0.8, -0.5, 0.5));
   closed.spine() = Vec3(0.25, 0, 0);
   closed.head() = Vec3(0.4, 0, 0);
-  hold(m, 0, 0.4, standing());
   m.keys.push_back({1.3, open});
   hold(m, 2.4, 3.4, closed);
   m.keys.push_back({4.4, open});
-  hold(m, 5.5, 6, standing());
-  return m;
+  return to_rest(m, 5.5);
 }
 
 // The arms swing across each other in front and behind, wrists and thighs in their way.
 Movement arms_through_thighs(const Skeleton& k) {
-  Movement m = movement(k, 6);
-  m.smoothing = 0.16;
-  hold(m, 0, 0.4, standing());
+  Movement m = from_rest(k, 6, 0.16, 0.4);
   for (int i = 0; i < 6; ++i) {
     Figure f = standing();
     const bool in = i % 2 == 0;
@@ -94,15 +80,12 @@ Movement arms_through_thighs(const Skeleton& k) {
     }
     m.keys.push_back({1.1 + 0.7 * i, f});
   }
-  hold(m, 5.6, 6, standing());
-  return m;
+  return to_rest(m, 5.6);
 }
 
 // The knee comes up into the belly, the trunk bends over it.
 Movement knee_to_chest(const Skeleton& k) {
-  Movement m = movement(k, 6);
-  m.smoothing = 0.18;
-  hold(m, 0, 0.4, standing());
+  Movement m = from_rest(k, 6, 0.18, 0.4);
   for (const int side : {0, 1}) {
     const double t = 0.8 + 2.5 * side, s = k.mirror[side];
     const Vec3 stand = stance(k, side);
@@ -119,8 +102,7 @@ Movement knee_to_chest(const Skeleton& k) {
     m.steps.push_back({side, t + 0.85, t + 1.6, stand, 0, 0, 0.3, 0});
     m.swings.push_back({side, t + 0.1, t + 1.6, 0.75 * k.leg});
   }
-  hold(m, 5.8, 6, standing());
-  return m;
+  return to_rest(m, 5.8);
 }
 
 }  // namespace
